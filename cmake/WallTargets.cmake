@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: MIT
+# One place for what all targets share: language level, warnings, sanitizers, output folders, and the three
+# kinds of target (library, program, test). Every target sees the repository root and the generated root, so that
+# an include reads like the namespace: "common/wire/pack_buffer.h", "gen/glstate/state.gen.h".
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+endif()
+find_package(Threads REQUIRED)
+
+set(WALLGL_SANITIZE "" CACHE STRING "Sanitizers, as in -fsanitize=")
+set(WALL_GEN_ROOT "${CMAKE_BINARY_DIR}/generated")
+
+# Float results must equal those of Mesa's own C code, so no contraction into fused operations.
+# GCC's SLP vectorizer merges the packer's pointer updates into one store that stalls (docs/benchmarks.md).
+set(WALL_COMPILE_OPTIONS -Wall -Wextra -Wpedantic -Wno-missing-field-initializers -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND WALL_COMPILE_OPTIONS -fno-tree-slp-vectorize)
+endif()
+
+function(wall_setup target)
+  target_include_directories(${target} PUBLIC "${CMAKE_SOURCE_DIR}" "${WALL_GEN_ROOT}")
+  target_compile_options(${target} PRIVATE ${WALL_COMPILE_OPTIONS})
+  if(WALLGL_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${WALLGL_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+    target_link_options(${target} PRIVATE -fsanitize=${WALLGL_SANITIZE})
+  endif()
+endfunction()
+
+# wall_library(name SOURCES... [LINK libs...])
+function(wall_library name)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  if(ARG_UNPARSED_ARGUMENTS)
+    add_library(${name} STATIC ${ARG_UNPARSED_ARGUMENTS})
+    wall_setup(${name})
+    target_link_libraries(${name} PUBLIC ${ARG_LINK})
+  else()
+    add_library(${name} INTERFACE)
+    target_include_directories(${name} INTERFACE "${CMAKE_SOURCE_DIR}" "${WALL_GEN_ROOT}")
+    target_link_libraries(${name} INTERFACE ${ARG_LINK})
+  endif()
+endfunction()
+
+# wall_program(name SOURCES... [LINK libs...])
+function(wall_program name)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  add_executable(${name} ${ARG_UNPARSED_ARGUMENTS})
+  wall_setup(${name})
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} Threads::Threads)
+endfunction()
+
+# wall_test(name SOURCES... [LINK libs...] [LABELS labels...]): a GoogleTest program, registered with CTest.
+function(wall_test name)
+  cmake_parse_arguments(ARG "" "" "LINK;LABELS" ${ARGN})
+  find_package(GTest REQUIRED)
+  wall_program(${name} ${ARG_UNPARSED_ARGUMENTS} LINK ${ARG_LINK} GTest::gtest GTest::gmock GTest::gtest_main)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+  add_test(NAME ${name} COMMAND ${name})
+  if(NOT ARG_LABELS)
+    set(ARG_LABELS unit)
+  endif()
+  set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 120)
+endfunction()

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// Every limit that a decoder of foreign bytes holds against a length before it does arithmetic with it.
+#pragma once
+
+#include <cstdint>
+
+namespace wall::wire {
+
+inline constexpr std::uint32_t kProtocolVersion = 1;                   ///< control and data; both sides must agree exactly
+inline constexpr std::uint32_t kMaxControlMessage = 64u << 20;         ///< bytes; the largest is a tile's snapshot
+inline constexpr std::uint32_t kMaxFramePayload = 256u << 20;          ///< bytes; the largest is one texture level
+inline constexpr std::uint32_t kMaxTilesPerNode = 64;                  ///< a tile mask is 64 bits
+inline constexpr std::uint32_t kOffscreenSlot = 63;                    ///< tile slot of a surface that is on no tile
+inline constexpr std::uint32_t kMaxSurfaceExtent = 1u << 15;           ///< pixels a side of a surface or a layer
+
+}  // namespace wall::wire
