@@ -29,7 +29,7 @@ public:
 
     /// Appends an opcode with `bytes` of operands (a multiple of 4) and returns where the operands go.
     std::byte* append(std::uint8_t opcode, std::size_t bytes) {
-        if (opcodes_ == base() || static_cast<std::size_t>(end() - operands_) < bytes) [[unlikely]] grow(1, bytes);
+        if (opcodes_ == base() || static_cast<std::size_t>(end_of_memory() - operands_) < bytes) [[unlikely]] grow(1, bytes);
         *--opcodes_ = static_cast<std::byte>(opcode);
         std::byte* at = operands_;
         operands_ += bytes;
@@ -57,8 +57,8 @@ public:
     void grow(std::size_t opcodes, std::size_t operand_bytes);
 
 protected:
-    std::byte* base() { return memory_.get(); }
-    std::byte* end() { return memory_.get() + capacity_; }
+    const std::byte* base() const { return memory_.get(); }
+    const std::byte* end_of_memory() const { return memory_.get() + capacity_; }
 
     std::unique_ptr<std::byte[]> memory_;
     std::size_t capacity_ = 0;

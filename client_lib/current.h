@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// The calling thread's context and geometry packer. Both live in static TLS (initial-exec), so that reading one is a
+// single instruction in the hottest entry points; the space is within what the C library keeps for dlopened objects.
+#pragma once
+
+namespace wall::client {
+
+class Context;
+class Packer;
+
+#define WALL_TLS __attribute__((tls_model("initial-exec")))
+
+extern thread_local Context* tls_context WALL_TLS;  ///< null: no context is current in this thread
+extern thread_local Packer* tls_packer WALL_TLS;    ///< never null: a closed packer when no context is current
+
+inline Context* current_context_fast() { return tls_context; }
+
+}  // namespace wall::client

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/node_stream.h"
+
+#include <fcntl.h>
+#include <netdb.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+#include <sys/un.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+
+#include "common/wire/limits.h"
+
+namespace wall::client {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMaxQueuedBytes = 64u << 20;         // of one node: about two frames of the heaviest programs
+constexpr auto kStallLimit = std::chrono::seconds(5);      // a node that takes nothing for so long is given up
+constexpr std::size_t kReadChunk = 64 << 10;
+
+int remaining_ms(Clock::time_point deadline) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    return left > 0 ? static_cast<int>(left) : 0;
+}
+
+bool poll_for(int fd, short events, Clock::time_point deadline) {
+    pollfd p{fd, events, 0};
+    for (;;) {
+        const int n = ::poll(&p, 1, remaining_ms(deadline));
+        if (n > 0) return true;
+        if (n == 0 || errno != EINTR) return false;
+    }
+}
+
+Result<UniqueFd> start_connect(int family, const sockaddr* address, socklen_t size, const std::string& text,
+                               Clock::time_point deadline) {
+    UniqueFd fd(::socket(family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    if (!fd) return fail("cannot make a socket: " + std::string(std::strerror(errno)));
+    if (::connect(fd.get(), address, size) != 0) {
+        if (errno != EINPROGRESS) return fail("cannot connect to " + text + ": " + std::strerror(errno));
+        if (!poll_for(fd.get(), POLLOUT, deadline)) return fail("no answer from " + text);
+        int error = 0;
+        socklen_t length = sizeof error;
+        ::getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &error, &length);
+        if (error != 0) return fail("cannot connect to " + text + ": " + std::strerror(error));
+    }
+    return fd;
+}
+
+Result<UniqueFd> connect_unix(const std::string& path, const std::string& text, Clock::time_point deadline) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    if (path.size() >= sizeof address.sun_path) return fail("socket path too long: " + path);
+    std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+    return start_connect(AF_UNIX, reinterpret_cast<const sockaddr*>(&address), sizeof address, text, deadline);
+}
+
+Result<UniqueFd> connect_tcp(const std::string& text, Clock::time_point deadline) {
+    const auto colon = text.rfind(':');
+    if (colon == std::string::npos) return fail("expected unix:PATH or HOST:PORT, got '" + text + "'");
+    addrinfo hints{};
+    hints.ai_socktype = SOCK_STREAM;
+    hints.ai_flags = AI_NUMERICSERV;
+    addrinfo* found = nullptr;
+    const int code = ::getaddrinfo(text.substr(0, colon).c_str(), text.substr(colon + 1).c_str(), &hints, &found);
+    if (code != 0) return fail("cannot resolve " + text + ": " + ::gai_strerror(code));
+    std::unique_ptr<addrinfo, void (*)(addrinfo*)> guard(found, ::freeaddrinfo);
+    auto fd = start_connect(found->ai_family, found->ai_addr, found->ai_addrlen, text, deadline);
+    if (fd) {
+        const int one = 1;
+        ::setsockopt(fd->get(), IPPROTO_TCP, TCP_NODELAY, &one, sizeof one);
+    }
+    return fd;
+}
+
+bool write_all(int fd, const std::byte* data, std::size_t size, Clock::time_point deadline) {
+    while (size > 0) {
+        const ssize_t n = ::send(fd, data, size, MSG_NOSIGNAL);
+        if (n > 0) {
+            data += n;
+            size -= static_cast<std::size_t>(n);
+        } else if (n < 0 && errno == EAGAIN) {
+            if (!poll_for(fd, POLLOUT, deadline)) return false;
+        } else if (n < 0 && errno != EINTR) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool read_all(int fd, std::byte* data, std::size_t size, Clock::time_point deadline) {
+    while (size > 0) {
+        const ssize_t n = ::recv(fd, data, size, 0);
+        if (n > 0) {
+            data += n;
+            size -= static_cast<std::size_t>(n);
+        } else if (n == 0) {
+            return false;
+        } else if (errno == EAGAIN) {
+            if (!poll_for(fd, POLLIN, deadline)) return false;
+        } else if (errno != EINTR) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+Result<UniqueFd> connect_to(const std::string& address, int timeout_ms) {
+    const auto deadline = Clock::now() + std::chrono::milliseconds(timeout_ms);
+    if (address.rfind("unix:", 0) == 0) return connect_unix(address.substr(5), address, deadline);
+    return connect_tcp(address, deadline);
+}
+
+Result<std::shared_ptr<NodeStream>> NodeStream::open(const std::string& address, const std::string& hello,
+                                                     int timeout_ms) {
+    const auto deadline = Clock::now() + std::chrono::milliseconds(timeout_ms);
+    auto fd = connect_to(address, timeout_ms);
+    if (!fd) return tl::unexpected(fd.error());
+    const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(hello.size()), wire::FrameKind::hello});
+    if (!write_all(fd->get(), header.data(), header.size(), deadline) ||
+        !write_all(fd->get(), reinterpret_cast<const std::byte*>(hello.data()), hello.size(), deadline))
+        return fail("node at " + address + " does not take the hello");
+    std::array<std::byte, wire::kFrameHeaderBytes> answer;
+    if (!read_all(fd->get(), answer.data(), answer.size(), deadline)) return fail("node at " + address + " does not answer");
+    const auto frame = wire::decode_frame_header(answer.data());
+    if (frame.kind == wire::FrameKind::error && frame.payload_bytes < 4096) {
+        std::string text(frame.payload_bytes, '\0');
+        read_all(fd->get(), reinterpret_cast<std::byte*>(text.data()), text.size(), deadline);
+        return fail("node at " + address + " refused: " + text);
+    }
+    if (frame.kind != wire::FrameKind::welcome || frame.payload_bytes != 0)
+        return fail("node at " + address + " does not speak this protocol");
+    return std::shared_ptr<NodeStream>(new NodeStream(std::move(*fd)));
+}
+
+void NodeStream::send(std::uint32_t context, wire::PackBuffer batch) {
+    if (batch.empty() || failed()) return;
+    const std::size_t padding = (4 - batch.commands() % 4) % 4;
+    const wire::BatchHeader header{context, static_cast<std::uint32_t>(batch.commands()),
+                                   static_cast<std::uint32_t>(batch.operand_bytes())};
+    const std::size_t payload = sizeof header + padding + batch.bytes();
+    Outgoing out;
+    const auto frame = wire::encode_frame_header({static_cast<std::uint32_t>(payload), wire::FrameKind::batch});
+    std::memcpy(out.head.data(), frame.data(), frame.size());
+    std::memcpy(out.head.data() + frame.size(), &header, sizeof header);
+    out.head_bytes = frame.size() + sizeof header + padding;
+    out.body = std::move(batch);
+
+    std::unique_lock lock(mutex_);
+    const bool room = changed_.wait_for(lock, kStallLimit, [&] { return failed() || queued_bytes_ < kMaxQueuedBytes; });
+    if (!room) {
+        lock.unlock();
+        fail("node takes no more data");
+        return;
+    }
+    queued_bytes_ += payload;
+    queue_.push_back(std::move(out));
+}
+
+std::optional<std::vector<std::byte>> NodeStream::wait_reply(std::uint32_t request, int timeout_ms) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::milliseconds(timeout_ms), [&] { return failed() || replies_.contains(request); });
+    const auto found = replies_.find(request);
+    if (found == replies_.end()) return std::nullopt;
+    auto bytes = std::move(found->second);
+    replies_.erase(found);
+    return bytes;
+}
+
+bool NodeStream::wait_swap(std::uint32_t surface, std::uint32_t frame, int timeout_ms) {
+    std::unique_lock lock(mutex_);
+    const auto done = [&] {
+        const auto found = swaps_.find(surface);
+        return found != swaps_.end() && static_cast<std::int32_t>(found->second - frame) >= 0;
+    };
+    changed_.wait_for(lock, std::chrono::milliseconds(timeout_ms), [&] { return failed() || done(); });
+    return done();
+}
+
+std::string NodeStream::failure() const {
+    std::lock_guard lock(mutex_);
+    return failure_;
+}
+
+bool NodeStream::wants_write() {
+    std::lock_guard lock(mutex_);
+    return !queue_.empty() && !failed();
+}
+
+// Head and body go out in one system call; opcodes and operands are one run of memory.
+bool NodeStream::write_some(Outgoing& out) {
+    const std::size_t total = out.head_bytes + out.body.bytes();
+    while (out.sent < total) {
+        std::array<iovec, 2> parts;
+        int count = 0;
+        if (out.sent < out.head_bytes)
+            parts[count++] = {out.head.data() + out.sent, out.head_bytes - out.sent};
+        const std::size_t skip = out.sent > out.head_bytes ? out.sent - out.head_bytes : 0;
+        const auto* body = out.body.opcodes().data() + skip;
+        parts[count++] = {const_cast<std::byte*>(body), out.body.bytes() - skip};
+        msghdr message{};
+        message.msg_iov = parts.data();
+        message.msg_iovlen = static_cast<std::size_t>(count);
+        const ssize_t n = ::sendmsg(fd_.get(), &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (n < 0) {
+            if (errno == EINTR) continue;
+            if (errno != EAGAIN) fail(std::string("cannot send: ") + std::strerror(errno));
+            return false;
+        }
+        out.sent += static_cast<std::size_t>(n);
+        bytes_sent_.fetch_add(static_cast<std::uint64_t>(n), std::memory_order_relaxed);
+    }
+    return true;
+}
+
+void NodeStream::on_writable() {
+    for (;;) {
+        Outgoing* front = nullptr;
+        {
+            std::lock_guard lock(mutex_);
+            if (queue_.empty()) return;
+            front = &queue_.front();  // only this thread removes, and deque keeps references on push_back
+        }
+        const std::size_t total = front->head_bytes - wire::kFrameHeaderBytes + front->body.bytes();
+        if (!write_some(*front)) return;
+        std::lock_guard lock(mutex_);
+        if (queue_.empty()) return;  // failed meanwhile
+        queued_bytes_ -= total;
+        queue_.pop_front();
+        changed_.notify_all();
+    }
+}
+
+void NodeStream::on_readable() {
+    for (;;) {
+        if (inbox_.size() - inbox_used_ < kReadChunk) inbox_.resize(std::max(inbox_.size() * 2, kReadChunk * 2));
+        const ssize_t n = ::recv(fd_.get(), inbox_.data() + inbox_used_, inbox_.size() - inbox_used_, MSG_DONTWAIT);
+        if (n == 0) return fail("node closed the stream");
+        if (n < 0) {
+            if (errno == EINTR) continue;
+            if (errno != EAGAIN) fail(std::string("cannot receive: ") + std::strerror(errno));
+            return;
+        }
+        inbox_used_ += static_cast<std::size_t>(n);
+        std::size_t at = 0;
+        while (inbox_used_ - at >= wire::kFrameHeaderBytes) {
+            const auto header = wire::decode_frame_header(inbox_.data() + at);
+            if (header.payload_bytes > wire::kMaxFramePayload) return fail("node sent an oversized frame");
+            if (inbox_used_ - at < wire::kFrameHeaderBytes + header.payload_bytes) break;
+            const auto* payload = inbox_.data() + at + wire::kFrameHeaderBytes;
+            handle_frame(header.kind, {payload, payload + header.payload_bytes});
+            at += wire::kFrameHeaderBytes + header.payload_bytes;
+        }
+        if (at > 0) {
+            std::memmove(inbox_.data(), inbox_.data() + at, inbox_used_ - at);
+            inbox_used_ -= at;
+        }
+    }
+}
+
+void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> payload) {
+    if (kind == wire::FrameKind::error)
+        return fail("node ended the session: " + std::string(reinterpret_cast<const char*>(payload.data()), payload.size()));
+    std::lock_guard lock(mutex_);
+    std::uint32_t words[2];
+    if (kind == wire::FrameKind::reply && payload.size() >= 4) {
+        std::memcpy(words, payload.data(), 4);
+        payload.erase(payload.begin(), payload.begin() + 4);
+        replies_[words[0]] = std::move(payload);
+    } else if (kind == wire::FrameKind::swap_done && payload.size() == 8) {
+        std::memcpy(words, payload.data(), 8);
+        swaps_[words[0]] = words[1];
+    }
+    changed_.notify_all();
+}
+
+void NodeStream::fail(const std::string& why) {
+    std::lock_guard lock(mutex_);
+    if (!failed()) failure_ = why;
+    failed_.store(true, std::memory_order_release);
+    changed_.notify_all();
+}
+
+}  // namespace wall::client

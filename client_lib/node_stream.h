@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// The data connection to one node. The application's threads queue whole batches and wait for answers; one transport
+// thread per process (transport.h) moves the bytes, so that sending overlaps with packing (WireGL, 3.3).
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/base/unique_fd.h"
+#include "common/wire/frame.h"
+#include "common/wire/pack_buffer.h"
+
+namespace wall::client {
+
+class NodeStream {
+public:
+    /// Connects and says hello; at most `timeout_ms` in all. `hello` is an encoded DataHello.
+    static Result<std::shared_ptr<NodeStream>> open(const std::string& address, const std::string& hello, int timeout_ms);
+
+    /// Queues a batch. Blocks while more than kMaxQueuedBytes wait (the node is slower than the program), but never
+    /// longer than `kStallLimit`: then the stream counts as failed. Application threads.
+    void send(std::uint32_t context, wire::PackBuffer batch);
+
+    /// The answer to `request`; nothing if the stream fails or the time is over. Application threads.
+    std::optional<std::vector<std::byte>> wait_reply(std::uint32_t request, int timeout_ms);
+    /// Waits until the node has drawn `frame` of `surface`; false if it did not in time. Application threads.
+    bool wait_swap(std::uint32_t surface, std::uint32_t frame, int timeout_ms);
+
+    bool failed() const { return failed_.load(std::memory_order_acquire); }
+    std::string failure() const;
+    std::uint64_t bytes_sent() const { return bytes_sent_.load(std::memory_order_relaxed); }
+
+    // ---- transport thread ----
+    int fd() const { return fd_.get(); }
+    bool wants_write();
+    void on_writable();
+    void on_readable();
+    void fail(const std::string& why);
+
+private:
+    explicit NodeStream(UniqueFd fd) : fd_(std::move(fd)) {}
+    struct Outgoing {
+        std::array<std::byte, 24> head;  // frame header, batch header, padding in front of the opcodes
+        std::size_t head_bytes = 0;
+        std::size_t sent = 0;
+        wire::PackBuffer body;
+    };
+    void handle_frame(wire::FrameKind kind, std::vector<std::byte> payload);
+    bool write_some(Outgoing& out);
+
+    UniqueFd fd_;
+    std::atomic<bool> failed_{false};
+    std::atomic<std::uint64_t> bytes_sent_{0};
+
+    mutable std::mutex mutex_;  // guards what follows
+    std::condition_variable changed_;
+    std::deque<Outgoing> queue_;
+    std::size_t queued_bytes_ = 0;
+    std::unordered_map<std::uint32_t, std::vector<std::byte>> replies_;
+    std::unordered_map<std::uint32_t, std::uint32_t> swaps_;  // surface -> last frame drawn
+    std::string failure_;
+
+    std::vector<std::byte> inbox_;  // transport thread only
+    std::size_t inbox_used_ = 0;
+};
+
+/// Opens a stream socket to `unix:PATH` or `HOST:PORT`, non-blocking; at most `timeout_ms`.
+Result<UniqueFd> connect_to(const std::string& address, int timeout_ms);
+
+}  // namespace wall::client

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/packer.h"
+
+#include <algorithm>
+
+namespace wall::client {
+namespace {
+
+constexpr std::size_t kInitialOperandBytes = 256 << 10;
+/// Room beyond the limit: the largest command that a fast path packs, rounded up.
+constexpr std::size_t kSlack = 64;
+
+}  // namespace
+
+Packer::Packer() : PackBuffer(kInitialOperandBytes) { update_limit(); }
+
+// A fast path packs one opcode with at least 4 operand bytes, so a limit for the operands also holds for the opcodes
+// as long as free operand words are only counted up to the free opcodes.
+std::size_t Packer::usable_bytes() const {
+    const auto free_opcodes = static_cast<std::size_t>(opcodes_ - base());
+    const auto free_bytes = static_cast<std::size_t>(end_of_memory() - operands_);
+    return std::min(free_bytes, free_opcodes * 4);
+}
+
+bool Packer::tight() const { return usable_bytes() < 2 * kSlack; }
+
+void Packer::update_limit() {
+    const std::size_t usable = usable_bytes();
+    limit = closed_ || usable < kSlack ? nullptr : operands_ + usable - kSlack;
+}
+
+void Packer::make_room() {
+    const std::byte* old = operands().data();
+    grow(commands() + kSlack, operand_bytes() + 4 * kSlack);
+    for (auto& place : last)
+        if (place) place = operands().data() + (place - old);
+    update_limit();
+}
+
+void Packer::begin(std::uint32_t mode) {
+    if (tight()) make_room();
+    inside_ = true;
+    open_ = Primitive{};
+    open_.first = mark();
+    open_.mode = mode;
+    open_.before = places();
+    box = geom::Box{};
+    glapi::pack::Begin(*this, mode);
+    update_limit();
+}
+
+void Packer::end() {
+    if (tight()) make_room();
+    inside_ = false;
+    glapi::pack::End(*this);
+    if (box.empty()) {  // no vertex: nothing to draw, but its attributes count
+        update_limit();
+        return;
+    }
+    open_.last = mark();
+    open_.box = box;
+    block_box_.add(box);
+    primitives_.push_back(open_);
+    update_limit();
+}
+
+std::byte* Packer::append_rare(glapi::Op op, std::size_t bytes) {
+    if (tight()) make_room();
+    if (inside_) open_.divisible = false;
+    rare_ = true;
+    std::byte* at = append(static_cast<std::uint8_t>(op), bytes);
+    update_limit();
+    return at;
+}
+
+AttributePlaces Packer::places() const {
+    AttributePlaces places;
+    for (std::size_t i = 0; i < kAttributes; ++i) {
+        if (!last[i]) continue;
+        places.offset[i] = static_cast<std::uint32_t>(last[i] - operands().data());
+        places.op[i] = last_op[i];
+    }
+    return places;
+}
+
+void Packer::reset() {
+    clear();
+    primitives_.clear();
+    block_box_ = geom::Box{};
+    last.fill(nullptr);
+    rare_ = false;
+    update_limit();
+}
+
+}  // namespace wall::client

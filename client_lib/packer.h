@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// The geometry packer: what glBegin, glVertex3f, glColor3f and their like write into, and the record of it that the
+// router sorts (WireGL, "Distributed Rendering" 3.1 and 3.2). It holds one *block*: the geometry since the last change
+// of state. One packer per context, used by the thread that has the context.
+//
+// Current attributes are not copied on every call (T3.2): the packer remembers where the last one of each kind was
+// packed, and they are read back from there when somebody asks.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "common/geom/box.h"
+#include "common/wire/pack_buffer.h"
+#include "gen/glapi/wire.gen.h"
+
+namespace wall::client {
+
+/// Attributes whose last packed place is remembered per primitive, so that primitives can be taken apart.
+enum class Attribute : std::uint8_t { color, normal, texcoord0, secondary_color, fog_coord, edge_flag, kCount };
+inline constexpr std::size_t kAttributes = static_cast<std::size_t>(Attribute::kCount);
+
+/// Where the latest operand of each attribute stands in the packer's operands; kNone: not set in this block.
+struct AttributePlaces {
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    std::array<std::uint32_t, kAttributes> offset;
+    std::array<glapi::Op, kAttributes> op;
+    AttributePlaces() { offset.fill(kNone); op.fill(glapi::Op::End); }
+};
+
+/// One glBegin .. glEnd.
+struct Primitive {
+    wire::PackMark first, last;  ///< Begin's opcode; behind End's
+    std::uint32_t mode = 0;      ///< GL_POINTS ...
+    bool divisible = true;       ///< holds only vertices and tracked attributes, so that it may be cut between nodes
+    geom::Box box;               ///< object space
+    AttributePlaces before;      ///< attributes as they are at Begin
+};
+
+class Packer : public wire::PackBuffer {
+public:
+    Packer();
+
+    // ---- hot members, used by the entry points in api/geometry.cpp ----
+
+    std::byte*& next_operand() { return operands_; }
+    std::byte*& next_opcode() { return opcodes_; }
+    /// An entry point takes its slow path once `next_operand` is beyond this; null closes the packer.
+    const std::byte* limit = nullptr;
+    geom::Box box;  ///< of the open primitive
+    std::array<const std::byte*, kAttributes> last{};
+    std::array<glapi::Op, kAttributes> last_op{};
+
+    // ---- the rest ----
+
+    void begin(std::uint32_t mode);
+    void end();
+    bool inside() const { return inside_; }
+    std::uint32_t mode() const { return open_.mode; }
+
+    /// Appends a command that is not a plain vertex or tracked attribute: what surrounds it stays in one piece.
+    std::byte* append_rare(glapi::Op op, std::size_t bytes);
+    /// Geometry of unknown extent was packed (evaluators).
+    void mark_unbounded() { box.make_unbounded(); }
+
+    bool has_geometry() const { return !primitives_.empty(); }
+    bool has_rare() const { return rare_; }
+    const std::vector<Primitive>& primitives() const { return primitives_; }
+    const geom::Box& block_box() const { return block_box_; }
+    AttributePlaces places() const;
+
+    /// More room, called by slow paths; keeps the remembered places.
+    void make_room();
+    /// Forgets the block.
+    void reset();
+    /// Shut: every entry point goes through the context's table (display list compilation).
+    void set_closed(bool closed) { closed_ = closed; update_limit(); }
+    bool closed() const { return closed_; }
+
+private:
+    void update_limit();
+    std::size_t usable_bytes() const;
+    bool tight() const;
+
+    std::vector<Primitive> primitives_;
+    Primitive open_;
+    geom::Box block_box_;
+    bool inside_ = false;
+    bool rare_ = false;
+    bool closed_ = false;
+};
+
+}  // namespace wall::client

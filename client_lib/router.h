@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Sort-first: from geometry to the tiles it may touch (WireGL, "Distributed Rendering" 3.2; T6.1). Conservative: what
+// cannot be bounded goes to every tile of the surface. Pure; the caller's thread.
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/geom/box.h"
+#include "common/geom/rect.h"
+#include "gen/glstate/state.gen.h"
+
+namespace wall::client {
+
+/// Window pixels, origin bottom left, y up (OpenGL's window coordinates).
+struct PixelRect {
+    float x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    bool overlaps(const PixelRect& o) const { return x0 < o.x1 && o.x0 < x1 && y0 < o.y1 && o.y0 < y1; }
+};
+
+inline constexpr std::size_t kMaxTargets = 512;
+using TargetSet = std::bitset<kMaxTargets>;
+
+/// A tile (or the offscreen layer) that shows a part of a surface.
+struct Target {
+    std::uint32_t node = 0;
+    std::uint32_t slot = 0;
+    PixelRect area;       ///< of the surface's window
+    geom::Rect pixels;    ///< the same, whole pixels, rounded outwards
+};
+
+/// How a surface lies on the wall just now.
+struct SurfaceLayout {
+    std::uint32_t version = 0;
+    std::uint32_t width = 0, height = 0;  ///< window
+    geom::Rect rect;                      ///< canvas
+    bool offscreen = false;
+    std::vector<Target> targets;
+};
+
+/// The transformation of object space to window pixels, and how far rasterization may reach beyond the vertices.
+struct Projection {
+    glstate::Mat4 clip_from_object{};
+    float viewport[4]{};  ///< x, y, width, height
+    float margin = 1;     ///< pixels: half the line width or point size, and one for rounding
+};
+
+Projection make_projection(const glstate::State& state);
+glstate::Mat4 multiply(const glstate::Mat4& a, const glstate::Mat4& b);
+
+/// Where the box can be drawn; nothing if that is unknown (a corner behind the eye).
+std::optional<PixelRect> project(const Projection& projection, const geom::Box& box);
+
+struct WindowVertex {
+    float x, y;
+    bool known;  ///< false: not in front of the eye
+};
+WindowVertex project(const Projection& projection, float x, float y, float z, float w);
+
+TargetSet targets_of(const SurfaceLayout& layout, const std::optional<PixelRect>& rect);
+
+}  // namespace wall::client

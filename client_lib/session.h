@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// One process on the wall: its link to walld, its nodes with a mirror of what each holds, its surfaces. Every node is a
+// follower of the process's contexts, some logical time behind; `Node` holds how far behind (DESIGN, section 1).
+//
+// Application threads. The session's mutex guards everything in here; public functions take it, `Node&` arguments mean
+// that the caller holds it.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "client_lib/control.h"
+#include "client_lib/core.h"
+#include "client_lib/node_stream.h"
+#include "client_lib/router.h"
+#include "client_lib/stats.h"
+#include "client_lib/transport.h"
+#include "gen/glstate/state.gen.h"
+
+namespace wall::client {
+
+class Context;
+
+/// What a node holds of one context.
+struct Mirror {
+    glstate::State state;
+    std::uint32_t draw_surface = 0, read_surface = 0;
+};
+
+/// One tileserver as this process sees it.
+struct Node {
+    std::uint32_t index = 0;
+    std::string name;
+    NodeInfo info;
+    std::shared_ptr<NodeStream> stream;  ///< null: not connected
+    std::unordered_map<std::uint32_t, Mirror> mirrors;            ///< by context
+    std::unordered_map<std::uint32_t, std::uint64_t> object_stamps;  ///< by object: the stamp of what the node has; absent: nothing
+    std::unordered_map<std::uint32_t, std::uint32_t> surfaces;    ///< by surface: layout version it knows
+    std::uint32_t last_frame_waited = 0;
+    bool slow = false;                                            ///< missed a frame's limit; not waited for until it answers again
+
+    wire::PackBuffer batch;          ///< being packed
+    std::uint32_t batch_context = 0; ///< whose
+
+    bool alive() const { return stream && !stream->failed(); }
+};
+
+class Surface {
+public:
+    Surface(std::uint32_t id, SurfaceOptions options) : id(id), options(std::move(options)) {}
+    ~Surface();
+    const std::uint32_t id;
+    const SurfaceOptions options;
+    SurfaceLayout layout;
+    std::uint32_t frame = 0;   ///< of the last swap
+    bool opened = false;       ///< walld knows it
+};
+
+class Session {
+public:
+    /// The process's session; made at the first call. Null if the wall cannot be reached (said once on stderr).
+    static std::shared_ptr<Session> get();
+    ~Session();
+
+    const Caps& caps() const { return control_->welcome().caps; }
+    std::uint32_t next_id() { return ++last_id_; }
+
+    void open_surface(Surface& surface);
+    void close_surface(Surface& surface);
+    /// Adopts what changed since the last frame: placements, nodes that came or went, the window's size. Called where
+    /// a frame begins, so that culling and drawing of one frame agree on one layout.
+    void begin_frame(Surface& surface);
+    /// Ends a frame on every node that shows the surface.
+    void swap(Context* context, Surface& surface);
+
+    /// Sends the block that the context's packer holds to the nodes that it touches.
+    void submit_block(Context& context);
+    /// Runs `pack` inside a Block on every target that `box` touches (nothing: all of them).
+    template <class Pack>
+    void draw(Context& context, const std::optional<PixelRect>& box, Pack&& pack);
+    /// Runs `pack(buffer, node)` outside of blocks on every node, with nothing brought up to date.
+    template <class Pack>
+    void on_every_node(Context& context, Pack&& pack);
+
+    /// Packs a command that wants an answer into the batch of one node, sends it, waits. Nothing if the node is lost.
+    template <class Pack>
+    std::optional<std::vector<std::byte>> ask(Context& context, Node& node, Pack&& pack);
+
+    /// Everything queued goes out; `wait` also waits until all nodes have executed it.
+    void flush(Context* context, bool wait);
+    void destroy_context(std::uint32_t context);
+
+    // ---- with the mutex held ----
+    std::mutex& mutex() { return mutex_; }
+    std::vector<std::unique_ptr<Node>>& nodes() { return nodes_; }
+    /// The node's batch, set to this context (earlier commands of another one are sent first).
+    wire::PackBuffer& batch(Node& node, std::uint32_t context);
+    /// The node's batch after everything that drawing with this context needs: surfaces, objects, state.
+    wire::PackBuffer& prepare(Node& node, Context& context);
+    void send(Node& node);
+    Node& node_of(const Target& target) { return *nodes_[target.node]; }
+
+private:
+    friend class BlockSender;
+    explicit Session(std::unique_ptr<ControlLink> control);
+    void apply_layout(Surface& surface, const Placement& placement);
+    void take_events();
+    void connect(Node& node);
+    void describe_surface(Node& node, Surface& surface);
+    Node& node_slot(const NodeInfo& info);
+    void wait_for_nodes(Surface& surface);
+    static std::pair<std::uint64_t, std::vector<std::uint32_t>> split(const TargetSet&, const SurfaceLayout&);
+
+    std::unique_ptr<ControlLink> control_;
+    Transport transport_;
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Node>> nodes_;
+    std::unordered_map<std::uint32_t, Surface*> surfaces_;
+    std::atomic<std::uint32_t> last_id_{0};
+    std::uint32_t last_request_ = 0;
+};
+
+/// Tile slots of one node as a mask, from a set of targets.
+struct NodeMask {
+    std::uint32_t node;
+    std::uint64_t slots;
+};
+std::vector<NodeMask> by_node(const TargetSet& set, const SurfaceLayout& layout);
+
+}  // namespace wall::client

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// The one background thread that moves bytes of all node streams. Started with the first stream, signals blocked;
+// ended by the destructor.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "client_lib/node_stream.h"
+
+namespace wall::client {
+
+class Transport {
+public:
+    Transport();
+    ~Transport();
+
+    void add(std::shared_ptr<NodeStream> stream);
+    void remove(const NodeStream* stream);
+    /// Something was queued.
+    void wake();
+    /// Sends what is queued, for at most `timeout_ms`, e.g. before the process ends.
+    void drain(int timeout_ms);
+
+private:
+    void run();
+
+    UniqueFd wake_fd_;
+    std::atomic<bool> stop_{false};
+    std::atomic<bool> wake_pending_{false};
+    std::mutex mutex_;
+    std::vector<std::shared_ptr<NodeStream>> streams_;
+    std::thread thread_;
+};
+
+}  // namespace wall::client
