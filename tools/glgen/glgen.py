@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Generates everything that follows from gl.xml and proto/gl/*.toml.
+
+    glgen.py --registry gl.xml --proto proto/gl --out build/release/generated/gen [--coverage docs/opengl-coverage.md]
+
+Python 3.11, standard library only. Files are written only when their text changes.
+"""
+
+import argparse
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+from glgen import emit_functions, emit_wire, registry, wire  # noqa: E402
+
+DRIVER_EXTRA = ["glFramebufferParameteriMESA", "glGetFramebufferParameterivMESA"]
+
+
+def generate(registry_path, proto):
+    """All generated files: name below gen/ -> text."""
+    gl = registry.load(registry_path)
+    ops = wire.load(proto / "wire.toml")
+    return {
+        "glapi/wire.gen.h": emit_wire.wire_header(ops),
+        "glapi/decode.gen.h": emit_wire.decode_header(ops),
+        "glapi/gl_functions.gen.h": emit_functions.functions_header(gl, DRIVER_EXTRA),
+    }
+
+
+def write_if_changed(path, text):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if not path.exists() or path.read_text() != text:
+        path.write_text(text)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--registry", type=pathlib.Path, required=True)
+    parser.add_argument("--proto", type=pathlib.Path, required=True)
+    parser.add_argument("--out", type=pathlib.Path, required=True)
+    args = parser.parse_args()
+    for name, text in generate(args.registry, args.proto).items():
+        write_if_changed(args.out / name, text)
+
+
+if __name__ == "__main__":
+    main()

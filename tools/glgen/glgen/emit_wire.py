@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: MIT
+"""gen/glapi/wire.gen.h (opcodes, packers) and decode.gen.h (the bounds-checked decoder table)."""
+
+from .text import header
+from .wire import CPP, SIZE
+
+WIRE_NOTES = """
+The opcodes of the data stream and a packer for each. Usage:
+
+    wire::PackBuffer buffer;
+    glapi::pack::Clear(buffer, GL_COLOR_BUFFER_BIT);
+    glapi::pack::TexImage(buffer, texture, ..., pixels);      // bytes operand: std::span<const std::byte>
+    glapi::pack_state(buffer, element_id, &value, sizeof value);
+"""
+
+DECODE_NOTES = """
+DecodeTable<H>::rows[op]: checks the operands' bounds and calls the member of H of the same name; see
+common/glapi/decoder.h for what H must offer and for the loop around it.
+"""
+
+
+def wire_header(ops):
+    out = [header("proto/gl/wire.toml", WIRE_NOTES,
+                  ["<array>", "<cstddef>", "<cstdint>", "<cstring>", "<span>", "", '"common/wire/pack_buffer.h"']).replace("#include \n", "\n")]
+    out.append("\nnamespace wall::glapi {\n\nenum class Op : std::uint8_t {\n")
+    out += [f"    {op.name} = {op.code},\n" for op in ops]
+    out.append("};\n\n")
+    out.append(f"inline constexpr std::size_t kOpCount = {len(ops)};\n\n")
+    out.append("/// Where an opcode may stand.\nenum class OpGroup : std::uint8_t { "
+               + ", ".join(dict.fromkeys(op.group for op in ops)) + " };\n\n")
+    out.append("inline constexpr std::array<const char*, kOpCount> kOpNames = {\n")
+    out += [f'    "{op.name}",\n' for op in ops]
+    out.append("};\n\ninline constexpr std::array<OpGroup, kOpCount> kOpGroups = {\n")
+    out += [f"    OpGroup::{op.group},  // {op.name}\n" for op in ops]
+    out.append("};\n\n/// Operand bytes of each opcode, up to and with the count of a bytes operand.\n")
+    out.append("inline constexpr std::array<std::uint32_t, kOpCount> kOpFixedBytes = {\n")
+    out += [f"    {op.fixed_bytes},  // {op.name}\n" for op in ops]
+    out.append("};\n\n")
+    out.append(_PACK_HELPERS)
+    out.append("namespace pack {\n\n")
+    out += [_packer(op) for op in ops if not op.is_state]
+    out.append("}  // namespace pack\n}  // namespace wall::glapi\n")
+    return "".join(out)
+
+
+_PACK_HELPERS = """\
+/// One element of the soft context (glstate::element_bytes(id) == bytes).
+inline void pack_state(wire::PackBuffer& to, std::uint32_t id, const void* value, std::size_t bytes) {
+    std::byte* at = to.append(static_cast<std::uint8_t>(Op::State), 4 + bytes);
+    std::memcpy(at, &id, 4);
+    std::memcpy(at + 4, value, bytes);
+}
+
+namespace detail {
+template <class T>
+void put(std::byte* at, T value) {
+    std::memcpy(at, &value, sizeof value);
+}
+inline std::size_t padded(std::size_t bytes) { return (bytes + 3) & ~std::size_t{3}; }
+/// A bytes operand: count, content, zeros up to a multiple of 4.
+inline void put_bytes(std::byte* at, std::span<const std::byte> content) {
+    put(at, static_cast<std::uint32_t>(content.size()));
+    if (content.empty()) return;
+    put(at + padded(content.size()), std::uint32_t{0});  // the last word; overwritten but for the padding
+    std::memcpy(at + 4, content.data(), content.size());
+}
+}  // namespace detail
+
+"""
+
+
+def _packer(op):
+    params = "".join(f", {CPP[o.type]} {o.name}" for o in op.operands)
+    if op.bytes_name:
+        params += f", std::span<const std::byte> {op.bytes_name}"
+    size = str(op.fixed_bytes)
+    if op.bytes_name:
+        size += f" + detail::padded({op.bytes_name}.size())"
+    uses = op.operands or op.bytes_name
+    lines = [f"inline void {op.name}(wire::PackBuffer& to{params}) {{\n"]
+    call = f"to.append(static_cast<std::uint8_t>(Op::{op.name}), {size})"
+    lines.append(f"    std::byte* at = {call};\n" if uses else f"    {call};\n")
+    offset = 0
+    for o in op.operands:
+        lines.append(f"    detail::put(at + {offset}, {o.name});\n")
+        offset += SIZE[o.type]
+    if op.bytes_name:
+        lines.append(f"    detail::put_bytes(at + {offset}, {op.bytes_name});\n")
+    lines.append("}\n\n")
+    return "".join(lines)
+
+
+def decode_header(ops):
+    out = [header("proto/gl/wire.toml", DECODE_NOTES,
+                  ["<cstdint>", "<span>", "", '"common/wire/operand_reader.h"', '"gen/glapi/wire.gen.h"']).replace("#include \n", "\n")]
+    out.append("""
+namespace wall::glapi {
+
+template <class H>
+struct DecodeTable {
+    struct Row {
+        const char* name;
+        std::uint32_t fixed_bytes;  ///< operand bytes, up to and with the count of a bytes operand
+        bool bytes_operand;
+        bool (*run)(H&, wire::OperandReader&);  ///< false: too few operands, or the handler has refused
+    };
+    static const Row rows[kOpCount];
+
+private:
+""")
+    out += [_decoder(op) for op in ops]
+    out.append("};\n\ntemplate <class H>\nconst typename DecodeTable<H>::Row DecodeTable<H>::rows[kOpCount] = {\n")
+    for op in ops:
+        run = "nullptr" if op.name == "Block" else f"&DecodeTable::{op.name}"
+        comment = "  // the decoder's own" if op.name == "Block" else ""
+        out.append(f'    {{"{op.name}", {op.fixed_bytes}, {"true" if op.bytes_name else "false"}, {run}}},{comment}\n')
+    out.append("};\n\n}  // namespace wall::glapi\n")
+    return "".join(out)
+
+
+def _decoder(op):
+    if op.name == "Block":
+        return ""
+    lines = [f"    static bool {op.name}(H& h, wire::OperandReader& in) {{\n"]
+    if op.is_state:
+        lines += ["        const std::uint32_t id = in.get<std::uint32_t>();\n",
+                  "        const std::uint32_t bytes = in.ok() ? h.state_bytes(id) : 0;\n",
+                  "        if (bytes == 0) return false;\n",
+                  "        const std::span<const std::byte> value = in.raw(bytes);\n",
+                  "        return in.ok() && h.State(id, value) && !h.refused();\n    }\n"]
+        return "".join(lines)
+    args = [o.name for o in op.operands] + ([op.bytes_name] if op.bytes_name else [])
+    if op.operands:
+        lines.append(f"        const std::byte* at = in.raw({sum(SIZE[o.type] for o in op.operands)}).data();\n")
+        if not op.bytes_name:
+            lines.append("        if (!in.ok()) return false;\n")
+    if op.bytes_name:
+        lines.append(f"        const std::span<const std::byte> {op.bytes_name} = in.bytes();\n")
+        lines.append("        if (!in.ok()) return false;\n")
+    offset = 0
+    loads = []
+    for o in op.operands:
+        loads.append(f"wire::load<{CPP[o.type]}>(at + {offset})")
+        offset += SIZE[o.type]
+    if op.bytes_name:
+        loads.append(op.bytes_name)
+    if not args:
+        lines.append("        (void)in;\n")
+    lines.append(f"        h.{op.name}({', '.join(loads)});\n")
+    lines.append("        return !h.refused();\n    }\n")
+    return "".join(lines)

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: MIT
+"""The Khronos registry (gl.xml) as values: every command with its signature, first version and alias."""
+
+import re
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Param:
+    type: str   # C spelling, e.g. "const GLfloat *"
+    name: str   # safe as a C++ identifier
+
+
+@dataclass
+class Command:
+    name: str                   # with the gl prefix
+    returns: str
+    params: tuple               # of Param
+    alias: str | None = None    # the command that this one is another name of, as gl.xml says
+    gl: str | None = None       # first OpenGL version ("1.0"), compatibility profile
+    es: str | None = None       # first OpenGL ES version
+    extensions: list = field(default_factory=list)
+
+    @property
+    def short(self):
+        """Name without the gl prefix."""
+        return self.name[2:]
+
+    @property
+    def declaration(self):
+        return ", ".join(f"{p.type} {p.name}".replace("* ", "*") for p in self.params)
+
+    @property
+    def types(self):
+        return ", ".join(p.type for p in self.params)
+
+
+@dataclass
+class Registry:
+    commands: dict  # name -> Command
+    enums: dict     # GL_NAME -> int (desktop GL and ES)
+
+    def canonical(self, name):
+        """Follows aliases to the command that is implemented."""
+        seen = set()
+        while self.commands[name].alias and name not in seen:
+            seen.add(name)
+            name = self.commands[name].alias
+        return name
+
+
+def _declared(element):
+    """C type and name out of a <proto> or <param>."""
+    name = element.find("name").text
+    text = "".join(element.itertext()).strip()
+    type_text = re.sub(r"\s+", " ", text[: text.rindex(name)]).strip()
+    type_text = re.sub(r"\s*\*", " *", type_text)
+    return type_text, name
+
+
+_RESERVED = {"near": "near_", "far": "far_", "ref": "ref_", "string": "string_", "class": "class_"}
+
+
+def _command(element):
+    returns, name = _declared(element.find("proto"))
+    params = []
+    for p in element.findall("param"):
+        type_text, pname = _declared(p)
+        params.append(Param(type_text, _RESERVED.get(pname, pname)))
+    alias = element.find("alias")
+    return Command(name, returns, tuple(params), alias.get("name") if alias is not None else None)
+
+
+def _version(text):
+    return tuple(int(x) for x in text.split("."))
+
+
+def load(path):
+    root = ET.parse(path).getroot()
+    commands = {}
+    for element in root.find("commands"):
+        command = _command(element)
+        commands[command.name] = command
+    for feature in root.findall("feature"):
+        api, number = feature.get("api"), feature.get("number")
+        if api not in ("gl", "gles1", "gles2"):
+            continue
+        for require in feature.findall("require"):
+            if require.get("profile") == "core" and api == "gl":
+                pass  # a command required by the core profile is in the compatibility profile as well
+            for item in require.findall("command"):
+                c = commands[item.get("name")]
+                if api == "gl":
+                    c.gl = min(c.gl or number, number, key=_version)
+                elif api == "gles2":
+                    c.es = min(c.es or number, number, key=_version)
+    for extension in root.find("extensions"):
+        for require in extension.findall("require"):
+            for item in require.findall("command"):
+                commands[item.get("name")].extensions.append(extension.get("name"))
+    enums = {}
+    for block in root.findall("enums"):
+        for item in block.findall("enum"):
+            if item.get("api") in (None, "gl", "gles2"):
+                enums[item.get("name")] = int(item.get("value"), 0)
+    return Registry(commands, enums)

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""The data stream's commands (proto/gl/wire.toml) as values."""
+
+import tomllib
+from dataclasses import dataclass
+
+CPP = {"u32": "std::uint32_t", "i32": "std::int32_t", "f32": "float", "f64": "double", "enum": "std::uint32_t"}
+SIZE = {"u32": 4, "i32": 4, "f32": 4, "f64": 8, "enum": 4}
+
+
+@dataclass(frozen=True)
+class Operand:
+    type: str   # key of CPP, or "bytes"
+    name: str
+
+
+@dataclass(frozen=True)
+class Op:
+    code: int
+    name: str
+    group: str
+    operands: tuple     # of Operand, without a trailing bytes operand
+    bytes_name: str     # name of the trailing bytes operand, or ""
+    is_state: bool      # State: an element id, then a value of the element's own size
+
+    @property
+    def fixed_bytes(self):
+        """Operand bytes before the content of a bytes operand or a state value; its count included."""
+        return sum(SIZE[o.type] for o in self.operands) + (4 if self.bytes_name or self.is_state else 0)
+
+
+def load(path):
+    with open(path, "rb") as f:
+        groups = tomllib.load(f)
+    ops = []
+    for group, commands in groups.items():
+        for name, signature in commands.items():
+            ops.append(_op(len(ops), name, group, signature))
+    assert len(ops) <= 256, "wire.toml: opcodes are one byte"
+    return ops
+
+
+def _op(code, name, group, signature):
+    if signature == "value":
+        return Op(code, name, group, (), "", True)
+    operands = [Operand(*part.split()) for part in signature.split(",") if part.strip()]
+    bytes_name = ""
+    if operands and operands[-1].type == "bytes":
+        bytes_name = operands.pop().name
+    for o in operands:
+        assert o.type in CPP, f"wire.toml: {name}: unknown type {o.type}"
+    return Op(code, name, group, tuple(operands), bytes_name, False)
