@@ -25,6 +25,9 @@ struct AttributeStacks; // attribute_stack.h
 struct SelectState;     // select.h: feedback and selection
 
 inline constexpr unsigned kTextureUnits = 8;
+inline constexpr unsigned kVertexAttributes = 16;
+/// A block larger than this is sent at the next glEnd, so that nodes draw while the program goes on.
+inline constexpr std::size_t kBlockBytes = 256 << 10;
 
 /// One matrix stack; the top is the element of glstate::State.
 struct MatrixStack {
@@ -34,7 +37,7 @@ struct MatrixStack {
 
 class Context {
 public:
-    Context(std::shared_ptr<Session> session, std::shared_ptr<ShareGroup> share, const ContextOptions& options);
+    Context(std::shared_ptr<ShareGroup> share, const ContextOptions& options);
     ~Context();
     Context(const Context&) = delete;
 
@@ -93,6 +96,18 @@ public:
     };
     std::vector<PendingMaterial> pending_materials;
 
+    /// glBegin and glEnd after their checks.
+    void begin_primitive(GLenum mode);
+    void end_primitive();
+
+    /// Moves the packed block's last attributes and materials into `state` (BlockSender).
+    void fold_attributes();
+    bool folded_material() const { return folded_material_; }
+    /// Where the draw surface lies: its tiles, or one offscreen layer while selecting or in feedback.
+    const SurfaceLayout& draw_layout() const;
+
+    /// Before its first use; the connection is made no earlier.
+    void attach(std::shared_ptr<Session> session) { session_ = std::move(session); }
     void bind_surfaces(std::shared_ptr<Surface> draw, std::shared_ptr<Surface> read);
     const Projection& projection();
 
@@ -107,8 +122,59 @@ private:
     std::shared_ptr<Surface> draw_, read_;
     GLenum error_ = GL_NO_ERROR;
     bool used_ = false;
+    bool folded_material_ = false;
     Projection projection_;
     std::array<std::uint64_t, 3> projection_ids_{};
 };
+
+template <class Pack>
+void Session::draw(Context& context, const std::optional<PixelRect>& box, Pack&& pack) {
+    draw(context, box, [](Node&, wire::PackBuffer&) {}, std::forward<Pack>(pack), [](Node&) {});
+}
+
+template <class Before, class Pack, class After>
+void Session::draw(Context& context, const std::optional<PixelRect>& box, Before&& before, Pack&& pack, After&& after) {
+    std::lock_guard lock(mutex_);
+    if (!context.draw_surface()) return;
+    const SurfaceLayout& layout = context.draw_layout();
+    for (const auto& [index, slots] : by_node(targets_of(layout, box), layout)) {
+        Node& node = *nodes_[index];
+        if (!node.alive()) continue;
+        wire::PackBuffer& buffer = prepare(node, context);
+        before(node, buffer);
+        const std::size_t operands = buffer.operand_bytes(), bytes = buffer.bytes();
+        glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32), 0, 0);
+        const auto start = buffer.mark();
+        pack(buffer);
+        const auto end = buffer.mark();
+        const std::uint32_t counts[2] = {static_cast<std::uint32_t>(end.commands - start.commands),
+                                         static_cast<std::uint32_t>(end.operand_bytes - start.operand_bytes)};
+        std::memcpy(buffer.operand_at(operands + 8), counts, sizeof counts);
+        count_geometry(node, buffer.bytes() - bytes);
+        after(node);
+    }
+}
+
+template <class Pack>
+void Session::on_every_node(Context& context, Pack&& pack) {
+    std::lock_guard lock(mutex_);
+    for (auto& node : nodes_)
+        if (node->alive()) pack(batch(*node, context.id), *node);
+}
+
+template <class Pack>
+std::optional<std::vector<std::byte>> Session::ask(Context& context, Node& node, const char* function, Pack&& pack) {
+    context.flush_block();
+    std::uint32_t request = 0;
+    {
+        std::lock_guard lock(mutex_);
+        if (!node.alive() || !context.draw_surface()) return std::nullopt;
+        request = ++last_request_;
+        pack(prepare(node, context), request);
+        count_round_trip(function);
+        send(node);
+    }
+    return wait_reply(node, request);
+}
 
 }  // namespace wall::client

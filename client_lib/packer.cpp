@@ -59,6 +59,7 @@ void Packer::end() {
     }
     open_.last = mark();
     open_.box = box;
+    open_.after = places();
     block_box_.add(box);
     primitives_.push_back(open_);
     update_limit();

@@ -35,6 +35,7 @@ struct Primitive {
     bool divisible = true;       ///< holds only vertices and tracked attributes, so that it may be cut between nodes
     geom::Box box;               ///< object space
     AttributePlaces before;      ///< attributes as they are at Begin
+    AttributePlaces after;       ///< and at End
 };
 
 class Packer : public wire::PackBuffer {
@@ -45,7 +46,7 @@ public:
 
     std::byte*& next_operand() { return operands_; }
     std::byte*& next_opcode() { return opcodes_; }
-    /// An entry point takes its slow path once `next_operand` is beyond this; null closes the packer.
+    /// An entry point takes its slow path once `next_operand` has reached this; null closes the packer.
     const std::byte* limit = nullptr;
     geom::Box box;  ///< of the open primitive
     std::array<const std::byte*, kAttributes> last{};

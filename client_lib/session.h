@@ -24,6 +24,9 @@ namespace wall::client {
 
 class Context;
 
+/// Ids of contexts, surfaces and objects on the wire: unique in the process, never 0.
+std::uint32_t next_object_id();
+
 /// What a node holds of one context.
 struct Mirror {
     glstate::State state;
@@ -63,10 +66,12 @@ class Session {
 public:
     /// The process's session; made at the first call. Null if the wall cannot be reached (said once on stderr).
     static std::shared_ptr<Session> get();
+    /// The same, but never makes one: null if no context holds it.
+    static std::shared_ptr<Session> get_if_open();
     ~Session();
 
     const Caps& caps() const { return control_->welcome().caps; }
-    std::uint32_t next_id() { return ++last_id_; }
+    std::uint32_t next_id() { return next_object_id(); }
 
     void open_surface(Surface& surface);
     void close_surface(Surface& surface);
@@ -81,13 +86,17 @@ public:
     /// Runs `pack` inside a Block on every target that `box` touches (nothing: all of them).
     template <class Pack>
     void draw(Context& context, const std::optional<PixelRect>& box, Pack&& pack);
+    /// The same after `before(node, buffer)` outside of the Block; `after(node)` when it is packed.
+    template <class Before, class Pack, class After>
+    void draw(Context& context, const std::optional<PixelRect>& box, Before&& before, Pack&& pack, After&& after);
     /// Runs `pack(buffer, node)` outside of blocks on every node, with nothing brought up to date.
     template <class Pack>
     void on_every_node(Context& context, Pack&& pack);
 
-    /// Packs a command that wants an answer into the batch of one node, sends it, waits. Nothing if the node is lost.
+    /// Packs a command that wants an answer, `pack(buffer, request)`, behind everything that drawing with the context
+    /// needs, sends it and waits. Nothing if the node is lost. `function`: for the count of round trips.
     template <class Pack>
-    std::optional<std::vector<std::byte>> ask(Context& context, Node& node, Pack&& pack);
+    std::optional<std::vector<std::byte>> ask(Context& context, Node& node, const char* function, Pack&& pack);
 
     /// Everything queued goes out; `wait` also waits until all nodes have executed it.
     void flush(Context* context, bool wait);
@@ -102,6 +111,9 @@ public:
     wire::PackBuffer& prepare(Node& node, Context& context);
     void send(Node& node);
     Node& node_of(const Target& target) { return *nodes_[target.node]; }
+    void count_geometry(Node& node, std::size_t bytes);
+    void count_objects(Node& node, std::size_t bytes);
+    void count_state(Node& node, std::size_t bytes);
 
 private:
     friend class BlockSender;
@@ -112,14 +124,15 @@ private:
     void describe_surface(Node& node, Surface& surface);
     Node& node_slot(const NodeInfo& info);
     void wait_for_nodes(Surface& surface);
-    static std::pair<std::uint64_t, std::vector<std::uint32_t>> split(const TargetSet&, const SurfaceLayout&);
+    std::optional<std::vector<std::byte>> wait_reply(Node& node, std::uint32_t request);
+    void count_frame();
+    void count_round_trip(const char* function);
 
     std::unique_ptr<ControlLink> control_;
     Transport transport_;
     std::mutex mutex_;
     std::vector<std::unique_ptr<Node>> nodes_;
     std::unordered_map<std::uint32_t, Surface*> surfaces_;
-    std::atomic<std::uint32_t> last_id_{0};
     std::uint32_t last_request_ = 0;
 };
 

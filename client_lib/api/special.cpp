@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Commands about the stream as a whole: clearing, accumulating, flushing, finishing.
+#include "client_lib/context.h"
+
+namespace wall::client::api {
+namespace {
+
+/// The scissor box limits what a clear touches; without it, everything.
+std::optional<PixelRect> clear_box(const Context& c) {
+    if (!c.state.window.scissor_enabled) return std::nullopt;
+    const auto& box = c.state.window.scissor_box;
+    return PixelRect{static_cast<float>(box.x), static_cast<float>(box.y), static_cast<float>(box.x + box.width),
+                     static_cast<float>(box.y + box.height)};
+}
+
+}  // namespace
+
+void Clear(Context& c, GLbitfield mask) {
+    constexpr GLbitfield kKnown = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT | GL_ACCUM_BUFFER_BIT;
+    if (mask & ~kKnown) return c.error(GL_INVALID_VALUE);
+    if (mask == 0 || c.state.local.render_mode != GL_RENDER) return;
+    c.draw(clear_box(c), [&](wire::PackBuffer& buffer) { glapi::pack::Clear(buffer, mask); });
+}
+
+void Accum(Context& c, GLenum op, GLfloat value) {
+    if (op < GL_ACCUM || op > GL_ADD) return c.error(GL_INVALID_ENUM);
+    if (!c.draw_surface() || c.draw_surface()->options.format.accum_bits == 0) return c.error(GL_INVALID_OPERATION);
+    c.draw(clear_box(c), [&](wire::PackBuffer& buffer) { glapi::pack::Accum(buffer, op, value); });
+}
+
+void Flush(Context& c) { c.session().flush(&c, false); }
+
+// With a double-buffered surface nobody can see before the swap whether the nodes have finished, so glFinish only
+// sends (116 of 146 screensaver hacks call it in every frame). What a single-buffered program has drawn is on show
+// when glFinish returns.
+void Finish(Context& c) {
+    const Surface* surface = c.draw_surface();
+    c.session().flush(&c, surface && !surface->options.format.double_buffered);
+}
+
+}  // namespace wall::client::api

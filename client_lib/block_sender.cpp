@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/block_sender.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "client_lib/block_walk.h"
+#include "client_lib/options.h"
+
+namespace wall::client {
+namespace {
+
+/// A primitive smaller than this costs less sent whole to one node more than taken apart.
+constexpr std::size_t kSmallPrimitiveBytes = 192;
+/// Vertices between two runs of one strip that cost no more than ending it and starting anew.
+constexpr std::int64_t kGapVertices = 2;
+
+/// How the vertices of a mode make primitives: primitive k uses vertices [k * step, k * step + size).
+struct Topology {
+    unsigned size, step;
+    bool independent;        ///< no vertices shared, so a run may just leave some out
+    bool fan;                ///< every primitive also uses vertex 0
+    unsigned alignment = 1;  ///< a run must start at a multiple of this many vertices
+};
+
+std::optional<Topology> topology_of(GLenum mode) {
+    switch (mode) {
+        case GL_POINTS: return Topology{1, 1, true, false};
+        case GL_LINES: return Topology{2, 2, true, false};
+        case GL_TRIANGLES: return Topology{3, 3, true, false};
+        case GL_QUADS: return Topology{4, 4, true, false};
+        case GL_LINE_STRIP: return Topology{2, 1, false, false};
+        case GL_TRIANGLE_STRIP: return Topology{3, 1, false, false, 2};  // an odd start would turn the winding
+        case GL_QUAD_STRIP: return Topology{4, 2, false, false, 2};
+        case GL_TRIANGLE_FAN: return Topology{2, 1, false, true};
+        default: return std::nullopt;  // loops and polygons stay whole: their edges depend on all vertices
+    }
+}
+
+void grow(PixelRect& rect, const WindowVertex& v) {
+    rect.x0 = std::min(rect.x0, v.x);
+    rect.x1 = std::max(rect.x1, v.x);
+    rect.y0 = std::min(rect.y0, v.y);
+    rect.y1 = std::max(rect.y1, v.y);
+}
+
+}  // namespace
+
+void BlockSender::run() {
+    if (context_.draw_surface()) layout_ = &context_.draw_layout();
+    if (!packer_.has_geometry() || !layout_ || layout_->targets.empty()) return fold({});
+    const auto box = options().broadcast ? std::nullopt : project(context_.projection(), packer_.block_box());
+    const TargetSet targets = targets_of(*layout_, box);
+    const auto nodes = by_node(targets, *layout_);
+    const bool single = packer_.primitives().size() == 1 && !worth_dividing(packer_.primitives()[0], targets);
+    if (nodes.size() <= 1 || packer_.has_rare() || options().broadcast || single)
+        send_whole(targets);
+    else
+        send_apart(targets);
+}
+
+void BlockSender::send_whole(const TargetSet& targets) {
+    std::vector<Node*> reached;
+    for (const auto& [index, slots] : by_node(targets, *layout_)) {
+        Node& node = *session_.nodes()[index];
+        if (!node.alive()) continue;
+        auto& buffer = session_.prepare(node, context_);
+        const std::size_t before = buffer.bytes();
+        glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32),
+                           static_cast<std::uint32_t>(packer_.commands()), static_cast<std::uint32_t>(packer_.operand_bytes()));
+        buffer.append(packer_, {}, packer_.mark());
+        session_.count_geometry(node, buffer.bytes() - before);
+        reached.push_back(&node);
+    }
+    fold(reached);
+}
+
+void BlockSender::send_apart(const TargetSet& block_targets) {
+    shares_.resize(session_.nodes().size());
+    for (const Primitive& primitive : packer_.primitives()) {
+        const auto box = project(context_.projection(), primitive.box);
+        const TargetSet targets = targets_of(*layout_, box) & block_targets;
+        if (targets.none()) continue;
+        if (worth_dividing(primitive, targets))
+            divide(primitive, targets);
+        else
+            send_primitive(primitive, targets);
+    }
+    for (Share& share : shares_) close_block(share);
+
+    // Nodes that got a part hold the attributes of their own last piece; the next diff brings the rest.
+    for (Share& share : shares_) {
+        if (!share.buffer) continue;
+        auto& mirror = share.node->mirrors[context_.id].state;
+        bool changed = false;
+        for (std::size_t i = 0; i < kAttributes; ++i) {
+            if (share.sent.offset[i] == AttributePlaces::kNone) continue;
+            apply_attribute(mirror, share.sent.op[i], packer_.operand_at(share.sent.offset[i]));
+            changed = true;
+        }
+        if (changed) mirror.ids[static_cast<std::size_t>(glstate::Category::current)] = glstate::next_value_id();
+    }
+    fold({});
+}
+
+void BlockSender::send_primitive(const Primitive& primitive, const TargetSet& targets) {
+    for (const auto& [index, slots] : by_node(targets, *layout_)) {
+        Share& share = share_of(index);
+        if (!share.buffer) continue;
+        open_block(share, slots);
+        pack_attributes(share, primitive.before);
+        copy(share, primitive.first, primitive.last);
+        share.sent = primitive.after;
+    }
+}
+
+bool BlockSender::worth_dividing(const Primitive& primitive, const TargetSet& targets) const {
+    if (!primitive.divisible || !topology_of(primitive.mode)) return false;
+    if (primitive.last.operand_bytes - primitive.first.operand_bytes < kSmallPrimitiveBytes) return false;
+    if (primitive.box.unbounded()) return false;
+    if (context_.state.rasterization.line_stipple_enabled) return false;  // its counter runs along the primitive
+    return by_node(targets, *layout_).size() > 1;
+}
+
+// Finds every vertex of the primitive in the packed commands, with the attributes in effect there.
+void BlockSender::scan_vertices(const Primitive& primitive) {
+    vertices_.clear();
+    BlockWalk walk(packer_, primitive.first, primitive.last, primitive.before);
+    walk.next();  // Begin
+    wire::PackMark lead = walk.position();
+    AttributePlaces before = walk.places();
+    while (walk.next()) {
+        if (!walk.is_vertex()) continue;
+        const auto v = walk.vertex();
+        vertices_.push_back({lead, walk.position(), before, walk.places(),
+                             project(context_.projection(), v[0], v[1], v[2], v[3])});
+        lead = walk.position();
+        before = walk.places();
+    }
+}
+
+void BlockSender::divide(const Primitive& primitive, const TargetSet& targets) {
+    const Topology topology = *topology_of(primitive.mode);
+    const float margin = context_.projection().margin;
+    scan_vertices(primitive);
+    const std::size_t first = topology.fan ? 1 : 0;
+    for (std::size_t v = first; v + topology.size <= vertices_.size(); v += topology.step) {
+        PixelRect rect{INFINITY, INFINITY, -INFINITY, -INFINITY};
+        bool known = !topology.fan || vertices_[0].window.known;
+        if (topology.fan) grow(rect, vertices_[0].window);
+        for (std::size_t i = v; i < v + topology.size; ++i) {
+            known = known && vertices_[i].window.known;
+            grow(rect, vertices_[i].window);
+        }
+        rect = {rect.x0 - margin, rect.y0 - margin, rect.x1 + margin, rect.y1 + margin};
+        const TargetSet touched = known ? targets_of(*layout_, rect) & targets : targets;
+        const std::size_t start = v / topology.alignment * topology.alignment;
+        for (const auto& [index, slots] : by_node(touched, *layout_)) {
+            Share& share = share_of(index);
+            if (!share.buffer) continue;
+            const auto begin = static_cast<std::int64_t>(start), end = static_cast<std::int64_t>(v + topology.size - 1);
+            const std::int64_t gap = topology.independent ? 0 : kGapVertices;
+            if (share.run_first >= 0 && (begin > share.run_last + 1 + gap || share.run_mask != slots)) finish_run(share, primitive);
+            if (share.run_first < 0) share.run_first = begin, share.run_mask = slots;
+            share.run_last = end;
+        }
+    }
+    for (Share& share : shares_)
+        if (share.run_first >= 0) finish_run(share, primitive);
+}
+
+// A run becomes a primitive of its own, with the attributes that its first vertex sees.
+void BlockSender::finish_run(Share& share, const Primitive& primitive) {
+    const Vertex& first = vertices_[static_cast<std::size_t>(share.run_first)];
+    const Vertex& last = vertices_[static_cast<std::size_t>(share.run_last)];
+    open_block(share, share.run_mask);
+    if (primitive.mode == GL_TRIANGLE_FAN) {
+        const Vertex& hub = vertices_[0];
+        pack_attributes(share, hub.before);
+        const std::size_t before = share.buffer->bytes();
+        glapi::pack::Begin(*share.buffer, primitive.mode);
+        session_.count_geometry(*share.node, share.buffer->bytes() - before);
+        copy(share, hub.lead, hub.end);
+        share.sent = hub.at;
+        pack_attributes(share, first.before);
+    } else {
+        pack_attributes(share, first.before);
+        const std::size_t before = share.buffer->bytes();
+        glapi::pack::Begin(*share.buffer, primitive.mode);
+        session_.count_geometry(*share.node, share.buffer->bytes() - before);
+    }
+    copy(share, first.lead, last.end);
+    share.sent = last.at;
+    glapi::pack::End(*share.buffer);
+    session_.count_geometry(*share.node, 1);
+    share.run_first = share.run_last = -1;
+}
+
+BlockSender::Share& BlockSender::share_of(std::uint32_t index) {
+    Share& share = shares_[index];
+    if (!share.node) {
+        share.node = session_.nodes()[index].get();
+        if (share.node->alive()) share.buffer = &session_.prepare(*share.node, context_);
+    }
+    return share;
+}
+
+void BlockSender::open_block(Share& share, std::uint64_t mask) {
+    if (share.mask == mask) return;
+    close_block(share);
+    share.block_operands = share.buffer->operand_bytes();
+    const std::size_t before = share.buffer->bytes();
+    glapi::pack::Block(*share.buffer, static_cast<std::uint32_t>(mask), static_cast<std::uint32_t>(mask >> 32), 0, 0);
+    session_.count_geometry(*share.node, share.buffer->bytes() - before);
+    share.block_start = share.buffer->mark();
+    share.mask = mask;
+}
+
+void BlockSender::close_block(Share& share) {
+    if (share.mask == 0) return;
+    const auto end = share.buffer->mark();
+    const std::uint32_t counts[2] = {static_cast<std::uint32_t>(end.commands - share.block_start.commands),
+                                     static_cast<std::uint32_t>(end.operand_bytes - share.block_start.operand_bytes)};
+    std::memcpy(share.buffer->operand_at(share.block_operands + 8), counts, sizeof counts);
+    share.mask = 0;
+}
+
+void BlockSender::pack_attributes(Share& share, const AttributePlaces& wanted) {
+    for (std::size_t i = 0; i < kAttributes; ++i) {
+        if (wanted.offset[i] == share.sent.offset[i]) continue;
+        const std::size_t bytes = operand_bytes_of(wanted.op[i]);
+        std::memcpy(share.buffer->append(static_cast<std::uint8_t>(wanted.op[i]), bytes), packer_.operand_at(wanted.offset[i]), bytes);
+        session_.count_geometry(*share.node, bytes + 1);
+        share.sent.offset[i] = wanted.offset[i];
+        share.sent.op[i] = wanted.op[i];
+    }
+}
+
+void BlockSender::copy(Share& share, wire::PackMark first, wire::PackMark last) {
+    share.buffer->append(packer_, first, last);
+    session_.count_geometry(*share.node, last.commands - first.commands + last.operand_bytes - first.operand_bytes);
+}
+
+// The block's last attributes become the context's current ones, and those of every node that ran all of it.
+void BlockSender::fold(const std::vector<Node*>& whole) {
+    context_.fold_attributes();
+    for (Node* node : whole) {
+        auto& mirror = node->mirrors[context_.id].state;
+        glstate::copy_category<glstate::Category::current>(mirror, context_.state);
+        if (!context_.folded_material()) continue;
+        glstate::copy_category<glstate::Category::material>(mirror, context_.state);
+    }
+}
+
+void apply_attribute(glstate::State& state, glapi::Op op, const std::byte* operand) {
+    float f[4] = {0, 0, 0, 1};
+    const auto floats = [&](std::size_t n) { std::memcpy(f, operand, n * sizeof(float)); };
+    using glapi::Op;
+    auto& current = state.current;
+    switch (op) {
+        case Op::Color3f: floats(3); current.color = {f[0], f[1], f[2], 1}; break;
+        case Op::Color4f: floats(4); current.color = {f[0], f[1], f[2], f[3]}; break;
+        case Op::Color4ub:
+            for (int i = 0; i < 4; ++i) current.color[i] = static_cast<float>(operand[i]) / 255.0f;
+            break;
+        case Op::Normal3f: floats(3); current.normal = {f[0], f[1], f[2]}; break;
+        case Op::TexCoord1f: floats(1); current.texcoord[0] = {f[0], 0, 0, 1}; break;
+        case Op::TexCoord2f: floats(2); current.texcoord[0] = {f[0], f[1], 0, 1}; break;
+        case Op::TexCoord3f: floats(3); current.texcoord[0] = {f[0], f[1], f[2], 1}; break;
+        case Op::TexCoord4f: floats(4); current.texcoord[0] = {f[0], f[1], f[2], f[3]}; break;
+        case Op::SecondaryColor3f: floats(3); current.secondary_color = {f[0], f[1], f[2]}; break;
+        case Op::FogCoordf: floats(1); current.fog_coord = f[0]; break;
+        case Op::EdgeFlag: {
+            std::uint32_t flag;
+            std::memcpy(&flag, operand, 4);
+            current.edge_flag = flag != 0;
+            break;
+        }
+        default: break;
+    }
+}
+
+}  // namespace wall::client

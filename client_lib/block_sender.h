@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// Sends one block of geometry to the nodes that need it. A block that lies on one node goes there whole. A block over
+// several nodes is taken apart: first by primitives (glBegin .. glEnd), and a large primitive by its own triangles, so
+// that each node gets only what can touch its tiles (W3.2 sorts whole buffers by one box; a mesh in one glBegin would
+// then be sent to all). What a piece needs from before it (current attributes, the strip's last vertices) is packed in
+// front of it. The session's mutex is held.
+#pragma once
+
+#include <vector>
+
+#include "client_lib/context.h"
+
+namespace wall::client {
+
+class BlockSender {
+public:
+    BlockSender(Session& session, Context& context) : session_(session), context_(context), packer_(context.packer) {}
+
+    /// Sends the block and leaves `context.state` and all mirrors as they are after it.
+    void run();
+
+private:
+    /// One node's share of a block that is taken apart.
+    struct Share {
+        Node* node = nullptr;
+        wire::PackBuffer* buffer = nullptr;
+        std::uint64_t mask = 0;        ///< of the open Block; 0: none is open
+        std::size_t block_operands = 0;  ///< where the open Block's operands stand
+        wire::PackMark block_start;
+        AttributePlaces sent;          ///< what the node got of this block's attributes
+        std::int64_t run_first = -1, run_last = -1;  ///< pending run of vertices of the primitive being divided
+        std::uint64_t run_mask = 0;
+    };
+    /// A vertex of the primitive being divided.
+    struct Vertex {
+        wire::PackMark lead, end;      ///< its attributes begin at lead; its own command ends at end
+        AttributePlaces before;        ///< attributes in effect at lead
+        AttributePlaces at;            ///< in effect at the vertex itself
+        WindowVertex window;
+    };
+
+    void send_whole(const TargetSet& targets);
+    void send_apart(const TargetSet& targets);
+    void send_primitive(const Primitive& primitive, const TargetSet& targets);
+    bool worth_dividing(const Primitive& primitive, const TargetSet& targets) const;
+    void divide(const Primitive& primitive, const TargetSet& targets);
+    void scan_vertices(const Primitive& primitive);
+    void add_to_runs(std::size_t first_vertex, std::size_t last_vertex, const TargetSet& targets);
+    void finish_run(Share& share, const Primitive& primitive);
+
+    Share& share_of(std::uint32_t node);
+    void open_block(Share& share, std::uint64_t mask);
+    void close_block(Share& share);
+    void pack_attributes(Share& share, const AttributePlaces& wanted);
+    void copy(Share& share, wire::PackMark first, wire::PackMark last);
+
+    void fold(const std::vector<Node*>& whole);
+    void count_ideal();
+
+    Session& session_;
+    Context& context_;
+    Packer& packer_;
+    const SurfaceLayout* layout_ = nullptr;
+    std::vector<Share> shares_;
+    std::vector<Vertex> vertices_;
+};
+
+/// Sets the current attribute that a packed attribute command stands for.
+void apply_attribute(glstate::State& state, glapi::Op op, const std::byte* operand);
+
+}  // namespace wall::client

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/context.h"
+
+#include <algorithm>
+
+#include "client_lib/attribute_stack.h"
+#include "client_lib/block_sender.h"
+#include "client_lib/block_walk.h"
+#include "client_lib/lists.h"
+#include "client_lib/select.h"
+#include "client_lib/share_group.h"
+
+namespace wall::client {
+
+constinit thread_local Context* tls_context = nullptr;
+constinit thread_local Packer* tls_packer = nullptr;
+
+Context::Context(std::shared_ptr<ShareGroup> share, const ContextOptions&)
+    : id(next_object_id()),
+      table(&immediate_table),
+      lists(std::make_unique<ListState>()),
+      attributes(std::make_unique<AttributeStacks>()),
+      select(std::make_unique<SelectState>()),
+      share_(std::move(share)) {
+    for (auto& stack : texture_stacks) stack.limit = 10;
+}
+
+Context::~Context() {
+    if (session_) session_->destroy_context(id);
+}
+
+void Context::bind_surfaces(std::shared_ptr<Surface> draw, std::shared_ptr<Surface> read) {
+    draw_ = std::move(draw);
+    read_ = std::move(read);
+    if (!used_ && draw_) first_use();
+}
+
+// OpenGL 1.2.1, 2.10.2 and 4.1.2: viewport and scissor start with the size of the first window.
+void Context::first_use() {
+    used_ = true;
+    const auto width = static_cast<std::int32_t>(draw_->layout.width), height = static_cast<std::int32_t>(draw_->layout.height);
+    glstate::assign<glstate::el::viewport>(state, 0, {0, 0, width, height});
+    glstate::assign<glstate::el::scissor_box>(state, 0, {0, 0, width, height});
+    const GLenum buffer = draw_->options.format.double_buffered ? GL_BACK : GL_FRONT;
+    glstate::assign<glstate::el::draw_buffer>(state, 0, buffer);
+    glstate::assign<glstate::el::read_buffer>(state, 0, buffer);
+}
+
+const Projection& Context::projection() {
+    using glstate::Category;
+    const std::array<std::uint64_t, 3> ids = {state.ids[static_cast<std::size_t>(Category::transform)],
+                                              state.ids[static_cast<std::size_t>(Category::window)],
+                                              state.ids[static_cast<std::size_t>(Category::rasterization)]};
+    if (ids != projection_ids_) {
+        projection_ = make_projection(state);
+        projection_ids_ = ids;
+    }
+    return projection_;
+}
+
+const SurfaceLayout& Context::draw_layout() const { return select->layout ? *select->layout : draw_->layout; }
+
+void Context::begin_primitive(GLenum mode) {
+    packer.begin(mode);
+    if (table == &immediate_table) table = &inside_begin_table;
+}
+
+void Context::end_primitive() {
+    packer.end();
+    if (table == &inside_begin_table) table = &immediate_table;
+    if (packer.bytes() > kBlockBytes) flush_block();
+}
+
+void Context::submit_block() {
+    if (packer.inside()) return;  // only commands that are legal inside come here then, and they change nothing that is drawn with
+    session_->submit_block(*this);
+    packer.reset();
+    pending_materials.clear();
+}
+
+// Attributes go from the packed block to `state` (T3.2). Frequent ones are remembered by place; rare ones are found by
+// walking the block.
+void Context::fold_attributes() {
+    bool changed = false;
+    if (packer.has_rare()) {
+        BlockWalk walk(packer, {}, packer.mark(), {});
+        while (walk.next()) apply_attribute(state, walk.op(), walk.operand());
+        changed = true;
+    } else {
+        for (std::size_t i = 0; i < kAttributes; ++i) {
+            if (!packer.last[i]) continue;
+            apply_attribute(state, packer.last_op[i], packer.last[i]);
+            changed = true;
+        }
+    }
+    if (changed) state.ids[static_cast<std::size_t>(glstate::Category::current)] = glstate::next_value_id();
+    folded_material_ = !pending_materials.empty();
+    for (const PendingMaterial& material : pending_materials) assign_material(state, material.face, material.pname, material.value);
+}
+
+}  // namespace wall::client

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// The client's part of proto/control.proto as plain structs, written and read with protozero (header only: libprotobuf's
+// symbols would clash with the application's). Pure; any thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <variant>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/geom/rect.h"
+
+namespace wall::client {
+
+/// What a program says of itself when it comes to the wall.
+struct Hello {
+    std::uint32_t pid = 0;
+    std::string program;             ///< the program's name, for people
+    std::string name;                ///< WALLGL_NAME
+    std::optional<geom::Rect> rect;  ///< WALLGL_RECT; nothing: where there is room, 1:1
+    bool fullscreen = false;         ///< WALLGL_RECT=fullscreen
+    bool hold = false;               ///< WALLGL_HOLD
+};
+
+/// What all nodes of the wall can do: glGetString and glGet values.
+struct Caps {
+    std::string vendor, renderer, version, shading_language_version;
+    std::string extensions;  ///< separated by blanks
+    std::unordered_map<std::uint32_t, std::vector<double>> limits;  ///< by GL enum
+};
+
+struct NodeInfo {
+    std::uint32_t node = 0;         ///< the same as long as walld runs
+    std::string address;            ///< unix:PATH or HOST:PORT
+    std::string ticket;             ///< bytes, for DataHello
+    std::uint32_t incarnation = 0;  ///< grows when the node's process is a new one
+    bool up = true;                 ///< false: only `node` means anything
+};
+
+struct TileInfo {
+    std::uint32_t node = 0, slot = 0;
+    geom::Rect rect;  ///< canvas
+    std::string name;
+};
+
+struct Welcome {
+    std::uint32_t session = 0;
+    std::uint32_t canvas_width = 0, canvas_height = 0;
+    std::vector<TileInfo> tiles;
+    std::vector<NodeInfo> nodes;
+    Caps caps;
+};
+
+struct Refused {
+    std::string reason;
+};
+
+/// The surface's whole content covers `rect` of the canvas.
+struct Placement {
+    std::uint32_t surface = 0;
+    std::uint32_t layout_version = 0;
+    geom::Rect rect;
+};
+
+struct CloseRequest {
+    std::uint32_t surface = 0;
+    std::string reason;
+};
+
+/// A message from walld; nothing for one that this version does not know.
+using FromWalld = std::variant<std::monostate, Welcome, Refused, Placement, NodeInfo, CloseRequest>;
+
+// One encoded Envelope each, without the length in front.
+std::string encode(const Hello& hello);
+std::string encode_surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, std::string_view title);
+std::string encode_surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height);
+std::string encode_surface_close(std::uint32_t id);
+
+Result<FromWalld> decode_from_walld(std::string_view envelope);
+
+/// The first message on a data stream, for NodeStream::open.
+std::string encode_data_hello(std::uint32_t session, std::string_view ticket);
+
+}  // namespace wall::client

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/core.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "client_lib/context.h"
+#include "client_lib/share_group.h"
+
+namespace wall::client {
+namespace {
+
+/// A thread without a context packs into this: closed, so that every entry point looks for a context and finds none.
+Packer* closed_packer() {
+    static Packer* packer = [] {
+        auto* made = new Packer();  // never destroyed: threads may outlive static destructors
+        made->set_closed(true);
+        return made;
+    }();
+    return packer;
+}
+
+/// Keeps the thread's context and surfaces alive while they are current.
+struct Current {
+    std::shared_ptr<Context> context;
+    std::shared_ptr<Surface> draw, read;
+};
+thread_local Current current;
+
+void release() {
+    if (current.context) {
+        current.context->flush_block();
+        current.context->session().flush(nullptr, false);
+        current.context->in_use = false;
+    }
+    tls_context = nullptr;
+    tls_packer = closed_packer();
+    current = {};
+}
+
+}  // namespace
+
+std::shared_ptr<Surface> create_surface(SurfaceOptions options) {
+    return std::shared_ptr<Surface>(new Surface(next_object_id(), std::move(options)), [](Surface* surface) {
+        if (surface->opened)
+            if (auto session = Session::get_if_open()) session->close_surface(*surface);
+        delete surface;
+    });
+}
+
+std::shared_ptr<Context> create_context(const ContextOptions& options) {
+    if (options.core_profile || options.major > 2) return nullptr;
+    return std::make_shared<Context>(options.share ? options.share->share_pointer() : std::make_shared<ShareGroup>(), options);
+}
+
+bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface> draw, std::shared_ptr<Surface> read) {
+    if (!context) {
+        release();
+        return true;
+    }
+    if (context != current.context) {
+        if (context->in_use.exchange(true)) return false;
+        release();
+        context->in_use = true;
+    } else {
+        context->flush_block();
+    }
+    const auto session = Session::get();
+    if (!session) {
+        context->in_use = false;
+        release();
+        return false;
+    }
+    context->attach(session);
+    if (draw) session->open_surface(*draw);
+    if (read && read != draw) session->open_surface(*read);
+    if (draw) session->begin_frame(*draw);
+    context->bind_surfaces(draw, read);
+    current = {std::move(context), std::move(draw), std::move(read)};
+    tls_context = current.context.get();
+    tls_packer = &current.context->packer;
+    return true;
+}
+
+Context* current_context() { return tls_context; }
+
+void swap_buffers(Surface& surface) {
+    const auto session = Session::get_if_open();
+    if (!session || !surface.opened) return;
+    session->swap(tls_context, surface);
+    session->begin_frame(surface);
+}
+
+Extent surface_size(const Surface& surface) {
+    if (surface.opened) return {surface.layout.width, surface.layout.height};
+    return surface.options.size;
+}
+
+void flush_current(bool wait) {
+    if (!tls_context) return;
+    tls_context->session().flush(tls_context, wait);
+}
+
+ProcAddress gl_proc_address(const char* name) {
+    const auto* end = proc_table + proc_table_size;
+    const auto* found = std::lower_bound(proc_table, end, name,
+                                         [](const ProcEntry& entry, const char* wanted) { return std::strcmp(entry.name, wanted) < 0; });
+    return found != end && std::strcmp(found->name, name) == 0 ? found->address : nullptr;
+}
+
+}  // namespace wall::client

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/options.h"
+
+#include <cstdlib>
+#include <cstring>
+
+namespace wall::client {
+namespace {
+
+bool flag(const char* name) {
+    const char* value = std::getenv(name);
+    return value && std::strcmp(value, "1") == 0;
+}
+
+}  // namespace
+
+const Options& options() {
+    static const Options read{flag("WALLGL_BROADCAST"), flag("WALLGL_IDEAL")};
+    return read;
+}
+
+}  // namespace wall::client

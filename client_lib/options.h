@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// The environment variables that change how the client library works, read once (docs/client-library.md lists them).
+#pragma once
+
+namespace wall::client {
+
+struct Options {
+    bool broadcast = false;  ///< WALLGL_BROADCAST=1: everything goes to every node, for comparison
+    bool count_ideal = false;  ///< WALLGL_IDEAL=1: also count what perfect sorting by primitive would send
+};
+
+const Options& options();
+
+}  // namespace wall::client

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/session.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+
+#include "client_lib/block_sender.h"
+#include "client_lib/context.h"
+#include "client_lib/log.h"
+#include "client_lib/options.h"
+#include "client_lib/share_group.h"
+#include "common/wire/limits.h"
+
+namespace wall::client {
+namespace {
+
+constexpr int kConnectTimeoutMs = 2000;
+constexpr int kPlacementTimeoutMs = 2000;
+constexpr int kReplyTimeoutMs = 10000;        // a readback behind a long frame of a software renderer
+constexpr std::uint32_t kFramesInFlight = 2;  // packing one while the nodes draw the other
+constexpr int kSlowNodeMs = 250;              // a node later than this is no longer waited for, until it answers again
+constexpr std::size_t kBatchBytes = 256 << 10;  // sent when it reaches this: large enough to be cheap, small enough to overlap
+
+/// DataHello of control.proto, written by hand: three fields do not need a library.
+std::string encode_hello(std::uint32_t session, const std::string& ticket) {
+    const auto varint = [](std::string& to, std::uint64_t value) {
+        for (; value >= 0x80; value >>= 7) to.push_back(static_cast<char>(value | 0x80));
+        to.push_back(static_cast<char>(value));
+    };
+    std::string out;
+    out.push_back(0x08);
+    varint(out, wire::kProtocolVersion);
+    out.push_back(0x10);
+    varint(out, session);
+    out.push_back(0x1a);
+    varint(out, ticket.size());
+    return out + ticket;
+}
+
+/// The part of the surface's window that shows in `part` of the canvas.
+Target make_target(const SurfaceLayout& layout, const TileInfo& tile, const geom::Rect& part) {
+    const float sx = static_cast<float>(layout.width) / static_cast<float>(layout.rect.width);
+    const float sy = static_cast<float>(layout.height) / static_cast<float>(layout.rect.height);
+    const auto height = static_cast<float>(layout.height);
+    Target target;
+    target.node = tile.node;
+    target.slot = tile.slot;
+    target.area = {static_cast<float>(part.x - layout.rect.x) * sx, height - static_cast<float>(part.bottom() - layout.rect.y) * sy,
+                   static_cast<float>(part.right() - layout.rect.x) * sx, height - static_cast<float>(part.y - layout.rect.y) * sy};
+    const int x0 = static_cast<int>(std::floor(target.area.x0)), y0 = static_cast<int>(std::floor(target.area.y0));
+    target.pixels = {x0, y0, static_cast<int>(std::ceil(target.area.x1)) - x0, static_cast<int>(std::ceil(target.area.y1)) - y0};
+    return target;
+}
+
+}  // namespace
+
+std::vector<NodeMask> by_node(const TargetSet& set, const SurfaceLayout& layout) {
+    std::vector<NodeMask> masks;
+    for (std::size_t i = set._Find_first(); i < layout.targets.size(); i = set._Find_next(i)) {
+        const Target& target = layout.targets[i];
+        const std::uint64_t bit = std::uint64_t{1} << target.slot;
+        if (!masks.empty() && masks.back().node == target.node)
+            masks.back().slots |= bit;
+        else
+            masks.push_back({target.node, bit});
+    }
+    return masks;
+}
+
+std::uint32_t next_object_id() {
+    static std::atomic<std::uint32_t> last{0};
+    return ++last;
+}
+
+namespace {
+
+/// Never destroyed: the application may still draw while it exits.
+struct OnlySession {
+    std::mutex mutex;
+    std::weak_ptr<Session> session;
+    static OnlySession& get() {
+        static auto* only = new OnlySession();
+        return *only;
+    }
+};
+
+}  // namespace
+
+std::shared_ptr<Session> Session::get_if_open() {
+    std::lock_guard lock(OnlySession::get().mutex);
+    return OnlySession::get().session.lock();
+}
+
+std::shared_ptr<Session> Session::get() {
+    auto& only = OnlySession::get();
+    std::lock_guard lock(only.mutex);
+    if (auto session = only.session.lock()) return session;
+    auto control = ControlLink::open(Hello::from_environment());
+    if (!control) {
+        complain_once(control.error().message);
+        return nullptr;
+    }
+    std::shared_ptr<Session> session(new Session(std::move(*control)));
+    only.session = session;
+    return session;
+}
+
+Session::Session(std::unique_ptr<ControlLink> control) : control_(std::move(control)) {
+    std::lock_guard lock(mutex_);
+    for (const NodeInfo& info : control_->welcome().nodes) connect(node_slot(info));
+}
+
+Session::~Session() {
+    for (auto& node : nodes_)
+        if (node->alive()) send(*node);
+    transport_.drain(500);
+}
+
+Node& Session::node_slot(const NodeInfo& info) {
+    while (nodes_.size() <= info.node) {
+        nodes_.push_back(std::make_unique<Node>());
+        nodes_.back()->index = static_cast<std::uint32_t>(nodes_.size() - 1);
+    }
+    Node& node = *nodes_[info.node];
+    node.info = info;
+    return node;
+}
+
+// A new stream is a node at time zero: whatever it needs is sent when it needs it.
+void Session::connect(Node& node) {
+    if (node.stream) transport_.remove(node.stream.get());
+    node.stream.reset();
+    node.mirrors.clear();
+    node.object_stamps.clear();
+    node.surfaces.clear();
+    node.batch.clear();
+    node.slow = false;
+    if (!node.info.up) return;
+    auto stream = NodeStream::open(node.info.address, encode_hello(control_->welcome().session, node.info.ticket), kConnectTimeoutMs);
+    if (!stream) {
+        log_warning("event=node_refused node=" + std::to_string(node.index) + " reason=\"" + stream.error().message + "\"");
+        return;
+    }
+    node.stream = std::move(*stream);
+    transport_.add(node.stream);
+}
+
+void Session::open_surface(Surface& surface) {
+    std::unique_lock lock(mutex_);
+    if (surface.opened) return;
+    surface.opened = true;
+    surfaces_[surface.id] = &surface;
+    const Extent size = surface.options.query_size ? surface.options.query_size().value_or(surface.options.size) : surface.options.size;
+    surface.layout.width = std::max(1u, size.width);
+    surface.layout.height = std::max(1u, size.height);
+    if (!surface.options.visible) return apply_layout(surface, Placement{});
+    control_->surface_open(surface.id, surface.layout.width, surface.layout.height, surface.options.title);
+    if (const auto placement = control_->wait_placement(surface.id, kPlacementTimeoutMs)) apply_layout(surface, *placement);
+}
+
+void Session::close_surface(Surface& surface) {
+    std::lock_guard lock(mutex_);
+    if (!surface.opened) return;
+    surface.opened = false;
+    surfaces_.erase(surface.id);
+    if (surface.options.visible) control_->surface_close(surface.id);
+    for (auto& node : nodes_) {
+        if (!node->alive() || node->surfaces.erase(surface.id) == 0) continue;
+        glapi::pack::SurfaceDestroy(batch(*node, node->batch_context), surface.id);
+        send(*node);
+    }
+}
+
+void Session::apply_layout(Surface& surface, const Placement& placement) {
+    SurfaceLayout& layout = surface.layout;
+    layout.targets.clear();
+    ++layout.version;
+    layout.offscreen = !surface.options.visible;
+    if (layout.offscreen) {
+        layout.rect = {0, 0, static_cast<int>(layout.width), static_cast<int>(layout.height)};
+        for (auto& node : nodes_) {
+            if (!node->alive()) continue;
+            layout.targets.push_back(make_target(layout, TileInfo{node->index, wire::kOffscreenSlot, layout.rect, {}}, layout.rect));
+            break;
+        }
+        return;
+    }
+    layout.rect = placement.rect;
+    for (const TileInfo& tile : control_->welcome().tiles) {
+        const geom::Rect part = geom::intersect(tile.rect, layout.rect);
+        if (part.empty() || layout.targets.size() == kMaxTargets) continue;
+        layout.targets.push_back(make_target(layout, tile, part));
+    }
+}
+
+void Session::begin_frame(Surface& surface) {
+    std::lock_guard lock(mutex_);
+    take_events();
+    if (surface.options.query_size) {
+        const auto size = surface.options.query_size();
+        if (size && size->width && size->height && (size->width != surface.layout.width || size->height != surface.layout.height)) {
+            surface.layout.width = size->width;
+            surface.layout.height = size->height;
+            control_->surface_resize(surface.id, size->width, size->height);
+            if (const auto placement = control_->wait_placement(surface.id, kPlacementTimeoutMs)) apply_layout(surface, *placement);
+        }
+    }
+}
+
+void Session::take_events() {
+    auto events = control_->take_events();
+    for (const NodeInfo& info : events.node_changes) {
+        Node& node = node_slot(info);
+        connect(node);
+        for (auto& [id, surface] : surfaces_)
+            if (surface->layout.offscreen) apply_layout(*surface, {});
+    }
+    for (const Placement& placement : events.placements) {
+        const auto found = surfaces_.find(placement.surface);
+        if (found != surfaces_.end()) apply_layout(*found->second, placement);
+    }
+}
+
+wire::PackBuffer& Session::batch(Node& node, std::uint32_t context) {
+    if (node.batch_context != context || node.batch.bytes() > kBatchBytes) send(node);
+    node.batch_context = context;
+    return node.batch;
+}
+
+void Session::send(Node& node) {
+    if (node.batch.empty()) return;
+    if (node.alive()) {
+        node.stream->send(node.batch_context, std::exchange(node.batch, wire::PackBuffer()));
+        transport_.wake();
+    }
+    node.batch.clear();
+}
+
+void Session::describe_surface(Node& node, Surface& surface) {
+    const SurfaceLayout& layout = surface.layout;
+    const auto known = node.surfaces.find(surface.id);
+    if (known == node.surfaces.end()) {
+        const SurfaceFormat& f = surface.options.format;
+        glapi::pack::SurfaceCreate(node.batch, surface.id, f.double_buffered, f.alpha_bits, f.depth_bits, f.stencil_bits, f.accum_bits, f.samples);
+    } else if (known->second == layout.version) {
+        return;
+    }
+    glapi::pack::SurfacePlace(node.batch, surface.id, layout.version, layout.width, layout.height, layout.rect.x, layout.rect.y,
+                              static_cast<std::uint32_t>(layout.rect.width), static_cast<std::uint32_t>(layout.rect.height), layout.offscreen);
+    node.surfaces[surface.id] = layout.version;
+}
+
+namespace {
+
+/// The diff's sink on the client: elements become State commands.
+struct PackSink {
+    wire::PackBuffer& buffer;
+    template <class E>
+    void set(unsigned i, const typename E::type& value) {
+        glapi::pack_state(buffer, static_cast<std::uint16_t>(E::id + i), &value, sizeof value);
+    }
+};
+
+}  // namespace
+
+wire::PackBuffer& Session::prepare(Node& node, Context& context) {
+    wire::PackBuffer& buffer = batch(node, context.id);
+    Mirror& mirror = node.mirrors[context.id];
+    const std::size_t start = buffer.bytes();
+    Surface& draw = *context.draw_surface();
+    Surface& read = *context.read_surface();
+    describe_surface(node, draw);
+    if (&read != &draw) describe_surface(node, read);
+    if (mirror.draw_surface != draw.id || mirror.read_surface != read.id) {
+        glapi::pack::Bind(buffer, draw.id, read.id);
+        mirror.draw_surface = draw.id;
+        mirror.read_surface = read.id;
+    }
+    const std::size_t objects_start = buffer.bytes();
+    context.share().bring_up_to_date(node, context, buffer);
+    const std::size_t state_start = buffer.bytes();
+    glstate::diff(mirror.state, context.state, PackSink{buffer});
+    count_objects(node, state_start - objects_start);
+    count_state(node, buffer.bytes() - state_start + objects_start - start);
+    return buffer;
+}
+
+void Session::submit_block(Context& context) {
+    std::lock_guard lock(mutex_);
+    BlockSender(*this, context).run();
+}
+
+void Session::swap(Context* context, Surface& surface) {
+    if (context) context->flush_block();
+    {
+        std::lock_guard lock(mutex_);
+        ++surface.frame;
+        TargetSet all;
+        all.set();
+        for (const auto& [index, slots] : by_node(all, surface.layout)) {
+            Node& node = *nodes_[index];
+            if (!node.alive()) continue;
+            auto& buffer = batch(node, context ? context->id : node.batch_context);
+            describe_surface(node, surface);
+            glapi::pack::Swap(buffer, surface.id, surface.frame);
+            send(node);
+        }
+        count_frame();
+    }
+    wait_for_nodes(surface);
+}
+
+void Session::wait_for_nodes(Surface& surface) {
+    if (surface.frame < kFramesInFlight) return;
+    const std::uint32_t frame = surface.frame - (kFramesInFlight - 1);
+    std::vector<std::pair<Node*, std::shared_ptr<NodeStream>>> waited;
+    {
+        std::lock_guard lock(mutex_);
+        TargetSet all;
+        all.set();
+        for (const auto& [index, slots] : by_node(all, surface.layout))
+            if (nodes_[index]->alive()) waited.emplace_back(nodes_[index].get(), nodes_[index]->stream);
+    }
+    // A node that is slow for once (a long frame of all nodes alike) is waited for; one that has stopped is left alone.
+    for (auto& [node, stream] : waited) {
+        const bool done = stream->wait_swap(surface.id, frame, node->slow ? 0 : kSlowNodeMs);
+        node->slow = !done;
+    }
+}
+
+void Session::flush(Context* context, bool wait) {
+    if (context) context->flush_block();
+    std::vector<std::pair<std::shared_ptr<NodeStream>, std::uint32_t>> pending;
+    {
+        std::lock_guard lock(mutex_);
+        for (auto& node : nodes_) {
+            if (!node->alive()) continue;
+            if (wait) {
+                glapi::pack::Sync(batch(*node, node->batch_context), ++last_request_);
+                pending.emplace_back(node->stream, last_request_);
+            }
+            send(*node);
+        }
+        if (!pending.empty()) count_round_trip("glFinish");
+    }
+    for (auto& [stream, request] : pending) stream->wait_reply(request, kReplyTimeoutMs);
+}
+
+std::optional<std::vector<std::byte>> Session::wait_reply(Node& node, std::uint32_t request) {
+    return node.stream->wait_reply(request, kReplyTimeoutMs);
+}
+
+void Session::count_geometry(Node& node, std::size_t bytes) { stats().add_node(node.index, NodeCounter::geometry_bytes, bytes); }
+void Session::count_objects(Node& node, std::size_t bytes) {
+    if (bytes) stats().add_node(node.index, NodeCounter::object_bytes, bytes);
+}
+void Session::count_state(Node& node, std::size_t bytes) {
+    if (bytes) stats().add_node(node.index, NodeCounter::state_bytes, bytes);
+}
+void Session::count_frame() { stats().end_frame(); }
+void Session::count_round_trip(const char* function) { stats().count_round_trip(function); }
+
+void Session::destroy_context(std::uint32_t context) {
+    std::lock_guard lock(mutex_);
+    for (auto& node : nodes_) {
+        if (!node->alive() || node->mirrors.erase(context) == 0) continue;
+        glapi::pack::ContextDestroy(batch(*node, context), context);
+        send(*node);
+    }
+}
+
+Surface::~Surface() = default;
+
+}  // namespace wall::client
