@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// wall.toml: the one file that describes a wall; walld and every tileserver read it. docs/operation.md documents the keys.
+// Pure (load_config() reads the file). Any thread.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/geom/rect.h"
+#include "common/net/address.h"
+
+namespace wall::config {
+
+enum class Backend { egl, osmesa };
+const char* name_of(Backend backend);
+
+struct TileConfig {
+    std::string name;  ///< unique on the wall
+    geom::Rect rect;   ///< on the canvas
+};
+
+struct NodeConfig {
+    std::string name;
+    Backend backend = Backend::egl;
+    net::Address listen;            ///< data streams
+    std::vector<TileConfig> tiles;  ///< slot = index
+};
+
+struct WallConfig {
+    std::string name;
+    std::uint32_t background = 0;              ///< 0xRRGGBB behind all windows
+    std::vector<net::Address> control_listen;  ///< walld's; nodes connect to the first
+    std::vector<std::uint32_t> allowed_users;  ///< uids besides walld's own and root's
+    std::optional<net::Address> http_listen;   ///< none: no HTTP
+    std::chrono::milliseconds swap_timeout{250};
+    std::vector<NodeConfig> nodes;             ///< node index = index
+
+    /// The least rectangle from (0,0) that holds every tile.
+    geom::Rect canvas() const;
+    const NodeConfig* find_node(std::string_view node) const;
+};
+
+/// The error is one line, `FILE:LINE: what is wrong: what was expected`.
+Result<WallConfig> load_config(const std::string& path);
+Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name);
+
+}  // namespace wall::config

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "common/net/control_client.h"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "common/net/sockets.h"
+
+namespace wall::net {
+
+Result<ControlClient> ControlClient::connect(const Address& address, std::chrono::milliseconds timeout) {
+    auto fd = connect_to(address, timeout);
+    if (!fd) return tl::unexpected(fd.error());
+    return ControlClient(std::move(*fd));
+}
+
+Result<void> ControlClient::send(const proto::Envelope& envelope) {
+    const auto bytes = frame(envelope);
+    for (std::size_t sent = 0; sent < bytes.size();) {
+        const auto n = ::send(fd_.get(), bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return fail(std::string("control: ") + std::strerror(errno));
+        sent += static_cast<std::size_t>(n);
+    }
+    return {};
+}
+
+Result<proto::Envelope> ControlClient::receive(std::chrono::milliseconds timeout) {
+    using Clock = std::chrono::steady_clock;
+    const auto until = Clock::now() + timeout;
+    for (;;) {
+        auto message = unframer_.next();
+        if (!message) return tl::unexpected(message.error());
+        if (*message) return std::move(**message);
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now());
+        pollfd wait{fd_.get(), POLLIN, 0};
+        const int ready = ::poll(&wait, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
+        if (ready < 0 && errno == EINTR) continue;
+        if (ready <= 0) return fail("control: no answer within " + std::to_string(timeout.count()) + " ms");
+        const auto room = unframer_.prepare();
+        const auto n = ::read(fd_.get(), room.data(), room.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return fail(std::string("control: ") + std::strerror(errno));
+        if (n == 0) return fail("control: the connection was closed");
+        unframer_.commit(static_cast<std::size_t>(n));
+    }
+}
+
+}  // namespace wall::net

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "common/net/control_connection.h"
+
+#include <unistd.h>
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+
+#include "common/net/sockets.h"
+
+namespace wall::net {
+namespace {
+
+constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
+constexpr auto kAcceptRetry = std::chrono::milliseconds(100);  // while descriptors are short
+
+asio::generic::stream_protocol protocol_of(const Address& address, int family) {
+    return {family, address.is_unix() ? 0 : IPPROTO_TCP};
+}
+
+}  // namespace
+
+Result<Listener> Listener::open(asio::any_io_executor executor, const Address& address) {
+    auto fd = listen_on(address);
+    if (!fd) return tl::unexpected(fd.error());
+    auto to = resolve(address);
+    if (!to) return tl::unexpected(to.error());
+    Acceptor acceptor(executor);
+    boost::system::error_code error;
+    acceptor.assign(protocol_of(address, to->family()), fd->get(), error);
+    if (error) return fail(address.text() + ": " + error.message());
+    return Listener(std::move(acceptor), bound_address(fd->release(), address));
+}
+
+Listener::~Listener() {
+    if (acceptor_.is_open()) close();
+}
+
+void Listener::close() {
+    boost::system::error_code ignored;
+    acceptor_.close(ignored);
+    if (address_.is_unix()) ::unlink(address_.path.c_str());
+}
+
+asio::awaitable<Result<StreamSocket>> Listener::accept() {
+    for (;;) {
+        auto [error, socket] = co_await acceptor_.async_accept(kTuple);
+        if (!error) co_return std::move(socket);
+        if (error != boost::system::errc::too_many_files_open && error != boost::system::errc::connection_aborted &&
+            error != boost::system::errc::too_many_files_open_in_system) {
+            co_return fail(address_.text() + ": " + error.message());
+        }
+        asio::steady_timer pause(acceptor_.get_executor(), kAcceptRetry);
+        co_await pause.async_wait(kTuple);
+    }
+}
+
+ControlConnection::ControlConnection(StreamSocket socket) : socket_(std::move(socket)), user_(peer_user(socket_.native_handle())) {}
+
+asio::awaitable<Result<std::shared_ptr<ControlConnection>>> ControlConnection::connect(Address address) {
+    auto to = resolve(address);
+    if (!to) co_return tl::unexpected(to.error());
+    StreamSocket socket(co_await asio::this_coro::executor);
+    const asio::generic::stream_protocol::endpoint endpoint(to->get(), to->length, protocol_of(address, to->family()).protocol());
+    auto [error] = co_await socket.async_connect(endpoint, kTuple);
+    if (error) co_return fail(address.text() + ": cannot connect: " + error.message());
+    co_return std::make_shared<ControlConnection>(std::move(socket));
+}
+
+asio::awaitable<Result<proto::Envelope>> ControlConnection::receive() {
+    const auto self = shared_from_this();
+    for (;;) {
+        auto message = unframer_.next();
+        if (!message) {
+            close();
+            co_return tl::unexpected(message.error());
+        }
+        if (*message) co_return std::move(**message);
+        const auto room = unframer_.prepare();
+        auto [error, bytes] = co_await socket_.async_read_some(asio::buffer(room.data(), room.size()), kTuple);
+        if (error) {
+            const bool orderly = error == asio::error::eof && unframer_.at_boundary();
+            close();
+            co_return fail(orderly || error == asio::error::operation_aborted ? "closed" : "control: " + error.message());
+        }
+        unframer_.commit(bytes);
+    }
+}
+
+void ControlConnection::send(const proto::Envelope& envelope) {
+    if (!is_open()) return;
+    queue_.push_back(frame(envelope));
+    queued_bytes_ += queue_.back().size();
+    if (queued_bytes_ > kMaxQueued) return close();
+    if (writing_) return;
+    writing_ = true;
+    asio::co_spawn(socket_.get_executor(), [self = shared_from_this()] { return self->write_queue(); }, asio::detached);
+}
+
+asio::awaitable<void> ControlConnection::write_queue() {
+    while (!queue_.empty() && socket_.is_open()) {
+        auto [error, bytes] = co_await asio::async_write(socket_, asio::buffer(queue_.front()), kTuple);
+        if (error) close();
+        queued_bytes_ -= queue_.front().size();
+        queue_.pop_front();
+    }
+    writing_ = false;
+    if (closing_) close();
+}
+
+void ControlConnection::close() {
+    closing_ = true;
+    boost::system::error_code ignored;
+    if (!socket_.is_open()) return;
+    socket_.shutdown(StreamSocket::shutdown_both, ignored);
+    socket_.close(ignored);
+}
+
+void ControlConnection::close_after_sending() {
+    closing_ = true;
+    if (!writing_) close();
+}
+
+}  // namespace wall::net

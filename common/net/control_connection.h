@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Asio's side of a control connection: Envelopes in order, both ways, over a Unix socket or TCP. One executor, one
+// thread: everything is called from coroutines and handlers of the executor that it was made with.
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/basic_socket_acceptor.hpp>
+#include <boost/asio/generic/stream_protocol.hpp>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/base/result.h"
+#include "common/net/address.h"
+#include "common/net/framing.h"
+
+namespace wall::net {
+
+namespace asio = boost::asio;
+
+/// Unix or TCP, decided when it is opened.
+using StreamSocket = asio::generic::stream_protocol::socket;
+
+/// Accepts stream sockets; removes its Unix socket file in the end. Also what a node listens with for data streams.
+class Listener {
+public:
+    static Result<Listener> open(asio::any_io_executor executor, const Address& address);
+    Listener(Listener&&) = default;
+    Listener& operator=(Listener&&) = delete;
+    ~Listener();
+
+    /// The next connection. An error ends the listener (closed, or out of descriptors for long).
+    asio::awaitable<Result<StreamSocket>> accept();
+    void close();
+    const Address& address() const { return address_; }  ///< with the port that the kernel chose
+
+private:
+    using Acceptor = asio::basic_socket_acceptor<asio::generic::stream_protocol>;
+    Listener(Acceptor acceptor, Address address) : acceptor_(std::move(acceptor)), address_(std::move(address)) {}
+    Acceptor acceptor_;
+    Address address_;
+};
+
+class ControlConnection : public std::enable_shared_from_this<ControlConnection> {
+public:
+    /// What may wait for a slow reader before the connection is given up.
+    static constexpr std::size_t kMaxQueued = std::size_t{256} << 20;  // bytes
+
+    explicit ControlConnection(StreamSocket socket);
+    static asio::awaitable<Result<std::shared_ptr<ControlConnection>>> connect(Address address);
+
+    /// The next message. The error says "closed" for an orderly end, else what was wrong; the socket is closed then.
+    asio::awaitable<Result<proto::Envelope>> receive();
+    /// Queues a message; never waits. Nothing happens after a close.
+    void send(const proto::Envelope& envelope);
+    /// Closes at once; a pending receive() ends.
+    void close();
+    /// Closes when everything queued has gone out.
+    void close_after_sending();
+
+    bool is_open() const { return socket_.is_open() && !closing_; }
+    std::optional<uid_t> user() const { return user_; }  ///< of a Unix peer
+
+private:
+    asio::awaitable<void> write_queue();
+
+    StreamSocket socket_;
+    std::optional<uid_t> user_;
+    Unframer unframer_;
+    std::deque<std::string> queue_;
+    std::size_t queued_bytes_ = 0;
+    bool writing_ = false;
+    bool closing_ = false;
+};
+
+}  // namespace wall::net

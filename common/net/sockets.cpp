@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "common/net/sockets.h"
+
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace wall::net {
+namespace {
+
+constexpr int kBacklog = 64;
+constexpr mode_t kSocketMode = 0666;  // who may speak is decided by peer_user(), which can say why
+
+tl::unexpected<Error> system_error(const Address& address, const char* what, int error) {
+    return fail(address.text() + ": " + what + ": " + std::strerror(error));
+}
+
+Result<UniqueFd> open_socket(const Address& address, const SocketAddress& to, int flags) {
+    UniqueFd fd(::socket(to.family(), SOCK_STREAM | SOCK_CLOEXEC | flags, 0));
+    if (!fd) return system_error(address, "socket", errno);
+    const int on = 1;
+    if (!address.is_unix()) ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    return fd;
+}
+
+/// A socket file without a listener is what a killed daemon leaves behind.
+void remove_stale(const Address& address, const SocketAddress& to) {
+    struct stat info {};
+    if (::lstat(address.path.c_str(), &info) != 0 || !S_ISSOCK(info.st_mode)) return;
+    UniqueFd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    if (::connect(probe.get(), to.get(), to.length) != 0 && errno == ECONNREFUSED) ::unlink(address.path.c_str());
+}
+
+}  // namespace
+
+Result<UniqueFd> listen_on(const Address& address) {
+    auto to = resolve(address);
+    if (!to) return tl::unexpected(to.error());
+    auto fd = open_socket(address, *to, SOCK_NONBLOCK);
+    if (!fd) return fd;
+    const int on = 1;
+    if (address.is_unix()) remove_stale(address, *to);
+    else ::setsockopt(fd->get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    if (::bind(fd->get(), to->get(), to->length) != 0) return system_error(address, "cannot listen", errno);
+    if (address.is_unix()) ::chmod(address.path.c_str(), kSocketMode);
+    if (::listen(fd->get(), kBacklog) != 0) return system_error(address, "cannot listen", errno);
+    return fd;
+}
+
+Result<UniqueFd> connect_to(const Address& address, std::chrono::milliseconds timeout) {
+    auto to = resolve(address);
+    if (!to) return tl::unexpected(to.error());
+    auto fd = open_socket(address, *to, SOCK_NONBLOCK);
+    if (!fd) return fd;
+    if (::connect(fd->get(), to->get(), to->length) != 0) {
+        if (errno != EINPROGRESS) return system_error(address, "cannot connect", errno);
+        pollfd wait{fd->get(), POLLOUT, 0};
+        if (::poll(&wait, 1, static_cast<int>(timeout.count())) <= 0) return fail(address.text() + ": cannot connect: no answer");
+        int error = 0;
+        socklen_t size = sizeof error;
+        ::getsockopt(fd->get(), SOL_SOCKET, SO_ERROR, &error, &size);
+        if (error != 0) return system_error(address, "cannot connect", error);
+    }
+    ::fcntl(fd->get(), F_SETFL, ::fcntl(fd->get(), F_GETFL) & ~O_NONBLOCK);
+    return fd;
+}
+
+Address bound_address(int fd, const Address& asked) {
+    if (asked.is_unix()) return asked;
+    SocketAddress got;
+    got.length = sizeof got.storage;
+    ::getsockname(fd, reinterpret_cast<sockaddr*>(&got.storage), &got.length);
+    Address out = asked;
+    // sin_port and sin6_port lie at the same place.
+    out.port = ntohs(reinterpret_cast<const sockaddr_in*>(&got.storage)->sin_port);
+    return out;
+}
+
+std::optional<uid_t> peer_user(int fd) {
+    sockaddr_storage name{};
+    socklen_t name_size = sizeof name;
+    if (::getsockname(fd, reinterpret_cast<sockaddr*>(&name), &name_size) != 0 || name.ss_family != AF_UNIX) return std::nullopt;
+    ucred credentials{};
+    socklen_t size = sizeof credentials;
+    if (::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &credentials, &size) != 0) return std::nullopt;
+    return credentials.uid;
+}
+
+}  // namespace wall::net
