@@ -15,35 +15,6 @@ constexpr std::size_t kSmallPrimitiveBytes = 192;
 /// Vertices between two runs of one strip that cost no more than ending it and starting anew.
 constexpr std::int64_t kGapVertices = 2;
 
-/// How the vertices of a mode make primitives: primitive k uses vertices [k * step, k * step + size).
-struct Topology {
-    unsigned size, step;
-    bool independent;        ///< no vertices shared, so a run may just leave some out
-    bool fan;                ///< every primitive also uses vertex 0
-    unsigned alignment = 1;  ///< a run must start at a multiple of this many vertices
-};
-
-std::optional<Topology> topology_of(GLenum mode) {
-    switch (mode) {
-        case GL_POINTS: return Topology{1, 1, true, false};
-        case GL_LINES: return Topology{2, 2, true, false};
-        case GL_TRIANGLES: return Topology{3, 3, true, false};
-        case GL_QUADS: return Topology{4, 4, true, false};
-        case GL_LINE_STRIP: return Topology{2, 1, false, false};
-        case GL_TRIANGLE_STRIP: return Topology{3, 1, false, false, 2};  // an odd start would turn the winding
-        case GL_QUAD_STRIP: return Topology{4, 2, false, false, 2};
-        case GL_TRIANGLE_FAN: return Topology{2, 1, false, true};
-        default: return std::nullopt;  // loops and polygons stay whole: their edges depend on all vertices
-    }
-}
-
-void grow(PixelRect& rect, const WindowVertex& v) {
-    rect.x0 = std::min(rect.x0, v.x);
-    rect.x1 = std::max(rect.x1, v.x);
-    rect.y0 = std::min(rect.y0, v.y);
-    rect.y1 = std::max(rect.y1, v.y);
-}
-
 }  // namespace
 
 void BlockSender::run() {
@@ -51,6 +22,7 @@ void BlockSender::run() {
     if (!packer_.has_geometry() || !layout_ || layout_->targets.empty()) return fold({});
     const auto box = options().broadcast ? std::nullopt : project(context_.projection(), packer_.block_box());
     const TargetSet targets = targets_of(*layout_, box);
+    if (options().count_ideal) session_.count_ideal(ideal_bytes(packer_, context_.projection(), *layout_));
     const auto nodes = by_node(targets, *layout_);
     const bool single = packer_.primitives().size() == 1 && !worth_dividing(packer_.primitives()[0], targets);
     if (nodes.size() <= 1 || packer_.has_rare() || options().broadcast || single)
@@ -118,42 +90,17 @@ bool BlockSender::worth_dividing(const Primitive& primitive, const TargetSet& ta
     if (!primitive.divisible || !topology_of(primitive.mode)) return false;
     if (primitive.last.operand_bytes - primitive.first.operand_bytes < kSmallPrimitiveBytes) return false;
     if (primitive.box.unbounded()) return false;
-    if (context_.state.rasterization.line_stipple_enabled) return false;  // its counter runs along the primitive
+    if (context_.state.line_point.line_stipple_enabled) return false;  // its counter runs along the primitive
     return by_node(targets, *layout_).size() > 1;
-}
-
-// Finds every vertex of the primitive in the packed commands, with the attributes in effect there.
-void BlockSender::scan_vertices(const Primitive& primitive) {
-    vertices_.clear();
-    BlockWalk walk(packer_, primitive.first, primitive.last, primitive.before);
-    walk.next();  // Begin
-    wire::PackMark lead = walk.position();
-    AttributePlaces before = walk.places();
-    while (walk.next()) {
-        if (!walk.is_vertex()) continue;
-        const auto v = walk.vertex();
-        vertices_.push_back({lead, walk.position(), before, walk.places(),
-                             project(context_.projection(), v[0], v[1], v[2], v[3])});
-        lead = walk.position();
-        before = walk.places();
-    }
 }
 
 void BlockSender::divide(const Primitive& primitive, const TargetSet& targets) {
     const Topology topology = *topology_of(primitive.mode);
     const float margin = context_.projection().margin;
-    scan_vertices(primitive);
-    const std::size_t first = topology.fan ? 1 : 0;
-    for (std::size_t v = first; v + topology.size <= vertices_.size(); v += topology.step) {
-        PixelRect rect{INFINITY, INFINITY, -INFINITY, -INFINITY};
-        bool known = !topology.fan || vertices_[0].window.known;
-        if (topology.fan) grow(rect, vertices_[0].window);
-        for (std::size_t i = v; i < v + topology.size; ++i) {
-            known = known && vertices_[i].window.known;
-            grow(rect, vertices_[i].window);
-        }
-        rect = {rect.x0 - margin, rect.y0 - margin, rect.x1 + margin, rect.y1 + margin};
-        const TargetSet touched = known ? targets_of(*layout_, rect) & targets : targets;
+    vertices_ = scan_vertices(packer_, primitive, context_.projection());
+    for (std::size_t v = topology.fan ? 1 : 0; v + topology.size <= vertices_.size(); v += topology.step) {
+        const auto rect = window_rect(topology, vertices_, v, margin);
+        const TargetSet touched = rect ? targets_of(*layout_, rect) & targets : targets;
         const std::size_t start = v / topology.alignment * topology.alignment;
         for (const auto& [index, slots] : by_node(touched, *layout_)) {
             Share& share = share_of(index);
@@ -171,11 +118,11 @@ void BlockSender::divide(const Primitive& primitive, const TargetSet& targets) {
 
 // A run becomes a primitive of its own, with the attributes that its first vertex sees.
 void BlockSender::finish_run(Share& share, const Primitive& primitive) {
-    const Vertex& first = vertices_[static_cast<std::size_t>(share.run_first)];
-    const Vertex& last = vertices_[static_cast<std::size_t>(share.run_last)];
+    const PackedVertex& first = vertices_[static_cast<std::size_t>(share.run_first)];
+    const PackedVertex& last = vertices_[static_cast<std::size_t>(share.run_last)];
     open_block(share, share.run_mask);
     if (primitive.mode == GL_TRIANGLE_FAN) {
-        const Vertex& hub = vertices_[0];
+        const PackedVertex& hub = vertices_[0];
         pack_attributes(share, hub.before);
         const std::size_t before = share.buffer->bytes();
         glapi::pack::Begin(*share.buffer, primitive.mode);
@@ -268,7 +215,7 @@ void apply_attribute(glstate::State& state, glapi::Op op, const std::byte* opera
         case Op::TexCoord2f: floats(2); current.texcoord[0] = {f[0], f[1], 0, 1}; break;
         case Op::TexCoord3f: floats(3); current.texcoord[0] = {f[0], f[1], f[2], 1}; break;
         case Op::TexCoord4f: floats(4); current.texcoord[0] = {f[0], f[1], f[2], f[3]}; break;
-        case Op::SecondaryColor3f: floats(3); current.secondary_color = {f[0], f[1], f[2]}; break;
+        case Op::SecondaryColor3f: floats(3); current.secondary_color = {f[0], f[1], f[2], 1}; break;
         case Op::FogCoordf: floats(1); current.fog_coord = f[0]; break;
         case Op::EdgeFlag: {
             std::uint32_t flag;

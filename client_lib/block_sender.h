@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client_lib/context.h"
+#include "client_lib/primitive_scan.h"
 
 namespace wall::client {
 
@@ -31,21 +32,11 @@ private:
         std::int64_t run_first = -1, run_last = -1;  ///< pending run of vertices of the primitive being divided
         std::uint64_t run_mask = 0;
     };
-    /// A vertex of the primitive being divided.
-    struct Vertex {
-        wire::PackMark lead, end;      ///< its attributes begin at lead; its own command ends at end
-        AttributePlaces before;        ///< attributes in effect at lead
-        AttributePlaces at;            ///< in effect at the vertex itself
-        WindowVertex window;
-    };
-
     void send_whole(const TargetSet& targets);
     void send_apart(const TargetSet& targets);
     void send_primitive(const Primitive& primitive, const TargetSet& targets);
     bool worth_dividing(const Primitive& primitive, const TargetSet& targets) const;
     void divide(const Primitive& primitive, const TargetSet& targets);
-    void scan_vertices(const Primitive& primitive);
-    void add_to_runs(std::size_t first_vertex, std::size_t last_vertex, const TargetSet& targets);
     void finish_run(Share& share, const Primitive& primitive);
 
     Share& share_of(std::uint32_t node);
@@ -55,14 +46,13 @@ private:
     void copy(Share& share, wire::PackMark first, wire::PackMark last);
 
     void fold(const std::vector<Node*>& whole);
-    void count_ideal();
 
     Session& session_;
     Context& context_;
     Packer& packer_;
     const SurfaceLayout* layout_ = nullptr;
     std::vector<Share> shares_;
-    std::vector<Vertex> vertices_;
+    std::vector<PackedVertex> vertices_;  ///< of the primitive being divided
 };
 
 /// Sets the current attribute that a packed attribute command stands for.

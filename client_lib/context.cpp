@@ -40,7 +40,7 @@ void Context::first_use() {
     used_ = true;
     const auto width = static_cast<std::int32_t>(draw_->layout.width), height = static_cast<std::int32_t>(draw_->layout.height);
     glstate::assign<glstate::el::viewport>(state, 0, {0, 0, width, height});
-    glstate::assign<glstate::el::scissor_box>(state, 0, {0, 0, width, height});
+    glstate::assign<glstate::el::scissor>(state, 0, {0, 0, width, height});
     const GLenum buffer = draw_->options.format.double_buffered ? GL_BACK : GL_FRONT;
     glstate::assign<glstate::el::draw_buffer>(state, 0, buffer);
     glstate::assign<glstate::el::read_buffer>(state, 0, buffer);
@@ -48,9 +48,9 @@ void Context::first_use() {
 
 const Projection& Context::projection() {
     using glstate::Category;
-    const std::array<std::uint64_t, 3> ids = {state.ids[static_cast<std::size_t>(Category::transform)],
+    const std::array<std::uint64_t, 3> ids = {state.ids[static_cast<std::size_t>(Category::matrix)],
                                               state.ids[static_cast<std::size_t>(Category::window)],
-                                              state.ids[static_cast<std::size_t>(Category::rasterization)]};
+                                              state.ids[static_cast<std::size_t>(Category::line_point)]};
     if (ids != projection_ids_) {
         projection_ = make_projection(state);
         projection_ids_ = ids;

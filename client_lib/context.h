@@ -54,7 +54,7 @@ public:
     template <class E>
     void set(unsigned i, const typename E::type& value) {
         if (E::ref(state, i) == value) return;
-        flush_block();
+        if constexpr (E::category != glstate::Category::local) flush_block();
         glstate::assign<E>(state, i, value);
     }
 

@@ -35,6 +35,19 @@ glstate::Mat4 multiply(const glstate::Mat4& a, const glstate::Mat4& b) {
     return out;
 }
 
+Projection make_projection(const glstate::State& state) {
+    Projection p;
+    p.clip_from_object = multiply(state.matrix.projection, state.matrix.modelview);
+    const auto& v = state.window.viewport;
+    const int viewport[4] = {v.x, v.y, v.width, v.height};
+    for (int i = 0; i < 4; ++i) p.viewport[i] = static_cast<float>(viewport[i]);
+    const auto& lp = state.line_point;
+    const bool attenuated = lp.point_distance_attenuation != glstate::Vec3{1, 0, 0};
+    const float point = attenuated || lp.program_point_size ? lp.point_size_max : lp.point_size;
+    p.margin = 1 + std::max(lp.line_width, point) / 2;
+    return p;
+}
+
 std::optional<PixelRect> project(const Projection& p, const geom::Box& box) {
     if (box.unbounded()) return std::nullopt;
     alignas(16) float lo[4], hi[4];

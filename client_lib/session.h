@@ -114,6 +114,7 @@ public:
     void count_geometry(Node& node, std::size_t bytes);
     void count_objects(Node& node, std::size_t bytes);
     void count_state(Node& node, std::size_t bytes);
+    void count_ideal(std::size_t bytes);
 
 private:
     friend class BlockSender;

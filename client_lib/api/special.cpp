@@ -8,7 +8,7 @@ namespace {
 /// The scissor box limits what a clear touches; without it, everything.
 std::optional<PixelRect> clear_box(const Context& c) {
     if (!c.state.window.scissor_enabled) return std::nullopt;
-    const auto& box = c.state.window.scissor_box;
+    const auto& box = c.state.window.scissor;
     return PixelRect{static_cast<float>(box.x), static_cast<float>(box.y), static_cast<float>(box.x + box.width),
                      static_cast<float>(box.y + box.height)};
 }

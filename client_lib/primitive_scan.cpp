@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/primitive_scan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "client_lib/block_walk.h"
+#include "client_lib/session.h"
+#include "common/glapi/gl_types.h"
+
+namespace wall::client {
+namespace {
+
+void grow(PixelRect& rect, const WindowVertex& v) {
+    rect.x0 = std::min(rect.x0, v.x);
+    rect.x1 = std::max(rect.x1, v.x);
+    rect.y0 = std::min(rect.y0, v.y);
+    rect.y1 = std::max(rect.y1, v.y);
+}
+
+std::size_t bytes_between(wire::PackMark first, wire::PackMark last) {
+    return last.commands - first.commands + last.operand_bytes - first.operand_bytes;
+}
+
+}  // namespace
+
+std::optional<Topology> topology_of(std::uint32_t mode) {
+    switch (mode) {
+        case GL_POINTS: return Topology{1, 1, true, false};
+        case GL_LINES: return Topology{2, 2, true, false};
+        case GL_TRIANGLES: return Topology{3, 3, true, false};
+        case GL_QUADS: return Topology{4, 4, true, false};
+        case GL_LINE_STRIP: return Topology{2, 1, false, false};
+        case GL_TRIANGLE_STRIP: return Topology{3, 1, false, false, 2};  // an odd start would turn the winding
+        case GL_QUAD_STRIP: return Topology{4, 2, false, false, 2};
+        case GL_TRIANGLE_FAN: return Topology{2, 1, false, true};
+        default: return std::nullopt;
+    }
+}
+
+std::vector<PackedVertex> scan_vertices(const Packer& packer, const Primitive& primitive, const Projection& projection) {
+    std::vector<PackedVertex> vertices;
+    BlockWalk walk(packer, primitive.first, primitive.last, primitive.before);
+    walk.next();  // Begin
+    wire::PackMark lead = walk.position();
+    AttributePlaces before = walk.places();
+    while (walk.next()) {
+        if (!walk.is_vertex()) continue;
+        const auto v = walk.vertex();
+        vertices.push_back({lead, walk.position(), before, walk.places(), project(projection, v[0], v[1], v[2], v[3])});
+        lead = walk.position();
+        before = walk.places();
+    }
+    return vertices;
+}
+
+std::optional<PixelRect> window_rect(const Topology& topology, const std::vector<PackedVertex>& vertices, std::size_t first, float margin) {
+    PixelRect rect{INFINITY, INFINITY, -INFINITY, -INFINITY};
+    bool known = !topology.fan || vertices[0].window.known;
+    if (topology.fan) grow(rect, vertices[0].window);
+    for (std::size_t i = first; i < first + topology.size; ++i) {
+        known = known && vertices[i].window.known;
+        grow(rect, vertices[i].window);
+    }
+    if (!known) return std::nullopt;
+    return PixelRect{rect.x0 - margin, rect.y0 - margin, rect.x1 + margin, rect.y1 + margin};
+}
+
+std::size_t ideal_bytes(const Packer& packer, const Projection& projection, const SurfaceLayout& layout) {
+    constexpr std::size_t kBeginEnd = 6;
+    std::size_t total = 0;
+    for (const Primitive& primitive : packer.primitives()) {
+        const auto topology = topology_of(primitive.mode);
+        const auto nodes = by_node(targets_of(layout, project(projection, primitive.box)), layout);
+        if (!topology || nodes.size() < 2 || !primitive.divisible) {
+            total += nodes.size() * bytes_between(primitive.first, primitive.last);
+            continue;
+        }
+        const auto vertices = scan_vertices(packer, primitive, projection);
+        for (const NodeMask& node : nodes) {
+            std::vector<bool> needed(vertices.size());
+            for (std::size_t v = topology->fan ? 1 : 0; v + topology->size <= vertices.size(); v += topology->step) {
+                const auto touched = by_node(targets_of(layout, window_rect(*topology, vertices, v, projection.margin)), layout);
+                if (std::none_of(touched.begin(), touched.end(), [&](const NodeMask& m) { return m.node == node.node; })) continue;
+                std::fill_n(needed.begin() + static_cast<std::ptrdiff_t>(v), topology->size, true);
+                if (topology->fan) needed[0] = true;
+            }
+            std::size_t bytes = 0;
+            for (std::size_t i = 0; i < vertices.size(); ++i)
+                if (needed[i]) bytes += bytes_between(vertices[i].lead, vertices[i].end);
+            if (bytes > 0) total += bytes + kBeginEnd;
+        }
+    }
+    return total;
+}
+
+}  // namespace wall::client
