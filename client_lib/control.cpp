@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/control.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "client_lib/log.h"
+#include "client_lib/node_stream.h"
+#include "client_lib/process.h"
+#include "client_lib/stats.h"
+#include "common/wire/limits.h"
+
+namespace wall::client {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr const char* kDefaultAddress = "unix:/run/wallgl/walld.sock";
+constexpr milliseconds kTick{1000};           // statistics are written, a lost link is tried again
+constexpr std::size_t kLengthBytes = 4;       // in front of every envelope, little endian
+constexpr std::size_t kReadChunk = 16 << 10;
+
+int remaining_ms(Clock::time_point deadline) {
+    const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now()).count();
+    return left > 0 ? static_cast<int>(left) : 0;
+}
+
+void append_framed(std::string& out, const std::string& envelope) {
+    const auto size = static_cast<std::uint32_t>(envelope.size());
+    for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<char>(size >> shift & 0xff));
+    out += envelope;
+}
+
+std::uint32_t framed_size(const std::string& in) {
+    std::uint32_t size = 0;
+    for (std::size_t i = 0; i < kLengthBytes; ++i) size |= std::uint32_t{static_cast<unsigned char>(in[i])} << 8 * i;
+    return size;
+}
+
+/// The first whole message is cut off `inbox`; nothing if it is not complete yet.
+Result<std::optional<FromWalld>> cut_message(std::string& inbox) {
+    if (inbox.size() < kLengthBytes) return std::nullopt;
+    const auto size = framed_size(inbox);
+    if (size > wire::kMaxControlMessage) return fail("oversized message from walld");
+    if (inbox.size() - kLengthBytes < size) return std::nullopt;
+    auto message = decode_from_walld(std::string_view(inbox).substr(kLengthBytes, size));
+    inbox.erase(0, kLengthBytes + size);
+    if (!message) return tl::unexpected(message.error());
+    return std::optional<FromWalld>(std::move(*message));
+}
+
+Result<void> send_all(int fd, const std::string& bytes, Clock::time_point deadline) {
+    std::size_t sent = 0;
+    while (sent < bytes.size()) {
+        const ssize_t n = ::send(fd, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (n > 0) {
+            sent += static_cast<std::size_t>(n);
+            continue;
+        }
+        if (errno == EINTR) continue;
+        pollfd p{fd, POLLOUT, 0};
+        if (errno != EAGAIN) return fail(strerror(errno));
+        if (::poll(&p, 1, remaining_ms(deadline)) == 0) return fail("no answer in time");
+    }
+    return {};
+}
+
+/// Appends what can be read. False at the end of the stream.
+Result<bool> receive_some(int fd, std::string& inbox) {
+    char chunk[kReadChunk];
+    const ssize_t n = ::recv(fd, chunk, sizeof chunk, MSG_DONTWAIT);
+    if (n > 0) inbox.append(chunk, static_cast<std::size_t>(n));
+    if (n == 0) return false;
+    if (n < 0 && errno != EAGAIN && errno != EINTR) return fail(strerror(errno));
+    return true;
+}
+
+Result<FromWalld> receive_message(int fd, std::string& inbox, Clock::time_point deadline) {
+    for (;;) {
+        auto message = cut_message(inbox);
+        if (!message) return tl::unexpected(message.error());
+        if (*message) return std::move(**message);
+        pollfd p{fd, POLLIN, 0};
+        if (::poll(&p, 1, remaining_ms(deadline)) == 0) return fail("no answer in time");
+        const auto more = receive_some(fd, inbox);
+        if (!more) return tl::unexpected(more.error());
+        if (!*more) return fail("closed the connection");
+    }
+}
+
+struct Opened {
+    UniqueFd fd;
+    Welcome welcome;
+    std::string rest;  ///< bytes that came after the welcome
+};
+
+Result<Opened> greet(const Hello& hello, const std::string& address) {
+    const auto deadline = Clock::now() + ControlLink::kOpenLimit;
+    auto fd = connect_to(address, static_cast<int>(ControlLink::kOpenLimit.count()));
+    if (!fd) return tl::unexpected(fd.error());
+    Opened opened{std::move(*fd), {}, {}};
+    std::string bytes;
+    append_framed(bytes, encode(hello));
+    if (auto sent = send_all(opened.fd.get(), bytes, deadline); !sent)
+        return fail("walld at " + address + ": " + sent.error().message);
+    auto answer = receive_message(opened.fd.get(), opened.rest, deadline);
+    if (!answer) return fail("walld at " + address + ": " + answer.error().message);
+    if (const auto* refused = std::get_if<Refused>(&*answer))
+        return fail("walld at " + address + " refused: " + refused->reason);
+    auto* welcome = std::get_if<Welcome>(&*answer);
+    if (!welcome) return fail("walld at " + address + " does not speak this protocol");
+    opened.welcome = std::move(*welcome);
+    return opened;
+}
+
+std::string environment(const char* name) {
+    const char* value = getenv(name);
+    return value ? value : "";
+}
+
+}  // namespace
+
+std::string walld_address() {
+    const auto given = environment("WALLGL_WALLD");
+    return given.empty() ? kDefaultAddress : given;
+}
+
+Result<Hello> hello_from_environment() {
+    Hello hello;
+    hello.pid = static_cast<std::uint32_t>(getpid());
+    hello.program = program_name();
+    hello.name = environment("WALLGL_NAME");
+    const auto hold = environment("WALLGL_HOLD");
+    hello.hold = !hold.empty() && hold != "0";
+    const auto rect = environment("WALLGL_RECT");
+    if (rect.empty()) return hello;
+    hello.fullscreen = rect == "fullscreen";
+    if (hello.fullscreen) return hello;
+    geom::Rect r;
+    char extra;
+    if (sscanf(rect.c_str(), "%d,%d,%d,%d%c", &r.x, &r.y, &r.width, &r.height, &extra) != 4 || r.empty())
+        return fail("WALLGL_RECT: expected X,Y,W,H or fullscreen, got '" + rect + "'");
+    hello.rect = r;
+    return hello;
+}
+
+Result<std::unique_ptr<ControlLink>> ControlLink::open(const Hello& hello, const std::string& address) {
+    auto opened = greet(hello, address);
+    if (!opened) return tl::unexpected(opened.error());
+    return std::unique_ptr<ControlLink>(new ControlLink(std::move(opened->fd), hello, address,
+                                                        std::move(opened->welcome), std::move(opened->rest)));
+}
+
+ControlLink::ControlLink(UniqueFd fd, Hello hello, std::string address, Welcome welcome, std::string rest)
+    : hello_(std::move(hello)),
+      address_(std::move(address)),
+      welcome_(std::move(welcome)),
+      wake_fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+      fd_(std::move(fd)),
+      inbox_(std::move(rest)) {
+    SignalsBlocked blocked;
+    thread_ = std::thread([this] { run(); });
+}
+
+ControlLink::~ControlLink() {
+    if (in_forked_child()) {
+        thread_.detach();  // it does not exist here
+        return;
+    }
+    stop_ = true;
+    wake();
+    thread_.join();
+}
+
+void ControlLink::wake() {
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const auto n = ::write(wake_fd_.get(), &one, sizeof one);
+}
+
+// With the mutex held.
+void ControlLink::queue(const std::string& envelope) {
+    if (up_) append_framed(outbox_, envelope);
+}
+
+void ControlLink::surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title) {
+    if (in_forked_child()) return;
+    std::lock_guard lock(mutex_);
+    surfaces_[id] = {width, height, title};
+    queue(encode_surface_open(id, width, height, title));
+    wake();
+}
+
+void ControlLink::surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height) {
+    if (in_forked_child()) return;
+    std::lock_guard lock(mutex_);
+    auto& surface = surfaces_[id];
+    surface.width = width;
+    surface.height = height;
+    queue(encode_surface_resize(id, width, height));
+    wake();
+}
+
+void ControlLink::surface_close(std::uint32_t id) {
+    if (in_forked_child()) return;
+    std::lock_guard lock(mutex_);
+    surfaces_.erase(id);
+    placements_.erase(id);
+    queue(encode_surface_close(id));
+    wake();
+}
+
+ControlLink::Events ControlLink::take_events() {
+    if (!has_events_.load(std::memory_order_relaxed)) return {};
+    std::lock_guard lock(mutex_);
+    has_events_ = false;
+    return std::exchange(events_, {});
+}
+
+std::optional<Placement> ControlLink::wait_placement(std::uint32_t surface, milliseconds timeout) {
+    if (in_forked_child()) return std::nullopt;
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, timeout, [&] { return !up_ || placements_.contains(surface); });
+    const auto found = placements_.find(surface);
+    if (found == placements_.end()) return std::nullopt;
+    return found->second;
+}
+
+void ControlLink::run() {
+    try {
+        take_messages();
+        while (!stop_) {
+            serve();
+            while (!stop_ && !reconnect()) {
+                pollfd p{wake_fd_.get(), POLLIN, 0};
+                ::poll(&p, 1, static_cast<int>(kTick.count()));
+                std::uint64_t count;
+                [[maybe_unused]] const auto n = ::read(wake_fd_.get(), &count, sizeof count);
+                write_stats();
+            }
+        }
+    } catch (const std::exception& e) {  // out of memory: drawing goes on, the wall's changes do not arrive
+        log(LogLevel::error, "control_thread_ended why=%s", e.what());
+    }
+}
+
+/// Moves messages until the link breaks or must stop.
+void ControlLink::serve() {
+    auto next_tick = Clock::now() + kTick;
+    while (write_some() && !stop_) {
+        bool more_to_write;
+        {
+            std::lock_guard lock(mutex_);
+            more_to_write = !outbox_.empty();
+        }
+        pollfd fds[2] = {{wake_fd_.get(), POLLIN, 0},
+                         {fd_.get(), static_cast<short>(POLLIN | (more_to_write ? POLLOUT : 0)), 0}};
+        ::poll(fds, 2, remaining_ms(next_tick));
+        std::uint64_t count;
+        if (fds[0].revents) [[maybe_unused]] const auto n = ::read(wake_fd_.get(), &count, sizeof count);
+        if (fds[1].revents && !read_some()) return;
+        if (Clock::now() >= next_tick) {
+            write_stats();
+            next_tick = Clock::now() + kTick;
+        }
+    }
+}
+
+bool ControlLink::read_some() {
+    const auto more = receive_some(fd_.get(), inbox_);
+    if (!more || !*more) {
+        on_lost(more ? "walld closed the connection" : more.error().message);
+        return false;
+    }
+    return take_messages();
+}
+
+bool ControlLink::take_messages() {
+    for (;;) {
+        auto message = cut_message(inbox_);
+        if (!message) {
+            on_lost(message.error().message);
+            return false;
+        }
+        if (!*message) return true;
+        if (!handle(std::move(**message))) return false;
+    }
+}
+
+bool ControlLink::write_some() {
+    std::string why;
+    {
+        std::lock_guard lock(mutex_);
+        while (!outbox_.empty()) {
+            const ssize_t n = ::send(fd_.get(), outbox_.data(), outbox_.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+            if (n > 0) {
+                outbox_.erase(0, static_cast<std::size_t>(n));
+            } else if (errno != EINTR) {
+                if (errno != EAGAIN) why = strerror(errno);
+                break;
+            }
+        }
+    }
+    if (!why.empty()) on_lost(why);
+    return why.empty();
+}
+
+bool ControlLink::handle(FromWalld message) {
+    if (const auto* refused = std::get_if<Refused>(&message)) {
+        on_lost(refused->reason);
+        return false;
+    }
+    std::lock_guard lock(mutex_);
+    if (auto* placement = std::get_if<Placement>(&message)) {
+        if (surfaces_.contains(placement->surface)) placements_[placement->surface] = *placement;
+        events_.placements.push_back(*placement);
+    } else if (auto* node = std::get_if<NodeInfo>(&message)) {
+        log(LogLevel::info, "node_%s node=%u address=%s", node->up ? "up" : "down", node->node, node->address.c_str());
+        events_.node_changes.push_back(std::move(*node));
+    } else if (auto* close = std::get_if<CloseRequest>(&message)) {
+        log(LogLevel::info, "close_requested surface=%u reason=%s", close->surface, close->reason.c_str());
+        events_.close_requests.push_back(std::move(*close));
+    }
+    has_events_ = true;
+    changed_.notify_all();
+    return true;
+}
+
+void ControlLink::on_lost(const std::string& why) {
+    log(LogLevel::error, "walld_lost address=%s why=%s", address_.c_str(), why.c_str());
+    fd_.reset();
+    inbox_.clear();
+    std::lock_guard lock(mutex_);
+    outbox_.clear();
+    up_ = false;
+    events_.lost = true;
+    has_events_ = true;
+    changed_.notify_all();
+}
+
+bool ControlLink::reconnect() {
+    if (fd_) return true;
+    auto opened = greet(hello_, address_);
+    if (!opened) {
+        log(LogLevel::debug, "walld_unreachable why=%s", opened.error().message.c_str());
+        return false;
+    }
+    log(LogLevel::info, "walld_reconnected session=%u", opened->welcome.session);
+    fd_ = std::move(opened->fd);
+    inbox_ = std::move(opened->rest);
+    {
+        std::lock_guard lock(mutex_);
+        up_ = true;
+        events_ = {};
+        events_.lost = true;
+        events_.reconnected = std::move(opened->welcome);
+        placements_.clear();
+        for (const auto& [id, surface] : surfaces_)
+            queue(encode_surface_open(id, surface.width, surface.height, surface.title));
+        has_events_ = true;
+    }
+    return take_messages();
+}
+
+}  // namespace wall::client

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// The link to walld. Opened by an application thread; from then on one background thread moves the messages, and leaves
+// what walld says in a mailbox. Functions never block unless they say so. When walld goes away drawing goes on with
+// the old layout; the link is made again in the background, which is a new session (Events::reconnected).
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "client_lib/control_messages.h"
+#include "common/base/result.h"
+#include "common/base/unique_fd.h"
+
+namespace wall::client {
+
+/// Hello of this process, from its name and the environment (WALLGL_NAME, WALLGL_RECT, WALLGL_HOLD). A wrong
+/// WALLGL_RECT is an error.
+Result<Hello> hello_from_environment();
+/// WALLGL_WALLD, or the default.
+std::string walld_address();
+
+class ControlLink {
+public:
+    static constexpr std::chrono::milliseconds kOpenLimit{5000};  ///< connect, hello and welcome together
+
+    /// Blocks, at most kOpenLimit. The error names the address.
+    static Result<std::unique_ptr<ControlLink>> open(const Hello& hello, const std::string& address = walld_address());
+    ~ControlLink();
+
+    /// As it was when the link was opened; later changes are Events.
+    const Welcome& welcome() const { return welcome_; }
+
+    void surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title);
+    void surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height);
+    void surface_close(std::uint32_t id);
+
+    struct Events {
+        std::vector<Placement> placements;  ///< in order of arrival
+        std::vector<NodeInfo> node_changes;
+        std::vector<CloseRequest> close_requests;
+        bool lost = false;                  ///< the link broke; it is being made again
+        std::optional<Welcome> reconnected; ///< a new session: other id, other tickets. Open surfaces were announced again
+    };
+    /// What came since the last call. One atomic read when nothing did.
+    Events take_events();
+
+    /// Waits for the first placement of a surface; nothing when the time is over or the link breaks. Does not take
+    /// events: the placement is also in the next take_events().
+    std::optional<Placement> wait_placement(std::uint32_t surface, std::chrono::milliseconds timeout);
+
+private:
+    struct OpenSurface {
+        std::uint32_t width = 0, height = 0;
+        std::string title;
+    };
+
+    ControlLink(UniqueFd fd, Hello hello, std::string address, Welcome welcome, std::string rest);
+    void queue(const std::string& envelope);
+    void wake();
+
+    // ---- background thread ----
+    void run();
+    void serve();
+    bool wait_for_io();
+    bool read_some();
+    bool write_some();
+    bool take_messages();
+    bool handle(FromWalld message);
+    void on_lost(const std::string& why);
+    bool reconnect();
+
+    const Hello hello_;
+    const std::string address_;
+    const Welcome welcome_;
+    UniqueFd wake_fd_;
+    std::atomic<bool> stop_{false};
+    std::atomic<bool> has_events_{false};
+
+    UniqueFd fd_;           // background thread
+    std::string inbox_;     // background thread: bytes of unfinished messages
+
+    std::mutex mutex_;  // guards what follows
+    std::condition_variable changed_;
+    std::string outbox_;
+    Events events_;
+    bool up_ = true;
+    std::map<std::uint32_t, OpenSurface> surfaces_;
+    std::map<std::uint32_t, Placement> placements_;  ///< the newest of each open surface
+
+    std::thread thread_;
+};
+
+}  // namespace wall::client
