@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Plain Mesa: a pbuffer with its own context, the picture that a program would get in a window.
+#pragma once
+
+#include <EGL/egl.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "tileserver/gpu/gl.h"
+
+namespace wall::tileserver::test {
+
+using Pixels = std::vector<std::uint8_t>;  ///< RGBA, bottom row first
+
+class ReferenceWindow {
+public:
+    ReferenceWindow(int width, int height, bool alpha = false);
+    ~ReferenceWindow();
+    ReferenceWindow(const ReferenceWindow&) = delete;
+
+    void make_current();
+    const Gl& gl() const { return gl_; }
+    Pixels read() const;
+
+private:
+    int width_, height_;
+    EGLDisplay display_ = EGL_NO_DISPLAY;
+    EGLSurface surface_ = EGL_NO_SURFACE;
+    EGLContext context_ = EGL_NO_CONTEXT;
+    Gl gl_;
+};
+
+Pixels read_pixels(const Gl& gl, int width, int height);
+/// Number of pixels that differ in any channel.
+std::size_t count_different(const Pixels& a, const Pixels& b);
+void write_ppm(const char* path, const Pixels& pixels, int width, int height);
+
+}  // namespace wall::tileserver::test

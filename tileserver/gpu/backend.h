@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Where OpenGL comes from: one driver context (4.5 compatibility) without a window. One implementation per file
+// (egl_backend.cpp, osmesa_backend.cpp). Created and used by the render thread.
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "common/base/result.h"
+
+namespace wall::tileserver {
+
+class GlBackend {
+public:
+    virtual ~GlBackend() = default;
+    GlBackend() = default;
+    GlBackend(const GlBackend&) = delete;
+    GlBackend& operator=(const GlBackend&) = delete;
+
+    /// Makes the context current in the calling thread; it stays so until the backend is destroyed there.
+    virtual Result<void> make_current() = 0;
+    /// A function of the driver by name, null if it has none.
+    virtual void* get_proc_address(const char* name) const = 0;
+    virtual std::string_view name() const = 0;
+};
+
+/// A GPU's EGL device if there is one, else Mesa's surfaceless platform (llvmpipe).
+Result<std::unique_ptr<GlBackend>> open_egl_backend();
+/// Off-screen Mesa, from a library that is looked for now; newer Mesa releases have none.
+Result<std::unique_ptr<GlBackend>> open_osmesa_backend();
+/// By its name in wall.toml: `egl` or `osmesa`.
+Result<std::unique_ptr<GlBackend>> open_backend(std::string_view name);
+
+}  // namespace wall::tileserver
