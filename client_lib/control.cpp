@@ -132,7 +132,7 @@ std::string walld_address() {
     return given.empty() ? kDefaultAddress : given;
 }
 
-Result<Hello> hello_from_environment() {
+Hello Hello::from_environment() {
     Hello hello;
     hello.pid = static_cast<std::uint32_t>(getpid());
     hello.program = program_name();
@@ -146,12 +146,14 @@ Result<Hello> hello_from_environment() {
     geom::Rect r;
     char extra;
     if (sscanf(rect.c_str(), "%d,%d,%d,%d%c", &r.x, &r.y, &r.width, &r.height, &extra) != 4 || r.empty())
-        return fail("WALLGL_RECT: expected X,Y,W,H or fullscreen, got '" + rect + "'");
-    hello.rect = r;
+        hello.invalid = "WALLGL_RECT: expected X,Y,W,H or fullscreen, got '" + rect + "'";
+    else
+        hello.rect = r;
     return hello;
 }
 
 Result<std::unique_ptr<ControlLink>> ControlLink::open(const Hello& hello, const std::string& address) {
+    if (!hello.invalid.empty()) return fail(hello.invalid);
     auto opened = greet(hello, address);
     if (!opened) return tl::unexpected(opened.error());
     return std::unique_ptr<ControlLink>(new ControlLink(std::move(opened->fd), hello, address,
@@ -203,6 +205,7 @@ void ControlLink::surface_resize(std::uint32_t id, std::uint32_t width, std::uin
     auto& surface = surfaces_[id];
     surface.width = width;
     surface.height = height;
+    placements_.erase(id);
     queue(encode_surface_resize(id, width, height));
     wake();
 }
@@ -242,7 +245,7 @@ void ControlLink::run() {
                 ::poll(&p, 1, static_cast<int>(kTick.count()));
                 std::uint64_t count;
                 [[maybe_unused]] const auto n = ::read(wake_fd_.get(), &count, sizeof count);
-                write_stats();
+                stats().write();
             }
         }
     } catch (const std::exception& e) {  // out of memory: drawing goes on, the wall's changes do not arrive
@@ -266,7 +269,7 @@ void ControlLink::serve() {
         if (fds[0].revents) [[maybe_unused]] const auto n = ::read(wake_fd_.get(), &count, sizeof count);
         if (fds[1].revents && !read_some()) return;
         if (Clock::now() >= next_tick) {
-            write_stats();
+            stats().write();
             next_tick = Clock::now() + kTick;
         }
     }

@@ -21,9 +21,6 @@
 
 namespace wall::client {
 
-/// Hello of this process, from its name and the environment (WALLGL_NAME, WALLGL_RECT, WALLGL_HOLD). A wrong
-/// WALLGL_RECT is an error.
-Result<Hello> hello_from_environment();
 /// WALLGL_WALLD, or the default.
 std::string walld_address();
 
@@ -52,8 +49,8 @@ public:
     /// What came since the last call. One atomic read when nothing did.
     Events take_events();
 
-    /// Waits for the first placement of a surface; nothing when the time is over or the link breaks. Does not take
-    /// events: the placement is also in the next take_events().
+    /// The surface's newest placement since it was opened or last resized (walld answers both with one); waits for it.
+    /// Nothing when the time is over or the link breaks. Does not take events: it is also in the next take_events().
     std::optional<Placement> wait_placement(std::uint32_t surface, std::chrono::milliseconds timeout);
 
 private:
@@ -93,7 +90,7 @@ private:
     Events events_;
     bool up_ = true;
     std::map<std::uint32_t, OpenSurface> surfaces_;
-    std::map<std::uint32_t, Placement> placements_;  ///< the newest of each open surface
+    std::map<std::uint32_t, Placement> placements_;  ///< newest of each since it was opened or resized
 
     std::thread thread_;
 };

@@ -24,6 +24,10 @@ struct Hello {
     std::optional<geom::Rect> rect;  ///< WALLGL_RECT; nothing: where there is room, 1:1
     bool fullscreen = false;         ///< WALLGL_RECT=fullscreen
     bool hold = false;               ///< WALLGL_HOLD
+    std::string invalid;             ///< what is wrong in the environment; ControlLink::open fails with it
+
+    /// Of this process, from its name and the environment.
+    static Hello from_environment();
 };
 
 /// What all nodes of the wall can do: glGetString and glGet values.

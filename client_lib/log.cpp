@@ -66,7 +66,7 @@ void log(LogLevel level, const char* format, ...) {
     [[maybe_unused]] const auto n = write(log_fd, line, size);
 }
 
-void complain_once(const char* topic, const std::string& text) {
+void complain_once(const std::string& text, const char* topic) {
     static constinit std::mutex mutex;
     static constinit std::array<const char*, 16> said{};
     {

@@ -23,8 +23,13 @@ inline bool log_enabled(LogLevel level) {
 /// One line; the format is printf's.
 [[gnu::format(printf, 2, 3)]] void log(LogLevel level, const char* format, ...);
 
-/// A line on stderr that everybody sees, at most once per process for each topic (a string literal): "wall" when the
-/// wall cannot be reached. Goes to the log as well.
-void complain_once(const char* topic, const std::string& text);
+inline void log_error(const std::string& event) { log(LogLevel::error, "%s", event.c_str()); }
+inline void log_warning(const std::string& event) { log(LogLevel::warn, "%s", event.c_str()); }
+inline void log_info(const std::string& event) { log(LogLevel::info, "%s", event.c_str()); }
+inline void log_debug(const std::string& event) { log(LogLevel::debug, "%s", event.c_str()); }
+
+/// A line on stderr that everybody sees, at most once per process for each topic (a string literal). Goes to the log
+/// as well.
+void complain_once(const std::string& text, const char* topic = "wall");
 
 }  // namespace wall::client

@@ -5,122 +5,49 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <map>
-#include <mutex>
+#include <algorithm>
 
 #include "client_lib/process.h"
 
 namespace wall::client {
-
-namespace detail {
-constinit std::array<std::atomic<std::uint64_t>, kCounters> counters{};
-constinit std::array<std::atomic<NodeCounts*>, kMaxCountedNodes> node_counts{};
-}  // namespace detail
-
 namespace {
 
-using detail::NodeCounts;
+constexpr std::array<const char*, static_cast<std::size_t>(NodeCounter::kCount)> kNames{
+    "state_bytes", "object_bytes", "geometry_bytes", "blocks", "batches"};
 
-constexpr std::array<const char*, kNodeCounters> kNodeCounterNames{"state_bytes", "object_bytes", "geometry_bytes",
-                                                                   "blocks", "batches"};
-constexpr std::array<const char*, kCounters> kCounterNames{"frames",      "blocks",    "vertices",
-                                                           "round_trips", "gl_errors", "node_losses"};
-
-/// Lives for ever: the library has no static destructors.
-struct Registry {
-    std::mutex mutex;
-    std::map<std::string, std::uint64_t> unsupported, events;
-    std::string path;
-    std::string written;  // what the file holds
-    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-};
-
-Registry& registry() {
-    static Registry& the = *new Registry;
-    return the;
-}
-
-std::string quoted(const std::string& text) {
+std::string quoted(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
-        char escaped[8];
-        if (c == '"' || c == '\\') {
-            out += '\\';
-            out += c;
-        } else if (static_cast<unsigned char>(c) < 0x20) {
-            snprintf(escaped, sizeof escaped, "\\u%04x", static_cast<unsigned>(c));
-            out += escaped;
-        } else {
-            out += c;
-        }
+        if (c == '"' || c == '\\') out += '\\';
+        out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
     }
     return out + '"';
 }
 
-template <class Names, class Value>
-std::string object(const Names& names, Value&& value) {
+template <class Value>
+std::string figures_json(Value&& value) {
     std::string out = "{";
-    for (std::size_t i = 0; i < names.size(); ++i)
-        out += (i ? ", " : "") + quoted(names[i]) + ": " + std::to_string(value(i));
+    for (std::size_t i = 0; i < kNames.size(); ++i)
+        out += (i ? ", " : "") + quoted(kNames[i]) + ": " + std::to_string(value(i));
     return out + "}";
 }
 
-std::string object(const std::map<std::string, std::uint64_t>& values) {
+template <class Map>
+std::string map_json(const Map& values) {
     std::string out = "{";
     for (const auto& [name, value] : values)
         out += (out.size() > 1 ? ", " : "") + quoted(name) + ": " + std::to_string(value);
     return out + "}";
 }
 
-std::string node_json(std::size_t index, const NodeCounts& node) {
-    const auto total = [&](std::size_t i) { return node.total[i].load(std::memory_order_relaxed); };
-    std::string out = "{\"node\": " + std::to_string(index) + ", \"frames\": " + std::to_string(node.frames);
-    out += ", \"total\": " + object(kNodeCounterNames, total);
-    out += ", \"first_frame\": " + object(kNodeCounterNames, [&](std::size_t i) { return node.first[i]; });
-    out += ", \"last_frame\": " + object(kNodeCounterNames, [&](std::size_t i) { return node.last[i]; });
-    out += ", \"largest_frame\": " + object(kNodeCounterNames, [&](std::size_t i) { return node.most[i]; });
-    return out + "}";
-}
-
-void end_frame_of(NodeCounts& node) {
-    for (std::size_t i = 0; i < kNodeCounters; ++i) {
-        const auto now = node.total[i].load(std::memory_order_relaxed);
-        node.last[i] = now - node.at_frame_start[i];
-        if (node.frames == 0) node.first[i] = node.last[i];
-        node.most[i] = std::max(node.most[i], node.last[i]);
-        node.at_frame_start[i] = now;
-    }
-    ++node.frames;
-}
-
-std::string json_without_time(Registry& r) {
-    std::string out = "\"program\": " + quoted(program_name()) + ",\n \"pid\": " + std::to_string(getpid());
-    out += ",\n \"counters\": " +
-           object(kCounterNames, [](std::size_t i) { return counted(static_cast<Counter>(i)); });
-    std::array<std::uint64_t, kNodeCounters> sums{};
-    std::string nodes;
-    for (std::size_t n = 0; n < kMaxCountedNodes; ++n) {
-        const auto* node = detail::node_counts[n].load(std::memory_order_acquire);
-        if (!node) continue;
-        nodes += (nodes.empty() ? "\n  " : ",\n  ") + node_json(n, *node);
-        for (std::size_t i = 0; i < kNodeCounters; ++i) sums[i] += node->total[i].load(std::memory_order_relaxed);
-    }
-    out += ",\n \"total\": " + object(kNodeCounterNames, [&](std::size_t i) { return sums[i]; });
-    out += ",\n \"nodes\": [" + nodes + "]";
-    out += ",\n \"unsupported\": " + object(r.unsupported) + ",\n \"events\": " + object(r.events);
-    return out;
-}
-
-std::string with_time(const Registry& r, const std::string& body) {
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - r.start;
-    char text[64];
-    snprintf(text, sizeof text, "{\"seconds\": %.3f,\n ", seconds.count());
-    return text + body + "}\n";
+template <class Map>
+std::uint64_t& entry(Map& map, std::string_view name) {
+    const auto found = map.find(name);
+    return found != map.end() ? found->second : map.emplace(name, 0).first->second;
 }
 
 bool write_file(const std::string& path, const std::string& text) {
-    const auto temporary = path + ".new";
+    const auto temporary = path + ".new." + std::to_string(getpid());
     FILE* file = fopen(temporary.c_str(), "we");
     if (!file) return false;
     const bool whole = fwrite(text.data(), 1, text.size(), file) == text.size();
@@ -128,65 +55,125 @@ bool write_file(const std::string& path, const std::string& text) {
     return whole && closed && rename(temporary.c_str(), path.c_str()) == 0;
 }
 
+std::string environment_path() {
+    const char* path = getenv("WALLGL_STATS");
+    return path ? path : "";
+}
+
 }  // namespace
 
-detail::NodeCounts& detail::make_node_counts(std::size_t node) {
+Stats::Stats() : path_(environment_path()), start_(std::chrono::steady_clock::now()) {}
+
+Stats::NodeCounts& Stats::make_node(std::atomic<NodeCounts*>& slot) {
     auto* fresh = new NodeCounts;
     NodeCounts* expected = nullptr;
-    if (node_counts[node].compare_exchange_strong(expected, fresh)) return *fresh;
+    if (slot.compare_exchange_strong(expected, fresh)) return *fresh;
     delete fresh;
     return *expected;
 }
 
-std::uint64_t counted(NodeCounter counter, std::uint32_t node) {
-    const auto* counts = node < kMaxCountedNodes ? detail::node_counts[node].load(std::memory_order_acquire) : nullptr;
+std::uint64_t Stats::of_node(std::uint32_t node, NodeCounter counter) const {
+    const auto* counts = node < kMaxNodes ? nodes_[node].load(std::memory_order_acquire) : nullptr;
     return counts ? counts->total[static_cast<std::size_t>(counter)].load(std::memory_order_relaxed) : 0;
 }
 
-void count_frame() {
-    count(Counter::frames);
-    std::lock_guard lock(registry().mutex);
-    for (auto& node : detail::node_counts)
-        if (auto* counts = node.load(std::memory_order_acquire)) end_frame_of(*counts);
+void Stats::add(std::string_view name, std::uint64_t n) {
+    std::lock_guard lock(mutex_);
+    entry(counters_, name) += n;
 }
 
-bool count_unsupported(const char* function) {
-    std::lock_guard lock(registry().mutex);
-    return registry().unsupported[function]++ == 0;
+std::uint64_t Stats::get(std::string_view name) const {
+    std::lock_guard lock(mutex_);
+    const auto found = counters_.find(name);
+    return found != counters_.end() ? found->second : 0;
 }
 
-void count_event(const char* name) {
-    std::lock_guard lock(registry().mutex);
-    ++registry().events[name];
+void Stats::count_round_trip(std::string_view function) {
+    std::lock_guard lock(mutex_);
+    ++entry(round_trips_, function);
 }
 
-std::string stats_json() {
-    auto& r = registry();
-    std::lock_guard lock(r.mutex);
-    return with_time(r, json_without_time(r));
+bool Stats::count_unsupported(std::string_view function) {
+    std::lock_guard lock(mutex_);
+    return entry(unsupported_, function)++ == 0;
 }
 
-void write_stats() {
-    auto& r = registry();
-    if (r.path.empty()) return;
-    std::lock_guard lock(r.mutex);
-    auto body = json_without_time(r);
-    if (body == r.written) return;
-    if (write_file(r.path, with_time(r, body))) r.written = std::move(body);
-}
-
-void start_stats() {
-    const char* path = getenv("WALLGL_STATS");
-    if (!path || !*path) return;
-    auto& r = registry();
-    {
-        std::lock_guard lock(r.mutex);
-        if (!r.path.empty()) return;
-        r.path = path;
+void Stats::end_frame() {
+    std::lock_guard lock(mutex_);
+    ++frames_;
+    for (auto& slot : nodes_) {
+        auto* node = slot.load(std::memory_order_acquire);
+        if (!node) continue;
+        for (std::size_t i = 0; i < kNodeCounters; ++i) {
+            const auto now = node->total[i].load(std::memory_order_relaxed);
+            node->last[i] = now - node->at_frame_start[i];
+            if (node->frames == 0) node->first[i] = node->last[i];
+            node->largest[i] = std::max(node->largest[i], node->last[i]);
+            node->at_frame_start[i] = now;
+        }
+        ++node->frames;
     }
-    at_process_end([] {
-        if (counted(Counter::frames) > 0 || !registry().unsupported.empty()) write_stats();
-    });
+}
+
+std::string Stats::node_json(std::size_t index, const NodeCounts& node) {
+    const auto total = [&](std::size_t i) { return node.total[i].load(std::memory_order_relaxed); };
+    std::string out = "{\"node\": " + std::to_string(index) + ", \"frames\": " + std::to_string(node.frames);
+    out += ",\n   \"total\": " + figures_json(total);
+    out += ",\n   \"first_frame\": " + figures_json([&](std::size_t i) { return node.first[i]; });
+    out += ",\n   \"last_frame\": " + figures_json([&](std::size_t i) { return node.last[i]; });
+    out += ",\n   \"largest_frame\": " + figures_json([&](std::size_t i) { return node.largest[i]; });
+    return out + "}";
+}
+
+// With the mutex held; all but the time.
+std::string Stats::body() const {
+    Figures sums{};
+    std::string nodes;
+    for (std::size_t n = 0; n < kMaxNodes; ++n) {
+        const auto* node = nodes_[n].load(std::memory_order_acquire);
+        if (!node) continue;
+        nodes += (nodes.empty() ? "\n  " : ",\n  ") + node_json(n, *node);
+        for (std::size_t i = 0; i < kNodeCounters; ++i) sums[i] += node->total[i].load(std::memory_order_relaxed);
+    }
+    std::uint64_t round_trips = 0;
+    for (const auto& [name, n] : round_trips_) round_trips += n;
+    std::string out = "\"program\": " + quoted(program_name()) + ",\n \"pid\": " + std::to_string(getpid());
+    out += ",\n \"frames\": " + std::to_string(frames_);
+    out += ",\n \"total\": " + figures_json([&](std::size_t i) { return sums[i]; });
+    out += ",\n \"nodes\": [" + nodes + "]";
+    out += ",\n \"round_trips\": " + std::to_string(round_trips);
+    out += ",\n \"round_trips_by_function\": " + map_json(round_trips_);
+    out += ",\n \"unsupported\": " + map_json(unsupported_);
+    out += ",\n \"counters\": " + map_json(counters_);
+    return out;
+}
+
+std::string Stats::json() const {
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
+    char head[64];
+    snprintf(head, sizeof head, "{\"seconds\": %.3f,\n ", seconds.count());
+    std::lock_guard lock(mutex_);
+    return head + body() + "}\n";
+}
+
+void Stats::write() {
+    if (path_.empty()) return;
+    {
+        std::lock_guard lock(mutex_);
+        auto now = body();
+        if (now == written_) return;
+        written_ = std::move(now);
+    }
+    write_file(path_, json());
+}
+
+Stats& stats() {
+    static Stats& only = []() -> Stats& {
+        auto* made = new Stats;
+        at_process_end([] { stats().write(); });
+        return *made;
+    }();
+    return only;
 }
 
 }  // namespace wall::client

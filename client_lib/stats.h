@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Counters of what the library does, written as JSON to the file that WALLGL_STATS names: every second and at the end
-// of the process. Counting is a relaxed atomic addition; any thread.
+// of the process. Any thread; add() and add_node() are a relaxed atomic addition.
 #pragma once
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <mutex>
 #include <string>
+#include <string_view>
 
 namespace wall::client {
 
@@ -20,60 +24,62 @@ enum class NodeCounter : std::uint8_t {
     batches,         ///< frames of the data stream
     kCount
 };
-inline constexpr std::size_t kNodeCounters = static_cast<std::size_t>(NodeCounter::kCount);
-inline constexpr std::size_t kMaxCountedNodes = 512;  ///< nodes beyond are counted as the last one
 
-/// Counted for the process.
-enum class Counter : std::uint8_t {
-    frames,       ///< ended by count_frame()
-    blocks,       ///< before they are sorted to nodes
-    vertices,     ///< packed
-    round_trips,  ///< answers waited for
-    gl_errors,    ///< recorded
-    node_losses,  ///< streams that failed
-    kCount
+class Stats {
+public:
+    static constexpr std::size_t kMaxNodes = 512;  ///< nodes beyond are counted as the last one
+
+    Stats();
+
+    void add_node(std::uint32_t node, NodeCounter counter, std::uint64_t n) {
+        auto& slot = nodes_[node < kMaxNodes ? node : kMaxNodes - 1];
+        auto* counts = slot.load(std::memory_order_acquire);
+        if (!counts) counts = &make_node(slot);
+        counts->total[static_cast<std::size_t>(counter)].fetch_add(n, std::memory_order_relaxed);
+    }
+    std::uint64_t of_node(std::uint32_t node, NodeCounter counter) const;
+
+    /// A counter by name, for things that happen at most some thousand times a second; made at its first use.
+    void add(std::string_view name, std::uint64_t n = 1);
+    std::uint64_t get(std::string_view name) const;
+
+    /// An answer was waited for, on behalf of this function.
+    void count_round_trip(std::string_view function);
+    /// A call of a function that is not implemented. True the first time for each name: then log it.
+    bool count_unsupported(std::string_view function);
+
+    /// A frame of a surface has ended: closes the per-frame figures.
+    void end_frame();
+
+    std::string json() const;
+    /// Writes the file, whole or not at all, if WALLGL_STATS is set and a figure has changed.
+    void write();
+
+private:
+    static constexpr std::size_t kNodeCounters = static_cast<std::size_t>(NodeCounter::kCount);
+    using Figures = std::array<std::uint64_t, kNodeCounters>;
+    struct NodeCounts {
+        std::array<std::atomic<std::uint64_t>, kNodeCounters> total{};
+        Figures at_frame_start{}, first{}, last{}, largest{};  // guarded by the mutex
+        std::uint64_t frames = 0;
+    };
+    using Names = std::map<std::string, std::uint64_t, std::less<>>;
+
+    static NodeCounts& make_node(std::atomic<NodeCounts*>& slot);
+    static std::string node_json(std::size_t index, const NodeCounts& node);
+    std::string body() const;
+
+    const std::string path_;
+    const std::chrono::steady_clock::time_point start_;
+    std::array<std::atomic<NodeCounts*>, kMaxNodes> nodes_{};
+
+    mutable std::mutex mutex_;  // guards what follows
+    Names counters_, round_trips_, unsupported_;
+    std::uint64_t frames_ = 0;
+    std::string written_;  ///< what the file holds
 };
-inline constexpr std::size_t kCounters = static_cast<std::size_t>(Counter::kCount);
 
-namespace detail {
-struct NodeCounts {
-    std::array<std::atomic<std::uint64_t>, kNodeCounters> total{};
-    std::array<std::uint64_t, kNodeCounters> at_frame_start{};  // the rest: guarded by the registry's mutex
-    std::array<std::uint64_t, kNodeCounters> first{}, last{}, most{};
-    std::uint64_t frames = 0;
-};
-extern std::array<std::atomic<std::uint64_t>, kCounters> counters;
-extern std::array<std::atomic<NodeCounts*>, kMaxCountedNodes> node_counts;
-NodeCounts& make_node_counts(std::size_t node);
-}  // namespace detail
-
-inline void count(Counter counter, std::uint64_t n = 1) {
-    detail::counters[static_cast<std::size_t>(counter)].fetch_add(n, std::memory_order_relaxed);
-}
-inline std::uint64_t counted(Counter counter) {
-    return detail::counters[static_cast<std::size_t>(counter)].load(std::memory_order_relaxed);
-}
-
-inline void count(NodeCounter counter, std::uint32_t node, std::uint64_t n) {
-    const std::size_t i = node < kMaxCountedNodes ? node : kMaxCountedNodes - 1;
-    auto* counts = detail::node_counts[i].load(std::memory_order_acquire);
-    if (!counts) counts = &detail::make_node_counts(i);
-    counts->total[static_cast<std::size_t>(counter)].fetch_add(n, std::memory_order_relaxed);
-}
-std::uint64_t counted(NodeCounter counter, std::uint32_t node);
-
-/// A frame of a surface has ended: closes the per-frame figures.
-void count_frame();
-/// A call of a function that is not implemented yet. Returns true the first time for each name (then log it).
-bool count_unsupported(const char* function);
-/// Times something was done that has no counter of its own; shown under "events".
-void count_event(const char* name);
-
-/// Writes the file if WALLGL_STATS is set and at least one figure changed. Whole or not at all (rename).
-void write_stats();
-/// The JSON text.
-std::string stats_json();
-/// Registers write_stats() for the end of the process. Called once, when the library is loaded.
-void start_stats();
+/// The process's counters. Lives for ever: the library has no static destructors.
+Stats& stats();
 
 }  // namespace wall::client
