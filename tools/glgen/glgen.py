@@ -13,7 +13,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from glgen import emit_functions, emit_wire, registry, wire  # noqa: E402
+from glgen import emit_functions, emit_state, emit_wire, registry, state, wire  # noqa: E402
 
 DRIVER_EXTRA = ["glFramebufferParameteriMESA", "glGetFramebufferParameterivMESA"]
 
@@ -22,10 +22,15 @@ def generate(registry_path, proto):
     """All generated files: name below gen/ -> text."""
     gl = registry.load(registry_path)
     ops = wire.load(proto / "wire.toml")
+    model = state.load(proto / "state.toml")
     return {
         "glapi/wire.gen.h": emit_wire.wire_header(ops),
         "glapi/decode.gen.h": emit_wire.decode_header(ops),
         "glapi/gl_functions.gen.h": emit_functions.functions_header(gl, DRIVER_EXTRA),
+        "glstate/state.gen.h": emit_state.state_header(model),
+        "glstate/tables.gen.h": emit_state.tables_header(model),
+        "glstate/state_tables.gen.cpp": emit_state.tables_source(model, gl),
+        "glstate/driver_emit.gen.h": emit_state.driver_header(model, gl),
     }
 
 

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+// diff(from, to): the one operation behind state updates of nodes, soft context switches, recovery and migration
+// (T3, T4, T5; DESIGN.md section 1). A State belongs to one thread at a time.
+//
+// Colour material (T3.2's cumulative attribute): while glColorMaterial tracking is on, the tracked material parameters
+// follow the current colour in the driver, without anybody storing them. Their stored values mean nothing then and are
+// not compared. When tracking ends or moves, store() gives them the current colour, by the same rule on both sides.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+
+#include "gen/glstate/state.gen.h"
+
+namespace wall::glstate {
+
+/// A set of categories, one bit each.
+using CategoryMask = std::uint32_t;
+constexpr CategoryMask mask_of(Category c) { return CategoryMask{1} << static_cast<unsigned>(c); }
+inline constexpr CategoryMask kSentCategories = (CategoryMask{1} << (kCategoryCount - 1)) - 1;  ///< all but `local`
+/// What a tile's layer changes: applied per tile.
+inline constexpr CategoryMask kLayerCategories = mask_of(Category::window) | mask_of(Category::raster);
+
+/// A fresh value id; unique in the process.
+inline std::uint64_t next_value_id() {
+    static std::atomic<std::uint64_t> last{1};
+    return last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
+/// Equal as bytes: NaN equals itself, -0 differs from 0.
+template <class T>
+bool same(const T& a, const T& b) {
+    return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+
+/// Whether glColorMaterial (if enabled) drives the material parameter E of a face (0 front, 1 back).
+template <class E>
+bool tracks(const ColorMaterial& m, unsigned face) {
+    if (m.face != GL_FRONT_AND_BACK && m.face != (face == 0 ? GLenum{GL_FRONT} : GLenum{GL_BACK})) return false;
+    if constexpr (E::id == el::material_ambient::id) return m.mode == GL_AMBIENT || m.mode == GL_AMBIENT_AND_DIFFUSE;
+    if constexpr (E::id == el::material_diffuse::id) return m.mode == GL_DIFFUSE || m.mode == GL_AMBIENT_AND_DIFFUSE;
+    if constexpr (E::id == el::material_specular::id) return m.mode == GL_SPECULAR;
+    if constexpr (E::id == el::material_emission::id) return m.mode == GL_EMISSION;
+    return false;
+}
+
+/// Whether the stored value of an element means nothing now, because the current colour drives it.
+template <class E>
+bool follows_color(const State& s, [[maybe_unused]] unsigned i) {
+    if constexpr (E::category == Category::material) return s.material.color_material_enabled && tracks<E>(s.material.color_material, i);
+    return false;
+}
+
+/// The tracked material parameters become the current colour.
+inline void settle_color_material(State& s) {
+    const auto settle = [&s]<class E>(E) {
+        for (unsigned face = 0; face < 2; ++face)
+            if (follows_color<E>(s, face)) E::ref(s, face) = s.current.color;
+    };
+    settle(el::material_ambient{});
+    settle(el::material_diffuse{});
+    settle(el::material_specular{});
+    settle(el::material_emission{});
+}
+
+/// Stores a value without a new value id; the caller owes one.
+template <class E>
+void store(State& s, unsigned i, const typename E::type& v) {
+    if constexpr (E::id == el::color_material::id || E::id == el::color_material_enabled::id) settle_color_material(s);
+    E::ref(s, i) = v;
+}
+
+/// False if the value was that already; else stores it, and its category has a new value id.
+template <class E>
+bool assign(State& s, unsigned i, const typename E::type& v) {
+    if (same(E::ref(static_cast<const State&>(s), i), v)) return false;
+    store<E>(s, i, v);
+    s.ids[static_cast<unsigned>(E::category)] = next_value_id();
+    return true;
+}
+
+namespace detail {
+
+template <class E, class Sink>
+void diff_value(State& from, const State& to, unsigned i, Sink& sink) {
+    if (same(E::ref(static_cast<const State&>(from), i), E::ref(to, i)) || follows_color<E>(to, i)) return;
+    const typename E::type v = E::ref(to, i);
+    store<E>(from, i, v);
+    sink.template set<E>(i, v);
+}
+
+template <class E, class Sink>
+void diff_element(State& from, const State& to, Sink& sink) {
+    if constexpr (E::count > 1) {
+        if (std::memcmp(&E::ref(static_cast<const State&>(from), 0), &E::ref(to, 0), sizeof(typename E::type) * E::count) == 0) return;
+    }
+    for (unsigned i = 0; i < E::count; ++i) diff_value<E>(from, to, i, sink);
+}
+
+template <class Sink, class... E>
+void diff_list(ElementList<E...>, State& from, const State& to, Sink& sink) {
+    (diff_element<E>(from, to, sink), ...);
+}
+
+template <CategoryMask Mask, std::size_t C, class Sink>
+void diff_if_wanted(State& from, const State& to, Sink& sink) {
+    if constexpr ((Mask >> C & 1) != 0) {
+        if (from.ids[C] == to.ids[C]) return;
+        diff_list(typename CategoryElements<static_cast<Category>(C)>::list{}, from, to, sink);
+        from.ids[C] = to.ids[C];
+    }
+}
+
+template <CategoryMask Mask, class Sink, std::size_t... C>
+void diff_categories(State& from, const State& to, Sink& sink, std::index_sequence<C...>) {
+    (diff_if_wanted<Mask, C>(from, to, sink), ...);
+}
+
+}  // namespace detail
+
+/// Makes `from` equal to `to` in the categories of Mask, telling `sink.template set<E>(i, value)` each value that changed.
+template <CategoryMask Mask = kSentCategories, class Sink>
+void diff(State& from, const State& to, Sink&& sink) {
+    detail::diff_categories<Mask>(from, to, sink, std::make_index_sequence<kCategoryCount>{});
+}
+
+template <Category C, class Sink>
+void diff_category(State& from, const State& to, Sink&& sink) {
+    detail::diff_if_wanted<mask_of(C), static_cast<std::size_t>(C)>(from, to, sink);
+}
+
+namespace detail {
+template <class F, class... E>
+void for_each_element(ElementList<E...>, F& f) {
+    (f.template operator()<E>(), ...);
+}
+template <class F, std::size_t... C>
+void for_each_category(F& f, std::index_sequence<C...>) {
+    (for_each_element(typename CategoryElements<static_cast<Category>(C)>::list{}, f), ...);
+}
+}  // namespace detail
+
+/// Calls `f.template operator()<E>()` for every element, `local` ones included.
+template <class F>
+void for_each_element(F&& f) {
+    detail::for_each_category(f, std::make_index_sequence<kCategoryCount>{});
+}
+
+/// Calls `f.template operator()<E>(i)` for every value that glPushAttrib(mask) saves.
+template <class F>
+void for_each_in_group(GLbitfield mask, F&& f) {
+    for_each_element([&]<class E>() {
+        if (E::groups & mask)
+            for (unsigned i = 0; i < E::count; ++i) f.template operator()<E>(i);
+    });
+}
+
+/// The same for glPushClientAttrib.
+template <class F>
+void for_each_in_client_group(GLbitfield mask, F&& f) {
+    for_each_element([&]<class E>() {
+        if (E::client_groups & mask)
+            for (unsigned i = 0; i < E::count; ++i) f.template operator()<E>(i);
+    });
+}
+
+}  // namespace wall::glstate
