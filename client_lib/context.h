@@ -11,6 +11,7 @@
 
 #include "client_lib/core.h"
 #include "client_lib/current.h"
+#include "client_lib/matrix.h"
 #include "client_lib/packer.h"
 #include "client_lib/router.h"
 #include "client_lib/session.h"
@@ -31,7 +32,8 @@ inline constexpr std::size_t kBlockBytes = 256 << 10;
 
 /// One matrix stack; the top is the element of glstate::State.
 struct MatrixStack {
-    std::vector<glstate::Mat4> below;  ///< saved by glPushMatrix, oldest first
+    std::vector<FormedMatrix> below;  ///< saved by glPushMatrix, oldest first
+    std::uint32_t form = form::kIdentity;  ///< the top's
     unsigned limit = 32;
 };
 
