@@ -158,7 +158,7 @@ void NodeStream::send(std::uint32_t context, wire::PackBuffer batch) {
     const bool room = changed_.wait_for(lock, kStallLimit, [&] { return failed() || queued_bytes_ < kMaxQueuedBytes; });
     if (!room) {
         lock.unlock();
-        fail("node takes no more data");
+        give_up("node takes no more data");
         return;
     }
     queued_bytes_ += payload;
@@ -212,7 +212,7 @@ bool NodeStream::write_some(Outgoing& out) {
         const ssize_t n = ::sendmsg(fd_.get(), &message, MSG_NOSIGNAL | MSG_DONTWAIT);
         if (n < 0) {
             if (errno == EINTR) continue;
-            if (errno != EAGAIN) fail(std::string("cannot send: ") + std::strerror(errno));
+            if (errno != EAGAIN) give_up(std::string("cannot send: ") + std::strerror(errno));
             return false;
         }
         out.sent += static_cast<std::size_t>(n);
@@ -243,17 +243,17 @@ void NodeStream::on_readable() {
     for (;;) {
         if (inbox_.size() - inbox_used_ < kReadChunk) inbox_.resize(std::max(inbox_.size() * 2, kReadChunk * 2));
         const ssize_t n = ::recv(fd_.get(), inbox_.data() + inbox_used_, inbox_.size() - inbox_used_, MSG_DONTWAIT);
-        if (n == 0) return fail("node closed the stream");
+        if (n == 0) return give_up("node closed the stream");
         if (n < 0) {
             if (errno == EINTR) continue;
-            if (errno != EAGAIN) fail(std::string("cannot receive: ") + std::strerror(errno));
+            if (errno != EAGAIN) give_up(std::string("cannot receive: ") + std::strerror(errno));
             return;
         }
         inbox_used_ += static_cast<std::size_t>(n);
         std::size_t at = 0;
         while (inbox_used_ - at >= wire::kFrameHeaderBytes) {
             const auto header = wire::decode_frame_header(inbox_.data() + at);
-            if (header.payload_bytes > wire::kMaxFramePayload) return fail("node sent an oversized frame");
+            if (header.payload_bytes > wire::kMaxFramePayload) return give_up("node sent an oversized frame");
             if (inbox_used_ - at < wire::kFrameHeaderBytes + header.payload_bytes) break;
             const auto* payload = inbox_.data() + at + wire::kFrameHeaderBytes;
             handle_frame(header.kind, {payload, payload + header.payload_bytes});
@@ -268,7 +268,7 @@ void NodeStream::on_readable() {
 
 void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> payload) {
     if (kind == wire::FrameKind::error)
-        return fail("node ended the session: " + std::string(reinterpret_cast<const char*>(payload.data()), payload.size()));
+        return give_up("node ended the session: " + std::string(reinterpret_cast<const char*>(payload.data()), payload.size()));
     std::lock_guard lock(mutex_);
     std::uint32_t words[2];
     if (kind == wire::FrameKind::reply && payload.size() >= 4) {
@@ -282,7 +282,7 @@ void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> paylo
     changed_.notify_all();
 }
 
-void NodeStream::fail(const std::string& why) {
+void NodeStream::give_up(const std::string& why) {
     std::lock_guard lock(mutex_);
     if (!failed()) failure_ = why;
     failed_.store(true, std::memory_order_release);

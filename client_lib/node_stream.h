@@ -44,7 +44,7 @@ public:
     bool wants_write();
     void on_writable();
     void on_readable();
-    void fail(const std::string& why);
+    void give_up(const std::string& why);
 
 private:
     explicit NodeStream(UniqueFd fd) : fd_(std::move(fd)) {}

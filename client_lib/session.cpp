@@ -12,13 +12,14 @@
 #include "client_lib/log.h"
 #include "client_lib/options.h"
 #include "client_lib/share_group.h"
+#include "common/glstate/pack_sink.h"
 #include "common/wire/limits.h"
 
 namespace wall::client {
 namespace {
 
 constexpr int kConnectTimeoutMs = 2000;
-constexpr int kPlacementTimeoutMs = 2000;
+constexpr std::chrono::seconds kPlacementTimeout{2};
 constexpr int kReplyTimeoutMs = 10000;        // a readback behind a long frame of a software renderer
 constexpr std::uint32_t kFramesInFlight = 2;  // packing one while the nodes draw the other
 constexpr int kSlowNodeMs = 250;              // a node later than this is no longer waited for, until it answers again
@@ -110,7 +111,14 @@ std::shared_ptr<Session> Session::get() {
 
 Session::Session(std::unique_ptr<ControlLink> control) : control_(std::move(control)) {
     std::lock_guard lock(mutex_);
-    for (const NodeInfo& info : control_->welcome().nodes) connect(node_slot(info));
+    adopt(control_->welcome());
+}
+
+// The first welcome, or that of a walld that came back: another session, with other tickets.
+void Session::adopt(const Welcome& welcome) {
+    id_ = welcome.session;
+    tiles_ = welcome.tiles;
+    for (const NodeInfo& info : welcome.nodes) connect(node_slot(info));
 }
 
 Session::~Session() {
@@ -139,7 +147,7 @@ void Session::connect(Node& node) {
     node.batch.clear();
     node.slow = false;
     if (!node.info.up) return;
-    auto stream = NodeStream::open(node.info.address, encode_hello(control_->welcome().session, node.info.ticket), kConnectTimeoutMs);
+    auto stream = NodeStream::open(node.info.address, encode_hello(id_, node.info.ticket), kConnectTimeoutMs);
     if (!stream) {
         log_warning("event=node_refused node=" + std::to_string(node.index) + " reason=\"" + stream.error().message + "\"");
         return;
@@ -158,7 +166,7 @@ void Session::open_surface(Surface& surface) {
     surface.layout.height = std::max(1u, size.height);
     if (!surface.options.visible) return apply_layout(surface, Placement{});
     control_->surface_open(surface.id, surface.layout.width, surface.layout.height, surface.options.title);
-    if (const auto placement = control_->wait_placement(surface.id, kPlacementTimeoutMs)) apply_layout(surface, *placement);
+    if (const auto placement = control_->wait_placement(surface.id, kPlacementTimeout)) apply_layout(surface, *placement);
 }
 
 void Session::close_surface(Surface& surface) {
@@ -189,7 +197,7 @@ void Session::apply_layout(Surface& surface, const Placement& placement) {
         return;
     }
     layout.rect = placement.rect;
-    for (const TileInfo& tile : control_->welcome().tiles) {
+    for (const TileInfo& tile : tiles_) {
         const geom::Rect part = geom::intersect(tile.rect, layout.rect);
         if (part.empty() || layout.targets.size() == kMaxTargets) continue;
         layout.targets.push_back(make_target(layout, tile, part));
@@ -205,13 +213,14 @@ void Session::begin_frame(Surface& surface) {
             surface.layout.width = size->width;
             surface.layout.height = size->height;
             control_->surface_resize(surface.id, size->width, size->height);
-            if (const auto placement = control_->wait_placement(surface.id, kPlacementTimeoutMs)) apply_layout(surface, *placement);
+            if (const auto placement = control_->wait_placement(surface.id, kPlacementTimeout)) apply_layout(surface, *placement);
         }
     }
 }
 
 void Session::take_events() {
     auto events = control_->take_events();
+    if (events.reconnected) adopt(*events.reconnected);
     for (const NodeInfo& info : events.node_changes) {
         Node& node = node_slot(info);
         connect(node);
@@ -253,19 +262,6 @@ void Session::describe_surface(Node& node, Surface& surface) {
     node.surfaces[surface.id] = layout.version;
 }
 
-namespace {
-
-/// The diff's sink on the client: elements become State commands.
-struct PackSink {
-    wire::PackBuffer& buffer;
-    template <class E>
-    void set(unsigned i, const typename E::type& value) {
-        glapi::pack_state(buffer, static_cast<std::uint16_t>(E::id + i), &value, sizeof value);
-    }
-};
-
-}  // namespace
-
 wire::PackBuffer& Session::prepare(Node& node, Context& context) {
     wire::PackBuffer& buffer = batch(node, context.id);
     Mirror& mirror = node.mirrors[context.id];
@@ -282,7 +278,7 @@ wire::PackBuffer& Session::prepare(Node& node, Context& context) {
     const std::size_t objects_start = buffer.bytes();
     context.share().bring_up_to_date(node, context, buffer);
     const std::size_t state_start = buffer.bytes();
-    glstate::diff(mirror.state, context.state, PackSink{buffer});
+    glstate::diff(mirror.state, context.state, glstate::PackSink{buffer});
     count_objects(node, state_start - objects_start);
     count_state(node, buffer.bytes() - state_start + objects_start - start);
     return buffer;

@@ -119,6 +119,7 @@ public:
 private:
     friend class BlockSender;
     explicit Session(std::unique_ptr<ControlLink> control);
+    void adopt(const Welcome& welcome);
     void apply_layout(Surface& surface, const Placement& placement);
     void take_events();
     void connect(Node& node);
@@ -134,6 +135,8 @@ private:
     std::mutex mutex_;
     std::vector<std::unique_ptr<Node>> nodes_;
     std::unordered_map<std::uint32_t, Surface*> surfaces_;
+    std::uint32_t id_ = 0;
+    std::vector<TileInfo> tiles_;
     std::uint32_t last_request_ = 0;
 };
 
