@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// A texture as the application defined it: the recovery log of one object. Every change has a stamp; a node that holds
+// the texture as of an older stamp is sent what changed since, whole levels or rectangles (DESIGN, section 4).
+// Guarded by the share group's mutex.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/glapi/gl_types.h"
+#include "common/wire/pack_buffer.h"
+
+namespace wall::client {
+
+/// A logical time, unique in the process, growing.
+std::uint64_t next_stamp();
+
+struct TexBox {
+    std::int32_t x = 0, y = 0, z = 0, width = 0, height = 0, depth = 0;
+    std::uint64_t stamp = 0;
+};
+
+/// Why a level has pixels.
+enum class LevelContent : std::uint8_t {
+    none,       ///< glTexImage without pixels
+    stored,     ///< `pixels`
+    generated,  ///< made from the base level by each node itself
+};
+
+struct TextureLevel {
+    GLint internal_format = 0;  ///< as the application gave it; 0: not defined
+    std::int32_t width = 0, height = 0, depth = 0, border = 0;  ///< with border
+    GLenum format = 0, type = 0;            ///< of the call that defined it: the driver's choice of storage depends on them
+    GLenum data_format = 0, data_type = 0;  ///< of `pixels`
+    bool compressed = false;                ///< pixels as for glCompressedTexImage, format and type 0
+    LevelContent content = LevelContent::none;
+    std::vector<std::byte> pixels;
+    std::uint64_t stamp = 0;                ///< of the definition
+    std::vector<TexBox> changes;            ///< since then, oldest first
+
+    bool defined() const { return internal_format != 0; }
+    void note_change(TexBox box);
+};
+
+inline constexpr unsigned kTextureLevels = 15;  ///< 16384 texels a side
+inline constexpr unsigned kCubeFaces = 6;
+
+/// One glTexParameter value: as a node is told it.
+struct TexParameters {
+    std::array<float, 4> border_color{};
+    float priority = 1, min_lod = -1000, max_lod = 1000, lod_bias = 0, max_anisotropy = 1;
+    GLenum min_filter = GL_NEAREST_MIPMAP_LINEAR, mag_filter = GL_LINEAR;
+    GLenum wrap_s = GL_REPEAT, wrap_t = GL_REPEAT, wrap_r = GL_REPEAT;
+    GLint base_level = 0, max_level = 1000;
+    GLenum compare_mode = GL_NONE, compare_func = GL_LEQUAL, depth_mode = GL_LUMINANCE;
+    bool generate_mipmap = false;
+};
+
+struct Texture {
+    Texture(std::uint32_t id, GLuint name, GLenum target);
+    const std::uint32_t id;
+    const GLuint name;
+    const GLenum target;
+
+    std::uint64_t stamp = 0;  ///< of the latest change
+    TexParameters parameters;
+    /// Stamp of the latest change of each parameter that differs from its default or once did.
+    std::vector<std::pair<GLenum, std::uint64_t>> parameter_stamps;
+    std::uint64_t generated_stamp = 0;  ///< of the latest mipmap generation; 0: none
+    std::array<std::vector<TextureLevel>, kCubeFaces> faces;
+
+    bool is_default() const { return name == 0; }
+    unsigned face_count() const { return target == GL_TEXTURE_CUBE_MAP ? kCubeFaces : 1; }
+    TextureLevel* find_level(unsigned face, GLint level);
+    TextureLevel& level_at(unsigned face, GLint level);
+    void parameter_changed(GLenum pname);
+    /// The base level got new pixels and the parameter is set, or glGenerateMipmap.
+    void mipmaps_generated();
+};
+
+/// Current value of a parameter as four numbers for the TexParameter command.
+std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname);
+
+/// Packs everything that changed since `known` (0: the node has nothing).
+void pack_texture(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer);
+
+/// 0 to 5 for a cube map's face, else 0.
+unsigned face_of(GLenum image_target);
+/// The target that a face or proxy belongs to; 0: no texture target.
+GLenum object_target(GLenum image_target);
+bool is_proxy(GLenum image_target);
+/// 1, 2 or 3.
+unsigned dimensions_of(GLenum target);
+
+}  // namespace wall::client

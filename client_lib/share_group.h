@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// The objects that contexts share: textures, display lists. An object has the application's name (glGenTextures), and
+// an id that is unique in the process and stands for it in state elements and on the wire; a deleted and generated name
+// is another object. The mutex guards the tables and the objects in them; it is taken after a session's, never before.
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+#include "client_lib/objects/texture.h"
+#include "common/glapi/gl_types.h"
+#include "common/wire/pack_buffer.h"
+
+namespace wall::client {
+
+class Context;
+struct Node;
+struct DisplayList;  // lists.h
+
+/// The application's names of one kind. A name is free, reserved (null), or an object's. New names are given above all
+/// that were ever used, as Mesa does, so that a program sees the same numbers.
+template <class T>
+class NameTable {
+public:
+    /// Reserves `count` names in a row; the first, or 0 when they run out.
+    GLuint reserve(GLuint count) {
+        if (count == 0 || last_ > ~GLuint{0} - 1 - count) return 0;
+        const GLuint first = last_ + 1;
+        for (GLuint i = 0; i < count; ++i) names_.emplace(first + i, nullptr);
+        last_ += count;
+        return first;
+    }
+    bool known(GLuint name) const { return names_.contains(name); }
+    std::shared_ptr<T> find(GLuint name) const {
+        const auto at = names_.find(name);
+        return at == names_.end() ? nullptr : at->second;
+    }
+    void put(GLuint name, std::shared_ptr<T> object) {
+        names_[name] = std::move(object);
+        last_ = std::max(last_, name);
+    }
+    /// What the name stood for.
+    std::shared_ptr<T> erase(GLuint name) {
+        const auto at = names_.find(name);
+        if (at == names_.end()) return nullptr;
+        auto object = std::move(at->second);
+        names_.erase(at);
+        return object;
+    }
+
+private:
+    std::unordered_map<GLuint, std::shared_ptr<T>> names_;
+    GLuint last_ = 0;
+};
+
+struct ShareGroup {
+    ShareGroup();
+    ~ShareGroup();
+    ShareGroup(const ShareGroup&) = delete;
+
+    std::mutex mutex;
+    NameTable<Texture> textures;
+    NameTable<DisplayList> lists;
+
+    /// By id: what state elements name. Kept as long as the name or any binding lives.
+    std::unordered_map<std::uint32_t, std::shared_ptr<Texture>> textures_by_id;
+    /// Name 0 of each target. Bindings show it as id 0 until it has content.
+    std::map<GLenum, std::shared_ptr<Texture>> default_textures;
+    bool any_default_used = false;
+
+    /// Ids of deleted objects and how many; each node is told once (by position in this log).
+    std::vector<std::uint32_t> deleted_textures;
+
+    /// Packs what drawing with this context needs and the node lacks. The session's mutex is held.
+    void bring_up_to_date(Node& node, Context& context, wire::PackBuffer& buffer);
+};
+
+/// The application's name of a texture id (glGet of a binding).
+GLuint texture_name(ShareGroup& share, std::uint32_t id);
+
+}  // namespace wall::client
