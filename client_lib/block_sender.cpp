@@ -10,6 +10,13 @@
 namespace wall::client {
 namespace {
 
+using glstate::Category;
+
+template <Category kCategory>
+std::uint64_t& value_id(glstate::State& state) {
+    return state.ids[static_cast<std::size_t>(kCategory)];
+}
+
 /// A primitive smaller than this costs less sent whole to one node more than taken apart.
 constexpr std::size_t kSmallPrimitiveBytes = 192;
 /// Vertices between two runs of one strip that cost no more than ending it and starting anew.
@@ -70,7 +77,7 @@ void BlockSender::send_apart(const TargetSet& block_targets) {
             apply_attribute(mirror, share.sent.op[i], packer_.operand_at(share.sent.offset[i]));
             changed = true;
         }
-        if (changed) mirror.ids[static_cast<std::size_t>(glstate::Category::current)] = glstate::next_value_id();
+        if (changed) value_id<Category::current>(mirror) = glstate::next_value_id();
     }
     fold({});
 }
@@ -193,9 +200,11 @@ void BlockSender::fold(const std::vector<Node*>& whole) {
     context_.fold_attributes();
     for (Node* node : whole) {
         auto& mirror = node->mirrors[context_.id].state;
-        glstate::copy_category<glstate::Category::current>(mirror, context_.state);
+        mirror.current = context_.state.current;
+        value_id<Category::current>(mirror) = value_id<Category::current>(context_.state);
         if (!context_.folded_material()) continue;
-        glstate::copy_category<glstate::Category::material>(mirror, context_.state);
+        mirror.material = context_.state.material;
+        value_id<Category::material>(mirror) = value_id<Category::material>(context_.state);
     }
 }
 

@@ -16,7 +16,7 @@
 #include "client_lib/router.h"
 #include "client_lib/session.h"
 #include "gen/client_lib/api.gen.h"
-#include "gen/glstate/state.gen.h"
+#include "common/glstate/diff.h"
 
 namespace wall::client {
 
@@ -55,7 +55,7 @@ public:
     /// Sets an element. An equal value is no change; otherwise what was drawn before is sent off with the old value.
     template <class E>
     void set(unsigned i, const typename E::type& value) {
-        if (E::ref(state, i) == value) return;
+        if (glstate::same(E::ref(state, i), value)) return;
         if constexpr (E::category != glstate::Category::local) flush_block();
         glstate::assign<E>(state, i, value);
     }
