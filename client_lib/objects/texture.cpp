@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/objects/texture.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+
+#include "common/glapi/image.h"
+#include "gen/glapi/wire.gen.h"
+
+namespace wall::client {
+namespace {
+
+/// Rectangles remembered one by one; older ones are merged.
+constexpr std::size_t kMaxChanges = 16;
+
+TexBox united(const TexBox& a, const TexBox& b) {
+    TexBox out;
+    out.x = std::min(a.x, b.x);
+    out.y = std::min(a.y, b.y);
+    out.z = std::min(a.z, b.z);
+    out.width = std::max(a.x + a.width, b.x + b.width) - out.x;
+    out.height = std::max(a.y + a.height, b.y + b.height) - out.y;
+    out.depth = std::max(a.z + a.depth, b.z + b.depth) - out.z;
+    out.stamp = std::max(a.stamp, b.stamp);
+    return out;
+}
+
+void pack_parameter(const Texture& texture, GLenum pname, std::array<float, 4> v, wire::PackBuffer& buffer) {
+    glapi::pack::TexParameter(buffer, texture.id, texture.target, pname, v[0], v[1], v[2], v[3]);
+}
+
+GLenum image_target(const Texture& texture, unsigned face) {
+    return texture.target == GL_TEXTURE_CUBE_MAP ? GL_TEXTURE_CUBE_MAP_POSITIVE_X + face : texture.target;
+}
+
+/// The tight bytes of a box of a level.
+std::vector<std::byte> cut(const TextureLevel& level, const TexBox& box) {
+    const auto layout = glapi::pixel_layout(level.data_format, level.data_type);
+    if (!layout) return {};
+    const std::size_t row = glapi::row_bytes(*layout, level.width), bytes = glapi::row_bytes(*layout, box.width);
+    std::vector<std::byte> out(bytes * static_cast<std::size_t>(box.height) * static_cast<std::size_t>(box.depth));
+    std::byte* to = out.data();
+    for (std::int32_t z = 0; z < box.depth; ++z)
+        for (std::int32_t y = 0; y < box.height; ++y, to += bytes) {
+            const auto line = static_cast<std::size_t>(box.z + z) * static_cast<std::size_t>(level.height) + static_cast<std::size_t>(box.y + y);
+            std::memcpy(to, level.pixels.data() + line * row + static_cast<std::size_t>(box.x) * layout->pixel_bytes, bytes);
+        }
+    return out;
+}
+
+void pack_box(const Texture& texture, unsigned face, GLint number, const TextureLevel& level, const TexBox& box, wire::PackBuffer& buffer) {
+    const auto pack = [&](std::span<const std::byte> pixels) {
+        glapi::pack::TexSubImage(buffer, texture.id, image_target(texture, face), number, box.x, box.y, box.z, box.width, box.height,
+                                 box.depth, level.data_format, level.data_type, pixels);
+    };
+    const bool whole = box.width == level.width && box.height == level.height && box.depth == level.depth;
+    if (whole) pack(level.pixels);
+    else pack(cut(level, box));
+}
+
+void pack_definition(const Texture& texture, unsigned face, GLint number, const TextureLevel& level, wire::PackBuffer& buffer) {
+    const bool at_once = level.content == LevelContent::stored && level.format == level.data_format && level.type == level.data_type;
+    glapi::pack::TexImage(buffer, texture.id, image_target(texture, face), number, static_cast<GLenum>(level.internal_format), level.width,
+                          level.height, level.depth, 0, level.format, level.type,
+                          at_once ? std::span<const std::byte>(level.pixels) : std::span<const std::byte>());
+    if (level.content == LevelContent::stored && !at_once)
+        pack_box(texture, face, number, level, {0, 0, 0, level.width, level.height, level.depth, 0}, buffer);
+}
+
+/// What changed of one level since `known`. True if something was packed.
+bool pack_level(const Texture& texture, unsigned face, GLint number, std::uint64_t known, wire::PackBuffer& buffer) {
+    const auto& levels = texture.faces[face];
+    if (static_cast<std::size_t>(number) >= levels.size()) return false;
+    const TextureLevel& level = levels[static_cast<std::size_t>(number)];
+    if (!level.defined() || level.content == LevelContent::generated) return false;
+    if (level.stamp > known) {
+        pack_definition(texture, face, number, level, buffer);
+        return true;
+    }
+    bool any = false;
+    for (const TexBox& box : level.changes) {
+        if (box.stamp <= known) continue;
+        pack_box(texture, face, number, level, box, buffer);
+        any = true;
+    }
+    return any;
+}
+
+// The driver makes the mipmaps when it gets the base level while the parameter is set. Nodes never see the parameter
+// otherwise: whether the application had it set when some level came is history that a late node cannot replay.
+void pack_generating(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer) {
+    const GLint base = texture.parameters.base_level;
+    const bool generate = texture.generated_stamp > known;
+    if (generate) pack_parameter(texture, GL_GENERATE_MIPMAP, {1, 0, 0, 0}, buffer);
+    for (unsigned face = 0; face < texture.face_count(); ++face) pack_level(texture, face, base, generate ? 0 : known, buffer);
+    if (generate) pack_parameter(texture, GL_GENERATE_MIPMAP, {0, 0, 0, 0}, buffer);
+}
+
+}  // namespace
+
+std::uint64_t next_stamp() {
+    static std::atomic<std::uint64_t> last{0};
+    return last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
+Texture::Texture(std::uint32_t id, GLuint name, GLenum target) : id(id), name(name), target(target), stamp(next_stamp()) {
+    if (target != GL_TEXTURE_RECTANGLE) return;
+    parameters.min_filter = GL_LINEAR;
+    parameters.wrap_s = parameters.wrap_t = parameters.wrap_r = GL_CLAMP_TO_EDGE;
+}
+
+void TextureLevel::note_change(TexBox box) {
+    const auto covered = [&](const TexBox& old) { const TexBox u = united(old, box); return u.x == box.x && u.y == box.y && u.z == box.z &&
+                                                  u.width == box.width && u.height == box.height && u.depth == box.depth; };
+    changes.erase(std::remove_if(changes.begin(), changes.end(), covered), changes.end());
+    changes.push_back(box);
+    if (changes.size() <= kMaxChanges) return;
+    changes[1] = united(changes[0], changes[1]);
+    changes.erase(changes.begin());
+}
+
+TextureLevel* Texture::find_level(unsigned face, GLint level) {
+    auto& levels = faces[face];
+    if (level < 0 || static_cast<std::size_t>(level) >= levels.size() || !levels[static_cast<std::size_t>(level)].defined()) return nullptr;
+    return &levels[static_cast<std::size_t>(level)];
+}
+
+TextureLevel& Texture::level_at(unsigned face, GLint level) {
+    auto& levels = faces[face];
+    if (levels.size() <= static_cast<std::size_t>(level)) levels.resize(static_cast<std::size_t>(level) + 1);
+    return levels[static_cast<std::size_t>(level)];
+}
+
+void Texture::parameter_changed(GLenum pname) {
+    stamp = next_stamp();
+    for (auto& [known, when] : parameter_stamps)
+        if (known == pname) {
+            when = stamp;
+            return;
+        }
+    parameter_stamps.emplace_back(pname, stamp);
+}
+
+void Texture::mipmaps_generated() {
+    stamp = generated_stamp = next_stamp();
+    const GLint base = parameters.base_level;
+    for (unsigned face = 0; face < face_count(); ++face) {
+        const TextureLevel* from = find_level(face, base);
+        if (!from) continue;
+        TextureLevel next;
+        next.internal_format = from->internal_format;
+        next.format = from->format;
+        next.type = from->type;
+        next.content = LevelContent::generated;
+        next.stamp = stamp;
+        std::int32_t width = from->width, height = from->height, depth = from->depth;
+        const bool layered = target == GL_TEXTURE_1D_ARRAY || target == GL_TEXTURE_2D_ARRAY;
+        for (GLint level = base + 1; level <= parameters.max_level && level < static_cast<GLint>(kTextureLevels); ++level) {
+            const bool done = width == 1 && (height == 1 || target == GL_TEXTURE_1D_ARRAY) && (depth == 1 || layered);
+            if (done) break;
+            next.width = width = std::max(1, width / 2);
+            next.height = height = target == GL_TEXTURE_1D_ARRAY ? height : std::max(1, height / 2);
+            next.depth = depth = layered ? depth : std::max(1, depth / 2);
+            level_at(face, level) = next;
+        }
+    }
+}
+
+std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname) {
+    const auto one = [](auto value) { return std::array<float, 4>{static_cast<float>(value), 0, 0, 0}; };
+    switch (pname) {
+        case GL_TEXTURE_BORDER_COLOR: return p.border_color;
+        case GL_TEXTURE_MIN_FILTER: return one(p.min_filter);
+        case GL_TEXTURE_MAG_FILTER: return one(p.mag_filter);
+        case GL_TEXTURE_WRAP_S: return one(p.wrap_s);
+        case GL_TEXTURE_WRAP_T: return one(p.wrap_t);
+        case GL_TEXTURE_WRAP_R: return one(p.wrap_r);
+        case GL_TEXTURE_PRIORITY: return one(p.priority);
+        case GL_TEXTURE_MIN_LOD: return one(p.min_lod);
+        case GL_TEXTURE_MAX_LOD: return one(p.max_lod);
+        case GL_TEXTURE_LOD_BIAS: return one(p.lod_bias);
+        case GL_TEXTURE_BASE_LEVEL: return one(p.base_level);
+        case GL_TEXTURE_MAX_LEVEL: return one(p.max_level);
+        case GL_TEXTURE_MAX_ANISOTROPY_EXT: return one(p.max_anisotropy);
+        case GL_TEXTURE_COMPARE_MODE: return one(p.compare_mode);
+        case GL_TEXTURE_COMPARE_FUNC: return one(p.compare_func);
+        case GL_DEPTH_TEXTURE_MODE: return one(p.depth_mode);
+        default: return one(p.generate_mipmap ? 1 : 0);
+    }
+}
+
+void pack_texture(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer) {
+    const std::size_t before = buffer.commands();
+    for (const auto& [pname, stamp] : texture.parameter_stamps)
+        if (stamp > known) pack_parameter(texture, pname, parameter_value(texture.parameters, pname), buffer);
+    pack_generating(texture, known, buffer);
+    for (unsigned face = 0; face < texture.face_count(); ++face)
+        for (GLint level = 0; level < static_cast<GLint>(texture.faces[face].size()); ++level)
+            if (level != texture.parameters.base_level) pack_level(texture, face, level, known, buffer);
+    // A name that a state element carries must exist on the node.
+    if (known == 0 && buffer.commands() == before)
+        pack_parameter(texture, GL_TEXTURE_MAG_FILTER, parameter_value(texture.parameters, GL_TEXTURE_MAG_FILTER), buffer);
+}
+
+unsigned face_of(GLenum target) {
+    if (target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z) return target - GL_TEXTURE_CUBE_MAP_POSITIVE_X;
+    return 0;
+}
+
+GLenum object_target(GLenum target) {
+    switch (target) {
+        case GL_TEXTURE_1D: case GL_PROXY_TEXTURE_1D: return GL_TEXTURE_1D;
+        case GL_TEXTURE_2D: case GL_PROXY_TEXTURE_2D: return GL_TEXTURE_2D;
+        case GL_TEXTURE_3D: case GL_PROXY_TEXTURE_3D: return GL_TEXTURE_3D;
+        case GL_TEXTURE_RECTANGLE: case GL_PROXY_TEXTURE_RECTANGLE: return GL_TEXTURE_RECTANGLE;
+        case GL_TEXTURE_CUBE_MAP: case GL_PROXY_TEXTURE_CUBE_MAP: return GL_TEXTURE_CUBE_MAP;
+        default: return target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z ? GL_TEXTURE_CUBE_MAP : GLenum{0};
+    }
+}
+
+bool is_proxy(GLenum target) {
+    return target == GL_PROXY_TEXTURE_1D || target == GL_PROXY_TEXTURE_2D || target == GL_PROXY_TEXTURE_3D ||
+           target == GL_PROXY_TEXTURE_RECTANGLE || target == GL_PROXY_TEXTURE_CUBE_MAP;
+}
+
+unsigned dimensions_of(GLenum target) {
+    switch (object_target(target)) {
+        case GL_TEXTURE_1D: return 1;
+        case GL_TEXTURE_3D: return 3;
+        default: return 2;
+    }
+}
+
+}  // namespace wall::client

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/pixel_store.h"
+
+namespace wall::client {
+
+glapi::PixelStore unpack_store(const glstate::State& state) {
+    const auto& l = state.local;
+    return {l.unpack_swap_bytes != 0, l.unpack_lsb_first != 0, l.unpack_row_length,  l.unpack_image_height,
+            l.unpack_skip_pixels,     l.unpack_skip_rows,      l.unpack_skip_images, l.unpack_alignment};
+}
+
+glapi::PixelStore pack_store(const glstate::State& state) {
+    const auto& l = state.local;
+    return {l.pack_swap_bytes != 0, l.pack_lsb_first != 0, l.pack_row_length,  l.pack_image_height,
+            l.pack_skip_pixels,     l.pack_skip_rows,      l.pack_skip_images, l.pack_alignment};
+}
+
+}  // namespace wall::client
