@@ -7,6 +7,8 @@
 #include "client_lib/block_sender.h"
 #include "client_lib/block_walk.h"
 #include "client_lib/lists.h"
+#include "client_lib/maps.h"
+#include "client_lib/material.h"
 #include "client_lib/select.h"
 #include "client_lib/share_group.h"
 
@@ -21,6 +23,7 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextOptions&)
       lists(std::make_unique<ListState>()),
       attributes(std::make_unique<AttributeStacks>()),
       select(std::make_unique<SelectState>()),
+      maps(std::make_unique<ContextMaps>()),
       share_(std::move(share)) {
     for (auto& stack : texture_stacks) stack.limit = 10;
 }

@@ -24,6 +24,7 @@ struct ShareGroup;      // share_group.h: objects
 struct ListState;       // lists.h: display list being compiled, call nesting
 struct AttributeStacks; // attribute_stack.h
 struct SelectState;     // select.h: feedback and selection
+struct ContextMaps;     // maps.h: evaluator and pixel maps
 
 inline constexpr unsigned kTextureUnits = 8;
 inline constexpr unsigned kVertexAttributes = 16;
@@ -90,6 +91,7 @@ public:
     std::unique_ptr<ListState> lists;
     std::unique_ptr<AttributeStacks> attributes;
     std::unique_ptr<SelectState> select;
+    std::unique_ptr<ContextMaps> maps;
 
     /// glMaterial calls inside the open Begin/End, applied to `state` when the block is sent.
     struct PendingMaterial {

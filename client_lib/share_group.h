@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -68,12 +69,11 @@ struct ShareGroup {
 
     /// By id: what state elements name. Kept as long as the name or any binding lives.
     std::unordered_map<std::uint32_t, std::shared_ptr<Texture>> textures_by_id;
-    /// Name 0 of each target. Bindings show it as id 0 until it has content.
+    /// Name 0 of each target, made when it first gets content; until then a binding of it is id 0.
     std::map<GLenum, std::shared_ptr<Texture>> default_textures;
-    bool any_default_used = false;
 
-    /// Ids of deleted objects and how many; each node is told once (by position in this log).
-    std::vector<std::uint32_t> deleted_textures;
+    /// Stamp of the latest change of any object, so that a look at one number tells that there is nothing to send.
+    std::atomic<std::uint64_t> last_change{0};
 
     /// Packs what drawing with this context needs and the node lacks. The session's mutex is held.
     void bring_up_to_date(Node& node, Context& context, wire::PackBuffer& buffer);

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/share_group.h"
+
+#include "client_lib/context.h"
+#include "client_lib/maps.h"
+#include "client_lib/session.h"
+
+namespace wall::client {
+namespace {
+
+/// Ids of the textures that a unit draws with. Targets that are not enabled cannot matter.
+template <class Use>
+void for_each_used(const glstate::State& state, Use&& use) {
+    const auto& enabled = state.texture_units;
+    const auto& bound = state.textures;
+    for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
+        if (enabled.texture_1d_enabled[unit]) use(bound.texture_binding_1d[unit]);
+        if (enabled.texture_2d_enabled[unit]) use(bound.texture_binding_2d[unit]);
+        if (enabled.texture_3d_enabled[unit]) use(bound.texture_binding_3d[unit]);
+        if (enabled.texture_cube_map_enabled[unit]) use(bound.texture_binding_cube_map[unit]);
+        if (enabled.texture_rectangle_enabled[unit]) use(bound.texture_binding_rectangle[unit]);
+    }
+}
+
+}  // namespace
+
+ShareGroup::ShareGroup() = default;
+ShareGroup::~ShareGroup() = default;
+
+void ShareGroup::bring_up_to_date(Node& node, Context& context, wire::PackBuffer& buffer) {
+    using glstate::Category;
+    const std::array<std::uint64_t, 4> now = {context.state.ids[static_cast<std::size_t>(Category::texture_units)],
+                                              context.state.ids[static_cast<std::size_t>(Category::textures)],
+                                              last_change.load(std::memory_order_acquire), context.maps->stamp};
+    Mirror& mirror = node.mirrors[context.id];
+    if (mirror.objects == now) return;
+    context.maps->bring_up_to_date(node, buffer);
+    std::lock_guard lock(mutex);
+    for_each_used(context.state, [&](std::uint32_t id) {
+        if (id == 0) return;
+        const auto found = textures_by_id.find(id);
+        if (found == textures_by_id.end()) return;
+        const Texture& texture = *found->second;
+        auto& known = node.object_stamps[id];
+        if (known == texture.stamp) return;
+        pack_texture(texture, known, buffer);
+        known = texture.stamp;
+    });
+    mirror.objects = now;
+}
+
+GLuint texture_name(ShareGroup& share, std::uint32_t id) {
+    if (id == 0) return 0;
+    std::lock_guard lock(share.mutex);
+    const auto found = share.textures_by_id.find(id);
+    return found == share.textures_by_id.end() ? 0 : found->second->name;
+}
+
+}  // namespace wall::client
