@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// The framebuffer configurations that both window systems offer: a full matrix, since programs reject one that has
+// more than they asked for (a stencil buffer, alpha) as well as less. Pure.
+#pragma once
+
+#include <X11/Xutil.h>
+
+#include <vector>
+
+#include "client_lib/core.h"
+
+namespace wall::client::vendor {
+
+inline constexpr int kMaxPbufferExtent = 8192;  // pixels a side
+
+/// {alpha} x {depth} x {stencil} x {double, single} x {accumulation}, the one that most programs want first.
+std::vector<SurfaceFormat> format_matrix(bool with_alpha_only, bool with_single_and_accum);
+
+/// The X visuals of a screen that can carry 8 bits per channel.
+struct ScreenVisuals {
+    std::vector<XVisualInfo> opaque;  ///< TrueColor of the default depth, the default visual first
+    std::vector<XVisualInfo> argb;    ///< TrueColor, depth 32; at most one
+};
+ScreenVisuals screen_visuals(Display* display, int screen);
+
+}  // namespace wall::client::vendor
