@@ -20,7 +20,7 @@
 namespace wall::config {
 namespace {
 
-constexpr std::int64_t kMaxCanvas = 1 << 20;       // pixels a side
+constexpr std::int64_t kMaxCanvas = wire::kMaxSurfaceExtent;  // pixels a side: a surface may cover all of it
 constexpr std::int64_t kMaxSwapTimeout = 10'000;   // ms
 constexpr std::array kBackends{Backend::egl, Backend::osmesa};
 
@@ -76,7 +76,7 @@ public:
     }
 
     geom::Rect rect(const toml::table& table, std::string_view key) {
-        constexpr std::string_view expected = ": expected [x, y, width, height] in pixels, none negative, width and height at least 1";
+        constexpr std::string_view expected = ": expected [x, y, width, height] in pixels, none negative, width and height at least 1, nothing beyond 32768";
         const auto* node = need(table, key, "[x, y, width, height]", false);
         if (!node) return {};
         const auto* array = node->as_array();
@@ -84,9 +84,10 @@ public:
         bool good = array && array->size() == v.size();
         for (std::size_t i = 0; good && i < v.size(); ++i) {
             const auto* value = array->get(i)->as_integer();
-            good = value && value->get() >= (i < 2 ? 0 : 1) && value->get() <= (i < 2 ? kMaxCanvas : wire::kMaxSurfaceExtent);
+            good = value && value->get() >= (i < 2 ? 0 : 1) && value->get() <= kMaxCanvas;
             if (good) v[i] = value->get();
         }
+        good = good && v[0] + v[2] <= kMaxCanvas && v[1] + v[3] <= kMaxCanvas;
         if (!good) refuse(node->source(), quoted(key) + std::string(expected));
         return {int(v[0]), int(v[1]), int(v[2]), int(v[3])};
     }

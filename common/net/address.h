@@ -31,6 +31,9 @@ inline constexpr std::uint16_t kDefaultControlPort = 7770;
 inline constexpr std::uint16_t kDefaultHttpPort = 7780;
 inline constexpr std::uint16_t kDefaultDataPort = 7790;
 
+/// Where walld is when nobody says otherwise (WALLGL_WALLD, --walld).
+inline constexpr const char* kDefaultWalld = "unix:/run/wallgl/walld.sock";
+
 /// Why a daemon does not listen there, for its start-up error.
 std::string non_local_refusal(const Address& address);
 

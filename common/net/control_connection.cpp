@@ -12,8 +12,6 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 
-#include "common/net/sockets.h"
-
 namespace wall::net {
 namespace {
 
@@ -61,7 +59,7 @@ asio::awaitable<Result<StreamSocket>> Listener::accept() {
     }
 }
 
-ControlConnection::ControlConnection(StreamSocket socket) : socket_(std::move(socket)), user_(peer_user(socket_.native_handle())) {}
+ControlConnection::ControlConnection(StreamSocket socket) : socket_(std::move(socket)), peer_(peer_of(socket_.native_handle())) {}
 
 asio::awaitable<Result<std::shared_ptr<ControlConnection>>> ControlConnection::connect(Address address) {
     auto to = resolve(address);

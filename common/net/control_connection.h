@@ -15,6 +15,7 @@
 #include "common/base/result.h"
 #include "common/net/address.h"
 #include "common/net/framing.h"
+#include "common/net/sockets.h"
 
 namespace wall::net {
 
@@ -61,13 +62,13 @@ public:
     void close_after_sending();
 
     bool is_open() const { return socket_.is_open() && !closing_; }
-    std::optional<uid_t> user() const { return user_; }  ///< of a Unix peer
+    const std::optional<Peer>& peer() const { return peer_; }
 
 private:
     asio::awaitable<void> write_queue();
 
     StreamSocket socket_;
-    std::optional<uid_t> user_;
+    std::optional<Peer> peer_;
     Unframer unframer_;
     std::deque<std::string> queue_;
     std::size_t queued_bytes_ = 0;

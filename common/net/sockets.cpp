@@ -9,14 +9,18 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 
 namespace wall::net {
 namespace {
 
 constexpr int kBacklog = 64;
-constexpr mode_t kSocketMode = 0666;  // who may speak is decided by peer_user(), which can say why
+constexpr mode_t kSocketMode = 0666;  // who may speak is decided by peer_of(), which can say why
 
 tl::unexpected<Error> system_error(const Address& address, const char* what, int error) {
     return fail(address.text() + ": " + what + ": " + std::strerror(error));
@@ -36,6 +40,42 @@ void remove_stale(const Address& address, const SocketAddress& to) {
     if (::lstat(address.path.c_str(), &info) != 0 || !S_ISSOCK(info.st_mode)) return;
     UniqueFd probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     if (::connect(probe.get(), to.get(), to.length) != 0 && errno == ECONNREFUSED) ::unlink(address.path.c_str());
+}
+
+/// `address:port` as /proc/net/tcp writes it: the words of the address in hexadecimal as they lie in memory.
+std::string proc_text(const sockaddr_storage& address) {
+    const bool v6 = address.ss_family == AF_INET6;
+    const auto* in4 = reinterpret_cast<const sockaddr_in*>(&address);
+    const auto* in6 = reinterpret_cast<const sockaddr_in6*>(&address);
+    std::array<std::uint32_t, 4> words{};
+    std::memcpy(words.data(), v6 ? static_cast<const void*>(&in6->sin6_addr) : &in4->sin_addr, v6 ? 16 : 4);
+    std::string out;
+    char text[16];
+    for (int i = 0; i < (v6 ? 4 : 1); ++i) out.append(text, static_cast<std::size_t>(std::snprintf(text, sizeof text, "%08X", words[i])));
+    out.append(text, static_cast<std::size_t>(std::snprintf(text, sizeof text, ":%04X", ntohs(in4->sin_port))));
+    return out;
+}
+
+/// The kernel's table of TCP sockets names each one's owner; the peer's own socket is in it if it is on this machine.
+std::optional<Peer> owner_of_tcp_peer(int fd) {
+    sockaddr_storage here{}, there{};
+    socklen_t size = sizeof here;
+    if (::getsockname(fd, reinterpret_cast<sockaddr*>(&here), &size) != 0) return std::nullopt;
+    size = sizeof there;
+    if (::getpeername(fd, reinterpret_cast<sockaddr*>(&there), &size) != 0) return std::nullopt;
+    std::ifstream table(there.ss_family == AF_INET6 ? "/proc/net/tcp6" : "/proc/net/tcp");
+    const std::string local = proc_text(there), remote = proc_text(here);
+    std::string line;
+    while (std::getline(table, line)) {
+        std::istringstream fields(line);
+        std::string row, from, to, skipped;
+        uid_t user = 0;
+        fields >> row >> from >> to;
+        if (from != local || to != remote) continue;
+        for (int i = 0; i < 4; ++i) fields >> skipped;  // st, queues, timer, retransmits
+        if (fields >> user) return Peer{user, 0};
+    }
+    return std::nullopt;
 }
 
 }  // namespace
@@ -83,14 +123,15 @@ Address bound_address(int fd, const Address& asked) {
     return out;
 }
 
-std::optional<uid_t> peer_user(int fd) {
+std::optional<Peer> peer_of(int fd) {
     sockaddr_storage name{};
-    socklen_t name_size = sizeof name;
-    if (::getsockname(fd, reinterpret_cast<sockaddr*>(&name), &name_size) != 0 || name.ss_family != AF_UNIX) return std::nullopt;
+    socklen_t size = sizeof name;
+    if (::getsockname(fd, reinterpret_cast<sockaddr*>(&name), &size) != 0) return std::nullopt;
+    if (name.ss_family != AF_UNIX) return owner_of_tcp_peer(fd);
     ucred credentials{};
-    socklen_t size = sizeof credentials;
+    size = sizeof credentials;
     if (::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &credentials, &size) != 0) return std::nullopt;
-    return credentials.uid;
+    return Peer{credentials.uid, credentials.pid};
 }
 
 }  // namespace wall::net

@@ -19,7 +19,13 @@ Result<UniqueFd> listen_on(const Address& address);
 Result<UniqueFd> connect_to(const Address& address, std::chrono::milliseconds timeout);
 /// The address that a listening socket has got (port 0 resolved).
 Address bound_address(int fd, const Address& asked);
-/// User of the process at the other end of a Unix socket; nothing for TCP.
-std::optional<uid_t> peer_user(int fd);
+
+/// The process at the other end of a connection.
+struct Peer {
+    uid_t user = 0;
+    pid_t process = 0;  ///< 0: not known
+};
+/// What the kernel says about a Unix peer, or about the owner of a TCP socket of this machine; nothing for any other.
+std::optional<Peer> peer_of(int fd);
 
 }  // namespace wall::net

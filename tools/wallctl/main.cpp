@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// wallctl: what an operator does. Tables for people, --json for programs.
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iostream>
+
+#include "common/net/address.h"
+#include "tools/wallctl/doctor.h"
+#include "tools/wallctl/tables.h"
+#include "tools/wallctl/verbs.h"
+
+namespace {
+
+using namespace wall;
+using namespace wall::wallctl;
+using nlohmann::json;
+
+constexpr std::chrono::seconds kLimit{10};     // for an answer
+constexpr std::chrono::seconds kWaitSlack{2};  // on top of what walld itself waits
+
+struct Options {
+    std::string walld = net::kDefaultWalld;
+    bool as_json = false;
+    std::string id, tile, file;
+    int x = 0, y = 0, width = 0, height = 0;
+    int frames = 1, frame = 1;
+    double seconds = 10;
+    bool off = false;
+};
+
+/// What main() runs in the end; set by the verb that was given.
+using Action = std::function<Result<void>()>;
+
+std::string (*const kNoTable)(const json&) = nullptr;
+
+Result<void> print(const Options& options, const Result<Answer>& answer, std::string (*table)(const json&)) {
+    if (!answer) return tl::unexpected(answer.error());
+    if (options.as_json) std::cout << answer->json.dump(2) << '\n';
+    else if (table) std::cout << table(answer->json);
+    return {};
+}
+
+Action show(const Options& options, const char* verb, std::string (*table)(const json&)) {
+    return [&options, verb, table] { return print(options, ask(options.walld, verb, json::object(), kLimit), table); };
+}
+
+Action tell(const Options& options, const char* verb, std::function<json()> arguments, std::chrono::milliseconds limit = kLimit) {
+    return [&options, verb, arguments, limit] { return print(options, ask(options.walld, verb, arguments(), limit), kNoTable); };
+}
+
+Result<void> screenshot(const Options& options) {
+    json arguments = json::object();
+    if (!options.tile.empty()) arguments["tile"] = options.tile;
+    if (!options.id.empty()) arguments["id"] = options.id;
+    const auto answer = ask(options.walld, "screenshot", arguments, kLimit);
+    if (!answer) return tl::unexpected(answer.error());
+    std::ofstream file(options.file, std::ios::binary);
+    file << answer->blob;
+    if (!file.flush()) return fail(options.file + ": cannot be written");
+    return print(options, answer, kNoTable);
+}
+
+Result<void> wait(const Options& options) {
+    const auto limit = std::chrono::milliseconds(static_cast<std::int64_t>(options.seconds * 1000));
+    const json arguments{{"id", options.id}, {"frame", options.frame}, {"timeout_ms", limit.count()}};
+    return print(options, ask(options.walld, "wait", arguments, limit + kWaitSlack), kNoTable);
+}
+
+Result<void> doctor(const Options& options) {
+    std::error_code error;
+    const auto findings = examine(options.walld, std::filesystem::read_symlink("/proc/self/exe", error).string());
+    json out = json::array();
+    bool good = true;
+    for (const auto& finding : findings) {
+        good = good && finding.good;
+        out.push_back({{"check", finding.check}, {"good", finding.good}, {"detail", finding.detail}});
+        if (!options.as_json) std::cout << (finding.good ? "ok    " : "WRONG ") << finding.check << ": " << finding.detail << '\n';
+    }
+    if (options.as_json) std::cout << out.dump(2) << '\n';
+    if (!good) return fail("something is wrong, see above");
+    return {};
+}
+
+void add_id(CLI::App* verb, Options& options) {
+    verb->add_option("ID", options.id, "session, or SESSION.SURFACE, as `wallctl sessions` shows it")->required();
+}
+
+void add_verbs(CLI::App& app, Options& o, Action& action) {
+    const auto verb = [&](const char* name, const char* about, Action run) {
+        auto* sub = app.add_subcommand(name, about);
+        sub->callback([&action, run] { action = run; });
+        sub->fallthrough();
+        return sub;
+    };
+    const auto with_id = [&o] { return json{{"id", o.id}}; };
+    verb("status", "the wall, its nodes and programs", show(o, "status", status_text));
+    verb("nodes", "the nodes", show(o, "nodes", nodes_table));
+    verb("tiles", "the tiles and their places", show(o, "tiles", tiles_table));
+    verb("sessions", "the programs on the wall and their windows", show(o, "sessions", sessions_table));
+    auto* place = verb("place", "puts a window on a rectangle of the wall", tell(o, "place", [&o] {
+        return json{{"id", o.id}, {"x", o.x}, {"y", o.y}, {"width", o.width}, {"height", o.height}};
+    }));
+    add_id(place, o);
+    place->add_option("X", o.x)->required();
+    place->add_option("Y", o.y)->required();
+    place->add_option("W", o.width)->required()->check(CLI::PositiveNumber);
+    place->add_option("H", o.height)->required()->check(CLI::PositiveNumber);
+    add_id(verb("raise", "puts a window before all others", tell(o, "raise", with_id)), o);
+    add_id(verb("lower", "puts a window behind all others", tell(o, "lower", with_id)), o);
+    add_id(verb("close", "asks a program to close; cuts it off after 3 seconds", tell(o, "close", with_id)), o);
+    auto* shot = verb("screenshot", "writes what the wall shows as PNG", [&o] { return screenshot(o); });
+    shot->add_option("FILE", o.file)->required();
+    shot->add_option("--tile", o.tile, "only this tile");
+    shot->add_option("--session", o.id, "only this program");
+    auto* hold = verb("hold", "shows no further frame of a program until it is stepped", tell(o, "hold", [&o] { return json{{"id", o.id}, {"on", o.off ? 0 : 1}}; }));
+    add_id(hold, o);
+    hold->add_flag("--off", o.off, "lets it run again");
+    auto* step = verb("step", "shows the next frames of a held program", tell(o, "step", [&o] { return json{{"id", o.id}, {"frames", o.frames}}; }));
+    add_id(step, o);
+    step->add_option("N", o.frames, "how many (1)")->check(CLI::PositiveNumber);
+    auto* waiting = verb("wait", "returns when a frame is shown on all tiles", [&o] { return wait(o); });
+    add_id(waiting, o);
+    waiting->add_option("--frame", o.frame, "its number")->required()->check(CLI::PositiveNumber);
+    waiting->add_option("--timeout", o.seconds, "seconds (10)")->check(CLI::Range(0.0, 600.0));
+    verb("doctor", "looks for what usually goes wrong", [&o] { return doctor(o); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("wallctl: everything an operator does with a wall.");
+    app.footer("Examples:\n  wallctl status\n  wallctl --json sessions\n  wallctl screenshot wall.png\n  wallctl place 3 0 0 1920 1080\n"
+               "  wallctl --walld 127.0.0.1:7770 nodes\n\nExit code: 0; 1 if walld says no or cannot be reached.");
+    Options options;
+    Action action;
+    if (const char* walld = std::getenv("WALLGL_WALLD"); walld && *walld) options.walld = walld;
+    app.add_option("--walld", options.walld, "where walld is: unix:PATH or HOST:PORT (WALLGL_WALLD)")->type_name("ADDR");
+    app.add_flag("--json", options.as_json, "JSON instead of tables");
+    app.set_version_flag("--version", WALLGL_VERSION);
+    app.require_subcommand(1);
+    add_verbs(app, options, action);
+    CLI11_PARSE(app, argc, argv);
+    try {
+        if (const auto done = action(); !done) {
+            std::cerr << "wallctl: " << done.error().message << '\n';
+            return 1;
+        }
+    } catch (const std::exception& error) {
+        std::cerr << "wallctl: unexpected answer: " << error.what() << '\n';
+        return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// wallrun: starts an unmodified OpenGL program on the wall. Checks first, because GLVND says nothing when it falls back.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <vector>
+
+#include "tools/wallrun/launch.h"
+
+namespace {
+
+using namespace wall;
+using namespace wall::wallrun;
+
+constexpr int kExitNotStarted = 2;    // ours: nothing was started
+constexpr int kExitNotFound = 127;    // as a shell says it
+
+constexpr const char* kAbout =
+    "wallrun: starts an OpenGL program on the wall.\n\n"
+    "The program needs no change. Its window keeps its own size; on the wall it is placed pixel by pixel where there is\n"
+    "room, or, with --rect or --fullscreen, drawn anew at the size given there. It still needs an X display for its\n"
+    "window and its input (Xvfb will do).";
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  wallrun -- glxgears\n"
+    "  wallrun --fullscreen -- glxgears                 over the whole wall, at the wall's resolution\n"
+    "  wallrun --rect 0,0,1920,1080 --name left -- PROGRAM ARGUMENTS\n"
+    "  wallrun --walld 127.0.0.1:7770 -- PROGRAM        a walld elsewhere than " ;
+constexpr const char* kExits =
+    "\n\nEnvironment: WALLGL_WALLD (as --walld), WALLGL_LOG=debug|info|warn, WALLGL_STATS=FILE (counters as JSON).\n"
+    "Exit code: the program's own; 2 if it was not started, 127 if it is not found.";
+
+[[noreturn]] void give_up(const Error& error) {
+    std::cerr << "wallrun: " << error.message << '\n';
+    std::exit(kExitNotStarted);
+}
+
+std::string from_environment(const char* name, const char* otherwise = "") {
+    const char* value = std::getenv(name);
+    return value && *value ? value : otherwise;
+}
+
+VendorFiles checked_vendor() {
+    std::error_code error;
+    auto files = find_vendor(std::filesystem::read_symlink("/proc/self/exe", error).string());
+    if (!files) give_up(files.error());
+    if (auto good = check_vendor(*files); !good) give_up(good.error());
+    return *files;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app(kAbout);
+    app.footer(std::string(kExamples) + net::kDefaultWalld + kExits);
+    Launch launch;
+    launch.walld = from_environment("WALLGL_WALLD", net::kDefaultWalld);
+    std::vector<std::string> command;
+    bool fullscreen = false;
+    app.add_option("--walld", launch.walld, "where walld is: unix:PATH or HOST:PORT")->type_name("ADDR");
+    auto* rect = app.add_option("--rect", launch.rect, "the first window covers this part of the wall, in pixels")->type_name("X,Y,W,H");
+    app.add_flag("--fullscreen", fullscreen, "the first window covers the whole wall")->excludes(rect);
+    app.add_option("--name", launch.name, "what wallctl and the status page call it");
+    app.add_flag("--hold", launch.hold, "frames are shown only on `wallctl step` (to look at one after the other)");
+    app.add_option("command", command, "the program and its arguments, after --")->required()->type_name("");
+    app.set_version_flag("--version", WALLGL_VERSION);
+    app.prefix_command(false);
+    CLI11_PARSE(app, argc, argv);
+
+    if (fullscreen) launch.rect = "fullscreen";
+    if (auto good = check_rect(launch.rect); !good) give_up(good.error());
+    const auto files = checked_vendor();
+    if (auto good = check_walld(launch.walld); !good) give_up(good.error());
+    for (const auto& [name, value] : environment_for(launch, files, from_environment("LD_LIBRARY_PATH"))) ::setenv(name.c_str(), value.c_str(), 1);
+
+    std::vector<char*> arguments;
+    for (auto& word : command) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    ::execvp(arguments[0], arguments.data());
+    std::cerr << "wallrun: " << command[0] << ": " << std::strerror(errno) << '\n';
+    return errno == ENOENT ? kExitNotFound : kExitNotStarted;
+}

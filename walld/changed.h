@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Lets coroutines wait until something of the wall has changed. One thread.
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+
+namespace wall::walld {
+
+namespace asio = boost::asio;
+
+class Changed {
+public:
+    using Clock = std::chrono::steady_clock;
+    explicit Changed(const asio::any_io_executor& executor) : timer_(executor, Clock::time_point::max()) {}
+
+    void notify() { timer_.cancel(); }
+    /// Until the next notify(), or until `deadline`. Look again, the change may be another one.
+    asio::awaitable<void> wait(Clock::time_point deadline);
+
+private:
+    asio::steady_timer timer_;
+};
+
+/// Runs `work` on its own; what it throws is logged and ends only itself.
+void spawn(const asio::any_io_executor& executor, const char* name, asio::awaitable<void> work);
+
+}  // namespace wall::walld

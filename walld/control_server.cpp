@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: MIT
+#include "walld/control_server.h"
+
+#include <signal.h>
+#include <spdlog/spdlog.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/use_awaitable.hpp>
+
+#include "common/base/assert.h"
+#include "common/wire/limits.h"
+#include "walld/messages.h"
+
+namespace wall::walld {
+namespace {
+
+constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
+
+std::string random_bytes(std::size_t count) {
+    std::string out(count, '\0');
+    WALL_ASSERT(::getrandom(out.data(), count, 0) == static_cast<ssize_t>(count));
+    return out;
+}
+
+}  // namespace
+
+ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig config)
+    : executor_(executor), changed_(executor), wall_(std::move(config), *this, random_bytes), snapshots_(executor, wall_, *this),
+      operators_(wall_, snapshots_, changed_, [this](SessionId id) { if (const auto found = clients_.find(id); found != clients_.end()) refuse(found->second, "closed by an operator"); }),
+      deadline_timer_(executor), process_timer_(executor) {}
+
+Result<void> ControlServer::listen() {
+    for (const auto& address : wall_.config().control_listen) {
+        if (!address.local()) return fail(net::non_local_refusal(address));
+        auto listener = net::Listener::open(executor_, address);
+        if (!listener) return tl::unexpected(listener.error());
+        listeners_.push_back(std::make_unique<net::Listener>(std::move(*listener)));
+        spdlog::info("control_listening address={}", listeners_.back()->address().text());
+    }
+    for (auto& listener : listeners_) spawn(executor_, "accept", accept(*listener));
+    spawn(executor_, "deadlines", run_deadlines());
+    spawn(executor_, "processes", watch_processes());
+    return {};
+}
+
+void ControlServer::stop() {
+    stopping_ = true;
+    for (auto& listener : listeners_) listener->close();
+    for (auto& [key, connection] : std::exchange(all_, {})) {
+        if (const auto open = connection.lock()) open->close();
+    }
+    deadline_timer_.cancel();
+    process_timer_.cancel();
+    changed_.notify();
+}
+
+std::vector<net::Address> ControlServer::addresses() const {
+    std::vector<net::Address> out;
+    for (const auto& listener : listeners_) out.push_back(listener->address());
+    return out;
+}
+
+void ControlServer::to_node(NodeIndex node, const proto::Envelope& message) {
+    if (const auto found = nodes_.find(node); found != nodes_.end()) found->second->send(message);
+}
+
+void ControlServer::to_client(SessionId session, const proto::Envelope& message) {
+    if (const auto found = clients_.find(session); found != clients_.end()) found->second->send(message);
+}
+
+// ---- connections ----
+
+asio::awaitable<void> ControlServer::accept(net::Listener& listener) {
+    while (!stopping_) {
+        auto socket = co_await listener.accept();
+        if (!socket) {
+            if (!stopping_) spdlog::error("accept_failed error=\"{}\"", socket.error().message);
+            co_return;
+        }
+        auto connection = std::make_shared<net::ControlConnection>(std::move(*socket));
+        all_[connection.get()] = connection;
+        spawn(executor_, "connection", serve(std::move(connection)));
+    }
+}
+
+bool ControlServer::trusted(const net::ControlConnection& connection) const {
+    if (!connection.peer()) return false;
+    const auto user = connection.peer()->user;
+    return user == 0 || user == ::geteuid() || std::ranges::count(wall_.config().allowed_users, user) > 0;
+}
+
+void ControlServer::refuse(const Connection& connection, const std::string& reason) {
+    connection->send(refused(reason));
+    connection->close_after_sending();
+}
+
+asio::awaitable<void> ControlServer::serve(Connection connection) {
+    if (!trusted(*connection)) {
+        const auto user = connection->peer() ? std::to_string(connection->peer()->user) : "unknown";
+        spdlog::warn("peer_refused user={}", user);
+        refuse(connection, "user " + user + " may not use this wall: add it to 'users' in [control] of wall.toml");
+    } else if (auto first = co_await first_message(connection)) {
+        if (first->has_node_hello()) co_await serve_node(connection, first->node_hello());
+        else if (first->has_client_hello()) co_await serve_client(connection, first->client_hello());
+        else if (first->has_operator_request()) co_await serve_operator(connection, std::move(*first));
+        else refuse(connection, "expected a hello of a node or a client, or an operator's request");
+    }
+    all_.erase(connection.get());
+    connection->close_after_sending();
+}
+
+asio::awaitable<Result<proto::Envelope>> ControlServer::first_message(Connection connection) {
+    auto limit = std::make_shared<asio::steady_timer>(executor_, kHelloLimit);
+    limit->async_wait([connection, limit](const boost::system::error_code& error) {
+        if (!error) connection->close();
+    });
+    auto message = co_await connection->receive();
+    limit->cancel();
+    if (!message && message.error().message != "closed") spdlog::warn("peer_bad error=\"{}\"", message.error().message);
+    co_return message;
+}
+
+// ---- nodes ----
+
+asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::NodeHello hello) {
+    const auto known = std::ranges::find(wall_.nodes(), hello.name(), [](const Node& n) { return n.config->name; });
+    const auto expected = static_cast<NodeIndex>(known - wall_.nodes().begin());
+    // Set before it joins, because joining sends; one that is refused must not replace the one that is here.
+    const bool first = known != wall_.nodes().end() && !known->up;
+    if (first) nodes_[expected] = connection;
+    const auto joined = wall_.node_joins(hello, Clock::now());
+    if (!joined) {
+        if (first) nodes_.erase(expected);
+        spdlog::warn("node_refused node=\"{}\" reason=\"{}\"", hello.name(), joined.error().message);
+        refuse(connection, joined.error().message);
+        co_return;
+    }
+    spdlog::info("node_up node={} incarnation={} address={} backend={} renderer=\"{}\"", hello.name(), known->incarnation, hello.address(), hello.backend(), hello.caps().renderer());
+    something_changed();
+    std::string reason;
+    while (reason.empty()) {
+        auto message = co_await connection->receive();
+        const auto result = message ? node_says(*joined, *message) : Result<void>(tl::unexpected(message.error()));
+        if (!result) reason = result.error().message;
+        something_changed();
+    }
+    nodes_.erase(*joined);
+    connection->close();
+    wall_.node_leaves(*joined, Clock::now());
+    snapshots_.node_left(*joined);
+    spdlog::info("node_down node={} reason=\"{}\"", hello.name(), reason);
+    something_changed();
+}
+
+Result<void> ControlServer::node_says(NodeIndex node, proto::Envelope& message) {
+    if (message.has_rendered()) {
+        wall_.node_rendered(node, message.rendered(), Clock::now());
+    } else if (message.has_snapshot()) {
+        snapshots_.arrived(node, *message.mutable_snapshot());
+    } else if (message.has_node_stats()) {
+        wall_.node_reports(node, message.node_stats());
+    } else if (message.has_session_fault()) {
+        wall_.node_faults(node, message.session_fault());
+        spdlog::warn("session_fault session={} node={} reason=\"{}\"", message.session_fault().session(), wall_.nodes()[node].config->name, message.session_fault().reason());
+    } else {
+        return fail("a node may not send that message");
+    }
+    return {};
+}
+
+// ---- clients ----
+
+/// While the wall starts, until all nodes are there; later until one is.
+asio::awaitable<void> ControlServer::wait_for_nodes() {
+    const auto until = Clock::now() + kNodeLimit;
+    const auto ready = [&] {
+        const bool all = std::ranges::all_of(wall_.nodes(), &Node::up);
+        return all || (wall_.any_node_up() && Clock::now() > started_ + kNodeLimit);
+    };
+    while (!ready() && Clock::now() < until && !stopping_) co_await changed_.wait(until);
+}
+
+asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::ClientHello hello) {
+    if (hello.version() != wire::kProtocolVersion) {
+        co_return refuse(connection, "walld speaks protocol version " + std::to_string(wire::kProtocolVersion) + ", the program's WallGL library " + std::to_string(hello.version()));
+    }
+    co_await wait_for_nodes();
+    if (!wall_.any_node_up()) co_return refuse(connection, "no node of the wall is up: is a tileserver running? (wallctl nodes)");
+    const auto id = wall_.open_session(hello, [&](SessionId session) { clients_[session] = connection; });
+    spdlog::info("session_open session={} pid={} program=\"{}\" name=\"{}\"", id.value, hello.pid(), hello.program(), hello.name());
+    something_changed();
+    std::string reason;
+    while (reason.empty()) {
+        auto message = co_await connection->receive();
+        const auto result = message ? client_says(id, *message) : Result<void>(tl::unexpected(message.error()));
+        if (!result) reason = result.error().message;
+        if (message && !result) refuse(connection, reason);
+        something_changed();
+    }
+    clients_.erase(id);
+    wall_.close_session(id);
+    spdlog::info("session_end session={} reason=\"{}\"", id.value, reason);
+    something_changed();
+}
+
+Result<void> ControlServer::client_says(SessionId session, const proto::Envelope& message) {
+    if (message.has_surface_open()) return wall_.open_surface(session, message.surface_open(), Clock::now());
+    if (message.has_surface_resize()) wall_.resize_surface(session, message.surface_resize(), Clock::now());
+    else if (message.has_surface_close()) wall_.close_surface(session, SurfaceId(message.surface_close().surface()));
+    else return fail("a client may not send that message");
+    return {};
+}
+
+// ---- operators ----
+
+asio::awaitable<void> ControlServer::serve_operator(Connection connection, proto::Envelope first) {
+    Result<proto::Envelope> message(std::move(first));
+    while (message && message->has_operator_request()) {
+        spawn(executor_, "operator", answer_operator(connection, std::move(*message->mutable_operator_request())));
+        message = co_await connection->receive();
+    }
+}
+
+asio::awaitable<void> ControlServer::answer_operator(Connection connection, proto::OperatorRequest request) {
+    const auto reply = co_await operators_.answer(std::move(request));
+    connection->send(make(&proto::Envelope::mutable_operator_reply, reply));
+    something_changed();
+}
+
+// ---- time ----
+
+void ControlServer::something_changed() {
+    changed_.notify();
+    const auto next = wall_.next_deadline().value_or(Clock::time_point::max());
+    if (next < deadline_timer_.expiry()) deadline_timer_.expires_at(next);
+}
+
+asio::awaitable<void> ControlServer::run_deadlines() {
+    while (!stopping_) {
+        deadline_timer_.expires_at(wall_.next_deadline().value_or(Clock::time_point::max()));
+        co_await deadline_timer_.async_wait(kTuple);
+        wall_.tick(Clock::now());
+        changed_.notify();
+    }
+}
+
+asio::awaitable<void> ControlServer::watch_processes() {
+    while (!stopping_) {
+        process_timer_.expires_after(kPidCheck);
+        co_await process_timer_.async_wait(kTuple);
+        for (const auto& [id, connection] : clients_) {
+            const auto pid = connection->peer() ? connection->peer()->process : 0;
+            if (pid <= 0 || ::kill(pid, 0) == 0 || errno != ESRCH) continue;
+            spdlog::info("session_orphaned session={} pid={}", id.value, pid);
+            connection->close();
+        }
+    }
+}
+
+}  // namespace wall::walld

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// The shell around the wall: control connections of nodes, clients and operators. What a peer is, its first message
+// says. One thread; a coroutine a connection.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "common/net/control_connection.h"
+#include "walld/changed.h"
+#include "walld/operator_desk.h"
+#include "walld/snapshot_desk.h"
+#include "walld/wall.h"
+
+namespace wall::walld {
+
+class ControlServer : public Outbox {
+public:
+    static constexpr std::chrono::seconds kHelloLimit{5};  ///< a peer that has not said what it is by then is cut off
+    static constexpr std::chrono::seconds kNodeLimit{4};   ///< how long a program waits for nodes while the wall starts
+    static constexpr std::chrono::seconds kPidCheck{1};    ///< a killed program whose connection lives on in a child is noticed
+
+    ControlServer(asio::any_io_executor executor, config::WallConfig config);
+
+    /// Starts to listen everywhere that the configuration says.
+    Result<void> listen();
+    /// Closes everything.
+    void stop();
+
+    const Wall& wall() const { return wall_; }
+    SnapshotDesk& snapshots() { return snapshots_; }
+    std::vector<net::Address> addresses() const;
+
+    void to_node(NodeIndex node, const proto::Envelope& message) override;
+    void to_client(SessionId session, const proto::Envelope& message) override;
+
+private:
+    using Connection = std::shared_ptr<net::ControlConnection>;
+
+    asio::awaitable<void> accept(net::Listener& listener);
+    asio::awaitable<void> serve(Connection connection);
+    asio::awaitable<void> serve_node(Connection connection, proto::NodeHello hello);
+    asio::awaitable<void> serve_client(Connection connection, proto::ClientHello hello);
+    asio::awaitable<void> serve_operator(Connection connection, proto::Envelope first);
+    asio::awaitable<void> answer_operator(Connection connection, proto::OperatorRequest request);
+    asio::awaitable<void> run_deadlines();
+    asio::awaitable<void> watch_processes();
+    asio::awaitable<Result<proto::Envelope>> first_message(Connection connection);
+    asio::awaitable<void> wait_for_nodes();
+
+    bool trusted(const net::ControlConnection& connection) const;
+    Result<void> node_says(NodeIndex node, proto::Envelope& message);
+    Result<void> client_says(SessionId session, const proto::Envelope& message);
+    void refuse(const Connection& connection, const std::string& reason);
+    void something_changed();
+
+    asio::any_io_executor executor_;
+    Changed changed_;
+    Wall wall_;
+    SnapshotDesk snapshots_;
+    OperatorDesk operators_;
+    std::vector<std::unique_ptr<net::Listener>> listeners_;
+    std::map<NodeIndex, Connection> nodes_;
+    std::map<SessionId, Connection> clients_;
+    std::map<net::ControlConnection*, std::weak_ptr<net::ControlConnection>> all_;
+    asio::steady_timer deadline_timer_;
+    asio::steady_timer process_timer_;
+    Clock::time_point started_ = Clock::now();
+    bool stopping_ = false;
+};
+
+}  // namespace wall::walld

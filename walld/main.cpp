@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// walld, the wall's control daemon: read wall.toml, listen, run until a signal.
+#include <signal.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "walld/control_server.h"
+#include "walld/http_server.h"
+#include "walld/service_manager.h"
+
+namespace {
+
+using namespace wall;
+using namespace wall::walld;
+
+constexpr std::chrono::seconds kStopLimit{1};  // what has not ended by itself then is dropped
+constexpr int kExitUsage = 2;
+
+struct Options {
+    std::string config;
+    std::string ready_file;
+    bool check = false;
+};
+
+/// journald adds its own time.
+void set_up_log() {
+    spdlog::set_default_logger(spdlog::stderr_logger_st("walld"));
+    spdlog::set_pattern(std::getenv("JOURNAL_STREAM") ? "%l %v" : "%Y-%m-%dT%H:%M:%S.%e %n %l %v");
+    spdlog::flush_on(spdlog::level::info);
+}
+
+/// For whoever starts a wall with port 0: written whole, then given its name.
+void write_ready_file(const std::string& path, const ControlServer& control, const HttpServer& http, bool has_http) {
+    nlohmann::json ready{{"pid", ::getpid()}, {"control", nlohmann::json::array()}};
+    for (const auto& address : control.addresses()) ready["control"].push_back(address.text());
+    if (has_http) ready["http"] = "http://" + http.address().text() + "/";
+    std::ofstream(path + ".new") << ready.dump() << '\n';
+    if (std::rename((path + ".new").c_str(), path.c_str()) != 0) spdlog::error("ready_file_failed path={}", path);
+}
+
+asio::awaitable<void> feed_watchdog(asio::steady_timer& timer) {
+    const auto interval = watchdog_interval();
+    boost::system::error_code error;
+    while (interval && !error) {
+        notify_alive();
+        timer.expires_after(*interval);
+        std::tie(error) = co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+    }
+}
+
+Result<void> run(config::WallConfig config, const Options& options) {
+    asio::io_context io(1);
+    const auto http_listen = config.http_listen;
+    ControlServer control(io.get_executor(), std::move(config));
+    HttpServer http(io.get_executor(), control.wall(), control.snapshots());
+    if (auto listening = control.listen(); !listening) return listening;
+    if (http_listen) {
+        if (auto listening = http.listen(*http_listen); !listening) return listening;
+    }
+    if (!options.ready_file.empty()) write_ready_file(options.ready_file, control, http, http_listen.has_value());
+
+    asio::steady_timer watchdog(io), stop_limit(io);
+    asio::signal_set signals(io, SIGINT, SIGTERM);
+    spawn(io.get_executor(), "watchdog", feed_watchdog(watchdog));
+    signals.async_wait([&](const boost::system::error_code& error, int signal) {
+        if (error) return;
+        spdlog::info("stopping signal={}", signal);
+        notify_stopping();
+        http.stop();
+        control.stop();
+        watchdog.cancel();
+        stop_limit.expires_after(kStopLimit);
+        stop_limit.async_wait([&](const boost::system::error_code&) { io.stop(); });
+    });
+    notify_ready("wall " + control.wall().config().name);
+    spdlog::info("ready wall=\"{}\" nodes={}", control.wall().config().name, control.wall().nodes().size());
+    io.run();
+    spdlog::info("stopped");
+    return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("walld: the control daemon of a WallGL wall. It knows the nodes, the programs and their windows, and says when\n"
+                 "a frame is shown. Nodes (tileserver) and programs (wallrun) connect to it; operators use wallctl or the status page.");
+    Options options;
+    app.add_option("--config", options.config, "wall.toml, the description of the wall (docs/operation.md)")->required();
+    app.add_option("--ready-file", options.ready_file, "write the addresses in use here, as JSON, once everything listens");
+    app.add_flag("--check", options.check, "only check the description");
+    app.set_version_flag("--version", WALLGL_VERSION);
+    CLI11_PARSE(app, argc, argv);
+
+    ::signal(SIGPIPE, SIG_IGN);
+    set_up_log();
+    try {
+        auto config = config::load_config(options.config);
+        if (!config) {
+            std::cerr << "walld: " << config.error().message << '\n';
+            return kExitUsage;
+        }
+        if (options.check) return 0;
+        if (auto done = run(std::move(*config), options); !done) {
+            std::cerr << "walld: " << done.error().message << '\n';
+            return 1;
+        }
+    } catch (const std::exception& error) {
+        std::cerr << "walld: " << error.what() << '\n';
+        return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// Small conversions between walld's types and control.proto. Pure.
+#pragma once
+
+#include "common/geom/rect.h"
+#include "proto/control.pb.h"
+
+namespace wall::walld {
+
+/// make(&proto::Envelope::mutable_present, message): the message in its envelope.
+template <class Message>
+proto::Envelope make(Message* (proto::Envelope::*field)(), const Message& message) {
+    proto::Envelope out;
+    *(out.*field)() = message;
+    return out;
+}
+
+inline proto::Rect to_proto(const geom::Rect& rect) {
+    proto::Rect out;
+    out.set_x(rect.x);
+    out.set_y(rect.y);
+    out.set_width(static_cast<std::uint32_t>(rect.width));
+    out.set_height(static_cast<std::uint32_t>(rect.height));
+    return out;
+}
+
+inline geom::Rect from_proto(const proto::Rect& rect) {
+    return {rect.x(), rect.y(), static_cast<std::int32_t>(rect.width()), static_cast<std::int32_t>(rect.height())};
+}
+
+inline proto::Envelope refused(const std::string& reason) {
+    proto::Envelope out;
+    out.mutable_refused()->set_reason(reason);
+    return out;
+}
+
+}  // namespace wall::walld

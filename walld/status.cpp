@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "walld/status.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace wall::walld {
+namespace {
+
+using nlohmann::json;
+
+json rect_json(const geom::Rect& rect) { return {rect.x, rect.y, rect.width, rect.height}; }
+
+json surface_json(const Wall& wall, const SurfaceKey& key) {
+    const auto& surface = *wall.find(key);
+    const auto& stacking = wall.stacking();
+    return {{"id", fmt::format("{}.{}", key.session.value, key.surface.value)},
+            {"title", surface.title},
+            {"width", surface.width},
+            {"height", surface.height},
+            {"rect", rect_json(surface.rect)},
+            {"scaled", surface.scaled},
+            {"z", std::ranges::find(stacking, key) - stacking.begin()},
+            {"frame", surface.swap.presented()},
+            {"held", surface.swap.held()},
+            {"swap_timeouts", surface.swap.timeouts()}};
+}
+
+json node_json(const Node& node) {
+    return {{"name", node.config->name},
+            {"up", node.up},
+            {"backend", node.up ? node.hello.backend() : config::name_of(node.config->backend)},
+            {"address", node.up ? node.hello.address() : node.config->listen.text()},
+            {"pid", node.hello.pid()},
+            {"incarnation", node.incarnation},
+            {"renderer", node.hello.caps().renderer()},
+            {"version", node.hello.caps().version()},
+            {"tiles", node.config->tiles.size()},
+            {"frames", node.stats.frames()},
+            {"bytes_received", node.stats.bytes_received()},
+            {"commands", node.stats.commands()},
+            {"gl_errors", node.stats.gl_errors()}};
+}
+
+/// A number for every node, as Prometheus wants it.
+template <class Value>
+void per_node(std::string& out, const Wall& wall, const char* name, const char* type, Value&& value) {
+    out += fmt::format("# TYPE {} {}\n", name, type);
+    for (const auto& node : wall.nodes()) out += fmt::format("{}{{node={}}} {}\n", name, json(node.config->name).dump(), value(node));
+}
+
+void single(std::string& out, const char* name, const char* type, std::uint64_t value) { out += fmt::format("# TYPE {0} {1}\n{0} {2}\n", name, type, value); }
+
+}  // namespace
+
+json nodes_json(const Wall& wall) {
+    auto out = json::array();
+    for (const auto& node : wall.nodes()) out.push_back(node_json(node));
+    return out;
+}
+
+json tiles_json(const Wall& wall) {
+    auto out = json::array();
+    for (const auto& node : wall.nodes()) {
+        for (std::uint32_t slot = 0; const auto& tile : node.config->tiles) {
+            out.push_back({{"name", tile.name}, {"node", node.config->name}, {"slot", slot++}, {"rect", rect_json(tile.rect)}, {"up", node.up}});
+        }
+    }
+    return out;
+}
+
+json sessions_json(const Wall& wall) {
+    auto out = json::array();
+    for (const auto& [id, session] : wall.sessions()) {
+        auto surfaces = json::array();
+        for (const auto& key : wall.stacking()) {
+            if (key.session == id) surfaces.push_back(surface_json(wall, key));
+        }
+        out.push_back({{"id", id.value}, {"pid", session.pid}, {"program", session.program}, {"name", session.name},
+                       {"held", session.held}, {"fault", session.fault}, {"surfaces", std::move(surfaces)}});
+    }
+    return out;
+}
+
+json status_json(const Wall& wall) {
+    const auto canvas = wall.config().canvas();
+    return {{"wall", {{"name", wall.config().name}, {"width", canvas.width}, {"height", canvas.height}}},
+            {"nodes", nodes_json(wall)},
+            {"tiles", tiles_json(wall)},
+            {"sessions", sessions_json(wall)}};
+}
+
+std::string metrics_text(const Wall& wall) {
+    std::string out;
+    std::uint64_t surfaces = 0, timeouts = 0;
+    for (const auto& [id, session] : wall.sessions()) {
+        surfaces += session.surfaces.size();
+        for (const auto& [surface_id, surface] : session.surfaces) timeouts += surface.swap.timeouts();
+    }
+    single(out, "wallgl_sessions", "gauge", wall.sessions().size());
+    single(out, "wallgl_surfaces", "gauge", surfaces);
+    single(out, "wallgl_sessions_opened_total", "counter", wall.counters().sessions);
+    single(out, "wallgl_presents_total", "counter", wall.counters().presents);
+    single(out, "wallgl_session_faults_total", "counter", wall.counters().faults);
+    single(out, "wallgl_live_surfaces_swap_timeouts", "gauge", timeouts);
+    per_node(out, wall, "wallgl_node_up", "gauge", [](const Node& n) { return n.up ? 1 : 0; });
+    per_node(out, wall, "wallgl_node_frames_total", "counter", [](const Node& n) { return n.stats.frames(); });
+    per_node(out, wall, "wallgl_node_received_bytes_total", "counter", [](const Node& n) { return n.stats.bytes_received(); });
+    per_node(out, wall, "wallgl_node_commands_total", "counter", [](const Node& n) { return n.stats.commands(); });
+    per_node(out, wall, "wallgl_node_gl_errors_total", "counter", [](const Node& n) { return n.stats.gl_errors(); });
+    return out;
+}
+
+}  // namespace wall::walld

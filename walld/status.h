@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// The wall as people and programs read it: JSON (docs/http-api.md) and Prometheus text. Pure.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "walld/wall.h"
+
+namespace wall::walld {
+
+nlohmann::json nodes_json(const Wall& wall);
+nlohmann::json tiles_json(const Wall& wall);
+nlohmann::json sessions_json(const Wall& wall);
+/// All of the above, and the wall's own data.
+nlohmann::json status_json(const Wall& wall);
+std::string metrics_text(const Wall& wall);
+
+}  // namespace wall::walld

@@ -1,0 +1,407 @@
+// SPDX-License-Identifier: MIT
+#include "walld/wall.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <set>
+
+#include "common/base/assert.h"
+#include "common/wire/limits.h"
+#include "walld/caps.h"
+#include "walld/messages.h"
+#include "walld/placement.h"
+
+namespace wall::walld {
+namespace {
+
+constexpr std::size_t kMaxSurfaces = 256;       // of a session
+constexpr std::size_t kMaxText = 256;           // bytes of a program's name or a window's title that are kept
+
+bool extent_ok(std::uint32_t width, std::uint32_t height) {
+    return width > 0 && height > 0 && width <= wire::kMaxSurfaceExtent && height <= wire::kMaxSurfaceExtent;
+}
+
+/// Bounded, so that sums of its members cannot overflow.
+bool rect_ok(const geom::Rect& rect) {
+    constexpr auto limit = static_cast<std::int32_t>(wire::kMaxSurfaceExtent);
+    return rect.width > 0 && rect.height > 0 && rect.width <= limit && rect.height <= limit && std::abs(std::int64_t{rect.x}) <= limit &&
+           std::abs(std::int64_t{rect.y}) <= limit;
+}
+
+template <class T>
+std::optional<T> number(std::string_view text) {
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || text.empty()) return {};
+    return value;
+}
+
+}  // namespace
+
+Result<Target> Target::parse(std::string_view text) {
+    const auto dot = text.find('.');
+    const auto session = number<std::uint32_t>(text.substr(0, dot));
+    const auto surface = dot == std::string_view::npos ? std::optional<std::uint32_t>(0) : number<std::uint32_t>(text.substr(dot + 1));
+    if (!session || !surface) return fail("'" + std::string(text) + "' is no session: expected its number, or NUMBER.SURFACE, as `wallctl sessions` shows them");
+    return Target{SessionId(*session), SurfaceId(*surface)};
+}
+
+Wall::Wall(config::WallConfig config, Outbox& out, RandomBytes random) : config_(std::move(config)), out_(out), random_(std::move(random)) {
+    for (const auto& node : config_.nodes) nodes_.push_back({.config = &node, .hello = {}, .stats = {}});
+}
+
+// ---- nodes ----
+
+Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_point now) {
+    const auto found = std::ranges::find(nodes_, hello.name(), [](const Node& n) { return n.config->name; });
+    if (hello.version() != wire::kProtocolVersion) return fail("this walld speaks protocol version " + std::to_string(wire::kProtocolVersion) + ", the node " + std::to_string(hello.version()));
+    if (found == nodes_.end()) return fail("node '" + hello.name() + "' is not in wall.toml");
+    if (found->up) return fail("node '" + hello.name() + "' is already here, as process " + std::to_string(found->hello.pid()));
+    const auto index = static_cast<NodeIndex>(found - nodes_.begin());
+    const bool same_process = found->incarnation > 0 && found->hello.pid() == hello.pid();
+    if (!same_process) ++found->incarnation;
+    found->up = true;
+    found->hello = hello;
+    welcome_node(index);
+    for (auto& [id, session] : sessions_) {
+        if (!same_process) session.tickets.erase(index);
+        hand_out_ticket(id, session, index);
+        out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(index, session.tickets[index])));
+    }
+    out_.to_node(index, stacking_message());
+    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.set_nodes(nodes_under(surface.rect), now)); });
+    return index;
+}
+
+void Wall::node_leaves(NodeIndex node, Clock::time_point now) {
+    nodes_[node].up = false;
+    proto::NodeDown down;
+    down.set_node(node);
+    for (const auto& [id, session] : sessions_) out_.to_client(id, make(&proto::Envelope::mutable_node_down, down));
+    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.set_nodes(nodes_under(surface.rect), now)); });
+}
+
+void Wall::node_rendered(NodeIndex node, const proto::Rendered& report, Clock::time_point now) {
+    const SurfaceKey key{SessionId(report.session()), SurfaceId(report.surface())};
+    if (auto* surface = find(key.surface, key.session)) present(key, surface->swap.rendered(node, report.frame(), now));
+}
+
+void Wall::node_faults(NodeIndex node, const proto::SessionFault& report) {
+    ++counters_.faults;
+    if (auto* session = find(SessionId(report.session()))) session->fault = nodes_[node].config->name + ": " + report.reason();
+}
+
+void Wall::welcome_node(NodeIndex node) {
+    proto::NodeWelcome welcome;
+    welcome.set_node(node);
+    welcome.set_background(config_.background);
+    for (std::uint32_t slot = 0; const auto& tile : nodes_[node].config->tiles) {
+        auto* entry = welcome.add_tiles();
+        entry->set_slot(slot++);
+        entry->set_name(tile.name);
+        *entry->mutable_rect() = to_proto(tile.rect);
+    }
+    out_.to_node(node, make(&proto::Envelope::mutable_node_welcome, welcome));
+}
+
+proto::NodeUp Wall::node_up_message(NodeIndex node, const std::string& ticket) const {
+    proto::NodeUp up;
+    up.set_node(node);
+    up.set_address(nodes_[node].hello.address());
+    up.set_ticket(ticket);
+    up.set_incarnation(nodes_[node].incarnation);
+    return up;
+}
+
+std::set<NodeIndex> Wall::nodes_under(const geom::Rect& rect) const {
+    std::set<NodeIndex> out;
+    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+        const bool shows = std::ranges::any_of(nodes_[i].config->tiles, [&](const auto& tile) { return geom::overlaps(tile.rect, rect); });
+        if (nodes_[i].up && shows) out.insert(i);
+    }
+    return out;
+}
+
+// ---- clients ----
+
+bool Wall::any_node_up() const { return std::ranges::any_of(nodes_, &Node::up); }
+
+SessionId Wall::open_session(const proto::ClientHello& hello, const std::function<void(SessionId)>& before_welcome) {
+    WALL_ASSERT(any_node_up());
+    const SessionId id(++last_session_);
+    auto& session = sessions_[id];
+    session.pid = hello.pid();
+    session.program = hello.program().substr(0, kMaxText);
+    session.name = hello.name().substr(0, kMaxText);
+    session.held = hello.hold();
+    if (hello.has_rect() && rect_ok(from_proto(hello.rect()))) session.rect = from_proto(hello.rect());
+    if (hello.fullscreen()) session.rect = config_.canvas();
+    ++counters_.sessions;
+    before_welcome(id);
+    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+        if (nodes_[i].up) hand_out_ticket(id, session, i);
+    }
+    welcome_client(id, session);
+    return id;
+}
+
+void Wall::hand_out_ticket(SessionId id, Session& session, NodeIndex node) {
+    auto& ticket = session.tickets[node];
+    if (ticket.empty()) ticket = random_(kTicketBytes);
+    proto::Ticket message;
+    message.set_session(id.value);
+    message.set_ticket(ticket);
+    out_.to_node(node, make(&proto::Envelope::mutable_ticket, message));
+}
+
+void Wall::welcome_client(SessionId id, const Session& session) {
+    proto::ClientWelcome welcome;
+    const auto canvas = config_.canvas();
+    welcome.set_session(id.value);
+    welcome.set_canvas_width(static_cast<std::uint32_t>(canvas.width));
+    welcome.set_canvas_height(static_cast<std::uint32_t>(canvas.height));
+    std::vector<const proto::GlCaps*> caps;
+    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+        for (std::uint32_t slot = 0; const auto& tile : nodes_[i].config->tiles) {
+            auto* entry = welcome.add_tiles();
+            entry->set_node(i);
+            entry->set_slot(slot++);
+            entry->set_name(tile.name);
+            *entry->mutable_rect() = to_proto(tile.rect);
+        }
+        if (!nodes_[i].up) continue;
+        *welcome.add_nodes() = node_up_message(i, session.tickets.at(i));
+        caps.push_back(&nodes_[i].hello.caps());
+    }
+    *welcome.mutable_caps() = common_caps(caps);
+    out_.to_client(id, make(&proto::Envelope::mutable_client_welcome, welcome));
+}
+
+void Wall::close_session(SessionId id) {
+    if (sessions_.erase(id) == 0) return;
+    std::erase_if(stacking_, [&](const SurfaceKey& key) { return key.session == id; });
+    proto::SessionEnd end;
+    end.set_session(id.value);
+    to_all_nodes(make(&proto::Envelope::mutable_session_end, end));
+    send_stacking();
+}
+
+Result<void> Wall::open_surface(SessionId id, const proto::SurfaceOpen& message, Clock::time_point now) {
+    auto* session = find(id);
+    const SurfaceKey key{id, SurfaceId(message.surface())};
+    if (!session || !key.surface || session->surfaces.contains(key.surface)) return fail("surface " + std::to_string(message.surface()) + " cannot be opened: expected a new number");
+    if (!extent_ok(message.width(), message.height())) return fail("surface of " + std::to_string(message.width()) + "x" + std::to_string(message.height()) + " pixels: expected 1 to " + std::to_string(wire::kMaxSurfaceExtent) + " a side");
+    if (session->surfaces.size() >= kMaxSurfaces) return fail("more than " + std::to_string(kMaxSurfaces) + " windows");
+    Surface surface{.width = message.width(), .height = message.height(), .title = message.title().substr(0, kMaxText), .rect = {},
+                    .swap = SwapCoordinator(config_.swap_timeout, session->held)};
+    surface.rect = first_rect(*session, surface, windows_placed_++);
+    auto& kept = session->surfaces.emplace(key.surface, std::move(surface)).first->second;
+    stacking_.push_back(key);
+    present(key, kept.swap.set_nodes(nodes_under(kept.rect), now));
+    send_placement(key, kept);
+    send_stacking();
+    return {};
+}
+
+/// The session's wanted rectangle goes to one window at a time; every other one is placed where there is room.
+geom::Rect Wall::first_rect(Session& session, Surface& surface, std::uint32_t number) const {
+    const bool given = std::ranges::any_of(session.surfaces, [](const auto& entry) { return entry.second.wanted_rect; });
+    if (session.rect && !given) {
+        surface.scaled = surface.wanted_rect = true;
+        return *session.rect;
+    }
+    std::vector<geom::Rect> taken;
+    for (const auto& key : stacking_) taken.push_back(find(key)->rect);
+    return place(config_.canvas(), taken, static_cast<std::int32_t>(surface.width), static_cast<std::int32_t>(surface.height), number);
+}
+
+void Wall::resize_surface(SessionId id, const proto::SurfaceResize& message, Clock::time_point now) {
+    const SurfaceKey key{id, SurfaceId(message.surface())};
+    auto* surface = find(key.surface, id);
+    if (!surface || !extent_ok(message.width(), message.height())) return;
+    surface->width = message.width();
+    surface->height = message.height();
+    auto rect = surface->rect;
+    if (!surface->scaled) {
+        rect.width = static_cast<std::int32_t>(message.width());
+        rect.height = static_cast<std::int32_t>(message.height());
+    }
+    move(key, rect, now);
+}
+
+void Wall::close_surface(SessionId id, SurfaceId surface) {
+    auto* session = find(id);
+    if (!session || session->surfaces.erase(surface) == 0) return;
+    std::erase(stacking_, SurfaceKey{id, surface});
+    send_stacking();
+}
+
+// ---- operators ----
+
+Result<SurfaceKey> Wall::resolve(const Target& target) const {
+    const auto session = sessions_.find(target.session);
+    if (session == sessions_.end()) return fail("there is no session " + std::to_string(target.session.value));
+    for (auto key = stacking_.rbegin(); key != stacking_.rend(); ++key) {
+        if (key->session == target.session && (!target.surface || key->surface == target.surface)) return *key;
+    }
+    if (target.surface) return fail("session " + std::to_string(target.session.value) + " has no window " + std::to_string(target.surface.value));
+    return fail("session " + std::to_string(target.session.value) + " has no window yet");
+}
+
+/// The one surface named, or all of the session (possibly none), bottom first.
+Result<std::vector<SurfaceKey>> Wall::surfaces_of(const Target& target) const {
+    if (!sessions_.contains(target.session)) return fail("there is no session " + std::to_string(target.session.value));
+    std::vector<SurfaceKey> out;
+    for (const auto& key : stacking_) {
+        if (key.session == target.session && (!target.surface || key.surface == target.surface)) out.push_back(key);
+    }
+    if (target.surface && out.empty()) return fail("session " + std::to_string(target.session.value) + " has no window " + std::to_string(target.surface.value));
+    return out;
+}
+
+Result<void> Wall::place_surface(const Target& target, const geom::Rect& rect, Clock::time_point now) {
+    if (!rect_ok(rect)) return fail("a place needs a width and a height from 1 to " + std::to_string(wire::kMaxSurfaceExtent) + ", at most as far from the corner");
+    const auto key = resolve(target);
+    if (!key) return tl::unexpected(key.error());
+    find(key->surface, key->session)->scaled = true;
+    move(*key, rect, now);
+    return {};
+}
+
+Result<void> Wall::raise(const Target& target) {
+    const auto keys = surfaces_of(target);
+    if (!keys) return tl::unexpected(keys.error());
+    for (const auto& key : *keys) {
+        std::erase(stacking_, key);
+        stacking_.push_back(key);
+    }
+    send_stacking();
+    return {};
+}
+
+Result<void> Wall::lower(const Target& target) {
+    const auto keys = surfaces_of(target);
+    if (!keys) return tl::unexpected(keys.error());
+    for (const auto& key : *keys) std::erase(stacking_, key);
+    stacking_.insert(stacking_.begin(), keys->begin(), keys->end());
+    send_stacking();
+    return {};
+}
+
+Result<void> Wall::ask_to_close(const Target& target) {
+    const auto keys = surfaces_of(target);
+    if (!keys) return tl::unexpected(keys.error());
+    for (const auto& key : *keys) {
+        proto::CloseRequest request;
+        request.set_surface(key.surface.value);
+        request.set_reason("closed by an operator");
+        out_.to_client(key.session, make(&proto::Envelope::mutable_close_request, request));
+    }
+    return {};
+}
+
+Result<void> Wall::hold(const Target& target, bool on, Clock::time_point now) {
+    const auto keys = surfaces_of(target);
+    if (!keys) return tl::unexpected(keys.error());
+    if (!target.surface) find(target.session)->held = on;
+    for (const auto& key : *keys) {
+        auto& swap = find(key.surface, key.session)->swap;
+        present(key, on ? swap.hold(now) : swap.release(now));
+    }
+    return {};
+}
+
+Result<void> Wall::step(const Target& target, std::uint32_t frames, Clock::time_point now) {
+    const auto keys = surfaces_of(target);
+    if (!keys) return tl::unexpected(keys.error());
+    if (keys->empty()) return fail("session " + std::to_string(target.session.value) + " has no window yet");
+    for (const auto& key : *keys) present(key, find(key.surface, key.session)->swap.step(frames, now));
+    return {};
+}
+
+// ---- time ----
+
+std::optional<Clock::time_point> Wall::next_deadline() const {
+    std::optional<Clock::time_point> out;
+    for (const auto& [id, session] : sessions_) {
+        for (const auto& [surface_id, surface] : session.surfaces) {
+            const auto deadline = surface.swap.deadline();
+            if (deadline && (!out || *deadline < *out)) out = deadline;
+        }
+    }
+    return out;
+}
+
+void Wall::tick(Clock::time_point now) {
+    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.tick(now)); });
+}
+
+// ---- inside ----
+
+Session* Wall::find(SessionId id) {
+    const auto found = sessions_.find(id);
+    return found == sessions_.end() ? nullptr : &found->second;
+}
+
+Surface* Wall::find(SurfaceId surface, SessionId session) { return const_cast<Surface*>(find(SurfaceKey{session, surface})); }
+
+const Surface* Wall::find(const SurfaceKey& key) const {
+    const auto session = sessions_.find(key.session);
+    if (session == sessions_.end()) return nullptr;
+    const auto found = session->second.surfaces.find(key.surface);
+    return found == session->second.surfaces.end() ? nullptr : &found->second;
+}
+
+void Wall::move(const SurfaceKey& key, const geom::Rect& rect, Clock::time_point now) {
+    auto& surface = *find(key.surface, key.session);
+    surface.rect = rect;
+    ++surface.layout_version;
+    send_placement(key, surface);
+    present(key, surface.swap.set_nodes(nodes_under(rect), now));
+}
+
+void Wall::present(const SurfaceKey& key, const Presents& presents) {
+    for (const auto& [node, frame] : presents) {
+        proto::Present message;
+        message.set_session(key.session.value);
+        message.set_surface(key.surface.value);
+        message.set_frame(frame);
+        out_.to_node(node, make(&proto::Envelope::mutable_present, message));
+        ++counters_.presents;
+    }
+}
+
+void Wall::send_placement(const SurfaceKey& key, const Surface& surface) {
+    proto::Placement placement;
+    placement.set_surface(key.surface.value);
+    placement.set_layout_version(surface.layout_version);
+    *placement.mutable_rect() = to_proto(surface.rect);
+    out_.to_client(key.session, make(&proto::Envelope::mutable_placement, placement));
+}
+
+proto::Envelope Wall::stacking_message() const {
+    proto::Stacking stacking;
+    for (const auto& key : stacking_) {
+        auto* entry = stacking.add_entries();
+        entry->set_session(key.session.value);
+        entry->set_surface(key.surface.value);
+    }
+    return make(&proto::Envelope::mutable_stacking, stacking);
+}
+
+void Wall::send_stacking() { to_all_nodes(stacking_message()); }
+
+void Wall::to_all_nodes(const proto::Envelope& message) {
+    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+        if (nodes_[i].up) out_.to_node(i, message);
+    }
+}
+
+void Wall::for_each_surface(const std::function<void(const SurfaceKey&, Surface&)>& visit) {
+    for (auto& [id, session] : sessions_) {
+        for (auto& [surface_id, surface] : session.surfaces) visit({id, surface_id}, surface);
+    }
+}
+
+}  // namespace wall::walld
