@@ -13,7 +13,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from glgen import emit_functions, emit_state, emit_wire, registry, state, wire  # noqa: E402
+from glgen import commands, emit_client, emit_functions, emit_setters, emit_state, emit_wire, registry, state, wire  # noqa: E402
 
 DRIVER_EXTRA = ["glFramebufferParameteriMESA", "glGetFramebufferParameterivMESA"]
 
@@ -23,6 +23,7 @@ def generate(registry_path, proto):
     gl = registry.load(registry_path)
     ops = wire.load(proto / "wire.toml")
     model = state.load(proto / "state.toml")
+    api = commands.load(proto / "commands.toml", gl, model)
     return {
         "glapi/wire.gen.h": emit_wire.wire_header(ops),
         "glapi/decode.gen.h": emit_wire.decode_header(ops),
@@ -31,6 +32,10 @@ def generate(registry_path, proto):
         "glstate/tables.gen.h": emit_state.tables_header(model),
         "glstate/state_tables.gen.cpp": emit_state.tables_source(model, gl),
         "glstate/driver_emit.gen.h": emit_state.driver_header(model, gl),
+        "client_lib/api.gen.h": emit_client.api_header(api, model),
+        "client_lib/entries.gen.cpp": emit_client.entries_source(api, gl),
+        "client_lib/tables.gen.cpp": emit_client.tables_source(api),
+        "client_lib/state_api.gen.cpp": emit_setters.setters_source(api, model, gl),
     }
 
 

@@ -39,7 +39,8 @@ def state_header(model):
     out.append(f"inline constexpr std::uint32_t kLastSentId = {last_sent.id + last_sent.count - 1};  ///< ids 1 to this travel; those of `local` do not\n")
     out.append(f"inline constexpr std::uint32_t kLastId = {model.last_id};\n\n")
     for struct, fields in model.structs.items():
-        out.append(f"struct {struct} {{\n" + "".join(f"    {TYPES[f.type][0]} {f.name};\n" for f in fields) + "};\n")
+        out.append(f"struct {struct} {{\n" + "".join(f"    {TYPES[f.type][0]} {f.name};\n" for f in fields)
+                   + f"    bool operator==(const {struct}&) const = default;\n}};\n")
         size = sum(TYPES[f.type][3] for f in fields)
         out.append(f"static_assert(sizeof({struct}) == {size} && std::is_trivially_copyable_v<{struct}>);\n\n")
     out += [_category_struct(c) for c in model.categories]

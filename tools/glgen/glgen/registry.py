@@ -10,6 +10,16 @@ from dataclasses import dataclass, field
 class Param:
     type: str   # C spelling, e.g. "const GLfloat *"
     name: str   # safe as a C++ identifier
+    len: str | None = None  # of a pointer: number of values, name of a parameter, or COMPSIZE(...)
+
+    @property
+    def pointer(self):
+        return self.type.endswith("*")
+
+    @property
+    def value_type(self):
+        """What a pointer points to, without const; else the type itself."""
+        return self.type.replace("const ", "").rstrip(" *") if self.pointer else self.type
 
 
 @dataclass
@@ -59,7 +69,7 @@ def _declared(element):
     return type_text, name
 
 
-_RESERVED = {"near": "near_", "far": "far_", "ref": "ref_", "string": "string_", "class": "class_"}
+_RESERVED = {"near": "near_", "far": "far_", "ref": "ref_", "string": "string_", "class": "class_", "c": "value"}
 
 
 def _command(element):
@@ -67,7 +77,7 @@ def _command(element):
     params = []
     for p in element.findall("param"):
         type_text, pname = _declared(p)
-        params.append(Param(type_text, _RESERVED.get(pname, pname)))
+        params.append(Param(type_text, _RESERVED.get(pname, pname), p.get("len")))
     alias = element.find("alias")
     return Command(name, returns, tuple(params), alias.get("name") if alias is not None else None)
 
@@ -87,8 +97,6 @@ def load(path):
         if api not in ("gl", "gles1", "gles2"):
             continue
         for require in feature.findall("require"):
-            if require.get("profile") == "core" and api == "gl":
-                pass  # a command required by the core profile is in the compatibility profile as well
             for item in require.findall("command"):
                 c = commands[item.get("name")]
                 if api == "gl":

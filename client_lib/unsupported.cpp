@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/unsupported.h"
+
+#include "client_lib/context.h"
+#include "client_lib/log.h"
+#include "client_lib/stats.h"
+#include "gen/client_lib/api.gen.h"
+
+namespace wall::client {
+
+void report_unsupported(std::size_t index) {
+    const char* name = kUnsupportedNames[index];
+    if (tls_context) tls_context->error(GL_INVALID_OPERATION);
+    if (stats().count_unsupported(name)) log(LogLevel::warn, "unsupported function=%s", name);
+}
+
+}  // namespace wall::client

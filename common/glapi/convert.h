@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Integers as fractions: the whole range maps to [0, 1] or [-1, 1] (OpenGL 1.2.1 table 2.6), computed as Mesa does, to
+// the last bit. Pure.
+#pragma once
+
+#include "common/glapi/gl_types.h"
+
+namespace wall::glapi {
+
+inline GLfloat to_fraction(GLubyte v) { return static_cast<GLfloat>(v) / 255.0f; }
+inline GLfloat to_fraction(GLbyte v) { return (2.0f * static_cast<GLfloat>(v) + 1.0f) * (1.0f / 255.0f); }
+inline GLfloat to_fraction(GLushort v) { return static_cast<GLfloat>(v) * (1.0f / 65535.0f); }
+inline GLfloat to_fraction(GLshort v) { return (2.0f * static_cast<GLfloat>(v) + 1.0f) * (1.0f / 65535.0f); }
+inline GLfloat to_fraction(GLuint v) { return static_cast<GLfloat>(static_cast<GLdouble>(v) * (1.0 / 4294967295.0)); }
+inline GLfloat to_fraction(GLint v) { return (2.0f * static_cast<GLfloat>(v) + 1.0f) * (1.0f / 4294967295.0f); }
+inline GLfloat to_fraction(GLfloat v) { return v; }
+inline GLfloat to_fraction(GLdouble v) { return static_cast<GLfloat>(v); }
+
+}  // namespace wall::glapi

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+#include "common/glapi/program_format.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "common/wire/operand_reader.h"
+
+namespace wall::glapi {
+namespace {
+
+class Writer {
+public:
+    std::vector<std::byte> out;
+
+    void put(std::uint32_t value) { append(&value, sizeof value); }
+    void put(const std::string& text) {
+        put(static_cast<std::uint32_t>(text.size()));
+        append(text.data(), text.size());
+        out.resize((out.size() + 3) & ~std::size_t{3});
+    }
+    void put(const std::vector<std::uint32_t>& words) {
+        put(static_cast<std::uint32_t>(words.size()));
+        append(words.data(), words.size() * sizeof(std::uint32_t));
+    }
+    template <class T, class Put>
+    void list(const std::vector<T>& items, Put&& put_item) {
+        put(static_cast<std::uint32_t>(items.size()));
+        for (const T& item : items) put_item(item);
+    }
+
+private:
+    void append(const void* from, std::size_t bytes) {
+        const auto* first = static_cast<const std::byte*>(from);
+        out.insert(out.end(), first, first + bytes);
+    }
+};
+
+class Reader {
+public:
+    explicit Reader(std::span<const std::byte> bytes) : in_(bytes) {}
+
+    std::uint32_t word() { return in_.get<std::uint32_t>(); }
+    bool flag() { return word() != 0; }
+    std::string text() {
+        const auto bytes = in_.bytes();
+        return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    }
+    std::vector<std::uint32_t> words() {
+        const std::size_t count = word();
+        const auto bytes = count > in_.remaining() / 4 ? in_.raw(in_.remaining() + 1) : in_.raw(count * 4);
+        std::vector<std::uint32_t> out(bytes.size() / 4);
+        if (!bytes.empty()) std::memcpy(out.data(), bytes.data(), bytes.size());
+        return out;
+    }
+    /// Every item takes at least one word, so that a length cannot ask for more than what is there.
+    template <class T, class Get>
+    void list(std::vector<T>& items, Get&& get_item) {
+        const std::size_t count = word();
+        if (count > in_.remaining() / 4) return in_.fail();
+        for (std::size_t i = 0; i < count && in_.ok(); ++i) items.push_back(get_item());
+    }
+    bool complete() const { return in_.ok() && in_.remaining() == 0; }
+
+private:
+    wire::OperandReader in_;
+};
+
+template <class T>
+std::optional<T> if_complete(const Reader& reader, T&& value) {
+    if (!reader.complete()) return std::nullopt;
+    return std::move(value);
+}
+
+constexpr auto kReal = UniformBase::real;
+constexpr auto kInteger = UniformBase::integer;
+constexpr auto kUnsigned = UniformBase::unsigned_integer;
+constexpr auto kBoolean = UniformBase::boolean;
+constexpr auto kSampler = UniformBase::sampler;
+
+constexpr UniformType kUniformTypes[] = {
+    {GL_FLOAT, kReal, 1, 1, 0},
+    {GL_FLOAT_VEC2, kReal, 1, 2, 0},
+    {GL_FLOAT_VEC3, kReal, 1, 3, 0},
+    {GL_FLOAT_VEC4, kReal, 1, 4, 0},
+    {GL_INT, kInteger, 1, 1, 0},
+    {GL_INT_VEC2, kInteger, 1, 2, 0},
+    {GL_INT_VEC3, kInteger, 1, 3, 0},
+    {GL_INT_VEC4, kInteger, 1, 4, 0},
+    {GL_UNSIGNED_INT, kUnsigned, 1, 1, 0},
+    {GL_UNSIGNED_INT_VEC2, kUnsigned, 1, 2, 0},
+    {GL_UNSIGNED_INT_VEC3, kUnsigned, 1, 3, 0},
+    {GL_UNSIGNED_INT_VEC4, kUnsigned, 1, 4, 0},
+    {GL_BOOL, kBoolean, 1, 1, 0},
+    {GL_BOOL_VEC2, kBoolean, 1, 2, 0},
+    {GL_BOOL_VEC3, kBoolean, 1, 3, 0},
+    {GL_BOOL_VEC4, kBoolean, 1, 4, 0},
+    {GL_FLOAT_MAT2, kReal, 2, 2, 0},
+    {GL_FLOAT_MAT3, kReal, 3, 3, 0},
+    {GL_FLOAT_MAT4, kReal, 4, 4, 0},
+    {GL_FLOAT_MAT2x3, kReal, 2, 3, 0},
+    {GL_FLOAT_MAT2x4, kReal, 2, 4, 0},
+    {GL_FLOAT_MAT3x2, kReal, 3, 2, 0},
+    {GL_FLOAT_MAT3x4, kReal, 3, 4, 0},
+    {GL_FLOAT_MAT4x2, kReal, 4, 2, 0},
+    {GL_FLOAT_MAT4x3, kReal, 4, 3, 0},
+    {GL_SAMPLER_1D, kSampler, 1, 1, GL_TEXTURE_1D},
+    {GL_SAMPLER_2D, kSampler, 1, 1, GL_TEXTURE_2D},
+    {GL_SAMPLER_3D, kSampler, 1, 1, GL_TEXTURE_3D},
+    {GL_SAMPLER_CUBE, kSampler, 1, 1, GL_TEXTURE_CUBE_MAP},
+    {GL_SAMPLER_1D_SHADOW, kSampler, 1, 1, GL_TEXTURE_1D},
+    {GL_SAMPLER_2D_SHADOW, kSampler, 1, 1, GL_TEXTURE_2D},
+    {GL_SAMPLER_2D_RECT, kSampler, 1, 1, GL_TEXTURE_RECTANGLE},
+    {GL_SAMPLER_2D_RECT_SHADOW, kSampler, 1, 1, GL_TEXTURE_RECTANGLE},
+};
+
+}  // namespace
+
+std::vector<std::byte> encode(const ProgramDefinition& definition) {
+    Writer to;
+    to.list(definition.shaders, [&](const ShaderSource& s) { to.put(s.type), to.put(s.compiled), to.put(s.source); });
+    to.list(definition.attributes, [&](const AttributeBinding& a) { to.put(a.index), to.put(a.name); });
+    to.list(definition.uniforms, [&](const UniformName& u) { to.put(u.size), to.put(u.name); });
+    return std::move(to.out);
+}
+
+std::optional<ProgramDefinition> decode_definition(std::span<const std::byte> bytes) {
+    Reader from(bytes);
+    ProgramDefinition out;
+    from.list(out.shaders, [&] { return ShaderSource{from.word(), from.flag(), from.text()}; });
+    from.list(out.attributes, [&] { return AttributeBinding{from.word(), from.text()}; });
+    from.list(out.uniforms, [&] { return UniformName{from.word(), from.text()}; });
+    return if_complete(from, std::move(out));
+}
+
+std::vector<std::byte> encode(const ProgramReflection& reflection) {
+    Writer to;
+    to.put(reflection.linked);
+    to.put(reflection.log);
+    to.list(reflection.uniforms, [&](const ActiveUniform& u) {
+        to.put(u.type), to.put(u.size), to.put(u.built_in), to.put(u.array), to.put(u.name), to.put(u.initial);
+    });
+    to.list(reflection.attributes, [&](const ActiveAttribute& a) {
+        to.put(a.type), to.put(a.size), to.put(static_cast<std::uint32_t>(a.location)), to.put(a.name);
+    });
+    return std::move(to.out);
+}
+
+std::optional<ProgramReflection> decode_reflection(std::span<const std::byte> bytes) {
+    Reader from(bytes);
+    ProgramReflection out;
+    out.linked = from.flag();
+    out.log = from.text();
+    from.list(out.uniforms, [&] { return ActiveUniform{from.word(), from.word(), from.flag(), from.flag(), from.text(), from.words()}; });
+    from.list(out.attributes, [&] { return ActiveAttribute{from.word(), from.word(), static_cast<std::int32_t>(from.word()), from.text()}; });
+    return if_complete(from, std::move(out));
+}
+
+std::vector<std::byte> encode(const CompileResult& result) {
+    Writer to;
+    to.put(result.compiled);
+    to.put(result.log);
+    return std::move(to.out);
+}
+
+std::optional<CompileResult> decode_compile_result(std::span<const std::byte> bytes) {
+    Reader from(bytes);
+    CompileResult out{from.flag(), from.text()};
+    return if_complete(from, std::move(out));
+}
+
+const UniformType* find_uniform_type(GLenum type) {
+    const auto* found = std::find_if(std::begin(kUniformTypes), std::end(kUniformTypes), [type](const UniformType& t) { return t.type == type; });
+    return found == std::end(kUniformTypes) ? nullptr : found;
+}
+
+}  // namespace wall::glapi

@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: MIT
+"""gen/client_lib/api.gen.h, entries.gen.cpp (entry points, names), tables.gen.cpp (immediate, inside_begin, compile,
+replay). The generated state commands are emit_setters.py's."""
+
+from .text import header
+
+API_NOTES = """
+The implemented commands: api::NAME does one in its usual mode; GlTable has a place for each, and the three tables are a
+context's modes. Written by hand in client_lib: api::NAME of the commands marked `by hand`; compile::NAME and replay::NAME
+of those marked `record`; hand::NAME, setters of single parameters; gl_entry_NAME of those marked `hot`.
+"""
+
+
+def _signature(i, namespace=""):
+    params = "".join(f", {p.type} {p.name}".replace("* ", "*") for p in i.command.params)
+    return f"{i.command.returns} {namespace}{i.name}(Context& c{params})"
+
+
+def _declaration(i):
+    return _signature(i).replace("Context& c", "Context&")
+
+
+def _pointer(i):
+    params = "".join(f", {p.type}" for p in i.command.params)
+    return f"{i.command.returns} (*{i.name})(Context&{params})"
+
+
+def api_header(commands, model):
+    canonical = commands.canonical
+    out = [header("gl.xml, proto/gl/commands.toml, proto/gl/state.toml", API_NOTES, []),
+           '#include <cstddef>\n#include <cstdint>\n#include <span>\n\n#include "common/glapi/gl_types.h"\n\n'
+           "namespace wall::client {\n\nclass Context;\n\nnamespace api {\n\n"]
+    for i in canonical:
+        note = " // by hand" if i.way == "hand" else ""
+        out.append(_declaration(i) + ";" + note + "\n")
+    out.append("\n}  // namespace api\n\n/// Setters of single parameters and words, for what is more than storing a value.\nnamespace hand {\n\n")
+    for e in model.elements:
+        if e.hand and e.param:
+            out.append(f"void set_{e.name}(Context&, unsigned i, const double* v);\n")
+    out.append("\n}  // namespace hand\n\n/// Putting a command into the display list being compiled (and executing it, if asked for).\nnamespace compile {\n\n")
+    recorded = [i for i in canonical if "record" in i.flags]
+    out += [_declaration(i) + ";\n" for i in recorded]
+    out.append("\n}  // namespace compile\n\n/// Executing it from there: the payload is what compile::NAME appended.\nnamespace replay {\n\n")
+    out += [f"void {i.name}(Context&, std::span<const std::byte> payload);\n" for i in recorded]
+    out.append("\n}  // namespace replay\n\nstruct GlTable {\n")
+    out += [f"    {_pointer(i)};\n" for i in canonical]
+    out.append("};\n\nnamespace tables {\n"
+               "extern const GlTable immediate;     ///< each command at once\n"
+               "extern const GlTable inside_begin;  ///< between glBegin and glEnd: most are errors\n"
+               "extern const GlTable compile;       ///< into the context's list()\n"
+               "}  // namespace tables\n\n")
+    out.append("/// A recorded command's number (common/glapi/recorder.h).\nenum class CommandId : std::uint16_t {\n"
+               + "".join(f"    {i.name},\n" for i in canonical) + "};\n"
+               f"inline constexpr std::size_t kCommandCount = {len(canonical)};\n"
+               "extern const char* const kCommandNames[kCommandCount];\n\n"
+               "/// Executes a recorded command, as between glBegin and glEnd if the context is there.\n"
+               "void replay_command(Context& c, std::uint16_t command, std::span<const std::byte> payload);\n\n")
+    out.append("/// An entry point by name.\nstruct ProcEntry {\n    const char* name;\n    void (*entry)();\n};\n"
+               "extern const std::span<const ProcEntry> kProcs;  ///< every function of gl.xml, by name\n\n")
+    unsupported = _unsupported(commands)
+    out.append("/// Commands that are not implemented; report_unsupported (unsupported.h) takes an index of these.\n"
+               f"inline constexpr std::size_t kUnsupportedCount = {len(unsupported)};\n"
+               "extern const char* const kUnsupportedNames[kUnsupportedCount];\n\n")
+    hot = _hot(commands)
+    out.append("}  // namespace wall::client\n\n// Entry points written by hand.\nnamespace wall::client {\n\n")
+    out += [f"{i.command.returns} GLAPIENTRY gl_entry_{i.name}({i.command.declaration});\n" for i in hot]
+    out.append("\n}  // namespace wall::client\n")
+    return "".join(out)
+
+
+def _unsupported(commands):
+    return [i for i in commands.unique if i.later]
+
+
+def _hot(commands):
+    return [i for i in commands.unique if "hot" in i.flags]
+
+
+# ---- tables ----
+
+def tables_source(commands):
+    canonical = commands.canonical
+    out = [header("gl.xml and proto/gl/commands.toml", "The modes of a context as tables, display list recording and replay.", [], pragma=False),
+           '#include "client_lib/context.h"\n#include "client_lib/param_commands.h"\n#include "common/glapi/recorder.h"\n'
+           '#include "gen/client_lib/api.gen.h"\n\nnamespace wall::client {\n\nnamespace {\n\n'
+           "using glapi::recorded_array;\n\n"
+           "/// What a command does at once, while a list may be compiled as well.\n"
+           "const GlTable& execution_table(Context& c) { return c.packer.inside() ? tables::inside_begin : tables::immediate; }\n\n"
+           "/// A command that is an error between glBegin and glEnd.\n"
+           "template <class Function>\nstruct RefusedInside;\n"
+           "template <class R, class... A>\nstruct RefusedInside<R (*)(Context&, A...)> {\n"
+           "    static R call(Context& c, A...) {\n        c.error(GL_INVALID_OPERATION);\n        return R();\n    }\n};\n\n"
+           "}  // namespace\n\nnamespace {\n\n"]
+    automatic = [i for i in canonical if i.in_list and "record" not in i.flags]
+    for i in automatic:
+        out.append(_compile(i, commands))
+    for i in automatic:
+        out.append(_replay(i))
+    out.append("struct ReplayRow {\n    void (*run)(Context&, std::span<const std::byte>);  ///< null: not in lists\n};\n\n"
+               "const ReplayRow kReplayRows[kCommandCount] = {\n")
+    for i in canonical:
+        run = "nullptr" if not i.in_list else f"&replay::{i.name}" if "record" in i.flags else f"&replay_{i.name}"
+        out.append(f"    {{{run}}},  // {i.name}\n")
+    out.append("};\n\n}  // namespace\n\n"
+               "void replay_command(Context& c, std::uint16_t command, std::span<const std::byte> payload) {\n"
+               "    if (command < kCommandCount && kReplayRows[command].run) kReplayRows[command].run(c, payload);\n}\n\n"
+               "const char* const kCommandNames[kCommandCount] = {\n" + "".join(f'    "gl{i.name}",\n' for i in canonical) + "};\n\n"
+               "namespace tables {\n\n")
+    out.append(_table("immediate", canonical, lambda i: f"&api::{i.name}"))
+    out.append(_table("inside_begin", canonical,
+                      lambda i: f"&api::{i.name}" if "inside" in i.flags else f"&RefusedInside<decltype(GlTable::{i.name})>::call"))
+    out.append(_table("compile", canonical,
+                      lambda i: f"&api::{i.name}" if not i.in_list else f"&compile::{i.name}" if "record" in i.flags else f"&compile_{i.name}"))
+    out.append("}  // namespace tables\n}  // namespace wall::client\n")
+    return "".join(out)
+
+
+def _table(name, canonical, value):
+    return f"const GlTable {name} = {{\n" + "".join(f"    {value(i)},\n" for i in canonical) + "};\n\n"
+
+
+def _array_length(i, p, commands):
+    if p.len and p.len.startswith("COMPSIZE"):
+        family, _ = commands.family_of(i.name)
+        return f"param_components(ParamFamily::{family}, pname)"
+    assert p.len, f"{i.name}: {p.name} has no length in gl.xml: word `record`"
+    return p.len
+
+
+def _compile(i, commands):
+    args = "".join(f", {p.name}" for p in i.command.params)
+    recorded = "".join(", " + (f"recorded_array({p.name}, {_array_length(i, p, commands)})" if p.pointer else p.name)
+                       for p in i.command.params)
+    return (_signature(i, "compile_") + " {\n"
+            f"    c.list().record(static_cast<std::uint16_t>(CommandId::{i.name}){recorded});\n"
+            f"    if (c.list().execute) execution_table(c).{i.name}(c{args});\n}}\n")
+
+
+def _replay(i):
+    params = i.command.params
+    lines = [f"void replay_{i.name}(Context& c, std::span<const std::byte>{' payload' if params else ''}) {{\n"]
+    if params:
+        lines.append("    glapi::RecordReader in(payload);\n")
+    for p in params:
+        read = f"in.array<{p.value_type}>()" if p.pointer else f"in.get<{p.type}>()"
+        lines.append(f"    const auto {p.name} = {read};\n")
+    lines.append(f"    execution_table(c).{i.name}({', '.join(['c'] + [p.name for p in params])});\n}}\n")
+    return "".join(lines)
+
+
+# ---- entry points ----
+
+def entries_source(commands, registry):
+    out = [header("gl.xml and proto/gl/commands.toml", "The functions that applications call, and their names.", [], pragma=False),
+           '#include "client_lib/context.h"\n#include "client_lib/current.h"\n#include "client_lib/param_commands.h"\n'
+           '#include "client_lib/unsupported.h"\n#include "common/glapi/convert.h"\n#include "gen/client_lib/api.gen.h"\n\n'
+           "namespace wall::client {\nnamespace {\n\nusing glapi::to_fraction;\n\n"]
+    for i in commands.unique:
+        if not i.later and "hot" not in i.flags:
+            out.append(_entry(i, commands, registry))
+    unsupported = _unsupported(commands)
+    out.append("/// Any signature: the calling convention lets a callee ignore its arguments.\n"
+               "template <std::size_t kIndex>\nstd::uintptr_t GLAPIENTRY unsupported() {\n    report_unsupported(kIndex);\n    return 0;\n}\n\n"
+               "template <class F>\nProcEntry proc(const char* name, F* entry) {\n    return {name, reinterpret_cast<void (*)()>(entry)};\n}\n\n")
+    index = {i.name: n for n, i in enumerate(unsupported)}
+    names = sorted(commands.all)
+    out.append(f"const ProcEntry kProcTable[] = {{\n")
+    for name in names:
+        i = commands.all[name]
+        out.append(f'    proc("{name}", &unsupported<{index[i.name]}>),\n' if i.later else f'    proc("{name}", &gl_entry_{i.name}),\n')
+    out.append("};\n\n}  // namespace\n\nconst std::span<const ProcEntry> kProcs = kProcTable;\n\n"
+               "const char* const kUnsupportedNames[kUnsupportedCount] = {\n" + "".join(f'    "gl{i.name}",\n' for i in unsupported) + "};\n\n"
+               "}  // namespace wall::client\n")
+    return "".join(out)
+
+
+def _entry(i, commands, registry):
+    returns = i.command.returns
+    none = "return;" if returns == "void" else "return {};"
+    lines = [f"{returns} GLAPIENTRY gl_entry_{i.name}({i.command.declaration}) {{\n",
+             f"    Context* c = tls_context;\n    if (!c) {none}\n"]
+    lines += [f"    {line}\n" for line in _entry_body(i, commands, registry)]
+    lines.append("}\n")
+    return "".join(lines)
+
+
+def _call(i, name, args):
+    give = "" if i.command.returns == "void" else "return "
+    return f"{give}c->table->{name}({', '.join(['*c'] + args)});"
+
+
+def _entry_body(i, commands, registry):
+    if commands.has_slot(i):
+        return [_call(i, i.name, [p.name for p in i.command.params])]
+    if i.way == "as":
+        target = registry.commands["gl" + i.target]
+        return [_call(i, i.target, [_converted(p.type, a, False) for p, a in zip(target.params, i.args)])]
+    if i.way == "convert":
+        return [_call(i, i.target, _convert_args(i, registry.commands["gl" + i.target]))]
+    return _param_entry(i, commands)
+
+
+def _converted(wanted, expression, norm):
+    if norm:
+        return f"to_fraction({expression})"
+    return f"static_cast<{wanted}>({expression})"
+
+
+def _convert_args(i, target):
+    """The target's arguments: leading enums and indices as they are, vectors spread out, missing components filled."""
+    given = []
+    for p in i.command.params:
+        if p.pointer:
+            assert p.len and p.len.isdigit(), f"{i.name}: {p.name}: length unknown"
+            given += [(f"{p.name}[{k}]", p.value_type) for k in range(int(p.len))]
+        else:
+            given.append((p.name, p.type))
+    out = []
+    for n, p in enumerate(target.params):
+        if n >= len(given):
+            last = n == len(target.params) - 1 and len(target.params) >= 4
+            out.append("255" if p.type == "GLubyte" else "1" if last else "0")
+        elif given[n][1] == p.type:
+            out.append(given[n][0])
+        else:
+            out.append(_converted(p.type, given[n][0], "norm" in i.flags))
+    return out
+
+
+def _param_entry(i, commands):
+    family, form = commands.family_of(i.name)
+    keys = commands.families[family]
+    lead = [p.name for p in i.command.params[:-2]]
+    pname, value = i.command.params[-2].name, i.command.params[-1].name
+    table = f"c->table->{family}{keys['form']}"
+    args = ", ".join(["*c"] + lead + [pname])
+    if keys["form"] == "f":
+        return [f"{table}({args}, static_cast<GLfloat>({value}));"]
+    if keys["form"] == "i":
+        return [f"{table}({args}, rounded_param({value}));"]
+    if form.endswith("v"):
+        return ["GLfloat v[4] = {};", f"convert_params(ParamFamily::{family}, {pname}, {value}, v);", f"{table}({args}, v);"]
+    return [f"const GLfloat v[4] = {{static_cast<GLfloat>({value})}};",
+            f"if (param_components(ParamFamily::{family}, {pname}) > 1) return c->error(GL_INVALID_ENUM);",
+            f"{table}({args}, v);"]

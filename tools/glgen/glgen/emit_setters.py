@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: MIT
+"""gen/client_lib/state_api.gen.cpp: api functions that follow from state.toml, with their validation."""
+
+from .emit_state import value_kind
+from .state import TYPES
+from .text import header
+
+
+def setters_source(commands, model, registry):
+    out = [header("proto/gl/state.toml and proto/gl/commands.toml", "Commands that set one element of the state, or read parameters.", [], pragma=False),
+           '#include <array>\n\n#include "client_lib/context.h"\n#include "client_lib/param_commands.h"\n#include "gen/client_lib/api.gen.h"\n\n'
+           "namespace wall::client {\n\nnamespace el = glstate::el;\nusing namespace glstate;  // value types\n\nnamespace {\n\n"]
+    for name, words in model.valid.items():
+        if not words[0].isdigit():
+            out.append(f"constexpr GLenum kValid_{name}[] = {{\n" + "".join(f"    {w},\n" for w in words) + "};\n")
+    out.append("\n// ---- parameters: v is what the command gave, i the element's index ----\n\n")
+    for e in model.elements:
+        if e.param and not e.hand and not model.families[e.family].get("hand"):
+            out.append(_param_setter(e, model))
+    out.append(_param_rows(model, registry))
+    out.append(_cap_rows(model, registry))
+    out.append("}  // namespace\n\nconst std::span<const ParamRow> kParamRows = kParamTable;\nconst std::span<const CapRow> kCapRows = kCapTable;\n\n"
+               "namespace api {\n\n")
+    by_set = {e.set: e for e in model.elements if e.set}
+    for i in commands.canonical:
+        if i.way == "state":
+            out.append(_setter(i, by_set[i.name]))
+        elif i.way == "param":
+            out.append(_param_command(i, commands))
+        elif i.way == "caps":
+            out.append(_caps_command(i))
+    out.append("}  // namespace api\n}  // namespace wall::client\n")
+    return "".join(out)
+
+
+def _literal(type_, value):
+    if TYPES[type_][1] == "float":
+        return f"{float(value)}f"
+    return repr(float(value)) if type_ == "double" else str(value)
+
+
+def _checks(e, f, expression):
+    """Lines that refuse a bad value of one component."""
+    lines = []
+    valid = e.of_field("valid", f.name)
+    if valid and not isinstance(valid, dict):
+        lines.append(f"if (!one_of({expression}, kValid_{valid})) return c.error(GL_INVALID_ENUM);")
+    for key, operator in (("min", "<"), ("max", ">"), ("above", "<="), ("below", ">=")):
+        limit = e.of_field(key, f.name)
+        if limit is not None and not isinstance(limit, dict):
+            other = e.keys.get("or")
+            exempt = f" && {expression} != {_literal(f.type, other)}" if other is not None else ""
+            lines.append(f"if ({expression} {operator} {_literal(f.type, limit)}{exempt}) return c.error(GL_INVALID_VALUE);")
+    return lines
+
+
+def _clamped(e, f, expression):
+    clamp = e.of_field("clamp", f.name)
+    if not clamp or isinstance(clamp, dict):
+        return expression
+    low, high = (_literal(f.type, v) for v in clamp)
+    return f"clamped({expression}, {low}, {high})"
+
+
+def _component(f, expression, given):
+    """A parameter of the command as the component's type."""
+    wanted = TYPES[f.type][0] if f.components == 1 else "float"
+    if f.type == "flag":
+        return f"to_flag({expression})"
+    plain = {"std::int32_t": ("GLint", "GLsizei"), "std::uint32_t": ("GLuint",), "GLenum": ("GLenum",), "float": ("GLfloat",),
+             "double": ("GLdouble",)}[wanted]
+    return expression if given in plain else f"static_cast<{wanted}>({expression})"
+
+
+def _setter(i, e):
+    params = list(i.command.params)
+    lines, index = [], "0"
+    if e.index == "face":
+        params.pop(0)
+    order = e.args.split() if e.args else [f.name for f in e.fields]
+    fields = {f.name: f for f in e.fields}
+    values = {}
+    if e.plain:
+        f = e.fields[0]
+        for p in params:
+            lines += _checks(e, f, p.name)
+        parts = [_clamped(e, f, _component(f, p.name, p.type)) for p in params]
+        value = parts[0] if f.components == 1 else f"{{{', '.join(parts)}}}"
+    else:
+        for name, p in zip(order, params):
+            lines += _checks(e, fields[name], p.name)
+            values[name] = _clamped(e, fields[name], _component(fields[name], p.name, p.type))
+        value = "{" + ", ".join(values[f.name] for f in e.fields) + "}"
+    face = i.command.params[0].name
+    if e.index == "face":
+        lines.insert(0, f"if (!is_face({face})) return c.error(GL_INVALID_ENUM);")
+        lines += [f"for (unsigned i = 0; i < 2; ++i)", f"    if (names_face({face}, i)) c.set<el::{e.name}>(i, {value});"]
+    else:
+        lines.append(f"c.set<el::{e.name}>({index}, {value});")
+    declared = ", ".join(["Context& c"] + [f"{p.type} {p.name}" for p in i.command.params])
+    return f"void {i.name}({declared}) {{\n" + "".join(f"    {line}\n" for line in lines) + "}\n"
+
+
+def _param_setter(e, model):
+    f = e.fields[0]
+    lines = []
+    component = TYPES[f.type][1]
+    if f.components > 1:
+        lines.append(f"c.set<el::{e.name}>(i, vector<{TYPES[f.type][0]}>(v));")
+    else:
+        get = {"enum": "to_enum(v[0])", "flag": "to_flag(v[0])", "i32": "to_int(v[0])", "u32": "to_int(v[0])", "float": "static_cast<float>(v[0])"}[component]
+        lines.append(f"const {TYPES[f.type][0]} value = {get};")
+        if e.valid and model.valid[e.valid][0].isdigit():
+            wrong = " && ".join(f"value != {w}" for w in model.valid[e.valid])
+            lines.append(f"if ({wrong}) return c.error(GL_INVALID_VALUE);")
+            lines += _checks(_without_valid(e), f, "value")
+        else:
+            lines += _checks(e, f, "value")
+        lines.append(f"c.set<el::{e.name}>(i, {_clamped(e, f, 'value')});")
+    return f"void set_{e.name}(Context& c, unsigned i, const double* v) {{\n" + "".join(f"    {line}\n" for line in lines) + "}\n"
+
+
+def _without_valid(e):
+    import dataclasses
+    return dataclasses.replace(e, keys={k: v for k, v in e.keys.items() if k != "valid"})
+
+
+def _param_rows(model, registry):
+    rows = []
+    for e in model.elements:
+        if not e.param:
+            continue
+        f = e.fields[0]
+        by_hand = model.families[e.family].get("hand")
+        setter = "nullptr" if by_hand else f"&hand::set_{e.name}" if e.hand else f"&set_{e.name}"
+        norm = "true" if value_kind(e, f) == "normalized" else "false"
+        rows.append((e.family, e.param_target or "0", e.pname, f.components, norm, setter))
+    for family, keys in model.families.items():
+        for pname, shape in keys.get("shape", {}).items():
+            parts = shape.split()
+            rows.append((family, "0", "kAnyParam" if pname == "*" else pname, int(parts[0]), "true" if "norm" in parts else "false", "nullptr"))
+    rows.sort(key=lambda r: (r[0], r[2] == "kAnyParam"))
+    out = f"\nconst std::array<ParamRow, {len(rows)}> kParamTable = {{{{\n"
+    for family, target, pname, n, norm, setter in rows:
+        out += f"    {{ParamFamily::{family}, {target}, {pname}, {n}, {norm}, {setter}}},\n"
+    return out + "}};\n\n"
+
+
+def _cap_rows(model, registry):
+    rows = sorted((registry.enums[word], word, first, e) for e in model.elements for word, first in e.caps)
+    out = "template <class E>\nvoid set_cap(Context& c, unsigned i, glstate::Flag on) {\n    c.set<E>(i, on);\n}\n\n"
+    out += f"const std::array<CapRow, {len(rows)}> kCapTable = {{{{\n"
+    for _, word, first, e in rows:
+        out += f"    {{{word}, &set_cap<el::{e.name}>, {first}, {e.unit_stride}}},\n"
+    return out + "}};\n\n"
+
+
+def _param_command(i, commands):
+    declared = ", ".join(["Context& c"] + [f"{p.type} {p.name}" for p in i.command.params])
+    names = [p.name for p in i.command.params]
+    if i.cls == "query":
+        family, _ = commands.family_of(i.name[3:])
+        lead = names[0] if len(names) == 3 else "0"
+        return f"void {i.name}({declared}) {{\n    get_params(c, ParamFamily::{family}, {lead}, {names[-2]}, {names[-1]});\n}}\n"
+    family, form = commands.family_of(i.name)
+    lead = names[0] if len(names) == 3 else "0"
+    value = names[-1]
+    give = f"set_params(c, ParamFamily::{family}, {lead}, {names[-2]}, "
+    if form.endswith("v"):
+        return f"void {i.name}({declared}) {{\n    {give}{value});\n}}\n"
+    return f"void {i.name}({declared}) {{\n    {give}&{value});\n}}\n"
+
+
+def _caps_command(i):
+    if i.name == "IsEnabled":
+        return "GLboolean IsEnabled(Context& c, GLenum cap) { return is_capability_set(c, cap); }\n"
+    on = "true" if i.name == "Enable" else "false"
+    return f"void {i.name}(Context& c, GLenum cap) {{ set_capability(c, cap, {on}); }}\n"
