@@ -232,6 +232,17 @@ void apply_attribute(glstate::State& state, glapi::Op op, const std::byte* opera
             current.edge_flag = flag != 0;
             break;
         }
+        case Op::MultiTexCoord4f:
+        case Op::VertexAttrib4f: {
+            std::uint32_t index;
+            std::memcpy(&index, operand, sizeof index);
+            operand += sizeof index;
+            floats(4);
+            auto& element = op == Op::MultiTexCoord4f ? current.texcoord[index] : current.vertex_attrib[index];
+            element = {f[0], f[1], f[2], f[3]};
+            break;
+        }
+        case Op::Indexf: floats(1); current.color_index = f[0]; break;
         default: break;
     }
 }

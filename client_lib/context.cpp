@@ -19,7 +19,7 @@ constinit thread_local Packer* tls_packer = nullptr;
 
 Context::Context(std::shared_ptr<ShareGroup> share, const ContextOptions&)
     : id(next_object_id()),
-      table(&immediate_table),
+      table(&tables::immediate),
       lists(std::make_unique<ListState>()),
       attributes(std::make_unique<AttributeStacks>()),
       select(std::make_unique<SelectState>()),
@@ -65,13 +65,13 @@ const SurfaceLayout& Context::draw_layout() const { return select->layout ? *sel
 
 void Context::begin_primitive(GLenum mode) {
     packer.begin(mode);
-    if (table == &immediate_table) table = &inside_begin_table;
+    if (table == &tables::immediate) table = &tables::inside_begin;
 }
 
 void Context::end_primitive() {
     packer.end();
-    if (table == &inside_begin_table) table = &immediate_table;
-    if (packer.bytes() > kBlockBytes) flush_block();
+    if (table == &tables::inside_begin) table = &tables::immediate;
+    if (packer.bytes() > kBlockBytes && !packer.closed()) flush_block();
 }
 
 void Context::submit_block() {

@@ -16,6 +16,7 @@
 #include "client_lib/router.h"
 #include "client_lib/session.h"
 #include "gen/client_lib/api.gen.h"
+#include "common/glapi/recorder.h"
 #include "common/glstate/diff.h"
 
 namespace wall::client {
@@ -91,6 +92,7 @@ public:
     std::unique_ptr<ListState> lists;
     std::unique_ptr<AttributeStacks> attributes;
     std::unique_ptr<SelectState> select;
+    glapi::ListRecorder& recorder();  ///< of the list being compiled
     std::unique_ptr<ContextMaps> maps;
 
     /// glMaterial calls inside the open Begin/End, applied to `state` when the block is sent.

@@ -10,11 +10,10 @@
 
 namespace wall::client {
 
+using glstate::kIdentity;
 using glstate::Mat4;
 using glstate::Vec3;
 using glstate::Vec4;
-
-inline constexpr Mat4 kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
 /// What is known of a matrix from how it was made, as bits. It selects among ways to multiply and to invert that differ
 /// in the last bit, so it is kept by Mesa's rules (m_matrix.c), even the odd one that glLoadIdentity forgets nothing.

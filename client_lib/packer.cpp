@@ -30,6 +30,7 @@ void Packer::update_limit() {
 }
 
 void Packer::make_room() {
+    if (!tight()) return;  // closed: sent here without need
     const std::byte* old = operands().data();
     grow(commands() + kSlack, operand_bytes() + 4 * kSlack);
     for (auto& place : last)

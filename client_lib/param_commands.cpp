@@ -26,6 +26,7 @@ const ParamRow* find_row(ParamFamily family, GLenum target, GLenum pname) {
 std::optional<unsigned> index_of(const Context& c, ParamFamily family, GLenum lead) {
     const auto below = [](unsigned i, unsigned count) { return i < count ? std::optional(i) : std::nullopt; };
     if (family == ParamFamily::Light) return below(lead - GL_LIGHT0, el::light_ambient::count);
+    if (family == ParamFamily::Material) return lead == GL_FRONT_AND_BACK ? std::nullopt : below(lead - GL_FRONT, 2);
     if (family == ParamFamily::TexEnv) return c.active_texture();
     if (family != ParamFamily::TexGen) return 0;
     const auto coordinate = below(lead - GL_S, 4);
@@ -56,6 +57,10 @@ void get_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, T* value
     const auto index = index_of(c, family, lead);
     const auto* entry = glstate::find_param(family, target_of(family, lead), pname);
     if (!index || !entry) return c.error(GL_INVALID_ENUM);
+    if (family == ParamFamily::Material) {  // brings the packed attributes into the state
+        c.flush_block();
+        glstate::settle_color_material(c.state);
+    }
     glstate::read_components(c.state, entry->id + *index, 0, entry->kind, entry->components, values);
 }
 

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// glGet* and the like, answered from the context's shadow; none of them asks a node.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "client_lib/attribute_stack.h"
+#include "client_lib/context.h"
+#include "client_lib/limits.h"
+#include "client_lib/lists.h"
+#include "client_lib/select.h"
+#include "client_lib/share_group.h"
+#include "client_lib/version.h"
+#include "common/glstate/elements.h"
+#include "common/glstate/queries.h"
+
+namespace wall::client::api {
+namespace {
+
+/// A word that neither a state element nor a node's limit answers. Up to 16 components.
+struct Special {
+    GLenum pname;
+    unsigned components;
+    void (*read)(Context&, double* out);
+};
+
+const SurfaceFormat& format_of(Context& c) {
+    static constexpr SurfaceFormat kNone;
+    return c.draw_surface() ? c.draw_surface()->options.format : kNone;
+}
+
+template <int kValue>
+void constant(Context&, double* out) { *out = kValue; }
+
+template <class Stack>
+double depth_of(const Stack& stack) { return static_cast<double>(stack.below.size() + 1); }
+
+void put_transposed(const glstate::Mat4& m, double* out) {
+    const Mat4 t = transposed(m);
+    std::copy(t.begin(), t.end(), out);
+}
+
+/// The nodes' limit, but no more than the client keeps.
+template <GLenum kName, int kMost>
+void limited(Context& c, double* out) { *out = std::min<double>(kMost, limit_of(c.session().caps(), kName, kMost)); }
+
+const Special kSpecials[] = {
+    {GL_MODELVIEW_STACK_DEPTH, 1, [](Context& c, double* out) { *out = depth_of(c.modelview_stack); }},
+    {GL_PROJECTION_STACK_DEPTH, 1, [](Context& c, double* out) { *out = depth_of(c.projection_stack); }},
+    {GL_TEXTURE_STACK_DEPTH, 1, [](Context& c, double* out) { *out = depth_of(c.texture_stacks[c.active_texture()]); }},
+    {GL_MAX_MODELVIEW_STACK_DEPTH, 1, [](Context& c, double* out) { *out = c.modelview_stack.limit; }},
+    {GL_MAX_PROJECTION_STACK_DEPTH, 1, [](Context& c, double* out) { *out = c.projection_stack.limit; }},
+    {GL_MAX_TEXTURE_STACK_DEPTH, 1, [](Context& c, double* out) { *out = c.texture_stacks[0].limit; }},
+    {GL_TRANSPOSE_MODELVIEW_MATRIX, 16, [](Context& c, double* out) { put_transposed(c.state.matrix.modelview, out); }},
+    {GL_TRANSPOSE_PROJECTION_MATRIX, 16, [](Context& c, double* out) { put_transposed(c.state.matrix.projection, out); }},
+    {GL_TRANSPOSE_TEXTURE_MATRIX, 16, [](Context& c, double* out) { put_transposed(c.state.matrix.texture_matrix[c.active_texture()], out); }},
+
+    {GL_ATTRIB_STACK_DEPTH, 1, [](Context& c, double* out) { *out = static_cast<double>(c.attributes->server.size()); }},
+    {GL_CLIENT_ATTRIB_STACK_DEPTH, 1, [](Context& c, double* out) { *out = static_cast<double>(c.attributes->client.size()); }},
+    {GL_MAX_ATTRIB_STACK_DEPTH, 1, constant<kAttributeStackLimit>},
+    {GL_MAX_CLIENT_ATTRIB_STACK_DEPTH, 1, constant<kAttributeStackLimit>},
+    {GL_NAME_STACK_DEPTH, 1, [](Context& c, double* out) { *out = c.select->name_depth; }},
+    {GL_MAX_NAME_STACK_DEPTH, 1, constant<kNameStackLimit>},
+    {GL_SELECTION_BUFFER_SIZE, 1, [](Context& c, double* out) { *out = std::max(0, c.select->select_entries); }},
+    {GL_FEEDBACK_BUFFER_SIZE, 1, [](Context& c, double* out) { *out = std::max(0, c.select->feedback_entries); }},
+    {GL_FEEDBACK_BUFFER_TYPE, 1, [](Context& c, double* out) { *out = c.select->feedback_type; }},
+    {GL_LIST_INDEX, 1, [](Context& c, double* out) { *out = c.lists->name; }},
+    {GL_LIST_MODE, 1, [](Context& c, double* out) { *out = c.lists->mode; }},
+    {GL_MAX_LIST_NESTING, 1, constant<kListNestingLimit>},
+
+    {GL_MAP1_GRID_DOMAIN, 2, [](Context& c, double* out) { out[0] = c.state.evaluator.map_grid1.u1, out[1] = c.state.evaluator.map_grid1.u2; }},
+    {GL_MAP2_GRID_SEGMENTS, 2, [](Context& c, double* out) { out[0] = c.state.evaluator.map_grid2.un, out[1] = c.state.evaluator.map_grid2.vn; }},
+    {GL_MAP2_GRID_DOMAIN, 4,
+     [](Context& c, double* out) {
+         const auto& grid = c.state.evaluator.map_grid2;
+         out[0] = grid.u1, out[1] = grid.u2, out[2] = grid.v1, out[3] = grid.v2;
+     }},
+    {GL_MAX_EVAL_ORDER, 1, constant<30>},
+    {GL_MAX_PIXEL_MAP_TABLE, 1, constant<256>},
+
+    {GL_MAX_LIGHTS, 1, constant<glstate::el::light_enabled::count>},
+    {GL_MAX_CLIP_PLANES, 1, limited<GL_MAX_CLIP_PLANES, glstate::el::clip_plane::count>},
+    {GL_MAX_TEXTURE_UNITS, 1, limited<GL_MAX_TEXTURE_UNITS, kTextureUnits>},
+    {GL_MAX_TEXTURE_COORDS, 1, limited<GL_MAX_TEXTURE_COORDS, kTextureUnits>},
+    {GL_MAX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_TEXTURE_IMAGE_UNITS, kTextureUnits>},
+    {GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, kTextureUnits>},
+    {GL_MAX_VERTEX_ATTRIBS, 1, limited<GL_MAX_VERTEX_ATTRIBS, kVertexAttributes>},
+    {GL_MAX_ELEMENTS_VERTICES, 1, constant<3000>},
+    {GL_MAX_ELEMENTS_INDICES, 1, constant<3000>},
+
+    {GL_RGBA_MODE, 1, constant<1>},
+    {GL_INDEX_MODE, 1, constant<0>},
+    {GL_INDEX_BITS, 1, constant<0>},
+    {GL_AUX_BUFFERS, 1, constant<0>},
+    {GL_STEREO, 1, constant<0>},
+    {GL_RED_BITS, 1, constant<8>},
+    {GL_GREEN_BITS, 1, constant<8>},
+    {GL_BLUE_BITS, 1, constant<8>},
+    {GL_ALPHA_BITS, 1, [](Context& c, double* out) { *out = format_of(c).alpha_bits; }},
+    {GL_DEPTH_BITS, 1, [](Context& c, double* out) { *out = format_of(c).depth_bits; }},
+    {GL_STENCIL_BITS, 1, [](Context& c, double* out) { *out = format_of(c).stencil_bits; }},
+    {GL_ACCUM_RED_BITS, 1, [](Context& c, double* out) { *out = format_of(c).accum_bits; }},
+    {GL_ACCUM_GREEN_BITS, 1, [](Context& c, double* out) { *out = format_of(c).accum_bits; }},
+    {GL_ACCUM_BLUE_BITS, 1, [](Context& c, double* out) { *out = format_of(c).accum_bits; }},
+    {GL_ACCUM_ALPHA_BITS, 1, [](Context& c, double* out) { *out = format_of(c).accum_bits; }},
+    {GL_DOUBLEBUFFER, 1, [](Context& c, double* out) { *out = format_of(c).double_buffered; }},
+    {GL_SAMPLES, 1, [](Context& c, double* out) { *out = format_of(c).samples; }},
+    {GL_SAMPLE_BUFFERS, 1, [](Context& c, double* out) { *out = format_of(c).samples > 0; }},
+    {GL_IMPLEMENTATION_COLOR_READ_FORMAT, 1, constant<GL_RGBA>},
+    {GL_IMPLEMENTATION_COLOR_READ_TYPE, 1, constant<GL_UNSIGNED_BYTE>},
+};
+
+/// Reals become integers by rounding, and anything but zero is true (OpenGL 1.2.1, 6.1.2).
+template <class Out>
+Out converted(double value) {
+    if constexpr (std::is_same_v<Out, GLboolean>) return value != 0;
+    else if constexpr (std::is_same_v<Out, GLint>)
+        return static_cast<GLint>(std::clamp(std::round(value), -2147483648.0, 2147483647.0));
+    else return static_cast<Out>(value);
+}
+
+unsigned index_of(const Context& c, glstate::IndexRule rule) {
+    if (rule == glstate::IndexRule::unit) return c.active_texture();
+    if (rule == glstate::IndexRule::client_unit) return c.state.local.client_active_texture - GL_TEXTURE0;
+    return 0;
+}
+
+template <class Out>
+void get_element(Context& c, const glstate::GetEntry& entry, Out* out) {
+    const std::uint32_t id = entry.id + index_of(c, entry.rule) * entry.unit_stride;
+    const auto category = glstate::element_info(id).category;
+    if (category == glstate::Category::current || category == glstate::Category::material) c.flush_block();  // folds attributes
+    if (entry.kind > glstate::ValueKind::pointer) {
+        GLint name = 0;
+        glstate::read_components(c.state, id, entry.offset, glstate::ValueKind::unsigned_integer, 1, &name);
+        if (entry.kind == glstate::ValueKind::name_texture) name = static_cast<GLint>(texture_name(c.share(), static_cast<std::uint32_t>(name)));
+        *out = converted<Out>(name);
+        return;
+    }
+    glstate::read_components(c.state, id, entry.offset, entry.kind, entry.components, out);
+}
+
+template <class Out>
+bool get_special(Context& c, GLenum pname, Out* out) {
+    for (const Special& special : kSpecials) {
+        if (special.pname != pname) continue;
+        double values[16];
+        special.read(c, values);
+        std::transform(values, values + special.components, out, converted<Out>);
+        return true;
+    }
+    return false;
+}
+
+template <class Out>
+bool get_limit(Context& c, GLenum pname, Out* out) {
+    const auto& limits = c.session().caps().limits;
+    const auto found = limits.find(pname);
+    if (found == limits.end()) return false;
+    std::transform(found->second.begin(), found->second.end(), out, converted<Out>);
+    return true;
+}
+
+const std::uint32_t* flag_of(const Context& c, GLenum cap) {
+    const auto* entry = glstate::find_cap(cap);
+    if (!entry) return nullptr;
+    const std::uint32_t id = entry->id + index_of(c, entry->rule) * entry->unit_stride;
+    return reinterpret_cast<const std::uint32_t*>(reinterpret_cast<const std::byte*>(&c.state) + glstate::element_offset(id));
+}
+
+template <class Out>
+void get(Context& c, GLenum pname, Out* out) {
+    if (const auto* entry = glstate::find_get(pname)) return get_element(c, *entry, out);
+    if (const auto* flag = flag_of(c, pname)) *out = converted<Out>(*flag);
+    else if (!get_special(c, pname, out) && !get_limit(c, pname, out)) c.error(GL_INVALID_ENUM);
+}
+
+}  // namespace
+
+void GetBooleanv(Context& c, GLenum pname, GLboolean* params) { get(c, pname, params); }
+void GetIntegerv(Context& c, GLenum pname, GLint* params) { get(c, pname, params); }
+void GetFloatv(Context& c, GLenum pname, GLfloat* params) { get(c, pname, params); }
+void GetDoublev(Context& c, GLenum pname, GLdouble* params) { get(c, pname, params); }
+
+GLenum GetError(Context& c) { return c.take_error(); }
+
+void GetClipPlane(Context& c, GLenum plane, GLdouble* equation) {
+    const unsigned i = plane - GL_CLIP_PLANE0;
+    if (i >= glstate::el::clip_plane::count) return c.error(GL_INVALID_ENUM);
+    const auto& values = c.get<glstate::el::clip_plane>(i);
+    std::copy(values.begin(), values.end(), equation);
+}
+
+}  // namespace wall::client::api

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/lists.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+#include "client_lib/block_sender.h"
+#include "client_lib/block_walk.h"
+#include "client_lib/material.h"
+#include "client_lib/options.h"
+#include "common/glstate/diff.h"
+#include "common/wire/batch.h"
+
+namespace wall::client {
+namespace {
+
+using glapi::Op;
+using glapi::Recorded;
+using glstate::Category;
+
+/// A smaller run costs less replayed than called: a Block, the call, a stamp for each node.
+constexpr std::size_t kSmallRunBytes = 64;
+
+// ---- taking a recording apart ----
+
+/// What a recorded command may be part of.
+enum class Role : std::uint8_t { other, begin, end, vertex, attribute };
+
+Role role_of(std::uint16_t command) {
+    struct Row {
+        CommandId command;
+        Role role;
+    };
+    static constexpr Row kRows[] = {
+        {CommandId::Begin, Role::begin},          {CommandId::End, Role::end},
+        {CommandId::Vertex2f, Role::vertex},      {CommandId::Vertex3f, Role::vertex},
+        {CommandId::Vertex4f, Role::vertex},      {CommandId::EvalCoord1f, Role::vertex},
+        {CommandId::EvalCoord2f, Role::vertex},   {CommandId::EvalPoint1, Role::vertex},
+        {CommandId::EvalPoint2, Role::vertex},    {CommandId::Color3f, Role::attribute},
+        {CommandId::Color4f, Role::attribute},    {CommandId::Color4ub, Role::attribute},
+        {CommandId::Normal3f, Role::attribute},   {CommandId::SecondaryColor3f, Role::attribute},
+        {CommandId::TexCoord1f, Role::attribute}, {CommandId::TexCoord2f, Role::attribute},
+        {CommandId::TexCoord3f, Role::attribute}, {CommandId::TexCoord4f, Role::attribute},
+        {CommandId::FogCoordf, Role::attribute},  {CommandId::MultiTexCoord4f, Role::attribute},
+        {CommandId::EdgeFlag, Role::attribute},   {CommandId::Indexf, Role::attribute},
+        {CommandId::Materialfv, Role::attribute}, {CommandId::VertexAttrib4f, Role::attribute},
+    };
+    static constexpr auto kRoles = [] {
+        std::array<Role, kCommandCount> roles{};
+        for (const Row& row : kRows) roles[static_cast<std::size_t>(row.command)] = row.role;
+        return roles;
+    }();
+    return kRoles[command];
+}
+
+bool valid_begin(const Recorded& r) { return glapi::RecordReader(r.payload).get<GLenum>() <= GL_POLYGON; }
+
+/// Bytes from the start of `stream` that are whole primitives and what may lie between them.
+std::size_t whole_primitives(std::span<const std::byte> stream) {
+    std::size_t whole = 0;
+    bool inside = false;
+    glapi::for_each_record(stream, [&](const Recorded& r) {
+        const Role role = role_of(r.command);
+        const bool fits = role == Role::attribute || (inside ? role == Role::vertex || role == Role::end : role == Role::begin && valid_begin(r));
+        if (!fits) return false;
+        if (role == Role::begin || role == Role::end) inside = role == Role::begin;
+        if (!inside) whole = static_cast<std::size_t>(r.payload.data() + r.payload.size() - stream.data());
+        return true;
+    });
+    return whole;
+}
+
+std::size_t first_record_bytes(std::span<const std::byte> stream) {
+    std::size_t bytes = 0;
+    glapi::for_each_record(stream, [&](const Recorded& r) {
+        bytes = static_cast<std::size_t>(r.payload.data() + r.payload.size() - stream.data());
+        return false;
+    });
+    return bytes;
+}
+
+/// The last command of each attribute.
+std::vector<ListRun::Effect> effects_of(const wire::PackBuffer& content) {
+    std::map<std::pair<unsigned, std::uint32_t>, ListRun::Effect> last;  // by kind and unit or index
+    BlockWalk walk(content, {}, content.mark(), {});
+    while (walk.next()) {
+        const Op op = walk.op();
+        const ListRun::Effect effect{op, static_cast<std::uint32_t>(walk.operand() - content.operands().data())};
+        if (const auto attribute = attribute_of(op)) {
+            last[{static_cast<unsigned>(*attribute), 0}] = effect;
+        } else if (op == Op::MultiTexCoord4f || op == Op::VertexAttrib4f) {
+            std::uint32_t index;
+            std::memcpy(&index, walk.operand(), sizeof index);
+            last[{100 + static_cast<unsigned>(op), index}] = effect;
+        } else if (op == Op::Indexf) {
+            last[{100 + static_cast<unsigned>(op), 0}] = effect;
+        }
+    }
+    std::vector<ListRun::Effect> effects;
+    for (const auto& [key, effect] : last) effects.push_back(effect);
+    return effects;
+}
+
+/// Replays recorded geometry into a packer of its own.
+class RunPacker {
+public:
+    explicit RunPacker(Context& context) : context_(context) { scratch_.set_closed(true); }
+
+    /// Null if a run is not worth it.
+    std::unique_ptr<ListRun> pack(std::span<const std::byte> recorded) {
+        enter();
+        glapi::for_each_record(recorded, [&](const Recorded& r) { return replay_command(context_, r.command, r.payload), true; });
+        leave();
+        std::unique_ptr<ListRun> run;
+        if (scratch_.has_geometry() && scratch_.bytes() >= kSmallRunBytes) run = take();
+        scratch_.reset();
+        materials_.clear();
+        return run;
+    }
+
+private:
+    void enter() {
+        std::swap(context_.packer, scratch_);
+        std::swap(context_.pending_materials, materials_);
+        context_.lists->packing = true;
+    }
+    void leave() {
+        std::swap(context_.packer, scratch_);
+        std::swap(context_.pending_materials, materials_);
+        context_.lists->packing = false;
+    }
+    std::unique_ptr<ListRun> take() {
+        auto run = std::make_unique<ListRun>();
+        run->id = next_object_id();
+        run->content = wire::PackBuffer(scratch_.operand_bytes() + 4);
+        run->content.append(scratch_, {}, scratch_.mark());
+        run->box = scratch_.block_box();
+        run->effects = effects_of(run->content);
+        run->materials = std::move(materials_);
+        return run;
+    }
+
+    Context& context_;
+    Packer scratch_;
+    std::vector<Context::PendingMaterial> materials_;
+};
+
+void add_replay(DisplayList& list, std::span<const std::byte> recorded) {
+    if (list.items.empty() || list.items.back().run) list.items.emplace_back();
+    auto& replay = list.items.back().replay;
+    replay.insert(replay.end(), recorded.begin(), recorded.end());
+}
+
+// ---- drawing a run ----
+
+std::vector<std::byte> encoded(const wire::PackBuffer& content) {
+    const auto opcodes = content.opcodes(), operands = content.operands();
+    std::vector<std::byte> bytes(wire::padded4(opcodes.size()) - opcodes.size());
+    bytes.insert(bytes.end(), opcodes.begin(), opcodes.end());
+    bytes.insert(bytes.end(), operands.begin(), operands.end());
+    return bytes;
+}
+
+void define_once(Session& session, Node& node, wire::PackBuffer& buffer, const ListRun& run) {
+    if (!node.object_stamps.emplace(run.id, 1).second) return;
+    const std::size_t before = buffer.bytes();
+    glapi::pack::RunDefine(buffer, run.id, static_cast<std::uint32_t>(run.content.commands()),
+                           static_cast<std::uint32_t>(run.content.operand_bytes()), encoded(run.content));
+    session.count_objects(node, buffer.bytes() - before);
+}
+
+void apply_effects(glstate::State& state, const ListRun& run) {
+    const auto before = state.current;
+    for (const auto& effect : run.effects) apply_attribute(state, effect.op, run.content.operand_at(effect.operand));
+    if (!glstate::same(before, state.current)) state.ids[static_cast<std::size_t>(Category::current)] = glstate::next_value_id();
+    for (const auto& m : run.materials) assign_material(state, m.face, m.pname, m.value);
+}
+
+/// The nodes that ran it are where the context is; the others get the difference when they next need it.
+void follow(Context& c, const std::vector<Node*>& nodes) {
+    std::lock_guard lock(c.session().mutex());
+    for (Node* node : nodes) {
+        const auto mirror = node->mirrors.find(c.id);
+        if (mirror == node->mirrors.end()) continue;
+        glstate::State& state = mirror->second.state;
+        state.current = c.state.current;
+        state.material = c.state.material;
+        for (const Category category : {Category::current, Category::material})
+            state.ids[static_cast<std::size_t>(category)] = c.state.ids[static_cast<std::size_t>(category)];
+    }
+}
+
+void call_run(Context& c, const ListRun& run) {
+    c.flush_block();
+    if (!c.draw_surface()) return apply_effects(c.state, run);
+    const auto box = options().broadcast ? std::nullopt : project(c.projection(), run.box);
+    std::vector<Node*> reached;
+    c.session().draw(
+        c, box, [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session(), node, buffer, run); },
+        [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); }, [&](Node& node) { reached.push_back(&node); });
+    apply_effects(c.state, run);
+    follow(c, reached);
+}
+
+// ---- a run within glBegin .. glEnd: unpacked again ----
+
+template <std::size_t N>
+std::array<float, N> floats(const std::byte* at) {
+    std::array<float, N> values;
+    std::memcpy(values.data(), at, sizeof values);
+    return values;
+}
+
+std::uint32_t word(const std::byte* at) {
+    std::uint32_t value;
+    std::memcpy(&value, at, sizeof value);
+    return value;
+}
+
+/// Calls function(c, f0, f1, ...) with N floats.
+template <auto kFunction, std::size_t N>
+void play_floats(Context& c, const std::byte* at) {
+    std::apply([&](auto... f) { kFunction(c, f...); }, floats<N>(at));
+}
+
+void play_multi_tex_coord(Context& c, const std::byte* at) {
+    const auto f = floats<4>(at + 4);
+    api::MultiTexCoord4f(c, GL_TEXTURE0 + word(at), f[0], f[1], f[2], f[3]);
+}
+
+void play_vertex_attrib(Context& c, const std::byte* at) {
+    const auto f = floats<4>(at + 4);
+    api::VertexAttrib4f(c, word(at), f[0], f[1], f[2], f[3]);
+}
+
+void play_color4ub(Context& c, const std::byte* at) {
+    GLubyte v[4];
+    std::memcpy(v, at, sizeof v);
+    api::Color4ub(c, v[0], v[1], v[2], v[3]);
+}
+
+struct Player {
+    Op op;
+    void (*play)(Context&, const std::byte*);
+};
+constexpr Player kPlayers[] = {
+    {Op::Begin, [](Context& c, const std::byte* at) { api::Begin(c, word(at)); }},
+    {Op::End, [](Context& c, const std::byte*) { api::End(c); }},
+    {Op::Vertex2f, play_floats<api::Vertex2f, 2>},
+    {Op::Vertex3f, play_floats<api::Vertex3f, 3>},
+    {Op::Vertex4f, play_floats<api::Vertex4f, 4>},
+    {Op::Normal3f, play_floats<api::Normal3f, 3>},
+    {Op::Color3f, play_floats<api::Color3f, 3>},
+    {Op::Color4f, play_floats<api::Color4f, 4>},
+    {Op::Color4ub, play_color4ub},
+    {Op::SecondaryColor3f, play_floats<api::SecondaryColor3f, 3>},
+    {Op::TexCoord1f, play_floats<api::TexCoord1f, 1>},
+    {Op::TexCoord2f, play_floats<api::TexCoord2f, 2>},
+    {Op::TexCoord3f, play_floats<api::TexCoord3f, 3>},
+    {Op::TexCoord4f, play_floats<api::TexCoord4f, 4>},
+    {Op::MultiTexCoord4f, play_multi_tex_coord},
+    {Op::FogCoordf, play_floats<api::FogCoordf, 1>},
+    {Op::EdgeFlag, [](Context& c, const std::byte* at) { api::EdgeFlag(c, word(at) != 0); }},
+    {Op::Indexf, play_floats<api::Indexf, 1>},
+    {Op::VertexAttrib4f, play_vertex_attrib},
+    {Op::Material, [](Context& c, const std::byte* at) { api::Materialfv(c, word(at), word(at + 4), floats<4>(at + 8).data()); }},
+    {Op::EvalCoord1f, play_floats<api::EvalCoord1f, 1>},
+    {Op::EvalCoord2f, play_floats<api::EvalCoord2f, 2>},
+    {Op::EvalPoint1, [](Context& c, const std::byte* at) { api::EvalPoint1(c, static_cast<GLint>(word(at))); }},
+    {Op::EvalPoint2, [](Context& c, const std::byte* at) { api::EvalPoint2(c, static_cast<GLint>(word(at)), static_cast<GLint>(word(at + 4))); }},
+};
+
+void unpack_run(Context& c, const ListRun& run) {
+    BlockWalk walk(run.content, {}, run.content.mark(), {});
+    while (walk.next()) {
+        const auto player = std::find_if(std::begin(kPlayers), std::end(kPlayers), [&](const Player& p) { return p.op == walk.op(); });
+        if (player != std::end(kPlayers)) player->play(c, walk.operand());
+    }
+}
+
+void replay_commands(Context& c, std::span<const std::byte> recorded) {
+    glapi::for_each_record(recorded, [&](const Recorded& r) { return replay_command(c, r.command, r.payload), true; });
+}
+
+}  // namespace
+
+glapi::ListRecorder& Context::recorder() { return lists->recorder; }
+
+std::shared_ptr<DisplayList> compile_list(Context& context, std::span<const std::byte> recording) {
+    auto list = std::make_shared<DisplayList>();
+    RunPacker packer(context);
+    while (!recording.empty()) {
+        std::size_t bytes = whole_primitives(recording);
+        auto run = bytes == 0 ? nullptr : packer.pack(recording.first(bytes));
+        if (bytes == 0) bytes = first_record_bytes(recording);
+        if (run)
+            list->items.push_back({std::move(run), {}});
+        else
+            add_replay(*list, recording.first(bytes));
+        recording = recording.subspan(bytes);
+    }
+    return list;
+}
+
+void execute_list(Context& c, const DisplayList& list) {
+    for (const ListItem& item : list.items) {
+        if (!item.run)
+            replay_commands(c, item.replay);
+        else if (c.packer.inside())
+            unpack_run(c, *item.run);
+        else
+            call_run(c, *item.run);
+    }
+}
+
+void forget_runs(Context& c, const DisplayList& list) {
+    const bool any = std::any_of(list.items.begin(), list.items.end(), [](const ListItem& item) { return item.run != nullptr; });
+    if (!any) return;
+    c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node& node) {
+        for (const ListItem& item : list.items)
+            if (item.run && node.object_stamps.erase(item.run->id)) glapi::pack::RunDelete(buffer, item.run->id);
+    });
+}
+
+}  // namespace wall::client

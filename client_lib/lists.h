@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Display lists. While one is compiled the context's table is the compile table: listed commands are recorded. At
+// glEndList the recording is taken apart into items: runs of whole primitives become packed streams that a node is told
+// once and then only called by number (RunDefine, RunCall); all other commands are replayed through the immediate
+// functions at each call, so that their effects reach the virtual context (T7.2, which WireGL left undone).
+//
+// Lists belong to the share group; they do not change once they are there. A context's thread.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "client_lib/context.h"
+#include "common/geom/box.h"
+#include "common/glapi/recorder.h"
+#include "common/wire/pack_buffer.h"
+
+namespace wall::client {
+
+inline constexpr unsigned kListNestingLimit = 64;
+
+/// Whole primitives and the attributes and materials between them.
+struct ListRun {
+    std::uint32_t id = 0;       ///< on the wire and in Node::object_stamps
+    wire::PackBuffer content;
+    geom::Box box;              ///< object space
+    /// What a current attribute is afterwards: a command in `content`.
+    struct Effect {
+        glapi::Op op;
+        std::uint32_t operand;
+    };
+    std::vector<Effect> effects;
+    std::vector<Context::PendingMaterial> materials;  ///< in order
+};
+
+/// A run, or commands to be replayed.
+struct ListItem {
+    std::unique_ptr<ListRun> run;
+    std::vector<std::byte> replay;
+};
+
+struct DisplayList {
+    std::vector<ListItem> items;
+};
+
+struct ListState {
+    GLuint name = 0;  ///< of the list being compiled; 0: none
+    GLenum mode = 0;  ///< GL_COMPILE, GL_COMPILE_AND_EXECUTE; 0: none
+    glapi::ListRecorder recorder;
+    unsigned depth = 0;    ///< of calls being executed
+    bool packing = false;  ///< a run is being packed: materials go into the packer
+};
+
+/// Takes a recording apart. Leaves the context as it was.
+std::shared_ptr<DisplayList> compile_list(Context& context, std::span<const std::byte> recording);
+void execute_list(Context& context, const DisplayList& list);
+/// Tells the nodes that the list's runs are no longer needed.
+void forget_runs(Context& context, const DisplayList& list);
+
+}  // namespace wall::client
