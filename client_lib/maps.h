@@ -5,8 +5,11 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
+#include "client_lib/objects/texture.h"
 #include "client_lib/pixel_convert.h"
 #include "common/wire/pack_buffer.h"
 
@@ -33,6 +36,9 @@ struct ContextMaps {
     std::array<std::uint32_t, PixelMapTables::kMaps> pixel_ids;
     std::array<std::uint64_t, PixelMapTables::kMaps> pixel_stamps{};
     std::uint64_t stamp = 0;  ///< of the latest change
+
+    /// What glTexImage of a proxy target would make, by target and level; never sent.
+    std::map<std::pair<GLenum, GLint>, TextureLevel> proxies;
 
     /// Null if the word names no map of this kind.
     EvaluatorMap* find1(GLenum target) { return target - GL_MAP1_COLOR_4 < kEvaluatorMaps ? &map1[target - GL_MAP1_COLOR_4] : nullptr; }

@@ -69,6 +69,7 @@ struct Texture {
     TexParameters parameters;
     /// Stamp of the latest change of each parameter that differs from its default or once did.
     std::vector<std::pair<GLenum, std::uint64_t>> parameter_stamps;
+    std::vector<std::uint32_t> bound_by;  ///< contexts that ever bound it
     std::uint64_t generated_stamp = 0;  ///< of the latest mipmap generation; 0: none
     std::array<std::vector<TextureLevel>, kCubeFaces> faces;
 

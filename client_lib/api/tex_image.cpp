@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: MIT
+// Texture images (OpenGL 1.2.1, 3.8.1 and 3.8.2). They are stored as given, with tight rows, and sent when a node draws
+// with the texture. Pixel transfer is applied here, so that what is stored does not depend on later state; nodes upload
+// with neutral transfer. The order of the checks is Mesa's (teximage.c), so that the error is the same where two apply.
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "client_lib/limits.h"
+#include "client_lib/maps.h"
+#include "client_lib/pixel_store.h"
+#include "client_lib/readback.h"
+#include "client_lib/texture_binding.h"
+#include "client_lib/texture_formats.h"
+#include "client_lib/texture_image.h"
+
+namespace wall::client {
+namespace {
+
+GLint largest_size(Context& c, GLenum target) {
+    const auto limit = [&](GLenum name, double otherwise) { return static_cast<GLint>(limit_of(c.session().caps(), name, otherwise)); };
+    switch (object_target(target)) {
+        case GL_TEXTURE_3D: return limit(GL_MAX_3D_TEXTURE_SIZE, 2048);
+        case GL_TEXTURE_CUBE_MAP: return limit(GL_MAX_CUBE_MAP_TEXTURE_SIZE, 16384);
+        case GL_TEXTURE_RECTANGLE: return limit(GL_MAX_RECTANGLE_TEXTURE_SIZE, 16384);
+        default: return limit(GL_MAX_TEXTURE_SIZE, 16384);
+    }
+}
+
+bool legal_target(unsigned dimensions, GLenum target) {
+    return target != GL_TEXTURE_CUBE_MAP && object_target(target) != 0 && dimensions_of(target) == dimensions;
+}
+
+bool depth_like(GLenum format) { return format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL; }
+
+/// Colour pixels go into colour textures only, and so on.
+bool formats_agree(const TextureFormat& internal, GLenum format) {
+    const bool integer = internal.component_type == GL_INT || internal.component_type == GL_UNSIGNED_INT;
+    if (depth_like(internal.base)) return depth_like(format);
+    if (internal.base == GL_STENCIL_INDEX) return format == GL_STENCIL_INDEX;
+    if (depth_like(format) || format == GL_STENCIL_INDEX) return false;
+    return integer == glapi::is_integer_format(format);
+}
+
+bool legal_size(Context& c, const ImageCall& call) {
+    const GLint most = largest_size(c, call.target) >> call.level;
+    const auto fits = [&](GLsizei size) { return size >= 0 && size <= std::max(most, 1); };
+    const bool face = object_target(call.target) == GL_TEXTURE_CUBE_MAP;
+    if (face && call.width != call.height) return false;
+    return fits(call.width) && (call.dimensions < 2 || fits(call.height)) && (call.dimensions < 3 || fits(call.depth));
+}
+
+GLenum image_error(Context& c, const ImageCall& call, const TextureFormat* internal) {
+    if (call.level < 0 || call.level >= level_count(c, call.target)) return GL_INVALID_VALUE;
+    const bool rectangle = object_target(call.target) == GL_TEXTURE_RECTANGLE;
+    if (call.border < 0 || call.border > 1 || (rectangle && call.border != 0)) return GL_INVALID_VALUE;
+    if (call.width < 0 || call.height < 0 || call.depth < 0) return GL_INVALID_VALUE;
+    if (const GLenum error = glapi::format_type_error(call.format, call.type)) return error;
+    if (!internal) return GL_INVALID_VALUE;
+    if (!formats_agree(*internal, call.format)) return GL_INVALID_OPERATION;
+    if (depth_like(internal->base) && call.dimensions == 3) return GL_INVALID_OPERATION;
+    return GL_NO_ERROR;
+}
+
+// Gallium's drivers have no borders: Mesa drops the outermost texels, and so do we.
+void strip_border(ImageCall& call) {
+    if (call.border == 0) return;
+    if (call.store.row_length == 0) call.store.row_length = call.width;
+    if (call.store.image_height == 0) call.store.image_height = call.height;
+    call.store.skip_pixels += 1;
+    call.width = std::max(0, call.width - 2);
+    if (call.dimensions > 1) call.store.skip_rows += 1, call.height = std::max(0, call.height - 2);
+    if (call.dimensions > 2) call.store.skip_images += 1, call.depth = std::max(0, call.depth - 2);
+    call.border = 0;
+}
+
+std::size_t texels(const ImageCall& call) {
+    return static_cast<std::size_t>(call.width) * static_cast<std::size_t>(call.height) * static_cast<std::size_t>(call.depth);
+}
+
+template <class T>
+std::vector<std::byte> bytes_of(const std::vector<T>& values) {
+    const auto bytes = std::as_bytes(std::span(values));
+    return {bytes.begin(), bytes.end()};
+}
+
+TexelData transferred(Context& c, const ImageCall& call, TexelData data) {
+    if (!transfer_matters(c.state, call.format)) return data;
+    const PixelMapTables& maps = c.maps->pixel;
+    if (call.format == GL_DEPTH_STENCIL) return data;
+    if (call.format == GL_COLOR_INDEX) {
+        const auto indices = to_indices(call.type, data.bytes, call.width, call.height * call.depth);
+        return {GL_RGBA, GL_FLOAT, bytes_of(indices_to_colors(c.state, maps, indices))};
+    }
+    auto pixels = to_rgba(data.format, data.type, data.bytes, texels(call));
+    if (call.format == GL_DEPTH_COMPONENT) {
+        transfer_depths(c.state, pixels);
+        return {GL_DEPTH_COMPONENT, GL_FLOAT, from_rgba(GL_DEPTH_COMPONENT, GL_FLOAT, pixels, false)};
+    }
+    transfer_colors(c.state, maps, pixels);
+    return {GL_RGBA, GL_FLOAT, bytes_of(pixels)};
+}
+
+TexelData unpacked(Context& c, const ImageCall& call) {
+    const glapi::ImageSize size{call.width, call.height, call.depth, call.dimensions};
+    return transferred(c, call, {call.format, call.type, glapi::unpack_image(call.store, size, call.format, call.type, call.pixels)});
+}
+
+bool eight_bits(GLenum format, GLenum type) { return type == GL_UNSIGNED_BYTE && !depth_like(format); }
+
+void convert(TexelData& data, std::size_t count, GLenum format, GLenum type) {
+    data.bytes = from_rgba(format, type, to_rgba(data.format, data.type, data.bytes, count), false);
+    data.format = format;
+    data.type = type;
+}
+
+/// Brings a level's pixels and new ones to one format.
+void unify(TextureLevel& level, TexelData& data, std::size_t count) {
+    if (level.data_format == data.format && level.data_type == data.type) return;
+    const bool depth = depth_like(level.data_format);
+    const bool bytes = eight_bits(level.data_format, level.data_type) && eight_bits(data.format, data.type);
+    const GLenum format = depth ? GL_DEPTH_COMPONENT : GL_RGBA, type = bytes ? GL_UNSIGNED_BYTE : GL_FLOAT;
+    TexelData old{level.data_format, level.data_type, std::move(level.pixels)};
+    const std::size_t all = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height) * static_cast<std::size_t>(level.depth);
+    convert(old, all, format, type);
+    convert(data, count, format, type);
+    level.pixels = std::move(old.bytes);
+    level.data_format = format;
+    level.data_type = type;
+}
+
+void copy_box(TextureLevel& level, const TexBox& box, const std::vector<std::byte>& from) {
+    const auto layout = *glapi::pixel_layout(level.data_format, level.data_type);
+    const std::size_t row = glapi::row_bytes(layout, level.width), bytes = glapi::row_bytes(layout, box.width);
+    const std::byte* at = from.data();
+    for (GLint z = 0; z < box.depth; ++z)
+        for (GLint y = 0; y < box.height; ++y, at += bytes) {
+            const auto line = static_cast<std::size_t>(box.z + z) * static_cast<std::size_t>(level.height) + static_cast<std::size_t>(box.y + y);
+            std::memcpy(level.pixels.data() + line * row + static_cast<std::size_t>(box.x) * layout.pixel_bytes, at, bytes);
+        }
+}
+
+void generate_if_asked(Texture& texture, GLint level) {
+    if (texture.parameters.generate_mipmap && level == texture.parameters.base_level) texture.mipmaps_generated();
+}
+
+}  // namespace
+
+GLint level_count(Context& c, GLenum target) {
+    if (object_target(target) == GL_TEXTURE_RECTANGLE) return 1;
+    return std::bit_width(static_cast<unsigned>(largest_size(c, target)));
+}
+
+void store_level(Context& c, const ImageCall& call, TexelData data) {
+    const auto texture = texture_to_change(c, call.target);
+    std::lock_guard lock(c.share().mutex);
+    TextureLevel& level = texture->level_at(face_of(call.target), call.level);
+    level = TextureLevel{};
+    level.internal_format = call.internal_format;
+    level.width = call.width;
+    level.height = call.height;
+    level.depth = call.depth;
+    const bool index = call.format == GL_COLOR_INDEX;
+    level.format = index ? GL_RGBA : call.format;
+    level.type = index ? GL_FLOAT : call.type;
+    level.data_format = data.format;
+    level.data_type = data.type;
+    level.content = call.pixels ? LevelContent::stored : LevelContent::none;
+    level.pixels = std::move(data.bytes);
+    level.stamp = next_stamp();
+    generate_if_asked(*texture, call.level);
+    touch(c.share(), *texture);
+}
+
+void change_level(Context& c, const ImageCall& call, TexelData data) {
+    const auto texture = texture_to_change(c, call.target);
+    std::lock_guard lock(c.share().mutex);
+    TextureLevel& level = *texture->find_level(face_of(call.target), call.level);
+    if (level.content != LevelContent::stored) {
+        const auto whole = glapi::image_bytes(data.format, data.type, level.width, level.height, level.depth);
+        level.pixels.assign(whole.value_or(0), std::byte{0});
+        level.data_format = data.format;
+        level.data_type = data.type;
+        if (level.content == LevelContent::generated) level.stamp = next_stamp();
+        level.content = LevelContent::stored;
+    }
+    unify(level, data, texels(call));
+    const TexBox box{call.x, call.y, call.z, call.width, call.height, call.depth, next_stamp()};
+    copy_box(level, box, data.bytes);
+    level.note_change(box);
+    generate_if_asked(*texture, call.level);
+    touch(c.share(), *texture);
+}
+
+void define_image(Context& c, ImageCall call) {
+    if (!legal_target(call.dimensions, call.target)) return c.error(GL_INVALID_ENUM);
+    const TextureFormat* internal = find_texture_format(call.internal_format);
+    const GLenum error = image_error(c, call, internal);
+    if (is_proxy(call.target)) {
+        if (error != GL_NO_ERROR) return c.error(error);
+        strip_border(call);
+        TextureLevel& level = c.maps->proxies[{call.target, call.level}];
+        level = TextureLevel{};
+        if (!legal_size(c, call)) return;
+        level.internal_format = call.internal_format;
+        level.width = call.width, level.height = call.height, level.depth = call.depth;
+        level.format = call.format, level.type = call.type;
+        return;
+    }
+    if (error != GL_NO_ERROR) return c.error(error);
+    strip_border(call);
+    if (!legal_size(c, call)) return c.error(GL_INVALID_VALUE);
+    if (!glapi::image_bytes(call.format, call.type, call.width, call.height, call.depth)) return c.error(GL_OUT_OF_MEMORY);
+    store_level(c, call, call.pixels ? unpacked(c, call) : TexelData{call.format, call.type, {}});
+}
+
+GLenum sub_image_error(Context& c, const ImageCall& call) {
+    if (is_proxy(call.target) || !legal_target(call.dimensions, call.target)) return GL_INVALID_ENUM;
+    if (call.level < 0 || call.level >= level_count(c, call.target)) return GL_INVALID_VALUE;
+    if (call.width < 0 || call.height < 0 || call.depth < 0) return GL_INVALID_VALUE;
+    if (const GLenum error = glapi::format_type_error(call.format, call.type)) return error;
+    const auto texture = bound_texture(c, call.target);
+    const TextureLevel* level = texture ? texture->find_level(face_of(call.target), call.level) : nullptr;
+    if (!level) return GL_INVALID_OPERATION;
+    const auto inside = [](GLint at, GLsizei size, GLint all) { return at >= 0 && std::int64_t{at} + size <= all; };
+    if (!inside(call.x, call.width, level->width) || !inside(call.y, call.height, level->height) || !inside(call.z, call.depth, level->depth))
+        return GL_INVALID_VALUE;
+    const TextureFormat* internal = find_texture_format(level->internal_format);
+    return internal && formats_agree(*internal, call.format) ? GL_NO_ERROR : GL_INVALID_OPERATION;
+}
+
+void define_sub_image(Context& c, const ImageCall& call) {
+    if (const GLenum error = sub_image_error(c, call)) return c.error(error);
+    if (texels(call) == 0 || !call.pixels) return;
+    change_level(c, call, unpacked(c, call));
+}
+
+}  // namespace wall::client
+
+namespace wall::client::api {
+namespace {
+
+ImageCall image_call(Context& c, unsigned dimensions, GLenum target, GLint level, GLenum format, GLenum type, const void* pixels) {
+    ImageCall call;
+    call.dimensions = dimensions;
+    call.target = target;
+    call.level = level;
+    call.format = format;
+    call.type = type;
+    call.pixels = pixels;
+    call.store = unpack_store(c.state);
+    return call;
+}
+
+/// What to read from the framebuffer for a texture of this kind. Neutral: pixel transfer follows in store or change.
+void set_copied_format(Context& c, ImageCall& call, GLenum base) {
+    call.format = depth_like(base) ? GL_DEPTH_COMPONENT : GL_RGBA;
+    call.type = depth_like(base) ? GL_UNSIGNED_INT : GL_UNSIGNED_BYTE;
+    if (transfer_matters(c.state, call.format)) call.type = GL_FLOAT;
+    call.store = {};
+    call.store.alignment = 1;
+}
+
+TexelData copied(Context& c, const ImageCall& call, GLint x, GLint y, const char* function) {
+    auto bytes = gather_plain(c, {x, y, call.width, call.height}, call.format, call.type, function);
+    return transferred(c, call, {call.format, call.type, std::move(bytes)});
+}
+
+struct From {
+    GLint x, y;
+};
+
+void copy_image(Context& c, ImageCall call, GLenum internal_format, From from, const char* function) {
+    if (is_proxy(call.target) || !legal_target(call.dimensions, call.target)) return c.error(GL_INVALID_ENUM);
+    if (call.level < 0 || call.level >= level_count(c, call.target)) return c.error(GL_INVALID_VALUE);
+    const bool rectangle = call.target == GL_TEXTURE_RECTANGLE;
+    if (call.border < 0 || call.border > 1 || (rectangle && call.border != 0)) return c.error(GL_INVALID_VALUE);
+    const TextureFormat* internal = find_texture_format(static_cast<GLint>(internal_format));
+    if (!internal || internal_format <= 4) return c.error(GL_INVALID_ENUM);
+    if (call.width < 0 || call.height < 0) return c.error(GL_INVALID_VALUE);
+    call.internal_format = static_cast<GLint>(internal_format);
+    from.x += call.border;
+    if (call.dimensions > 1) from.y += call.border;
+    strip_border(call);
+    if (!legal_size(c, call)) return c.error(GL_INVALID_VALUE);
+    set_copied_format(c, call, internal->base);
+    call.pixels = "";  // there will be some
+    store_level(c, call, copied(c, call, from.x, from.y, function));
+}
+
+void copy_sub_image(Context& c, ImageCall call, From from, const char* function) {
+    const auto texture = object_target(call.target) ? bound_texture(c, call.target) : nullptr;
+    const TextureLevel* level = texture ? texture->find_level(face_of(call.target), call.level) : nullptr;
+    const TextureFormat* internal = level ? find_texture_format(level->internal_format) : nullptr;
+    set_copied_format(c, call, internal ? internal->base : GLenum{GL_RGBA});
+    if (const GLenum error = sub_image_error(c, call)) return c.error(error);
+    if (texels(call) == 0) return;
+    change_level(c, call, copied(c, call, from.x, from.y, function));
+}
+
+}  // namespace
+
+void TexImage1D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLint border, GLenum format, GLenum type,
+                const void* pixels) {
+    ImageCall call = image_call(c, 1, target, level, format, type, pixels);
+    call.internal_format = internal, call.border = border, call.width = width;
+    define_image(c, call);
+}
+
+void TexImage2D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLint border, GLenum format,
+                GLenum type, const void* pixels) {
+    ImageCall call = image_call(c, 2, target, level, format, type, pixels);
+    call.internal_format = internal, call.border = border, call.width = width, call.height = height;
+    define_image(c, call);
+}
+
+void TexImage3D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLsizei depth, GLint border,
+                GLenum format, GLenum type, const void* pixels) {
+    ImageCall call = image_call(c, 3, target, level, format, type, pixels);
+    call.internal_format = internal, call.border = border, call.width = width, call.height = height, call.depth = depth;
+    define_image(c, call);
+}
+
+void TexSubImage1D(Context& c, GLenum target, GLint level, GLint x, GLsizei width, GLenum format, GLenum type, const void* pixels) {
+    ImageCall call = image_call(c, 1, target, level, format, type, pixels);
+    call.x = x, call.width = width;
+    define_sub_image(c, call);
+}
+
+void TexSubImage2D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
+                   const void* pixels) {
+    ImageCall call = image_call(c, 2, target, level, format, type, pixels);
+    call.x = x, call.y = y, call.width = width, call.height = height;
+    define_sub_image(c, call);
+}
+
+void TexSubImage3D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,
+                   GLenum format, GLenum type, const void* pixels) {
+    ImageCall call = image_call(c, 3, target, level, format, type, pixels);
+    call.x = x, call.y = y, call.z = z, call.width = width, call.height = height, call.depth = depth;
+    define_sub_image(c, call);
+}
+
+void CopyTexImage1D(Context& c, GLenum target, GLint level, GLenum internal, GLint x, GLint y, GLsizei width, GLint border) {
+    ImageCall call = image_call(c, 1, target, level, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    call.border = border, call.width = width;
+    copy_image(c, call, internal, {x, y}, "glCopyTexImage1D");
+}
+
+void CopyTexImage2D(Context& c, GLenum target, GLint level, GLenum internal, GLint x, GLint y, GLsizei width, GLsizei height, GLint border) {
+    ImageCall call = image_call(c, 2, target, level, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    call.border = border, call.width = width, call.height = height;
+    copy_image(c, call, internal, {x, y}, "glCopyTexImage2D");
+}
+
+void CopyTexSubImage1D(Context& c, GLenum target, GLint level, GLint to_x, GLint x, GLint y, GLsizei width) {
+    ImageCall call = image_call(c, 1, target, level, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    call.x = to_x, call.width = width;
+    copy_sub_image(c, call, {x, y}, "glCopyTexSubImage1D");
+}
+
+void CopyTexSubImage2D(Context& c, GLenum target, GLint level, GLint to_x, GLint to_y, GLint x, GLint y, GLsizei width, GLsizei height) {
+    ImageCall call = image_call(c, 2, target, level, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    call.x = to_x, call.y = to_y, call.width = width, call.height = height;
+    copy_sub_image(c, call, {x, y}, "glCopyTexSubImage2D");
+}
+
+void CopyTexSubImage3D(Context& c, GLenum target, GLint level, GLint to_x, GLint to_y, GLint to_z, GLint x, GLint y, GLsizei width,
+                       GLsizei height) {
+    ImageCall call = image_call(c, 3, target, level, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    call.x = to_x, call.y = to_y, call.z = to_z, call.width = width, call.height = height;
+    copy_sub_image(c, call, {x, y}, "glCopyTexSubImage3D");
+}
+
+}  // namespace wall::client::api

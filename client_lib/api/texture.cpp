@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+// Texture objects: names, binding, parameters (OpenGL 1.2.1, 3.8.4 and 3.8.8). Images: tex_image.cpp, queries: tex_query.cpp.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "client_lib/context.h"
+#include "client_lib/limits.h"
+#include "client_lib/session.h"
+#include "client_lib/texture_binding.h"
+
+namespace wall::client::api {
+namespace {
+
+constexpr GLenum kTargets[] = {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE};
+
+bool is_target(GLenum target) { return std::find(std::begin(kTargets), std::end(kTargets), target) != std::end(kTargets); }
+
+// A binding of a default texture that has content is its id, in every context that binds name 0.
+std::uint32_t default_id(ShareGroup& share, GLenum target) {
+    const auto found = share.default_textures.find(target);
+    return found == share.default_textures.end() ? 0 : found->second->id;
+}
+
+void forget(Context& c, const std::shared_ptr<Texture>& texture) {
+    for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
+        if (bound_id(c, unit, texture->target) != texture->id) continue;
+        std::uint32_t id;
+        {
+            std::lock_guard lock(c.share().mutex);
+            id = default_id(c.share(), texture->target);
+        }
+        set_bound_id(c, unit, texture->target, id);
+    }
+    // Another context of the group may still have it bound; then it lives on without a name.
+    if (texture->bound_by.size() > 1 || (!texture->bound_by.empty() && texture->bound_by[0] != c.id)) return;
+    {
+        std::lock_guard lock(c.share().mutex);
+        c.share().textures_by_id.erase(texture->id);
+    }
+    c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node& node) {
+        if (node.object_stamps.erase(texture->id) != 0) glapi::pack::TexDelete(buffer, texture->id);
+    });
+}
+
+bool valid_wrap(GLenum target, GLenum mode) {
+    switch (mode) {
+        case GL_CLAMP: case GL_CLAMP_TO_EDGE: case GL_CLAMP_TO_BORDER: return true;
+        case GL_REPEAT: case GL_MIRRORED_REPEAT: case GL_MIRROR_CLAMP_EXT: case GL_MIRROR_CLAMP_TO_EDGE:
+        case GL_MIRROR_CLAMP_TO_BORDER_EXT: return target != GL_TEXTURE_RECTANGLE;
+        default: return false;
+    }
+}
+
+bool valid_min_filter(GLenum target, GLenum filter) {
+    if (filter == GL_NEAREST || filter == GL_LINEAR) return true;
+    return target != GL_TEXTURE_RECTANGLE && filter >= GL_NEAREST_MIPMAP_NEAREST && filter <= GL_LINEAR_MIPMAP_LINEAR;
+}
+
+bool valid_compare(GLenum func) { return func >= GL_NEVER && func <= GL_ALWAYS; }
+
+/// What glTexParameter asks for, checked: an error, or the parameters with the new value.
+struct Change {
+    GLenum error = GL_NO_ERROR;
+    TexParameters value;
+};
+
+Change changed(const TexParameters& old, GLenum target, GLenum pname, const GLfloat* params) {
+    Change out{GL_NO_ERROR, old};
+    TexParameters& p = out.value;
+    const auto word = static_cast<GLenum>(params[0]);
+    const auto number = static_cast<GLint>(std::lrint(params[0]));
+    const auto check = [&](bool good, GLenum error) {
+        if (!good) out.error = error;
+    };
+    switch (pname) {
+        case GL_TEXTURE_MIN_FILTER: p.min_filter = word, check(valid_min_filter(target, word), GL_INVALID_ENUM); break;
+        case GL_TEXTURE_MAG_FILTER: p.mag_filter = word, check(word == GL_NEAREST || word == GL_LINEAR, GL_INVALID_ENUM); break;
+        case GL_TEXTURE_WRAP_S: p.wrap_s = word, check(valid_wrap(target, word), GL_INVALID_ENUM); break;
+        case GL_TEXTURE_WRAP_T: p.wrap_t = word, check(valid_wrap(target, word), GL_INVALID_ENUM); break;
+        case GL_TEXTURE_WRAP_R: p.wrap_r = word, check(valid_wrap(target, word), GL_INVALID_ENUM); break;
+        case GL_TEXTURE_BORDER_COLOR: std::copy_n(params, 4, p.border_color.begin()); break;
+        case GL_TEXTURE_PRIORITY: p.priority = std::clamp(params[0], 0.0f, 1.0f); break;
+        case GL_TEXTURE_MIN_LOD: p.min_lod = params[0]; break;
+        case GL_TEXTURE_MAX_LOD: p.max_lod = params[0]; break;
+        case GL_TEXTURE_LOD_BIAS: p.lod_bias = params[0]; break;
+        case GL_TEXTURE_BASE_LEVEL:
+            p.base_level = number, check(number >= 0, GL_INVALID_VALUE);
+            if (target == GL_TEXTURE_RECTANGLE) check(number == 0, GL_INVALID_OPERATION);
+            break;
+        case GL_TEXTURE_MAX_LEVEL: p.max_level = number, check(number >= 0, GL_INVALID_VALUE); break;
+        case GL_GENERATE_MIPMAP: p.generate_mipmap = params[0] != 0; break;
+        case GL_TEXTURE_MAX_ANISOTROPY_EXT: p.max_anisotropy = std::min(params[0], 16.0f), check(params[0] >= 1, GL_INVALID_VALUE); break;
+        case GL_TEXTURE_COMPARE_MODE:
+            p.compare_mode = word, check(word == GL_NONE || word == GL_COMPARE_R_TO_TEXTURE, GL_INVALID_ENUM);
+            break;
+        case GL_TEXTURE_COMPARE_FUNC: p.compare_func = word, check(valid_compare(word), GL_INVALID_ENUM); break;
+        case GL_DEPTH_TEXTURE_MODE:
+            p.depth_mode = word, check(word == GL_LUMINANCE || word == GL_INTENSITY || word == GL_ALPHA || word == GL_RED, GL_INVALID_ENUM);
+            break;
+        default: out.error = GL_INVALID_ENUM;
+    }
+    return out;
+}
+
+}  // namespace
+
+void GenTextures(Context& c, GLsizei n, GLuint* names) {
+    if (n < 0) return c.error(GL_INVALID_VALUE);
+    if (n == 0 || !names) return;
+    std::lock_guard lock(c.share().mutex);
+    const GLuint first = c.share().textures.reserve(static_cast<GLuint>(n));
+    for (GLsizei i = 0; i < n; ++i) names[i] = first + static_cast<GLuint>(i);
+}
+
+void DeleteTextures(Context& c, GLsizei n, const GLuint* names) {
+    if (n < 0) return c.error(GL_INVALID_VALUE);
+    if (!names) return;
+    c.flush_block();
+    for (GLsizei i = 0; i < n; ++i) {
+        if (names[i] == 0) continue;
+        std::shared_ptr<Texture> texture;
+        {
+            std::lock_guard lock(c.share().mutex);
+            texture = c.share().textures.erase(names[i]);
+        }
+        if (texture) forget(c, texture);
+    }
+}
+
+void BindTexture(Context& c, GLenum target, GLuint name) {
+    if (!is_target(target)) return c.error(GL_INVALID_ENUM);
+    std::uint32_t id;
+    {
+        std::lock_guard lock(c.share().mutex);
+        if (name == 0) {
+            id = default_id(c.share(), target);
+        } else {
+            auto texture = c.share().textures.find(name);
+            if (texture && texture->target != target) return c.error(GL_INVALID_OPERATION);
+            if (!texture) c.share().textures.put(name, texture = make_texture(c.share(), name, target));
+            auto& users = texture->bound_by;
+            if (std::find(users.begin(), users.end(), c.id) == users.end()) users.push_back(c.id);
+            id = texture->id;
+        }
+    }
+    set_bound_id(c, c.active_texture(), target, id);
+}
+
+GLboolean IsTexture(Context& c, GLuint name) {
+    std::lock_guard lock(c.share().mutex);
+    return c.share().textures.find(name) != nullptr;
+}
+
+GLboolean AreTexturesResident(Context& c, GLsizei n, const GLuint* names, GLboolean*) {
+    if (n < 0) return c.error(GL_INVALID_VALUE), GLboolean{GL_FALSE};
+    std::lock_guard lock(c.share().mutex);
+    for (GLsizei i = 0; names && i < n; ++i)
+        if (!c.share().textures.find(names[i])) return c.error(GL_INVALID_VALUE), GLboolean{GL_FALSE};
+    return GL_TRUE;
+}
+
+// Priorities are remembered for glGetTexParameter; the nodes' drivers ignore them.
+void PrioritizeTextures(Context& c, GLsizei n, const GLuint* names, const GLfloat* priorities) {
+    if (n < 0) return c.error(GL_INVALID_VALUE);
+    if (!names || !priorities) return;
+    std::lock_guard lock(c.share().mutex);
+    for (GLsizei i = 0; i < n; ++i)
+        if (const auto texture = c.share().textures.find(names[i])) texture->parameters.priority = std::clamp(priorities[i], 0.0f, 1.0f);
+}
+
+void TexParameterfv(Context& c, GLenum target, GLenum pname, const GLfloat* params) {
+    if (!is_target(target)) return c.error(GL_INVALID_ENUM);
+    const auto current = bound_texture(c, target);
+    const TexParameters before = current ? current->parameters : Texture(0, 0, target).parameters;
+    const Change change = changed(before, target, pname, params);
+    if (change.error != GL_NO_ERROR) return c.error(change.error);
+    if (parameter_value(before, pname) == parameter_value(change.value, pname)) return;
+    const auto texture = texture_to_change(c, target);
+    std::lock_guard lock(c.share().mutex);
+    texture->parameters = change.value;
+    if (pname == GL_GENERATE_MIPMAP || pname == GL_TEXTURE_PRIORITY) return;  // nodes are told when it happens; never
+    texture->parameter_changed(pname);
+    touch(c.share(), *texture);
+}
+
+void ActiveTexture(Context& c, GLenum unit) {
+    if (unit - GL_TEXTURE0 >= kTextureUnits) return c.error(GL_INVALID_ENUM);
+    c.set<glstate::el::active_texture>(0, unit);
+}
+
+void ClientActiveTexture(Context& c, GLenum unit) {
+    if (unit - GL_TEXTURE0 >= kTextureUnits) return c.error(GL_INVALID_ENUM);
+    c.set<glstate::el::client_active_texture>(0, unit);
+}
+
+void GenerateMipmap(Context& c, GLenum target) {
+    if (!is_target(target) || target == GL_TEXTURE_RECTANGLE) return c.error(GL_INVALID_ENUM);
+    const auto current = bound_texture(c, target);
+    if (!current || !current->find_level(0, current->parameters.base_level)) return c.error(GL_INVALID_OPERATION);
+    const auto texture = texture_to_change(c, target);
+    std::lock_guard lock(c.share().mutex);
+    texture->mipmaps_generated();
+    c.share().last_change.store(texture->stamp, std::memory_order_release);
+}
+
+}  // namespace wall::client::api

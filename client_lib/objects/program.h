@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// Shaders and programs as the application defined them, and what linking told about them. A node compiles and links;
+// one of them is asked, once for each glCompileShader and glLinkProgram whose outcome matters, and everything else
+// (locations, types, uniform values) is answered from here. Uniforms are this program's own state: every value has a
+// stamp, and a node is sent what changed since it last drew with the program (DESIGN, section 1).
+// Guarded by the share group's mutex.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/glapi/program_format.h"
+#include "common/wire/pack_buffer.h"
+
+namespace wall::client {
+
+/// Shaders and programs share one space of names (OpenGL 2.1, 2.15.1).
+struct GlslObject {
+    enum class Kind : std::uint8_t { shader, program };
+    GlslObject(Kind kind, std::uint32_t id, GLuint name) : kind(kind), id(id), name(name) {}
+    virtual ~GlslObject() = default;
+    const Kind kind;
+    const std::uint32_t id;  ///< on the wire, and in the state element current_program
+    const GLuint name;       ///< the application's
+    bool deleted = false;    ///< by glDelete*, while something still uses it
+    unsigned users = 0;      ///< programs that have the shader; contexts that draw with the program
+};
+
+struct Shader : GlslObject {
+    Shader(std::uint32_t id, GLuint name, GLenum type) : GlslObject(Kind::shader, id, name), type(type) {}
+    const GLenum type;
+    std::string source;
+    enum class State : std::uint8_t { not_compiled, unknown, compiled, failed };
+    State state = State::not_compiled;  ///< unknown: nobody has asked yet how it went
+    std::string compiled_source;        ///< as of the last glCompileShader
+    std::string log;
+};
+
+/// One active uniform. Its elements have the locations `location` ... `location + size - 1`.
+struct Uniform {
+    std::string name;  ///< without "[0]"
+    const glapi::UniformType* type = nullptr;
+    GLint size = 1;
+    GLint location = -1;      ///< -1: built into GLSL
+    bool array = false;
+    std::size_t first = 0;    ///< of its words in Executable::words
+    std::uint64_t stamp = 0;  ///< of the latest change; 0: as the shader says
+    std::string full_name() const { return array ? name + "[0]" : name; }
+};
+
+struct UniformPlace {
+    std::uint32_t uniform = 0;  ///< index in Executable::uniforms
+    std::uint32_t element = 0;
+};
+
+/// A program that was linked, with its uniforms' values.
+class Executable {
+public:
+    /// Nothing if the answer contradicts itself.
+    static std::unique_ptr<Executable> make(glapi::ProgramDefinition definition, glapi::ProgramReflection reflection);
+
+    /// Location of "name", "name[3]"; -1: no such uniform.
+    GLint location_of(std::string_view name) const;
+    GLint attribute_location_of(std::string_view name) const;
+    /// Null: no such location.
+    const UniformPlace* place_of(GLint location) const;
+
+    /// False if these are the values that it has. `words` is a whole number of elements, from element `first` on.
+    bool holds(const Uniform& uniform, std::uint32_t first, std::span<const std::uint32_t> words) const;
+    void store(Uniform& uniform, std::uint32_t first, std::span<const std::uint32_t> words);
+    std::span<const std::uint32_t> words_of(const Uniform& uniform) const;
+
+    /// Texture units that the samplers name, with the texture target of each.
+    template <class Use>
+    void for_each_sampler(Use&& use) const {
+        for (const Uniform& uniform : uniforms)
+            if (uniform.type->base == glapi::UniformBase::sampler)
+                for (const std::uint32_t unit : words_of(uniform)) use(unit, uniform.type->texture_target);
+    }
+
+    std::uint64_t stamp = 0;        ///< of linking
+    std::uint64_t last_change = 0;  ///< of a uniform, or `stamp`
+    std::vector<std::byte> definition;
+    std::vector<Uniform> uniforms;
+    std::vector<glapi::ActiveAttribute> attributes;
+
+private:
+    std::vector<std::uint32_t> words_;
+    std::vector<UniformPlace> places_;  ///< by location
+};
+
+struct Program : GlslObject {
+    Program(std::uint32_t id, GLuint name) : GlslObject(Kind::program, id, name) {}
+    std::vector<std::shared_ptr<Shader>> shaders;
+    std::map<std::string, GLuint> attribute_bindings;
+    std::optional<glapi::ProgramDefinition> to_link;  ///< glLinkProgram was called, nobody has asked yet how it went
+    bool linked = false;     ///< GL_LINK_STATUS
+    bool validated = false;  ///< GL_VALIDATE_STATUS
+    std::string log;
+    /// Of the last glLinkProgram that succeeded.
+    std::unique_ptr<Executable> executable;
+
+    glapi::ProgramDefinition definition() const;
+};
+
+/// Packs everything that changed since `known` (0: the node has nothing).
+void pack_program(const Program& program, std::uint64_t known, wire::PackBuffer& buffer);
+
+}  // namespace wall::client

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// The calls that define a texture's images, as values (api/tex_image.cpp). The application's thread.
+#pragma once
+
+#include <vector>
+
+#include "client_lib/context.h"
+#include "common/glapi/image.h"
+
+namespace wall::client {
+
+/// Parameters of glTexImage, glTexSubImage and the copying ones.
+struct ImageCall {
+    unsigned dimensions = 2;
+    GLenum target = 0;
+    GLint level = 0;
+    GLint internal_format = 0, border = 0;  ///< of glTexImage
+    GLint x = 0, y = 0, z = 0;              ///< of glTexSubImage
+    GLsizei width = 0, height = 1, depth = 1;
+    GLenum format = 0, type = 0;
+    const void* pixels = nullptr;
+    glapi::PixelStore store;
+};
+
+/// Tight pixels in client memory.
+struct TexelData {
+    GLenum format = 0, type = 0;
+    std::vector<std::byte> bytes;
+};
+
+/// How many levels a texture of this target may have.
+GLint level_count(Context& c, GLenum target);
+
+/// glTexImage and glTexSubImage with their checks.
+void define_image(Context& c, ImageCall call);
+void define_sub_image(Context& c, const ImageCall& call);
+GLenum sub_image_error(Context& c, const ImageCall& call);
+
+/// The same after the checks, with pixels as they are to be stored.
+void store_level(Context& c, const ImageCall& call, TexelData data);
+void change_level(Context& c, const ImageCall& call, TexelData data);
+
+}  // namespace wall::client
