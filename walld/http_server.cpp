@@ -162,7 +162,8 @@ asio::awaitable<HttpServer::Response> HttpServer::answer(const Request& request)
 }
 
 asio::awaitable<HttpServer::Response> HttpServer::snapshot(const Request& request, const std::string& tile) {
-    auto png = co_await snapshots_.take({.tile = tile, .target = {}});
+    SnapshotQuery query{.tile = tile, .target = {}};  // a name of its own: GCC 12 destroys such a temporary twice
+    auto png = co_await snapshots_.take(std::move(query));
     if (!png) co_return reply(request.version(), http::status::not_found, "text/plain", png.error().message + "\n");
     co_return reply(request.version(), http::status::ok, "image/png", std::move(*png));
 }
