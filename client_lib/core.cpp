@@ -102,10 +102,9 @@ void flush_current(bool wait) {
 }
 
 ProcAddress gl_proc_address(const char* name) {
-    const auto* end = proc_table + proc_table_size;
-    const auto* found = std::lower_bound(proc_table, end, name,
-                                         [](const ProcEntry& entry, const char* wanted) { return std::strcmp(entry.name, wanted) < 0; });
-    return found != end && std::strcmp(found->name, name) == 0 ? found->address : nullptr;
+    const auto before = [](const ProcEntry& entry, const char* wanted) { return std::strcmp(entry.name, wanted) < 0; };
+    const auto found = std::lower_bound(kProcs.begin(), kProcs.end(), name, before);
+    return found != kProcs.end() && std::strcmp(found->name, name) == 0 ? found->entry : nullptr;
 }
 
 }  // namespace wall::client
