@@ -183,4 +183,25 @@ std::optional<std::vector<std::byte>> Session::ask(Context& context, Node& node,
     return wait_reply(node, request);
 }
 
+template <class Pack>
+std::vector<std::optional<std::vector<std::byte>>> Session::ask_all(Context& context, const std::vector<Target>& targets,
+                                                                    const char* function, Pack&& pack) {
+    context.flush_block();
+    std::vector<std::pair<Node*, std::uint32_t>> asked;
+    {
+        std::lock_guard lock(mutex_);
+        for (const Target& target : targets) {
+            Node& node = node_of(target);
+            asked.emplace_back(node.alive() && context.draw_surface() ? &node : nullptr, ++last_request_);
+            if (asked.back().first) pack(prepare(node, context), asked.back().second, asked.size() - 1);
+        }
+        for (const auto& [node, request] : asked)
+            if (node) send(*node);
+        if (!targets.empty()) count_round_trip(function);
+    }
+    std::vector<std::optional<std::vector<std::byte>>> answers;
+    for (const auto& [node, request] : asked) answers.push_back(node ? wait_reply(*node, request) : std::nullopt);
+    return answers;
+}
+
 }  // namespace wall::client

@@ -99,6 +99,12 @@ public:
     template <class Pack>
     std::optional<std::vector<std::byte>> ask(Context& context, Node& node, const char* function, Pack&& pack);
 
+    /// The same for several targets of the read surface, `pack(buffer, request, i)`: all are asked before the first
+    /// answer is waited for, so it is one round trip. An answer for each target in order; nothing where a node is lost.
+    template <class Pack>
+    std::vector<std::optional<std::vector<std::byte>>> ask_all(Context& context, const std::vector<Target>& targets,
+                                                               const char* function, Pack&& pack);
+
     /// Everything queued goes out; `wait` also waits until all nodes have executed it.
     void flush(Context* context, bool wait);
     void destroy_context(std::uint32_t context);
