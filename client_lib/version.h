@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: MIT
-// What the client library says it implements: the one place. glGetString says less where a node can do less.
+// What the library says it implements: versions and extensions, in one place. Both follow from commands.toml: a step is
+// offered as soon as the commands that it stands for are implemented, and never more than every node can do.
 #pragma once
 
-#include <span>
+#include <string>
+#include <vector>
+
+#include "client_lib/control_messages.h"
 
 namespace wall::client {
 
-inline constexpr int kGlMajor = 1, kGlMinor = 5;
-inline constexpr const char* kWallVersion = "WallGL 0.1";
-
-/// Extensions whose every command and word is implemented here. Those that only promise something of the driver are
-/// offered where all nodes have them.
-struct Extension {
-    const char* name;
-    bool needs_node;
+struct GlVersion {
+    int major = 1, minor = 1;
+    const char* shading_language = nullptr;  ///< null: no shaders
 };
-std::span<const Extension> implemented_extensions();
+
+GlVersion offered_version(const Caps& caps);
+std::vector<std::string> offered_extensions(const Caps& caps);
+
+/// glGetString(GL_VERSION).
+std::string version_string(const Caps& caps);
 
 }  // namespace wall::client

@@ -2,8 +2,6 @@
 // glGet* and the like, answered from the context's shadow; none of them asks a node.
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <span>
 
 #include "client_lib/attribute_stack.h"
 #include "client_lib/context.h"
@@ -107,6 +105,11 @@ const Special kSpecials[] = {
     {GL_DOUBLEBUFFER, 1, [](Context& c, double* out) { *out = format_of(c).double_buffered; }},
     {GL_SAMPLES, 1, [](Context& c, double* out) { *out = format_of(c).samples; }},
     {GL_SAMPLE_BUFFERS, 1, [](Context& c, double* out) { *out = format_of(c).samples > 0; }},
+    {GL_MAJOR_VERSION, 1, [](Context& c, double* out) { *out = offered_version(c.session().caps()).major; }},
+    {GL_MINOR_VERSION, 1, [](Context& c, double* out) { *out = offered_version(c.session().caps()).minor; }},
+    {GL_NUM_EXTENSIONS, 1, [](Context& c, double* out) { *out = static_cast<double>(offered_extensions(c.session().caps()).size()); }},
+    {GL_CONTEXT_FLAGS, 1, constant<0>},
+    {GL_CONTEXT_PROFILE_MASK, 1, constant<GL_CONTEXT_COMPATIBILITY_PROFILE_BIT>},
     {GL_IMPLEMENTATION_COLOR_READ_FORMAT, 1, constant<GL_RGBA>},
     {GL_IMPLEMENTATION_COLOR_READ_TYPE, 1, constant<GL_UNSIGNED_BYTE>},
 };
