@@ -75,6 +75,36 @@ void Layer::bind(GLenum draw_buffer, GLenum read_buffer) {
     if (std::exchange(read_buffer_, read_buffer) != read_buffer) gl_.ReadBuffer(attachments(read_buffer, format_.double_buffered).first);
 }
 
+std::vector<GLuint> Layer::draw_textures() const {
+    std::vector<GLuint> textures;
+    const auto [first, second] = attachments(draw_buffer_, format_.double_buffered);
+    for (const GLenum attachment : {first, second})
+        if (attachment != GL_NONE) textures.push_back(attachment == kFront || !format_.double_buffered ? front_ : back_);
+    return textures;
+}
+
+namespace {
+
+/// Turns an image upside down where the driver's rows go down.
+void reverse_rows(std::vector<std::uint8_t>& pixels, std::size_t row_bytes, std::size_t rows) {
+    for (std::size_t y = 0; y < rows / 2; ++y)
+        std::swap_ranges(&pixels[y * row_bytes], &pixels[y * row_bytes] + row_bytes, &pixels[(rows - 1 - y) * row_bytes]);
+}
+
+}  // namespace
+
+void Layer::read_texture(GLuint texture, const geom::Rect& area, std::vector<std::uint8_t>& pixels) const {
+    const std::int32_t y = flip_y_ ? height() - area.bottom() : area.y;
+    gl_.GetTextureSubImage(texture, 0, area.x, y, 0, area.width, area.height, 1, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(pixels.size()), pixels.data());
+    if (flip_y_) reverse_rows(pixels, static_cast<std::size_t>(area.width) * 4, static_cast<std::size_t>(area.height));
+}
+
+void Layer::write_texture(GLuint texture, const geom::Rect& area, std::vector<std::uint8_t>& pixels) {
+    const std::int32_t y = flip_y_ ? height() - area.bottom() : area.y;
+    if (flip_y_) reverse_rows(pixels, static_cast<std::size_t>(area.width) * 4, static_cast<std::size_t>(area.height));
+    gl_.TextureSubImage2D(texture, 0, area.x, y, area.width, area.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+}
+
 void Layer::copy(GLuint from, const Layer& source, GLuint to) const {
     // Where the two areas overlap on the canvas, placed within each texture.
     const geom::Rect common = geom::intersect(geometry_.area, source.geometry_.area);

@@ -62,6 +62,13 @@ public:
     /// Takes over the common pixels of a layer of the same surface at an older place of the same scale.
     void take_content(const Layer& older);
 
+    GLuint framebuffer() const { return framebuffer_; }
+    /// Textures of the buffers that are drawn to since bind().
+    std::vector<GLuint> draw_textures() const;
+    /// A rectangle of a colour texture as RGBA bytes, bottom row first. Pixel transfer must be neutral.
+    void read_texture(GLuint texture, const geom::Rect& area, std::vector<std::uint8_t>& pixels) const;
+    void write_texture(GLuint texture, const geom::Rect& area, std::vector<std::uint8_t>& pixels);
+
     /// The accumulation buffer: 4 signed 16-bit components a pixel, bottom row first; empty until it is used.
     std::vector<std::int16_t> accum;
 

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Puts the layers of all sessions together to the picture of a tile, and reads pictures back without waiting for the
+// driver. Render thread.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/base/ids.h"
+#include "tileserver/render/executor.h"
+
+namespace wall::tileserver {
+
+struct StackEntry {
+    SessionId session;
+    SurfaceId surface;
+};
+
+struct Picture {
+    std::uint32_t request = 0;
+    std::uint32_t width = 0, height = 0;
+    std::string rgb;    ///< top row first, 3 bytes a pixel, no padding
+    std::string error;  ///< set: there is no picture
+};
+
+class Compositor {
+public:
+    using FindSurface = std::function<const Surface*(const StackEntry&)>;  ///< null: no such surface (yet)
+
+    Compositor(RenderNode& node, FindSurface find) : node_(node), gl_(node.driver.gl()), find_(std::move(find)) {}
+    ~Compositor();
+    Compositor(const Compositor&) = delete;
+
+    void set_background(std::uint32_t rgb);
+    void set_stacking(std::vector<StackEntry> bottom_first);
+    /// Starts reading a tile; collect() gives the picture later. `session`: only its layers; none: all.
+    void request(std::uint32_t request, std::uint32_t slot, SessionId session);
+    /// The pictures that have arrived. `wait`: all that were requested.
+    std::vector<Picture> collect(bool wait);
+    bool busy() const { return !readbacks_.empty() || !refused_.empty(); }
+
+private:
+    struct TileTarget {
+        geom::Rect rect;
+        GLuint texture = 0, framebuffer = 0;
+        std::uint64_t composed = 0;   // RenderNode::damage that the picture shows; 0: none
+        SessionId only;               // of one session only
+    };
+    struct Readback {
+        std::uint32_t request = 0;
+        geom::Rect size;
+        GLuint buffer = 0;
+        GLsync done = nullptr;
+    };
+    const Tile* tile(std::uint32_t slot) const;
+    TileTarget& target(const Tile& tile);
+    void compose(TileTarget& target, std::uint32_t slot, SessionId only);
+    void draw_layer(const TileTarget& target, const Layer& layer);
+    void release(TileTarget& target);
+    Picture finish(const Readback& readback);
+
+    RenderNode& node_;
+    const Gl& gl_;
+    FindSurface find_;
+    std::array<float, 4> background_{0, 0, 0, 1};
+    std::vector<StackEntry> stacking_;
+    std::map<std::uint32_t, TileTarget> targets_;  // by slot
+    GLuint source_ = 0;                            // framebuffer that a layer's texture is read through
+    std::deque<Readback> readbacks_;
+    std::vector<Picture> refused_;
+};
+
+}  // namespace wall::tileserver

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/render/driver.h"
+
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+namespace wall::tileserver {
+namespace {
+
+constexpr std::array<GLenum, kTextureTargets> kGlTargets = {
+    GL_TEXTURE_1D,       GL_TEXTURE_2D,       GL_TEXTURE_3D,             GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE,
+    GL_TEXTURE_1D_ARRAY, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_CUBE_MAP_ARRAY, GL_TEXTURE_BUFFER,   GL_TEXTURE_2D_MULTISAMPLE,
+};
+
+bool has_extension(const Gl& gl, std::string_view wanted) {
+    GLint count = 0;
+    gl.GetIntegerv(GL_NUM_EXTENSIONS, &count);
+    for (GLint i = 0; i < count; ++i) {
+        const auto* name = reinterpret_cast<const char*>(gl.GetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
+        if (name != nullptr && wanted == name) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+GLenum gl_target(TextureTarget target) { return kGlTargets[static_cast<std::size_t>(target)]; }
+
+TextureTarget texture_target(GLenum target) {
+    if (target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z) return TextureTarget::cube_map;
+    std::size_t i = 0;
+    while (i < kTextureTargets && kGlTargets[i] != target) ++i;
+    return static_cast<TextureTarget>(i);
+}
+
+Driver::Driver(const Gl& gl) : gl_(gl), flip_y_(has_extension(gl, "GL_MESA_framebuffer_flip_y")) {
+    gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);  // images travel with tight rows
+    gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
+    // Whatever the driver started with, it now holds what the mirror says.
+    glstate::for_each_element([&]<class E>() {
+        if constexpr ((kSynced >> static_cast<unsigned>(E::category) & 1) != 0)
+            for (unsigned i = 0; i < E::count; ++i) set<E>(i, E::ref(defaults_, i));
+    });
+    gl_.Disable(GL_SCISSOR_TEST);
+    drain_errors();
+}
+
+unsigned Driver::drain_errors() {
+    unsigned count = 0;
+    while (count < 64 && gl_.GetError() != GL_NO_ERROR) ++count;
+    return count;
+}
+
+void Driver::sync(const glstate::State& state) { glstate::diff<kSynced>(mirror, state, *this); }
+
+void Driver::sync_pixel_transfer(const glstate::State& state) { glstate::diff_category<glstate::Category::pixel_transfer>(mirror, state, *this); }
+
+// ---- what the driver transforms when it is told ----
+
+template <class Call>
+void Driver::with_identity_modelview(Call&& call) {
+    gl_.MatrixMode(GL_MODELVIEW);
+    gl_.PushMatrix();
+    gl_.LoadIdentity();
+    call();
+    gl_.PopMatrix();
+}
+
+void Driver::emit(Gl& gl, glstate::el::modelview, unsigned, const glstate::Mat4& v) {
+    gl.MatrixMode(GL_MODELVIEW);
+    gl.LoadMatrixf(v.data());
+}
+void Driver::emit(Gl& gl, glstate::el::projection, unsigned, const glstate::Mat4& v) {
+    gl.MatrixMode(GL_PROJECTION);
+    gl.LoadMatrixf(v.data());
+}
+void Driver::emit(Gl& gl, glstate::el::texture_matrix, unsigned i, const glstate::Mat4& v) {
+    unit(gl, i);
+    gl.MatrixMode(GL_TEXTURE);
+    gl.LoadMatrixf(v.data());
+}
+void Driver::emit(Gl& gl, glstate::el::clip_plane, unsigned i, const glstate::Vec4& v) {
+    const std::array<GLdouble, 4> plane = {v[0], v[1], v[2], v[3]};
+    with_identity_modelview([&] { gl.ClipPlane(GL_CLIP_PLANE0 + i, plane.data()); });
+}
+void Driver::emit(Gl& gl, glstate::el::light_position, unsigned i, const glstate::Vec4& v) {
+    with_identity_modelview([&] { gl.Lightfv(GL_LIGHT0 + i, GL_POSITION, v.data()); });
+}
+void Driver::emit(Gl& gl, glstate::el::light_spot_direction, unsigned i, const glstate::Vec3& v) {
+    with_identity_modelview([&] { gl.Lightfv(GL_LIGHT0 + i, GL_SPOT_DIRECTION, v.data()); });
+}
+void Driver::emit(Gl& gl, glstate::el::tex_gen_eye_plane, unsigned i, const glstate::Vec4& v) {
+    unit(gl, i / 4);
+    with_identity_modelview([&] { gl.TexGenfv(GL_S + i % 4, GL_EYE_PLANE, v.data()); });
+}
+
+// ---- textures ----
+
+void Driver::bind_texture(unsigned i, TextureTarget target, GLuint texture) {
+    GLuint& bound = bound_textures_[i][static_cast<std::size_t>(target)];
+    if (bound == texture) return;
+    unit(gl_, i);
+    gl_.BindTexture(gl_target(target), texture);
+    bound = texture;
+}
+
+void Driver::forget_texture(GLuint texture) {
+    for (auto& unit_bindings : bound_textures_)
+        for (GLuint& bound : unit_bindings)
+            if (bound == texture) bound = 0;
+}
+
+// ---- the layer ----
+
+void Driver::bind_layer(Layer& layer, const glstate::State& state) {
+    const std::uint64_t id = state.ids[static_cast<std::size_t>(glstate::Category::window)];
+    if (layer_ == &layer && window_id_ == id) return;
+    layer_ = &layer;
+    window_id_ = id;
+    layer.bind(glstate::el::draw_buffer::ref(state), glstate::el::read_buffer::ref(state));
+    const WindowValues wanted = window_values(layer.geometry(), state);
+    apply_viewport(wanted, layer.geometry().scaled());
+    if (wanted.scissor_enabled != window_.scissor_enabled) wanted.scissor_enabled ? gl_.Enable(GL_SCISSOR_TEST) : gl_.Disable(GL_SCISSOR_TEST);
+    if (wanted.scissor != window_.scissor) gl_.Scissor(wanted.scissor.x, wanted.scissor.y, wanted.scissor.width, wanted.scissor.height);
+    if (wanted.stipple != window_.stipple) gl_.PolygonStipple(reinterpret_cast<const GLubyte*>(wanted.stipple.data()));
+    if (wanted.pixel_zoom != window_.pixel_zoom) gl_.PixelZoom(wanted.pixel_zoom[0], wanted.pixel_zoom[1]);
+    window_ = wanted;
+}
+
+void Driver::apply_viewport(const WindowValues& values, bool scaled) {
+    if (values.viewport == window_.viewport && scaled == viewport_scaled_) return;
+    const auto& v = values.viewport;
+    viewport_scaled_ = scaled;
+    if (scaled)
+        gl_.ViewportIndexedf(0, v.x, v.y, v.width, v.height);
+    else
+        gl_.Viewport(static_cast<GLint>(v.x), static_cast<GLint>(v.y), static_cast<GLsizei>(v.width), static_cast<GLsizei>(v.height));
+}
+
+void Driver::disable_scissor() {
+    if (std::exchange(window_.scissor_enabled, false)) gl_.Disable(GL_SCISSOR_TEST);
+    layer_ = nullptr;
+}
+
+void Driver::set_unscaled_pixel_zoom() {
+    if (std::exchange(window_.pixel_zoom, {1, 1}) != std::array<float, 2>{1, 1}) gl_.PixelZoom(1, 1);
+    layer_ = nullptr;
+}
+
+}  // namespace wall::tileserver

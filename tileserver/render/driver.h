@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// The one driver context of a GPU and what is known to be in it: a mirror that every soft context is compared with
+// before it draws, so that a switch costs what differs (Tracking Graphics State, section 5). Render thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "common/glstate/diff.h"
+#include "gen/glstate/driver_emit.gen.h"
+#include "gen/glstate/state.gen.h"
+#include "tileserver/gpu/gl.h"
+#include "tileserver/render/window_values.h"
+
+namespace wall::tileserver {
+
+inline constexpr unsigned kTextureUnits = glstate::el::texture_binding_2d::count;
+
+/// Texture targets with a binding of their own, in the order of glstate's elements.
+enum class TextureTarget : std::uint8_t { t1d, t2d, t3d, cube_map, rectangle, t1d_array, t2d_array, cube_map_array, buffer, t2d_multisample, kCount };
+inline constexpr std::size_t kTextureTargets = static_cast<std::size_t>(TextureTarget::kCount);
+GLenum gl_target(TextureTarget target);
+/// Of a target or an image target (cube map faces); kCount: not one of ours.
+TextureTarget texture_target(GLenum target);
+
+/// The state of a driver context goes through here, never around it.
+class Driver : private glstate::DriverEmit<Gl> {
+public:
+    /// The context is current; `gl` is loaded.
+    explicit Driver(const Gl& gl);
+    Driver(const Driver&) = delete;
+
+    const Gl& gl() const { return gl_; }
+    bool flip_y() const { return flip_y_; }
+    /// What the driver holds. Textures, the window category, the raster position and objects are kept elsewhere.
+    glstate::State mirror;
+
+    /// Everything but what depends on the layer or names objects.
+    void sync(const glstate::State& state);
+    void sync_pixel_transfer(const glstate::State& state);
+    /// Images pass unchanged, for the driver's own work.
+    void neutral_pixel_transfer() { sync_pixel_transfer(defaults_); }
+    /// The layer and the window category as it concerns it.
+    void bind_layer(Layer& layer, const glstate::State& state);
+    /// Another framebuffer was bound, or a layer is gone.
+    void forget_layer() { layer_ = nullptr; }
+    void bind_texture(unsigned unit, TextureTarget target, GLuint texture);
+    /// On the active unit, for commands that work on the bound object.
+    void bind_texture_to_edit(TextureTarget target, GLuint texture) {
+        bind_texture(0, target, texture);
+        unit(gl_, 0);
+    }
+    /// The driver unbinds a deleted texture by itself.
+    void forget_texture(GLuint texture);
+    /// No scissor for the driver's own work (blits, clears); the next bind_layer() sets it again.
+    void disable_scissor();
+    void set_unscaled_pixel_zoom();
+
+    /// The current attributes as of `state`, after something else was put there.
+    void sync_current(const glstate::State& state) { glstate::diff<kCurrentMask>(mirror, state, *this); }
+
+    /// Takes all of the driver's errors; how many there were.
+    unsigned drain_errors();
+
+    template <class E>
+    void set(unsigned i, const typename E::type& value) {
+        emit(gl_, E{}, i, value);
+    }
+
+private:
+    using DriverEmit::emit;
+    void emit(Gl& gl, glstate::el::modelview, unsigned, const glstate::Mat4& v);
+    void emit(Gl& gl, glstate::el::projection, unsigned, const glstate::Mat4& v);
+    void emit(Gl& gl, glstate::el::texture_matrix, unsigned i, const glstate::Mat4& v);
+    void emit(Gl& gl, glstate::el::clip_plane, unsigned i, const glstate::Vec4& v);
+    void emit(Gl& gl, glstate::el::light_position, unsigned i, const glstate::Vec4& v);
+    void emit(Gl& gl, glstate::el::light_spot_direction, unsigned i, const glstate::Vec3& v);
+    void emit(Gl& gl, glstate::el::tex_gen_eye_plane, unsigned i, const glstate::Vec4& v);
+    template <class Call>
+    void with_identity_modelview(Call&& call);
+    void apply_viewport(const WindowValues& values, bool scaled);
+
+    static constexpr glstate::CategoryMask kCurrentMask = glstate::mask_of(glstate::Category::current);
+    static constexpr glstate::CategoryMask kSynced =
+        glstate::kSentCategories & ~glstate::kLayerCategories & ~glstate::mask_of(glstate::Category::textures) & ~glstate::mask_of(glstate::Category::objects);
+
+    Gl gl_;
+    const glstate::State defaults_;
+    bool flip_y_ = false;
+    std::array<std::array<GLuint, kTextureTargets>, kTextureUnits> bound_textures_{};
+    Layer* layer_ = nullptr;         // whose window values are in the driver
+    std::uint64_t window_id_ = 0;    // value id of the window category that they came from
+    bool viewport_scaled_ = false;
+    WindowValues window_;            // what the driver holds
+};
+
+}  // namespace wall::tileserver

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/render/executor.h"
+
+#include "common/glstate/elements.h"
+#include "common/wire/batch.h"
+#include "tileserver/render/limits.h"
+
+namespace wall::tileserver {
+
+Executor::Executor(RenderNode& node, Session& session, SessionOutput& output)
+    : node_(node), session_(session), output_(output), gl_(node.driver.gl()) {}
+
+Executor::~Executor() {
+    end_render_mode();
+    if (node_.textures_owner == this) node_.textures_owner = nullptr;
+}
+
+Result<void> Executor::run_batch(std::span<const std::byte> payload) {
+    const auto batch = wire::split_batch(payload);
+    if (!batch) return tl::unexpected(batch.error());
+    context_id_ = ContextId(batch->context);
+    context_ = &session_.context(context_id_);
+    if (session_.context_count() > kMaxContexts) return fail("too many contexts");
+    surfaces_known_ = false;
+    node_.commands += batch->opcodes.size();
+    auto done = glapi::decode(batch->opcodes, batch->operands, *this);
+    if (in_block_) end_block();  // the batch was refused within a block
+    node_.gl_errors += node_.driver.drain_errors();
+    return done;
+}
+
+std::uint32_t Executor::state_bytes(std::uint32_t id) const { return glstate::element_bytes(id); }
+
+bool Executor::State(std::uint32_t id, std::span<const std::byte> value) { return glstate::apply(context_->state, id, value); }
+
+// ---- blocks ----
+
+std::uint64_t Executor::begin_block(std::uint64_t tiles) {
+    if (!surfaces_known_) {
+        draw_surface_ = session_.surface(context_->draw);
+        read_surface_ = session_.surface(context_->read);
+        surfaces_known_ = true;
+    }
+    in_block_ = true;
+    std::uint64_t present = 0;
+    for (std::uint64_t rest = tiles; rest != 0 && draw_surface_ != nullptr; rest &= rest - 1) {
+        const auto slot = static_cast<unsigned>(std::countr_zero(rest));
+        if (draw_surface_->layer(slot) != nullptr) present |= std::uint64_t{1} << slot;
+    }
+    // With no layer at all the block is still decoded once, for what it leaves in the soft context.
+    return present != 0 ? present : tiles & (~tiles + 1);
+}
+
+void Executor::begin_tile(unsigned slot) {
+    if (tile_open_) finish_tile();
+    tile_open_ = true;
+    trail_.clear();
+    raster_ = glstate::el::raster_position::ref(context_->state);
+    layer_ = draw_surface_ != nullptr ? draw_surface_->layer(slot) : nullptr;
+    draws_ = layer_ != nullptr && layer_->complete();
+    if (draws_) prepare(*layer_);
+}
+
+void Executor::finish_tile() {
+    tile_open_ = false;
+    if (in_begin_) {
+        refuse("a block ends between Begin and End");
+        in_begin_ = false;
+        if (draws_) gl_.End();
+    }
+    if (draws_) trail_.fold_into(node_.driver.mirror);
+}
+
+void Executor::end_block() {
+    if (tile_open_) finish_tile();
+    trail_.fold_into(context_->state);
+    trail_.clear();
+    if (!glstate::same(raster_, glstate::el::raster_position::ref(context_->state))) glstate::assign<glstate::el::raster_position>(context_->state, 0, raster_);
+    in_block_ = draws_ = false;
+    const GLenum buffer = glstate::el::draw_buffer::ref(context_->state);
+    if (draw_surface_ != nullptr && (!draw_surface_->format().layer.double_buffered || (buffer != GL_BACK && buffer != GL_BACK_LEFT))) ++node_.damage;
+    layer_ = nullptr;
+}
+
+void Executor::prepare(Layer& layer) {
+    node_.driver.sync(context_->state);
+    sync_textures();
+    node_.maps.sync_evaluators(gl_, context_->maps);
+    node_.driver.bind_layer(layer, context_->state);
+}
+
+bool Executor::outside_begin() {
+    if (in_begin_) refuse("between Begin and End");
+    return !in_begin_;
+}
+
+// ---- texture bindings ----
+
+void Executor::sync_textures() {
+    const auto& textures = context_->state.textures;
+    const std::uint64_t id = context_->state.ids[static_cast<std::size_t>(glstate::Category::textures)];
+    if (node_.textures_owner == this && textures_id_ == id && textures_version_ == session_.texture_version()) return;
+    const std::array<const std::array<std::uint32_t, kTextureUnits>*, kTextureTargets> names = {
+        &textures.texture_binding_1d,        &textures.texture_binding_2d,       &textures.texture_binding_3d,
+        &textures.texture_binding_cube_map,  &textures.texture_binding_rectangle, &textures.texture_binding_1d_array,
+        &textures.texture_binding_2d_array,  &textures.texture_binding_cube_map_array, &textures.texture_binding_buffer,
+        &textures.texture_binding_2d_multisample};
+    for (std::size_t target = 0; target < kTextureTargets; ++target) {
+        for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
+            const Texture* texture = session_.texture(ClientName((*names[target])[unit]), static_cast<TextureTarget>(target));
+            const bool fits = texture != nullptr && texture->target == static_cast<TextureTarget>(target);
+            node_.driver.bind_texture(unit, static_cast<TextureTarget>(target), fits ? texture->driver.value : 0);
+        }
+    }
+    node_.textures_owner = this;
+    textures_id_ = id;
+    textures_version_ = session_.texture_version();
+}
+
+}  // namespace wall::tileserver

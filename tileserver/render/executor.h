@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+// Executes one session's stream: the handler of glapi::decode. State commands change soft contexts; before a block
+// draws in a tile, the driver is brought from what it holds to the soft context (lazily, by diff) and the tile's layer
+// is bound. A command that a correct client cannot send is refused, and with it the stream. Render thread.
+//
+// Within a block the driver's current attributes run ahead of the soft context: `trail_` notes what the commands leave
+// behind. Each tile of the block starts from the soft context's values; the soft context takes the trail at the end.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/glapi/decoder.h"
+#include "tileserver/render/session.h"
+#include "tileserver/render/session_output.h"
+
+namespace wall::tileserver {
+
+/// What the executors of a node share.
+struct RenderNode {
+    Driver& driver;
+    MapMirror maps;
+    std::vector<Tile> tiles;
+    const void* textures_owner = nullptr;     ///< the executor whose bindings the driver holds
+    std::uint64_t damage = 1;                 ///< grows when a tile's picture may have changed
+    bool present_at_once = false;             ///< nobody coordinates: show frames when they are done
+    std::uint64_t commands = 0, gl_errors = 0, frames = 0;  ///< since the start
+
+    explicit RenderNode(Driver& d) : driver(d) {}
+};
+
+class Executor : public glapi::Handler {
+public:
+    Executor(RenderNode& node, Session& session, SessionOutput& output);
+    ~Executor();
+
+    /// Runs one batch frame's payload.
+    Result<void> run_batch(std::span<const std::byte> payload);
+    /// The driver is in feedback or selection mode for this session: no other may draw.
+    bool exclusive() const { return render_mode_ != GL_RENDER; }
+    void present(SurfaceId surface, std::uint32_t frame);
+
+    // ---- the decoder's interface ----
+    std::uint32_t state_bytes(std::uint32_t id) const;
+    bool State(std::uint32_t id, std::span<const std::byte> value);
+    std::uint64_t begin_block(std::uint64_t tiles);
+    void begin_tile(unsigned slot);
+    void end_block();
+
+    // ---- geometry ----
+    void Begin(GLenum mode) {
+        if (in_begin_) return refuse("inside Begin and End");
+        in_begin_ = true;
+        if (draws_) gl_.Begin(mode);
+    }
+    void End() {
+        if (!in_begin_) return refuse("without Begin");
+        in_begin_ = false;
+        if (draws_) gl_.End();
+    }
+    void Vertex2f(float x, float y) {
+        if (draws_) gl_.Vertex2f(x, y);
+    }
+    void Vertex3f(float x, float y, float z) {
+        if (draws_) gl_.Vertex3f(x, y, z);
+    }
+    void Vertex4f(float x, float y, float z, float w) {
+        if (draws_) gl_.Vertex4f(x, y, z, w);
+    }
+    void Normal3f(float x, float y, float z) {
+        trail_.normal(x, y, z);
+        if (draws_) gl_.Normal3f(x, y, z);
+    }
+    void Color3f(float r, float g, float b) {
+        trail_.color(r, g, b, 1);
+        if (draws_) gl_.Color3f(r, g, b);
+    }
+    void Color4f(float r, float g, float b, float a) {
+        trail_.color(r, g, b, a);
+        if (draws_) gl_.Color4f(r, g, b, a);
+    }
+    void Color4ub(std::uint32_t rgba) {
+        const auto byte = [rgba](unsigned shift) { return static_cast<float>(rgba >> shift & 0xff) / 255.0f; };
+        trail_.color(byte(0), byte(8), byte(16), byte(24));
+        if (draws_) gl_.Color4ubv(reinterpret_cast<const GLubyte*>(&rgba));
+    }
+    void SecondaryColor3f(float r, float g, float b) {
+        trail_.secondary_color(r, g, b);
+        if (draws_) gl_.SecondaryColor3f(r, g, b);
+    }
+    void TexCoord1f(float s) {
+        trail_.texcoord(0, s, 0, 0, 1);
+        if (draws_) gl_.TexCoord1f(s);
+    }
+    void TexCoord2f(float s, float t) {
+        trail_.texcoord(0, s, t, 0, 1);
+        if (draws_) gl_.TexCoord2f(s, t);
+    }
+    void TexCoord3f(float s, float t, float r) {
+        trail_.texcoord(0, s, t, r, 1);
+        if (draws_) gl_.TexCoord3f(s, t, r);
+    }
+    void TexCoord4f(float s, float t, float r, float q) {
+        trail_.texcoord(0, s, t, r, q);
+        if (draws_) gl_.TexCoord4f(s, t, r, q);
+    }
+    void MultiTexCoord4f(std::uint32_t unit, float s, float t, float r, float q) {
+        if (unit >= kTextureUnits) return refuse("no such texture unit");
+        trail_.texcoord(unit, s, t, r, q);
+        if (draws_) gl_.MultiTexCoord4f(GL_TEXTURE0 + unit, s, t, r, q);
+    }
+    void FogCoordf(float coord) {
+        trail_.fog_coord(coord);
+        if (draws_) gl_.FogCoordf(coord);
+    }
+    void EdgeFlag(std::uint32_t flag) {
+        trail_.edge_flag(flag != 0);
+        if (draws_) gl_.EdgeFlag(flag != 0 ? GL_TRUE : GL_FALSE);
+    }
+    void Indexf(float c) {
+        trail_.color_index(c);
+        if (draws_) gl_.Indexf(c);
+    }
+    void VertexAttrib4f(std::uint32_t index, float x, float y, float z, float w) {
+        if (index >= glstate::el::vertex_attrib::count) return refuse("no such attribute");
+        if (index != 0) trail_.vertex_attrib(index, x, y, z, w);
+        if (draws_) gl_.VertexAttrib4f(index, x, y, z, w);
+    }
+    void Material(GLenum face, GLenum pname, float p0, float p1, float p2, float p3);
+    void EvalCoord1f(float u) {
+        if (draws_) gl_.EvalCoord1f(u);
+    }
+    void EvalCoord2f(float u, float v) {
+        if (draws_) gl_.EvalCoord2f(u, v);
+    }
+    void EvalPoint1(std::int32_t i) {
+        if (draws_) gl_.EvalPoint1(i);
+    }
+    void EvalPoint2(std::int32_t i, std::int32_t j) {
+        if (draws_) gl_.EvalPoint2(i, j);
+    }
+
+    // ---- drawing (executor_draw.cpp) ----
+    void EvalMesh1(GLenum mode, std::int32_t i1, std::int32_t i2);
+    void EvalMesh2(GLenum mode, std::int32_t i1, std::int32_t i2, std::int32_t j1, std::int32_t j2);
+    void Clear(std::uint32_t mask);
+    void Accum(GLenum op, float value);
+    void DrawPixels(std::int32_t width, std::int32_t height, GLenum format, GLenum type, std::span<const std::byte> pixels);
+    void Bitmap(std::int32_t width, std::int32_t height, float xorig, float yorig, float xmove, float ymove, std::span<const std::byte> bits);
+    void RunCall(std::uint32_t run);
+    void InitNames();
+    void LoadName(std::uint32_t name);
+    void PushName(std::uint32_t name);
+    void PopName();
+    void PassThrough(float token);
+
+    // ---- surfaces (executor_surface.cpp) ----
+    void Block(std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t) { refuse("misplaced"); }  // the decoder's own
+    void Sync(std::uint32_t request);
+    void SurfaceCreate(std::uint32_t surface, std::uint32_t double_buffered, std::uint32_t alpha_bits, std::uint32_t depth_bits,
+                       std::uint32_t stencil_bits, std::uint32_t accum_bits, std::uint32_t samples);
+    void SurfacePlace(std::uint32_t surface, std::uint32_t layout_version, std::uint32_t window_width, std::uint32_t window_height, std::int32_t x,
+                      std::int32_t y, std::uint32_t width, std::uint32_t height, std::uint32_t offscreen);
+    void SurfaceDestroy(std::uint32_t surface);
+    void Bind(std::uint32_t draw_surface, std::uint32_t read_surface);
+    void ContextDestroy(std::uint32_t context);
+    void Swap(std::uint32_t surface, std::uint32_t frame);
+
+    // ---- answers (executor_read.cpp) ----
+    void ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_t x, std::int32_t y, std::int32_t width, std::int32_t height, GLenum format,
+                    GLenum type);
+    void RenderMode(std::uint32_t request, GLenum mode, GLenum feedback_type, std::uint32_t buffer_entries);
+
+    // ---- objects (executor_objects.cpp) ----
+    void TexImage(std::uint32_t texture, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
+                  std::int32_t depth, std::int32_t border, GLenum format, GLenum type, std::span<const std::byte> pixels);
+    void TexSubImage(std::uint32_t texture, GLenum target, std::int32_t level, std::int32_t x, std::int32_t y, std::int32_t z, std::int32_t width,
+                     std::int32_t height, std::int32_t depth, GLenum format, GLenum type, std::span<const std::byte> pixels);
+    void TexParameter(std::uint32_t texture, GLenum target, GLenum pname, float p0, float p1, float p2, float p3);
+    void TexDelete(std::uint32_t texture);
+    void RunDefine(std::uint32_t run, std::uint32_t commands, std::uint32_t operand_bytes, std::span<const std::byte> content);
+    void RunDelete(std::uint32_t run);
+    void Map1(GLenum target, float u1, float u2, std::int32_t order, std::span<const std::byte> points);
+    void Map2(GLenum target, float u1, float u2, std::int32_t uorder, float v1, float v2, std::int32_t vorder, std::span<const std::byte> points);
+    void PixelMap(GLenum map, std::span<const std::byte> values);
+
+private:
+    void prepare(Layer& layer);
+    void finish_tile();
+    void sync_textures();
+    bool outside_begin();
+    Surface* known_surface(std::uint32_t id);
+    /// Binds a texture for the driver's work on the object; null after a refusal.
+    Texture* bind_for_upload(std::uint32_t name, GLenum target);
+    bool check_image(GLenum format, GLenum type, std::int32_t width, std::int32_t height, std::int32_t depth, std::span<const std::byte> pixels);
+    template <class Draw>
+    void at_raster_position(Draw&& draw);
+    void end_render_mode();
+
+    RenderNode& node_;
+    Session& session_;
+    SessionOutput& output_;
+    const Gl& gl_;
+
+    SoftContext* context_ = nullptr;  // of the batch
+    ContextId context_id_;
+    Surface* draw_surface_ = nullptr, *read_surface_ = nullptr;  // of the batch's context
+    bool surfaces_known_ = false;
+
+    // Within a block.
+    bool draws_ = false;     // false: only the effects on the soft context count
+    bool in_begin_ = false;
+    bool in_block_ = false;
+    bool tile_open_ = false;
+    Layer* layer_ = nullptr;
+    AttributeTrail trail_;
+    glstate::Vec4 raster_{};  // position as the block's bitmaps move it
+
+    std::uint64_t textures_id_ = 0, textures_version_ = 0;  // the bindings that the driver holds, if this is the owner
+
+    GLenum render_mode_ = GL_RENDER;
+    std::vector<GLfloat> feedback_;
+    std::vector<GLuint> selection_;
+};
+
+}  // namespace wall::tileserver

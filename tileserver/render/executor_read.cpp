@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// Commands that are answered. Render thread.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "common/glapi/image.h"
+#include "tileserver/render/executor.h"
+#include "tileserver/render/limits.h"
+
+namespace wall::tileserver {
+namespace {
+
+/// A copy of a part of a scaled layer at the window's own resolution.
+std::unique_ptr<Layer> window_copy(Driver& driver, const Layer& layer, const SurfaceFormat& format, const WindowValues::IntBox& window) {
+    const geom::Rect size{0, 0, window.width, window.height};
+    LayerFormat copy_format = format.layer;
+    copy_format.double_buffered = false;
+    auto copy = std::make_unique<Layer>(driver.gl(), driver.flip_y(), LayerGeometry{size, size, static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height)}, copy_format);
+    copy->bind(GL_FRONT, GL_FRONT);
+    const auto from = layer_box(layer.geometry(), window);
+    driver.disable_scissor();
+    const GLbitfield buffers = GL_COLOR_BUFFER_BIT | (copy_format.depth ? GL_DEPTH_BUFFER_BIT : 0u) | (copy_format.stencil ? GL_STENCIL_BUFFER_BIT : 0u);
+    driver.gl().BlitNamedFramebuffer(layer.framebuffer(), copy->framebuffer(), from.x, from.y, from.x + from.width, from.y + from.height, 0, 0, size.width,
+                                     size.height, buffers, GL_NEAREST);
+    return copy;
+}
+
+std::size_t selection_entries(const std::vector<GLuint>& buffer, GLint hits) {
+    if (hits < 0) return buffer.size();
+    std::size_t used = 0;
+    for (GLint hit = 0; hit < hits && used < buffer.size(); ++hit) used += 3 + buffer[used];
+    return std::min(used, buffer.size());
+}
+
+}  // namespace
+
+void Executor::ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_t x, std::int32_t y, std::int32_t width, std::int32_t height, GLenum format,
+                          GLenum type) {
+    constexpr std::int32_t kMost = wire::kMaxSurfaceExtent;
+    if (slot >= wire::kMaxTilesPerNode || width < 0 || height < 0 || width > kMost || height > kMost) return refuse("no such slot or size");
+    if (x < -kMost || x > kMost || y < -kMost || y > kMost) return refuse("far outside the window");
+    const auto bytes = glapi::image_bytes(format, type, width, height, 1);
+    if (!bytes || *bytes > wire::kMaxFramePayload - 8) return refuse("no such format or type, or too large");
+    std::vector<std::byte> answer(*bytes);
+    Surface* surface = session_.surface(context_->read);
+    Layer* layer = surface != nullptr ? surface->layer(slot) : nullptr;
+    if (layer != nullptr && layer->complete() && !answer.empty()) {
+        Driver& driver = node_.driver;
+        driver.sync_pixel_transfer(context_->state);
+        node_.maps.sync_pixel_maps(gl_, context_->maps);
+        driver.forget_layer();
+        driver.bind_layer(*layer, context_->state);
+        if (layer->geometry().scaled()) {
+            const auto copy = window_copy(driver, *layer, surface->format(), {x, y, width, height});
+            gl_.ReadPixels(0, 0, width, height, format, type, answer.data());
+            driver.forget_layer();
+        } else {
+            const auto at = layer_point(layer->geometry(), x, y);
+            gl_.ReadPixels(static_cast<GLint>(at.x), static_cast<GLint>(at.y), width, height, format, type, answer.data());
+        }
+    }
+    output_.reply(request, std::move(answer));
+}
+
+void Executor::RenderMode(std::uint32_t request, GLenum mode, GLenum feedback_type, std::uint32_t buffer_entries) {
+    if (mode != GL_RENDER && mode != GL_SELECT && mode != GL_FEEDBACK) return refuse("no such mode");
+    if (mode == GL_FEEDBACK && (feedback_type < GL_2D || feedback_type > GL_4D_COLOR_TEXTURE)) return refuse("no such feedback type");
+    if (buffer_entries > kMaxFeedbackEntries) return refuse("buffer is too large");
+    const GLenum ended = std::exchange(render_mode_, mode);
+    const std::int32_t result = ended == GL_RENDER ? 0 : gl_.RenderMode(GL_RENDER);
+    std::span<const std::byte> content;
+    if (ended == GL_SELECT) content = std::as_bytes(std::span(selection_).first(selection_entries(selection_, result)));
+    if (ended == GL_FEEDBACK) content = std::as_bytes(std::span(feedback_).first(result < 0 ? feedback_.size() : std::min<std::size_t>(static_cast<std::size_t>(result), feedback_.size())));
+    std::vector<std::byte> answer(sizeof result + content.size());
+    std::memcpy(answer.data(), &result, sizeof result);
+    if (!content.empty()) std::memcpy(answer.data() + sizeof result, content.data(), content.size());
+    if (mode == GL_SELECT) {
+        selection_.assign(std::max(buffer_entries, 1u), 0);
+        gl_.SelectBuffer(static_cast<GLsizei>(buffer_entries), selection_.data());
+    }
+    if (mode == GL_FEEDBACK) {
+        feedback_.assign(std::max(buffer_entries, 1u), 0);
+        gl_.FeedbackBuffer(static_cast<GLsizei>(buffer_entries), feedback_type, feedback_.data());
+    }
+    if (mode != GL_RENDER) gl_.RenderMode(mode);
+    output_.reply(request, std::move(answer));
+}
+
+void Executor::end_render_mode() {
+    if (std::exchange(render_mode_, GLenum{GL_RENDER}) != GL_RENDER) gl_.RenderMode(GL_RENDER);
+}
+
+}  // namespace wall::tileserver

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// Surfaces, contexts and frames. Render thread.
+#include "common/wire/limits.h"
+#include "tileserver/render/executor.h"
+#include "tileserver/render/limits.h"
+
+namespace wall::tileserver {
+
+Surface* Executor::known_surface(std::uint32_t id) {
+    Surface* surface = session_.surface(SurfaceId(id));
+    if (surface == nullptr) refuse("surface " + std::to_string(id) + " does not exist");
+    return surface;
+}
+
+void Executor::Sync(std::uint32_t request) {
+    gl_.Finish();
+    output_.reply(request, {});
+}
+
+void Executor::SurfaceCreate(std::uint32_t surface, std::uint32_t double_buffered, std::uint32_t alpha_bits, std::uint32_t depth_bits,
+                             std::uint32_t stencil_bits, std::uint32_t accum_bits, std::uint32_t) {
+    if (surface == 0) return refuse("surface 0 is none");
+    surfaces_known_ = false;
+    const LayerFormat layer{double_buffered != 0, alpha_bits != 0, depth_bits != 0, stencil_bits != 0};
+    if (session_.create_surface(SurfaceId(surface), {layer, accum_bits != 0}) == nullptr) refuse("too many surfaces");
+}
+
+void Executor::SurfacePlace(std::uint32_t id, std::uint32_t layout_version, std::uint32_t window_width, std::uint32_t window_height, std::int32_t x,
+                            std::int32_t y, std::uint32_t width, std::uint32_t height, std::uint32_t offscreen) {
+    Surface* surface = known_surface(id);
+    if (surface == nullptr) return;
+    constexpr std::uint32_t kMost = wire::kMaxSurfaceExtent;
+    if (window_width > kMost || window_height > kMost || width > kMost || height > kMost) return refuse("larger than a surface may be");
+    constexpr std::int32_t kFarthest = 1 << 24;  // canvas pixels
+    if (x < -kFarthest || x > kFarthest || y < -kFarthest || y > kFarthest) return refuse("far off any canvas");
+    if (window_width == 0 || window_height == 0) return refuse("an empty window");
+    const geom::Rect rect{x, y, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
+    node_.driver.forget_layer();
+    node_.driver.disable_scissor();
+    surface->place({layout_version, window_width, window_height, rect, offscreen != 0}, node_.tiles);
+    ++node_.damage;
+}
+
+void Executor::SurfaceDestroy(std::uint32_t id) {
+    session_.destroy_surface(SurfaceId(id));
+    surfaces_known_ = false;
+    ++node_.damage;
+}
+
+void Executor::Bind(std::uint32_t draw_surface, std::uint32_t read_surface) {
+    context_->draw = SurfaceId(draw_surface);
+    context_->read = SurfaceId(read_surface);
+    surfaces_known_ = false;
+}
+
+void Executor::ContextDestroy(std::uint32_t context) {
+    if (ContextId(context) == context_id_) {
+        session_.context(context_id_) = SoftContext{};  // the batch goes on in it; an empty one costs nothing
+        return;
+    }
+    session_.destroy_context(ContextId(context));
+}
+
+void Executor::Swap(std::uint32_t id, std::uint32_t frame) {
+    Surface* surface = known_surface(id);
+    if (surface == nullptr) return;
+    if (surface->waiting_frame()) surface->show_frame();
+    surface->finish_frame(frame);
+    gl_.Flush();
+    ++node_.frames;
+    if (node_.present_at_once || !surface->on_tiles()) surface->show_frame();
+    node_.driver.forget_layer();
+    ++node_.damage;
+    output_.frame_rendered(SurfaceId(id), frame);
+}
+
+void Executor::present(SurfaceId id, std::uint32_t frame) {
+    Surface* surface = session_.surface(id);
+    if (surface == nullptr || !surface->waiting_frame() || static_cast<std::int32_t>(frame - *surface->waiting_frame()) < 0) return;
+    surface->show_frame();
+    node_.driver.forget_layer();
+    ++node_.damage;
+}
+
+}  // namespace wall::tileserver

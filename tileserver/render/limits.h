@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// What one session may take of a node. A session that wants more is ended with a reason.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace wall::tileserver {
+
+inline constexpr std::size_t kMaxSurfaces = 256;                    ///< windows and pbuffers
+inline constexpr std::size_t kMaxContexts = 1024;
+inline constexpr std::size_t kMaxTextures = 1 << 16;
+inline constexpr std::uint64_t kMaxTextureBytes = 4ull << 30;       ///< bytes, by estimate, of all textures
+inline constexpr std::uint64_t kMaxRunBytes = 2ull << 30;           ///< bytes of packed display lists
+inline constexpr std::size_t kMaxLayerBytes = std::size_t{2} << 30; ///< bytes of one surface's layers
+inline constexpr std::uint32_t kMaxFeedbackEntries = 16u << 20;     ///< of a feedback or selection buffer
+
+}  // namespace wall::tileserver

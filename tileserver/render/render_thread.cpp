@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/render/render_thread.h"
+
+#include <chrono>
+#include <cstring>
+#include <future>
+#include <map>
+#include <utility>
+
+#include "common/wire/batch.h"
+#include "tileserver/gpu/backend.h"
+
+namespace wall::tileserver {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+/// A frame that nobody presents for so long is shown by the session's next one.
+constexpr auto kPresentLimit = 1s;
+/// A session may keep the driver in selection or feedback mode for so long without drawing.
+constexpr auto kExclusiveLimit = 2s;
+constexpr auto kStatsInterval = 1s;
+constexpr auto kReadbackPoll = 1ms;
+
+bool ends_a_frame(const std::vector<std::byte>& payload) {
+    const auto batch = wire::split_batch(payload);
+    return batch && !batch->opcodes.empty() &&
+           std::memchr(batch->opcodes.data(), static_cast<int>(glapi::Op::Swap), batch->opcodes.size()) != nullptr;
+}
+
+}  // namespace
+
+/// Everything that lives in the render thread.
+class RenderThread::Loop {
+public:
+    Loop(const Gl& gl, NodeEvents& events) : events_(events), driver_(gl), node_(driver_), compositor_(node_, [this](const StackEntry& e) { return find(e); }) {
+        node_.present_at_once = true;
+    }
+
+    class Stream final : public SessionOutput {
+    public:
+        Stream(Loop& loop, StreamId id, SessionId session, std::shared_ptr<BatchQueue> queue)
+            : loop_(loop), id_(id), queue_(std::move(queue)), session_(loop.driver_, session), executor_(loop.node_, session_, *this) {}
+        void reply(std::uint32_t request, std::vector<std::byte> answer) override { loop_.events_.reply(id_, request, std::move(answer)); }
+        void frame_rendered(SurfaceId surface, std::uint32_t frame) override {
+            rendered_at_ = Clock::now();
+            loop_.events_.rendered(id_, session_.id(), surface, frame);
+        }
+
+        /// A finished frame has not been shown yet.
+        bool frame_waits() const {
+            if (Clock::now() - rendered_at_ > kPresentLimit) return false;
+            for (const auto& [id, surface] : session_.surfaces())
+                if (surface->waiting_frame()) return true;
+            return false;
+        }
+        /// True: a batch was executed.
+        bool run_one() {
+            const std::vector<std::byte>* next = failed_ ? nullptr : queue_->front();
+            if (next == nullptr || (ends_a_frame(*next) && frame_waits())) return false;
+            const auto batch = queue_->pop();
+            last_run_ = Clock::now();
+            if (const auto done = executor_.run_batch(batch); !done) fail(done.error().message);
+            return true;
+        }
+        void fail(std::string reason) {
+            failed_ = true;
+            loop_.events_.failed(id_, session_.id(), std::move(reason));
+        }
+        bool failed() const { return failed_; }
+        bool exclusive() const { return !failed_ && executor_.exclusive(); }
+        Clock::time_point last_run() const { return last_run_; }
+        Session& session() { return session_; }
+        Executor& executor() { return executor_; }
+
+    private:
+        Loop& loop_;
+        StreamId id_;
+        std::shared_ptr<BatchQueue> queue_;
+        Session session_;
+        Executor executor_;
+        Clock::time_point rendered_at_{}, last_run_ = Clock::now();
+        bool failed_ = false;
+    };
+
+    const Surface* find(const StackEntry& entry) {
+        for (auto& [id, stream] : streams_)
+            if (stream->session().id() == entry.session)
+                if (const Surface* surface = stream->session().surface(entry.surface)) return surface;
+        return nullptr;
+    }
+
+    /// True: there may be more to do at once.
+    bool round() {
+        bool worked = false;
+        Stream* only = exclusive();
+        for (auto& [id, stream] : streams_)
+            if (only == nullptr || only == stream.get()) worked |= stream->run_one();
+        std::erase_if(streams_, [this](const auto& entry) {
+            node_.damage += entry.second->failed() ? 1 : 0;
+            return entry.second->failed();
+        });
+        for (Picture& picture : compositor_.collect(false)) events_.picture(std::move(picture));
+        report();
+        return worked;
+    }
+    /// How long it may sleep when there is nothing to do.
+    Clock::duration nap() const { return compositor_.busy() ? Clock::duration(kReadbackPoll) : Clock::duration(100ms); }
+
+    std::map<StreamId, std::unique_ptr<Stream>> streams_;
+    NodeEvents& events_;
+    Driver driver_;
+    RenderNode node_;
+    Compositor compositor_;
+
+private:
+    Stream* exclusive() {
+        for (auto& [id, stream] : streams_) {
+            if (!stream->exclusive()) continue;
+            if (Clock::now() - stream->last_run() < kExclusiveLimit) return stream.get();
+            stream->fail("selection or feedback mode was left open for too long");
+        }
+        return nullptr;
+    }
+    void report() {
+        if (Clock::now() < next_stats_) return;
+        next_stats_ = Clock::now() + kStatsInterval;
+        events_.stats({node_.frames, node_.commands, node_.gl_errors, static_cast<std::uint32_t>(streams_.size())});
+    }
+
+    Clock::time_point next_stats_ = Clock::now() + kStatsInterval;
+};
+
+Result<std::unique_ptr<RenderThread>> RenderThread::start(std::string backend, NodeEvents& events) {
+    std::unique_ptr<RenderThread> thread(new RenderThread(events));
+    std::promise<Result<Started>> promise;
+    auto future = promise.get_future();
+    thread->thread_ = std::thread([&promise, self = thread.get(), backend = std::move(backend)]() mutable {
+        self->run(std::move(backend), [&promise](Result<Started> started) { promise.set_value(std::move(started)); });
+    });
+    auto started = future.get();
+    if (!started) return tl::unexpected(started.error());
+    thread->started_ = std::move(*started);
+    return thread;
+}
+
+RenderThread::~RenderThread() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    wake_.notify_one();
+    if (thread_.joinable()) thread_.join();
+}
+
+void RenderThread::run(std::string backend_name, std::function<void(Result<Started>)> started) {
+    auto backend = open_backend(backend_name);
+    if (!backend) return started(tl::unexpected(backend.error()));
+    if (auto current = (*backend)->make_current(); !current) return started(tl::unexpected(current.error()));
+    Gl gl;
+    gl.load([&](const char* name) { return (*backend)->get_proc_address(name); });
+    Loop loop(gl, events_);
+    started(Started{query_caps(gl), backend_name});
+    for (;;) {
+        std::vector<std::function<void(Loop&)>> tasks;
+        {
+            std::unique_lock lock(mutex_);
+            wake_.wait_for(lock, loop.nap(), [this] { return awake_ || stop_ || !tasks_.empty(); });
+            if (stop_) break;
+            awake_ = false;
+            tasks.swap(tasks_);
+        }
+        for (auto& task : tasks) task(loop);
+        if (loop.round()) wake();
+    }
+}
+
+void RenderThread::post(std::function<void(Loop&)> task) {
+    {
+        const std::lock_guard lock(mutex_);
+        tasks_.push_back(std::move(task));
+    }
+    wake_.notify_one();
+}
+
+void RenderThread::wake() {
+    {
+        const std::lock_guard lock(mutex_);
+        awake_ = true;
+    }
+    wake_.notify_one();
+}
+
+void RenderThread::add_stream(StreamId stream, SessionId session, std::shared_ptr<BatchQueue> queue) {
+    post([=](Loop& loop) { loop.streams_.emplace(stream, std::make_unique<Loop::Stream>(loop, stream, session, queue)); });
+}
+void RenderThread::remove_stream(StreamId stream) {
+    post([=](Loop& loop) {
+        loop.streams_.erase(stream);
+        ++loop.node_.damage;
+    });
+}
+void RenderThread::set_tiles(std::vector<Tile> tiles, std::uint32_t background) {
+    post([tiles = std::move(tiles), background](Loop& loop) {
+        loop.node_.tiles = tiles;
+        loop.compositor_.set_background(background);
+        loop.driver_.disable_scissor();
+        for (auto& [id, stream] : loop.streams_)
+            for (const auto& [surface_id, surface] : stream->session().surfaces())
+                if (surface->where().window_width != 0) surface->place(SurfacePlace(surface->where()), tiles);
+    });
+}
+void RenderThread::set_stacking(std::vector<StackEntry> bottom_first) {
+    post([entries = std::move(bottom_first)](Loop& loop) { loop.compositor_.set_stacking(entries); });
+}
+void RenderThread::present(SessionId session, SurfaceId surface, std::uint32_t frame) {
+    post([=](Loop& loop) {
+        for (auto& [id, stream] : loop.streams_)
+            if (stream->session().id() == session) stream->executor().present(surface, frame);
+    });
+}
+void RenderThread::set_coordinated(bool coordinated) {
+    post([=](Loop& loop) {
+        loop.node_.present_at_once = !coordinated;
+        if (coordinated) return;
+        for (auto& [id, stream] : loop.streams_)
+            for (const auto& [surface_id, surface] : stream->session().surfaces())
+                if (surface->waiting_frame()) stream->executor().present(surface_id, *surface->waiting_frame());
+    });
+}
+void RenderThread::request_picture(std::uint32_t request, std::uint32_t slot, SessionId session) {
+    post([=](Loop& loop) { loop.compositor_.request(request, slot, session); });
+}
+
+}  // namespace wall::tileserver

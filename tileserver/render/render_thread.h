@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// The thread that owns all GL of a GPU. Other threads post to it and give it batches; it tells what happened through
+// NodeEvents. Streams take turns, one batch each; a stream whose finished frame has not been shown yet waits before its
+// next frame's end, while the others go on.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/base/ids.h"
+#include "common/base/result.h"
+#include "tileserver/gpu/caps.h"
+#include "tileserver/render/batch_queue.h"
+#include "tileserver/render/compositor.h"
+
+namespace wall::tileserver {
+
+using StreamId = Id<struct StreamTag>;  ///< of one data connection, unique in the process
+
+struct RenderStats {
+    std::uint64_t frames = 0, commands = 0, gl_errors = 0;  ///< since the start
+    std::uint32_t sessions = 0;
+};
+
+/// What the render thread reports. Called by it; must not block.
+class NodeEvents {
+public:
+    virtual ~NodeEvents() = default;
+    virtual void reply(StreamId stream, std::uint32_t request, std::vector<std::byte> answer) = 0;
+    virtual void rendered(StreamId stream, SessionId session, SurfaceId surface, std::uint32_t frame) = 0;
+    /// The stream's content was bad; its session is gone from this node.
+    virtual void failed(StreamId stream, SessionId session, std::string reason) = 0;
+    virtual void picture(Picture picture) = 0;
+    virtual void stats(const RenderStats& stats) = 0;  ///< about once a second
+};
+
+class RenderThread {
+public:
+    struct Started {
+        GlCaps caps;
+        std::string backend;
+    };
+    /// Makes the driver's context in the new thread; an error if there is none.
+    static Result<std::unique_ptr<RenderThread>> start(std::string backend, NodeEvents& events);
+    ~RenderThread();
+
+    const Started& started() const { return started_; }
+
+    // ---- any thread ----
+    void add_stream(StreamId stream, SessionId session, std::shared_ptr<BatchQueue> queue);
+    /// The session's objects are freed; nothing of the stream is reported after that.
+    void remove_stream(StreamId stream);
+    void set_tiles(std::vector<Tile> tiles, std::uint32_t background);
+    void set_stacking(std::vector<StackEntry> bottom_first);
+    void present(SessionId session, SurfaceId surface, std::uint32_t frame);
+    /// Whether somebody will say present(); if not, frames show when they are done.
+    void set_coordinated(bool coordinated);
+    void request_picture(std::uint32_t request, std::uint32_t slot, SessionId session);
+    /// A queue has got a batch.
+    void wake();
+
+private:
+    class Loop;
+    explicit RenderThread(NodeEvents& events) : events_(events) {}
+    void run(std::string backend, std::function<void(Result<Started>)> started);
+    void post(std::function<void(Loop&)> task);
+
+    NodeEvents& events_;
+    Started started_;
+    std::mutex mutex_;  // guards the next three
+    std::condition_variable wake_;
+    std::vector<std::function<void(Loop&)>> tasks_;
+    bool awake_ = false, stop_ = false;
+    std::thread thread_;
+};
+
+}  // namespace wall::tileserver

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// What this node holds of one application: soft contexts, surfaces, textures, runs. It lives as long as the
+// application's stream; all of it can be sent again. Render thread.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "common/base/ids.h"
+#include "gen/glstate/state.gen.h"
+#include "tileserver/render/attribute_trail.h"
+#include "tileserver/render/driver.h"
+#include "tileserver/render/soft_maps.h"
+#include "tileserver/render/surface.h"
+
+namespace wall::tileserver {
+
+struct SoftContext {
+    glstate::State state;
+    SurfaceId draw, read;
+    SoftMaps maps;
+};
+
+struct Texture {
+    DriverName driver;
+    TextureTarget target{};
+    std::map<std::pair<GLenum, std::int32_t>, std::uint64_t> image_bytes;  ///< by image target and level: an estimate
+};
+
+/// Geometry that is called by name: packed commands as they came, opcodes last first.
+struct Run {
+    std::vector<std::byte> content;
+    std::size_t opcode_offset = 0, commands = 0, operand_offset = 0, operand_bytes = 0;
+};
+
+class Session {
+public:
+    Session(Driver& driver, SessionId id) : driver_(driver), id_(id) {}
+    ~Session();
+    Session(const Session&) = delete;
+
+    SessionId id() const { return id_; }
+    SoftContext& context(ContextId id) { return contexts_[id]; }
+    void destroy_context(ContextId id) { contexts_.erase(id); }
+    std::size_t context_count() const { return contexts_.size(); }
+
+    Surface* surface(SurfaceId id);
+    const std::unordered_map<SurfaceId, std::unique_ptr<Surface>>& surfaces() const { return surfaces_; }
+    /// Null if the session has too many.
+    Surface* create_surface(SurfaceId id, const SurfaceFormat& format);
+    void destroy_surface(SurfaceId id);
+
+    /// The texture of a name; name 0 is the default texture of its target. Null if there is none.
+    Texture* texture(ClientName name, TextureTarget target);
+    /// Makes it if there is none. Null: the name has another target, or there are too many.
+    Texture* make_texture(ClientName name, TextureTarget target);
+    void delete_texture(ClientName name);
+    /// Grows with every texture made or deleted: bindings by name must be looked up again.
+    std::uint64_t texture_version() const { return texture_version_; }
+    /// Replaces the size of one image in the session's account; false if that is more than a session may have.
+    bool account(Texture& texture, GLenum target, std::int32_t level, std::uint64_t bytes);
+
+    std::unordered_map<std::uint32_t, Run> runs;
+    std::uint64_t run_bytes = 0;
+
+private:
+    static std::uint64_t key(ClientName name, TextureTarget target);
+    void release(Texture& texture);
+
+    Driver& driver_;
+    SessionId id_;
+    std::unordered_map<ContextId, SoftContext> contexts_;
+    std::unordered_map<SurfaceId, std::unique_ptr<Surface>> surfaces_;
+    std::unordered_map<std::uint64_t, Texture> textures_;
+    std::uint64_t texture_version_ = 1, texture_bytes_ = 0;
+};
+
+}  // namespace wall::tileserver

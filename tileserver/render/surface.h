@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// One window of a session on this node: its format, its place on the canvas, and a layer on each tile that it touches.
+// Render thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/geom/rect.h"
+#include "common/wire/limits.h"
+#include "tileserver/render/layer.h"
+
+namespace wall::tileserver {
+
+/// A tile of this node; its slot is the bit in tile masks.
+struct Tile {
+    std::uint32_t slot = 0;
+    geom::Rect rect;  ///< canvas
+};
+
+struct SurfaceFormat {
+    LayerFormat layer;
+    bool accum = false;
+};
+
+struct SurfacePlace {
+    std::uint32_t layout_version = 0;
+    std::uint32_t window_width = 0, window_height = 0;
+    geom::Rect rect;  ///< canvas pixels that the whole window covers
+    bool offscreen = false;
+};
+
+class Surface {
+public:
+    Surface(const Gl& gl, bool flip_y, const SurfaceFormat& format) : gl_(gl), flip_y_(flip_y), format_(format) {}
+
+    /// Makes the layers anew where they differ; what stays in sight keeps its pixels.
+    void place(const SurfacePlace& place, const std::vector<Tile>& tiles);
+    /// Null if the surface does not reach the tile. The off-screen slot gives a layer of the whole window for any surface.
+    Layer* layer(std::uint32_t slot);
+    const Layer* layer(std::uint32_t slot) const { return layers_[slot].get(); }
+
+    const SurfaceFormat& format() const { return format_; }
+    const SurfacePlace& where() const { return place_; }
+    bool on_tiles() const;
+
+    /// A frame has been drawn and waits to be shown.
+    void finish_frame(std::uint32_t frame);
+    void show_frame();
+    std::optional<std::uint32_t> waiting_frame() const { return waiting_; }
+
+private:
+    std::unique_ptr<Layer> make_layer(const LayerGeometry& geometry, std::unique_ptr<Layer> older);
+
+    const Gl& gl_;
+    bool flip_y_;
+    SurfaceFormat format_;
+    SurfacePlace place_;
+    std::array<std::unique_ptr<Layer>, wire::kMaxTilesPerNode> layers_;
+    std::optional<std::uint32_t> waiting_;
+};
+
+}  // namespace wall::tileserver
