@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: MIT
+"""A whole wall on this machine for tests and the demo: walld and one tileserver per tile, on Unix sockets in a folder
+of its own, so that any number of walls may run side by side.
+
+    with XServer() as x, Wall(tiles=(2, 2), tile_size=(512, 384)) as wall:
+        app = wall.run("glxgears", env=x.environment())
+        session = wall.wait_session(app)
+        wall.wait(session, frame=10)
+        png = wall.screenshot()
+"""
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+START_LIMIT = 30.0  # seconds until everything answers; a software renderer compiles its shaders first
+STOP_LIMIT = 5.0  # seconds for an orderly end, then SIGKILL
+PR_SET_PDEATHSIG = 1
+
+
+class WallError(RuntimeError):
+    pass
+
+
+def build_folder() -> Path:
+    return Path(os.environ.get("WALLGL_BUILD", REPOSITORY / "build" / "release"))
+
+
+def _die_with_parent() -> None:
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
+def _quoted(text: object) -> str:
+    return json.dumps(str(text))  # a TOML basic string, for what we put into it
+
+
+class Wall:
+    """`tiles` are columns and rows, `tile_size` is in pixels. `environment` goes to the daemons, `die_with_parent` ends
+    them with the *thread* that starts the wall. `one_node` puts all tiles on one tileserver."""
+
+    def __init__(self, tiles: tuple[int, int] = (2, 2), tile_size: tuple[int, int] = (512, 384), backend: str = "egl", *,
+                 http: str = "127.0.0.1:0", swap_timeout_ms: int = 250, one_node: bool = False, name: str = "test",
+                 build: Path | None = None, environment: dict[str, str] | None = None, die_with_parent: bool = False):
+        self.tiles, self.tile_size, self.backend = tiles, tile_size, backend
+        self.http, self.swap_timeout_ms, self.one_node, self.name = http, swap_timeout_ms, one_node, name
+        self.bin = (build or build_folder()) / "bin"
+        self._environment = dict(os.environ, **(environment or {}))
+        self._before_exec = _die_with_parent if die_with_parent else None
+        self.daemons: dict[str, subprocess.Popen] = {}  # "walld" and the nodes' names
+        self.apps: list[subprocess.Popen] = []
+        self.folder = Path()
+        self.url = ""  # of the status page
+        self.address = ""  # of walld, as --walld and WALLGL_WALLD take it
+
+    # ---- life ----
+
+    def __enter__(self) -> "Wall":
+        self.folder = Path(tempfile.mkdtemp(prefix="wallgl-"))
+        try:
+            self._start()
+        except BaseException:
+            self.stop()
+            raise
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.stop()
+
+    @property
+    def size(self) -> tuple[int, int]:
+        return self.tiles[0] * self.tile_size[0], self.tiles[1] * self.tile_size[1]
+
+    @property
+    def node_names(self) -> list[str]:
+        if self.one_node:
+            return ["node"]
+        return [f"node-{column}-{row}" for row in range(self.tiles[1]) for column in range(self.tiles[0])]
+
+    @property
+    def tile_names(self) -> list[str]:
+        return [f"{column}-{row}" for row in range(self.tiles[1]) for column in range(self.tiles[0])]
+
+    def _tile(self, name: str) -> str:
+        column, row = map(int, name.split("-"))
+        width, height = self.tile_size
+        return f"[[node.tile]]\nname = {_quoted(name)}\nrect = [{column * width}, {row * height}, {width}, {height}]\n"
+
+    def _node(self, name: str, tiles: list[str]) -> str:
+        return (f"[[node]]\nname = {_quoted(name)}\nbackend = {_quoted(self.backend)}\n"
+                f"listen = {_quoted(f'unix:{self.folder}/{name}.sock')}\n" + "".join(map(self._tile, tiles)))
+
+    def _description(self) -> str:
+        nodes = [(self.node_names[0], self.tile_names)] if self.one_node else [(n, [n[len("node-"):]]) for n in self.node_names]
+        return (f"[wall]\nname = {_quoted(self.name)}\nswap_timeout_ms = {self.swap_timeout_ms}\n"
+                f"[control]\nlisten = [{_quoted(f'unix:{self.folder}/walld.sock')}]\n"
+                f"[http]\nlisten = {_quoted(self.http)}\n" + "".join(self._node(*node) for node in nodes))
+
+    def _start(self) -> None:
+        (self.folder / "wall.toml").write_text(self._description())
+        self.address = f"unix:{self.folder}/walld.sock"
+        self._start_daemon("walld", "walld", "--config", self.folder / "wall.toml", "--ready-file", self.folder / "ready")
+        self._until(lambda: (self.folder / "ready").exists(), "walld does not get ready", "walld")
+        self.url = json.loads((self.folder / "ready").read_text())["http"]
+        for name in self.node_names:
+            self.start_node(name)
+        self.wait_nodes()
+
+    def start_node(self, name: str) -> subprocess.Popen:
+        return self._start_daemon(name, "tileserver", "--config", self.folder / "wall.toml", "--node", name)
+
+    def wait_nodes(self) -> None:
+        """Until all nodes are up."""
+        self._until(lambda: all(node["up"] for node in self.nodes()), "not all nodes came up", *self.node_names)
+
+    def _start_daemon(self, name: str, program: str, *arguments: object) -> subprocess.Popen:
+        if not (self.bin / program).exists():
+            raise WallError(f"{self.bin / program} is missing: build it first (cmake --preset release && cmake --build --preset release)")
+        with open(self.folder / f"{name}.log", "ab") as log:
+            self.daemons[name] = subprocess.Popen(
+                [self.bin / program, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+                env=self._environment, start_new_session=True, preexec_fn=self._before_exec)
+        return self.daemons[name]
+
+    def _until(self, done, what: str, *needed: str, limit: float = START_LIMIT) -> None:
+        end = time.monotonic() + limit
+        while not done():
+            ended = [name for name in needed if self.daemons[name].poll() is not None]
+            if ended or time.monotonic() > end:
+                logs = "\n".join(f"--- {name}:\n{self.log(name)}" for name in ended or needed)
+                raise WallError(f"{what}: {', '.join(ended) + ' ended' if ended else f'{limit:.0f} seconds are over'}\n{logs}")
+            time.sleep(0.02)
+
+    def log(self, name: str) -> str:
+        """What a daemon has said so far."""
+        path = self.folder / f"{name}.log"
+        return path.read_text(errors="replace") if path.exists() else ""
+
+    def stop(self) -> dict[str, int]:
+        """Ends the programs, then the nodes, then walld; gives the daemons' exit codes. May be called again."""
+        end_all(self.apps)
+        nodes = {name: daemon for name, daemon in self.daemons.items() if name != "walld"}
+        end_all(nodes.values())
+        if "walld" in self.daemons:
+            end_all([self.daemons["walld"]])
+        codes = {name: daemon.returncode for name, daemon in self.daemons.items()}
+        if self.folder != Path():
+            shutil.rmtree(self.folder, ignore_errors=True)
+        self.daemons, self.apps = {}, []
+        return codes
+
+    # ---- programs ----
+
+    def wallrun(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False,
+                name: str = "", hold: bool = False) -> list[str]:
+        """The command line that starts a program on this wall."""
+        line = [self.bin / "wallrun", "--walld", self.address]
+        line += ["--rect", ",".join(map(str, rect))] if rect else []
+        line += ["--fullscreen"] if fullscreen else []
+        line += ["--name", name] if name else []
+        line += ["--hold"] if hold else []
+        return [str(word) for word in (*line, "--", *command)]
+
+    def run(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False, name: str = "",
+            hold: bool = False, env: dict[str, str] | None = None, **popen) -> subprocess.Popen:
+        """Starts a program on the wall. Its process id is that of the session (wallrun becomes the program)."""
+        line = self.wallrun(*command, rect=rect, fullscreen=fullscreen, name=name, hold=hold)
+        app = subprocess.Popen(line, env=env or self._environment, start_new_session=True, preexec_fn=self._before_exec,
+                               **{"stdin": subprocess.DEVNULL, **popen})
+        self.apps.append(app)
+        return app
+
+    # ---- operating ----
+
+    def ctl(self, *arguments: object, timeout: float = 60.0):
+        """wallctl; gives its JSON (None if there is none)."""
+        done = subprocess.run([self.bin / "wallctl", "--walld", self.address, "--json", *map(str, arguments)],
+                              capture_output=True, text=True, timeout=timeout)
+        if done.returncode != 0:
+            raise WallError(f"wallctl {' '.join(map(str, arguments))}: {done.stderr.strip()}")
+        return json.loads(done.stdout) if done.stdout.strip() else None
+
+    def status(self) -> dict:
+        return self.ctl("status")
+
+    def nodes(self) -> list[dict]:
+        return self.ctl("nodes")
+
+    def sessions(self) -> list[dict]:
+        return self.ctl("sessions")
+
+    def wait_session(self, app: subprocess.Popen | None = None, limit: float = 20.0) -> int:
+        """The number of a program's session (of any, without one) once it has a window."""
+        end = time.monotonic() + limit
+        while time.monotonic() < end:
+            for session in self.sessions():
+                if session["surfaces"] and (app is None or session["pid"] == app.pid):
+                    return session["id"]
+            if app is not None and app.poll() is not None:
+                raise WallError(f"{app.args}: ended with {app.returncode} before it had a window on the wall")
+            time.sleep(0.02)
+        raise WallError(f"no window appeared within {limit:.0f} seconds")
+
+    def step(self, session: object, frames: int = 1) -> None:
+        self.ctl("step", session, frames)
+
+    def hold(self, session: object, on: bool = True) -> None:
+        self.ctl("hold", session, *([] if on else ["--off"]))
+
+    def wait(self, session: object, frame: int, limit: float = 20.0) -> int:
+        """Until the frame is shown on all tiles; gives the number of the last one shown."""
+        return self.ctl("wait", session, "--frame", frame, "--timeout", limit, timeout=limit + 10)["frame"]
+
+    def screenshot(self, path: Path | str | None = None, tile: str = "", session: object = None) -> bytes:
+        """PNG of the wall, of one tile, or of one program's window alone; also written to `path`."""
+        target = Path(path) if path else self.folder / f"screenshot-{time.monotonic_ns()}.png"
+        options = (["--tile", tile] if tile else []) + (["--session", session] if session is not None else [])
+        self.ctl("screenshot", target, *options)
+        return target.read_bytes()
+
+
+def end_all(processes) -> None:
+    """SIGTERM to all, then SIGKILL to what has not ended in time. Each was started in a session of its own."""
+    running = [process for process in processes if process.poll() is None]
+    for process in running:
+        _signal_group(process, signal.SIGTERM)
+    end = time.monotonic() + STOP_LIMIT
+    for process in running:
+        try:
+            process.wait(max(0.0, end - time.monotonic()))
+        except subprocess.TimeoutExpired:
+            _signal_group(process, signal.SIGKILL)
+            process.wait()
+
+
+def _signal_group(process: subprocess.Popen, number: int) -> None:
+    try:
+        os.killpg(process.pid, number)
+    except ProcessLookupError:
+        pass
