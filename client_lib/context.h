@@ -92,7 +92,7 @@ public:
     std::unique_ptr<ListState> lists;
     std::unique_ptr<AttributeStacks> attributes;
     std::unique_ptr<SelectState> select;
-    glapi::ListRecorder& recorder();  ///< of the list being compiled
+    glapi::ListRecorder& list();  ///< of the list being compiled
     std::unique_ptr<ContextMaps> maps;
 
     /// glMaterial calls inside the open Begin/End, applied to `state` when the block is sent.

@@ -285,7 +285,7 @@ void replay_commands(Context& c, std::span<const std::byte> recorded) {
 
 }  // namespace
 
-glapi::ListRecorder& Context::recorder() { return lists->recorder; }
+glapi::ListRecorder& Context::list() { return lists->recorder; }
 
 std::shared_ptr<DisplayList> compile_list(Context& context, std::span<const std::byte> recording) {
     auto list = std::make_shared<DisplayList>();

@@ -138,8 +138,8 @@ void CallLists(Context& c, GLsizei n, GLenum type, const void* lists) {
     if (!row) return;
     std::vector<GLint> offsets;
     for (GLsizei i = 0; i < n; ++i) offsets.push_back(row->read(lists, i));
-    c.recorder().record(static_cast<std::uint16_t>(CommandId::CallLists), glapi::recorded_array(offsets.data(), n));
-    if (c.recorder().execute) api::CallLists(c, n, GL_INT, offsets.data());
+    c.list().record(static_cast<std::uint16_t>(CommandId::CallLists), glapi::recorded_array(offsets.data(), n));
+    if (c.list().execute) api::CallLists(c, n, GL_INT, offsets.data());
 }
 
 }  // namespace wall::client::compile
