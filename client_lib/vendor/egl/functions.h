@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// The EGL functions by name, for GLVND.
+#pragma once
+
+#include <EGL/egl.h>
+#include <glvnd/libeglabi.h>
+
+#include <span>
+
+namespace wall::client::egl {
+
+using Function = void (*)();
+
+struct NamedFunction {
+    const char* name;
+    Function function;
+};
+
+std::span<const NamedFunction> functions();
+/// GLVND's exports: it alone knows the API that eglBindAPI has set for a thread.
+void start(const __EGLapiExports& exports);
+EGLDisplay get_platform_display(EGLenum platform, void* native, const EGLAttrib* attributes);
+inline constexpr const char* kPlatformExtensions =
+    "EGL_KHR_platform_x11 EGL_EXT_platform_x11 EGL_EXT_platform_xcb EGL_MESA_platform_surfaceless";
+
+}  // namespace wall::client::egl

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// What GLVND's libEGL calls when it has loaded the library. Nothing is connected here: programs' children load it too.
+#include <cstring>
+
+#include "client_lib/core.h"
+#include "client_lib/log.h"
+#include "client_lib/process.h"
+#include "client_lib/vendor/egl/functions.h"
+#include "client_lib/vendor/guarded.h"
+
+namespace wall::client::egl {
+namespace {
+
+EGLBoolean supports_api(EGLenum api) { return api == EGL_OPENGL_API || api == EGL_OPENGL_ES_API; }
+
+const char* vendor_string(int name) {
+    return name == __EGL_VENDOR_STRING_PLATFORM_EXTENSIONS ? kPlatformExtensions : nullptr;
+}
+
+void* get_proc_address(const char* name) {
+    return vendor::guarded("getProcAddress", static_cast<void*>(nullptr), [&]() -> void* {
+        if (std::strncmp(name, "egl", 3) != 0) return reinterpret_cast<void*>(gl_proc_address(name));
+        for (const auto& f : functions())
+            if (std::strcmp(f.name, name) == 0) return reinterpret_cast<void*>(f.function);
+        return nullptr;
+    });
+}
+
+// No display extension of ours has functions that GLVND has no stubs for.
+void* get_dispatch_address(const char*) { return nullptr; }
+void set_dispatch_index(const char*, int) {}
+
+}  // namespace
+}  // namespace wall::client::egl
+
+extern "C" [[gnu::visibility("default")]] EGLBoolean __egl_Main(std::uint32_t version, const __EGLapiExports* exports,
+                                                                __EGLvendorInfo*, __EGLapiImports* imports) {
+    using namespace wall::client;
+    if (EGL_VENDOR_ABI_GET_MAJOR_VERSION(version) != EGL_VENDOR_ABI_MAJOR_VERSION) return EGL_FALSE;
+    watch_forks();
+    egl::start(*exports);
+    imports->getPlatformDisplay = egl::get_platform_display;
+    imports->getSupportsAPI = egl::supports_api;
+    imports->getVendorString = egl::vendor_string;
+    imports->getProcAddress = egl::get_proc_address;
+    imports->getDispatchAddress = egl::get_dispatch_address;
+    imports->setDispatchIndex = egl::set_dispatch_index;
+    log(LogLevel::info, "loaded window_system=egl program=%s", program_name().c_str());
+    return EGL_TRUE;
+}
