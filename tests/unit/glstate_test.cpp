@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: MIT
+// The virtual context: differences, value ids, what travels, attribute groups.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "common/glapi/decoder.h"
+#include "common/glstate/diff.h"
+#include "common/glstate/elements.h"
+#include "common/glstate/pack_sink.h"
+#include "common/glstate/queries.h"
+
+namespace wall {
+namespace {
+
+namespace el = glstate::el;
+using glstate::State;
+
+struct RecordingSink {
+    std::vector<std::uint32_t> ids;
+    template <class E>
+    void set(unsigned i, const typename E::type&) {
+        ids.push_back(E::id + i);
+    }
+};
+
+/// The receiving side of a stream that holds nothing but state.
+void receive(const wire::PackBuffer& batch, State& state) {
+    wire::OperandReader in(batch.operands());
+    for (std::size_t n = 0; n < batch.commands(); ++n) {
+        ASSERT_EQ(batch.opcode_at(n), static_cast<std::byte>(glapi::Op::State));
+        const auto id = in.get<std::uint32_t>();
+        const auto bytes = glstate::element_bytes(id);
+        ASSERT_NE(bytes, 0u);
+        ASSERT_TRUE(glstate::apply(state, id, in.raw(bytes)));
+    }
+    EXPECT_TRUE(in.ok());
+    EXPECT_EQ(in.remaining(), 0u);
+}
+
+/// Values that travel, but for those that mean nothing because the current colour drives them.
+void expect_equal(const State& a, const State& b) {
+    glstate::for_each_element([&]<class E>() {
+        if (E::category == glstate::Category::local) return;
+        for (unsigned i = 0; i < E::count; ++i)
+            EXPECT_TRUE(glstate::follows_color<E>(a, i) || glstate::same(E::ref(a, i), E::ref(b, i))) << E::name << " " << i;
+    });
+}
+
+/// Sets some random elements to random values through assign().
+void scramble(State& state, std::mt19937& random, unsigned percent) {
+    glstate::for_each_element([&]<class E>() {
+        for (unsigned i = 0; i < E::count; ++i) {
+            if (random() % 100 >= percent) continue;
+            typename E::type value = E::ref(state, i);
+            std::uint32_t words[sizeof value / 4];
+            for (auto& word : words) word = random() % 8;
+            if constexpr (E::id == el::color_material::id) {
+                words[0] = std::array{GL_FRONT, GL_BACK, GL_FRONT_AND_BACK}[random() % 3];
+                words[1] = std::array{GL_EMISSION, GL_AMBIENT, GL_DIFFUSE, GL_SPECULAR, GL_AMBIENT_AND_DIFFUSE}[random() % 5];
+            }
+            if constexpr (E::id == el::color_material_enabled::id) words[0] %= 2;
+            std::memcpy(&value, words, sizeof value);
+            glstate::assign<E>(state, i, value);
+        }
+    });
+}
+
+TEST(State, RandomStatesTravel) {
+    std::mt19937 random(7);
+    State app, mirror, node;
+    for (unsigned round = 0; round < 300; ++round) {
+        scramble(app, random, round % 3 == 0 ? 60 : 2);
+        wire::PackBuffer batch;
+        glstate::diff(mirror, app, glstate::PackSink{batch});
+        receive(batch, node);
+        expect_equal(app, mirror);
+        expect_equal(app, node);
+        RecordingSink again;
+        glstate::diff(mirror, app, again);
+        EXPECT_TRUE(again.ids.empty());
+    }
+}
+
+TEST(State, StatesOfManyContextsMeet) {
+    std::mt19937 random(11);
+    std::array<State, 4> apps;
+    State driver;
+    for (unsigned round = 0; round < 400; ++round) {
+        State& app = apps[random() % apps.size()];
+        scramble(app, random, 5);
+        RecordingSink sink;
+        glstate::diff(driver, app, sink);
+        expect_equal(app, driver);
+        glstate::diff(driver, app, sink = {});
+        EXPECT_TRUE(sink.ids.empty());
+    }
+}
+
+TEST(State, EveryElementTravelsAloneAndOnce) {
+    for (std::uint32_t id = 1; id <= glstate::kLastSentId; ++id) {
+        State from, to;
+        std::vector<std::byte> value(glstate::element_bytes(id), std::byte{1});
+        ASSERT_TRUE(glstate::apply(to, id, value));
+        RecordingSink sink;
+        glstate::diff(from, to, sink);
+        EXPECT_EQ(sink.ids, std::vector<std::uint32_t>{id}) << glstate::element_info(id).name;
+    }
+}
+
+TEST(State, LocalElementsNeverTravel) {
+    State from, to;
+    glstate::assign<el::matrix_mode>(to, 0, GL_PROJECTION);
+    glstate::assign<el::pack_alignment>(to, 0, 1);
+    RecordingSink sink;
+    glstate::diff(from, to, sink);
+    EXPECT_TRUE(sink.ids.empty());
+    EXPECT_EQ(glstate::element_bytes(el::matrix_mode::id), 0u);
+    const std::byte value[4]{};
+    EXPECT_FALSE(glstate::apply(to, el::matrix_mode::id, value));
+}
+
+TEST(State, EqualValuesAreNoChange) {
+    State state;
+    const auto ids = state.ids;
+    EXPECT_FALSE(glstate::assign<el::fog_density>(state, 0, 1.0f));
+    EXPECT_EQ(state.ids, ids);
+    EXPECT_TRUE(glstate::assign<el::fog_density>(state, 0, 2.0f));
+    EXPECT_NE(state.ids, ids);
+}
+
+TEST(State, EqualIdsAreNotCompared) {
+    State from, to;
+    to.fog.fog_density = 5;  // behind the back of the ids
+    RecordingSink sink;
+    glstate::diff(from, to, sink);
+    EXPECT_TRUE(sink.ids.empty());
+}
+
+TEST(State, OnlyTheWantedCategoriesAreCompared) {
+    State from, to;
+    glstate::assign<el::scissor_enabled>(to, 0, 1);
+    glstate::assign<el::blend_enabled>(to, 0, 1);
+    RecordingSink sink;
+    glstate::diff<glstate::kSentCategories & ~glstate::kLayerCategories>(from, to, sink);
+    EXPECT_EQ(sink.ids, std::vector<std::uint32_t>{el::blend_enabled::id});
+    glstate::diff_category<glstate::Category::window>(from, to, sink);
+    EXPECT_EQ(sink.ids.back(), el::scissor_enabled::id);
+}
+
+TEST(State, ElementTableAgreesWithTheTags) {
+    State state;
+    std::uint32_t next = 1;
+    glstate::for_each_element([&]<class E>() {
+        const auto& info = glstate::element_info(E::id);
+        EXPECT_STREQ(info.name, E::name);
+        EXPECT_EQ(E::id, next);
+        next += E::count;
+        EXPECT_EQ(info.bytes, sizeof(typename E::type));
+        for (unsigned i = 0; i < E::count; ++i)
+            EXPECT_EQ(reinterpret_cast<std::byte*>(&state) + glstate::element_offset(E::id + i), reinterpret_cast<std::byte*>(&E::ref(state, i)));
+    });
+    EXPECT_EQ(next, glstate::kLastId + 1);
+}
+
+TEST(State, RefusesWrongSizesAndIds) {
+    State state;
+    const std::vector<std::byte> bytes(256);
+    EXPECT_EQ(glstate::element_bytes(0), 0u);
+    EXPECT_EQ(glstate::element_bytes(glstate::kLastId + 1), 0u);
+    EXPECT_EQ(glstate::element_bytes(~0u), 0u);
+    EXPECT_FALSE(glstate::apply(state, el::fog_density::id, std::span(bytes).first(8)));
+    EXPECT_FALSE(glstate::apply(state, 0, {}));
+    EXPECT_FALSE(glstate::apply(state, ~0u, std::span(bytes).first(4)));
+}
+
+TEST(ColorMaterial, TrackedParametersAreNotCompared) {
+    State from, to;
+    glstate::assign<el::color_material_enabled>(to, 0, 1);
+    glstate::assign<el::material_diffuse>(to, 0, {1, 2, 3, 4});   // driven by the colour
+    glstate::assign<el::material_specular>(to, 0, {1, 2, 3, 4});  // not
+    RecordingSink sink;
+    glstate::diff(from, to, sink);
+    EXPECT_EQ(sink.ids, (std::vector<std::uint32_t>{el::color_material_enabled::id, el::material_specular::id}));
+}
+
+TEST(ColorMaterial, EndOfTrackingLeavesTheCurrentColor) {
+    State app, node;
+    glstate::assign<el::color_material_enabled>(app, 0, 1);
+    RecordingSink sink;
+    glstate::diff(node, app, sink);
+    for (State* s : {&app, &node}) glstate::assign<el::color>(*s, 0, {0.5f, 0.25f, 0, 1});  // as a block does on both sides
+    glstate::assign<el::color_material_enabled>(app, 0, 0);
+    EXPECT_EQ(app.material.material_diffuse[1], (glstate::Vec4{0.5f, 0.25f, 0, 1}));
+    glstate::diff(node, app, sink = {});
+    EXPECT_EQ(node.material.material_ambient[0], (glstate::Vec4{0.5f, 0.25f, 0, 1}));
+    expect_equal(app, node);
+    EXPECT_EQ(sink.ids.back(), el::color_material_enabled::id);  // the driver has the colour already
+}
+
+TEST(ColorMaterial, MovingLeavesTheCurrentColorBehind) {
+    State s;
+    glstate::assign<el::color>(s, 0, {0.5f, 0.5f, 0.5f, 1});
+    glstate::assign<el::color_material_enabled>(s, 0, 1);
+    glstate::assign<el::color_material>(s, 0, {GL_FRONT, GL_SPECULAR});
+    EXPECT_EQ(s.material.material_diffuse[0], (glstate::Vec4{0.5f, 0.5f, 0.5f, 1}));
+    EXPECT_EQ(s.material.material_specular[0], (glstate::Vec4{0, 0, 0, 1}));
+    EXPECT_TRUE(glstate::follows_color<el::material_specular>(s, 0));
+    EXPECT_FALSE(glstate::follows_color<el::material_specular>(s, 1));
+}
+
+TEST(Groups, HoldWhatTheSpecificationSays) {
+    const auto names = [](GLbitfield mask) {
+        std::vector<std::string> out;
+        glstate::for_each_in_group(mask, [&]<class E>(unsigned i) {
+            if (i == 0) out.emplace_back(E::name);
+        });
+        return out;
+    };
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(names(GL_DEPTH_BUFFER_BIT), (Names{"depth_test", "depth_func", "depth_mask", "clear_depth"}));
+    EXPECT_EQ(names(GL_VIEWPORT_BIT), (Names{"depth_range", "viewport"}));
+    EXPECT_EQ(names(GL_LINE_BIT), (Names{"line_smooth", "line_stipple_enabled", "line_width", "line_stipple"}));
+    EXPECT_EQ(names(GL_LIST_BIT), (Names{"list_base"}));
+    EXPECT_EQ(names(GL_SCISSOR_BIT), (Names{"scissor", "scissor_enabled"}));
+    EXPECT_EQ(names(GL_ACCUM_BUFFER_BIT), (Names{"clear_accum"}));
+    EXPECT_EQ(names(GL_POLYGON_STIPPLE_BIT), (Names{"polygon_stipple"}));
+    const auto enables = names(GL_ENABLE_BIT);
+    glstate::for_each_element([&]<class E>() {  // every glEnable word of the server is in the enable group
+        const bool is_cap = std::ranges::any_of(glstate::kCapEntries, [](const auto& e) { return e.id == E::id; });
+        EXPECT_EQ(is_cap && E::category != glstate::Category::local, (E::groups & GL_ENABLE_BIT) != 0) << E::name;
+    });
+}
+
+TEST(Queries, TablesAreSortedAndComplete) {
+    for (std::size_t n = 1; n < glstate::kGetEntries.size(); ++n) EXPECT_LT(glstate::kGetEntries[n - 1].pname, glstate::kGetEntries[n].pname);
+    for (std::size_t n = 1; n < glstate::kCapEntries.size(); ++n) EXPECT_LT(glstate::kCapEntries[n - 1].cap, glstate::kCapEntries[n].cap);
+    EXPECT_EQ(glstate::find_get(GL_FOG_DENSITY)->id, el::fog_density::id);
+    EXPECT_EQ(glstate::find_get(GL_STENCIL_BACK_REF)->id, el::stencil_func::id + 1);
+    EXPECT_EQ(glstate::find_get(0x12345), nullptr);
+    EXPECT_EQ(glstate::find_cap(GL_LIGHT5)->id, el::light_enabled::id + 5);
+    EXPECT_EQ(glstate::find_cap(GL_TEXTURE_GEN_R)->id + 3 * glstate::find_cap(GL_TEXTURE_GEN_R)->unit_stride, el::tex_gen_enabled::id + 14);
+    EXPECT_EQ(glstate::find_param(glstate::ParamFamily::TexEnv, GL_TEXTURE_ENV, GL_COMBINE_RGB)->id, el::combine_rgb::id);
+}
+
+}  // namespace
+}  // namespace wall
