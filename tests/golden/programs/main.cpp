@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// golden_scenes NAME [--frames=N] [--pause] [--raw=FILE]   draws a scene and writes each frame to standard output as PNM,
+//   just before it is shown; lines of results go to standard error behind "= ". --pause waits for a line on standard
+//   input after each frame. --raw also appends each frame as RGBA bytes, bottom row first, to FILE.
+// golden_scenes --list                                     prints NAME FRAMES of each scene.
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <optional>
+
+#include "tests/golden/programs/window.h"
+
+namespace golden {
+
+std::vector<Scene>& scenes() {
+    static std::vector<Scene> all;
+    return all;
+}
+
+void say(const char* format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    std::fputs("= ", stderr);
+    std::vfprintf(stderr, format, arguments);
+    std::fputc('\n', stderr);
+    va_end(arguments);
+}
+
+void say_error(const char* where) {
+    if (const GLenum error = glGetError()) say("%s: error 0x%04x", where, error);
+}
+
+namespace {
+
+struct Options {
+    std::string scene, raw;
+    std::optional<int> frames;
+    bool pause = false, list = false;
+};
+
+Options parse(int argc, char** argv) {
+    Options options;
+    for (int i = 1; i < argc; ++i) {
+        const std::string argument = argv[i];
+        if (argument == "--list") options.list = true;
+        else if (argument == "--pause") options.pause = true;
+        else if (argument.starts_with("--frames=")) options.frames = std::stoi(argument.substr(9));
+        else if (argument.starts_with("--raw=")) options.raw = argument.substr(6);
+        else options.scene = argument;
+    }
+    return options;
+}
+
+std::vector<unsigned char> read_frame(const Scene& scene, Size size) {
+    glPushAttrib(GL_PIXEL_MODE_BIT);
+    glPushClientAttrib(GL_CLIENT_PIXEL_STORE_BIT);
+    for (const GLenum name : {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS})
+        glPixelStorei(name, 0);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    if (scene.needs.read) glReadBuffer(scene.needs.read);
+    std::vector<unsigned char> rgba(static_cast<std::size_t>(size.width * size.height * 4));
+    glReadPixels(0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    glPopClientAttrib();
+    glPopAttrib();
+    return rgba;
+}
+
+void write_pnm(const std::vector<unsigned char>& rgba, Size size) {
+    std::vector<unsigned char> rgb;
+    rgb.reserve(rgba.size() / 4 * 3);
+    for (int y = size.height - 1; y >= 0; --y)
+        for (int x = 0; x < size.width; ++x) {
+            const unsigned char* pixel = &rgba[static_cast<std::size_t>(y * size.width + x) * 4];
+            rgb.insert(rgb.end(), pixel, pixel + 3);
+        }
+    std::printf("P6\n%d %d\n255\n", size.width, size.height);
+    std::fwrite(rgb.data(), 1, rgb.size(), stdout);
+    std::fflush(stdout);
+}
+
+void append(const std::string& path, const std::vector<unsigned char>& bytes) {
+    if (std::FILE* file = std::fopen(path.c_str(), "ab")) {
+        std::fwrite(bytes.data(), 1, bytes.size(), file);
+        std::fclose(file);
+    }
+}
+
+void run(const Scene& scene, const Options& options) {
+    const Size size;
+    const auto window = scene.needs.egl ? Window::by_egl(size, scene.needs) : Window::by_glx(size, scene.needs);
+    for (int frame = 0; frame < options.frames.value_or(scene.frames); ++frame) {
+        restart_random();
+        scene.draw(frame, size);
+        say_error("end of frame");
+        const auto pixels = read_frame(scene, size);
+        if (!options.raw.empty()) append(options.raw, pixels);
+        write_pnm(pixels, size);
+        if (scene.needs.double_buffered && !scene.needs.read) window->swap();
+        glFinish();
+        if (options.pause && std::getchar() == EOF) return;
+    }
+}
+
+int main(int argc, char** argv) {
+    const Options options = parse(argc, argv);
+    auto all = scenes();
+    std::sort(all.begin(), all.end(), [](const Scene& a, const Scene& b) { return a.name < b.name; });
+    if (options.list) {
+        for (const Scene& scene : all) std::printf("%s %d\n", scene.name.c_str(), scene.frames);
+        return 0;
+    }
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Scene& s) { return s.name == options.scene; });
+    if (found == all.end()) {
+        std::fprintf(stderr, "golden_scenes: no scene '%s'; --list names them\n", options.scene.c_str());
+        return 2;
+    }
+    run(*found, options);
+    return 0;
+}
+
+}  // namespace
+}  // namespace golden
+
+int main(int argc, char** argv) {
+    try {
+        return golden::main(argc, argv);
+    } catch (const std::exception& problem) {
+        std::fprintf(stderr, "golden_scenes: %s\n", problem.what());
+        return 1;
+    }
+}

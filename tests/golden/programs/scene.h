@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// A scene draws deterministic frames that exercise one part of OpenGL 1.1. It is run on plain Mesa and on walls, and
+// what it shows and says must be the same. A scene registers itself: SCENE(name, frames) { ... uses frame, canvas ... }
+#pragma once
+
+#define GL_GLEXT_PROTOTYPES 1
+#include <GL/gl.h>
+#include <GL/glext.h>
+
+#include <string>
+#include <vector>
+
+namespace golden {
+
+struct Size {
+    int width = 400, height = 300;
+};
+
+/// What a scene needs of its window.
+struct Needs {
+    bool double_buffered = true;
+    bool egl = false;
+    GLenum read = 0;  ///< buffer to read the frame from; 0: the one that is drawn to by default
+};
+
+struct Scene {
+    std::string name;
+    int frames;
+    void (*draw)(int frame, Size canvas);
+    Needs needs;
+};
+
+std::vector<Scene>& scenes();
+
+struct Register {
+    Register(const char* name, int frames, void (*draw)(int, Size), Needs needs = {}) {
+        scenes().push_back({name, frames, draw, needs});
+    }
+};
+
+/// A line of results, compared like the pixels. printf-like; floats are best given as %.5g.
+void say(const char* format, ...) __attribute__((format(printf, 1, 2)));
+/// Says the sticky error, if there is one.
+void say_error(const char* where);
+
+// --- drawing helpers ---
+
+/// Clears colour, depth and stencil; identity matrices; everything enabled before by a scene stays.
+void clear(float r = 0, float g = 0, float b = 0);
+/// Window pixels, origin bottom left.
+void pixel_view(Size canvas);
+/// A perspective view of the unit scene: 60 degrees, looking at the origin from (0, 0, 3).
+void perspective_view(Size canvas);
+/// One of a grid of cells: makes [-1, 1]^2 cover cell `index` of `columns` x `rows` by the projection matrix.
+void cell_view(int index, int columns, int rows);
+
+void lit_sphere(int slices = 24, int stacks = 12);  ///< radius 1, with normals and texture coordinates
+void unit_square();                                 ///< [-1, 1]^2 at z = 0, texture coordinates 0..1, normal +z
+unsigned random_bits();                             ///< a fixed sequence, started anew for every frame
+float random_unit();                                ///< 0..1
+void restart_random();
+void checker_texture(GLuint name, int size);  ///< RGBA, coloured checks with a varying alpha; nearest, repeat
+
+#define SCENE(NAME, FRAMES, ...)                                                              \
+    static void scene_##NAME(int frame, ::golden::Size canvas);                               \
+    static const ::golden::Register register_##NAME{#NAME, FRAMES, scene_##NAME, ##__VA_ARGS__}; \
+    static void scene_##NAME([[maybe_unused]] int frame, [[maybe_unused]] ::golden::Size canvas)
+
+}  // namespace golden

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: MIT
+"""What is drawn in the golden tests: recorded programs (recordings.toml) and the scenes of our own (programs/). Both can
+be run anywhere OpenGL is, and give their frames as glReadPixels returned them."""
+from __future__ import annotations
+
+import dataclasses
+import os
+import re
+import signal
+import subprocess
+import tempfile
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+WINDOW = (400, 300)  # of every subject
+WARM_UP = 1  # frames of a recording that are not compared
+FRAME_LIMIT_BYTES = 64 << 20
+
+_PNM = re.compile(rb"P6\n(?:#[^\n]*\n)*(\d+) (\d+)\n255\n")
+
+
+@dataclasses.dataclass(frozen=True)
+class Recording:
+    """A program's first frames, as apitrace recorded them. `api` is "gl" (GLX) or "egl"."""
+
+    name: str
+    api: str
+    command: list[str]
+    frames: int
+    covers: str
+
+    kind = "recording"
+
+    @property
+    def path(self) -> Path:
+        return HERE / "recordings" / f"{self.name}.trace"
+
+    @property
+    def compared(self) -> range:
+        return range(WARM_UP, self.frames)
+
+    def argv(self) -> list[str]:
+        """Replays it, with each frame written to standard output just before its swap. -b leaves out the glGetError
+        that would follow each call."""
+        return ["eglretrace" if self.api == "egl" else "glretrace", "-b", "-s", "-", str(self.path)]
+
+    def environment(self) -> dict[str, str]:
+        return {"WAFFLE_PLATFORM": "x11_egl"} if self.api == "egl" else {}
+
+
+@dataclasses.dataclass(frozen=True)
+class Scene:
+    """One scene of the program golden_scenes (programs/). Its text is what queries, feedback and selection returned."""
+
+    name: str
+    frames: int
+    program: Path
+
+    kind = "scene"
+
+    @property
+    def compared(self) -> range:
+        return range(self.frames)
+
+    def argv(self) -> list[str]:
+        return [str(self.program), self.name, f"--frames={self.frames}", "--pause"]
+
+    def environment(self) -> dict[str, str]:
+        return {}
+
+
+Subject = Recording | Scene
+
+
+def load_recordings(path: Path = HERE / "recordings.toml") -> list[Recording]:
+    table = tomllib.loads(path.read_text())
+    return [Recording(name, **fields) for name, fields in table.items()]
+
+
+def load_scenes(program: Path) -> list[Scene]:
+    """The program lists its scenes itself: a line `NAME FRAMES` each."""
+    lines = subprocess.run([program, "--list"], check=True, capture_output=True, text=True).stdout.split("\n")
+    return [Scene(line.split()[0], int(line.split()[1]), program) for line in lines if line]
+
+
+def read_frame(stream: IO[bytes]) -> np.ndarray | None:
+    """The next PNM picture of a stream as (height, width, 3), top row first; None at its end. Lines that belong to no
+    picture (the replayer's own messages) are skipped."""
+    while True:
+        line = stream.readline()
+        if not line:
+            return None
+        if line == b"P6\n":
+            break
+    header = line
+    while not (found := _PNM.fullmatch(header)):
+        line = stream.readline()
+        if not line or len(header) > 4096:
+            return None
+        header += line
+    width, height = int(found[1]), int(found[2])
+    if width * height * 3 > FRAME_LIMIT_BYTES:
+        raise ValueError(f"a frame of {width}x{height} pixels")
+    data = stream.read(width * height * 3)
+    if len(data) != width * height * 3:
+        return None
+    return np.frombuffer(data, np.uint8).reshape(height, width, 3)
+
+
+class Play:
+    """A running subject. `frames()` yields its pictures; while the caller looks at frame n, frame n has not been
+    swapped yet, and frames before it have. `text()` after the end: what a scene printed besides."""
+
+    def __init__(self, subject: Subject, environment: dict[str, str], prefix: list[str] = ()):
+        self.subject = subject
+        self._errors = tempfile.TemporaryFile()
+        self._process = subprocess.Popen([*prefix, *subject.argv()], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                         stderr=self._errors, env=dict(environment, **subject.environment()),
+                                         start_new_session=True)
+
+    def frames(self) -> Iterator[np.ndarray]:
+        while (frame := read_frame(self._process.stdout)) is not None:
+            yield frame
+
+    def go_on(self) -> None:
+        """Lets a scene that pauses after a frame go on."""
+        try:
+            self._process.stdin.write(b"\n")
+            self._process.stdin.flush()
+        except BrokenPipeError:
+            pass
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    def finish(self, seconds: float = 30) -> tuple[int, str]:
+        """Exit code and standard error; kills what does not end in time."""
+        try:
+            self._process.communicate(timeout=seconds)
+        except subprocess.TimeoutExpired:
+            signal_group(self._process, signal.SIGKILL)
+            self._process.communicate()
+        self._errors.seek(0)
+        return self._process.returncode, self._errors.read().decode(errors="replace")
+
+
+def signal_group(process: subprocess.Popen, number: int) -> None:
+    """To a process that leads its own group, and to its children."""
+    try:
+        os.killpg(process.pid, number)
+    except ProcessLookupError:
+        pass
+
+
+def play_through(subject: Subject, environment: dict[str, str]) -> list[np.ndarray]:
+    """All frames of a subject, without a stop."""
+    play = Play(subject, environment)
+    frames = []
+    for frame in play.frames():
+        frames.append(frame)
+        play.go_on()
+    play.finish()
+    return frames
