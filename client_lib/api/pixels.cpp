@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+// Pixels drawn from client memory, the tables they go through, and the polygon stipple (OpenGL 1.2.1, 3.5.2, 3.6, 3.7).
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "client_lib/context.h"
+#include "client_lib/maps.h"
+#include "client_lib/objects/texture.h"
+#include "client_lib/pixel_store.h"
+#include "client_lib/readback.h"
+#include "client_lib/share_group.h"
+
+namespace wall::client::api {
+namespace {
+
+namespace el = glstate::el;
+
+/// How far rounding may carry a pixel beyond the exact rectangle.
+constexpr float kMargin = 2;
+
+PixelRect drawn_rect(const Context& c, float width, float height) {
+    const auto& position = c.state.raster.raster_position;
+    const auto& zoom = c.state.window.pixel_zoom;
+    const float x = position[0] + width * zoom.x, y = position[1] + height * zoom.y;
+    return {std::min(position[0], x) - kMargin, std::min(position[1], y) - kMargin, std::max(position[0], x) + kMargin,
+            std::max(position[1], y) + kMargin};
+}
+
+bool has_depth(const Context& c) { return c.draw_surface() && c.draw_surface()->options.format.depth_bits != 0; }
+bool has_stencil(const Context& c) { return c.draw_surface() && c.draw_surface()->options.format.stencil_bits != 0; }
+
+/// Whether the buffers that a format means exist.
+bool buffers_exist(const Context& c, GLenum format) {
+    switch (format) {
+        case GL_DEPTH_COMPONENT: case GL_DEPTH: return has_depth(c);
+        case GL_STENCIL_INDEX: case GL_STENCIL: return has_stencil(c);
+        case GL_DEPTH_STENCIL: return has_depth(c) && has_stencil(c);
+        default: return true;
+    }
+}
+
+void draw_tight(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type, std::span<const std::byte> pixels) {
+    c.draw(drawn_rect(c, static_cast<float>(width), static_cast<float>(height)),
+           [&](wire::PackBuffer& buffer) { glapi::pack::DrawPixels(buffer, width, height, format, type, pixels); });
+}
+
+// ---- pixel maps ----
+
+bool is_index_map(GLenum map) { return map == GL_PIXEL_MAP_I_TO_I || map == GL_PIXEL_MAP_S_TO_S; }
+bool is_pixel_map(GLenum map) { return map >= GL_PIXEL_MAP_I_TO_I && map <= GL_PIXEL_MAP_A_TO_A; }
+
+void set_pixel_map(Context& c, GLenum map, std::vector<float> values) {
+    if (!is_index_map(map))
+        for (float& value : values) value = std::clamp(value, 0.0f, 1.0f);
+    const unsigned i = map - GL_PIXEL_MAP_I_TO_I;
+    if (c.maps->pixel.tables[i] == values) return;
+    c.flush_block();
+    c.maps->pixel.tables[i] = std::move(values);
+    c.maps->stamp = c.maps->pixel_stamps[i] = next_stamp();
+}
+
+/// `scale` makes fractions of integers, for maps of colours.
+template <class In>
+void pixel_map(Context& c, GLenum map, GLsizei size, const In* values, double scale) {
+    if (!is_pixel_map(map)) return c.error(GL_INVALID_ENUM);
+    if (size < 1 || size > kMaxPixelMapTable) return c.error(GL_INVALID_VALUE);
+    if (map <= GL_PIXEL_MAP_I_TO_A && !std::has_single_bit(static_cast<unsigned>(size))) return c.error(GL_INVALID_VALUE);
+    if (!values) return;
+    std::vector<float> table(static_cast<std::size_t>(size));
+    for (std::size_t i = 0; i < table.size(); ++i)
+        table[i] = static_cast<float>(is_index_map(map) ? static_cast<double>(values[i]) : values[i] * scale);
+    set_pixel_map(c, map, std::move(table));
+}
+
+template <class Out>
+void get_pixel_map(Context& c, GLenum map, Out* out, double scale) {
+    if (!is_pixel_map(map)) return c.error(GL_INVALID_ENUM);
+    for (const float value : c.maps->pixel.of(map)) *out++ = static_cast<Out>(is_index_map(map) ? value : value * scale);
+}
+
+// ---- buffers ----
+
+/// Bits of the four colour buffers a word names: 1 front left, 2 back left, 4 front right, 8 back right; -1: no such word.
+int named_buffers(GLenum word) {
+    switch (word) {
+        case GL_NONE: return 0;
+        case GL_FRONT_LEFT: return 1;
+        case GL_BACK_LEFT: return 2;
+        case GL_FRONT_RIGHT: return 4;
+        case GL_BACK_RIGHT: return 8;
+        case GL_FRONT: return 1 | 4;
+        case GL_BACK: return 2 | 8;
+        case GL_LEFT: return 1 | 2;
+        case GL_RIGHT: return 4 | 8;
+        case GL_FRONT_AND_BACK: return 15;
+        case GL_AUX0: case GL_AUX1: case GL_AUX2: case GL_AUX3: return 16;
+        default: return word >= GL_COLOR_ATTACHMENT0 && word <= GL_COLOR_ATTACHMENT15 ? 16 : -1;
+    }
+}
+
+int existing_buffers(const Surface* surface) { return !surface || surface->options.format.double_buffered ? 3 : 1; }
+
+GLenum buffer_error(GLenum word, const Surface* surface) {
+    const int named = named_buffers(word);
+    if (named < 0) return GL_INVALID_ENUM;
+    return named == 0 || (named & existing_buffers(surface)) ? GL_NO_ERROR : GL_INVALID_OPERATION;
+}
+
+}  // namespace
+
+void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels) {
+    if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
+    if (glapi::is_integer_format(format)) return c.error(GL_INVALID_OPERATION);
+    if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
+    if (!buffers_exist(c, format)) return c.error(GL_INVALID_OPERATION);
+    if (!c.state.raster.raster_position_valid || width == 0 || height == 0 || !pixels) return;
+    if (!glapi::image_bytes(format, type, width, height, 1)) return c.error(GL_OUT_OF_MEMORY);
+    draw_tight(c, width, height, format, type, glapi::unpack_image(unpack_store(c.state), {width, height}, format, type, pixels));
+}
+
+// The client's raster position is the only one: the command that travels moves nothing.
+void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig, GLfloat xmove, GLfloat ymove, const GLubyte* bitmap) {
+    if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
+    if (!c.state.raster.raster_position_valid) return;
+    auto position = c.state.raster.raster_position;
+    if (width > 0 && height > 0 && bitmap) {
+        const auto bits = glapi::unpack_image(unpack_store(c.state), {width, height}, GL_COLOR_INDEX, GL_BITMAP, bitmap);
+        const float x = position[0] - xorig - kMargin, y = position[1] - yorig - kMargin;
+        const PixelRect box{x, y, x + static_cast<float>(width) + 2 * kMargin, y + static_cast<float>(height) + 2 * kMargin};
+        c.draw(box, [&](wire::PackBuffer& buffer) { glapi::pack::Bitmap(buffer, width, height, xorig, yorig, 0, 0, bits); });
+    }
+    position[0] += xmove;
+    position[1] += ymove;
+    c.set<el::raster_position>(0, position);
+}
+
+void CopyPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLenum what) {
+    if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
+    if (what != GL_COLOR && what != GL_DEPTH && what != GL_STENCIL && what != GL_DEPTH_STENCIL) return c.error(GL_INVALID_ENUM);
+    if (!buffers_exist(c, what)) return c.error(GL_INVALID_OPERATION);
+    if (!c.state.raster.raster_position_valid || c.state.local.render_mode == GL_SELECT) return;
+    const PixelBox from = clip_to_window(c, {x, y, width, height});
+    if (from.empty()) return;
+    const GLenum format = what == GL_COLOR ? GL_RGBA : what == GL_DEPTH ? GL_DEPTH_COMPONENT : what == GL_STENCIL ? GL_STENCIL_INDEX : GL_DEPTH_STENCIL;
+    const GLenum type = what == GL_DEPTH ? GL_UNSIGNED_INT : what == GL_DEPTH_STENCIL ? GL_UNSIGNED_INT_24_8 : GL_UNSIGNED_BYTE;
+    const auto pixels = gather_plain(c, from, format, type, "glCopyPixels");
+    const auto position = c.state.raster.raster_position;
+    const auto& zoom = c.state.window.pixel_zoom;
+    auto moved = position;  // where the part that lies in the window goes
+    moved[0] += static_cast<float>(from.x - x) * zoom.x;
+    moved[1] += static_cast<float>(from.y - y) * zoom.y;
+    c.set<el::raster_position>(0, moved);
+    draw_tight(c, from.width, from.height, format, type, pixels);
+    c.set<el::raster_position>(0, position);
+}
+
+void PixelMapfv(Context& c, GLenum map, GLsizei size, const GLfloat* values) { pixel_map(c, map, size, values, 1.0); }
+void PixelMapuiv(Context& c, GLenum map, GLsizei size, const GLuint* values) { pixel_map(c, map, size, values, 1 / 4294967295.0); }
+void PixelMapusv(Context& c, GLenum map, GLsizei size, const GLushort* values) { pixel_map(c, map, size, values, 1 / 65535.0); }
+void GetPixelMapfv(Context& c, GLenum map, GLfloat* values) { get_pixel_map(c, map, values, 1.0); }
+void GetPixelMapuiv(Context& c, GLenum map, GLuint* values) { get_pixel_map(c, map, values, 4294967295.0); }
+void GetPixelMapusv(Context& c, GLenum map, GLushort* values) { get_pixel_map(c, map, values, 65535.0); }
+
+// A word a row, the bottom one first; the highest bit is the leftmost pixel.
+void PolygonStipple(Context& c, const GLubyte* mask) {
+    if (!mask) return;
+    const auto rows = glapi::unpack_image(unpack_store(c.state), {32, 32}, GL_COLOR_INDEX, GL_BITMAP, mask);
+    glstate::Words32 words;
+    std::memcpy(words.data(), rows.data(), sizeof words);
+    for (auto& word : words) word = __builtin_bswap32(word);
+    c.set<el::polygon_stipple>(0, words);
+}
+
+void GetPolygonStipple(Context& c, GLubyte* mask) {
+    if (!mask) return;
+    glstate::Words32 words = c.state.window.polygon_stipple;
+    for (auto& word : words) word = __builtin_bswap32(word);
+    glapi::pack_image(pack_store(c.state), {32, 32}, GL_COLOR_INDEX, GL_BITMAP, std::as_bytes(std::span(words)), mask);
+}
+
+void DrawBuffer(Context& c, GLenum buffer) {
+    if (const GLenum error = buffer_error(buffer, c.draw_surface())) return c.error(error);
+    c.set<el::draw_buffer>(0, buffer);
+}
+
+void ReadBuffer(Context& c, GLenum buffer) {
+    if (const GLenum error = buffer_error(buffer, c.read_surface())) return c.error(error);
+    c.set<el::read_buffer>(0, buffer);
+}
+
+}  // namespace wall::client::api

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// glReadPixels: one of the few commands that must wait (OpenGL 1.2.1, 4.3.2).
+#include <algorithm>
+
+#include "client_lib/context.h"
+#include "client_lib/pixel_store.h"
+#include "client_lib/readback.h"
+
+namespace wall::client::api {
+namespace {
+
+bool source_exists(const Context& c, GLenum format) {
+    const Surface* surface = c.read_surface();
+    if (!surface) return false;
+    const SurfaceFormat& f = surface->options.format;
+    switch (format) {
+        case GL_DEPTH_COMPONENT: return f.depth_bits != 0;
+        case GL_STENCIL_INDEX: return f.stencil_bits != 0;
+        case GL_DEPTH_STENCIL: return f.depth_bits != 0 && f.stencil_bits != 0;
+        case GL_COLOR_INDEX: return false;
+        default: return c.state.window.read_buffer != GL_NONE;
+    }
+}
+
+/// Rows of whole bytes, the first pixel in the highest bit, of one byte a pixel.
+std::vector<std::byte> to_bits(const std::vector<std::byte>& pixels, const PixelBox& box) {
+    const std::size_t row = (static_cast<std::size_t>(box.width) + 7) / 8;
+    std::vector<std::byte> bits(row * static_cast<std::size_t>(box.height));
+    for (std::int32_t y = 0; y < box.height; ++y)
+        for (std::int32_t x = 0; x < box.width; ++x) {
+            const auto value = pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(box.width) + static_cast<std::size_t>(x)];
+            if ((value & std::byte{1}) != std::byte{0})
+                bits[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x) / 8] |= static_cast<std::byte>(0x80 >> (x % 8));
+        }
+    return bits;
+}
+
+}  // namespace
+
+// What lies outside the window is not written (Mesa's way; OpenGL leaves it undefined).
+void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels) {
+    if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
+    if (glapi::is_integer_format(format)) return c.error(GL_INVALID_OPERATION);
+    if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
+    if (!source_exists(c, format)) return c.error(GL_INVALID_OPERATION);
+    const PixelBox box = clip_to_window(c, {x, y, width, height});
+    if (box.empty() || !pixels) return;
+    glapi::PixelStore store = pack_store(c.state);
+    if (store.row_length == 0) store.row_length = width;
+    store.skip_pixels += box.x - x;
+    store.skip_rows += box.y - y;
+    const bool bitmap = type == GL_BITMAP;
+    auto tight = gather_pixels(c, box, format, bitmap ? GL_UNSIGNED_BYTE : type, "glReadPixels");
+    if (bitmap) tight = to_bits(tight, box);
+    glapi::pack_image(store, {box.width, box.height}, format, type, tight, pixels);
+}
+
+}  // namespace wall::client::api
