@@ -6,14 +6,14 @@
 
 #include <random>
 
-#include "tests/unit/client/mesa_context.h"
+#include "tests/unit/mesa_context.h"
 
 namespace wall::client {
 namespace {
 
 class Sequence {
 public:
-    explicit Sequence(unsigned seed) : random_(seed) {}
+    Sequence(glapi::GlFunctions& gl, unsigned seed) : gl_(gl), random_(seed) {}
 
     /// One random command to both sides. `affine`: none that gives a perspective.
     void step(bool affine) {
@@ -22,7 +22,7 @@ public:
             case 1: rotate_any(); break;
             case 2: do_translate(); break;
             case 3: do_scale(); break;
-            case 4: glLoadIdentity(); load_identity(ours); break;
+            case 4: gl_.LoadIdentity(); load_identity(ours); break;
             case 5: do_ortho(); break;
             case 6: do_frustum(); break;
             case 7: do_multiply(); break;
@@ -38,32 +38,32 @@ private:
         float v[3]{};
         v[pick(3)] = value(2);
         const float angle = value(400);
-        glRotatef(angle, v[0], v[1], v[2]);
+        gl_.Rotatef(angle, v[0], v[1], v[2]);
         rotate(ours, angle, v[0], v[1], v[2]);
     }
     void rotate_any() {
         const float angle = value(400), x = value(1), y = value(1), z = pick(3) ? value(1) : 0;
-        glRotatef(angle, x, y, z);
+        gl_.Rotatef(angle, x, y, z);
         rotate(ours, angle, x, y, z);
     }
     void do_translate() {
         const float x = value(20), y = value(20), z = value(20);
-        glTranslatef(x, y, z);
+        gl_.Translatef(x, y, z);
         translate(ours, x, y, z);
     }
     void do_scale() {
         const float x = value(3), y = pick(2) ? value(3) : x, z = y == x ? x : value(3);
-        glScalef(x, y, z);
+        gl_.Scalef(x, y, z);
         scale(ours, x, y, z);
     }
     void do_ortho() {
         const float l = value(9), b = value(9), n = value(9);
-        glOrtho(l, l + 3.7f, b, b + 2.1f, n, n + 11.3f);
+        gl_.Ortho(l, l + 3.7f, b, b + 2.1f, n, n + 11.3f);
         ortho(ours, l, l + 3.7f, b, b + 2.1f, n, n + 11.3f);
     }
     void do_frustum() {
         const float l = value(9), b = value(9);
-        glFrustum(l, l + 3.7f, b, b + 2.1f, 0.7f, 31.1f);
+        gl_.Frustum(l, l + 3.7f, b, b + 2.1f, 0.7f, 31.1f);
         frustum(ours, l, l + 3.7f, b, b + 2.1f, 0.7f, 31.1f);
     }
     Mat4 any() {
@@ -73,14 +73,15 @@ private:
     }
     void do_multiply() {
         const Mat4 m = any();
-        glMultMatrixf(m.data());
+        gl_.MultMatrixf(m.data());
         multiply(ours, m);
     }
     void do_load() {
         const Mat4 m = any();
-        glLoadMatrixf(m.data());
+        gl_.LoadMatrixf(m.data());
         load(ours, m);
     }
+    glapi::GlFunctions& gl_;
     std::mt19937 random_;
 };
 
@@ -90,16 +91,16 @@ void expect_same(const Mat4& ours, const Mat4& mesas, unsigned seed, int step) {
 }
 
 TEST(Matrix, EqualsMesa) {
-    test::MesaContext mesa;
-    if (!mesa.ok()) GTEST_SKIP() << "no EGL surfaceless Mesa on this machine";
-    glMatrixMode(GL_MODELVIEW);
+    const auto mesa = test::MesaContext::open();
+    if (!mesa) GTEST_SKIP() << "no EGL surfaceless Mesa on this machine";
+    mesa->gl.MatrixMode(GL_MODELVIEW);
     for (unsigned seed = 0; seed < 600; ++seed) {
-        Sequence sequence(seed);
-        glLoadIdentity();
+        Sequence sequence(mesa->gl, seed);
+        mesa->gl.LoadIdentity();
         for (int step = 0; step < 12; ++step) {
             sequence.step(seed % 2 == 0);
             Mat4 theirs;
-            glGetFloatv(GL_MODELVIEW_MATRIX, theirs.data());
+            mesa->gl.GetFloatv(GL_MODELVIEW_MATRIX, theirs.data());
             expect_same(sequence.ours.m, theirs, seed, step);
             if (HasFatalFailure()) return;
         }
@@ -108,19 +109,19 @@ TEST(Matrix, EqualsMesa) {
 
 // A clip plane is stored in eye coordinates: plane * inverse(modelview).
 TEST(Matrix, InverseEqualsMesa) {
-    test::MesaContext mesa;
-    if (!mesa.ok()) GTEST_SKIP() << "no EGL surfaceless Mesa on this machine";
+    const auto mesa = test::MesaContext::open();
+    if (!mesa) GTEST_SKIP() << "no EGL surfaceless Mesa on this machine";
     std::uint32_t form_left = form::kIdentity;  // glLoadIdentity forgets no form bits
     for (unsigned seed = 0; seed < 600; ++seed) {
-        glLoadIdentity();
-        Sequence sequence(seed);
+        mesa->gl.LoadIdentity();
+        Sequence sequence(mesa->gl, seed);
         sequence.ours.form = form_left;
         for (int step = 0; step < 6; ++step) {
             sequence.step(seed % 3 != 0);
             const GLdouble plane[4] = {0.3, -0.7, 0.2, 1.5};
-            glClipPlane(GL_CLIP_PLANE0, plane);
+            mesa->gl.ClipPlane(GL_CLIP_PLANE0, plane);
             GLdouble theirs[4];
-            glGetClipPlane(GL_CLIP_PLANE0, theirs);
+            mesa->gl.GetClipPlane(GL_CLIP_PLANE0, theirs);
             const Vec4 ours = transform_plane({0.3f, -0.7f, 0.2f, 1.5f}, inverse(sequence.ours));
             for (std::size_t i = 0; i < 4; ++i) ASSERT_EQ(ours[i], static_cast<float>(theirs[i])) << "seed " << seed << " step " << step;
         }
