@@ -101,9 +101,9 @@ struct Opened {
     std::string rest;  ///< bytes that came after the welcome
 };
 
-Result<Opened> greet(const Hello& hello, const std::string& address) {
-    const auto deadline = Clock::now() + ControlLink::kOpenLimit;
-    auto fd = connect_to(address, static_cast<int>(ControlLink::kOpenLimit.count()));
+Result<Opened> greet(const Hello& hello, const std::string& address, milliseconds limit) {
+    const auto deadline = Clock::now() + limit;
+    auto fd = connect_to(address, static_cast<int>(limit.count()));
     if (!fd) return tl::unexpected(fd.error());
     Opened opened{std::move(*fd), {}, {}};
     std::string bytes;
@@ -152,9 +152,10 @@ Hello Hello::from_environment() {
     return hello;
 }
 
-Result<std::unique_ptr<ControlLink>> ControlLink::open(const Hello& hello, const std::string& address) {
+Result<std::unique_ptr<ControlLink>> ControlLink::open(const Hello& hello, const std::string& address,
+                                                       milliseconds limit) {
     if (!hello.invalid.empty()) return fail(hello.invalid);
-    auto opened = greet(hello, address);
+    auto opened = greet(hello, address, limit);
     if (!opened) return tl::unexpected(opened.error());
     return std::unique_ptr<ControlLink>(new ControlLink(std::move(opened->fd), hello, address,
                                                         std::move(opened->welcome), std::move(opened->rest)));
@@ -349,7 +350,7 @@ void ControlLink::on_lost(const std::string& why) {
 
 bool ControlLink::reconnect() {
     if (fd_) return true;
-    auto opened = greet(hello_, address_);
+    auto opened = greet(hello_, address_, kOpenLimit);
     if (!opened) {
         log(LogLevel::debug, "walld_unreachable why=%s", opened.error().message.c_str());
         return false;

@@ -28,8 +28,9 @@ class ControlLink {
 public:
     static constexpr std::chrono::milliseconds kOpenLimit{5000};  ///< connect, hello and welcome together
 
-    /// Blocks, at most kOpenLimit. The error names the address.
-    static Result<std::unique_ptr<ControlLink>> open(const Hello& hello, const std::string& address = walld_address());
+    /// Blocks, at most `limit`. The error names the address.
+    static Result<std::unique_ptr<ControlLink>> open(const Hello& hello, const std::string& address = walld_address(),
+                                                     std::chrono::milliseconds limit = kOpenLimit);
     ~ControlLink();
 
     /// As it was when the link was opened; later changes are Events.

@@ -361,7 +361,7 @@ TEST(ControlLink, ASilentPeerIsGivenUp) {
 }
 
 TEST(ControlLink, AnotherProtocolIsRefused) {
-    for (const std::string answer : {std::string("HTTP/1.1 400 Bad Request\r\n\r\n"), std::string(8, '\xff')}) {
+    for (const std::string& answer : {std::string("HTTP/1.1 400 Bad Request\r\n\r\n"), std::string(8, '\xff')}) {
         FakeWalld walld;
         std::thread server([&] {
             walld.accept();
