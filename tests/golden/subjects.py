@@ -44,6 +44,13 @@ class Recording:
     def compared(self) -> range:
         return range(WARM_UP, self.frames)
 
+    @property
+    def shown(self) -> range:
+        """Frames that can be looked at on the wall: after the last one the replay ends at once."""
+        return range(WARM_UP, self.frames - 1)
+
+    swaps = True
+
     def argv(self) -> list[str]:
         """Replays it, with each frame written to standard output just before its swap. -b leaves out the glGetError
         that would follow each call."""
@@ -59,6 +66,7 @@ class Scene:
 
     name: str
     frames: int
+    swaps: bool
     program: Path
 
     kind = "scene"
@@ -66,6 +74,8 @@ class Scene:
     @property
     def compared(self) -> range:
         return range(self.frames)
+
+    shown = compared
 
     def argv(self) -> list[str]:
         return [str(self.program), self.name, f"--frames={self.frames}", "--pause"]
@@ -83,9 +93,10 @@ def load_recordings(path: Path = HERE / "recordings.toml") -> list[Recording]:
 
 
 def load_scenes(program: Path) -> list[Scene]:
-    """The program lists its scenes itself: a line `NAME FRAMES` each."""
+    """The program lists its scenes itself: a line `NAME FRAMES swaps|flushes` each."""
     lines = subprocess.run([program, "--list"], check=True, capture_output=True, text=True).stdout.split("\n")
-    return [Scene(line.split()[0], int(line.split()[1]), program) for line in lines if line]
+    words = [line.split() for line in lines if line]
+    return [Scene(name, int(frames), shows == "swaps", program) for name, frames, shows in words]
 
 
 def read_frame(stream: IO[bytes]) -> np.ndarray | None:

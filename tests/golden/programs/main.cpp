@@ -2,7 +2,7 @@
 // golden_scenes NAME [--frames=N] [--pause] [--raw=FILE]   draws a scene and writes each frame to standard output as PNM,
 //   just before it is shown; lines of results go to standard error behind "= ". --pause waits for a line on standard
 //   input after each frame. --raw also appends each frame as RGBA bytes, bottom row first, to FILE.
-// golden_scenes --list                                     prints NAME FRAMES of each scene.
+// golden_scenes --list                                     prints NAME FRAMES swaps|flushes of each scene.
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
@@ -87,6 +87,8 @@ void append(const std::string& path, const std::vector<unsigned char>& bytes) {
     }
 }
 
+bool swaps(const Scene& scene) { return scene.needs.double_buffered && !scene.needs.read; }
+
 void run(const Scene& scene, const Options& options) {
     const Size size;
     const auto window = scene.needs.egl ? Window::by_egl(size, scene.needs) : Window::by_glx(size, scene.needs);
@@ -97,7 +99,7 @@ void run(const Scene& scene, const Options& options) {
         const auto pixels = read_frame(scene, size);
         if (!options.raw.empty()) append(options.raw, pixels);
         write_pnm(pixels, size);
-        if (scene.needs.double_buffered && !scene.needs.read) window->swap();
+        if (swaps(scene)) window->swap();
         glFinish();
         if (options.pause && std::getchar() == EOF) return;
     }
@@ -108,7 +110,7 @@ int main(int argc, char** argv) {
     auto all = scenes();
     std::sort(all.begin(), all.end(), [](const Scene& a, const Scene& b) { return a.name < b.name; });
     if (options.list) {
-        for (const Scene& scene : all) std::printf("%s %d\n", scene.name.c_str(), scene.frames);
+        for (const Scene& scene : all) std::printf("%s %d %s\n", scene.name.c_str(), scene.frames, swaps(scene) ? "swaps" : "flushes");
         return 0;
     }
     const auto found = std::find_if(all.begin(), all.end(), [&](const Scene& s) { return s.name == options.scene; });

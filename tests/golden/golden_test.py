@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: MIT
+"""The golden tests' own tests: whatever a wall gets wrong, they must say so."""
+import io
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from expectations import Check, Outcome, judge, load  # noqa: E402
+from golden import Comparison  # noqa: E402
+from stages import Performance  # noqa: E402
+from subjects import Recording, Scene, load_recordings, read_frame  # noqa: E402
+
+
+def performance(frames=3):
+    rng = np.random.default_rng(5)
+    pictures = [rng.integers(0, 255, (300, 400, 3), np.uint8) for _ in range(frames)]
+    return Performance(read=pictures, shown=dict(enumerate(pictures)), text=["= answer 5"],
+                       stats={"round_trips": 1, "round_trips_by_function": {"glReadPixels": 1}})
+
+
+class Compared(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.reference, self.given = performance(), performance()
+
+    def wrong(self, tiles="1x1", subject=Scene("it", 3, True, Path())):
+        report = Path(self.folder.name)
+        outcomes = Comparison(subject, tiles, self.reference, self.given, report).outcomes()
+        return sorted((o.check.view, o.check.frame) for o in outcomes if not o.good)
+
+    def test_right(self):
+        self.assertEqual(self.wrong(), [])
+        self.assertEqual(self.wrong("2x2"), [])
+
+    def test_one_pixel_by_one_level(self):
+        self.given.read[1] = self.given.read[1].copy()
+        self.given.read[1][0, 0, 0] ^= 1
+        self.assertEqual(self.wrong(), [("read", 1)])
+        self.assertEqual(self.wrong("2x2"), [])
+        self.assertTrue((Path(self.folder.name) / "it-1x1-read-1.png").exists())
+
+    def test_composed_wall(self):
+        self.given.shown[2] = np.roll(self.given.shown[2], 1, axis=1)
+        self.assertEqual(self.wrong(), [("shown", 2)])
+        self.assertEqual(self.wrong("3x2"), [("shown", 2)])
+
+    def test_missing_frames(self):
+        del self.given.shown[0]
+        self.given.read.pop()
+        self.assertEqual(self.wrong(), [("exit", -1), ("read", 2), ("shown", 0)])
+
+    def test_too_many_frames(self):
+        self.given.read.append(self.given.read[0])
+        self.assertEqual(self.wrong(), [("exit", -1)])
+
+    def test_answers(self):
+        self.given.text = ["= answer 6"]
+        self.assertEqual(self.wrong(), [("text", -1)])
+        self.given.text = []
+        self.assertEqual(self.wrong(), [("text", -1)])
+
+    def test_exit_code_and_problems(self):
+        self.given.exit_code = -11
+        self.assertEqual(self.wrong(), [("exit", -1)])
+        self.given.exit_code = 0
+        self.given.problems = ["the window covers 5x5"]
+        self.assertEqual(self.wrong(), [("exit", -1)])
+
+    def test_round_trips(self):
+        waited = self.given.stats["round_trips_by_function"]
+        for name in ("glGetError", "glGetIntegerv", "glIsEnabled", "glGetTexParameteriv"):
+            waited[name] = 1
+            self.assertEqual(self.wrong(), [("round_trips", -1)])
+            del waited[name]
+        waited.update(glFinish=2, glGetTexImage=1)
+        self.assertEqual(self.wrong(), [])
+        self.given.stats = {}
+        self.assertEqual(self.wrong(), [("round_trips", -1)])
+
+    def test_a_recordings_warm_up_is_not_compared(self):
+        recording = Recording("it", "gl", [], 3, "")
+        self.given.read[0] = 255 - self.given.read[0]
+        self.assertEqual(self.wrong(subject=recording), [])
+        self.given.read[1] = self.given.read[2]
+        self.assertEqual(self.wrong(subject=recording), [("read", 1)])
+
+
+class Judged(unittest.TestCase):
+    known = Check("a", "1x1", "read", 2)
+
+    def outcome(self, good, check=known):
+        return Outcome(check, good, "")
+
+    def test_failures(self):
+        self.assertFalse(judge([self.outcome(False)], {}).good)
+        self.assertTrue(judge([self.outcome(True)], {}).good)
+
+    def test_expected_failure(self):
+        self.assertTrue(judge([self.outcome(False)], {self.known: "why"}).good)
+        other = Check("a", "1x1", "shown", 2)
+        self.assertFalse(judge([self.outcome(False, other)], {self.known: "why"}).good)
+
+    def test_unexpected_pass(self):
+        self.assertEqual(judge([self.outcome(True)], {self.known: "why"}).unexpected_passes, [self.known])
+        self.assertFalse(judge([self.outcome(True)], {self.known: "why"}).good)
+
+    def test_list(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
+            file.write('[[expected]]\nsubject = "a"\ntiles = ["1x1", "2x2"]\nview = "read"\nframes = [2]\nreason = "why"\n')
+            file.flush()
+            self.assertEqual(load(Path(file.name)), {self.known: "why", Check("a", "2x2", "read", 2): "why"})
+            file.write('[[expected]]\nsubject = "b"\ntiles = ["1x1"]\nview = "read"\nframes = [2]\nreason = " "\n')
+            file.flush()
+            with self.assertRaises(ValueError):
+                load(Path(file.name))
+
+
+class Subjects(unittest.TestCase):
+    def test_recordings_are_there(self):
+        recordings = load_recordings()
+        self.assertGreaterEqual(len(recordings), 12)
+        for recording in recordings:
+            self.assertTrue(recording.path.exists(), recording.path)
+            self.assertGreaterEqual(recording.frames, 3)
+
+    def test_frames_of_a_stream(self):
+        picture = np.arange(24, dtype=np.uint8).reshape(2, 4, 3)
+        stream = io.BytesIO(b"a message\nP6\n# comment\n4 2\n255\n" + picture.tobytes() + b"P6\n4 2\n255\n" + picture.tobytes()[:-1])
+        self.assertTrue((read_frame(stream) == picture).all())
+        self.assertIsNone(read_frame(stream))  # cut off
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: MIT
+"""Where a subject is played: on plain Mesa, which is the reference, or on a wall."""
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import json
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from subjects import WINDOW, Play, Subject
+from wall import Wall, WallError
+from xserver import XServer
+
+SHOWN_LIMIT = 10.0  # seconds until a frame that was read must be on the wall
+
+
+@dataclasses.dataclass
+class Performance:
+    """All that a subject gave. `shown` lacks the frames that could not be looked at: a recording's last one, since its
+    program ends at once."""
+
+    read: list[np.ndarray] = dataclasses.field(default_factory=list)
+    shown: dict[int, np.ndarray] = dataclasses.field(default_factory=dict)
+    text: list[str] = dataclasses.field(default_factory=list)
+    exit_code: int = 0
+    errors: str = ""
+    problems: list[str] = dataclasses.field(default_factory=list)
+    stats: dict = dataclasses.field(default_factory=dict)
+
+    def end(self, play: Play) -> None:
+        self.exit_code, said = play.finish()
+        self.text = [line for line in said.splitlines() if line.startswith("= ")]
+        self.errors = "\n".join(line for line in said.splitlines() if not line.startswith("= "))
+
+
+class MesaStage:
+    """The X server's own OpenGL: Mesa's llvmpipe."""
+
+    def __init__(self, x: XServer):
+        self._environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", vblank_mode="0")
+        for name in ("__GLX_VENDOR_LIBRARY_NAME", "__EGL_VENDOR_LIBRARY_FILENAMES"):
+            self._environment.pop(name, None)
+
+    def play(self, subject: Subject) -> Performance:
+        given = Performance()
+        play = Play(subject, self._environment)
+        for frame in play.frames():
+            given.read.append(frame)
+            play.go_on()
+        given.end(play)
+        return given
+
+
+class WallStage:
+    """A wall of `tiles`, just large enough for the subjects' window. On one tile the window fills it; on several it lies
+    where tile borders cut it at odd places."""
+
+    SLACK = {(1, 1): (0, 0), (2, 2): (12, 10), (3, 2): (20, 14)}  # pixels of the wall beside the window
+
+    def __init__(self, x: XServer, tiles: tuple[int, int], backend: str = "egl"):
+        slack = self.SLACK.get(tiles, (16, 16))
+        size = [-(-(WINDOW[i] + slack[i]) // tiles[i]) for i in (0, 1)]
+        self._x = x
+        self._origin = (slack[0] // 3, slack[1] // 2)
+        self._wall = Wall(tiles=tiles, tile_size=tuple(size), backend=backend, swap_timeout_ms=10000, name="golden")
+
+    def __enter__(self) -> "WallStage":
+        self._wall.__enter__()
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._wall.__exit__(*_)
+
+    def play(self, subject: Subject) -> Performance:
+        given = Performance()
+        with tempfile.TemporaryDirectory() as folder:
+            stats = Path(folder) / "stats.json"
+            rect = None if self._wall.tiles == (1, 1) else (*self._origin, *WINDOW)
+            prefix = self._wall.wallrun(rect=rect, name=subject.name)
+            play = Play(subject, self._x.environment(WALLGL_STATS=str(stats), vblank_mode="0"), prefix)
+            session = _Session(self._wall, play.pid)
+            for number, frame in enumerate(play.frames()):
+                given.read.append(frame)
+                if number in subject.shown:
+                    self._look(session, subject, number, given)
+                play.go_on()
+            given.end(play)
+            with contextlib.suppress(OSError, ValueError):
+                given.stats = json.loads(stats.read_text())
+        return given
+
+    def _look(self, session: "_Session", subject: Subject, number: int, given: Performance) -> None:
+        """The composed wall, cut to the window, once it shows the frame."""
+        try:
+            session.wait_shown(number + 1 if subject.swaps else 0, play_settles=not subject.swaps)
+            x, y, width, height = session.rect()
+            if (width, height) != WINDOW:
+                given.problems.append(f"frame {number}: the window covers {width}x{height} of the wall")
+            picture = decode_png(self._wall.screenshot())
+            given.shown[number] = picture[y:y + height, x:x + width]
+        except (WallError, ValueError, KeyError) as problem:
+            given.problems.append(f"frame {number}: {problem}")
+
+
+class _Session:
+    """A program's session on the wall, found by its process."""
+
+    def __init__(self, wall: Wall, pid: int):
+        self._wall, self._pid = wall, pid
+
+    def surface(self) -> dict:
+        for session in self._wall.sessions():
+            if session["pid"] == self._pid and session["surfaces"]:
+                if session["fault"]:
+                    raise WallError("session fault: " + session["fault"])
+                return session["surfaces"][-1]
+        raise WallError("the program has no window on the wall")
+
+    def rect(self) -> list[int]:
+        return self.surface()["rect"]
+
+    def wait_shown(self, frame: int, play_settles: bool) -> None:
+        """Until the wall says that it shows `frame`. What is drawn to the front has no number: given a moment."""
+        end = time.monotonic() + SHOWN_LIMIT
+        if play_settles:
+            time.sleep(0.25)
+        while self.surface()["frame"] < frame:
+            if time.monotonic() > end:
+                raise WallError(f"not shown within {SHOWN_LIMIT:.0f} seconds (last is {self.surface()['frame']} of {frame})")
+            time.sleep(0.01)
+
+
+def decode_png(data: bytes) -> np.ndarray:
+    picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    if picture is None:
+        raise ValueError("the screenshot is no PNG picture")
+    return picture[..., ::-1]
