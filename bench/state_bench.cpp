@@ -3,10 +3,10 @@
 // on an 800 MHz machine: 3.3 to 7 us), the same into packed commands, and decoding a packed stream into nothing.
 #include <benchmark/benchmark.h>
 
-#include "common/glapi/decoder.h"
 #include "common/glstate/diff.h"
 #include "common/glstate/elements.h"
 #include "common/glstate/pack_sink.h"
+#include "gen/glapi/null_handler.gen.h"
 
 namespace wall {
 namespace {
@@ -100,32 +100,12 @@ void DiffEverythingPacked(benchmark::State& run) {
 BENCHMARK(DiffEverythingPacked);
 
 /// A driver that does nothing.
-struct NullDriver : glapi::Handler {
+struct NullDriver : glapi::NullHandler {
     glstate::State state;
     float sum = 0;
     std::uint32_t state_bytes(std::uint32_t id) { return glstate::element_bytes(id); }
     bool State(std::uint32_t id, std::span<const std::byte> value) { return glstate::apply(state, id, value); }
-    std::uint64_t begin_block(std::uint64_t mask) { return mask; }
-    void begin_tile(unsigned) {}
-    void end_block() {}
     void Vertex3f(float x, float y, float z) { sum += x + y + z; }
-    void Normal3f(float x, float y, float z) { sum += x + y + z; }
-    void Begin(std::uint32_t) {}
-    void End() {}
-#define WALL_IGNORED(NAME) \
-    template <class... A> \
-    void NAME(A&&...) {}
-    WALL_IGNORED(Vertex2f) WALL_IGNORED(Vertex4f) WALL_IGNORED(Color3f) WALL_IGNORED(Color4f) WALL_IGNORED(Color4ub)
-    WALL_IGNORED(SecondaryColor3f) WALL_IGNORED(TexCoord1f) WALL_IGNORED(TexCoord2f) WALL_IGNORED(TexCoord3f) WALL_IGNORED(TexCoord4f)
-    WALL_IGNORED(MultiTexCoord4f) WALL_IGNORED(FogCoordf) WALL_IGNORED(EdgeFlag) WALL_IGNORED(Indexf) WALL_IGNORED(VertexAttrib4f)
-    WALL_IGNORED(Material) WALL_IGNORED(EvalCoord1f) WALL_IGNORED(EvalCoord2f) WALL_IGNORED(EvalPoint1) WALL_IGNORED(EvalPoint2)
-    WALL_IGNORED(EvalMesh1) WALL_IGNORED(EvalMesh2) WALL_IGNORED(Clear) WALL_IGNORED(Accum) WALL_IGNORED(DrawPixels) WALL_IGNORED(Bitmap)
-    WALL_IGNORED(RunCall) WALL_IGNORED(InitNames) WALL_IGNORED(LoadName) WALL_IGNORED(PushName) WALL_IGNORED(PopName) WALL_IGNORED(PassThrough)
-    WALL_IGNORED(Sync) WALL_IGNORED(SurfaceCreate) WALL_IGNORED(SurfacePlace) WALL_IGNORED(SurfaceDestroy) WALL_IGNORED(Bind)
-    WALL_IGNORED(ContextDestroy) WALL_IGNORED(Swap) WALL_IGNORED(ReadPixels) WALL_IGNORED(RenderMode) WALL_IGNORED(TexImage)
-    WALL_IGNORED(TexSubImage) WALL_IGNORED(TexParameter) WALL_IGNORED(TexDelete) WALL_IGNORED(RunDefine) WALL_IGNORED(RunDelete)
-    WALL_IGNORED(Map1) WALL_IGNORED(Map2) WALL_IGNORED(PixelMap)
-#undef WALL_IGNORED
 };
 
 void DecodeVertices(benchmark::State& run) {

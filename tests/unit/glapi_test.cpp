@@ -2,46 +2,39 @@
 // The packed stream: packers and the bounds-checked decoder. Every proper prefix of a valid batch is refused.
 #include <gtest/gtest.h>
 
+#include <tuple>
 #include <vector>
 
-#include "common/glapi/decoder.h"
 #include "common/wire/batch.h"
+#include "gen/glapi/null_handler.gen.h"
 
 namespace wall {
 namespace {
 
-/// Takes any command and counts; the templates stand for all members that a test does not look at.
-struct NullHandler : glapi::Handler {
+struct TestHandler : glapi::NullHandler {
     std::size_t commands = 0, tiles = 0, blocks = 0;
     std::vector<float> vertex;
+    std::uint32_t color = 0;
+    std::vector<std::byte> image;
+
     std::uint32_t state_bytes(std::uint32_t id) { return id == 7 ? 4 : 0; }
     bool State(std::uint32_t, std::span<const std::byte> value) { return ++commands, value.size() == 4; }
     std::uint64_t begin_block(std::uint64_t mask) { return ++blocks, mask; }
     void begin_tile(unsigned) { ++tiles; }
-    void end_block() {}
-    void Vertex3f(float x, float y, float z) { ++commands, vertex = {x, y, z}; }
-    void Color4ub(std::uint32_t rgba) { ++commands, color = rgba; }
-    void TexImage(std::uint32_t, std::uint32_t, std::int32_t, std::uint32_t, std::int32_t, std::int32_t, std::int32_t, std::int32_t,
-                  std::uint32_t, std::uint32_t, std::span<const std::byte> pixels) {
-        ++commands, image.assign(pixels.begin(), pixels.end());
-    }
     void Begin(std::uint32_t mode) {
         ++commands;
         if (mode > 9) refuse("no such mode");
     }
-#define WALL_ANY(NAME) \
-    template <class... A> void NAME(A&&...) { ++commands; }
-    WALL_ANY(End) WALL_ANY(Vertex2f) WALL_ANY(Vertex4f) WALL_ANY(Normal3f) WALL_ANY(Color3f) WALL_ANY(Color4f) WALL_ANY(SecondaryColor3f)
-    WALL_ANY(TexCoord1f) WALL_ANY(TexCoord2f) WALL_ANY(TexCoord3f) WALL_ANY(TexCoord4f) WALL_ANY(MultiTexCoord4f) WALL_ANY(FogCoordf)
-    WALL_ANY(EdgeFlag) WALL_ANY(Indexf) WALL_ANY(VertexAttrib4f) WALL_ANY(Material) WALL_ANY(EvalCoord1f) WALL_ANY(EvalCoord2f)
-    WALL_ANY(EvalPoint1) WALL_ANY(EvalPoint2) WALL_ANY(EvalMesh1) WALL_ANY(EvalMesh2) WALL_ANY(Clear) WALL_ANY(Accum) WALL_ANY(DrawPixels)
-    WALL_ANY(Bitmap) WALL_ANY(RunCall) WALL_ANY(InitNames) WALL_ANY(LoadName) WALL_ANY(PushName) WALL_ANY(PopName) WALL_ANY(PassThrough)
-    WALL_ANY(Sync) WALL_ANY(SurfaceCreate) WALL_ANY(SurfacePlace) WALL_ANY(SurfaceDestroy) WALL_ANY(Bind) WALL_ANY(ContextDestroy)
-    WALL_ANY(Swap) WALL_ANY(ReadPixels) WALL_ANY(RenderMode) WALL_ANY(TexSubImage) WALL_ANY(TexParameter) WALL_ANY(TexDelete)
-    WALL_ANY(RunDefine) WALL_ANY(RunDelete) WALL_ANY(Map1) WALL_ANY(Map2) WALL_ANY(PixelMap)
-#undef WALL_ANY
-    std::uint32_t color = 0;
-    std::vector<std::byte> image;
+    void End() { ++commands; }
+    void Vertex3f(float x, float y, float z) { ++commands, vertex = {x, y, z}; }
+    void Color4ub(std::uint32_t rgba) { ++commands, color = rgba; }
+    template <class... A>
+    void TexImage(A... a) {
+        ++commands;
+        const auto pixels = std::get<sizeof...(A) - 1>(std::tuple(a...));
+        image.assign(pixels.begin(), pixels.end());
+    }
+    void Swap(std::uint32_t, std::uint32_t) { ++commands; }
 };
 
 constexpr std::byte kPixels[5] = {std::byte{1}, std::byte{2}, std::byte{3}, std::byte{4}, std::byte{5}};
@@ -61,7 +54,7 @@ void pack_sample(wire::PackBuffer& to) {
     glapi::pack::Swap(to, 1, 2);
 }
 
-Result<void> decode(const wire::PackBuffer& batch, NullHandler& h) { return glapi::decode(batch.opcodes(), batch.operands(), h); }
+Result<void> decode(const wire::PackBuffer& batch, TestHandler& h) { return glapi::decode(batch.opcodes(), batch.operands(), h); }
 
 TEST(PackedStream, VertexCosts13Bytes) {
     wire::PackBuffer buffer;
@@ -72,7 +65,7 @@ TEST(PackedStream, VertexCosts13Bytes) {
 TEST(PackedStream, DecodesWhatWasPacked) {
     wire::PackBuffer batch;
     pack_sample(batch);
-    NullHandler h;
+    TestHandler h;
     ASSERT_TRUE(decode(batch, h));
     EXPECT_EQ(h.blocks, 1u);
     EXPECT_EQ(h.tiles, 2u);
@@ -90,11 +83,11 @@ TEST(PackedStream, EveryProperPrefixIsRefused) {
     ASSERT_TRUE(wire::split_batch(payload));
     for (std::size_t n = 0; n < payload.size(); ++n) EXPECT_FALSE(wire::split_batch(std::span(payload).first(n))) << n;
     for (std::size_t n = 0; n < batch.operand_bytes(); ++n) {
-        NullHandler h;
+        TestHandler h;
         EXPECT_FALSE(glapi::decode(batch.opcodes(), batch.operands().first(n), h)) << n;
     }
     for (std::size_t n = 0; n < batch.commands(); ++n) {  // the first n commands are at the end of memory
-        NullHandler h;
+        TestHandler h;
         EXPECT_FALSE(glapi::decode(batch.opcodes().last(n), batch.operands(), h)) << n;
     }
 }
@@ -103,7 +96,7 @@ TEST(PackedStream, RefusesMisplacedCommands) {
     const auto refused = [](auto&& pack) {
         wire::PackBuffer batch;
         pack(batch);
-        NullHandler h;
+        TestHandler h;
         const auto done = decode(batch, h);
         return done ? std::string() : done.error().message;
     };
@@ -119,7 +112,7 @@ TEST(PackedStream, RefusesMisplacedCommands) {
 TEST(PackedStream, ARunMayNotCallARun) {
     wire::PackBuffer run;
     glapi::pack::Begin(run, 4);
-    NullHandler h;
+    TestHandler h;
     EXPECT_TRUE(glapi::decode_run(run.opcodes(), run.operands(), h));
     glapi::pack::RunCall(run, 1);
     EXPECT_FALSE(glapi::decode_run(run.opcodes(), run.operands(), h));

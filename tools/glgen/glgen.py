@@ -27,6 +27,7 @@ def generate(registry_path, proto):
     return {
         "glapi/wire.gen.h": emit_wire.wire_header(ops),
         "glapi/decode.gen.h": emit_wire.decode_header(ops),
+        "glapi/null_handler.gen.h": emit_wire.null_handler_header(ops),
         "glapi/gl_functions.gen.h": emit_functions.functions_header(gl, DRIVER_EXTRA),
         "glstate/state.gen.h": emit_state.state_header(model),
         "glstate/tables.gen.h": emit_state.tables_header(model),

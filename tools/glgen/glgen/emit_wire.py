@@ -149,3 +149,24 @@ def _decoder(op):
     lines.append(f"        h.{op.name}({', '.join(loads)});\n")
     lines.append("        return !h.refused();\n    }\n")
     return "".join(lines)
+
+
+NULL_NOTES = """
+A handler that takes every command and does nothing: the base of handlers that look at a few (tests, benchmarks, fuzzers).
+A derived class declares members of the same name over these.
+"""
+
+
+def null_handler_header(ops):
+    out = [header("proto/gl/wire.toml", NULL_NOTES, []),
+           '#include <cstdint>\n#include <span>\n\n#include "common/glapi/decoder.h"\n\nnamespace wall::glapi {\n\n'
+           "struct NullHandler : Handler {\n"
+           "    std::uint64_t begin_block(std::uint64_t tiles) { return tiles; }\n    void begin_tile(unsigned) {}\n    void end_block() {}\n"
+           "    std::uint32_t state_bytes(std::uint32_t) { return 4; }\n    bool State(std::uint32_t, std::span<const std::byte>) { return true; }\n"]
+    for op in ops:
+        if op.is_state or op.name == "Block":
+            continue
+        params = [CPP[o.type] for o in op.operands] + (["std::span<const std::byte>"] if op.bytes_name else [])
+        out.append(f"    void {op.name}({', '.join(params)}) {{}}\n")
+    out.append("};\n\n}  // namespace wall::glapi\n")
+    return "".join(out)

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "common/config/wall_config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace wall::config {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr const char* kGood = R"(
+[wall]
+name = "lab"
+background = "#102030"
+swap_timeout_ms = 100
+
+[control]
+listen = ["unix:/run/wallgl/walld.sock", "127.0.0.1:7770"]
+users = ["root", 1234]
+
+[http]
+listen = "127.0.0.1:7780"
+
+[[node]]
+name = "left"
+listen = "unix:/run/wallgl/left.sock"
+[[node.tile]]
+name = "top"
+rect = [0, 0, 640, 480]
+[[node.tile]]
+name = "bottom"
+rect = [0, 500, 640, 480]
+
+[[node]]
+name = "right"
+backend = "osmesa"
+[[node.tile]]
+name = "big"
+rect = [660, 0, 1280, 980]
+)";
+
+TEST(WallConfig, ReadsEverything) {
+    const auto config = parse_config(kGood, "wall.toml");
+    ASSERT_TRUE(config) << config.error().message;
+    EXPECT_EQ(config->name, "lab");
+    EXPECT_EQ(config->background, 0x102030u);
+    EXPECT_EQ(config->swap_timeout.count(), 100);
+    ASSERT_EQ(config->control_listen.size(), 2u);
+    EXPECT_EQ(config->control_listen[0].path, "/run/wallgl/walld.sock");
+    EXPECT_EQ(config->allowed_users, (std::vector<std::uint32_t>{0, 1234}));
+    EXPECT_EQ(config->http_listen->port, 7780);
+    ASSERT_EQ(config->nodes.size(), 2u);
+    EXPECT_EQ(config->nodes[0].tiles[1].rect, (geom::Rect{0, 500, 640, 480}));
+    EXPECT_EQ(config->nodes[1].backend, Backend::osmesa);
+    EXPECT_EQ(config->nodes[1].listen.port, net::kDefaultDataPort);
+    EXPECT_EQ(config->canvas(), (geom::Rect{0, 0, 1940, 980}));
+    EXPECT_EQ(config->find_node("right"), &config->nodes[1]);
+    EXPECT_EQ(config->find_node("middle"), nullptr);
+}
+
+TEST(WallConfig, NodesAreEnough) {
+    const auto config = parse_config("[[node]]\nname='n'\n[[node.tile]]\nname='t'\nrect=[0,0,1,1]\n", "wall.toml");
+    ASSERT_TRUE(config) << config.error().message;
+    EXPECT_EQ(config->control_listen[0].text(), "127.0.0.1:7770");
+    EXPECT_FALSE(config->http_listen);
+    EXPECT_EQ(config->swap_timeout.count(), 250);
+}
+
+struct Wrong {
+    const char* name;
+    const char* from;   ///< text of kGood that is replaced
+    const char* to;
+    const char* where;  ///< how the error starts
+    const char* what;   ///< what it must say
+};
+
+class WrongConfig : public ::testing::TestWithParam<Wrong> {};
+
+TEST_P(WrongConfig, NamesFileLineAndWhatWasExpected) {
+    std::string text = kGood;
+    const auto at = text.find(GetParam().from);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, std::string(GetParam().from).size(), GetParam().to);
+    const auto config = parse_config(text, "wall.toml");
+    ASSERT_FALSE(config);
+    EXPECT_THAT(config.error().message, StartsWith(GetParam().where));
+    EXPECT_THAT(config.error().message, HasSubstr(GetParam().what));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Cases, WrongConfig,
+    ::testing::Values(
+        Wrong{"syntax", "name = \"lab\"", "name = ", "wall.toml:3: ", "not TOML"},
+        Wrong{"unknown_section", "[http]", "[htpp]", "wall.toml:11: ", "expected one of wall, control, http, node"},
+        Wrong{"unknown_key", "swap_timeout_ms", "swap_timeout", "wall.toml:5: ", "expected one of name, background, swap_timeout_ms"},
+        Wrong{"name_type", "\"lab\"", "7", "wall.toml:3: ", "'name': expected a string"},
+        Wrong{"colour", "#102030", "grey", "wall.toml:4: ", "expected a colour as \"#RRGGBB\""},
+        Wrong{"timeout_range", "= 100", "= 0", "wall.toml:5: ", "expected an integer from 1 to 10000"},
+        Wrong{"address", "127.0.0.1:7770", "here", "wall.toml:8: ", "expected unix:PATH or HOST:PORT"},
+        Wrong{"listen_type", "[\"unix:/run/wallgl/walld.sock\", \"127.0.0.1:7770\"]", "7770", "wall.toml:8: ", "expected an array of addresses"},
+        Wrong{"user", "\"root\"", "\"no such user\"", "wall.toml:9: ", "this machine has no user 'no such user'"},
+        Wrong{"http_unix", "127.0.0.1:7780", "unix:/x", "wall.toml:12: ", "expected HOST:PORT"},
+        Wrong{"backend", "\"osmesa\"", "\"vulkan\"", "wall.toml:26: ", "expected \"egl\" or \"osmesa\""},
+        Wrong{"rect_count", "[660, 0, 1280, 980]", "[660, 0, 1280]", "wall.toml:29: ", "expected [x, y, width, height]"},
+        Wrong{"rect_negative", "[660, 0, 1280, 980]", "[-1, 0, 1280, 980]", "wall.toml:29: ", "expected [x, y, width, height]"},
+        Wrong{"rect_empty", "[660, 0, 1280, 980]", "[660, 0, 0, 980]", "wall.toml:29: ", "expected [x, y, width, height]"},
+        Wrong{"rect_huge", "[660, 0, 1280, 980]", "[32000, 0, 1280, 980]", "wall.toml:29: ", "expected [x, y, width, height]"},
+        Wrong{"node_twice", "\"right\"", "\"left\"", "wall.toml:24: ", "node 'left' appears twice"},
+        Wrong{"tile_twice", "\"big\"", "\"top\"", "wall.toml:24: ", "tile 'top' appears twice"},
+        Wrong{"no_tile", "[[node.tile]]\nname = \"big\"\nrect = [660, 0, 1280, 980]", "", "wall.toml:24: ", "'tile' is missing: expected at least one [[node.tile]]"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+TEST(WallConfig, AnEmptyOneLacksNodes) {
+    const auto config = parse_config("", "wall.toml");
+    ASSERT_FALSE(config);
+    EXPECT_EQ(config.error().message, "wall.toml:1: 'node' is missing: expected at least one [[node]]");
+}
+
+TEST(WallConfig, AMissingFileIsNamed) {
+    const auto config = load_config("/nowhere/wall.toml");
+    ASSERT_FALSE(config);
+    EXPECT_THAT(config.error().message, StartsWith("/nowhere/wall.toml: cannot be read"));
+}
+
+}  // namespace
+}  // namespace wall::config

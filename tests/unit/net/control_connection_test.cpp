@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "common/net/control_connection.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <filesystem>
+
+#include "common/net/sockets.h"
+
+namespace wall::net {
+namespace {
+
+class TemporaryFolder {
+public:
+    TemporaryFolder() { ::mkdtemp(path_.data()); }
+    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+    Address socket() const { return {.path = path_ + "/socket"}; }
+
+private:
+    std::string path_ = "/tmp/wallgl-net-XXXXXX";
+};
+
+/// Answers every Rendered with a Present of the same frame until the peer closes.
+asio::awaitable<void> echo_once(Listener& listener, std::optional<Peer>& peer) {
+    auto socket = co_await listener.accept();
+    const auto connection = std::make_shared<ControlConnection>(std::move(*socket));
+    peer = connection->peer();
+    for (;;) {
+        auto message = co_await connection->receive();
+        if (!message) break;
+        proto::Envelope reply;
+        reply.mutable_present()->set_frame(message->rendered().frame());
+        connection->send(reply);
+    }
+}
+
+asio::awaitable<void> ask(Address address, std::uint32_t count, std::uint32_t& answered, std::string& end) {
+    auto connected = co_await ControlConnection::connect(address);
+    const auto connection = *connected;
+    for (std::uint32_t i = 1; i <= count; ++i) {
+        proto::Envelope message;
+        message.mutable_rendered()->set_frame(i);
+        connection->send(message);
+    }
+    for (std::uint32_t i = 1; i <= count; ++i) {
+        auto message = co_await connection->receive();
+        if (message && message->present().frame() == i) ++answered;
+    }
+    connection->close();
+    end = (co_await connection->receive()).error().message;
+}
+
+void round_trip(const Address& address) {
+    asio::io_context io(1);
+    auto listener = Listener::open(io.get_executor(), address);
+    ASSERT_TRUE(listener) << listener.error().message;
+    std::uint32_t answered = 0;
+    std::string end;
+    std::optional<Peer> peer;
+    asio::co_spawn(io, echo_once(*listener, peer), asio::detached);
+    asio::co_spawn(io, ask(listener->address(), 1000, answered, end), asio::detached);
+    io.run();
+    EXPECT_EQ(answered, 1000u);
+    EXPECT_EQ(end, "closed");
+    ASSERT_TRUE(peer);
+    EXPECT_EQ(peer->user, ::getuid());
+}
+
+TEST(ControlConnection, CarriesMessagesOverUnixSockets) {
+    const TemporaryFolder folder;
+    round_trip(folder.socket());
+    EXPECT_FALSE(std::filesystem::exists(folder.socket().path)) << "the listener removes its socket";
+}
+
+TEST(ControlConnection, CarriesMessagesOverTcpAndKnowsThePeersUser) { round_trip(*Address::parse("127.0.0.1:0")); }
+
+TEST(Sockets, ReplaceAStaleSocketButNotALiveOne) {
+    const TemporaryFolder folder;
+    { const auto dead = listen_on(folder.socket()); }
+    const auto live = listen_on(folder.socket());
+    ASSERT_TRUE(live) << live.error().message;
+    EXPECT_FALSE(listen_on(folder.socket()));
+}
+
+TEST(Sockets, AnErrorNamesTheAddress) {
+    const auto failed = connect_to(*Address::parse("unix:/nowhere/walld.sock"), std::chrono::seconds(1));
+    ASSERT_FALSE(failed);
+    EXPECT_EQ(failed.error().message, "unix:/nowhere/walld.sock: cannot connect: No such file or directory");
+}
+
+}  // namespace
+}  // namespace wall::net

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "walld/swap_coordinator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace wall::walld {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using std::chrono::milliseconds;
+
+class Swap : public ::testing::Test {
+protected:
+    Clock::time_point at(int ms) const { return start_ + milliseconds(ms); }
+    Clock::time_point start_ = Clock::time_point{} + std::chrono::hours(1);
+    SwapCoordinator swap_{milliseconds(250), false};
+};
+
+TEST_F(Swap, PresentsWhenTheLastNodeHasRendered) {
+    swap_.set_nodes({0, 1}, at(0));
+    EXPECT_THAT(swap_.rendered(0, 1, at(1)), IsEmpty());
+    EXPECT_FALSE(swap_.shown(1));
+    EXPECT_THAT(swap_.rendered(1, 1, at(2)), ElementsAre(PresentTo{0, 1}, PresentTo{1, 1}));
+    EXPECT_TRUE(swap_.shown(1));
+    EXPECT_FALSE(swap_.deadline());
+}
+
+TEST_F(Swap, APipelinedNodeWaitsForTheOthers) {
+    swap_.set_nodes({0, 1}, at(0));
+    swap_.rendered(0, 1, at(1));
+    EXPECT_THAT(swap_.rendered(0, 2, at(2)), IsEmpty());
+    EXPECT_THAT(swap_.rendered(1, 1, at(3)), ElementsAre(PresentTo{0, 1}, PresentTo{1, 1}));
+    EXPECT_THAT(swap_.rendered(1, 2, at(4)), ElementsAre(PresentTo{0, 2}, PresentTo{1, 2}));
+}
+
+TEST_F(Swap, ASlowNodeIsLeftOutAfterTheLimitAndNotWaitedForAgain) {
+    swap_.set_nodes({0, 1}, at(0));
+    swap_.rendered(0, 1, at(10));
+    EXPECT_EQ(swap_.deadline(), at(260));
+    EXPECT_THAT(swap_.tick(at(259)), IsEmpty());
+    EXPECT_THAT(swap_.tick(at(260)), ElementsAre(PresentTo{0, 1}));
+    EXPECT_EQ(swap_.timeouts(), 1u);
+    EXPECT_THAT(swap_.rendered(0, 2, at(270)), ElementsAre(PresentTo{0, 2}));
+    EXPECT_THAT(swap_.rendered(1, 1, at(280)), ElementsAre(PresentTo{1, 1})) << "it shows what it has";
+    EXPECT_THAT(swap_.rendered(0, 3, at(290)), ElementsAre(PresentTo{0, 3}));
+}
+
+TEST_F(Swap, ASlowNodeThatCaughtUpIsWaitedForAgain) {
+    swap_.set_nodes({0, 1}, at(0));
+    swap_.rendered(0, 1, at(0));
+    swap_.tick(at(250));
+    EXPECT_THAT(swap_.rendered(1, 1, at(260)), ElementsAre(PresentTo{1, 1}));
+    EXPECT_THAT(swap_.rendered(0, 2, at(270)), IsEmpty());
+    EXPECT_THAT(swap_.rendered(1, 2, at(280)), ElementsAre(PresentTo{0, 2}, PresentTo{1, 2}));
+}
+
+TEST_F(Swap, ADeadNodeDoesNotHoldTheOthers) {
+    swap_.set_nodes({0, 1}, at(0));
+    swap_.rendered(0, 1, at(1));
+    EXPECT_THAT(swap_.set_nodes({0}, at(2)), ElementsAre(PresentTo{0, 1}));
+}
+
+TEST_F(Swap, ANewNodeJoinsWithItsFirstCurrentFrame) {
+    swap_.set_nodes({0}, at(0));
+    swap_.rendered(0, 5, at(1));
+    swap_.set_nodes({0, 1}, at(2));
+    EXPECT_FALSE(swap_.shown(5)) << "it shows nothing yet";
+    EXPECT_THAT(swap_.rendered(0, 6, at(3)), ElementsAre(PresentTo{0, 6})) << "not waited for before it has drawn";
+    EXPECT_THAT(swap_.rendered(1, 6, at(4)), ElementsAre(PresentTo{1, 6}));
+    EXPECT_THAT(swap_.rendered(0, 7, at(5)), IsEmpty());
+    EXPECT_THAT(swap_.rendered(1, 7, at(6)), ElementsAre(PresentTo{0, 7}, PresentTo{1, 7}));
+}
+
+TEST_F(Swap, IgnoresStrangersAndOldReports) {
+    swap_.set_nodes({0}, at(0));
+    EXPECT_THAT(swap_.rendered(9, 1, at(1)), IsEmpty());
+    swap_.rendered(0, 3, at(2));
+    EXPECT_THAT(swap_.rendered(0, 3, at(3)), IsEmpty());
+    EXPECT_THAT(swap_.rendered(0, 2, at(3)), IsEmpty());
+    EXPECT_EQ(swap_.presented(), 3u);
+}
+
+TEST_F(Swap, NothingIsShownWithoutNodes) {
+    EXPECT_FALSE(swap_.shown(1));
+    EXPECT_THAT(swap_.set_nodes({}, at(0)), IsEmpty());
+    EXPECT_FALSE(swap_.shown(1));
+}
+
+TEST_F(Swap, HeldFramesAreShownOneStepAtATime) {
+    SwapCoordinator held(milliseconds(250), true);
+    held.set_nodes({0, 1}, at(0));
+    held.rendered(0, 1, at(1));
+    EXPECT_THAT(held.rendered(1, 1, at(2)), IsEmpty());
+    EXPECT_FALSE(held.deadline()) << "no limit runs for a frame that may not be shown";
+    EXPECT_THAT(held.step(1, at(1000)), ElementsAre(PresentTo{0, 1}, PresentTo{1, 1}));
+    held.rendered(0, 2, at(1001));
+    EXPECT_THAT(held.rendered(1, 2, at(1002)), IsEmpty());
+    EXPECT_THAT(held.step(1, at(1003)), ElementsAre(PresentTo{0, 2}, PresentTo{1, 2}));
+}
+
+TEST_F(Swap, AStepAheadOfTheFrameCounts) {
+    SwapCoordinator held(milliseconds(250), true);
+    held.set_nodes({0}, at(0));
+    EXPECT_THAT(held.step(2, at(0)), IsEmpty());
+    EXPECT_THAT(held.rendered(0, 1, at(1)), ElementsAre(PresentTo{0, 1}));
+    EXPECT_THAT(held.rendered(0, 2, at(2)), ElementsAre(PresentTo{0, 2}));
+    EXPECT_THAT(held.rendered(0, 3, at(3)), IsEmpty());
+    EXPECT_THAT(held.release(at(4)), ElementsAre(PresentTo{0, 3}));
+}
+
+TEST_F(Swap, HoldStopsWhereItIs) {
+    swap_.set_nodes({0}, at(0));
+    swap_.rendered(0, 4, at(0));
+    swap_.hold(at(1));
+    EXPECT_THAT(swap_.rendered(0, 5, at(2)), IsEmpty());
+    EXPECT_THAT(swap_.step(1, at(3)), ElementsAre(PresentTo{0, 5}));
+}
+
+/// Whatever comes in whatever order: a node is never told a frame that it has not rendered, nor an older one.
+TEST_F(Swap, NeverPresentsWhatANodeDoesNotHave) {
+    std::uint32_t seed = 1;
+    const auto random = [&](std::uint32_t below) { return (seed = seed * 1664525u + 1013904223u) / 65536u % below; };
+    std::map<std::uint32_t, std::uint32_t> rendered, told;
+    std::set<std::uint32_t> present;
+    for (int i = 0; i < 20000; ++i) {
+        Presents out;
+        const std::uint32_t node = random(4);
+        switch (random(8)) {
+            case 0:
+                if (present.erase(node)) rendered.erase(node), told.erase(node);
+                else present.insert(node);
+                out = swap_.set_nodes(present, at(i));
+                break;
+            case 1: out = swap_.tick(at(i)); break;
+            case 2: out = random(2) ? swap_.hold(at(i)) : swap_.release(at(i)); break;
+            case 3: out = swap_.step(1, at(i)); break;
+            default:
+                if (present.contains(node)) out = swap_.rendered(node, ++rendered[node], at(i));
+        }
+        for (const auto& [to, frame] : out) {
+            ASSERT_LE(frame, rendered[to]);
+            ASSERT_GT(frame, std::exchange(told[to], frame));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace wall::walld

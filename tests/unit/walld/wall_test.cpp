@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+#include "walld/wall.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/wire/limits.h"
+#include "walld/status.h"
+
+namespace wall::walld {
+namespace {
+
+constexpr const char* kConfig = R"(
+[[node]]
+name = "left"
+[[node.tile]]
+name = "l"
+rect = [0, 0, 640, 480]
+[[node]]
+name = "right"
+[[node.tile]]
+name = "r"
+rect = [640, 0, 640, 480]
+)";
+
+class FakeOutbox : public Outbox {
+public:
+    void to_node(NodeIndex node, const proto::Envelope& message) override { nodes[node].push_back(message); }
+    void to_client(SessionId session, const proto::Envelope& message) override { clients[session].push_back(message); }
+
+    std::map<NodeIndex, std::vector<proto::Envelope>> nodes;
+    std::map<SessionId, std::vector<proto::Envelope>> clients;
+};
+
+class TheWall : public ::testing::Test {
+protected:
+    NodeIndex join(const std::string& name, std::uint32_t pid = 100) {
+        proto::NodeHello hello;
+        hello.set_version(wire::kProtocolVersion);
+        hello.set_name(name);
+        hello.set_pid(pid);
+        hello.set_address("unix:/tmp/" + name);
+        return *wall_.node_joins(hello, now_);
+    }
+    SessionId open(const proto::ClientHello& hello = {}) {
+        return wall_.open_session(hello, [](SessionId) {});
+    }
+    geom::Rect open_surface(SessionId id, std::uint32_t surface, std::uint32_t width, std::uint32_t height) {
+        proto::SurfaceOpen message;
+        message.set_surface(surface);
+        message.set_width(width);
+        message.set_height(height);
+        EXPECT_TRUE(wall_.open_surface(id, message, now_));
+        return wall_.find({id, SurfaceId(surface)})->rect;
+    }
+    void rendered(NodeIndex node, SessionId id, std::uint32_t frame) {
+        proto::Rendered report;
+        report.set_session(id.value);
+        report.set_surface(1);
+        report.set_frame(frame);
+        wall_.node_rendered(node, report, now_);
+    }
+    proto::Envelope last_to_node(NodeIndex node) { return out_.nodes[node].back(); }
+    proto::Envelope last_to_client(SessionId id) { return out_.clients[id].back(); }
+
+    FakeOutbox out_;
+    Clock::time_point now_{};
+    int tickets_ = 0;
+    Wall wall_{*config::parse_config(kConfig, "test"), out_, [this](std::size_t n) { return std::string(n, static_cast<char>('a' + tickets_++)); }};
+};
+
+TEST_F(TheWall, WelcomesANodeWithItsTiles) {
+    EXPECT_EQ(join("right"), 1u);
+    const auto& welcome = out_.nodes[1][0].node_welcome();
+    EXPECT_EQ(welcome.node(), 1u);
+    ASSERT_EQ(welcome.tiles_size(), 1);
+    EXPECT_EQ(welcome.tiles(0).rect().x(), 640);
+}
+
+TEST_F(TheWall, RefusesNodesItDoesNotKnowOrHasAlready) {
+    join("left");
+    proto::NodeHello hello;
+    hello.set_version(wire::kProtocolVersion);
+    hello.set_name("left");
+    EXPECT_FALSE(wall_.node_joins(hello, now_));
+    hello.set_name("middle");
+    EXPECT_FALSE(wall_.node_joins(hello, now_));
+    hello.set_name("right");
+    hello.set_version(wire::kProtocolVersion + 1);
+    EXPECT_FALSE(wall_.node_joins(hello, now_));
+}
+
+TEST_F(TheWall, ANodeThatComesBackHasTheSameIndexAndAHigherIncarnation) {
+    const auto left = join("left", 1);
+    const auto id = open();
+    wall_.node_leaves(left, now_);
+    EXPECT_EQ(last_to_client(id).node_down().node(), left);
+    EXPECT_EQ(join("left", 2), left);
+    EXPECT_EQ(last_to_client(id).node_up().incarnation(), 2u);
+    EXPECT_NE(last_to_client(id).node_up().ticket(), out_.clients[id][0].client_welcome().nodes(0).ticket());
+}
+
+TEST_F(TheWall, AProcessThatOnlyLostItsConnectionIsTheSameIncarnationWithTheSameTicket) {
+    const auto left = join("left", 1);
+    const auto id = open();
+    wall_.node_leaves(left, now_);
+    join("left", 1);
+    EXPECT_EQ(last_to_client(id).node_up().incarnation(), 1u);
+    EXPECT_EQ(last_to_client(id).node_up().ticket(), out_.clients[id][0].client_welcome().nodes(0).ticket());
+}
+
+TEST_F(TheWall, ATicketIsWithTheNodeAndTheClientAndDiffersByNode) {
+    join("left");
+    join("right");
+    const auto id = open();
+    const auto& welcome = out_.clients[id][0].client_welcome();
+    EXPECT_EQ(welcome.canvas_width(), 1280u);
+    ASSERT_EQ(welcome.nodes_size(), 2);
+    EXPECT_EQ(welcome.nodes(0).ticket().size(), Wall::kTicketBytes);
+    EXPECT_NE(welcome.nodes(0).ticket(), welcome.nodes(1).ticket());
+    EXPECT_EQ(last_to_node(0).ticket().ticket(), welcome.nodes(0).ticket());
+    EXPECT_EQ(last_to_node(1).ticket().ticket(), welcome.nodes(1).ticket());
+}
+
+TEST_F(TheWall, PlacesWindowsSideBySideOnTopOfEachOther) {
+    join("left");
+    const auto id = open();
+    EXPECT_EQ(open_surface(id, 1, 300, 300), (geom::Rect{0, 0, 300, 300}));
+    EXPECT_EQ(open_surface(id, 2, 300, 300), (geom::Rect{300, 0, 300, 300}));
+    const auto& stacking = last_to_node(0).stacking();
+    ASSERT_EQ(stacking.entries_size(), 2);
+    EXPECT_EQ(stacking.entries(1).surface(), 2u);
+}
+
+TEST_F(TheWall, TheWantedRectangleGoesToTheFirstWindowOnly) {
+    join("left");
+    proto::ClientHello hello;
+    hello.set_fullscreen(true);
+    const auto id = open(hello);
+    EXPECT_EQ(open_surface(id, 1, 300, 300), (geom::Rect{0, 0, 1280, 480}));
+    EXPECT_EQ(open_surface(id, 2, 300, 300).width, 300);
+    wall_.close_surface(id, SurfaceId(1));
+    EXPECT_EQ(open_surface(id, 3, 300, 300), (geom::Rect{0, 0, 1280, 480})) << "a probe window was closed; this is the real one";
+}
+
+TEST_F(TheWall, APlacementFollowsTheWindowUnlessItIsScaled) {
+    join("left");
+    const auto id = open();
+    open_surface(id, 1, 300, 300);
+    proto::SurfaceResize resize;
+    resize.set_surface(1);
+    resize.set_width(400);
+    resize.set_height(200);
+    wall_.resize_surface(id, resize, now_);
+    EXPECT_EQ(last_to_client(id).placement().rect().width(), 400u);
+    EXPECT_EQ(last_to_client(id).placement().layout_version(), 2u);
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {10, 20, 100, 50}, now_));
+    wall_.resize_surface(id, resize, now_);
+    EXPECT_EQ(last_to_client(id).placement().rect().width(), 100u);
+    EXPECT_EQ(last_to_client(id).placement().layout_version(), 4u) << "a resize is always answered";
+}
+
+TEST_F(TheWall, RefusesSurfacesThatCannotBe) {
+    join("left");
+    const auto id = open();
+    proto::SurfaceOpen message;
+    EXPECT_FALSE(wall_.open_surface(id, message, now_));
+    message.set_surface(1);
+    EXPECT_FALSE(wall_.open_surface(id, message, now_)) << "no size";
+    message.set_width(1u << 31);
+    message.set_height(1);
+    EXPECT_FALSE(wall_.open_surface(id, message, now_));
+    open_surface(id, 1, 10, 10);
+    message.set_width(10);
+    EXPECT_FALSE(wall_.open_surface(id, message, now_)) << "the number is in use";
+}
+
+TEST_F(TheWall, PresentsWhatTheNodesUnderASurfaceHaveRendered) {
+    join("left");
+    join("right");
+    const auto id = open();
+    open_surface(id, 1, 800, 300);
+    rendered(0, id, 1);
+    EXPECT_FALSE(last_to_node(0).has_present());
+    rendered(1, id, 1);
+    EXPECT_EQ(last_to_node(0).present().frame(), 1u);
+    EXPECT_EQ(last_to_node(1).present().frame(), 1u);
+}
+
+TEST_F(TheWall, ASurfaceOnOneTileWaitsForThatOneOnly) {
+    join("left");
+    join("right");
+    const auto id = open();
+    open_surface(id, 1, 300, 300);
+    rendered(0, id, 1);
+    EXPECT_EQ(last_to_node(0).present().frame(), 1u);
+    EXPECT_FALSE(last_to_node(1).has_present());
+}
+
+TEST_F(TheWall, ADeadlinePassesTheFrameOn) {
+    join("left");
+    join("right");
+    const auto id = open();
+    open_surface(id, 1, 800, 300);
+    rendered(0, id, 1);
+    ASSERT_EQ(wall_.next_deadline(), now_ + wall_.config().swap_timeout);
+    wall_.tick(now_ + wall_.config().swap_timeout);
+    EXPECT_EQ(last_to_node(0).present().frame(), 1u);
+    EXPECT_FALSE(wall_.next_deadline());
+}
+
+TEST_F(TheWall, AnEndedSessionIsTakenFromTheNodes) {
+    join("left");
+    const auto id = open();
+    open_surface(id, 1, 300, 300);
+    wall_.close_session(id);
+    auto& sent = out_.nodes[0];
+    EXPECT_EQ(sent[sent.size() - 2].session_end().session(), id.value);
+    EXPECT_EQ(sent.back().stacking().entries_size(), 0);
+    EXPECT_TRUE(wall_.sessions().empty());
+}
+
+TEST_F(TheWall, RaiseLowerAndHoldNeedARealSession) {
+    join("left");
+    const auto a = open(), b = open();
+    open_surface(a, 1, 10, 10);
+    open_surface(b, 1, 10, 10);
+    ASSERT_TRUE(wall_.raise({a, {}}));
+    EXPECT_EQ(last_to_node(0).stacking().entries(1).session(), a.value);
+    ASSERT_TRUE(wall_.lower({a, {}}));
+    EXPECT_EQ(last_to_node(0).stacking().entries(0).session(), a.value);
+    const Target nobody{SessionId(99), {}}, no_window{a, SurfaceId(9)};
+    for (const auto& wrong : {nobody, no_window}) {
+        EXPECT_FALSE(wall_.raise(wrong));
+        EXPECT_FALSE(wall_.lower(wrong));
+        EXPECT_FALSE(wall_.hold(wrong, true, now_));
+        EXPECT_FALSE(wall_.step(wrong, 1, now_));
+        EXPECT_FALSE(wall_.place_surface(wrong, {0, 0, 1, 1}, now_));
+    }
+}
+
+TEST_F(TheWall, AHeldSessionStartsHeld) {
+    join("left");
+    proto::ClientHello hello;
+    hello.set_hold(true);
+    const auto id = open(hello);
+    open_surface(id, 1, 10, 10);
+    rendered(0, id, 1);
+    EXPECT_FALSE(last_to_node(0).has_present());
+    ASSERT_TRUE(wall_.step({id, {}}, 1, now_));
+    EXPECT_EQ(last_to_node(0).present().frame(), 1u);
+}
+
+TEST_F(TheWall, SaysWhatThereIs) {
+    join("left");
+    proto::ClientHello hello;
+    hello.set_program("gears");
+    hello.set_name("\xff not UTF-8");
+    const auto id = open(hello);
+    open_surface(id, 1, 300, 300);
+    const auto status = status_json(wall_);
+    EXPECT_NE(dump(status).find("not UTF-8"), std::string::npos);
+    EXPECT_EQ(status["wall"]["width"], 1280);
+    EXPECT_EQ(status["nodes"].size(), 2u);
+    EXPECT_EQ(status["tiles"][1]["up"], false);
+    EXPECT_EQ(status["sessions"][0]["surfaces"][0]["id"], "1.1");
+    EXPECT_NE(metrics_text(wall_).find("wallgl_node_up{node=\"left\"} 1\n"), std::string::npos);
+}
+
+TEST(Target, IsASessionOrOneOfItsSurfaces) {
+    EXPECT_EQ(Target::parse("3")->session, SessionId(3));
+    EXPECT_EQ(Target::parse("3.4")->surface, SurfaceId(4));
+    for (const char* wrong : {"", "x", "3.", ".4", "3.x", "-1", "99999999999"}) EXPECT_FALSE(Target::parse(wrong)) << wrong;
+}
+
+}  // namespace
+}  // namespace wall::walld

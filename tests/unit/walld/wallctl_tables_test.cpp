@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "tools/wallctl/tables.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace wall::wallctl {
+namespace {
+
+using nlohmann::json;
+
+TEST(Tables, AlignColumnsAndLeaveOutTrailingBlanks) {
+    const json tiles{{{"name", "a"}, {"node", "left"}, {"rect", {0, 0, 640, 480}}, {"up", true}},
+                     {{"name", "bottom"}, {"node", "r"}, {"rect", {0, 480, 64, 48}}, {"up", false}}};
+    EXPECT_EQ(tiles_table(tiles),
+              "TILE    NODE  PLACE        STATE\n"
+              "a       left  640x480+0+0  up\n"
+              "bottom  r     64x48+0+480  away\n");
+}
+
+TEST(Tables, ASessionHasALineForEachWindow) {
+    const json surface{{"id", "3.1"}, {"width", 300}, {"height", 200}, {"rect", {0, 0, 300, 200}}, {"frame", 7}};
+    const json sessions{{{"id", 3}, {"program", "gears"}, {"name", ""}, {"pid", 42}, {"held", true}, {"fault", ""}, {"surfaces", {surface}}},
+                        {{"id", 4}, {"program", "new"}, {"name", "x"}, {"pid", 43}, {"held", false}, {"fault", "bad stream"}, {"surfaces", json::array()}}};
+    EXPECT_EQ(sessions_table(sessions),
+              "ID   PROGRAM  NAME  PID  WINDOW   PLACE        FRAME  NOTE\n"
+              "3.1  gears          42   300x200  300x200+0+0  7      held\n"
+              "4    new      x     43                                bad stream\n");
+}
+
+}  // namespace
+}  // namespace wall::wallctl
