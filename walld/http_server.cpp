@@ -28,8 +28,8 @@ struct Page {
 
 constexpr Page kPages[] = {
     {"/", "text/html; charset=utf-8", [](const Wall&) { return std::string(kPage); }},
-    {"/api/v1/status", "application/json", [](const Wall& wall) { return status_json(wall).dump(); }},
-    {"/api/v1/sessions", "application/json", [](const Wall& wall) { return sessions_json(wall).dump(); }},
+    {"/api/v1/status", "application/json", [](const Wall& wall) { return dump(status_json(wall)); }},
+    {"/api/v1/sessions", "application/json", [](const Wall& wall) { return dump(sessions_json(wall)); }},
     {"/metrics", "text/plain; version=0.0.4", [](const Wall& wall) { return metrics_text(wall); }},
     {"/healthz", "text/plain", [](const Wall& wall) { return std::string(wall.any_node_up() ? "ok\n" : "no node is up\n"); }},
 };

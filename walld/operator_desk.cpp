@@ -44,7 +44,7 @@ asio::awaitable<proto::OperatorReply> OperatorDesk::answer(proto::OperatorReques
     reply.set_request(request.request());
     reply.set_ok(answer.has_value());
     if (answer) {
-        reply.set_json(answer->json.dump(-1, ' ', false, json::error_handler_t::replace));
+        reply.set_json(dump(answer->json));
         reply.set_blob(std::move(answer->blob));
     } else {
         reply.set_error(answer.error().message);

@@ -92,6 +92,8 @@ json status_json(const Wall& wall) {
             {"sessions", sessions_json(wall)}};
 }
 
+std::string dump(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
+
 std::string metrics_text(const Wall& wall) {
     std::string out;
     std::uint64_t surfaces = 0, timeouts = 0;

@@ -14,6 +14,8 @@ nlohmann::json tiles_json(const Wall& wall);
 nlohmann::json sessions_json(const Wall& wall);
 /// All of the above, and the wall's own data.
 nlohmann::json status_json(const Wall& wall);
+/// As text; what is not UTF-8 (programs name themselves) is replaced.
+std::string dump(const nlohmann::json& value);
 std::string metrics_text(const Wall& wall);
 
 }  // namespace wall::walld

@@ -83,9 +83,10 @@ asio::awaitable<Result<proto::Envelope>> ControlConnection::receive() {
         const auto room = unframer_.prepare();
         auto [error, bytes] = co_await socket_.async_read_some(asio::buffer(room.data(), room.size()), kTuple);
         if (error) {
+            const bool ours = !socket_.is_open();
             const bool orderly = error == asio::error::eof && unframer_.at_boundary();
             close();
-            co_return fail(orderly || error == asio::error::operation_aborted ? "closed" : "control: " + error.message());
+            co_return fail(ours || orderly ? "closed" : "control: " + error.message());
         }
         unframer_.commit(bytes);
     }

@@ -62,8 +62,8 @@ protected:
         report.set_frame(frame);
         wall_.node_rendered(node, report, now_);
     }
-    proto::Envelope last_to_node(NodeIndex node) { return out_.nodes[node].back(); }
-    proto::Envelope last_to_client(SessionId id) { return out_.clients[id].back(); }
+    const proto::Envelope& last_to_node(NodeIndex node) { return out_.nodes[node].back(); }
+    const proto::Envelope& last_to_client(SessionId id) { return out_.clients[id].back(); }
 
     FakeOutbox out_;
     Clock::time_point now_{};
