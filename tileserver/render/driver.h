@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 
 #include "common/glstate/diff.h"
 #include "gen/glstate/driver_emit.gen.h"
@@ -52,6 +53,14 @@ public:
     }
     /// The driver unbinds a deleted texture by itself.
     void forget_texture(GLuint texture);
+    /// A program of the driver; 0: fixed function.
+    void use_program(GLuint program) {
+        if (std::exchange(program_, program) != program) gl_.UseProgram(program);
+    }
+    /// Before a program is deleted.
+    void forget_program(GLuint program) {
+        if (program_ == program) use_program(0);
+    }
     /// No scissor for the driver's own work (blits, clears); the next bind_layer() sets it again.
     void disable_scissor();
     void set_unscaled_pixel_zoom();
@@ -88,6 +97,7 @@ private:
     const glstate::State defaults_;
     bool flip_y_ = false;
     std::array<std::array<GLuint, kTextureTargets>, kTextureUnits> bound_textures_{};
+    GLuint program_ = 0;             // that the driver draws with
     Layer* layer_ = nullptr;         // whose window values are in the driver
     std::uint64_t window_id_ = 0;    // value id of the window category that they came from
     bool viewport_scaled_ = false;

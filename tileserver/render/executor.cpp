@@ -87,6 +87,7 @@ void Executor::prepare(Layer& layer) {
     sync_textures();
     node_.maps.sync_evaluators(gl_, context_->maps);
     node_.driver.bind_layer(layer, context_->state);
+    session_.programs.use(ClientName(glstate::el::current_program::ref(context_->state)), layer.geometry());
 }
 
 bool Executor::outside_begin() {

@@ -180,6 +180,10 @@ public:
                      std::int32_t height, std::int32_t depth, GLenum format, GLenum type, std::span<const std::byte> pixels);
     void TexParameter(std::uint32_t texture, GLenum target, GLenum pname, float p0, float p1, float p2, float p3);
     void TexDelete(std::uint32_t texture);
+    void ShaderCompile(std::uint32_t request, GLenum type, std::span<const std::byte> source);
+    void ProgramLink(std::uint32_t request, std::uint32_t program, std::span<const std::byte> definition);
+    void ProgramDelete(std::uint32_t program);
+    void Uniform(std::uint32_t program, std::uint32_t location, GLenum type, std::uint32_t count, std::span<const std::byte> values);
     void RunDefine(std::uint32_t run, std::uint32_t commands, std::uint32_t operand_bytes, std::span<const std::byte> content);
     void RunDelete(std::uint32_t run);
     void Map1(GLenum target, float u1, float u2, std::int32_t order, std::span<const std::byte> points);

@@ -13,6 +13,7 @@
 #include "gen/glstate/state.gen.h"
 #include "tileserver/render/attribute_trail.h"
 #include "tileserver/render/driver.h"
+#include "tileserver/render/programs.h"
 #include "tileserver/render/soft_maps.h"
 #include "tileserver/render/surface.h"
 
@@ -38,7 +39,7 @@ struct Run {
 
 class Session {
 public:
-    Session(Driver& driver, SessionId id) : driver_(driver), id_(id) {}
+    Session(Driver& driver, SessionId id) : programs(driver), driver_(driver), id_(id) {}
     ~Session();
     Session(const Session&) = delete;
 
@@ -63,6 +64,7 @@ public:
     /// Replaces the size of one image in the session's account; false if that is more than a session may have.
     bool account(Texture& texture, GLenum target, std::int32_t level, std::uint64_t bytes);
 
+    Programs programs;
     std::unordered_map<std::uint32_t, Run> runs;
     std::uint64_t run_bytes = 0;
 

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/io/data_stream.h"
+
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <chrono>
+
+#include "common/wire/limits.h"
+#include "proto/control.pb.h"
+
+namespace wall::tileserver {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kWaitable = asio::as_tuple(asio::use_awaitable);
+constexpr std::uint32_t kMaxHello = 4 << 10;  // bytes
+constexpr auto kGreetingLimit = 5s;           // for the hello to come
+constexpr auto kTicketLimit = 3s;             // walld's ticket may come later than the client
+constexpr auto kTicketPoll = 10ms;
+
+/// Takes the same time wherever they differ.
+bool equal_secret(const std::string& a, const std::string& b) {
+    unsigned char difference = a.size() == b.size() ? 0 : 1;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) difference |= static_cast<unsigned char>(a[i] ^ b[i]);
+    return difference == 0;
+}
+
+}  // namespace
+
+DataStream::DataStream(StreamHost& host, StreamId id, net::StreamSocket socket)
+    : host_(host), id_(id), socket_(std::move(socket)), timer_(socket_.get_executor()), reader_(kMaxHello) {}
+
+asio::awaitable<void> DataStream::run() {
+    const auto self = shared_from_this();
+    auto done = co_await greet();
+    if (done) done = co_await take_batches();
+    if (!done && !closing_) {
+        spdlog::info("stream_ended stream={} session={} reason=\"{}\"", id_.value, session_.value, done.error().message);
+        fail(done.error().message);
+    }
+    if (batches_) host_.render().remove_stream(id_);
+    host_.stream_closed(id_);
+}
+
+asio::awaitable<Result<Frame>> DataStream::next_frame() {
+    for (;;) {
+        auto frame = reader_.next();
+        if (!frame) co_return tl::unexpected(frame.error());
+        if (*frame) co_return std::move(**frame);
+        const auto room = reader_.prepare();
+        const auto [error, bytes] = co_await socket_.async_read_some(asio::buffer(room.data(), room.size()), kWaitable);
+        if (error) co_return wall::fail(error == asio::error::eof ? "closed" : error.message());
+        reader_.commit(bytes);
+        host_.stream_bytes(bytes);
+    }
+}
+
+asio::awaitable<Result<void>> DataStream::greet() {
+    timer_.expires_after(kGreetingLimit);
+    timer_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
+        if (const auto self = weak.lock(); self && !error) self->fail("no hello came");
+    });
+    auto frame = co_await next_frame();
+    timer_.cancel();
+    if (!frame) co_return tl::unexpected(frame.error());
+    proto::DataHello hello;
+    if (frame->kind != wire::FrameKind::hello || !hello.ParseFromArray(frame->payload.data(), static_cast<int>(frame->payload.size())))
+        co_return wall::fail("the first frame is not a hello");
+    if (hello.version() != wire::kProtocolVersion)
+        co_return wall::fail("protocol version " + std::to_string(hello.version()) + ", this node speaks " + std::to_string(wire::kProtocolVersion));
+    session_ = SessionId(hello.session());
+    if (!co_await find_ticket(session_, hello.ticket())) co_return wall::fail("no valid ticket for session " + std::to_string(hello.session()));
+    reader_.set_limit(wire::kMaxFramePayload);
+    const auto on_room = [weak = weak_from_this(), executor = socket_.get_executor()] {
+        asio::post(executor, [weak] {
+            if (const auto self = weak.lock()) {
+                self->room_ = true;
+                self->timer_.cancel();
+            }
+        });
+    };
+    batches_ = std::make_shared<BatchQueue>(on_room);
+    host_.render().add_stream(id_, session_, batches_);
+    send(wire::FrameKind::welcome, {});
+    spdlog::info("stream_open stream={} session={}", id_.value, session_.value);
+    co_return Result<void>{};
+}
+
+asio::awaitable<bool> DataStream::find_ticket(SessionId session, const std::string& given) {
+    const auto until = std::chrono::steady_clock::now() + kTicketLimit;
+    for (;;) {
+        if (const std::string* ticket = host_.ticket(session)) co_return session && equal_secret(*ticket, given);
+        if (std::chrono::steady_clock::now() > until || closing_) co_return false;
+        timer_.expires_after(kTicketPoll);
+        co_await timer_.async_wait(kWaitable);
+    }
+}
+
+asio::awaitable<Result<void>> DataStream::take_batches() {
+    while (!closing_) {
+        auto frame = co_await next_frame();
+        if (!frame) co_return tl::unexpected(frame.error());
+        if (frame->kind != wire::FrameKind::batch) co_return wall::fail("unexpected frame of kind " + std::to_string(static_cast<int>(frame->kind)));
+        room_ = batches_->push(std::move(frame->payload));
+        host_.render().wake();
+        while (!room_ && !closing_) {
+            timer_.expires_after(1s);
+            co_await timer_.async_wait(kWaitable);
+        }
+    }
+    co_return Result<void>{};
+}
+
+void DataStream::send(wire::FrameKind kind, std::span<const std::byte> payload) {
+    if (closing_) return;
+    const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(payload.size()), kind});
+    std::vector<std::byte> bytes(header.begin(), header.end());
+    bytes.insert(bytes.end(), payload.begin(), payload.end());
+    outgoing_bytes_ += bytes.size();
+    outgoing_.push_back(std::move(bytes));
+    if (outgoing_bytes_ > kMaxQueued) return close();
+    if (!std::exchange(writing_, true)) asio::co_spawn(socket_.get_executor(), write_queue(), asio::detached);
+}
+
+asio::awaitable<void> DataStream::write_queue() {
+    const auto self = shared_from_this();
+    while (!outgoing_.empty()) {
+        const auto bytes = std::move(outgoing_.front());
+        outgoing_.pop_front();
+        const auto [error, written] = co_await asio::async_write(socket_, asio::buffer(bytes.data(), bytes.size()), kWaitable);
+        outgoing_bytes_ -= bytes.size();
+        if (error) break;
+    }
+    writing_ = false;
+    if (closing_) close();
+}
+
+void DataStream::fail(const std::string& reason) {
+    send(wire::FrameKind::error, std::as_bytes(std::span(reason)));
+    closing_ = true;
+    timer_.cancel();
+    boost::system::error_code ignored;
+    socket_.shutdown(net::StreamSocket::shutdown_receive, ignored);
+}
+
+void DataStream::close() {
+    closing_ = true;
+    timer_.cancel();
+    boost::system::error_code ignored;
+    socket_.shutdown(net::StreamSocket::shutdown_both, ignored);
+    socket_.close(ignored);
+}
+
+}  // namespace wall::tileserver

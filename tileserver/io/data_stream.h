@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// One client's data connection: hello and ticket, then batches into a bounded queue for the render thread, answers
+// back. I/O thread.
+//
+//     greeting --hello, good ticket--> open --bad frame, bad batch, session ended--> closing (the error goes out) --> closed
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/base/ids.h"
+#include "common/net/control_connection.h"
+#include "tileserver/io/frame_reader.h"
+#include "tileserver/render/batch_queue.h"
+#include "tileserver/render/render_thread.h"
+
+namespace wall::tileserver {
+
+namespace asio = boost::asio;
+
+/// What a stream needs of the node.
+class StreamHost {
+public:
+    virtual ~StreamHost() = default;
+    /// Nothing: not known (yet).
+    virtual const std::string* ticket(SessionId session) const = 0;
+    virtual RenderThread& render() = 0;
+    virtual void stream_bytes(std::size_t bytes) = 0;
+    virtual void stream_closed(StreamId stream) = 0;
+};
+
+class DataStream : public std::enable_shared_from_this<DataStream> {
+public:
+    DataStream(StreamHost& host, StreamId id, net::StreamSocket socket);
+
+    /// Runs until the connection ends.
+    asio::awaitable<void> run();
+    void send(wire::FrameKind kind, std::span<const std::byte> payload);
+    /// Tells the client why and closes.
+    void fail(const std::string& reason);
+    void close();
+
+    SessionId session() const { return session_; }
+
+private:
+    static constexpr std::size_t kMaxQueued = std::size_t{512} << 20;  // bytes that a client has not read
+
+    asio::awaitable<Result<void>> greet();
+    asio::awaitable<Result<void>> take_batches();
+    asio::awaitable<Result<Frame>> next_frame();
+    asio::awaitable<bool> find_ticket(SessionId session, const std::string& given);
+    asio::awaitable<void> write_queue();
+
+    StreamHost& host_;
+    StreamId id_;
+    net::StreamSocket socket_;
+    asio::steady_timer timer_;        // of whatever run() waits for besides the socket
+    FrameReader reader_;
+    SessionId session_;
+    std::shared_ptr<BatchQueue> batches_;
+    std::deque<std::vector<std::byte>> outgoing_;
+    std::size_t outgoing_bytes_ = 0;
+    bool writing_ = false, closing_ = false, room_ = true;
+};
+
+}  // namespace wall::tileserver

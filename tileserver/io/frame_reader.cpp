@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/io/frame_reader.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace wall::tileserver {
+
+std::span<std::byte> FrameReader::prepare() {
+    direct_ = in_payload_ && read_ == filled_ && header_.payload_bytes - have_ >= kBuffer;
+    if (direct_) {
+        payload_.resize(std::min<std::size_t>(header_.payload_bytes, std::max(payload_.size(), have_ + kGrowth)));
+        return std::span(payload_).subspan(have_);
+    }
+    std::memmove(buffer_.data(), buffer_.data() + read_, filled_ - read_);
+    filled_ -= std::exchange(read_, 0);
+    return std::span(buffer_).subspan(filled_);
+}
+
+void FrameReader::commit(std::size_t bytes) { (direct_ ? have_ : filled_) += bytes; }
+
+Result<void> FrameReader::begin_frame() {
+    header_ = wire::decode_frame_header(buffer_.data() + read_);
+    read_ += wire::kFrameHeaderBytes;
+    if (header_.payload_bytes > limit_)
+        return fail("frame of " + std::to_string(header_.payload_bytes) + " bytes, at most " + std::to_string(limit_) + " are allowed");
+    in_payload_ = true;
+    have_ = 0;
+    payload_.clear();
+    return {};
+}
+
+void FrameReader::take(std::size_t bytes) {
+    payload_.resize(std::max(payload_.size(), have_ + bytes));
+    if (bytes != 0) std::memcpy(payload_.data() + have_, buffer_.data() + read_, bytes);
+    have_ += bytes;
+    read_ += bytes;
+}
+
+Result<std::optional<Frame>> FrameReader::next() {
+    if (failure_) return tl::unexpected(*failure_);
+    if (!in_payload_) {
+        if (filled_ - read_ < wire::kFrameHeaderBytes) return std::optional<Frame>();
+        if (auto begun = begin_frame(); !begun) {
+            failure_ = begun.error();
+            return tl::unexpected(*failure_);
+        }
+    }
+    take(std::min<std::size_t>(filled_ - read_, header_.payload_bytes - have_));
+    if (have_ < header_.payload_bytes) return std::optional<Frame>();
+    in_payload_ = false;
+    payload_.resize(header_.payload_bytes);
+    return std::optional<Frame>(Frame{header_.kind, std::exchange(payload_, {})});
+}
+
+}  // namespace wall::tileserver

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/io/node_server.h"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <cstring>
+
+#include "common/wire/limits.h"
+
+namespace wall::tileserver {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kRetryInterval = 250ms;
+constexpr auto kWaitable = asio::as_tuple(asio::use_awaitable);
+
+void fill_caps(const GlCaps& caps, proto::GlCaps& out) {
+    out.set_vendor(caps.vendor);
+    out.set_renderer(caps.renderer);
+    out.set_version(caps.version);
+    out.set_shading_language_version(caps.shading_language_version);
+    out.set_extensions(caps.extensions);
+    for (const auto& limit : caps.limits) {
+        auto& row = *out.add_limits();
+        row.set_name(limit.name);
+        for (const double value : limit.values) row.add_values(value);
+    }
+}
+
+geom::Rect rect_of(const proto::Rect& rect) {
+    return {rect.x(), rect.y(), static_cast<std::int32_t>(rect.width()), static_cast<std::int32_t>(rect.height())};
+}
+
+/// Two 32-bit values as a payload.
+std::array<std::byte, 8> words(std::uint32_t first, std::uint32_t second) {
+    std::array<std::byte, 8> bytes{};
+    std::memcpy(bytes.data(), &first, 4);
+    std::memcpy(bytes.data() + 4, &second, 4);
+    return bytes;
+}
+
+}  // namespace
+
+NodeServer::NodeServer(asio::any_io_executor executor, net::Address walld, std::string name)
+    : executor_(executor), walld_(std::move(walld)), name_(std::move(name)), retry_(executor) {}
+
+NodeServer::~NodeServer() = default;
+
+Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor executor, const config::WallConfig& wall, const config::NodeConfig& node) {
+    std::unique_ptr<NodeServer> server(new NodeServer(executor, wall.control_listen.front(), node.name));
+    auto listener = net::Listener::open(executor, node.listen);
+    if (!listener) return tl::unexpected(listener.error());
+    server->listener_.emplace(std::move(*listener));
+    auto render = RenderThread::start(config::name_of(node.backend), *server);
+    if (!render) return tl::unexpected(render.error());
+    server->render_ = std::move(*render);
+    return server;
+}
+
+void NodeServer::start() {
+    asio::co_spawn(executor_, accept_clients(), asio::detached);
+    asio::co_spawn(executor_, keep_link(), asio::detached);
+}
+
+void NodeServer::stop() {
+    stopping_ = true;
+    listener_->close();
+    retry_.cancel();
+    if (link_) link_->close();
+    for (const auto& [id, stream] : std::map(streams_)) stream->close();
+}
+
+void NodeServer::post(std::function<void()> task) { asio::post(executor_, std::move(task)); }
+
+DataStream* NodeServer::stream(StreamId id) {
+    const auto at = streams_.find(id);
+    return at == streams_.end() ? nullptr : at->second.get();
+}
+
+// ---- clients ----
+
+asio::awaitable<void> NodeServer::accept_clients() {
+    for (;;) {
+        auto socket = co_await listener_->accept();
+        if (!socket) {
+            if (!stopping_) spdlog::error("listener_failed error=\"{}\"", socket.error().message);
+            co_return;
+        }
+        const StreamId id(++last_stream_);
+        const auto stream = std::make_shared<DataStream>(static_cast<StreamHost&>(*this), id, std::move(*socket));
+        streams_.emplace(id, stream);
+        asio::co_spawn(executor_, stream->run(), asio::detached);
+    }
+}
+
+const std::string* NodeServer::ticket(SessionId session) const {
+    const auto at = tickets_.find(session);
+    return at == tickets_.end() ? nullptr : &at->second;
+}
+
+void NodeServer::end_session(SessionId session) {
+    tickets_.erase(session);
+    for (const auto& [id, stream] : std::map(streams_))
+        if (stream->session() == session) stream->close();
+}
+
+// ---- walld ----
+
+asio::awaitable<void> NodeServer::keep_link() {
+    while (!stopping_) {
+        auto link = co_await net::ControlConnection::connect(walld_);
+        if (link) {
+            said_unreachable_ = false;
+            link_ = *link;
+            co_await use_link(*link);
+            link_.reset();
+            render_->set_coordinated(false);
+        } else if (!std::exchange(said_unreachable_, true)) {
+            spdlog::warn("walld_unreachable address={} error=\"{}\"", walld_.text(), link.error().message);
+        }
+        if (stopping_) break;
+        retry_.expires_after(kRetryInterval);
+        co_await retry_.async_wait(kWaitable);
+    }
+}
+
+asio::awaitable<void> NodeServer::use_link(std::shared_ptr<net::ControlConnection> link) {
+    link->send(hello());
+    for (;;) {
+        const auto envelope = co_await link->receive();
+        if (!envelope) {
+            if (!stopping_) spdlog::warn("walld_lost reason=\"{}\"", envelope.error().message);
+            co_return;
+        }
+        handle(*envelope);
+    }
+}
+
+proto::Envelope NodeServer::hello() const {
+    proto::Envelope envelope;
+    auto& hello = *envelope.mutable_node_hello();
+    hello.set_version(wire::kProtocolVersion);
+    hello.set_name(name_);
+    hello.set_address(listener_->address().text());
+    hello.set_backend(render_->started().backend);
+    hello.set_pid(static_cast<std::uint32_t>(::getpid()));
+    fill_caps(render_->started().caps, *hello.mutable_caps());
+    return envelope;
+}
+
+void NodeServer::handle(const proto::Envelope& envelope) {
+    using Case = proto::Envelope::MessageCase;
+    switch (envelope.message_case()) {
+        case Case::kNodeWelcome:
+            return welcome(envelope.node_welcome());
+        case Case::kTicket:
+            tickets_[SessionId(envelope.ticket().session())] = envelope.ticket().ticket();
+            return;
+        case Case::kSessionEnd:
+            return end_session(SessionId(envelope.session_end().session()));
+        case Case::kPresent:
+            return render_->present(SessionId(envelope.present().session()), SurfaceId(envelope.present().surface()), envelope.present().frame());
+        case Case::kStacking: {
+            std::vector<StackEntry> entries;
+            for (const auto& entry : envelope.stacking().entries()) entries.push_back({SessionId(entry.session()), SurfaceId(entry.surface())});
+            return render_->set_stacking(std::move(entries));
+        }
+        case Case::kSnapshotRequest: {
+            const auto& request = envelope.snapshot_request();
+            return render_->request_picture(request.request(), request.slot(), SessionId(request.session()));
+        }
+        case Case::kRefused:
+            spdlog::error("walld_refused reason=\"{}\"", envelope.refused().reason());
+            return;
+        default:
+            spdlog::warn("walld_unexpected_message number={}", static_cast<int>(envelope.message_case()));
+    }
+}
+
+void NodeServer::welcome(const proto::NodeWelcome& welcome) {
+    std::vector<Tile> tiles;
+    for (const auto& tile : welcome.tiles()) tiles.push_back({tile.slot(), rect_of(tile.rect())});
+    spdlog::info("walld_welcome node={} tiles={}", welcome.node(), tiles.size());
+    render_->set_tiles(std::move(tiles), welcome.background());
+    render_->set_coordinated(true);
+}
+
+void NodeServer::to_walld(const proto::Envelope& envelope) {
+    if (link_) link_->send(envelope);
+}
+
+// ---- the render thread's reports ----
+
+void NodeServer::reply(StreamId id, std::uint32_t request, std::vector<std::byte> answer) {
+    answer.insert(answer.begin(), 4, std::byte{});
+    std::memcpy(answer.data(), &request, sizeof request);
+    post([this, id, answer = std::move(answer)] {
+        if (DataStream* to = stream(id)) to->send(wire::FrameKind::reply, answer);
+    });
+}
+
+void NodeServer::rendered(StreamId id, SessionId session, SurfaceId surface, std::uint32_t frame) {
+    post([=, this] {
+        if (DataStream* to = stream(id)) to->send(wire::FrameKind::swap_done, words(surface.value, frame));
+        proto::Envelope envelope;
+        auto& rendered = *envelope.mutable_rendered();
+        rendered.set_session(session.value);
+        rendered.set_surface(surface.value);
+        rendered.set_frame(frame);
+        to_walld(envelope);
+    });
+}
+
+void NodeServer::failed(StreamId id, SessionId session, std::string reason) {
+    post([this, id, session, reason = std::move(reason)] {
+        spdlog::warn("session_fault stream={} session={} reason=\"{}\"", id.value, session.value, reason);
+        if (DataStream* to = stream(id)) to->fail(reason);
+        proto::Envelope envelope;
+        envelope.mutable_session_fault()->set_session(session.value);
+        envelope.mutable_session_fault()->set_reason(reason);
+        to_walld(envelope);
+    });
+}
+
+void NodeServer::picture(Picture picture) {
+    post([this, picture = std::move(picture)]() mutable {
+        proto::Envelope envelope;
+        auto& snapshot = *envelope.mutable_snapshot();
+        snapshot.set_request(picture.request);
+        snapshot.set_width(picture.width);
+        snapshot.set_height(picture.height);
+        snapshot.set_rgb(std::move(picture.rgb));
+        snapshot.set_error(picture.error);
+        to_walld(envelope);
+    });
+}
+
+void NodeServer::stats(const RenderStats& stats) {
+    post([this, stats] {
+        last_stats_ = std::chrono::steady_clock::now();
+        proto::Envelope envelope;
+        auto& out = *envelope.mutable_node_stats();
+        out.set_frames(stats.frames);
+        out.set_commands(stats.commands);
+        out.set_gl_errors(stats.gl_errors);
+        out.set_bytes_received(bytes_received_);
+        out.set_sessions(stats.sessions);
+        to_walld(envelope);
+    });
+}
+
+}  // namespace wall::tileserver

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// The I/O side of a node: the link to walld (made again for ever), the listener for clients, and the bridge to and from
+// the render thread. I/O thread; the render thread's reports are posted over.
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+#include <unordered_map>
+
+#include "common/config/wall_config.h"
+#include "common/net/control_connection.h"
+#include "tileserver/io/data_stream.h"
+#include "tileserver/render/render_thread.h"
+
+namespace wall::tileserver {
+
+class NodeServer final : private StreamHost, private NodeEvents {
+public:
+    /// Opens the driver and the listener; the error says what stands in the way.
+    static Result<std::unique_ptr<NodeServer>> open(asio::any_io_executor executor, const config::WallConfig& wall, const config::NodeConfig& node);
+    ~NodeServer() override;
+
+    /// Starts to accept clients and to look for walld.
+    void start();
+    /// Closes everything; the executor runs out of work soon.
+    void stop();
+
+    const net::Address& address() const { return listener_->address(); }
+    /// When the render thread last said something; it does about once a second.
+    std::chrono::steady_clock::time_point last_sign_of_life() const { return last_stats_; }
+
+private:
+    NodeServer(asio::any_io_executor executor, net::Address walld, std::string name);
+
+    // StreamHost
+    const std::string* ticket(SessionId session) const override;
+    RenderThread& render() override { return *render_; }
+    void stream_bytes(std::size_t bytes) override { bytes_received_ += bytes; }
+    void stream_closed(StreamId stream) override { streams_.erase(stream); }
+    // NodeEvents: from the render thread
+    void reply(StreamId stream, std::uint32_t request, std::vector<std::byte> answer) override;
+    void rendered(StreamId stream, SessionId session, SurfaceId surface, std::uint32_t frame) override;
+    void failed(StreamId stream, SessionId session, std::string reason) override;
+    void picture(Picture picture) override;
+    void stats(const RenderStats& stats) override;
+
+    asio::awaitable<void> accept_clients();
+    asio::awaitable<void> keep_link();
+    asio::awaitable<void> use_link(std::shared_ptr<net::ControlConnection> link);
+    proto::Envelope hello() const;
+    void handle(const proto::Envelope& envelope);
+    void welcome(const proto::NodeWelcome& welcome);
+    void end_session(SessionId session);
+    void to_walld(const proto::Envelope& envelope);
+    DataStream* stream(StreamId id);
+    void post(std::function<void()> task);
+
+    asio::any_io_executor executor_;
+    net::Address walld_;
+    std::string name_;
+    std::optional<net::Listener> listener_;
+    std::shared_ptr<net::ControlConnection> link_;  // null: walld is away
+    asio::steady_timer retry_;
+    bool stopping_ = false, said_unreachable_ = false;
+    std::unordered_map<SessionId, std::string> tickets_;
+    std::map<StreamId, std::shared_ptr<DataStream>> streams_;
+    std::uint32_t last_stream_ = 0;
+    std::uint64_t bytes_received_ = 0;
+    std::chrono::steady_clock::time_point last_stats_ = std::chrono::steady_clock::now();
+    std::unique_ptr<RenderThread> render_;  // last: it is gone before what it reports to
+};
+
+}  // namespace wall::tileserver

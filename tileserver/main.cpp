@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// tileserver, one node of a wall: read wall.toml, open the driver, serve clients until a signal.
+#include <signal.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <systemd/sd-daemon.h>
+
+#include <CLI/CLI.hpp>
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <cstdlib>
+#include <iostream>
+
+#include "tileserver/io/node_server.h"
+
+namespace {
+
+using namespace wall;
+using namespace wall::tileserver;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds kStopLimit{2};     // what has not ended by itself then is dropped
+constexpr std::chrono::seconds kRenderStall{30};  // a render thread that says nothing for so long hangs
+constexpr int kExitUsage = 2;
+
+/// journald adds its own time.
+void set_up_log(const std::string& node) {
+    spdlog::set_default_logger(spdlog::stderr_logger_mt("tileserver " + node));
+    spdlog::set_pattern(std::getenv("JOURNAL_STREAM") ? "%l %v" : "%Y-%m-%dT%H:%M:%S.%e %n %l %v");
+    spdlog::flush_on(spdlog::level::info);
+}
+
+/// Tells systemd that both threads are alive, as often as it wants to hear it.
+asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const NodeServer& server) {
+    std::uint64_t limit = 0;  // microseconds
+    if (sd_watchdog_enabled(0, &limit) <= 0) co_return;
+    boost::system::error_code error;
+    while (!error) {
+        if (Clock::now() - server.last_sign_of_life() < kRenderStall) sd_notify(0, "WATCHDOG=1");
+        timer.expires_after(std::chrono::microseconds(limit / 2));
+        std::tie(error) = co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+    }
+}
+
+Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node) {
+    asio::io_context io(1);
+    auto server = NodeServer::open(io.get_executor(), wall, node);
+    if (!server) return tl::unexpected(server.error());
+    asio::steady_timer watchdog(io), stop_limit(io);
+    asio::signal_set signals(io, SIGINT, SIGTERM);
+    signals.async_wait([&](const boost::system::error_code& error, int signal) {
+        if (error) return;
+        spdlog::info("stopping signal={}", signal);
+        sd_notify(0, "STOPPING=1");
+        (*server)->stop();
+        watchdog.cancel();
+        stop_limit.expires_after(kStopLimit);
+        stop_limit.async_wait([&](const boost::system::error_code&) { io.stop(); });
+    });
+    asio::co_spawn(io, feed_watchdog(watchdog, **server), asio::detached);
+    (*server)->start();
+    sd_notify(0, ("READY=1\nSTATUS=node " + node.name).c_str());
+    spdlog::info("ready node=\"{}\" backend={} listen={}", node.name, config::name_of(node.backend), (*server)->address().text());
+    io.run();
+    server->reset();
+    spdlog::info("stopped");
+    return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("tileserver: one node of a WallGL wall. It draws what programs send it for its tiles. It connects to walld by itself,\n"
+                 "whenever that is there.");
+    std::string config_path, node_name;
+    app.add_option("--config", config_path, "wall.toml, the description of the wall (docs/operation.md)")->required();
+    app.add_option("--node", node_name, "which of its [[node]]s this one is")->required();
+    app.set_version_flag("--version", WALLGL_VERSION);
+    CLI11_PARSE(app, argc, argv);
+
+    ::signal(SIGPIPE, SIG_IGN);
+    set_up_log(node_name);
+    try {
+        const auto wall = config::load_config(config_path);
+        if (!wall) {
+            std::cerr << "tileserver: " << wall.error().message << '\n';
+            return kExitUsage;
+        }
+        const auto* node = wall->find_node(node_name);
+        if (node == nullptr) {
+            std::cerr << "tileserver: " << config_path << ": no [[node]] has the name \"" << node_name << "\"\n";
+            return kExitUsage;
+        }
+        if (auto done = run(*wall, *node); !done) {
+            std::cerr << "tileserver: " << done.error().message << '\n';
+            return 1;
+        }
+    } catch (const std::exception& error) {
+        std::cerr << "tileserver: " << error.what() << '\n';
+        return 1;
+    }
+    return 0;
+}

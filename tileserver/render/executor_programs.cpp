@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// GLSL programs (programs.h). Render thread.
+#include "tileserver/render/executor.h"
+
+namespace wall::tileserver {
+
+void Executor::ShaderCompile(std::uint32_t request, GLenum type, std::span<const std::byte> source) {
+    auto answer = session_.programs.compile(type, source);
+    if (!answer) return refuse(answer.error().message);
+    output_.reply(request, std::move(*answer));
+}
+
+void Executor::ProgramLink(std::uint32_t request, std::uint32_t program, std::span<const std::byte> definition) {
+    auto answer = session_.programs.link(ClientName(program), definition, request != 0);
+    if (!answer) return refuse(answer.error().message);
+    if (request != 0) output_.reply(request, std::move(*answer));
+}
+
+void Executor::ProgramDelete(std::uint32_t program) { session_.programs.erase(ClientName(program)); }
+
+void Executor::Uniform(std::uint32_t program, std::uint32_t location, GLenum type, std::uint32_t count, std::span<const std::byte> values) {
+    if (auto done = session_.programs.set_uniform(ClientName(program), location, type, count, values); !done) refuse(done.error().message);
+}
+
+}  // namespace wall::tileserver
