@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+// Vertex arrays (OpenGL 1.2.1, 2.8): what they are and drawing from them. Later levels: vertex array objects.
+#include <algorithm>
+#include <iterator>
+
+#include "client_lib/attribute_stack.h"
+#include "client_lib/buffer_binding.h"
+#include "client_lib/client_arrays.h"
+#include "client_lib/select.h"
+#include "common/glstate/diff.h"
+
+namespace wall::client::api {
+namespace {
+
+namespace el = glstate::el;
+using glstate::ClientArray;
+
+// ---- defining ----
+
+/// Types that a pointer command takes, as bits from GL_BYTE on.
+constexpr unsigned type_bit(GLenum type) { return type >= GL_BYTE && type <= GL_DOUBLE ? 1u << (type - GL_BYTE) : 0; }
+constexpr unsigned kSigned = type_bit(GL_SHORT) | type_bit(GL_INT) | type_bit(GL_FLOAT) | type_bit(GL_DOUBLE);
+constexpr unsigned kAny = kSigned | type_bit(GL_BYTE) | type_bit(GL_UNSIGNED_BYTE) | type_bit(GL_UNSIGNED_SHORT) | type_bit(GL_UNSIGNED_INT);
+
+struct Allowed {
+    GLint min_size, max_size;
+    unsigned types;
+};
+
+struct Given {
+    GLint size;
+    GLenum type;
+    GLsizei stride;
+    const void* pointer;
+};
+
+template <class E>
+void define(Context& c, unsigned i, const Allowed& allowed, const Given& given) {
+    if (!(allowed.types & type_bit(given.type))) return c.error(GL_INVALID_ENUM);
+    if (given.size < allowed.min_size || given.size > allowed.max_size || given.stride < 0) return c.error(GL_INVALID_VALUE);
+    ClientArray array = E::ref(c.state, i);
+    array.pointer = reinterpret_cast<std::uintptr_t>(given.pointer);
+    array.size = given.size;
+    array.type = given.type;
+    array.stride = given.stride;
+    array.buffer = c.state.local.array_buffer;
+    c.set<E>(i, array);
+}
+
+unsigned client_unit(const Context& c) { return c.state.local.client_active_texture - GL_TEXTURE0; }
+
+template <class E>
+void enable(Context& c, unsigned i, bool on) {
+    ClientArray array = E::ref(c.state, i);
+    array.enabled = on;
+    c.set<E>(i, array);
+}
+
+void enable(Context& c, GLenum cap, bool on) {
+    switch (cap) {
+        case GL_VERTEX_ARRAY: return enable<el::vertex_array>(c, 0, on);
+        case GL_NORMAL_ARRAY: return enable<el::normal_array>(c, 0, on);
+        case GL_COLOR_ARRAY: return enable<el::color_array>(c, 0, on);
+        case GL_INDEX_ARRAY: return enable<el::index_array>(c, 0, on);
+        case GL_TEXTURE_COORD_ARRAY: return enable<el::texcoord_array>(c, client_unit(c), on);
+        case GL_EDGE_FLAG_ARRAY: return enable<el::edge_flag_array>(c, 0, on);
+        case GL_FOG_COORD_ARRAY: return enable<el::fog_coord_array>(c, 0, on);
+        case GL_SECONDARY_COLOR_ARRAY: return enable<el::secondary_color_array>(c, 0, on);
+        default: return c.error(GL_INVALID_ENUM);
+    }
+}
+
+// OpenGL 1.2.1, table 2.5: sizes and offsets in bytes; 0: not in the format.
+struct Interleaved {
+    GLint texcoords, colors;
+    GLenum color_type;
+    bool normals;
+    GLint vertices;
+    unsigned color_at, normal_at, vertex_at, stride;
+};
+constexpr Interleaved kInterleaved[] = {
+    {0, 0, 0, false, 2, 0, 0, 0, 8},                          // GL_V2F
+    {0, 0, 0, false, 3, 0, 0, 0, 12},                         // GL_V3F
+    {0, 4, GL_UNSIGNED_BYTE, false, 2, 0, 0, 4, 12},          // GL_C4UB_V2F
+    {0, 4, GL_UNSIGNED_BYTE, false, 3, 0, 0, 4, 16},          // GL_C4UB_V3F
+    {0, 3, GL_FLOAT, false, 3, 0, 0, 12, 24},                 // GL_C3F_V3F
+    {0, 0, 0, true, 3, 0, 0, 12, 24},                         // GL_N3F_V3F
+    {0, 4, GL_FLOAT, true, 3, 0, 16, 28, 40},                 // GL_C4F_N3F_V3F
+    {2, 0, 0, false, 3, 0, 0, 8, 20},                         // GL_T2F_V3F
+    {4, 0, 0, false, 4, 0, 0, 16, 32},                        // GL_T4F_V4F
+    {2, 4, GL_UNSIGNED_BYTE, false, 3, 8, 0, 12, 24},         // GL_T2F_C4UB_V3F
+    {2, 3, GL_FLOAT, false, 3, 8, 0, 20, 32},                 // GL_T2F_C3F_V3F
+    {2, 0, 0, true, 3, 0, 8, 20, 32},                         // GL_T2F_N3F_V3F
+    {2, 4, GL_FLOAT, true, 3, 8, 24, 36, 48},                 // GL_T2F_C4F_N3F_V3F
+    {4, 4, GL_FLOAT, true, 4, 16, 32, 44, 60},                // GL_T4F_C4F_N3F_V4F
+};
+
+// ---- drawing ----
+
+bool is_index_type(GLenum type) { return type == GL_UNSIGNED_BYTE || type == GL_UNSIGNED_SHORT || type == GL_UNSIGNED_INT; }
+
+bool check_mode(Context& c, GLenum mode) {
+    if (mode <= GL_POLYGON) return true;
+    c.error(GL_INVALID_ENUM);
+    return false;
+}
+
+void draw_range(Context& c, GLenum mode, GLint first, GLsizei count) {
+    ElementRange elements;
+    elements.first = first;
+    elements.count = count;
+    draw_elements(c, mode, elements);
+}
+
+void draw_indices(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices) {
+    ElementRange elements;
+    elements.count = count;
+    elements.type = type;
+    elements.indices = indices;
+    if (const std::uint32_t buffer = c.state.local.element_array_buffer) {
+        const auto content = buffer_content(c, buffer, reinterpret_cast<std::uintptr_t>(indices));
+        const std::size_t bytes = type == GL_UNSIGNED_BYTE ? 1 : type == GL_UNSIGNED_SHORT ? 2 : 4;
+        elements.indices = content.data();
+        elements.count = static_cast<GLsizei>(std::min<std::size_t>(static_cast<std::size_t>(count), content.size() / bytes));
+    }
+    if (elements.indices) draw_elements(c, mode, elements);
+}
+
+template <class Named>
+const void* pointer_of(const Named& array) {
+    return reinterpret_cast<const void*>(static_cast<std::uintptr_t>(array.pointer));
+}
+
+}  // namespace
+
+void VertexPointer(Context& c, GLint size, GLenum type, GLsizei stride, const void* pointer) {
+    define<el::vertex_array>(c, 0, {2, 4, kSigned}, {size, type, stride, pointer});
+}
+void NormalPointer(Context& c, GLenum type, GLsizei stride, const void* pointer) {
+    define<el::normal_array>(c, 0, {3, 3, kSigned | type_bit(GL_BYTE)}, {3, type, stride, pointer});
+}
+void ColorPointer(Context& c, GLint size, GLenum type, GLsizei stride, const void* pointer) {
+    define<el::color_array>(c, 0, {3, 4, kAny}, {size, type, stride, pointer});
+}
+void SecondaryColorPointer(Context& c, GLint size, GLenum type, GLsizei stride, const void* pointer) {
+    define<el::secondary_color_array>(c, 0, {3, 3, kAny}, {size, type, stride, pointer});
+}
+void FogCoordPointer(Context& c, GLenum type, GLsizei stride, const void* pointer) {
+    define<el::fog_coord_array>(c, 0, {1, 1, type_bit(GL_FLOAT) | type_bit(GL_DOUBLE)}, {1, type, stride, pointer});
+}
+void IndexPointer(Context& c, GLenum type, GLsizei stride, const void* pointer) {
+    define<el::index_array>(c, 0, {1, 1, kSigned | type_bit(GL_UNSIGNED_BYTE)}, {1, type, stride, pointer});
+}
+void EdgeFlagPointer(Context& c, GLsizei stride, const void* pointer) {
+    define<el::edge_flag_array>(c, 0, {1, 1, type_bit(GL_UNSIGNED_BYTE)}, {1, GL_UNSIGNED_BYTE, stride, pointer});
+}
+void TexCoordPointer(Context& c, GLint size, GLenum type, GLsizei stride, const void* pointer) {
+    define<el::texcoord_array>(c, client_unit(c), {1, 4, kSigned}, {size, type, stride, pointer});
+}
+
+void EnableClientState(Context& c, GLenum cap) { enable(c, cap, true); }
+void DisableClientState(Context& c, GLenum cap) { enable(c, cap, false); }
+
+void InterleavedArrays(Context& c, GLenum format, GLsizei stride, const void* pointer) {
+    if (stride < 0) return c.error(GL_INVALID_VALUE);
+    if (format < GL_V2F || format - GL_V2F >= std::size(kInterleaved)) return c.error(GL_INVALID_ENUM);
+    const Interleaved& f = kInterleaved[format - GL_V2F];
+    const GLsizei step = stride ? stride : static_cast<GLsizei>(f.stride);
+    const auto* at = static_cast<const std::byte*>(pointer);
+    DisableClientState(c, GL_EDGE_FLAG_ARRAY);
+    DisableClientState(c, GL_INDEX_ARRAY);
+    const auto part = [&](GLenum cap, bool on, auto&& set) {
+        enable(c, cap, on);
+        if (on) set();
+    };
+    part(GL_TEXTURE_COORD_ARRAY, f.texcoords != 0, [&] { TexCoordPointer(c, f.texcoords, GL_FLOAT, step, at); });
+    part(GL_COLOR_ARRAY, f.colors != 0, [&] { ColorPointer(c, f.colors, f.color_type, step, at + f.color_at); });
+    part(GL_NORMAL_ARRAY, f.normals, [&] { NormalPointer(c, GL_FLOAT, step, at + f.normal_at); });
+    part(GL_VERTEX_ARRAY, true, [&] { VertexPointer(c, f.vertices, GL_FLOAT, step, at + f.vertex_at); });
+}
+
+void ArrayElement(Context& c, GLint element) {
+    if (element < 0) return c.error(GL_INVALID_VALUE);
+    send_element(c, ArraySet(c), static_cast<GLuint>(element));
+}
+
+void DrawArrays(Context& c, GLenum mode, GLint first, GLsizei count) {
+    if (first < 0 || count < 0) return c.error(GL_INVALID_VALUE);
+    if (check_mode(c, mode)) draw_range(c, mode, first, count);
+}
+
+void DrawElements(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices) {
+    if (count < 0) return c.error(GL_INVALID_VALUE);
+    if (!check_mode(c, mode)) return;
+    if (!is_index_type(type)) return c.error(GL_INVALID_ENUM);
+    draw_indices(c, mode, count, type, indices);
+}
+
+void DrawRangeElements(Context& c, GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type, const void* indices) {
+    if (end < start) return c.error(GL_INVALID_VALUE);
+    DrawElements(c, mode, count, type, indices);
+}
+
+void MultiDrawArrays(Context& c, GLenum mode, const GLint* first, const GLsizei* count, GLsizei draws) {
+    if (draws < 0) return c.error(GL_INVALID_VALUE);
+    if (!check_mode(c, mode)) return;
+    for (GLsizei i = 0; i < draws; ++i)
+        if (first[i] < 0 || count[i] < 0) return c.error(GL_INVALID_VALUE);
+    for (GLsizei i = 0; i < draws; ++i) draw_range(c, mode, first[i], count[i]);
+}
+
+void MultiDrawElements(Context& c, GLenum mode, const GLsizei* count, GLenum type, const void* const* indices, GLsizei draws) {
+    if (draws < 0) return c.error(GL_INVALID_VALUE);
+    if (!check_mode(c, mode)) return;
+    if (!is_index_type(type)) return c.error(GL_INVALID_ENUM);
+    for (GLsizei i = 0; i < draws; ++i)
+        if (count[i] < 0) return c.error(GL_INVALID_VALUE);
+    for (GLsizei i = 0; i < draws; ++i) draw_indices(c, mode, count[i], type, indices[i]);
+}
+
+void GetPointerv(Context& c, GLenum pname, void** params) {
+    if (!params) return;
+    const auto& l = c.state.local;
+    const auto answer = [&](const void* pointer) { *params = const_cast<void*>(pointer); };
+    switch (pname) {
+        case GL_VERTEX_ARRAY_POINTER: return answer(pointer_of(l.vertex_array));
+        case GL_NORMAL_ARRAY_POINTER: return answer(pointer_of(l.normal_array));
+        case GL_COLOR_ARRAY_POINTER: return answer(pointer_of(l.color_array));
+        case GL_INDEX_ARRAY_POINTER: return answer(pointer_of(l.index_array));
+        case GL_TEXTURE_COORD_ARRAY_POINTER: return answer(pointer_of(l.texcoord_array[client_unit(c)]));
+        case GL_EDGE_FLAG_ARRAY_POINTER: return answer(pointer_of(l.edge_flag_array));
+        case GL_FOG_COORD_ARRAY_POINTER: return answer(pointer_of(l.fog_coord_array));
+        case GL_SECONDARY_COLOR_ARRAY_POINTER: return answer(pointer_of(l.secondary_color_array));
+        case GL_FEEDBACK_BUFFER_POINTER: return answer(c.select->feedback_buffer);
+        case GL_SELECTION_BUFFER_POINTER: return answer(c.select->select_buffer);
+        default: return c.error(GL_INVALID_ENUM);
+    }
+}
+
+void PushClientAttrib(Context& c, GLbitfield mask) {
+    auto& stack = c.attributes->client;
+    if (stack.size() >= kAttributeStackLimit) return c.error(GL_STACK_OVERFLOW);
+    stack.push_back(std::make_unique<SavedAttributes>(SavedAttributes{mask, c.state}));
+}
+
+void PopClientAttrib(Context& c) {
+    auto& stack = c.attributes->client;
+    if (stack.empty()) return c.error(GL_STACK_UNDERFLOW);
+    const auto saved = std::move(stack.back());
+    stack.pop_back();
+    glstate::for_each_in_client_group(saved->mask,
+                                      [&]<class E>(unsigned i) { c.set<E>(i, E::ref(std::as_const(saved->state), i)); });
+}
+
+}  // namespace wall::client::api
+
+// A list holds what the arrays contain when it is compiled: Begin, attributes, vertices, End. So these commands record
+// others, and none of them is replayed itself.
+namespace wall::client::compile {
+
+void ArrayElement(Context& c, GLint element) { api::ArrayElement(c, element); }
+void DrawArrays(Context& c, GLenum mode, GLint first, GLsizei count) { api::DrawArrays(c, mode, first, count); }
+void DrawElements(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices) {
+    api::DrawElements(c, mode, count, type, indices);
+}
+void DrawRangeElements(Context& c, GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type, const void* indices) {
+    api::DrawRangeElements(c, mode, start, end, count, type, indices);
+}
+void MultiDrawArrays(Context& c, GLenum mode, const GLint* first, const GLsizei* count, GLsizei draws) {
+    api::MultiDrawArrays(c, mode, first, count, draws);
+}
+void MultiDrawElements(Context& c, GLenum mode, const GLsizei* count, GLenum type, const void* const* indices, GLsizei draws) {
+    api::MultiDrawElements(c, mode, count, type, indices, draws);
+}
+
+}  // namespace wall::client::compile
+
+namespace wall::client::replay {
+
+void ArrayElement(Context&, std::span<const std::byte>) {}
+void DrawArrays(Context&, std::span<const std::byte>) {}
+void DrawElements(Context&, std::span<const std::byte>) {}
+void DrawRangeElements(Context&, std::span<const std::byte>) {}
+void MultiDrawArrays(Context&, std::span<const std::byte>) {}
+void MultiDrawElements(Context&, std::span<const std::byte>) {}
+
+}  // namespace wall::client::replay

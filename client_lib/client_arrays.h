@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Vertex arrays as immediate-mode geometry: only the vertices that a draw references are looked at (an application's
+// arrays may be wrong elsewhere), and what travels is Begin, attributes, vertices, End. The application's thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "client_lib/context.h"
+
+namespace wall::client {
+
+enum class ArrayKind : std::uint8_t { edge_flag, index, fog_coord, secondary_color, color, normal, texcoord, attrib, vertex };
+
+/// One enabled array, resolved to memory.
+struct ArraySource {
+    ArrayKind kind = ArrayKind::vertex;
+    unsigned index = 0;  ///< texture unit or attribute
+    const std::byte* base = nullptr;
+    std::size_t stride = 0;
+    std::size_t count = ~std::size_t{0};  ///< elements that lie in the buffer object; without limit for client memory
+    GLint size = 4;
+    GLenum type = GL_FLOAT;
+    void (*load)(const std::byte* from, GLint size, float* out) = nullptr;
+};
+
+/// The enabled arrays in the order in which an element's attributes are sent: the vertex last.
+class ArraySet {
+public:
+    explicit ArraySet(Context& c);
+    std::span<const ArraySource> sources() const { return {sources_.data(), count_}; }
+    bool has_vertex() const { return count_ != 0 && sources_[count_ - 1].kind == ArrayKind::vertex; }
+
+private:
+    void add(Context& c, ArrayKind kind, unsigned index, const glstate::ClientArray& array);
+    std::array<ArraySource, 6 + kTextureUnits + kVertexAttributes> sources_;
+    std::size_t count_ = 0;
+};
+
+/// Which elements a draw uses: `count` in a row from `first`, or the indices.
+struct ElementRange {
+    GLint first = 0;
+    GLsizei count = 0;
+    GLenum type = 0;                ///< of the indices; 0: none
+    const void* indices = nullptr;
+    GLuint at(GLsizei i) const {
+        switch (type) {
+            case GL_UNSIGNED_BYTE: return static_cast<const GLubyte*>(indices)[i];
+            case GL_UNSIGNED_SHORT: return static_cast<const GLushort*>(indices)[i];
+            case GL_UNSIGNED_INT: return static_cast<const GLuint*>(indices)[i];
+            default: return static_cast<GLuint>(first + i);
+        }
+    }
+};
+
+/// Sends one element through the context's table (glArrayElement).
+void send_element(Context& c, const ArraySet& arrays, GLuint element);
+
+/// Draws one primitive. While the context draws at once: straight into the packer where the layout is a usual one, and
+/// the current attributes are what they were before. While a list is compiled: through the table.
+void draw_elements(Context& c, GLenum mode, const ElementRange& elements);
+
+}  // namespace wall::client
