@@ -71,11 +71,12 @@ xcb_screen_t* EglDisplay::open_screen() {
 
 bool EglDisplay::initialize() {
     if (initialized_) return true;
-    if (configs_.empty() && platform_ == Platform::surfaceless) make_configs(0, 0);
-    if (configs_.empty()) {
+    if (platform_ == Platform::surfaceless) {
+        if (configs_.empty()) make_configs(0, 0);
+    } else if (!connection_ || !connection_->open()) {  // the program may open another display at the same address
         auto* screen = open_screen();
         if (!screen) return false;
-        make_configs(screen->root_visual, argb_visual_of(screen));
+        if (configs_.empty()) make_configs(screen->root_visual, argb_visual_of(screen));
     }
     return initialized_ = true;
 }

@@ -49,6 +49,14 @@ const GLubyte* get_string(GLenum name) {
 
 void get_integer(GLenum, GLint* value) { *value = 4; }  // a plausible alignment, limit, size, ...
 void get_float(GLenum, GLfloat* value) { *value = 1; }
+void new_list(GLuint list, GLenum) { log(LogLevel::info, "fake_call name=glNewList list=%u", list); }
+
+void bitmap(GLsizei width, GLsizei height, GLfloat x, GLfloat y, GLfloat dx, GLfloat dy, const GLubyte* bits) {
+    int ink = 0;
+    for (GLsizei i = 0; bits && i < (width + 7) / 8 * height; ++i) ink += __builtin_popcount(bits[i]);
+    log(LogLevel::info, "fake_bitmap size=%dx%d origin=%g,%g move=%g,%g ink=%d", width, height, x, y, dx, dy, ink);
+}
+
 GLuint gen_lists(GLsizei) { return 1; }
 GLboolean true_function() { return GL_TRUE; }
 long no_function() { return 0; }
@@ -100,6 +108,8 @@ ProcAddress gl_proc_address(const char* name) {
     if (is("glGetFloatv")) return reinterpret_cast<ProcAddress>(get_float);
     if (is("glGenLists")) return reinterpret_cast<ProcAddress>(gen_lists);
     if (is("glGenTextures") || is("glGenBuffers")) return reinterpret_cast<ProcAddress>(gen_names);
+    if (is("glNewList")) return reinterpret_cast<ProcAddress>(new_list);
+    if (is("glBitmap")) return reinterpret_cast<ProcAddress>(bitmap);
     if (is("glIsEnabled")) return reinterpret_cast<ProcAddress>(true_function);
     return reinterpret_cast<ProcAddress>(no_function);
 }

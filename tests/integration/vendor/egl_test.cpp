@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// The EGL vendor through GLVND, as a program sees it; the core behind it is the fake one.
+#include <gmock/gmock.h>
+#include <xcb/xcb.h>
+
+#include <set>
+#include <thread>
+
+#include "tests/integration/vendor/vendor_log.h"
+
+// After GoogleTest: X defines None, Bool, ... as macros.
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <X11/Xlib.h>
+
+namespace {
+
+using testing::HasSubstr;
+
+class Egl : public testing::Test {
+protected:
+    void SetUp() override {
+        x = XOpenDisplay(nullptr);
+        ASSERT_TRUE(x);
+        display = eglGetPlatformDisplay(EGL_PLATFORM_X11_KHR, x, nullptr);
+        ASSERT_TRUE(eglInitialize(display, nullptr, nullptr));
+        eglBindAPI(EGL_OPENGL_API);
+    }
+    void TearDown() override {
+        eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        eglTerminate(display);
+        XCloseDisplay(x);
+    }
+    Window make_window() { return XCreateSimpleWindow(x, DefaultRootWindow(x), 0, 0, 300, 200, 0, 0, 0); }
+    EGLConfig config(std::vector<EGLint> attributes = {}) {
+        attributes.push_back(EGL_NONE);
+        EGLConfig found = nullptr;
+        EGLint count = 0;
+        EXPECT_TRUE(eglChooseConfig(display, attributes.data(), &found, 1, &count));
+        return count ? found : nullptr;
+    }
+    EGLint attrib(EGLConfig c, EGLint name) {
+        EGLint value = -1;
+        EXPECT_TRUE(eglGetConfigAttrib(display, c, name, &value));
+        return value;
+    }
+    Display* x = nullptr;
+    EGLDisplay display = EGL_NO_DISPLAY;
+};
+
+TEST_F(Egl, TheVendorIsOurs) {
+    EXPECT_STREQ(eglQueryString(display, EGL_VENDOR), "WallGL");
+    EXPECT_EQ(eglGetPlatformDisplay(EGL_PLATFORM_X11_KHR, x, nullptr), display);
+    EXPECT_EQ(eglGetDisplay(x), display);
+}
+
+TEST_F(Egl, ConfigurationsAreAMatrix) {
+    std::vector<EGLConfig> all(100);
+    EGLint count = 0;
+    ASSERT_TRUE(eglGetConfigs(display, all.data(), 100, &count));
+    std::set<std::vector<EGLint>> kinds;
+    for (EGLint i = 0; i < count; ++i)
+        kinds.insert({attrib(all[i], EGL_ALPHA_SIZE), attrib(all[i], EGL_DEPTH_SIZE), attrib(all[i], EGL_STENCIL_SIZE)});
+    EXPECT_EQ(kinds.size(), 8u);
+    EGLConfig plain = config();
+    EXPECT_EQ(attrib(plain, EGL_STENCIL_SIZE), 0);
+    EXPECT_EQ(attrib(plain, EGL_DEPTH_SIZE), 0);
+    EXPECT_EQ(attrib(config({EGL_DEPTH_SIZE, 16, EGL_ALPHA_SIZE, 1}), EGL_ALPHA_SIZE), 8);
+    EXPECT_TRUE(config({EGL_RENDERABLE_TYPE, EGL_OPENGL_ES_BIT | EGL_OPENGL_BIT}));
+    EXPECT_FALSE(config({EGL_SAMPLES, 4}));
+    EGLint value = 0;
+    EXPECT_FALSE(eglGetConfigAttrib(display, reinterpret_cast<EGLConfig>(0x1234), EGL_DEPTH_SIZE, &value));
+    EXPECT_EQ(eglGetError(), EGL_BAD_CONFIG);
+    EXPECT_EQ(eglGetError(), EGL_SUCCESS);
+}
+
+TEST_F(Egl, DrawsFramesIntoAWindow) {
+    Window window = make_window();
+    EGLSurface surface = eglCreatePlatformWindowSurface(display, config(), &window, nullptr);
+    ASSERT_NE(surface, EGL_NO_SURFACE);
+    const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 1, EGL_CONTEXT_MINOR_VERSION, 3, EGL_NONE};
+    EGLContext context = eglCreateContext(display, config(), EGL_NO_CONTEXT, version);
+    ASSERT_NE(context, EGL_NO_CONTEXT);
+    ASSERT_TRUE(eglMakeCurrent(display, surface, surface, context));
+    EXPECT_TRUE(eglSwapInterval(display, 0));
+    XResizeWindow(x, window, 320, 240);
+    EXPECT_TRUE(eglSwapBuffers(display, surface));
+    EXPECT_THAT(last_logged("fake_swap"), HasSubstr("size=320x240"));
+    EGLint value = 0;
+    EXPECT_TRUE(eglQuerySurface(display, surface, EGL_WIDTH, &value));
+    EXPECT_EQ(value, 320);
+    EXPECT_EQ(eglCreateWindowSurface(display, config(), window, nullptr), EGL_NO_SURFACE);
+    EXPECT_EQ(eglGetError(), EGL_BAD_ALLOC);
+    EXPECT_TRUE(eglDestroyContext(display, context));  // current: deferred
+    EXPECT_TRUE(eglDestroySurface(display, surface));
+    EXPECT_FALSE(eglSwapBuffers(display, surface));
+    EXPECT_EQ(eglGetError(), EGL_BAD_SURFACE);
+}
+
+TEST_F(Egl, SingleBufferedWindowsAndPbuffers) {
+    const EGLint single[] = {EGL_RENDER_BUFFER, EGL_SINGLE_BUFFER, EGL_NONE};
+    EGLSurface surface = eglCreateWindowSurface(display, config(), make_window(), single);
+    EXPECT_THAT(last_logged("fake_surface_made"), HasSubstr("double=0"));
+    const EGLint size[] = {EGL_WIDTH, 64, EGL_HEIGHT, 32, EGL_NONE};
+    EGLSurface pbuffer = eglCreatePbufferSurface(display, config({EGL_SURFACE_TYPE, EGL_PBUFFER_BIT}), size);
+    EXPECT_THAT(last_logged("fake_surface_made"), HasSubstr("visible=0 size=64x32"));
+    EGLContext context = eglCreateContext(display, config(), EGL_NO_CONTEXT, nullptr);
+    EXPECT_TRUE(eglMakeCurrent(display, pbuffer, surface, context));
+    EGLSync sync = eglCreateSync(display, EGL_SYNC_FENCE, nullptr);
+    EXPECT_EQ(eglClientWaitSync(display, sync, 0, EGL_FOREVER), EGL_CONDITION_SATISFIED);
+    EXPECT_TRUE(eglDestroySync(display, sync));
+}
+
+TEST_F(Egl, TwoThreadsHaveTheirOwnErrorsAndContexts) {
+    EGLSurface surface = eglCreateWindowSurface(display, config(), make_window(), nullptr);
+    EGLContext context = eglCreateContext(display, config(), EGL_NO_CONTEXT, nullptr);
+    ASSERT_TRUE(eglMakeCurrent(display, surface, surface, context));
+    EGLint error = EGL_SUCCESS;
+    std::thread([&] {
+        EXPECT_FALSE(eglMakeCurrent(display, surface, surface, context));
+        error = eglGetError();
+    }).join();
+    EXPECT_EQ(error, EGL_BAD_ACCESS);
+    EXPECT_EQ(eglGetError(), EGL_SUCCESS);
+}
+
+TEST_F(Egl, EsContextsAreRefused) {
+    eglBindAPI(EGL_OPENGL_ES_API);
+    EXPECT_EQ(eglCreateContext(display, config(), EGL_NO_CONTEXT, nullptr), EGL_NO_CONTEXT);
+    EXPECT_EQ(eglGetError(), EGL_BAD_MATCH);
+}
+
+TEST_F(Egl, WrongHandlesAreErrors) {
+    EXPECT_FALSE(eglSwapBuffers(display, reinterpret_cast<EGLSurface>(0x99)));
+    EXPECT_EQ(eglGetError(), EGL_BAD_SURFACE);
+    EXPECT_EQ(eglCreateWindowSurface(display, config(), 0x123456, nullptr), EGL_NO_SURFACE);
+    EXPECT_EQ(eglGetError(), EGL_BAD_NATIVE_WINDOW);
+    const EGLint nonsense[] = {0x7777, 1, EGL_NONE};
+    EXPECT_EQ(eglCreateContext(display, config(), EGL_NO_CONTEXT, nonsense), EGL_NO_CONTEXT);
+    EXPECT_EQ(eglGetError(), EGL_BAD_ATTRIBUTE);
+    EGLDisplay other = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
+    EGLint count = 0;
+    EXPECT_FALSE(eglGetConfigs(other, nullptr, 0, &count));
+    EXPECT_EQ(eglGetError(), EGL_NOT_INITIALIZED);
+}
+
+TEST(EglPlatforms, XcbAndSurfaceless) {
+    xcb_connection_t* connection = xcb_connect(nullptr, nullptr);
+    EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_XCB_EXT, connection, nullptr);
+    ASSERT_TRUE(eglInitialize(display, nullptr, nullptr));
+    xcb_screen_t* screen = xcb_setup_roots_iterator(xcb_get_setup(connection)).data;
+    xcb_window_t window = xcb_generate_id(connection);
+    xcb_create_window(connection, XCB_COPY_FROM_PARENT, window, screen->root, 0, 0, 50, 60, 0,
+                      XCB_WINDOW_CLASS_INPUT_OUTPUT, screen->root_visual, 0, nullptr);
+    EGLConfig config = nullptr;
+    EGLint count = 0;
+    const EGLint any[] = {EGL_NONE};
+    ASSERT_TRUE(eglChooseConfig(display, any, &config, 1, &count));
+    EXPECT_NE(eglCreatePlatformWindowSurface(display, config, &window, nullptr), EGL_NO_SURFACE);
+    EXPECT_THAT(last_logged("fake_surface_made"), HasSubstr("visible=1 size=50x60"));
+    eglTerminate(display);
+    xcb_disconnect(connection);
+
+    EGLDisplay surfaceless = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
+    ASSERT_TRUE(eglInitialize(surfaceless, nullptr, nullptr));
+    const EGLint pbuffer[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_NONE};
+    ASSERT_TRUE(eglChooseConfig(surfaceless, pbuffer, &config, 1, &count));
+    ASSERT_EQ(count, 1);
+    EXPECT_NE(eglCreatePbufferSurface(surfaceless, config, nullptr), EGL_NO_SURFACE);
+    eglTerminate(surfaceless);
+}
+
+}  // namespace
