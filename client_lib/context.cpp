@@ -9,6 +9,7 @@
 #include "client_lib/lists.h"
 #include "client_lib/maps.h"
 #include "client_lib/material.h"
+#include "client_lib/program_use.h"
 #include "client_lib/select.h"
 #include "client_lib/share_group.h"
 
@@ -29,7 +30,9 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextOptions&)
 }
 
 Context::~Context() {
-    if (session_) session_->destroy_context(id);
+    if (!session_) return;
+    if (program) use_program(*this, nullptr);
+    session_->destroy_context(id);
 }
 
 void Context::bind_surfaces(std::shared_ptr<Surface> draw, std::shared_ptr<Surface> read) {
@@ -65,6 +68,7 @@ const SurfaceLayout& Context::draw_layout() const { return select->layout ? *sel
 
 void Context::begin_primitive(GLenum mode) {
     packer.begin(mode);
+    if (program) packer.mark_unbounded();  // its shader puts the vertices anywhere
     if (table == &tables::immediate) table = &tables::inside_begin;
 }
 

@@ -25,6 +25,7 @@ struct ShareGroup;      // share_group.h: objects
 struct ListState;       // lists.h: display list being compiled, call nesting
 struct AttributeStacks; // attribute_stack.h
 struct SelectState;     // select.h: feedback and selection
+struct Program;         // objects/program.h
 struct ContextMaps;     // maps.h: evaluator and pixel maps
 
 inline constexpr unsigned kTextureUnits = 8;
@@ -94,6 +95,7 @@ public:
     std::unique_ptr<SelectState> select;
     glapi::ListRecorder& list();  ///< of the list being compiled
     std::unique_ptr<ContextMaps> maps;
+    std::shared_ptr<Program> program;  ///< drawn with; null: fixed function
 
     /// glMaterial calls inside the open Begin/End, applied to `state` when the block is sent.
     struct PendingMaterial {

@@ -31,7 +31,7 @@ std::uint32_t next_object_id();
 struct Mirror {
     glstate::State state;
     std::uint32_t draw_surface = 0, read_surface = 0;
-    std::array<std::uint64_t, 4> objects{};  ///< value ids and stamps as of ShareGroup::bring_up_to_date
+    std::array<std::uint64_t, 5> objects{};  ///< value ids and stamps as of ShareGroup::bring_up_to_date
 };
 
 /// One tileserver as this process sees it.

@@ -22,6 +22,29 @@ void for_each_used(const glstate::State& state, Use&& use) {
     }
 }
 
+/// The same for the samplers of the program that the context draws with.
+template <class Use>
+void for_each_sampled(const Context& context, Use&& use) {
+    const auto& bound = context.state.textures;
+    context.program->executable->for_each_sampler([&](std::uint32_t unit, GLenum target) {
+        if (unit >= kTextureUnits) return;
+        switch (target) {
+            case GL_TEXTURE_1D: return use(bound.texture_binding_1d[unit]);
+            case GL_TEXTURE_2D: return use(bound.texture_binding_2d[unit]);
+            case GL_TEXTURE_3D: return use(bound.texture_binding_3d[unit]);
+            case GL_TEXTURE_CUBE_MAP: return use(bound.texture_binding_cube_map[unit]);
+            default: return use(bound.texture_binding_rectangle[unit]);
+        }
+    });
+}
+
+void bring_program_up_to_date(const Program& program, Node& node, wire::PackBuffer& buffer) {
+    auto& known = node.object_stamps[program.id];
+    if (known == program.executable->last_change) return;
+    pack_program(program, known, buffer);
+    known = program.executable->last_change;
+}
+
 }  // namespace
 
 ShareGroup::ShareGroup() = default;
@@ -29,14 +52,15 @@ ShareGroup::~ShareGroup() = default;
 
 void ShareGroup::bring_up_to_date(Node& node, Context& context, wire::PackBuffer& buffer) {
     using glstate::Category;
-    const std::array<std::uint64_t, 4> now = {context.state.ids[static_cast<std::size_t>(Category::texture_units)],
+    const std::array<std::uint64_t, 5> now = {context.state.ids[static_cast<std::size_t>(Category::texture_units)],
                                               context.state.ids[static_cast<std::size_t>(Category::textures)],
-                                              last_change.load(std::memory_order_acquire), context.maps->stamp};
+                                              last_change.load(std::memory_order_acquire), context.maps->stamp,
+                                              context.state.ids[static_cast<std::size_t>(Category::objects)]};
     Mirror& mirror = node.mirrors[context.id];
     if (mirror.objects == now) return;
     context.maps->bring_up_to_date(node, buffer);
     std::lock_guard lock(mutex);
-    for_each_used(context.state, [&](std::uint32_t id) {
+    const auto bring_texture = [&](std::uint32_t id) {
         if (id == 0) return;
         const auto found = textures_by_id.find(id);
         if (found == textures_by_id.end()) return;
@@ -45,7 +69,12 @@ void ShareGroup::bring_up_to_date(Node& node, Context& context, wire::PackBuffer
         if (known == texture.stamp) return;
         pack_texture(texture, known, buffer);
         known = texture.stamp;
-    });
+    };
+    for_each_used(context.state, bring_texture);
+    if (context.program) {
+        bring_program_up_to_date(*context.program, node, buffer);
+        for_each_sampled(context, bring_texture);
+    }
     mirror.objects = now;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The objects that contexts share: textures, display lists. An object has the application's name (glGenTextures), and
+// The objects that contexts share: textures, display lists, buffers, programs. An object has the application's name (glGenTextures), and
 // an id that is unique in the process and stands for it in state elements and on the wire; a deleted and generated name
 // is another object. The mutex guards the tables and the objects in them; it is taken after a session's, never before.
 #pragma once
@@ -12,6 +12,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "client_lib/objects/buffer.h"
+#include "client_lib/objects/program.h"
 #include "client_lib/objects/texture.h"
 #include "common/glapi/gl_types.h"
 #include "common/wire/pack_buffer.h"
@@ -66,9 +68,13 @@ struct ShareGroup {
     std::mutex mutex;
     NameTable<Texture> textures;
     NameTable<DisplayList> lists;
+    NameTable<Buffer> buffers;
+    NameTable<GlslObject> glsl_objects;  ///< shaders and programs
 
     /// By id: what state elements name. Kept as long as the name or any binding lives.
     std::unordered_map<std::uint32_t, std::shared_ptr<Texture>> textures_by_id;
+    std::unordered_map<std::uint32_t, std::shared_ptr<Buffer>> buffers_by_id;
+    std::unordered_map<std::uint32_t, GLuint> program_names;  ///< by id
     /// Name 0 of each target, made when it first gets content; until then a binding of it is id 0.
     std::map<GLenum, std::shared_ptr<Texture>> default_textures;
 

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+// Buffer objects (OpenGL 2.1, 2.9), kept here whole: mapping gives the shadow itself, and reading back asks nobody.
+#include <algorithm>
+#include <cstring>
+#include <new>
+
+#include "client_lib/buffer_binding.h"
+#include "client_lib/share_group.h"
+
+namespace wall::client::api {
+namespace {
+
+/// The buffer bound to a target, or null and the error.
+std::shared_ptr<Buffer> bound_buffer(Context& c, GLenum target) {
+    const std::uint32_t* id = buffer_binding(c, target);
+    if (!id) {
+        c.error(GL_INVALID_ENUM);
+        return nullptr;
+    }
+    auto buffer = buffer_of(c, *id);
+    if (!buffer) c.error(GL_INVALID_OPERATION);
+    return buffer;
+}
+
+/// The same if it holds `size` bytes from `offset` on and is not mapped.
+std::shared_ptr<Buffer> buffer_with(Context& c, GLenum target, GLintptr offset, GLsizeiptr size) {
+    auto buffer = bound_buffer(c, target);
+    if (!buffer) return nullptr;
+    const auto have = static_cast<GLsizeiptr>(buffer->content.size());
+    if (offset < 0 || size < 0 || offset > have || size > have - offset) c.error(GL_INVALID_VALUE);
+    else if (buffer->mapped) c.error(GL_INVALID_OPERATION);
+    else return buffer;
+    return nullptr;
+}
+
+bool is_usage(GLenum usage) {
+    const GLenum frequency = usage & ~GLenum{3}, nature = usage & 3;
+    return (frequency == GL_STREAM_DRAW || frequency == GL_STATIC_DRAW || frequency == GL_DYNAMIC_DRAW) && nature <= 2;
+}
+static_assert((GL_STREAM_DRAW & 3) == 0 && (GL_STATIC_DRAW & 3) == 0 && (GL_DYNAMIC_DRAW & 3) == 0);
+
+/// A deleted buffer leaves the bindings of the context that deletes it (OpenGL 2.1, 2.9).
+void unbind(Context& c, std::uint32_t id) {
+    for (const GLenum target : {GL_ARRAY_BUFFER, GL_ELEMENT_ARRAY_BUFFER, GL_PIXEL_PACK_BUFFER, GL_PIXEL_UNPACK_BUFFER})
+        if (std::uint32_t& bound = *buffer_binding(c, target); bound == id) bound = 0;
+}
+
+}  // namespace
+
+void GenBuffers(Context& c, GLsizei count, GLuint* names) {
+    if (count < 0) return c.error(GL_INVALID_VALUE);
+    std::lock_guard lock(c.share().mutex);
+    const GLuint first = c.share().buffers.reserve(static_cast<GLuint>(count));
+    for (GLsizei i = 0; i < count; ++i) names[i] = first + static_cast<GLuint>(i);
+}
+
+void DeleteBuffers(Context& c, GLsizei count, const GLuint* names) {
+    if (count < 0) return c.error(GL_INVALID_VALUE);
+    c.flush_block();
+    std::lock_guard lock(c.share().mutex);
+    for (GLsizei i = 0; i < count; ++i) {
+        const auto buffer = names[i] == 0 ? nullptr : c.share().buffers.erase(names[i]);
+        if (!buffer) continue;
+        unbind(c, buffer->id);
+        c.share().buffers_by_id.erase(buffer->id);
+    }
+}
+
+GLboolean IsBuffer(Context& c, GLuint name) {
+    std::lock_guard lock(c.share().mutex);
+    return name != 0 && c.share().buffers.find(name) != nullptr;
+}
+
+void BindBuffer(Context& c, GLenum target, GLuint name) {
+    std::uint32_t* binding = buffer_binding(c, target);
+    if (!binding) return c.error(GL_INVALID_ENUM);
+    if (name == 0) {
+        *binding = 0;
+        return;
+    }
+    ShareGroup& share = c.share();
+    std::lock_guard lock(share.mutex);
+    auto buffer = share.buffers.find(name);
+    if (!buffer) {
+        buffer = std::make_shared<Buffer>(next_object_id(), name);
+        share.buffers.put(name, buffer);
+        share.buffers_by_id[buffer->id] = buffer;
+    }
+    *binding = buffer->id;
+}
+
+void BufferData(Context& c, GLenum target, GLsizeiptr size, const void* data, GLenum usage) {
+    if (size < 0) return c.error(GL_INVALID_VALUE);
+    if (!is_usage(usage)) return c.error(GL_INVALID_ENUM);
+    const auto buffer = bound_buffer(c, target);
+    if (!buffer) return;
+    std::lock_guard lock(c.share().mutex);
+    try {
+        const auto* first = static_cast<const std::byte*>(data);
+        if (data) buffer->content.assign(first, first + size);
+        else buffer->content.resize(static_cast<std::size_t>(size));
+    } catch (const std::exception&) {
+        return c.error(GL_OUT_OF_MEMORY);
+    }
+    buffer->usage = usage;
+    buffer->mapped = false;
+    buffer->stamp = next_stamp();
+}
+
+void BufferSubData(Context& c, GLenum target, GLintptr offset, GLsizeiptr size, const void* data) {
+    const auto buffer = buffer_with(c, target, offset, size);
+    if (!buffer || size == 0) return;
+    std::lock_guard lock(c.share().mutex);
+    std::memcpy(buffer->content.data() + offset, data, static_cast<std::size_t>(size));
+    buffer->stamp = next_stamp();
+}
+
+void GetBufferSubData(Context& c, GLenum target, GLintptr offset, GLsizeiptr size, void* data) {
+    const auto buffer = buffer_with(c, target, offset, size);
+    if (buffer && size != 0) std::memcpy(data, buffer->content.data() + offset, static_cast<std::size_t>(size));
+}
+
+void* MapBuffer(Context& c, GLenum target, GLenum access) {
+    if (access != GL_READ_ONLY && access != GL_WRITE_ONLY && access != GL_READ_WRITE) {
+        c.error(GL_INVALID_ENUM);
+        return nullptr;
+    }
+    const auto buffer = buffer_with(c, target, 0, 0);
+    if (!buffer) return nullptr;
+    if (buffer->content.empty()) {
+        c.error(GL_OUT_OF_MEMORY);
+        return nullptr;
+    }
+    std::lock_guard lock(c.share().mutex);
+    buffer->mapped = true;
+    buffer->access = access;
+    return buffer->content.data();
+}
+
+GLboolean UnmapBuffer(Context& c, GLenum target) {
+    const auto buffer = bound_buffer(c, target);
+    if (!buffer) return GL_FALSE;
+    std::lock_guard lock(c.share().mutex);
+    if (!buffer->mapped) {
+        c.error(GL_INVALID_OPERATION);
+        return GL_FALSE;
+    }
+    buffer->mapped = false;
+    if (buffer->access != GL_READ_ONLY) buffer->stamp = next_stamp();
+    return GL_TRUE;
+}
+
+void GetBufferParameteriv(Context& c, GLenum target, GLenum pname, GLint* params) {
+    const auto buffer = bound_buffer(c, target);
+    if (!buffer) return;
+    switch (pname) {
+        case GL_BUFFER_SIZE: *params = static_cast<GLint>(std::min<std::size_t>(buffer->content.size(), 0x7fffffff)); break;
+        case GL_BUFFER_USAGE: *params = static_cast<GLint>(buffer->usage); break;
+        case GL_BUFFER_ACCESS: *params = static_cast<GLint>(buffer->access); break;
+        case GL_BUFFER_MAPPED: *params = buffer->mapped; break;
+        default: c.error(GL_INVALID_ENUM);
+    }
+}
+
+void GetBufferPointerv(Context& c, GLenum target, GLenum pname, void** params) {
+    if (pname != GL_BUFFER_MAP_POINTER) return c.error(GL_INVALID_ENUM);
+    if (const auto buffer = bound_buffer(c, target)) *params = buffer->mapped ? buffer->content.data() : nullptr;
+}
+
+}  // namespace wall::client::api

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: MIT
+// Shaders and programs (OpenGL 2.1, 2.15 and 6.1.14): names are given here, one node is asked how compiling and linking
+// went, and all queries are answered from the shadow.
+#include <algorithm>
+#include <cstring>
+
+#include "client_lib/program_use.h"
+
+namespace wall::client::api {
+namespace {
+
+std::shared_ptr<GlslObject> find(Context& c, GLuint name) {
+    std::lock_guard lock(c.share().mutex);
+    return c.share().glsl_objects.find(name);
+}
+
+/// The object of a name, or null and the error that OpenGL gives for it.
+template <class T>
+std::shared_ptr<T> object_of(Context& c, GLuint name, GlslObject::Kind kind) {
+    auto object = find(c, name);
+    if (object && object->kind == kind) return std::static_pointer_cast<T>(object);
+    c.error(object ? GL_INVALID_OPERATION : GL_INVALID_VALUE);
+    return nullptr;
+}
+std::shared_ptr<Shader> shader_of(Context& c, GLuint name) { return object_of<Shader>(c, name, GlslObject::Kind::shader); }
+std::shared_ptr<Program> program_of(Context& c, GLuint name) { return object_of<Program>(c, name, GlslObject::Kind::program); }
+
+/// The program after linking has been settled.
+std::shared_ptr<Program> settled_program(Context& c, GLuint name) {
+    auto program = program_of(c, name);
+    if (program) settle_link(c, *program);
+    return program;
+}
+
+template <class T, class... Args>
+GLuint create(Context& c, Args... args) {
+    ShareGroup& share = c.share();
+    std::lock_guard lock(share.mutex);
+    const GLuint name = share.glsl_objects.reserve(1);
+    const auto object = std::make_shared<T>(next_object_id(), name, args...);
+    share.glsl_objects.put(name, object);
+    if (object->kind == GlslObject::Kind::program) share.program_names[object->id] = name;
+    return name;
+}
+
+/// Text and its length, as the Get...InfoLog and Get...Source commands give them.
+void give_text(Context& c, const std::string& text, GLsizei room, GLsizei* length, GLchar* out) {
+    if (room < 0) return c.error(GL_INVALID_VALUE);
+    const std::size_t copied = room == 0 ? 0 : std::min(text.size(), static_cast<std::size_t>(room) - 1);
+    if (out && room > 0) {
+        std::memcpy(out, text.data(), copied);
+        out[copied] = '\0';
+    }
+    if (length) *length = static_cast<GLsizei>(copied);
+}
+
+/// With the terminating zero; 0 for nothing.
+GLint text_length(const std::string& text) { return text.empty() ? 0 : static_cast<GLint>(text.size() + 1); }
+
+/// What is active in the program as linked last; null if that failed.
+const Executable* active(const Program& program) { return program.linked ? program.executable.get() : nullptr; }
+
+template <class Items, class NameOf>
+GLint longest_name(const Items& items, NameOf&& name_of) {
+    std::size_t longest = 0;
+    for (const auto& item : items) longest = std::max(longest, name_of(item).size() + 1);
+    return static_cast<GLint>(longest);
+}
+
+GLint active_value(const Program& program, GLenum pname) {
+    const Executable* executable = active(program);
+    if (!executable) return 0;
+    switch (pname) {
+        case GL_ACTIVE_UNIFORMS: return static_cast<GLint>(executable->uniforms.size());
+        case GL_ACTIVE_ATTRIBUTES: return static_cast<GLint>(executable->attributes.size());
+        case GL_ACTIVE_UNIFORM_MAX_LENGTH: return longest_name(executable->uniforms, [](const Uniform& u) { return u.full_name(); });
+        default: return longest_name(executable->attributes, [](const glapi::ActiveAttribute& a) { return a.name; });
+    }
+}
+
+}  // namespace
+
+// ---- shaders ----
+
+GLuint CreateShader(Context& c, GLenum type) {
+    if (type == GL_VERTEX_SHADER || type == GL_FRAGMENT_SHADER) return create<Shader>(c, type);
+    c.error(GL_INVALID_ENUM);
+    return 0;
+}
+
+void DeleteShader(Context& c, GLuint name) {
+    if (name == 0) return;
+    if (const auto shader = shader_of(c, name)) delete_object(c, shader);
+}
+
+GLboolean IsShader(Context& c, GLuint name) {
+    const auto object = find(c, name);
+    return object && object->kind == GlslObject::Kind::shader;
+}
+
+void ShaderSource(Context& c, GLuint name, GLsizei count, const GLchar* const* strings, const GLint* lengths) {
+    const auto shader = shader_of(c, name);
+    if (!shader) return;
+    if (count < 0 || !strings) return c.error(GL_INVALID_VALUE);
+    std::string source;
+    for (GLsizei i = 0; i < count; ++i) {
+        if (!strings[i]) return c.error(GL_INVALID_OPERATION);
+        if (lengths && lengths[i] >= 0) source.append(strings[i], static_cast<std::size_t>(lengths[i]));
+        else source.append(strings[i]);
+    }
+    std::lock_guard lock(c.share().mutex);
+    shader->source = std::move(source);
+}
+
+void CompileShader(Context& c, GLuint name) {
+    const auto shader = shader_of(c, name);
+    if (!shader) return;
+    std::lock_guard lock(c.share().mutex);
+    const bool known = shader->state == Shader::State::compiled || shader->state == Shader::State::failed;
+    if (known && shader->compiled_source == shader->source) return;  // it would go as it went
+    shader->compiled_source = shader->source;
+    shader->state = Shader::State::unknown;
+    shader->log.clear();
+}
+
+void GetShaderiv(Context& c, GLuint name, GLenum pname, GLint* params) {
+    const auto shader = shader_of(c, name);
+    if (!shader) return;
+    if (pname == GL_COMPILE_STATUS || pname == GL_INFO_LOG_LENGTH) settle_compile(c, *shader);
+    std::lock_guard lock(c.share().mutex);
+    switch (pname) {
+        case GL_SHADER_TYPE: *params = static_cast<GLint>(shader->type); break;
+        case GL_DELETE_STATUS: *params = shader->deleted; break;
+        case GL_COMPILE_STATUS: *params = shader->state == Shader::State::compiled; break;
+        case GL_INFO_LOG_LENGTH: *params = text_length(shader->log); break;
+        case GL_SHADER_SOURCE_LENGTH: *params = text_length(shader->source); break;
+        default: c.error(GL_INVALID_ENUM);
+    }
+}
+
+void GetShaderInfoLog(Context& c, GLuint name, GLsizei room, GLsizei* length, GLchar* out) {
+    const auto shader = shader_of(c, name);
+    if (!shader) return;
+    settle_compile(c, *shader);
+    std::lock_guard lock(c.share().mutex);
+    give_text(c, shader->log, room, length, out);
+}
+
+void GetShaderSource(Context& c, GLuint name, GLsizei room, GLsizei* length, GLchar* out) {
+    const auto shader = shader_of(c, name);
+    if (!shader) return;
+    std::lock_guard lock(c.share().mutex);
+    give_text(c, shader->source, room, length, out);
+}
+
+// ---- programs ----
+
+GLuint CreateProgram(Context& c) { return create<Program>(c); }
+
+void DeleteProgram(Context& c, GLuint name) {
+    if (name == 0) return;
+    if (const auto program = program_of(c, name)) delete_object(c, program);
+}
+
+GLboolean IsProgram(Context& c, GLuint name) {
+    const auto object = find(c, name);
+    return object && object->kind == GlslObject::Kind::program;
+}
+
+void AttachShader(Context& c, GLuint program_name, GLuint shader_name) {
+    const auto program = program_of(c, program_name);
+    const auto shader = program ? shader_of(c, shader_name) : nullptr;
+    if (!shader) return;
+    std::lock_guard lock(c.share().mutex);
+    if (std::find(program->shaders.begin(), program->shaders.end(), shader) != program->shaders.end()) return c.error(GL_INVALID_OPERATION);
+    program->shaders.push_back(shader);
+    ++shader->users;
+}
+
+void DetachShader(Context& c, GLuint program_name, GLuint shader_name) {
+    const auto program = program_of(c, program_name);
+    const auto shader = program ? shader_of(c, shader_name) : nullptr;
+    if (!shader) return;
+    {
+        std::lock_guard lock(c.share().mutex);
+        if (std::erase(program->shaders, shader) == 0) return c.error(GL_INVALID_OPERATION);
+    }
+    drop_user(c, shader);
+}
+
+void BindAttribLocation(Context& c, GLuint name, GLuint index, const GLchar* attribute) {
+    const auto program = program_of(c, name);
+    if (!program || !attribute) return;
+    if (std::string_view(attribute).starts_with("gl_")) return c.error(GL_INVALID_OPERATION);
+    if (index >= kVertexAttributes) return c.error(GL_INVALID_VALUE);
+    std::lock_guard lock(c.share().mutex);
+    program->attribute_bindings[attribute] = index;
+}
+
+void LinkProgram(Context& c, GLuint name) {
+    const auto program = program_of(c, name);
+    if (!program) return;
+    c.flush_block();
+    bool in_use = false;
+    {
+        std::lock_guard lock(c.share().mutex);
+        program->to_link = program->definition();
+        program->validated = false;
+        in_use = program->users != 0;
+    }
+    if (in_use) settle_link(c, *program);
+}
+
+void ValidateProgram(Context& c, GLuint name) {
+    const auto program = settled_program(c, name);
+    if (!program) return;
+    std::lock_guard lock(c.share().mutex);
+    program->validated = program->linked;
+}
+
+void UseProgram(Context& c, GLuint name) {
+    if (name == 0) return use_program(c, nullptr);
+    const auto program = settled_program(c, name);
+    if (!program) return;
+    if (!program->linked) return c.error(GL_INVALID_OPERATION);
+    use_program(c, program);
+}
+
+void GetProgramiv(Context& c, GLuint name, GLenum pname, GLint* params) {
+    const auto program = program_of(c, name);
+    if (!program) return;
+    if (pname != GL_DELETE_STATUS && pname != GL_ATTACHED_SHADERS) settle_link(c, *program);
+    std::lock_guard lock(c.share().mutex);
+    switch (pname) {
+        case GL_DELETE_STATUS: *params = program->deleted; break;
+        case GL_LINK_STATUS: *params = program->linked; break;
+        case GL_VALIDATE_STATUS: *params = program->validated; break;
+        case GL_INFO_LOG_LENGTH: *params = text_length(program->log); break;
+        case GL_ATTACHED_SHADERS: *params = static_cast<GLint>(program->shaders.size()); break;
+        case GL_ACTIVE_UNIFORMS:
+        case GL_ACTIVE_UNIFORM_MAX_LENGTH:
+        case GL_ACTIVE_ATTRIBUTES:
+        case GL_ACTIVE_ATTRIBUTE_MAX_LENGTH: *params = active_value(*program, pname); break;
+        default: c.error(GL_INVALID_ENUM);
+    }
+}
+
+void GetProgramInfoLog(Context& c, GLuint name, GLsizei room, GLsizei* length, GLchar* out) {
+    const auto program = settled_program(c, name);
+    if (!program) return;
+    std::lock_guard lock(c.share().mutex);
+    give_text(c, program->log, room, length, out);
+}
+
+void GetAttachedShaders(Context& c, GLuint name, GLsizei room, GLsizei* count, GLuint* shaders) {
+    const auto program = program_of(c, name);
+    if (!program) return;
+    if (room < 0) return c.error(GL_INVALID_VALUE);
+    std::lock_guard lock(c.share().mutex);
+    const std::size_t given = std::min(program->shaders.size(), static_cast<std::size_t>(room));
+    for (std::size_t i = 0; i < given; ++i) shaders[i] = program->shaders[i]->name;
+    if (count) *count = static_cast<GLsizei>(given);
+}
+
+// ---- what is active in a program ----
+
+GLint GetUniformLocation(Context& c, GLuint name, const GLchar* uniform) {
+    const auto program = settled_program(c, name);
+    if (!program) return -1;
+    std::lock_guard lock(c.share().mutex);
+    if (program->linked && uniform) return program->executable->location_of(uniform);
+    c.error(GL_INVALID_OPERATION);
+    return -1;
+}
+
+GLint GetAttribLocation(Context& c, GLuint name, const GLchar* attribute) {
+    const auto program = settled_program(c, name);
+    if (!program) return -1;
+    std::lock_guard lock(c.share().mutex);
+    if (program->linked && attribute) return program->executable->attribute_location_of(attribute);
+    c.error(GL_INVALID_OPERATION);
+    return -1;
+}
+
+void GetActiveUniform(Context& c, GLuint name, GLuint index, GLsizei room, GLsizei* length, GLint* size, GLenum* type, GLchar* out) {
+    const auto program = settled_program(c, name);
+    if (!program) return;
+    std::lock_guard lock(c.share().mutex);
+    const Executable* executable = active(*program);
+    if (!executable || index >= executable->uniforms.size()) return c.error(GL_INVALID_VALUE);
+    const Uniform& uniform = executable->uniforms[index];
+    give_text(c, uniform.full_name(), room, length, out);
+    if (size) *size = uniform.size;
+    if (type) *type = uniform.type->type;
+}
+
+void GetActiveAttrib(Context& c, GLuint name, GLuint index, GLsizei room, GLsizei* length, GLint* size, GLenum* type, GLchar* out) {
+    const auto program = settled_program(c, name);
+    if (!program) return;
+    std::lock_guard lock(c.share().mutex);
+    const Executable* executable = active(*program);
+    if (!executable || index >= executable->attributes.size()) return c.error(GL_INVALID_VALUE);
+    const auto& attribute = executable->attributes[index];
+    give_text(c, attribute.name, room, length, out);
+    if (size) *size = static_cast<GLint>(attribute.size);
+    if (type) *type = attribute.type;
+}
+
+}  // namespace wall::client::api

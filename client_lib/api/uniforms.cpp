@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+// Values of uniforms (OpenGL 2.1, 2.15.3): kept in the program, sent when something is drawn with it. Setting an equal
+// value is no change.
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "client_lib/program_use.h"
+
+namespace wall::client::api {
+namespace {
+
+using glapi::UniformBase;
+using glapi::UniformType;
+
+template <class T>
+constexpr UniformBase kBaseOf = std::is_same_v<T, GLfloat> ? UniformBase::real : std::is_same_v<T, GLint> ? UniformBase::integer : UniformBase::unsigned_integer;
+
+/// What a glUniform command brings.
+struct Given {
+    UniformBase base;
+    unsigned columns, rows;
+    std::span<const std::uint32_t> words;
+    unsigned words_each() const { return columns * rows; }
+};
+
+bool accepts(const UniformType& type, const Given& given) {
+    if (type.columns != given.columns || type.rows != given.rows) return false;
+    if (type.base == UniformBase::boolean) return true;
+    if (type.base == UniformBase::sampler) return given.base == UniformBase::integer;
+    return type.base == given.base;
+}
+
+/// A boolean is 0 or 1 in the shadow; of a float, -0 is false as well.
+std::vector<std::uint32_t> as_booleans(const Given& given, std::size_t words) {
+    std::vector<std::uint32_t> out(given.words.begin(), given.words.begin() + static_cast<std::ptrdiff_t>(words));
+    for (std::uint32_t& word : out) word = (given.base == UniformBase::real ? word << 1 : word) != 0;
+    return out;
+}
+
+bool names_units(std::span<const std::uint32_t> words) {
+    return std::all_of(words.begin(), words.end(), [](std::uint32_t unit) { return unit < kTextureUnits; });
+}
+
+/// The error to raise, or none. Geometry that is still packed is sent with the values it was drawn with.
+GLenum store(Context& c, GLint location, GLsizei count, const Given& given) {
+    std::unique_lock lock(c.share().mutex);
+    Executable& executable = *c.program->executable;
+    const UniformPlace* place = executable.place_of(location);
+    if (!place) return GL_INVALID_OPERATION;
+    Uniform& uniform = executable.uniforms[place->uniform];
+    if ((count > 1 && !uniform.array) || !accepts(*uniform.type, given)) return GL_INVALID_OPERATION;
+    const std::size_t elements = std::min(static_cast<std::size_t>(count), static_cast<std::size_t>(uniform.size) - place->element);
+    if (given.words.size() < elements * given.words_each()) return GL_NO_ERROR;  // a null pointer
+    std::span<const std::uint32_t> words = given.words.first(elements * given.words_each());
+    std::vector<std::uint32_t> booleans;
+    if (uniform.type->base == UniformBase::boolean) words = booleans = as_booleans(given, words.size());
+    if (uniform.type->base == UniformBase::sampler && !names_units(words)) return GL_INVALID_VALUE;
+    if (executable.holds(uniform, place->element, words)) return GL_NO_ERROR;
+    if (!c.packer.empty()) {
+        lock.unlock();
+        c.flush_block();
+        return store(c, location, count, given);
+    }
+    executable.store(uniform, place->element, words);
+    c.share().last_change = executable.last_change;
+    return GL_NO_ERROR;
+}
+
+void set(Context& c, GLint location, GLsizei count, const Given& given) {
+    if (count < 0) return c.error(GL_INVALID_VALUE);
+    if (!c.program) return c.error(GL_INVALID_OPERATION);
+    if (location == -1) return;
+    if (const GLenum error = store(c, location, count, given); error != GL_NO_ERROR) c.error(error);
+}
+
+template <unsigned kRows, class T>
+void set_vectors(Context& c, GLint location, GLsizei count, const T* values) {
+    const std::size_t words = count > 0 && values ? static_cast<std::size_t>(count) * kRows : 0;
+    set(c, location, count, {kBaseOf<T>, 1, kRows, {reinterpret_cast<const std::uint32_t*>(values), words}});
+}
+
+template <class T, class... More>
+void set_one(Context& c, GLint location, T first, More... more) {
+    const T values[] = {first, more...};
+    set_vectors<1 + sizeof...(More)>(c, location, 1, values);
+}
+
+template <unsigned kColumns, unsigned kRows>
+void set_matrices(Context& c, GLint location, GLsizei count, GLboolean transpose, const GLfloat* values) {
+    const std::size_t words = count > 0 && values ? static_cast<std::size_t>(count) * kColumns * kRows : 0;
+    std::vector<GLfloat> turned;
+    if (transpose && words != 0) {
+        turned.resize(words);
+        for (std::size_t i = 0; i < words; ++i) {
+            const std::size_t matrix = i - i % (kColumns * kRows), column = i % (kColumns * kRows) / kRows, row = i % kRows;
+            turned[i] = values[matrix + row * kColumns + column];
+        }
+        values = turned.data();
+    }
+    set(c, location, count, {UniformBase::real, kColumns, kRows, {reinterpret_cast<const std::uint32_t*>(values), words}});
+}
+
+template <class Out>
+Out converted(UniformBase base, std::uint32_t word) {
+    if (base == UniformBase::real) {
+        GLfloat value;
+        std::memcpy(&value, &word, sizeof value);
+        return static_cast<Out>(value);
+    }
+    if (base == UniformBase::unsigned_integer) return static_cast<Out>(word);
+    return static_cast<Out>(static_cast<GLint>(word));
+}
+
+template <class Out>
+void get(Context& c, GLuint name, GLint location, Out* out) {
+    std::shared_ptr<GlslObject> object;
+    {
+        std::lock_guard lock(c.share().mutex);
+        object = c.share().glsl_objects.find(name);
+    }
+    if (!object) return c.error(GL_INVALID_VALUE);
+    if (object->kind != GlslObject::Kind::program) return c.error(GL_INVALID_OPERATION);
+    auto& program = static_cast<Program&>(*object);
+    settle_link(c, program);
+    std::lock_guard lock(c.share().mutex);
+    const UniformPlace* place = program.linked ? program.executable->place_of(location) : nullptr;
+    if (!place) return c.error(GL_INVALID_OPERATION);
+    const Uniform& uniform = program.executable->uniforms[place->uniform];
+    const unsigned words = uniform.type->words();
+    for (const std::uint32_t word : program.executable->words_of(uniform).subspan(std::size_t{place->element} * words, words))
+        *out++ = converted<Out>(uniform.type->base, word);
+}
+
+}  // namespace
+
+void Uniform1f(Context& c, GLint location, GLfloat x) { set_one(c, location, x); }
+void Uniform2f(Context& c, GLint location, GLfloat x, GLfloat y) { set_one(c, location, x, y); }
+void Uniform3f(Context& c, GLint location, GLfloat x, GLfloat y, GLfloat z) { set_one(c, location, x, y, z); }
+void Uniform4f(Context& c, GLint location, GLfloat x, GLfloat y, GLfloat z, GLfloat w) { set_one(c, location, x, y, z, w); }
+void Uniform1i(Context& c, GLint location, GLint x) { set_one(c, location, x); }
+void Uniform2i(Context& c, GLint location, GLint x, GLint y) { set_one(c, location, x, y); }
+void Uniform3i(Context& c, GLint location, GLint x, GLint y, GLint z) { set_one(c, location, x, y, z); }
+void Uniform4i(Context& c, GLint location, GLint x, GLint y, GLint z, GLint w) { set_one(c, location, x, y, z, w); }
+
+void Uniform1fv(Context& c, GLint location, GLsizei count, const GLfloat* v) { set_vectors<1>(c, location, count, v); }
+void Uniform2fv(Context& c, GLint location, GLsizei count, const GLfloat* v) { set_vectors<2>(c, location, count, v); }
+void Uniform3fv(Context& c, GLint location, GLsizei count, const GLfloat* v) { set_vectors<3>(c, location, count, v); }
+void Uniform4fv(Context& c, GLint location, GLsizei count, const GLfloat* v) { set_vectors<4>(c, location, count, v); }
+void Uniform1iv(Context& c, GLint location, GLsizei count, const GLint* v) { set_vectors<1>(c, location, count, v); }
+void Uniform2iv(Context& c, GLint location, GLsizei count, const GLint* v) { set_vectors<2>(c, location, count, v); }
+void Uniform3iv(Context& c, GLint location, GLsizei count, const GLint* v) { set_vectors<3>(c, location, count, v); }
+void Uniform4iv(Context& c, GLint location, GLsizei count, const GLint* v) { set_vectors<4>(c, location, count, v); }
+
+void UniformMatrix2fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<2, 2>(c, l, n, t, v); }
+void UniformMatrix3fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<3, 3>(c, l, n, t, v); }
+void UniformMatrix4fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<4, 4>(c, l, n, t, v); }
+void UniformMatrix2x3fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<2, 3>(c, l, n, t, v); }
+void UniformMatrix3x2fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<3, 2>(c, l, n, t, v); }
+void UniformMatrix2x4fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<2, 4>(c, l, n, t, v); }
+void UniformMatrix4x2fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<4, 2>(c, l, n, t, v); }
+void UniformMatrix3x4fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<3, 4>(c, l, n, t, v); }
+void UniformMatrix4x3fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<4, 3>(c, l, n, t, v); }
+
+void GetUniformfv(Context& c, GLuint program, GLint location, GLfloat* params) { get(c, program, location, params); }
+void GetUniformiv(Context& c, GLuint program, GLint location, GLint* params) { get(c, program, location, params); }
+
+}  // namespace wall::client::api

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/program_use.h"
+
+#include <utility>
+
+#include "client_lib/log.h"
+
+namespace wall::client {
+namespace {
+
+struct Answer {
+    Node* node = nullptr;
+    std::vector<std::byte> bytes;
+};
+
+std::vector<Node*> live_nodes(Session& session) {
+    std::lock_guard lock(session.mutex());
+    std::vector<Node*> nodes;
+    for (const auto& node : session.nodes())
+        if (node->alive()) nodes.push_back(node.get());
+    return nodes;
+}
+
+/// One node's answer; the next one's if it is lost meanwhile.
+template <class Pack>
+std::optional<Answer> ask_one_node(Context& c, const char* function, Pack&& pack) {
+    for (Node* node : live_nodes(c.session()))
+        if (auto bytes = c.session().ask(c, *node, function, pack)) return Answer{node, std::move(*bytes)};
+    return std::nullopt;
+}
+
+constexpr const char* kNoAnswer = "no node of the wall answered\n";
+
+void take_link_result(Program& program, glapi::ProgramDefinition definition, glapi::ProgramReflection reflection) {
+    program.log = std::move(reflection.log);
+    program.linked = reflection.linked;
+    if (!reflection.linked) return;
+    auto executable = Executable::make(std::move(definition), std::move(reflection));
+    program.linked = executable != nullptr;
+    if (executable) program.executable = std::move(executable);
+    else program.log = "the program has a uniform of a type that is not supported\n";
+}
+
+}  // namespace
+
+void settle_compile(Context& c, Shader& shader) {
+    std::string source;
+    {
+        std::lock_guard lock(c.share().mutex);
+        if (shader.state != Shader::State::unknown) return;
+        source = shader.compiled_source;
+    }
+    const auto answer = ask_one_node(c, "glCompileShader", [&](wire::PackBuffer& buffer, std::uint32_t request) {
+        glapi::pack::ShaderCompile(buffer, request, shader.type, std::as_bytes(std::span(source)));
+    });
+    auto result = answer ? glapi::decode_compile_result(answer->bytes) : std::nullopt;
+    std::lock_guard lock(c.share().mutex);
+    shader.state = result && result->compiled ? Shader::State::compiled : Shader::State::failed;
+    shader.log = result ? std::move(result->log) : kNoAnswer;
+}
+
+void settle_link(Context& c, Program& program) {
+    std::optional<glapi::ProgramDefinition> definition;
+    {
+        std::lock_guard lock(c.share().mutex);
+        definition = std::exchange(program.to_link, std::nullopt);
+    }
+    if (!definition) return;
+    const auto bytes = encode(*definition);
+    const auto answer = ask_one_node(c, "glLinkProgram", [&](wire::PackBuffer& buffer, std::uint32_t request) {
+        glapi::pack::ProgramLink(buffer, request, program.id, bytes);
+    });
+    auto reflection = answer ? glapi::decode_reflection(answer->bytes) : std::nullopt;
+    std::scoped_lock lock(c.session().mutex(), c.share().mutex);
+    if (!reflection) reflection.emplace().log = kNoAnswer;
+    take_link_result(program, std::move(*definition), std::move(*reflection));
+    if (program.linked) answer->node->object_stamps[program.id] = program.executable->stamp;
+    c.share().last_change = next_stamp();
+}
+
+void use_program(Context& c, std::shared_ptr<Program> program) {
+    c.flush_block();
+    {
+        std::lock_guard lock(c.share().mutex);
+        if (program) ++program->users;
+    }
+    c.set<glstate::el::current_program>(0, program ? program->id : 0);
+    if (const auto before = std::exchange(c.program, std::move(program))) drop_user(c, before);
+}
+
+namespace {
+
+/// Frees the name; the nodes are told of a program.
+void destroy(Context& c, const std::shared_ptr<GlslObject>& object) {
+    std::vector<std::shared_ptr<Shader>> shaders;
+    {
+        std::lock_guard lock(c.share().mutex);
+        c.share().glsl_objects.erase(object->name);
+        if (object->kind == GlslObject::Kind::shader) return;
+        c.share().program_names.erase(object->id);
+        shaders = std::exchange(static_cast<Program&>(*object).shaders, {});
+    }
+    for (const auto& shader : shaders) drop_user(c, shader);
+    c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node& node) {
+        if (node.object_stamps.erase(object->id) != 0) glapi::pack::ProgramDelete(buffer, object->id);
+    });
+}
+
+}  // namespace
+
+void drop_user(Context& c, const std::shared_ptr<GlslObject>& object) {
+    bool last = false;
+    {
+        std::lock_guard lock(c.share().mutex);
+        last = --object->users == 0 && object->deleted;
+    }
+    if (last) destroy(c, object);
+}
+
+void delete_object(Context& c, const std::shared_ptr<GlslObject>& object) {
+    {
+        std::lock_guard lock(c.share().mutex);
+        if (std::exchange(object->deleted, true) || object->users != 0) return;
+    }
+    destroy(c, object);
+}
+
+}  // namespace wall::client

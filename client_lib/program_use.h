@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Compiling, linking and using programs, for the API functions. Application threads; none of these may be called with
+// the share group's mutex held.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "client_lib/context.h"
+#include "client_lib/objects/program.h"
+#include "client_lib/share_group.h"
+
+namespace wall::client {
+
+/// Asks a node, if nobody has yet, how the last glCompileShader or glLinkProgram went.
+void settle_compile(Context& c, Shader& shader);
+void settle_link(Context& c, Program& program);
+
+/// The context draws with it from now on; null: with none.
+void use_program(Context& c, std::shared_ptr<Program> program);
+
+/// One user less; the object goes if it was to be deleted and nothing else uses it.
+void drop_user(Context& c, const std::shared_ptr<GlslObject>& object);
+/// glDeleteShader, glDeleteProgram.
+void delete_object(Context& c, const std::shared_ptr<GlslObject>& object);
+
+}  // namespace wall::client
