@@ -163,20 +163,18 @@ void GetPixelMapfv(Context& c, GLenum map, GLfloat* values) { get_pixel_map(c, m
 void GetPixelMapuiv(Context& c, GLenum map, GLuint* values) { get_pixel_map(c, map, values, 4294967295.0); }
 void GetPixelMapusv(Context& c, GLenum map, GLushort* values) { get_pixel_map(c, map, values, 65535.0); }
 
-// A word a row, the bottom one first; the highest bit is the leftmost pixel.
+// A word a row, the bottom one first; its first byte in memory has the leftmost pixels, the first in the highest bit.
 void PolygonStipple(Context& c, const GLubyte* mask) {
     if (!mask) return;
     const auto rows = glapi::unpack_image(unpack_store(c.state), {32, 32}, GL_COLOR_INDEX, GL_BITMAP, mask);
     glstate::Words32 words;
     std::memcpy(words.data(), rows.data(), sizeof words);
-    for (auto& word : words) word = __builtin_bswap32(word);
     c.set<el::polygon_stipple>(0, words);
 }
 
 void GetPolygonStipple(Context& c, GLubyte* mask) {
     if (!mask) return;
-    glstate::Words32 words = c.state.window.polygon_stipple;
-    for (auto& word : words) word = __builtin_bswap32(word);
+    const glstate::Words32& words = c.state.window.polygon_stipple;
     glapi::pack_image(pack_store(c.state), {32, 32}, GL_COLOR_INDEX, GL_BITMAP, std::as_bytes(std::span(words)), mask);
 }
 

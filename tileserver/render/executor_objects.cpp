@@ -20,6 +20,12 @@ std::vector<float> floats(std::span<const std::byte> bytes) {
     return out;
 }
 
+/// The client has applied pixel transfer to the texels that it sends.
+const glstate::State& neutral_state() {
+    static const glstate::State state;
+    return state;
+}
+
 bool is_1d(TextureTarget target) { return target == TextureTarget::t1d; }
 bool is_3d(TextureTarget target) {
     return target == TextureTarget::t3d || target == TextureTarget::t2d_array || target == TextureTarget::cube_map_array;
@@ -63,8 +69,7 @@ void Executor::TexImage(std::uint32_t name, GLenum target, std::int32_t level, G
     if (texture == nullptr) return;
     const auto estimate = std::uint64_t{4} * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * static_cast<std::uint64_t>(depth);
     if (!session_.account(*texture, target, level, estimate)) return refuse("more texture memory than a session may have");
-    node_.driver.sync_pixel_transfer(context_->state);
-    node_.maps.sync_pixel_maps(gl_, context_->maps);
+    node_.driver.sync_pixel_transfer(neutral_state());
     const void* data = pixels.empty() ? nullptr : pixels.data();
     const auto internal = static_cast<GLint>(internal_format);
     if (is_1d(texture->target))
@@ -81,8 +86,7 @@ void Executor::TexSubImage(std::uint32_t name, GLenum target, std::int32_t level
     if (!check_image(format, type, width, height, depth, pixels) || pixels.empty()) return;
     Texture* texture = bind_for_upload(name, target);
     if (texture == nullptr) return;
-    node_.driver.sync_pixel_transfer(context_->state);
-    node_.maps.sync_pixel_maps(gl_, context_->maps);
+    node_.driver.sync_pixel_transfer(neutral_state());
     if (is_1d(texture->target))
         gl_.TexSubImage1D(target, level, x, width, format, type, pixels.data());
     else if (is_3d(texture->target))
