@@ -1,0 +1,102 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""What a recorded program sends to walls of 1x1 to 8x4 tiles, a frame: state, objects and geometry, bucketed, ideal (each
+primitive goes to just the tiles that its own box touches, counted by the library in the same run) and broadcast.
+
+traffic.py [--recording NAME] [--tiles CxR]... [--json FILE]
+    exit code 1 if, from 1x1 to 5x5 tiles, state grows by more than 1.5 times, or geometry is over 1.2 times the ideal
+"""
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+TESTS = Path(__file__).resolve().parents[1] / "tests"
+sys.path[:0] = [str(TESTS / "support"), str(TESTS / "golden")]
+from subjects import WINDOW, Recording, load_recordings  # noqa: E402
+from wall import Wall  # noqa: E402
+from xserver import XServer  # noqa: E402
+
+LAYOUTS = ["1x1", "2x1", "2x2", "3x2", "4x3", "5x5", "8x4"]
+STATE_GROWTH = 1.5  # at most, from 1x1 to 5x5 tiles
+OVER_IDEAL = 1.2  # geometry, at most
+KINDS = ("state", "object", "geometry")
+
+
+def replay(recording: Recording, wall: Wall, x: XServer, **environment: str) -> dict:
+    """The library's statistics of one run."""
+    with tempfile.TemporaryDirectory() as folder:
+        stats = Path(folder) / "stats.json"
+        command = [word for word in recording.argv() if word not in ("-s", "-")]
+        subprocess.run(wall.wallrun(*command, fullscreen=True), check=True, timeout=300, stdout=subprocess.DEVNULL,
+                       env=x.environment(WALLGL_STATS=str(stats), **recording.environment(), **environment))
+        return json.loads(stats.read_text())
+
+
+def a_frame(stats: dict, kind: str) -> float:
+    """Bytes to all nodes in one frame; what only the first one needs is left out."""
+    nodes = stats["nodes"]
+    later = sum(node["total"][f"{kind}_bytes"] - node["first_frame"][f"{kind}_bytes"] for node in nodes)
+    return later / max(1, stats["frames"] - 1)
+
+
+def measure(recording: Recording, tiles: str, x: XServer) -> dict:
+    columns, rows = map(int, tiles.split("x"))
+    size = (-(-2 * WINDOW[0] // columns), -(-2 * WINDOW[1] // rows))
+    with Wall(tiles=(columns, rows), tile_size=size, name="traffic", swap_timeout_ms=10000,
+              environment={"LP_NUM_THREADS": "0"}) as wall:
+        bucketed = replay(recording, wall, x, WALLGL_IDEAL="1")
+        broadcast = replay(recording, wall, x, WALLGL_BROADCAST="1")
+    row = {"tiles": tiles, "frames": bucketed["frames"]}
+    for name, stats in (("bucketed", bucketed), ("broadcast", broadcast)):
+        row[name] = {kind: a_frame(stats, kind) for kind in KINDS}
+        row[name]["all_geometry"] = stats["total"]["geometry_bytes"]
+    row["ideal_all_geometry"] = bucketed["counters"].get("ideal_geometry_bytes", 0)
+    row["over_ideal"] = row["bucketed"]["all_geometry"] / max(1, row["ideal_all_geometry"])
+    return row
+
+
+def print_row(row: dict, first: dict) -> None:
+    bucketed, broadcast = row["bucketed"], row["broadcast"]
+    print(f"{row['tiles']:>6}{bucketed['state']:12,.0f}{bucketed['state'] / max(1, first['bucketed']['state']):7.2f}"
+          f"{broadcast['state']:12,.0f}{bucketed['object']:12,.0f}{bucketed['geometry']:14,.0f}"
+          f"{row['over_ideal']:12.3f}{broadcast['geometry']:14,.0f}", flush=True)
+
+
+def judge(rows: dict[str, dict]) -> bool:
+    good = True
+    if "1x1" in rows and "5x5" in rows:
+        growth = rows["5x5"]["bucketed"]["state"] / max(1, rows["1x1"]["bucketed"]["state"])
+        print(f"state, 1x1 to 5x5: {growth:.2f} times, at most {STATE_GROWTH} wanted")
+        good = growth <= STATE_GROWTH
+    worst = max(row["over_ideal"] for row in rows.values())
+    counted = all(row["ideal_all_geometry"] for row in rows.values())
+    print(f"geometry: at most {worst:.3f} times the ideal, at most {OVER_IDEAL} wanted" if counted else "geometry: no ideal was counted")
+    return good and counted and worst <= OVER_IDEAL
+
+
+def main() -> int:
+    arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    arguments.add_argument("--recording", default="atlantis")
+    arguments.add_argument("--tiles", action="append")
+    arguments.add_argument("--json", type=Path)
+    options = arguments.parse_args()
+    recording = next(r for r in load_recordings() if r.name == options.recording)
+    rows: dict[str, dict] = {}
+    print(f"{recording.name}, bytes a frame to all nodes together")
+    print(f"{'tiles':>6}{'state':>12}{'growth':>7}{'broadcast':>12}{'objects':>12}{'geometry':>14}{'over ideal':>12}{'broadcast':>14}")
+    with XServer() as x:
+        for tiles in options.tiles or LAYOUTS:
+            rows[tiles] = measure(recording, tiles, x)
+            print_row(rows[tiles], next(iter(rows.values())))
+    if options.json:
+        options.json.write_text(json.dumps(list(rows.values()), indent=1) + "\n")
+    return 0 if judge(rows) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
