@@ -108,7 +108,7 @@ GLboolean is_capability_set(Context& c, GLenum cap) {
     return value;
 }
 
-// ---- parameters that go through the modelview matrix (OpenGL 1.2.1, 2.13.1 and 2.10.4) ----
+// ---- parameters that go through the modelview matrix (OpenGL 1.2.1, 2.13.1 and 2.10.4), or depend on others ----
 
 namespace hand {
 
@@ -119,6 +119,17 @@ void set_light_position(Context& c, unsigned i, const double* v) {
 void set_light_spot_direction(Context& c, unsigned i, const double* v) {
     const Vec3 d = vector<Vec3>(v);
     c.set<el::light_spot_direction>(i, transform_direction(c.get<el::modelview>(), {d[0], d[1], d[2], 0}));
+}
+
+/// Q has no sphere, normal or reflection map, R no sphere map (OpenGL 1.3, 2.10.4).
+void set_tex_gen_mode(Context& c, unsigned i, const double* v) {
+    const GLenum mode = to_enum(v[0]);
+    const unsigned coordinate = i % 4;
+    const bool linear = mode == GL_OBJECT_LINEAR || mode == GL_EYE_LINEAR;
+    const bool sphere = mode == GL_SPHERE_MAP && coordinate < 2;
+    const bool cube = (mode == GL_NORMAL_MAP || mode == GL_REFLECTION_MAP) && coordinate < 3;
+    if (!linear && !sphere && !cube) return c.error(GL_INVALID_ENUM);
+    c.set<el::tex_gen_mode>(i, mode);
 }
 
 void set_tex_gen_eye_plane(Context& c, unsigned i, const double* v) {

@@ -2,41 +2,56 @@
 # SPDX-License-Identifier: MIT
 """Generates everything that follows from gl.xml and proto/gl/*.toml.
 
-    glgen.py --registry gl.xml --proto proto/gl --out build/release/generated/gen [--coverage docs/opengl-coverage.md]
+    glgen.py --registry gl.xml --proto proto/gl --out build/release/generated/gen
+    glgen.py --registry gl.xml --proto proto/gl --coverage docs/opengl-coverage.md [--check]
 
-Python 3.11, standard library only. Files are written only when their text changes.
+Python 3.11, standard library only. Files are written only when their text changes. --check writes nothing and fails if
+the file is not current.
 """
 
 import argparse
 import pathlib
 import sys
+from dataclasses import dataclass
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from glgen import commands, emit_client, emit_functions, emit_setters, emit_state, emit_wire, registry, state, wire  # noqa: E402
+from glgen import commands, emit_client, emit_docs, emit_functions, emit_samples, emit_setters, emit_state, emit_wire  # noqa: E402
+from glgen import registry, state, wire  # noqa: E402
 
 DRIVER_EXTRA = ["glFramebufferParameteriMESA", "glGetFramebufferParameterivMESA"]
 
 
-def generate(registry_path, proto):
-    """All generated files: name below gen/ -> text."""
+@dataclass
+class Model:
+    gl: registry.Registry
+    ops: list
+    state: state.StateModel
+    api: commands.Commands
+
+
+def load(registry_path, proto):
     gl = registry.load(registry_path)
-    ops = wire.load(proto / "wire.toml")
-    model = state.load(proto / "state.toml")
-    api = commands.load(proto / "commands.toml", gl, model)
+    elements = state.load(proto / "state.toml")
+    return Model(gl, wire.load(proto / "wire.toml"), elements, commands.load(proto / "commands.toml", gl, elements))
+
+
+def generate(m):
+    """All generated sources: name below gen/ -> text."""
     return {
-        "glapi/wire.gen.h": emit_wire.wire_header(ops),
-        "glapi/decode.gen.h": emit_wire.decode_header(ops),
-        "glapi/null_handler.gen.h": emit_wire.null_handler_header(ops),
-        "glapi/gl_functions.gen.h": emit_functions.functions_header(gl, DRIVER_EXTRA),
-        "glstate/state.gen.h": emit_state.state_header(model),
-        "glstate/tables.gen.h": emit_state.tables_header(model),
-        "glstate/state_tables.gen.cpp": emit_state.tables_source(model, gl),
-        "glstate/driver_emit.gen.h": emit_state.driver_header(model, gl),
-        "client_lib/api.gen.h": emit_client.api_header(api, model),
-        "client_lib/entries.gen.cpp": emit_client.entries_source(api, gl),
-        "client_lib/tables.gen.cpp": emit_client.tables_source(api),
-        "client_lib/state_api.gen.cpp": emit_setters.setters_source(api, model, gl),
+        "glapi/wire.gen.h": emit_wire.wire_header(m.ops),
+        "glapi/decode.gen.h": emit_wire.decode_header(m.ops),
+        "glapi/null_handler.gen.h": emit_wire.null_handler_header(m.ops),
+        "glapi/gl_functions.gen.h": emit_functions.functions_header(m.gl, DRIVER_EXTRA),
+        "glstate/state.gen.h": emit_state.state_header(m.state),
+        "glstate/tables.gen.h": emit_state.tables_header(m.state),
+        "glstate/state_tables.gen.cpp": emit_state.tables_source(m.state, m.gl),
+        "glstate/driver_emit.gen.h": emit_state.driver_header(m.state, m.gl),
+        "glstate/samples.gen.h": emit_samples.samples_header(m.state),
+        "client_lib/api.gen.h": emit_client.api_header(m.api, m.state),
+        "client_lib/entries.gen.cpp": emit_client.entries_source(m.api, m.gl),
+        "client_lib/tables.gen.cpp": emit_client.tables_source(m.api),
+        "client_lib/state_api.gen.cpp": emit_setters.setters_source(m.api, m.state, m.gl),
     }
 
 
@@ -47,13 +62,26 @@ def write_if_changed(path, text):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--registry", type=pathlib.Path, required=True)
     parser.add_argument("--proto", type=pathlib.Path, required=True)
-    parser.add_argument("--out", type=pathlib.Path, required=True)
+    parser.add_argument("--out", type=pathlib.Path)
+    parser.add_argument("--coverage", type=pathlib.Path)
+    parser.add_argument("--check", action="store_true")
     args = parser.parse_args()
-    for name, text in generate(args.registry, args.proto).items():
-        write_if_changed(args.out / name, text)
+    try:
+        model = load(args.registry, args.proto)
+    except AssertionError as wrong:
+        sys.exit(f"glgen: {wrong}")
+    if args.out:
+        for name, text in generate(model).items():
+            write_if_changed(args.out / name, text)
+    if args.coverage:
+        text = emit_docs.coverage(model.api, model.state, model.ops)
+        if args.check and (not args.coverage.exists() or args.coverage.read_text() != text):
+            sys.exit(f"glgen: {args.coverage} is not current: run `ninja coverage-doc`")
+        if not args.check:
+            write_if_changed(args.coverage, text)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+"""The generator: what its models promise, and that a mistake in the data is refused with its place."""
+
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools/glgen"))
+
+from glgen import commands, registry, state, wire  # noqa: E402
+
+REGISTRY = pathlib.Path(os.environ.get("WALLGL_GL_XML", "/usr/share/khronos-api/gl.xml"))
+PROTO = ROOT / "proto/gl"
+
+
+class Registry(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.gl = registry.load(REGISTRY)
+
+    def test_signatures(self):
+        c = self.gl.commands["glLoadMatrixd"]
+        self.assertEqual((c.returns, c.params[0].type, c.params[0].len, c.gl), ("void", "const GLdouble *", "16", "1.0"))
+        self.assertEqual(self.gl.commands["glGetString"].returns, "const GLubyte *")
+
+    def test_aliases(self):
+        self.assertEqual(self.gl.canonical("glActiveTextureARB"), "glActiveTexture")
+        self.assertEqual(self.gl.canonical("glBegin"), "glBegin")
+
+
+class Commands(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.gl = registry.load(REGISTRY)
+        cls.model = state.load(PROTO / "state.toml")
+        cls.commands = commands.load(PROTO / "commands.toml", cls.gl, cls.model)
+
+    def test_every_command_has_a_class(self):
+        self.assertEqual(set(self.commands.all), set(self.gl.commands))
+        self.assertTrue(all(i.cls in commands.CLASSES for i in self.commands.all.values()))
+
+    def test_opengl_1_1_is_complete(self):
+        waiting = [i.name for i in self.commands.unique if i.command.gl in ("1.0", "1.1") and i.later]
+        self.assertEqual(waiting, [])
+
+    def test_commands_in_use_by_programs_up_to_1_4(self):
+        for name in ("glActiveTextureARB", "glClientActiveTexture", "glBlendFuncSeparateEXT", "glPointParameterfARB",
+                     "glPointParameterfvARB", "glDrawRangeElements", "glTexImage3D", "glBlendEquation", "glMultiDrawArrays",
+                     "glWindowPos2i", "glSecondaryColor3ub", "glFogCoordf"):
+            self.assertFalse(self.commands.all[name].later, name)
+
+    def test_state_setters_exist_as_commands(self):
+        for e in self.model.elements:
+            if e.set:
+                self.assertEqual(self.commands.all["gl" + e.set].way, "state", e.name)
+
+    def refused(self, old, new):
+        text = (PROTO / "commands.toml").read_text()
+        self.assertIn(old, text)
+        with tempfile.NamedTemporaryFile("w", suffix=".toml") as f:
+            f.write(text.replace(old, new, 1))
+            f.flush()
+            with self.assertRaises(AssertionError) as caught:
+                commands.load(f.name, self.gl, self.model)
+        return str(caught.exception)
+
+    def test_mistakes_are_refused(self):
+        self.assertIn("Begin of the OpenGL core has no class", self.refused('Begin = "hand"\n', ""))
+        self.assertIn("gl.xml has no command glBegins", self.refused("\nBegin = ", "\nBegins = "))
+        self.assertIn("Vertex9f is not implemented", self.refused("convert Vertex2f", "convert Vertex9f"))
+        self.assertIn("unknown words", self.refused('Begin = "hand"', 'Begin = "hand often"'))
+
+
+class Files(unittest.TestCase):
+    def test_wire_opcodes_fit_a_byte_and_are_dense(self):
+        ops = wire.load(PROTO / "wire.toml")
+        self.assertEqual([op.code for op in ops], list(range(len(ops))))
+        vertex = next(op for op in ops if op.name == "Vertex3f")
+        self.assertEqual(vertex.fixed_bytes, 12)
+
+    def test_state_ids_are_dense(self):
+        model = state.load(PROTO / "state.toml")
+        following = 1
+        for e in model.elements:
+            self.assertEqual(e.id, following)
+            self.assertEqual(e.bytes % 4, 0)
+            following += e.count
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: MIT
+// What the executor draws, compared with the same commands given to plain Mesa directly.
+#include "tileserver/render/executor.h"
+
+#include <cmath>
+#include <cstring>
+#include <gmock/gmock.h>
+
+#include "tests/unit/tileserver/test_node.h"
+
+namespace wall::tileserver::test {
+namespace {
+
+constexpr int kWidth = 160, kHeight = 120;
+constexpr GLbitfield kColorDepth = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT;
+constexpr geom::Rect kWindow{0, 0, kWidth, kHeight};
+
+class ExecutorTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (!node_.usable()) GTEST_SKIP() << "no driver";
+        node_.node->tiles = {{0, kWindow}};
+    }
+    /// What plain Mesa makes of `draw`.
+    template <class Draw>
+    Pixels reference(Draw&& draw) {
+        ReferenceWindow window(kWidth, kHeight);
+        draw(window.gl());
+        auto pixels = window.read();
+        node_.make_current();
+        return pixels;
+    }
+    void expect_same(const Pixels& expected, const Pixels& drawn) {
+        const auto different = count_different(expected, drawn);
+        EXPECT_EQ(different, 0u);
+        if (different == 0) return;
+        const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+        write_ppm((name + "_expected.ppm").c_str(), expected, kWidth, kHeight);
+        write_ppm((name + "_drawn.ppm").c_str(), drawn, kWidth, kHeight);
+    }
+    TestNode node_;
+};
+
+void pack_fan(wire::PackBuffer& b, float size) {
+    pack::Begin(b, GL_TRIANGLE_FAN);
+    for (int i = 0; i < 7; ++i) {
+        const float a = static_cast<float>(i);
+        pack::Color3f(b, 0.5f + 0.5f * std::cos(a), 0.3f, 0.1f * a);
+        pack::Vertex3f(b, size * std::cos(a), size * std::sin(a), 0.1f * a - 0.5f);
+    }
+    pack::End(b);
+}
+void draw_fan(const Gl& gl, float size) {
+    gl.Begin(GL_TRIANGLE_FAN);
+    for (int i = 0; i < 7; ++i) {
+        const float a = static_cast<float>(i);
+        gl.Color3f(0.5f + 0.5f * std::cos(a), 0.3f, 0.1f * a);
+        gl.Vertex3f(size * std::cos(a), size * std::sin(a), 0.1f * a - 0.5f);
+    }
+    gl.End();
+}
+
+TEST_F(ExecutorTest, GeometryIsTheSameAsPlainMesa) {
+    TestSession session(*node_.node, 1);
+    session.open_surface(kWidth, kHeight, kWindow);
+    Batch batch;
+    batch.set<el::clear_color>({0.2f, 0.1f, 0.4f, 0}).set<el::depth_test>(1).set<el::fog_enabled>(1).set<el::fog_density>(0.4f);
+    batch.block(1, [](auto& b) {
+        pack::Clear(b, kColorDepth);
+        pack_fan(b, 0.8f);
+    });
+    session.expect_run(batch);
+    expect_same(reference([](const Gl& gl) {
+                    gl.ClearColor(0.2f, 0.1f, 0.4f, 0);
+                    gl.Enable(GL_DEPTH_TEST);
+                    gl.Enable(GL_FOG);
+                    gl.Fogf(GL_FOG_DENSITY, 0.4f);
+                    gl.Clear(kColorDepth);
+                    draw_fan(gl, 0.8f);
+                }),
+                session.read(0, kWindow));
+}
+
+TEST_F(ExecutorTest, LightsAndPlanesAreTakenInEyeCoordinates) {
+    TestSession session(*node_.node, 1);
+    session.open_surface(kWidth, kHeight, kWindow);
+    const glstate::Mat4 modelview = {0.8f, 0.1f, 0, 0, -0.1f, 0.7f, 0.2f, 0, 0, 0.3f, 0.9f, 0, 0.1f, -0.1f, 0.2f, 1};
+    Batch batch;
+    batch.set<el::modelview>(modelview).set<el::lighting_enabled>(1).set<el::light_enabled>(1);
+    batch.set<el::light_position>({0.3f, 0.5f, 1, 1}).set<el::clip_plane_enabled>(1).set<el::clip_plane>({1, 0.3f, 0, 0.4f});
+    batch.set<el::normalize>(1).set<el::color_material_enabled>(1);
+    const auto body = [](auto& b) {
+        pack::Clear(b, kColorDepth);
+        pack::Normal3f(b, 0.2f, 0.3f, 1);
+        pack_fan(b, 0.9f);
+    };
+    batch.block(1, body);
+    session.expect_run(batch);
+    expect_same(reference([&](const Gl& gl) {
+                    const std::array<float, 4> light = {0.3f, 0.5f, 1, 1};
+                    const std::array<double, 4> plane = {1, static_cast<double>(0.3f), 0, static_cast<double>(0.4f)};
+                    gl.Lightfv(GL_LIGHT0, GL_POSITION, light.data());
+                    gl.ClipPlane(GL_CLIP_PLANE0, plane.data());
+                    gl.LoadMatrixf(modelview.data());
+                    for (const GLenum cap : {GL_LIGHTING, GL_LIGHT0, GL_CLIP_PLANE0, GL_NORMALIZE, GL_COLOR_MATERIAL}) gl.Enable(cap);
+                    gl.Clear(kColorDepth);
+                    gl.Normal3f(0.2f, 0.3f, 1);
+                    draw_fan(gl, 0.9f);
+                }),
+                session.read(0, kWindow));
+}
+
+TEST_F(ExecutorTest, ImagesAtTheRasterPosition) {
+    TestSession session(*node_.node, 1);
+    session.open_surface(kWidth, kHeight, kWindow);
+    std::vector<std::byte> image(20 * 10 * 3), bits(3 * 13);
+    for (std::size_t i = 0; i < image.size(); ++i) image[i] = static_cast<std::byte>(i * 11);
+    for (std::size_t i = 0; i < bits.size(); ++i) bits[i] = static_cast<std::byte>(i * 37 + 5);
+    Batch batch;
+    batch.set<el::raster_position>({31.5f, 20.25f, 0.3f, 1}).set<el::raster_color>({0.9f, 0.2f, 0.1f, 1}).set<el::pixel_zoom>({1.5f, 2});
+    batch.set<el::color>({0.1f, 0.8f, 0.3f, 1});
+    batch.block(1, [&](auto& b) {
+        pack::Clear(b, kColorDepth);
+        pack::DrawPixels(b, 20, 10, GL_RGB, GL_UNSIGNED_BYTE, image);
+        for (int i = 0; i < 3; ++i) pack::Bitmap(b, 20, 13, 1, 2, 17.25f, 20, bits);
+        pack::Begin(b, GL_LINES);  // the current colour is not the raster colour
+        pack::Vertex2f(b, -0.9f, -0.9f);
+        pack::Vertex2f(b, 0.9f, -0.7f);
+        pack::End(b);
+    });
+    session.expect_run(batch);
+    expect_same(reference([&](const Gl& gl) {
+                    gl.Clear(kColorDepth);
+                    gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+                    gl.Color3f(0.9f, 0.2f, 0.1f);
+                    gl.WindowPos3f(31.5f, 20.25f, 0.3f);
+                    gl.PixelZoom(1.5f, 2);
+                    gl.DrawPixels(20, 10, GL_RGB, GL_UNSIGNED_BYTE, image.data());
+                    for (int i = 0; i < 3; ++i) gl.Bitmap(20, 13, 1, 2, 17.25f, 20, reinterpret_cast<const GLubyte*>(bits.data()));
+                    gl.Color3f(0.1f, 0.8f, 0.3f);
+                    gl.Begin(GL_LINES);
+                    gl.Vertex2f(-0.9f, -0.9f);
+                    gl.Vertex2f(0.9f, -0.7f);
+                    gl.End();
+                }),
+                session.read(0, kWindow));
+    const auto& soft = session.session.context(ContextId(1)).state;
+    EXPECT_EQ(el::raster_position::ref(soft), (glstate::Vec4{31.5f + 3 * 17.25f, 20.25f + 60, 0.3f, 1}));
+}
+
+TEST_F(ExecutorTest, TexturesAreRemapped) {
+    TestSession session(*node_.node, 1);
+    session.open_surface(kWidth, kHeight, kWindow);
+    std::vector<std::byte> image(16 * 16 * 4);
+    for (std::size_t i = 0; i < image.size(); ++i) image[i] = static_cast<std::byte>(i * i >> 3);
+    Batch batch;
+    pack::TexImage(batch.buffer(), 77, GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, image);
+    pack::TexParameter(batch.buffer(), 77, GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR, 0, 0, 0);
+    batch.set<el::texture_binding_2d>(77).set<el::texture_2d_enabled>(1);
+    batch.block(1, [](auto& b) {
+        pack::Clear(b, kColorDepth);
+        pack::Begin(b, GL_TRIANGLES);
+        for (const auto& v : {std::array{-0.9f, -0.8f}, std::array{0.8f, -0.5f}, std::array{0.1f, 0.9f}}) {
+            pack::TexCoord2f(b, v[0] * 2, v[1] * 3);
+            pack::Vertex2f(b, v[0], v[1]);
+        }
+        pack::End(b);
+    });
+    session.expect_run(batch);
+    expect_same(reference([&](const Gl& gl) {
+                    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 0, GL_RGBA, GL_UNSIGNED_BYTE, image.data());
+                    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+                    gl.Enable(GL_TEXTURE_2D);
+                    gl.Clear(kColorDepth);
+                    gl.Begin(GL_TRIANGLES);
+                    for (const auto& v : {std::array{-0.9f, -0.8f}, std::array{0.8f, -0.5f}, std::array{0.1f, 0.9f}}) {
+                        gl.TexCoord2f(v[0] * 2, v[1] * 3);
+                        gl.Vertex2f(v[0], v[1]);
+                    }
+                    gl.End();
+                }),
+                session.read(0, kWindow));
+}
+
+TEST_F(ExecutorTest, BlockOnTwoTilesStartsEachFromTheSameAttributes) {
+    node_.node->tiles = {{0, {0, 0, 80, kHeight}}, {1, {80, 0, 80, kHeight}}};
+    TestSession session(*node_.node, 1);
+    session.open_surface(kWidth, kHeight, kWindow);
+    Batch batch;
+    batch.set<el::color>({1, 0, 0, 1});
+    batch.block(3, [](auto& b) {
+        pack::Clear(b, kColorDepth);
+        pack::Begin(b, GL_QUADS);  // the red that the block starts with, on both tiles
+        for (const auto& v : {std::array{-1.f, -1.f}, std::array{1.f, -1.f}, std::array{1.f, 0.f}, std::array{-1.f, 0.f}}) pack::Vertex2f(b, v[0], v[1]);
+        pack::Color3f(b, 0, 0, 1);
+        for (const auto& v : {std::array{-1.f, 0.f}, std::array{1.f, 0.f}, std::array{1.f, 1.f}, std::array{-1.f, 1.f}}) pack::Vertex2f(b, v[0], v[1]);
+        pack::End(b);
+    });
+    session.expect_run(batch);
+    for (std::uint32_t slot : {0u, 1u}) {
+        const auto low = session.read(slot, {static_cast<int>(slot) * 80 + 10, 10, 1, 1}), high = session.read(slot, {static_cast<int>(slot) * 80 + 10, 100, 1, 1});
+        EXPECT_EQ(low, (Pixels{255, 0, 0, 255})) << slot;
+        EXPECT_EQ(high, (Pixels{0, 0, 255, 255})) << slot;
+    }
+    EXPECT_EQ(el::color::ref(session.session.context(ContextId(1)).state), (glstate::Vec4{0, 0, 1, 1}));
+}
+
+TEST_F(ExecutorTest, BlockWithoutALayerKeepsItsEffects) {
+    TestSession session(*node_.node, 1);
+    Batch batch;
+    batch.block(4, [](auto& b) { pack::Color3f(b, 0.25f, 0.5f, 0.75f); });
+    session.expect_run(batch);
+    EXPECT_EQ(el::color::ref(session.session.context(ContextId(1)).state), (glstate::Vec4{0.25f, 0.5f, 0.75f, 1}));
+}
+
+TEST_F(ExecutorTest, TwoSessionsInTurnsDrawAsEachAlone) {
+    const auto frame_of = [](int who, float size) {
+        Batch batch;
+        if (who == 0) batch.set<el::fog_enabled>(1).set<el::fog_density>(size).set<el::cull_face_enabled>(1);
+        if (who == 1) batch.set<el::blend_enabled>(1).set<el::blend_func>({GL_ONE, GL_ONE, GL_ONE, GL_ONE}).set<el::shade_model>(GL_FLAT);
+        batch.block(1, [size](auto& b) {
+            pack::Clear(b, kColorDepth);
+            pack_fan(b, size);
+        });
+        return batch;
+    };
+    std::array<Pixels, 2> alone;
+    for (int who = 0; who < 2; ++who) {
+        TestSession session(*node_.node, 9);
+        session.open_surface(kWidth, kHeight, kWindow);
+        for (float size : {0.4f, 0.6f, 0.8f}) session.expect_run(frame_of(who, size));
+        alone[static_cast<std::size_t>(who)] = session.read(0, kWindow);
+    }
+    TestSession first(*node_.node, 1), second(*node_.node, 2);
+    first.open_surface(kWidth, kHeight, kWindow);
+    second.open_surface(kWidth, kHeight, kWindow);
+    for (float size : {0.4f, 0.6f, 0.8f}) {
+        first.expect_run(frame_of(0, size));
+        second.expect_run(frame_of(1, size));
+    }
+    expect_same(alone[0], first.read(0, kWindow));
+    expect_same(alone[1], second.read(0, kWindow));
+}
+
+TEST_F(ExecutorTest, AccumulationBuffer) {
+    TestSession session(*node_.node, 1);
+    session.open_surface(kWidth, kHeight, kWindow);
+    Batch batch;
+    batch.set<el::clear_accum>({0.1f, 0, 0.2f, 0}).set<el::color_mask>({1, 0, 1, 1});
+    batch.block(1, [](auto& b) { pack::Clear(b, kColorDepth | GL_ACCUM_BUFFER_BIT); });
+    for (float size : {0.5f, 0.7f, 0.9f}) {
+        batch.block(1, [size](auto& b) {
+            pack::Clear(b, kColorDepth);
+            pack_fan(b, size);
+            pack::Accum(b, GL_ACCUM, 0.31f);
+        });
+    }
+    batch.block(1, [](auto& b) {
+        pack::Accum(b, GL_ADD, 0.05f);
+        pack::Accum(b, GL_MULT, 0.9f);
+        pack::Accum(b, GL_RETURN, 1.05f);
+    });
+    session.expect_run(batch);
+    expect_same(reference([](const Gl& gl) {
+                    gl.ClearAccum(0.1f, 0, 0.2f, 0);
+                    gl.ColorMask(1, 0, 1, 1);
+                    gl.Clear(kColorDepth | GL_ACCUM_BUFFER_BIT);
+                    for (float size : {0.5f, 0.7f, 0.9f}) {
+                        gl.Clear(kColorDepth);
+                        draw_fan(gl, size);
+                        gl.Accum(GL_ACCUM, 0.31f);
+                    }
+                    gl.Accum(GL_ADD, 0.05f);
+                    gl.Accum(GL_MULT, 0.9f);
+                    gl.Accum(GL_RETURN, 1.05f);
+                }),
+                session.read(0, kWindow));
+}
+
+TEST_F(ExecutorTest, FeedbackAnswersWhatWasDrawn) {
+    TestSession session(*node_.node, 1);
+    session.open_surface(kWidth, kHeight, kWindow);
+    Batch batch;
+    pack::RenderMode(batch.buffer(), 1, GL_FEEDBACK, GL_2D, 100);
+    batch.block(std::uint64_t{1} << wire::kOffscreenSlot, [](auto& b) {
+        pack::Begin(b, GL_POINTS);
+        pack::Vertex2f(b, 0, 0);
+        pack::Vertex2f(b, 0.5f, -0.5f);
+        pack::End(b);
+    });
+    pack::RenderMode(batch.buffer(), 2, GL_RENDER, 0, 0);
+    session.expect_run(batch);
+    ASSERT_EQ(session.replies[1].size(), 4u);
+    ASSERT_EQ(session.replies[2].size(), 4u + 6 * 4);
+    std::array<float, 6> values{};
+    std::memcpy(values.data(), session.replies[2].data() + 4, sizeof values);
+    EXPECT_EQ(values, (std::array<float, 6>{GL_POINT_TOKEN, 80, 60, GL_POINT_TOKEN, 120, 30}));
+}
+
+TEST_F(ExecutorTest, SwapKeepsTheFrameUntilItIsPresented) {
+    TestSession session(*node_.node, 1);
+    session.open_surface(kWidth, kHeight, kWindow);
+    Batch batch;
+    pack::Swap(batch.buffer(), 1, 5);
+    session.expect_run(batch);
+    EXPECT_EQ(session.frames, (std::vector<std::pair<std::uint32_t, std::uint32_t>>{{1, 5}}));
+    EXPECT_TRUE(session.session.surface(SurfaceId(1))->waiting_frame());
+    session.executor.present(SurfaceId(1), 5);
+    EXPECT_FALSE(session.session.surface(SurfaceId(1))->waiting_frame());
+}
+
+TEST_F(ExecutorTest, BadStreamsAreRefusedWithAReason) {
+    const auto reason = [this](auto&& fill) {
+        TestSession session(*node_.node, 1);
+        session.open_surface(kWidth, kHeight, kWindow);
+        Batch batch;
+        fill(batch);
+        const auto done = session.run(batch);
+        return done ? std::string("accepted") : done.error().message;
+    };
+    EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::Begin(p, GL_LINES); }); }), ::testing::HasSubstr("Begin"));
+    EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::End(p); }); }), ::testing::HasSubstr("End"));
+    EXPECT_THAT(reason([](Batch& b) { pack::Clear(b.buffer(), 1); }), ::testing::HasSubstr("Clear"));
+    EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::DrawPixels(p, 100, 100, GL_RGBA, GL_UNSIGNED_BYTE, {}); }); }), ::testing::HasSubstr("DrawPixels"));
+    EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::RunCall(p, 3); }); }), ::testing::HasSubstr("not defined"));
+    EXPECT_THAT(reason([](Batch& b) { pack::Swap(b.buffer(), 8, 1); }), ::testing::HasSubstr("Swap"));
+    EXPECT_THAT(reason([](Batch& b) { pack::TexImage(b.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 1 << 30, 4, 1, 0, GL_RGBA, GL_FLOAT, {}); }), ::testing::HasSubstr("TexImage"));
+    // Another session goes on.
+    TestSession session(*node_.node, 2);
+    session.open_surface(kWidth, kHeight, kWindow);
+    Batch batch;
+    batch.block(1, [](auto& b) { pack::Clear(b, kColorDepth); });
+    session.expect_run(batch);
+}
+
+TEST_F(ExecutorTest, EveryProperPrefixIsRefused) {
+    Batch batch;
+    batch.set<el::fog_density>(0.5f);
+    batch.block(1, [](auto& b) { pack_fan(b, 0.5f); });
+    pack::PixelMap(batch.buffer(), GL_PIXEL_MAP_R_TO_R, std::vector<std::byte>(8));
+    const auto payload = batch.payload();
+    for (std::size_t size = 0; size < payload.size(); ++size) {
+        TestSession session(*node_.node, 1);
+        EXPECT_FALSE(session.executor.run_batch(std::span(payload).first(size))) << size;
+    }
+}
+
+}  // namespace
+}  // namespace wall::tileserver::test

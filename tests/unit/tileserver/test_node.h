@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// A node's render side without threads and sockets: a backend, a driver, sessions that are fed packed commands.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "common/wire/batch.h"
+#include "gen/glapi/wire.gen.h"
+#include "tests/unit/tileserver/reference_window.h"
+#include "tileserver/gpu/backend.h"
+#include "tileserver/render/executor.h"
+
+namespace wall::tileserver::test {
+
+namespace el = glstate::el;
+namespace pack = glapi::pack;
+
+/// Packed commands of one context; blocks() wraps drawing.
+class Batch {
+public:
+    explicit Batch(std::uint32_t context = 1) : context_(context) {}
+    wire::PackBuffer& buffer() { return buffer_; }
+    template <class E>
+    Batch& set(const typename E::type& value, unsigned i = 0) {
+        glapi::pack_state(buffer_, static_cast<std::uint16_t>(E::id + i), &value, sizeof value);
+        return *this;
+    }
+    template <class Draw>
+    Batch& block(std::uint64_t tiles, Draw&& draw) {
+        wire::PackBuffer body;
+        draw(body);
+        pack::Block(buffer_, static_cast<std::uint32_t>(tiles), static_cast<std::uint32_t>(tiles >> 32), static_cast<std::uint32_t>(body.commands()),
+                    static_cast<std::uint32_t>(body.operand_bytes()));
+        buffer_.append(body, {}, body.mark());
+        return *this;
+    }
+    std::vector<std::byte> payload() const {
+        std::vector<std::byte> bytes;
+        wire::append_batch(bytes, {context_, buffer_.opcodes(), buffer_.operands()});
+        return bytes;
+    }
+
+private:
+    std::uint32_t context_;
+    wire::PackBuffer buffer_;
+};
+
+class TestSession : public SessionOutput {
+public:
+    TestSession(RenderNode& node, std::uint32_t id) : session(node.driver, SessionId(id)), executor(node, session, *this) {}
+    void reply(std::uint32_t request, std::vector<std::byte> answer) override { replies[request] = std::move(answer); }
+    void frame_rendered(SurfaceId surface, std::uint32_t frame) override { frames.push_back({surface.value, frame}); }
+
+    Result<void> run(const Batch& batch) { return executor.run_batch(batch.payload()); }
+    void expect_run(const Batch& batch) {
+        const auto done = run(batch);
+        EXPECT_TRUE(done) << done.error().message;
+    }
+    /// A double-buffered surface 1 of the given window at a place on the canvas, bound to context 1.
+    void open_surface(int window_width, int window_height, const geom::Rect& rect, std::uint32_t context = 1, bool alpha = false);
+    /// RGBA of the back buffer on one tile, bottom row first, the part (x, y, width, height) of the window.
+    Pixels read(std::uint32_t slot, const geom::Rect& part, std::uint32_t context = 1);
+
+    std::map<std::uint32_t, std::vector<std::byte>> replies;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> frames;
+    Session session;
+    Executor executor;
+};
+
+class TestNode {
+public:
+    explicit TestNode(std::string_view backend = "egl");
+    ~TestNode();
+    bool usable() const { return driver != nullptr; }
+    void make_current() { WALL_ASSERT((*backend_)->make_current()); }
+
+    std::unique_ptr<Driver> driver;
+    std::unique_ptr<RenderNode> node;
+
+private:
+    Result<std::unique_ptr<GlBackend>> backend_;
+};
+
+}  // namespace wall::tileserver::test
