@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Runs the benchmarks of build/release and prints their tables.
+# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, pack, mesh, traffic)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+json="" filter="."
+while (($#)); do
+  case "$1" in
+    --json) json="$(realpath -m "$2")"; shift 2 ;;
+    -h|--help) sed -n '3,4s/^# //p' "$0"; exit 0 ;;
+    *) filter="$1"; shift ;;
+  esac
+done
+build="${WALLGL_BUILD:-build/release}"
+results="$(mktemp -d)"
+trap 'rm -rf "$results"' EXIT
+worst=0
+
+# run NAME COMMAND...: each writes its figures to $results/NAME.json
+run() {
+  local name="$1"; shift
+  [[ "$name" =~ $filter ]] || return 0
+  printf '\n== %s\n' "$name"
+  "$@" || { worst=1; printf '%s: below its bar\n' "$name"; }
+}
+
+run state "$build/bench/state_bench" --benchmark_out="$results/state.json" --benchmark_out_format=json --benchmark_color=false
+run pack bench/pack.py --json "$results/pack.json"
+run mesh bench/mesh.py --json "$results/mesh.json"
+run traffic bench/traffic.py --json "$results/traffic.json"
+
+if [[ -n "$json" ]]; then
+  /usr/bin/python3 - "$results" "$json" <<'PYTHON'
+import json, pathlib, platform, subprocess, sys
+results, target = map(pathlib.Path, sys.argv[1:])
+commit = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True).stdout.strip()
+cpu = next((line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine())
+report = {"commit": commit, "machine": cpu, "benchmarks": {file.stem: json.loads(file.read_text()) for file in sorted(results.glob("*.json"))}}
+target.write_text(json.dumps(report, indent=1) + "\n")
+PYTHON
+fi
+exit "$worst"
