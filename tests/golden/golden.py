@@ -4,8 +4,8 @@
 returns it and as the composed wall shows it. On one tile they are the same, on several they match (DESIGN.md, section 8).
 Also compared: what the scenes' queries answered, and that no query waited for an answer of the wall.
 
-golden.py --tiles CxR|mesa [--only NAME]... [--backend egl|osmesa] [--report FOLDER]
-    mesa instead of a wall compares Mesa with itself: it checks these tests.
+golden.py --tiles CxR|mesa [--only NAME]... [--backend egl|osmesa] [--report FOLDER] [--references FOLDER]
+    mesa instead of a wall compares Mesa with itself: it checks these tests, and writes the references.
 """
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ sys.path.insert(0, str(HERE.parent / "support"))
 
 import compare  # noqa: E402
 from expectations import Check, Outcome, judge, load  # noqa: E402
-from stages import MesaStage, Performance, WallStage  # noqa: E402
+from stages import MesaStage, Performance, References, WallStage  # noqa: E402
 from subjects import Subject, load_recordings, load_scenes  # noqa: E402
 from wall import build_folder  # noqa: E402
 from xserver import XServer  # noqa: E402
@@ -82,13 +82,17 @@ class Comparison:
         return Outcome(check, verdict.good, str(verdict))
 
 
-def play_all(subjects: list[Subject], tiles: str, backend: str, report: Path, x: XServer) -> Iterator[Outcome]:
-    mesa = MesaStage(x)
+def play_all(subjects: list[Subject], options: argparse.Namespace, x: XServer) -> Iterator[Outcome]:
+    mesa, references, tiles = MesaStage(x), References(options.references), options.tiles
     with contextlib.ExitStack() as stack:
-        stage = mesa if tiles == "mesa" else stack.enter_context(WallStage(x, tuple(map(int, tiles.split("x"))), backend))
+        stage = mesa if tiles == "mesa" else stack.enter_context(
+            WallStage(x, tuple(map(int, tiles.split("x"))), options.backend))
         for subject in subjects:
             start = time.monotonic()
-            outcomes = list(Comparison(subject, tiles, mesa.play(subject), stage.play(subject), report).outcomes())
+            reference = (references.find(subject) if tiles != "mesa" else None) or mesa.play(subject)
+            if tiles == "mesa":
+                references.keep(subject, reference)
+            outcomes = list(Comparison(subject, tiles, reference, stage.play(subject), options.report).outcomes())
             wrong = sum(not outcome.good for outcome in outcomes)
             waits = next(outcome.detail for outcome in outcomes if outcome.check.view == "round_trips")
             print(f"{subject.kind} {subject.name}: {len(outcomes) - wrong} of {len(outcomes)} right, round trips {waits}, "
@@ -102,6 +106,7 @@ def main() -> int:
     arguments.add_argument("--backend", default="egl", choices=["egl", "osmesa"])
     arguments.add_argument("--only", action="append", default=[], help="recording or scene; may be given again")
     arguments.add_argument("--report", type=Path, default=Path("test-output/golden"), help="folder for pictures of failures")
+    arguments.add_argument("--references", type=Path, help="folder of frames on Mesa; written with --tiles mesa")
     options = arguments.parse_args()
     subjects = [*load_recordings(), *load_scenes(build_folder() / "tests" / "golden_scenes")]
     unknown = set(options.only) - {subject.name for subject in subjects}
@@ -109,7 +114,7 @@ def main() -> int:
         arguments.error(f"no recording or scene {', '.join(sorted(unknown))}")
     chosen = [subject for subject in subjects if not options.only or subject.name in options.only]
     with XServer() as x:
-        judgement = judge(play_all(chosen, options.tiles, options.backend, options.report, x), load(HERE / "expectations.toml"))
+        judgement = judge(play_all(chosen, options, x), load(HERE / "expectations.toml"))
     for outcome in judgement.failures:
         print(f"FAILED {outcome.check}: {outcome.detail}")
     for check in judgement.unexpected_passes:

@@ -57,6 +57,29 @@ class MesaStage:
         return given
 
 
+class References:
+    """Performances kept in a folder, so that the walls need not play them again. What was recorded is not checked:
+    the test that writes them (golden_mesa) runs first."""
+
+    def __init__(self, folder: Path | None):
+        self._folder = folder
+        if folder:
+            folder.mkdir(parents=True, exist_ok=True)
+
+    def keep(self, subject: Subject, given: Performance) -> None:
+        if self._folder:
+            told = json.dumps({"text": given.text, "exit_code": given.exit_code, "frames": len(given.read)})
+            np.savez(self._folder / f"{subject.name}.npz", told=np.array(told), **{f"f{i}": each for i, each in enumerate(given.read)})
+
+    def find(self, subject: Subject) -> Performance | None:
+        path = self._folder / f"{subject.name}.npz" if self._folder else None
+        if not path or not path.exists():
+            return None
+        with np.load(path) as kept:
+            told = json.loads(str(kept["told"]))
+            return Performance(read=[kept[f"f{i}"] for i in range(told["frames"])], text=told["text"], exit_code=told["exit_code"])
+
+
 class WallStage:
     """A wall of `tiles`, just large enough for the subjects' window. On one tile the window fills it; on several it lies
     where tile borders cut it at odd places."""
