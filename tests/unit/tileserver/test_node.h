@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "common/base/assert.h"
 #include "common/wire/batch.h"
 #include "gen/glapi/wire.gen.h"
 #include "tests/unit/tileserver/reference_window.h"
