@@ -10,7 +10,7 @@ namespace el = glstate::el;
 using Array = el::attrib_array::type;
 
 bool is_array_type(GLenum type) {
-    return (type >= GL_BYTE && type <= GL_FLOAT) || type == GL_DOUBLE || type == GL_HALF_FLOAT;
+    return (type >= GL_BYTE && type <= GL_FLOAT) || type == GL_DOUBLE;
 }
 
 void enable(Context& c, GLuint index, bool enabled) {

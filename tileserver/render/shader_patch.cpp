@@ -45,7 +45,10 @@ private:
             take_name();
         } else {
             if (c == '#' && line_is_blank_) in_directive_ = true;
-            if (std::isspace(static_cast<unsigned char>(c)) == 0) line_is_blank_ = false;
+            if (std::isspace(static_cast<unsigned char>(c)) == 0) {
+                line_is_blank_ = false;
+                previous_ = {};
+            }
             if (directive_ == "version" && std::isdigit(static_cast<unsigned char>(c)) != 0) return take_version();
             ++at_;
             if (std::isdigit(static_cast<unsigned char>(c)) != 0)
@@ -79,7 +82,7 @@ private:
         previous_ = name;
     }
 
-    /// "in vec4 gl_FragCoord;" or "invariant gl_FragCoord;", not "x = vec4 gl_FragCoord", which means nothing.
+    /// "in vec4 gl_FragCoord;" or "invariant gl_FragCoord;": nothing else has a name right in front of it.
     bool is_redeclaration() const { return previous_ == "vec4" || previous_ == "invariant"; }
 
     void end_line() {

@@ -44,6 +44,11 @@ TEST(ShaderPatch, KeepsRedeclarations) {
     EXPECT_TRUE(patch_fragment_shader("layout(origin_upper_left) in vec4 gl_FragCoord; void main() { vec4 a = gl_FragCoord; }").upper_left);
 }
 
+TEST(ShaderPatch, ReplacesInExpressions) {
+    EXPECT_NE(patched("void main() { gl_FragColor = vec4(gl_FragCoord.xy, vec2(1e2 * gl_FragCoord)); }").find("vec4(wallgl_FragCoord.xy, vec2(1e2 * wallgl_FragCoord))"),
+              std::string::npos);
+}
+
 TEST(ShaderPatch, ReplacesInMacrosAndGoesOverContinuedLines) {
     const std::string out = patched("#define HERE \\\n gl_FragCoord\nvoid main() { gl_FragColor = HERE; }\n");
     EXPECT_NE(out.find("#define HERE \\\n wallgl_FragCoord\n"), out.npos);
@@ -114,7 +119,7 @@ TEST_F(ProgramsTest, TellsHowCompilingWent) {
 }
 
 TEST_F(ProgramsTest, ReflectsUniformsAndAttributes) {
-    const auto r = link(1, with_fragment("uniform float a = 2.5; uniform vec3 many[3]; uniform sampler2D image; uniform bool on;\n"
+    const auto r = link(1, with_fragment("#version 120\nuniform float a = 2.5; uniform vec3 many[3]; uniform sampler2D image; uniform bool on;\n"
                                          "void main() { gl_FragColor = vec4(many[0] + many[2] * a, on ? 1.0 : 0.0) * texture2D(image, gl_FragCoord.xy) *"
                                          " gl_LightSource[0].diffuse; }"));
     ASSERT_TRUE(r.linked) << r.log;

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+// GLSL programs: uniforms of all kinds, generic vertex attributes from memory and from buffers, samplers, gl_FragCoord,
+// the fixed state that shaders see, and what is asked about programs.
+#include <array>
+#include <cmath>
+
+#include "tests/golden/programs/scene.h"
+
+namespace golden {
+namespace {
+
+GLuint compiled(GLenum type, const char* source) {
+    const GLuint shader = glCreateShader(type);
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    GLint status = 0;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &status);
+    if (!status) {
+        GLchar log[1024];
+        glGetShaderInfoLog(shader, sizeof log, nullptr, log);
+        say("does not compile: %s", log);
+    }
+    return shader;
+}
+
+GLuint program_of(const char* vertex, const char* fragment, const char* attribute1 = nullptr) {
+    const GLuint program = glCreateProgram();
+    for (const GLuint shader : {compiled(GL_VERTEX_SHADER, vertex), compiled(GL_FRAGMENT_SHADER, fragment)}) {
+        glAttachShader(program, shader);
+        glDeleteShader(shader);
+    }
+    if (attribute1) glBindAttribLocation(program, 1, attribute1);
+    glLinkProgram(program);
+    GLint status = 0;
+    glGetProgramiv(program, GL_LINK_STATUS, &status);
+    if (!status) say("does not link");
+    return program;
+}
+
+constexpr const char* kFixedVertex =
+    "void main() { gl_Position = ftransform(); gl_FrontColor = gl_Color; gl_TexCoord[0] = gl_MultiTexCoord0; }";
+
+struct Vertex {
+    GLfloat place[3], normal[3];
+};
+
+/// A ring of quads, as triangles.
+std::vector<Vertex> torus_strip(int steps) {
+    std::vector<Vertex> out;
+    const auto add = [&](int i, float r) {
+        const float a = static_cast<float>(i) * 6.2831853f / static_cast<float>(steps);
+        out.push_back({{std::cos(a) * r, std::sin(a) * r, 0.2f * std::sin(3 * a)}, {std::cos(a), std::sin(a), 0.5f}});
+    };
+    for (int i = 0; i < steps; ++i) {
+        add(i, 0.5f), add(i, 0.9f), add(i + 1, 0.9f);
+        add(i, 0.5f), add(i + 1, 0.9f), add(i + 1, 0.5f);
+    }
+    return out;
+}
+
+constexpr const char* kLitVertex =
+    "#version 120\nattribute vec3 place; attribute vec3 bent; uniform mat4 projection; uniform mat3 turn; uniform vec3 light[2]; varying vec3 shade;\n"
+    "void main() { vec3 n = normalize(turn * bent); shade = vec3(max(dot(n, light[0]), 0.0), max(dot(n, light[1]), 0.0), 0.2);\n"
+    "  gl_Position = projection * vec4(turn * place, 1.0); }";
+constexpr const char* kLitFragment = "#version 120\nvarying vec3 shade; uniform vec4 tint; void main() { gl_FragColor = vec4(shade, 1.0) * tint; }";
+
+void set_lit_uniforms(GLuint program, int frame) {
+    const float c = std::cos(0.3f * static_cast<float>(frame)), s = std::sin(0.3f * static_cast<float>(frame));
+    const GLfloat turn[] = {c, 0, -s, 0, 1, 0, s, 0, c}, lights[] = {0.6f, 0, 0.8f, 0, 0.8f, -0.6f};
+    const GLfloat rows[] = {0.8f, 0, 0, 0, 0, 0.9f, 0, 0.05f, 0, 0, 0.5f, 0, 0, 0, 0.3f, 1};
+    glUniformMatrix3fv(glGetUniformLocation(program, "turn"), 1, GL_FALSE, turn);
+    glUniformMatrix4fv(glGetUniformLocation(program, "projection"), 1, GL_TRUE, rows);
+    glUniform3fv(glGetUniformLocation(program, "light"), 2, lights);
+    glUniform4f(glGetUniformLocation(program, "tint"), 1, 1, 0.8f, 1);
+}
+
+}  // namespace
+
+SCENE(glsl_client_arrays, 4) {
+    clear(0.1f, 0.1f, 0.2f);
+    static GLuint program;
+    if (frame == 0) program = program_of(kLitVertex, kLitFragment, "bent");
+    glUseProgram(program);
+    set_lit_uniforms(program, frame);
+    const auto vertices = torus_strip(48);
+    const auto place = static_cast<GLuint>(glGetAttribLocation(program, "place"));
+    glEnable(GL_DEPTH_TEST);
+    glVertexAttribPointer(place, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), vertices.data()->place);
+    glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), vertices.data()->normal);
+    glEnableVertexAttribArray(place);
+    glEnableVertexAttribArray(1);
+    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(vertices.size()));
+    glDisableVertexAttribArray(place);
+    glDisableVertexAttribArray(1);
+    glUseProgram(0);
+    say_error("glsl_client_arrays");
+}
+
+SCENE(glsl_buffers, 3) {
+    clear(0.2f, 0.1f, 0.1f);
+    static GLuint program, buffers[2];
+    const auto vertices = torus_strip(30);
+    if (frame == 0) {
+        program = program_of(kLitVertex, kLitFragment, "bent");
+        glGenBuffers(2, buffers);
+        glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
+        glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(), GL_STATIC_DRAW);
+        std::vector<GLushort> order(vertices.size());
+        for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<GLushort>(order.size() - 1 - i);
+        glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers[1]);
+        glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(order.size() * 2), order.data(), GL_STATIC_DRAW);
+    }
+    glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers[1]);
+    if (frame == 2) {  // one vertex pulled out
+        auto* mapped = static_cast<Vertex*>(glMapBuffer(GL_ARRAY_BUFFER, GL_READ_WRITE));
+        mapped[7].place[0] *= 1.3f;
+        glUnmapBuffer(GL_ARRAY_BUFFER);
+        const GLfloat twisted[3] = {-0.2f, 0.9f, 0.1f};
+        glBufferSubData(GL_ARRAY_BUFFER, static_cast<GLintptr>(20 * sizeof(Vertex)), sizeof twisted, twisted);
+    }
+    glUseProgram(program);
+    set_lit_uniforms(program, frame);
+    const auto place = static_cast<GLuint>(glGetAttribLocation(program, "place"));
+    glEnable(GL_DEPTH_TEST);
+    glVertexAttribPointer(place, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), nullptr);
+    glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<const void*>(3 * sizeof(GLfloat)));
+    glEnableVertexAttribArray(place);
+    glEnableVertexAttribArray(1);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(vertices.size()), GL_UNSIGNED_SHORT, nullptr);
+    glDisableVertexAttribArray(place);
+    glDisableVertexAttribArray(1);
+    glUseProgram(0);
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+    say_error("glsl_buffers");
+}
+
+SCENE(glsl_frag_coord, 2) {
+    clear();
+    static GLuint program;
+    if (frame == 0)
+        program = program_of(kFixedVertex,
+                             "uniform float period; void main() { vec2 p = fract(gl_FragCoord.xy / period);\n"
+                             "  if (distance(p, vec2(0.5)) > 0.45) discard; gl_FragColor = vec4(p, gl_FragCoord.z, 1.0); }");
+    pixel_view(canvas);
+    glUseProgram(program);
+    glUniform1f(glGetUniformLocation(program, "period"), frame == 0 ? 16.0f : 7.0f);
+    glRectf(5, 5, static_cast<GLfloat>(canvas.width - 9), static_cast<GLfloat>(canvas.height - 3));
+    glUseProgram(0);
+    glColor3f(1, 1, 0);
+    glRectf(40, 40, 60, 50);
+    say_error("glsl_frag_coord");
+}
+
+SCENE(glsl_fixed_state, 3) {
+    clear(0, 0.1f, 0);
+    static GLuint program, texture;
+    if (frame == 0) {
+        glGenTextures(1, &texture);
+        checker_texture(texture, 16);
+        program = program_of("varying vec4 color; void main() { gl_Position = ftransform(); vec3 n = normalize(gl_NormalMatrix * gl_Normal);\n"
+                             "  vec3 l = normalize(gl_LightSource[0].position.xyz);\n"
+                             "  color = gl_FrontMaterial.diffuse * max(dot(n, l), 0.1) + gl_Color * 0.2; gl_TexCoord[0] = gl_TextureMatrix[0] * gl_MultiTexCoord0; }",
+                             "uniform sampler2D image; uniform bool inverted; varying vec4 color; void main() {\n"
+                             "  vec4 t = texture2D(image, gl_TexCoord[0].st); gl_FragColor = color * (inverted ? vec4(1.0) - t : t); }");
+    }
+    perspective_view(canvas);
+    glEnable(GL_DEPTH_TEST);
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    const GLfloat position[] = {1, 1, 2, 0}, diffuse[] = {0.9f, 0.6f, 0.3f, 1};
+    glLightfv(GL_LIGHT0, GL_POSITION, position);
+    glMaterialfv(GL_FRONT, GL_DIFFUSE, diffuse);
+    glMatrixMode(GL_TEXTURE);
+    glActiveTexture(GL_TEXTURE0);
+    glLoadIdentity();
+    glScalef(static_cast<GLfloat>(frame + 1), 2, 1);
+    glMatrixMode(GL_MODELVIEW);
+    glUseProgram(program);
+    glUniform1i(glGetUniformLocation(program, "image"), 1);
+    glUniform1i(glGetUniformLocation(program, "inverted"), frame == 1);
+    glColor3f(0.5f, 0.5f, 1);
+    lit_sphere();
+    glUseProgram(0);
+    glMatrixMode(GL_TEXTURE);
+    glLoadIdentity();
+    glMatrixMode(GL_MODELVIEW);
+    say_error("glsl_fixed_state");
+}
+
+SCENE(glsl_values, 2) {
+    clear(0.3f, 0.3f, 0.3f);
+    static GLuint program;
+    if (frame == 0)
+        program = program_of("#version 120\nattribute vec4 way; varying vec4 color; void main() { gl_Position = gl_Vertex; color = way; }",
+                             "#version 120\nuniform mat2x3 skew; uniform ivec2 counts = ivec2(3, 5); uniform bvec3 flags; uniform vec2 pairs[3]; varying vec4 color;\n"
+                             "void main() { vec3 v = skew * pairs[2] + vec3(flags) * 0.25; gl_FragColor = vec4(v + color.rgb * float(counts.x) / float(counts.y), 1.0); }",
+                             "way");
+    glUseProgram(program);
+    const auto at = [&](const char* name) { return glGetUniformLocation(program, name); };
+    const GLfloat skew[] = {0.1f, 0.2f, 0.3f, 0.3f, 0.1f, 0}, pairs[] = {0, 0, 0, 0, 0.5f, 1};
+    glUniformMatrix2x3fv(at("skew"), 1, GL_FALSE, skew);
+    glUniform2fv(at("pairs"), 3, pairs);
+    glUniform3f(at("flags"), 1, 0, 5);
+    if (frame == 1) glUniform2i(at("counts"), 4, 5);
+    const GLfloat corners[4][2] = {{-0.8f, -0.7f}, {0.8f, -0.6f}, {0.7f, 0.8f}, {-0.6f, 0.7f}};
+    glBegin(GL_TRIANGLE_FAN);
+    for (int i = 0; i < 4; ++i) {
+        glVertexAttrib3f(1, i == 0, i == 1, i == 2);
+        glVertex2fv(corners[i]);
+    }
+    glEnd();
+    // What was set and what linking told.
+    GLint counts[2], flags[3], active = 0;
+    glGetUniformiv(program, at("counts"), counts);
+    glGetUniformiv(program, at("flags"), flags);
+    glGetProgramiv(program, GL_ACTIVE_UNIFORMS, &active);
+    say("counts %d %d, flags %d %d %d, %d uniforms", counts[0], counts[1], flags[0], flags[1], flags[2], active);
+    for (GLuint i = 0; i < static_cast<GLuint>(active); ++i) {
+        GLchar name[64];
+        GLint size;
+        GLenum type;
+        glGetActiveUniform(program, i, sizeof name, nullptr, &size, &type, name);
+        say("uniform %s: %d of 0x%04x", name, size, type);
+    }
+    say("pairs[1] %d pairs[3] %d", at("pairs[1]") >= 0, at("pairs[3]"));
+    GLfloat way[4];
+    glGetVertexAttribfv(1, GL_CURRENT_VERTEX_ATTRIB, way);
+    say("way %g %g %g %g", way[0], way[1], way[2], way[3]);
+    glUniform1f(at("skew"), 1);
+    say_error("a wrong type");
+    glUseProgram(0);
+    glUniform1f(0, 1);
+    say_error("no program");
+}
+
+}  // namespace golden

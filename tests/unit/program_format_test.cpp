@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// The three values of programs on the wire: what was encoded comes back, and nothing else is taken.
+#include "common/glapi/program_format.h"
+
+#include <gtest/gtest.h>
+
+namespace wall::glapi {
+namespace {
+
+template <class Decode>
+void refuses_prefixes(const std::vector<std::byte>& bytes, Decode&& decode) {
+    for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_FALSE(decode(std::span(bytes).first(n))) << n;
+    auto longer = bytes;
+    longer.resize(bytes.size() + 4);
+    EXPECT_FALSE(decode(longer));
+}
+
+TEST(ProgramFormat, Definition) {
+    const ProgramDefinition in{{{GL_VERTEX_SHADER, true, "void main() {}"}, {GL_FRAGMENT_SHADER, false, ""}}, {{3, "place"}}, {{4, "lights"}, {1, "x"}}};
+    const auto bytes = encode(in);
+    const auto out = decode_definition(bytes);
+    ASSERT_TRUE(out);
+    EXPECT_EQ(out->shaders[0].source, "void main() {}");
+    EXPECT_FALSE(out->shaders[1].compiled);
+    EXPECT_EQ(out->attributes[0].index, 3u);
+    EXPECT_EQ(out->uniforms[0].name, "lights");
+    EXPECT_EQ(out->uniforms[1].size, 1u);
+    refuses_prefixes(bytes, decode_definition);
+}
+
+TEST(ProgramFormat, Reflection) {
+    const ProgramReflection in{true, "fine", {{GL_FLOAT_VEC2, 2, false, true, "uv", {1, 2, 3, 4}}}, {{GL_FLOAT, 1, -1, "gl_Vertex"}}};
+    const auto bytes = encode(in);
+    const auto out = decode_reflection(bytes);
+    ASSERT_TRUE(out);
+    EXPECT_EQ(out->log, "fine");
+    EXPECT_EQ(out->uniforms[0].initial, in.uniforms[0].initial);
+    EXPECT_TRUE(out->uniforms[0].array);
+    EXPECT_EQ(out->attributes[0].location, -1);
+    refuses_prefixes(bytes, decode_reflection);
+}
+
+TEST(ProgramFormat, AbsurdLengthsAreRefused) {
+    std::vector<std::byte> bytes(12, std::byte{0xff});
+    EXPECT_FALSE(decode_definition(bytes));
+    EXPECT_FALSE(decode_reflection(bytes));
+    EXPECT_FALSE(decode_compile_result(bytes));
+}
+
+TEST(ProgramFormat, UniformTypes) {
+    EXPECT_EQ(find_uniform_type(GL_FLOAT_MAT2x3)->words(), 6u);
+    EXPECT_EQ(find_uniform_type(GL_SAMPLER_CUBE)->texture_target, GLenum{GL_TEXTURE_CUBE_MAP});
+    EXPECT_EQ(find_uniform_type(GL_RGBA), nullptr);
+}
+
+}  // namespace
+}  // namespace wall::glapi
