@@ -16,8 +16,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-/// A frame that nobody presents for so long is shown by the session's next one.
-constexpr auto kPresentLimit = 1s;
 /// A session may keep the driver in selection or feedback mode for so long without drawing.
 constexpr auto kExclusiveLimit = 2s;
 constexpr auto kStatsInterval = 1s;
@@ -44,13 +42,11 @@ public:
             : loop_(loop), id_(id), queue_(std::move(queue)), session_(loop.driver_, session), executor_(loop.node_, session_, *this) {}
         void reply(std::uint32_t request, std::vector<std::byte> answer) override { loop_.events_.reply(id_, request, std::move(answer)); }
         void frame_rendered(SurfaceId surface, std::uint32_t frame) override {
-            rendered_at_ = Clock::now();
             loop_.events_.rendered(id_, session_.id(), surface, frame);
         }
 
         /// A finished frame has not been shown yet.
         bool frame_waits() const {
-            if (Clock::now() - rendered_at_ > kPresentLimit) return false;
             for (const auto& [id, surface] : session_.surfaces())
                 if (surface->waiting_frame()) return true;
             return false;
@@ -80,7 +76,7 @@ public:
         std::shared_ptr<BatchQueue> queue_;
         Session session_;
         Executor executor_;
-        Clock::time_point rendered_at_{}, last_run_ = Clock::now();
+        Clock::time_point last_run_ = Clock::now();
         bool failed_ = false;
     };
 

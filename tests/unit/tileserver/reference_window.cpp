@@ -2,6 +2,9 @@
 #include "tests/unit/tileserver/reference_window.h"
 
 #include <EGL/eglext.h>
+#include <GL/gl.h>
+#include <GL/osmesa.h>
+#include <dlfcn.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -48,6 +51,40 @@ ReferenceWindow::~ReferenceWindow() {
 void ReferenceWindow::make_current() { WALL_ASSERT(eglMakeCurrent(display_, surface_, surface_, context_) == EGL_TRUE); }
 
 Pixels ReferenceWindow::read() const { return read_pixels(gl_, width_, height_); }
+
+namespace {
+
+template <class Function>
+Function osmesa(const char* name) {
+    static void* library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
+    return library != nullptr ? reinterpret_cast<Function>(dlsym(library, name)) : nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<AccumReference> AccumReference::open(int width, int height) {
+    const auto create = osmesa<decltype(&OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs");
+    if (create == nullptr) return nullptr;
+    const int wanted[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_STENCIL_BITS, 8, OSMESA_ACCUM_BITS, 16,
+                          OSMESA_PROFILE, OSMESA_COMPAT_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 0, 0};
+    std::unique_ptr<AccumReference> window(new AccumReference);
+    window->width_ = width;
+    window->height_ = height;
+    window->memory_.resize(static_cast<std::size_t>(width) * height * 4);
+    window->context_ = create(wanted, nullptr);
+    const auto make_current = osmesa<decltype(&OSMesaMakeCurrent)>("OSMesaMakeCurrent");
+    WALL_ASSERT(make_current(static_cast<OSMesaContext>(window->context_), window->memory_.data(), GL_UNSIGNED_BYTE, width, height) == GL_TRUE);
+    const auto get = osmesa<decltype(&OSMesaGetProcAddress)>("OSMesaGetProcAddress");
+    window->gl_.load([get](const char* name) { return reinterpret_cast<void*>(get(name)); });
+    return window;
+}
+
+AccumReference::~AccumReference() {
+    osmesa<decltype(&OSMesaMakeCurrent)>("OSMesaMakeCurrent")(nullptr, nullptr, 0, 0, 0);
+    osmesa<decltype(&OSMesaDestroyContext)>("OSMesaDestroyContext")(static_cast<OSMesaContext>(context_));
+}
+
+Pixels AccumReference::read() const { return read_pixels(gl_, width_, height_); }
 
 Pixels read_pixels(const Gl& gl, int width, int height) {
     Pixels pixels(static_cast<std::size_t>(width) * height * 4);

@@ -5,6 +5,7 @@
 #include <EGL/egl.h>
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "tileserver/gpu/gl.h"
@@ -28,6 +29,24 @@ private:
     EGLDisplay display_ = EGL_NO_DISPLAY;
     EGLSurface surface_ = EGL_NO_SURFACE;
     EGLContext context_ = EGL_NO_CONTEXT;
+    Gl gl_;
+};
+
+/// Plain Mesa with an accumulation buffer, which no EGL configuration has: off-screen Mesa. Null where that is not installed.
+class AccumReference {
+public:
+    static std::unique_ptr<AccumReference> open(int width, int height);
+    ~AccumReference();
+    AccumReference(const AccumReference&) = delete;
+
+    const Gl& gl() const { return gl_; }
+    Pixels read() const;
+
+private:
+    AccumReference() = default;
+    int width_ = 0, height_ = 0;
+    void* context_ = nullptr;
+    Pixels memory_;
     Gl gl_;
 };
 
