@@ -54,6 +54,10 @@ std::shared_ptr<Context> create_context(const ContextOptions& options);
 bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface> draw, std::shared_ptr<Surface> read);
 Context* current_context();
 
+/// glXCopyContext: copies what glPushAttrib(mask) would save. `to` must not be current in any thread, `from` not in
+/// another one.
+void copy_context(Context& from, Context& to, std::uint32_t mask);
+
 /// Ends a frame of `surface`: everything drawn so far becomes its next picture on the wall. Blocks only when the wall
 /// is more than two frames behind.
 void swap_buffers(Surface& surface);

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 
-#include "client_lib/stats.h"
 #include "client_lib/vendor/config_matrix.h"
 #include "client_lib/vendor/glx/config.h"
 #include "client_lib/vendor/glx/context.h"
@@ -57,10 +56,6 @@ XVisualInfo* visual_info(Display* display, const Config& config) {
     wanted.screen = config.screen;
     int count = 0;
     return XGetVisualInfo(display, VisualIDMask | VisualScreenMask, &wanted, &count);
-}
-
-void report_missing(const char* function) {
-    if (stats().count_unsupported(function)) log(LogLevel::warn, "unsupported function=%s", function);
 }
 
 // ---- configurations ----
@@ -274,11 +269,13 @@ int query_context(Display* display, GLXContext handle, int name, int* value) {
     });
 }
 
-void copy_context(Display* display, GLXContext from, GLXContext to, unsigned long) {
+void copy_context_state(Display* display, GLXContext from_handle, GLXContext to_handle, unsigned long mask) {
     guarded("glXCopyContext", [&] {
-        if (!find_context(from) || !find_context(to)) return send_glx_error(display, GLXBadContext, 0, X_GLXCopyContext);
-        report_missing("glXCopyContext");
-        send_x_error(display, BadMatch, 0, X_GLXCopyContext);
+        const auto from = find_context(from_handle), to = find_context(to_handle);
+        if (!from || !to) return send_glx_error(display, GLXBadContext, 0, X_GLXCopyContext);
+        if (to->current || (from->current && from != thread_context()))
+            return send_x_error(display, BadAccess, 0, X_GLXCopyContext);
+        client::copy_context(*from->core, *to->core, static_cast<std::uint32_t>(mask));
     });
 }
 
@@ -502,7 +499,7 @@ std::span<const NamedFunction> core_functions() {
     static const NamedFunction table[] = {
         named("glXChooseFBConfig", choose_fb_config),
         named("glXChooseVisual", choose_visual_info),
-        named("glXCopyContext", copy_context),
+        named("glXCopyContext", copy_context_state),
         named("glXCreateContext", create_context_of_visual),
         named("glXCreateContextAttribsARB", create_context_attribs),
         named("glXCreateGLXPixmap", create_glx_pixmap),

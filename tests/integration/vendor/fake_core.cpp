@@ -91,6 +91,8 @@ bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface> dra
     return true;
 }
 
+void copy_context(Context&, Context&, std::uint32_t mask) { log(LogLevel::info, "fake_copy mask=0x%x", mask); }
+
 Context* current_context() { return current.get(); }
 
 void swap_buffers(Surface& surface) {

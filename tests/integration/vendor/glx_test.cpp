@@ -234,6 +234,19 @@ TEST_F(Glx, AContextBelongsToOneThread) {
     EXPECT_TRUE(other);
 }
 
+TEST_F(Glx, CopiesAContextThatIsNotCurrent) {
+    const auto visual = choose({GLX_RGBA, GLX_DOUBLEBUFFER});
+    const Window window = make_window(*visual);
+    GLXContext from = glXCreateContext(display, visual.get(), nullptr, True);
+    GLXContext to = glXCreateContext(display, visual.get(), nullptr, True);
+    ASSERT_TRUE(glXMakeCurrent(display, window, from));
+    glXCopyContext(display, from, to, GL_FOG_BIT);
+    EXPECT_THAT(last_logged("fake_copy"), HasSubstr("mask=0x80"));
+    EXPECT_TRUE(x_errors.empty());
+    glXCopyContext(display, to, from, GL_FOG_BIT);
+    EXPECT_THAT(x_errors, testing::ElementsAre(BadAccess));
+}
+
 TEST_F(Glx, DestroyingTheCurrentContextIsDeferred) {
     const auto visual = choose({GLX_RGBA, GLX_DOUBLEBUFFER});
     const Window window = make_window(*visual);
