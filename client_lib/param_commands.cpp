@@ -7,6 +7,7 @@
 
 #include "client_lib/context.h"
 #include "client_lib/matrix.h"
+#include "common/glstate/diff.h"
 #include "common/glstate/queries.h"
 
 namespace wall::client {
@@ -28,6 +29,7 @@ std::optional<unsigned> index_of(const Context& c, ParamFamily family, GLenum le
     if (family == ParamFamily::Light) return below(lead - GL_LIGHT0, el::light_ambient::count);
     if (family == ParamFamily::Material) return lead == GL_FRONT_AND_BACK ? std::nullopt : below(lead - GL_FRONT, 2);
     if (family == ParamFamily::TexEnv) return c.active_texture();
+    if (family == ParamFamily::Material) return lead == GL_FRONT ? std::optional(0u) : lead == GL_BACK ? std::optional(1u) : std::nullopt;
     if (family != ParamFamily::TexGen) return 0;
     const auto coordinate = below(lead - GL_S, 4);
     return coordinate ? std::optional(c.active_texture() * 4 + *coordinate) : std::nullopt;
@@ -52,15 +54,18 @@ void set_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, const T*
     row->set(c, *index, v);
 }
 
+/// Material parameters that follow the current colour get it.
+void settle_materials(Context& c) {
+    c.flush_block();
+    glstate::settle_color_material(c.state);
+}
+
 template <class T>
 void get_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, T* values) {
     const auto index = index_of(c, family, lead);
     const auto* entry = glstate::find_param(family, target_of(family, lead), pname);
     if (!index || !entry) return c.error(GL_INVALID_ENUM);
-    if (family == ParamFamily::Material) {  // brings the packed attributes into the state
-        c.flush_block();
-        glstate::settle_color_material(c.state);
-    }
+    if (family == ParamFamily::Material) settle_materials(c);
     glstate::read_components(c.state, entry->id + *index, 0, entry->kind, entry->components, values);
 }
 
