@@ -33,7 +33,7 @@ GLint level_count(Context& c, GLenum target);
 
 /// glTexImage and glTexSubImage with their checks.
 void define_image(Context& c, ImageCall call);
-void define_sub_image(Context& c, const ImageCall& call);
+void define_sub_image(Context& c, ImageCall call);
 GLenum sub_image_error(Context& c, const ImageCall& call);
 
 /// The same after the checks, with pixels as they are to be stored.

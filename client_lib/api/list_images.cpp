@@ -48,15 +48,15 @@ struct Image {
 
 /// Empty where the call will fail or has no pixels.
 std::vector<std::byte> tight(Context& c, const Image& image) {
-    if (!image.pixels || !glapi::image_bytes(image.format, image.type, image.size.width, image.size.height, image.size.depth)) return {};
-    return glapi::unpack_image(unpack_store(c.state), image.size, image.format, image.type, image.pixels);
+    if (!glapi::image_bytes(image.format, image.type, image.size.width, image.size.height, image.size.depth)) return {};
+    return glapi::unpack_image(unpack_store(c.state), image.size, image.format, image.type, image_source(c, {image.size, image.format, image.type}, image.pixels));
 }
 
 /// Records the arguments, whether there were pixels, and the pixels.
 template <class... Args>
 void record(Context& c, CommandId command, const Image& image, const Args&... args) {
     const auto bytes = tight(c, image);
-    const std::uint32_t present = image.pixels != nullptr;
+    const std::uint32_t present = !bytes.empty();
     c.list().record(static_cast<std::uint16_t>(command), args..., present,
                     glapi::recorded_array(bytes.data(), static_cast<std::ptrdiff_t>(bytes.size())));
 }

@@ -115,9 +115,10 @@ void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
     if (glapi::is_integer_format(format)) return c.error(GL_INVALID_OPERATION);
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
     if (!buffers_exist(c, format)) return c.error(GL_INVALID_OPERATION);
-    if (!c.state.raster.raster_position_valid || width == 0 || height == 0 || !pixels) return;
+    if (!c.state.raster.raster_position_valid || width == 0 || height == 0) return;
     if (!glapi::image_bytes(format, type, width, height, 1)) return c.error(GL_OUT_OF_MEMORY);
-    draw_tight(c, width, height, format, type, glapi::unpack_image(unpack_store(c.state), {width, height}, format, type, pixels));
+    const void* from = image_source(c, {{width, height}, format, type}, pixels);
+    if (from) draw_tight(c, width, height, format, type, glapi::unpack_image(unpack_store(c.state), {width, height}, format, type, from));
 }
 
 // The client's raster position is the only one: the command that travels moves nothing.
@@ -125,8 +126,9 @@ void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yo
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
     if (!c.state.raster.raster_position_valid) return;
     auto position = c.state.raster.raster_position;
-    if (width > 0 && height > 0 && bitmap) {
-        const auto bits = glapi::unpack_image(unpack_store(c.state), {width, height}, GL_COLOR_INDEX, GL_BITMAP, bitmap);
+    const void* from = width > 0 && height > 0 ? image_source(c, {{width, height}, GL_COLOR_INDEX, GL_BITMAP}, bitmap) : nullptr;
+    if (from) {
+        const auto bits = glapi::unpack_image(unpack_store(c.state), {width, height}, GL_COLOR_INDEX, GL_BITMAP, from);
         const float x = position[0] - xorig - kMargin, y = position[1] - yorig - kMargin;
         const PixelRect box{x, y, x + static_cast<float>(width) + 2 * kMargin, y + static_cast<float>(height) + 2 * kMargin};
         c.draw(box, [&](wire::PackBuffer& buffer) { glapi::pack::Bitmap(buffer, width, height, xorig, yorig, 0, 0, bits); });
@@ -165,17 +167,19 @@ void GetPixelMapusv(Context& c, GLenum map, GLushort* values) { get_pixel_map(c,
 
 // A word a row, the bottom one first; its first byte in memory has the leftmost pixels, the first in the highest bit.
 void PolygonStipple(Context& c, const GLubyte* mask) {
-    if (!mask) return;
-    const auto rows = glapi::unpack_image(unpack_store(c.state), {32, 32}, GL_COLOR_INDEX, GL_BITMAP, mask);
+    const void* from = image_source(c, {{32, 32}, GL_COLOR_INDEX, GL_BITMAP}, mask);
+    if (!from) return;
+    const auto rows = glapi::unpack_image(unpack_store(c.state), {32, 32}, GL_COLOR_INDEX, GL_BITMAP, from);
     glstate::Words32 words;
     std::memcpy(words.data(), rows.data(), sizeof words);
     c.set<el::polygon_stipple>(0, words);
 }
 
 void GetPolygonStipple(Context& c, GLubyte* mask) {
-    if (!mask) return;
+    void* to = image_target(c, {{32, 32}, GL_COLOR_INDEX, GL_BITMAP}, mask);
+    if (!to) return;
     const glstate::Words32& words = c.state.window.polygon_stipple;
-    glapi::pack_image(pack_store(c.state), {32, 32}, GL_COLOR_INDEX, GL_BITMAP, std::as_bytes(std::span(words)), mask);
+    glapi::pack_image(pack_store(c.state), {32, 32}, GL_COLOR_INDEX, GL_BITMAP, std::as_bytes(std::span(words)), to);
 }
 
 void DrawBuffer(Context& c, GLenum buffer) {

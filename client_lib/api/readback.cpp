@@ -44,7 +44,9 @@ void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
     if (!source_exists(c, format)) return c.error(GL_INVALID_OPERATION);
     const PixelBox box = clip_to_window(c, {x, y, width, height});
-    if (box.empty() || !pixels) return;
+    if (box.empty()) return;
+    void* to = image_target(c, {{width, height}, format, type}, pixels);
+    if (!to) return;
     glapi::PixelStore store = pack_store(c.state);
     if (store.row_length == 0) store.row_length = width;
     store.skip_pixels += box.x - x;
@@ -52,7 +54,7 @@ void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
     const bool bitmap = type == GL_BITMAP;
     auto tight = gather_pixels(c, box, format, bitmap ? GL_UNSIGNED_BYTE : type, "glReadPixels");
     if (bitmap) tight = to_bits(tight, box);
-    glapi::pack_image(store, {box.width, box.height}, format, type, tight, pixels);
+    glapi::pack_image(store, {box.width, box.height}, format, type, tight, to);
 }
 
 }  // namespace wall::client::api

@@ -106,6 +106,14 @@ TexelData unpacked(Context& c, const ImageCall& call) {
     return transferred(c, call, {call.format, call.type, glapi::unpack_image(call.store, size, call.format, call.type, call.pixels)});
 }
 
+/// In the buffer object if one is bound. False: not there, and the error is recorded.
+bool find_pixels(Context& c, ImageCall& call) {
+    if (!c.state.local.pixel_unpack_buffer) return true;
+    const glapi::ImageSize size{call.width, call.height, call.depth, call.dimensions};
+    call.pixels = image_source(c, {size, call.format, call.type}, call.pixels);
+    return call.pixels != nullptr;
+}
+
 bool eight_bits(GLenum format, GLenum type) { return type == GL_UNSIGNED_BYTE && !depth_like(format); }
 
 void convert(TexelData& data, std::size_t count, GLenum format, GLenum type) {
@@ -208,9 +216,10 @@ void define_image(Context& c, ImageCall call) {
         return;
     }
     if (error != GL_NO_ERROR) return c.error(error);
+    if (!glapi::image_bytes(call.format, call.type, call.width, call.height, call.depth)) return c.error(GL_OUT_OF_MEMORY);
+    if (!find_pixels(c, call)) return;
     strip_border(call);
     if (!legal_size(c, call)) return c.error(GL_INVALID_VALUE);
-    if (!glapi::image_bytes(call.format, call.type, call.width, call.height, call.depth)) return c.error(GL_OUT_OF_MEMORY);
     store_level(c, call, call.pixels ? unpacked(c, call) : TexelData{call.format, call.type, {}});
 }
 
@@ -229,9 +238,9 @@ GLenum sub_image_error(Context& c, const ImageCall& call) {
     return internal && formats_agree(*internal, call.format) ? GL_NO_ERROR : GL_INVALID_OPERATION;
 }
 
-void define_sub_image(Context& c, const ImageCall& call) {
+void define_sub_image(Context& c, ImageCall call) {
     if (const GLenum error = sub_image_error(c, call)) return c.error(error);
-    if (texels(call) == 0 || !call.pixels) return;
+    if (texels(call) == 0 || !find_pixels(c, call) || !call.pixels) return;
     change_level(c, call, unpacked(c, call));
 }
 

@@ -189,7 +189,7 @@ void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum 
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
     if (format == GL_COLOR_INDEX || format == GL_STENCIL_INDEX) return c.error(GL_INVALID_ENUM);
     const auto texture = bound_texture(c, target);
-    if (!texture || !pixels) return;
+    if (!texture) return;
     std::vector<std::byte> tight;
     glapi::ImageSize size;
     {
@@ -207,7 +207,7 @@ void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum 
         }
         tight = from_rgba(format, type, texels, true);
     }
-    glapi::pack_image(pack_store(c.state), size, format, type, tight, pixels);
+    if (void* to = image_target(c, {size, format, type}, pixels)) glapi::pack_image(pack_store(c.state), size, format, type, tight, to);
 }
 
 }  // namespace wall::client::api

@@ -212,6 +212,13 @@ std::size_t row_offset(const PixelStore& store, const PixelLayout& layout, const
     return image_offset(store, stride, size, slice) + stride * static_cast<std::size_t>(store.skip_rows + row) + skip;
 }
 
+std::size_t memory_bytes(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type) {
+    const auto layout = pixel_layout(format, type);
+    if (!layout || size.width <= 0 || size.height <= 0 || size.depth <= 0) return 0;
+    const std::int32_t width = layout->bitmap ? store.skip_pixels + size.width : size.width;
+    return row_offset(store, *layout, size, size.height - 1, size.depth - 1) + row_bytes(*layout, width);
+}
+
 std::vector<std::byte> unpack_image(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type, const void* pixels) {
     const auto layout = pixel_layout(format, type);
     std::vector<std::byte> tight(image_bytes(format, type, size.width, size.height, size.depth).value_or(0));

@@ -54,6 +54,9 @@ struct ImageSize {
 /// Where a row starts in a program's memory, relative to the pointer it gave; bitmaps: plus `skip_pixels` bits.
 std::size_t row_offset(const PixelStore& store, const PixelLayout& layout, const ImageSize& size, std::int32_t row, std::int32_t slice);
 
+/// Bytes of a program's memory that an image reaches over, from the pointer it gave.
+std::size_t memory_bytes(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type);
+
 /// From a program's memory. `size`, `format` and `type` have been checked (image_bytes gives a value).
 std::vector<std::byte> unpack_image(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type, const void* pixels);
 /// Into a program's memory; only the pixels themselves are written.
