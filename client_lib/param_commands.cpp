@@ -27,7 +27,6 @@ const ParamRow* find_row(ParamFamily family, GLenum target, GLenum pname) {
 std::optional<unsigned> index_of(const Context& c, ParamFamily family, GLenum lead) {
     const auto below = [](unsigned i, unsigned count) { return i < count ? std::optional(i) : std::nullopt; };
     if (family == ParamFamily::Light) return below(lead - GL_LIGHT0, el::light_ambient::count);
-    if (family == ParamFamily::Material) return lead == GL_FRONT_AND_BACK ? std::nullopt : below(lead - GL_FRONT, 2);
     if (family == ParamFamily::TexEnv) return c.active_texture();
     if (family == ParamFamily::Material) return lead == GL_FRONT ? std::optional(0u) : lead == GL_BACK ? std::optional(1u) : std::nullopt;
     if (family != ParamFamily::TexGen) return 0;

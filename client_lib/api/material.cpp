@@ -6,8 +6,6 @@
 
 #include "client_lib/context.h"
 #include "client_lib/lists.h"
-#include "common/glstate/queries.h"
-#include "common/glstate/queries.h"
 
 namespace wall::client::api {
 namespace {
@@ -34,15 +32,6 @@ void set_material(Context& c, GLenum face, GLenum pname, const glstate::Vec4& va
     assign_material(c.state, face, pname, value);
 }
 
-template <class Out>
-void get_material(Context& c, GLenum face, GLenum pname, Out* out) {
-    const auto* entry = glstate::find_param(glstate::ParamFamily::Material, 0, pname);
-    if (!entry || (face != GL_FRONT && face != GL_BACK)) return c.error(GL_INVALID_ENUM);
-    c.flush_block();  // what is packed comes into the state
-    glstate::settle_color_material(c.state);
-    glstate::read_components(c.state, entry->id + (face == GL_BACK), 0, entry->kind, entry->components, out);
-}
-
 }  // namespace
 
 void Materialfv(Context& c, GLenum face, GLenum pname, const GLfloat* params) {
@@ -53,19 +42,5 @@ void Materialfv(Context& c, GLenum face, GLenum pname, const GLfloat* params) {
     if (c.packer.inside() || c.lists->packing) return pack_material(c, face, pname, value);
     set_material(c, face, pname, value);
 }
-
-template <class Out>
-static void get_material(Context& c, GLenum face, GLenum pname, Out* out) {
-    const auto* entry = glstate::find_param(glstate::ParamFamily::Material, 0, pname);
-    if (!entry || (face != GL_FRONT && face != GL_BACK)) return c.error(GL_INVALID_ENUM);
-    c.flush_block();  // what is packed comes into the state
-    glstate::settle_color_material(c.state);
-    glstate::read_components(c.state, entry->id + (face == GL_BACK), 0, entry->kind, entry->components, out);
-}
-void GetMaterialfv(Context& c, GLenum face, GLenum pname, GLfloat* params) { get_material(c, face, pname, params); }
-void GetMaterialiv(Context& c, GLenum face, GLenum pname, GLint* params) { get_material(c, face, pname, params); }
-
-void GetMaterialfv(Context& c, GLenum face, GLenum pname, GLfloat* params) { get_material(c, face, pname, params); }
-void GetMaterialiv(Context& c, GLenum face, GLenum pname, GLint* params) { get_material(c, face, pname, params); }
 
 }  // namespace wall::client::api
