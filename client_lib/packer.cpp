@@ -30,7 +30,7 @@ void Packer::update_limit() {
 }
 
 void Packer::make_room() {
-    if (!tight()) return;  // closed: sent here without need
+    if (!tight()) return update_limit();  // closed, or the estimate was too careful
     const std::byte* old = operands().data();
     grow(commands() + kSlack, operand_bytes() + 4 * kSlack);
     for (auto& place : last)
