@@ -70,7 +70,7 @@ Result<void> run(config::WallConfig config, const Options& options) {
     }
     if (!options.ready_file.empty()) write_ready_file(options.ready_file, control, http, http_listen.has_value());
 
-    asio::steady_timer watchdog(io), stop_limit(io);
+    asio::steady_timer watchdog(io);
     asio::signal_set signals(io, SIGINT, SIGTERM);
     spawn(io.get_executor(), "watchdog", feed_watchdog(watchdog));
     signals.async_wait([&](const boost::system::error_code& error, int signal) {
@@ -80,12 +80,13 @@ Result<void> run(config::WallConfig config, const Options& options) {
         http.stop();
         control.stop();
         watchdog.cancel();
-        stop_limit.expires_after(kStopLimit);
-        stop_limit.async_wait([&](const boost::system::error_code&) { io.stop(); });
+        io.stop();
     });
     notify_ready("wall " + control.wall().config().name);
     spdlog::info("ready wall=\"{}\" nodes={}", control.wall().config().name, control.wall().nodes().size());
     io.run();
+    io.restart();
+    io.run_for(kStopLimit);  // connections see that they are closed
     spdlog::info("stopped");
     return {};
 }

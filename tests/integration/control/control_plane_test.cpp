@@ -102,7 +102,7 @@ TEST_F(ControlPlane, APictureComesFromTheNodes) {
         node->say(answer);
     }
     EXPECT_EQ(shot.get().exit_code, 0);
-    const auto size = run("python3 -c \"import cv2; p = cv2.imread('" + file + "'); print(p.shape, p[0, 0], p[0, 127])\"");
+    const auto size = run("/usr/bin/python3 -c \"import cv2; p = cv2.imread('" + file + "'); print(p.shape, p[0, 0], p[0, 127])\"");
     EXPECT_EQ(size.text, "(48, 128, 3) [64 64 64] [192 192 192]\n");
 }
 
@@ -224,7 +224,7 @@ TEST_F(ControlPlane, ServesThePageAndTheApi) {
 TEST_F(ControlPlane, SignalsEndItInOrder) {
     join_both();
     walld_.signal(SIGTERM);
-    const auto ended = walld_.wait(seconds(3));
+    const auto ended = walld_.wait(milliseconds(900));  // less than it gives what hangs
     EXPECT_EQ(ended.exit_code, 0);
     EXPECT_THAT(ended.said, HasSubstr("stopped"));
     EXPECT_NE(::access(walld_.address().path.c_str(), F_OK), 0) << "the socket is removed";

@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Installs what building, testing and the demo need on Debian 12, as far as it is missing. As root, or with sudo.
+set -euo pipefail
+
+build=(
+  g++ cmake ninja-build ccache pkg-config git python3
+  khronos-api                        # gl.xml, from which much of the code is generated
+  libglvnd-dev libgl-dev libegl-dev libglx-dev
+  libx11-dev libx11-xcb-dev libxcb1-dev
+  libboost1.81-dev libprotobuf-dev protobuf-compiler libprotozero-dev
+  libexpected-dev libspdlog-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
+  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libsystemd-dev
+  libgtest-dev libgmock-dev libbenchmark-dev
+)
+run=(
+  libgl1 libegl1 libgl1-mesa-dri libglx-mesa0 libegl-mesa0 libosmesa6
+  xvfb xauth mesa-utils xscreensaver-gl procps
+)
+test=(
+  clang-16 libclang-rt-16-dev        # fuzzers
+  xscreensaver-gl-extra rss-glx glmark2-x11 apitrace apitrace-tracers
+  libglu1-mesa-dev python3-numpy python3-opencv curl systemd
+)
+
+missing=()
+for package in "${build[@]}" "${run[@]}" "${test[@]}"; do
+  [[ $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true) == installed ]] || missing+=("$package")
+done
+if [[ ${#missing[@]} -eq 0 ]]; then
+  echo "install-deps: everything is there"
+  exit 0
+fi
+echo "install-deps: installing ${#missing[@]} packages: ${missing[*]}"
+as_root=()
+if [[ $(id -u) -ne 0 ]]; then
+  command -v sudo >/dev/null || { echo "install-deps: run this as root, or install sudo" >&2; exit 2; }
+  as_root=(sudo)
+fi
+"${as_root[@]}" apt-get update -q
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
