@@ -1,0 +1,69 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Installs a build into a folder and looks at it: deploy_test.py BUILD WALLD."""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+BUILD, WALLD = Path(sys.argv.pop(1)), Path(sys.argv.pop(1))
+EXAMPLES = Path(__file__).resolve().parents[3] / "deploy" / "examples"
+
+
+def output(*command: object, **options) -> subprocess.CompletedProcess:
+    return subprocess.run(list(map(str, command)), capture_output=True, text=True, **options)
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.folder = tempfile.TemporaryDirectory(prefix="wallgl-install-")
+        done = output("cmake", "--install", BUILD, env=dict(os.environ, DESTDIR=cls.folder.name))
+        assert done.returncode == 0, done.stdout + done.stderr
+        cls.files = {path.relative_to(cls.folder.name) for path in Path(cls.folder.name).rglob("*") if not path.is_dir()}
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.folder.cleanup()
+
+    def find(self, ending: str) -> Path:
+        found = [Path(self.folder.name) / path for path in self.files if str(path).endswith(ending)]
+        self.assertEqual(len(found), 1, f"{ending} in {sorted(map(str, self.files))}")
+        return found[0]
+
+    def test_everything_is_in_its_place(self) -> None:
+        for ending in ("bin/walld", "bin/tileserver", "bin/wallrun", "bin/wallctl", "libGLX_wallgl.so.0", "libEGL_wallgl.so.0",
+                       "lib/systemd/system/walld.service", "lib/systemd/system/tileserver@.service", "lib/sysusers.d/wallgl.conf",
+                       "lib/tmpfiles.d/wallgl.conf", "egl_vendor.d/50_wallgl.json"):
+            self.find(ending)
+
+    def test_systemd_accepts_the_units(self) -> None:
+        # An instance of the template, with the programs where this installation has them.
+        with tempfile.TemporaryDirectory() as folder:
+            for name, instance in (("walld.service", "walld.service"), ("tileserver@.service", "tileserver@left.service")):
+                text = self.find(name).read_text()
+                for program in ("walld", "tileserver"):
+                    text = text.replace(f"/usr/local/bin/{program}", str(self.find(f"bin/{program}")))
+                (Path(folder) / instance).write_text(text)
+                verified = output("systemd-analyze", "verify", "--man=no", Path(folder) / instance)
+                self.assertEqual((verified.returncode, verified.stderr.strip()), (0, ""))
+
+    def test_sysusers_and_tmpfiles_are_understood(self) -> None:
+        users = output("systemd-sysusers", "--dry-run", self.find("lib/sysusers.d/wallgl.conf"))
+        if "unrecognized option" not in users.stderr:
+            self.assertEqual(users.returncode, 0, users.stderr)
+        self.assertRegex(self.find("lib/tmpfiles.d/wallgl.conf").read_text(), r"(?m)^d /run/wallgl 0755 wallgl wallgl -$")
+
+
+class Examples(unittest.TestCase):
+    def test_the_examples_are_good(self) -> None:
+        for example in sorted(EXAMPLES.glob("*.toml")):
+            with self.subTest(example.name):
+                checked = output(WALLD, "--check", "--config", example)
+                self.assertEqual((checked.returncode, checked.stderr), (0, ""))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
