@@ -153,11 +153,11 @@ def main() -> int:
         signal.signal(number, interrupt)
     with contextlib.ExitStack() as stack:
         try:
+            around = environment(display(stack, (options.tiles[0] * options.tile_size[0], options.tiles[1] * options.tile_size[1])))
             wall = stack.enter_context(Wall(options.tiles, options.tile_size, options.backend, name="demo", die_with_parent=True,
                                             http=f"127.0.0.1:{http_port(options.http)}"))
             print(f"demo: a wall of {options.tiles[0]}x{options.tiles[1]} tiles, {wall.size[0]}x{wall.size[1]} pixels, drawn with {options.backend}\n"
                   f"demo: status page {wall.url}\ndemo: operate with build/release/bin/wallctl --walld {wall.address} status", flush=True)
-            around = environment(display(stack, wall.size))
             apps = []
             for program in programs or default_programs(wall.size):
                 apps.append(wall.run(*program, env=around))
