@@ -104,7 +104,7 @@ struct Opened {
 Result<Opened> greet(const Hello& hello, const std::string& address, milliseconds limit) {
     const auto deadline = Clock::now() + limit;
     auto fd = connect_to(address, static_cast<int>(limit.count()));
-    if (!fd) return tl::unexpected(fd.error());
+    if (!fd) return fail("the wall is not there: " + fd.error().message + " (is walld running? WALLGL_WALLD names its address)");
     Opened opened{std::move(*fd), {}, {}};
     std::string bytes;
     append_framed(bytes, encode(hello));

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "client_lib/context.h"
+#include "client_lib/process.h"
 #include "client_lib/share_group.h"
 
 namespace wall::client {
@@ -20,22 +22,23 @@ Packer* closed_packer() {
     return packer;
 }
 
-/// Keeps the thread's context and surfaces alive while they are current.
+/// Keeps the thread's context and surfaces alive while they are current. Not destroyed at exit(): programs still draw in
+/// their own exit handlers.
 struct Current {
     std::shared_ptr<Context> context;
     std::shared_ptr<Surface> draw, read;
 };
-thread_local Current current;
+constinit thread_local Current* current = nullptr;
 
 void release() {
-    if (current.context) {
-        current.context->flush_block();
-        current.context->session().flush(nullptr, false);
-        current.context->in_use = false;
+    const std::unique_ptr<Current> last(std::exchange(current, nullptr));
+    if (last) {
+        last->context->flush_block();
+        last->context->session().flush(nullptr, false);
+        last->context->in_use = false;
     }
     tls_context = nullptr;
     tls_packer = closed_packer();
-    current = {};
 }
 
 }  // namespace
@@ -58,7 +61,7 @@ bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface> dra
         release();
         return true;
     }
-    if (context != current.context) {
+    if (!current || context != current->context) {
         if (context->in_use.exchange(true)) return false;
         release();
         context->in_use = true;
@@ -76,9 +79,13 @@ bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface> dra
     if (read && read != draw) session->open_surface(*read);
     if (draw) session->begin_frame(*draw);
     context->bind_surfaces(draw, read);
-    current = {std::move(context), std::move(draw), std::move(read)};
-    tls_context = current.context.get();
-    tls_packer = &current.context->packer;
+    if (!current) {
+        current = new Current;
+        at_thread_end(release);
+    }
+    *current = {std::move(context), std::move(draw), std::move(read)};
+    tls_context = current->context.get();
+    tls_packer = &current->context->packer;
     return true;
 }
 

@@ -4,8 +4,10 @@
 #include <errno.h>
 #include <pthread.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <memory>
 
 namespace wall::client {
 namespace {
@@ -43,6 +45,36 @@ bool in_forked_child() { return forked.load(std::memory_order_relaxed); }
 void at_process_end(void (*action)()) {
     const auto i = action_count.fetch_add(1);
     if (i < kMaxActions) actions[i] = action;
+}
+
+namespace {
+
+/// A thread's actions, in a POSIX thread key: its destructor runs at the end of a thread only.
+struct ThreadActions {
+    std::array<void (*)(), kMaxActions> actions{};
+    std::size_t count = 0;
+};
+
+pthread_key_t thread_key() {
+    static const pthread_key_t key = [] {
+        pthread_key_t made{};
+        pthread_key_create(&made, [](void* data) {
+            const std::unique_ptr<ThreadActions> mine(static_cast<ThreadActions*>(data));
+            while (mine->count > 0) mine->actions[--mine->count]();
+        });
+        return made;
+    }();
+    return key;
+}
+
+}  // namespace
+
+void at_thread_end(void (*action)()) {
+    auto* mine = static_cast<ThreadActions*>(pthread_getspecific(thread_key()));
+    if (!mine) pthread_setspecific(thread_key(), mine = new ThreadActions);
+    for (std::size_t i = 0; i < mine->count; ++i)
+        if (mine->actions[i] == action) return;
+    if (mine->count < kMaxActions) mine->actions[mine->count++] = action;
 }
 
 std::string program_name() { return program_invocation_short_name ? program_invocation_short_name : "unknown"; }

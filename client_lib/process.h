@@ -28,6 +28,10 @@ bool in_forked_child();
 /// `action` runs when the process ends normally (not in a forked child), the last one registered first.
 void at_process_end(void (*action)());
 
+/// `action` runs in the calling thread when it ends, but not at exit(): programs still draw in their own exit handlers,
+/// after the thread_local destructors. Once per thread and action.
+void at_thread_end(void (*action)());
+
 /// The name of the running program, for people.
 std::string program_name();
 

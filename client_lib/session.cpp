@@ -11,6 +11,7 @@
 #include "client_lib/context.h"
 #include "client_lib/log.h"
 #include "client_lib/options.h"
+#include "client_lib/process.h"
 #include "client_lib/share_group.h"
 #include "common/glstate/pack_sink.h"
 #include "common/wire/limits.h"
@@ -18,6 +19,8 @@
 namespace wall::client {
 namespace {
 
+constexpr auto kRetryPause = std::chrono::seconds(10);  // a program that asks for every frame must not wait for every frame
+constexpr int kFinishMs = 500;                          // what is queued when the program ends
 constexpr int kConnectTimeoutMs = 2000;
 constexpr std::chrono::seconds kPlacementTimeout{2};
 constexpr int kReplyTimeoutMs = 10000;        // a readback behind a long frame of a software renderer
@@ -81,7 +84,8 @@ namespace {
 /// Never destroyed: the application may still draw while it exits.
 struct OnlySession {
     std::mutex mutex;
-    std::weak_ptr<Session> session;
+    std::shared_ptr<Session> session;  ///< stays when the last context goes: SDL makes a probe context first
+    std::optional<std::chrono::steady_clock::time_point> failed_at;
     static OnlySession& get() {
         static auto* only = new OnlySession();
         return *only;
@@ -91,22 +95,28 @@ struct OnlySession {
 }  // namespace
 
 std::shared_ptr<Session> Session::get_if_open() {
+    if (in_forked_child()) return nullptr;
     std::lock_guard lock(OnlySession::get().mutex);
-    return OnlySession::get().session.lock();
+    return OnlySession::get().session;
 }
 
 std::shared_ptr<Session> Session::get() {
+    if (in_forked_child()) return nullptr;
     auto& only = OnlySession::get();
     std::lock_guard lock(only.mutex);
-    if (auto session = only.session.lock()) return session;
+    if (only.session) return only.session;
+    if (only.failed_at && std::chrono::steady_clock::now() - *only.failed_at < kRetryPause) return nullptr;
     auto control = ControlLink::open(Hello::from_environment());
     if (!control) {
         complain_once(control.error().message);
+        only.failed_at = std::chrono::steady_clock::now();
         return nullptr;
     }
-    std::shared_ptr<Session> session(new Session(std::move(*control)));
-    only.session = session;
-    return session;
+    only.session.reset(new Session(std::move(*control)));
+    at_process_end([] {
+        if (const auto session = get_if_open()) session->finish();
+    });
+    return only.session;
 }
 
 Session::Session(std::unique_ptr<ControlLink> control) : control_(std::move(control)) {
@@ -121,10 +131,15 @@ void Session::adopt(const Welcome& welcome) {
     for (const NodeInfo& info : welcome.nodes) connect(node_slot(info));
 }
 
-Session::~Session() {
-    for (auto& node : nodes_)
-        if (node->alive()) send(*node);
-    transport_.drain(500);
+Session::~Session() { finish(); }
+
+void Session::finish() {
+    {
+        std::lock_guard lock(mutex_);
+        for (auto& node : nodes_)
+            if (node->alive()) send(*node);
+    }
+    transport_.drain(kFinishMs);
 }
 
 Node& Session::node_slot(const NodeInfo& info) {

@@ -67,6 +67,8 @@ class Session {
 public:
     /// The process's session; made at the first call. Null if the wall cannot be reached (said once on stderr).
     static std::shared_ptr<Session> get();
+    /// Sends what is packed, and waits a moment until it is on its way. At the end of the process.
+    void finish();
     /// The same, but never makes one: null if no context holds it.
     static std::shared_ptr<Session> get_if_open();
     ~Session();

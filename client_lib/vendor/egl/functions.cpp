@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 #include <vector>
 
+#include "client_lib/process.h"
 #include "client_lib/stats.h"
 #include "client_lib/vendor/config_matrix.h"
 #include "client_lib/vendor/egl/display.h"
@@ -26,8 +28,14 @@ constexpr const char* kDisplayExtensions = "EGL_KHR_create_context EGL_KHR_get_a
 
 constinit std::atomic<const __EGLapiExports*> glvnd{nullptr};
 constinit std::mutex current_mutex;  // guards EglContext::current
-thread_local std::shared_ptr<EglContext> current;
+/// The thread's context. Not destroyed at exit(): programs still draw in their own exit handlers.
+constinit thread_local std::shared_ptr<EglContext>* current_slot = nullptr;
 thread_local EGLint last_error = EGL_SUCCESS;
+
+const std::shared_ptr<EglContext>& thread_context() {
+    static const std::shared_ptr<EglContext>& none = *new std::shared_ptr<EglContext>;
+    return current_slot ? *current_slot : none;
+}
 
 /// Sets the thread's error and answers `result`.
 template <class R>
@@ -362,6 +370,7 @@ EGLBoolean copy_buffers(EGLDisplay, EGLSurface, EGLNativePixmapType) {
 EGLBoolean swap_interval(EGLDisplay handle, EGLint interval) {
     return guarded("eglSwapInterval", EGLBoolean{EGL_FALSE}, [&] {
         if (!display_of(handle)) return EGLBoolean{EGL_FALSE};
+        const auto& current = thread_context();
         if (!current) return refuse(EGL_BAD_CONTEXT);
         if (!current->draw) return refuse(EGL_BAD_SURFACE);
         current->draw->swap_interval = std::clamp(interval, 0, 1);
@@ -437,40 +446,47 @@ EGLBoolean destroy_context_handle(EGLDisplay handle, EGLContext context) {
 
 /// The thread's context is not current any more.
 void let_go() {
-    if (!current) return;
-    current->draw = current->read = nullptr;
-    {
-        std::lock_guard lock(current_mutex);
-        current->current = false;
-    }
-    current = nullptr;
+    const std::unique_ptr<std::shared_ptr<EglContext>> slot(std::exchange(current_slot, nullptr));
+    if (!slot) return;
+    auto& context = **slot;
+    context.draw = context.read = nullptr;
+    std::lock_guard lock(current_mutex);
+    context.current = false;
+}
+
+void thread_ends() {
+    client::make_current(nullptr, nullptr, nullptr);
+    let_go();
 }
 
 EGLBoolean release() {
-    client::make_current(nullptr, nullptr, nullptr);
-    let_go();
+    thread_ends();
     return succeed();
 }
 
 EGLBoolean bind(const std::shared_ptr<EglContext>& context, std::shared_ptr<EglSurface> draw,
                 std::shared_ptr<EglSurface> read) {
+    const bool again = context == thread_context();
     {
         std::lock_guard lock(current_mutex);
-        if (context->current && context != current) return refuse(EGL_BAD_ACCESS);
+        if (context->current && !again) return refuse(EGL_BAD_ACCESS);
         context->current = true;
     }
     if (!client::make_current(context->core, draw->core, read->core)) {
-        if (context != current) {
+        if (!again) {
             std::lock_guard lock(current_mutex);
             context->current = false;
         }
         let_go();
         return refuse(EGL_BAD_ALLOC);  // the wall cannot be reached
     }
-    if (context != current) let_go();
+    if (!again) {
+        let_go();
+        current_slot = new std::shared_ptr<EglContext>(context);
+        at_thread_end(thread_ends);
+    }
     context->draw = std::move(draw);
     context->read = std::move(read);
-    current = context;
     return succeed();
 }
 
@@ -492,7 +508,7 @@ EGLBoolean make_current_handles(EGLDisplay handle, EGLSurface draw, EGLSurface r
 }
 
 EGLBoolean release_thread() {
-    return guarded("eglReleaseThread", EGLBoolean{EGL_FALSE}, [] { return current ? release() : succeed(); });
+    return guarded("eglReleaseThread", EGLBoolean{EGL_FALSE}, [] { return thread_context() ? release() : succeed(); });
 }
 
 EGLBoolean query_context(EGLDisplay handle, EGLContext context_handle, EGLint name, EGLint* value) {
@@ -530,7 +546,7 @@ EGLSync create_sync(EGLDisplay handle, EGLenum type, const EGLAttrib*) {
         auto* display = display_of(handle);
         if (!display) return EGL_NO_SYNC;
         if (type != EGL_SYNC_FENCE) return refuse(EGL_BAD_ATTRIBUTE, EGL_NO_SYNC);
-        if (!current) return refuse(EGL_BAD_MATCH, EGL_NO_SYNC);
+        if (!thread_context()) return refuse(EGL_BAD_MATCH, EGL_NO_SYNC);
         return succeed(display->add(std::make_shared<EglSync>()));
     });
 }

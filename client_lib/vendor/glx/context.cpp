@@ -3,6 +3,9 @@
 
 #include <mutex>
 #include <unordered_map>
+#include <utility>
+
+#include "client_lib/process.h"
 
 namespace wall::client::glx {
 namespace {
@@ -17,7 +20,7 @@ Contexts& contexts() {
     return only;
 }
 
-thread_local std::shared_ptr<GlxContext> current;
+constinit thread_local GlxContext* current = nullptr;  // kept by Contexts::all while GlxContext::current is set
 
 /// The thread's context is not current any more; what the program has destroyed meanwhile goes.
 void let_go() {
@@ -26,12 +29,15 @@ void let_go() {
     drawables.no_longer_current(current->draw);
     drawables.no_longer_current(current->read);
     current->draw = current->read = nullptr;
-    {
-        std::lock_guard lock(contexts().mutex);
-        current->current = false;
-        if (current->destroyed) contexts().all.erase(current.get());
-    }
-    current = nullptr;
+    auto* context = std::exchange(current, nullptr);
+    std::lock_guard lock(contexts().mutex);
+    context->current = false;
+    if (context->destroyed) contexts().all.erase(context);
+}
+
+void thread_ends() {
+    client::make_current(nullptr, nullptr, nullptr);
+    let_go();
 }
 
 }  // namespace
@@ -61,7 +67,7 @@ void destroy_context(const std::shared_ptr<GlxContext>& context) {
         contexts().all.erase(context.get());
 }
 
-const std::shared_ptr<GlxContext>& thread_context() { return current; }
+GlxContext* thread_context() { return current; }
 
 MakeCurrentResult make_context_current(std::shared_ptr<GlxContext> context, std::shared_ptr<Drawable> draw,
                                        std::shared_ptr<Drawable> read) {
@@ -72,11 +78,11 @@ MakeCurrentResult make_context_current(std::shared_ptr<GlxContext> context, std:
     }
     {
         std::lock_guard lock(contexts().mutex);
-        if (context->current && context != current) return MakeCurrentResult::context_in_use;
+        if (context->current && context.get() != current) return MakeCurrentResult::context_in_use;
         context->current = true;
     }
     if (!client::make_current(context->core, draw ? draw->surface : nullptr, read ? read->surface : nullptr)) {
-        if (context != current) {
+        if (context.get() != current) {
             std::lock_guard lock(contexts().mutex);
             context->current = false;
         }
@@ -86,7 +92,7 @@ MakeCurrentResult make_context_current(std::shared_ptr<GlxContext> context, std:
     auto& drawables = Drawables::get();
     drawables.now_current(draw);
     drawables.now_current(read);
-    if (context == current) {
+    if (context.get() == current) {
         drawables.no_longer_current(current->draw);
         drawables.no_longer_current(current->read);
     } else {
@@ -94,7 +100,8 @@ MakeCurrentResult make_context_current(std::shared_ptr<GlxContext> context, std:
     }
     context->draw = std::move(draw);
     context->read = std::move(read);
-    current = std::move(context);
+    current = context.get();
+    at_thread_end(thread_ends);
     return MakeCurrentResult::done;
 }
 

@@ -28,8 +28,8 @@ std::shared_ptr<GlxContext> find_context(GLXContext handle);
 std::shared_ptr<GlxContext> create_context(const Config& config, const ContextOptions& options);
 void destroy_context(const std::shared_ptr<GlxContext>& context);
 
-/// The calling thread's; null if there is none.
-const std::shared_ptr<GlxContext>& thread_context();
+/// The calling thread's; null if there is none. It lives at least as long as it is current.
+GlxContext* thread_context();
 
 enum class MakeCurrentResult { done, context_in_use, no_wall };
 /// Null context: releases.

@@ -273,7 +273,7 @@ void copy_context_state(Display* display, GLXContext from_handle, GLXContext to_
     guarded("glXCopyContext", [&] {
         const auto from = find_context(from_handle), to = find_context(to_handle);
         if (!from || !to) return send_glx_error(display, GLXBadContext, 0, X_GLXCopyContext);
-        if (to->current || (from->current && from != thread_context()))
+        if (to->current || (from->current && from.get() != thread_context()))
             return send_x_error(display, BadAccess, 0, X_GLXCopyContext);
         client::copy_context(*from->core, *to->core, static_cast<std::uint32_t>(mask));
     });
@@ -410,7 +410,7 @@ void get_selected_event(Display* display, GLXDrawable id, unsigned long* mask) {
 
 void swap(Display* display, GLXDrawable id) {
     guarded("glXSwapBuffers", [&] {
-        const auto& current = thread_context();
+        const auto* current = thread_context();
         const bool is_current = current && current->draw && current->draw->id == id;
         const auto drawable = is_current ? current->draw : Drawables::get().find(display, id);
         if (drawable && drawable->config->format.double_buffered) return swap_buffers(*drawable->surface);
@@ -441,7 +441,7 @@ const char* query_extensions_string(Display*, int) { return kExtensions; }
 
 void use_x_font_lists(Font font, int first, int count, int list_base) {
     guarded("glXUseXFont", [&] {
-        const auto& current = thread_context();
+        const auto* current = thread_context();
         if (!current || !current->draw) return;
         // GLX has no display argument here: the font belongs to the server of the current drawable.
         use_x_font(current->draw->display, font, first, count, list_base);
@@ -460,7 +460,7 @@ void swap_interval_ext(Display* display, GLXDrawable id, int interval) {
 }
 
 int set_current_interval(int interval, int least) {
-    const auto& current = thread_context();
+    const auto* current = thread_context();
     if (!current || !current->draw) return GLX_BAD_CONTEXT;
     if (interval < least) return GLX_BAD_VALUE;
     current->draw->swap_interval = std::min(interval, 1);
@@ -470,7 +470,7 @@ int set_current_interval(int interval, int least) {
 int swap_interval_mesa(unsigned interval) { return set_current_interval(static_cast<int>(interval), 0); }
 int swap_interval_sgi(int interval) { return set_current_interval(interval, 1); }
 int get_swap_interval_mesa() {
-    const auto& current = thread_context();
+    const auto* current = thread_context();
     return current && current->draw ? current->draw->swap_interval : 0;
 }
 
