@@ -44,14 +44,17 @@ def _quoted(text: object) -> str:
 
 class Wall:
     """`tiles` are columns and rows, `tile_size` is in pixels. `environment` goes to the daemons, `die_with_parent` ends
-    them with the *thread* that starts the wall. `one_node` puts all tiles on one tileserver."""
+    them with the *thread* that starts the wall. `one_node` puts all tiles on one tileserver. `client_build` is
+    where wallrun and the vendor library come from, if not from `build` (a sanitizer's library does not load into a
+    foreign program)."""
 
     def __init__(self, tiles: tuple[int, int] = (2, 2), tile_size: tuple[int, int] = (512, 384), backend: str = "egl", *,
                  http: str = "127.0.0.1:0", swap_timeout_ms: int = 250, one_node: bool = False, name: str = "test",
-                 build: Path | None = None, environment: dict[str, str] | None = None, die_with_parent: bool = False):
+                 build: Path | None = None, client_build: Path | None = None, environment: dict[str, str] | None = None, die_with_parent: bool = False):
         self.tiles, self.tile_size, self.backend = tiles, tile_size, backend
         self.http, self.swap_timeout_ms, self.one_node, self.name = http, swap_timeout_ms, one_node, name
         self.bin = (build or build_folder()) / "bin"
+        self.client_bin = (client_build or build or build_folder()) / "bin"
         self._environment = dict(os.environ, **(environment or {}))
         self._before_exec = _die_with_parent if die_with_parent else None
         self.daemons: dict[str, subprocess.Popen] = {}  # "walld" and the nodes' names
@@ -161,7 +164,7 @@ class Wall:
     def wallrun(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False,
                 name: str = "", hold: bool = False) -> list[str]:
         """The command line that starts a program on this wall."""
-        line = [self.bin / "wallrun", "--walld", self.address]
+        line = [self.client_bin / "wallrun", "--walld", self.address]
         line += ["--rect", ",".join(map(str, rect))] if rect else []
         line += ["--fullscreen"] if fullscreen else []
         line += ["--name", name] if name else []

@@ -1,0 +1,87 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Installs what is missing, builds, and runs every test: scripts/test.sh [STAGE...], stages as listed below.
+# Ends with CTest's own summary of each stage; exit code 1 if anything failed.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+readonly all_stages=(release golden asan tsan fuzz)
+readonly summaries="build/test-summaries"
+begin=$SECONDS
+failed=()
+
+say() { printf '\n== test: %s (%d:%02d)\n' "$1" $(((SECONDS - begin) / 60)) $(((SECONDS - begin) % 60)); }
+
+# build PRESET [TARGET...]: quiet unless it fails.
+build() {
+  local preset=$1; shift
+  local targets=(); [[ $# -eq 0 ]] || targets=(--target "$@")
+  cmake --preset "$preset" --log-level=WARNING >/dev/null && cmake --build --preset "$preset" "${targets[@]}" >"$summaries/build-$preset.log" 2>&1 && return
+  tail -n 60 "$summaries/build-$preset.log"
+  return 1
+}
+
+# run STAGE PRESET CTEST-ARGS...: its summary is kept for the end.
+run() {
+  local stage=$1 preset=$2; shift 2
+  ctest --test-dir "build/$preset" --output-on-failure "$@" 2>&1 | tee "$summaries/$stage.log"
+  local result=${PIPESTATUS[0]}
+  [[ $result -eq 0 ]] || failed+=("$stage")
+}
+
+stage_release() {
+  say "building (release)"
+  build release || { failed+=(release); return; }
+  say "unit, integration and lint tests"
+  run release release -LE 'golden|fuzz' -j 2
+}
+
+stage_golden() {
+  say "golden tests: programs on plain Mesa and on walls, frame by frame"
+  build release || { failed+=(golden); return; }
+  run golden release -L golden
+}
+
+stage_asan() {
+  say "building the unit tests (address and undefined behaviour sanitizers)"
+  build asan unit_tests || { failed+=(asan); return; }
+  say "unit tests under these sanitizers"
+  # Mesa keeps some memory until the process ends.
+  LSAN_OPTIONS="suppressions=$PWD/tests/support/lsan.supp" run asan asan -L unit -j 2
+}
+
+stage_tsan() {
+  say "building the daemons (thread sanitizer)"
+  build release wallrun wallgl_vendor || { failed+=(tsan); return; }
+  build tsan walld tileserver wallctl control_plane_test || { failed+=(tsan); return; }
+  say "a short wall under the thread sanitizer"
+  run tsan tsan -R '^(control_plane_test|threads_test)$'
+}
+
+stage_fuzz() {
+  say "building the fuzzers (clang, address and undefined behaviour sanitizers)"
+  build fuzz || { failed+=(fuzz); return; }
+  say "fuzzers, 30 seconds each"
+  run fuzz fuzz -L fuzz -j 2
+}
+
+stages=("$@")
+[[ $# -gt 0 ]] || stages=("${all_stages[@]}")
+for stage in "${stages[@]}"; do
+  [[ " ${all_stages[*]} " == *" $stage "* ]] || { echo "test: unknown stage '$stage'; there are: ${all_stages[*]}" >&2; exit 2; }
+done
+
+say "installing what is missing"
+scripts/install-deps.sh || exit 2
+rm -rf "$summaries" && mkdir -p "$summaries"
+for stage in "${stages[@]}"; do "stage_$stage"; done
+
+say "done"
+for stage in "${stages[@]}"; do
+  [[ -f "$summaries/$stage.log" ]] || continue
+  printf '%s:\n' "$stage"
+  sed -n '/tests passed/,$p' "$summaries/$stage.log" | grep -v '^$'
+done
+if [[ ${#failed[@]} -gt 0 ]]; then
+  echo "FAILED: ${failed[*]}"
+  exit 1
+fi

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// Batches executed on a real driver, in a session with a window on two tiles. After each input a second session must
+// still draw what it always draws.
+#include <memory>
+
+#include "common/base/assert.h"
+#include "tests/fuzz/batch_input.h"
+#include "tileserver/gpu/backend.h"
+#include "tileserver/render/executor.h"
+
+namespace {
+
+using namespace wall;
+using namespace wall::tileserver;
+
+struct Ignore final : SessionOutput {
+    void reply(std::uint32_t, std::vector<std::byte> bytes) override { answer = std::move(bytes); }
+    void frame_rendered(SurfaceId, std::uint32_t) override {}
+    std::vector<std::byte> answer;
+};
+
+struct Node {
+    std::unique_ptr<GlBackend> backend;
+    std::unique_ptr<Driver> driver;
+    std::unique_ptr<RenderNode> node;
+
+    Node() {
+        auto opened = open_egl_backend();
+        WALL_ASSERT(opened && (*opened)->make_current());
+        backend = std::move(*opened);
+        Gl gl;
+        gl.load([this](const char* name) { return backend->get_proc_address(name); });
+        driver = std::make_unique<Driver>(gl);
+        node = std::make_unique<RenderNode>(*driver);
+        node->tiles = {{0, {0, 0, 32, 32}}, {1, {32, 0, 32, 32}}};
+    }
+};
+
+void run(Executor& executor, const wire::PackBuffer& buffer) {
+    std::vector<std::byte> payload;
+    wire::append_batch(payload, {1, buffer.opcodes(), buffer.operands()});
+    const auto done = executor.run_batch(payload);
+    WALL_ASSERT(done);
+}
+
+void open_surface(Executor& executor) {
+    wire::PackBuffer buffer;
+    glapi::pack::SurfaceCreate(buffer, 1, 1, 8, 24, 8, 16, 0);
+    glapi::pack::SurfacePlace(buffer, 1, 1, 64, 32, 0, 0, 64, 32, 0);
+    glapi::pack::Bind(buffer, 1, 1);
+    const glstate::Viewport viewport{0, 0, 64, 32};
+    glapi::pack_state(buffer, glstate::el::viewport::id, &viewport, sizeof viewport);
+    run(executor, buffer);
+}
+
+/// The one pixel in the middle of a green quad, drawn by a session of its own.
+void check_others(RenderNode& node) {
+    Ignore output;
+    Session session(node.driver, SessionId(2));
+    Executor executor(node, session, output);
+    open_surface(executor);
+    wire::PackBuffer body, buffer;
+    glapi::pack::Clear(body, GL_COLOR_BUFFER_BIT);
+    glapi::pack::Color4ub(body, 0xff00ff00);
+    glapi::pack::Begin(body, GL_QUADS);
+    for (const auto& [x, y] : {std::array{-1.f, -1.f}, std::array{1.f, -1.f}, std::array{1.f, 1.f}, std::array{-1.f, 1.f}}) glapi::pack::Vertex2f(body, x, y);
+    glapi::pack::End(body);
+    glapi::pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()), static_cast<std::uint32_t>(body.operand_bytes()));
+    buffer.append(body, {}, body.mark());
+    glapi::pack::ReadPixels(buffer, 1, 0, 16, 16, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    run(executor, buffer);
+    const std::array<std::byte, 4> green = {std::byte{0}, std::byte{255}, std::byte{0}, std::byte{255}};
+    WALL_ASSERT(std::equal(green.begin(), green.end(), output.answer.begin(), output.answer.end()));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static Node* node = new Node;
+    {
+        Ignore output;
+        Session session(*node->driver, SessionId(1));
+        Executor executor(*node->node, session, output);
+        open_surface(executor);
+        (void)executor.run_batch(fuzz::batch_of(data, size, 1));
+    }
+    check_others(*node->node);
+    return 0;
+}
