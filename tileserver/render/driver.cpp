@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/render/driver.h"
 
+#include <algorithm>
 #include <cstring>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,9 @@ constexpr std::array<GLenum, kTextureTargets> kGlTargets = {
     GL_TEXTURE_1D,       GL_TEXTURE_2D,       GL_TEXTURE_3D,             GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE,
     GL_TEXTURE_1D_ARRAY, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_CUBE_MAP_ARRAY, GL_TEXTURE_BUFFER,   GL_TEXTURE_2D_MULTISAMPLE,
 };
+
+/// Exact for whole numbers that a viewport may have; absurd ones are cut.
+GLint whole(float value) { return static_cast<GLint>(std::clamp(value, -1e9f, 1e9f)); }
 
 bool has_extension(const Gl& gl, std::string_view wanted) {
     GLint count = 0;
@@ -135,7 +139,7 @@ void Driver::apply_viewport(const WindowValues& values, bool scaled) {
     if (scaled)
         gl_.ViewportIndexedf(0, v.x, v.y, v.width, v.height);
     else
-        gl_.Viewport(static_cast<GLint>(v.x), static_cast<GLint>(v.y), static_cast<GLsizei>(v.width), static_cast<GLsizei>(v.height));
+        gl_.Viewport(whole(v.x), whole(v.y), whole(v.width), whole(v.height));
 }
 
 void Driver::disable_scissor() {

@@ -10,6 +10,7 @@
 namespace wall::tileserver {
 namespace {
 
+constexpr std::int64_t kMaxScaledBitmap = std::int64_t{1} << 28;  // pixels
 constexpr std::int32_t kMaxEvalSteps = 1 << 16;  // of a mesh, in each direction
 
 /// A bitmap in which every pixel is repeated: glBitmap knows no zoom. Nearest, anchored at the bottom left.
@@ -71,7 +72,7 @@ template <class Draw>
 void Executor::at_raster_position(Draw&& draw) {
     namespace el = glstate::el;
     const glstate::State& state = context_->state;
-    if (el::raster_position_valid::ref(state) == 0) return;
+    if (el::raster_position_valid::ref(state) == 0 || !std::isfinite(raster_[0]) || !std::isfinite(raster_[1]) || !std::isfinite(raster_[2])) return;
     Driver& driver = node_.driver;
     trail_.fold_into(driver.mirror);
     // glWindowPos takes the current colour for the raster colour, and maps z through the depth range.
@@ -109,7 +110,7 @@ void Executor::Bitmap(std::int32_t width, std::int32_t height, float xorig, floa
             if (!g.scaled()) return gl_.Bitmap(width, height, xorig, yorig, 0, 0, reinterpret_cast<const GLubyte*>(bits.data()));
             const auto new_width = std::max(1, static_cast<std::int32_t>(std::lround(width * g.scale_x())));
             const auto new_height = std::max(1, static_cast<std::int32_t>(std::lround(height * g.scale_y())));
-            if (new_width > (1 << 16) || new_height > (1 << 16)) return;
+            if (std::int64_t{new_width} * new_height > kMaxScaledBitmap) return;
             const auto scaled = scale_bitmap(bits, width, height, new_width, new_height);
             gl_.Bitmap(new_width, new_height, static_cast<float>(xorig * g.scale_x()), static_cast<float>(yorig * g.scale_y()), 0, 0, scaled.data());
         });

@@ -12,11 +12,12 @@ namespace wall::tileserver {
 namespace {
 
 /// A copy of a part of a scaled layer at the window's own resolution.
-std::unique_ptr<Layer> window_copy(Driver& driver, const Layer& layer, const SurfaceFormat& format, const WindowValues::IntBox& window) {
+std::unique_ptr<Layer> window_copy(Driver& driver, const Layer& layer, const SurfaceFormat& format, const WindowValues::IntBox& window,
+                                   PixelBudget& budget) {
     const geom::Rect size{0, 0, window.width, window.height};
     LayerFormat copy_format = format.layer;
     copy_format.double_buffered = false;
-    auto copy = std::make_unique<Layer>(driver.gl(), driver.flip_y(), LayerGeometry{size, size, static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height)}, copy_format);
+    auto copy = std::make_unique<Layer>(driver.gl(), driver.flip_y(), LayerGeometry{size, size, static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height)}, copy_format, budget);
     copy->bind(GL_FRONT, GL_FRONT);
     const auto from = layer_box(layer.geometry(), window);
     driver.disable_scissor();
@@ -52,7 +53,8 @@ void Executor::ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_
         driver.forget_layer();
         driver.bind_layer(*layer, context_->state);
         if (layer->geometry().scaled()) {
-            const auto copy = window_copy(driver, *layer, surface->format(), {x, y, width, height});
+            PixelBudget budget;  // gone with the answer
+            const auto copy = window_copy(driver, *layer, surface->format(), {x, y, width, height}, budget);
             gl_.ReadPixels(0, 0, width, height, format, type, answer.data());
             driver.forget_layer();
         } else {

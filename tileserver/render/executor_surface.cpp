@@ -37,8 +37,8 @@ void Executor::SurfacePlace(std::uint32_t id, std::uint32_t layout_version, std:
     const geom::Rect rect{x, y, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
     node_.driver.forget_layer();
     node_.driver.disable_scissor();
-    surface->place({layout_version, window_width, window_height, rect, offscreen != 0}, node_.tiles);
     ++node_.damage;
+    if (!surface->place({layout_version, window_width, window_height, rect, offscreen != 0}, node_.tiles)) refuse("more pixels than a session may have");
 }
 
 void Executor::SurfaceDestroy(std::uint32_t id) {

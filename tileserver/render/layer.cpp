@@ -29,8 +29,9 @@ std::pair<GLenum, GLenum> attachments(GLenum buffer, bool double_buffered) {
 
 }  // namespace
 
-Layer::Layer(const Gl& gl, bool flip_y, const LayerGeometry& geometry, const LayerFormat& format)
-    : gl_(gl), geometry_(geometry), format_(format), flip_y_(flip_y) {
+Layer::Layer(const Gl& gl, bool flip_y, const LayerGeometry& geometry, const LayerFormat& format, PixelBudget& budget)
+    : gl_(gl), budget_(budget), geometry_(geometry), format_(format), flip_y_(flip_y) {
+    budget_.left -= pixels();
     const GLenum color = format.alpha ? GL_RGBA8 : GL_RGB8;
     front_ = make_texture(color);
     if (format.double_buffered) {
@@ -49,6 +50,7 @@ Layer::Layer(const Gl& gl, bool flip_y, const LayerGeometry& geometry, const Lay
 }
 
 Layer::~Layer() {
+    budget_.left += pixels();
     const std::array textures = {front_, back_, ready_, depth_stencil_};
     gl_.DeleteFramebuffers(1, &framebuffer_);
     gl_.DeleteTextures(static_cast<GLsizei>(textures.size()), textures.data());

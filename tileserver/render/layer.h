@@ -37,9 +37,15 @@ struct LayerGeometry {
     std::int32_t offset_y() const { return surface.bottom() - area.bottom(); }
 };
 
+/// Pixels that a session's layers may still take.
+struct PixelBudget {
+    std::int64_t left = 0;
+};
+
 class Layer {
 public:
-    Layer(const Gl& gl, bool flip_y, const LayerGeometry& geometry, const LayerFormat& format);
+    /// `budget` outlives the layer.
+    Layer(const Gl& gl, bool flip_y, const LayerGeometry& geometry, const LayerFormat& format, PixelBudget& budget);
     ~Layer();
     Layer(const Layer&) = delete;
     Layer& operator=(const Layer&) = delete;
@@ -47,6 +53,7 @@ public:
     const LayerGeometry& geometry() const { return geometry_; }
     std::int32_t width() const { return geometry_.area.width; }
     std::int32_t height() const { return geometry_.area.height; }
+    std::int64_t pixels() const { return std::int64_t{width()} * height(); }
     bool top_row_first() const { return flip_y_; }
     bool complete() const { return complete_; }
 
@@ -78,6 +85,7 @@ private:
     void copy(GLuint from, const Layer& source, GLuint to) const;
 
     const Gl& gl_;
+    PixelBudget& budget_;
     LayerGeometry geometry_;
     LayerFormat format_;
     bool flip_y_, complete_ = false, frame_waits_ = false;

@@ -12,7 +12,7 @@ inline constexpr std::size_t kMaxContexts = 1024;
 inline constexpr std::size_t kMaxTextures = 1 << 16;
 inline constexpr std::uint64_t kMaxTextureBytes = 4ull << 30;       ///< bytes, by estimate, of all textures
 inline constexpr std::uint64_t kMaxRunBytes = 2ull << 30;           ///< bytes of packed display lists
-inline constexpr std::size_t kMaxLayerBytes = std::size_t{2} << 30; ///< bytes of one surface's layers
+inline constexpr std::int64_t kMaxLayerPixels = std::int64_t{1} << 28;  ///< pixels of all layers; 16 bytes each
 inline constexpr std::uint32_t kMaxFeedbackEntries = 16u << 20;     ///< of a feedback or selection buffer
 
 }  // namespace wall::tileserver

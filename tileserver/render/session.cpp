@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/render/session.h"
 
-#include "tileserver/render/limits.h"
-
 namespace wall::tileserver {
 
 Session::~Session() {
@@ -19,7 +17,7 @@ Surface* Session::create_surface(SurfaceId id, const SurfaceFormat& format) {
     driver_.forget_layer();
     if (surfaces_.size() >= kMaxSurfaces && !surfaces_.contains(id)) return nullptr;
     auto& surface = surfaces_[id];
-    surface = std::make_unique<Surface>(driver_.gl(), driver_.flip_y(), format);
+    surface = std::make_unique<Surface>(driver_.gl(), driver_.flip_y(), format, pixels_);
     return surface.get();
 }
 

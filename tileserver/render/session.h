@@ -13,6 +13,7 @@
 #include "gen/glstate/state.gen.h"
 #include "tileserver/render/attribute_trail.h"
 #include "tileserver/render/driver.h"
+#include "tileserver/render/limits.h"
 #include "tileserver/render/programs.h"
 #include "tileserver/render/soft_maps.h"
 #include "tileserver/render/surface.h"
@@ -75,6 +76,7 @@ private:
     Driver& driver_;
     SessionId id_;
     std::unordered_map<ContextId, SoftContext> contexts_;
+    PixelBudget pixels_{kMaxLayerPixels};  // before the surfaces, which use it to the end
     std::unordered_map<SurfaceId, std::unique_ptr<Surface>> surfaces_;
     std::unordered_map<std::uint64_t, Texture> textures_;
     std::uint64_t texture_version_ = 1, texture_bytes_ = 0;

@@ -8,24 +8,28 @@ namespace wall::tileserver {
 
 std::unique_ptr<Layer> Surface::make_layer(const LayerGeometry& geometry, std::unique_ptr<Layer> older) {
     if (older && older->geometry() == geometry) return older;
-    auto layer = std::make_unique<Layer>(gl_, flip_y_, geometry, format_.layer);
+    if (std::int64_t{geometry.area.width} * geometry.area.height > budget_.left) return nullptr;
+    auto layer = std::make_unique<Layer>(gl_, flip_y_, geometry, format_.layer, budget_);
     if (older && older->geometry().scale_x() == geometry.scale_x() && older->geometry().scale_y() == geometry.scale_y()) layer->take_content(*older);
     return layer;
 }
 
-void Surface::place(const SurfacePlace& place, const std::vector<Tile>& tiles) {
+bool Surface::place(const SurfacePlace& place, const std::vector<Tile>& tiles) {
     place_ = place;
     layers_[wire::kOffscreenSlot].reset();
     std::array<bool, wire::kMaxTilesPerNode> wanted{};
+    bool affordable = true;
     for (const Tile& tile : tiles) {
         const geom::Rect area = place.offscreen ? geom::Rect{} : geom::intersect(place.rect, tile.rect);
         if (area.empty() || tile.slot >= wire::kOffscreenSlot) continue;
         auto& layer = layers_[tile.slot];
         layer = make_layer({place.rect, area, place.window_width, place.window_height}, std::move(layer));
         wanted[tile.slot] = true;
+        affordable = affordable && layer != nullptr;
     }
     for (std::size_t slot = 0; slot < layers_.size(); ++slot)
         if (!wanted[slot]) layers_[slot].reset();
+    return affordable;
 }
 
 Layer* Surface::layer(std::uint32_t slot) {

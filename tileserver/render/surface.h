@@ -35,10 +35,11 @@ struct SurfacePlace {
 
 class Surface {
 public:
-    Surface(const Gl& gl, bool flip_y, const SurfaceFormat& format) : gl_(gl), flip_y_(flip_y), format_(format) {}
+    Surface(const Gl& gl, bool flip_y, const SurfaceFormat& format, PixelBudget& budget) : gl_(gl), flip_y_(flip_y), format_(format), budget_(budget) {}
 
-    /// Makes the layers anew where they differ; what stays in sight keeps its pixels.
-    void place(const SurfacePlace& place, const std::vector<Tile>& tiles);
+    /// Makes the layers anew where they differ; what stays in sight keeps its pixels. False: that is more than the
+    /// session may have, and some layers are missing.
+    bool place(const SurfacePlace& place, const std::vector<Tile>& tiles);
     /// Null if the surface does not reach the tile. The off-screen slot gives a layer of the whole window for any surface.
     Layer* layer(std::uint32_t slot);
     const Layer* layer(std::uint32_t slot) const { return layers_[slot].get(); }
@@ -53,11 +54,13 @@ public:
     std::optional<std::uint32_t> waiting_frame() const { return waiting_; }
 
 private:
+    /// Null: over the budget.
     std::unique_ptr<Layer> make_layer(const LayerGeometry& geometry, std::unique_ptr<Layer> older);
 
     const Gl& gl_;
     bool flip_y_;
     SurfaceFormat format_;
+    PixelBudget& budget_;
     SurfacePlace place_;
     std::array<std::unique_ptr<Layer>, wire::kMaxTilesPerNode> layers_;
     std::optional<std::uint32_t> waiting_;

@@ -32,7 +32,8 @@ TEST_P(LayerTest, DrawsTheSamePixelsAsAWindow) {
     gl.load([&](const char* name) { return (*backend)->get_proc_address(name); });
     {
         const geom::Rect all{0, 0, kWidth, kHeight};
-        Layer layer(gl, true, {all, all, kWidth, kHeight}, {.alpha = alpha});
+        PixelBudget budget;
+        Layer layer(gl, true, {all, all, kWidth, kHeight}, {.alpha = alpha}, budget);
         ASSERT_TRUE(layer.complete());
         layer.bind(GL_BACK, GL_BACK);
         gl.Viewport(0, 0, kWidth, kHeight);
