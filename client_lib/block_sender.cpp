@@ -49,6 +49,7 @@ void BlockSender::send_whole(const TargetSet& targets) {
                            static_cast<std::uint32_t>(packer_.commands()), static_cast<std::uint32_t>(packer_.operand_bytes()));
         buffer.append(packer_, {}, packer_.mark());
         session_.count_geometry(node, buffer.bytes() - before);
+        session_.count_block(node);
         reached.push_back(&node);
     }
     fold(reached);
@@ -166,6 +167,7 @@ void BlockSender::open_block(Share& share, std::uint64_t mask) {
     const std::size_t before = share.buffer->bytes();
     glapi::pack::Block(*share.buffer, static_cast<std::uint32_t>(mask), static_cast<std::uint32_t>(mask >> 32), 0, 0);
     session_.count_geometry(*share.node, share.buffer->bytes() - before);
+    session_.count_block(*share.node);
     share.block_start = share.buffer->mark();
     share.mask = mask;
 }

@@ -257,6 +257,7 @@ wire::PackBuffer& Session::batch(Node& node, std::uint32_t context) {
 void Session::send(Node& node) {
     if (node.batch.empty()) return;
     if (node.alive()) {
+        stats().add_node(node.index, NodeCounter::batches, 1);
         node.stream->send(node.batch_context, std::exchange(node.batch, wire::PackBuffer()));
         transport_.wake();
     }
@@ -365,6 +366,7 @@ std::optional<std::vector<std::byte>> Session::wait_reply(Node& node, std::uint3
 }
 
 void Session::count_geometry(Node& node, std::size_t bytes) { stats().add_node(node.index, NodeCounter::geometry_bytes, bytes); }
+void Session::count_block(Node& node) { stats().add_node(node.index, NodeCounter::blocks, 1); }
 void Session::count_objects(Node& node, std::size_t bytes) {
     if (bytes) stats().add_node(node.index, NodeCounter::object_bytes, bytes);
 }

@@ -121,6 +121,7 @@ public:
     void send(Node& node);
     Node& node_of(const Target& target) { return *nodes_[target.node]; }
     void count_geometry(Node& node, std::size_t bytes);
+    void count_block(Node& node);
     void count_objects(Node& node, std::size_t bytes);
     void count_state(Node& node, std::size_t bytes);
     void count_ideal(std::size_t bytes);
