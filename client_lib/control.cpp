@@ -317,6 +317,7 @@ bool ControlLink::write_some() {
 
 bool ControlLink::handle(FromWalld message) {
     if (const auto* refused = std::get_if<Refused>(&message)) {
+        refused_ = true;
         on_lost(refused->reason);
         return false;
     }
@@ -350,6 +351,7 @@ void ControlLink::on_lost(const std::string& why) {
 
 bool ControlLink::reconnect() {
     if (fd_) return true;
+    if (refused_) return false;
     auto opened = greet(hello_, address_, kOpenLimit);
     if (!opened) {
         log(LogLevel::debug, "walld_unreachable why=%s", opened.error().message.c_str());

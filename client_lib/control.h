@@ -84,6 +84,7 @@ private:
 
     UniqueFd fd_;           // background thread
     std::string inbox_;     // background thread: bytes of unfinished messages
+    bool refused_ = false;  // background thread: walld has ended the session (an operator did); no second one
 
     std::mutex mutex_;  // guards what follows
     std::condition_variable changed_;

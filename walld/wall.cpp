@@ -69,7 +69,7 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
         hand_out_ticket(id, session, index);
         out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(index, session.tickets[index])));
     }
-    out_.to_node(index, stacking_message());
+    out_.to_node(index, stacking_message(index));
     for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.set_nodes(nodes_under(surface.rect), now)); });
     return index;
 }
@@ -358,6 +358,7 @@ void Wall::move(const SurfaceKey& key, const geom::Rect& rect, Clock::time_point
     surface.rect = rect;
     ++surface.layout_version;
     send_placement(key, surface);
+    send_stacking();
     present(key, surface.swap.set_nodes(nodes_under(rect), now));
 }
 
@@ -380,9 +381,11 @@ void Wall::send_placement(const SurfaceKey& key, const Surface& surface) {
     out_.to_client(key.session, make(&proto::Envelope::mutable_placement, placement));
 }
 
-proto::Envelope Wall::stacking_message() const {
+/// Only what lies on the node: it must not show a window that has moved away, of which it gets no further frame.
+proto::Envelope Wall::stacking_message(NodeIndex node) const {
     proto::Stacking stacking;
     for (const auto& key : stacking_) {
+        if (!nodes_under(find(key)->rect).contains(node)) continue;
         auto* entry = stacking.add_entries();
         entry->set_session(key.session.value);
         entry->set_surface(key.surface.value);
@@ -390,7 +393,11 @@ proto::Envelope Wall::stacking_message() const {
     return make(&proto::Envelope::mutable_stacking, stacking);
 }
 
-void Wall::send_stacking() { to_all_nodes(stacking_message()); }
+void Wall::send_stacking() {
+    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+        if (nodes_[i].up) out_.to_node(i, stacking_message(i));
+    }
+}
 
 void Wall::to_all_nodes(const proto::Envelope& message) {
     for (NodeIndex i = 0; i < nodes_.size(); ++i) {

@@ -138,7 +138,7 @@ private:
     void send_placement(const SurfaceKey& key, const Surface& surface);
     void send_stacking();
     void to_all_nodes(const proto::Envelope& message);
-    proto::Envelope stacking_message() const;
+    proto::Envelope stacking_message(NodeIndex node) const;
     Result<std::vector<SurfaceKey>> surfaces_of(const Target& target) const;
     void for_each_surface(const std::function<void(const SurfaceKey&, Surface&)>& visit);
 

@@ -162,6 +162,18 @@ TEST_F(TheWall, APlacementFollowsTheWindowUnlessItIsScaled) {
     EXPECT_EQ(last_to_client(id).placement().layout_version(), 4u) << "a resize is always answered";
 }
 
+TEST_F(TheWall, ANodeShowsOnlyWhatLiesOnIt) {
+    join("left");
+    join("right");
+    const auto id = open();
+    open_surface(id, 1, 300, 300);
+    EXPECT_EQ(last_to_node(0).stacking().entries_size(), 1);
+    EXPECT_EQ(last_to_node(1).stacking().entries_size(), 0);
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}, now_));
+    EXPECT_EQ(last_to_node(0).stacking().entries_size(), 0) << "it has moved away";
+    EXPECT_EQ(last_to_node(1).stacking().entries_size(), 1);
+}
+
 TEST_F(TheWall, RefusesSurfacesThatCannotBe) {
     join("left");
     const auto id = open();
