@@ -59,12 +59,21 @@ void settle_materials(Context& c) {
     glstate::settle_color_material(c.state);
 }
 
+/// Mesa rounds what glGetIntegerv and glGetMaterialiv answer, but cuts off here.
+void get_truncated(const Context& c, std::uint32_t id, unsigned components, GLint* values) {
+    GLfloat real[4];
+    glstate::read_components(c.state, id, 0, glstate::ValueKind::real, components, real);
+    std::transform(real, real + components, values, [](GLfloat v) { return to_int(v); });
+}
+
 template <class T>
 void get_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, T* values) {
     const auto index = index_of(c, family, lead);
     const auto* entry = glstate::find_param(family, target_of(family, lead), pname);
     if (!index || !entry) return c.error(GL_INVALID_ENUM);
     if (family == ParamFamily::Material) settle_materials(c);
+    if constexpr (std::is_same_v<T, GLint>)
+        if (entry->kind == glstate::ValueKind::real && family != ParamFamily::Material) return get_truncated(c, entry->id + *index, entry->components, values);
     glstate::read_components(c.state, entry->id + *index, 0, entry->kind, entry->components, values);
 }
 

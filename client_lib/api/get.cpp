@@ -7,6 +7,7 @@
 #include "client_lib/context.h"
 #include "client_lib/limits.h"
 #include "client_lib/lists.h"
+#include "client_lib/maps.h"
 #include "client_lib/select.h"
 #include "client_lib/share_group.h"
 #include "client_lib/version.h"
@@ -38,6 +39,9 @@ void put_transposed(const glstate::Mat4& m, double* out) {
     const Mat4 t = transposed(m);
     std::copy(t.begin(), t.end(), out);
 }
+
+template <unsigned kMap>
+void pixel_map_size(Context& c, double* out) { *out = static_cast<double>(c.maps->pixel.tables[kMap].size()); }
 
 /// The nodes' limit, but no more than the client keeps.
 template <GLenum kName, int kMost>
@@ -76,6 +80,17 @@ const Special kSpecials[] = {
      }},
     {GL_MAX_EVAL_ORDER, 1, constant<30>},
     {GL_MAX_PIXEL_MAP_TABLE, 1, constant<256>},
+
+    {GL_PIXEL_MAP_I_TO_I_SIZE, 1, pixel_map_size<0>},
+    {GL_PIXEL_MAP_S_TO_S_SIZE, 1, pixel_map_size<1>},
+    {GL_PIXEL_MAP_I_TO_R_SIZE, 1, pixel_map_size<2>},
+    {GL_PIXEL_MAP_I_TO_G_SIZE, 1, pixel_map_size<3>},
+    {GL_PIXEL_MAP_I_TO_B_SIZE, 1, pixel_map_size<4>},
+    {GL_PIXEL_MAP_I_TO_A_SIZE, 1, pixel_map_size<5>},
+    {GL_PIXEL_MAP_R_TO_R_SIZE, 1, pixel_map_size<6>},
+    {GL_PIXEL_MAP_G_TO_G_SIZE, 1, pixel_map_size<7>},
+    {GL_PIXEL_MAP_B_TO_B_SIZE, 1, pixel_map_size<8>},
+    {GL_PIXEL_MAP_A_TO_A_SIZE, 1, pixel_map_size<9>},
 
     {GL_MAX_LIGHTS, 1, constant<glstate::el::light_enabled::count>},
     {GL_MAX_CLIP_PLANES, 1, limited<GL_MAX_CLIP_PLANES, glstate::el::clip_plane::count>},
@@ -144,6 +159,19 @@ void get_element(Context& c, const glstate::GetEntry& entry, Out* out) {
     glstate::read_components(c.state, id, entry.offset, entry.kind, entry.components, out);
 }
 
+/// Colours that are kept as given and answered as a fixed point framebuffer uses them (ARB_color_buffer_float).
+bool answered_clamped(GLenum pname) { return pname == GL_COLOR_CLEAR_VALUE || pname == GL_BLEND_COLOR || pname == GL_FOG_COLOR; }
+
+template <class Out>
+void get_clamped(Context& c, const glstate::GetEntry& entry, Out* out) {
+    double values[4];
+    get_element(c, entry, values);
+    for (unsigned i = 0; i < entry.components; ++i) {
+        const double value = std::clamp(values[i], 0.0, 1.0);
+        out[i] = std::is_same_v<Out, GLint> ? static_cast<Out>(2147483647.0 * value) : converted<Out>(value);
+    }
+}
+
 template <class Out>
 bool get_special(Context& c, GLenum pname, Out* out) {
     for (const Special& special : kSpecials) {
@@ -174,7 +202,7 @@ const std::uint32_t* flag_of(const Context& c, GLenum cap) {
 
 template <class Out>
 void get(Context& c, GLenum pname, Out* out) {
-    if (const auto* entry = glstate::find_get(pname)) return get_element(c, *entry, out);
+    if (const auto* entry = glstate::find_get(pname)) return answered_clamped(pname) ? get_clamped(c, *entry, out) : get_element(c, *entry, out);
     if (const auto* flag = flag_of(c, pname)) *out = converted<Out>(*flag);
     else if (!get_special(c, pname, out) && !get_limit(c, pname, out)) c.error(GL_INVALID_ENUM);
 }

@@ -108,6 +108,14 @@ GLenum buffer_error(GLenum word, const Surface* surface) {
     return named == 0 || (named & existing_buffers(surface)) ? GL_NO_ERROR : GL_INVALID_OPERATION;
 }
 
+constexpr std::byte kOnePixel[4] = {};
+
+/// While nothing is drawn an image is a token in the feedback buffer, of whatever size it is.
+template <class Pack>
+void feed_back(Context& c, Pack&& pack) {
+    if (c.state.local.render_mode == GL_FEEDBACK) c.draw(std::nullopt, std::forward<Pack>(pack));
+}
+
 }  // namespace
 
 void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels) {
@@ -115,7 +123,9 @@ void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
     if (glapi::is_integer_format(format)) return c.error(GL_INVALID_OPERATION);
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
     if (!buffers_exist(c, format)) return c.error(GL_INVALID_OPERATION);
-    if (!c.state.raster.raster_position_valid || width == 0 || height == 0) return;
+    if (!c.state.raster.raster_position_valid) return;
+    if (c.state.local.render_mode != GL_RENDER) return feed_back(c, [](wire::PackBuffer& b) { glapi::pack::DrawPixels(b, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, kOnePixel); });
+    if (width == 0 || height == 0) return;
     if (!glapi::image_bytes(format, type, width, height, 1)) return c.error(GL_OUT_OF_MEMORY);
     const void* from = image_source(c, {{width, height}, format, type}, pixels);
     if (from) draw_tight(c, width, height, format, type, glapi::unpack_image(unpack_store(c.state), {width, height}, format, type, from));
@@ -126,7 +136,9 @@ void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yo
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
     if (!c.state.raster.raster_position_valid) return;
     auto position = c.state.raster.raster_position;
-    const void* from = width > 0 && height > 0 ? image_source(c, {{width, height}, GL_COLOR_INDEX, GL_BITMAP}, bitmap) : nullptr;
+    const bool drawing = c.state.local.render_mode == GL_RENDER;
+    if (!drawing) feed_back(c, [](wire::PackBuffer& b) { glapi::pack::Bitmap(b, 1, 1, 0, 0, 0, 0, std::span(kOnePixel).first(1)); });
+    const void* from = drawing && width > 0 && height > 0 ? image_source(c, {{width, height}, GL_COLOR_INDEX, GL_BITMAP}, bitmap) : nullptr;
     if (from) {
         const auto bits = glapi::unpack_image(unpack_store(c.state), {width, height}, GL_COLOR_INDEX, GL_BITMAP, from);
         const float x = position[0] - xorig - kMargin, y = position[1] - yorig - kMargin;

@@ -33,11 +33,11 @@ Out from_real(double value) {
     else return static_cast<Out>(value);
 }
 
-/// [-1, 1] maps linearly to the integers' range.
+/// [-1, 1] maps linearly to the integers' range. What lies outside becomes the least integer, as Mesa's conversion does.
 template <class Out>
 Out from_normalized(double value) {
     if constexpr (std::is_same_v<Out, GLint> || std::is_same_v<Out, GLint64>)
-        return static_cast<Out>(saturated<GLint>(2147483647.0 * value));
+        return static_cast<Out>(std::abs(value) <= 1 ? static_cast<GLint>(2147483647.0 * value) : std::numeric_limits<GLint>::min());
     else return from_real<Out>(value);
 }
 
