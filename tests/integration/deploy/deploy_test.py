@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Installs a build into a folder and looks at it: deploy_test.py BUILD WALLD."""
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -45,7 +46,7 @@ class Installed(unittest.TestCase):
             for name, instance in (("walld.service", "walld.service"), ("tileserver@.service", "tileserver@left.service")):
                 text = self.find(name).read_text()
                 for program in ("walld", "tileserver"):
-                    text = text.replace(f"/usr/local/bin/{program}", str(self.find(f"bin/{program}")))
+                    text = re.sub(rf"(?m)^ExecStart=\S*/{program} ", f"ExecStart={self.find(f'bin/{program}')} ", text)
                 (Path(folder) / instance).write_text(text)
                 verified = output("systemd-analyze", "verify", "--man=no", Path(folder) / instance)
                 self.assertEqual((verified.returncode, verified.stderr.strip()), (0, ""))
