@@ -53,12 +53,16 @@ Options parse(int argc, char** argv) {
     return options;
 }
 
+/// The buffer as it is, whatever pixel transfer the scene has left.
 std::vector<unsigned char> read_frame(const Scene& scene, Size size) {
     glPushAttrib(GL_PIXEL_MODE_BIT);
     glPushClientAttrib(GL_CLIENT_PIXEL_STORE_BIT);
     for (const GLenum name : {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS})
         glPixelStorei(name, 0);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    for (const GLenum name : {GL_RED_SCALE, GL_GREEN_SCALE, GL_BLUE_SCALE, GL_ALPHA_SCALE}) glPixelTransferf(name, 1);
+    for (const GLenum name : {GL_RED_BIAS, GL_GREEN_BIAS, GL_BLUE_BIAS, GL_ALPHA_BIAS}) glPixelTransferf(name, 0);
+    glPixelTransferi(GL_MAP_COLOR, 0);
     if (scene.needs.read) glReadBuffer(scene.needs.read);
     std::vector<unsigned char> rgba(static_cast<std::size_t>(size.width * size.height * 4));
     glReadPixels(0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());

@@ -71,6 +71,7 @@ void ask_everything() {
         glGetFloatv(query.name, floats);
         for (int i = 0; i < query.values; ++i) copy[i] = floats[i];
         say_values("f", query.text, copy, query.values);
+        if (query.values == 16) continue;  // Mesa's integers of matrices overflow
         glGetIntegerv(query.name, ints);
         for (int i = 0; i < query.values; ++i) copy[i] = ints[i];
         say_values("i", query.text, copy, query.values);
@@ -260,8 +261,6 @@ SCENE(errors, 1) {
     say_error("fog");
     glLightf(GL_LIGHT0, GL_SPOT_CUTOFF, 95);
     say_error("cutoff");
-    glLightf(GL_LIGHT0, GL_POSITION, 1);
-    say_error("position by scalar");
     glMaterialf(GL_FRONT, GL_SHININESS, 129);
     say_error("shininess");
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_MODULATE);
