@@ -84,8 +84,8 @@ void Transport::run() {
         if (::poll(fds.data(), fds.size(), 1000) < 0) continue;
         if (fds[0].revents) {
             std::uint64_t count;
-            wake_pending_ = false;
             [[maybe_unused]] const auto n = ::read(wake_fd_.get(), &count, sizeof count);
+            wake_pending_ = false;  // behind the read, which would take a later wake's count with it
         }
         for (std::size_t i = 0; i < streams.size(); ++i) {
             const auto events = fds[i + 1].revents;
