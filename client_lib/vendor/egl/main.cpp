@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What GLVND's libEGL calls when it has loaded the library. Nothing is connected here: programs' children load it too.
+#include <cstdlib>
 #include <cstring>
 
 #include "client_lib/core.h"
@@ -26,6 +27,13 @@ void* get_proc_address(const char* name) {
     });
 }
 
+/// Installed beside the system's own manifests the library is offered to every EGL program: it is for those on the wall.
+bool meant_for_us() {
+    const char* manifests = std::getenv("__EGL_VENDOR_LIBRARY_FILENAMES");
+    const char* glx_vendor = std::getenv("__GLX_VENDOR_LIBRARY_NAME");
+    return (manifests && *manifests) || (glx_vendor && std::strcmp(glx_vendor, "wallgl") == 0);
+}
+
 // No display extension of ours has functions that GLVND has no stubs for.
 void* get_dispatch_address(const char*) { return nullptr; }
 void set_dispatch_index(const char*, int) {}
@@ -37,6 +45,7 @@ extern "C" [[gnu::visibility("default")]] EGLBoolean __egl_Main(std::uint32_t ve
                                                                 __EGLvendorInfo*, __EGLapiImports* imports) {
     using namespace wall::client;
     if (EGL_VENDOR_ABI_GET_MAJOR_VERSION(version) != EGL_VENDOR_ABI_MAJOR_VERSION) return EGL_FALSE;
+    if (!egl::meant_for_us()) return EGL_FALSE;
     watch_forks();
     egl::start(*exports);
     imports->getPlatformDisplay = egl::get_platform_display;
