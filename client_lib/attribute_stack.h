@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "client_lib/texture_binding.h"
 #include "common/glapi/gl_types.h"
 #include "gen/glstate/state.gen.h"
 
@@ -17,6 +18,7 @@ inline constexpr std::size_t kAttributeStackLimit = 16;
 struct SavedAttributes {
     GLbitfield mask = 0;
     glstate::State state;
+    std::vector<SavedTexture> textures;  ///< of GL_TEXTURE_BIT
 };
 
 struct AttributeStacks {

@@ -152,12 +152,7 @@ void put_component(Rgba& pixel, std::uint8_t place, float value) {
     else pixel[place] = value;
 }
 
-float luminance_sum(const Rgba& p) { return std::min(p[0] + p[1] + p[2], 1.0f); }
-
-float get_component(const Rgba& pixel, std::uint8_t place, bool sum) {
-    if (place == kLuminance) return sum ? luminance_sum(pixel) : pixel[0];
-    return place == kIntensity ? pixel[0] : pixel[place];
-}
+float get_component(const Rgba& pixel, std::uint8_t place) { return place >= kLuminance ? pixel[0] : pixel[place]; }
 
 bool whole_numbers(GLenum format) {
     return format == GL_COLOR_INDEX || format == GL_STENCIL_INDEX || glapi::is_integer_format(format);
@@ -232,7 +227,7 @@ std::vector<float> to_indices(GLenum type, std::span<const std::byte> tight, std
     return out;
 }
 
-std::vector<std::byte> from_rgba(GLenum format, GLenum type, std::span<const Rgba> pixels, bool sum) {
+std::vector<std::byte> from_rgba(GLenum format, GLenum type, std::span<const Rgba> pixels) {
     const auto layout = glapi::pixel_layout(format, type);
     if (!layout || layout->bitmap) return {};
     std::vector<std::byte> out(pixels.size() * layout->pixel_bytes);
@@ -246,7 +241,7 @@ std::vector<std::byte> from_rgba(GLenum format, GLenum type, std::span<const Rgb
         } else if (packed) {
             std::uint32_t word = 0;
             for (unsigned k = 0; k < order.count; ++k) {
-                const float value = get_component(pixels[i], order.place[k], sum);
+                const float value = get_component(pixels[i], order.place[k]);
                 const std::uint32_t max = (1u << bits.bits[k]) - 1;
                 const std::uint32_t number = whole ? std::min(static_cast<std::uint32_t>(value), max) : to_unorm(value, bits.bits[k]);
                 word |= number << shift_of(bits, k, layout->pixel_bytes * 8);
@@ -254,7 +249,7 @@ std::vector<std::byte> from_rgba(GLenum format, GLenum type, std::span<const Rgb
             std::memcpy(at, &word, layout->pixel_bytes);
         } else {
             for (unsigned k = 0; k < order.count; ++k)
-                store_component(type, at + k * layout->element_bytes, get_component(pixels[i], order.place[k], sum), whole);
+                store_component(type, at + k * layout->element_bytes, get_component(pixels[i], order.place[k]), whole);
         }
     }
     return out;

@@ -27,8 +27,8 @@ struct PixelMapTables {
 std::vector<Rgba> to_rgba(GLenum format, GLenum type, std::span<const std::byte> tight, std::size_t pixels);
 /// Indices (GL_COLOR_INDEX, GL_STENCIL_INDEX), bitmaps included (`width` pixels a row), shift, offset and maps not applied.
 std::vector<float> to_indices(GLenum type, std::span<const std::byte> tight, std::int32_t width, std::int32_t rows);
-/// Luminance is taken from red (textures); `sum`: from red + green + blue (glReadPixels, glGetTexImage).
-std::vector<std::byte> from_rgba(GLenum format, GLenum type, std::span<const Rgba> pixels, bool sum);
+/// Luminance is taken from red.
+std::vector<std::byte> from_rgba(GLenum format, GLenum type, std::span<const Rgba> pixels);
 
 /// Whether pixel transfer would change colours or depths.
 bool transfer_matters(const glstate::State& state, GLenum format);

@@ -45,6 +45,25 @@ void bring_program_up_to_date(const Program& program, Node& node, wire::PackBuff
     known = program.executable->last_change;
 }
 
+template <class E>
+void adopt_default(glstate::State& state, std::uint32_t id) {
+    for (unsigned unit = 0; unit < E::count; ++unit)
+        if (E::ref(state, unit) == 0) glstate::assign<E>(state, unit, id);
+}
+
+/// Name 0 of a target stands for the default texture that has got content since it was bound: through another context of
+/// the group, or before glPopAttrib.
+void adopt_default(glstate::State& state, const Texture& texture) {
+    namespace el = glstate::el;
+    switch (texture.target) {
+        case GL_TEXTURE_1D: return adopt_default<el::texture_binding_1d>(state, texture.id);
+        case GL_TEXTURE_2D: return adopt_default<el::texture_binding_2d>(state, texture.id);
+        case GL_TEXTURE_3D: return adopt_default<el::texture_binding_3d>(state, texture.id);
+        case GL_TEXTURE_CUBE_MAP: return adopt_default<el::texture_binding_cube_map>(state, texture.id);
+        default: return adopt_default<el::texture_binding_rectangle>(state, texture.id);
+    }
+}
+
 }  // namespace
 
 ShareGroup::ShareGroup() = default;
@@ -60,6 +79,7 @@ void ShareGroup::bring_up_to_date(Node& node, Context& context, wire::PackBuffer
     if (mirror.objects == now) return;
     context.maps->bring_up_to_date(node, buffer);
     std::lock_guard lock(mutex);
+    for (const auto& [target, texture] : default_textures) adopt_default(context.state, *texture);
     const auto bring_texture = [&](std::uint32_t id) {
         if (id == 0) return;
         const auto found = textures_by_id.find(id);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "client_lib/context.h"
 #include "client_lib/share_group.h"
@@ -22,5 +23,13 @@ std::shared_ptr<Texture> texture_to_change(Context& c, GLenum target);
 std::shared_ptr<Texture> make_texture(ShareGroup& share, GLuint name, GLenum target);
 /// To be called after every change of a texture.
 void touch(ShareGroup& share, Texture& texture);
+
+/// Parameters of the textures that a context has bound, which glPushAttrib(GL_TEXTURE_BIT) saves too.
+struct SavedTexture {
+    std::shared_ptr<Texture> texture;
+    TexParameters parameters;
+};
+std::vector<SavedTexture> bound_texture_parameters(Context& c);
+void restore_texture_parameters(Context& c, const std::vector<SavedTexture>& saved);
 
 }  // namespace wall::client

@@ -240,7 +240,7 @@ void GetPointerv(Context& c, GLenum pname, void** params) {
 void PushClientAttrib(Context& c, GLbitfield mask) {
     auto& stack = c.attributes->client;
     if (stack.size() >= kAttributeStackLimit) return c.error(GL_STACK_OVERFLOW);
-    stack.push_back(std::make_unique<SavedAttributes>(SavedAttributes{mask, c.state}));
+    stack.push_back(std::make_unique<SavedAttributes>(SavedAttributes{mask, c.state, {}}));
 }
 
 void PopClientAttrib(Context& c) {

@@ -11,7 +11,8 @@ void PushAttrib(Context& c, GLbitfield mask) {
     if (stack.size() >= kAttributeStackLimit) return c.error(GL_STACK_OVERFLOW);
     if (mask & (GL_CURRENT_BIT | GL_LIGHTING_BIT)) c.flush_block();  // current attributes are in `state` after it
     glstate::settle_color_material(c.state);
-    stack.push_back(std::make_unique<SavedAttributes>(SavedAttributes{mask, c.state}));
+    stack.push_back(std::make_unique<SavedAttributes>(SavedAttributes{mask, c.state, {}}));
+    if (mask & GL_TEXTURE_BIT) stack.back()->textures = bound_texture_parameters(c);
 }
 
 void PopAttrib(Context& c) {
@@ -25,6 +26,7 @@ void PopAttrib(Context& c) {
         c.set<E>(i, E::ref(std::as_const(saved->state), i));
     });
     unify_value_ids(c.state, saved->state);
+    restore_texture_parameters(c, saved->textures);
 }
 
 }  // namespace wall::client::api

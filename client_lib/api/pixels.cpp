@@ -77,7 +77,8 @@ void pixel_map(Context& c, GLenum map, GLsizei size, const In* values, double sc
 template <class Out>
 void get_pixel_map(Context& c, GLenum map, Out* out, double scale) {
     if (!is_pixel_map(map)) return c.error(GL_INVALID_ENUM);
-    for (const float value : c.maps->pixel.of(map)) *out++ = static_cast<Out>(is_index_map(map) ? value : value * scale);
+    constexpr double kRounding = std::is_same_v<Out, GLushort> ? 0.5 : 0.0;  // Mesa rounds these only
+    for (const float value : c.maps->pixel.of(map)) *out++ = static_cast<Out>(is_index_map(map) ? value : value * scale + kRounding);
 }
 
 // ---- buffers ----

@@ -95,7 +95,7 @@ TexelData transferred(Context& c, const ImageCall& call, TexelData data) {
     auto pixels = to_rgba(data.format, data.type, data.bytes, texels(call));
     if (call.format == GL_DEPTH_COMPONENT) {
         transfer_depths(c.state, pixels);
-        return {GL_DEPTH_COMPONENT, GL_FLOAT, from_rgba(GL_DEPTH_COMPONENT, GL_FLOAT, pixels, false)};
+        return {GL_DEPTH_COMPONENT, GL_FLOAT, from_rgba(GL_DEPTH_COMPONENT, GL_FLOAT, pixels)};
     }
     transfer_colors(c.state, maps, pixels);
     return {GL_RGBA, GL_FLOAT, bytes_of(pixels)};
@@ -117,7 +117,7 @@ bool find_pixels(Context& c, ImageCall& call) {
 bool eight_bits(GLenum format, GLenum type) { return type == GL_UNSIGNED_BYTE && !depth_like(format); }
 
 void convert(TexelData& data, std::size_t count, GLenum format, GLenum type) {
-    data.bytes = from_rgba(format, type, to_rgba(data.format, data.type, data.bytes, count), false);
+    data.bytes = from_rgba(format, type, to_rgba(data.format, data.type, data.bytes, count));
     data.format = format;
     data.type = type;
 }

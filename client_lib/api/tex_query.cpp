@@ -120,18 +120,21 @@ void rebase(GLenum base, Rgba& p) {
     }
 }
 
-float quantized(float value, unsigned bits) {
+/// `to_bytes`: five and six bits become eight by repeating their highest, not by rounding (Mesa's format_utils).
+float quantized(float value, unsigned bits, bool to_bytes) {
     if (bits == 0 || bits > 16) return value;
     const auto most = static_cast<float>((1u << bits) - 1);
-    return static_cast<float>(std::lrint(std::clamp(value, 0.0f, 1.0f) * most)) / most;
+    const auto number = static_cast<unsigned>(std::lrint(std::clamp(value, 0.0f, 1.0f) * most));
+    if (to_bytes && (bits == 5 || bits == 6)) return static_cast<float>(number << (8 - bits) | number >> (2 * bits - 8)) / 255.0f;
+    return static_cast<float>(number) / most;
 }
 
 /// To the precision that the driver keeps.
-void quantize(const TextureFormat& format, const ComponentBits& bits, Rgba& p) {
+void quantize(const TextureFormat& format, const ComponentBits& bits, bool to_bytes, Rgba& p) {
     if (format.component_type == GL_FLOAT || format.component_type == GL_SIGNED_NORMALIZED) return;
     const unsigned red = bits.red ? bits.red : bits.luminance ? bits.luminance : bits.intensity;
     const unsigned sizes[4] = {red, bits.green, bits.blue, bits.alpha};
-    for (unsigned i = 0; i < 4; ++i) p[i] = quantized(p[i], sizes[i]);
+    for (unsigned i = 0; i < 4; ++i) p[i] = quantized(p[i], sizes[i], to_bytes);
 }
 
 bool readable(GLenum base, GLenum format) {
@@ -202,10 +205,10 @@ void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum 
         auto texels = level_texels(*texture, face_of(target), number);
         if (format != GL_DEPTH_COMPONENT && format != GL_DEPTH_STENCIL) {
             const ComponentBits bits = stored_bits(*internal, level->format, level->type);
-            for (Rgba& texel : texels) quantize(*internal, bits, texel), rebase(internal->base, texel);
+            for (Rgba& texel : texels) quantize(*internal, bits, type == GL_UNSIGNED_BYTE, texel), rebase(internal->base, texel);
             if (transfer_matters(c.state, format)) transfer_colors(c.state, c.maps->pixel, texels);
         }
-        tight = from_rgba(format, type, texels, true);
+        tight = from_rgba(format, type, texels);  // luminance is red here, unlike in glReadPixels
     }
     if (void* to = image_target(c, {size, format, type}, pixels)) glapi::pack_image(pack_store(c.state), size, format, type, tight, to);
 }
