@@ -53,7 +53,7 @@ void cell_view(int index, int columns, int rows) {
     glMatrixMode(GL_PROJECTION);
     glLoadIdentity();
     glTranslatef(-1 + w * (static_cast<float>(index % columns) + 0.5f), 1 - h * (static_cast<float>(index / columns) + 0.5f), 0);
-    glScalef(w * 0.46f, h * 0.46f, 1);
+    glScalef(w * 0.4573f, h * 0.4591f, 1);  // odd: no pixel's centre lies on the border of two texels
     glMatrixMode(GL_MODELVIEW);
     glLoadIdentity();
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pixel paths: drawing, reading and copying rectangles of pixels, bitmaps, zoom, transfer, storage.
+// Pixel paths: drawing, reading and copying rectangles of pixels, bitmaps, zoom, transfer, storage. Zooms are odd numbers:
+// a fragment's centre on the very border of two zoomed pixels may take either, and other tiles decide otherwise.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -57,8 +58,8 @@ SCENE(draw_pixels, 5) {
                           {GL_RGBA, GL_UNSIGNED_SHORT_4_4_4_4, 1}, {GL_RGB, GL_UNSIGNED_SHORT_5_6_5, 1},
                           {GL_RGBA, GL_UNSIGNED_INT_8_8_8_8, 1}, {GL_GREEN, GL_SHORT, 1}, {GL_RGB, GL_UNSIGNED_INT, 3}, {GL_BGR, GL_UNSIGNED_BYTE, 3}};
     const auto image = random_image(40 * 40 * 16);
-    if (frame == 1) glPixelZoom(1.7f, 2.3f);
-    if (frame == 2) glPixelZoom(-1.5f, 0.5f);
+    if (frame == 1) glPixelZoom(1.713f, 2.317f);
+    if (frame == 2) glPixelZoom(-1.513f, 0.537f);
     if (frame == 3) {
         glPixelStorei(GL_UNPACK_ROW_LENGTH, 37);
         glPixelStorei(GL_UNPACK_SKIP_PIXELS, 3);
@@ -210,7 +211,7 @@ SCENE(copy_pixels, 4) {
         glVertex2f(random_unit() * 200, random_unit() * 150);
     }
     glEnd();
-    if (frame == 1) glPixelZoom(1.5f, 1.25f);
+    if (frame == 1) glPixelZoom(1.513f, 1.237f);
     if (frame == 2) glPixelZoom(-1, -1);
     if (frame == 3) glPixelTransferf(GL_RED_SCALE, 0.2f);
     glRasterPos2i(210, 145);
@@ -244,7 +245,7 @@ SCENE(depth_and_stencil_pixels, 3) {
     glColorMask(0, 0, 0, 0);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glRasterPos2i(160, 110);
-    glPixelZoom(1.5f, 1.5f);
+    glPixelZoom(1.513f, 1.537f);
     glDrawPixels(50, 50, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());
     glRasterPos2i(175, 120);
     glDrawPixels(50, 50, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, stencil.data());

@@ -220,7 +220,7 @@ SCENE(polygon_stipple_offset, 3) {
     lit_sphere(16, 8);
     glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
     glEnable(GL_POLYGON_OFFSET_LINE);
-    glPolygonOffset(-1.0f, -2.0f * static_cast<float>(frame));
+    glPolygonOffset(-2.0f, -40.0f * static_cast<float>(frame + 1));  // enough that no line fights with its face
     glColor3f(1, 1, 0);
     lit_sphere(16, 8);
     glDisable(GL_POLYGON_OFFSET_LINE);
