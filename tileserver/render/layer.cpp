@@ -115,6 +115,7 @@ void Layer::copy(GLuint from, const Layer& source, GLuint to) const {
         const geom::Rect& area = layer.geometry_.area;
         return flip_y_ ? common.y - area.y : area.bottom() - common.bottom();
     };
+    gl_.Flush();  // Mesa 22.3 leaves vertices of glBegin/glEnd that it still holds out of the copy
     gl_.CopyImageSubData(from, GL_TEXTURE_2D, 0, common.x - source.geometry_.area.x, row(source), 0, to, GL_TEXTURE_2D, 0,
                          common.x - geometry_.area.x, row(*this), 0, common.width, common.height, 1);
 }
