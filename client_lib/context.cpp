@@ -9,6 +9,7 @@
 #include "client_lib/lists.h"
 #include "client_lib/maps.h"
 #include "client_lib/material.h"
+#include "client_lib/occlusion.h"
 #include "client_lib/program_use.h"
 #include "client_lib/select.h"
 #include "client_lib/share_group.h"
@@ -25,6 +26,7 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextOptions&)
       attributes(std::make_unique<AttributeStacks>()),
       select(std::make_unique<SelectState>()),
       maps(std::make_unique<ContextMaps>()),
+      occlusion(std::make_unique<OcclusionState>()),
       share_(std::move(share)) {
     for (auto& stack : texture_stacks) stack.limit = 10;
 }
@@ -78,7 +80,16 @@ void Context::end_primitive() {
     if (packer.bytes() > kBlockBytes && !packer.closed()) flush_block();
 }
 
+void Context::settle_modelview() {
+    if (!(modelview_stack.form & form::kUnknown)) return;
+    FormedMatrix top{state.matrix.modelview, modelview_stack.form, modelview_stack.origin};
+    settle(top);
+    modelview_stack.form = top.form;
+    modelview_stack.origin = top.origin;
+}
+
 void Context::submit_block() {
+    if (packer.has_geometry()) settle_modelview();
     if (packer.inside()) return;  // only commands that are legal inside come here then, and they change nothing that is drawn with
     session_->submit_block(*this);
     packer.reset();

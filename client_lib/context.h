@@ -26,6 +26,7 @@ struct ListState;       // lists.h: display list being compiled, call nesting
 struct AttributeStacks; // attribute_stack.h
 struct SelectState;     // select.h: feedback and selection
 struct Program;         // objects/program.h
+struct OcclusionState;  // occlusion.h
 struct ContextMaps;     // maps.h: evaluator and pixel maps
 
 inline constexpr unsigned kTextureUnits = 8;
@@ -37,6 +38,7 @@ inline constexpr std::size_t kBlockBytes = 256 << 10;
 struct MatrixStack {
     std::vector<FormedMatrix> below;  ///< saved by glPushMatrix, oldest first
     std::uint32_t form = form::kIdentity;  ///< the top's
+    MatrixOrigin origin{};                 ///< the top's
     unsigned limit = 32;
 };
 
@@ -76,8 +78,13 @@ public:
     /// Draws with a command other than vertices. `box`: what it touches, in window pixels; nothing: unknown.
     template <class Pack>
     void draw(const std::optional<PixelRect>& box, Pack&& pack) {
+        draw(box, Needs{}, std::forward<Pack>(pack));
+    }
+    /// The same for a command that depends on a part of the state only.
+    template <class Pack>
+    void draw(const std::optional<PixelRect>& box, const Needs& needs, Pack&& pack) {
         flush_block();
-        session_->draw(*this, box, std::forward<Pack>(pack));
+        session_->draw(*this, box, needs, std::forward<Pack>(pack));
     }
 
     Session& session() { return *session_; }
@@ -96,6 +103,7 @@ public:
     glapi::ListRecorder& list();  ///< of the list being compiled
     std::unique_ptr<ContextMaps> maps;
     std::shared_ptr<Program> program;  ///< drawn with; null: fixed function
+    std::unique_ptr<OcclusionState> occlusion;
 
     /// glMaterial calls inside the open Begin/End, applied to `state` when the block is sent.
     struct PendingMaterial {
@@ -107,6 +115,9 @@ public:
     /// glBegin and glEnd after their checks.
     void begin_primitive(GLenum mode);
     void end_primitive();
+
+    /// A driver looks at the modelview matrix when it draws.
+    void settle_modelview();
 
     /// Moves the packed block's last attributes and materials into `state` (BlockSender).
     void fold_attributes();
@@ -136,19 +147,20 @@ private:
 };
 
 template <class Pack>
-void Session::draw(Context& context, const std::optional<PixelRect>& box, Pack&& pack) {
-    draw(context, box, [](Node&, wire::PackBuffer&) {}, std::forward<Pack>(pack), [](Node&) {});
+void Session::draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Pack&& pack) {
+    draw(context, box, needs, [](Node&, wire::PackBuffer&) {}, std::forward<Pack>(pack), [](Node&) {});
 }
 
 template <class Before, class Pack, class After>
-void Session::draw(Context& context, const std::optional<PixelRect>& box, Before&& before, Pack&& pack, After&& after) {
+void Session::draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Before&& before, Pack&& pack,
+                   After&& after) {
     std::lock_guard lock(mutex_);
     if (!context.draw_surface()) return;
     const SurfaceLayout& layout = context.draw_layout();
     for (const auto& [index, slots] : by_node(targets_of(layout, box), layout)) {
         Node& node = *nodes_[index];
         if (!node.alive()) continue;
-        wire::PackBuffer& buffer = prepare(node, context);
+        wire::PackBuffer& buffer = prepare(node, context, needs);
         before(node, buffer);
         const std::size_t operands = buffer.operand_bytes(), bytes = buffer.bytes();
         glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32), 0, 0);

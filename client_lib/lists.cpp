@@ -177,30 +177,31 @@ void apply_effects(glstate::State& state, const ListRun& run) {
     for (const auto& m : run.materials) assign_material(state, m.face, m.pname, m.value);
 }
 
-/// The nodes that ran it are where the context is; the others get the difference when they next need it.
-void follow(Context& c, const std::vector<Node*>& nodes) {
+/// The nodes that ran it have its effects; the others get the difference when they next need it.
+void follow(Context& c, const std::vector<Node*>& nodes, const ListRun& run) {
     std::lock_guard lock(c.session().mutex());
     for (Node* node : nodes) {
         const auto mirror = node->mirrors.find(c.id);
         if (mirror == node->mirrors.end()) continue;
         glstate::State& state = mirror->second.state;
-        state.current = c.state.current;
-        state.material = c.state.material;
-        for (const Category category : {Category::current, Category::material})
-            state.ids[static_cast<std::size_t>(category)] = c.state.ids[static_cast<std::size_t>(category)];
+        apply_effects(state, run);
+        unify_id(state, c.state, Category::current);
+        if (!run.materials.empty()) unify_id(state, c.state, Category::material);
     }
 }
 
 void call_run(Context& c, const ListRun& run) {
     c.flush_block();
+    c.settle_modelview();
     if (!c.draw_surface()) return apply_effects(c.state, run);
     const auto box = options().broadcast ? std::nullopt : project(c.projection(), run.box);
     std::vector<Node*> reached;
+    const Needs needs = run.materials.empty() ? needs_of_geometry(c.state) : Needs{};
     c.session().draw(
-        c, box, [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session(), node, buffer, run); },
+        c, box, needs, [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session(), node, buffer, run); },
         [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); }, [&](Node& node) { reached.push_back(&node); });
     apply_effects(c.state, run);
-    follow(c, reached);
+    follow(c, reached, run);
 }
 
 // ---- a run within glBegin .. glEnd: unpacked again ----

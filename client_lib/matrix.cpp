@@ -35,6 +35,24 @@ Mat4 product_affine(const Mat4& a, const Mat4& b) {
     return p;
 }
 
+std::uint32_t form_of(const Mat4& m);
+
+/// After a change: where the matrix comes from.
+void remember(FormedMatrix& matrix, glstate::StepKind kind, float a = 0, float b = 0, float c = 0, float d = 0) {
+    MatrixOrigin& origin = matrix.origin;
+    if (matrix.form & form::kUnknown) {
+        origin.known = false;
+    } else if ((form_of(matrix.m) & ~matrix.form) == 0) {
+        origin.known = true;
+        origin.base = matrix.m;
+        origin.count = 0;
+    } else if (origin.known && kind != glstate::StepKind::none && origin.count < MatrixOrigin::kMostSteps) {
+        origin.steps[origin.count++] = {static_cast<std::uint32_t>(kind), a, b, c, d};
+    } else {
+        origin.known = false;
+    }
+}
+
 void multiply_formed(FormedMatrix& matrix, const Mat4& right, std::uint32_t right_form) {
     matrix.form |= right_form;
     matrix.m = only(matrix.form, form::kAffine) ? product_affine(matrix.m, right) : product_full(matrix.m, right);
@@ -178,13 +196,26 @@ bool invert_full(const Mat4& in, Mat4& out) {
     return true;
 }
 
-bool invert(const Mat4& m, std::uint32_t form, Mat4& out) {
-    if (form == form::kIdentity) return true;
-    if (only(form, form::kTranslation | form::kUniformScale | form::kGeneralScale))
-        return invert_diagonal(m, out, m[10] == 1 && m[14] == 0 ? 2 : 3);
-    if (!only(form, form::kAffine)) return invert_full(m, out);
-    if (only(form, form::kRotation | form::kTranslation | form::kUniformScale)) return invert_angle_preserving(m, form, out);
-    return invert_affine(m, out);
+enum class Way : std::uint8_t { identity, diagonal, angle_preserving, affine, full };
+
+Way way_to_invert(std::uint32_t form) {
+    if (form == form::kIdentity) return Way::identity;
+    if (only(form, form::kTranslation | form::kUniformScale | form::kGeneralScale)) return Way::diagonal;
+    if (!only(form, form::kAffine)) return Way::full;
+    return only(form, form::kRotation | form::kTranslation | form::kUniformScale) ? Way::angle_preserving : Way::affine;
+}
+
+Mat4 inverse_by_form(const Mat4& m, std::uint32_t form) {
+    Mat4 out = kIdentity;
+    bool regular = true;
+    switch (way_to_invert(form)) {
+        case Way::identity: break;
+        case Way::diagonal: regular = invert_diagonal(m, out, m[10] == 1 && m[14] == 0 ? 2 : 3); break;
+        case Way::angle_preserving: regular = invert_angle_preserving(m, form, out); break;
+        case Way::affine: regular = invert_affine(m, out); break;
+        case Way::full: regular = invert_full(m, out); break;
+    }
+    return regular ? out : kIdentity;
 }
 
 /// Around one axis: the plane's two other axes, in the order in which the angle turns.
@@ -211,18 +242,22 @@ constexpr double kPi = 3.14159265358979323846;
 
 void load(FormedMatrix& matrix, const Mat4& values) {
     if (matrix.m == values) return;
-    matrix = {values, form::kGeneral | form::kUnknown};
+    matrix.m = values;
+    matrix.form = form::kGeneral | form::kUnknown;
+    matrix.origin.known = false;
 }
 
 void load_identity(FormedMatrix& matrix) {
     matrix.m = kIdentity;
     matrix.form &= ~form::kUnknown;
+    remember(matrix, glstate::StepKind::none);
 }
 
 void multiply(FormedMatrix& matrix, const Mat4& right) {
     if (right == kIdentity) return;
     matrix.form |= form::kGeneral | form::kUnknown;
     matrix.m = product_full(matrix.m, right);
+    matrix.origin.known = false;
 }
 
 void rotate(FormedMatrix& matrix, float degrees, float x, float y, float z) {
@@ -241,12 +276,14 @@ void rotate(FormedMatrix& matrix, float degrees, float x, float y, float z) {
         m = general_rotation(x / length, y / length, z / length, s, c);
     }
     multiply_formed(matrix, m, form::kRotation);
+    remember(matrix, glstate::StepKind::rotate, degrees, x, y, z);
 }
 
 void translate(FormedMatrix& matrix, float x, float y, float z) {
     Mat4& m = matrix.m;
     for (std::size_t r = 0; r < 4; ++r) m[12 + r] = m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r];
     matrix.form |= form::kTranslation;
+    remember(matrix, glstate::StepKind::translate, x, y, z);
 }
 
 void scale(FormedMatrix& matrix, float x, float y, float z) {
@@ -257,6 +294,7 @@ void scale(FormedMatrix& matrix, float x, float y, float z) {
     }
     const bool uniform = std::fabs(x - y) < 1e-8f && std::fabs(x - z) < 1e-8f;
     matrix.form |= uniform ? form::kUniformScale : form::kGeneralScale;
+    remember(matrix, glstate::StepKind::scale, x, y, z);
 }
 
 void frustum(FormedMatrix& matrix, float left, float right, float bottom, float top, float near, float far) {
@@ -269,6 +307,7 @@ void frustum(FormedMatrix& matrix, float left, float right, float bottom, float 
     m[11] = -1.0f;
     m[14] = -(2.0f * far * near) / (far - near);
     multiply_formed(matrix, m, form::kPerspective);
+    remember(matrix, glstate::StepKind::none);
 }
 
 void ortho(FormedMatrix& matrix, float left, float right, float bottom, float top, float near, float far) {
@@ -280,16 +319,34 @@ void ortho(FormedMatrix& matrix, float left, float right, float bottom, float to
     m[13] = -(top + bottom) / (top - bottom);
     m[14] = -(far + near) / (far - near);
     multiply_formed(matrix, m, form::kGeneralScale | form::kTranslation);
+    remember(matrix, glstate::StepKind::none);
 }
 
 void settle(FormedMatrix& matrix) {
-    if (matrix.form & form::kUnknown) matrix.form = form_of(matrix.m);
+    if (!(matrix.form & form::kUnknown)) return;
+    matrix.form = form_of(matrix.m);
+    remember(matrix, glstate::StepKind::none);
 }
 
 Mat4 inverse(FormedMatrix& matrix) {
     settle(matrix);
-    Mat4 out = kIdentity;
-    return invert(matrix.m, matrix.form, out) ? out : kIdentity;
+    return inverse_by_form(matrix.m, matrix.form);
+}
+
+bool needs_origin(const FormedMatrix& matrix) {
+    if (matrix.form & form::kUnknown) return false;
+    const std::uint32_t found = form_of(matrix.m);
+    if (found == matrix.form) return false;
+    return inverse_by_form(matrix.m, found) != inverse_by_form(matrix.m, matrix.form);
+}
+
+bool describe_origin(const FormedMatrix& matrix, glstate::ModelviewOrigin& out) {
+    const std::uint32_t missing = matrix.form & ~form_of(matrix.origin.base);
+    constexpr std::uint32_t kAddable = form::kRotation | form::kTranslation | form::kUniformScale | form::kGeneralScale;
+    if (!matrix.origin.known || (missing & ~kAddable)) return false;
+    out = {matrix.origin.base, {}, {missing, glstate::modelview_tag(matrix.m)}};
+    std::copy_n(matrix.origin.steps.begin(), matrix.origin.count, out.steps.begin());
+    return true;
 }
 
 Mat4 transposed(const Mat4& matrix) {

@@ -4,9 +4,10 @@
 // window. Pure; any thread.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
-#include "gen/glstate/state.gen.h"
+#include "common/glstate/modelview.h"
 
 namespace wall::client {
 
@@ -24,10 +25,20 @@ inline constexpr std::uint32_t kUnknown = 0x200;  ///< to be found out from the 
 inline constexpr std::uint32_t kAffine = kRotation | kTranslation | kUniformScale | kGeneralScale | kGeneral3d;
 }  // namespace form
 
+/// How a matrix came about: an earlier one whose form its values tell, and the steps from there.
+struct MatrixOrigin {
+    static constexpr std::size_t kMostSteps = glstate::el::modelview_step::count;
+    bool known = true;
+    Mat4 base = kIdentity;
+    std::array<glstate::ModelviewStep, kMostSteps> steps{};
+    std::size_t count = 0;
+};
+
 /// A matrix (column major) and its form.
 struct FormedMatrix {
     Mat4 m = kIdentity;
     std::uint32_t form = form::kIdentity;
+    MatrixOrigin origin{};
 };
 
 void load(FormedMatrix& matrix, const Mat4& values);
@@ -44,6 +55,11 @@ void settle(FormedMatrix& matrix);
 /// Settles the form; a singular matrix gives the identity.
 Mat4 inverse(FormedMatrix& matrix);
 Mat4 transposed(const Mat4& matrix);
+
+/// Whether a driver that is given only the values would invert them to other bits.
+bool needs_origin(const FormedMatrix& matrix);
+/// Describes the origin of the modelview matrix `matrix` in a state. False if it is not known.
+bool describe_origin(const FormedMatrix& matrix, glstate::ModelviewOrigin& out);
 
 /// matrix * point.
 Vec4 transform_point(const Mat4& matrix, const Vec4& point);

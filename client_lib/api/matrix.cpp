@@ -12,12 +12,22 @@ namespace {
 
 namespace el = glstate::el;
 
+void tell_origin(Context& c, const FormedMatrix& modelview) {
+    glstate::ModelviewOrigin origin;
+    if (!needs_origin(modelview) || !describe_origin(modelview, origin)) return;
+    c.set<el::modelview_base>(0, origin.base);
+    for (unsigned i = 0; i < el::modelview_step::count; ++i) c.set<el::modelview_step>(i, origin.steps[i]);
+    c.set<el::modelview_form>(0, origin.form);
+}
+
 template <class E, class Change>
 void change_element(Context& c, unsigned i, MatrixStack& stack, Change&& change) {
-    FormedMatrix top{c.get<E>(i), stack.form};
+    FormedMatrix top{c.get<E>(i), stack.form, stack.origin};
     change(stack, top);
     stack.form = top.form;
+    stack.origin = top.origin;
     c.set<E>(i, top.m);
+    if constexpr (E::id == el::modelview::id) tell_origin(c, top);
 }
 
 /// Runs `change(stack, top)` on the stack that glMatrixMode selected.

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "common/glstate/modelview.h"
+
 namespace wall::tileserver {
 namespace {
 
@@ -56,7 +58,10 @@ unsigned Driver::drain_errors() {
     return count;
 }
 
-void Driver::sync(const glstate::State& state) { glstate::diff<kSynced>(mirror, state, *this); }
+void Driver::sync(const glstate::State& state) {
+    glstate::diff<kSynced>(mirror, state, *this);
+    if (std::exchange(modelview_changed_, false)) modelview_has_origin_ = glstate::load_modelview(gl_, mirror, modelview_has_origin_);
+}
 
 void Driver::sync_pixel_transfer(const glstate::State& state) { glstate::diff_category<glstate::Category::pixel_transfer>(mirror, state, *this); }
 
@@ -71,10 +76,11 @@ void Driver::with_identity_modelview(Call&& call) {
     gl_.PopMatrix();
 }
 
-void Driver::emit(Gl& gl, glstate::el::modelview, unsigned, const glstate::Mat4& v) {
-    gl.MatrixMode(GL_MODELVIEW);
-    gl.LoadMatrixf(v.data());
-}
+// Four elements make up one matrix; it is loaded when all of them are known.
+void Driver::emit(Gl&, glstate::el::modelview, unsigned, const glstate::Mat4&) { modelview_changed_ = true; }
+void Driver::emit(Gl&, glstate::el::modelview_base, unsigned, const glstate::Mat4&) { modelview_changed_ = true; }
+void Driver::emit(Gl&, glstate::el::modelview_step, unsigned, const glstate::ModelviewStep&) { modelview_changed_ = true; }
+void Driver::emit(Gl&, glstate::el::modelview_form, unsigned, const glstate::ModelviewForm&) { modelview_changed_ = true; }
 void Driver::emit(Gl& gl, glstate::el::projection, unsigned, const glstate::Mat4& v) {
     gl.MatrixMode(GL_PROJECTION);
     gl.LoadMatrixf(v.data());

@@ -79,6 +79,9 @@ public:
 private:
     using DriverEmit::emit;
     void emit(Gl& gl, glstate::el::modelview, unsigned, const glstate::Mat4& v);
+    void emit(Gl& gl, glstate::el::modelview_base, unsigned, const glstate::Mat4& v);
+    void emit(Gl& gl, glstate::el::modelview_step, unsigned, const glstate::ModelviewStep& v);
+    void emit(Gl& gl, glstate::el::modelview_form, unsigned, const glstate::ModelviewForm& v);
     void emit(Gl& gl, glstate::el::projection, unsigned, const glstate::Mat4& v);
     void emit(Gl& gl, glstate::el::texture_matrix, unsigned i, const glstate::Mat4& v);
     void emit(Gl& gl, glstate::el::clip_plane, unsigned i, const glstate::Vec4& v);
@@ -96,6 +99,8 @@ private:
     Gl gl_;
     const glstate::State defaults_;
     bool flip_y_ = false;
+    bool modelview_changed_ = false;     // since it was loaded
+    bool modelview_has_origin_ = false;  // what was loaded
     std::array<std::array<GLuint, kTextureTargets>, kTextureUnits> bound_textures_{};
     GLuint program_ = 0;             // that the driver draws with
     Layer* layer_ = nullptr;         // whose window values are in the driver
