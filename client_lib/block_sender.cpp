@@ -30,6 +30,7 @@ void BlockSender::run() {
     const auto box = options().broadcast ? std::nullopt : project(context_.projection(), packer_.block_box());
     const TargetSet targets = targets_of(*layout_, box);
     if (options().count_ideal) session_.count_ideal(ideal_bytes(packer_, context_.projection(), *layout_));
+    needs_ = needs_of_block(context_.state, packer_);
     const auto nodes = by_node(targets, *layout_);
     const bool single = packer_.primitives().size() == 1 && !worth_dividing(packer_.primitives()[0], targets);
     if (nodes.size() <= 1 || packer_.has_rare() || options().broadcast || single)
@@ -43,7 +44,7 @@ void BlockSender::send_whole(const TargetSet& targets) {
     for (const auto& [index, slots] : by_node(targets, *layout_)) {
         Node& node = *session_.nodes()[index];
         if (!node.alive()) continue;
-        auto& buffer = session_.prepare(node, context_);
+        auto& buffer = session_.prepare(node, context_, needs_);
         const std::size_t before = buffer.bytes();
         glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32),
                            static_cast<std::uint32_t>(packer_.commands()), static_cast<std::uint32_t>(packer_.operand_bytes()));
@@ -155,7 +156,7 @@ BlockSender::Share& BlockSender::share_of(std::uint32_t index) {
     Share& share = shares_[index];
     if (!share.node) {
         share.node = session_.nodes()[index].get();
-        if (share.node->alive()) share.buffer = &session_.prepare(*share.node, context_);
+        if (share.node->alive()) share.buffer = &session_.prepare(*share.node, context_, needs_);
     }
     return share;
 }
@@ -202,11 +203,15 @@ void BlockSender::fold(const std::vector<Node*>& whole) {
     context_.fold_attributes();
     for (Node* node : whole) {
         auto& mirror = node->mirrors[context_.id].state;
-        mirror.current = context_.state.current;
-        value_id<Category::current>(mirror) = value_id<Category::current>(context_.state);
-        if (!context_.folded_material()) continue;
-        mirror.material = context_.state.material;
-        value_id<Category::material>(mirror) = value_id<Category::material>(context_.state);
+        if (packer_.has_rare()) {  // then nothing waited
+            mirror.current = context_.state.current;
+            if (context_.folded_material()) mirror.material = context_.state.material;
+        } else {
+            for (std::size_t i = 0; i < kAttributes; ++i)
+                if (packer_.last[i]) apply_attribute(mirror, packer_.last_op[i], packer_.last[i]);
+        }
+        unify_id(mirror, context_.state, Category::current);
+        if (context_.folded_material()) unify_id(mirror, context_.state, Category::material);
     }
 }
 

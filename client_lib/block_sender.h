@@ -51,6 +51,7 @@ private:
     Context& context_;
     Packer& packer_;
     const SurfaceLayout* layout_ = nullptr;
+    Needs needs_;
     std::vector<Share> shares_;
     std::vector<PackedVertex> vertices_;  ///< of the primitive being divided
 };

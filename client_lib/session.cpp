@@ -278,7 +278,7 @@ void Session::describe_surface(Node& node, Surface& surface) {
     node.surfaces[surface.id] = layout.version;
 }
 
-wire::PackBuffer& Session::prepare(Node& node, Context& context) {
+wire::PackBuffer& Session::prepare(Node& node, Context& context, const Needs& needs) {
     wire::PackBuffer& buffer = batch(node, context.id);
     Mirror& mirror = node.mirrors[context.id];
     const std::size_t start = buffer.bytes();
@@ -294,7 +294,10 @@ wire::PackBuffer& Session::prepare(Node& node, Context& context) {
     const std::size_t objects_start = buffer.bytes();
     context.share().bring_up_to_date(node, context, buffer);
     const std::size_t state_start = buffer.bytes();
-    glstate::diff(mirror.state, context.state, glstate::PackSink{buffer});
+    glstate::PackSink sink{buffer};
+    constexpr auto kCurrent = glstate::mask_of(glstate::Category::current);
+    if (needs.categories & kCurrent) diff_current(mirror.state, context.state, needs, sink);
+    glstate::diff(needs.categories & ~kCurrent, mirror.state, context.state, sink);
     count_objects(node, state_start - objects_start);
     count_state(node, buffer.bytes() - state_start + objects_start - start);
     return buffer;

@@ -14,6 +14,7 @@
 
 #include "client_lib/control.h"
 #include "client_lib/core.h"
+#include "client_lib/needs.h"
 #include "client_lib/node_stream.h"
 #include "client_lib/router.h"
 #include "client_lib/stats.h"
@@ -88,10 +89,10 @@ public:
     void submit_block(Context& context);
     /// Runs `pack` inside a Block on every target that `box` touches (nothing: all of them).
     template <class Pack>
-    void draw(Context& context, const std::optional<PixelRect>& box, Pack&& pack);
+    void draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Pack&& pack);
     /// The same after `before(node, buffer)` outside of the Block; `after(node)` when it is packed.
     template <class Before, class Pack, class After>
-    void draw(Context& context, const std::optional<PixelRect>& box, Before&& before, Pack&& pack, After&& after);
+    void draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Before&& before, Pack&& pack, After&& after);
     /// Runs `pack(buffer, node)` outside of blocks on every node, with nothing brought up to date.
     template <class Pack>
     void on_every_node(Context& context, Pack&& pack);
@@ -117,7 +118,7 @@ public:
     /// The node's batch, set to this context (earlier commands of another one are sent first).
     wire::PackBuffer& batch(Node& node, std::uint32_t context);
     /// The node's batch after everything that drawing with this context needs: surfaces, objects, state.
-    wire::PackBuffer& prepare(Node& node, Context& context);
+    wire::PackBuffer& prepare(Node& node, Context& context, const Needs& needs = {});
     void send(Node& node);
     Node& node_of(const Target& target) { return *nodes_[target.node]; }
     void count_geometry(Node& node, std::size_t bytes);

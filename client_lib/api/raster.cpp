@@ -72,7 +72,7 @@ struct Incidence {
     bool lit = true;  ///< false: outside the spot's cone
 };
 
-Incidence incidence(const glstate::LightingState& l, unsigned i, const Vec4& vertex) {
+Incidence incidence(const glstate::LightsState& l, unsigned i, const Vec4& vertex) {
     Incidence out{};
     const Vec4& position = l.light_position[i];
     Vec3 spot = l.light_spot_direction[i];
@@ -105,7 +105,7 @@ Incidence incidence(const glstate::LightingState& l, unsigned i, const Vec4& ver
 }
 
 /// The half-way vector between the light and the viewer.
-void half_way(const glstate::LightingState& l, const Vec4& vertex, Incidence& light) {
+void half_way(const glstate::LightsState& l, const Vec4& vertex, Incidence& light) {
     if (l.light_model_local_viewer) {
         float to_vertex[3] = {vertex[0], vertex[1], vertex[2]};
         normalize(to_vertex);
@@ -118,7 +118,7 @@ void half_way(const glstate::LightingState& l, const Vec4& vertex, Incidence& li
 
 // Mesa takes the object coordinates for the vertex here, even where lights are in eye coordinates; so do we.
 Shading shade(const glstate::State& s, const Vec4& vertex, const Vec3& normal) {
-    const auto& l = s.lighting;
+    const auto& l = s.lights;
     const auto& m = s.material;
     const bool separate = l.light_model_color_control == GL_SEPARATE_SPECULAR_COLOR;
     Shading out{{0, 0, 0, std::clamp(m.material_diffuse[0][3], 0.0f, 1.0f)}, {0, 0, 0, 1}};

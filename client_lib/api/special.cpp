@@ -19,13 +19,13 @@ void Clear(Context& c, GLbitfield mask) {
     constexpr GLbitfield kKnown = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT | GL_ACCUM_BUFFER_BIT;
     if (mask & ~kKnown) return c.error(GL_INVALID_VALUE);
     if (mask == 0 || c.state.local.render_mode != GL_RENDER) return;
-    c.draw(clear_box(c), [&](wire::PackBuffer& buffer) { glapi::pack::Clear(buffer, mask); });
+    c.draw(clear_box(c), needs_of_clear(), [&](wire::PackBuffer& buffer) { glapi::pack::Clear(buffer, mask); });
 }
 
 void Accum(Context& c, GLenum op, GLfloat value) {
     if (op < GL_ACCUM || op > GL_ADD) return c.error(GL_INVALID_ENUM);
     if (!c.draw_surface() || c.draw_surface()->options.format.accum_bits == 0) return c.error(GL_INVALID_OPERATION);
-    c.draw(clear_box(c), [&](wire::PackBuffer& buffer) { glapi::pack::Accum(buffer, op, value); });
+    c.draw(clear_box(c), needs_of_clear(), [&](wire::PackBuffer& buffer) { glapi::pack::Accum(buffer, op, value); });
 }
 
 void Flush(Context& c) { c.session().flush(&c, false); }

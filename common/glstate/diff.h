@@ -125,6 +125,15 @@ void diff(State& from, const State& to, Sink&& sink) {
     detail::diff_categories<Mask>(from, to, sink, std::make_index_sequence<kCategoryCount>{});
 }
 
+/// The same with the categories chosen at run time.
+template <class Sink>
+void diff(CategoryMask wanted, State& from, const State& to, Sink&& sink) {
+    const auto each = [&]<std::size_t... C>(std::index_sequence<C...>) {
+        ((wanted >> C & 1 ? detail::diff_if_wanted<kSentCategories, C>(from, to, sink) : void()), ...);
+    };
+    each(std::make_index_sequence<kCategoryCount>{});
+}
+
 template <Category C, class Sink>
 void diff_category(State& from, const State& to, Sink&& sink) {
     detail::diff_if_wanted<mask_of(C), static_cast<std::size_t>(C)>(from, to, sink);

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/needs.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "client_lib/block_walk.h"
+
+namespace wall::client {
+namespace {
+
+using glstate::Category;
+using glstate::CategoryMask;
+using glstate::mask_of;
+
+/// Never read by vertices: other drawing commands bring them up to date.
+constexpr CategoryMask kNotForGeometry =
+    mask_of(Category::pixel_transfer) | mask_of(Category::accumulation) | mask_of(Category::raster) | mask_of(Category::evaluator);
+/// Read only while lighting is on.
+constexpr CategoryMask kLit = mask_of(Category::material) | mask_of(Category::lights);
+
+bool reads_normals(const glstate::State& state) {
+    if (state.lighting.lighting_enabled) return true;
+    const auto& generated = state.texture_gen;
+    for (std::size_t i = 0; i < generated.tex_gen_enabled.size(); ++i) {
+        const GLenum mode = generated.tex_gen_mode[i];
+        if (generated.tex_gen_enabled[i] && mode != GL_OBJECT_LINEAR && mode != GL_EYE_LINEAR) return true;
+    }
+    return false;
+}
+
+/// Lit vertices have their material's colours, unless those follow the current colour.
+bool reads_color(const glstate::State& state) {
+    return !state.lighting.lighting_enabled || state.material.color_material_enabled;
+}
+
+}  // namespace
+
+Needs needs_of_clear() {
+    return {mask_of(Category::color_buffer) | mask_of(Category::accumulation) | mask_of(Category::depth_stencil) |
+            mask_of(Category::multisample) | mask_of(Category::window) | mask_of(Category::objects)};
+}
+
+Needs needs_of_geometry(const glstate::State& state) {
+    Needs needs;
+    if (state.objects.current_program != 0) return needs;  // a shader may read anything
+    if (state.local.render_mode != GL_RENDER) return needs;
+    needs.categories &= ~kNotForGeometry;
+    if (!state.lighting.lighting_enabled) needs.categories &= ~kLit;
+    if (!reads_normals(state)) {
+        needs.settle(Attribute::normal);
+        needs.categories &= ~mask_of(Category::modelview_origin);
+    }
+    return needs;
+}
+
+Needs needs_of_block(const glstate::State& state, const Packer& packer) {
+    if (packer.has_rare() || packer.primitives().empty()) return {};
+    Needs needs = needs_of_geometry(state);
+    const Primitive& first = packer.primitives().front();
+    BlockWalk walk(packer, first.first, first.last, first.before);
+    while (walk.next() && !walk.is_vertex()) {
+    }
+    for (std::size_t i = 0; i < kAttributes; ++i)
+        if (walk.places().offset[i] != AttributePlaces::kNone) needs.settle(static_cast<Attribute>(i));
+    return needs;
+}
+
+void unify_id(glstate::State& mirror, const glstate::State& state, Category category) {
+    const auto same_values = [&] {
+        if (category == Category::current) return glstate::same(mirror.current, state.current);
+        return category == Category::material && glstate::same(mirror.material, state.material);
+    };
+    auto& id = mirror.ids[static_cast<std::size_t>(category)];
+    id = same_values() ? state.ids[static_cast<std::size_t>(category)] : glstate::next_value_id();
+}
+
+}  // namespace wall::client
