@@ -98,6 +98,7 @@ const Special kSpecials[] = {
     {GL_MAX_TEXTURE_COORDS, 1, limited<GL_MAX_TEXTURE_COORDS, kTextureUnits>},
     {GL_MAX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_TEXTURE_IMAGE_UNITS, kTextureUnits>},
     {GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, kTextureUnits>},
+    {GL_MAX_DRAW_BUFFERS, 1, constant<1>},
     {GL_MAX_VERTEX_ATTRIBS, 1, limited<GL_MAX_VERTEX_ATTRIBS, kVertexAttributes>},
     {GL_MAX_ELEMENTS_VERTICES, 1, constant<3000>},
     {GL_MAX_ELEMENTS_INDICES, 1, constant<3000>},

@@ -68,6 +68,7 @@ void Executor::finish_tile() {
         in_begin_ = false;
         if (draws_) gl_.End();
     }
+    session_.queries.end();
     if (draws_) trail_.fold_into(node_.driver.mirror);
 }
 
@@ -88,6 +89,8 @@ void Executor::prepare(Layer& layer) {
     node_.maps.sync_evaluators(gl_, context_->maps);
     node_.driver.bind_layer(layer, context_->state);
     session_.programs.use(ClientName(glstate::el::current_program::ref(context_->state)), layer.geometry());
+    const LayerGeometry& g = layer.geometry();
+    if (!session_.queries.begin(ClientName(glstate::el::occlusion_query::ref(context_->state)), g.scale_x() * g.scale_y())) refuse("too many queries");
 }
 
 bool Executor::outside_begin() {

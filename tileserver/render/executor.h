@@ -183,6 +183,8 @@ public:
     void ShaderCompile(std::uint32_t request, GLenum type, std::span<const std::byte> source);
     void ProgramLink(std::uint32_t request, std::uint32_t program, std::span<const std::byte> definition);
     void ProgramDelete(std::uint32_t program);
+    void QueryResult(std::uint32_t request, std::uint32_t query);
+    void QueryDelete(std::uint32_t query);
     void Uniform(std::uint32_t program, std::uint32_t location, GLenum type, std::uint32_t count, std::span<const std::byte> values);
     void RunDefine(std::uint32_t run, std::uint32_t commands, std::uint32_t operand_bytes, std::span<const std::byte> content);
     void RunDelete(std::uint32_t run);

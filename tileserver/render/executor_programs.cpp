@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// GLSL programs (programs.h). Render thread.
+// GLSL programs (programs.h) and occlusion queries (queries.h). Render thread.
+#include <cstring>
+
 #include "tileserver/render/executor.h"
 
 namespace wall::tileserver {
@@ -21,5 +23,14 @@ void Executor::ProgramDelete(std::uint32_t program) { session_.programs.erase(Cl
 void Executor::Uniform(std::uint32_t program, std::uint32_t location, GLenum type, std::uint32_t count, std::span<const std::byte> values) {
     if (auto done = session_.programs.set_uniform(ClientName(program), location, type, count, values); !done) refuse(done.error().message);
 }
+
+void Executor::QueryResult(std::uint32_t request, std::uint32_t query) {
+    const std::uint64_t samples = session_.queries.result(ClientName(query));
+    std::vector<std::byte> answer(sizeof samples);
+    std::memcpy(answer.data(), &samples, sizeof samples);
+    output_.reply(request, std::move(answer));
+}
+
+void Executor::QueryDelete(std::uint32_t query) { session_.queries.erase(ClientName(query)); }
 
 }  // namespace wall::tileserver

@@ -15,6 +15,7 @@
 #include "tileserver/render/driver.h"
 #include "tileserver/render/limits.h"
 #include "tileserver/render/programs.h"
+#include "tileserver/render/queries.h"
 #include "tileserver/render/soft_maps.h"
 #include "tileserver/render/surface.h"
 
@@ -40,7 +41,7 @@ struct Run {
 
 class Session {
 public:
-    Session(Driver& driver, SessionId id) : programs(driver), driver_(driver), id_(id) {}
+    Session(Driver& driver, SessionId id) : programs(driver), queries(driver.gl()), driver_(driver), id_(id) {}
     ~Session();
     Session(const Session&) = delete;
 
@@ -66,6 +67,7 @@ public:
     bool account(Texture& texture, GLenum target, std::int32_t level, std::uint64_t bytes);
 
     Programs programs;
+    Queries queries;
     std::unordered_map<std::uint32_t, Run> runs;
     std::uint64_t run_bytes = 0;
 

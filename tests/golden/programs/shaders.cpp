@@ -235,4 +235,62 @@ SCENE(glsl_values, 2) {
     say_error("no program");
 }
 
+SCENE(glsl_in_lists, 2) {
+    clear();
+    static GLuint program;
+    if (frame == 0) {
+        program = program_of(kFixedVertex, "uniform vec4 tint; uniform float more[2]; void main() { gl_FragColor = tint + vec4(more[0], more[1], 0.0, 0.0); }");
+        glNewList(1, GL_COMPILE);
+        glUseProgram(program);
+        glUniform4f(glGetUniformLocation(program, "tint"), 0.2f, 0.4f, 0.6f, 1);
+        const GLfloat more[] = {0.5f, 0};
+        glUniform1fv(glGetUniformLocation(program, "more"), 2, more);
+        glRectf(-0.9f, -0.9f, -0.1f, 0.9f);
+        glUseProgram(0);
+        glEndList();
+    }
+    GLfloat tint[4] = {};
+    glGetUniformfv(program, glGetUniformLocation(program, "tint"), tint);
+    say("tint %.5g", static_cast<double>(tint[0]));
+    glCallList(1);
+    glColor3f(1, 1, 1);
+    glRectf(0.1f, -0.5f, 0.9f, 0.5f);
+    say_error("glsl_in_lists");
+}
+
+// Pixels that pass the depth test, over all tiles.
+SCENE(occlusion, 2) {
+    clear();
+    glClear(GL_DEPTH_BUFFER_BIT);
+    pixel_view(canvas);
+    glEnable(GL_DEPTH_TEST);
+    const auto box = [](GLfloat x, GLfloat y, GLfloat width, GLfloat height, GLfloat z) {
+        glBegin(GL_QUADS);
+        glVertex3f(x, y, z), glVertex3f(x + width, y, z), glVertex3f(x + width, y + height, z), glVertex3f(x, y + height, z);
+        glEnd();
+    };
+    glColor3f(0.2f, 0.3f, 0.9f);
+    box(50, 40, 200, 180, 0.5f);
+    GLuint query;
+    glGenQueries(1, &query);
+    GLint bits = 0, current = 0;
+    glGetQueryiv(GL_SAMPLES_PASSED, GL_QUERY_COUNTER_BITS, &bits);
+    glBeginQuery(GL_SAMPLES_PASSED, query);
+    glGetQueryiv(GL_SAMPLES_PASSED, GL_CURRENT_QUERY, &current);
+    glColor3f(0.9f, 0.6f, 0.1f);
+    box(150, 100, 200, 150, frame == 0 ? -0.5f : 0.7f);
+    box(10, 10, 8, 8, 0);
+    glEndQuery(GL_SAMPLES_PASSED);
+    glColor3f(1, 1, 1);
+    box(300, 20, 50, 50, 0);  // not counted
+    GLuint samples = 0;
+    glGetQueryObjectuiv(query, GL_QUERY_RESULT, &samples);
+    say("%d bits: %s, current %s, %u samples", bits, bits >= 32 ? "enough" : "few", current ? "yes" : "no", samples);
+    glBeginQuery(GL_SAMPLES_PASSED, 0);
+    say_error("query 0");
+    glDeleteQueries(1, &query);
+    glDisable(GL_DEPTH_TEST);
+    say_error("occlusion");
+}
+
 }  // namespace golden
