@@ -95,12 +95,18 @@ const TypeRow* find_type(GLenum type) {
     return at == kTypes.end() ? nullptr : at;
 }
 
+/// Mesa takes GL_ABGR_EXT only for these.
+bool equal_components(GLenum type) {
+    return type == GL_UNSIGNED_SHORT_4_4_4_4 || type == GL_UNSIGNED_SHORT_4_4_4_4_REV || type == GL_UNSIGNED_INT_8_8_8_8 ||
+           type == GL_UNSIGNED_INT_8_8_8_8_REV;
+}
+
 bool packed_fits(const TypeRow& type, GLenum format) {
     switch (type.goes) {
         case Goes::rgb: return format == GL_RGB || format == GL_RGB_INTEGER;
         case Goes::rgba:
-            return format == GL_RGBA || format == GL_BGRA || format == GL_ABGR_EXT || format == GL_RGBA_INTEGER ||
-                   format == GL_BGRA_INTEGER || (type.type == GL_UNSIGNED_INT_2_10_10_10_REV && format == GL_RGB);
+            if (format == GL_ABGR_EXT) return equal_components(type.type);
+            return format == GL_RGBA || format == GL_BGRA || format == GL_RGBA_INTEGER || format == GL_BGRA_INTEGER;
         case Goes::depth_stencil: return format == GL_DEPTH_STENCIL;
         case Goes::rgb_float: return format == GL_RGB;
     }
@@ -176,7 +182,10 @@ GLenum format_type_error(GLenum format, GLenum type) {
     const FormatRow* f = find_format(format);
     if (type == GL_BITMAP) return format == GL_COLOR_INDEX || format == GL_STENCIL_INDEX ? GL_NO_ERROR : GL_INVALID_ENUM;
     const TypeRow* t = find_type(type);
-    if (t && t->packed_bytes != 0) return packed_fits(*t, format) ? GL_NO_ERROR : GL_INVALID_OPERATION;
+    if (t && t->packed_bytes != 0) {
+        if (packed_fits(*t, format)) return GL_NO_ERROR;
+        return type == GL_UNSIGNED_INT_5_9_9_9_REV ? GL_INVALID_ENUM : GL_INVALID_OPERATION;
+    }
     if (!t || !f || format == GL_DEPTH_STENCIL || format == GL_INTENSITY) return GL_INVALID_ENUM;
     if (f->integer && !t->integers) return GL_INVALID_ENUM;
     return GL_NO_ERROR;
