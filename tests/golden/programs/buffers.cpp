@@ -128,7 +128,7 @@ SCENE(accumulation, 4) {
 }
 
 SCENE(draw_buffers, 4) {
-    glDrawBuffer(frame == 1 ? GL_FRONT_AND_BACK : GL_BACK);
+    glDrawBuffer(frame == 3 ? GL_FRONT_AND_BACK : GL_BACK);
     clear(0, 0.2f, 0.2f);
     shards(12);
     glDrawBuffer(GL_NONE);

@@ -58,8 +58,8 @@ void cell_view(int index, int columns, int rows) {
     glLoadIdentity();
 }
 
-void lit_sphere(int slices, int stacks) {
-    for (int i = 0; i < stacks; ++i) {
+void lit_sphere(int slices, int stacks, bool poles) {
+    for (int i = poles ? 0 : 1; i < stacks - (poles ? 0 : 1); ++i) {
         glBegin(GL_QUAD_STRIP);
         for (int j = 0; j <= slices; ++j)
             for (int k = 1; k >= 0; --k) {

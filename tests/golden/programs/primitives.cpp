@@ -217,12 +217,12 @@ SCENE(polygon_stipple_offset, 3) {
     glEnable(GL_DEPTH_TEST);
     glRotatef(30, 1, 1, 0);
     glColor3f(0.3f, 0.3f, 0.6f);
-    lit_sphere(16, 8);
+    lit_sphere(16, 8, false);
     glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
     glEnable(GL_POLYGON_OFFSET_LINE);
-    glPolygonOffset(-2.0f, -40.0f * static_cast<float>(frame + 1));  // enough that no line fights with its face
+    glPolygonOffset(-1.0f, -2.0f * static_cast<float>(frame + 1));
     glColor3f(1, 1, 0);
-    lit_sphere(16, 8);
+    lit_sphere(16, 8, false);
     glDisable(GL_POLYGON_OFFSET_LINE);
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     glDisable(GL_DEPTH_TEST);

@@ -365,9 +365,9 @@ SCENE(matrices, 2) {
         glTranslatef(0.2f, -0.1f, 0.05f);
         glColor3f(random_unit(), random_unit(), random_unit());
         unit_square();
-        GLdouble now[16];
-        glGetDoublev(GL_MODELVIEW_MATRIX, now);
-        say_values("modelview", "", now, 16);
+        GLfloat now[16];  // every bit: what lies on the same plane must stay there
+        glGetFloatv(GL_MODELVIEW_MATRIX, now);
+        for (int k = 0; k < 16; k += 4) say("modelview %a %a %a %a", now[k], now[k + 1], now[k + 2], now[k + 3]);
     }
     GLint depth = 0;
     glGetIntegerv(GL_MODELVIEW_STACK_DEPTH, &depth);
@@ -378,7 +378,7 @@ SCENE(matrices, 2) {
     glOrtho(-3, 2, -1, 4, -5, 7);
     GLfloat projection[16];
     glGetFloatv(GL_PROJECTION_MATRIX, projection);
-    say("projection %.7g %.7g %.7g %.7g", projection[0], projection[5], projection[10], projection[14]);
+    say("projection %a %a %a %a", projection[0], projection[5], projection[10], projection[14]);
     glMatrixMode(GL_MODELVIEW);
     unit_square();
 }

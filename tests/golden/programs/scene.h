@@ -54,7 +54,8 @@ void perspective_view(Size canvas);
 /// One of a grid of cells: makes [-1, 1]^2 cover cell `index` of `columns` x `rows` by the projection matrix.
 void cell_view(int index, int columns, int rows);
 
-void lit_sphere(int slices = 24, int stacks = 12);  ///< radius 1, with normals and texture coordinates
+/// Radius 1, with normals and texture coordinates; without its poles no quad is degenerate.
+void lit_sphere(int slices = 24, int stacks = 12, bool poles = true);
 void unit_square();                                 ///< [-1, 1]^2 at z = 0, texture coordinates 0..1, normal +z
 unsigned random_bits();                             ///< a fixed sequence, started anew for every frame
 float random_unit();                                ///< 0..1

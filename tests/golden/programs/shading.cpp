@@ -269,13 +269,13 @@ SCENE(texture_filters, 6) {  // a floor to the horizon
     glHint(GL_PERSPECTIVE_CORRECTION_HINT, GL_NICEST);
     glColor3f(1, 1, 1);
     glBegin(GL_QUADS);
-    glTexCoord2f(-4, 0);
+    glTexCoord2f(-3.9f, 0.03f);
     glVertex3f(-4, -0.8f, 2);
-    glTexCoord2f(4, 0);
+    glTexCoord2f(4.13f, 0.03f);
     glVertex3f(4, -0.8f, 2);
-    glTexCoord2f(4, 24);
+    glTexCoord2f(4.13f, 24.06f);
     glVertex3f(4, -0.8f, -15);
-    glTexCoord2f(-4, 24);
+    glTexCoord2f(-3.9f, 24.06f);
     glVertex3f(-4, -0.8f, -15);
     glEnd();
     glTranslatef(0, 0.5f, 0);
