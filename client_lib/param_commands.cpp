@@ -15,9 +15,10 @@ namespace {
 
 namespace el = glstate::el;
 
-const ParamRow* find_row(ParamFamily family, GLenum target, GLenum pname) {
+/// No target: any.
+const ParamRow* find_row(ParamFamily family, std::optional<GLenum> target, GLenum pname) {
     for (const ParamRow& row : kParamRows) {
-        if (row.family != family || (target != 0 && row.target != target)) continue;
+        if (row.family != family || (target && row.target != *target)) continue;
         if (row.pname == pname || row.pname == kAnyParam) return &row;
     }
     return nullptr;
@@ -38,7 +39,7 @@ GLenum target_of(ParamFamily family, GLenum lead) { return family == ParamFamily
 
 template <class T>
 void convert(ParamFamily family, GLenum pname, const T* from, GLfloat* to) {
-    const ParamRow* row = find_row(family, 0, pname);
+    const ParamRow* row = find_row(family, std::nullopt, pname);
     if (!row) return;
     for (unsigned k = 0; k < row->components; ++k) to[k] = row->normalized ? glapi::to_fraction(from[k]) : static_cast<GLfloat>(from[k]);
 }
@@ -85,7 +86,7 @@ const CapRow* find_cap_row(GLenum cap) {
 }  // namespace
 
 unsigned param_components(ParamFamily family, GLenum pname) {
-    const ParamRow* row = find_row(family, 0, pname);
+    const ParamRow* row = find_row(family, std::nullopt, pname);
     return row ? row->components : 0;
 }
 

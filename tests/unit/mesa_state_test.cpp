@@ -33,6 +33,7 @@ protected:
 /// Words that Mesa's surfaceless context must answer in another way.
 bool differs_for_a_reason(GLenum pname) {
     switch (pname) {
+        case GL_DRAW_BUFFER0:
         case GL_DRAW_BUFFER:  // no default framebuffer here
         case GL_READ_BUFFER:
         case GL_STENCIL_REF:  // no stencil bits here: clamped to 0

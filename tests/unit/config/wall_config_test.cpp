@@ -60,6 +60,12 @@ TEST(WallConfig, ReadsEverything) {
     EXPECT_EQ(config->find_node("middle"), nullptr);
 }
 
+TEST(WallConfig, NamesAndCommentsMayBeInAnyLanguage) {
+    const auto config = parse_config("# f\u00fcr alle\n[wall]\nname='W\u00e4nde \\\\ \"'\n[[node]]\nname=\"\\\"\u4e00\"\n[[node.tile]]\nname=\"\"\"t\u00e9 \"\" \"\"\"\nrect=[0,0,1,1]\n", "wall.toml");
+    ASSERT_TRUE(config) << config.error().message;
+    EXPECT_EQ(config->nodes[0].name, "\"\u4e00");
+}
+
 TEST(WallConfig, NodesAreEnough) {
     const auto config = parse_config("[[node]]\nname='n'\n[[node.tile]]\nname='t'\nrect=[0,0,1,1]\n", "wall.toml");
     ASSERT_TRUE(config) << config.error().message;
@@ -93,6 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
     Cases, WrongConfig,
     ::testing::Values(
         Wrong{"syntax", "name = \"lab\"", "name = ", "wall.toml:3: ", "not TOML"},
+        Wrong{"stray_character", "name = \"lab\"", "n\u00e4me = \"lab\"", "wall.toml:3: ", "a character beyond ASCII"},
         Wrong{"unknown_section", "[http]", "[htpp]", "wall.toml:11: ", "expected one of wall, control, http, node"},
         Wrong{"unknown_key", "swap_timeout_ms", "swap_timeout", "wall.toml:5: ", "expected one of name, background, swap_timeout_ms"},
         Wrong{"name_type", "\"lab\"", "7", "wall.toml:3: ", "'name': expected a string"},

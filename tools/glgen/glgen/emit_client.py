@@ -240,5 +240,8 @@ def _param_entry(i, commands):
         return [f"{table}({args}, rounded_param({value}));"]
     if form.endswith("v"):
         return ["GLfloat v[4] = {};", f"convert_params(ParamFamily::{family}, {pname}, {value}, v);", f"{table}({args}, v);"]
+    if form == "i" and keys.get("fractions"):
+        return [f"const GLint given[4] = {{{value}}};", "GLfloat v[4] = {};",
+                f"convert_params(ParamFamily::{family}, {pname}, given, v);", f"{table}({args}, v);"]
     refusal = [f"if (param_components(ParamFamily::{family}, {pname}) > 1) return c->error(GL_INVALID_ENUM);"] if keys.get("strict") else []
     return [f"const GLfloat v[4] = {{static_cast<GLfloat>({value})}};", *refusal, f"{table}({args}, v);"]

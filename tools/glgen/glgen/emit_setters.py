@@ -44,7 +44,7 @@ def _checks(e, f, expression):
     lines = []
     valid = e.of_field("valid", f.name)
     if valid and not isinstance(valid, dict):
-        lines.append(f"if (!one_of({expression}, kValid_{valid})) return c.error(GL_INVALID_ENUM);")
+        lines.append(f"if (!one_of({expression}, kValid_{valid})) return c.error({e.invalid or 'GL_INVALID_ENUM'});")
     for key, operator in (("min", "<"), ("max", ">"), ("above", "<="), ("below", ">=")):
         limit = e.of_field(key, f.name)
         if limit is not None and not isinstance(limit, dict):
@@ -111,7 +111,8 @@ def _param_setter(e, model):
         get = {"enum": "to_enum(v[0])", "flag": "to_flag(v[0])", "i32": "to_int(v[0])", "u32": "to_int(v[0])", "float": "static_cast<float>(v[0])"}[component]
         lines.append(f"const {TYPES[f.type][0]} value = {get};")
         if e.valid and model.valid[e.valid][0].isdigit():
-            wrong = " && ".join(f"value != {w}" for w in model.valid[e.valid])
+            given = "v[0]" if component == "flag" else "value"
+            wrong = " && ".join(f"{given} != {w}" for w in model.valid[e.valid])
             lines.append(f"if ({wrong}) return c.error(GL_INVALID_VALUE);")
             lines += _checks(_without_valid(e), f, "value")
         else:

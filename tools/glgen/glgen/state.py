@@ -136,7 +136,7 @@ class Element:
         return self.emit == "custom"
 
 
-_OPTIONAL = {"cap", "get", "set", "param", "emit", "hand", "norm", "valid", "min", "max", "above", "below", "clamp", "args", "or"}
+_OPTIONAL = {"cap", "get", "set", "param", "emit", "hand", "norm", "valid", "min", "max", "above", "below", "clamp", "args", "or", "invalid"}
 _KEYS = _OPTIONAL | {"name", "type", "fields", "value", "default", "defaults", "count", "index", "groups", "client_groups"}
 
 
