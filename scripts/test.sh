@@ -59,7 +59,7 @@ stage_tsan() {
 
 stage_fuzz() {
   say "building the fuzzers (clang, address and undefined behaviour sanitizers)"
-  build fuzz || { failed+=(fuzz); return; }
+  build fuzz fuzzers || { failed+=(fuzz); return; }
   say "fuzzers, 30 seconds each"
   run fuzz fuzz -L fuzz -j 2
 }

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_UNRELEASED_FEATURES 0
@@ -23,6 +24,36 @@ namespace {
 constexpr std::int64_t kMaxCanvas = wire::kMaxSurfaceExtent;  // pixels a side: a surface may cover all of it
 constexpr std::int64_t kMaxSwapTimeout = 10'000;   // ms
 constexpr std::array kBackends{Backend::egl, Backend::osmesa};
+
+/// The line of the first character beyond ASCII outside of strings and comments, where TOML has none; 0 if there is
+/// none. toml++ 3.3 does not survive some of them.
+std::uint32_t stray_character_line(std::string_view text) {
+    std::uint32_t line = 1;
+    std::string_view quote;  // that ends the string we are in
+    const auto at_quote = [&](std::size_t i) {
+        for (const std::string_view q : {"\"\"\"", "'''", "\"", "'"}) {
+            if (text.substr(i).starts_with(q)) return q;
+        }
+        return std::string_view();
+    };
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '\n') {
+            ++line;
+            if (quote.size() == 1) quote = {};  // an unfinished string; toml++ will say so
+        } else if (!quote.empty()) {
+            if (text[i] == '\\' && quote[0] == '"' && text.substr(i + 1, 1) != "\n") ++i;
+            else if (text.substr(i).starts_with(quote)) i += std::exchange(quote, {}).size() - 1;
+        } else if (text[i] == '#') {
+            i = std::min(text.find('\n', i), text.size()) - 1;
+        } else if (const auto q = at_quote(i); !q.empty()) {
+            quote = q;
+            i += q.size() - 1;
+        } else if (static_cast<unsigned char>(text[i]) >= 0x80) {
+            return line;
+        }
+    }
+    return 0;
+}
 
 class TreeReader {
 public:
@@ -231,6 +262,9 @@ const NodeConfig* WallConfig::find_node(std::string_view node) const {
 }
 
 Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name) {
+    if (const auto line = stray_character_line(toml)) {
+        return fail(std::string(file_name) + ":" + std::to_string(line) + ": not TOML: a character beyond ASCII: expected it only in strings and comments");
+    }
     const auto parsed = toml::parse(toml, file_name);
     TreeReader read(file_name);
     if (!parsed) {
