@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -65,11 +66,9 @@ std::vector<NodeMask> by_node(const TargetSet& set, const SurfaceLayout& layout)
     std::vector<NodeMask> masks;
     for (std::size_t i = set._Find_first(); i < layout.targets.size(); i = set._Find_next(i)) {
         const Target& target = layout.targets[i];
-        const std::uint64_t bit = std::uint64_t{1} << target.slot;
-        if (!masks.empty() && masks.back().node == target.node)
-            masks.back().slots |= bit;
-        else
-            masks.push_back({target.node, bit});
+        auto mask = std::find_if(masks.begin(), masks.end(), [&](const NodeMask& m) { return m.node == target.node; });
+        if (mask == masks.end()) mask = masks.insert(mask, NodeMask{target.node, 0});
+        mask->slots |= std::uint64_t{1} << target.slot;
     }
     return masks;
 }
