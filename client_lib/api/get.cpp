@@ -99,6 +99,12 @@ const Special kSpecials[] = {
     {GL_MAX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_TEXTURE_IMAGE_UNITS, kTextureUnits>},
     {GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, kTextureUnits>},
     {GL_MAX_DRAW_BUFFERS, 1, constant<1>},
+    {GL_NUM_COMPRESSED_TEXTURE_FORMATS, 1, constant<4>},
+    {GL_COMPRESSED_TEXTURE_FORMATS, 4,
+     [](Context&, double* out) {
+         out[0] = GL_COMPRESSED_RGB_S3TC_DXT1_EXT, out[1] = GL_COMPRESSED_RGBA_S3TC_DXT1_EXT;
+         out[2] = GL_COMPRESSED_RGBA_S3TC_DXT3_EXT, out[3] = GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
+     }},
     {GL_MAX_VERTEX_ATTRIBS, 1, limited<GL_MAX_VERTEX_ATTRIBS, kVertexAttributes>},
     {GL_MAX_ELEMENTS_VERTICES, 1, constant<3000>},
     {GL_MAX_ELEMENTS_INDICES, 1, constant<3000>},

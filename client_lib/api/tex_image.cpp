@@ -230,7 +230,7 @@ GLenum sub_image_error(Context& c, const ImageCall& call) {
     if (const GLenum error = glapi::format_type_error(call.format, call.type)) return error;
     const auto texture = bound_texture(c, call.target);
     const TextureLevel* level = texture ? texture->find_level(face_of(call.target), call.level) : nullptr;
-    if (!level) return GL_INVALID_OPERATION;
+    if (!level || level->compressed) return GL_INVALID_OPERATION;
     const auto inside = [](GLint at, GLsizei size, GLint all) { return at >= 0 && std::int64_t{at} + size <= all; };
     if (!inside(call.x, call.width, level->width) || !inside(call.y, call.height, level->height) || !inside(call.z, call.depth, level->depth))
         return GL_INVALID_VALUE;

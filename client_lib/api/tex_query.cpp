@@ -5,6 +5,7 @@
 
 #include "client_lib/maps.h"
 #include "client_lib/pixel_store.h"
+#include "client_lib/s3tc.h"
 #include "client_lib/texture_binding.h"
 #include "client_lib/texture_formats.h"
 #include "client_lib/texture_image.h"
@@ -34,6 +35,7 @@ GLint level_value(const TextureLevel& level, const TextureFormat& format, GLenum
         case GL_TEXTURE_BLUE_TYPE: return type_of(bits.blue);
         case GL_TEXTURE_ALPHA_TYPE: return type_of(bits.alpha);
         case GL_TEXTURE_COMPRESSED: return format.compressed;
+        case GL_TEXTURE_COMPRESSED_IMAGE_SIZE: return static_cast<GLint>(s3tc_bytes(format.answer, level.width, level.height));
         default: known = false; return 0;
     }
 }
@@ -169,6 +171,8 @@ std::vector<Rgba> halved(const std::vector<Rgba>& from, const TextureLevel& size
 std::vector<Rgba> level_texels(Texture& texture, unsigned face, GLint number) {
     const TextureLevel& level = *texture.find_level(face, number);
     const std::size_t count = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height) * static_cast<std::size_t>(level.depth);
+    if (level.compressed)
+        return to_rgba(GL_RGBA, GL_UNSIGNED_BYTE, decode_s3tc(level.internal_format, level.width, level.height, level.pixels), count);
     if (level.content == LevelContent::stored) return to_rgba(level.data_format, level.data_type, level.pixels, count);
     if (level.content == LevelContent::generated && texture.find_level(face, number - 1))
         return halved(level_texels(texture, face, number - 1), *texture.find_level(face, number - 1), level);
@@ -205,7 +209,10 @@ void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum 
         auto texels = level_texels(*texture, face_of(target), number);
         if (format != GL_DEPTH_COMPONENT && format != GL_DEPTH_STENCIL) {
             const ComponentBits bits = stored_bits(*internal, level->format, level->type);
-            for (Rgba& texel : texels) quantize(*internal, bits, type == GL_UNSIGNED_BYTE, texel), rebase(internal->base, texel);
+            for (Rgba& texel : texels) {
+                if (!level->compressed) quantize(*internal, bits, type == GL_UNSIGNED_BYTE, texel);
+                rebase(internal->base, texel);
+            }
             if (transfer_matters(c.state, format)) transfer_colors(c.state, c.maps->pixel, texels);
         }
         tight = from_rgba(format, type, texels);  // luminance is red here, unlike in glReadPixels

@@ -60,6 +60,9 @@ void pack_box(const Texture& texture, unsigned face, GLint number, const Texture
 }
 
 void pack_definition(const Texture& texture, unsigned face, GLint number, const TextureLevel& level, wire::PackBuffer& buffer) {
+    if (level.compressed)
+        return glapi::pack::TexCompressed(buffer, texture.id, image_target(texture, face), number, static_cast<GLenum>(level.internal_format),
+                                          level.width, level.height, level.pixels);
     const bool at_once = level.content == LevelContent::stored && level.format == level.data_format && level.type == level.data_type;
     glapi::pack::TexImage(buffer, texture.id, image_target(texture, face), number, static_cast<GLenum>(level.internal_format), level.width,
                           level.height, level.depth, 0, level.format, level.type,

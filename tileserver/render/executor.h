@@ -178,6 +178,8 @@ public:
                   std::int32_t depth, std::int32_t border, GLenum format, GLenum type, std::span<const std::byte> pixels);
     void TexSubImage(std::uint32_t texture, GLenum target, std::int32_t level, std::int32_t x, std::int32_t y, std::int32_t z, std::int32_t width,
                      std::int32_t height, std::int32_t depth, GLenum format, GLenum type, std::span<const std::byte> pixels);
+    void TexCompressed(std::uint32_t texture, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
+                       std::span<const std::byte> blocks);
     void TexParameter(std::uint32_t texture, GLenum target, GLenum pname, float p0, float p1, float p2, float p3);
     void TexDelete(std::uint32_t texture);
     void ShaderCompile(std::uint32_t request, GLenum type, std::span<const std::byte> source);

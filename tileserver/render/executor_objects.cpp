@@ -26,6 +26,12 @@ const glstate::State& neutral_state() {
     return state;
 }
 
+/// Of 4x4 texels; 0: not one of the formats.
+std::size_t s3tc_block_bytes(GLenum format) {
+    if (format == GL_COMPRESSED_RGB_S3TC_DXT1_EXT || format == GL_COMPRESSED_RGBA_S3TC_DXT1_EXT) return 8;
+    return format == GL_COMPRESSED_RGBA_S3TC_DXT3_EXT || format == GL_COMPRESSED_RGBA_S3TC_DXT5_EXT ? 16 : 0;
+}
+
 bool is_1d(TextureTarget target) { return target == TextureTarget::t1d; }
 bool is_3d(TextureTarget target) {
     return target == TextureTarget::t3d || target == TextureTarget::t2d_array || target == TextureTarget::cube_map_array;
@@ -93,6 +99,19 @@ void Executor::TexSubImage(std::uint32_t name, GLenum target, std::int32_t level
         gl_.TexSubImage3D(target, level, x, y, z, width, height, depth, format, type, pixels.data());
     else
         gl_.TexSubImage2D(target, level, x, y, width, height, format, type, pixels.data());
+}
+
+void Executor::TexCompressed(std::uint32_t name, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
+                             std::span<const std::byte> blocks) {
+    if (width < 0 || height < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent || level < 0 || level > kMaxLevel) return refuse("absurd size");
+    const std::size_t block = s3tc_block_bytes(internal_format);
+    const auto across = [](std::int32_t texels) { return (static_cast<std::size_t>(texels) + 3) / 4; };
+    if (block == 0 || blocks.size() != across(width) * across(height) * block) return refuse("size does not fit the blocks");
+    Texture* texture = bind_for_upload(name, target);
+    if (texture == nullptr) return;
+    if (!session_.account(*texture, target, level, blocks.size())) return refuse("more texture memory than a session may have");
+    if (texture->target != TextureTarget::t2d && texture->target != TextureTarget::cube_map) return refuse("no such target");
+    gl_.CompressedTexImage2D(target, level, internal_format, width, height, 0, static_cast<GLsizei>(blocks.size()), blocks.data());
 }
 
 void Executor::TexParameter(std::uint32_t name, GLenum target, GLenum pname, float p0, float p1, float p2, float p3) {

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// Compressed texture images (OpenGL 2.1, 3.8.3): the S3TC formats, kept and sent as they come. Formats for one and three
+// dimensions there are none.
+#include <algorithm>
+#include <cstring>
+
+#include "client_lib/buffer_binding.h"
+#include "client_lib/maps.h"
+#include "client_lib/s3tc.h"
+#include "client_lib/texture_binding.h"
+#include "client_lib/texture_formats.h"
+#include "client_lib/texture_image.h"
+
+namespace wall::client::api {
+namespace {
+
+bool legal_target(GLenum target) {
+    const GLenum object = object_target(target);
+    return target != GL_TEXTURE_CUBE_MAP && (object == GL_TEXTURE_2D || object == GL_TEXTURE_CUBE_MAP);
+}
+
+struct Image {
+    GLenum target;
+    GLint level, format;
+    GLsizei width, height, bytes;
+};
+
+GLenum image_error(Context& c, const Image& image, GLint border) {
+    if (!legal_target(image.target) || compressed_block_bytes(image.format) == 0) return GL_INVALID_ENUM;
+    const GLint levels = level_count(c, image.target);
+    if (image.level < 0 || image.level >= levels || border != 0 || image.width < 0 || image.height < 0) return GL_INVALID_VALUE;
+    const GLint most = std::max(1, 1 << (levels - 1) >> image.level);
+    if (image.width > most || image.height > most) return GL_INVALID_VALUE;
+    if (object_target(image.target) == GL_TEXTURE_CUBE_MAP && image.width != image.height) return GL_INVALID_VALUE;
+    const std::size_t bytes = s3tc_bytes(image.format, image.width, image.height);
+    return image.bytes < 0 || static_cast<std::size_t>(image.bytes) != bytes ? GL_INVALID_VALUE : GL_NO_ERROR;
+}
+
+TextureLevel described(const Image& image) {
+    TextureLevel level;
+    level.internal_format = image.format;
+    level.width = image.width;
+    level.height = image.height;
+    level.depth = 1;
+    level.compressed = true;
+    return level;
+}
+
+/// Columns and rows of blocks of a part that may end at the image's border only.
+bool whole_blocks(GLint at, GLsizei size, GLint all) { return at % kS3tcBlock == 0 && (size % kS3tcBlock == 0 || at + size == all); }
+
+GLenum sub_image_error(const TextureLevel& level, const Image& part, GLint x, GLint y) {
+    if (!level.compressed || level.internal_format != part.format) return GL_INVALID_OPERATION;
+    const auto inside = [](GLint at, GLsizei size, GLint all) { return at >= 0 && size >= 0 && std::int64_t{at} + size <= all; };
+    if (!inside(x, part.width, level.width) || !inside(y, part.height, level.height)) return GL_INVALID_VALUE;
+    if (!whole_blocks(x, part.width, level.width) || !whole_blocks(y, part.height, level.height)) return GL_INVALID_OPERATION;
+    return static_cast<std::size_t>(part.bytes) == s3tc_bytes(part.format, part.width, part.height) ? GL_NO_ERROR : GL_INVALID_VALUE;
+}
+
+void copy_blocks(TextureLevel& level, const Image& part, GLint x, GLint y, const std::byte* from) {
+    const std::size_t row = s3tc_bytes(level.internal_format, level.width, kS3tcBlock), part_row = s3tc_bytes(part.format, part.width, kS3tcBlock);
+    const std::size_t left = s3tc_bytes(part.format, x, kS3tcBlock);
+    for (GLsizei done = 0; done < part.height; done += kS3tcBlock, from += part_row)
+        std::memcpy(level.pixels.data() + static_cast<std::size_t>((y + done) / kS3tcBlock) * row + left, from, part_row);
+}
+
+}  // namespace
+
+void CompressedTexImage2D(Context& c, GLenum target, GLint number, GLenum internal, GLsizei width, GLsizei height, GLint border, GLsizei bytes,
+                          const void* data) {
+    const Image image{target, number, static_cast<GLint>(internal), width, height, bytes};
+    const GLenum error = image_error(c, image, border);
+    if (is_proxy(target) && legal_target(target)) {
+        c.maps->proxies[{target, number}] = error == GL_NO_ERROR ? described(image) : TextureLevel{};
+        return;
+    }
+    if (error != GL_NO_ERROR) return c.error(error);
+    const auto* from = static_cast<const std::byte*>(unpack_source(c, data, static_cast<std::size_t>(bytes)));
+    if (!from && c.state.local.pixel_unpack_buffer) return;
+    const auto texture = texture_to_change(c, target);
+    std::lock_guard lock(c.share().mutex);
+    TextureLevel& level = texture->level_at(face_of(target), number);
+    level = described(image);
+    level.pixels.resize(static_cast<std::size_t>(bytes));
+    if (from) std::copy(from, from + bytes, level.pixels.begin());
+    level.content = LevelContent::stored;
+    level.stamp = next_stamp();
+    if (texture->parameters.generate_mipmap && number == texture->parameters.base_level) texture->mipmaps_generated();
+    touch(c.share(), *texture);
+}
+
+void CompressedTexSubImage2D(Context& c, GLenum target, GLint number, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLsizei bytes,
+                             const void* data) {
+    if (is_proxy(target) || !legal_target(target) || compressed_block_bytes(static_cast<GLint>(format)) == 0) return c.error(GL_INVALID_ENUM);
+    if (number < 0 || number >= level_count(c, target) || bytes < 0) return c.error(GL_INVALID_VALUE);
+    const Image part{target, number, static_cast<GLint>(format), width, height, bytes};
+    const auto texture = bound_texture(c, target);
+    const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
+    if (const GLenum error = level ? sub_image_error(*level, part, x, y) : GLenum{GL_INVALID_OPERATION}) return c.error(error);
+    const auto* from = static_cast<const std::byte*>(unpack_source(c, data, static_cast<std::size_t>(bytes)));
+    if (!from || bytes == 0) return;
+    const auto changed = texture_to_change(c, target);
+    std::lock_guard lock(c.share().mutex);
+    TextureLevel& to = *changed->find_level(face_of(target), number);
+    copy_blocks(to, part, x, y, from);
+    to.stamp = next_stamp();
+    touch(c.share(), *changed);
+}
+
+void GetCompressedTexImage(Context& c, GLenum target, GLint number, void* pixels) {
+    if (is_proxy(target) || object_target(target) == 0 || target == GL_TEXTURE_CUBE_MAP) return c.error(GL_INVALID_ENUM);
+    if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE);
+    const auto texture = bound_texture(c, target);
+    const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
+    if (!level || !level->compressed) return c.error(GL_INVALID_OPERATION);
+    if (void* to = pack_target(c, pixels, level->pixels.size())) std::memcpy(to, level->pixels.data(), level->pixels.size());
+}
+
+// No format is for them.
+void CompressedTexImage1D(Context& c, GLenum, GLint, GLenum, GLsizei, GLint, GLsizei, const void*) { c.error(GL_INVALID_ENUM); }
+void CompressedTexImage3D(Context& c, GLenum, GLint, GLenum, GLsizei, GLsizei, GLsizei, GLint, GLsizei, const void*) { c.error(GL_INVALID_ENUM); }
+void CompressedTexSubImage1D(Context& c, GLenum, GLint, GLint, GLsizei, GLenum, GLsizei, const void*) { c.error(GL_INVALID_ENUM); }
+void CompressedTexSubImage3D(Context& c, GLenum, GLint, GLint, GLint, GLint, GLsizei, GLsizei, GLsizei, GLenum, GLsizei, const void*) {
+    c.error(GL_INVALID_ENUM);
+}
+
+}  // namespace wall::client::api

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// The S3TC block formats (EXT_texture_compression_s3tc): sizes, and decoding for glGetTexImage. Pure.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/glapi/gl_types.h"
+
+namespace wall::client {
+
+inline constexpr std::int32_t kS3tcBlock = 4;  ///< texels a side
+
+/// Bytes of an image; 0 if the format is none of them.
+std::size_t s3tc_bytes(GLint internal_format, std::int32_t width, std::int32_t height);
+/// RGBA bytes, row by row. `blocks` has s3tc_bytes() bytes.
+std::vector<std::byte> decode_s3tc(GLint internal_format, std::int32_t width, std::int32_t height, std::span<const std::byte> blocks);
+
+}  // namespace wall::client
