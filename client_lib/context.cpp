@@ -91,7 +91,8 @@ void Context::settle_modelview() {
 void Context::submit_block() {
     if (packer.has_geometry()) settle_modelview();
     if (packer.inside()) return;  // only commands that are legal inside come here then, and they change nothing that is drawn with
-    session_->submit_block(*this);
+    if (packer.has_geometry()) session_->submit_block(*this);
+    else fold_attributes();
     packer.reset();
     pending_materials.clear();
 }

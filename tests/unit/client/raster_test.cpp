@@ -21,7 +21,7 @@ protected:
     /// The same calls on both sides.
     struct Ours {
         Context& c;
-        void Viewport(GLint x, GLint y, GLsizei w, GLsizei h) const { c.table->Viewport(c, x, y, w, h); }
+        void Viewport(GLint x, GLint y, GLsizei w, GLsizei h) const { glstate::assign<glstate::el::viewport>(c.state, 0, {x, y, w, h}); }
         void MatrixMode(GLenum m) const { c.table->MatrixMode(c, m); }
         void LoadIdentity() const { c.table->LoadIdentity(c); }
         void Frustum(double l, double r, double b, double t, double n, double f) const { c.table->Frustum(c, l, r, b, t, n, f); }
