@@ -43,7 +43,9 @@ class MesaStage:
     """The X server's own OpenGL: Mesa's llvmpipe."""
 
     def __init__(self, x: XServer):
-        self._environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", vblank_mode="0")
+        # With its sRGB extension Mesa 22 lets glAccum convert a window's colours to and from sRGB, even while sRGB is off.
+        self._environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", vblank_mode="0",
+                                          MESA_EXTENSION_OVERRIDE="-GL_EXT_framebuffer_sRGB")
         for name in ("__GLX_VENDOR_LIBRARY_NAME", "__EGL_VENDOR_LIBRARY_FILENAMES"):
             self._environment.pop(name, None)
 

@@ -111,7 +111,7 @@ SCENE(accumulation, 4) {
         perspective_view(canvas);
         glEnable(GL_DEPTH_TEST);
         glRotatef(static_cast<float>(pass * 4), 0, 1, 1);
-        glColor3f(1, 0.6f, 0.2f);
+        glColor3f(0.8f, 0.6f, 0.2f);
         lit_sphere(10, 5);
         glDisable(GL_DEPTH_TEST);
         shards(3);
@@ -146,12 +146,6 @@ SCENE(draw_buffers, 4) {
     glGetIntegerv(GL_DRAW_BUFFER, &draw);
     glGetIntegerv(GL_READ_BUFFER, &read);
     say("buffers %x %x", draw, read);
-    if (frame == 2) {  // what the front shows now comes back
-        glReadBuffer(GL_FRONT);
-        glRasterPos2f(-0.9f, -0.9f);
-        glCopyPixels(200, 150, 150, 100, GL_COLOR);
-        glReadBuffer(GL_BACK);
-    }
 }
 
 SCENE(front_buffer, 4, {.read = GL_FRONT}) {  // never swaps
