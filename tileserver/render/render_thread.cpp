@@ -104,11 +104,11 @@ public:
     /// How long it may sleep when there is nothing to do.
     Clock::duration nap() const { return compositor_.busy() ? Clock::duration(kReadbackPoll) : Clock::duration(100ms); }
 
-    std::map<StreamId, std::unique_ptr<Stream>> streams_;
     NodeEvents& events_;
     Driver driver_;
     RenderNode node_;
     Compositor compositor_;
+    std::map<StreamId, std::unique_ptr<Stream>> streams_;  // after what their sessions use to the end
 
 private:
     Stream* exclusive() {

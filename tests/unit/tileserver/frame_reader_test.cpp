@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/io/frame_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace wall::tileserver {
+namespace {
+
+std::vector<std::byte> frame(wire::FrameKind kind, std::size_t bytes, int fill) {
+    const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(bytes), kind});
+    std::vector<std::byte> out(header.begin(), header.end());
+    out.resize(out.size() + bytes, static_cast<std::byte>(fill));
+    return out;
+}
+
+/// Feeds in portions of `portion` bytes; the frames that came out.
+std::vector<Frame> feed(FrameReader& reader, std::span<const std::byte> bytes, std::size_t portion) {
+    std::vector<Frame> frames;
+    while (!bytes.empty()) {
+        const auto room = reader.prepare();
+        const std::size_t now = std::min({portion, bytes.size(), room.size()});
+        std::memcpy(room.data(), bytes.data(), now);
+        reader.commit(now);
+        bytes = bytes.subspan(now);
+        for (auto next = reader.next(); next && *next; next = reader.next()) frames.push_back(std::move(**next));
+    }
+    return frames;
+}
+
+class FrameReaderPortions : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(FrameReaderPortions, GivesEveryFrameWhole) {
+    std::vector<std::byte> bytes;
+    const std::vector<std::size_t> sizes = {0, 1, 7, 65'536, 5'000'000, 3};
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+        const auto one = frame(wire::FrameKind::batch, sizes[i], static_cast<int>(i));
+        bytes.insert(bytes.end(), one.begin(), one.end());
+    }
+    FrameReader reader(8 << 20);
+    const auto frames = feed(reader, bytes, GetParam());
+    ASSERT_EQ(frames.size(), sizes.size());
+    for (std::size_t i = 0; i < sizes.size(); ++i) EXPECT_EQ(frames[i].payload, std::vector<std::byte>(sizes[i], static_cast<std::byte>(i))) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(Portions, FrameReaderPortions, ::testing::Values(1000, 65'536, 3'000'000, 100'000'000));
+
+TEST(FrameReader, RefusesMoreThanTheLimit) {
+    FrameReader reader(100);
+    EXPECT_TRUE(feed(reader, frame(wire::FrameKind::hello, 101, 0), 8).empty());
+    EXPECT_FALSE(reader.next());
+    EXPECT_FALSE(reader.next());  // and stays so
+}
+
+}  // namespace
+}  // namespace wall::tileserver

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+// A node with its threads and sockets, between a walld and clients that the test plays itself.
+#include "tileserver/io/node_server.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <cstring>
+#include <filesystem>
+#include <future>
+#include <thread>
+
+#include "common/net/sockets.h"
+#include "common/wire/batch.h"
+#include "common/wire/limits.h"
+#include "gen/glapi/wire.gen.h"
+#include "gen/glstate/state.gen.h"
+
+namespace wall::tileserver {
+namespace {
+
+using namespace std::chrono_literals;
+namespace pack = glapi::pack;
+constexpr auto kPatience = 10s;
+
+/// Waits for bytes; false if none come in time.
+bool readable(int fd) {
+    pollfd wait{fd, POLLIN, 0};
+    return ::poll(&wait, 1, static_cast<int>(std::chrono::milliseconds(kPatience).count())) > 0;
+}
+
+void write_all(int fd, std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+        const auto n = ::send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+        if (n <= 0) return;
+        bytes = bytes.subspan(static_cast<std::size_t>(n));
+    }
+}
+
+/// walld's end of the link.
+class FakeWalld {
+public:
+    explicit FakeWalld(const net::Address& address) : listener_(std::move(*net::listen_on(address))) {
+        ::fcntl(listener_.get(), F_SETFL, ::fcntl(listener_.get(), F_GETFL) & ~O_NONBLOCK);
+    }
+    void accept() {
+        ASSERT_TRUE(readable(listener_.get()));
+        link_.reset(::accept(listener_.get(), nullptr, nullptr));
+        unframer_ = {};
+    }
+    void drop() { link_.reset(); }
+    void send(const proto::Envelope& envelope) { write_all(link_.get(), std::as_bytes(std::span(net::frame(envelope)))); }
+    /// The next message of one kind; others are passed over.
+    proto::Envelope wait_for(proto::Envelope::MessageCase kind) {
+        for (;;) {
+            auto message = unframer_.next();
+            if (!message) break;
+            if (*message && (*message)->message_case() == kind) return **message;
+            if (*message) continue;
+            if (!readable(link_.get())) break;
+            const auto room = unframer_.prepare();
+            const auto n = ::read(link_.get(), room.data(), room.size());
+            if (n <= 0) break;
+            unframer_.commit(static_cast<std::size_t>(n));
+        }
+        ADD_FAILURE() << "no message of kind " << static_cast<int>(kind);
+        return {};
+    }
+
+private:
+    UniqueFd listener_, link_;
+    net::Unframer unframer_;
+};
+
+class Client {
+public:
+    explicit Client(const net::Address& node) : fd_(std::move(*net::connect_to(node, kPatience))) {}
+    void send(wire::FrameKind kind, std::span<const std::byte> payload) {
+        write_all(fd_.get(), wire::encode_frame_header({static_cast<std::uint32_t>(payload.size()), kind}));
+        write_all(fd_.get(), payload);
+    }
+    void hello(std::uint32_t session, const std::string& ticket) {
+        proto::DataHello hello;
+        hello.set_version(wire::kProtocolVersion);
+        hello.set_session(session);
+        hello.set_ticket(ticket);
+        send(wire::FrameKind::hello, std::as_bytes(std::span(hello.SerializeAsString())));
+    }
+    void batch(const wire::PackBuffer& buffer) {
+        std::vector<std::byte> payload;
+        wire::append_batch(payload, {1, buffer.opcodes(), buffer.operands()});
+        send(wire::FrameKind::batch, payload);
+    }
+    /// The next frame; nothing at the connection's end.
+    std::optional<Frame> next() {
+        for (;;) {
+            auto frame = reader_.next();
+            if (!frame) return std::nullopt;
+            if (*frame) return std::move(**frame);
+            if (!readable(fd_.get())) return std::nullopt;
+            const auto room = reader_.prepare();
+            const auto n = ::read(fd_.get(), room.data(), room.size());
+            if (n <= 0) return std::nullopt;
+            reader_.commit(static_cast<std::size_t>(n));
+        }
+    }
+    void expect(wire::FrameKind kind) {
+        const auto frame = next();
+        ASSERT_TRUE(frame);
+        EXPECT_EQ(frame->kind, kind) << std::string(reinterpret_cast<const char*>(frame->payload.data()), frame->payload.size());
+    }
+    std::string expect_error() {
+        const auto frame = next();
+        if (!frame || frame->kind != wire::FrameKind::error) return "no error frame";
+        EXPECT_FALSE(next());
+        return {reinterpret_cast<const char*>(frame->payload.data()), frame->payload.size()};
+    }
+
+private:
+    UniqueFd fd_;
+    FrameReader reader_{wire::kMaxFramePayload};
+};
+
+class NodeServerTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        char name[] = "/tmp/wallgl-node-test-XXXXXX";
+        folder_ = ::mkdtemp(name);
+        config_.control_listen = {*net::Address::parse("unix:" + folder_ + "/walld.sock")};
+        config_.nodes = {{"n", config::Backend::egl, *net::Address::parse("unix:" + folder_ + "/n.sock"), {{"t", {0, 0, 64, 48}}}}};
+        walld_.emplace(config_.control_listen.front());
+        auto server = NodeServer::open(io_.get_executor(), config_, config_.nodes.front());
+        ASSERT_TRUE(server) << server.error().message;
+        server_ = std::move(*server);
+        server_->start();
+        thread_ = std::thread([this] { io_.run(); });
+        introduce();
+    }
+    void TearDown() override {
+        if (server_) boost::asio::post(io_, [this] { server_->stop(); });
+        if (thread_.joinable()) thread_.join();
+        server_.reset();
+        std::filesystem::remove_all(folder_);
+    }
+    /// The node finds walld and learns of its tile and of sessions 1 and 2.
+    void introduce() {
+        walld_->accept();
+        const auto hello = walld_->wait_for(proto::Envelope::kNodeHello).node_hello();
+        EXPECT_EQ(hello.name(), "n");
+        EXPECT_GT(hello.caps().limits_size(), 50);
+        proto::Envelope welcome;
+        auto& tile = *welcome.mutable_node_welcome()->add_tiles();
+        tile.set_name("t");
+        tile.mutable_rect()->set_width(64);
+        tile.mutable_rect()->set_height(48);
+        welcome.mutable_node_welcome()->set_background(0x102030);
+        walld_->send(welcome);
+        for (std::uint32_t session : {1u, 2u}) {
+            proto::Envelope ticket;
+            ticket.mutable_ticket()->set_session(session);
+            ticket.mutable_ticket()->set_ticket("secret" + std::to_string(session));
+            walld_->send(ticket);
+        }
+    }
+    const net::Address& node_address() const { return config_.nodes.front().listen; }
+    /// A surface over the whole tile, one frame all in `color`.
+    static wire::PackBuffer one_frame(const glstate::Vec4& color, std::uint32_t frame) {
+        wire::PackBuffer buffer, body;
+        pack::SurfaceCreate(buffer, 1, 1, 0, 24, 8, 0, 0);
+        pack::SurfacePlace(buffer, 1, 1, 64, 48, 0, 0, 64, 48, 0);
+        pack::Bind(buffer, 1, 1);
+        glapi::pack_state(buffer, glstate::el::clear_color::id, &color, sizeof color);
+        pack::Clear(body, GL_COLOR_BUFFER_BIT);
+        pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()), static_cast<std::uint32_t>(body.operand_bytes()));
+        buffer.append(body, {}, body.mark());
+        pack::Swap(buffer, 1, frame);
+        return buffer;
+    }
+    /// The tile's first pixel as it is shown now.
+    std::vector<int> shown() {
+        proto::Envelope request;
+        request.mutable_snapshot_request()->set_request(++last_request_);
+        walld_->send(request);
+        const auto snapshot = walld_->wait_for(proto::Envelope::kSnapshot).snapshot();
+        if (snapshot.request() != last_request_ || snapshot.rgb().size() != 64 * 48 * 3) return {};
+        return {static_cast<unsigned char>(snapshot.rgb()[0]), static_cast<unsigned char>(snapshot.rgb()[1]), static_cast<unsigned char>(snapshot.rgb()[2])};
+    }
+    void stack_session(std::uint32_t session) {
+        proto::Envelope stacking;
+        auto& entry = *stacking.mutable_stacking()->add_entries();
+        entry.set_session(session);
+        entry.set_surface(1);
+        walld_->send(stacking);
+    }
+    void present(std::uint32_t session, std::uint32_t frame) {
+        proto::Envelope present;
+        present.mutable_present()->set_session(session);
+        present.mutable_present()->set_surface(1);
+        present.mutable_present()->set_frame(frame);
+        walld_->send(present);
+    }
+
+    std::string folder_;
+    config::WallConfig config_;
+    std::optional<FakeWalld> walld_;
+    boost::asio::io_context io_{1};
+    std::unique_ptr<NodeServer> server_;
+    std::thread thread_;
+    std::uint32_t last_request_ = 0;
+};
+
+TEST_F(NodeServerTest, ShowsAFrameWhenItIsPresented) {
+    EXPECT_EQ(shown(), (std::vector{0x10, 0x20, 0x30}));
+    Client client(node_address());
+    client.hello(1, "secret1");
+    client.expect(wire::FrameKind::welcome);
+    stack_session(1);
+    client.batch(one_frame({1, 0, 0, 0}, 1));
+    client.expect(wire::FrameKind::swap_done);
+    const auto rendered = walld_->wait_for(proto::Envelope::kRendered).rendered();
+    EXPECT_EQ(rendered.session(), 1u);
+    EXPECT_EQ(rendered.frame(), 1u);
+    EXPECT_EQ(shown(), (std::vector{0, 0, 0}));  // the window is there, the frame is not yet shown
+    present(1, 1);
+    EXPECT_EQ(shown(), (std::vector{255, 0, 0}));
+}
+
+TEST_F(NodeServerTest, ABadStreamEndsAloneAndWithAReason) {
+    Client good(node_address()), bad(node_address());
+    good.hello(1, "secret1");
+    bad.hello(2, "secret2");
+    good.expect(wire::FrameKind::welcome);
+    bad.expect(wire::FrameKind::welcome);
+    stack_session(1);
+    wire::PackBuffer nonsense;
+    pack::Swap(nonsense, 77, 1);
+    bad.batch(nonsense);
+    EXPECT_THAT(bad.expect_error(), ::testing::HasSubstr("surface 77"));
+    const auto fault = walld_->wait_for(proto::Envelope::kSessionFault).session_fault();
+    EXPECT_EQ(fault.session(), 2u);
+    EXPECT_THAT(fault.reason(), ::testing::HasSubstr("Swap"));
+    good.batch(one_frame({0, 1, 0, 0}, 1));
+    good.expect(wire::FrameKind::swap_done);
+    present(1, 1);
+    EXPECT_EQ(shown(), (std::vector{0, 255, 0}));
+}
+
+TEST_F(NodeServerTest, RefusesWhoHasNoTicket) {
+    Client wrong(node_address());
+    wrong.hello(1, "guess");
+    EXPECT_THAT(wrong.expect_error(), ::testing::HasSubstr("ticket"));
+    Client noise(node_address());
+    noise.send(wire::FrameKind::batch, {});
+    EXPECT_THAT(noise.expect_error(), ::testing::HasSubstr("hello"));
+    Client huge(node_address());
+    const auto header = wire::encode_frame_header({0xffffffff, wire::FrameKind::hello});
+    huge.send(static_cast<wire::FrameKind>(header[4]), std::vector<std::byte>(100'000));
+    EXPECT_THAT(huge.expect_error(), ::testing::HasSubstr("at most"));
+}
+
+TEST_F(NodeServerTest, GoesOnWithoutWalldAndFindsItAgain) {
+    Client client(node_address());
+    client.hello(1, "secret1");
+    client.expect(wire::FrameKind::welcome);
+    walld_->drop();
+    client.batch(one_frame({0, 0, 1, 0}, 1));
+    client.expect(wire::FrameKind::swap_done);
+    introduce();
+    stack_session(1);
+    present(1, 1);
+    EXPECT_EQ(shown(), (std::vector{0, 0, 255}));
+}
+
+TEST_F(NodeServerTest, AnEndedSessionIsGone) {
+    Client client(node_address());
+    client.hello(1, "secret1");
+    client.expect(wire::FrameKind::welcome);
+    stack_session(1);
+    client.batch(one_frame({1, 1, 1, 0}, 1));
+    client.expect(wire::FrameKind::swap_done);
+    proto::Envelope end;
+    end.mutable_session_end()->set_session(1);
+    walld_->send(end);
+    EXPECT_FALSE(client.next());
+    EXPECT_EQ(shown(), (std::vector{0x10, 0x20, 0x30}));
+}
+
+}  // namespace
+}  // namespace wall::tileserver
