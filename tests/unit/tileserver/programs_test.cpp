@@ -88,7 +88,8 @@ protected:
         return programs_->set_uniform(ClientName(program), location, type, count, std::as_bytes(std::span(values)));
     }
     test::Pixels draw(std::uint32_t program, const LayerGeometry& geometry) {
-        Layer layer(driver_->gl(), driver_->flip_y(), geometry, {});
+        PixelBudget budget;
+        Layer layer(driver_->gl(), driver_->flip_y(), geometry, {}, budget);
         layer.bind(GL_BACK, GL_BACK);
         const Gl& gl = driver_->gl();
         gl.Viewport(0, 0, layer.width(), layer.height());
