@@ -11,7 +11,6 @@
 #include <boost/asio/use_awaitable.hpp>
 
 #include "common/base/assert.h"
-#include "common/wire/limits.h"
 #include "walld/messages.h"
 
 namespace wall::walld {
@@ -184,9 +183,7 @@ asio::awaitable<void> ControlServer::wait_for_nodes() {
 }
 
 asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::ClientHello hello) {
-    if (hello.version() != wire::kProtocolVersion) {
-        co_return refuse(connection, "walld speaks protocol version " + std::to_string(wire::kProtocolVersion) + ", the program's WallGL library " + std::to_string(hello.version()));
-    }
+    if (const auto good = Wall::check(hello); !good) co_return refuse(connection, good.error().message);
     co_await wait_for_nodes();
     if (!wall_.any_node_up()) co_return refuse(connection, "no node of the wall is up: is a tileserver running? (wallctl nodes)");
     const auto id = wall_.open_session(hello, [&](SessionId session) { clients_[session] = connection; });

@@ -127,6 +127,16 @@ std::set<NodeIndex> Wall::nodes_under(const geom::Rect& rect) const {
 
 bool Wall::any_node_up() const { return std::ranges::any_of(nodes_, &Node::up); }
 
+Result<void> Wall::check(const proto::ClientHello& hello) {
+    if (hello.version() != wire::kProtocolVersion) {
+        return fail("walld speaks protocol version " + std::to_string(wire::kProtocolVersion) + ", the program's WallGL library " + std::to_string(hello.version()));
+    }
+    if (hello.has_rect() && !rect_ok(from_proto(hello.rect()))) {
+        return fail("the rectangle asked for is not possible: expected a width and a height from 1 to " + std::to_string(wire::kMaxSurfaceExtent) + ", at most as far from the corner");
+    }
+    return {};
+}
+
 SessionId Wall::open_session(const proto::ClientHello& hello, const std::function<void(SessionId)>& before_welcome) {
     WALL_ASSERT(any_node_up());
     const SessionId id(++last_session_);
@@ -135,7 +145,7 @@ SessionId Wall::open_session(const proto::ClientHello& hello, const std::functio
     session.program = hello.program().substr(0, kMaxText);
     session.name = hello.name().substr(0, kMaxText);
     session.held = hello.hold();
-    if (hello.has_rect() && rect_ok(from_proto(hello.rect()))) session.rect = from_proto(hello.rect());
+    if (hello.has_rect()) session.rect = from_proto(hello.rect());
     if (hello.fullscreen()) session.rect = config_.canvas();
     ++counters_.sessions;
     before_welcome(id);

@@ -95,7 +95,9 @@ public:
 
     // ---- clients ----
     bool any_node_up() const;
-    /// Needs a node that is up. The welcome goes to the session's client; the id is known before any message is sent.
+    /// Why this program cannot be taken, if so.
+    static Result<void> check(const proto::ClientHello& hello);
+    /// Needs a node that is up and a hello that was checked. The welcome goes to the session's client; the id is known before any message is sent.
     SessionId open_session(const proto::ClientHello& hello, const std::function<void(SessionId)>& before_welcome);
     void close_session(SessionId id);
     Result<void> open_surface(SessionId id, const proto::SurfaceOpen& message, Clock::time_point now);

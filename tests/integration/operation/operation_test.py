@@ -85,6 +85,20 @@ class OnAWall(unittest.TestCase):
         self.wall.ctl("lower", below)
         self.assertLess(self.surface(below)["z"], self.surface(above)["z"])
 
+    def test_a_screenshot_may_show_one_program_or_one_tile(self) -> None:
+        _, below = self.gears("400x300")
+        _, above = self.gears("200x150", rect=(0, 0, 200, 150))
+        for session in (below, above):
+            self.wall.hold(session)
+        time.sleep(0.5)
+        whole = self.picture()
+        self.assertTrue((self.picture(tile="0-0") == whole[:150, :200]).all())
+        self.assertTrue((self.picture(session=above) == whole[:150, :200]).all())
+        alone = self.picture(session=below)
+        self.assertEqual(alone.shape, (300, 400, 3))
+        self.assertTrue((alone[150:] == whole[150:]).all())
+        self.assertFalse((alone[:150, :200] == whole[:150, :200]).all(), "without the window above it")
+
     def test_a_held_program_shows_exactly_the_frames_stepped(self) -> None:
         app = self.wall.run("glxgears", "-geometry", "400x300", env=self.x.environment(), hold=True, stdout=subprocess.DEVNULL)
         session = self.wall.wait_session(app)

@@ -145,6 +145,21 @@ TEST_F(TheWall, TheWantedRectangleGoesToTheFirstWindowOnly) {
     EXPECT_EQ(open_surface(id, 3, 300, 300), (geom::Rect{0, 0, 1280, 480})) << "a probe window was closed; this is the real one";
 }
 
+TEST_F(TheWall, ARectangleMustBePossible) {
+    proto::ClientHello hello;
+    hello.set_version(wire::kProtocolVersion);
+    EXPECT_TRUE(Wall::check(hello));
+    hello.mutable_rect()->set_width(10);
+    EXPECT_FALSE(Wall::check(hello)) << "no height";
+    hello.mutable_rect()->set_height(10);
+    EXPECT_TRUE(Wall::check(hello));
+    hello.mutable_rect()->set_x(INT32_MAX);
+    EXPECT_FALSE(Wall::check(hello));
+    hello.clear_rect();
+    hello.set_version(wire::kProtocolVersion + 1);
+    EXPECT_FALSE(Wall::check(hello));
+}
+
 TEST_F(TheWall, APlacementFollowsTheWindowUnlessItIsScaled) {
     join("left");
     const auto id = open();
