@@ -290,15 +290,15 @@ wire::PackBuffer& Session::prepare(Node& node, Context& context, const Needs& ne
         mirror.draw_surface = draw.id;
         mirror.read_surface = read.id;
     }
-    const std::size_t objects_start = buffer.bytes();
-    context.share().bring_up_to_date(node, context, buffer);
+    const std::size_t surface_bytes = buffer.bytes() - start;
+    const std::size_t object_bytes = context.share().bring_up_to_date(node, context, buffer);
     const std::size_t state_start = buffer.bytes();
     glstate::PackSink sink{buffer};
     constexpr auto kCurrent = glstate::mask_of(glstate::Category::current);
     if (needs.categories & kCurrent) diff_current(mirror.state, context.state, needs, sink);
     glstate::diff(needs.categories & ~kCurrent, mirror.state, context.state, sink);
-    count_objects(node, state_start - objects_start);
-    count_state(node, buffer.bytes() - state_start + objects_start - start);
+    count_objects(node, object_bytes);
+    count_state(node, buffer.bytes() - state_start + surface_bytes);
     return buffer;
 }
 

@@ -8,6 +8,8 @@
 namespace wall::client {
 namespace {
 
+constexpr std::size_t kObjectBatchBytes = std::size_t{4} << 20;  // a batch of objects is sent when it reaches this
+
 /// Ids of the textures that a unit draws with. Targets that are not enabled cannot matter.
 template <class Use>
 void for_each_used(const glstate::State& state, Use&& use) {
@@ -69,14 +71,21 @@ void adopt_default(glstate::State& state, const Texture& texture) {
 ShareGroup::ShareGroup() = default;
 ShareGroup::~ShareGroup() = default;
 
-void ShareGroup::bring_up_to_date(Node& node, Context& context, wire::PackBuffer& buffer) {
+std::size_t ShareGroup::bring_up_to_date(Node& node, Context& context, wire::PackBuffer& buffer) {
     using glstate::Category;
     const std::array<std::uint64_t, 5> now = {context.state.ids[static_cast<std::size_t>(Category::texture_units)],
                                               context.state.ids[static_cast<std::size_t>(Category::textures)],
                                               last_change.load(std::memory_order_acquire), context.maps->stamp,
                                               context.state.ids[static_cast<std::size_t>(Category::objects)]};
     Mirror& mirror = node.mirrors[context.id];
-    if (mirror.objects == now) return;
+    if (mirror.objects == now) return 0;
+    std::size_t start = buffer.bytes(), sent = 0;
+    const std::function<void()> limit = [&] {  // a node at time zero may need more than a frame holds
+        if (buffer.bytes() < kObjectBatchBytes) return;
+        sent += buffer.bytes() - start;
+        context.session().send(node);
+        start = buffer.bytes();
+    };
     context.maps->bring_up_to_date(node, buffer);
     std::lock_guard lock(mutex);
     for (const auto& [target, texture] : default_textures) adopt_default(context.state, *texture);
@@ -87,7 +96,7 @@ void ShareGroup::bring_up_to_date(Node& node, Context& context, wire::PackBuffer
         const Texture& texture = *found->second;
         auto& known = node.object_stamps[id];
         if (known == texture.stamp) return;
-        pack_texture(texture, known, buffer);
+        pack_texture(texture, known, buffer, limit);
         known = texture.stamp;
     };
     for_each_used(context.state, bring_texture);
@@ -96,6 +105,7 @@ void ShareGroup::bring_up_to_date(Node& node, Context& context, wire::PackBuffer
         for_each_sampled(context, bring_texture);
     }
     mirror.objects = now;
+    return sent + buffer.bytes() - start;
 }
 
 GLuint texture_name(ShareGroup& share, std::uint32_t id) {

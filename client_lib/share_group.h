@@ -82,7 +82,8 @@ struct ShareGroup {
     std::atomic<std::uint64_t> last_change{0};
 
     /// Packs what drawing with this context needs and the node lacks. The session's mutex is held.
-    void bring_up_to_date(Node& node, Context& context, wire::PackBuffer& buffer);
+    /// Returns the bytes; full batches among them have been sent.
+    std::size_t bring_up_to_date(Node& node, Context& context, wire::PackBuffer& buffer);
 };
 
 /// The application's name of a texture id (glGet of a binding).

@@ -26,10 +26,6 @@ TexBox united(const TexBox& a, const TexBox& b) {
     return out;
 }
 
-void pack_parameter(const Texture& texture, GLenum pname, std::array<float, 4> v, wire::PackBuffer& buffer) {
-    glapi::pack::TexParameter(buffer, texture.id, texture.target, pname, v[0], v[1], v[2], v[3]);
-}
-
 GLenum image_target(const Texture& texture, unsigned face) {
     return texture.target == GL_TEXTURE_CUBE_MAP ? GL_TEXTURE_CUBE_MAP_POSITIVE_X + face : texture.target;
 }
@@ -49,55 +45,89 @@ std::vector<std::byte> cut(const TextureLevel& level, const TexBox& box) {
     return out;
 }
 
-void pack_box(const Texture& texture, unsigned face, GLint number, const TextureLevel& level, const TexBox& box, wire::PackBuffer& buffer) {
-    const auto pack = [&](std::span<const std::byte> pixels) {
-        glapi::pack::TexSubImage(buffer, texture.id, image_target(texture, face), number, box.x, box.y, box.z, box.width, box.height,
-                                 box.depth, level.data_format, level.data_type, pixels);
-    };
-    const bool whole = box.width == level.width && box.height == level.height && box.depth == level.depth;
-    if (whole) pack(level.pixels);
-    else pack(cut(level, box));
-}
+/// Packs what a node lacks of one texture.
+class TexturePacker {
+public:
+    TexturePacker(const Texture& texture, wire::PackBuffer& buffer, const std::function<void()>& packed)
+        : texture_(texture), buffer_(buffer), packed_(packed) {}
 
-void pack_definition(const Texture& texture, unsigned face, GLint number, const TextureLevel& level, wire::PackBuffer& buffer) {
-    if (level.compressed)
-        return glapi::pack::TexCompressed(buffer, texture.id, image_target(texture, face), number, static_cast<GLenum>(level.internal_format),
-                                          level.width, level.height, level.pixels);
-    const bool at_once = level.content == LevelContent::stored && level.format == level.data_format && level.type == level.data_type;
-    glapi::pack::TexImage(buffer, texture.id, image_target(texture, face), number, static_cast<GLenum>(level.internal_format), level.width,
-                          level.height, level.depth, 0, level.format, level.type,
-                          at_once ? std::span<const std::byte>(level.pixels) : std::span<const std::byte>());
-    if (level.content == LevelContent::stored && !at_once)
-        pack_box(texture, face, number, level, {0, 0, 0, level.width, level.height, level.depth, 0}, buffer);
-}
+    void parameter(GLenum pname, const std::array<float, 4>& v) {
+        glapi::pack::TexParameter(buffer_, texture_.id, texture_.target, pname, v[0], v[1], v[2], v[3]);
+        any_ = true;
+        packed_();
+    }
+    void current_parameter(GLenum pname) { parameter(pname, parameter_value(texture_.parameters, pname)); }
+    void base_level(std::uint64_t known);
+    /// What changed of one level since `known`.
+    void level(unsigned face, GLint number, std::uint64_t known);
+    bool any() const { return any_; }
 
-/// What changed of one level since `known`. True if something was packed.
-bool pack_level(const Texture& texture, unsigned face, GLint number, std::uint64_t known, wire::PackBuffer& buffer) {
-    const auto& levels = texture.faces[face];
-    if (static_cast<std::size_t>(number) >= levels.size()) return false;
-    const TextureLevel& level = levels[static_cast<std::size_t>(number)];
-    if (!level.defined() || level.content == LevelContent::generated) return false;
-    if (level.stamp > known) {
-        pack_definition(texture, face, number, level, buffer);
-        return true;
-    }
-    bool any = false;
-    for (const TexBox& box : level.changes) {
-        if (box.stamp <= known) continue;
-        pack_box(texture, face, number, level, box, buffer);
-        any = true;
-    }
-    return any;
-}
+private:
+    void define(unsigned face, GLint number, const TextureLevel& level);
+    void box(unsigned face, GLint number, const TextureLevel& level, const TexBox& box);
+    void piece(unsigned face, GLint number, const TextureLevel& level, const TexBox& box);
+
+    const Texture& texture_;
+    wire::PackBuffer& buffer_;
+    const std::function<void()>& packed_;
+    bool any_ = false;
+};
 
 // The driver makes the mipmaps when it gets the base level while the parameter is set. Nodes never see the parameter
 // otherwise: whether the application had it set when some level came is history that a late node cannot replay.
-void pack_generating(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer) {
-    const GLint base = texture.parameters.base_level;
-    const bool generate = texture.generated_stamp > known;
-    if (generate) pack_parameter(texture, GL_GENERATE_MIPMAP, {1, 0, 0, 0}, buffer);
-    for (unsigned face = 0; face < texture.face_count(); ++face) pack_level(texture, face, base, generate ? 0 : known, buffer);
-    if (generate) pack_parameter(texture, GL_GENERATE_MIPMAP, {0, 0, 0, 0}, buffer);
+void TexturePacker::base_level(std::uint64_t known) {
+    const bool generate = texture_.generated_stamp > known;
+    if (generate) parameter(GL_GENERATE_MIPMAP, {1, 0, 0, 0});
+    for (unsigned face = 0; face < texture_.face_count(); ++face) level(face, texture_.parameters.base_level, generate ? 0 : known);
+    if (generate) parameter(GL_GENERATE_MIPMAP, {0, 0, 0, 0});
+}
+
+void TexturePacker::level(unsigned face, GLint number, std::uint64_t known) {
+    const auto& levels = texture_.faces[face];
+    if (static_cast<std::size_t>(number) >= levels.size()) return;
+    const TextureLevel& level = levels[static_cast<std::size_t>(number)];
+    if (!level.defined() || level.content == LevelContent::generated) return;
+    if (level.stamp > known) return define(face, number, level);
+    for (const TexBox& change : level.changes)
+        if (change.stamp > known) box(face, number, level, change);
+}
+
+void TexturePacker::define(unsigned face, GLint number, const TextureLevel& level) {
+    any_ = true;
+    const auto internal = static_cast<GLenum>(level.internal_format);
+    const GLenum target = image_target(texture_, face);
+    if (level.compressed) {
+        glapi::pack::TexCompressed(buffer_, texture_.id, target, number, internal, level.width, level.height, level.pixels);
+        return packed_();
+    }
+    const bool stored = level.content == LevelContent::stored;
+    const bool at_once = stored && level.format == level.data_format && level.type == level.data_type && level.pixels.size() <= kLargestImageCommand;
+    glapi::pack::TexImage(buffer_, texture_.id, target, number, internal, level.width, level.height, level.depth, 0, level.format, level.type,
+                          at_once ? std::span<const std::byte>(level.pixels) : std::span<const std::byte>());
+    packed_();
+    if (stored && !at_once) box(face, number, level, {0, 0, 0, level.width, level.height, level.depth, 0});
+}
+
+// A large box goes slice by slice, in as many rows as fit.
+void TexturePacker::box(unsigned face, GLint number, const TextureLevel& level, const TexBox& box) {
+    const auto layout = glapi::pixel_layout(level.data_format, level.data_type);
+    if (!layout) return;
+    const std::size_t row = std::max<std::size_t>(glapi::row_bytes(*layout, box.width), 1);
+    const std::size_t all = row * static_cast<std::size_t>(box.height) * static_cast<std::size_t>(box.depth);
+    if (all <= kLargestImageCommand) return piece(face, number, level, box);
+    const auto rows = static_cast<std::int32_t>(std::max<std::size_t>(kLargestImageCommand / row, 1));
+    for (std::int32_t z = 0; z < box.depth; ++z)
+        for (std::int32_t y = 0; y < box.height; y += rows)
+            piece(face, number, level, {box.x, box.y + y, box.z + z, box.width, std::min(rows, box.height - y), 1, 0});
+}
+
+void TexturePacker::piece(unsigned face, GLint number, const TextureLevel& level, const TexBox& box) {
+    const bool whole = box.width == level.width && box.height == level.height && box.depth == level.depth;
+    const auto part = whole ? std::vector<std::byte>() : cut(level, box);
+    glapi::pack::TexSubImage(buffer_, texture_.id, image_target(texture_, face), number, box.x, box.y, box.z, box.width, box.height, box.depth,
+                             level.data_format, level.data_type, whole ? std::span<const std::byte>(level.pixels) : std::span<const std::byte>(part));
+    any_ = true;
+    packed_();
 }
 
 }  // namespace
@@ -193,17 +223,16 @@ std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname) {
     }
 }
 
-void pack_texture(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer) {
-    const std::size_t before = buffer.commands();
+void pack_texture(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed) {
+    TexturePacker packer(texture, buffer, packed);
     for (const auto& [pname, stamp] : texture.parameter_stamps)
-        if (stamp > known) pack_parameter(texture, pname, parameter_value(texture.parameters, pname), buffer);
-    pack_generating(texture, known, buffer);
+        if (stamp > known) packer.current_parameter(pname);
+    packer.base_level(known);
     for (unsigned face = 0; face < texture.face_count(); ++face)
         for (GLint level = 0; level < static_cast<GLint>(texture.faces[face].size()); ++level)
-            if (level != texture.parameters.base_level) pack_level(texture, face, level, known, buffer);
+            if (level != texture.parameters.base_level) packer.level(face, level, known);
     // A name that a state element carries must exist on the node.
-    if (known == 0 && buffer.commands() == before)
-        pack_parameter(texture, GL_TEXTURE_MAG_FILTER, parameter_value(texture.parameters, GL_TEXTURE_MAG_FILTER), buffer);
+    if (known == 0 && !packer.any()) packer.current_parameter(GL_TEXTURE_MAG_FILTER);
 }
 
 unsigned face_of(GLenum target) {

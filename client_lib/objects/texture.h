@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -85,8 +86,12 @@ struct Texture {
 /// Current value of a parameter as four numbers for the TexParameter command.
 std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname);
 
-/// Packs everything that changed since `known` (0: the node has nothing).
-void pack_texture(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer);
+/// Images larger than this travel in several pieces.
+inline constexpr std::size_t kLargestImageCommand = std::size_t{16} << 20;
+
+/// Packs everything that changed since `known` (0: the node has nothing). `packed` is called after every command, so that
+/// the caller may send the buffer before it grows too large for a frame.
+void pack_texture(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed = [] {});
 
 /// 0 to 5 for a cube map's face, else 0.
 unsigned face_of(GLenum image_target);

@@ -124,6 +124,20 @@ TEST(Texture, ManyChangesAreMerged) {
     EXPECT_EQ(sent(texture, known).size(), 1u);
 }
 
+TEST(Texture, LargeImagesTravelInPieces) {
+    Texture texture(1, 1, GL_TEXTURE_2D);
+    define(texture, 0, 3000);
+    wire::PackBuffer buffer;
+    std::size_t largest = 0, commands = 0;
+    pack_texture(texture, 0, buffer, [&] {
+        largest = std::max(largest, buffer.bytes());
+        ++commands;
+        buffer.clear();
+    });
+    EXPECT_EQ(commands, 1u + 3u);  // defined empty, then 36 MB in pieces of at most 16
+    EXPECT_LE(largest, kLargestImageCommand + 256);
+}
+
 TEST(Texture, MipmapsAreMadeByTheNode) {
     Texture texture(1, 1, GL_TEXTURE_2D);
     texture.parameters.generate_mipmap = true;
