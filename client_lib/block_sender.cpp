@@ -185,12 +185,37 @@ void BlockSender::close_block(Share& share) {
 void BlockSender::pack_attributes(Share& share, const AttributePlaces& wanted) {
     for (std::size_t i = 0; i < kAttributes; ++i) {
         if (wanted.offset[i] == share.sent.offset[i]) continue;
+        if (wanted.offset[i] == AttributePlaces::kNone) {
+            restore_attribute(share, static_cast<Attribute>(i));
+            continue;
+        }
         const std::size_t bytes = operand_bytes_of(wanted.op[i]);
         std::memcpy(share.buffer->append(static_cast<std::uint8_t>(wanted.op[i]), bytes), packer_.operand_at(wanted.offset[i]), bytes);
         session_.count_geometry(*share.node, bytes + 1);
         share.sent.offset[i] = wanted.offset[i];
         share.sent.op[i] = wanted.op[i];
     }
+}
+
+// A fan's hub, repeated for a later run, sees the attributes of before the block.
+void BlockSender::restore_attribute(Share& share, Attribute attribute) {
+    const auto& now = context_.state.current;
+    auto& mirror = share.node->mirrors[context_.id].state.current;
+    auto& buffer = *share.buffer;
+    const std::size_t before = buffer.bytes();
+    const auto with4 = [&](auto pack, const auto& v) { pack(buffer, v[0], v[1], v[2], v[3]); };
+    const auto with3 = [&](auto pack, const auto& v) { pack(buffer, v[0], v[1], v[2]); };
+    switch (attribute) {
+        case Attribute::color: with4(glapi::pack::Color4f, mirror.color = now.color); break;
+        case Attribute::normal: with3(glapi::pack::Normal3f, mirror.normal = now.normal); break;
+        case Attribute::texcoord0: with4(glapi::pack::TexCoord4f, mirror.texcoord[0] = now.texcoord[0]); break;
+        case Attribute::secondary_color: with3(glapi::pack::SecondaryColor3f, mirror.secondary_color = now.secondary_color); break;
+        case Attribute::fog_coord: glapi::pack::FogCoordf(buffer, mirror.fog_coord = now.fog_coord); break;
+        case Attribute::edge_flag: glapi::pack::EdgeFlag(buffer, mirror.edge_flag = now.edge_flag); break;
+        case Attribute::kCount: break;
+    }
+    session_.count_geometry(*share.node, buffer.bytes() - before);
+    share.sent.offset[static_cast<std::size_t>(attribute)] = AttributePlaces::kNone;
 }
 
 void BlockSender::copy(Share& share, wire::PackMark first, wire::PackMark last) {

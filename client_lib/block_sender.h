@@ -43,6 +43,7 @@ private:
     void open_block(Share& share, std::uint64_t mask);
     void close_block(Share& share);
     void pack_attributes(Share& share, const AttributePlaces& wanted);
+    void restore_attribute(Share& share, Attribute attribute);
     void copy(Share& share, wire::PackMark first, wire::PackMark last);
 
     void fold(const std::vector<Node*>& whole);
