@@ -19,9 +19,6 @@ using glapi::Op;
 using glapi::Recorded;
 using glstate::Category;
 
-/// A smaller run costs less replayed than called: a Block, the call, a stamp for each node.
-constexpr std::size_t kSmallRunBytes = 64;
-
 // ---- taking a recording apart ----
 
 /// What a recorded command may be part of.
@@ -107,13 +104,13 @@ class RunPacker {
 public:
     explicit RunPacker(Context& context) : context_(context) { scratch_.set_closed(true); }
 
-    /// Null if a run is not worth it.
+    /// Null if it draws nothing.
     std::unique_ptr<ListRun> pack(std::span<const std::byte> recorded) {
         enter();
         glapi::for_each_record(recorded, [&](const Recorded& r) { return replay_command(context_, r.command, r.payload), true; });
         leave();
         std::unique_ptr<ListRun> run;
-        if (scratch_.has_geometry() && scratch_.bytes() >= kSmallRunBytes) run = take();
+        if (scratch_.has_geometry()) run = take();
         scratch_.reset();
         materials_.clear();
         return run;

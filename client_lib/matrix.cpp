@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace wall::client {
 namespace {
@@ -15,6 +16,7 @@ float square(float x) { return x * x; }
 
 constexpr float kTiny = 1e-6f * 1e-6f;
 
+bool same_bits(const Mat4& a, const Mat4& b) { return std::memcmp(a.data(), b.data(), sizeof a) == 0; }
 bool only(std::uint32_t form, std::uint32_t allowed) { return (form & ~form::kUnknown & ~allowed) == 0; }
 
 Mat4 product_full(const Mat4& a, const Mat4& b) {
@@ -241,7 +243,7 @@ constexpr double kPi = 3.14159265358979323846;
 }  // namespace
 
 void load(FormedMatrix& matrix, const Mat4& values) {
-    if (matrix.m == values) return;
+    if (same_bits(matrix.m, values)) return;
     matrix.m = values;
     matrix.form = form::kGeneral | form::kUnknown;
     matrix.origin.known = false;
@@ -254,7 +256,7 @@ void load_identity(FormedMatrix& matrix) {
 }
 
 void multiply(FormedMatrix& matrix, const Mat4& right) {
-    if (right == kIdentity) return;
+    if (same_bits(right, kIdentity)) return;  // with a -0 it is not the identity to Mesa
     matrix.form |= form::kGeneral | form::kUnknown;
     matrix.m = product_full(matrix.m, right);
     matrix.origin.known = false;

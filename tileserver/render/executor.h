@@ -195,6 +195,7 @@ public:
     void PixelMap(GLenum map, std::span<const std::byte> values);
 
 private:
+    Run compile_run(std::span<const std::byte> opcodes, std::span<const std::byte> operands);
     void prepare(Layer& layer);
     void finish_tile();
     void sync_textures();

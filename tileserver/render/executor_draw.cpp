@@ -123,12 +123,11 @@ void Executor::Bitmap(std::int32_t width, std::int32_t height, float xorig, floa
 // ---- runs ----
 
 void Executor::RunCall(std::uint32_t id) {
+    if (!outside_begin()) return;
     const auto at = session_.runs.find(id);
     if (at == session_.runs.end()) return refuse("run " + std::to_string(id) + " is not defined");
-    const Run& run = at->second;
-    const std::span content(run.content);
-    const auto done = glapi::decode_run(content.subspan(run.opcode_offset, run.commands), content.subspan(run.operand_offset, run.operand_bytes), *this);
-    if (!done && !refused()) refuse("run " + std::to_string(id) + ": " + done.error().message);
+    if (draws_) gl_.CallList(at->second.list);
+    trail_.append(at->second.trail);
 }
 
 // ---- selection and feedback ----

@@ -2,6 +2,7 @@
 // Textures, runs, evaluator and pixel maps. Render thread.
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "common/glapi/image.h"
 #include "common/wire/batch.h"
@@ -128,16 +129,41 @@ void Executor::RunDefine(std::uint32_t id, std::uint32_t commands, std::uint32_t
     const std::size_t room = wire::padded4(commands);
     if (operand_bytes > wire::kMaxFramePayload || commands > wire::kMaxFramePayload || content.size() != room + operand_bytes)
         return refuse("content does not fit its sizes");
+    const auto opcodes = content.subspan(room - commands, commands);
+    for (const std::byte op : opcodes)
+        if (std::to_integer<std::size_t>(op) >= glapi::kOpCount || glapi::kOpGroups[std::to_integer<std::size_t>(op)] != glapi::OpGroup::geometry)
+            return refuse("a run holds geometry only");
     RunDelete(id);
     session_.run_bytes += content.size();
     if (session_.run_bytes > kMaxRunBytes) return refuse("more runs than a session may have");
-    session_.runs[id] = Run{{content.begin(), content.end()}, room - commands, commands, room, operand_bytes};
+    session_.runs[id] = compile_run(opcodes, content.subspan(room));
+}
+
+Run Executor::compile_run(std::span<const std::byte> opcodes, std::span<const std::byte> operands) {
+    Run run;
+    run.bytes = wire::padded4(opcodes.size()) + operands.size();
+    run.list = gl_.GenLists(1);
+    gl_.NewList(run.list, GL_COMPILE);
+    trail_.clear();
+    draws_ = true;  // into the list
+    const auto done = glapi::decode_run(opcodes, operands, *this);
+    draws_ = false;
+    if (std::exchange(in_begin_, false)) {
+        gl_.End();
+        refuse("a run ends between Begin and End");
+    }
+    gl_.EndList();
+    run.trail = trail_;
+    trail_.clear();
+    if (!done && !refused()) refuse("run: " + done.error().message);
+    return run;
 }
 
 void Executor::RunDelete(std::uint32_t id) {
     const auto at = session_.runs.find(id);
     if (at == session_.runs.end()) return;
-    session_.run_bytes -= at->second.content.size();
+    session_.run_bytes -= at->second.bytes;
+    gl_.DeleteLists(at->second.list, 1);
     session_.runs.erase(at);
 }
 

@@ -5,6 +5,7 @@ namespace wall::tileserver {
 
 Session::~Session() {
     for (auto& [key, texture] : textures_) release(texture);
+    for (auto& [id, run] : runs) driver_.gl().DeleteLists(run.list, 1);
     driver_.forget_layer();
 }
 

@@ -33,10 +33,12 @@ struct Texture {
     std::map<std::pair<GLenum, std::int32_t>, std::uint64_t> image_bytes;  ///< by image target and level: an estimate
 };
 
-/// Geometry that is called by name: packed commands as they came, opcodes last first.
+/// Geometry that is called by name: a display list of the driver. Mesa cuts quads and strips in a list into other
+/// triangles than outside, so only its own lists give the pixels that the application's list would give.
 struct Run {
-    std::vector<std::byte> content;
-    std::size_t opcode_offset = 0, commands = 0, operand_offset = 0, operand_bytes = 0;
+    GLuint list = 0;
+    AttributeTrail trail;  ///< what it leaves behind
+    std::size_t bytes = 0;
 };
 
 class Session {
