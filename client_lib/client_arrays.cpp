@@ -72,7 +72,8 @@ const std::byte* place(const ArraySource& source, GLuint element) {
 
 /// An array whose elements are an operand as they stand.
 struct DirectArray {
-    const ArraySource* source;
+    const std::byte* base;
+    std::size_t stride;
     Op op;
     std::size_t bytes;
     std::size_t slot;  ///< in Packer::last; kNoSlot: the vertex
@@ -89,9 +90,9 @@ std::size_t slot_of(Attribute attribute) { return static_cast<std::size_t>(attri
 bool direct(const ArraySource& source, DirectArray& out) {
     static constexpr Op kVertices[] = {Op::Vertex2f, Op::Vertex3f, Op::Vertex4f};
     static constexpr Op kTexCoords[] = {Op::TexCoord1f, Op::TexCoord2f, Op::TexCoord3f, Op::TexCoord4f};
-    out = {&source, Op::Vertex3f, static_cast<std::size_t>(source.size) * 4, kNoSlot};
+    out = {source.base, source.stride, Op::Vertex3f, static_cast<std::size_t>(source.size) * 4, kNoSlot};
     const bool floats = source.type == GL_FLOAT;
-    if (source.count != ~std::size_t{0}) return false;
+    if (source.count != ArraySource::kNoLimit) return false;
     switch (source.kind) {
         case ArrayKind::vertex: out.op = kVertices[source.size - 2]; return floats && source.size <= 3;
         case ArrayKind::normal: out.op = Op::Normal3f, out.slot = slot_of(Attribute::normal); return floats;
@@ -116,28 +117,81 @@ bool direct_layout(const ArraySet& arrays, DirectLayout& layout) {
     return true;
 }
 
-void add_to_box(Packer& packer, const std::byte* at, std::size_t bytes) {
-    float v[3] = {0, 0, 0};
-    std::memcpy(v, at, bytes);
-    packer.box.add(_mm_setr_ps(v[0], v[1], v[2], 0));
+void copy_words(std::byte* to, const std::byte* from, std::size_t bytes) {
+    switch (bytes) {  // constant sizes: a move or two each
+        case 4: std::memcpy(to, from, 4); break;
+        case 8: std::memcpy(to, from, 8); break;
+        case 12: std::memcpy(to, from, 12); break;
+        default: std::memcpy(to, from, 16); break;
+    }
 }
 
-// A vertex takes at most 16 + 12 + 16 + 12 bytes: it fits into what the packer keeps beyond its limit.
-void pack_direct(Packer& packer, const DirectLayout& layout, GLuint element) {
-    if (packer.next_operand() >= packer.limit) [[unlikely]] packer.make_room();
-    for (std::size_t k = 0; k < layout.count; ++k) {
-        const DirectArray& array = layout.arrays[k];
-        const std::byte* from = array.source->base + array.source->stride * element;
-        std::byte* at = packer.next_operand();
-        std::memcpy(at, from, array.bytes);
-        *--packer.next_opcode() = static_cast<std::byte>(array.op);
-        packer.next_operand() = at + array.bytes;
-        if (array.slot == kNoSlot) {
-            add_to_box(packer, from, array.bytes);
-        } else {
-            packer.last[array.slot] = at;
-            packer.last_op[array.slot] = array.op;
+__m128 load_vertex(const std::byte* at, std::size_t bytes) {
+    const __m128 xy = _mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(at)));
+    if (bytes == 8) return xy;
+    float z;
+    std::memcpy(&z, at + 8, sizeof z);
+    return _mm_movelh_ps(xy, _mm_set_ss(z));
+}
+
+/// Packs elements as long as there is room in the packer; returns how many.
+template <class ElementAt>
+GLsizei pack_some(Packer& packer, const DirectLayout& layout, GLsizei first, GLsizei end, ElementAt&& element_at) {
+    std::byte *operand = packer.next_operand(), *opcode = packer.next_opcode();
+    const std::byte* const limit = packer.limit;
+    geom::Box box = packer.box;
+    GLsizei i = first;
+    // A vertex takes at most 16 + 12 + 16 + 12 bytes: it fits into what the packer keeps beyond its limit.
+    for (; i < end && operand < limit; ++i) {
+        const std::size_t element = element_at(i);
+        for (std::size_t k = 0; k < layout.count; ++k) {
+            const DirectArray& array = layout.arrays[k];
+            const std::byte* from = array.base + array.stride * element;
+            copy_words(operand, from, array.bytes);
+            *--opcode = static_cast<std::byte>(array.op);
+            operand += array.bytes;
+            if (array.slot == kNoSlot) box.add(load_vertex(from, array.bytes));
         }
+    }
+    packer.box = box;
+    packer.next_operand() = operand;
+    packer.next_opcode() = opcode;
+    return i - first;
+}
+
+/// The last vertex packed has the current attributes.
+void remember_last(Packer& packer, const DirectLayout& layout) {
+    const std::byte* at = packer.next_operand();
+    for (std::size_t k = layout.count; k-- > 0;) {
+        const DirectArray& array = layout.arrays[k];
+        at -= array.bytes;
+        if (array.slot == kNoSlot) continue;
+        packer.last[array.slot] = at;
+        packer.last_op[array.slot] = array.op;
+    }
+}
+
+template <class ElementAt>
+void pack_direct(Packer& packer, const DirectLayout& layout, GLsizei count, ElementAt&& element_at) {
+    for (GLsizei done = 0; done < count;) {
+        const GLsizei packed = pack_some(packer, layout, done, count, element_at);
+        if (packed != 0) remember_last(packer, layout);
+        done += packed;
+        if (done < count) packer.make_room();
+    }
+}
+
+void pack_direct(Packer& packer, const DirectLayout& layout, const ElementRange& elements) {
+    const auto indexed = [&](const auto* indices) {
+        pack_direct(packer, layout, elements.count, [indices](GLsizei i) { return static_cast<std::size_t>(indices[i]); });
+    };
+    switch (elements.type) {
+        case GL_UNSIGNED_BYTE: return indexed(static_cast<const GLubyte*>(elements.indices));
+        case GL_UNSIGNED_SHORT: return indexed(static_cast<const GLushort*>(elements.indices));
+        case GL_UNSIGNED_INT: return indexed(static_cast<const GLuint*>(elements.indices));
+        default:
+            pack_direct(packer, layout, elements.count,
+                        [first = elements.first](GLsizei i) { return static_cast<std::size_t>(first) + static_cast<std::size_t>(i); });
     }
 }
 
@@ -148,84 +202,97 @@ void pack_direct(Packer& packer, const DirectLayout& layout, GLuint element) {
 class SavedCurrent {
 public:
     SavedCurrent(Context& c, const ArraySet& arrays) : c_(c), arrays_(arrays) {
-        const Packer& packer = c.packer;
-        if (packer.has_rare() || needs_rare()) c.flush_block();
-        current_ = c.state.current;
-        // What stands in the block is newer than the state.
-        for (std::size_t i = 0; i < kAttributes; ++i) {
-            if (!packer.last[i]) continue;
-            ops_[i] = packer.last_op[i];
-            std::memcpy(operands_[i].data(), packer.last[i], glapi::kOpFixedBytes[static_cast<std::size_t>(ops_[i])]);
-            packed_[i] = true;
-        }
+        if (c.packer.has_rare() || needs_rare()) c.flush_block();
+        for (std::size_t i = 0; i < arrays.sources().size(); ++i) save(arrays.sources()[i], saved_[i]);
     }
     void restore() {
-        for (const ArraySource& source : arrays_.sources()) restore(source);
+        for (std::size_t i = 0; i < arrays_.sources().size(); ++i) restore(arrays_.sources()[i], saved_[i]);
     }
 
 private:
+    /// A value of the state, or the packed command that is newer.
+    struct Saved {
+        bool packed;
+        Op op;
+        glstate::Vec4 value;
+    };
     bool needs_rare() const {
         return std::any_of(arrays_.sources().begin(), arrays_.sources().end(), [](const ArraySource& s) {
             return s.kind == ArrayKind::index || s.kind == ArrayKind::attrib || (s.kind == ArrayKind::texcoord && s.index != 0);
         });
     }
-    /// True if the value stood in the block.
-    bool restore_packed(Attribute attribute) {
-        const auto i = static_cast<std::size_t>(attribute);
-        if (!packed_[i]) return false;
+    static std::optional<Attribute> remembered(const ArraySource& source) {
+        switch (source.kind) {
+            case ArrayKind::edge_flag: return Attribute::edge_flag;
+            case ArrayKind::fog_coord: return Attribute::fog_coord;
+            case ArrayKind::secondary_color: return Attribute::secondary_color;
+            case ArrayKind::color: return Attribute::color;
+            case ArrayKind::normal: return Attribute::normal;
+            case ArrayKind::texcoord: return source.index == 0 ? std::optional(Attribute::texcoord0) : std::nullopt;
+            case ArrayKind::index:
+            case ArrayKind::attrib:
+            case ArrayKind::vertex: return std::nullopt;
+        }
+        return std::nullopt;
+    }
+    void save(const ArraySource& source, Saved& out) const {
+        const auto attribute = remembered(source);
+        const std::byte* packed = attribute ? c_.packer.last[slot_of(*attribute)] : nullptr;
+        out.packed = packed != nullptr;
+        if (packed) {
+            out.op = c_.packer.last_op[slot_of(*attribute)];
+            std::memcpy(out.value.data(), packed, glapi::kOpFixedBytes[static_cast<std::size_t>(out.op)]);
+        } else {
+            out.value = state_value(source);
+        }
+    }
+    glstate::Vec4 state_value(const ArraySource& source) const {
+        const auto& now = c_.state.current;
+        switch (source.kind) {
+            case ArrayKind::edge_flag: return {now.edge_flag ? 1.0f : 0.0f};
+            case ArrayKind::fog_coord: return {now.fog_coord};
+            case ArrayKind::secondary_color: return {now.secondary_color[0], now.secondary_color[1], now.secondary_color[2]};
+            case ArrayKind::color: return now.color;
+            case ArrayKind::normal: return {now.normal[0], now.normal[1], now.normal[2]};
+            case ArrayKind::texcoord: return now.texcoord[source.index];
+            case ArrayKind::index: return {now.color_index};
+            case ArrayKind::attrib: return now.vertex_attrib[source.index];
+            case ArrayKind::vertex: break;
+        }
+        return {};
+    }
+    void repack(Attribute attribute, const Saved& saved) {
         Packer& packer = c_.packer;
         if (packer.next_operand() >= packer.limit) packer.make_room();
-        const std::size_t bytes = glapi::kOpFixedBytes[static_cast<std::size_t>(ops_[i])];
+        const std::size_t bytes = glapi::kOpFixedBytes[static_cast<std::size_t>(saved.op)];
         std::byte* at = packer.next_operand();
-        std::memcpy(at, operands_[i].data(), bytes);
-        *--packer.next_opcode() = static_cast<std::byte>(ops_[i]);
+        std::memcpy(at, saved.value.data(), bytes);
+        *--packer.next_opcode() = static_cast<std::byte>(saved.op);
         packer.next_operand() = at + bytes;
-        packer.last[i] = at;
-        packer.last_op[i] = ops_[i];
-        return true;
+        packer.last[slot_of(attribute)] = at;
+        packer.last_op[slot_of(attribute)] = saved.op;
     }
-    void restore(const ArraySource& source) {
-        const auto& now = current_;
+    void restore(const ArraySource& source, const Saved& saved) {
+        if (saved.packed) return repack(*remembered(source), saved);
+        const auto& v = saved.value;
         switch (source.kind) {
-            case ArrayKind::edge_flag:
-                if (!restore_packed(Attribute::edge_flag)) api::EdgeFlag(c_, now.edge_flag ? GL_TRUE : GL_FALSE);
-                break;
-            case ArrayKind::fog_coord:
-                if (!restore_packed(Attribute::fog_coord)) api::FogCoordf(c_, now.fog_coord);
-                break;
-            case ArrayKind::secondary_color: {
-                const auto& v = now.secondary_color;
-                if (!restore_packed(Attribute::secondary_color)) api::SecondaryColor3f(c_, v[0], v[1], v[2]);
-                break;
-            }
-            case ArrayKind::color:
-                if (!restore_packed(Attribute::color)) api::Color4f(c_, now.color[0], now.color[1], now.color[2], now.color[3]);
-                break;
-            case ArrayKind::normal:
-                if (!restore_packed(Attribute::normal)) api::Normal3f(c_, now.normal[0], now.normal[1], now.normal[2]);
-                break;
-            case ArrayKind::texcoord: {
-                const auto& v = now.texcoord[source.index];
-                if (source.index != 0) api::MultiTexCoord4f(c_, GL_TEXTURE0 + source.index, v[0], v[1], v[2], v[3]);
-                else if (!restore_packed(Attribute::texcoord0)) api::TexCoord4f(c_, v[0], v[1], v[2], v[3]);
-                break;
-            }
-            case ArrayKind::index: api::Indexf(c_, now.color_index); break;
-            case ArrayKind::attrib: {
-                const auto& v = now.vertex_attrib[source.index];
-                api::VertexAttrib4f(c_, source.index, v[0], v[1], v[2], v[3]);
-                break;
-            }
-            case ArrayKind::vertex: break;
+            case ArrayKind::edge_flag: return api::EdgeFlag(c_, v[0] != 0 ? GL_TRUE : GL_FALSE);
+            case ArrayKind::fog_coord: return api::FogCoordf(c_, v[0]);
+            case ArrayKind::secondary_color: return api::SecondaryColor3f(c_, v[0], v[1], v[2]);
+            case ArrayKind::color: return api::Color4f(c_, v[0], v[1], v[2], v[3]);
+            case ArrayKind::normal: return api::Normal3f(c_, v[0], v[1], v[2]);
+            case ArrayKind::texcoord:
+                if (source.index != 0) return api::MultiTexCoord4f(c_, GL_TEXTURE0 + source.index, v[0], v[1], v[2], v[3]);
+                return api::TexCoord4f(c_, v[0], v[1], v[2], v[3]);
+            case ArrayKind::index: return api::Indexf(c_, v[0]);
+            case ArrayKind::attrib: return api::VertexAttrib4f(c_, source.index, v[0], v[1], v[2], v[3]);
+            case ArrayKind::vertex: return;
         }
     }
 
     Context& c_;
     const ArraySet& arrays_;
-    glstate::CurrentState current_;
-    std::array<std::array<std::byte, 16>, kAttributes> operands_{};
-    std::array<Op, kAttributes> ops_{};
-    std::array<bool, kAttributes> packed_{};
+    std::array<Saved, kMaxArrays> saved_;  // as many as there are sources
 };
 
 // ---- through the table ----
@@ -288,23 +355,18 @@ ArraySet::ArraySet(Context& c) {
 
 void ArraySet::add(Context& c, ArrayKind kind, unsigned index, const glstate::ClientArray& array) {
     if (!array.enabled) return;
-    ArraySource source;
-    source.kind = kind;
-    source.index = index;
-    source.size = array.size;
-    source.type = array.type;
     const std::size_t bytes = bytes_of(array.type) * static_cast<std::size_t>(array.size);
-    source.stride = array.stride ? static_cast<std::size_t>(array.stride) : bytes;
-    source.load = loader_of(array.type, array.normalized != 0);
+    const std::size_t stride = array.stride ? static_cast<std::size_t>(array.stride) : bytes;
+    const auto* base = reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(array.pointer));
+    std::size_t count = ArraySource::kNoLimit;
     if (array.buffer) {
         const auto content = buffer_content(c, array.buffer, static_cast<std::uintptr_t>(array.pointer));
-        source.base = content.data();
-        source.count = content.size() < bytes ? 0 : (content.size() - bytes) / source.stride + 1;
-    } else {
-        source.base = reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(array.pointer));
-        if (!source.base) return;
+        base = content.data();
+        count = content.size() < bytes ? 0 : (content.size() - bytes) / stride + 1;
+    } else if (!base) {
+        return;
     }
-    sources_[count_++] = source;
+    sources_[count_++] = {kind, index, base, stride, count, array.size, array.type, loader_of(array.type, array.normalized != 0)};
 }
 
 void send_element(Context& c, const ArraySet& arrays, GLuint element) {
@@ -322,8 +384,9 @@ void draw_elements(Context& c, GLenum mode, const ElementRange& elements) {
     SavedCurrent current(c, arrays);
     c.begin_primitive(mode);
     const auto restart = [&] { c.end_primitive(), c.begin_primitive(mode); };
-    if (DirectLayout layout; direct_layout(arrays, layout))
-        walk(c, elements, [&](GLuint e) { pack_direct(c.packer, layout, e); }, restart);
+    const bool restarts = elements.type != 0 && c.state.local.primitive_restart;
+    if (DirectLayout layout; !restarts && direct_layout(arrays, layout))
+        pack_direct(c.packer, layout, elements);
     else
         walk(c, elements, [&](GLuint e) { send_element(c, arrays, e); }, restart);
     c.end_primitive();

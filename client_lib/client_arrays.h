@@ -15,15 +15,17 @@ enum class ArrayKind : std::uint8_t { edge_flag, index, fog_coord, secondary_col
 
 /// One enabled array, resolved to memory.
 struct ArraySource {
-    ArrayKind kind = ArrayKind::vertex;
-    unsigned index = 0;  ///< texture unit or attribute
-    const std::byte* base = nullptr;
-    std::size_t stride = 0;
-    std::size_t count = ~std::size_t{0};  ///< elements that lie in the buffer object; without limit for client memory
-    GLint size = 4;
-    GLenum type = GL_FLOAT;
-    void (*load)(const std::byte* from, GLint size, float* out) = nullptr;
+    ArrayKind kind;
+    unsigned index;      ///< texture unit or attribute
+    const std::byte* base;
+    std::size_t stride;
+    std::size_t count;   ///< elements that lie in the buffer object; kNoLimit for client memory
+    GLint size;
+    GLenum type;
+    void (*load)(const std::byte* from, GLint size, float* out);
+    static constexpr std::size_t kNoLimit = ~std::size_t{0};
 };
+inline constexpr std::size_t kMaxArrays = 7 + kTextureUnits + kVertexAttributes - 1;
 
 /// The enabled arrays in the order in which an element's attributes are sent: the vertex last.
 class ArraySet {
@@ -34,7 +36,7 @@ public:
 
 private:
     void add(Context& c, ArrayKind kind, unsigned index, const glstate::ClientArray& array);
-    std::array<ArraySource, 6 + kTextureUnits + kVertexAttributes> sources_;
+    std::array<ArraySource, kMaxArrays> sources_;  // not initialized: draws may be small
     std::size_t count_ = 0;
 };
 

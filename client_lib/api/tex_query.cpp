@@ -209,8 +209,9 @@ void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum 
         auto texels = level_texels(*texture, face_of(target), number);
         if (format != GL_DEPTH_COMPONENT && format != GL_DEPTH_STENCIL) {
             const ComponentBits bits = stored_bits(*internal, level->format, level->type);
+            const bool to_bytes = type == GL_UNSIGNED_BYTE && format != GL_LUMINANCE && format != GL_LUMINANCE_ALPHA;
             for (Rgba& texel : texels) {
-                if (!level->compressed) quantize(*internal, bits, type == GL_UNSIGNED_BYTE, texel);
+                if (!level->compressed) quantize(*internal, bits, to_bytes, texel);
                 rebase(internal->base, texel);
             }
             if (transfer_matters(c.state, format)) transfer_colors(c.state, c.maps->pixel, texels);
