@@ -102,6 +102,7 @@ Context* current_context() { return tls_context.get(); }
 void swap_buffers(Surface&) {}
 Extent surface_size(const Surface& surface) { return surface.options.size; }
 void flush_current(bool) {}
+void copy_context(Context&, Context&, std::uint32_t) {}
 
 ProcAddress gl_proc_address(const char* name) {
     const auto is = [name](const char* other) { return std::strcmp(name, other) == 0; };
