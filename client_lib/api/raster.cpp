@@ -221,6 +221,13 @@ void assign(Context& c, const RasterState& raster) {
     c.state.ids[static_cast<std::size_t>(glstate::Category::raster)] = glstate::next_value_id();
 }
 
+/// A valid raster position is a hit while selecting, as a point at the same place would be.
+void mark_hit(Context& c, const Vec4& object) {
+    c.begin_primitive(GL_POINTS);
+    Vertex4f(c, object[0], object[1], object[2], object[3]);
+    c.end_primitive();
+}
+
 }  // namespace
 
 void RasterPos4f(Context& c, GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
@@ -251,6 +258,7 @@ void RasterPos4f(Context& c, GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
     }
     set_texcoords(s, g, raster);
     assign(c, raster);
+    if (s.local.render_mode == GL_SELECT) mark_hit(c, object);
 }
 
 void WindowPos3f(Context& c, GLfloat x, GLfloat y, GLfloat z) {
