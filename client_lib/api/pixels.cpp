@@ -46,6 +46,28 @@ void draw_tight(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
            [&](wire::PackBuffer& buffer) { glapi::pack::DrawPixels(buffer, width, height, format, type, pixels); });
 }
 
+void set_color_transfer(Context& c, const glstate::PixelTransferState& t) {
+    c.set<el::map_color>(0, t.map_color);
+    c.set<el::red_scale>(0, t.red_scale);
+    c.set<el::green_scale>(0, t.green_scale);
+    c.set<el::blue_scale>(0, t.blue_scale);
+    c.set<el::alpha_transfer_scale>(0, t.alpha_transfer_scale);
+    c.set<el::red_bias>(0, t.red_bias);
+    c.set<el::green_bias>(0, t.green_bias);
+    c.set<el::blue_bias>(0, t.blue_bias);
+    c.set<el::alpha_transfer_bias>(0, t.alpha_transfer_bias);
+}
+
+/// Mesa draws images of colour indices wrongly once it has to clip them, as at a tile's border: they travel as colours,
+/// which are past scale, bias and maps (OpenGL 1.2.1, 3.6.4).
+void draw_indices(Context& c, GLsizei width, GLsizei height, std::span<const float> indices) {
+    const auto colors = indices_to_colors(c.state, c.maps->pixel, indices);
+    const auto kept = c.state.pixel_transfer;
+    set_color_transfer(c, {});
+    draw_tight(c, width, height, GL_RGBA, GL_FLOAT, std::as_bytes(std::span(colors)));
+    set_color_transfer(c, kept);
+}
+
 // ---- pixel maps ----
 
 bool is_index_map(GLenum map) { return map == GL_PIXEL_MAP_I_TO_I || map == GL_PIXEL_MAP_S_TO_S; }
@@ -129,7 +151,10 @@ void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
     if (width == 0 || height == 0) return;
     if (!glapi::image_bytes(format, type, width, height, 1)) return c.error(GL_OUT_OF_MEMORY);
     const void* from = image_source(c, {{width, height}, format, type}, pixels);
-    if (from) draw_tight(c, width, height, format, type, glapi::unpack_image(unpack_store(c.state), {width, height}, format, type, from));
+    if (!from) return;
+    const auto tight = glapi::unpack_image(unpack_store(c.state), {width, height}, format, type, from);
+    if (format == GL_COLOR_INDEX) return draw_indices(c, width, height, to_indices(type, tight, width, height));
+    draw_tight(c, width, height, format, type, tight);
 }
 
 // The client's raster position is the only one: the command that travels moves nothing.

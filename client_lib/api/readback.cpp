@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "client_lib/context.h"
+#include "client_lib/pixel_convert.h"
 #include "client_lib/pixel_store.h"
 #include "client_lib/readback.h"
 
@@ -35,6 +36,11 @@ std::vector<std::byte> to_bits(const std::vector<std::byte>& pixels, const Pixel
     return bits;
 }
 
+bool has_ten_bits(GLenum type) { return type == GL_UNSIGNED_INT_10_10_10_2 || type == GL_UNSIGNED_INT_2_10_10_10_REV; }
+
+/// What the nodes are asked for. Mesa makes ten bits of eight out of a framebuffer object otherwise than out of a window.
+GLenum gathered_type(GLenum type) { return type == GL_BITMAP ? GL_UNSIGNED_BYTE : has_ten_bits(type) ? GL_FLOAT : type; }
+
 }  // namespace
 
 // What lies outside the window is not written (Mesa's way; OpenGL leaves it undefined).
@@ -51,9 +57,9 @@ void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
     if (store.row_length == 0) store.row_length = width;
     store.skip_pixels += box.x - x;
     store.skip_rows += box.y - y;
-    const bool bitmap = type == GL_BITMAP;
-    auto tight = gather_pixels(c, box, format, bitmap ? GL_UNSIGNED_BYTE : type, "glReadPixels");
-    if (bitmap) tight = to_bits(tight, box);
+    auto tight = gather_pixels(c, box, format, gathered_type(type), "glReadPixels");
+    if (type == GL_BITMAP) tight = to_bits(tight, box);
+    if (has_ten_bits(type)) tight = from_rgba(format, type, to_rgba(format, GL_FLOAT, tight, static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height)));
     glapi::pack_image(store, {box.width, box.height}, format, type, tight, to);
 }
 
