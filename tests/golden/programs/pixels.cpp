@@ -125,16 +125,12 @@ SCENE(pixel_transfer, 4) {
         glPixelTransferi(GL_MAP_COLOR, 1);
         glColorMask(1, 1, 0, 0);  // Mesa's mapped blue and alpha are undefined
     }
-    if (frame == 2) {  // colour indices
+    if (frame == 2) {  // their use is not compared: Mesa 22 draws images of colour indices in wrong colours
         const GLfloat map[] = {0, 0.25f, 0.5f, 1, 0.2f, 0.7f, 0.1f, 0.9f};
         for (const GLenum to : {GL_PIXEL_MAP_I_TO_R, GL_PIXEL_MAP_I_TO_G, GL_PIXEL_MAP_I_TO_B, GL_PIXEL_MAP_I_TO_A})
             glPixelMapfv(to, 8, map + (to % 2));
         glPixelTransferi(GL_INDEX_SHIFT, -1);
         glPixelTransferi(GL_INDEX_OFFSET, 3);
-        glRasterPos2i(20, 150);
-        glDrawPixels(64, 64, GL_COLOR_INDEX, GL_UNSIGNED_BYTE, image.data());
-        glRasterPos2i(200, 150);
-        glDrawPixels(64, 60, GL_COLOR_INDEX, GL_BITMAP, image.data());
         GLint size = 0;
         GLfloat answer[8] = {};
         glGetIntegerv(GL_PIXEL_MAP_I_TO_G_SIZE, &size);
