@@ -2,8 +2,11 @@
 #include "client_lib/lists.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <map>
+#include <mutex>
+#include <utility>
 
 #include "client_lib/block_sender.h"
 #include "client_lib/block_walk.h"
@@ -18,6 +21,31 @@ namespace {
 using glapi::Op;
 using glapi::Recorded;
 using glstate::Category;
+
+/// Ids of runs that are gone and that nodes may still hold. Any thread; never destroyed.
+class DeadRuns {
+public:
+    static DeadRuns& get() {
+        static auto* runs = new DeadRuns();
+        return *runs;
+    }
+    void add(std::uint32_t id) {
+        std::lock_guard lock(mutex_);
+        ids_.push_back(id);
+        any_.store(true, std::memory_order_release);
+    }
+    std::vector<std::uint32_t> take() {
+        if (!any_.load(std::memory_order_acquire)) return {};
+        std::lock_guard lock(mutex_);
+        any_.store(false, std::memory_order_relaxed);
+        return std::exchange(ids_, {});
+    }
+
+private:
+    std::mutex mutex_;
+    std::vector<std::uint32_t> ids_;
+    std::atomic<bool> any_{false};
+};
 
 // ---- taking a recording apart ----
 
@@ -129,7 +157,6 @@ private:
     }
     std::unique_ptr<ListRun> take() {
         auto run = std::make_unique<ListRun>();
-        run->id = next_object_id();
         run->content = wire::PackBuffer(scratch_.operand_bytes() + 4);
         run->content.append(scratch_, {}, scratch_.mark());
         run->box = scratch_.block_box();
@@ -191,6 +218,7 @@ void call_run(Context& c, const ListRun& run) {
     c.flush_block();
     c.settle_modelview();
     if (!c.draw_surface()) return apply_effects(c.state, run);
+    forget_dead_runs(c);
     const auto box = options().broadcast ? std::nullopt : project(c.projection(), run.box);
     std::vector<Node*> reached;
     const Needs needs = run.materials.empty() ? needs_of_geometry(c.state) : Needs{};
@@ -312,13 +340,16 @@ void execute_list(Context& c, const DisplayList& list) {
     }
 }
 
-void forget_runs(Context& c, const DisplayList& list) {
-    const bool any = std::any_of(list.items.begin(), list.items.end(), [](const ListItem& item) { return item.run != nullptr; });
-    if (!any) return;
+void forget_dead_runs(Context& c) {
+    const auto dead = DeadRuns::get().take();
+    if (dead.empty()) return;
     c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node& node) {
-        for (const ListItem& item : list.items)
-            if (item.run && node.object_stamps.erase(item.run->id)) glapi::pack::RunDelete(buffer, item.run->id);
+        for (const std::uint32_t id : dead)
+            if (node.object_stamps.erase(id)) glapi::pack::RunDelete(buffer, id);
     });
 }
+
+ListRun::ListRun() : id(next_object_id()) {}
+ListRun::~ListRun() { DeadRuns::get().add(id); }
 
 }  // namespace wall::client

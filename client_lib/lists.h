@@ -21,7 +21,10 @@ inline constexpr unsigned kListNestingLimit = 64;
 
 /// Whole primitives and the attributes and materials between them.
 struct ListRun {
-    std::uint32_t id = 0;       ///< on the wire and in Node::object_stamps
+    ListRun();
+    ~ListRun();
+    ListRun(const ListRun&) = delete;
+    const std::uint32_t id;     ///< on the wire and in Node::object_stamps
     wire::PackBuffer content;
     geom::Box box;              ///< object space
     /// What a current attribute is afterwards: a command in `content`.
@@ -54,7 +57,7 @@ struct ListState {
 /// Takes a recording apart. Leaves the context as it was.
 std::shared_ptr<DisplayList> compile_list(Context& context, std::span<const std::byte> recording);
 void execute_list(Context& context, const DisplayList& list);
-/// Tells the nodes that the list's runs are no longer needed.
-void forget_runs(Context& context, const DisplayList& list);
+/// Tells the nodes which runs have gone, whoever let go of them.
+void forget_dead_runs(Context& context);
 
 }  // namespace wall::client

@@ -38,6 +38,7 @@ public:
         return first;
     }
     bool known(GLuint name) const { return names_.contains(name); }
+    GLuint last() const { return last_; }  ///< no name above it is known
     std::shared_ptr<T> find(GLuint name) const {
         const auto at = names_.find(name);
         return at == names_.end() ? nullptr : at->second;

@@ -2,6 +2,7 @@
 // Display list commands (OpenGL 1.2.1, 5.4).
 #include "client_lib/lists.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "client_lib/share_group.h"
@@ -86,13 +87,8 @@ void EndList(Context& c) {
     finish_compiling(c);
     if (inside) c.table = &tables::inside_begin;
     auto compiled = compile_list(c, recording);
-    std::shared_ptr<DisplayList> old;
-    {
-        std::lock_guard lock(c.share().mutex);
-        old = c.share().lists.find(name);
-        c.share().lists.put(name, std::move(compiled));
-    }
-    if (old) forget_runs(c, *old);
+    std::lock_guard lock(c.share().mutex);
+    c.share().lists.put(name, std::move(compiled));
 }
 
 void CallList(Context& c, GLuint list) { call_list(c, list); }
@@ -118,14 +114,10 @@ GLboolean IsList(Context& c, GLuint list) {
 
 void DeleteLists(Context& c, GLuint list, GLsizei range) {
     if (range < 0) return c.error(GL_INVALID_VALUE);
-    for (GLuint i = 0; i < static_cast<GLuint>(range); ++i) {
-        std::shared_ptr<DisplayList> gone;
-        {
-            std::lock_guard lock(c.share().mutex);
-            gone = c.share().lists.erase(list + i);
-        }
-        if (gone) forget_runs(c, *gone);
-    }
+    std::lock_guard lock(c.share().mutex);
+    auto& lists = c.share().lists;
+    const auto end = std::min<std::uint64_t>(std::uint64_t{list} + static_cast<GLuint>(range), std::uint64_t{lists.last()} + 1);
+    for (std::uint64_t name = list; name < end; ++name) lists.erase(static_cast<GLuint>(name));
 }
 
 }  // namespace wall::client::api

@@ -190,7 +190,7 @@ TEST_F(ListTest, NamesAndErrors) {
     begin_list(first);
     gl().NewList(c, 9, GL_COMPILE);
     EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
-    gl().DeleteLists(c, first, 3);  // its own name while it is compiled
+    gl().DeleteLists(c, first, 0x7fffffff);  // its own name while it is compiled
     end_list();
     EXPECT_TRUE(gl().IsList(c, first));
     EXPECT_FALSE(gl().IsList(c, first + 1));
