@@ -58,7 +58,17 @@ unsigned Driver::drain_errors() {
     return count;
 }
 
+bool Driver::fragments_change(const glstate::State& from, const glstate::State& to) {
+    for (std::size_t category = 0; category < glstate::kCategoryCount; ++category)
+        if (((kSynced & ~kCurrentMask) >> category & 1) != 0 && from.ids[category] != to.ids[category]) return true;
+    return false;
+}
+
 void Driver::sync(const glstate::State& state) {
+    if (bitmap_held_ && fragments_change(mirror, state)) {
+        gl_.Flush();
+        bitmap_held_ = false;
+    }
     glstate::diff<kSynced>(mirror, state, *this);
     if (std::exchange(modelview_changed_, false)) modelview_has_origin_ = glstate::load_modelview(gl_, mirror, modelview_has_origin_);
 }

@@ -36,6 +36,8 @@ public:
     /// What the driver holds. Textures, the window category, the raster position and objects are kept elsewhere.
     glstate::State mirror;
 
+    /// A glBitmap was drawn. Mesa 22 gathers them, and would draw them by the state of a later one.
+    void hold_bitmap() { bitmap_held_ = true; }
     /// Everything but what depends on the layer or names objects.
     void sync(const glstate::State& state);
     void sync_pixel_transfer(const glstate::State& state);
@@ -93,6 +95,9 @@ private:
     void apply_viewport(const WindowValues& values, bool scaled);
 
     static constexpr glstate::CategoryMask kCurrentMask = glstate::mask_of(glstate::Category::current);
+    /// Whether a category differs that takes part in drawing a bitmap.
+    static bool fragments_change(const glstate::State& from, const glstate::State& to);
+
     static constexpr glstate::CategoryMask kSynced =
         glstate::kSentCategories & ~glstate::kLayerCategories & ~glstate::mask_of(glstate::Category::textures) & ~glstate::mask_of(glstate::Category::objects);
 
@@ -107,6 +112,7 @@ private:
     std::uint64_t window_id_ = 0;    // value id of the window category that they came from
     bool viewport_scaled_ = false;
     WindowValues window_;            // what the driver holds
+    bool bitmap_held_ = false;
 };
 
 }  // namespace wall::tileserver

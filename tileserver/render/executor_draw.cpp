@@ -105,6 +105,7 @@ void Executor::Bitmap(std::int32_t width, std::int32_t height, float xorig, floa
     if (width < 0 || height < 0 || width > (1 << 16) || height > (1 << 16)) return refuse("absurd size");
     if (bits.size() != (static_cast<std::size_t>(width) + 7) / 8 * static_cast<std::size_t>(height)) return refuse("size does not fit the bits");
     if (draws_ && width != 0 && height != 0) {
+        node_.driver.hold_bitmap();
         const LayerGeometry& g = layer_->geometry();
         at_raster_position([&] {
             if (!g.scaled()) return gl_.Bitmap(width, height, xorig, yorig, 0, 0, reinterpret_cast<const GLubyte*>(bits.data()));
