@@ -186,6 +186,7 @@ SCENE(bitmaps, 4) {
     glGetBooleanv(GL_CURRENT_RASTER_POSITION_VALID, &valid);
     say("invalid: %d", valid);
     if (frame >= 2) {
+        glFlush();  // Mesa 22 gathers bitmaps and would draw those from above by the logic operation from below
         glEnable(GL_LOGIC_OP);
         glEnable(GL_COLOR_LOGIC_OP);
         glLogicOp(frame == 2 ? GL_XOR : GL_AND_INVERTED);
