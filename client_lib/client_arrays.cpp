@@ -21,37 +21,66 @@ T load_one(const std::byte* at) {
     return value;
 }
 
-template <class T, bool kNormalized>
-float to_float(T value) {
-    if constexpr (!kNormalized || std::is_floating_point_v<T>) return static_cast<float>(value);
-    else if constexpr (std::is_signed_v<T>)
-        return std::max(static_cast<float>(value / static_cast<double>(std::numeric_limits<T>::max())), -1.0f);
-    else return static_cast<float>(value / static_cast<double>(std::numeric_limits<T>::max()));
-}
+/// How a normalized integer becomes a float differs in the last bit between the ways into Mesa.
+enum class Conversion : std::uint8_t {
+    none,     ///< the number itself
+    fetch,    ///< llvmpipe's, of a draw from arrays
+    command,  ///< glColor's and glNormal's, which glArrayElement and display lists go through
+};
 
-template <class T, bool kNormalized>
-void load_values(const std::byte* from, GLint size, float* out) {
-    for (GLint i = 0; i < size; ++i) out[i] = to_float<T, kNormalized>(load_one<T>(from + static_cast<std::size_t>(i) * sizeof(T)));
+template <class T, Conversion kConversion>
+float to_float(T value) {
+    constexpr auto kMax = static_cast<double>(std::numeric_limits<T>::max());
+    if constexpr (kConversion == Conversion::none || std::is_floating_point_v<T>) return static_cast<float>(value);
+    else if constexpr (std::is_same_v<T, GLubyte> && kConversion == Conversion::command) return static_cast<float>(value) / 255.0f;
+    else if constexpr (std::is_unsigned_v<T> && sizeof(T) < 4) return static_cast<float>(value) * static_cast<float>(1.0 / kMax);
+    else if constexpr (std::is_unsigned_v<T>) return static_cast<float>(value * (1.0 / kMax));
+    else if constexpr (kConversion == Conversion::command)
+        return (2.0f * static_cast<float>(value) + 1.0f) * (1.0f / static_cast<float>(2.0 * kMax + (sizeof(T) < 4 ? 1.0 : 0.0)));
+    else return std::max(static_cast<float>(value) * static_cast<float>(1.0 / kMax), -1.0f);
 }
 
 using Load = void (*)(const std::byte*, GLint, float*);
 
-template <class T>
-Load loader(bool normalized) {
-    return normalized ? &load_values<T, true> : &load_values<T, false>;
+template <class T, Conversion kConversion>
+void load_values(const std::byte* from, GLint size, float* out) {
+    for (GLint i = 0; i < size; ++i) out[i] = to_float<T, kConversion>(load_one<T>(from + static_cast<std::size_t>(i) * sizeof(T)));
 }
 
-Load loader_of(GLenum type, bool normalized) {
-    switch (type) {
-        case GL_BYTE: return loader<GLbyte>(normalized);
-        case GL_UNSIGNED_BYTE: return loader<GLubyte>(normalized);
-        case GL_SHORT: return loader<GLshort>(normalized);
-        case GL_UNSIGNED_SHORT: return loader<GLushort>(normalized);
-        case GL_INT: return loader<GLint>(normalized);
-        case GL_UNSIGNED_INT: return loader<GLuint>(normalized);
-        case GL_DOUBLE: return loader<GLdouble>(false);
-        default: return loader<GLfloat>(false);
+template <class T>
+Load loader(Conversion conversion) {
+    switch (conversion) {
+        case Conversion::fetch: return &load_values<T, Conversion::fetch>;
+        case Conversion::command: return &load_values<T, Conversion::command>;
+        case Conversion::none: break;
     }
+    return &load_values<T, Conversion::none>;
+}
+
+Load loader_of(GLenum type, Conversion conversion) {
+    switch (type) {
+        case GL_BYTE: return loader<GLbyte>(conversion);
+        case GL_UNSIGNED_BYTE: return loader<GLubyte>(conversion);
+        case GL_SHORT: return loader<GLshort>(conversion);
+        case GL_UNSIGNED_SHORT: return loader<GLushort>(conversion);
+        case GL_INT: return loader<GLint>(conversion);
+        case GL_UNSIGNED_INT: return loader<GLuint>(conversion);
+        case GL_DOUBLE: return loader<GLdouble>(Conversion::none);
+        default: return loader<GLfloat>(Conversion::none);
+    }
+}
+
+/// Whether the two conversions of a byte give the same float; then a colour of bytes may travel as such.
+constexpr std::array<bool, 256> kSameByte = [] {
+    std::array<bool, 256> same{};
+    for (int i = 0; i < 256; ++i) same[static_cast<std::size_t>(i)] = static_cast<float>(i) * static_cast<float>(1.0 / 255.0) == static_cast<float>(i) / 255.0f;
+    return same;
+}();
+
+bool same_bytes(const std::byte* at, std::size_t count) {
+    bool same = true;
+    for (std::size_t i = 0; i < count; ++i) same &= kSameByte[std::to_integer<std::size_t>(at[i])];
+    return same;
 }
 
 std::size_t bytes_of(GLenum type) {
@@ -134,12 +163,33 @@ __m128 load_vertex(const std::byte* at, std::size_t bytes) {
     return _mm_movelh_ps(xy, _mm_set_ss(z));
 }
 
+/// Where the latest attributes went and as what.
+struct Placed {
+    std::array<const std::byte*, 4> at;
+    std::array<Op, 4> op;
+};
+
+/// A colour of four bytes, as the driver would fetch it.
+std::byte* pack_color(std::byte* operand, const std::byte* from, Op& op) {
+    if (same_bytes(from, 4)) {
+        op = Op::Color4ub;
+        std::memcpy(operand, from, 4);
+        return operand + 4;
+    }
+    op = Op::Color4f;
+    float v[4];
+    load_values<GLubyte, Conversion::fetch>(from, 4, v);
+    std::memcpy(operand, v, sizeof v);
+    return operand + sizeof v;
+}
+
 /// Packs elements as long as there is room in the packer; returns how many.
 template <class ElementAt>
 GLsizei pack_some(Packer& packer, const DirectLayout& layout, GLsizei first, GLsizei end, ElementAt&& element_at) {
     std::byte *operand = packer.next_operand(), *opcode = packer.next_opcode();
     const std::byte* const limit = packer.limit;
     geom::Box box = packer.box;
+    Placed placed;
     GLsizei i = first;
     // A vertex takes at most 16 + 12 + 16 + 12 bytes: it fits into what the packer keeps beyond its limit.
     for (; i < end && operand < limit; ++i) {
@@ -147,36 +197,33 @@ GLsizei pack_some(Packer& packer, const DirectLayout& layout, GLsizei first, GLs
         for (std::size_t k = 0; k < layout.count; ++k) {
             const DirectArray& array = layout.arrays[k];
             const std::byte* from = array.base + array.stride * element;
-            copy_words(operand, from, array.bytes);
-            *--opcode = static_cast<std::byte>(array.op);
-            operand += array.bytes;
+            placed.at[k] = operand;
+            placed.op[k] = array.op;
+            if (array.op == Op::Color4ub) {
+                operand = pack_color(operand, from, placed.op[k]);
+            } else {
+                copy_words(operand, from, array.bytes);
+                operand += array.bytes;
+            }
+            *--opcode = static_cast<std::byte>(placed.op[k]);
             if (array.slot == kNoSlot) box.add(load_vertex(from, array.bytes));
         }
     }
     packer.box = box;
     packer.next_operand() = operand;
     packer.next_opcode() = opcode;
-    return i - first;
-}
-
-/// The last vertex packed has the current attributes.
-void remember_last(Packer& packer, const DirectLayout& layout) {
-    const std::byte* at = packer.next_operand();
-    for (std::size_t k = layout.count; k-- > 0;) {
-        const DirectArray& array = layout.arrays[k];
-        at -= array.bytes;
-        if (array.slot == kNoSlot) continue;
-        packer.last[array.slot] = at;
-        packer.last_op[array.slot] = array.op;
+    for (std::size_t k = 0; i > first && k < layout.count; ++k) {  // the last vertex has the current attributes
+        if (layout.arrays[k].slot == kNoSlot) continue;
+        packer.last[layout.arrays[k].slot] = placed.at[k];
+        packer.last_op[layout.arrays[k].slot] = placed.op[k];
     }
+    return i - first;
 }
 
 template <class ElementAt>
 void pack_direct(Packer& packer, const DirectLayout& layout, GLsizei count, ElementAt&& element_at) {
     for (GLsizei done = 0; done < count;) {
-        const GLsizei packed = pack_some(packer, layout, done, count, element_at);
-        if (packed != 0) remember_last(packer, layout);
-        done += packed;
+        done += pack_some(packer, layout, done, count, element_at);
         if (done < count) packer.make_room();
     }
 }
@@ -299,7 +346,7 @@ private:
 
 void send(Context& c, const ArraySource& source, GLuint element) {
     const std::byte* at = place(source, element);
-    if (source.kind == ArrayKind::color && source.type == GL_UNSIGNED_BYTE) {
+    if (source.kind == ArrayKind::color && source.type == GL_UNSIGNED_BYTE && (source.by_command || same_bytes(at, static_cast<std::size_t>(source.size)))) {
         const auto byte = [&](GLint i) { return std::to_integer<GLubyte>(at[i]); };
         return c.table->Color4ub(c, byte(0), byte(1), byte(2), source.size == 4 ? byte(3) : GLubyte{255});
     }
@@ -340,7 +387,7 @@ void walk(Context& c, const ElementRange& elements, Each&& each, Restart&& resta
 
 }  // namespace
 
-ArraySet::ArraySet(Context& c) {
+ArraySet::ArraySet(Context& c, bool by_command) : by_command_(by_command) {
     const auto& l = c.state.local;
     add(c, ArrayKind::edge_flag, 0, l.edge_flag_array);
     add(c, ArrayKind::index, 0, l.index_array);
@@ -366,7 +413,8 @@ void ArraySet::add(Context& c, ArrayKind kind, unsigned index, const glstate::Cl
     } else if (!base) {
         return;
     }
-    sources_[count_++] = {kind, index, base, stride, count, array.size, array.type, loader_of(array.type, array.normalized != 0)};
+    const Conversion conversion = !array.normalized ? Conversion::none : by_command_ ? Conversion::command : Conversion::fetch;
+    sources_[count_++] = {kind, index, by_command_, base, stride, count, array.size, array.type, loader_of(array.type, conversion)};
 }
 
 void send_element(Context& c, const ArraySet& arrays, GLuint element) {
@@ -374,9 +422,10 @@ void send_element(Context& c, const ArraySet& arrays, GLuint element) {
 }
 
 void draw_elements(Context& c, GLenum mode, const ElementRange& elements) {
-    const ArraySet arrays(c);
+    const bool at_once = c.table == &tables::immediate;
+    const ArraySet arrays(c, !at_once);
     if (!arrays.has_vertex() || elements.count <= 0) return;
-    if (c.table != &tables::immediate) {  // into a list
+    if (!at_once) {  // into a list
         c.table->Begin(c, mode);
         walk(c, elements, [&](GLuint e) { send_element(c, arrays, e); }, [&] { c.table->End(c), c.table->Begin(c, mode); });
         return c.table->End(c);

@@ -17,6 +17,7 @@ enum class ArrayKind : std::uint8_t { edge_flag, index, fog_coord, secondary_col
 struct ArraySource {
     ArrayKind kind;
     unsigned index;      ///< texture unit or attribute
+    bool by_command;     ///< converted as glColor and the like do
     const std::byte* base;
     std::size_t stride;
     std::size_t count;   ///< elements that lie in the buffer object; kNoLimit for client memory
@@ -30,7 +31,8 @@ inline constexpr std::size_t kMaxArrays = 7 + kTextureUnits + kVertexAttributes 
 /// The enabled arrays in the order in which an element's attributes are sent: the vertex last.
 class ArraySet {
 public:
-    explicit ArraySet(Context& c);
+    /// `by_command`: values are converted as by glColor and the like, not as by a draw.
+    ArraySet(Context& c, bool by_command);
     std::span<const ArraySource> sources() const { return {sources_.data(), count_}; }
     bool has_vertex() const { return count_ != 0 && sources_[count_ - 1].kind == ArrayKind::vertex; }
 
@@ -38,6 +40,7 @@ private:
     void add(Context& c, ArrayKind kind, unsigned index, const glstate::ClientArray& array);
     std::array<ArraySource, kMaxArrays> sources_;  // not initialized: draws may be small
     std::size_t count_ = 0;
+    bool by_command_;
 };
 
 /// Which elements a draw uses: `count` in a row from `first`, or the indices.

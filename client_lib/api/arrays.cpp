@@ -181,7 +181,7 @@ void InterleavedArrays(Context& c, GLenum format, GLsizei stride, const void* po
 
 void ArrayElement(Context& c, GLint element) {
     if (element < 0) return c.error(GL_INVALID_VALUE);
-    send_element(c, ArraySet(c), static_cast<GLuint>(element));
+    send_element(c, ArraySet(c, true), static_cast<GLuint>(element));
 }
 
 void DrawArrays(Context& c, GLenum mode, GLint first, GLsizei count) {

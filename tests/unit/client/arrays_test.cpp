@@ -24,7 +24,7 @@ protected:
 
 TEST_F(ArraysTest, FloatsAndBytesPackAsImmediateMode) {
     const float vertices[] = {1, 2, 3, 4, 5, 6, 7, 8, 9}, texcoords[] = {0, 1, 2, 3, 4, 5};
-    const GLubyte colors[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+    const GLubyte colors[] = {0, 1, 2, 4, 5, 8, 9, 10, 255, 11, 16, 17};
     gl().VertexPointer(c, 3, GL_FLOAT, 0, vertices);
     gl().ColorPointer(c, 4, GL_UNSIGNED_BYTE, 0, colors);
     gl().TexCoordPointer(c, 2, GL_FLOAT, 0, texcoords);
@@ -43,6 +43,27 @@ TEST_F(ArraysTest, FloatsAndBytesPackAsImmediateMode) {
     gl().Color4f(c, 1, 1, 1, 1);  // the current attributes are what they were
     gl().TexCoord4f(c, 0, 0, 0, 1);
     EXPECT_EQ(arrays, take());
+}
+
+// llvmpipe multiplies by 1/255 where glColor4ub divides by 255: for half of the bytes not the same float.
+TEST_F(ArraysTest, BytesThatADrawConvertsOtherwiseTravelAsFloats) {
+    const float vertices[] = {1, 2};
+    const GLubyte colors[] = {0, 1, 3, 255};
+    gl().VertexPointer(c, 2, GL_FLOAT, 0, vertices);
+    gl().ColorPointer(c, 4, GL_UNSIGNED_BYTE, 0, colors);
+    gl().EnableClientState(c, GL_VERTEX_ARRAY);
+    gl().EnableClientState(c, GL_COLOR_ARRAY);
+    gl().DrawArrays(c, GL_POINTS, 0, 1);
+    EXPECT_EQ(static_cast<glapi::Op>(c.packer.opcode_at(1)), glapi::Op::Color4f);
+    float blue;
+    std::memcpy(&blue, c.packer.operand_at(4 + 8), sizeof blue);
+    EXPECT_EQ(blue, 3 * (1.0f / 255.0f));
+    EXPECT_NE(blue, 3 / 255.0f);
+    c.packer.reset();
+    gl().Begin(c, GL_POINTS);
+    gl().ArrayElement(c, 0);  // Mesa makes a glColor4ub of it
+    EXPECT_EQ(static_cast<glapi::Op>(c.packer.opcode_at(1)), glapi::Op::Color4ub);
+    gl().End(c);
 }
 
 TEST_F(ArraysTest, ConvertedTypes) {
