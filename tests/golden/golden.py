@@ -62,7 +62,7 @@ class Comparison:
 
     def _text(self) -> Outcome:
         lines = list(difflib.unified_diff(self._reference.text, self._given.text, "mesa", "wall", lineterm="", n=0))
-        return Outcome(self._check("text"), not lines, "\n".join(lines[:40]))
+        return Outcome(self._check("text"), not lines, "\n".join(lines[:16]))
 
     def _round_trips(self) -> Outcome:
         waited = self._given.stats.get("round_trips_by_function", {})
