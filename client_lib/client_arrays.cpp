@@ -156,7 +156,7 @@ void copy_words(std::byte* to, const std::byte* from, std::size_t bytes) {
 }
 
 __m128 load_vertex(const std::byte* at, std::size_t bytes) {
-    const __m128 xy = _mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(at)));
+    const __m128 xy = _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(at)));  // any alignment
     if (bytes == 8) return xy;
     float z;
     std::memcpy(&z, at + 8, sizeof z);

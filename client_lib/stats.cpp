@@ -64,6 +64,10 @@ std::string environment_path() {
 
 Stats::Stats() : path_(environment_path()), start_(std::chrono::steady_clock::now()) {}
 
+Stats::~Stats() {
+    for (auto& slot : nodes_) delete slot.load(std::memory_order_relaxed);
+}
+
 Stats::NodeCounts& Stats::make_node(std::atomic<NodeCounts*>& slot) {
     auto* fresh = new NodeCounts;
     NodeCounts* expected = nullptr;

@@ -30,6 +30,8 @@ public:
     static constexpr std::size_t kMaxNodes = 512;  ///< nodes beyond are counted as the last one
 
     Stats();
+    ~Stats();
+    Stats(const Stats&) = delete;
 
     void add_node(std::uint32_t node, NodeCounter counter, std::uint64_t n) {
         auto& slot = nodes_[node < kMaxNodes ? node : kMaxNodes - 1];

@@ -54,11 +54,15 @@ std::byte* put(int opcode) {
     return at;
 }
 
-template <int kOpcode>
-void GLAPIENTRY three_floats(GLfloat x, GLfloat y, GLfloat z) {
-    const float values[] = {x, y, z};
-    std::memcpy(put<3>(kOpcode), values, sizeof values);
+/// Each from its register: together they would go over the stack and stall.
+template <class... Floats>
+void put_floats(int opcode, Floats... values) {
+    std::byte* at = put<sizeof...(Floats)>(opcode);
+    ((std::memcpy(at, &values, sizeof(float)), at += sizeof(float)), ...);
 }
+
+template <int kOpcode>
+void GLAPIENTRY three_floats(GLfloat x, GLfloat y, GLfloat z) { put_floats(kOpcode, x, y, z); }
 
 template <int kOpcode>
 void GLAPIENTRY three_floats_v(const GLfloat* v) { three_floats<kOpcode>(v[0], v[1], v[2]); }
@@ -75,10 +79,7 @@ void GLAPIENTRY color4ub(GLubyte r, GLubyte g, GLubyte b, GLubyte a) {
     const std::uint32_t rgba = r | std::uint32_t{g} << 8 | std::uint32_t{b} << 16 | std::uint32_t{a} << 24;
     std::memcpy(put<1>(6), &rgba, sizeof rgba);
 }
-void GLAPIENTRY texcoord2(GLfloat s, GLfloat t) {
-    const float values[] = {s, t};
-    std::memcpy(put<2>(7), values, sizeof values);
-}
+void GLAPIENTRY texcoord2(GLfloat s, GLfloat t) { put_floats(7, s, t); }
 void GLAPIENTRY begin(GLenum mode) { std::memcpy(put<1>(1), &mode, sizeof mode); }
 void GLAPIENTRY end() { put<0>(2); }
 const GLubyte* GLAPIENTRY get_string(GLenum name) {

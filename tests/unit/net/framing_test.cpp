@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "common/net/framing.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -18,7 +19,7 @@ proto::Envelope rendered(std::uint32_t frame) {
 }
 
 void feed(Unframer& unframer, std::string_view bytes) {
-    std::memcpy(unframer.prepare(bytes.size()).data(), bytes.data(), bytes.size());
+    std::ranges::copy(bytes, reinterpret_cast<char*>(unframer.prepare(bytes.size()).data()));
     unframer.commit(bytes.size());
 }
 
