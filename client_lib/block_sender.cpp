@@ -105,10 +105,9 @@ bool BlockSender::worth_dividing(const Primitive& primitive, const TargetSet& ta
 
 void BlockSender::divide(const Primitive& primitive, const TargetSet& targets) {
     const Topology topology = *topology_of(primitive.mode);
-    const float margin = context_.projection().margin;
     vertices_ = scan_vertices(packer_, primitive, context_.projection());
     for (std::size_t v = topology.fan ? 1 : 0; v + topology.size <= vertices_.size(); v += topology.step) {
-        const auto rect = window_rect(topology, vertices_, v, margin);
+        const auto rect = window_rect(topology, vertices_, v, context_.projection());
         const TargetSet touched = rect ? targets_of(*layout_, rect) & targets : targets;
         const std::size_t start = v / topology.alignment * topology.alignment;
         for (const auto& [index, slots] : by_node(touched, *layout_)) {

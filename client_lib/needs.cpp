@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "client_lib/block_walk.h"
+#include "common/glstate/modelview.h"
 
 namespace wall::client {
 namespace {
@@ -64,6 +65,15 @@ Needs needs_of_block(const glstate::State& state, const Packer& packer) {
     for (std::size_t i = 0; i < kAttributes; ++i)
         if (walk.places().offset[i] != AttributePlaces::kNone) needs.settle(static_cast<Attribute>(i));
     return needs;
+}
+
+CategoryMask categories_to_send(const Needs& needs, const glstate::State& mirror, const glstate::State& state) {
+    constexpr auto origin = static_cast<std::size_t>(Category::modelview_origin);
+    if (!(needs.categories & mask_of(Category::modelview_origin)) || mirror.ids[origin] == state.ids[origin]) return needs.categories;
+    const auto& matrix = state.matrix.modelview;
+    if (glstate::is_origin_of(state.modelview_origin.modelview_form, matrix)) return needs.categories;
+    if (glstate::is_origin_of(mirror.modelview_origin.modelview_form, matrix)) return needs.categories;
+    return needs.categories & ~mask_of(Category::modelview_origin);
 }
 
 void unify_id(glstate::State& mirror, const glstate::State& state, Category category) {

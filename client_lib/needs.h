@@ -24,6 +24,10 @@ Needs needs_of_geometry(const glstate::State& state);
 /// A packed block: the same, less what it sets itself in time.
 Needs needs_of_block(const glstate::State& state, const Packer& packer);
 
+/// What of `needs` has to be compared with this mirror: the origin of an earlier modelview matrix waits, too, unless the
+/// node would take its own origin for this matrix's.
+glstate::CategoryMask categories_to_send(const Needs& needs, const glstate::State& mirror, const glstate::State& state);
+
 /// Makes the mirror's current attributes equal to the context's, but for those that wait, and tells the sink.
 template <class Sink>
 void diff_current(glstate::State& mirror, const glstate::State& state, const Needs& needs, Sink& sink);

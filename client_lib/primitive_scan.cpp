@@ -11,13 +11,6 @@
 namespace wall::client {
 namespace {
 
-void grow(PixelRect& rect, const WindowVertex& v) {
-    rect.x0 = std::min(rect.x0, v.x);
-    rect.x1 = std::max(rect.x1, v.x);
-    rect.y0 = std::min(rect.y0, v.y);
-    rect.y1 = std::max(rect.y1, v.y);
-}
-
 std::size_t bytes_between(wire::PackMark first, wire::PackMark last) {
     return last.commands - first.commands + last.operand_bytes - first.operand_bytes;
 }
@@ -54,16 +47,13 @@ std::vector<PackedVertex> scan_vertices(const Packer& packer, const Primitive& p
     return vertices;
 }
 
-std::optional<PixelRect> window_rect(const Topology& topology, const std::vector<PackedVertex>& vertices, std::size_t first, float margin) {
-    PixelRect rect{INFINITY, INFINITY, -INFINITY, -INFINITY};
-    bool known = !topology.fan || vertices[0].window.known;
-    if (topology.fan) grow(rect, vertices[0].window);
-    for (std::size_t i = first; i < first + topology.size; ++i) {
-        known = known && vertices[i].window.known;
-        grow(rect, vertices[i].window);
-    }
-    if (!known) return std::nullopt;
-    return PixelRect{rect.x0 - margin, rect.y0 - margin, rect.x1 + margin, rect.y1 + margin};
+std::optional<PixelRect> window_rect(const Topology& topology, const std::vector<PackedVertex>& vertices, std::size_t first,
+                                     const Projection& projection) {
+    std::array<WindowVertex, kMostVertices> corners;
+    std::size_t count = 0;
+    if (topology.fan) corners[count++] = vertices[0].window;
+    for (std::size_t i = first; i < first + topology.size; ++i) corners[count++] = vertices[i].window;
+    return hull_rect(projection, {corners.data(), count});
 }
 
 std::size_t ideal_bytes(const Packer& packer, const Projection& projection, const SurfaceLayout& layout) {
@@ -80,7 +70,7 @@ std::size_t ideal_bytes(const Packer& packer, const Projection& projection, cons
         for (const NodeMask& node : nodes) {
             std::vector<bool> needed(vertices.size());
             for (std::size_t v = topology->fan ? 1 : 0; v + topology->size <= vertices.size(); v += topology->step) {
-                const auto touched = by_node(targets_of(layout, window_rect(*topology, vertices, v, projection.margin)), layout);
+                const auto touched = by_node(targets_of(layout, window_rect(*topology, vertices, v, projection)), layout);
                 if (std::none_of(touched.begin(), touched.end(), [&](const NodeMask& m) { return m.node == node.node; })) continue;
                 std::fill_n(needed.begin() + static_cast<std::ptrdiff_t>(v), topology->size, true);
                 if (topology->fan) needed[0] = true;

@@ -11,6 +11,8 @@
 
 namespace wall::client {
 
+inline constexpr std::size_t kMostVertices = 4;  ///< of a primitive
+
 /// How the vertices of a mode make primitives: primitive k uses vertices [k * step, k * step + size).
 struct Topology {
     unsigned size, step;
@@ -32,7 +34,8 @@ struct PackedVertex {
 std::vector<PackedVertex> scan_vertices(const Packer& packer, const Primitive& primitive, const Projection& projection);
 
 /// Where the point, line, triangle or quad that starts at vertex `first` may be drawn; nothing if that is unknown.
-std::optional<PixelRect> window_rect(const Topology& topology, const std::vector<PackedVertex>& vertices, std::size_t first, float margin);
+std::optional<PixelRect> window_rect(const Topology& topology, const std::vector<PackedVertex>& vertices, std::size_t first,
+                                     const Projection& projection);
 
 /// What perfect sorting would send of the block: each node gets exactly the vertices (with their attribute commands) of
 /// the primitives whose own window rectangle touches one of its tiles. Bytes over all nodes; for comparison only.

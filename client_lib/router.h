@@ -3,9 +3,11 @@
 // cannot be bounded goes to every tile of the surface. Pure; the caller's thread.
 #pragma once
 
+#include <array>
 #include <bitset>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/geom/box.h"
@@ -45,19 +47,24 @@ struct Projection {
     glstate::Mat4 clip_from_object{};
     float viewport[4]{};  ///< x, y, width, height
     float margin = 1;     ///< pixels: half the line width or point size, and one for rounding
+    bool near_plane = true;  ///< clips; not while depths are clamped
 };
 
 Projection make_projection(const glstate::State& state);
 glstate::Mat4 multiply(const glstate::Mat4& a, const glstate::Mat4& b);
 
-/// Where the box can be drawn; nothing if that is unknown (a corner behind the eye).
+/// Where the box can be drawn; nothing if that is unknown. Empty behind the eye.
 std::optional<PixelRect> project(const Projection& projection, const geom::Box& box);
 
 struct WindowVertex {
+    std::array<float, 4> clip;
     float x, y;
-    bool known;  ///< false: not in front of the eye
+    bool in_front;  ///< of the eye; else x and y mean nothing
 };
 WindowVertex project(const Projection& projection, float x, float y, float z, float w);
+
+/// Where the convex hull of some vertices can be drawn, what clipping leaves of it; nothing if that is unknown.
+std::optional<PixelRect> hull_rect(const Projection& projection, std::span<const WindowVertex> vertices);
 
 TargetSet targets_of(const SurfaceLayout& layout, const std::optional<PixelRect>& rect);
 

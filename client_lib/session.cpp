@@ -293,10 +293,11 @@ wire::PackBuffer& Session::prepare(Node& node, Context& context, const Needs& ne
     const std::size_t surface_bytes = buffer.bytes() - start;
     const std::size_t object_bytes = context.share().bring_up_to_date(node, context, buffer);
     const std::size_t state_start = buffer.bytes();
-    glstate::PackSink sink{buffer};
+    glstate::CompactPackSink sink{buffer, mirror.history};
     constexpr auto kCurrent = glstate::mask_of(glstate::Category::current);
-    if (needs.categories & kCurrent) diff_current(mirror.state, context.state, needs, sink);
-    glstate::diff(needs.categories & ~kCurrent, mirror.state, context.state, sink);
+    const auto categories = categories_to_send(needs, mirror.state, context.state);
+    if (categories & kCurrent) diff_current(mirror.state, context.state, needs, sink);
+    glstate::diff(categories & ~kCurrent, mirror.state, context.state, sink);
     count_objects(node, object_bytes);
     count_state(node, buffer.bytes() - state_start + surface_bytes);
     return buffer;

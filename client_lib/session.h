@@ -19,6 +19,7 @@
 #include "client_lib/router.h"
 #include "client_lib/stats.h"
 #include "client_lib/transport.h"
+#include "common/glstate/value_history.h"
 #include "gen/glstate/state.gen.h"
 
 namespace wall::client {
@@ -31,6 +32,7 @@ std::uint32_t next_object_id();
 /// What a node holds of one context.
 struct Mirror {
     glstate::State state;
+    glstate::ValueHistory history;
     std::uint32_t draw_surface = 0, read_surface = 0;
     std::array<std::uint64_t, 5> objects{};  ///< value ids and stamps as of ShareGroup::bring_up_to_date
 };

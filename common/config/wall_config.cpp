@@ -16,6 +16,7 @@
 #define TOML_ENABLE_UNRELEASED_FEATURES 0
 #include <toml++/toml.h>
 
+#include "common/config/toml_guard.h"
 #include "common/wire/limits.h"
 
 namespace wall::config {
@@ -25,36 +26,6 @@ constexpr std::int64_t kMaxCanvas = wire::kMaxSurfaceExtent;  // pixels a side: 
 constexpr std::int64_t kMaxSwapTimeout = 10'000;   // ms
 constexpr std::array kBackends{Backend::egl, Backend::osmesa};
 
-/// The line of the first character beyond ASCII outside of strings and comments, where TOML has none; 0 if there is
-/// none. toml++ 3.3 does not survive some of them.
-std::uint32_t stray_character_line(std::string_view text) {
-    std::uint32_t line = 1;
-    std::string_view quote;  // that ends the string we are in
-    const auto at_quote = [&](std::size_t i) {
-        for (const std::string_view q : {"\"\"\"", "'''", "\"", "'"}) {
-            if (text.substr(i).starts_with(q)) return q;
-        }
-        return std::string_view();
-    };
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        if (text[i] == '\n') {
-            ++line;
-            if (quote.size() == 1) quote = {};  // an unfinished string; toml++ will say so
-        } else if (!quote.empty()) {
-            if (text[i] == '\\' && quote[0] == '"' && text.substr(i + 1, 1) != "\n") ++i;
-            else if (text.substr(i).starts_with(quote)) i += std::exchange(quote, {}).size() - 1;
-        } else if (text[i] == '#') {
-            i = std::min(text.find('\n', i), text.size()) - 1;
-        } else if (const auto q = at_quote(i); !q.empty()) {
-            quote = q;
-            i += q.size() - 1;
-        } else if (static_cast<unsigned char>(text[i]) >= 0x80) {
-            return line;
-        }
-    }
-    return 0;
-}
-
 class TreeReader {
 public:
     explicit TreeReader(std::string_view file) : file_(file) {}
@@ -62,7 +33,7 @@ public:
     const std::optional<Error>& error() const { return error_; }
 
     void refuse(const toml::source_region& where, std::string_view what) {
-        if (!error_) error_ = Error{file_ + ":" + std::to_string(std::max(1u, where.begin.line)) + ": " + std::string(what)};
+        if (!error_) error_ = Error{file_ + ":" + std::to_string(std::max(1u, where.begin.line)) + ": " + from_private_use(what)};
     }
 
     /// Every key of `table` must be one of `known`.
@@ -80,7 +51,7 @@ public:
         if (!node) return otherwise.value_or("");
         if (const auto* value = node->as_string()) {
             if (value->get().empty()) refuse(node->source(), quoted(key) + " is empty: expected a string");
-            return value->get();
+            return from_private_use(value->get());
         }
         refuse(node->source(), quoted(key) + ": expected a string");
         return {};
@@ -100,7 +71,7 @@ public:
 
     net::Address address(const toml::node& node, const std::string& what) {
         const auto* value = node.as_string();
-        auto parsed = value ? net::Address::parse(value->get()) : fail("expected a string, unix:PATH or HOST:PORT");
+        auto parsed = value ? net::Address::parse(from_private_use(value->get())) : fail("expected a string, unix:PATH or HOST:PORT");
         if (parsed) return *parsed;
         refuse(node.source(), what + ": " + parsed.error().message);
         return {};
@@ -170,7 +141,7 @@ std::uint32_t read_background(TreeReader& read, const toml::table& wall) {
 std::uint32_t read_user(TreeReader& read, const toml::node& node) {
     if (const auto* uid = node.as_integer(); uid && uid->get() >= 0 && uid->get() < UINT32_MAX) return static_cast<std::uint32_t>(uid->get());
     if (const auto* name = node.as_string()) {
-        if (const passwd* entry = ::getpwnam(name->get().c_str())) return entry->pw_uid;
+        if (const passwd* entry = ::getpwnam(from_private_use(name->get()).c_str())) return entry->pw_uid;
         read.refuse(node.source(), "'users': this machine has no user '" + name->get() + "'");
         return 0;
     }
@@ -262,10 +233,7 @@ const NodeConfig* WallConfig::find_node(std::string_view node) const {
 }
 
 Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name) {
-    if (const auto line = stray_character_line(toml)) {
-        return fail(std::string(file_name) + ":" + std::to_string(line) + ": not TOML: a character beyond ASCII: expected it only in strings and comments");
-    }
-    const auto parsed = toml::parse(toml, file_name);
+    const auto parsed = toml::parse(to_private_use(toml), file_name);
     TreeReader read(file_name);
     if (!parsed) {
         read.refuse(parsed.error().source(), "not TOML: " + std::string(parsed.error().description()));

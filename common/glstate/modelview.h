@@ -31,6 +31,9 @@ inline std::uint32_t modelview_tag(const Mat4& m) {
     return hash;
 }
 
+/// Does `form` belong to the matrix?
+inline bool is_origin_of(const ModelviewForm& form, const Mat4& m) { return form.tag == modelview_tag(m); }
+
 namespace detail {
 
 /// Bits of ModelviewForm::missing; as in Mesa's m_matrix.c.
@@ -62,7 +65,7 @@ template <class Gl>
 bool load_modelview(Gl& gl, const State& state, bool had_origin) {
     const Mat4& m = el::modelview::ref(state);
     const ModelviewForm& form = el::modelview_form::ref(state);
-    const bool has_origin = form.tag == modelview_tag(m);
+    const bool has_origin = is_origin_of(form, m);
     gl.MatrixMode(GL_MODELVIEW);
     if (has_origin || had_origin) gl.LoadMatrixf(Mat4{}.data());  // loading equal values would forget nothing
     gl.LoadMatrixf(has_origin ? el::modelview_base::ref(state).data() : m.data());

@@ -31,7 +31,22 @@ Result<void> Executor::run_batch(std::span<const std::byte> payload) {
 
 std::uint32_t Executor::state_bytes(std::uint32_t id) const { return glstate::element_bytes(id); }
 
-bool Executor::State(std::uint32_t id, std::span<const std::byte> value) { return glstate::apply(context_->state, id, value); }
+bool Executor::State(std::uint32_t id, std::span<const std::byte> value) {
+    if (!glstate::apply(context_->state, id, value)) return false;
+    if (value.size() == glstate::ValueHistory::kValueBytes) context_->history.add(id, value.data());
+    return true;
+}
+
+void Executor::StateSmall(std::uint32_t word) {
+    const std::uint32_t value = word >> 16;
+    if (!glstate::apply(context_->state, word & 0xffff, std::as_bytes(std::span(&value, 1)))) refuse("no such small element");
+}
+
+void Executor::StateRecall(std::uint32_t word) {
+    const std::uint32_t id = word & 0xffff;
+    const auto value = context_->history.recall(id, word >> 16);
+    if (value.empty() || !glstate::apply(context_->state, id, value)) refuse("recalls a value that it never had");
+}
 
 // ---- blocks ----
 

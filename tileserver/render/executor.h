@@ -45,6 +45,8 @@ public:
     // ---- the decoder's interface ----
     std::uint32_t state_bytes(std::uint32_t id) const;
     bool State(std::uint32_t id, std::span<const std::byte> value);
+    void StateSmall(std::uint32_t word);
+    void StateRecall(std::uint32_t word);
     std::uint64_t begin_block(std::uint64_t tiles);
     void begin_tile(unsigned slot);
     void end_block();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/ids.h"
+#include "common/glstate/value_history.h"
 #include "gen/glstate/state.gen.h"
 #include "tileserver/render/attribute_trail.h"
 #include "tileserver/render/driver.h"
@@ -23,6 +24,7 @@ namespace wall::tileserver {
 
 struct SoftContext {
     glstate::State state;
+    glstate::ValueHistory history;
     SurfaceId draw, read;
     SoftMaps maps;
 };

@@ -106,32 +106,5 @@ TEST(PrimitiveScan, KnowsTheAttributesOfEachVertex) {
     EXPECT_EQ(red_at(vertices[2].before), 1.0f);
 }
 
-TEST(Projection, ABoxBehindTheEyeHasNoKnownPlace) {
-    Projection p;
-    p.clip_from_object = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -1, 0, 0, 0, 0};  // w = -z
-    p.viewport[2] = p.viewport[3] = 100;
-    geom::Box box;
-    box.add(_mm_set_ps(0, -2, -1, -1));
-    box.add(_mm_set_ps(0, 1, 1, 1));
-    EXPECT_FALSE(project(p, box).has_value());
-}
-
-TEST(Projection, MapsClipSpaceToTheViewport) {
-    Projection p;
-    p.clip_from_object = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    p.viewport[2] = 200;
-    p.viewport[3] = 100;
-    p.margin = 1;
-    geom::Box box;
-    box.add(_mm_set_ps(0, 0, -0.5f, -1));
-    box.add(_mm_set_ps(0, 0, 0.5f, 0));
-    const auto rect = project(p, box);
-    ASSERT_TRUE(rect.has_value());
-    EXPECT_EQ(rect->x0, -1);
-    EXPECT_EQ(rect->x1, 101);
-    EXPECT_EQ(rect->y0, 24);
-    EXPECT_EQ(rect->y1, 76);
-}
-
 }  // namespace
 }  // namespace wall::client
