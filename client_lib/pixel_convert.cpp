@@ -48,6 +48,9 @@ std::uint32_t to_unorm(float value, unsigned bits) {
     if (value >= 1) return static_cast<std::uint32_t>(unsigned_max(bits));
     return static_cast<std::uint32_t>(std::llrint(value * unsigned_max(bits)));
 }
+std::uint32_t to_whole(float value, std::uint32_t max) {
+    return value > 0 ? static_cast<std::uint32_t>(std::min(static_cast<double>(value), static_cast<double>(max))) : 0;
+}
 std::int32_t to_snorm(float value, unsigned bits) {
     const double max = bits == 32 ? 2147483647.0 : static_cast<double>((1 << (bits - 1)) - 1);
     return static_cast<std::int32_t>(std::llrint(std::clamp(static_cast<double>(value), -1.0, 1.0) * max));
@@ -237,13 +240,13 @@ std::vector<std::byte> from_rgba(GLenum format, GLenum type, std::span<const Rgb
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         std::byte* at = out.data() + i * layout->pixel_bytes;
         if (type == GL_UNSIGNED_INT_24_8) {
-            store(at, to_unorm(pixels[i][0], 24) << 8 | (static_cast<std::uint32_t>(pixels[i][1]) & 0xff));
+            store(at, to_unorm(pixels[i][0], 24) << 8 | to_whole(pixels[i][1], 0xff));
         } else if (packed) {
             std::uint32_t word = 0;
             for (unsigned k = 0; k < order.count; ++k) {
                 const float value = get_component(pixels[i], order.place[k]);
                 const std::uint32_t max = (1u << bits.bits[k]) - 1;
-                const std::uint32_t number = whole ? std::min(static_cast<std::uint32_t>(value), max) : to_unorm(value, bits.bits[k]);
+                const std::uint32_t number = whole ? to_whole(value, max) : to_unorm(value, bits.bits[k]);
                 word |= number << shift_of(bits, k, layout->pixel_bytes * 8);
             }
             std::memcpy(at, &word, layout->pixel_bytes);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "client_lib/param_commands.h"
 #include "client_lib/share_group.h"
 
 namespace wall::client::api {
@@ -27,7 +28,7 @@ template <class T>
 GLint element(const void* names, GLsizei i) {
     T value;
     std::memcpy(&value, static_cast<const std::byte*>(names) + static_cast<std::size_t>(i) * sizeof value, sizeof value);
-    return static_cast<GLint>(value);
+    return to_int(value);
 }
 
 /// Big-endian groups of bytes.

@@ -6,6 +6,7 @@
 
 #include "client_lib/context.h"
 #include "client_lib/limits.h"
+#include "client_lib/param_commands.h"
 #include "client_lib/session.h"
 #include "client_lib/texture_binding.h"
 
@@ -68,8 +69,8 @@ struct Change {
 Change changed(const TexParameters& old, GLenum target, GLenum pname, const GLfloat* params) {
     Change out{GL_NO_ERROR, old};
     TexParameters& p = out.value;
-    const auto word = static_cast<GLenum>(params[0]);
-    const auto number = static_cast<GLint>(std::lrint(params[0]));
+    const GLenum word = to_enum(params[0]);
+    const GLint number = to_int(std::nearbyint(params[0]));
     const auto check = [&](bool good, GLenum error) {
         if (!good) out.error = error;
     };

@@ -24,9 +24,12 @@ protected:
     /// What plain Mesa makes of `draw`.
     template <class Draw>
     Pixels reference(Draw&& draw) {
-        ReferenceWindow window(kWidth, kHeight);
-        draw(window.gl());
-        auto pixels = window.read();
+        Pixels pixels;
+        {
+            ReferenceWindow window(kWidth, kHeight);
+            draw(window.gl());
+            pixels = window.read();
+        }
         node_.make_current();
         return pixels;
     }
