@@ -1,23 +1,29 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""What a recorded program sends to walls of 1x1 to 8x4 tiles, a frame: state, objects and geometry, bucketed, ideal (each
-primitive goes to just the tiles that its own box touches, counted by the library in the same run) and broadcast.
+"""What a program sends to walls of 1x1 to 8x4 tiles, a frame: state, objects and geometry, bucketed, ideal (each primitive
+goes to just the tiles that its own box touches, counted by the library in the same run) and broadcast. The program is
+recorded first, so that every wall gets the same frames.
 
-traffic.py [--recording NAME] [--tiles CxR]... [--json FILE]
+traffic.py [--seconds N] [--recording NAME] [--tiles CxR]... [--json FILE] [-- PROGRAM ARGS...]
+    without a program: xscreensaver's atlantis without the gradient behind the fish, which the papers' did not have
+    --recording: one of the golden tests' instead (a few frames)
     exit code 1 if, from 1x1 to 5x5 tiles, state grows by more than 1.5 times, or geometry is over 1.2 times the ideal
 """
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 TESTS = Path(__file__).resolve().parents[1] / "tests"
 sys.path[:0] = [str(TESTS / "support"), str(TESTS / "golden")]
-from subjects import WINDOW, Recording, load_recordings  # noqa: E402
+from subjects import WINDOW, Recording, load_recordings, signal_group  # noqa: E402
 from wall import Wall  # noqa: E402
 from xserver import XServer  # noqa: E402
 
@@ -25,6 +31,28 @@ LAYOUTS = ["1x1", "2x1", "2x2", "3x2", "4x3", "5x5", "8x4"]
 STATE_GROWTH = 1.5  # at most, from 1x1 to 5x5 tiles
 OVER_IDEAL = 1.2  # geometry, at most
 KINDS = ("state", "object", "geometry")
+ATLANTIS = ["/usr/libexec/xscreensaver/atlantis", "--window", "--geometry", "1000x750", "-no-gradient"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Clip(Recording):
+    """A program recorded just now."""
+
+    file: Path = Path()
+
+    @property
+    def path(self) -> Path:
+        return self.file
+
+
+def record(command: list[str], seconds: float, folder: Path, x: XServer) -> Clip:
+    clip = Clip(Path(command[0]).name, "egl", command, 0, "", folder / "clip.trace")
+    process = subprocess.Popen(["apitrace", "trace", f"--api={clip.api}", "-o", clip.path, *command], env=x.environment(),
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+    time.sleep(seconds)
+    signal_group(process, signal.SIGINT)
+    process.wait(30)
+    return clip
 
 
 def replay(recording: Recording, wall: Wall, x: XServer, **environment: str) -> dict:
@@ -32,7 +60,7 @@ def replay(recording: Recording, wall: Wall, x: XServer, **environment: str) -> 
     with tempfile.TemporaryDirectory() as folder:
         stats = Path(folder) / "stats.json"
         command = [word for word in recording.argv() if word not in ("-s", "-")]
-        subprocess.run(wall.wallrun(*command, fullscreen=True), check=True, timeout=300, stdout=subprocess.DEVNULL,
+        subprocess.run(wall.wallrun(*command, fullscreen=True), check=True, timeout=600, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                        env=x.environment(WALLGL_STATS=str(stats), **recording.environment(), **environment))
         return json.loads(stats.read_text())
 
@@ -64,7 +92,7 @@ def print_row(row: dict, first: dict) -> None:
     bucketed, broadcast = row["bucketed"], row["broadcast"]
     print(f"{row['tiles']:>6}{bucketed['state']:12,.0f}{bucketed['state'] / max(1, first['bucketed']['state']):7.2f}"
           f"{broadcast['state']:12,.0f}{bucketed['object']:12,.0f}{bucketed['geometry']:14,.0f}"
-          f"{row['over_ideal']:12.3f}{broadcast['geometry']:14,.0f}", flush=True)
+          f"{row['over_ideal']:12.3f}{broadcast['geometry']:14,.0f}{row['frames']:8}", flush=True)
 
 
 def judge(rows: dict[str, dict]) -> bool:
@@ -81,15 +109,20 @@ def judge(rows: dict[str, dict]) -> bool:
 
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    arguments.add_argument("--recording", default="atlantis")
+    arguments.add_argument("--seconds", type=float, default=20, help="how long the program is recorded")
+    arguments.add_argument("--recording")
     arguments.add_argument("--tiles", action="append")
     arguments.add_argument("--json", type=Path)
+    arguments.add_argument("program", nargs="*")
     options = arguments.parse_args()
-    recording = next(r for r in load_recordings() if r.name == options.recording)
     rows: dict[str, dict] = {}
-    print(f"{recording.name}, bytes a frame to all nodes together")
-    print(f"{'tiles':>6}{'state':>12}{'growth':>7}{'broadcast':>12}{'objects':>12}{'geometry':>14}{'over ideal':>12}{'broadcast':>14}")
-    with XServer() as x:
+    with XServer() as x, tempfile.TemporaryDirectory() as folder:
+        if options.recording:
+            recording = next(r for r in load_recordings() if r.name == options.recording)
+        else:
+            recording = record(options.program or ATLANTIS, options.seconds, Path(folder), x)
+        print(f"{' '.join(recording.command)}: bytes a frame to all nodes together")
+        print(f"{'tiles':>6}{'state':>12}{'growth':>7}{'broadcast':>12}{'objects':>12}{'geometry':>14}{'over ideal':>12}{'broadcast':>14}{'frames':>8}")
         for tiles in options.tiles or LAYOUTS:
             rows[tiles] = measure(recording, tiles, x)
             print_row(rows[tiles], next(iter(rows.values())))
