@@ -70,10 +70,12 @@ std::optional<Peer> owner_of_tcp_peer(int fd) {
         std::istringstream fields(line);
         std::string row, from, to, skipped;
         uid_t user = 0;
+        std::uint64_t inode = 0;
         fields >> row >> from >> to;
         if (from != local || to != remote) continue;
         for (int i = 0; i < 4; ++i) fields >> skipped;  // st, queues, timer, retransmits
-        if (fields >> user) return Peer{user, 0};
+        // A socket that its process has closed already is in the table as root's, without an inode.
+        if (fields >> user >> skipped >> inode && inode != 0) return Peer{user, 0};
     }
     return std::nullopt;
 }
