@@ -12,6 +12,7 @@
 
 #include "common/base/assert.h"
 #include "walld/messages.h"
+#include "walld/status.h"
 
 namespace wall::walld {
 namespace {
@@ -26,9 +27,9 @@ std::string random_bytes(std::size_t count) {
 
 }  // namespace
 
-ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig config)
-    : executor_(executor), changed_(executor), wall_(std::move(config), *this, random_bytes), snapshots_(executor, wall_, *this),
-      operators_(wall_, snapshots_, changed_, [this](SessionId id) { if (const auto found = clients_.find(id); found != clients_.end()) refuse(found->second, "closed by an operator"); }),
+ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities, const std::string& state)
+    : executor_(executor), changed_(executor), identities_(std::move(identities)), wall_(std::move(config), *this, random_bytes), snapshots_(executor, wall_, *this),
+      operators_(wall_, snapshots_, LayoutStore(state), changed_, [this](SessionId id) { if (const auto found = clients_.find(id); found != clients_.end()) refuse(found->second, "closed by an operator"); }),
       deadline_timer_(executor), process_timer_(executor) {}
 
 Result<void> ControlServer::listen() {
@@ -85,26 +86,20 @@ asio::awaitable<void> ControlServer::accept(net::Listener& listener) {
     }
 }
 
-bool ControlServer::trusted(const net::ControlConnection& connection) const {
-    if (!connection.peer()) return false;
-    const auto user = connection.peer()->user;
-    return user == 0 || user == ::geteuid() || std::ranges::count(wall_.config().allowed_users, user) > 0;
-}
-
 void ControlServer::refuse(const Connection& connection, const std::string& reason) {
     connection->send(refused(reason));
     connection->close_after_sending();
 }
 
 asio::awaitable<void> ControlServer::serve(Connection connection) {
-    if (!trusted(*connection)) {
-        const auto user = connection->peer() ? std::to_string(connection->peer()->user) : "unknown";
-        spdlog::warn("peer_refused user={}", user);
-        refuse(connection, "user " + user + " may not use this wall: add it to 'users' in [control] of wall.toml");
+    auto who = identities_.of(connection->peer());
+    if (who.role == Role::none) {
+        spdlog::warn("peer_refused user=\"{}\"", who.text());
+        refuse(connection, who.text() + " may not use this wall: add them to [people] in wall.toml");
     } else if (auto first = co_await first_message(connection)) {
-        if (first->has_node_hello()) co_await serve_node(connection, first->node_hello());
-        else if (first->has_client_hello()) co_await serve_client(connection, first->client_hello());
-        else if (first->has_operator_request()) co_await serve_operator(connection, std::move(*first));
+        if (first->has_node_hello()) co_await serve_node(connection, first->node_hello(), who);
+        else if (first->has_client_hello()) co_await serve_client(connection, first->client_hello(), std::move(who));
+        else if (first->has_operator_request()) co_await serve_operator(connection, std::move(*first), std::move(who));
         else refuse(connection, "expected a hello of a node or a client, or an operator's request");
     }
     all_.erase(connection.get());
@@ -124,7 +119,12 @@ asio::awaitable<Result<proto::Envelope>> ControlServer::first_message(Connection
 
 // ---- nodes ----
 
-asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::NodeHello hello) {
+asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::NodeHello hello, const Person& who) {
+    // Nodes get every session's tickets and pixels.
+    if (const auto permitted = may(who, Need::operate, "run a node", nullptr); !permitted) {
+        spdlog::warn("node_refused node=\"{}\" reason=\"{}\"", hello.name(), permitted.error().message);
+        co_return refuse(connection, permitted.error().message);
+    }
     const auto known = std::ranges::find(wall_.nodes(), hello.name(), [](const Node& n) { return n.config->name; });
     const auto expected = static_cast<NodeIndex>(known - wall_.nodes().begin());
     // Set before it joins, because joining sends; one that is refused must not replace the one that is here.
@@ -182,12 +182,22 @@ asio::awaitable<void> ControlServer::wait_for_nodes() {
     while (!ready() && Clock::now() < until && !stopping_) co_await changed_.wait(until);
 }
 
-asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::ClientHello hello) {
-    if (const auto good = Wall::check(hello); !good) co_return refuse(connection, good.error().message);
+/// Whose program it is, and whether it may come now.
+Outcome<void> ControlServer::welcome(const proto::ClientHello& hello, Person& who) const {
+    auto owner = identities_.with_token(who, hello.token());
+    if (!owner) return tl::unexpected(owner.error());
+    who = std::move(*owner);
+    if (who.role < Role::user) return walld::refuse(RefusalKind::forbidden, who.text() + " may not put programs on this wall: that needs the role user, and theirs is " + config::name_of(who.role));
+    return wall_.check(hello);
+}
+
+asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::ClientHello hello, Person who) {
+    if (const auto good = welcome(hello, who); !good) co_return refuse(connection, good.error().message);
     co_await wait_for_nodes();
     if (!wall_.any_node_up()) co_return refuse(connection, "no node of the wall is up: is a tileserver running? (wallctl nodes)");
-    const auto id = wall_.open_session(hello, [&](SessionId session) { clients_[session] = connection; });
-    spdlog::info("session_open session={} pid={} program=\"{}\" name=\"{}\"", id.value, hello.pid(), hello.program(), hello.name());
+    if (const auto still = wall_.check(hello); !still) co_return refuse(connection, still.error().message);
+    const auto id = wall_.open_session(hello, who, [&](SessionId session) { clients_[session] = connection; });
+    spdlog::info("session_open session={} owner=\"{}\" pid={} program=\"{}\" name=\"{}\"", id.value, who.text(), hello.pid(), hello.program(), hello.name());
     something_changed();
     std::string reason;
     while (reason.empty()) {
@@ -205,7 +215,9 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
 
 Result<void> ControlServer::client_says(SessionId session, const proto::Envelope& message) {
     if (message.has_surface_open()) return wall_.open_surface(session, message.surface_open(), Clock::now());
-    if (message.has_surface_resize()) wall_.resize_surface(session, message.surface_resize(), Clock::now());
+    if (message.has_surface_resize()) wall_.resize_surface(session, message.surface_resize());
+    else if (message.has_surface_adopted()) wall_.adopt_placement(session, message.surface_adopted(), Clock::now());
+    else if (message.has_close_refused()) wall_.cannot_close(session, SurfaceId(message.close_refused().surface()));
     else if (message.has_surface_close()) wall_.close_surface(session, SurfaceId(message.surface_close().surface()));
     else return fail("a client may not send that message");
     return {};
@@ -213,16 +225,33 @@ Result<void> ControlServer::client_says(SessionId session, const proto::Envelope
 
 // ---- operators ----
 
-asio::awaitable<void> ControlServer::serve_operator(Connection connection, proto::Envelope first) {
+asio::awaitable<void> ControlServer::serve_operator(Connection connection, proto::Envelope first, Person who) {
     Result<proto::Envelope> message(std::move(first));
     while (message && message->has_operator_request()) {
-        spawn(executor_, "operator", answer_operator(connection, std::move(*message->mutable_operator_request())));
+        spawn(executor_, "operator", answer_operator(connection, std::move(*message->mutable_operator_request()), who));
         message = co_await connection->receive();
     }
 }
 
-asio::awaitable<void> ControlServer::answer_operator(Connection connection, proto::OperatorRequest request) {
-    const auto reply = co_await operators_.answer(std::move(request));
+asio::awaitable<void> ControlServer::answer_operator(Connection connection, proto::OperatorRequest request, Person who) {
+    auto person = identities_.with_token(std::move(who), request.token());
+    Outcome<Answer> answer;
+    if (!person) {
+        answer = tl::unexpected(person.error());
+    } else {
+        Asked asked{request.verb(), request.json().empty() ? nlohmann::json::object() : nlohmann::json::parse(request.json(), nullptr, false), std::move(*person), "control"};
+        answer = co_await operators_.carry_out(std::move(asked));
+    }
+    proto::OperatorReply reply;
+    reply.set_request(request.request());
+    reply.set_ok(answer.has_value());
+    if (answer) {
+        reply.set_json(dump(answer->json));
+        reply.set_blob(std::move(answer->blob));
+    } else {
+        reply.set_error(answer.error().message);
+        reply.set_code(name_of(answer.error().kind));
+    }
     connection->send(make(&proto::Envelope::mutable_operator_reply, reply));
     something_changed();
 }

@@ -9,6 +9,7 @@
 
 #include "common/net/control_connection.h"
 #include "walld/changed.h"
+#include "walld/identity.h"
 #include "walld/operator_desk.h"
 #include "walld/snapshot_desk.h"
 #include "walld/wall.h"
@@ -21,7 +22,8 @@ public:
     static constexpr std::chrono::seconds kNodeLimit{4};   ///< how long a program waits for nodes while the wall starts
     static constexpr std::chrono::seconds kPidCheck{1};    ///< a killed program whose connection lives on in a child is noticed
 
-    ControlServer(asio::any_io_executor executor, config::WallConfig config);
+    /// `state`: where layouts are kept; empty: nowhere.
+    ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities, const std::string& state);
 
     /// Starts to listen everywhere that the configuration says.
     Result<void> listen();
@@ -29,7 +31,8 @@ public:
     void stop();
 
     const Wall& wall() const { return wall_; }
-    SnapshotDesk& snapshots() { return snapshots_; }
+    const Identities& identities() const { return identities_; }
+    OperatorDesk& operators() { return operators_; }
     std::vector<net::Address> addresses() const;
 
     void to_node(NodeIndex node, const proto::Envelope& message) override;
@@ -40,16 +43,16 @@ private:
 
     asio::awaitable<void> accept(net::Listener& listener);
     asio::awaitable<void> serve(Connection connection);
-    asio::awaitable<void> serve_node(Connection connection, proto::NodeHello hello);
-    asio::awaitable<void> serve_client(Connection connection, proto::ClientHello hello);
-    asio::awaitable<void> serve_operator(Connection connection, proto::Envelope first);
-    asio::awaitable<void> answer_operator(Connection connection, proto::OperatorRequest request);
+    asio::awaitable<void> serve_node(Connection connection, proto::NodeHello hello, const Person& who);
+    asio::awaitable<void> serve_client(Connection connection, proto::ClientHello hello, Person who);
+    asio::awaitable<void> serve_operator(Connection connection, proto::Envelope first, Person who);
+    asio::awaitable<void> answer_operator(Connection connection, proto::OperatorRequest request, Person who);
     asio::awaitable<void> run_deadlines();
     asio::awaitable<void> watch_processes();
     asio::awaitable<Result<proto::Envelope>> first_message(Connection connection);
     asio::awaitable<void> wait_for_nodes();
 
-    bool trusted(const net::ControlConnection& connection) const;
+    Outcome<void> welcome(const proto::ClientHello& hello, Person& who) const;
     Result<void> node_says(NodeIndex node, proto::Envelope& message);
     Result<void> client_says(SessionId session, const proto::Envelope& message);
     void refuse(const Connection& connection, const std::string& reason);
@@ -57,6 +60,7 @@ private:
 
     asio::any_io_executor executor_;
     Changed changed_;
+    Identities identities_;
     Wall wall_;
     SnapshotDesk snapshots_;
     OperatorDesk operators_;

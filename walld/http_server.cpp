@@ -11,6 +11,7 @@
 
 #include "common/net/sockets.h"
 #include "gen/walld/page.gen.h"
+#include "walld/rest.h"
 #include "walld/status.h"
 
 namespace wall::walld {
@@ -20,19 +21,8 @@ namespace http = boost::beast::http;
 constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
 constexpr std::uint32_t kMaxHeader = 8 << 10, kMaxBody = 64 << 10;  // bytes
 
-struct Page {
-    const char* path;
-    const char* type;
-    std::string (*content)(const Wall&);
-};
-
-constexpr Page kPages[] = {
-    {"/", "text/html; charset=utf-8", [](const Wall&) { return std::string(kPage); }},
-    {"/api/v1/status", "application/json", [](const Wall& wall) { return dump(status_json(wall)); }},
-    {"/api/v1/sessions", "application/json", [](const Wall& wall) { return dump(sessions_json(wall)); }},
-    {"/metrics", "text/plain; version=0.0.4", [](const Wall& wall) { return metrics_text(wall); }},
-    {"/healthz", "text/plain", [](const Wall& wall) { return std::string(wall.any_node_up() ? "ok\n" : "no node is up\n"); }},
-};
+constexpr const char* kJson = "application/json";
+constexpr const char* kVia = "http";
 
 http::response<http::string_body> reply(unsigned version, http::status status, const char* type, std::string body) {
     http::response<http::string_body> out(status, version);
@@ -42,6 +32,22 @@ http::response<http::string_body> reply(unsigned version, http::status status, c
     out.set("Content-Security-Policy", "default-src 'self'; style-src 'self' 'unsafe-inline'; script-src 'self' 'unsafe-inline'; img-src 'self' blob:");
     out.body() = std::move(body);
     return out;
+}
+
+http::response<http::string_body> refusal(unsigned version, int status, const Refusal& why) { return reply(version, static_cast<http::status>(status), kJson, dump(error_json(why))); }
+
+std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
+
+template <class Request>
+bool reads(const Request& request) { return request.method() == http::verb::get || request.method() == http::verb::head; }
+
+template <class Request>
+std::string_view path_of(const Request& request) { return view(request.target()).substr(0, request.target().find('?')); }
+
+template <class Request>
+std::string_view query_of(const Request& request) {
+    const auto path = path_of(request);
+    return path.size() < request.target().size() ? view(request.target()).substr(path.size() + 1) : std::string_view();
 }
 
 /// A browser that was led here under a foreign name (DNS rebinding) must not read the wall.
@@ -116,23 +122,29 @@ asio::awaitable<void> HttpServer::accept() {
 }
 
 asio::awaitable<void> HttpServer::serve(std::shared_ptr<Socket> socket) {
+    const auto peer = net::peer_of(socket->native_handle());
     boost::beast::flat_buffer buffer;
     asio::steady_timer idle(socket->get_executor());
-    for (bool go_on = true; go_on;) {
+    const auto limit = [&] {
         idle.expires_after(kIdleLimit);
         idle.async_wait([weak = std::weak_ptr(socket)](const boost::system::error_code& cancelled) {
             boost::system::error_code ignored;
             if (const auto open = weak.lock(); open && !cancelled) open->close(ignored);
         });
+    };
+    for (bool go_on = true; go_on;) {
+        limit();
         http::request_parser<http::string_body> parser;
         parser.header_limit(kMaxHeader);
         parser.body_limit(kMaxBody);
         auto [read_error, read] = co_await http::async_read(*socket, buffer, parser, kTuple);
         if (read_error) break;
-        auto response = co_await answer(parser.get());
+        idle.cancel();  // a program that is asked to close may take its time
+        auto response = co_await answer(parser.get(), peer);
         response.keep_alive(parser.get().keep_alive());
         response.prepare_payload();
         if (parser.get().method() == http::verb::head) response.body().clear();
+        limit();
         auto [write_error, written] = co_await http::async_write(*socket, response, kTuple);
         go_on = !write_error && response.keep_alive() && acceptor_.is_open();
     }
@@ -142,30 +154,43 @@ asio::awaitable<void> HttpServer::serve(std::shared_ptr<Socket> socket) {
     socket->close(ignored);
 }
 
-asio::awaitable<HttpServer::Response> HttpServer::answer(const Request& request) {
-    const auto version = request.version();
-    const std::string_view target(request.target().data(), request.target().size());
-    const auto path = target.substr(0, target.find('?'));
-    const auto query = path.size() < target.size() ? target.substr(path.size() + 1) : std::string_view();
-    const auto host = request[http::field::host];
-    if (!host_ok({host.data(), host.size()})) co_return reply(version, http::status::misdirected_request, "text/plain", "this wall answers to local names only\n");
-    if (request.method() != http::verb::get && request.method() != http::verb::head) {
-        co_return reply(version, http::status::method_not_allowed, "text/plain", "GET only\n");
-    }
-    for (const auto& page : kPages) {
-        if (path != page.path) continue;
-        const bool well = path != "/healthz" || wall_.any_node_up();
-        co_return reply(version, well ? http::status::ok : http::status::service_unavailable, page.type, page.content(wall_));
-    }
-    if (path == "/api/v1/snapshot.png") co_return co_await snapshot(request, query_value(query, "tile"));
-    co_return reply(version, http::status::not_found, "text/plain", "not found\n");
+asio::awaitable<HttpServer::Response> HttpServer::answer(const Request& request, const std::optional<net::Peer>& peer) {
+    auto next = local_page(request);
+    if (next) co_return std::move(*next);
+    auto asked = read(request, peer);
+    if (!asked) co_return std::move(asked.error());
+    auto answer = co_await desk_.carry_out(std::move(*asked));
+    if (!answer) co_return refusal(request.version(), http_status(answer.error().kind), answer.error());
+    const bool picture = !answer->blob.empty();
+    co_return reply(request.version(), http::status::ok, picture ? "image/png" : kJson, picture ? std::move(answer->blob) : dump(answer->json));
 }
 
-asio::awaitable<HttpServer::Response> HttpServer::snapshot(const Request& request, const std::string& tile) {
-    SnapshotQuery query{.tile = tile, .target = {}};  // a name of its own: GCC 12 destroys such a temporary twice
-    auto png = co_await snapshots_.take(std::move(query));
-    if (!png) co_return reply(request.version(), http::status::not_found, "text/plain", png.error().message + "\n");
-    co_return reply(request.version(), http::status::ok, "image/png", std::move(*png));
+/// What anybody who reaches us under a local name gets, and the answer for those who do not.
+std::optional<HttpServer::Response> HttpServer::local_page(const Request& request) const {
+    const auto version = request.version();
+    if (!host_ok(view(request[http::field::host]))) return reply(version, http::status::misdirected_request, "text/plain", "this wall answers to local names only\n");
+    if (!reads(request)) return std::nullopt;
+    if (path_of(request) == "/") return reply(version, http::status::ok, "text/html; charset=utf-8", kPage);
+    if (path_of(request) != "/healthz") return std::nullopt;
+    const bool well = wall_.any_node_up();
+    return reply(version, well ? http::status::ok : http::status::service_unavailable, "text/plain", well ? "ok\n" : "no node is up\n");
+}
+
+/// What is asked of the desk, or the answer if nothing is.
+tl::expected<Asked, HttpServer::Response> HttpServer::read(const Request& request, const std::optional<net::Peer>& peer) const {
+    const auto no = [&](int status, const Refusal& why) { return tl::unexpected<Response>(refusal(request.version(), status, why)); };
+    auto who = identities_.over_http(peer, view(request[http::field::authorization]));
+    if (!who) return no(401, who.error());
+    const auto path = path_of(request);
+    if (reads(request) && path == "/metrics") {
+        if (const auto permitted = may(*who, Need::look, "read the metrics", nullptr); !permitted) return no(http_status(permitted.error().kind), permitted.error());
+        return tl::unexpected<Response>(reply(request.version(), http::status::ok, "text/plain; version=0.0.4", metrics_text(wall_)));
+    }
+    if (reads(request) && path == "/api/v1/snapshot.png") return Asked{"screenshot", {{"tile", query_value(query_of(request), "tile")}}, std::move(*who), kVia};
+    auto command = rest_command({view(request.method_string()), path, request.body(), view(request[http::field::content_type]), view(request[http::field::host]),
+                                 view(request[http::field::origin]), view(request["Sec-Fetch-Site"])});
+    if (!command) return no(command.error().status, command.error().why);
+    return Asked{std::move(command->verb), std::move(command->arguments), std::move(*who), kVia};
 }
 
 }  // namespace wall::walld

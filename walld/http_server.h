@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The status page and the read-only API (docs/http-api.md). One thread; a coroutine a connection.
+// The status page and the API (docs/http-api.md). One thread; a coroutine a connection.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
@@ -10,7 +10,8 @@
 
 #include "common/net/address.h"
 #include "walld/changed.h"
-#include "walld/snapshot_desk.h"
+#include "walld/identity.h"
+#include "walld/operator_desk.h"
 #include "walld/wall.h"
 
 namespace wall::walld {
@@ -20,7 +21,8 @@ public:
     static constexpr std::chrono::seconds kIdleLimit{30};
     static constexpr std::size_t kMaxConnections = 64;
 
-    HttpServer(asio::any_io_executor executor, const Wall& wall, SnapshotDesk& snapshots) : acceptor_(executor), wall_(wall), snapshots_(snapshots) {}
+    HttpServer(asio::any_io_executor executor, const Wall& wall, const Identities& identities, OperatorDesk& desk)
+        : acceptor_(executor), wall_(wall), identities_(identities), desk_(desk) {}
 
     Result<void> listen(const net::Address& address);
     void stop();
@@ -34,12 +36,14 @@ private:
 
     asio::awaitable<void> accept();
     asio::awaitable<void> serve(std::shared_ptr<Socket> socket);
-    asio::awaitable<Response> answer(const Request& request);
-    asio::awaitable<Response> snapshot(const Request& request, const std::string& tile);
+    asio::awaitable<Response> answer(const Request& request, const std::optional<net::Peer>& peer);
+    std::optional<Response> local_page(const Request& request) const;
+    tl::expected<Asked, Response> read(const Request& request, const std::optional<net::Peer>& peer) const;
 
     asio::ip::tcp::acceptor acceptor_;
     const Wall& wall_;
-    SnapshotDesk& snapshots_;
+    const Identities& identities_;
+    OperatorDesk& desk_;
     net::Address address_;
     std::map<Socket*, std::weak_ptr<Socket>> open_;
 };

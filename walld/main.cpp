@@ -59,11 +59,20 @@ asio::awaitable<void> feed_watchdog(asio::steady_timer& timer) {
     }
 }
 
+/// What the description says, else what systemd made for us.
+std::string state_directory(const config::WallConfig& config) {
+    const char* given = std::getenv("STATE_DIRECTORY");
+    return !config.state_directory.empty() ? config.state_directory : given ? given : "";
+}
+
 Result<void> run(config::WallConfig config, const Options& options) {
     asio::io_context io(1);
     const auto http_listen = config.http_listen;
-    ControlServer control(io.get_executor(), std::move(config));
-    HttpServer http(io.get_executor(), control.wall(), control.snapshots());
+    const auto state = state_directory(config);
+    auto identities = Identities::open(config.people);
+    if (!identities) return tl::unexpected(identities.error());
+    ControlServer control(io.get_executor(), std::move(config), std::move(*identities), state);
+    HttpServer http(io.get_executor(), control.wall(), control.identities(), control.operators());
     if (auto listening = control.listen(); !listening) return listening;
     if (http_listen) {
         if (auto listening = http.listen(*http_listen); !listening) return listening;

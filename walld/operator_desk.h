@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Carries out what operators ask for (wallctl): verbs with JSON arguments. One thread.
+// Carries out what people ask for (wallctl, HTTP): verbs with JSON arguments. Whether they may is decided here, and who
+// changed what goes to the log. One thread.
 #pragma once
 
 #include <functional>
@@ -7,48 +8,69 @@
 #include <string>
 
 #include "walld/changed.h"
+#include "walld/layout_store.h"
+#include "walld/person.h"
 #include "walld/snapshot_desk.h"
 #include "walld/wall.h"
 
 namespace wall::walld {
 
+/// A request, and where it came from.
+struct Asked {
+    std::string verb;
+    nlohmann::json arguments = nlohmann::json::object();
+    Person who;
+    const char* via = "";  ///< "control", "http": for the log
+};
+
+struct Answer {
+    nlohmann::json json = nlohmann::json::object();
+    std::string blob;
+};
+
 class OperatorDesk {
 public:
     /// `end_session` cuts a client off. `changed` is notified after every event of the wall.
-    OperatorDesk(Wall& wall, SnapshotDesk& snapshots, Changed& changed, std::function<void(SessionId)> end_session)
-        : wall_(wall), snapshots_(snapshots), changed_(changed), end_session_(std::move(end_session)) {}
+    OperatorDesk(Wall& wall, SnapshotDesk& snapshots, LayoutStore layouts, Changed& changed, std::function<void(SessionId)> end_session)
+        : wall_(wall), snapshots_(snapshots), layouts_(std::move(layouts)), changed_(changed), end_session_(std::move(end_session)) {}
 
-    asio::awaitable<proto::OperatorReply> answer(proto::OperatorRequest request);
+    asio::awaitable<Outcome<Answer>> carry_out(Asked asked);
 
 private:
-    struct Answer {
-        nlohmann::json json = nlohmann::json::object();
-        std::string blob;
-    };
-    using Arguments = const nlohmann::json&;
-    using Verb = asio::awaitable<Result<Answer>> (OperatorDesk::*)(Arguments);
+    using Verb = asio::awaitable<Outcome<Answer>> (OperatorDesk::*)(const Asked&);
     struct Row {
         const char* name;
+        Need need;
         Verb run;
     };
     static const Row kVerbs[];
 
-    asio::awaitable<Result<Answer>> run(const std::string& verb, Arguments arguments);
-    asio::awaitable<Result<Answer>> status(Arguments);
-    asio::awaitable<Result<Answer>> nodes(Arguments);
-    asio::awaitable<Result<Answer>> tiles(Arguments);
-    asio::awaitable<Result<Answer>> sessions(Arguments);
-    asio::awaitable<Result<Answer>> place(Arguments);
-    asio::awaitable<Result<Answer>> raise(Arguments);
-    asio::awaitable<Result<Answer>> lower(Arguments);
-    asio::awaitable<Result<Answer>> close(Arguments);
-    asio::awaitable<Result<Answer>> screenshot(Arguments);
-    asio::awaitable<Result<Answer>> hold(Arguments);
-    asio::awaitable<Result<Answer>> step(Arguments);
-    asio::awaitable<Result<Answer>> wait(Arguments);
+    Outcome<void> allowed(const Row& row, const Asked& asked) const;
+    Outcome<const Row*> row_of(const Asked& asked) const;
+
+    asio::awaitable<Outcome<Answer>> status(const Asked&);
+    asio::awaitable<Outcome<Answer>> nodes(const Asked&);
+    asio::awaitable<Outcome<Answer>> tiles(const Asked&);
+    asio::awaitable<Outcome<Answer>> sessions(const Asked&);
+    asio::awaitable<Outcome<Answer>> session(const Asked&);
+    asio::awaitable<Outcome<Answer>> whoami(const Asked&);
+    asio::awaitable<Outcome<Answer>> place(const Asked&);
+    asio::awaitable<Outcome<Answer>> raise(const Asked&);
+    asio::awaitable<Outcome<Answer>> lower(const Asked&);
+    asio::awaitable<Outcome<Answer>> close(const Asked&);
+    asio::awaitable<Outcome<Answer>> screenshot(const Asked&);
+    asio::awaitable<Outcome<Answer>> hold(const Asked&);
+    asio::awaitable<Outcome<Answer>> step(const Asked&);
+    asio::awaitable<Outcome<Answer>> wait(const Asked&);
+    asio::awaitable<Outcome<Answer>> layouts(const Asked&);
+    asio::awaitable<Outcome<Answer>> layout(const Asked&);
+    asio::awaitable<Outcome<Answer>> save_layout(const Asked&);
+    asio::awaitable<Outcome<Answer>> load_layout(const Asked&);
+    asio::awaitable<Outcome<Answer>> delete_layout(const Asked&);
 
     Wall& wall_;
     SnapshotDesk& snapshots_;
+    LayoutStore layouts_;
     Changed& changed_;
     std::function<void(SessionId)> end_session_;
 };

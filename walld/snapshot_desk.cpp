@@ -15,7 +15,7 @@ asio::awaitable<Result<std::string>> compose(PictureJob job) { co_return compose
 
 }  // namespace
 
-asio::awaitable<Result<std::string>> SnapshotDesk::take(SnapshotQuery query) {
+asio::awaitable<Outcome<std::string>> SnapshotDesk::take(SnapshotQuery query) {
     auto started = start(query);
     if (!started) co_return tl::unexpected(started.error());
     const auto job = *started;
@@ -23,10 +23,12 @@ asio::awaitable<Result<std::string>> SnapshotDesk::take(SnapshotQuery query) {
     while (job->missing > 0 && Clock::now() < until) co_await job->done.wait(until);
     std::erase_if(pending_, [&](const auto& entry) { return entry.second.job == job; });
     if (job->missing > 0) spdlog::warn("snapshot_incomplete tiles_missing={}", job->missing);
-    co_return co_await asio::co_spawn(composing_, compose(std::move(job->picture)), asio::use_awaitable);
+    auto png = co_await asio::co_spawn(composing_, compose(std::move(job->picture)), asio::use_awaitable);
+    if (!png) co_return refuse(RefusalKind::conflict, png.error().message);
+    co_return std::move(*png);
 }
 
-Result<std::shared_ptr<SnapshotDesk::Job>> SnapshotDesk::start(const SnapshotQuery& query) {
+Outcome<std::shared_ptr<SnapshotDesk::Job>> SnapshotDesk::start(const SnapshotQuery& query) {
     auto job = std::make_shared<Job>(executor_);
     job->picture.view = wall_.config().canvas();
     job->picture.background = wall_.config().background;
@@ -35,7 +37,7 @@ Result<std::shared_ptr<SnapshotDesk::Job>> SnapshotDesk::start(const SnapshotQue
         const auto key = wall_.resolve(*query.target);
         if (!key) return tl::unexpected(key.error());
         session = key->session;
-        job->picture.view = geom::intersect(job->picture.view, wall_.find(*key)->rect);
+        job->picture.view = geom::intersect(job->picture.view, wall_.find(*key)->place.shown());
     }
     bool found = false;
     for (NodeIndex node = 0; node < wall_.nodes().size(); ++node) {
@@ -49,7 +51,7 @@ Result<std::shared_ptr<SnapshotDesk::Job>> SnapshotDesk::start(const SnapshotQue
             ask(job, node, this_slot, session);
         }
     }
-    if (!found) return fail("there is no tile '" + query.tile + "'");
+    if (!found) return refuse(RefusalKind::not_found, "there is no tile '" + query.tile + "'");
     return job;
 }
 

@@ -27,7 +27,7 @@ public:
     SnapshotDesk(const asio::any_io_executor& executor, const Wall& wall, Outbox& out) : executor_(executor), wall_(wall), out_(out) {}
 
     /// PNG of what the wall shows now.
-    asio::awaitable<Result<std::string>> take(SnapshotQuery query);
+    asio::awaitable<Outcome<std::string>> take(SnapshotQuery query);
 
     void arrived(NodeIndex node, proto::Snapshot& snapshot);
     void node_left(NodeIndex node);
@@ -44,7 +44,7 @@ private:
         std::size_t tile;
         NodeIndex node;
     };
-    Result<std::shared_ptr<Job>> start(const SnapshotQuery& query);
+    Outcome<std::shared_ptr<Job>> start(const SnapshotQuery& query);
     void ask(const std::shared_ptr<Job>& job, NodeIndex node, std::uint32_t slot, SessionId session);
     void finish(std::map<std::uint32_t, Pending>::iterator pending);
 

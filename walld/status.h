@@ -12,6 +12,9 @@ namespace wall::walld {
 nlohmann::json nodes_json(const Wall& wall);
 nlohmann::json tiles_json(const Wall& wall);
 nlohmann::json sessions_json(const Wall& wall);
+/// Of one that exists.
+nlohmann::json session_json(const Wall& wall, SessionId id);
+nlohmann::json person_json(const Person& person);
 /// All of the above, and the wall's own data.
 nlohmann::json status_json(const Wall& wall);
 /// As text; what is not UTF-8 (programs name themselves) is replaced.

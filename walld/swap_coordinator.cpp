@@ -5,9 +5,34 @@
 
 namespace wall::walld {
 
+namespace {
+
+constexpr double kMeanFrames = 16;
+
+}  // namespace
+
 Presents SwapCoordinator::set_nodes(const std::set<std::uint32_t>& nodes, Clock::time_point now) {
-    std::erase_if(members_, [&](const auto& m) { return !nodes.contains(m.first); });
+    std::erase_if(members_, [&](const auto& m) { return !m.second.leaving() && !nodes.contains(m.first); });
     for (const auto node : nodes) members_.try_emplace(node, Member{.waited = presented_ == 0});
+    return advance(now);
+}
+
+Presents SwapCoordinator::move(const std::set<std::uint32_t>& nodes, std::uint32_t frame, Clock::time_point now) {
+    const auto first = std::max(frame, presented_ + 1);
+    for (auto& [node, member] : members_) {
+        if (!nodes.contains(node)) {
+            member.until = std::min(member.until, first - 1);
+        } else if (member.leaving()) {  // back before it was gone
+            member.from = first;
+            member.until = UINT32_MAX;
+        }
+    }
+    for (const auto node : nodes) members_.try_emplace(node, Member{.from = first});
+    return advance(now);
+}
+
+Presents SwapCoordinator::lose(std::uint32_t node, Clock::time_point now) {
+    members_.erase(node);
     return advance(now);
 }
 
@@ -17,9 +42,13 @@ Presents SwapCoordinator::rendered(std::uint32_t node, std::uint32_t frame, Cloc
     auto& member = found->second;
     member.rendered = frame;
     if (frame >= presented_) member.waited = true;
+    rendered_spread_.note(frame, group_of(frame), now);
     auto out = advance(now);
     // One that comes too late for the group shows what it has: better than nothing, and it frees its buffers.
-    if (member.told < member.rendered && member.rendered <= presented_) out.push_back({node, member.told = member.rendered});
+    if (const auto late = members_.find(node); late != members_.end() && late->second.rendered <= presented_) {
+        tell(out, node, late->second, late->second.rendered, now);
+        if (late->second.leaving() && late->second.told >= late->second.until) members_.erase(late);
+    }
     return out;
 }
 
@@ -28,7 +57,7 @@ Presents SwapCoordinator::tick(Clock::time_point now) {
     deadline_.reset();
     ++timeouts_;
     for (auto& [node, member] : members_) {
-        if (member.rendered <= presented_) member.waited = false;
+        if (member.cap() <= presented_) member.waited = false;
     }
     return advance(now);
 }
@@ -50,22 +79,45 @@ Presents SwapCoordinator::release(Clock::time_point now) {
 }
 
 bool SwapCoordinator::shown(std::uint32_t frame) const {
-    return !members_.empty() && std::ranges::all_of(members_, [&](const auto& m) { return m.second.told >= frame; });
+    if (presented_ < frame || members_.empty()) return false;
+    return std::ranges::all_of(members_, [&](const auto& m) { return !m.second.takes_part(frame) || m.second.told >= frame; });
 }
 
 std::uint32_t SwapCoordinator::ceiling() const { return held_ ? allowed_ : UINT32_MAX; }
 
-/// The last frame that every waited node has rendered.
+std::uint32_t SwapCoordinator::Member::cap() const {
+    if (rendered >= until) return UINT32_MAX;
+    return std::max(rendered, from > 0 ? from - 1 : 0);
+}
+
+/// The last frame that every waited node has rendered as far as it takes part.
 std::uint32_t SwapCoordinator::agreed() const {
-    std::optional<std::uint32_t> least;
+    std::uint32_t least = UINT32_MAX, most = presented_;
     for (const auto& [node, member] : members_) {
-        if (member.waited) least = std::min(least.value_or(UINT32_MAX), member.rendered);
+        if (member.waited) least = std::min(least, member.cap());
+        most = std::max(most, member.rendered);
     }
-    return least.value_or(presented_);
+    const bool nobody = std::ranges::none_of(members_, [](const auto& m) { return m.second.waited; });
+    return nobody ? presented_ : std::min(least, most);
 }
 
 bool SwapCoordinator::someone_ahead() const {
     return presented_ < ceiling() && std::ranges::any_of(members_, [&](const auto& m) { return m.second.waited && m.second.rendered > presented_; });
+}
+
+std::size_t SwapCoordinator::group_of(std::uint32_t frame) const {
+    return static_cast<std::size_t>(std::ranges::count_if(members_, [&](const auto& m) { return m.second.takes_part(frame); }));
+}
+
+void SwapCoordinator::count_frame(Clock::time_point now) {
+    if (last_present_) interval_ += (Spread::Milliseconds(now - *last_present_) - interval_) / (interval_.count() == 0 ? 1 : kMeanFrames);
+    last_present_ = now;
+}
+
+void SwapCoordinator::tell(Presents& out, std::uint32_t node, Member& member, std::uint32_t frame, Clock::time_point now) {
+    if (frame <= member.told) return;
+    out.push_back({node, member.told = frame});
+    presented_spread_.note(frame, group_of(frame), now);
 }
 
 Presents SwapCoordinator::advance(Clock::time_point now) {
@@ -74,11 +126,11 @@ Presents SwapCoordinator::advance(Clock::time_point now) {
     if (frame > presented_) {
         presented_ = frame;
         deadline_.reset();
-        for (auto& [node, member] : members_) {
-            const auto upto = std::min(member.rendered, frame);
-            if (upto > member.told) out.push_back({node, member.told = upto});
-        }
+        count_frame(now);
+        for (auto& [node, member] : members_) tell(out, node, member, std::min(member.rendered, frame), now);
     }
+    // Not before it has shown its last frame: it could draw no other one.
+    std::erase_if(members_, [&](const auto& m) { return m.second.until <= presented_ && m.second.told >= m.second.until; });
     if (!someone_ahead()) deadline_.reset();
     else if (!deadline_) deadline_ = now + limit_;
     return out;

@@ -9,6 +9,9 @@
 //   +--------+ --------------------------> +------+
 //        limit over, or removed
 //
+// A surface that moves changes the group at a frame: nodes that it leaves take part up to the frame before, nodes that
+// it comes to from that frame on.
+//
 // held: nothing beyond `allowed` is presented, and no limit runs; step() raises it (for tests that look at each frame).
 #pragma once
 
@@ -18,6 +21,8 @@
 #include <optional>
 #include <set>
 #include <vector>
+
+#include "walld/spread.h"
 
 namespace wall::walld {
 
@@ -34,8 +39,12 @@ class SwapCoordinator {
 public:
     SwapCoordinator(Clock::duration limit, bool held) : limit_(limit), held_(held) {}
 
-    /// The live nodes that show the surface now.
+    /// The live nodes that show the surface now; those that it is leaving stay until they have.
     Presents set_nodes(const std::set<std::uint32_t>& nodes, Clock::time_point now);
+    /// From `frame` on the surface lies on these nodes.
+    Presents move(const std::set<std::uint32_t>& nodes, std::uint32_t frame, Clock::time_point now);
+    /// A node is dead.
+    Presents lose(std::uint32_t node, Clock::time_point now);
     /// A node has rendered `frame` (and all before it). Reports of other nodes are ignored.
     Presents rendered(std::uint32_t node, std::uint32_t frame, Clock::time_point now);
     Presents tick(Clock::time_point now);
@@ -54,13 +63,30 @@ public:
     bool held() const { return held_; }
     std::uint64_t timeouts() const { return timeouts_; }
 
+    /// Between the first node's report of a frame and the last one's.
+    const Spread& rendered_spread() const { return rendered_spread_; }
+    /// Between telling the first node to show a frame and the last one; more than nothing only where a node was late.
+    const Spread& presented_spread() const { return presented_spread_; }
+    /// From one presented frame to the next, the mean of about the last 16.
+    Spread::Milliseconds frame_interval() const { return interval_; }
+
 private:
     struct Member {
         std::uint32_t rendered = 0;
         std::uint32_t told = 0;  ///< last frame it was told to show
         bool waited = true;
+        std::uint32_t from = 0;             ///< first frame that it takes part in
+        std::uint32_t until = UINT32_MAX;   ///< the last one
+
+        bool leaving() const { return until != UINT32_MAX; }
+        bool takes_part(std::uint32_t frame) const { return frame >= from && frame <= until; }
+        /// The last frame that it does not hold back.
+        std::uint32_t cap() const;
     };
     Presents advance(Clock::time_point now);
+    void count_frame(Clock::time_point now);
+    void tell(Presents& out, std::uint32_t node, Member& member, std::uint32_t frame, Clock::time_point now);
+    std::size_t group_of(std::uint32_t frame) const;
     std::uint32_t agreed() const;
     bool someone_ahead() const;
     std::uint32_t ceiling() const;
@@ -72,6 +98,9 @@ private:
     bool held_;
     std::uint32_t allowed_ = 0;
     std::uint64_t timeouts_ = 0;
+    Spread rendered_spread_, presented_spread_;
+    Spread::Milliseconds interval_{};
+    std::optional<Clock::time_point> last_present_;
 };
 
 }  // namespace wall::walld

@@ -2,8 +2,6 @@
 #include "walld/wall.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cstdlib>
 #include <set>
 
 #include "common/base/assert.h"
@@ -22,30 +20,7 @@ bool extent_ok(std::uint32_t width, std::uint32_t height) {
     return width > 0 && height > 0 && width <= wire::kMaxSurfaceExtent && height <= wire::kMaxSurfaceExtent;
 }
 
-/// Bounded, so that sums of its members cannot overflow.
-bool rect_ok(const geom::Rect& rect) {
-    constexpr auto limit = static_cast<std::int32_t>(wire::kMaxSurfaceExtent);
-    return rect.width > 0 && rect.height > 0 && rect.width <= limit && rect.height <= limit && std::abs(std::int64_t{rect.x}) <= limit &&
-           std::abs(std::int64_t{rect.y}) <= limit;
-}
-
-template <class T>
-std::optional<T> number(std::string_view text) {
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || text.empty()) return {};
-    return value;
-}
-
 }  // namespace
-
-Result<Target> Target::parse(std::string_view text) {
-    const auto dot = text.find('.');
-    const auto session = number<std::uint32_t>(text.substr(0, dot));
-    const auto surface = dot == std::string_view::npos ? std::optional<std::uint32_t>(0) : number<std::uint32_t>(text.substr(dot + 1));
-    if (!session || !surface) return fail("'" + std::string(text) + "' is no session: expected its number, or NUMBER.SURFACE, as `wallctl sessions` shows them");
-    return Target{SessionId(*session), SurfaceId(*surface)};
-}
 
 Wall::Wall(config::WallConfig config, Outbox& out, RandomBytes random) : config_(std::move(config)), out_(out), random_(std::move(random)) {
     for (const auto& node : config_.nodes) nodes_.push_back({.config = &node, .hello = {}, .stats = {}});
@@ -70,7 +45,7 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
         out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(index, session.tickets[index])));
     }
     out_.to_node(index, stacking_message(index));
-    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.set_nodes(nodes_under(surface.rect), now)); });
+    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.set_nodes(nodes_under(surface.place.drawn()), now)); });
     return index;
 }
 
@@ -79,7 +54,7 @@ void Wall::node_leaves(NodeIndex node, Clock::time_point now) {
     proto::NodeDown down;
     down.set_node(node);
     for (const auto& [id, session] : sessions_) out_.to_client(id, make(&proto::Envelope::mutable_node_down, down));
-    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.set_nodes(nodes_under(surface.rect), now)); });
+    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.lose(node, now)); });
 }
 
 void Wall::node_rendered(NodeIndex node, const proto::Rendered& report, Clock::time_point now) {
@@ -127,23 +102,27 @@ std::set<NodeIndex> Wall::nodes_under(const geom::Rect& rect) const {
 
 bool Wall::any_node_up() const { return std::ranges::any_of(nodes_, &Node::up); }
 
-Result<void> Wall::check(const proto::ClientHello& hello) {
+Outcome<void> Wall::check(const proto::ClientHello& hello) const {
     if (hello.version() != wire::kProtocolVersion) {
-        return fail("walld speaks protocol version " + std::to_string(wire::kProtocolVersion) + ", the program's WallGL library " + std::to_string(hello.version()));
+        return walld::refuse(RefusalKind::invalid, "walld speaks protocol version " + std::to_string(wire::kProtocolVersion) + ", the program's WallGL library " + std::to_string(hello.version()));
     }
-    if (hello.has_rect() && !rect_ok(from_proto(hello.rect()))) {
-        return fail("the rectangle asked for is not possible: expected a width and a height from 1 to " + std::to_string(wire::kMaxSurfaceExtent) + ", at most as far from the corner");
+    if (sessions_.size() >= config_.max_sessions) {
+        return walld::refuse(RefusalKind::unavailable, "the wall is full: " + std::to_string(config_.max_sessions) + " programs are on it ('max_sessions' in [wall] of wall.toml)");
+    }
+    if (hello.has_rect()) {
+        if (auto possible = check_place(config_.canvas(), from_proto(hello.rect())); !possible) return tl::unexpected(possible.error());
     }
     return {};
 }
 
-SessionId Wall::open_session(const proto::ClientHello& hello, const std::function<void(SessionId)>& before_welcome) {
+SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, const std::function<void(SessionId)>& before_welcome) {
     WALL_ASSERT(any_node_up());
     const SessionId id(++last_session_);
     auto& session = sessions_[id];
     session.pid = hello.pid();
     session.program = hello.program().substr(0, kMaxText);
     session.name = hello.name().substr(0, kMaxText);
+    session.owner = std::move(owner);
     session.held = hello.hold();
     if (hello.has_rect()) session.rect = from_proto(hello.rect());
     if (hello.fullscreen()) session.rect = config_.canvas();
@@ -203,41 +182,68 @@ Result<void> Wall::open_surface(SessionId id, const proto::SurfaceOpen& message,
     if (!session || !key.surface || session->surfaces.contains(key.surface)) return fail("surface " + std::to_string(message.surface()) + " cannot be opened: expected a new number");
     if (!extent_ok(message.width(), message.height())) return fail("surface of " + std::to_string(message.width()) + "x" + std::to_string(message.height()) + " pixels: expected 1 to " + std::to_string(wire::kMaxSurfaceExtent) + " a side");
     if (session->surfaces.size() >= kMaxSurfaces) return fail("more than " + std::to_string(kMaxSurfaces) + " windows");
-    Surface surface{.width = message.width(), .height = message.height(), .title = message.title().substr(0, kMaxText), .rect = {},
+    Surface surface{.width = message.width(), .height = message.height(), .title = message.title().substr(0, kMaxText), .place = PlacementTrack(),
                     .swap = SwapCoordinator(config_.swap_timeout, session->held)};
-    surface.rect = first_rect(*session, surface, windows_placed_++);
+    surface.place = PlacementTrack(first_rect(*session, surface, windows_placed_++));
     auto& kept = session->surfaces.emplace(key.surface, std::move(surface)).first->second;
-    stacking_.push_back(key);
-    present(key, kept.swap.set_nodes(nodes_under(kept.rect), now));
+    stack(key);
+    present(key, kept.swap.set_nodes(nodes_under(kept.place.drawn()), now));
     send_placement(key, kept);
     send_stacking();
     return {};
 }
 
-/// The session's wanted rectangle goes to one window at a time; every other one is placed where there is room.
-geom::Rect Wall::first_rect(Session& session, Surface& surface, std::uint32_t number) const {
+/// The session's wanted rectangle goes to one window at a time; every other one gets its place in the layout that was
+/// loaded, or one where there is room.
+geom::Rect Wall::first_rect(Session& session, Surface& surface, std::uint32_t number) {
     const bool given = std::ranges::any_of(session.surfaces, [](const auto& entry) { return entry.second.wanted_rect; });
     if (session.rect && !given) {
         surface.scaled = surface.wanted_rect = true;
         return *session.rect;
     }
+    if (const auto free = take_place(free_places_, {session.name, session.program, surface.title})) {
+        surface.scaled = free->scaled;
+        surface.layout_z = free->z;
+        return free->scaled ? free->rect : geom::Rect{free->rect.x, free->rect.y, static_cast<std::int32_t>(surface.width), static_cast<std::int32_t>(surface.height)};
+    }
     std::vector<geom::Rect> taken;
-    for (const auto& key : stacking_) taken.push_back(find(key)->rect);
+    for (const auto& key : stacking_) taken.push_back(find(key)->place.wanted());
     return place(config_.canvas(), taken, static_cast<std::int32_t>(surface.width), static_cast<std::int32_t>(surface.height), number);
 }
 
-void Wall::resize_surface(SessionId id, const proto::SurfaceResize& message, Clock::time_point now) {
+/// On top, but below what lies above it in the layout that has placed it.
+void Wall::stack(const SurfaceKey& key) {
+    const auto z = find(key)->layout_z;
+    const auto above = [&](const SurfaceKey& other) { return z && find(other)->layout_z.value_or(0) > *z; };
+    stacking_.insert(std::ranges::find_if(stacking_, above), key);
+}
+
+void Wall::resize_surface(SessionId id, const proto::SurfaceResize& message) {
     const SurfaceKey key{id, SurfaceId(message.surface())};
     auto* surface = find(key.surface, id);
     if (!surface || !extent_ok(message.width(), message.height())) return;
     surface->width = message.width();
     surface->height = message.height();
-    auto rect = surface->rect;
+    auto rect = surface->place.wanted();
     if (!surface->scaled) {
         rect.width = static_cast<std::int32_t>(message.width());
         rect.height = static_cast<std::int32_t>(message.height());
     }
-    move(key, rect, now);
+    want(key, rect);
+}
+
+void Wall::adopt_placement(SessionId id, const proto::SurfaceAdopted& message, Clock::time_point now) {
+    const SurfaceKey key{id, SurfaceId(message.surface())};
+    auto* surface = find(key.surface, id);
+    if (!surface || !surface->place.adopt(message.layout_version(), message.frame())) return;
+    const auto presents = surface->swap.move(nodes_under(surface->place.drawn()), message.frame(), now);
+    // Before the first frame there is nothing to keep in sight; a program without a back buffer never swaps.
+    if (message.frame() <= 1 && surface->place.presented(1)) send_stacking();
+    present(key, presents);
+}
+
+void Wall::cannot_close(SessionId id, SurfaceId surface) {
+    if (auto* found = find(surface, id)) found->cannot_close = true;
 }
 
 void Wall::close_surface(SessionId id, SurfaceId surface) {
@@ -245,89 +251,6 @@ void Wall::close_surface(SessionId id, SurfaceId surface) {
     if (!session || session->surfaces.erase(surface) == 0) return;
     std::erase(stacking_, SurfaceKey{id, surface});
     send_stacking();
-}
-
-// ---- operators ----
-
-Result<SurfaceKey> Wall::resolve(const Target& target) const {
-    const auto session = sessions_.find(target.session);
-    if (session == sessions_.end()) return fail("there is no session " + std::to_string(target.session.value));
-    for (auto key = stacking_.rbegin(); key != stacking_.rend(); ++key) {
-        if (key->session == target.session && (!target.surface || key->surface == target.surface)) return *key;
-    }
-    if (target.surface) return fail("session " + std::to_string(target.session.value) + " has no window " + std::to_string(target.surface.value));
-    return fail("session " + std::to_string(target.session.value) + " has no window yet");
-}
-
-/// The one surface named, or all of the session (possibly none), bottom first.
-Result<std::vector<SurfaceKey>> Wall::surfaces_of(const Target& target) const {
-    if (!sessions_.contains(target.session)) return fail("there is no session " + std::to_string(target.session.value));
-    std::vector<SurfaceKey> out;
-    for (const auto& key : stacking_) {
-        if (key.session == target.session && (!target.surface || key.surface == target.surface)) out.push_back(key);
-    }
-    if (target.surface && out.empty()) return fail("session " + std::to_string(target.session.value) + " has no window " + std::to_string(target.surface.value));
-    return out;
-}
-
-Result<void> Wall::place_surface(const Target& target, const geom::Rect& rect, Clock::time_point now) {
-    if (!rect_ok(rect)) return fail("a place needs a width and a height from 1 to " + std::to_string(wire::kMaxSurfaceExtent) + ", at most as far from the corner");
-    const auto key = resolve(target);
-    if (!key) return tl::unexpected(key.error());
-    find(key->surface, key->session)->scaled = true;
-    move(*key, rect, now);
-    return {};
-}
-
-Result<void> Wall::raise(const Target& target) {
-    const auto keys = surfaces_of(target);
-    if (!keys) return tl::unexpected(keys.error());
-    for (const auto& key : *keys) {
-        std::erase(stacking_, key);
-        stacking_.push_back(key);
-    }
-    send_stacking();
-    return {};
-}
-
-Result<void> Wall::lower(const Target& target) {
-    const auto keys = surfaces_of(target);
-    if (!keys) return tl::unexpected(keys.error());
-    for (const auto& key : *keys) std::erase(stacking_, key);
-    stacking_.insert(stacking_.begin(), keys->begin(), keys->end());
-    send_stacking();
-    return {};
-}
-
-Result<void> Wall::ask_to_close(const Target& target) {
-    const auto keys = surfaces_of(target);
-    if (!keys) return tl::unexpected(keys.error());
-    for (const auto& key : *keys) {
-        proto::CloseRequest request;
-        request.set_surface(key.surface.value);
-        request.set_reason("closed by an operator");
-        out_.to_client(key.session, make(&proto::Envelope::mutable_close_request, request));
-    }
-    return {};
-}
-
-Result<void> Wall::hold(const Target& target, bool on, Clock::time_point now) {
-    const auto keys = surfaces_of(target);
-    if (!keys) return tl::unexpected(keys.error());
-    if (!target.surface) find(target.session)->held = on;
-    for (const auto& key : *keys) {
-        auto& swap = find(key.surface, key.session)->swap;
-        present(key, on ? swap.hold(now) : swap.release(now));
-    }
-    return {};
-}
-
-Result<void> Wall::step(const Target& target, std::uint32_t frames, Clock::time_point now) {
-    const auto keys = surfaces_of(target);
-    if (!keys) return tl::unexpected(keys.error());
-    if (keys->empty()) return fail("session " + std::to_string(target.session.value) + " has no window yet");
-    for (const auto& key : *keys) present(key, find(key.surface, key.session)->swap.step(frames, now));
-    return {};
 }
 
 // ---- time ----
@@ -363,16 +286,15 @@ const Surface* Wall::find(const SurfaceKey& key) const {
     return found == session->second.surfaces.end() ? nullptr : &found->second;
 }
 
-void Wall::move(const SurfaceKey& key, const geom::Rect& rect, Clock::time_point now) {
+void Wall::want(const SurfaceKey& key, const geom::Rect& rect) {
     auto& surface = *find(key.surface, key.session);
-    surface.rect = rect;
-    ++surface.layout_version;
+    surface.place.want(rect);
     send_placement(key, surface);
-    send_stacking();
-    present(key, surface.swap.set_nodes(nodes_under(rect), now));
 }
 
 void Wall::present(const SurfaceKey& key, const Presents& presents) {
+    // The nodes that it comes to stack it before they show its first frame there, those that it leaves take it away.
+    if (auto& surface = *find(key.surface, key.session); surface.place.presented(surface.swap.presented())) send_stacking();
     for (const auto& [node, frame] : presents) {
         proto::Present message;
         message.set_session(key.session.value);
@@ -386,8 +308,8 @@ void Wall::present(const SurfaceKey& key, const Presents& presents) {
 void Wall::send_placement(const SurfaceKey& key, const Surface& surface) {
     proto::Placement placement;
     placement.set_surface(key.surface.value);
-    placement.set_layout_version(surface.layout_version);
-    *placement.mutable_rect() = to_proto(surface.rect);
+    placement.set_layout_version(surface.place.version());
+    *placement.mutable_rect() = to_proto(surface.place.wanted());
     out_.to_client(key.session, make(&proto::Envelope::mutable_placement, placement));
 }
 
@@ -395,7 +317,7 @@ void Wall::send_placement(const SurfaceKey& key, const Surface& surface) {
 proto::Envelope Wall::stacking_message(NodeIndex node) const {
     proto::Stacking stacking;
     for (const auto& key : stacking_) {
-        if (!nodes_under(find(key)->rect).contains(node)) continue;
+        if (!nodes_under(find(key)->place.shown()).contains(node)) continue;
         auto* entry = stacking.add_entries();
         entry->set_session(key.session.value);
         entry->set_surface(key.surface.value);

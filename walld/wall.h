@@ -16,6 +16,9 @@
 #include "common/base/result.h"
 #include "common/config/wall_config.h"
 #include "proto/control.pb.h"
+#include "walld/layout.h"
+#include "walld/person.h"
+#include "walld/placement_track.h"
 #include "walld/swap_coordinator.h"
 
 namespace wall::walld {
@@ -47,16 +50,18 @@ struct SurfaceKey {
 struct Surface {
     std::uint32_t width = 0, height = 0;  ///< the program's window
     std::string title;
-    geom::Rect rect;                      ///< on the canvas
+    PlacementTrack place;                 ///< on the canvas
     bool scaled = false;                  ///< the rectangle was given; else it follows the window's size
     bool wanted_rect = false;             ///< it is the session's WALLGL_RECT window
-    std::uint32_t layout_version = 1;
+    bool cannot_close = false;            ///< its program has no way to be asked
+    std::optional<std::size_t> layout_z;  ///< its place in the stacking of the layout that placed it
     SwapCoordinator swap;
 };
 
 struct Session {
     std::uint32_t pid = 0;
     std::string program, name;
+    Person owner;
     std::optional<geom::Rect> rect;  ///< asked for; fullscreen: the canvas
     bool held = false;
     std::string fault;               ///< what a node said against its stream
@@ -69,7 +74,7 @@ struct Target {
     SessionId session;
     SurfaceId surface;  ///< none: the session's topmost
     /// "3" or "3.1".
-    static Result<Target> parse(std::string_view text);
+    static Outcome<Target> parse(std::string_view text);
 };
 
 struct Counters {
@@ -95,24 +100,35 @@ public:
 
     // ---- clients ----
     bool any_node_up() const;
-    /// Why this program cannot be taken, if so.
-    static Result<void> check(const proto::ClientHello& hello);
+    /// Why this program cannot be taken now, if so.
+    Outcome<void> check(const proto::ClientHello& hello) const;
     /// Needs a node that is up and a hello that was checked. The welcome goes to the session's client; the id is known before any message is sent.
-    SessionId open_session(const proto::ClientHello& hello, const std::function<void(SessionId)>& before_welcome);
+    SessionId open_session(const proto::ClientHello& hello, Person owner, const std::function<void(SessionId)>& before_welcome);
     void close_session(SessionId id);
     Result<void> open_surface(SessionId id, const proto::SurfaceOpen& message, Clock::time_point now);
     /// Always answered with a Placement.
-    void resize_surface(SessionId id, const proto::SurfaceResize& message, Clock::time_point now);
+    void resize_surface(SessionId id, const proto::SurfaceResize& message);
     void close_surface(SessionId id, SurfaceId surface);
 
-    // ---- operators ----
-    Result<void> place_surface(const Target& target, const geom::Rect& rect, Clock::time_point now);
-    Result<void> raise(const Target& target);
-    Result<void> lower(const Target& target);
-    Result<void> ask_to_close(const Target& target);
-    Result<void> hold(const Target& target, bool on, Clock::time_point now);
-    Result<void> step(const Target& target, std::uint32_t frames, Clock::time_point now);
-    Result<SurfaceKey> resolve(const Target& target) const;
+    /// The program draws with a placement from a frame on.
+    void adopt_placement(SessionId id, const proto::SurfaceAdopted& message, Clock::time_point now);
+    void cannot_close(SessionId id, SurfaceId surface);
+
+    // ---- operators (wall_operate.cpp) ----
+    Outcome<void> place_surface(const Target& target, const geom::Rect& rect);
+    Outcome<void> raise(const Target& target);
+    Outcome<void> lower(const Target& target);
+    /// Gives the windows that were asked.
+    Outcome<std::vector<SurfaceKey>> ask_to_close(const Target& target);
+    Outcome<void> hold(const Target& target, bool on, Clock::time_point now);
+    Outcome<void> step(const Target& target, std::uint32_t frames, Clock::time_point now);
+    Outcome<SurfaceKey> resolve(const Target& target) const;
+    /// The one surface named, or all of the session (possibly none), bottom first.
+    Outcome<std::vector<SurfaceKey>> surfaces_of(const Target& target) const;
+    Layout current_layout() const;
+    /// Places and stacks the windows that match, at once; programs that start later get the places left over, until
+    /// another layout is loaded. Gives the number of windows placed.
+    std::size_t load_layout(const Layout& layout);
 
     // ---- time ----
     std::optional<Clock::time_point> next_deadline() const;
@@ -134,14 +150,15 @@ private:
     void welcome_client(SessionId id, const Session& session);
     void hand_out_ticket(SessionId id, Session& session, NodeIndex node);
     std::set<NodeIndex> nodes_under(const geom::Rect& rect) const;
-    geom::Rect first_rect(Session& session, Surface& surface, std::uint32_t number) const;
-    void move(const SurfaceKey& key, const geom::Rect& rect, Clock::time_point now);
+    geom::Rect first_rect(Session& session, Surface& surface, std::uint32_t number);
+    WindowName name_of(const SurfaceKey& key) const;
+    void stack(const SurfaceKey& key);
+    void want(const SurfaceKey& key, const geom::Rect& rect);
     void present(const SurfaceKey& key, const Presents& presents);
     void send_placement(const SurfaceKey& key, const Surface& surface);
     void send_stacking();
     void to_all_nodes(const proto::Envelope& message);
     proto::Envelope stacking_message(NodeIndex node) const;
-    Result<std::vector<SurfaceKey>> surfaces_of(const Target& target) const;
     void for_each_surface(const std::function<void(const SurfaceKey&, Surface&)>& visit);
 
     config::WallConfig config_;
@@ -152,6 +169,7 @@ private:
     std::vector<SurfaceKey> stacking_;
     std::uint32_t last_session_ = 0;
     std::uint32_t windows_placed_ = 0;  ///< of cascades
+    std::vector<LayoutEntry> free_places_;  ///< of the layout loaded last
     Counters counters_;
 };
 

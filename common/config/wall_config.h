@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/config/people.h"
 #include "common/geom/rect.h"
 #include "common/net/address.h"
 
@@ -35,9 +36,12 @@ struct WallConfig {
     std::string name;
     std::uint32_t background = 0;              ///< 0xRRGGBB behind all windows
     std::vector<net::Address> control_listen;  ///< walld's; nodes connect to the first
-    std::vector<std::uint32_t> allowed_users;  ///< uids besides walld's own and root's
+    PeopleConfig people;                       ///< who may do what
     std::optional<net::Address> http_listen;   ///< none: no HTTP
     std::chrono::milliseconds swap_timeout{250};
+    std::chrono::milliseconds close_timeout{3000};  ///< a program that was asked to close and has not by then is cut off
+    std::uint32_t max_sessions = 256;               ///< programs on the wall at once
+    std::string state_directory;                    ///< for saved layouts; empty: where systemd says, else none
     std::vector<NodeConfig> nodes;             ///< node index = index
 
     /// The least rectangle from (0,0) that holds every tile.

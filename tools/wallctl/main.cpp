@@ -18,13 +18,14 @@ using namespace wall;
 using namespace wall::wallctl;
 using nlohmann::json;
 
-constexpr std::chrono::seconds kLimit{10};     // for an answer
-constexpr std::chrono::seconds kWaitSlack{2};  // on top of what walld itself waits
+constexpr std::chrono::seconds kLimit{10};       // for an answer
+constexpr std::chrono::seconds kCloseLimit{65};  // a program that is asked to close may take as long as wall.toml allows
+constexpr std::chrono::seconds kWaitSlack{2};    // on top of what walld itself waits
 
 struct Options {
-    std::string walld = net::kDefaultWalld;
+    Walld walld{net::kDefaultWalld, {}};
     bool as_json = false;
-    std::string id, tile, file;
+    std::string id, tile, file, name;
     int x = 0, y = 0, width = 0, height = 0;
     int frames = 1, frame = 1;
     double seconds = 10;
@@ -32,11 +33,13 @@ struct Options {
 };
 
 /// What main() runs in the end; set by the verb that was given.
-using Action = std::function<Result<void>()>;
+using Action = std::function<Outcome<void>()>;
 
 std::string (*const kNoTable)(const json&) = nullptr;
 
-Result<void> print(const Options& options, const Result<Answer>& answer, std::string (*table)(const json&)) {
+tl::unexpected<Failure> failed(std::string message) { return tl::unexpected<Failure>({"failed", std::move(message)}); }
+
+Outcome<void> print(const Options& options, const Outcome<Answer>& answer, std::string (*table)(const json&)) {
     if (!answer) return tl::unexpected(answer.error());
     if (options.as_json) std::cout << answer->json.dump(2) << '\n';
     else if (table) std::cout << table(answer->json);
@@ -51,7 +54,7 @@ Action tell(const Options& options, const char* verb, std::function<json()> argu
     return [&options, verb, arguments, limit] { return print(options, ask(options.walld, verb, arguments(), limit), kNoTable); };
 }
 
-Result<void> screenshot(const Options& options) {
+Outcome<void> screenshot(const Options& options) {
     json arguments = json::object();
     if (!options.tile.empty()) arguments["tile"] = options.tile;
     if (!options.id.empty()) arguments["id"] = options.id;
@@ -59,19 +62,19 @@ Result<void> screenshot(const Options& options) {
     if (!answer) return tl::unexpected(answer.error());
     std::ofstream file(options.file, std::ios::binary);
     file << answer->blob;
-    if (!file.flush()) return fail(options.file + ": cannot be written");
+    if (!file.flush()) return failed(options.file + ": cannot be written");
     return print(options, answer, kNoTable);
 }
 
-Result<void> wait(const Options& options) {
+Outcome<void> wait(const Options& options) {
     const auto limit = std::chrono::milliseconds(static_cast<std::int64_t>(options.seconds * 1000));
     const json arguments{{"id", options.id}, {"frame", options.frame}, {"timeout_ms", limit.count()}};
     return print(options, ask(options.walld, "wait", arguments, limit + kWaitSlack), kNoTable);
 }
 
-Result<void> doctor(const Options& options) {
+Outcome<void> doctor(const Options& options) {
     std::error_code error;
-    const auto findings = examine(options.walld, std::filesystem::read_symlink("/proc/self/exe", error).string());
+    const auto findings = examine(options.walld.address, std::filesystem::read_symlink("/proc/self/exe", error).string());
     json out = json::array();
     bool good = true;
     for (const auto& finding : findings) {
@@ -80,12 +83,32 @@ Result<void> doctor(const Options& options) {
         if (!options.as_json) std::cout << (finding.good ? "ok    " : "WRONG ") << finding.check << ": " << finding.detail << '\n';
     }
     if (options.as_json) std::cout << out.dump(2) << '\n';
-    if (!good) return fail("something is wrong, see above");
+    if (!good) return failed("something is wrong, see above");
     return {};
 }
 
 void add_id(CLI::App* verb, Options& options) {
     verb->add_option("ID", options.id, "session, or SESSION.SURFACE, as `wallctl sessions` shows it")->required();
+}
+
+/// wallctl layout save|load|list|delete
+void add_layouts(CLI::App& app, Options& o, Action& action) {
+    auto* layout = app.add_subcommand("layout", "keeps where windows are, by the names of programs");
+    layout->require_subcommand(1)->fallthrough();
+    const auto verb = [&](const char* name, const char* about, Action run) {
+        auto* sub = layout->add_subcommand(name, about);
+        sub->callback([&action, run] { action = run; });
+        sub->fallthrough();
+        return sub;
+    };
+    const auto named = [&](const char* name, const char* wire, const char* about, std::string (*text)(const json&)) {
+        auto* sub = verb(name, about, [&o, wire, text] { return print(o, ask(o.walld, wire, json{{"name", o.name}}, kLimit), text); });
+        sub->add_option("NAME", o.name, "letters, digits, dots, dashes, underscores")->required();
+    };
+    verb("list", "the layouts there are", show(o, "layouts", names_text));
+    named("save", "save_layout", "keeps the places of all windows", kNoTable);
+    named("load", "load_layout", "brings windows back to their places", placed_text);
+    named("delete", "delete_layout", "forgets a layout", kNoTable);
 }
 
 void add_verbs(CLI::App& app, Options& o, Action& action) {
@@ -101,21 +124,21 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
     verb("tiles", "the tiles and their places", show(o, "tiles", tiles_table));
     verb("sessions", "the programs on the wall and their windows", show(o, "sessions", sessions_table));
     auto* place = verb("place", "puts a window on a rectangle of the wall", tell(o, "place", [&o] {
-        return json{{"id", o.id}, {"x", o.x}, {"y", o.y}, {"width", o.width}, {"height", o.height}};
+        return json{{"id", o.id}, {"rect", {o.x, o.y, o.width, o.height}}};
     }));
     add_id(place, o);
     place->add_option("X", o.x)->required();
     place->add_option("Y", o.y)->required();
-    place->add_option("W", o.width)->required()->check(CLI::PositiveNumber);
-    place->add_option("H", o.height)->required()->check(CLI::PositiveNumber);
+    place->add_option("W", o.width)->required();
+    place->add_option("H", o.height)->required();
     add_id(verb("raise", "puts a window before all others", tell(o, "raise", with_id)), o);
     add_id(verb("lower", "puts a window behind all others", tell(o, "lower", with_id)), o);
-    add_id(verb("close", "asks a program to close; cuts it off after 3 seconds", tell(o, "close", with_id)), o);
+    add_id(verb("close", "asks a program to close; one that does not in time is cut off", tell(o, "close", with_id, kCloseLimit)), o);
     auto* shot = verb("screenshot", "writes what the wall shows as PNG", [&o] { return screenshot(o); });
     shot->add_option("FILE", o.file)->required();
     shot->add_option("--tile", o.tile, "only this tile");
     shot->add_option("--session", o.id, "only this program");
-    auto* hold = verb("hold", "shows no further frame of a program until it is stepped", tell(o, "hold", [&o] { return json{{"id", o.id}, {"on", o.off ? 0 : 1}}; }));
+    auto* hold = verb("hold", "shows no further frame of a program until it is stepped", tell(o, "hold", [&o] { return json{{"id", o.id}, {"on", !o.off}}; }));
     add_id(hold, o);
     hold->add_flag("--off", o.off, "lets it run again");
     auto* step = verb("step", "shows the next frames of a held program", tell(o, "step", [&o] { return json{{"id", o.id}, {"frames", o.frames}}; }));
@@ -125,6 +148,8 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
     add_id(waiting, o);
     waiting->add_option("--frame", o.frame, "its number")->required()->check(CLI::PositiveNumber);
     waiting->add_option("--timeout", o.seconds, "seconds (10)")->check(CLI::Range(0.0, 600.0));
+    verb("whoami", "as whom walld sees you, and your role", show(o, "whoami", person_text));
+    add_layouts(app, o, action);
     verb("doctor", "looks for what usually goes wrong", [&o] { return doctor(o); });
 }
 
@@ -136,8 +161,10 @@ int main(int argc, char** argv) {
                "  wallctl --walld 127.0.0.1:7770 nodes\n\nExit code: 0; 1 if walld says no or cannot be reached.");
     Options options;
     Action action;
-    if (const char* walld = std::getenv("WALLGL_WALLD"); walld && *walld) options.walld = walld;
-    app.add_option("--walld", options.walld, "where walld is: unix:PATH or HOST:PORT (WALLGL_WALLD)")->type_name("ADDR");
+    if (const char* walld = std::getenv("WALLGL_WALLD"); walld && *walld) options.walld.address = walld;
+    if (const char* token = std::getenv("WALLGL_TOKEN_FILE"); token) options.walld.token_file = token;
+    app.add_option("--walld", options.walld.address, "where walld is: unix:PATH or HOST:PORT (WALLGL_WALLD)")->type_name("ADDR");
+    app.add_option("--token-file", options.walld.token_file, "asks as the token in this file (WALLGL_TOKEN_FILE)")->type_name("FILE");
     app.add_flag("--json", options.as_json, "JSON instead of tables");
     app.set_version_flag("--version", WALLGL_VERSION);
     app.require_subcommand(1);
@@ -146,6 +173,7 @@ int main(int argc, char** argv) {
     try {
         if (const auto done = action(); !done) {
             std::cerr << "wallctl: " << done.error().message << '\n';
+            if (options.as_json) std::cout << json{{"error", {{"code", done.error().code}, {"message", done.error().message}}}}.dump(2) << '\n';
             return 1;
         }
     } catch (const std::exception& error) {

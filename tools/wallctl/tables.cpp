@@ -41,12 +41,19 @@ std::string place(const json& object) {
 
 bool is(const json& object, const char* key) { return object.value(key, false); }
 
+std::string who(const json& person) {
+    const auto kind = text(person, "kind");
+    if (kind == "unknown") return "unknown";
+    return kind == "token" ? "token " + text(person, "name") : text(person, "name");
+}
+
 void add_session(std::vector<Row>& rows, const json& session) {
     const auto note = is(session, "held") ? "held" : text(session, "fault");
+    const auto owner = who(session.value("owner", json::object()));
     const auto surfaces = session.value("surfaces", json::array());
-    if (surfaces.empty()) rows.push_back({text(session, "id"), text(session, "program"), text(session, "name"), text(session, "pid"), "", "", "", note});
+    if (surfaces.empty()) rows.push_back({text(session, "id"), text(session, "program"), text(session, "name"), owner, text(session, "pid"), "", "", "", note});
     for (const auto& s : surfaces) {
-        rows.push_back({text(s, "id"), text(session, "program"), text(session, "name"), text(session, "pid"),
+        rows.push_back({text(s, "id"), text(session, "program"), text(session, "name"), owner, text(session, "pid"),
                         fmt::format("{}x{}", text(s, "width"), text(s, "height")), place(s), text(s, "frame"), note});
     }
 }
@@ -69,7 +76,7 @@ std::string tiles_table(const json& tiles) {
 }
 
 std::string sessions_table(const json& sessions) {
-    std::vector<Row> rows{{"ID", "PROGRAM", "NAME", "PID", "WINDOW", "PLACE", "FRAME", "NOTE"}};
+    std::vector<Row> rows{{"ID", "PROGRAM", "NAME", "OWNER", "PID", "WINDOW", "PLACE", "FRAME", "NOTE"}};
     for (const auto& session : sessions) add_session(rows, session);
     return table(rows);
 }
@@ -82,5 +89,15 @@ std::string status_text(const json& status) {
                        text(wall, "height"), status.at("tiles").size(), up, nodes.size(), status.at("sessions").size(), nodes_table(nodes),
                        sessions_table(status.at("sessions")));
 }
+
+std::string person_text(const json& person) { return fmt::format("{}, role {}\n", who(person), text(person, "role")); }
+
+std::string names_text(const json& names) {
+    std::string out;
+    for (const auto& name : names) out += name.get<std::string>() + "\n";
+    return out;
+}
+
+std::string placed_text(const json& loaded) { return fmt::format("{} windows placed, {} places wait for programs\n", text(loaded, "placed"), text(loaded, "waiting")); }
 
 }  // namespace wall::wallctl

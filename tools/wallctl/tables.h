@@ -12,4 +12,9 @@ std::string tiles_table(const nlohmann::json& tiles);
 std::string sessions_table(const nlohmann::json& sessions);
 std::string status_text(const nlohmann::json& status);
 
+std::string person_text(const nlohmann::json& person);
+std::string names_text(const nlohmann::json& names);
+/// What loading a layout has done.
+std::string placed_text(const nlohmann::json& loaded);
+
 }  // namespace wall::wallctl

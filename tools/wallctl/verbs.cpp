@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tools/wallctl/verbs.h"
 
+#include <fstream>
+
 #include "common/net/control_client.h"
 
 namespace wall::wallctl {
@@ -8,25 +10,44 @@ namespace {
 
 constexpr std::chrono::seconds kConnectLimit{3};
 
+tl::unexpected<Failure> no(const char* code, std::string message) { return tl::unexpected<Failure>({code, std::move(message)}); }
+
+Outcome<std::string> read_token(const std::string& path) {
+    if (path.empty()) return std::string();
+    std::ifstream file(path);
+    std::string token;
+    if (std::getline(file, token) && !token.empty()) return token;
+    return no("failed", path + ": expected a file with a token");
+}
+
+Outcome<proto::Envelope> exchange(const std::string& walld, const proto::Envelope& request, std::chrono::milliseconds limit) {
+    const auto address = net::Address::parse(walld);
+    if (!address) return no("invalid", address.error().message);
+    auto client = net::ControlClient::connect(*address, kConnectLimit);
+    if (!client) return no("unavailable", "walld cannot be reached at " + client.error().message + " (is it running? --walld or WALLGL_WALLD say where)");
+    if (auto sent = client->send(request); !sent) return no("unavailable", sent.error().message);
+    auto answer = client->receive(limit);
+    if (!answer) return no("unavailable", answer.error().message);
+    if (answer->has_refused()) return no("forbidden", "walld refused: " + answer->refused().reason());
+    if (!answer->has_operator_reply()) return no("failed", address->text() + " is no walld");
+    return std::move(*answer);
+}
+
 }  // namespace
 
-Result<Answer> ask(const std::string& walld, const std::string& verb, const nlohmann::json& arguments, std::chrono::milliseconds limit) {
-    const auto address = net::Address::parse(walld);
-    if (!address) return tl::unexpected(address.error());
-    auto client = net::ControlClient::connect(*address, kConnectLimit);
-    if (!client) return fail("walld cannot be reached at " + client.error().message + " (is it running? --walld or WALLGL_WALLD say where)");
+Outcome<Answer> ask(const Walld& walld, const std::string& verb, const nlohmann::json& arguments, std::chrono::milliseconds limit) {
+    const auto token = read_token(walld.token_file);
+    if (!token) return tl::unexpected(token.error());
     proto::Envelope envelope;
     auto& request = *envelope.mutable_operator_request();
     request.set_request(1);
     request.set_verb(verb);
-    request.set_json(arguments.dump());
-    if (auto sent = client->send(envelope); !sent) return tl::unexpected(sent.error());
-    auto answer = client->receive(limit);
+    request.set_json(arguments.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    request.set_token(*token);
+    auto answer = exchange(walld.address, envelope, limit);
     if (!answer) return tl::unexpected(answer.error());
-    if (answer->has_refused()) return fail("walld refused: " + answer->refused().reason());
-    if (!answer->has_operator_reply()) return fail(address->text() + " is no walld");
     auto& reply = *answer->mutable_operator_reply();
-    if (!reply.ok()) return fail(reply.error());
+    if (!reply.ok()) return tl::unexpected<Failure>({reply.code(), reply.error()});
     return Answer{nlohmann::json::parse(reply.json(), nullptr, false), std::move(*reply.mutable_blob())};
 }
 

@@ -15,6 +15,19 @@ struct Answer {
     std::string blob;
 };
 
-Result<Answer> ask(const std::string& walld, const std::string& verb, const nlohmann::json& arguments, std::chrono::milliseconds limit);
+/// Why not: a code for programs (docs/http-api.md), a sentence for people.
+struct Failure {
+    std::string code, message;
+};
+template <class T>
+using Outcome = tl::expected<T, Failure>;
+
+/// Where walld is, and as whom it is asked.
+struct Walld {
+    std::string address;
+    std::string token_file;  ///< holds a token; empty: this Unix user asks
+};
+
+Outcome<Answer> ask(const Walld& walld, const std::string& verb, const nlohmann::json& arguments, std::chrono::milliseconds limit);
 
 }  // namespace wall::wallctl

@@ -15,6 +15,9 @@ constexpr const char* kGood = R"(
 name = "lab"
 background = "#102030"
 swap_timeout_ms = 100
+close_timeout_ms = 500
+max_sessions = 7
+state_directory = "/var/lib/wallgl"
 
 [control]
 listen = ["unix:/run/wallgl/walld.sock", "127.0.0.1:7770"]
@@ -22,6 +25,16 @@ users = ["root", 1234]
 
 [http]
 listen = "127.0.0.1:7780"
+
+[people]
+operators = ["root", "@root"]
+viewers = [77]
+default_role = "viewer"
+http_role = "none"
+[[people.token]]
+name = "kiosk"
+file = "/etc/wallgl/kiosk.token"
+role = "operator"
 
 [[node]]
 name = "left"
@@ -41,17 +54,6 @@ name = "big"
 rect = [660, 0, 1280, 980]
 )";
 
-TEST(WallConfig, KeepsNamesBeyondAscii) {
-    std::string text = kGood;
-    text.replace(text.find("lab"), 3, "M\u00fcller \u4e2d");
-    const auto config = parse_config(text, "wall.toml");
-    ASSERT_TRUE(config) << config.error().message;
-    EXPECT_EQ(config->name, "M\u00fcller \u4e2d");
-    text.replace(text.find("background"), 10, "h\u00f6he");
-    text.replace(text.find("h\u00f6he"), 6, "\"h\u00f6he\"");
-    EXPECT_THAT(parse_config(text, "wall.toml").error().message, HasSubstr("unknown key 'h\u00f6he'"));
-}
-
 TEST(WallConfig, ReadsEverything) {
     const auto config = parse_config(kGood, "wall.toml");
     ASSERT_TRUE(config) << config.error().message;
@@ -60,7 +62,17 @@ TEST(WallConfig, ReadsEverything) {
     EXPECT_EQ(config->swap_timeout.count(), 100);
     ASSERT_EQ(config->control_listen.size(), 2u);
     EXPECT_EQ(config->control_listen[0].path, "/run/wallgl/walld.sock");
-    EXPECT_EQ(config->allowed_users, (std::vector<std::uint32_t>{0, 1234}));
+    EXPECT_EQ(config->close_timeout.count(), 500);
+    EXPECT_EQ(config->max_sessions, 7u);
+    EXPECT_EQ(config->state_directory, "/var/lib/wallgl");
+    const auto& people = config->people;
+    EXPECT_EQ(people.users.users, (std::vector<std::uint32_t>{0, 1234}));
+    EXPECT_EQ(people.operators.groups, (std::vector<std::uint32_t>{0}));
+    EXPECT_EQ(people.default_role, Role::viewer);
+    EXPECT_EQ(people.http_role, Role::none);
+    ASSERT_EQ(people.tokens.size(), 1u);
+    EXPECT_EQ(people.tokens[0].name, "kiosk");
+    EXPECT_EQ(people.tokens[0].role, Role::operator_);
     EXPECT_EQ(config->http_listen->port, 7780);
     ASSERT_EQ(config->nodes.size(), 2u);
     EXPECT_EQ(config->nodes[0].tiles[1].rect, (geom::Rect{0, 500, 640, 480}));
@@ -83,6 +95,22 @@ TEST(WallConfig, NodesAreEnough) {
     EXPECT_EQ(config->control_listen[0].text(), "127.0.0.1:7770");
     EXPECT_FALSE(config->http_listen);
     EXPECT_EQ(config->swap_timeout.count(), 250);
+}
+
+TEST(People, EachHasTheHighestRoleThatNamesThem) {
+    PeopleConfig people;
+    people.operators.users = {1};
+    people.users.groups = {50};
+    people.viewers.users = {3, 1};
+    const std::uint32_t group[] = {7, 50};
+    EXPECT_EQ(role_of(people, 0, {}), Role::operator_) << "root";
+    EXPECT_EQ(role_of(people, 1, {}), Role::operator_);
+    EXPECT_EQ(role_of(people, 2, group), Role::user);
+    EXPECT_EQ(role_of(people, 3, {}), Role::viewer);
+    EXPECT_EQ(role_of(people, 4, {}), Role::none);
+    people.default_role = Role::user;
+    EXPECT_EQ(role_of(people, 3, {}), Role::user) << "not less than a stranger";
+    EXPECT_EQ(role_of(people, 4, {}), Role::user);
 }
 
 struct Wrong {
@@ -110,25 +138,30 @@ INSTANTIATE_TEST_SUITE_P(
     Cases, WrongConfig,
     ::testing::Values(
         Wrong{"syntax", "name = \"lab\"", "name = ", "wall.toml:3: ", "not TOML"},
-        Wrong{"stray_character", "name = \"lab\"", "n\u00e4me = \"lab\"", "wall.toml:3: ", "not TOML"},
-        Wrong{"stray_character_after_a_quote_in_a_number", "name = \"lab\"", "name = 1'''\u0422", "wall.toml:3: ", "not TOML"},
-        Wrong{"unknown_section", "[http]", "[htpp]", "wall.toml:11: ", "expected one of wall, control, http, node"},
-        Wrong{"unknown_key", "swap_timeout_ms", "swap_timeout", "wall.toml:5: ", "expected one of name, background, swap_timeout_ms"},
+        Wrong{"stray_character", "name = \"lab\"", "n\u00e4me = \"lab\"", "wall.toml:3: ", "a character beyond ASCII"},
+        Wrong{"unknown_section", "[http]", "[htpp]", "wall.toml:14: ", "expected one of wall, control, http, people, node"},
+        Wrong{"unknown_key", "swap_timeout_ms", "swap_timeout", "wall.toml:5: ", "expected one of name, background, swap_timeout_ms, close_timeout_ms, max_sessions, state_directory"},
         Wrong{"name_type", "\"lab\"", "7", "wall.toml:3: ", "'name': expected a string"},
         Wrong{"colour", "#102030", "grey", "wall.toml:4: ", "expected a colour as \"#RRGGBB\""},
         Wrong{"timeout_range", "= 100", "= 0", "wall.toml:5: ", "expected an integer from 1 to 10000"},
-        Wrong{"address", "127.0.0.1:7770", "here", "wall.toml:8: ", "expected unix:PATH or HOST:PORT"},
-        Wrong{"listen_type", "[\"unix:/run/wallgl/walld.sock\", \"127.0.0.1:7770\"]", "7770", "wall.toml:8: ", "expected an array of addresses"},
-        Wrong{"user", "\"root\"", "\"no such user\"", "wall.toml:9: ", "this machine has no user 'no such user'"},
-        Wrong{"http_unix", "127.0.0.1:7780", "unix:/x", "wall.toml:12: ", "expected HOST:PORT"},
-        Wrong{"backend", "\"osmesa\"", "\"vulkan\"", "wall.toml:26: ", "expected \"egl\" or \"osmesa\""},
-        Wrong{"rect_count", "[660, 0, 1280, 980]", "[660, 0, 1280]", "wall.toml:29: ", "expected [x, y, width, height]"},
-        Wrong{"rect_negative", "[660, 0, 1280, 980]", "[-1, 0, 1280, 980]", "wall.toml:29: ", "expected [x, y, width, height]"},
-        Wrong{"rect_empty", "[660, 0, 1280, 980]", "[660, 0, 0, 980]", "wall.toml:29: ", "expected [x, y, width, height]"},
-        Wrong{"rect_huge", "[660, 0, 1280, 980]", "[32000, 0, 1280, 980]", "wall.toml:29: ", "expected [x, y, width, height]"},
-        Wrong{"node_twice", "\"right\"", "\"left\"", "wall.toml:24: ", "node 'left' appears twice"},
-        Wrong{"tile_twice", "\"big\"", "\"top\"", "wall.toml:24: ", "tile 'top' appears twice"},
-        Wrong{"no_tile", "[[node.tile]]\nname = \"big\"\nrect = [660, 0, 1280, 980]", "", "wall.toml:24: ", "'tile' is missing: expected at least one [[node.tile]]"}),
+        Wrong{"address", "127.0.0.1:7770", "here", "wall.toml:11: ", "expected unix:PATH or HOST:PORT"},
+        Wrong{"listen_type", "[\"unix:/run/wallgl/walld.sock\", \"127.0.0.1:7770\"]", "7770", "wall.toml:11: ", "expected an array of addresses"},
+        Wrong{"user", "\"root\"", "\"no such user\"", "wall.toml:12: ", "this machine has no user 'no such user'"},
+        Wrong{"no_group", "\"@root\"", "\"@no such group\"", "wall.toml:18: ", "'operators': this machine has no group 'no such group'"},
+        Wrong{"member_type", "[77]", "[1.5]", "wall.toml:19: ", "expected user names, user numbers or \"@group\""},
+        Wrong{"member_list", "[77]", "77", "wall.toml:19: ", "'viewers': expected an array"},
+        Wrong{"role", "\"viewer\"", "\"king\"", "wall.toml:20: ", "expected \"none\", \"viewer\", \"user\" or \"operator\""},
+        Wrong{"token_file", "file = \"/etc/wallgl/kiosk.token\"", "", "wall.toml:22: ", "'file' is missing"},
+        Wrong{"sessions", "= 7", "= 0", "wall.toml:7: ", "expected an integer from 1 to 10000"},
+        Wrong{"http_unix", "127.0.0.1:7780", "unix:/x", "wall.toml:15: ", "expected HOST:PORT"},
+        Wrong{"backend", "\"osmesa\"", "\"vulkan\"", "wall.toml:39: ", "expected \"egl\" or \"osmesa\""},
+        Wrong{"rect_count", "[660, 0, 1280, 980]", "[660, 0, 1280]", "wall.toml:42: ", "expected [x, y, width, height]"},
+        Wrong{"rect_negative", "[660, 0, 1280, 980]", "[-1, 0, 1280, 980]", "wall.toml:42: ", "expected [x, y, width, height]"},
+        Wrong{"rect_empty", "[660, 0, 1280, 980]", "[660, 0, 0, 980]", "wall.toml:42: ", "expected [x, y, width, height]"},
+        Wrong{"rect_huge", "[660, 0, 1280, 980]", "[32000, 0, 1280, 980]", "wall.toml:42: ", "expected [x, y, width, height]"},
+        Wrong{"node_twice", "\"right\"", "\"left\"", "wall.toml:37: ", "node 'left' appears twice"},
+        Wrong{"tile_twice", "\"big\"", "\"top\"", "wall.toml:37: ", "tile 'top' appears twice"},
+        Wrong{"no_tile", "[[node.tile]]\nname = \"big\"\nrect = [660, 0, 1280, 980]", "", "wall.toml:37: ", "'tile' is missing: expected at least one [[node.tile]]"}),
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST(WallConfig, AnEmptyOneLacksNodes) {

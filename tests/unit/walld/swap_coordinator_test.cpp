@@ -118,6 +118,65 @@ TEST_F(Swap, HoldStopsWhereItIs) {
     EXPECT_THAT(swap_.step(1, at(3)), ElementsAre(PresentTo{0, 5}));
 }
 
+TEST_F(Swap, AMoveChangesTheGroupAtAFrame) {
+    swap_.set_nodes({0}, at(0));
+    swap_.rendered(0, 1, at(1));
+    EXPECT_THAT(swap_.move({1}, 3, at(2)), IsEmpty());
+    EXPECT_THAT(swap_.rendered(1, 3, at(3)), IsEmpty()) << "frame 2 comes first";
+    EXPECT_FALSE(swap_.shown(2));
+    EXPECT_THAT(swap_.rendered(0, 2, at(4)), ElementsAre(PresentTo{0, 2}, PresentTo{1, 3}));
+    EXPECT_EQ(swap_.presented(), 3u);
+    EXPECT_TRUE(swap_.shown(3));
+    EXPECT_THAT(swap_.rendered(0, 3, at(5)), IsEmpty()) << "no longer one of them";
+}
+
+TEST_F(Swap, ANodeThatIsLeftShowsItsLastFrameHoweverLate) {
+    swap_.set_nodes({0}, at(0));
+    swap_.rendered(0, 1, at(1));
+    swap_.move({1}, 3, at(2));
+    swap_.rendered(1, 3, at(3));
+    EXPECT_EQ(swap_.deadline(), at(253));
+    EXPECT_THAT(swap_.tick(at(253)), ElementsAre(PresentTo{1, 3}));
+    EXPECT_THAT(swap_.rendered(0, 2, at(300)), ElementsAre(PresentTo{0, 2})) << "it waits for that to go on";
+}
+
+TEST_F(Swap, ADeadNewPlaceDoesNotHoldTheOthers) {
+    swap_.set_nodes({0}, at(0));
+    swap_.rendered(0, 1, at(1));
+    swap_.move({0, 1}, 2, at(2));
+    EXPECT_THAT(swap_.rendered(0, 2, at(3)), IsEmpty());
+    EXPECT_THAT(swap_.lose(1, at(4)), ElementsAre(PresentTo{0, 2}));
+}
+
+TEST_F(Swap, ThereAndBackAgain) {
+    swap_.set_nodes({0}, at(0));
+    swap_.rendered(0, 1, at(1));
+    swap_.move({1}, 2, at(2));
+    swap_.move({0}, 3, at(2));
+    EXPECT_THAT(swap_.rendered(0, 3, at(3)), IsEmpty());
+    EXPECT_THAT(swap_.rendered(1, 2, at(4)), ElementsAre(PresentTo{0, 3}, PresentTo{1, 2}));
+    EXPECT_TRUE(swap_.shown(3));
+}
+
+TEST_F(Swap, MeasuresHowFarTheNodesAreApart) {
+    swap_.set_nodes({0, 1}, at(0));
+    for (std::uint32_t frame = 1; frame <= 3; ++frame) {
+        swap_.rendered(0, frame, at(int(100 * frame)));
+        swap_.rendered(1, frame, at(int(100 * frame + 10 * frame)));
+    }
+    EXPECT_EQ(swap_.rendered_spread().frames(), 3u);
+    EXPECT_DOUBLE_EQ(swap_.rendered_spread().last().count(), 30);
+    EXPECT_DOUBLE_EQ(swap_.rendered_spread().mean().count(), 20);
+    EXPECT_DOUBLE_EQ(swap_.rendered_spread().most().count(), 30);
+    EXPECT_DOUBLE_EQ(swap_.presented_spread().most().count(), 0) << "told together";
+    EXPECT_NEAR(swap_.frame_interval().count(), 110, 1);
+    swap_.rendered(0, 4, at(1000));
+    swap_.tick(at(1250));
+    swap_.rendered(1, 4, at(1300));
+    EXPECT_DOUBLE_EQ(swap_.rendered_spread().last().count(), 300);
+    EXPECT_DOUBLE_EQ(swap_.presented_spread().last().count(), 50) << "the late one";
+}
+
 /// Whatever comes in whatever order: a node is never told a frame that it has not rendered, nor an older one.
 TEST_F(Swap, NeverPresentsWhatANodeDoesNotHave) {
     std::uint32_t seed = 1;

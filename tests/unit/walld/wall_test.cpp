@@ -45,7 +45,7 @@ protected:
         return *wall_.node_joins(hello, now_);
     }
     SessionId open(const proto::ClientHello& hello = {}) {
-        return wall_.open_session(hello, [](SessionId) {});
+        return wall_.open_session(hello, {}, [](SessionId) {});
     }
     geom::Rect open_surface(SessionId id, std::uint32_t surface, std::uint32_t width, std::uint32_t height) {
         proto::SurfaceOpen message;
@@ -53,7 +53,15 @@ protected:
         message.set_width(width);
         message.set_height(height);
         EXPECT_TRUE(wall_.open_surface(id, message, now_));
-        return wall_.find({id, SurfaceId(surface)})->rect;
+        return wall_.find({id, SurfaceId(surface)})->place.wanted();
+    }
+    /// The program takes the newest placement and draws with it from `frame` on.
+    void adopt(SessionId id, std::uint32_t frame) {
+        proto::SurfaceAdopted message;
+        message.set_surface(1);
+        message.set_layout_version(wall_.find({id, SurfaceId(1)})->place.version());
+        message.set_frame(frame);
+        wall_.adopt_placement(id, message, now_);
     }
     void rendered(NodeIndex node, SessionId id, std::uint32_t frame) {
         proto::Rendered report;
@@ -148,16 +156,20 @@ TEST_F(TheWall, TheWantedRectangleGoesToTheFirstWindowOnly) {
 TEST_F(TheWall, ARectangleMustBePossible) {
     proto::ClientHello hello;
     hello.set_version(wire::kProtocolVersion);
-    EXPECT_TRUE(Wall::check(hello));
+    EXPECT_TRUE(wall_.check(hello));
     hello.mutable_rect()->set_width(10);
-    EXPECT_FALSE(Wall::check(hello)) << "no height";
+    EXPECT_FALSE(wall_.check(hello)) << "no height";
     hello.mutable_rect()->set_height(10);
-    EXPECT_TRUE(Wall::check(hello));
+    EXPECT_TRUE(wall_.check(hello));
     hello.mutable_rect()->set_x(INT32_MAX);
-    EXPECT_FALSE(Wall::check(hello));
+    EXPECT_FALSE(wall_.check(hello));
+    hello.mutable_rect()->set_x(1280);
+    EXPECT_FALSE(wall_.check(hello)) << "beyond the canvas";
+    hello.mutable_rect()->set_x(1279);
+    EXPECT_TRUE(wall_.check(hello));
     hello.clear_rect();
     hello.set_version(wire::kProtocolVersion + 1);
-    EXPECT_FALSE(Wall::check(hello));
+    EXPECT_FALSE(wall_.check(hello));
 }
 
 TEST_F(TheWall, APlacementFollowsTheWindowUnlessItIsScaled) {
@@ -168,11 +180,11 @@ TEST_F(TheWall, APlacementFollowsTheWindowUnlessItIsScaled) {
     resize.set_surface(1);
     resize.set_width(400);
     resize.set_height(200);
-    wall_.resize_surface(id, resize, now_);
+    wall_.resize_surface(id, resize);
     EXPECT_EQ(last_to_client(id).placement().rect().width(), 400u);
     EXPECT_EQ(last_to_client(id).placement().layout_version(), 2u);
-    ASSERT_TRUE(wall_.place_surface({id, {}}, {10, 20, 100, 50}, now_));
-    wall_.resize_surface(id, resize, now_);
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {10, 20, 100, 50}));
+    wall_.resize_surface(id, resize);
     EXPECT_EQ(last_to_client(id).placement().rect().width(), 100u);
     EXPECT_EQ(last_to_client(id).placement().layout_version(), 4u) << "a resize is always answered";
 }
@@ -184,9 +196,127 @@ TEST_F(TheWall, ANodeShowsOnlyWhatLiesOnIt) {
     open_surface(id, 1, 300, 300);
     EXPECT_EQ(last_to_node(0).stacking().entries_size(), 1);
     EXPECT_EQ(last_to_node(1).stacking().entries_size(), 0);
-    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}, now_));
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}));
+    adopt(id, 1);
     EXPECT_EQ(last_to_node(0).stacking().entries_size(), 0) << "it has moved away";
     EXPECT_EQ(last_to_node(1).stacking().entries_size(), 1);
+}
+
+TEST_F(TheWall, AMovedWindowStaysInSightUntilItsFirstFrameAtTheNewPlaceIsPresented) {
+    join("left");
+    join("right");
+    const auto id = open();
+    open_surface(id, 1, 300, 300);
+    rendered(0, id, 1);
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}));
+    EXPECT_EQ(last_to_client(id).placement().rect().x(), 700);
+    const auto& place = wall_.find({id, SurfaceId(1)})->place;
+    EXPECT_TRUE(place.moving());
+    adopt(id, 3);
+    rendered(0, id, 2);
+    EXPECT_EQ(last_to_node(0).present().frame(), 2u) << "a frame of the old layout is the old nodes' business";
+    EXPECT_EQ(place.shown().x, 0);
+    out_.nodes.clear();
+    rendered(1, id, 3);
+    ASSERT_EQ(out_.nodes[0].size(), 1u);
+    EXPECT_EQ(out_.nodes[0][0].stacking().entries_size(), 0);
+    ASSERT_EQ(out_.nodes[1].size(), 2u);
+    EXPECT_EQ(out_.nodes[1][0].stacking().entries_size(), 1) << "stacked before it is shown";
+    EXPECT_EQ(out_.nodes[1][1].present().frame(), 3u);
+    EXPECT_FALSE(place.moving());
+}
+
+TEST_F(TheWall, TheFirstFrameAtANewPlaceWaitsForAllItsNodes) {
+    join("left");
+    join("right");
+    const auto id = open();
+    open_surface(id, 1, 300, 300);
+    rendered(0, id, 1);
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {500, 0, 300, 300}));
+    adopt(id, 2);
+    out_.nodes.clear();
+    rendered(0, id, 2);
+    EXPECT_TRUE(out_.nodes[0].empty()) << "the other half is not there yet";
+    rendered(1, id, 2);
+    EXPECT_EQ(last_to_node(0).present().frame(), 2u);
+    EXPECT_EQ(last_to_node(1).present().frame(), 2u);
+}
+
+TEST_F(TheWall, ALayoutVersionThatWasNeverGivenIsNotAdopted) {
+    join("left");
+    const auto id = open();
+    open_surface(id, 1, 300, 300);
+    proto::SurfaceAdopted message;
+    message.set_surface(1);
+    for (const std::uint32_t version : {0u, 1u, 2u, UINT32_MAX}) {
+        message.set_layout_version(version);
+        wall_.adopt_placement(id, message, now_);
+    }
+    message.set_surface(9);
+    wall_.adopt_placement(id, message, now_);
+    EXPECT_EQ(wall_.find({id, SurfaceId(1)})->place.shown(), (geom::Rect{0, 0, 300, 300}));
+}
+
+TEST_F(TheWall, APlacementThatCannotBeChangesNothing) {
+    join("left");
+    const auto id = open();
+    open_surface(id, 1, 300, 300);
+    const auto messages = out_.clients[id].size();
+    for (const geom::Rect rect : {geom::Rect{0, 0, 0, 10}, {0, 0, 10, -1}, {1280, 0, 10, 10}, {0, -10, 10, 10}, {-2000000000, 0, 10, 10}, {0, 0, 2000000000, 10}}) {
+        const auto placed = wall_.place_surface({id, {}}, rect);
+        ASSERT_FALSE(placed);
+        EXPECT_EQ(placed.error().kind, RefusalKind::invalid);
+    }
+    EXPECT_EQ(wall_.place_surface({SessionId(7), {}}, {0, 0, 10, 10}).error().kind, RefusalKind::not_found);
+    EXPECT_EQ(wall_.place_surface({id, SurfaceId(2)}, {0, 0, 10, 10}).error().kind, RefusalKind::not_found);
+    EXPECT_EQ(wall_.place_surface({open(), {}}, {0, 0, 10, 10}).error().kind, RefusalKind::conflict) << "no window yet";
+    EXPECT_EQ(out_.clients[id].size(), messages);
+    EXPECT_FALSE(wall_.find({id, SurfaceId(1)})->place.moving());
+}
+
+TEST_F(TheWall, TakesNoMoreSessionsThanItsLimit) {
+    join("left");
+    proto::ClientHello hello;
+    hello.set_version(wire::kProtocolVersion);
+    SessionId last;
+    while (wall_.check(hello)) last = open(hello);
+    EXPECT_EQ(wall_.sessions().size(), wall_.config().max_sessions);
+    const auto full = wall_.check(hello);
+    EXPECT_EQ(full.error().kind, RefusalKind::unavailable);
+    EXPECT_NE(full.error().message.find("'max_sessions'"), std::string::npos);
+    wall_.close_session(last);
+    EXPECT_TRUE(wall_.check(hello));
+}
+
+TEST_F(TheWall, ALayoutBringsWindowsBackAndWaitsForThoseThatAreMissing) {
+    join("left");
+    const auto named = [](const char* program, const char* name) {
+        proto::ClientHello hello;
+        hello.set_program(program);
+        hello.set_name(name);
+        return hello;
+    };
+    const auto gears = open(named("glxgears", "")), map = open(named("viewer", "map"));
+    open_surface(gears, 1, 100, 100);
+    open_surface(map, 1, 100, 100);
+    ASSERT_TRUE(wall_.place_surface({map, {}}, {600, 10, 200, 300}));
+    ASSERT_TRUE(wall_.lower({map, {}}));
+    const auto layout = wall_.current_layout();
+    ASSERT_EQ(layout.windows.size(), 2u);
+
+    ASSERT_TRUE(wall_.place_surface({map, {}}, {0, 0, 10, 10}));
+    ASSERT_TRUE(wall_.place_surface({gears, {}}, {0, 0, 10, 10}));
+    ASSERT_TRUE(wall_.raise({map, {}}));
+    wall_.close_session(gears);
+    EXPECT_EQ(wall_.load_layout(layout), 1u);
+    EXPECT_EQ(wall_.find({map, SurfaceId(1)})->place.wanted(), (geom::Rect{600, 10, 200, 300}));
+    const auto other = open(named("atlantis", ""));
+    open_surface(other, 1, 50, 50);
+    const auto again = open(named("glxgears", ""));
+    EXPECT_EQ(open_surface(again, 1, 120, 90), (geom::Rect{0, 0, 120, 90})) << "as large as its window, as it was then";
+    const auto position = [&](SessionId id) { return std::ranges::find(wall_.stacking(), SurfaceKey{id, SurfaceId(1)}) - wall_.stacking().begin(); };
+    EXPECT_LT(position(map), position(again));
+    EXPECT_EQ(open_surface(open(named("glxgears", "")), 1, 120, 90).x, 120) << "that place is taken";
 }
 
 TEST_F(TheWall, RefusesSurfacesThatCannotBe) {
@@ -264,7 +394,7 @@ TEST_F(TheWall, RaiseLowerAndHoldNeedARealSession) {
         EXPECT_FALSE(wall_.lower(wrong));
         EXPECT_FALSE(wall_.hold(wrong, true, now_));
         EXPECT_FALSE(wall_.step(wrong, 1, now_));
-        EXPECT_FALSE(wall_.place_surface(wrong, {0, 0, 1, 1}, now_));
+        EXPECT_FALSE(wall_.place_surface(wrong, {0, 0, 1, 1}));
     }
 }
 
