@@ -12,6 +12,8 @@ build=(
   libexpected-dev libspdlog-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libsystemd-dev
   libgtest-dev libgmock-dev libbenchmark-dev
+  liblz4-dev libzstd-dev             # frame codecs
+  libavcodec-dev libavutil-dev       # only benchmarks: FFmpeg's codecs beside ours
 )
 run=(
   libgl1 libegl1 libgl1-mesa-dri libglx-mesa0 libegl-mesa0 libosmesa6
@@ -20,6 +22,8 @@ run=(
 test=(
   clang-16 libclang-rt-16-dev        # fuzzers
   xscreensaver-gl-extra rss-glx glmark2-x11 apitrace apitrace-tracers
+  ffmpeg                             # decodes what our codecs write, and the other way round
+  xterm fonts-dejavu-core            # the text desktop of the codec benchmark
   libglu1-mesa-dev python3-numpy python3-opencv curl systemd
 )
 
