@@ -24,7 +24,6 @@ struct Output {
 /// Fills `count` residuals; false when the bits hold a code or run that cannot be.
 template <bool alpha>
 bool read_residuals(ByteBitReader& source, const DecodeTables& tables, Residuals& out, std::size_t count) {
-    using Kind = DecodeTables::Kind;
     ByteBitReader from = source;  // in registers
     std::fill_n(out.begin(), count, 0u);
     const auto symbol = [&](std::size_t code, bool& good) {
@@ -33,31 +32,25 @@ bool read_residuals(ByteBitReader& source, const DecodeTables& tables, Residuals
         good &= found.length > 0;
         return std::uint32_t{found.symbol};
     };
-    for (std::size_t at = 0; at < count;) {
+    std::size_t at = 0;
+    while (at < count) {
         from.refill();
-        const auto& found = tables.main[from.peek(kLongestCode)];
+        const auto found = tables.main[from.peek(kLongestCode)];
         from.skip(found.length);
-        if (found.kind == Kind::small) {
-            out[at++] = found.value;
-        } else if (found.kind == Kind::green) {
-            bool good = true;
-            const std::uint32_t green = found.value, blue = symbol(kBlue, good) + green, red = symbol(kRed, good) + green;
-            out[at] = (blue & 255) | green << 8 | (red & 255) << 16;
-            if constexpr (alpha) out[at] |= symbol(kAlpha, good) << 24;
-            if (!good) return false;
-            ++at;
-        } else if (found.kind == Kind::run) {
-            const std::size_t run = found.value + from.take(found.extra_bits);
-            if (run > count - at) return false;
-            at += run;
-        } else if (found.kind == Kind::rest) {
-            break;
-        } else {
-            return false;
+        if (found.advance > 0) {
+            out[at] = found.value;
+            at += found.advance + from.take(found.extra_bits);
+            continue;
         }
+        bool good = found.length > 0;
+        const std::uint32_t green = found.value, blue = symbol(kBlue, good) + green, red = symbol(kRed, good) + green;
+        out[at] = (blue & 255) | green << 8 | (red & 255) << 16;
+        if constexpr (alpha) out[at] |= symbol(kAlpha, good) << 24;
+        if (!good) return false;
+        ++at;
     }
     source = from;
-    return true;
+    return at == count || at >= DecodeTables::kToTheEnd;
 }
 
 void add_residuals(const Output& to, const Block& block, Mode mode, const Residuals& residuals) {

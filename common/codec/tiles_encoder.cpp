@@ -11,17 +11,32 @@ namespace wall::codec::tiles {
 namespace {
 
 constexpr std::uint32_t kProbeStep = 8;                  ///< rows; every eighth one is tried with each predictor
-constexpr std::size_t kMostBlockBytes = kBlockPixels * 6;  ///< four codes a pixel; runs take less
+constexpr std::size_t kMostBlockBytes = kBlockPixels * 6;   ///< four codes a pixel; runs take less
+constexpr std::size_t kMostBlockTokens = kBlockPixels * 2;  ///< whole pixels with alpha
 
 struct BlockPlan {
     std::uint8_t mode;
     std::size_t tokens_end;  ///< of the slice's tokens; they begin where the block before ends
 };
 
+/// A token is a symbol of the main code and its extra bits, or a whole pixel's residual; where the stream keeps alpha, a word
+/// with alpha's residual follows it.
+namespace token {
+constexpr std::uint32_t kPixel = 1u << 31;  ///< over the residual of three colours
+constexpr unsigned kSymbolBits = 9, kExtraShift = 16;
+static_assert(kMainSymbols <= 1u << kSymbolBits);
+
+constexpr std::uint32_t symbol(std::uint32_t symbol, std::uint32_t extra = 0, unsigned extra_bits = 0) {
+    return symbol | extra_bits << kSymbolBits | extra << kExtraShift;
+}
+constexpr std::uint32_t symbol_of(std::uint32_t token) { return token & ((1u << kSymbolBits) - 1); }
+constexpr unsigned extra_bits_of(std::uint32_t token) { return token >> kSymbolBits & 15; }
+}  // namespace token
+
 /// One slice's work, by one thread at a time.
 struct Slice {
     std::vector<BlockPlan> blocks;
-    std::vector<std::uint32_t> tokens;  ///< a residual (never zero), or zero and then a run of zero residuals
+    std::vector<std::uint32_t> tokens;  ///< see Token
     std::size_t tokens_used = 0;
     Counts counts;
     std::vector<std::byte> bytes;  ///< as in the packet
@@ -72,62 +87,57 @@ Mode choose_predictor(const Input& in, const Block& block) {
 /// Turns residuals into tokens and counts their symbols.
 class Tokenizer {
 public:
-    explicit Tokenizer(Slice& slice) : slice_(slice), at_(slice.tokens.data() + slice.tokens_used) {}
+    Tokenizer(Slice& slice, std::uint32_t mask) : slice_(slice), mask_(mask), at_(slice.tokens.data() + slice.tokens_used) {}
 
-    void add_row(const std::uint32_t* residual, std::uint32_t count, std::uint32_t mask) {
-        std::uint64_t rest = row_kernels().nonzero(residual, count, mask);
+    void add_row(const std::uint32_t* residual, std::uint32_t count) {
+        std::uint64_t rest = row_kernels().nonzero(residual, count, mask_);
         std::uint32_t next = 0;  // the first pixel that has no token yet
         while (rest != 0) {
             const auto at = static_cast<std::uint32_t>(std::countr_zero(rest));
             rest &= rest - 1;
             run_ += at - next;
             if (run_ > 0) end_run();
-            pixel(residual[at] & mask);
+            pixel(residual[at] & mask_);
             next = at + 1;
         }
         run_ += count - next;
     }
     /// Whether any pixel had alpha.
     bool end_block() {
-        if (run_ > 0) {
-            ++slice_.counts.main[kRest];
-            *at_++ = 0, *at_++ = 0;
-        }
+        if (run_ > 0) put_symbol(kRest);
         slice_.tokens_used = static_cast<std::size_t>(at_ - slice_.tokens.data());
         return (any_ >> 24) != 0;
     }
-    /// After end_block(): in blocks with alpha every whole pixel has a symbol of it.
+    /// After end_block(), for the tokens from `from` on: in blocks with alpha every whole pixel has a symbol of it.
     void count_alpha(std::size_t from) {
-        for (std::size_t i = from; i < slice_.tokens_used; ++i) {
-            const std::uint32_t token = slice_.tokens[i];
-            if (token == 0)
-                ++i;
-            else if (small_digits(token) >= 64)
-                ++slice_.counts.others[kAlpha - 1][token >> 24];
-        }
+        for (std::size_t i = from; i < slice_.tokens_used; ++i)
+            if (slice_.tokens[i] & token::kPixel) ++slice_.counts.others[kAlpha - 1][slice_.tokens[++i]];
     }
 
 private:
+    void put_symbol(std::size_t symbol, std::uint32_t extra = 0, unsigned extra_bits = 0) {
+        ++slice_.counts.main[symbol];
+        *at_++ = token::symbol(static_cast<std::uint32_t>(symbol), extra, extra_bits);
+    }
     void end_run() {
-        ++slice_.counts.main[kRuns + run_class(run_).symbol];
-        *at_++ = 0, *at_++ = run_;
+        const RunClass found = run_class(run_);
+        put_symbol(kRuns + found.symbol, found.extra, found.extra_bits);
         run_ = 0;
     }
     void pixel(std::uint32_t residual) {
-        *at_++ = residual;
-        any_ |= residual;
         const std::uint32_t digits = small_digits(residual);
+        if (digits < 64) return put_symbol(kSmall + digits);
+        any_ |= residual;
+        *at_++ = (residual & 0x00ffffff) | token::kPixel;
+        if (mask_ >> 24) *at_++ = residual >> 24;
         auto& counts = slice_.counts;
-        if (digits < 64) {
-            ++counts.main[kSmall + digits];
-            return;
-        }
         ++counts.main[residual >> 8 & 255];
         ++counts.others[kBlue - 1][residual & 255];
         ++counts.others[kRed - 1][residual >> 16 & 255];
     }
 
     Slice& slice_;
+    const std::uint32_t mask_;
     std::uint32_t* at_;
     std::uint32_t run_ = 0, any_ = 0;
 };
@@ -149,10 +159,10 @@ std::uint8_t plan_coded(const Input& in, const Block& block, Slice& slice) {
     const Mode mode = choose_predictor(in, block);
     const std::size_t begin = slice.tokens_used;
     std::array<std::uint32_t, kBlock> residual;
-    Tokenizer tokenizer(slice);
+    Tokenizer tokenizer(slice, in.mask());
     for (std::uint32_t y = 0; y < block.height; ++y) {
         residuals(in, block, y, mode, residual.data());
-        tokenizer.add_row(residual.data(), block.width, in.mask());
+        tokenizer.add_row(residual.data(), block.width);
     }
     if (!tokenizer.end_block()) return static_cast<std::uint8_t>(mode);
     tokenizer.count_alpha(begin);
@@ -176,31 +186,25 @@ void plan_slice(const Input& in, std::uint32_t number, Slice& slice) {
     }
 }
 
-template <bool alpha>
+/// `alpha_words`: every whole pixel's token has alpha's behind it; `alpha`: it is written.
+template <bool alpha_words, bool alpha>
 void write_tokens(std::span<const std::uint32_t> tokens, const std::array<EncodeTable, 4>& tables, ByteBitWriter& out) {
     ByteBitWriter to = out;  // in registers
     for (std::size_t i = 0; i < tokens.size(); ++i) {
-        const std::uint32_t token = tokens[i];
-        if (token == 0) {
-            const std::uint32_t run = tokens[++i];
-            const RunClass found = run > 0 ? run_class(run) : RunClass{static_cast<std::uint32_t>(kRest - kRuns), 0, 0};
-            const std::uint32_t code = tables[kMain][kRuns + found.symbol];
-            to.put(code >> 8 | std::uint64_t{found.extra} << (code & 63), (code & 63) + found.extra_bits);
+        const std::uint32_t now = tokens[i];
+        if (!(now & token::kPixel)) {
+            const std::uint32_t code = tables[kMain][token::symbol_of(now)];
+            to.put(code >> 8 | std::uint64_t{now >> token::kExtraShift} << (code & 63), (code & 63) + token::extra_bits_of(now));
             continue;
         }
-        const std::uint32_t digits = small_digits(token);
-        const std::uint32_t first = tables[kMain][digits < 64 ? kSmall + digits : token >> 8 & 255];
-        if (digits < 64) {
-            to.put(first >> 8, first & 63);
-            continue;
-        }
-        const std::uint32_t blue = tables[kBlue][token & 255], red = tables[kRed][token >> 16 & 255];
-        std::uint64_t bits = first >> 8 | std::uint64_t{blue >> 8} << (first & 63);
-        unsigned length = (first & 63) + (blue & 63);
+        const std::uint32_t green = tables[kMain][now >> 8 & 255], blue = tables[kBlue][now & 255], red = tables[kRed][now >> 16 & 255];
+        std::uint64_t bits = green >> 8 | std::uint64_t{blue >> 8} << (green & 63);
+        unsigned length = (green & 63) + (blue & 63);
         bits |= std::uint64_t{red >> 8} << length;
         length += red & 63;
+        if constexpr (alpha_words) ++i;
         if constexpr (alpha) {
-            const std::uint32_t last = tables[kAlpha][token >> 24];
+            const std::uint32_t last = tables[kAlpha][tokens[i]];
             bits |= std::uint64_t{last >> 8} << length;
             length += last & 63;
         }
@@ -234,7 +238,10 @@ void write_block(const Input& in, const Block& block, std::span<const std::uint3
     if (plan.mode < static_cast<std::uint8_t>(Mode::left)) return;
     const ByteBitWriter before = to;
     const bool alpha = has_alpha(plan.mode);
-    alpha ? write_tokens<true>(tokens, tables, to) : write_tokens<false>(tokens, tables, to);
+    if (!in.format.alpha)
+        write_tokens<false, false>(tokens, tables, to);
+    else
+        alpha ? write_tokens<true, true>(tokens, tables, to) : write_tokens<true, false>(tokens, tables, to);
     const std::size_t raw_bytes = std::size_t{block.width} * block.height * (alpha ? 4 : 3);
     if (static_cast<std::size_t>(to.at() - before.at()) <= raw_bytes) return;
     to = before;
@@ -278,7 +285,7 @@ class TilesEncoder final : public Encoder {
 public:
     TilesEncoder(const StreamFormat& format, ParallelFor parallel)
         : format_(format), parallel_(std::move(parallel)), previous_(format), slices_(slices_of(format)) {
-        for (auto& slice : slices_) slice.tokens.resize(std::size_t{blocks_across(format)} * (kBlockPixels * 3 / 2 + 4));
+        for (auto& slice : slices_) slice.tokens.resize(std::size_t{blocks_across(format)} * kMostBlockTokens);
     }
 
     Result<PacketKind> encode(const FrameView& frame, PacketKind want, std::vector<std::byte>& out) override {

@@ -41,13 +41,15 @@ std::array<EncodeTable, 4> encode_tables(const Lengths& lengths);
 
 /// For the decoder, by the next kLongestCode bits.
 struct DecodeTables {
-    enum class Kind : std::uint8_t { none, small, green, run, rest };
+    /// Symbols but green are all done alike: the value is a pixel's residual, then `advance` and what the extra bits say more
+    /// pixels follow it that are zero.
     struct Main {
-        std::uint32_t value;      ///< the small residual (not decorrelated any more), green, or the least run
-        std::uint8_t length;
-        Kind kind;
-        std::uint8_t extra_bits;  ///< of a run
+        std::uint32_t value;    ///< the small residual (not decorrelated any more), 0 for runs; or green
+        std::uint16_t advance;  ///< pixels; 0 for green, and for bits that are no code
+        std::uint8_t length;    ///< 0: no such code
+        std::uint8_t extra_bits;
     };
+    static constexpr std::uint16_t kToTheEnd = 1u << 15;  ///< advance of the symbol kRest
     struct Other {
         std::uint8_t symbol;
         std::uint8_t length;  ///< 0: no such code
