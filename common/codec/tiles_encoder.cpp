@@ -23,7 +23,7 @@ struct BlockPlan {
 /// with alpha's residual follows it.
 namespace token {
 constexpr std::uint32_t kPixel = 1u << 31;  ///< over the residual of three colours
-constexpr unsigned kSymbolBits = 9, kExtraShift = 16;
+constexpr unsigned kSymbolBits = 10, kExtraShift = 16;
 static_assert(kMainSymbols <= 1u << kSymbolBits);
 
 constexpr std::uint32_t symbol(std::uint32_t symbol, std::uint32_t extra = 0, unsigned extra_bits = 0) {
@@ -127,6 +127,7 @@ private:
     void pixel(std::uint32_t residual) {
         const std::uint32_t digits = small_digits(residual);
         if (digits < 64) return put_symbol(kSmall + digits);
+        if ((residual & 0xffff00ff) == 0) return put_symbol(kGrey + (residual >> 8));
         any_ |= residual;
         *at_++ = (residual & 0x00ffffff) | token::kPixel;
         if (mask_ >> 24) *at_++ = residual >> 24;

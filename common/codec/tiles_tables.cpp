@@ -10,9 +10,9 @@ namespace {
 
 // Lengths are written in nibbles: a length, or one of these and how often.
 constexpr unsigned kNibble = 4;
-constexpr std::uint32_t kRepeat = 12;     ///< nibble n: the length before, 3 + n times
-constexpr std::uint32_t kZeros = 13;      ///< nibble n: length 0, 3 + n times
-constexpr std::uint32_t kManyZeros = 14;  ///< two nibbles n: length 0, 19 + n times
+constexpr std::uint32_t kRepeat = 13;     ///< nibble n: the length before, 3 + n times
+constexpr std::uint32_t kZeros = 14;      ///< nibble n: length 0, 3 + n times
+constexpr std::uint32_t kManyZeros = 15;  ///< two nibbles n: length 0, 19 + n times
 constexpr std::size_t kLeastRun = 3, kLeastManyZeros = 19;
 static_assert(kLongestCode < kRepeat);
 
@@ -56,7 +56,6 @@ Result<void> read_code(std::span<std::uint8_t> lengths, ByteBitReader& from) {
             lengths[at++] = static_cast<std::uint8_t>(head);
             continue;
         }
-        if (head > kManyZeros) return fail("has an unknown nibble 15 at symbol " + std::to_string(at));
         if (head == kRepeat && at == 0) return fail("repeats a length before the first one");
         const std::size_t run = head == kManyZeros ? kLeastManyZeros + from.take(2 * kNibble) : kLeastRun + from.take(kNibble);
         if (run > lengths.size() - at) return fail("has a run of " + std::to_string(run) + " at symbol " + std::to_string(at) + "; at most " + std::to_string(lengths.size() - at) + " fit");
@@ -70,6 +69,7 @@ Result<void> read_code(std::span<std::uint8_t> lengths, ByteBitReader& from) {
 DecodeTables::Main main_entry(std::uint32_t symbol, std::uint8_t length) {
     if (symbol < kSmall) return {symbol, 0, length, 0};
     if (symbol == kRest) return {0, DecodeTables::kToTheEnd, length, 0};
+    if (symbol >= kGrey && symbol < kRuns) return {(symbol - static_cast<std::uint32_t>(kGrey)) * 0x010101, 1, length, 0};
     if (symbol < kRuns) {
         const auto digit = [&](unsigned shift) { return ((symbol - kSmall) >> shift & 3) - 1; };
         const std::uint32_t blue = digit(0), green = digit(2), red = digit(4);

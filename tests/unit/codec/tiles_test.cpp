@@ -104,7 +104,9 @@ TEST(Tiles, SaysWhatIsWrongAndWhere) {
     EXPECT_THAT(reason({kKey, 0, 0}), HasSubstr("slice 0 is empty in a key packet"));
     EXPECT_THAT(reason({kKey, 1, 1, 0x31, 0x31}), HasSubstr("slice 0 has other modes than its 2 blocks want"));
     EXPECT_THAT(reason({kKey | kTables}), HasSubstr("ends in the tables"));
-    EXPECT_THAT(reason({kKey | kTables, 0xff}), HasSubstr("the main code has an unknown nibble 15 at symbol 0"));
+    EXPECT_THAT(reason({kKey | kTables, 0x0d}), HasSubstr("the main code repeats a length before the first one"));
+    EXPECT_THAT(reason({kKey | kTables, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff}), HasSubstr("the main code has a run of 274 at symbol 548; at most 61 fit"));
+    EXPECT_THAT(reason({kKey | kTables, 0x11, 0xf1, 0xff, 0xff, 0xff, 0x27, 0xdf, 0xfe, 0xed, 0xdf, 0x0e}), HasSubstr("the main code: code lengths are over-full"));
 }
 
 TEST(TilesTables, LengthsComeBack) {
