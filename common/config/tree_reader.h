@@ -15,9 +15,9 @@
 #include <toml++/toml.h>
 
 #include "common/base/result.h"
+#include "common/config/toml_guard.h"
 #include "common/geom/rect.h"
 #include "common/net/address.h"
-#include "common/config/toml_guard.h"
 #include "common/wire/limits.h"
 
 namespace wall::config {

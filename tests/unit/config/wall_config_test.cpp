@@ -54,6 +54,17 @@ name = "big"
 rect = [660, 0, 1280, 980]
 )";
 
+TEST(WallConfig, KeepsNamesBeyondAscii) {
+    std::string text = kGood;
+    text.replace(text.find("lab"), 3, "M\u00fcller \u4e2d");
+    const auto config = parse_config(text, "wall.toml");
+    ASSERT_TRUE(config) << config.error().message;
+    EXPECT_EQ(config->name, "M\u00fcller \u4e2d");
+    text.replace(text.find("background"), 10, "h\u00f6he");
+    text.replace(text.find("h\u00f6he"), 6, "\"h\u00f6he\"");
+    EXPECT_THAT(parse_config(text, "wall.toml").error().message, HasSubstr("unknown key 'h\u00f6he'"));
+}
+
 TEST(WallConfig, ReadsEverything) {
     const auto config = parse_config(kGood, "wall.toml");
     ASSERT_TRUE(config) << config.error().message;
@@ -138,7 +149,8 @@ INSTANTIATE_TEST_SUITE_P(
     Cases, WrongConfig,
     ::testing::Values(
         Wrong{"syntax", "name = \"lab\"", "name = ", "wall.toml:3: ", "not TOML"},
-        Wrong{"stray_character", "name = \"lab\"", "n\u00e4me = \"lab\"", "wall.toml:3: ", "a character beyond ASCII"},
+        Wrong{"stray_character", "name = \"lab\"", "n\u00e4me = \"lab\"", "wall.toml:3: ", "not TOML"},
+        Wrong{"stray_character_after_a_quote_in_a_number", "name = \"lab\"", "name = 1'''\u0422", "wall.toml:3: ", "not TOML"},
         Wrong{"unknown_section", "[http]", "[htpp]", "wall.toml:14: ", "expected one of wall, control, http, people, node"},
         Wrong{"unknown_key", "swap_timeout_ms", "swap_timeout", "wall.toml:5: ", "expected one of name, background, swap_timeout_ms, close_timeout_ms, max_sessions, state_directory"},
         Wrong{"name_type", "\"lab\"", "7", "wall.toml:3: ", "'name': expected a string"},
