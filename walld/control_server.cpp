@@ -28,7 +28,7 @@ std::string random_bytes(std::size_t count) {
 }  // namespace
 
 ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities, const std::string& state)
-    : executor_(executor), changed_(executor), identities_(std::move(identities)), wall_(std::move(config), *this, random_bytes), snapshots_(executor, wall_, *this),
+    : executor_(executor), changed_(executor), identities_(std::move(identities)), wall_(std::move(config), *this, random_bytes), snapshots_(executor, wall_, *this), streams_(executor, wall_, *this),
       operators_(wall_, snapshots_, LayoutStore(state), changed_, [this](SessionId id) { if (const auto found = clients_.find(id); found != clients_.end()) refuse(found->second, "closed by an operator"); }),
       deadline_timer_(executor), process_timer_(executor) {}
 
@@ -138,6 +138,7 @@ asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::No
         co_return;
     }
     spdlog::info("node_up node={} incarnation={} address={} backend={} renderer=\"{}\"", hello.name(), known->incarnation, hello.address(), hello.backend(), hello.caps().renderer());
+    streams_.node_joined(*joined);
     something_changed();
     std::string reason;
     while (reason.empty()) {
@@ -150,6 +151,7 @@ asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::No
     connection->close();
     wall_.node_leaves(*joined, Clock::now());
     snapshots_.node_left(*joined);
+    streams_.node_left(*joined);
     spdlog::info("node_down node={} reason=\"{}\"", hello.name(), reason);
     something_changed();
 }
@@ -159,6 +161,8 @@ Result<void> ControlServer::node_says(NodeIndex node, proto::Envelope& message) 
         wall_.node_rendered(node, message.rendered(), Clock::now());
     } else if (message.has_snapshot()) {
         snapshots_.arrived(node, *message.mutable_snapshot());
+    } else if (message.has_stream_frame()) {
+        streams_.arrived(node, *message.mutable_stream_frame());
     } else if (message.has_node_stats()) {
         wall_.node_reports(node, message.node_stats());
     } else if (message.has_session_fault()) {

@@ -12,6 +12,7 @@
 #include "walld/identity.h"
 #include "walld/operator_desk.h"
 #include "walld/snapshot_desk.h"
+#include "walld/stream_hub.h"
 #include "walld/wall.h"
 
 namespace wall::walld {
@@ -33,6 +34,7 @@ public:
     const Wall& wall() const { return wall_; }
     const Identities& identities() const { return identities_; }
     OperatorDesk& operators() { return operators_; }
+    StreamHub& streams() { return streams_; }
     std::vector<net::Address> addresses() const;
 
     void to_node(NodeIndex node, const proto::Envelope& message) override;
@@ -63,6 +65,7 @@ private:
     Identities identities_;
     Wall wall_;
     SnapshotDesk snapshots_;
+    StreamHub streams_;
     OperatorDesk operators_;
     std::vector<std::unique_ptr<net::Listener>> listeners_;
     std::map<NodeIndex, Connection> nodes_;

@@ -7,12 +7,14 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
 #include <nlohmann/json.hpp>
 
 #include "common/net/sockets.h"
 #include "gen/walld/page.gen.h"
 #include "walld/rest.h"
 #include "walld/status.h"
+#include "walld/stream_session.h"
 
 namespace wall::walld {
 namespace {
@@ -23,6 +25,7 @@ constexpr std::uint32_t kMaxHeader = 8 << 10, kMaxBody = 64 << 10;  // bytes
 
 constexpr const char* kJson = "application/json";
 constexpr const char* kVia = "http";
+constexpr std::string_view kStreamPath = "/api/v1/stream";
 
 http::response<http::string_body> reply(unsigned version, http::status status, const char* type, std::string body) {
     http::response<http::string_body> out(status, version);
@@ -114,7 +117,10 @@ asio::awaitable<void> HttpServer::accept() {
             co_await pause.async_wait(kTuple);
             continue;
         }
-        if (open_.size() >= kMaxConnections) continue;
+        if (open_.size() >= kMaxConnections) {
+            spdlog::warn("http_full connections={}", open_.size());
+            continue;
+        }
         auto socket = std::make_shared<Socket>(std::move(accepted));
         open_[socket.get()] = socket;
         spawn(acceptor_.get_executor(), "http", serve(std::move(socket)));
@@ -140,6 +146,10 @@ asio::awaitable<void> HttpServer::serve(std::shared_ptr<Socket> socket) {
         auto [read_error, read] = co_await http::async_read(*socket, buffer, parser, kTuple);
         if (read_error) break;
         idle.cancel();  // a program that is asked to close may take its time
+        if (boost::beast::websocket::is_upgrade(parser.get()) && path_of(parser.get()) == kStreamPath && !no_viewer(parser.get(), peer)) {
+            co_await serve_viewer(socket, parser.release(), streams_);
+            break;
+        }
         auto response = co_await answer(parser.get(), peer);
         response.keep_alive(parser.get().keep_alive());
         response.prepare_payload();
@@ -156,6 +166,7 @@ asio::awaitable<void> HttpServer::serve(std::shared_ptr<Socket> socket) {
 
 asio::awaitable<HttpServer::Response> HttpServer::answer(const Request& request, const std::optional<net::Peer>& peer) {
     auto next = local_page(request);
+    if (!next && path_of(request) == kStreamPath) next = no_viewer(request, peer);
     if (next) co_return std::move(*next);
     auto asked = read(request, peer);
     if (!asked) co_return std::move(asked.error());
@@ -174,6 +185,19 @@ std::optional<HttpServer::Response> HttpServer::local_page(const Request& reques
     if (path_of(request) != "/healthz") return std::nullopt;
     const bool well = wall_.any_node_up();
     return reply(version, well ? http::status::ok : http::status::service_unavailable, "text/plain", well ? "ok\n" : "no node is up\n");
+}
+
+/// Why this is nobody who may watch, if so.
+std::optional<HttpServer::Response> HttpServer::no_viewer(const Request& request, const std::optional<net::Peer>& peer) const {
+    const auto version = request.version();
+    if (!host_ok(view(request[http::field::host]))) return local_page(request);
+    if (!boost::beast::websocket::is_upgrade(request)) return reply(version, http::status::upgrade_required, "text/plain", "expected a WebSocket (docs/streams.md)\n");
+    const auto who = identities_.over_http(peer, view(request[http::field::authorization]));
+    if (!who) return refusal(version, 401, who.error());
+    if (const auto permitted = may(*who, Need::look, "watch the wall", nullptr); !permitted) return refusal(version, http_status(permitted.error().kind), permitted.error());
+    const auto origin = view(request[http::field::origin]);
+    if (!origin.empty() && origin != "http://" + std::string(view(request[http::field::host]))) return refusal(version, 403, {RefusalKind::forbidden, "a page of another site may not watch this wall"});
+    return std::nullopt;
 }
 
 /// What is asked of the desk, or the answer if nothing is.

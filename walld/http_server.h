@@ -12,6 +12,7 @@
 #include "walld/changed.h"
 #include "walld/identity.h"
 #include "walld/operator_desk.h"
+#include "walld/stream_hub.h"
 #include "walld/wall.h"
 
 namespace wall::walld {
@@ -19,10 +20,10 @@ namespace wall::walld {
 class HttpServer {
 public:
     static constexpr std::chrono::seconds kIdleLimit{30};
-    static constexpr std::size_t kMaxConnections = 64;
+    static constexpr std::size_t kMaxConnections = 256;
 
-    HttpServer(asio::any_io_executor executor, const Wall& wall, const Identities& identities, OperatorDesk& desk)
-        : acceptor_(executor), wall_(wall), identities_(identities), desk_(desk) {}
+    HttpServer(asio::any_io_executor executor, const Wall& wall, const Identities& identities, OperatorDesk& desk, StreamHub& streams)
+        : acceptor_(executor), wall_(wall), identities_(identities), desk_(desk), streams_(streams) {}
 
     Result<void> listen(const net::Address& address);
     void stop();
@@ -38,12 +39,14 @@ private:
     asio::awaitable<void> serve(std::shared_ptr<Socket> socket);
     asio::awaitable<Response> answer(const Request& request, const std::optional<net::Peer>& peer);
     std::optional<Response> local_page(const Request& request) const;
+    std::optional<Response> no_viewer(const Request& request, const std::optional<net::Peer>& peer) const;
     tl::expected<Asked, Response> read(const Request& request, const std::optional<net::Peer>& peer) const;
 
     asio::ip::tcp::acceptor acceptor_;
     const Wall& wall_;
     const Identities& identities_;
     OperatorDesk& desk_;
+    StreamHub& streams_;
     net::Address address_;
     std::map<Socket*, std::weak_ptr<Socket>> open_;
 };

@@ -38,6 +38,13 @@ geom::Rect rect_of(const proto::Rect& rect) {
     return {rect.x(), rect.y(), static_cast<std::int32_t>(rect.width()), static_cast<std::int32_t>(rect.height())};
 }
 
+std::string to_rgb(std::span<const std::byte> rgba) {
+    std::string rgb(rgba.size() / 4 * 3, '\0');
+    char* to = rgb.data();
+    for (const std::byte* from = rgba.data(); from != rgba.data() + rgba.size(); from += 4, to += 3) std::memcpy(to, from, 3);
+    return rgb;
+}
+
 /// Two 32-bit values as a payload.
 std::array<std::byte, 8> words(std::uint32_t first, std::uint32_t second) {
     std::array<std::byte, 8> bytes{};
@@ -49,7 +56,7 @@ std::array<std::byte, 8> words(std::uint32_t first, std::uint32_t second) {
 }  // namespace
 
 NodeServer::NodeServer(asio::any_io_executor executor, net::Address walld, std::string name)
-    : executor_(executor), walld_(std::move(walld)), name_(std::move(name)), retry_(executor) {}
+    : executor_(executor), walld_(std::move(walld)), name_(std::move(name)), retry_(executor), tile_streams_(executor, [this](const proto::Envelope& envelope) { to_walld(envelope); }) {}
 
 NodeServer::~NodeServer() = default;
 
@@ -121,6 +128,7 @@ asio::awaitable<void> NodeServer::keep_link() {
             link_ = *link;
             co_await use_link(*link);
             link_.reset();
+            tile_streams_.stop_all(*render_);
             render_->set_coordinated(false);
         } else if (!std::exchange(said_unreachable_, true)) {
             spdlog::warn("walld_unreachable address={} error=\"{}\"", walld_.text(), link.error().message);
@@ -174,8 +182,14 @@ void NodeServer::handle(const proto::Envelope& envelope) {
         }
         case Case::kSnapshotRequest: {
             const auto& request = envelope.snapshot_request();
-            return render_->request_picture(request.request(), request.slot(), SessionId(request.session()));
+            return render_->request_picture({request.request(), false, request.slot(), SessionId(request.session())});
         }
+        case Case::kStreamStart:
+            return tile_streams_.start(*render_, envelope.stream_start());
+        case Case::kStreamStop:
+            return tile_streams_.stop(*render_, envelope.stream_stop().stream());
+        case Case::kStreamReady:
+            return tile_streams_.ready(*render_, envelope.stream_ready());
         case Case::kRefused:
             spdlog::error("walld_refused reason=\"{}\"", envelope.refused().reason());
             return;
@@ -231,12 +245,13 @@ void NodeServer::failed(StreamId id, SessionId session, std::string reason) {
 
 void NodeServer::picture(Picture picture) {
     post([this, picture = std::move(picture)]() mutable {
+        if (picture.request.stream) return tile_streams_.picture(std::move(picture));
         proto::Envelope envelope;
         auto& snapshot = *envelope.mutable_snapshot();
-        snapshot.set_request(picture.request);
+        snapshot.set_request(picture.request.id);
         snapshot.set_width(picture.width);
         snapshot.set_height(picture.height);
-        snapshot.set_rgb(std::move(picture.rgb));
+        snapshot.set_rgb(to_rgb(picture.rgba));
         snapshot.set_error(picture.error);
         to_walld(envelope);
     });

@@ -14,6 +14,7 @@
 #include "common/config/wall_config.h"
 #include "common/net/control_connection.h"
 #include "tileserver/io/data_stream.h"
+#include "tileserver/io/tile_streams.h"
 #include "tileserver/render/render_thread.h"
 
 namespace wall::tileserver {
@@ -71,6 +72,7 @@ private:
     std::uint32_t last_stream_ = 0;
     std::uint64_t bytes_received_ = 0;
     std::chrono::steady_clock::time_point last_stats_ = std::chrono::steady_clock::now();
+    TileStreams tile_streams_;
     std::unique_ptr<RenderThread> render_;  // last: it is gone before what it reports to
 };
 

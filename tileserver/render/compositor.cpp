@@ -6,15 +6,9 @@
 namespace wall::tileserver {
 namespace {
 
-std::string to_rgb(const std::uint8_t* rgba, std::size_t pixels) {
-    std::string rgb(pixels * 3, '\0');
-    char* to = rgb.data();
-    for (std::size_t i = 0; i < pixels; ++i, to += 3, rgba += 4) {
-        to[0] = static_cast<char>(rgba[0]);
-        to[1] = static_cast<char>(rgba[1]);
-        to[2] = static_cast<char>(rgba[2]);
-    }
-    return rgb;
+std::uint32_t at_most(std::uint32_t wanted, std::int32_t limit) {
+    const auto most = static_cast<std::uint32_t>(limit);
+    return wanted == 0 ? most : std::min(wanted, most);
 }
 
 }  // namespace
@@ -43,22 +37,40 @@ const Tile* Compositor::tile(std::uint32_t slot) const {
     return at == node_.tiles.end() ? nullptr : &*at;
 }
 
-void Compositor::release(TileTarget& target) {
+void Compositor::release(TileTarget& target) const {
     gl_.DeleteFramebuffers(1, &target.framebuffer);
     gl_.DeleteTextures(1, &target.texture);
     target = TileTarget{};
+}
+
+Compositor::TileTarget Compositor::make_target(const geom::Rect& rect) const {
+    TileTarget target;
+    target.rect = rect;
+    gl_.CreateTextures(GL_TEXTURE_2D, 1, &target.texture);
+    gl_.TextureStorage2D(target.texture, 1, GL_RGBA8, rect.width, rect.height);
+    gl_.CreateFramebuffers(1, &target.framebuffer);
+    gl_.NamedFramebufferTexture(target.framebuffer, GL_COLOR_ATTACHMENT0, target.texture, 0);
+    return target;
 }
 
 Compositor::TileTarget& Compositor::target(const Tile& tile) {
     TileTarget& target = targets_[tile.slot];
     if (target.texture != 0 && target.rect == tile.rect) return target;
     release(target);
-    target.rect = tile.rect;
-    gl_.CreateTextures(GL_TEXTURE_2D, 1, &target.texture);
-    gl_.TextureStorage2D(target.texture, 1, GL_RGBA8, tile.rect.width, tile.rect.height);
-    gl_.CreateFramebuffers(1, &target.framebuffer);
-    gl_.NamedFramebufferTexture(target.framebuffer, GL_COLOR_ATTACHMENT0, target.texture, 0);
-    return target;
+    return target = make_target(tile.rect);
+}
+
+/// Halved until one linear step is left, so that every pixel counts.
+Compositor::TileTarget Compositor::scaled(const TileTarget& picture, std::int32_t width, std::int32_t height) const {
+    TileTarget from = picture;
+    while (from.rect.width != width || from.rect.height != height) {
+        const geom::Rect size{0, 0, std::max(width, (from.rect.width + 1) / 2), std::max(height, (from.rect.height + 1) / 2)};
+        TileTarget to = make_target(size);
+        gl_.BlitNamedFramebuffer(from.framebuffer, to.framebuffer, 0, 0, from.rect.width, from.rect.height, 0, 0, size.width, size.height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+        if (from.texture != picture.texture) release(from);
+        from = to;
+    }
+    return from;
 }
 
 void Compositor::compose(TileTarget& target, std::uint32_t slot, SessionId only) {
@@ -86,22 +98,31 @@ void Compositor::draw_layer(const TileTarget& target, const Layer& layer) {
     gl_.NamedFramebufferTexture(source_, GL_COLOR_ATTACHMENT0, 0, 0);
 }
 
-void Compositor::request(std::uint32_t request, std::uint32_t slot, SessionId session) {
-    const Tile* wanted = tile(slot);
+void Compositor::request(const PictureRequest& request) {
+    const Tile* wanted = tile(request.slot);
     if (wanted == nullptr) {
-        refused_.push_back({request, 0, 0, {}, "this node has no tile in slot " + std::to_string(slot)});
+        refused_.push_back({request, 0, 0, {}, "this node has no tile in slot " + std::to_string(request.slot)});
         return;
     }
     TileTarget& picture = target(*wanted);
-    compose(picture, slot, session);
-    Readback readback{request, {0, 0, picture.rect.width, picture.rect.height}, 0, nullptr};
+    compose(picture, request.slot, request.session);
+    node_.driver.disable_scissor();
+    const auto width = static_cast<std::int32_t>(at_most(request.width, picture.rect.width));
+    const auto height = static_cast<std::int32_t>(at_most(request.height, picture.rect.height));
+    TileTarget small = scaled(picture, width, height);
+    read_back(request, small);
+    if (small.texture != picture.texture) release(small);
+}
+
+void Compositor::read_back(const PictureRequest& request, const TileTarget& from) {
+    Readback readback{request, static_cast<std::uint32_t>(from.rect.width), static_cast<std::uint32_t>(from.rect.height), 0, nullptr};
     node_.driver.neutral_pixel_transfer();
     node_.driver.forget_layer();
     gl_.CreateBuffers(1, &readback.buffer);
-    gl_.NamedBufferStorage(readback.buffer, GLsizeiptr{4} * picture.rect.width * picture.rect.height, nullptr, GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
-    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, picture.framebuffer);
+    gl_.NamedBufferStorage(readback.buffer, GLsizeiptr{4} * from.rect.width * from.rect.height, nullptr, GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, from.framebuffer);
     gl_.BindBuffer(GL_PIXEL_PACK_BUFFER, readback.buffer);
-    gl_.ReadPixels(0, 0, picture.rect.width, picture.rect.height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    gl_.ReadPixels(0, 0, from.rect.width, from.rect.height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     gl_.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     readback.done = gl_.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl_.Flush();
@@ -109,11 +130,11 @@ void Compositor::request(std::uint32_t request, std::uint32_t slot, SessionId se
 }
 
 Picture Compositor::finish(const Readback& readback) {
-    Picture picture{readback.request, static_cast<std::uint32_t>(readback.size.width), static_cast<std::uint32_t>(readback.size.height), {}, {}};
-    const std::size_t pixels = std::size_t{picture.width} * picture.height;
-    const auto* rgba = static_cast<const std::uint8_t*>(gl_.MapNamedBufferRange(readback.buffer, 0, static_cast<GLsizeiptr>(pixels * 4), GL_MAP_READ_BIT));
+    Picture picture{readback.request, readback.width, readback.height, {}, {}};
+    const std::size_t bytes = std::size_t{4} * picture.width * picture.height;
+    const auto* rgba = static_cast<const std::byte*>(gl_.MapNamedBufferRange(readback.buffer, 0, static_cast<GLsizeiptr>(bytes), GL_MAP_READ_BIT));
     if (rgba != nullptr)
-        picture.rgb = to_rgb(rgba, pixels);
+        picture.rgba.assign(rgba, rgba + bytes);
     else
         picture.error = "the driver did not give the pixels";
     gl_.UnmapNamedBuffer(readback.buffer);

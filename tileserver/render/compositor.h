@@ -21,11 +21,19 @@ struct StackEntry {
     SurfaceId surface;
 };
 
+struct PictureRequest {
+    std::uint32_t id = 0;                ///< of the request, or of the stream
+    bool stream = false;
+    std::uint32_t slot = 0;
+    SessionId session;                   ///< only its layers; none: all
+    std::uint32_t width = 0, height = 0; ///< 0: the tile's; never more than that
+};
+
 struct Picture {
-    std::uint32_t request = 0;
+    PictureRequest request;
     std::uint32_t width = 0, height = 0;
-    std::string rgb;    ///< top row first, 3 bytes a pixel, no padding
-    std::string error;  ///< set: there is no picture
+    std::vector<std::byte> rgba;  ///< top row first, 4 bytes a pixel, no padding
+    std::string error;            ///< set: there is no picture
 };
 
 class Compositor {
@@ -38,8 +46,8 @@ public:
 
     void set_background(std::uint32_t rgb);
     void set_stacking(std::vector<StackEntry> bottom_first);
-    /// Starts reading a tile; collect() gives the picture later. `session`: only its layers; none: all.
-    void request(std::uint32_t request, std::uint32_t slot, SessionId session);
+    /// Starts reading a tile; collect() gives the picture later.
+    void request(const PictureRequest& request);
     /// The pictures that have arrived. `wait`: all that were requested.
     std::vector<Picture> collect(bool wait);
     bool busy() const { return !readbacks_.empty() || !refused_.empty(); }
@@ -52,8 +60,8 @@ private:
         SessionId only;               // of one session only
     };
     struct Readback {
-        std::uint32_t request = 0;
-        geom::Rect size;
+        PictureRequest request;
+        std::uint32_t width = 0, height = 0;
         GLuint buffer = 0;
         GLsync done = nullptr;
     };
@@ -61,7 +69,10 @@ private:
     TileTarget& target(const Tile& tile);
     void compose(TileTarget& target, std::uint32_t slot, SessionId only);
     void draw_layer(const TileTarget& target, const Layer& layer);
-    void release(TileTarget& target);
+    TileTarget make_target(const geom::Rect& rect) const;
+    TileTarget scaled(const TileTarget& picture, std::int32_t width, std::int32_t height) const;
+    void release(TileTarget& target) const;
+    void read_back(const PictureRequest& request, const TileTarget& from);
     Picture finish(const Readback& readback);
 
     RenderNode& node_;

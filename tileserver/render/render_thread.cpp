@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/render/render_thread.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <future>
@@ -9,6 +10,7 @@
 
 #include "common/wire/batch.h"
 #include "tileserver/gpu/backend.h"
+#include "tileserver/render/tile_watches.h"
 
 namespace wall::tileserver {
 namespace {
@@ -97,17 +99,22 @@ public:
             node_.damage += entry.second->failed() ? 1 : 0;
             return entry.second->failed();
         });
+        for (const PictureRequest& due : watches_.due(node_.damage, Clock::now())) compositor_.request(due);
         for (Picture& picture : compositor_.collect(false)) events_.picture(std::move(picture));
         report();
         return worked;
     }
     /// How long it may sleep when there is nothing to do.
-    Clock::duration nap() const { return compositor_.busy() ? Clock::duration(kReadbackPoll) : Clock::duration(100ms); }
+    Clock::duration nap() const {
+        if (compositor_.busy()) return kReadbackPoll;
+        return std::min<Clock::duration>(100ms, watches_.next_due(node_.damage, Clock::now()));
+    }
 
     NodeEvents& events_;
     Driver driver_;
     RenderNode node_;
     Compositor compositor_;
+    TileWatches watches_;
     std::map<StreamId, std::unique_ptr<Stream>> streams_;  // after what their sessions use to the end
 
 private:
@@ -225,8 +232,17 @@ void RenderThread::set_coordinated(bool coordinated) {
                 if (surface->waiting_frame()) stream->executor().present(surface_id, *surface->waiting_frame());
     });
 }
-void RenderThread::request_picture(std::uint32_t request, std::uint32_t slot, SessionId session) {
-    post([=](Loop& loop) { loop.compositor_.request(request, slot, session); });
+void RenderThread::request_picture(const PictureRequest& request) {
+    post([=](Loop& loop) { loop.compositor_.request(request); });
+}
+void RenderThread::watch(const PictureRequest& request, std::chrono::microseconds interval) {
+    post([=](Loop& loop) { loop.watches_.add(request, interval); });
+}
+void RenderThread::unwatch(std::uint32_t stream) {
+    post([=](Loop& loop) { loop.watches_.remove(stream); });
+}
+void RenderThread::ready(std::uint32_t stream, bool even_unchanged) {
+    post([=](Loop& loop) { loop.watches_.ready(stream, even_unchanged); });
 }
 
 }  // namespace wall::tileserver

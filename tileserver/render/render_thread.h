@@ -4,6 +4,7 @@
 // next frame's end, while the others go on.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -61,7 +62,11 @@ public:
     void present(SessionId session, SurfaceId surface, std::uint32_t frame);
     /// Whether somebody will say present(); if not, frames show when they are done.
     void set_coordinated(bool coordinated);
-    void request_picture(std::uint32_t request, std::uint32_t slot, SessionId session);
+    void request_picture(const PictureRequest& request);
+    /// Pictures of a tile whenever it has changed and somebody is ready for one (TileWatch).
+    void watch(const PictureRequest& request, std::chrono::microseconds interval);
+    void unwatch(std::uint32_t stream);
+    void ready(std::uint32_t stream, bool even_unchanged);
     /// A queue has got a batch.
     void wake();
 

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Encodes the pictures of watched tiles on a thread of its own, which gives way to rendering. I/O thread; the encoders
+// belong to the pool, and at most one picture of a stream is there at a time.
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <functional>
+#include <map>
+#include <memory>
+
+#include "proto/control.pb.h"
+#include "tileserver/render/render_thread.h"
+
+namespace wall::tileserver {
+
+namespace asio = boost::asio;
+
+class TileStreams {
+public:
+    /// `send`: to walld; called on the executor.
+    TileStreams(asio::any_io_executor executor, std::function<void(const proto::Envelope&)> send) : executor_(std::move(executor)), send_(std::move(send)) {}
+    /// Waits for the pictures that are being encoded.
+    ~TileStreams() { pool_.join(); }
+
+    void start(RenderThread& render, const proto::StreamStart& message);
+    void stop(RenderThread& render, std::uint32_t stream);
+    void stop_all(RenderThread& render);
+    void ready(RenderThread& render, const proto::StreamReady& message);
+    /// A picture of a stream. Any executor thread but the pool's.
+    void picture(Picture picture);
+
+private:
+    struct Stream;
+    void fail(std::uint32_t stream, const std::string& why);
+
+    asio::any_io_executor executor_;
+    std::function<void(const proto::Envelope&)> send_;
+    std::map<std::uint32_t, std::shared_ptr<Stream>> streams_;
+    asio::thread_pool pool_{1};
+};
+
+}  // namespace wall::tileserver

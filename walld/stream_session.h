@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// One viewer's WebSocket (RFC 6455, docs/streams.md): what it says goes to the hub, what waits for it there goes out.
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <memory>
+
+#include "walld/stream_hub.h"
+
+namespace wall::walld {
+
+/// Until either side closes. `request` is an upgrade that was checked.
+asio::awaitable<void> serve_viewer(std::shared_ptr<asio::ip::tcp::socket> socket, boost::beast::http::request<boost::beast::http::string_body> request,
+                                   StreamHub& hub);
+
+}  // namespace wall::walld
