@@ -10,6 +10,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <fstream>
+
 #include "client_lib/log.h"
 #include "client_lib/node_stream.h"
 #include "client_lib/process.h"
@@ -125,6 +127,13 @@ std::string environment(const char* name) {
     return value ? value : "";
 }
 
+/// The first line of the file; nothing without one.
+void read_token(const std::string& path, Hello& hello) {
+    if (path.empty()) return;
+    std::ifstream file(path);
+    if (!std::getline(file, hello.token) || hello.token.empty()) hello.invalid = "WALLGL_TOKEN_FILE: expected a file with a token, got '" + path + "'";
+}
+
 }  // namespace
 
 std::string walld_address() {
@@ -137,6 +146,7 @@ Hello Hello::from_environment() {
     hello.pid = static_cast<std::uint32_t>(getpid());
     hello.program = program_name();
     hello.name = environment("WALLGL_NAME");
+    read_token(environment("WALLGL_TOKEN_FILE"), hello);
     const auto hold = environment("WALLGL_HOLD");
     hello.hold = !hold.empty() && hold != "0";
     const auto rect = environment("WALLGL_RECT");
@@ -192,10 +202,10 @@ void ControlLink::queue(const std::string& envelope) {
     if (up_) append_framed(outbox_, envelope);
 }
 
-void ControlLink::surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title) {
+void ControlLink::surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title, WindowMessages messages) {
     if (in_forked_child()) return;
     std::lock_guard lock(mutex_);
-    surfaces_[id] = {width, height, title};
+    surfaces_[id] = {width, height, title, std::move(messages), 1};
     queue(encode_surface_open(id, width, height, title));
     wake();
 }
@@ -206,6 +216,7 @@ void ControlLink::surface_resize(std::uint32_t id, std::uint32_t width, std::uin
     auto& surface = surfaces_[id];
     surface.width = width;
     surface.height = height;
+    ++surface.awaited;
     placements_.erase(id);
     queue(encode_surface_resize(id, width, height));
     wake();
@@ -217,6 +228,20 @@ void ControlLink::surface_close(std::uint32_t id) {
     surfaces_.erase(id);
     placements_.erase(id);
     queue(encode_surface_close(id));
+    wake();
+}
+
+void ControlLink::surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame) {
+    if (in_forked_child()) return;
+    std::lock_guard lock(mutex_);
+    queue(encode_surface_adopted(id, layout_version, frame));
+    wake();
+}
+
+void ControlLink::ask_to_redraw(std::uint32_t id) {
+    if (in_forked_child()) return;
+    std::lock_guard lock(mutex_);
+    wishes_.redraw.insert(id);
     wake();
 }
 
@@ -257,7 +282,7 @@ void ControlLink::run() {
 /// Moves messages until the link breaks or must stop.
 void ControlLink::serve() {
     auto next_tick = Clock::now() + kTick;
-    while (write_some() && !stop_) {
+    for (tell_windows(); write_some() && !stop_; tell_windows()) {
         bool more_to_write;
         {
             std::lock_guard lock(mutex_);
@@ -323,18 +348,51 @@ bool ControlLink::handle(FromWalld message) {
     }
     std::lock_guard lock(mutex_);
     if (auto* placement = std::get_if<Placement>(&message)) {
-        if (surfaces_.contains(placement->surface)) placements_[placement->surface] = *placement;
-        events_.placements.push_back(*placement);
+        arrived(*placement);
     } else if (auto* node = std::get_if<NodeInfo>(&message)) {
         log(LogLevel::info, "node_%s node=%u address=%s", node->up ? "up" : "down", node->node, node->address.c_str());
+        // What it shows of programs that do not draw by themselves is lost with its process.
+        for (const auto& [id, surface] : surfaces_)
+            if (node->up) wishes_.redraw.insert(id);
         events_.node_changes.push_back(std::move(*node));
     } else if (auto* close = std::get_if<CloseRequest>(&message)) {
         log(LogLevel::info, "close_requested surface=%u reason=%s", close->surface, close->reason.c_str());
-        events_.close_requests.push_back(std::move(*close));
+        wishes_.close.insert(close->surface);
     }
     has_events_ = true;
     changed_.notify_all();
     return true;
+}
+
+// With the mutex held.
+void ControlLink::arrived(const Placement& placement) {
+    events_.placements.push_back(placement);
+    const auto found = surfaces_.find(placement.surface);
+    if (found == surfaces_.end()) return;
+    placements_[placement.surface] = placement;
+    // A program that draws only when asked would never come to adopt it.
+    if (found->second.awaited > 0) --found->second.awaited;
+    else wishes_.redraw.insert(placement.surface);
+}
+
+void ControlLink::tell_windows() {
+    std::vector<std::pair<std::uint32_t, std::function<bool()>>> close;
+    std::vector<std::function<void()>> redraw;
+    {
+        std::lock_guard lock(mutex_);
+        if (wishes_.empty()) return;
+        for (const auto id : wishes_.close)
+            if (const auto found = surfaces_.find(id); found != surfaces_.end()) close.emplace_back(id, found->second.messages.close);
+        for (const auto id : wishes_.redraw)
+            if (const auto found = surfaces_.find(id); found != surfaces_.end() && found->second.messages.redraw) redraw.push_back(found->second.messages.redraw);
+        wishes_ = {};
+    }
+    for (const auto& ask : redraw) ask();
+    for (const auto& [id, ask] : close) {
+        if (ask && ask()) continue;
+        std::lock_guard lock(mutex_);
+        queue(encode_close_refused(id));
+    }
 }
 
 void ControlLink::on_lost(const std::string& why) {
@@ -367,8 +425,10 @@ bool ControlLink::reconnect() {
         events_.lost = true;
         events_.reconnected = std::move(opened->welcome);
         placements_.clear();
-        for (const auto& [id, surface] : surfaces_)
+        for (auto& [id, surface] : surfaces_) {
+            surface.awaited = 0;  // nobody waits for these answers: the program has to draw again
             queue(encode_surface_open(id, surface.width, surface.height, surface.title));
+        }
         has_events_ = true;
     }
     return take_messages();

@@ -11,11 +11,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "client_lib/control_messages.h"
+#include "client_lib/window_messages.h"
 #include "common/base/result.h"
 #include "common/base/unique_fd.h"
 
@@ -36,14 +38,18 @@ public:
     /// As it was when the link was opened; later changes are Events.
     const Welcome& welcome() const { return welcome_; }
 
-    void surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title);
+    /// `messages`: how walld's wishes reach the window.
+    void surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title, WindowMessages messages = {});
     void surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height);
     void surface_close(std::uint32_t id);
+    /// The placement of that version holds from `frame` on.
+    void surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame);
+    /// Asks the program, soon, to draw the window again: what is on the wall was drawn for another layout.
+    void ask_to_redraw(std::uint32_t id);
 
     struct Events {
         std::vector<Placement> placements;  ///< in order of arrival
         std::vector<NodeInfo> node_changes;
-        std::vector<CloseRequest> close_requests;
         bool lost = false;                  ///< the link broke; it is being made again
         std::optional<Welcome> reconnected; ///< a new session: other id, other tickets. Open surfaces were announced again
     };
@@ -58,6 +64,13 @@ private:
     struct OpenSurface {
         std::uint32_t width = 0, height = 0;
         std::string title;
+        WindowMessages messages;
+        unsigned awaited = 0;  ///< placements that answer us; another one is a move
+    };
+    /// What the windows are to be told.
+    struct Wishes {
+        std::set<std::uint32_t> close, redraw;
+        bool empty() const { return close.empty() && redraw.empty(); }
     };
 
     ControlLink(UniqueFd fd, Hello hello, std::string address, Welcome welcome, std::string rest);
@@ -72,6 +85,8 @@ private:
     bool write_some();
     bool take_messages();
     bool handle(FromWalld message);
+    void arrived(const Placement& placement);
+    void tell_windows();
     void on_lost(const std::string& why);
     bool reconnect();
 
@@ -92,6 +107,7 @@ private:
     Events events_;
     bool up_ = true;
     std::map<std::uint32_t, OpenSurface> surfaces_;
+    Wishes wishes_;
     std::map<std::uint32_t, Placement> placements_;  ///< newest of each since it was opened or resized
 
     std::thread thread_;

@@ -15,6 +15,7 @@ using protozero::pbf_writer;
 // Field numbers of Envelope (proto/control.proto).
 namespace envelope {
 constexpr protozero::pbf_tag_type client_hello = 1, surface_open = 2, surface_resize = 3, surface_close = 4,
+                                  surface_adopted = 5, close_refused = 6,
                                   client_welcome = 10, refused = 11, placement = 12, node_up = 13, node_down = 14,
                                   close_request = 15;
 }
@@ -217,6 +218,7 @@ std::string encode(const Hello& hello) {
         if (hello.rect) put_rect(out, 5, *hello.rect);
         if (hello.fullscreen) out.add_bool(6, true);
         if (hello.hold) out.add_bool(7, true);
+        put_string(out, 8, hello.token);
     });
 }
 
@@ -239,6 +241,18 @@ std::string encode_surface_resize(std::uint32_t id, std::uint32_t width, std::ui
 
 std::string encode_surface_close(std::uint32_t id) {
     return in_envelope(envelope::surface_close, [&](pbf_writer& out) { out.add_uint32(1, id); });
+}
+
+std::string encode_surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame) {
+    return in_envelope(envelope::surface_adopted, [&](pbf_writer& out) {
+        out.add_uint32(1, id);
+        out.add_uint32(2, layout_version);
+        out.add_uint32(3, frame);
+    });
+}
+
+std::string encode_close_refused(std::uint32_t id) {
+    return in_envelope(envelope::close_refused, [&](pbf_writer& out) { out.add_uint32(1, id); });
 }
 
 std::string encode_data_hello(std::uint32_t session, std::string_view ticket) {

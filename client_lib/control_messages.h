@@ -24,6 +24,7 @@ struct Hello {
     std::optional<geom::Rect> rect;  ///< WALLGL_RECT; nothing: where there is room, 1:1
     bool fullscreen = false;         ///< WALLGL_RECT=fullscreen
     bool hold = false;               ///< WALLGL_HOLD
+    std::string token;               ///< from WALLGL_TOKEN_FILE: who owns the session, if not the Unix user
     std::string invalid;             ///< what is wrong in the environment; ControlLink::open fails with it
 
     /// Of this process, from its name and the environment.
@@ -83,6 +84,8 @@ std::string encode(const Hello& hello);
 std::string encode_surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, std::string_view title);
 std::string encode_surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height);
 std::string encode_surface_close(std::uint32_t id);
+std::string encode_surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame);
+std::string encode_close_refused(std::uint32_t id);
 
 Result<FromWalld> decode_from_walld(std::string_view envelope);
 

@@ -9,6 +9,8 @@
 #include <optional>
 #include <string>
 
+#include "client_lib/window_messages.h"
+
 namespace wall::client {
 
 class Context;
@@ -34,6 +36,7 @@ struct SurfaceOptions {
     Extent size;                                         ///< at creation
     std::function<std::optional<Extent>()> query_size;   ///< window's size now; empty function: it never changes
     std::string title;
+    WindowMessages messages;                             ///< of a window; empty functions: it cannot be spoken to
 };
 
 struct ContextOptions {

@@ -179,7 +179,7 @@ void Session::open_surface(Surface& surface) {
     surface.layout.width = std::max(1u, size.width);
     surface.layout.height = std::max(1u, size.height);
     if (!surface.options.visible) return apply_layout(surface, Placement{});
-    control_->surface_open(surface.id, surface.layout.width, surface.layout.height, surface.options.title);
+    control_->surface_open(surface.id, surface.layout.width, surface.layout.height, surface.options.title, surface.options.messages);
     if (const auto placement = control_->wait_placement(surface.id, kPlacementTimeout)) apply_layout(surface, *placement);
 }
 
@@ -221,15 +221,30 @@ void Session::apply_layout(Surface& surface, const Placement& placement) {
 void Session::begin_frame(Surface& surface) {
     std::lock_guard lock(mutex_);
     take_events();
-    if (surface.options.query_size) {
-        const auto size = surface.options.query_size();
-        if (size && size->width && size->height && (size->width != surface.layout.width || size->height != surface.layout.height)) {
-            surface.layout.width = size->width;
-            surface.layout.height = size->height;
-            control_->surface_resize(surface.id, size->width, size->height);
-            if (const auto placement = control_->wait_placement(surface.id, kPlacementTimeout)) apply_layout(surface, *placement);
-        }
-    }
+    if (in_frame(surface)) return;
+    adopt_placement(surface);
+    follow_window(surface);
+}
+
+void Session::follow_window(Surface& surface) {
+    const auto size = surface.options.query_size ? surface.options.query_size() : std::nullopt;
+    if (!size || !size->width || !size->height || (size->width == surface.layout.width && size->height == surface.layout.height)) return;
+    surface.layout.width = size->width;
+    surface.layout.height = size->height;
+    control_->surface_resize(surface.id, size->width, size->height);
+    surface.next = control_->wait_placement(surface.id, kPlacementTimeout);
+    adopt_placement(surface);
+    if (surface.frame > 0) control_->ask_to_redraw(surface.id);
+}
+
+// Only between two frames, so that none mixes two layouts. What the last frame shows was drawn for the old one.
+void Session::adopt_placement(Surface& surface) {
+    if (!surface.next || in_frame(surface)) return;
+    const Placement placement = *std::exchange(surface.next, std::nullopt);
+    const bool moved = placement.rect != surface.layout.rect;
+    apply_layout(surface, placement);
+    control_->surface_adopted(surface.id, placement.layout_version, surface.frame + 1);
+    if (moved && (surface.frame > 0 || !surface.options.format.double_buffered)) control_->ask_to_redraw(surface.id);
 }
 
 void Session::take_events() {
@@ -243,8 +258,9 @@ void Session::take_events() {
     }
     for (const Placement& placement : events.placements) {
         const auto found = surfaces_.find(placement.surface);
-        if (found != surfaces_.end()) apply_layout(*found->second, placement);
+        if (found != surfaces_.end()) found->second->next = placement;
     }
+    for (auto& [id, surface] : surfaces_) adopt_placement(*surface);
 }
 
 wire::PackBuffer& Session::batch(Node& node, std::uint32_t context) {
@@ -283,6 +299,7 @@ wire::PackBuffer& Session::prepare(Node& node, Context& context, const Needs& ne
     const std::size_t start = buffer.bytes();
     Surface& draw = *context.draw_surface();
     Surface& read = *context.read_surface();
+    draw.drawn = true;
     describe_surface(node, draw);
     if (&read != &draw) describe_surface(node, read);
     if (mirror.draw_surface != draw.id || mirror.read_surface != read.id) {
@@ -313,6 +330,7 @@ void Session::swap(Context* context, Surface& surface) {
     {
         std::lock_guard lock(mutex_);
         ++surface.frame;
+        surface.drawn = false;
         TargetSet all;
         all.set();
         for (const auto& [index, slots] : by_node(all, surface.layout)) {
@@ -360,6 +378,8 @@ void Session::flush(Context* context, bool wait) {
             send(*node);
         }
         if (!pending.empty()) count_round_trip("glFinish");
+        // Without a back buffer there is no other end of a frame.
+        if (const Surface* surface = context ? context->draw_surface() : nullptr; surface && !surface->options.format.double_buffered) take_events();
     }
     for (auto& [stream, request] : pending) stream->wait_reply(request, kReplyTimeoutMs);
 }

@@ -64,6 +64,8 @@ public:
     SurfaceLayout layout;
     std::uint32_t frame = 0;   ///< of the last swap
     bool opened = false;       ///< walld knows it
+    bool drawn = false;        ///< something was drawn since the last swap
+    std::optional<Placement> next;  ///< from walld, for a frame that begins
 };
 
 class Session {
@@ -135,6 +137,9 @@ private:
     void adopt(const Welcome& welcome);
     void apply_layout(Surface& surface, const Placement& placement);
     void take_events();
+    bool in_frame(const Surface& surface) const { return surface.drawn && surface.frame > 0; }
+    void adopt_placement(Surface& surface);
+    void follow_window(Surface& surface);
     void connect(Node& node);
     void describe_surface(Node& node, Surface& surface);
     Node& node_slot(const NodeInfo& info);

@@ -27,6 +27,7 @@ Presents SwapCoordinator::move(const std::set<std::uint32_t>& nodes, std::uint32
             member.until = UINT32_MAX;
         }
     }
+    std::erase_if(members_, [](const auto& m) { return m.second.until < m.second.from; });  // it has never come there
     for (const auto node : nodes) members_.try_emplace(node, Member{.from = first});
     return advance(now);
 }

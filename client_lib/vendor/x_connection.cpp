@@ -9,6 +9,8 @@
 #include <mutex>
 #include <unordered_map>
 
+#include "client_lib/vendor/x_messages.h"
+
 namespace wall::client::vendor {
 namespace {
 
@@ -56,7 +58,7 @@ std::shared_ptr<XConnection> XConnection::of(Display* display) {
     std::lock_guard lock(all.mutex);
     auto& entry = all.by_handle[display];
     if (entry) return entry;
-    entry = std::make_shared<XConnection>(XGetXCBConnection(display));
+    entry = std::make_shared<XConnection>(XGetXCBConnection(display), DisplayString(display));
     if (XExtCodes* codes = XAddExtension(display)) XESetCloseDisplay(display, codes->extension, wallgl_display_closes);
     return entry;
 }
@@ -65,7 +67,7 @@ std::shared_ptr<XConnection> XConnection::of(xcb_connection_t* connection) {
     auto& all = connections();
     std::lock_guard lock(all.mutex);
     auto& entry = all.by_handle[connection];
-    if (!entry) entry = std::make_shared<XConnection>(connection);
+    if (!entry) entry = std::make_shared<XConnection>(connection, std::string());
     return entry;
 }
 
@@ -95,6 +97,7 @@ SurfaceOptions window_surface(std::shared_ptr<XConnection> connection, xcb_windo
     options.format = format;
     options.size = size;
     options.title = connection->title_of(window);
+    options.messages = window_messages(connection->display_name(), window);
     options.query_size = [connection = std::move(connection), window] { return connection->size_of(window); };
     return options;
 }

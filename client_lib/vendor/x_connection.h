@@ -23,8 +23,10 @@ public:
     /// The one of an XCB connection. Nobody tells when it is closed: the program must not use its surfaces then.
     static std::shared_ptr<XConnection> of(xcb_connection_t* connection);
 
-    explicit XConnection(xcb_connection_t* connection) : connection_(connection) {}
+    /// `display`: the name of its server; empty: DISPLAY.
+    XConnection(xcb_connection_t* connection, std::string display) : connection_(connection), display_(std::move(display)) {}
 
+    const std::string& display_name() const { return display_; }
     bool open() const { return connection_.load() != nullptr; }
     /// Size of a window or pixmap; nothing if there is no such drawable (any more).
     std::optional<Extent> size_of(xcb_drawable_t drawable) const;
@@ -34,9 +36,10 @@ public:
 
 private:
     std::atomic<xcb_connection_t*> connection_;
+    const std::string display_;
 };
 
-/// Options of a surface that is an X window: its size is asked for at each frame.
+/// Options of a surface that is an X window: its size is asked for at each frame, and messages reach it.
 SurfaceOptions window_surface(std::shared_ptr<XConnection> connection, xcb_window_t window, Extent size,
                               const SurfaceFormat& format);
 

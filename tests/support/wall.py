@@ -18,6 +18,8 @@ import signal
 import subprocess
 import tempfile
 import time
+import urllib.error
+import urllib.request
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -44,15 +46,16 @@ def _quoted(text: object) -> str:
 
 class Wall:
     """`tiles` are columns and rows, `tile_size` is in pixels. `environment` goes to the daemons, `die_with_parent` ends
-    them with the *thread* that starts the wall. `one_node` puts all tiles on one tileserver. `client_build` is
+    them with the *thread* that starts the wall. `options` and `people` are lines for wall.toml. `one_node` puts all tiles on one tileserver. `client_build` is
     where wallrun and the vendor library come from, if not from `build` (a sanitizer's library does not load into a
     foreign program)."""
 
     def __init__(self, tiles: tuple[int, int] = (2, 2), tile_size: tuple[int, int] = (512, 384), backend: str = "egl", *,
-                 http: str = "127.0.0.1:0", swap_timeout_ms: int = 250, one_node: bool = False, name: str = "test",
+                 http: str = "127.0.0.1:0", swap_timeout_ms: int = 250, one_node: bool = False, name: str = "test", options: str = "", people: str = "",
                  build: Path | None = None, client_build: Path | None = None, environment: dict[str, str] | None = None, die_with_parent: bool = False):
         self.tiles, self.tile_size, self.backend = tiles, tile_size, backend
         self.http, self.swap_timeout_ms, self.one_node, self.name = http, swap_timeout_ms, one_node, name
+        self.options, self.people = options, people
         self.bin = (build or build_folder()) / "bin"
         self.client_bin = (client_build or build or build_folder()) / "bin"
         self._environment = dict(os.environ, **(environment or {}))
@@ -103,6 +106,8 @@ class Wall:
     def _description(self) -> str:
         nodes = [(self.node_names[0], self.tile_names)] if self.one_node else [(n, [n[len("node-"):]]) for n in self.node_names]
         return (f"[wall]\nname = {_quoted(self.name)}\nswap_timeout_ms = {self.swap_timeout_ms}\n"
+                f"state_directory = {_quoted(self.folder / 'state')}\n{self.options}\n"
+                f"[people]\n{self.people}\n"
                 f"[control]\nlisten = [{_quoted(f'unix:{self.folder}/walld.sock')}]\n"
                 f"[http]\nlisten = {_quoted(self.http)}\n" + "".join(self._node(*node) for node in nodes))
 
@@ -189,6 +194,21 @@ class Wall:
         if done.returncode != 0:
             raise WallError(f"wallctl {' '.join(map(str, arguments))}: {done.stderr.strip()}")
         return json.loads(done.stdout) if done.stdout.strip() else None
+
+    def rest(self, method: str, path: str, body: object = None, *, headers: dict[str, str] | None = None) -> tuple[int, object]:
+        """A request to the HTTP API; gives the status and the JSON (or text) of the answer."""
+        data = None if method == "GET" else json.dumps({} if body is None else body).encode()
+        request = urllib.request.Request(self.url.rstrip("/") + path, data=data, method=method,
+                                         headers={"Content-Type": "application/json", **(headers or {})})
+        try:
+            with urllib.request.urlopen(request, timeout=60) as answer:
+                status, text = answer.status, answer.read().decode()
+        except urllib.error.HTTPError as error:
+            status, text = error.code, error.read().decode()
+        try:
+            return status, json.loads(text)
+        except ValueError:
+            return status, text
 
     def status(self) -> dict:
         return self.ctl("status")

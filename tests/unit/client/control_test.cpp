@@ -140,7 +140,6 @@ ControlLink::Events collect(ControlLink& link, Done done) {
         auto some = link.take_events();
         for (auto& p : some.placements) all.placements.push_back(p);
         for (auto& n : some.node_changes) all.node_changes.push_back(n);
-        for (auto& c : some.close_requests) all.close_requests.push_back(c);
         all.lost |= some.lost;
         if (some.reconnected) all.reconnected = some.reconnected;
         std::this_thread::sleep_for(10ms);
@@ -240,24 +239,23 @@ TEST(ControlLink, SaysHelloAndTakesTheWelcome) {
     EXPECT_EQ(linked.link->welcome().nodes.size(), 2u);
 }
 
-TEST(ControlLink, PlacementsNodesAndCloseRequestsArrive) {
+TEST(ControlLink, PlacementsAndNodesArrive) {
     Linked linked;
     linked.link->surface_open(1, 300, 200, "gears");
     EXPECT_EQ(linked.walld.receive().surface_open().title(), "gears");
-    proto::Envelope placement, up, down, close;
+    proto::Envelope placement, up, down;
     placement.mutable_placement()->set_surface(1);
     placement.mutable_placement()->set_layout_version(5);
     placement.mutable_placement()->mutable_rect()->set_width(300);
     up.mutable_node_up()->set_node(4);
     up.mutable_node_up()->set_address("unix:/n");
     down.mutable_node_down()->set_node(2);
-    close.mutable_close_request()->set_reason("operator");
-    linked.walld.send(framed(placement) + framed(up) + framed(down) + framed(close));
+    linked.walld.send(framed(placement) + framed(up) + framed(down));
 
     const auto placed = linked.link->wait_placement(1, 2s);
     ASSERT_TRUE(placed);
     EXPECT_EQ(placed->layout_version, 5u);
-    const auto events = collect(*linked.link, [](auto& e) { return !e.close_requests.empty(); });
+    const auto events = collect(*linked.link, [](auto& e) { return e.node_changes.size() > 1; });
     ASSERT_EQ(events.placements.size(), 1u);
     EXPECT_EQ(events.placements[0].rect.width, 300);
     ASSERT_EQ(events.node_changes.size(), 2u);
@@ -265,9 +263,77 @@ TEST(ControlLink, PlacementsNodesAndCloseRequestsArrive) {
     EXPECT_EQ(events.node_changes[0].address, "unix:/n");
     EXPECT_FALSE(events.node_changes[1].up);
     EXPECT_EQ(events.node_changes[1].node, 2u);
-    EXPECT_EQ(events.close_requests[0].reason, "operator");
     EXPECT_FALSE(events.lost);
     EXPECT_TRUE(linked.link->take_events().placements.empty());
+}
+
+/// What a window was told, as its counts.
+struct FakeWindow {
+    std::atomic<int> closed{0}, redrawn{0};
+    bool has_close = true;
+    WindowMessages messages() {
+        return {[this] { ++closed; return has_close; }, [this] { ++redrawn; }};
+    }
+    static bool reaches(const std::atomic<int>& count, int value) {
+        for (int i = 0; i < 200 && count < value; ++i) std::this_thread::sleep_for(10ms);
+        return count == value;
+    }
+};
+
+proto::Envelope placement_of(std::uint32_t surface, std::uint32_t version) {
+    proto::Envelope envelope;
+    envelope.mutable_placement()->set_surface(surface);
+    envelope.mutable_placement()->set_layout_version(version);
+    envelope.mutable_placement()->mutable_rect()->set_width(10);
+    envelope.mutable_placement()->mutable_rect()->set_height(10);
+    return envelope;
+}
+
+proto::Envelope close_of(std::uint32_t surface) {
+    proto::Envelope envelope;
+    envelope.mutable_close_request()->set_surface(surface);
+    return envelope;
+}
+
+TEST(ControlLink, AWindowIsToldToRedrawAfterAMoveAndNotAfterItsOwnRequests) {
+    FakeWindow window;
+    Linked linked;
+    linked.link->surface_open(1, 300, 200, "", window.messages());
+    linked.link->surface_resize(1, 400, 200);
+    linked.walld.send(framed(placement_of(1, 1)) + framed(placement_of(1, 2)));
+    ASSERT_TRUE(linked.link->wait_placement(1, 2s));
+    std::this_thread::sleep_for(50ms);
+    EXPECT_EQ(window.redrawn, 0);
+    linked.walld.send(placement_of(1, 3));
+    EXPECT_TRUE(FakeWindow::reaches(window.redrawn, 1));
+    linked.link->ask_to_redraw(1);
+    EXPECT_TRUE(FakeWindow::reaches(window.redrawn, 2));
+    linked.link->ask_to_redraw(7);
+    linked.walld.send(placement_of(7, 1));
+    linked.link->surface_adopted(1, 3, 12);
+    while (true) {
+        const auto said = linked.walld.receive();
+        if (!said.has_surface_adopted()) continue;
+        EXPECT_EQ(said.surface_adopted().surface(), 1u);
+        EXPECT_EQ(said.surface_adopted().layout_version(), 3u);
+        EXPECT_EQ(said.surface_adopted().frame(), 12u);
+        break;
+    }
+    EXPECT_EQ(window.redrawn, 2);
+}
+
+TEST(ControlLink, AWindowIsAskedToCloseAndWalldHearsWhenItCannotBe) {
+    FakeWindow window, stubborn;
+    stubborn.has_close = false;
+    Linked linked;
+    linked.link->surface_open(1, 300, 200, "", window.messages());
+    linked.link->surface_open(2, 300, 200, "", stubborn.messages());
+    linked.link->surface_open(3, 300, 200, "");
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(linked.walld.receive().has_surface_open());
+    linked.walld.send(framed(close_of(1)) + framed(close_of(2)) + framed(close_of(3)) + framed(close_of(99)));
+    EXPECT_EQ(linked.walld.receive().close_refused().surface(), 2u);
+    EXPECT_EQ(linked.walld.receive().close_refused().surface(), 3u);
+    EXPECT_EQ(window.closed, 1);
 }
 
 TEST(ControlLink, AResizeWaitsForItsOwnPlacement) {
