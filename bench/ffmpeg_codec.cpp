@@ -30,6 +30,7 @@ void fill(AVFrame& to, const codec::FrameView& from) {
 
 FfmpegCodec::FfmpegCodec(const std::string& name, AVPixelFormat pixels, int threads, const std::vector<codec::FrameView>& frames)
     : decoded_(av_frame_alloc()) {
+    av_log_set_level(AV_LOG_ERROR);
     const AVCodec* encoder = avcodec_find_encoder_by_name(name.c_str());
     const AVCodec* decoder = avcodec_find_decoder_by_name(name.c_str());
     need(encoder != nullptr && decoder != nullptr, "no codec " + name);

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Runs the benchmarks of build/release and prints their tables.
-# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, pack, mesh, traffic)
+# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, pack, mesh, traffic, codec)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -30,6 +30,7 @@ run state "$build/bench/state_bench" --benchmark_out="$results/state.json" --ben
 run pack bench/pack.py --json "$results/pack.json"
 run mesh bench/mesh.py --json "$results/mesh.json"
 run traffic bench/traffic.py --json "$results/traffic.json"
+run codec bench/codec.py --json "$results/codec.json"
 
 if [[ -n "$json" ]]; then
   /usr/bin/python3 - "$results" "$json" <<'PYTHON'

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "common/codec/avi.h"
 #include "common/codec/huffyuv.h"
@@ -116,6 +117,33 @@ TEST_F(HuffyuvFfmpeg, DecodesOurYuy2) {
         }
     }
     expect_ffmpeg_decodes({2, 5, PixelLayout::yuy2}, {Predictor::left});
+}
+
+/// Recordings over 1 GiB go on in further RIFF segments; here they are small.
+TEST_F(HuffyuvFfmpeg, ReadsOurSegments) {
+    const StreamFormat format{64, 48};
+    const auto encoder = make_stream_encoder(format, {}).value();
+    std::optional<AviWriter> writer;
+    std::vector<std::byte> expected;
+    for (std::uint32_t i = 0; i < 40; ++i) {
+        const auto picture = test::picture(format, Kind::noisy_gradient, i);
+        std::vector<std::byte> packet;
+        ASSERT_TRUE(encoder->encode(picture.view(), PacketKind::key, packet));
+        if (!writer) {
+            AviFormat avi{.width = 64, .height = 48, .bit_count = bit_count(encoder->stream())};
+            avi.extradata.assign(encoder->stream_header().begin(), encoder->stream_header().end());
+            writer.emplace(AviWriter::create(path("ours.avi"), avi, 40000).value());
+        }
+        ASSERT_TRUE(writer->add(packet));
+        const auto bytes = test::bytes_of(picture.view());
+        expected.insert(expected.end(), bytes.begin(), bytes.end());
+    }
+    ASSERT_TRUE(writer->finish());
+    ffmpeg("-i " + path("ours.avi") + " -vsync 0 -f rawvideo -pix_fmt bgra " + path("theirs.raw"));
+    EXPECT_TRUE(content("theirs.raw") == expected);
+    ffmpeg("-ss 1.4 -i " + path("ours.avi") + " -vsync 0 -frames:v 1 -f rawvideo -pix_fmt bgra " + path("theirs.raw"));  // by the indexes
+    const std::size_t frame = 64 * 48 * 4;
+    EXPECT_TRUE(content("theirs.raw") == std::vector<std::byte>(expected.begin() + 35 * frame, expected.begin() + 36 * frame));
 }
 
 /// HuffYUV 1.x: no tables in the file. Up to 288 rows; taller files are interlaced, which we do not write.
