@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Ratio and speed of the frame codecs beside FFmpeg's, on the same frames, in turn in one run.
 //
-//   codec_bench [--json FILE] [--rounds N] [--only SCENE] FOLDER     FOLDER/SCENE.bgra, as bench/codec_frames.py makes them
+//   codec_bench [--json FILE] [--rounds N] [--only SCENE] FOLDER     FOLDER/SCENE.bgra, as bench/codec_frames.py makes
+//   them
 //
-// A round times every contender once. One thread is timed by its processor time, and the table shows the median over the rounds; two
-// threads by the clock, and it shows the best round, the one least disturbed by other work. MB/s count 4 bytes a pixel. Exit code 1 when
-// a bar of docs/codecs.md is missed.
+// A round times every contender once. One thread is timed by its processor time, and the table shows the median over
+// the rounds; two threads by the clock, and it shows the best round, the one least disturbed by other work. MB/s count
+// 4 bytes a pixel. Exit code 1 when a bar of docs/codecs.md is missed.
 #include <time.h>
 
 #include <algorithm>
@@ -55,7 +56,10 @@ T take(Result<T> result) {
 class OurCodec {
 public:
     OurCodec(const std::string& name, bool sequence, codec::ParallelFor parallel, const std::vector<FrameView>& frames)
-        : sequence_(sequence), frames_(frames), encoder_(take(codec::make_encoder(name, kFormat, parallel))), packets_(frames.size()) {
+        : sequence_(sequence),
+          frames_(frames),
+          encoder_(take(codec::make_encoder(name, kFormat, parallel))),
+          packets_(frames.size()) {
         encode();
         decoder_ = take(codec::make_decoder(name, kFormat, encoder_->stream_header(), parallel));
         check();
@@ -82,7 +86,8 @@ private:
         for (std::size_t i = 0; i < frames_.size(); ++i) {
             const auto view = take(decoder_->decode(packets_[i]));
             for (std::uint32_t y = 0; y < kHeight; ++y)
-                if (std::memcmp(view.row(y), frames_[i].row(y), view.row_bytes()) != 0) throw std::runtime_error("a frame decodes to another");
+                if (std::memcmp(view.row(y), frames_[i].row(y), view.row_bytes()) != 0)
+                    throw std::runtime_error("a frame decodes to another");
         }
     }
 
@@ -95,20 +100,26 @@ private:
 
 template <class Codec>
 Contender contender(std::string name, int threads, std::shared_ptr<Codec> codec) {
-    return {std::move(name), threads, [codec] { codec->encode(); }, [codec] { codec->decode(); }, [codec] { return codec->bits_per_pixel(); }};
+    return {std::move(name), threads, [codec] { codec->encode(); }, [codec] { codec->decode(); },
+            [codec] { return codec->bits_per_pixel(); }};
 }
 
 std::vector<Contender> contenders(const std::vector<FrameView>& frames, codec::WorkerPool& pool) {
     std::vector<Contender> out;
-    const std::pair<const char*, AVPixelFormat> theirs[] = {{"huffyuv", AV_PIX_FMT_RGB24}, {"ffvhuff", AV_PIX_FMT_RGB24}, {"utvideo", AV_PIX_FMT_GBRP}};
+    const std::pair<const char*, AVPixelFormat> theirs[] = {
+        {"huffyuv", AV_PIX_FMT_RGB24}, {"ffvhuff", AV_PIX_FMT_RGB24}, {"utvideo", AV_PIX_FMT_GBRP}};
     for (const int threads : {1, 2}) {
         const codec::ParallelFor parallel = threads == 1 ? codec::ParallelFor{} : pool.parallel_for();
         for (const auto& [name, pixels] : theirs)
-            out.push_back(contender(std::string("FFmpeg ") + name, threads, std::make_shared<bench::FfmpegCodec>(name, pixels, threads, frames)));
+            out.push_back(contender(std::string("FFmpeg ") + name, threads,
+                                    std::make_shared<bench::FfmpegCodec>(name, pixels, threads, frames)));
         if (threads == 1)
-            for (const char* name : {"huffyuv", "lz4", "zstd"}) out.push_back(contender(name, threads, std::make_shared<OurCodec>(name, false, parallel, frames)));
-        out.push_back(contender("huffyuv-tiles", threads, std::make_shared<OurCodec>("huffyuv-tiles", false, parallel, frames)));
-        out.push_back(contender("huffyuv-tiles, sequence", threads, std::make_shared<OurCodec>("huffyuv-tiles", true, parallel, frames)));
+            for (const char* name : {"huffyuv", "lz4", "zstd"})
+                out.push_back(contender(name, threads, std::make_shared<OurCodec>(name, false, parallel, frames)));
+        out.push_back(
+            contender("huffyuv-tiles", threads, std::make_shared<OurCodec>("huffyuv-tiles", false, parallel, frames)));
+        out.push_back(contender("huffyuv-tiles, sequence", threads,
+                                std::make_shared<OurCodec>("huffyuv-tiles", true, parallel, frames)));
     }
     return out;
 }
@@ -138,14 +149,17 @@ using Scene = std::map<std::pair<std::string, int>, Figures>;
 
 Scene measure(const std::string& name, const std::vector<std::byte>& bytes, int rounds, codec::WorkerPool& pool) {
     std::vector<FrameView> frames;
-    for (std::size_t at = 0; at + kFrameBytes <= bytes.size(); at += kFrameBytes) frames.push_back({bytes.data() + at, kWidth, kHeight, kWidth * 4});
+    for (std::size_t at = 0; at + kFrameBytes <= bytes.size(); at += kFrameBytes)
+        frames.push_back({bytes.data() + at, kWidth, kHeight, kWidth * 4});
     auto all = contenders(frames, pool);
     for (int round = 0; round < rounds; ++round) time_round(all, frames.size());
     std::printf("\n%-26s threads  bits/pixel  encode MB/s  decode MB/s\n", name.c_str());
     Scene out;
     for (auto& one : all) {
-        const Figures figures{one.bits_per_pixel(), typical(one.encode_rates, one.threads), typical(one.decode_rates, one.threads)};
-        std::printf("  %-24s %7d %11.3f %12.0f %12.0f\n", one.name.c_str(), one.threads, figures.bits, figures.encode, figures.decode);
+        const Figures figures{one.bits_per_pixel(), typical(one.encode_rates, one.threads),
+                              typical(one.decode_rates, one.threads)};
+        std::printf("  %-24s %7d %11.3f %12.0f %12.0f\n", one.name.c_str(), one.threads, figures.bits, figures.encode,
+                    figures.decode);
         out[{one.name, one.threads}] = figures;
     }
     std::fflush(stdout);
@@ -155,7 +169,8 @@ Scene measure(const std::string& name, const std::vector<std::byte>& bytes, int 
 /// Prints what a bar wants and what there is; true if it is held.
 bool bar(const std::string& scene, const char* what, double is, double wanted, bool at_least) {
     const bool held = at_least ? is >= wanted : is <= wanted;
-    std::printf("%-14s %-52s %8.2f, %s %.2f wanted%s\n", scene.c_str(), what, is, at_least ? "at least" : "at most", wanted, held ? "" : "   MISSED");
+    std::printf("%-14s %-52s %8.2f, %s %.2f wanted%s\n", scene.c_str(), what, is, at_least ? "at least" : "at most",
+                wanted, held ? "" : "   MISSED");
     return held;
 }
 
@@ -168,7 +183,8 @@ bool bars(const std::string& name, const Scene& scene) {
     held &= bar(name, "huffyuv decode to FFmpeg's", ours.decode / theirs.decode, 1.2, true);
     held &= bar(name, "huffyuv-tiles bits to huffyuv's", tiles.bits / ours.bits, 1.02, false);
     if (name == "noise") return held;
-    held &= bar(name, "huffyuv-tiles bits to FFmpeg's utvideo", tiles.bits / scene.at({"FFmpeg utvideo", 1}).bits, 0.8, false);
+    held &= bar(name, "huffyuv-tiles bits to FFmpeg's utvideo", tiles.bits / scene.at({"FFmpeg utvideo", 1}).bits, 0.8,
+                false);
     held &= bar(name, "huffyuv-tiles encode, GB/s", tiles.encode / 1000, 1, true);
     held &= bar(name, "huffyuv-tiles decode, GB/s", tiles.decode / 1000, 1, true);
     return held;
@@ -205,7 +221,9 @@ nlohmann::json as_json(const std::map<std::string, Scene>& scenes) {
     for (const auto& [name, scene] : scenes)
         for (const auto& [who, figures] : scene)
             out[name][who.first + ", " + std::to_string(who.second) + (who.second == 1 ? " thread" : " threads")] = {
-                {"bits_per_pixel", figures.bits}, {"encode_mb_per_s", figures.encode}, {"decode_mb_per_s", figures.decode}};
+                {"bits_per_pixel", figures.bits},
+                {"encode_mb_per_s", figures.encode},
+                {"decode_mb_per_s", figures.decode}};
     return out;
 }
 
@@ -214,12 +232,17 @@ int run(int argc, char** argv) {
     int rounds = 7;
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
-        if (argument == "--json" && i + 1 < argc) json = argv[++i];
-        else if (argument == "--rounds" && i + 1 < argc) rounds = std::max(1, std::atoi(argv[++i]));
-        else if (argument == "--only" && i + 1 < argc) only = argv[++i];
-        else folder = argument;
+        if (argument == "--json" && i + 1 < argc)
+            json = argv[++i];
+        else if (argument == "--rounds" && i + 1 < argc)
+            rounds = std::max(1, std::atoi(argv[++i]));
+        else if (argument == "--only" && i + 1 < argc)
+            only = argv[++i];
+        else
+            folder = argument;
     }
-    if (folder.empty() || !std::filesystem::is_directory(folder)) throw std::runtime_error("expected [--json FILE] [--rounds N] [--only SCENE] FOLDER");
+    if (folder.empty() || !std::filesystem::is_directory(folder))
+        throw std::runtime_error("expected [--json FILE] [--rounds N] [--only SCENE] FOLDER");
     std::map<std::string, Scene> scenes;
     codec::WorkerPool pool(1);  // and the thread that calls
     for (const auto& path : scene_files(folder)) {

@@ -15,7 +15,9 @@ void need(bool good, const std::string& what) {
 void fill(AVFrame& to, const codec::FrameView& from) {
     const bool packed = to.format == AV_PIX_FMT_RGB24;
     for (std::uint32_t y = 0; y < from.height; ++y) {
-        const auto line = [&](int plane) { return to.data[plane] + static_cast<std::ptrdiff_t>(y) * to.linesize[plane]; };
+        const auto line = [&](int plane) {
+            return to.data[plane] + static_cast<std::ptrdiff_t>(y) * to.linesize[plane];
+        };
         std::uint8_t* const red = packed ? line(0) : line(2);
         std::uint8_t* const green = packed ? line(0) + 1 : line(0);
         std::uint8_t* const blue = packed ? line(0) + 2 : line(1);
@@ -28,7 +30,8 @@ void fill(AVFrame& to, const codec::FrameView& from) {
 
 }  // namespace
 
-FfmpegCodec::FfmpegCodec(const std::string& name, AVPixelFormat pixels, int threads, const std::vector<codec::FrameView>& frames)
+FfmpegCodec::FfmpegCodec(const std::string& name, AVPixelFormat pixels, int threads,
+                         const std::vector<codec::FrameView>& frames)
     : decoded_(av_frame_alloc()) {
     av_log_set_level(AV_LOG_ERROR);
     const AVCodec* encoder = avcodec_find_encoder_by_name(name.c_str());
@@ -49,7 +52,8 @@ FfmpegCodec::FfmpegCodec(const std::string& name, AVPixelFormat pixels, int thre
     decoder_->width = encoder_->width, decoder_->height = encoder_->height, decoder_->thread_count = threads;
     decoder_->codec_tag = encoder_->codec_tag, decoder_->bits_per_coded_sample = encoder_->bits_per_coded_sample;
     if (encoder_->extradata_size > 0) {
-        decoder_->extradata = static_cast<std::uint8_t*>(av_mallocz(static_cast<std::size_t>(encoder_->extradata_size) + AV_INPUT_BUFFER_PADDING_SIZE));
+        decoder_->extradata = static_cast<std::uint8_t*>(
+            av_mallocz(static_cast<std::size_t>(encoder_->extradata_size) + AV_INPUT_BUFFER_PADDING_SIZE));
         std::copy_n(encoder_->extradata, encoder_->extradata_size, decoder_->extradata);
         decoder_->extradata_size = encoder_->extradata_size;
     }

@@ -17,11 +17,13 @@ namespace wall::bench {
 
 class FfmpegCodec {
 public:
-    /// `frames` (bgra) are brought into the codec's own pixel format here, not while it is timed. Throws when FFmpeg refuses.
-    FfmpegCodec(const std::string& name, AVPixelFormat pixels, int threads, const std::vector<codec::FrameView>& frames);
+    /// `frames` (bgra) are brought into the codec's own pixel format here, not while it is timed. Throws when FFmpeg
+    /// refuses.
+    FfmpegCodec(const std::string& name, AVPixelFormat pixels, int threads,
+                const std::vector<codec::FrameView>& frames);
 
-    void encode();  ///< all frames; with several threads some packets come with the next call
-    void decode();  ///< all packets of the first encode()
+    void encode();                  ///< all frames; with several threads some packets come with the next call
+    void decode();                  ///< all packets of the first encode()
     double bits_per_pixel() const;  ///< of the packets that are decoded
 
 private:

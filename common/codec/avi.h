@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// AVI files with one video stream: RIFF with the OpenDML extensions (version 1.02), so that a recording may be larger than
-// 4 GiB. docs/codecs.md shows the layout that is written; any such file, and any cut or unfinished one, is read. One thread
-// at a time; both block on the disk.
+// AVI files with one video stream: RIFF with the OpenDML extensions (version 1.02), so that a recording may be larger
+// than 4 GiB. docs/codecs.md shows the layout that is written; any such file, and any cut or unfinished one, is read.
+// One thread at a time; both block on the disk.
 #pragma once
 
 #include <array>
@@ -19,11 +19,11 @@
 namespace wall::codec {
 
 struct AviFormat {
-    std::uint32_t width = 0, height = 0;            ///< pixels; at most kMaxExtent each
+    std::uint32_t width = 0, height = 0;  ///< pixels; at most kMaxExtent each
     std::array<char, 4> four_cc{'H', 'F', 'Y', 'U'};
-    std::uint16_t bit_count = 24;                   ///< biBitCount
-    std::uint32_t rate = 25, scale = 1;             ///< rate / scale frames a second
-    std::vector<std::byte> extradata;               ///< behind the BITMAPINFOHEADER
+    std::uint16_t bit_count = 24;        ///< biBitCount
+    std::uint32_t rate = 25, scale = 1;  ///< rate / scale frames a second
+    std::vector<std::byte> extradata;    ///< behind the BITMAPINFOHEADER
 };
 
 class AviWriter {
@@ -32,9 +32,11 @@ public:
     static constexpr std::uint64_t kSegmentBytes = std::uint64_t{1} << 30;
 
     /// Makes or empties the file. Tests give a smaller segment.
-    static Result<AviWriter> create(const std::string& path, const AviFormat& format, std::uint64_t segment_bytes = kSegmentBytes);
+    static Result<AviWriter> create(const std::string& path, const AviFormat& format,
+                                    std::uint64_t segment_bytes = kSegmentBytes);
 
-    /// Fails when the disk is full or the file is (kMaxSegments segments); what was written stays readable after finish().
+    /// Fails when the disk is full or the file is (kMaxSegments segments); what was written stays readable after
+    /// finish().
     Result<void> add(std::span<const std::byte> frame, bool key = true);
     /// Writes the indexes and sizes. Without it the file is one that was cut short.
     Result<void> finish();
@@ -77,8 +79,8 @@ public:
     static Result<AviReader> open(std::unique_ptr<std::istream> file, std::string name);
 
     const AviFormat& format() const { return format_; }
-    /// The next frame's bytes, nothing at the end. Fails where the file is cut (every whole frame before that was given) and
-    /// where it is not RIFF any more.
+    /// The next frame's bytes, nothing at the end. Fails where the file is cut (every whole frame before that was
+    /// given) and where it is not RIFF any more.
     Result<std::optional<std::vector<std::byte>>> next();
 
 private:
@@ -100,9 +102,9 @@ private:
     AviFormat format_;
     std::uint64_t size_ = 0, at_ = 0;
     std::uint64_t frames_read_ = 0, frames_promised_ = 0;  ///< promised 0: the file was not finished
-    int stream_ = -1;          ///< streams seen so far, less 1
-    int video_ = -1;           ///< the video stream's number
-    bool is_video_ = false;    ///< of the stream list that is read
+    int stream_ = -1;                                      ///< streams seen so far, less 1
+    int video_ = -1;                                       ///< the video stream's number
+    bool is_video_ = false;                                ///< of the stream list that is read
     std::uint32_t rate_ = 0, scale_ = 0;
 };
 

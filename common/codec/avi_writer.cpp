@@ -9,8 +9,8 @@
 namespace wall::codec {
 namespace {
 
-constexpr std::uint32_t kMaxSegments = 512;        ///< entries kept free in the super index: half a tebibyte
-constexpr std::uint64_t kMaxFrame = 1u << 30;      ///< bytes; a chunk's size has 32 bits, and old readers take it as signed
+constexpr std::uint32_t kMaxSegments = 512;    ///< entries kept free in the super index: half a tebibyte
+constexpr std::uint64_t kMaxFrame = 1u << 30;  ///< bytes; a chunk's size has 32 bits, and old readers take it as signed
 constexpr std::uint32_t kHasIndex = 0x10, kKeyFrame = 0x10, kNoKeyFrame = 0x80000000u;
 constexpr std::string_view kFrameId = "00dc", kIndexId = "ix00";
 
@@ -23,7 +23,8 @@ public:
     }
     template <class Value>
     Bytes& number(Value value) {
-        for (std::size_t i = 0; i < sizeof(Value); ++i) out_.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(value) >> (8 * i)));
+        for (std::size_t i = 0; i < sizeof(Value); ++i)
+            out_.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(value) >> (8 * i)));
         return *this;
     }
     Bytes& u16(std::uint64_t value) { return number(static_cast<std::uint16_t>(value)); }
@@ -37,7 +38,9 @@ public:
         return *this;
     }
     /// A chunk, padded to an even size.
-    Bytes& chunk(std::string_view id, const Bytes& data) { return text(id).u32(data.out_.size()).bytes(data.out_).zeros(data.out_.size() % 2); }
+    Bytes& chunk(std::string_view id, const Bytes& data) {
+        return text(id).u32(data.out_.size()).bytes(data.out_).zeros(data.out_.size() % 2);
+    }
     std::size_t size() const { return out_.size(); }
     std::span<const std::byte> span() const { return out_; }
 
@@ -48,13 +51,32 @@ private:
 Bytes main_header(const AviFormat& format) {
     const std::uint64_t microseconds = std::uint64_t{1000000} * format.scale / format.rate;
     Bytes out;
-    out.u32(microseconds).u32(0).u32(0).u32(kHasIndex).u32(0).u32(0).u32(1).u32(0).u32(format.width).u32(format.height).zeros(16);
+    out.u32(microseconds)
+        .u32(0)
+        .u32(0)
+        .u32(kHasIndex)
+        .u32(0)
+        .u32(0)
+        .u32(1)
+        .u32(0)
+        .u32(format.width)
+        .u32(format.height)
+        .zeros(16);
     return out;
 }
 
 Bytes stream_header(const AviFormat& format) {
     Bytes out;
-    out.text("vids").text({format.four_cc.data(), 4}).u32(0).u32(0).u32(0).u32(format.scale).u32(format.rate).u32(0).u32(0).u32(0);
+    out.text("vids")
+        .text({format.four_cc.data(), 4})
+        .u32(0)
+        .u32(0)
+        .u32(0)
+        .u32(format.scale)
+        .u32(format.rate)
+        .u32(0)
+        .u32(0)
+        .u32(0);
     out.u32(~0u).u32(0).u16(0).u16(0).u16(format.width).u16(format.height);
     return out;
 }
@@ -84,10 +106,15 @@ Result<AviWriter> AviWriter::create(const std::string& path, const AviFormat& fo
 
 Result<void> AviWriter::add(std::span<const std::byte> frame, bool key) {
     WALL_ASSERT(!finished_);
-    if (frame.size() > kMaxFrame) return fail(path_ + ": frame of " + std::to_string(frame.size()) + " bytes; the limit is " + std::to_string(kMaxFrame));
-    const std::uint64_t after = at_ - riff_at_ + frame.size() + 8 + 32 + 24 * (entries_.size() + 1);  // with its indexes
+    if (frame.size() > kMaxFrame)
+        return fail(path_ + ": frame of " + std::to_string(frame.size()) + " bytes; the limit is " +
+                    std::to_string(kMaxFrame));
+    const std::uint64_t after =
+        at_ - riff_at_ + frame.size() + 8 + 32 + 24 * (entries_.size() + 1);  // with its indexes
     if (!entries_.empty() && after > segment_bytes_) {
-        if (segments_.size() + 1 >= kMaxSegments) return fail(path_ + ": full: " + std::to_string(kMaxSegments) + " segments of " + std::to_string(segment_bytes_) + " bytes");
+        if (segments_.size() + 1 >= kMaxSegments)
+            return fail(path_ + ": full: " + std::to_string(kMaxSegments) + " segments of " +
+                        std::to_string(segment_bytes_) + " bytes");
         end_segment();
         begin_segment();
     }
@@ -179,7 +206,8 @@ void AviWriter::end_segment() {
 
 void AviWriter::write_old_index() {
     Bytes index, chunk;
-    for (const Entry& entry : entries_) index.text(kFrameId).u32(entry.key ? kKeyFrame : 0).u32(entry.offset - 8).u32(entry.bytes);
+    for (const Entry& entry : entries_)
+        index.text(kFrameId).u32(entry.key ? kKeyFrame : 0).u32(entry.offset - 8).u32(entry.bytes);
     chunk.chunk("idx1", index);
     write(chunk.span());
 }

@@ -43,7 +43,8 @@ public:
 
     /// Then at least 56 bits can be taken; beyond the end they are zero.
     void refill() {
-        if (end_ - at_ < 8) [[unlikely]] return refill_at_end();
+        if (end_ - at_ < 8) [[unlikely]]
+            return refill_at_end();
         std::uint64_t next;
         std::memcpy(&next, at_, sizeof next);
         bits_ |= next << held_;
@@ -51,7 +52,9 @@ public:
         held_ |= 56;
     }
     /// The next `count` bits, at most 32, after refill().
-    std::uint32_t peek(unsigned count) const { return static_cast<std::uint32_t>(bits_ & ((std::uint64_t{1} << count) - 1)); }
+    std::uint32_t peek(unsigned count) const {
+        return static_cast<std::uint32_t>(bits_ & ((std::uint64_t{1} << count) - 1));
+    }
     void skip(unsigned count) {
         bits_ >>= count;
         held_ -= count;

@@ -26,11 +26,12 @@ class Encoder {
 public:
     virtual ~Encoder() = default;
 
-    /// Appends one packet to `out`. `want` is `key` to ask for a key frame (the first one always is); the answer says what
-    /// was written. Fails when the frame does not fit the stream; then nothing was written.
+    /// Appends one packet to `out`. `want` is `key` to ask for a key frame (the first one always is); the answer says
+    /// what was written. Fails when the frame does not fit the stream; then nothing was written.
     virtual Result<PacketKind> encode(const FrameView& frame, PacketKind want, std::vector<std::byte>& out) = 0;
 
-    /// What the decoder needs before the first packet; may be empty. Settled by the first encode(), constant from then on.
+    /// What the decoder needs before the first packet; may be empty. Settled by the first encode(), constant from then
+    /// on.
     virtual std::span<const std::byte> stream_header() const { return {}; }
 };
 
@@ -50,7 +51,8 @@ struct Codec {
     /// Fails for a format that the codec cannot hold. `parallel` is used by encode(), where the codec can.
     Result<std::unique_ptr<Encoder>> (*make_encoder)(const StreamFormat& format, ParallelFor parallel);
     /// `header`: the encoder's stream_header(). `parallel` is used by decode(), where the codec can.
-    Result<std::unique_ptr<Decoder>> (*make_decoder)(const StreamFormat& format, std::span<const std::byte> header, ParallelFor parallel);
+    Result<std::unique_ptr<Decoder>> (*make_decoder)(const StreamFormat& format, std::span<const std::byte> header,
+                                                     ParallelFor parallel);
 };
 
 /// All codecs, in the order of codec_list.h.
@@ -58,7 +60,8 @@ std::span<const Codec* const> codecs();
 /// The codec of that name; the error lists the names that there are.
 Result<const Codec*> find_codec(std::string_view name);
 
-Result<std::unique_ptr<Encoder>> make_encoder(std::string_view codec, const StreamFormat& format, ParallelFor parallel = {});
+Result<std::unique_ptr<Encoder>> make_encoder(std::string_view codec, const StreamFormat& format,
+                                              ParallelFor parallel = {});
 Result<std::unique_ptr<Decoder>> make_decoder(std::string_view codec, const StreamFormat& format,
                                               std::span<const std::byte> header = {}, ParallelFor parallel = {});
 

@@ -4,15 +4,20 @@
 namespace wall::codec {
 namespace {
 
-std::string size_of(std::uint64_t width, std::uint64_t height) { return std::to_string(width) + "x" + std::to_string(height); }
+std::string size_of(std::uint64_t width, std::uint64_t height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+}
 
 }  // namespace
 
 std::string_view name_of(PixelLayout layout) {
     switch (layout) {
-        case PixelLayout::bgra: return "bgra";
-        case PixelLayout::rgba: return "rgba";
-        case PixelLayout::yuy2: return "yuy2";
+        case PixelLayout::bgra:
+            return "bgra";
+        case PixelLayout::rgba:
+            return "rgba";
+        case PixelLayout::yuy2:
+            return "yuy2";
     }
     return "unknown";
 }
@@ -30,13 +35,17 @@ Result<void> check(const StreamFormat& format) {
 
 Result<void> check(const FrameView& frame, const StreamFormat& format) {
     if (frame.width != format.width || frame.height != format.height)
-        return fail("frame of " + size_of(frame.width, frame.height) + " pixels in a stream of " + size_of(format.width, format.height));
+        return fail("frame of " + size_of(frame.width, frame.height) + " pixels in a stream of " +
+                    size_of(format.width, format.height));
     if (frame.layout != format.layout)
-        return fail("frame in " + std::string(name_of(frame.layout)) + " in a stream of " + std::string(name_of(format.layout)));
+        return fail("frame in " + std::string(name_of(frame.layout)) + " in a stream of " +
+                    std::string(name_of(format.layout)));
     return {};
 }
 
 Picture::Picture(const StreamFormat& format)
-    : format_(format), row_bytes_(std::size_t{format.width} * bytes_per_pixel(format.layout)), bytes_(row_bytes_ * format.height) {}
+    : format_(format),
+      row_bytes_(std::size_t{format.width} * bytes_per_pixel(format.layout)),
+      bytes_(row_bytes_ * format.height) {}
 
 }  // namespace wall::codec

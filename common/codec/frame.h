@@ -20,7 +20,7 @@ constexpr std::size_t bytes_per_pixel(PixelLayout layout) { return layout == Pix
 std::string_view name_of(PixelLayout layout);
 
 inline constexpr std::uint32_t kMaxExtent = wire::kMaxSurfaceExtent;  ///< pixels a side
-inline constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 26;    ///< pixels of a frame: 256 MiB of BGRA
+inline constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 26;   ///< pixels of a frame: 256 MiB of BGRA
 
 /// What stays the same over all frames of a stream.
 struct StreamFormat {
@@ -38,7 +38,8 @@ Result<void> check(const StreamFormat& format);
 struct FrameView {
     const std::byte* pixels = nullptr;  ///< the top row
     std::uint32_t width = 0, height = 0;
-    std::ptrdiff_t stride = 0;  ///< bytes from a row to the one below; negative when the bottom row comes first in memory
+    std::ptrdiff_t stride =
+        0;  ///< bytes from a row to the one below; negative when the bottom row comes first in memory
     PixelLayout layout = PixelLayout::bgra;
 
     const std::byte* row(std::uint32_t y) const { return pixels + static_cast<std::ptrdiff_t>(y) * stride; }

@@ -51,7 +51,8 @@ std::vector<std::uint32_t> leaves_per_depth(const std::vector<Leaf>& leaves) {
 /// Moves leaves that are too deep up to `limit`, and pushes shallower ones down until the code is complete again.
 void limit_depth(std::vector<std::uint32_t>& per_depth, unsigned limit) {
     if (per_depth.size() <= limit + 1) return;
-    for (std::size_t deep = limit + 1; deep < per_depth.size(); ++deep) per_depth[limit] += std::exchange(per_depth[deep], 0);
+    for (std::size_t deep = limit + 1; deep < per_depth.size(); ++deep)
+        per_depth[limit] += std::exchange(per_depth[deep], 0);
     std::uint64_t used = 0;  // of 2^limit
     for (unsigned depth = 1; depth <= limit; ++depth) used += std::uint64_t{per_depth[depth]} << (limit - depth);
     for (; used > std::uint64_t{1} << limit; --used) {
@@ -75,7 +76,8 @@ std::vector<std::uint8_t> huffman_lengths(std::span<const std::uint32_t> counts,
     limit_depth(per_depth, limit);
     std::size_t next = leaves.size();  // from the most frequent down, from the shortest code up
     for (unsigned depth = 1; depth < per_depth.size() && depth <= limit; ++depth)
-        for (std::uint32_t i = 0; i < per_depth[depth]; ++i) lengths[leaves[--next].symbol] = static_cast<std::uint8_t>(depth);
+        for (std::uint32_t i = 0; i < per_depth[depth]; ++i)
+            lengths[leaves[--next].symbol] = static_cast<std::uint8_t>(depth);
     return lengths;
 }
 
@@ -84,9 +86,12 @@ Result<std::vector<Code>> canonical_codes(std::span<const std::uint8_t> lengths)
     std::uint64_t next = 0;
     for (unsigned length = kMaxLength; length > 0; --length) {
         for (std::size_t symbol = 0; symbol < lengths.size(); ++symbol)
-            if (lengths[symbol] == length) codes[symbol] = {static_cast<std::uint32_t>(next++), static_cast<std::uint8_t>(length)};
-        if (next > std::uint64_t{1} << length) return fail("code lengths are over-full at " + std::to_string(length) + " bits");
-        if (next % 2 != 0 && !(next == 1 && length == 1)) return fail("code lengths leave half a pair at " + std::to_string(length) + " bits");
+            if (lengths[symbol] == length)
+                codes[symbol] = {static_cast<std::uint32_t>(next++), static_cast<std::uint8_t>(length)};
+        if (next > std::uint64_t{1} << length)
+            return fail("code lengths are over-full at " + std::to_string(length) + " bits");
+        if (next % 2 != 0 && !(next == 1 && length == 1))
+            return fail("code lengths leave half a pair at " + std::to_string(length) + " bits");
         next /= 2;
     }
     if (std::any_of(lengths.begin(), lengths.end(), [](auto length) { return length > kMaxLength; }))

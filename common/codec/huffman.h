@@ -20,8 +20,8 @@ struct Code {
     std::uint8_t length = 0;  ///< 0: the symbol has no code
 };
 
-/// HuffYUV's canonical codes: the longest first from zero, and among equals by symbol. Fails when the lengths are over 31 or
-/// make no prefix code.
+/// HuffYUV's canonical codes: the longest first from zero, and among equals by symbol. Fails when the lengths are over
+/// 31 or make no prefix code.
 Result<std::vector<Code>> canonical_codes(std::span<const std::uint8_t> lengths);
 
 }  // namespace wall::codec

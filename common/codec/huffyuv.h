@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Codec `huffyuv`: bit-compatible with HuffYUV 2.x as AVI files hold it (FourCC HFYU), and with the built-in tables of 1.x.
-// RGB streams take and give bgra or rgba frames, YUY2 streams yuy2 ones. Every packet is a key frame. What a stream's
-// header holds: huffyuv_format.h; the packets: docs/codecs.md.
+// Codec `huffyuv`: bit-compatible with HuffYUV 2.x as AVI files hold it (FourCC HFYU), and with the built-in tables
+// of 1.x. RGB streams take and give bgra or rgba frames, YUY2 streams yuy2 ones. Every packet is a key frame. What a
+// stream's header holds: huffyuv_format.h; the packets: docs/codecs.md.
 #pragma once
 
 #include <optional>

@@ -39,7 +39,8 @@ public:
             std::memcpy(out, entry.pixels.data(), sizeof entry.pixels);
             out += entry.count;
             from.skip(entry.bits);
-            if (entry.count == 0) [[unlikely]] *out++ = slow_pixel(from, failed);
+            if (entry.count == 0) [[unlikely]]
+                *out++ = slow_pixel(from, failed);
         }
         while (out < end) {
             from.refill();
@@ -93,13 +94,19 @@ private:
 class HuffyuvDecoder final : public Decoder {
 public:
     HuffyuvDecoder(const StreamFormat& format, const Stream& stream)
-        : stream_(stream), reader_(stream, format.layout), picture_(format), width_(format.width), height_(format.height), residuals_(format.width) {
+        : stream_(stream),
+          reader_(stream, format.layout),
+          picture_(format),
+          width_(format.width),
+          height_(format.height),
+          residuals_(format.width) {
         for (const auto& codes : stream.tables) planes_.emplace_back(codes);
     }
 
     Result<FrameView> decode(std::span<const std::byte> packet) override {
         if (packet.size() > picture_.bytes().size() * 4 + 64)
-            return fail("huffyuv: packet of " + std::to_string(packet.size()) + " bytes; the picture justifies at most " + std::to_string(picture_.bytes().size() * 4 + 64));
+            return fail("huffyuv: packet of " + std::to_string(packet.size()) +
+                        " bytes; the picture justifies at most " + std::to_string(picture_.bytes().size() * 4 + 64));
         words_.assign(packet.begin(), packet.end());
         words_.resize(packet.size() / 4 * 4 + width_ * kMostPixelBytes + 16);
         WordBitReader from(words_.data());
@@ -107,8 +114,11 @@ public:
         for (std::uint32_t row = 0; row < height_; ++row) {
             const bool good = stream_.pixels == Pixels::yuy2 ? read_yuy2_row(from, row) : read_rgb_row(from, row);
             if (from.at() > end)
-                return fail("huffyuv: packet of " + std::to_string(packet.size()) + " bytes ends in coded row " + std::to_string(row) + " of " + std::to_string(height_));
-            if (!good) return fail("huffyuv: a code that does not exist in coded row " + std::to_string(row) + " of " + std::to_string(height_));
+                return fail("huffyuv: packet of " + std::to_string(packet.size()) + " bytes ends in coded row " +
+                            std::to_string(row) + " of " + std::to_string(height_));
+            if (!good)
+                return fail("huffyuv: a code that does not exist in coded row " + std::to_string(row) + " of " +
+                            std::to_string(height_));
         }
         return picture_.view();
     }
@@ -163,7 +173,8 @@ private:
             const auto plane = plane_of(i);
             const std::uint8_t residual = planes_[plane].take(from, failed);
             const bool median_here = by_median && (y > apart || i >= 8);
-            const auto value = static_cast<std::uint8_t>(residual + (median_here ? median(left_[plane], above[i], above_left_[plane]) : left_[plane]));
+            const auto value = static_cast<std::uint8_t>(
+                residual + (median_here ? median(left_[plane], above[i], above_left_[plane]) : left_[plane]));
             left_[plane] = value;
             if (above != nullptr) above_left_[plane] = above[i];
             row[i] = static_cast<std::uint8_t>(value + (vertical ? above[i] : 0));
@@ -188,7 +199,8 @@ Result<std::unique_ptr<Decoder>> make_stream_decoder(const StreamFormat& format,
     if (auto good = codec::check(format); !good) return tl::unexpected(good.error());
     if (auto good = check(stream, format.width); !good) return tl::unexpected(good.error());
     if ((stream.pixels == Pixels::yuy2) != (format.layout == PixelLayout::yuy2))
-        return fail("huffyuv: a stream of " + std::to_string(static_cast<int>(stream.pixels)) + " bits a pixel does not decode to " + std::string(name_of(format.layout)));
+        return fail("huffyuv: a stream of " + std::to_string(static_cast<int>(stream.pixels)) +
+                    " bits a pixel does not decode to " + std::string(name_of(format.layout)));
     return std::make_unique<HuffyuvDecoder>(format, stream);
 }
 

@@ -9,7 +9,7 @@
 namespace wall::codec::huffyuv {
 namespace {
 
-constexpr unsigned kPutBits = 32;           ///< what WordBitWriter takes at once
+constexpr unsigned kPutBits = 32;            ///< what WordBitWriter takes at once
 constexpr std::size_t kMostPixelBytes = 16;  ///< four codes of at most 31 bits
 constexpr std::size_t kGroup = 8;            ///< pixels that are looked at together: all zero is common
 
@@ -57,13 +57,17 @@ public:
     void put_row(WordBitWriter& to, const std::uint32_t* residuals, std::size_t count) const {
         if (!at_once_) return put_slowly(to, residuals, count);
         if (stream_.decorrelate && !alpha_)
-            red_shift_ == 16 ? put_fast<true, false, 16>(to, residuals, count) : put_fast<true, false, 0>(to, residuals, count);
+            red_shift_ == 16 ? put_fast<true, false, 16>(to, residuals, count)
+                             : put_fast<true, false, 0>(to, residuals, count);
         else if (stream_.decorrelate)
-            red_shift_ == 16 ? put_fast<true, true, 16>(to, residuals, count) : put_fast<true, true, 0>(to, residuals, count);
+            red_shift_ == 16 ? put_fast<true, true, 16>(to, residuals, count)
+                             : put_fast<true, true, 0>(to, residuals, count);
         else if (!alpha_)
-            red_shift_ == 16 ? put_fast<false, false, 16>(to, residuals, count) : put_fast<false, false, 0>(to, residuals, count);
+            red_shift_ == 16 ? put_fast<false, false, 16>(to, residuals, count)
+                             : put_fast<false, false, 0>(to, residuals, count);
         else
-            red_shift_ == 16 ? put_fast<false, true, 16>(to, residuals, count) : put_fast<false, true, 0>(to, residuals, count);
+            red_shift_ == 16 ? put_fast<false, true, 16>(to, residuals, count)
+                             : put_fast<false, true, 0>(to, residuals, count);
     }
 
 private:
@@ -74,7 +78,8 @@ private:
             const std::uint32_t blue = packed_[0][r >> (16 - red_shift) & 255], green = packed_[1][r >> 8 & 255];
             const std::uint32_t red = packed_[2][r >> red_shift & 255];
             const std::uint32_t first = decorrelated ? green : blue, second = decorrelated ? blue : green;
-            const std::uint64_t bits = ((std::uint64_t{first >> 8} << (second & 63)) | second >> 8) << (red & 63) | red >> 8;
+            const std::uint64_t bits =
+                ((std::uint64_t{first >> 8} << (second & 63)) | second >> 8) << (red & 63) | red >> 8;
             to.put(bits, (first & 63) + (second & 63) + (red & 63));
             if constexpr (alpha) to.put(packed_[2][r >> 24] >> 8, packed_[2][r >> 24] & 63);
         };
@@ -127,7 +132,8 @@ public:
         if (!pixel_coder_) settle(frame);
         const std::size_t row_bytes = frame.width * kMostPixelBytes + 16;
         if (words_.size() < row_bytes) words_.resize(row_bytes);
-        const auto end = format_.layout == PixelLayout::yuy2 ? encode_yuy2(frame, row_bytes) : encode_rgb(frame, row_bytes);
+        const auto end =
+            format_.layout == PixelLayout::yuy2 ? encode_yuy2(frame, row_bytes) : encode_rgb(frame, row_bytes);
         out.insert(out.end(), static_cast<const std::byte*>(words_.data()), end);
         return PacketKind::key;
     }
@@ -158,7 +164,8 @@ private:
     }
     /// Alpha, red, green, blue, or red, green, blue, zero.
     std::uint32_t first_pixel(std::uint32_t pixel) const {
-        if (format_.layout == PixelLayout::rgba) pixel = (pixel & 0xff00ff00) | (pixel & 255) << 16 | (pixel >> 16 & 255);
+        if (format_.layout == PixelLayout::rgba)
+            pixel = (pixel & 0xff00ff00) | (pixel & 255) << 16 | (pixel >> 16 & 255);
         return stream_.pixels == Pixels::rgb32 ? pixel : pixel << 8;
     }
     const std::byte* encode_yuy2(const FrameView& frame, std::size_t row_bytes) {
@@ -187,9 +194,11 @@ private:
 }  // namespace
 
 Result<std::unique_ptr<StreamEncoder>> make_stream_encoder(const StreamFormat& format, const EncoderOptions& options) {
-    Stream wanted{.pixels = format.layout == PixelLayout::yuy2 ? Pixels::yuy2 : Pixels::rgb24, .predictor = options.predictor.value_or(Predictor::left)};
+    Stream wanted{.pixels = format.layout == PixelLayout::yuy2 ? Pixels::yuy2 : Pixels::rgb24,
+                  .predictor = options.predictor.value_or(Predictor::left)};
     if (auto good = check(wanted, format.width); !good) return tl::unexpected(good.error());
-    if (options.classic && wanted.pixels != Pixels::yuy2 && wanted.predictor == Predictor::gradient && !options.decorrelate)
+    if (options.classic && wanted.pixels != Pixels::yuy2 && wanted.predictor == Predictor::gradient &&
+        !options.decorrelate)
         return fail("huffyuv: HuffYUV 1.x decorrelates RGB under gradient prediction; expected decorrelate");
     return std::make_unique<HuffyuvEncoder>(format, options);
 }
@@ -199,7 +208,8 @@ Result<std::unique_ptr<StreamEncoder>> make_stream_encoder(const StreamFormat& f
 namespace wall::codec {
 namespace {
 
-Result<std::unique_ptr<Decoder>> make_huffyuv_decoder(const StreamFormat& format, std::span<const std::byte> header, ParallelFor) {
+Result<std::unique_ptr<Decoder>> make_huffyuv_decoder(const StreamFormat& format, std::span<const std::byte> header,
+                                                      ParallelFor) {
     if (header.empty()) return fail("huffyuv: no stream header; expected the encoder's");
     const auto stream = huffyuv::read_stream(0, format.height, header);
     if (!stream) return tl::unexpected(stream.error());
@@ -209,9 +219,10 @@ Result<std::unique_ptr<Decoder>> make_huffyuv_decoder(const StreamFormat& format
 }  // namespace
 
 extern const Codec codec_huffyuv;
-const Codec codec_huffyuv{
-    "huffyuv", "HuffYUV 2.x, as AVI files hold it",
-    [](const StreamFormat& format, ParallelFor) -> Result<std::unique_ptr<Encoder>> { return huffyuv::make_stream_encoder(format, {}); },
-    make_huffyuv_decoder};
+const Codec codec_huffyuv{"huffyuv", "HuffYUV 2.x, as AVI files hold it",
+                          [](const StreamFormat& format, ParallelFor) -> Result<std::unique_ptr<Encoder>> {
+                              return huffyuv::make_stream_encoder(format, {});
+                          },
+                          make_huffyuv_decoder};
 
 }  // namespace wall::codec

@@ -8,7 +8,8 @@ namespace wall::codec::huffyuv {
 namespace {
 
 constexpr std::size_t kFixedBytes = 4;  // method, bits a pixel, interlacing, zero; then the tables
-constexpr std::uint8_t kDecorrelate = 64, kInterlaceMask = 0x30, kInterlaced = 0x10, kProgressive = 0x20, kPerFrameTables = 0x40;
+constexpr std::uint8_t kDecorrelate = 64, kInterlaceMask = 0x30, kInterlaced = 0x10, kProgressive = 0x20,
+                       kPerFrameTables = 0x40;
 constexpr std::uint32_t kInterlacedAbove = 288;  // rows; where a stream does not say, taller ones are interlaced
 constexpr unsigned kLongestRun = 255, kLongestShortRun = 7;
 
@@ -34,7 +35,8 @@ Result<std::array<Code, 256>> read_table(std::span<const std::byte>& bytes) {
         const std::size_t run = long_run ? std::to_integer<unsigned>(bytes[1]) : head >> 5;
         bytes = bytes.subspan(long_run ? 2 : 1);
         if (run == 0 || run > lengths.size() - at)
-            return fail("has a run of " + std::to_string(run) + " at symbol " + std::to_string(at) + "; expected 1 to " + std::to_string(lengths.size() - at));
+            return fail("has a run of " + std::to_string(run) + " at symbol " + std::to_string(at) +
+                        "; expected 1 to " + std::to_string(lengths.size() - at));
         std::fill_n(lengths.begin() + static_cast<std::ptrdiff_t>(at), run, static_cast<std::uint8_t>(head & 31));
         at += run;
     }
@@ -47,10 +49,14 @@ Result<std::array<Code, 256>> read_table(std::span<const std::byte>& bytes) {
 
 Result<Pixels> pixels_of(unsigned bits) {
     switch (bits) {
-        case 16: return Pixels::yuy2;
-        case 24: return Pixels::rgb24;
-        case 32: return Pixels::rgb32;
-        default: return fail("huffyuv: " + std::to_string(bits) + " bits a pixel; expected 16, 24 or 32");
+        case 16:
+            return Pixels::yuy2;
+        case 24:
+            return Pixels::rgb24;
+        case 32:
+            return Pixels::rgb32;
+        default:
+            return fail("huffyuv: " + std::to_string(bits) + " bits a pixel; expected 16, 24 or 32");
     }
 }
 
@@ -59,14 +65,26 @@ Result<Stream> read_classic(std::uint16_t bit_count, bool interlaced) {
     const auto pixels = pixels_of(bit_count & ~7u);
     if (!pixels) return tl::unexpected(pixels.error());
     const bool rgb = *pixels != Pixels::yuy2;
-    Stream out{.pixels = *pixels, .decorrelate = false, .interlaced = interlaced, .classic = true, .tables = classic_tables(*pixels)};
+    Stream out{.pixels = *pixels,
+               .decorrelate = false,
+               .interlaced = interlaced,
+               .classic = true,
+               .tables = classic_tables(*pixels)};
     switch (bit_count & 7) {
         case 0:
-        case 1: break;
-        case 2: out.decorrelate = rgb; break;
-        case 3: out.predictor = Predictor::gradient, out.decorrelate = rgb; break;
-        case 4: out.predictor = Predictor::median; break;
-        default: return fail("huffyuv: method " + std::to_string(bit_count & 7) + " in biBitCount; expected 0 to 4");
+        case 1:
+            break;
+        case 2:
+            out.decorrelate = rgb;
+            break;
+        case 3:
+            out.predictor = Predictor::gradient, out.decorrelate = rgb;
+            break;
+        case 4:
+            out.predictor = Predictor::median;
+            break;
+        default:
+            return fail("huffyuv: method " + std::to_string(bit_count & 7) + " in biBitCount; expected 0 to 4");
     }
     return out;
 }
@@ -86,7 +104,10 @@ std::vector<std::byte> write_extradata(const Stream& stream) {
 std::uint16_t bit_count(const Stream& stream) {
     const auto bits = static_cast<std::uint16_t>(stream.pixels);
     if (!stream.classic) return bits;
-    const unsigned method = stream.predictor == Predictor::median ? 4 : stream.predictor == Predictor::gradient ? 3 : stream.decorrelate ? 2 : 1;
+    const unsigned method = stream.predictor == Predictor::median     ? 4
+                            : stream.predictor == Predictor::gradient ? 3
+                            : stream.decorrelate                      ? 2
+                                                                      : 1;
     return static_cast<std::uint16_t>(bits | method);
 }
 
@@ -94,10 +115,12 @@ Result<Stream> read_stream(std::uint16_t bit_count, std::uint32_t height, std::s
     const bool tall = height > kInterlacedAbove;
     if (extradata.empty()) return read_classic(bit_count, tall);
     if (extradata.size() < kFixedBytes || extradata[3] != std::byte{0})
-        return fail("huffyuv: extradata of " + std::to_string(extradata.size()) + " bytes is not HuffYUV 2.x: expected method, bits a pixel, interlacing, 0, tables");
+        return fail("huffyuv: extradata of " + std::to_string(extradata.size()) +
+                    " bytes is not HuffYUV 2.x: expected method, bits a pixel, interlacing, 0, tables");
     const auto method = std::to_integer<unsigned>(extradata[0]), flags = std::to_integer<unsigned>(extradata[2]);
     if ((method & 63) > 2 || method > (kDecorrelate | 63u))
-        return fail("huffyuv: method " + std::to_string(method) + " in extradata; expected 0, 1 or 2, and 64 for decorrelation");
+        return fail("huffyuv: method " + std::to_string(method) +
+                    " in extradata; expected 0, 1 or 2, and 64 for decorrelation");
     if (flags & kPerFrameTables) return fail("huffyuv: per-frame tables (ffvhuff) are not HuffYUV");
     const unsigned bits = std::to_integer<unsigned>(extradata[1]);
     const auto pixels = pixels_of(bits != 0 ? bits : bit_count & ~7u);

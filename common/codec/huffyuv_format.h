@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a HuffYUV stream is besides its pixels: the bytes behind AVI's BITMAPINFOHEADER (HuffYUV 2.x), or its bit count alone
-// (1.x). docs/codecs.md has the grammar. Values; any thread.
+// What a HuffYUV stream is besides its pixels: the bytes behind AVI's BITMAPINFOHEADER (HuffYUV 2.x), or its bit count
+// alone (1.x). docs/codecs.md has the grammar. Values; any thread.
 #pragma once
 
 #include <array>
@@ -38,8 +38,8 @@ std::vector<std::byte> write_extradata(const Stream& stream);
 /// biBitCount of the BITMAPINFOHEADER.
 std::uint16_t bit_count(const Stream& stream);
 
-/// The stream that biBitCount and the extradata describe; `height` decides on interlacing where they do not. Fails for what
-/// no HuffYUV 1.x or 2.x writes.
+/// The stream that biBitCount and the extradata describe; `height` decides on interlacing where they do not. Fails for
+/// what no HuffYUV 1.x or 2.x writes.
 Result<Stream> read_stream(std::uint16_t bit_count, std::uint32_t height, std::span<const std::byte> extradata);
 
 /// Nothing, or why frames of this kind and width do not exist.

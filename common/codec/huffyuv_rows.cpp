@@ -14,15 +14,18 @@ std::uint32_t subtract_bytes(std::uint32_t a, std::uint32_t b) {
 
 }  // namespace
 
-void rgb_residuals(const FrameView& frame, std::uint32_t coded, Predictor predictor, bool decorrelate, std::uint32_t* out) {
+void rgb_residuals(const FrameView& frame, std::uint32_t coded, Predictor predictor, bool decorrelate,
+                   std::uint32_t* out) {
     const auto& kernels = row_kernels();
     const std::byte* row = coded_row(frame, coded);
     if (coded == 0) return kernels.left(out, row, frame.width, {}, decorrelate);
     const std::byte* above = coded_row(frame, coded - 1);
     const std::uint32_t last = pixel_at(above, frame.width - 1);
     if (predictor == Predictor::left) return kernels.left(out, row, frame.width, {last, 0}, decorrelate);
-    // The running value that `left` goes on from is what was coded last: in row 1 a pixel, later a difference of two rows.
-    const std::uint32_t carried = coded == 1 ? last : subtract_bytes(last, pixel_at(coded_row(frame, coded - 2), frame.width - 1));
+    // The running value that `left` goes on from is what was coded last: in row 1 a pixel, later a difference of two
+    // rows.
+    const std::uint32_t carried =
+        coded == 1 ? last : subtract_bytes(last, pixel_at(coded_row(frame, coded - 2), frame.width - 1));
     kernels.gradient(out, row, above, frame.width, {carried, 0}, decorrelate);
 }
 
@@ -36,7 +39,8 @@ const Yuy2Row& Yuy2Residuals::next() {
         const auto above = y > 0 ? sample(y - 1, i) : std::uint8_t{0};
         const auto value = static_cast<std::uint8_t>(sample(y, i) - (vertical ? above : 0));
         const bool by_median = predictor_ == Predictor::median && (y > 1 || (y == 1 && i >= 8));
-        row_[i] = static_cast<std::uint8_t>(value - (by_median ? median(left_[plane], above, above_left_[plane]) : left_[plane]));
+        row_[i] = static_cast<std::uint8_t>(
+            value - (by_median ? median(left_[plane], above, above_left_[plane]) : left_[plane]));
         left_[plane] = value;
         above_left_[plane] = above;
     }

@@ -22,17 +22,20 @@ inline std::uint32_t pixel_at(const std::byte* row, std::size_t i) {
 }
 
 /// The rows of an RGB frame in coded order: the bottom one first.
-inline const std::byte* coded_row(const FrameView& frame, std::uint32_t coded) { return frame.row(frame.height - 1 - coded); }
+inline const std::byte* coded_row(const FrameView& frame, std::uint32_t coded) {
+    return frame.row(frame.height - 1 - coded);
+}
 
-/// The residuals of coded row `coded` of an RGB frame. The first pixel of the frame has none: out[0] of row 0 is not used.
-/// `predictor` is not median.
-void rgb_residuals(const FrameView& frame, std::uint32_t coded, Predictor predictor, bool decorrelate, std::uint32_t* out);
+/// The residuals of coded row `coded` of an RGB frame. The first pixel of the frame has none: out[0] of row 0 is not
+/// used. `predictor` is not median.
+void rgb_residuals(const FrameView& frame, std::uint32_t coded, Predictor predictor, bool decorrelate,
+                   std::uint32_t* out);
 
 /// Samples of one row in the order they are coded: Y U Y V ...
 using Yuy2Row = std::vector<std::uint8_t>;
 
-/// The residuals of a YUY2 frame row by row, from the top; those of row 0 begin after its first two pixels. The prediction of a
-/// row goes on where the one before it ended, so that rows must be asked for in order.
+/// The residuals of a YUY2 frame row by row, from the top; those of row 0 begin after its first two pixels. The
+/// prediction of a row goes on where the one before it ended, so that rows must be asked for in order.
 class Yuy2Residuals {
 public:
     Yuy2Residuals(const FrameView& frame, Predictor predictor) : frame_(frame), predictor_(predictor) {}
@@ -40,7 +43,9 @@ public:
     const Yuy2Row& next();
 
 private:
-    std::uint8_t sample(std::uint32_t y, std::size_t i) const { return std::to_integer<std::uint8_t>(frame_.row(y)[i]); }
+    std::uint8_t sample(std::uint32_t y, std::size_t i) const {
+        return std::to_integer<std::uint8_t>(frame_.row(y)[i]);
+    }
 
     const FrameView frame_;
     const Predictor predictor_;

@@ -13,8 +13,8 @@ using Counts = std::array<std::array<std::uint32_t, 256>, 3>;
 
 // The three codes of a pixel and one of alpha must fit what the encoder writes at once: 32 bits and again 32.
 constexpr std::array<unsigned, 3> kLimits{11, 11, 10};
-constexpr std::uint32_t kRowStep = 4;       ///< every fourth row is counted
-constexpr double kPriorShare = 1.0 / 64;    ///< what later frames may hold and the first one has not, of all counts
+constexpr std::uint32_t kRowStep = 4;     ///< every fourth row is counted
+constexpr double kPriorShare = 1.0 / 64;  ///< what later frames may hold and the first one has not, of all counts
 
 Counts count_rgb(const FrameView& frame, bool alpha, Predictor predictor, bool decorrelate) {
     Counts counts{};
@@ -50,7 +50,8 @@ void add_prior(Counts& counts) {
         const auto weight = [](int symbol) { return 1.0 / (1 + std::pow(std::min(symbol, 256 - symbol), 2) / 4); };
         for (int symbol = 0; symbol < 256; ++symbol) weights += weight(symbol);
         for (int symbol = 0; symbol < 256; ++symbol)
-            table[static_cast<std::size_t>(symbol)] += 1 + static_cast<std::uint32_t>(total * kPriorShare * weight(symbol) / weights);
+            table[static_cast<std::size_t>(symbol)] +=
+                1 + static_cast<std::uint32_t>(total * kPriorShare * weight(symbol) / weights);
     }
 }
 
@@ -66,14 +67,16 @@ Choice tables_for(Counts counts) {
     for (std::size_t plane = 0; plane < counts.size(); ++plane) {
         const auto codes = canonical_codes(huffman_lengths(counts[plane], kLimits[plane]));
         std::copy(codes->begin(), codes->end(), out.tables[plane].begin());
-        for (std::size_t symbol = 0; symbol < 256; ++symbol) out.bits += static_cast<double>(counted[plane][symbol]) * out.tables[plane][symbol].length;
+        for (std::size_t symbol = 0; symbol < 256; ++symbol)
+            out.bits += static_cast<double>(counted[plane][symbol]) * out.tables[plane][symbol].length;
     }
     return out;
 }
 
 std::vector<Predictor> candidates(const FrameView& frame, const EncoderOptions& options) {
     if (options.predictor) return {*options.predictor};
-    if (frame.layout == PixelLayout::yuy2 && frame.width % 4 == 0) return {Predictor::left, Predictor::gradient, Predictor::median};
+    if (frame.layout == PixelLayout::yuy2 && frame.width % 4 == 0)
+        return {Predictor::left, Predictor::gradient, Predictor::median};
     return {Predictor::left, Predictor::gradient};
 }
 
@@ -81,16 +84,22 @@ std::vector<Predictor> candidates(const FrameView& frame, const EncoderOptions& 
 
 Stream suit(const FrameView& frame, bool alpha, const EncoderOptions& options) {
     const bool yuy2 = frame.layout == PixelLayout::yuy2;
-    Stream stream{.pixels = yuy2 ? Pixels::yuy2 : alpha ? Pixels::rgb32 : Pixels::rgb24, .decorrelate = options.decorrelate && !yuy2, .classic = options.classic};
+    Stream stream{.pixels = yuy2    ? Pixels::yuy2
+                            : alpha ? Pixels::rgb32
+                                    : Pixels::rgb24,
+                  .decorrelate = options.decorrelate && !yuy2,
+                  .classic = options.classic};
     double least = INFINITY;
     for (const Predictor predictor : candidates(frame, options)) {
-        const auto choice = tables_for(yuy2 ? count_yuy2(frame, predictor) : count_rgb(frame, alpha, predictor, stream.decorrelate));
+        const auto choice =
+            tables_for(yuy2 ? count_yuy2(frame, predictor) : count_rgb(frame, alpha, predictor, stream.decorrelate));
         if (choice.bits >= least) continue;
         least = choice.bits;
         stream.predictor = predictor;
         stream.tables = options.classic ? classic_tables(stream.pixels) : choice.tables;
     }
-    if (stream.classic && !yuy2 && stream.predictor == Predictor::gradient) stream.decorrelate = true;  // 1.x has no other
+    if (stream.classic && !yuy2 && stream.predictor == Predictor::gradient)
+        stream.decorrelate = true;  // 1.x has no other
     return stream;
 }
 

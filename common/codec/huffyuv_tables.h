@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tables that turn HuffYUV's bits back into residuals: one symbol at a time for any code, and whole pixels, up to two at a
-// time, for short codes. Built once a stream. Pure; any thread.
+// Tables that turn HuffYUV's bits back into residuals: one symbol at a time for any code, and whole pixels, up to two
+// at a time, for short codes. Built once a stream. Pure; any thread.
 #pragma once
 
 #include <array>
@@ -24,7 +24,8 @@ public:
     std::uint8_t take(WordBitReader& from, bool& failed) const {
         from.refill();
         const std::uint16_t found = short_[from.peek(kIndexBits)];
-        if (found == 0) [[unlikely]] return take_long(from, failed);
+        if (found == 0) [[unlikely]]
+            return take_long(from, failed);
         from.skip(found >> 8);
         return static_cast<std::uint8_t>(found);
     }
@@ -41,7 +42,8 @@ private:
     std::vector<Long> long_;            ///< in rising order of `first`
 };
 
-/// What the next kIndexBits bits say of pixels. Residuals are no longer decorrelated; alpha is 0 where the stream has none.
+/// What the next kIndexBits bits say of pixels. Residuals are no longer decorrelated; alpha is 0 where the stream has
+/// none.
 struct PixelEntry {
     std::array<std::uint32_t, 2> pixels{};
     std::uint8_t bits = 0;   ///< of both
@@ -57,7 +59,8 @@ struct PixelOrder {
 
     std::uint32_t pixel(std::uint32_t blue, std::uint32_t green, std::uint32_t red, std::uint32_t alpha_byte) const {
         const std::uint32_t more = decorrelated ? green : 0;
-        return ((blue + more) & 255) << (16 - red_shift) | green << 8 | ((red + more) & 255) << red_shift | alpha_byte << 24;
+        return ((blue + more) & 255) << (16 - red_shift) | green << 8 | ((red + more) & 255) << red_shift |
+               alpha_byte << 24;
     }
 };
 

@@ -35,7 +35,8 @@ private:
 
 class PackedDecoder final : public Decoder {
 public:
-    PackedDecoder(const StreamFormat& format, const Compressor& compressor) : compressor_(compressor), picture_(format) {}
+    PackedDecoder(const StreamFormat& format, const Compressor& compressor)
+        : compressor_(compressor), picture_(format) {}
 
     Result<FrameView> decode(Bytes packet) override {
         if (auto done = compressor_.restore(packet, picture_.bytes()); !done) return tl::unexpected(done.error());

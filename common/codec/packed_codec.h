@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What raw, lz4 and zstd share: a frame's bytes in a row, pressed by one function and restored by another. Every packet is
-// a key frame:
+// What raw, lz4 and zstd share: a frame's bytes in a row, pressed by one function and restored by another. Every packet
+// is a key frame:
 //
 //   packet := the pixels of all rows, top first, without padding, compressed
 #pragma once

@@ -15,7 +15,8 @@ constexpr Compressor kRaw{
     },
     .restore = [](Bytes packet, std::span<std::byte> out) -> Result<void> {
         if (packet.size() != out.size())
-            return fail("raw: packet of " + std::to_string(packet.size()) + " bytes; expected " + std::to_string(out.size()));
+            return fail("raw: packet of " + std::to_string(packet.size()) + " bytes; expected " +
+                        std::to_string(out.size()));
         std::memcpy(out.data(), packet.data(), out.size());
         return {};
     },

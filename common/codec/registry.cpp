@@ -25,14 +25,16 @@ Result<const Codec*> find_codec(std::string_view name) {
     return fail("unknown codec '" + std::string(name.substr(0, 64)) + "'; there are: " + names);
 }
 
-Result<std::unique_ptr<Encoder>> make_encoder(std::string_view codec, const StreamFormat& format, ParallelFor parallel) {
+Result<std::unique_ptr<Encoder>> make_encoder(std::string_view codec, const StreamFormat& format,
+                                              ParallelFor parallel) {
     if (auto good = check(format); !good) return tl::unexpected(good.error());
     const auto found = find_codec(codec);
     if (!found) return tl::unexpected(found.error());
     return (*found)->make_encoder(format, std::move(parallel));
 }
 
-Result<std::unique_ptr<Decoder>> make_decoder(std::string_view codec, const StreamFormat& format, std::span<const std::byte> header, ParallelFor parallel) {
+Result<std::unique_ptr<Decoder>> make_decoder(std::string_view codec, const StreamFormat& format,
+                                              std::span<const std::byte> header, ParallelFor parallel) {
     if (auto good = check(format); !good) return tl::unexpected(good.error());
     const auto found = find_codec(codec);
     if (!found) return tl::unexpected(found.error());

@@ -26,7 +26,9 @@ template <class Byte>
 Pixel by_bytes(Pixel a, Pixel b, Pixel c, Byte byte) {
     Pixel out = 0;
     for (unsigned shift = 0; shift < 32; shift += 8)
-        out |= static_cast<Pixel>(static_cast<std::uint8_t>(byte((a >> shift) & 255, (b >> shift) & 255, (c >> shift) & 255))) << shift;
+        out |= static_cast<Pixel>(
+                   static_cast<std::uint8_t>(byte((a >> shift) & 255, (b >> shift) & 255, (c >> shift) & 255)))
+               << shift;
     return out;
 }
 Pixel add(Pixel a, Pixel b) {
@@ -48,7 +50,8 @@ Pixel residual(Pixel pixel, Pixel prediction, bool decorrelate) {
 }
 
 template <Pixel (*predict)(Pixel, Pixel, Pixel)>
-void residuals(Pixel* out, const std::byte* row, const std::byte* above, std::size_t count, RowStart start, bool decorrelate) {
+void residuals(Pixel* out, const std::byte* row, const std::byte* above, std::size_t count, RowStart start,
+               bool decorrelate) {
     for (std::size_t i = 0; i < count; ++i) {
         out[i] = residual(load(row, i), predict(start.left, load(above, i), start.above_left), decorrelate);
         start = {load(row, i), load(above, i)};
@@ -68,41 +71,47 @@ unsigned reached_powers(unsigned byte) { return static_cast<unsigned>(std::bit_w
 
 constexpr RowKernels kPlain{
     .name = "plain",
-    .left = [](Pixel* out, const std::byte* row, std::size_t count, RowStart start, bool decorrelate) {
-        residuals<first_of>(out, row, row, count, start, decorrelate);
-    },
+    .left = [](Pixel* out, const std::byte* row, std::size_t count, RowStart start,
+               bool decorrelate) { residuals<first_of>(out, row, row, count, start, decorrelate); },
     .gradient = residuals<gradient_of>,
     .median = residuals<median_of>,
-    .difference = [](Pixel* out, const std::byte* row, const std::byte* previous, std::size_t count, bool decorrelate) {
-        for (std::size_t i = 0; i < count; ++i) out[i] = residual(load(row, i), load(previous, i), decorrelate);
-    },
-    .add_left = [](std::byte* row, const Pixel* residuals, std::size_t count, RowStart start) {
-        for (std::size_t i = 0; i < count; ++i) store(row, i, start.left = add(start.left, residuals[i]));
-    },
+    .difference =
+        [](Pixel* out, const std::byte* row, const std::byte* previous, std::size_t count, bool decorrelate) {
+            for (std::size_t i = 0; i < count; ++i) out[i] = residual(load(row, i), load(previous, i), decorrelate);
+        },
+    .add_left =
+        [](std::byte* row, const Pixel* residuals, std::size_t count, RowStart start) {
+            for (std::size_t i = 0; i < count; ++i) store(row, i, start.left = add(start.left, residuals[i]));
+        },
     .add_gradient = restore<gradient_of>,
     .add_median = restore<median_of>,
-    .add_difference = [](std::byte* row, const Pixel* residuals, const std::byte* previous, std::size_t count) {
-        for (std::size_t i = 0; i < count; ++i) store(row, i, add(load(previous, i), residuals[i]));
-    },
-    .nonzero = [](const Pixel* residuals, std::size_t count, Pixel mask) {
-        std::uint64_t bits = 0;
-        for (std::size_t i = 0; i < count; ++i) bits |= std::uint64_t{(residuals[i] & mask) != 0} << i;
-        return bits;
-    },
-    .cost = [](const Pixel* residuals, std::size_t count, Pixel mask) {
-        Pixel sum = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            const Pixel r = residuals[i] & mask;
-            sum += r != 0 ? 3 : 0;
-            for (unsigned shift = 0; shift < 32; shift += 8) sum += std::min(reached_powers((r >> shift) & 255), 7u);
-        }
-        return sum;
-    },
-    .all_equal = [](const std::byte* row, std::size_t count, Pixel pixel, Pixel mask) {
-        for (std::size_t i = 0; i < count; ++i)
-            if ((load(row, i) ^ pixel) & mask) return false;
-        return true;
-    },
+    .add_difference =
+        [](std::byte* row, const Pixel* residuals, const std::byte* previous, std::size_t count) {
+            for (std::size_t i = 0; i < count; ++i) store(row, i, add(load(previous, i), residuals[i]));
+        },
+    .nonzero =
+        [](const Pixel* residuals, std::size_t count, Pixel mask) {
+            std::uint64_t bits = 0;
+            for (std::size_t i = 0; i < count; ++i) bits |= std::uint64_t{(residuals[i] & mask) != 0} << i;
+            return bits;
+        },
+    .cost =
+        [](const Pixel* residuals, std::size_t count, Pixel mask) {
+            Pixel sum = 0;
+            for (std::size_t i = 0; i < count; ++i) {
+                const Pixel r = residuals[i] & mask;
+                sum += r != 0 ? 3 : 0;
+                for (unsigned shift = 0; shift < 32; shift += 8)
+                    sum += std::min(reached_powers((r >> shift) & 255), 7u);
+            }
+            return sum;
+        },
+    .all_equal =
+        [](const std::byte* row, std::size_t count, Pixel pixel, Pixel mask) {
+            for (std::size_t i = 0; i < count; ++i)
+                if ((load(row, i) ^ pixel) & mask) return false;
+            return true;
+        },
 };
 
 std::vector<const RowKernels*> find_kernels() {

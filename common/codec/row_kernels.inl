@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The row kernels over vectors of WALL_VECTOR_BYTES bytes (GCC's and clang's vector extension: no intrinsics, any processor).
-// Everything here is in an unnamed namespace and always inlined, so that no function leaves this build.
+// The row kernels over vectors of WALL_VECTOR_BYTES bytes (GCC's and clang's vector extension: no intrinsics, any
+// processor). Everything here is in an unnamed namespace and always inlined, so that no function leaves this build.
 #include "common/codec/row_kernels_simd.h"
 
 #define WALL_INLINE inline __attribute__((always_inline))
@@ -74,28 +74,33 @@ struct Previous {
 template <class Predictor, bool decorrelate>
 WALL_INLINE Pixel single_residual(Pixel pixel, Pixel left, Pixel above, Pixel above_left) {
     const auto lane = [](Pixel p) { return reinterpret_cast<Bytes>(Words{p}); };
-    const Bytes r = decorrelated<decorrelate>(lane(pixel) - Predictor::predict(lane(left), lane(above), lane(above_left)));
+    const Bytes r =
+        decorrelated<decorrelate>(lane(pixel) - Predictor::predict(lane(left), lane(above), lane(above_left)));
     return reinterpret_cast<Words>(r)[0];
 }
 
 template <class Predictor, bool decorrelate>
 void residuals_as(Pixel* out, const std::byte* row, const std::byte* above, std::size_t count, RowStart start) {
     if (count == 0) return;
-    out[0] = single_residual<Predictor, decorrelate>(load<Pixel>(row), start.left, load<Pixel>(above), start.above_left);
+    out[0] =
+        single_residual<Predictor, decorrelate>(load<Pixel>(row), start.left, load<Pixel>(above), start.above_left);
     each(
         1, count,
         [&](std::size_t i) {
-            const Bytes predicted = Predictor::predict(load(row + 4 * i - 4), load(above + 4 * i), load(above + 4 * i - 4));
+            const Bytes predicted =
+                Predictor::predict(load(row + 4 * i - 4), load(above + 4 * i), load(above + 4 * i - 4));
             store(out + i, decorrelated<decorrelate>(load(row + 4 * i) - predicted));
         },
         [&](std::size_t i) {
-            out[i] = single_residual<Predictor, decorrelate>(load<Pixel>(row + 4 * i), load<Pixel>(row + 4 * i - 4),
-                                                             load<Pixel>(above + 4 * i), load<Pixel>(above + 4 * i - 4));
+            out[i] =
+                single_residual<Predictor, decorrelate>(load<Pixel>(row + 4 * i), load<Pixel>(row + 4 * i - 4),
+                                                        load<Pixel>(above + 4 * i), load<Pixel>(above + 4 * i - 4));
         });
 }
 
 template <class Predictor>
-void residuals(Pixel* out, const std::byte* row, const std::byte* above, std::size_t count, RowStart start, bool decorrelate) {
+void residuals(Pixel* out, const std::byte* row, const std::byte* above, std::size_t count, RowStart start,
+               bool decorrelate) {
     if (decorrelate)
         residuals_as<Predictor, true>(out, row, above, count, start);
     else
@@ -104,7 +109,8 @@ void residuals(Pixel* out, const std::byte* row, const std::byte* above, std::si
 
 /// Running sums over a row of differences that begins after `carry`; with `above`, that row is added to the sums.
 template <bool with_above>
-WALL_INLINE void sum_up(std::byte* row, const Pixel* residuals, const std::byte* above, std::size_t count, Bytes16 carry) {
+WALL_INLINE void sum_up(std::byte* row, const Pixel* residuals, const std::byte* above, std::size_t count,
+                        Bytes16 carry) {
     const Words4 zero{};
     carry = reinterpret_cast<Bytes16>(__builtin_shufflevector(reinterpret_cast<Words4>(carry), zero, 0, 0, 0, 0));
     std::size_t i = 0;
@@ -174,7 +180,9 @@ std::uint64_t nonzero(const Pixel* residuals, std::size_t count, Pixel mask) {
     std::uint64_t bits = 0;
     each(
         0, count,
-        [&](std::size_t i) { bits |= lane_bits(reinterpret_cast<Words>((load<Words>(residuals + i) & mask) != 0)) << i; },
+        [&](std::size_t i) {
+            bits |= lane_bits(reinterpret_cast<Words>((load<Words>(residuals + i) & mask) != 0)) << i;
+        },
         [&](std::size_t i) { bits |= std::uint64_t{(residuals[i] & mask) != 0} << i; });
     return bits;
 }
@@ -214,9 +222,8 @@ bool all_equal(const std::byte* row, std::size_t count, Pixel pixel, Pixel mask)
 const RowKernels& WALL_KERNELS() {
     static constexpr RowKernels kernels{
         .name = WALL_KERNELS_NAME,
-        .left = [](Pixel* out, const std::byte* row, std::size_t count, RowStart start, bool decorrelate) {
-            residuals<Left>(out, row, row, count, start, decorrelate);
-        },
+        .left = [](Pixel* out, const std::byte* row, std::size_t count, RowStart start,
+                   bool decorrelate) { residuals<Left>(out, row, row, count, start, decorrelate); },
         .gradient = residuals<Gradient>,
         .median = residuals<Median>,
         .difference = difference,

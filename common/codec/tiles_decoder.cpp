@@ -18,7 +18,9 @@ struct Output {
     const DecodeTables* tables;  ///< none: there were none since the key packet
     bool key;
 
-    std::byte* row(const Block& block, std::uint32_t y) const { return picture.row(block.y + y) + 4 * std::size_t{block.x}; }
+    std::byte* row(const Block& block, std::uint32_t y) const {
+        return picture.row(block.y + y) + 4 * std::size_t{block.x};
+    }
 };
 
 /// Fills `count` residuals; false when the bits hold a code or run that cannot be.
@@ -67,7 +69,8 @@ void add_residuals(const Output& to, const Block& block, Mode mode, const Residu
         if (mode == Mode::left || above == nullptr)
             kernels.add_left(row, residual, block.width, start);
         else
-            (mode == Mode::gradient ? kernels.add_gradient : kernels.add_median)(row, residual, above, block.width, start);
+            (mode == Mode::gradient ? kernels.add_gradient : kernels.add_median)(row, residual, above, block.width,
+                                                                                 start);
     }
 }
 
@@ -90,16 +93,20 @@ void read_raw(const Output& to, const Block& block, bool alpha, ByteBitReader& f
     }
 }
 
-Failure read_block(const Output& to, const Block& block, std::uint8_t coded_mode, ByteBitReader& from, Residuals& residuals) {
+Failure read_block(const Output& to, const Block& block, std::uint8_t coded_mode, ByteBitReader& from,
+                   Residuals& residuals) {
     const bool alpha = has_alpha(coded_mode);
     const auto mode = static_cast<Mode>(alpha ? coded_mode - kWithAlpha : coded_mode);
-    if (to.key && (mode == Mode::unchanged || mode == Mode::previous)) return "refers to the picture before in a key packet";
+    if (to.key && (mode == Mode::unchanged || mode == Mode::previous))
+        return "refers to the picture before in a key packet";
     if (mode == Mode::unchanged) return {};
     if (mode == Mode::flat) return fill_flat(to, block), Failure{};
-    if (mode == Mode::raw || mode == Mode::raw_alpha) return read_raw(to, block, mode == Mode::raw_alpha, from), Failure{};
+    if (mode == Mode::raw || mode == Mode::raw_alpha)
+        return read_raw(to, block, mode == Mode::raw_alpha, from), Failure{};
     if (to.tables == nullptr) return "has codes, and no tables came yet";
     const std::size_t count = std::size_t{block.width} * block.height;
-    const bool good = alpha ? read_residuals<true>(from, *to.tables, residuals, count) : read_residuals<false>(from, *to.tables, residuals, count);
+    const bool good = alpha ? read_residuals<true>(from, *to.tables, residuals, count)
+                            : read_residuals<false>(from, *to.tables, residuals, count);
     if (!good) return "holds a code or a run that cannot be";
     add_residuals(to, block, mode, residuals);
     return {};
@@ -151,18 +158,22 @@ std::optional<std::size_t> take_number(std::span<const std::byte>& bytes) {
 
 class TilesDecoder final : public Decoder {
 public:
-    TilesDecoder(const StreamFormat& format, ParallelFor parallel) : format_(format), parallel_(std::move(parallel)), picture_(format) {}
+    TilesDecoder(const StreamFormat& format, ParallelFor parallel)
+        : format_(format), parallel_(std::move(parallel)), picture_(format) {}
 
     Result<FrameView> decode(std::span<const std::byte> packet) override {
         if (packet.empty()) return fail("huffyuv-tiles: empty packet");
         const auto flags = std::to_integer<std::uint8_t>(packet[0]);
         if ((flags & ~(kKey | kUnchanged | kTables)) != 0 || ((flags & kUnchanged) && flags != kUnchanged))
             return fail("huffyuv-tiles: unknown flags " + std::to_string(flags));
-        if (!(flags & kKey) && !whole_) return fail("huffyuv-tiles: a delta packet without the picture before; expected a key packet");
+        if (!(flags & kKey) && !whole_)
+            return fail("huffyuv-tiles: a delta packet without the picture before; expected a key packet");
         if (flags == kUnchanged && packet.size() == 1) return picture_.view();
-        if (flags == kUnchanged) return fail("huffyuv-tiles: " + std::to_string(packet.size() - 1) + " bytes after 'unchanged'");
+        if (flags == kUnchanged)
+            return fail("huffyuv-tiles: " + std::to_string(packet.size() - 1) + " bytes after 'unchanged'");
         whole_ = false;
-        if (auto good = read_body(flags, packet.subspan(1)); !good) return fail("huffyuv-tiles: " + good.error().message);
+        if (auto good = read_body(flags, packet.subspan(1)); !good)
+            return fail("huffyuv-tiles: " + good.error().message);
         whole_ = true;
         return picture_.view();
     }
@@ -181,7 +192,9 @@ private:
             sizes.push_back(*size);
             total += *size;
         }
-        if (total != bytes.size()) return fail("slices of " + std::to_string(total) + " bytes in a packet with " + std::to_string(bytes.size()) + " left");
+        if (total != bytes.size())
+            return fail("slices of " + std::to_string(total) + " bytes in a packet with " +
+                        std::to_string(bytes.size()) + " left");
         std::vector<std::span<const std::byte>> slices;
         for (const std::size_t size : sizes) {
             slices.push_back(bytes.first(size));
@@ -203,7 +216,8 @@ private:
     }
     Result<void> read_slices(const Output& to, const std::vector<std::span<const std::byte>>& slices) {
         std::vector<Failure> failures(slices.size());
-        for_each_index(parallel_, slices.size(), [&](std::size_t i) { failures[i] = read_slice(to, static_cast<std::uint32_t>(i), slices[i]); });
+        for_each_index(parallel_, slices.size(),
+                       [&](std::size_t i) { failures[i] = read_slice(to, static_cast<std::uint32_t>(i), slices[i]); });
         for (std::size_t i = 0; i < failures.size(); ++i)
             if (failures[i]) return fail("slice " + std::to_string(i) + " " + *failures[i]);
         return {};
@@ -218,7 +232,8 @@ private:
 
 }  // namespace
 
-Result<std::unique_ptr<Decoder>> make_decoder(const StreamFormat& format, std::span<const std::byte>, ParallelFor parallel) {
+Result<std::unique_ptr<Decoder>> make_decoder(const StreamFormat& format, std::span<const std::byte>,
+                                              ParallelFor parallel) {
     if (format.layout == PixelLayout::yuy2) return fail("huffyuv-tiles: yuy2 frames; expected bgra or rgba");
     return std::make_unique<TilesDecoder>(format, std::move(parallel));
 }
@@ -228,6 +243,8 @@ Result<std::unique_ptr<Decoder>> make_decoder(const StreamFormat& format, std::s
 namespace wall::codec {
 
 extern const Codec codec_huffyuv_tiles;
-const Codec codec_huffyuv_tiles{"huffyuv-tiles", "prediction and prefix codes over slices and blocks; unchanged blocks are free", tiles::make_encoder, tiles::make_decoder};
+const Codec codec_huffyuv_tiles{"huffyuv-tiles",
+                                "prediction and prefix codes over slices and blocks; unchanged blocks are free",
+                                tiles::make_encoder, tiles::make_decoder};
 
 }  // namespace wall::codec

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Codec `huffyuv-tiles`, encoder: one pass over the slices chooses a mode for every block and turns residuals into tokens, which
-// are counted; then the codes are made; a second pass writes the tokens.
+// Codec `huffyuv-tiles`, encoder: one pass over the slices chooses a mode for every block and turns residuals into
+// tokens, which are counted; then the codes are made; a second pass writes the tokens.
 #include <limits>
 
 #include "common/codec/tiles.h"
@@ -10,7 +10,7 @@
 namespace wall::codec::tiles {
 namespace {
 
-constexpr std::uint32_t kProbeStep = 8;                  ///< rows; every eighth one is tried with each predictor
+constexpr std::uint32_t kProbeStep = 8;                     ///< rows; every eighth one is tried with each predictor
 constexpr std::size_t kMostBlockBytes = kBlockPixels * 6;   ///< four codes a pixel; runs take less
 constexpr std::size_t kMostBlockTokens = kBlockPixels * 2;  ///< whole pixels with alpha
 
@@ -19,8 +19,8 @@ struct BlockPlan {
     std::size_t tokens_end;  ///< of the slice's tokens; they begin where the block before ends
 };
 
-/// A token is a symbol of the main code and its extra bits, or a whole pixel's residual; where the stream keeps alpha, a word
-/// with alpha's residual follows it.
+/// A token is a symbol of the main code and its extra bits, or a whole pixel's residual; where the stream keeps alpha,
+/// a word with alpha's residual follows it.
 namespace token {
 constexpr std::uint32_t kPixel = 1u << 31;  ///< over the residual of three colours
 constexpr unsigned kSymbolBits = 10, kExtraShift = 16;
@@ -51,8 +51,12 @@ struct Input {
     bool key;
 
     std::uint32_t mask() const { return format.alpha ? 0xffffffff : 0x00ffffff; }
-    const std::byte* row(const Block& block, std::uint32_t y) const { return frame.row(block.y + y) + 4 * std::size_t{block.x}; }
-    std::byte* previous_row(const Block& block, std::uint32_t y) const { return previous.row(block.y + y) + 4 * std::size_t{block.x}; }
+    const std::byte* row(const Block& block, std::uint32_t y) const {
+        return frame.row(block.y + y) + 4 * std::size_t{block.x};
+    }
+    std::byte* previous_row(const Block& block, std::uint32_t y) const {
+        return previous.row(block.y + y) + 4 * std::size_t{block.x};
+    }
 };
 
 void residuals(const Input& in, const Block& block, std::uint32_t y, Mode mode, std::uint32_t* out) {
@@ -87,7 +91,8 @@ Mode choose_predictor(const Input& in, const Block& block) {
 /// Turns residuals into tokens and counts their symbols.
 class Tokenizer {
 public:
-    Tokenizer(Slice& slice, std::uint32_t mask) : slice_(slice), mask_(mask), at_(slice.tokens.data() + slice.tokens_used) {}
+    Tokenizer(Slice& slice, std::uint32_t mask)
+        : slice_(slice), mask_(mask), at_(slice.tokens.data() + slice.tokens_used) {}
 
     void add_row(const std::uint32_t* residual, std::uint32_t count) {
         std::uint64_t rest = row_kernels().nonzero(residual, count, mask_);
@@ -180,7 +185,8 @@ void plan_slice(const Input& in, std::uint32_t number, Slice& slice) {
         auto mode = static_cast<std::uint8_t>(Mode::unchanged);
         if (in.key || !is_unchanged(in, block)) {
             mode = is_flat(in, block) ? static_cast<std::uint8_t>(Mode::flat) : plan_coded(in, block, slice);
-            for (std::uint32_t y = 0; y < block.height; ++y) std::memcpy(in.previous_row(block, y), in.row(block, y), 4 * std::size_t{block.width});
+            for (std::uint32_t y = 0; y < block.height; ++y)
+                std::memcpy(in.previous_row(block, y), in.row(block, y), 4 * std::size_t{block.width});
             slice.changed = true;
         }
         slice.blocks.push_back({mode, slice.tokens_used});
@@ -195,10 +201,12 @@ void write_tokens(std::span<const std::uint32_t> tokens, const std::array<Encode
         const std::uint32_t now = tokens[i];
         if (!(now & token::kPixel)) {
             const std::uint32_t code = tables[kMain][token::symbol_of(now)];
-            to.put(code >> 8 | std::uint64_t{now >> token::kExtraShift} << (code & 63), (code & 63) + token::extra_bits_of(now));
+            to.put(code >> 8 | std::uint64_t{now >> token::kExtraShift} << (code & 63),
+                   (code & 63) + token::extra_bits_of(now));
             continue;
         }
-        const std::uint32_t green = tables[kMain][now >> 8 & 255], blue = tables[kBlue][now & 255], red = tables[kRed][now >> 16 & 255];
+        const std::uint32_t green = tables[kMain][now >> 8 & 255], blue = tables[kBlue][now & 255],
+                            red = tables[kRed][now >> 16 & 255];
         std::uint64_t bits = green >> 8 | std::uint64_t{blue >> 8} << (green & 63);
         unsigned length = (green & 63) + (blue & 63);
         bits |= std::uint64_t{red >> 8} << length;
@@ -217,7 +225,8 @@ void write_tokens(std::span<const std::uint32_t> tokens, const std::array<Encode
 void write_raw(const Input& in, const Block& block, bool alpha, ByteBitWriter& to) {
     const std::uint32_t mask = alpha ? 0xffffffff : 0x00ffffff;
     for (std::uint32_t y = 0; y < block.height; ++y)
-        for (std::uint32_t x = 0; x < block.width; ++x) to.put(load_pixel(in.row(block, y) + 4 * std::size_t{x}) & mask, alpha ? 32 : 24);
+        for (std::uint32_t x = 0; x < block.width; ++x)
+            to.put(load_pixel(in.row(block, y) + 4 * std::size_t{x}) & mask, alpha ? 32 : 24);
 }
 
 /// Modes run by run: the mode, then the run in Elias' gamma code, its leading zeros first.
@@ -235,7 +244,8 @@ void write_modes(std::span<const BlockPlan> blocks, ByteBitWriter& to) {
 }
 
 /// A block that its codes would make larger than its pixels is written raw. Returns where it ends.
-void write_block(const Input& in, const Block& block, std::span<const std::uint32_t> tokens, const std::array<EncodeTable, 4>& tables, BlockPlan& plan, ByteBitWriter& to) {
+void write_block(const Input& in, const Block& block, std::span<const std::uint32_t> tokens,
+                 const std::array<EncodeTable, 4>& tables, BlockPlan& plan, ByteBitWriter& to) {
     if (plan.mode < static_cast<std::uint8_t>(Mode::left)) return;
     const ByteBitWriter before = to;
     const bool alpha = has_alpha(plan.mode);
@@ -265,7 +275,8 @@ void write_slice(const Input& in, std::uint32_t number, const std::array<EncodeT
             to.move_to(slice.bytes.data() + used);
         }
         BlockPlan& plan = slice.blocks[column];
-        write_block(in, block_at(in.format, column, number), std::span(slice.tokens).subspan(begin, plan.tokens_end - begin), tables, plan, to);
+        write_block(in, block_at(in.format, column, number),
+                    std::span(slice.tokens).subspan(begin, plan.tokens_end - begin), tables, plan, to);
         begin = plan.tokens_end;
     }
     const std::byte* const tokens_begin = slice.bytes.data() + modes_room;
@@ -294,7 +305,8 @@ public:
         const bool key = want == PacketKind::key || !started_;
         started_ = true;
         const Input in{frame, previous_, format_, key};
-        for_each_index(parallel_, slices_.size(), [&](std::size_t i) { plan_slice(in, static_cast<std::uint32_t>(i), slices_[i]); });
+        for_each_index(parallel_, slices_.size(),
+                       [&](std::size_t i) { plan_slice(in, static_cast<std::uint32_t>(i), slices_[i]); });
         const auto kind = key ? PacketKind::key : PacketKind::delta;
         if (std::none_of(slices_.begin(), slices_.end(), [](const Slice& slice) { return slice.changed; })) {
             out.push_back(std::byte{kUnchanged});
@@ -303,9 +315,12 @@ public:
         const std::size_t at = out.size();
         out.push_back(std::byte{key ? kKey : std::uint8_t{0}});
         if (settle_tables(key, out)) out[at] |= std::byte{kTables};
-        for_each_index(parallel_, slices_.size(), [&](std::size_t i) { write_slice(in, static_cast<std::uint32_t>(i), tables_, slices_[i]); });
+        for_each_index(parallel_, slices_.size(),
+                       [&](std::size_t i) { write_slice(in, static_cast<std::uint32_t>(i), tables_, slices_[i]); });
         for (const Slice& slice : slices_) put_number(slice.bytes_used, out);
-        for (const Slice& slice : slices_) out.insert(out.end(), slice.bytes.begin(), slice.bytes.begin() + static_cast<std::ptrdiff_t>(slice.bytes_used));
+        for (const Slice& slice : slices_)
+            out.insert(out.end(), slice.bytes.begin(),
+                       slice.bytes.begin() + static_cast<std::ptrdiff_t>(slice.bytes_used));
         return kind;
     }
 

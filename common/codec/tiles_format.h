@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The format of codec `huffyuv-tiles`, shared by its encoder and decoder: blocks, their modes, and the symbols of the prefix
-// codes. docs/codecs.md has the grammar. Values; any thread.
+// The format of codec `huffyuv-tiles`, shared by its encoder and decoder: blocks, their modes, and the symbols of the
+// prefix codes. docs/codecs.md has the grammar. Values; any thread.
 #pragma once
 
 #include <algorithm>
@@ -21,30 +21,32 @@ inline constexpr std::size_t kBlockPixels = std::size_t{kBlock} * kBlock;
 inline constexpr std::uint8_t kKey = 1, kUnchanged = 2, kTables = 4;
 
 enum class Mode : std::uint8_t {
-    unchanged = 0,   ///< as in the picture before; not in key packets
-    flat = 1,        ///< every pixel is the one left of the block's first
-    raw = 2,         ///< bytes 0, 1, 2 of every pixel; alpha 255
-    raw_alpha = 3,   ///< all four bytes
-    left = 4,        ///< coded residuals, by predictor
+    unchanged = 0,  ///< as in the picture before; not in key packets
+    flat = 1,       ///< every pixel is the one left of the block's first
+    raw = 2,        ///< bytes 0, 1, 2 of every pixel; alpha 255
+    raw_alpha = 3,  ///< all four bytes
+    left = 4,       ///< coded residuals, by predictor
     gradient = 5,
     median = 6,
-    previous = 7,    ///< the same pixel of the picture before; not in key packets
+    previous = 7,  ///< the same pixel of the picture before; not in key packets
 };
 inline constexpr unsigned kModeBits = 4;
-inline constexpr std::uint8_t kWithAlpha = 4;  ///< added to left ... previous: alpha's residual follows every whole pixel
+inline constexpr std::uint8_t kWithAlpha =
+    4;  ///< added to left ... previous: alpha's residual follows every whole pixel
 inline constexpr std::uint8_t kModes = 12;
 constexpr bool has_alpha(std::uint8_t coded_mode) { return coded_mode >= 8; }
 
 inline constexpr std::uint32_t kOpaqueBlack = 0xff000000;  ///< left of a slice's first pixel
 
-// Symbols of the main code. The first 256 are green's residual, and blue's and red's codes follow. Residuals of all three colours
-// are one symbol when each is -1 to 2, or when blue and red are zero (grey, where all change alike); runs of zero pixels are one.
-inline constexpr std::size_t kSmall = 256;           ///< + three digits of two bits
-inline constexpr std::size_t kGrey = kSmall + 64;    ///< + green's residual
-inline constexpr std::size_t kRuns = kGrey + 256;    ///< + run class
-inline constexpr std::size_t kRest = kRuns + 32;     ///< zero to the block's end
+// Symbols of the main code. The first 256 are green's residual, and blue's and red's codes follow. Residuals of all
+// three colours are one symbol when each is -1 to 2, or when blue and red are zero (grey, where all change alike); runs
+// of zero pixels are one.
+inline constexpr std::size_t kSmall = 256;         ///< + three digits of two bits
+inline constexpr std::size_t kGrey = kSmall + 64;  ///< + green's residual
+inline constexpr std::size_t kRuns = kGrey + 256;  ///< + run class
+inline constexpr std::size_t kRest = kRuns + 32;   ///< zero to the block's end
 inline constexpr std::size_t kMainSymbols = kRest + 1;
-inline constexpr unsigned kLongestCode = 12;         ///< bits; four codes and their pixel fit a refill of 56
+inline constexpr unsigned kLongestCode = 12;  ///< bits; four codes and their pixel fit a refill of 56
 inline constexpr std::array<std::size_t, 4> kSymbols{kMainSymbols, 256, 256, 256};  ///< main (green), blue, red, alpha
 inline constexpr std::size_t kMain = 0, kBlue = 1, kRed = 2, kAlpha = 3;
 
@@ -55,7 +57,8 @@ inline std::uint32_t small_digits(std::uint32_t residual) {
     return (raised & 3) | (raised >> 6 & 12) | (raised >> 12 & 48);
 }
 
-/// A run of 1 to kBlockPixels as class and bits within the class: runs to 16 have a class each, longer ones two a power of two.
+/// A run of 1 to kBlockPixels as class and bits within the class: runs to 16 have a class each, longer ones two a power
+/// of two.
 struct RunClass {
     std::uint32_t symbol;
     std::uint32_t extra;
@@ -86,8 +89,8 @@ inline std::uint32_t load_pixel(const std::byte* at) {
     return pixel;
 }
 
-/// What lies left of a block's row: beyond the picture's edge the pixel above, and above the slice opaque black. `row` is at the
-/// block's first pixel; `above` is null in the slice's first row.
+/// What lies left of a block's row: beyond the picture's edge the pixel above, and above the slice opaque black. `row`
+/// is at the block's first pixel; `above` is null in the slice's first row.
 inline RowStart row_start(const std::byte* row, const std::byte* above, std::uint32_t x) {
     if (x > 0) return {load_pixel(row - 4), above != nullptr ? load_pixel(above - 4) : 0};
     if (above != nullptr) return {load_pixel(above), load_pixel(above)};

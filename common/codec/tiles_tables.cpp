@@ -57,8 +57,11 @@ Result<void> read_code(std::span<std::uint8_t> lengths, ByteBitReader& from) {
             continue;
         }
         if (head == kRepeat && at == 0) return fail("repeats a length before the first one");
-        const std::size_t run = head == kManyZeros ? kLeastManyZeros + from.take(2 * kNibble) : kLeastRun + from.take(kNibble);
-        if (run > lengths.size() - at) return fail("has a run of " + std::to_string(run) + " at symbol " + std::to_string(at) + "; at most " + std::to_string(lengths.size() - at) + " fit");
+        const std::size_t run =
+            head == kManyZeros ? kLeastManyZeros + from.take(2 * kNibble) : kLeastRun + from.take(kNibble);
+        if (run > lengths.size() - at)
+            return fail("has a run of " + std::to_string(run) + " at symbol " + std::to_string(at) + "; at most " +
+                        std::to_string(lengths.size() - at) + " fit");
         const std::uint8_t length = head == kRepeat ? lengths[at - 1] : std::uint8_t{0};
         std::fill_n(lengths.begin() + static_cast<std::ptrdiff_t>(at), run, length);
         at += run;
@@ -69,7 +72,8 @@ Result<void> read_code(std::span<std::uint8_t> lengths, ByteBitReader& from) {
 DecodeTables::Main main_entry(std::uint32_t symbol, std::uint8_t length) {
     if (symbol < kSmall) return {symbol, 0, length, 0};
     if (symbol == kRest) return {0, DecodeTables::kToTheEnd, length, 0};
-    if (symbol >= kGrey && symbol < kRuns) return {(symbol - static_cast<std::uint32_t>(kGrey)) * 0x010101, 1, length, 0};
+    if (symbol >= kGrey && symbol < kRuns)
+        return {(symbol - static_cast<std::uint32_t>(kGrey)) * 0x010101, 1, length, 0};
     if (symbol < kRuns) {
         const auto digit = [&](unsigned shift) { return ((symbol - kSmall) >> shift & 3) - 1; };
         const std::uint32_t blue = digit(0), green = digit(2), red = digit(4);
@@ -78,7 +82,8 @@ DecodeTables::Main main_entry(std::uint32_t symbol, std::uint8_t length) {
     const std::uint32_t run = symbol - static_cast<std::uint32_t>(kRuns);
     if (run < 16) return {0, static_cast<std::uint16_t>(run + 1), length, 0};
     const std::uint32_t power = 4 + (run - 16) / 2;
-    return {0, static_cast<std::uint16_t>((1u << power) + ((run - 16) % 2 << (power - 1)) + 1), length, static_cast<std::uint8_t>(power - 1)};
+    return {0, static_cast<std::uint16_t>((1u << power) + ((run - 16) % 2 << (power - 1)) + 1), length,
+            static_cast<std::uint8_t>(power - 1)};
 }
 
 /// Calls `each(index, symbol, length)` for every index that begins with a code.
@@ -89,7 +94,8 @@ Result<void> fill(std::span<const std::uint8_t> lengths, Each each) {
     for (std::uint32_t symbol = 0; symbol < lengths.size(); ++symbol) {
         const auto [bits, length] = (*codes)[symbol];
         if (length == 0) continue;
-        for (std::uint32_t index = reversed(bits, length); index < 1u << kLongestCode; index += 1u << length) each(index, symbol, length);
+        for (std::uint32_t index = reversed(bits, length); index < 1u << kLongestCode; index += 1u << length)
+            each(index, symbol, length);
     }
     return {};
 }
@@ -134,7 +140,8 @@ Result<Lengths> read_lengths(ByteBitReader& from) {
     Lengths out;
     for (std::size_t code = 0; code < out.size(); ++code) {
         out[code].resize(kSymbols[code]);
-        if (auto good = read_code(out[code], from); !good) return fail(std::string("the ") + kNames[code] + " code " + good.error().message);
+        if (auto good = read_code(out[code], from); !good)
+            return fail(std::string("the ") + kNames[code] + " code " + good.error().message);
     }
     return out;
 }
@@ -143,7 +150,8 @@ std::array<EncodeTable, 4> encode_tables(const Lengths& lengths) {
     std::array<EncodeTable, 4> out{};
     for (std::size_t code = 0; code < out.size(); ++code) {
         const auto codes = canonical_codes(lengths[code]);
-        for (std::size_t i = 0; i < codes->size(); ++i) out[code][i] = reversed((*codes)[i].bits, (*codes)[i].length) << 8 | (*codes)[i].length;
+        for (std::size_t i = 0; i < codes->size(); ++i)
+            out[code][i] = reversed((*codes)[i].bits, (*codes)[i].length) << 8 | (*codes)[i].length;
     }
     return out;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The prefix codes of `huffyuv-tiles`: canonical, at most kLongestCode bits, in the packet as their lengths. Values; any thread.
+// The prefix codes of `huffyuv-tiles`: canonical, at most kLongestCode bits, in the packet as their lengths. Values;
+// any thread.
 #pragma once
 
 #include <array>
@@ -41,8 +42,8 @@ std::array<EncodeTable, 4> encode_tables(const Lengths& lengths);
 
 /// For the decoder, by the next kLongestCode bits.
 struct DecodeTables {
-    /// Symbols but green are all done alike: the value is a pixel's residual, then `advance` and what the extra bits say more
-    /// pixels follow it that are zero.
+    /// Symbols but green are all done alike: the value is a pixel's residual, then `advance` and what the extra bits
+    /// say more pixels follow it that are zero.
     struct Main {
         std::uint32_t value;    ///< the small residual (not decorrelated any more), 0 for runs; or green
         std::uint16_t advance;  ///< pixels; 0 for green, and for bits that are no code

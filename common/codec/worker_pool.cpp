@@ -5,7 +5,8 @@
 
 namespace wall::codec {
 
-/// Indexes are handed out until none is left. Threads that come late find none and never touch `body`, which is the caller's.
+/// Indexes are handed out until none is left. Threads that come late find none and never touch `body`, which is the
+/// caller's.
 struct WorkerPool::Job {
     Job(std::size_t wanted, const std::function<void(std::size_t)>& work) : count(wanted), body(work) {}
 

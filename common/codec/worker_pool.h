@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Threads for codecs that work on slices (ParallelFor). The thread that calls works too, so that a pool of n threads runs
-// n + 1 at a time. Calls from several threads share the threads; every call returns when its own work is done.
+// Threads for codecs that work on slices (ParallelFor). The thread that calls works too, so that a pool of n threads
+// runs n + 1 at a time. Calls from several threads share the threads; every call returns when its own work is done.
 #pragma once
 
 #include <condition_variable>
@@ -40,7 +40,8 @@ private:
 };
 
 /// parallel(count, body), or here and in order if it is empty.
-inline void for_each_index(const ParallelFor& parallel, std::size_t count, const std::function<void(std::size_t)>& body) {
+inline void for_each_index(const ParallelFor& parallel, std::size_t count,
+                           const std::function<void(std::size_t)>& body) {
     if (parallel) return parallel(count, body);
     for (std::size_t i = 0; i < count; ++i) body(i);
 }

@@ -20,7 +20,8 @@ constexpr Compressor kZstd{
         const std::size_t written = ZSTD_decompress(out.data(), out.size(), packet.data(), packet.size());
         if (ZSTD_isError(written)) return fail(std::string("zstd: bad packet: ") + ZSTD_getErrorName(written));
         if (written != out.size())
-            return fail("zstd: packet holds " + std::to_string(written) + " bytes; expected " + std::to_string(out.size()));
+            return fail("zstd: packet holds " + std::to_string(written) + " bytes; expected " +
+                        std::to_string(out.size()));
         return {};
     },
 };
@@ -28,6 +29,7 @@ constexpr Compressor kZstd{
 }  // namespace
 
 extern const Codec codec_zstd;
-const Codec codec_zstd{"zstd", "Zstandard level 1 over the pixels", PackedCodec<kZstd>::encoder, PackedCodec<kZstd>::decoder};
+const Codec codec_zstd{"zstd", "Zstandard level 1 over the pixels", PackedCodec<kZstd>::encoder,
+                       PackedCodec<kZstd>::decoder};
 
 }  // namespace wall::codec

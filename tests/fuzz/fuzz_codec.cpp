@@ -38,20 +38,24 @@ void decode_packets(const Codec& codec, const StreamFormat& format, Bytes rest) 
     if (!decoder) return;
     while (rest.size() >= 2) {
         const auto size = take(rest, 2);
-        const auto view = (*decoder)->decode(take(rest, std::to_integer<std::size_t>(size[0]) | std::to_integer<std::size_t>(size[1]) << 8));
+        const auto view = (*decoder)->decode(
+            take(rest, std::to_integer<std::size_t>(size[0]) | std::to_integer<std::size_t>(size[1]) << 8));
         if (view) look_at(*view);
         WALL_ASSERT(view || !view.error().message.empty());
     }
 }
 
 void read_avi(Bytes file) {
-    auto reader = AviReader::open(std::make_unique<std::istringstream>(std::string(reinterpret_cast<const char*>(file.data()), file.size())), "fuzz.avi");
+    auto reader = AviReader::open(
+        std::make_unique<std::istringstream>(std::string(reinterpret_cast<const char*>(file.data()), file.size())),
+        "fuzz.avi");
     if (!reader) return;
     const auto& avi = reader->format();
     if (avi.width * avi.height > 1u << 16) return;  // not what is tested, and slow
     const auto stream = huffyuv::read_stream(avi.bit_count, avi.height, avi.extradata);
     if (!stream) return;
-    const StreamFormat format{avi.width, avi.height, stream->pixels == huffyuv::Pixels::yuy2 ? PixelLayout::yuy2 : PixelLayout::bgra};
+    const StreamFormat format{avi.width, avi.height,
+                              stream->pixels == huffyuv::Pixels::yuy2 ? PixelLayout::yuy2 : PixelLayout::bgra};
     const auto decoder = huffyuv::make_stream_decoder(format, *stream);
     for (auto frame = reader->next(); frame && *frame; frame = reader->next())
         if (decoder)

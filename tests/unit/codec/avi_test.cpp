@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 class AviTest : public testing::Test {
 protected:
     void SetUp() override {
-        folder_ = fs::temp_directory_path() / ("avi_test." + std::to_string(::getpid()) + "." + testing::UnitTest::GetInstance()->current_test_info()->name());
+        folder_ = fs::temp_directory_path() / ("avi_test." + std::to_string(::getpid()) + "." +
+                                               testing::UnitTest::GetInstance()->current_test_info()->name());
         fs::create_directories(folder_);
         path_ = (folder_ / "file.avi").string();
     }
@@ -52,7 +53,9 @@ protected:
     std::string path_;
 };
 
-Result<AviReader> open_bytes(const std::string& bytes) { return AviReader::open(std::make_unique<std::istringstream>(bytes), "cut.avi"); }
+Result<AviReader> open_bytes(const std::string& bytes) {
+    return AviReader::open(std::make_unique<std::istringstream>(bytes), "cut.avi");
+}
 
 TEST_F(AviTest, FramesComeBack) {
     write(40);
@@ -120,7 +123,8 @@ TEST_F(AviTest, CutAnywhereGivesTheWholeFramesBeforeTheCut) {
         for (;;) {
             const auto next = reader->next();
             if (!next) {
-                EXPECT_THAT(next.error().message, HasSubstr("cut short at byte " + std::to_string(cut) + " after " + std::to_string(frames) + " of 6 frames"));
+                EXPECT_THAT(next.error().message, HasSubstr("cut short at byte " + std::to_string(cut) + " after " +
+                                                            std::to_string(frames) + " of 6 frames"));
                 break;
             }
             if (!*next) {

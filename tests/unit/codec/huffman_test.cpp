@@ -11,7 +11,8 @@ namespace wall::codec {
 namespace {
 
 double kraft(const std::vector<std::uint8_t>& lengths) {
-    return std::accumulate(lengths.begin(), lengths.end(), 0.0, [](double sum, auto length) { return length ? sum + std::ldexp(1.0, -length) : sum; });
+    return std::accumulate(lengths.begin(), lengths.end(), 0.0,
+                           [](double sum, auto length) { return length ? sum + std::ldexp(1.0, -length) : sum; });
 }
 
 TEST(HuffmanLengths, AreThoseOfHuffmansTree) {

@@ -47,7 +47,9 @@ protected:
         return out;
     }
     /// FFmpeg's name of the same bytes.
-    static std::string raw_name(const StreamFormat& format) { return format.layout == PixelLayout::yuy2 ? "yuyv422" : "bgra"; }
+    static std::string raw_name(const StreamFormat& format) {
+        return format.layout == PixelLayout::yuy2 ? "yuyv422" : "bgra";
+    }
 
     void expect_ffmpeg_decodes(const StreamFormat& format, const EncoderOptions& options) {
         const auto encoder = make_stream_encoder(format, options).value();
@@ -56,22 +58,26 @@ protected:
             std::vector<std::byte> packet;
             ASSERT_TRUE(encoder->encode(test::picture(format, kind).view(), PacketKind::key, packet));
             if (!writer) {
-                AviFormat avi{.width = format.width, .height = format.height, .bit_count = bit_count(encoder->stream())};
+                AviFormat avi{
+                    .width = format.width, .height = format.height, .bit_count = bit_count(encoder->stream())};
                 avi.extradata.assign(encoder->stream_header().begin(), encoder->stream_header().end());
                 writer.emplace(AviWriter::create(path("ours.avi"), avi).value());
             }
             ASSERT_TRUE(writer->add(packet));
         }
         ASSERT_TRUE(writer->finish());
-        ffmpeg("-i " + path("ours.avi") + " -vsync 0 -f rawvideo -pix_fmt " + raw_name(format) + " " + path("theirs.raw"));
+        ffmpeg("-i " + path("ours.avi") + " -vsync 0 -f rawvideo -pix_fmt " + raw_name(format) + " " +
+               path("theirs.raw"));
         EXPECT_EQ(content("theirs.raw"), frames(format));
     }
 
     void expect_we_decode(const StreamFormat& format, const std::string& pix_fmt, const std::string& options) {
         const auto expected = frames(format);
-        std::ofstream(path("frames.raw"), std::ios::binary).write(reinterpret_cast<const char*>(expected.data()), static_cast<std::streamsize>(expected.size()));
-        ffmpeg("-f rawvideo -pix_fmt " + raw_name(format) + " -s " + std::to_string(format.width) + "x" + std::to_string(format.height) + " -i " +
-               path("frames.raw") + " -c:v huffyuv -pix_fmt " + pix_fmt + " " + options + " " + path("theirs.avi"));
+        std::ofstream(path("frames.raw"), std::ios::binary)
+            .write(reinterpret_cast<const char*>(expected.data()), static_cast<std::streamsize>(expected.size()));
+        ffmpeg("-f rawvideo -pix_fmt " + raw_name(format) + " -s " + std::to_string(format.width) + "x" +
+               std::to_string(format.height) + " -i " + path("frames.raw") + " -c:v huffyuv -pix_fmt " + pix_fmt + " " +
+               options + " " + path("theirs.avi"));
         auto reader = AviReader::open(path("theirs.avi")).value();
         const auto stream = read_stream(reader.format().bit_count, reader.format().height, reader.format().extradata);
         ASSERT_TRUE(stream) << stream.error().message;
@@ -92,8 +98,10 @@ protected:
     fs::path folder_;
 };
 
-constexpr std::pair<std::uint32_t, std::uint32_t> kRgbSizes[] = {{1, 1}, {1, 9}, {2, 1}, {3, 5}, {17, 13}, {64, 33}, {19, 290}};
-constexpr std::pair<std::uint32_t, std::uint32_t> kYuy2Sizes[] = {{4, 1}, {4, 2}, {8, 3}, {20, 17}, {64, 33}, {12, 290}};
+constexpr std::pair<std::uint32_t, std::uint32_t> kRgbSizes[] = {{1, 1},   {1, 9},   {2, 1},   {3, 5},
+                                                                 {17, 13}, {64, 33}, {19, 290}};
+constexpr std::pair<std::uint32_t, std::uint32_t> kYuy2Sizes[] = {{4, 1},   {4, 2},   {8, 3},
+                                                                  {20, 17}, {64, 33}, {12, 290}};
 
 TEST_F(HuffyuvFfmpeg, DecodesOurRgb) {
     for (const auto& [width, height] : kRgbSizes) {
@@ -101,7 +109,8 @@ TEST_F(HuffyuvFfmpeg, DecodesOurRgb) {
             for (const Predictor predictor : {Predictor::left, Predictor::gradient}) {
                 for (const bool decorrelate : {true, false}) {
                     const StreamFormat format{width, height, PixelLayout::bgra, alpha};
-                    SCOPED_TRACE(test::describe(format, Kind::noise) + " predictor " + std::to_string(static_cast<int>(predictor)) + (decorrelate ? " decorrelated" : ""));
+                    SCOPED_TRACE(test::describe(format, Kind::noise) + " predictor " +
+                                 std::to_string(static_cast<int>(predictor)) + (decorrelate ? " decorrelated" : ""));
                     expect_ffmpeg_decodes(format, {predictor, decorrelate});
                 }
             }
@@ -112,7 +121,8 @@ TEST_F(HuffyuvFfmpeg, DecodesOurRgb) {
 TEST_F(HuffyuvFfmpeg, DecodesOurYuy2) {
     for (const auto& [width, height] : kYuy2Sizes) {
         for (const Predictor predictor : {Predictor::left, Predictor::gradient, Predictor::median}) {
-            SCOPED_TRACE(std::to_string(width) + "x" + std::to_string(height) + " predictor " + std::to_string(static_cast<int>(predictor)));
+            SCOPED_TRACE(std::to_string(width) + "x" + std::to_string(height) + " predictor " +
+                         std::to_string(static_cast<int>(predictor)));
             expect_ffmpeg_decodes({width, height, PixelLayout::yuy2}, {predictor});
         }
     }
@@ -141,9 +151,11 @@ TEST_F(HuffyuvFfmpeg, ReadsOurSegments) {
     ASSERT_TRUE(writer->finish());
     ffmpeg("-i " + path("ours.avi") + " -vsync 0 -f rawvideo -pix_fmt bgra " + path("theirs.raw"));
     EXPECT_TRUE(content("theirs.raw") == expected);
-    ffmpeg("-ss 1.4 -i " + path("ours.avi") + " -vsync 0 -frames:v 1 -f rawvideo -pix_fmt bgra " + path("theirs.raw"));  // by the indexes
+    ffmpeg("-ss 1.4 -i " + path("ours.avi") + " -vsync 0 -frames:v 1 -f rawvideo -pix_fmt bgra " +
+           path("theirs.raw"));  // by the indexes
     const std::size_t frame = 64 * 48 * 4;
-    EXPECT_TRUE(content("theirs.raw") == std::vector<std::byte>(expected.begin() + 35 * frame, expected.begin() + 36 * frame));
+    EXPECT_TRUE(content("theirs.raw") ==
+                std::vector<std::byte>(expected.begin() + 35 * frame, expected.begin() + 36 * frame));
 }
 
 /// HuffYUV 1.x: no tables in the file. Up to 288 rows; taller files are interlaced, which we do not write.
@@ -155,7 +167,8 @@ TEST_F(HuffyuvFfmpeg, DecodesOurClassicTables) {
             expect_ffmpeg_decodes({width, height, PixelLayout::bgra, alpha}, {Predictor::gradient, true, true});
         }
     }
-    for (const Predictor predictor : {Predictor::left, Predictor::gradient, Predictor::median}) expect_ffmpeg_decodes({64, 33, PixelLayout::yuy2}, {predictor, true, true});
+    for (const Predictor predictor : {Predictor::left, Predictor::gradient, Predictor::median})
+        expect_ffmpeg_decodes({64, 33, PixelLayout::yuy2}, {predictor, true, true});
 }
 
 TEST_F(HuffyuvFfmpeg, WeDecodeItsRgb) {
@@ -179,7 +192,8 @@ TEST_F(HuffyuvFfmpeg, WeDecodeItsYuv) {
 TEST_F(HuffyuvFfmpeg, WeDecodeItsInterlacedFiles) {
     expect_we_decode({21, 40}, "rgb24", "-pred plane -flags +ilme");
     expect_we_decode({21, 40, PixelLayout::bgra, true}, "bgra", "-pred plane -flags +ilme");
-    for (const char* pred : {"-pred left -flags +ilme", "-pred plane -flags +ilme", "-pred median -flags +ilme"}) expect_we_decode({20, 40, PixelLayout::yuy2}, "yuv422p", pred);
+    for (const char* pred : {"-pred left -flags +ilme", "-pred plane -flags +ilme", "-pred median -flags +ilme"})
+        expect_we_decode({20, 40, PixelLayout::yuy2}, "yuv422p", pred);
 }
 
 }  // namespace

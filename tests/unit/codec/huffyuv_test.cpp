@@ -37,14 +37,16 @@ TEST(Huffyuv, EveryModeOfRgb) {
                     for (const bool classic : {false, true})
                         for (const Kind kind : test::kKinds)
                             if (!classic || decorrelate || predictor == Predictor::left)
-                                expect_same({width, height, PixelLayout::bgra, alpha}, {predictor, decorrelate, classic}, kind);
+                                expect_same({width, height, PixelLayout::bgra, alpha},
+                                            {predictor, decorrelate, classic}, kind);
 }
 
 TEST(Huffyuv, EveryModeOfYuy2) {
     for (const auto& [width, height] : {std::pair{4u, 1u}, {4u, 5u}, {8u, 2u}, {20u, 11u}})
         for (const Predictor predictor : {Predictor::left, Predictor::gradient, Predictor::median})
             for (const bool classic : {false, true})
-                for (const Kind kind : test::kKinds) expect_same({width, height, PixelLayout::yuy2}, {predictor, true, classic}, kind);
+                for (const Kind kind : test::kKinds)
+                    expect_same({width, height, PixelLayout::yuy2}, {predictor, true, classic}, kind);
     expect_same({2, 3, PixelLayout::yuy2}, {Predictor::gradient, true, false}, Kind::noise);
 }
 
@@ -57,7 +59,8 @@ TEST(Huffyuv, LaterFramesMayDifferFromTheFirst) {
     ASSERT_TRUE(encoder->encode(test::picture(format, Kind::noise).view(), PacketKind::key, second));
     EXPECT_EQ(header, std::vector(encoder->stream_header().begin(), encoder->stream_header().end()));
     const auto decoder = make_decoder("huffyuv", format, header).value();
-    EXPECT_EQ(test::bytes_of(decoder->decode(second).value()), test::bytes_of(test::picture(format, Kind::noise).view()));
+    EXPECT_EQ(test::bytes_of(decoder->decode(second).value()),
+              test::bytes_of(test::picture(format, Kind::noise).view()));
 }
 
 TEST(Huffyuv, ClassicCodesArePrefixCodes) {
@@ -71,9 +74,12 @@ TEST(Huffyuv, ClassicCodesArePrefixCodes) {
 }
 
 TEST(Huffyuv, RefusesWhatTheFormatHasNot) {
-    EXPECT_THAT(make_stream_encoder({8, 8}, {Predictor::median}).error().message, HasSubstr("median prediction of RGB"));
-    EXPECT_THAT(make_stream_encoder({6, 8, PixelLayout::yuy2}, {Predictor::median}).error().message, HasSubstr("multiple of 4"));
-    EXPECT_THAT(make_stream_encoder({8, 8}, {Predictor::gradient, false, true}).error().message, HasSubstr("expected decorrelate"));
+    EXPECT_THAT(make_stream_encoder({8, 8}, {Predictor::median}).error().message,
+                HasSubstr("median prediction of RGB"));
+    EXPECT_THAT(make_stream_encoder({6, 8, PixelLayout::yuy2}, {Predictor::median}).error().message,
+                HasSubstr("multiple of 4"));
+    EXPECT_THAT(make_stream_encoder({8, 8}, {Predictor::gradient, false, true}).error().message,
+                HasSubstr("expected decorrelate"));
 }
 
 std::vector<std::byte> header_of(std::initializer_list<int> bytes) {
@@ -91,7 +97,8 @@ TEST(Huffyuv, RefusesBadStreamHeaders) {
     EXPECT_THAT(reason(header_of({0, 24, 32, 0})), HasSubstr("code table 0 ends at symbol 0"));
     EXPECT_THAT(reason(header_of({0, 24, 32, 0, 8})), HasSubstr("code table 0 ends at symbol 0"));
     EXPECT_THAT(reason(header_of({0, 24, 32, 0, 8, 0})), HasSubstr("a run of 0 at symbol 0; expected 1 to 256"));
-    EXPECT_THAT(reason(header_of({0, 24, 32, 0, 8, 255, 8, 255})), HasSubstr("a run of 255 at symbol 255; expected 1 to 1"));
+    EXPECT_THAT(reason(header_of({0, 24, 32, 0, 8, 255, 8, 255})),
+                HasSubstr("a run of 255 at symbol 255; expected 1 to 1"));
     EXPECT_THAT(reason(header_of({0, 24, 32, 0, 7, 255, 7 | 32})), HasSubstr("over-full"));
     EXPECT_THAT(read_stream(29, 100, {}).error().message, HasSubstr("method 5 in biBitCount"));
     EXPECT_THAT(make_decoder("huffyuv", {8, 8}).error().message, HasSubstr("no stream header"));

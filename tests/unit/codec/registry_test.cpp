@@ -17,10 +17,13 @@ protected:
     static std::string name() { return std::string(GetParam()->name); }
 };
 
-constexpr std::pair<std::uint32_t, std::uint32_t> kSizes[] = {{1, 1}, {1, 2}, {2, 1}, {1, 130}, {130, 1}, {3, 5}, {7, 7}, {8, 3}, {63, 65}, {64, 64}, {65, 63}, {129, 131}, {200, 70}};
+constexpr std::pair<std::uint32_t, std::uint32_t> kSizes[] = {{1, 1},   {1, 2},     {2, 1},   {1, 130}, {130, 1},
+                                                              {3, 5},   {7, 7},     {8, 3},   {63, 65}, {64, 64},
+                                                              {65, 63}, {129, 131}, {200, 70}};
 
 /// Encodes and decodes a sequence of frames and expects each back.
-void expect_same(const std::string& codec, const StreamFormat& format, const std::vector<Picture>& pictures, const ParallelFor& parallel = {}) {
+void expect_same(const std::string& codec, const StreamFormat& format, const std::vector<Picture>& pictures,
+                 const ParallelFor& parallel = {}) {
     const auto encoder = make_encoder(codec, format, parallel).value();
     std::unique_ptr<Decoder> decoder;
     for (const auto& picture : pictures) {
@@ -46,7 +49,8 @@ TEST_P(EveryCodec, GivesBackEveryPicture) {
                 for (const Kind kind : test::kKinds) {
                     SCOPED_TRACE(test::describe(format, kind));
                     std::vector<Picture> pictures;
-                    for (std::uint32_t seed = 1; seed <= 2; ++seed) pictures.push_back(test::picture(format, kind, seed));
+                    for (std::uint32_t seed = 1; seed <= 2; ++seed)
+                        pictures.push_back(test::picture(format, kind, seed));
                     expect_same(name(), format, pictures);
                     if (HasFatalFailure()) return;
                 }
@@ -75,7 +79,8 @@ TEST_P(EveryCodec, ThreadsChangeNothing) {
         ASSERT_TRUE(together->encode(picture.view(), PacketKind::delta, b));
         EXPECT_EQ(a, b);
     }
-    expect_same(name(), format, {test::picture(format, Kind::text), test::picture(format, Kind::noisy_gradient)}, pool.parallel_for());
+    expect_same(name(), format, {test::picture(format, Kind::text), test::picture(format, Kind::noisy_gradient)},
+                pool.parallel_for());
 }
 
 TEST_P(EveryCodec, ReadsRowsThroughTheStride) {
@@ -140,27 +145,34 @@ TEST_P(EveryCodec, SurvivesFlippedBits) {
     std::mt19937 random(9);
     for (int time = 0; time < 500; ++time) {
         auto broken = packet;
-        for (int flips = 0; flips < 3; ++flips) broken[random() % (time % 2 == 0 ? broken.size() : std::min<std::size_t>(broken.size(), 64))] ^= std::byte(1u << random() % 8);
+        for (int flips = 0; flips < 3; ++flips)
+            broken[random() % (time % 2 == 0 ? broken.size() : std::min<std::size_t>(broken.size(), 64))] ^=
+                std::byte(1u << random() % 8);
         const auto view = decoder->decode(broken);
         EXPECT_TRUE(view || !view.error().message.empty());
     }
-    EXPECT_EQ(test::bytes_of(decoder->decode(packet).value()), test::bytes_of(test::picture(format, Kind::noisy_gradient).view()));
+    EXPECT_EQ(test::bytes_of(decoder->decode(packet).value()),
+              test::bytes_of(test::picture(format, Kind::noisy_gradient).view()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Registry, EveryCodec, testing::ValuesIn(codecs().begin(), codecs().end()), [](const auto& info) {
-    std::string name(info.param->name);
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Registry, EveryCodec, testing::ValuesIn(codecs().begin(), codecs().end()),
+                         [](const auto& info) {
+                             std::string name(info.param->name);
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
 
 TEST(Registry, KnowsItsNames) {
-    for (const char* name : {"huffyuv", "huffyuv-tiles", "raw", "lz4", "zstd"}) EXPECT_EQ((*find_codec(name))->name, name);
-    EXPECT_EQ(find_codec("mpeg").error().message, "unknown codec 'mpeg'; there are: huffyuv, huffyuv-tiles, raw, lz4, zstd");
+    for (const char* name : {"huffyuv", "huffyuv-tiles", "raw", "lz4", "zstd"})
+        EXPECT_EQ((*find_codec(name))->name, name);
+    EXPECT_EQ(find_codec("mpeg").error().message,
+              "unknown codec 'mpeg'; there are: huffyuv, huffyuv-tiles, raw, lz4, zstd");
 }
 
 TEST(Registry, RefusesAbsurdSizes) {
     for (const Codec* codec : codecs()) {
-        for (const auto& [width, height] : {std::pair{0u, 1u}, {1u, 0u}, {kMaxExtent + 1, 1u}, {kMaxExtent, kMaxExtent}, {~0u, ~0u}}) {
+        for (const auto& [width, height] :
+             {std::pair{0u, 1u}, {1u, 0u}, {kMaxExtent + 1, 1u}, {kMaxExtent, kMaxExtent}, {~0u, ~0u}}) {
             EXPECT_FALSE(make_encoder(codec->name, {width, height}));
             EXPECT_FALSE(make_decoder(codec->name, {width, height}));
         }

@@ -20,7 +20,8 @@ struct Rows {
 };
 
 Rows random_rows(std::mt19937& random, bool small_steps) {
-    Rows out{Row(4 * kMost), Row(4 * kMost), {static_cast<std::uint32_t>(random()), static_cast<std::uint32_t>(random())}};
+    Rows out{
+        Row(4 * kMost), Row(4 * kMost), {static_cast<std::uint32_t>(random()), static_cast<std::uint32_t>(random())}};
     for (auto* row : {&out.row, &out.above})
         for (auto& byte : *row) byte = static_cast<std::byte>(small_steps ? 100 + random() % 3 : random());
     return out;
@@ -90,7 +91,9 @@ TEST_P(RowKernelsTest, AllEqualSeesEveryPixel) {
     const RowKernels& kernels = *GetParam();
     for (std::size_t count = 1; count <= kMost; ++count) {
         std::vector<std::uint32_t> pixels(count, 0x11223344);
-        const auto equal = [&](std::uint32_t mask) { return kernels.all_equal(reinterpret_cast<const std::byte*>(pixels.data()), count, 0x11223344, mask); };
+        const auto equal = [&](std::uint32_t mask) {
+            return kernels.all_equal(reinterpret_cast<const std::byte*>(pixels.data()), count, 0x11223344, mask);
+        };
         EXPECT_TRUE(equal(~0u));
         for (std::size_t i = 0; i < count; ++i) {
             pixels[i] ^= 0x80000000;

@@ -58,7 +58,8 @@ TEST(Tiles, NeverMoreThanTwoPercentOverHuffyuv) {
                 const auto huffyuv = codec::make_encoder("huffyuv", format).value();
                 const auto theirs = encode(*huffyuv, picture, PacketKind::key).size() + huffyuv->stream_header().size();
                 const auto ours = encode(*make_encoder(format, {}).value(), picture, PacketKind::key).size();
-                EXPECT_LE(static_cast<double>(ours), 1.02 * static_cast<double>(theirs)) << test::describe(format, kind);
+                EXPECT_LE(static_cast<double>(ours), 1.02 * static_cast<double>(theirs))
+                    << test::describe(format, kind);
             }
         }
     }
@@ -71,7 +72,8 @@ TEST(Tiles, ADeltaWithoutItsKeyIsRefused) {
     const auto delta = encode(*encoder, test::picture(format, Kind::noisy_gradient), PacketKind::delta);
     const auto unchanged = encode(*encoder, test::picture(format, Kind::noisy_gradient), PacketKind::delta);
     for (const auto& packet : {delta, unchanged})
-        EXPECT_THAT(make_decoder(format, {}, {}).value()->decode(packet).error().message, HasSubstr("expected a key packet"));
+        EXPECT_THAT(make_decoder(format, {}, {}).value()->decode(packet).error().message,
+                    HasSubstr("expected a key packet"));
 }
 
 TEST(Tiles, AfterAFailureOnlyAKeyPacketDecodes) {
@@ -105,15 +107,18 @@ TEST(Tiles, SaysWhatIsWrongAndWhere) {
     EXPECT_THAT(reason({kKey, 1, 1, 0x31, 0x31}), HasSubstr("slice 0 has other modes than its 2 blocks want"));
     EXPECT_THAT(reason({kKey | kTables}), HasSubstr("ends in the tables"));
     EXPECT_THAT(reason({kKey | kTables, 0x0d}), HasSubstr("the main code repeats a length before the first one"));
-    EXPECT_THAT(reason({kKey | kTables, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff}), HasSubstr("the main code has a run of 274 at symbol 548; at most 61 fit"));
-    EXPECT_THAT(reason({kKey | kTables, 0x11, 0xf1, 0xff, 0xff, 0xff, 0x27, 0xdf, 0xfe, 0xed, 0xdf, 0x0e}), HasSubstr("the main code: code lengths are over-full"));
+    EXPECT_THAT(reason({kKey | kTables, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff}),
+                HasSubstr("the main code has a run of 274 at symbol 548; at most 61 fit"));
+    EXPECT_THAT(reason({kKey | kTables, 0x11, 0xf1, 0xff, 0xff, 0xff, 0x27, 0xdf, 0xfe, 0xed, 0xdf, 0x0e}),
+                HasSubstr("the main code: code lengths are over-full"));
 }
 
 TEST(TilesTables, LengthsComeBack) {
     std::mt19937 random(4);
     for (int time = 0; time < 50; ++time) {
         Counts counts;
-        for (auto& count : counts.main) count = random() % 4 == 0 ? static_cast<std::uint32_t>(random() % (1u << time % 20)) : 0;
+        for (auto& count : counts.main)
+            count = random() % 4 == 0 ? static_cast<std::uint32_t>(random() % (1u << time % 20)) : 0;
         for (auto& code : counts.others)
             for (auto& count : code) count = time % 3 == 0 ? 0 : static_cast<std::uint32_t>(random() % 5);
         const Lengths lengths = suit(counts);
@@ -132,7 +137,8 @@ TEST(TilesFormat, RunsHaveTheirClasses) {
         const auto [symbol, extra, extra_bits] = run_class(run);
         ASSERT_LT(symbol, kRest - kRuns);
         ASSERT_LT(extra, 1u << extra_bits);
-        const std::uint32_t least = symbol < 16 ? symbol + 1 : (1u << (4 + (symbol - 16) / 2)) + (symbol % 2 << (3 + (symbol - 16) / 2)) + 1;
+        const std::uint32_t least =
+            symbol < 16 ? symbol + 1 : (1u << (4 + (symbol - 16) / 2)) + (symbol % 2 << (3 + (symbol - 16) / 2)) + 1;
         EXPECT_EQ(least + extra, run);
     }
 }
