@@ -113,8 +113,9 @@ std::vector<Contender> contenders(const std::vector<FrameView>& frames, codec::W
         for (const auto& [name, pixels] : theirs)
             out.push_back(contender(std::string("FFmpeg ") + name, threads,
                                     std::make_shared<bench::FfmpegCodec>(name, pixels, threads, frames)));
+        out.push_back(contender("huffyuv", threads, std::make_shared<OurCodec>("huffyuv", false, parallel, frames)));
         if (threads == 1)
-            for (const char* name : {"huffyuv", "lz4", "zstd"})
+            for (const char* name : {"lz4", "zstd"})
                 out.push_back(contender(name, threads, std::make_shared<OurCodec>(name, false, parallel, frames)));
         out.push_back(
             contender("huffyuv-tiles", threads, std::make_shared<OurCodec>("huffyuv-tiles", false, parallel, frames)));

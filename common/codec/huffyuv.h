@@ -24,8 +24,9 @@ public:
     virtual const Stream& stream() const = 0;
 };
 
-/// Fails for what the format has not: see check() of huffyuv_format.h.
-Result<std::unique_ptr<StreamEncoder>> make_stream_encoder(const StreamFormat& format, const EncoderOptions& options);
+/// Fails for what the format has not: see check() of huffyuv_format.h. `parallel` codes rows of RGB frames.
+Result<std::unique_ptr<StreamEncoder>> make_stream_encoder(const StreamFormat& format, const EncoderOptions& options,
+                                                           ParallelFor parallel = {});
 
 /// For a stream as read_stream() gives it. `format.layout` must be yuy2 exactly for YUY2 streams.
 Result<std::unique_ptr<Decoder>> make_stream_decoder(const StreamFormat& format, const Stream& stream);

@@ -5,6 +5,7 @@
 #include "common/codec/huffyuv_rows.h"
 #include "common/codec/huffyuv_statistics.h"
 #include "common/codec/word_bits.h"
+#include "common/codec/worker_pool.h"
 
 namespace wall::codec::huffyuv {
 namespace {
@@ -122,7 +123,12 @@ private:
 
 class HuffyuvEncoder final : public StreamEncoder {
 public:
-    HuffyuvEncoder(const StreamFormat& format, const EncoderOptions& options) : format_(format), options_(options) {}
+    HuffyuvEncoder(const StreamFormat& format, const EncoderOptions& options, ParallelFor parallel)
+        : format_(format), options_(options), parallel_(std::move(parallel)) {
+        const bool one = !parallel_ || format.layout == PixelLayout::yuy2;
+        bands_.resize(one ? 1 : std::min(kBands, format.height));
+        for (auto& band : bands_) band.residuals.resize(format.width);
+    }
 
     const Stream& stream() const override { return stream_; }
     std::span<const std::byte> stream_header() const override { return extradata_; }
@@ -130,37 +136,41 @@ public:
     Result<PacketKind> encode(const FrameView& frame, PacketKind, std::vector<std::byte>& out) override {
         if (auto good = codec::check(frame, format_); !good) return tl::unexpected(good.error());
         if (!pixel_coder_) settle(frame);
-        const std::size_t row_bytes = frame.width * kMostPixelBytes + 16;
-        if (words_.size() < row_bytes) words_.resize(row_bytes);
-        const auto end =
-            format_.layout == PixelLayout::yuy2 ? encode_yuy2(frame, row_bytes) : encode_rgb(frame, row_bytes);
-        out.insert(out.end(), static_cast<const std::byte*>(words_.data()), end);
+        if (format_.layout == PixelLayout::yuy2)
+            encode_yuy2(frame, bands_[0].words);
+        else
+            for_each_index(parallel_, bands_.size(), [&](std::size_t i) { encode_band(frame, i); });
+        for (std::size_t i = 1; i < bands_.size(); ++i) bands_[0].words.append(bands_[i].words);
+        const auto words = bands_[0].words.finish();
+        out.insert(out.end(), words.begin(), words.end());
         return PacketKind::key;
     }
 
 private:
+    /// Rows that one thread codes; the bits of all bands are put behind each other.
+    struct Band {
+        WordBuffer words;
+        std::vector<std::uint32_t> residuals;
+    };
+    static constexpr std::uint32_t kBands = 16;
+
     void settle(const FrameView& frame) {
         stream_ = suit(frame, format_.alpha, options_);
         extradata_ = write_extradata(stream_);
-        residuals_.resize(frame.width);
         pixel_coder_.emplace(stream_, format_.layout);
     }
-    void make_room(WordBitWriter& to, std::size_t bytes) {
-        const auto used = static_cast<std::size_t>(to.at() - words_.data());
-        if (words_.size() - used >= bytes) return;
-        words_.resize(words_.size() * 2 + bytes);
-        to.move_to(words_.data() + used);
-    }
-    const std::byte* encode_rgb(const FrameView& frame, std::size_t row_bytes) {
-        WordBitWriter to(words_.data());
-        to.put(first_pixel(pixel_at(coded_row(frame, 0), 0)), 32);
-        for (std::uint32_t coded = 0; coded < frame.height; ++coded) {
-            make_room(to, row_bytes);
-            rgb_residuals(frame, coded, stream_.predictor, stream_.decorrelate, residuals_.data());
+    void encode_band(const FrameView& frame, std::size_t number) {
+        Band& band = bands_[number];
+        band.words.clear();
+        if (number == 0) band.words.writer(4).put(first_pixel(pixel_at(coded_row(frame, 0), 0)), 32);
+        const auto begin = number * std::size_t{frame.height} / bands_.size();
+        const auto end = (number + 1) * std::size_t{frame.height} / bands_.size();
+        for (auto coded = static_cast<std::uint32_t>(begin); coded < end; ++coded) {
+            rgb_residuals(frame, coded, stream_.predictor, stream_.decorrelate, band.residuals.data());
             const std::size_t skip = coded == 0 ? 1 : 0;
-            pixel_coder_->put_row(to, residuals_.data() + skip, frame.width - skip);
+            auto& to = band.words.writer(frame.width * kMostPixelBytes);
+            pixel_coder_->put_row(to, band.residuals.data() + skip, frame.width - skip);
         }
-        return to.finish();
     }
     /// Alpha, red, green, blue, or red, green, blue, zero.
     std::uint32_t first_pixel(std::uint32_t pixel) const {
@@ -168,11 +178,11 @@ private:
             pixel = (pixel & 0xff00ff00) | (pixel & 255) << 16 | (pixel >> 16 & 255);
         return stream_.pixels == Pixels::rgb32 ? pixel : pixel << 8;
     }
-    const std::byte* encode_yuy2(const FrameView& frame, std::size_t row_bytes) {
-        WordBitWriter to(words_.data());
+    void encode_yuy2(const FrameView& frame, WordBuffer& words) const {
+        words.clear();
         Yuy2Residuals residuals(frame, stream_.predictor);
         for (std::uint32_t y = 0; y < frame.height; ++y) {
-            make_room(to, row_bytes);
+            WordBitWriter& to = words.writer(frame.width * kMostPixelBytes);
             const auto& row = residuals.next();
             if (y == 0) to.put(pixel_at(frame.row(0), 0), 32);
             for (std::size_t i = y == 0 ? 4 : 0; i < row.size(); ++i) {
@@ -180,27 +190,28 @@ private:
                 to.put(code.bits, code.length);
             }
         }
-        return to.finish();
     }
 
     const StreamFormat format_;
     const EncoderOptions options_;
+    const ParallelFor parallel_;
     Stream stream_;
-    std::vector<std::byte> extradata_, words_;
-    std::vector<std::uint32_t> residuals_;
+    std::vector<std::byte> extradata_;
+    std::vector<Band> bands_;
     std::optional<PixelCoder> pixel_coder_;  ///< once the stream is settled
 };
 
 }  // namespace
 
-Result<std::unique_ptr<StreamEncoder>> make_stream_encoder(const StreamFormat& format, const EncoderOptions& options) {
+Result<std::unique_ptr<StreamEncoder>> make_stream_encoder(const StreamFormat& format, const EncoderOptions& options,
+                                                           ParallelFor parallel) {
     Stream wanted{.pixels = format.layout == PixelLayout::yuy2 ? Pixels::yuy2 : Pixels::rgb24,
                   .predictor = options.predictor.value_or(Predictor::left)};
     if (auto good = check(wanted, format.width); !good) return tl::unexpected(good.error());
     if (options.classic && wanted.pixels != Pixels::yuy2 && wanted.predictor == Predictor::gradient &&
         !options.decorrelate)
         return fail("huffyuv: HuffYUV 1.x decorrelates RGB under gradient prediction; expected decorrelate");
-    return std::make_unique<HuffyuvEncoder>(format, options);
+    return std::make_unique<HuffyuvEncoder>(format, options, std::move(parallel));
 }
 
 }  // namespace wall::codec::huffyuv
@@ -220,8 +231,8 @@ Result<std::unique_ptr<Decoder>> make_huffyuv_decoder(const StreamFormat& format
 
 extern const Codec codec_huffyuv;
 const Codec codec_huffyuv{"huffyuv", "HuffYUV 2.x, as AVI files hold it",
-                          [](const StreamFormat& format, ParallelFor) -> Result<std::unique_ptr<Encoder>> {
-                              return huffyuv::make_stream_encoder(format, {});
+                          [](const StreamFormat& format, ParallelFor parallel) -> Result<std::unique_ptr<Encoder>> {
+                              return huffyuv::make_stream_encoder(format, {}, std::move(parallel));
                           },
                           make_huffyuv_decoder};
 

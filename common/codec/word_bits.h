@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
+#include <vector>
 
 namespace wall::codec {
 
@@ -34,11 +36,47 @@ public:
     }
     std::byte* at() const { return to_; }
     void move_to(std::byte* to) { to_ = to; }
+    unsigned held() const { return held_; }  ///< bits after the last whole word
+    std::uint64_t held_bits() const { return held_ > 0 ? pending_ >> (64 - held_) : 0; }
 
 private:
     std::byte* to_;
     std::uint64_t pending_ = 0;  ///< the highest held_ bits
     unsigned held_ = 0;          ///< below 32
+};
+
+/// Words in memory that grows. Not for the innermost loop: that takes a copy of writer(), which stays valid for `room` bytes.
+class WordBuffer {
+public:
+    void clear() { writer_ = WordBitWriter(bytes_.data()); }
+    /// The writer, with room for that many bytes; as long as nothing else is called.
+    WordBitWriter& writer(std::size_t room) {
+        const auto used = static_cast<std::size_t>(writer_.at() - bytes_.data());
+        if (bytes_.size() - used < room + kSlack) {
+            bytes_.resize(bytes_.size() * 2 + room + kSlack);
+            writer_.move_to(bytes_.data() + used);
+        }
+        return writer_;
+    }
+    /// Puts another's bits behind those that are here.
+    void append(const WordBuffer& other) {
+        const auto words = static_cast<std::size_t>(other.writer_.at() - other.bytes_.data()) / 4;
+        WordBitWriter& to = writer(4 * words + 8);
+        for (std::size_t i = 0; i < words; ++i) {
+            std::uint32_t word;
+            std::memcpy(&word, other.bytes_.data() + 4 * i, sizeof word);
+            to.put(word, 32);
+        }
+        if (other.writer_.held() > 0) to.put(other.writer_.held_bits(), other.writer_.held());
+    }
+    /// All words, the last one filled with zero bits.
+    std::span<const std::byte> finish() { return {bytes_.data(), writer(8).finish()}; }
+
+private:
+    static constexpr std::size_t kSlack = 16;  ///< bytes that put() touches beyond what it needs
+
+    std::vector<std::byte> bytes_;
+    WordBitWriter writer_{nullptr};
 };
 
 class WordBitReader {
