@@ -7,9 +7,11 @@
 // not compared. When tracking ends or moves, store() gives them the current colour, by the same rule on both sides.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "gen/glstate/state.gen.h"
 
@@ -82,39 +84,70 @@ bool assign(State& s, unsigned i, const typename E::type& v) {
 
 namespace detail {
 
+// Each tells whether anything differed.
 template <class E, class Sink>
-void diff_value(State& from, const State& to, unsigned i, Sink& sink) {
-    if (same(E::ref(static_cast<const State&>(from), i), E::ref(to, i)) || follows_color<E>(to, i)) return;
+bool diff_value(State& from, const State& to, unsigned i, Sink& sink) {
+    if (same(E::ref(static_cast<const State&>(from), i), E::ref(to, i)) || follows_color<E>(to, i)) return false;
     const typename E::type v = E::ref(to, i);
     store<E>(from, i, v);
     sink.template set<E>(i, v);
+    return true;
 }
 
 template <class E, class Sink>
-void diff_element(State& from, const State& to, Sink& sink) {
+bool diff_element(State& from, const State& to, Sink& sink) {
     if constexpr (E::count > 1) {
-        if (std::memcmp(&E::ref(static_cast<const State&>(from), 0), &E::ref(to, 0), sizeof(typename E::type) * E::count) == 0) return;
+        if (std::memcmp(&E::ref(static_cast<const State&>(from), 0), &E::ref(to, 0), sizeof(typename E::type) * E::count) == 0) return false;
     }
-    for (unsigned i = 0; i < E::count; ++i) diff_value<E>(from, to, i, sink);
+    bool differs = false;
+    for (unsigned i = 0; i < E::count; ++i) differs |= diff_value<E>(from, to, i, sink);
+    return differs;
 }
 
 template <class Sink, class... E>
-void diff_list(ElementList<E...>, State& from, const State& to, Sink& sink) {
-    (diff_element<E>(from, to, sink), ...);
+bool diff_list(ElementList<E...>, State& from, const State& to, Sink& sink) {
+    return (static_cast<unsigned>(diff_element<E>(from, to, sink)) | ... | 0u) != 0;
 }
 
-template <CategoryMask Mask, std::size_t C, class Sink>
-void diff_if_wanted(State& from, const State& to, Sink& sink) {
+// With To = State equal categories get one value id, that of `from`.
+template <CategoryMask Mask, std::size_t C, class To, class Sink>
+void diff_if_wanted(State& from, To& to, Sink& sink) {
     if constexpr ((Mask >> C & 1) != 0) {
         if (from.ids[C] == to.ids[C]) return;
-        diff_list(typename CategoryElements<static_cast<Category>(C)>::list{}, from, to, sink);
+        const bool differs = diff_list(typename CategoryElements<static_cast<Category>(C)>::list{}, from, to, sink);
+        if constexpr (!std::is_const_v<To>) {
+            if (!differs) {
+                to.ids[C] = from.ids[C];
+                return;
+            }
+        }
         from.ids[C] = to.ids[C];
     }
 }
 
-template <CategoryMask Mask, class Sink, std::size_t... C>
-void diff_categories(State& from, const State& to, Sink& sink, std::index_sequence<C...>) {
+template <CategoryMask Mask, class To, class Sink, std::size_t... C>
+void diff_categories(State& from, To& to, Sink& sink, std::index_sequence<C...>) {
     (diff_if_wanted<Mask, C>(from, to, sink), ...);
+}
+
+using TwoIds [[gnu::vector_size(16)]] = std::uint64_t;
+
+/// Bits in which the ids of the categories 2 * Pair and 2 * Pair + 1 differ, if they are in Mask.
+template <CategoryMask Mask, std::size_t Pair>
+TwoIds differing_bits(const State& a, const State& b) {
+    constexpr auto ones = [](std::size_t c) { return (Mask >> c & 1) != 0 ? ~std::uint64_t{0} : 0; };
+    if constexpr ((Mask >> 2 * Pair & 3) == 0) return TwoIds{};
+    TwoIds ids_a, ids_b;
+    std::memcpy(&ids_a, &a.ids[2 * Pair], sizeof ids_a);
+    std::memcpy(&ids_b, &b.ids[2 * Pair], sizeof ids_b);
+    return (ids_a ^ ids_b) & TwoIds{ones(2 * Pair), ones(2 * Pair + 1)};
+}
+
+template <CategoryMask Mask, std::size_t... Pair>
+bool same_pairs(const State& a, const State& b, std::index_sequence<Pair...>) {
+    static_assert(kCategoryCount % 2 == 0);
+    const TwoIds different = (differing_bits<Mask, Pair>(a, b) | ...);
+    return (different[0] | different[1]) == 0;
 }
 
 }  // namespace detail
@@ -125,7 +158,27 @@ void diff(State& from, const State& to, Sink&& sink) {
     detail::diff_categories<Mask>(from, to, sink, std::make_index_sequence<kCategoryCount>{});
 }
 
-/// The same with the categories chosen at run time.
+/// Whether all categories of Mask have the same value ids: no branch until the end, two categories an instruction.
+template <CategoryMask Mask>
+bool same_ids(const State& a, const State& b) {
+    return detail::same_pairs<Mask>(a, b, std::make_index_sequence<kCategoryCount / 2>{});
+}
+
+/// diff() for a receiver that goes between several states (T5): a category of `to` that proves equal takes the value id of
+/// `from`, so that it is compared by value once and costs nothing from then on, whoever it is compared with.
+template <CategoryMask Mask = kSentCategories, class Sink>
+void diff_and_unify(State& from, State& to, Sink&& sink) {
+    if (same_ids<Mask>(from, to)) return;
+    detail::diff_categories<Mask>(from, to, sink, std::make_index_sequence<kCategoryCount>{});
+}
+
+/// Two states hold equal values in these categories; from now on by the same ids.
+inline void unify_ids(CategoryMask categories, State& a, const State& b) {
+    for (std::size_t c = 0; c < kCategoryCount; ++c)
+        if ((categories >> c & 1) != 0) a.ids[c] = b.ids[c];
+}
+
+/// diff() with the categories chosen at run time.
 template <class Sink>
 void diff(CategoryMask wanted, State& from, const State& to, Sink&& sink) {
     const auto each = [&]<std::size_t... C>(std::index_sequence<C...>) {

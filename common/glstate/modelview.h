@@ -6,6 +6,9 @@
 // with any other it is ignored. Pure.
 #pragma once
 
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <cstring>
 
 #include "gen/glstate/state.gen.h"
@@ -22,13 +25,19 @@ struct ModelviewOrigin {
     ModelviewForm form;
 };
 
-/// FNV-1a of the values.
+/// MurmurHash3 of the values, a lane for each column, so that their multiplications overlap: it is taken at each switch
+/// between contexts.
 inline std::uint32_t modelview_tag(const Mat4& m) {
-    unsigned char bytes[sizeof m];
-    std::memcpy(bytes, m.data(), sizeof m);
-    std::uint32_t hash = 2166136261u;
-    for (const unsigned char byte : bytes) hash = (hash ^ byte) * 16777619u;
-    return hash;
+    std::array<std::uint32_t, 16> words;
+    std::memcpy(words.data(), m.data(), sizeof m);
+    const auto mixed = [](std::uint32_t hash, std::uint32_t word) {
+        hash ^= std::rotl(word * 0xcc9e2d51u, 15) * 0x1b873593u;
+        return std::rotl(hash, 13) * 5 + 0xe6546b64u;
+    };
+    std::array<std::uint32_t, 4> lanes = {1, 2, 3, 4};
+    for (std::size_t row = 0; row < 4; ++row)
+        for (std::size_t column = 0; column < 4; ++column) lanes[column] = mixed(lanes[column], words[column * 4 + row]);
+    return mixed(mixed(mixed(lanes[0], lanes[1]), lanes[2]), lanes[3]);
 }
 
 /// Does `form` belong to the matrix?

@@ -64,12 +64,12 @@ bool Driver::fragments_change(const glstate::State& from, const glstate::State& 
     return false;
 }
 
-void Driver::sync(const glstate::State& state) {
+void Driver::sync_values(glstate::State& state) {
     if (bitmap_held_ && fragments_change(mirror, state)) {
         gl_.Flush();
         bitmap_held_ = false;
     }
-    glstate::diff<kSynced>(mirror, state, *this);
+    glstate::diff_and_unify<kSynced>(mirror, state, *this);
     if (std::exchange(modelview_changed_, false)) modelview_has_origin_ = glstate::load_modelview(gl_, mirror, modelview_has_origin_);
 }
 
@@ -118,26 +118,38 @@ void Driver::emit(Gl& gl, glstate::el::tex_gen_eye_plane, unsigned i, const glst
 // ---- textures ----
 
 void Driver::bind_texture(unsigned i, TextureTarget target, GLuint texture) {
-    GLuint& bound = bound_textures_[i][static_cast<std::size_t>(target)];
+    GLuint& bound = bound_textures_.names[i][static_cast<std::size_t>(target)];
     if (bound == texture) return;
     unit(gl_, i);
     gl_.BindTexture(gl_target(target), texture);
     bound = texture;
+    bound_textures_.id = glstate::next_value_id();
+}
+
+void Driver::bind_all(const TextureBindings& wanted) {
+    for (unsigned i = 0; i < kTextureUnits; ++i) {
+        if (bound_textures_.names[i] == wanted.names[i]) continue;
+        for (std::size_t target = 0; target < kTextureTargets; ++target) bind_texture(i, static_cast<TextureTarget>(target), wanted.names[i][target]);
+    }
+    bound_textures_.id = wanted.id;
 }
 
 void Driver::forget_texture(GLuint texture) {
-    for (auto& unit_bindings : bound_textures_)
+    for (auto& unit_bindings : bound_textures_.names)
         for (GLuint& bound : unit_bindings)
-            if (bound == texture) bound = 0;
+            if (bound == texture) bound = 0, bound_textures_.id = glstate::next_value_id();
 }
 
 // ---- the layer ----
 
-void Driver::bind_layer(Layer& layer, const glstate::State& state) {
-    const std::uint64_t id = state.ids[static_cast<std::size_t>(glstate::Category::window)];
-    if (layer_ == &layer && window_id_ == id) return;
+void Driver::bind_window(Layer& layer, glstate::State& state) {
+    if (glstate::same(mirror.window, state.window)) {
+        state.ids[kWindow] = mirror.ids[kWindow];
+        if (layer_ == &layer) return;
+    }
+    mirror.window = state.window;
+    mirror.ids[kWindow] = state.ids[kWindow];
     layer_ = &layer;
-    window_id_ = id;
     layer.bind(glstate::el::draw_buffer::ref(state), glstate::el::read_buffer::ref(state));
     const WindowValues wanted = window_values(layer.geometry(), state);
     apply_viewport(wanted, layer.geometry().scaled());

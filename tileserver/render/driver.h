@@ -24,6 +24,13 @@ GLenum gl_target(TextureTarget target);
 /// Of a target or an image target (cube map faces); kCount: not one of ours.
 TextureTarget texture_target(GLenum target);
 
+using TextureNames = std::array<std::array<GLuint, kTextureTargets>, kTextureUnits>;
+/// Driver textures at all units; equal ids mean equal names. Id 0: none anywhere.
+struct TextureBindings {
+    std::uint64_t id = 0;
+    TextureNames names{};
+};
+
 /// The state of a driver context goes through here, never around it.
 class Driver : private glstate::DriverEmit<Gl> {
 public:
@@ -33,21 +40,31 @@ public:
 
     const Gl& gl() const { return gl_; }
     bool flip_y() const { return flip_y_; }
-    /// What the driver holds. Textures, the window category, the raster position and objects are kept elsewhere.
+    /// What the driver holds; of the window category, what it was computed from. Textures, the raster position and
+    /// objects are kept elsewhere.
     glstate::State mirror;
 
     /// A glBitmap was drawn. Mesa 22 gathers them, and would draw them by the state of a later one.
     void hold_bitmap() { bitmap_held_ = true; }
-    /// Everything but what depends on the layer or names objects.
-    void sync(const glstate::State& state);
+    /// Everything but what depends on the layer or names objects. The state's categories take the driver's value ids
+    /// where they prove equal.
+    void sync(glstate::State& state) {
+        if (!glstate::same_ids<kSynced>(mirror, state)) sync_values(state);
+    }
+    /// `state` holds what the driver holds since sync() and the vertex attributes that both have seen since.
+    void unify_attributes(glstate::State& state) const { glstate::unify_ids(kAttributesMask, state, mirror); }
     void sync_pixel_transfer(const glstate::State& state);
     /// Images pass unchanged, for the driver's own work.
     void neutral_pixel_transfer() { sync_pixel_transfer(defaults_); }
     /// The layer and the window category as it concerns it.
-    void bind_layer(Layer& layer, const glstate::State& state);
+    void bind_layer(Layer& layer, glstate::State& state) {
+        if (layer_ != &layer || mirror.ids[kWindow] != state.ids[kWindow]) bind_window(layer, state);
+    }
     /// Another framebuffer was bound, or a layer is gone.
     void forget_layer() { layer_ = nullptr; }
-    void bind_texture(unsigned unit, TextureTarget target, GLuint texture);
+    void bind_textures(const TextureBindings& wanted) {
+        if (wanted.id != bound_textures_.id) bind_all(wanted);
+    }
     /// On the active unit, for commands that work on the bound object.
     void bind_texture_to_edit(TextureTarget target, GLuint texture) {
         bind_texture(0, target, texture);
@@ -57,7 +74,7 @@ public:
     void forget_texture(GLuint texture);
     /// A program of the driver; 0: fixed function.
     void use_program(GLuint program) {
-        if (std::exchange(program_, program) != program) gl_.UseProgram(program);
+        if (program_ != program) gl_.UseProgram(program_ = program);
     }
     /// Before a program is deleted.
     void forget_program(GLuint program) {
@@ -94,7 +111,14 @@ private:
     void with_identity_modelview(Call&& call);
     void apply_viewport(const WindowValues& values, bool scaled);
 
+    void sync_values(glstate::State& state);
+    void bind_window(Layer& layer, glstate::State& state);
+    void bind_all(const TextureBindings& wanted);
+    void bind_texture(unsigned unit, TextureTarget target, GLuint texture);
+
+    static constexpr auto kWindow = static_cast<std::size_t>(glstate::Category::window);
     static constexpr glstate::CategoryMask kCurrentMask = glstate::mask_of(glstate::Category::current);
+    static constexpr glstate::CategoryMask kAttributesMask = kCurrentMask | glstate::mask_of(glstate::Category::material);
     /// Whether a category differs that takes part in drawing a bitmap.
     static bool fragments_change(const glstate::State& from, const glstate::State& to);
 
@@ -106,10 +130,9 @@ private:
     bool flip_y_ = false;
     bool modelview_changed_ = false;     // since it was loaded
     bool modelview_has_origin_ = false;  // what was loaded
-    std::array<std::array<GLuint, kTextureTargets>, kTextureUnits> bound_textures_{};
+    TextureBindings bound_textures_;
     GLuint program_ = 0;             // that the driver draws with
     Layer* layer_ = nullptr;         // whose window values are in the driver
-    std::uint64_t window_id_ = 0;    // value id of the window category that they came from
     bool viewport_scaled_ = false;
     WindowValues window_;            // what the driver holds
     bool bitmap_held_ = false;

@@ -4,16 +4,14 @@
 #include "common/glstate/elements.h"
 #include "common/wire/batch.h"
 #include "tileserver/render/limits.h"
+#include "tileserver/render/soft_switch.h"
 
 namespace wall::tileserver {
 
 Executor::Executor(RenderNode& node, Session& session, SessionOutput& output)
     : node_(node), session_(session), output_(output), gl_(node.driver.gl()) {}
 
-Executor::~Executor() {
-    end_render_mode();
-    if (node_.textures_owner == this) node_.textures_owner = nullptr;
-}
+Executor::~Executor() { end_render_mode(); }
 
 Result<void> Executor::run_batch(std::span<const std::byte> payload) {
     const auto batch = wire::split_batch(payload);
@@ -73,7 +71,7 @@ void Executor::begin_tile(unsigned slot) {
     raster_ = glstate::el::raster_position::ref(context_->state);
     layer_ = draw_surface_ != nullptr ? draw_surface_->layer(slot) : nullptr;
     draws_ = layer_ != nullptr && layer_->complete();
-    if (draws_) prepare(*layer_);
+    if (draws_ && !switch_to(node_, session_, *context_, *layer_)) refuse("too many queries");
 }
 
 void Executor::finish_tile() {
@@ -89,8 +87,11 @@ void Executor::finish_tile() {
 
 void Executor::end_block() {
     if (tile_open_) finish_tile();
-    trail_.fold_into(context_->state);
-    trail_.clear();
+    if (!trail_.empty()) {
+        trail_.fold_into(context_->state);
+        if (draws_) node_.driver.unify_attributes(context_->state);
+        trail_.clear();
+    }
     if (!glstate::same(raster_, glstate::el::raster_position::ref(context_->state))) glstate::assign<glstate::el::raster_position>(context_->state, 0, raster_);
     in_block_ = draws_ = false;
     const GLenum buffer = glstate::el::draw_buffer::ref(context_->state);
@@ -98,42 +99,9 @@ void Executor::end_block() {
     layer_ = nullptr;
 }
 
-void Executor::prepare(Layer& layer) {
-    node_.driver.sync(context_->state);
-    sync_textures();
-    node_.maps.sync_evaluators(gl_, context_->maps);
-    node_.driver.bind_layer(layer, context_->state);
-    session_.programs.use(ClientName(glstate::el::current_program::ref(context_->state)), layer.geometry());
-    const LayerGeometry& g = layer.geometry();
-    if (!session_.queries.begin(ClientName(glstate::el::occlusion_query::ref(context_->state)), g.scale_x() * g.scale_y())) refuse("too many queries");
-}
-
 bool Executor::outside_begin() {
     if (in_begin_) refuse("between Begin and End");
     return !in_begin_;
-}
-
-// ---- texture bindings ----
-
-void Executor::sync_textures() {
-    const auto& textures = context_->state.textures;
-    const std::uint64_t id = context_->state.ids[static_cast<std::size_t>(glstate::Category::textures)];
-    if (node_.textures_owner == this && textures_id_ == id && textures_version_ == session_.texture_version()) return;
-    const std::array<const std::array<std::uint32_t, kTextureUnits>*, kTextureTargets> names = {
-        &textures.texture_binding_1d,        &textures.texture_binding_2d,       &textures.texture_binding_3d,
-        &textures.texture_binding_cube_map,  &textures.texture_binding_rectangle, &textures.texture_binding_1d_array,
-        &textures.texture_binding_2d_array,  &textures.texture_binding_cube_map_array, &textures.texture_binding_buffer,
-        &textures.texture_binding_2d_multisample};
-    for (std::size_t target = 0; target < kTextureTargets; ++target) {
-        for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
-            const Texture* texture = session_.texture(ClientName((*names[target])[unit]), static_cast<TextureTarget>(target));
-            const bool fits = texture != nullptr && texture->target == static_cast<TextureTarget>(target);
-            node_.driver.bind_texture(unit, static_cast<TextureTarget>(target), fits ? texture->driver.value : 0);
-        }
-    }
-    node_.textures_owner = this;
-    textures_id_ = id;
-    textures_version_ = session_.texture_version();
 }
 
 }  // namespace wall::tileserver

@@ -23,7 +23,6 @@ struct RenderNode {
     Driver& driver;
     MapMirror maps;
     std::vector<Tile> tiles;
-    const void* textures_owner = nullptr;     ///< the executor whose bindings the driver holds
     std::uint64_t damage = 1;                 ///< grows when a tile's picture may have changed
     bool present_at_once = false;             ///< nobody coordinates: show frames when they are done
     std::uint64_t commands = 0, gl_errors = 0, frames = 0;  ///< since the start
@@ -198,9 +197,7 @@ public:
 
 private:
     Run compile_run(std::span<const std::byte> opcodes, std::span<const std::byte> operands);
-    void prepare(Layer& layer);
     void finish_tile();
-    void sync_textures();
     bool outside_begin();
     Surface* known_surface(std::uint32_t id);
     /// Binds a texture for the driver's work on the object; null after a refusal.
@@ -228,8 +225,6 @@ private:
     Layer* layer_ = nullptr;
     AttributeTrail trail_;
     glstate::Vec4 raster_{};  // position as the block's bitmaps move it
-
-    std::uint64_t textures_id_ = 0, textures_version_ = 0;  // the bindings that the driver holds, if this is the owner
 
     GLenum render_mode_ = GL_RENDER;
     std::vector<GLfloat> feedback_;

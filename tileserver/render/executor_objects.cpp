@@ -63,7 +63,6 @@ Texture* Executor::bind_for_upload(std::uint32_t name, GLenum target) {
         return nullptr;
     }
     node_.driver.bind_texture_to_edit(kind, texture->driver.value);
-    node_.textures_owner = nullptr;
     return texture;
 }
 

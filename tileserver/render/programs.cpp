@@ -251,8 +251,8 @@ Result<void> Programs::set_uniform(ClientName name, std::uint32_t location, GLen
     return {};
 }
 
-void Programs::use(ClientName name, const LayerGeometry& layer) {
-    const auto at = name ? programs_.find(name.value) : programs_.end();
+void Programs::use_named(ClientName name, const LayerGeometry& layer) {
+    const auto at = programs_.find(name.value);
     if (at == programs_.end()) return driver_.use_program(0);
     Program& program = at->second;
     driver_.use_program(program.driver);

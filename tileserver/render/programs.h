@@ -34,7 +34,7 @@ public:
     void erase(ClientName name);
     Result<void> set_uniform(ClientName name, std::uint32_t location, GLenum type, std::uint32_t count, std::span<const std::byte> values);
     /// The driver draws with it, in this layer. Name 0 or an unknown one: with none.
-    void use(ClientName name, const LayerGeometry& layer);
+    void use(ClientName name, const LayerGeometry& layer) { name ? use_named(name, layer) : driver_.use_program(0); }
 
 private:
     struct Program {
@@ -48,6 +48,7 @@ private:
         GLuint program = 0;
         bool upper_left = false;
     };
+    void use_named(ClientName name, const LayerGeometry& layer);
     Built build(const glapi::ProgramDefinition& definition);
     GLuint build_shader(const glapi::ShaderSource& shader, bool& upper_left);
     std::vector<GLint> map_locations(GLuint program, const std::vector<glapi::UniformName>& names) const;

@@ -22,11 +22,18 @@
 
 namespace wall::tileserver {
 
+/// A soft context's texture bindings in the driver's names, and what they were looked up from.
+struct BoundTextures {
+    std::uint64_t state_id = 0, version = 0;  ///< value id of the category `textures`, Session::texture_version()
+    TextureBindings bindings;
+};
+
 struct SoftContext {
     glstate::State state;
     glstate::ValueHistory history;
     SurfaceId draw, read;
     SoftMaps maps;
+    BoundTextures textures;
 };
 
 struct Texture {

@@ -31,8 +31,7 @@ std::size_t evaluator_index(GLenum target, bool two_dimensional) {
 std::size_t evaluator_components(std::size_t index) { return kComponents[index]; }
 std::size_t pixel_map_index(GLenum map) { return map < GL_PIXEL_MAP_I_TO_I ? kPixelMaps : std::min<std::size_t>(map - GL_PIXEL_MAP_I_TO_I, kPixelMaps); }
 
-void MapMirror::sync_evaluators(const Gl& gl, const SoftMaps& maps) {
-    if (!maps.any_evaluator && evaluators_initial_) return;
+void MapMirror::tell_evaluators(const Gl& gl, const SoftMaps& maps) {
     for (std::size_t i = 0; i < kEvaluatorMaps; ++i) {
         if (map1_[i] != maps.map1[i].id) emit_map1(gl, i, maps.map1[i]);
         if (map2_[i] != maps.map2[i].id) emit_map2(gl, i, maps.map2[i]);

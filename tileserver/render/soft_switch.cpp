@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/render/soft_switch.h"
+
+namespace wall::tileserver {
+namespace {
+
+using Names = std::array<std::uint32_t, kTextureUnits>;
+
+std::array<const Names*, kTextureTargets> names_by_target(const glstate::State& state) {
+    const auto& t = state.textures;
+    return {&t.texture_binding_1d,       &t.texture_binding_2d,       &t.texture_binding_3d,
+            &t.texture_binding_cube_map, &t.texture_binding_rectangle, &t.texture_binding_1d_array,
+            &t.texture_binding_2d_array, &t.texture_binding_cube_map_array, &t.texture_binding_buffer,
+            &t.texture_binding_2d_multisample};
+}
+
+std::uint64_t textures_id(const SoftContext& context) { return context.state.ids[static_cast<std::size_t>(glstate::Category::textures)]; }
+
+void look_up_textures(Session& session, SoftContext& context) {
+    BoundTextures& bound = context.textures;
+    const auto names = names_by_target(context.state);
+    TextureNames found{};
+    for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
+        for (std::size_t target = 0; target < kTextureTargets; ++target) {
+            const Texture* texture = session.texture(ClientName((*names[target])[unit]), static_cast<TextureTarget>(target));
+            if (texture != nullptr && texture->target == static_cast<TextureTarget>(target)) found[unit][target] = texture->driver.value;
+        }
+    }
+    if (found != bound.bindings.names) bound.bindings = {found == TextureNames{} ? 0 : glstate::next_value_id(), found};
+    bound.state_id = textures_id(context);
+    bound.version = session.texture_version();
+}
+
+}  // namespace
+
+bool switch_to(RenderNode& node, Session& session, SoftContext& context, Layer& layer) {
+    node.driver.sync(context.state);
+    if (context.textures.state_id != textures_id(context) || context.textures.version != session.texture_version()) look_up_textures(session, context);
+    node.driver.bind_textures(context.textures.bindings);
+    node.maps.sync_evaluators(node.driver.gl(), context.maps);
+    node.driver.bind_layer(layer, context.state);
+    session.programs.use(ClientName(glstate::el::current_program::ref(context.state)), layer.geometry());
+    const ClientName query(glstate::el::occlusion_query::ref(context.state));
+    return !query || session.queries.begin(query, layer.geometry().scale_x() * layer.geometry().scale_y());
+}
+
+}  // namespace wall::tileserver
