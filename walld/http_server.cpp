@@ -3,6 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -27,12 +28,15 @@ constexpr const char* kJson = "application/json";
 constexpr const char* kVia = "http";
 constexpr std::string_view kStreamPath = "/api/v1/stream";
 
-http::response<http::string_body> reply(unsigned version, http::status status, const char* type, std::string body) {
+/// The page uses nothing but its own files, and is no part of another page.
+constexpr const char* kPolicy = "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+http::response<http::string_body> reply(unsigned version, http::status status, std::string_view type, std::string body) {
     http::response<http::string_body> out(status, version);
-    out.set(http::field::content_type, type);
+    out.set(http::field::content_type, {type.data(), type.size()});
     out.set(http::field::cache_control, "no-store");
     out.set("X-Content-Type-Options", "nosniff");
-    out.set("Content-Security-Policy", "default-src 'self'; style-src 'self' 'unsafe-inline'; script-src 'self' 'unsafe-inline'; img-src 'self' blob:");
+    out.set("Content-Security-Policy", kPolicy);
     out.body() = std::move(body);
     return out;
 }
@@ -181,7 +185,8 @@ std::optional<HttpServer::Response> HttpServer::local_page(const Request& reques
     const auto version = request.version();
     if (!host_ok(view(request[http::field::host]))) return reply(version, http::status::misdirected_request, "text/plain", "this wall answers to local names only\n");
     if (!reads(request)) return std::nullopt;
-    if (path_of(request) == "/") return reply(version, http::status::ok, "text/html; charset=utf-8", kPage);
+    const auto* file = std::ranges::find(kPageFiles, path_of(request), &PageFile::path);
+    if (file != std::end(kPageFiles)) return reply(version, http::status::ok, file->type, std::string(file->content));
     if (path_of(request) != "/healthz") return std::nullopt;
     const bool well = wall_.any_node_up();
     return reply(version, well ? http::status::ok : http::status::service_unavailable, "text/plain", well ? "ok\n" : "no node is up\n");
