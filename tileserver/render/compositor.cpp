@@ -82,7 +82,7 @@ void Compositor::compose(TileTarget& target, std::uint32_t slot, SessionId only)
     for (const StackEntry& entry : stacking_) {
         if (only && entry.session != only) continue;
         const Surface* surface = find_(entry);
-        const Layer* layer = surface != nullptr ? surface->layer(slot) : nullptr;
+        const Layer* layer = surface != nullptr ? surface->shown_layer(slot) : nullptr;
         if (layer != nullptr) draw_layer(target, *layer);
     }
 }

@@ -23,10 +23,11 @@ constexpr auto kExclusiveLimit = 2s;
 constexpr auto kStatsInterval = 1s;
 constexpr auto kReadbackPoll = 1ms;
 
-bool ends_a_frame(const std::vector<std::byte>& payload) {
+/// Ends a frame, or moves a surface: the frame before must be shown first.
+bool needs_shown_frame(const std::vector<std::byte>& payload) {
     const auto batch = wire::split_batch(payload);
-    return batch && !batch->opcodes.empty() &&
-           std::memchr(batch->opcodes.data(), static_cast<int>(glapi::Op::Swap), batch->opcodes.size()) != nullptr;
+    const auto has = [&](glapi::Op op) { return std::memchr(batch->opcodes.data(), static_cast<int>(op), batch->opcodes.size()) != nullptr; };
+    return batch && !batch->opcodes.empty() && (has(glapi::Op::Swap) || has(glapi::Op::SurfacePlace));
 }
 
 }  // namespace
@@ -56,7 +57,7 @@ public:
         /// True: a batch was executed.
         bool run_one() {
             const std::vector<std::byte>* next = failed_ ? nullptr : queue_->front();
-            if (next == nullptr || (ends_a_frame(*next) && frame_waits())) return false;
+            if (next == nullptr || (needs_shown_frame(*next) && frame_waits())) return false;
             const auto batch = queue_->pop();
             last_run_ = Clock::now();
             if (const auto done = executor_.run_batch(batch); !done) fail(done.error().message);

@@ -6,31 +6,49 @@
 
 namespace wall::tileserver {
 
-std::unique_ptr<Layer> Surface::make_layer(const LayerGeometry& geometry, std::unique_ptr<Layer> older) {
-    if (older && older->geometry() == geometry) return older;
-    if (std::int64_t{geometry.area.width} * geometry.area.height > budget_.left) return nullptr;
+std::unique_ptr<Layer> Surface::make_layer(const LayerGeometry& geometry, const Layer* older) {
+    const auto pixels = std::int64_t{geometry.area.width} * geometry.area.height;
+    if (pixels > budget_.left) forget_older();
+    if (pixels > budget_.left) return nullptr;
     auto layer = std::make_unique<Layer>(gl_, flip_y_, geometry, format_.layer, budget_);
     if (older && older->geometry().scale_x() == geometry.scale_x() && older->geometry().scale_y() == geometry.scale_y()) layer->take_content(*older);
     return layer;
 }
 
+/// The layer that was there stays in sight. Without a back buffer, and before the first frame, there is nothing to keep.
+void Surface::replace(std::uint32_t slot, std::unique_ptr<Layer> layer) {
+    if (format_.layer.double_buffered && shown_once_) {
+        if (!replaced_[slot]) older_[slot] = std::move(layers_[slot]);
+        replaced_.set(slot);
+    }
+    layers_[slot] = std::move(layer);
+}
+
+void Surface::forget_older() {
+    for (auto& layer : older_) layer.reset();
+    replaced_.reset();
+}
+
 bool Surface::place(const SurfacePlace& place, const std::vector<Tile>& tiles) {
     place_ = place;
     layers_[wire::kOffscreenSlot].reset();
-    std::array<bool, wire::kMaxTilesPerNode> wanted{};
+    std::bitset<wire::kMaxTilesPerNode> wanted;
     bool affordable = true;
     for (const Tile& tile : tiles) {
         const geom::Rect area = place.offscreen ? geom::Rect{} : geom::intersect(place.rect, tile.rect);
         if (area.empty() || tile.slot >= wire::kOffscreenSlot) continue;
-        auto& layer = layers_[tile.slot];
-        layer = make_layer({place.rect, area, place.window_width, place.window_height}, std::move(layer));
-        wanted[tile.slot] = true;
-        affordable = affordable && layer != nullptr;
+        const LayerGeometry geometry{place.rect, area, place.window_width, place.window_height};
+        wanted.set(tile.slot);
+        const Layer* now = layers_[tile.slot].get();
+        if (now == nullptr || !(now->geometry() == geometry)) replace(tile.slot, make_layer(geometry, now));
+        affordable = affordable && layers_[tile.slot] != nullptr;
     }
-    for (std::size_t slot = 0; slot < layers_.size(); ++slot)
-        if (!wanted[slot]) layers_[slot].reset();
+    for (std::uint32_t slot = 0; slot < layers_.size(); ++slot)
+        if (!wanted[slot] && layers_[slot]) replace(slot, nullptr);
     return affordable;
 }
+
+const Layer* Surface::shown_layer(std::uint32_t slot) const { return (replaced_[slot] ? older_ : layers_)[slot].get(); }
 
 Layer* Surface::layer(std::uint32_t slot) {
     auto& layer = layers_[slot];
@@ -52,9 +70,11 @@ void Surface::finish_frame(std::uint32_t frame) {
 }
 
 void Surface::show_frame() {
+    shown_once_ = true;
     for (auto& layer : layers_)
         if (layer) layer->show_frame();
     waiting_.reset();
+    forget_older();
 }
 
 }  // namespace wall::tileserver

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -37,12 +38,16 @@ class Surface {
 public:
     Surface(const Gl& gl, bool flip_y, const SurfaceFormat& format, PixelBudget& budget) : gl_(gl), flip_y_(flip_y), format_(format), budget_(budget) {}
 
-    /// Makes the layers anew where they differ; what stays in sight keeps its pixels. False: that is more than the
-    /// session may have, and some layers are missing.
+    /// Makes the layers anew where they differ; what stays in sight keeps its pixels. What the wall shows stays as it is
+    /// until the first frame drawn there is shown. False: that is more than the session may have, and some layers are
+    /// missing. No frame may wait to be shown: it would be lost.
     bool place(const SurfacePlace& place, const std::vector<Tile>& tiles);
     /// Null if the surface does not reach the tile. The off-screen slot gives a layer of the whole window for any surface.
     Layer* layer(std::uint32_t slot);
     const Layer* layer(std::uint32_t slot) const { return layers_[slot].get(); }
+
+    /// What the wall shows on the tile, if anything.
+    const Layer* shown_layer(std::uint32_t slot) const;
 
     const SurfaceFormat& format() const { return format_; }
     const SurfacePlace& where() const { return place_; }
@@ -54,16 +59,25 @@ public:
     std::optional<std::uint32_t> waiting_frame() const { return waiting_; }
 
 private:
-    /// Null: over the budget.
-    std::unique_ptr<Layer> make_layer(const LayerGeometry& geometry, std::unique_ptr<Layer> older);
+    using Layers = std::array<std::unique_ptr<Layer>, wire::kMaxTilesPerNode>;
+
+    /// With the content of `older`, if there is one. Null: over the budget.
+    std::unique_ptr<Layer> make_layer(const LayerGeometry& geometry, const Layer* older);
+    void replace(std::uint32_t slot, std::unique_ptr<Layer> layer);
+    void forget_older();
 
     const Gl& gl_;
     bool flip_y_;
     SurfaceFormat format_;
     PixelBudget& budget_;
     SurfacePlace place_;
-    std::array<std::unique_ptr<Layer>, wire::kMaxTilesPerNode> layers_;
+    Layers layers_;  ///< that are drawn on
     std::optional<std::uint32_t> waiting_;
+    bool shown_once_ = false;
+
+    // Of a move that is not shown yet.
+    Layers older_;                                  ///< that are shown, where they are others
+    std::bitset<wire::kMaxTilesPerNode> replaced_;  ///< slots in which others are drawn on than shown
 };
 
 }  // namespace wall::tileserver
