@@ -205,7 +205,7 @@ void ControlLink::queue(const std::string& envelope) {
 void ControlLink::surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title, WindowMessages messages) {
     if (in_forked_child()) return;
     std::lock_guard lock(mutex_);
-    surfaces_[id] = {width, height, title, std::move(messages), 1};
+    surfaces_[id] = {width, height, title, std::move(messages), 1, 0};
     queue(encode_surface_open(id, width, height, title));
     wake();
 }
@@ -231,11 +231,12 @@ void ControlLink::surface_close(std::uint32_t id) {
     wake();
 }
 
-void ControlLink::surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame) {
-    if (in_forked_child()) return;
-    std::lock_guard lock(mutex_);
+bool ControlLink::surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame, milliseconds timeout) {
+    if (in_forked_child()) return false;
+    std::unique_lock lock(mutex_);
     queue(encode_surface_adopted(id, layout_version, frame));
     wake();
+    return changed_.wait_for(lock, timeout, [&] { return !up_ || surfaces_[id].noted == layout_version; }) && up_;
 }
 
 void ControlLink::ask_to_redraw(std::uint32_t id) {
@@ -355,6 +356,8 @@ bool ControlLink::handle(FromWalld message) {
         for (const auto& [id, surface] : surfaces_)
             if (node->up) wishes_.redraw.insert(id);
         events_.node_changes.push_back(std::move(*node));
+    } else if (auto* noted = std::get_if<AdoptionNoted>(&message)) {
+        if (const auto found = surfaces_.find(noted->surface); found != surfaces_.end()) found->second.noted = noted->layout_version;
     } else if (auto* close = std::get_if<CloseRequest>(&message)) {
         log(LogLevel::info, "close_requested surface=%u reason=%s", close->surface, close->reason.c_str());
         wishes_.close.insert(close->surface);
@@ -387,12 +390,19 @@ void ControlLink::tell_windows() {
             if (const auto found = surfaces_.find(id); found != surfaces_.end() && found->second.messages.redraw) redraw.push_back(found->second.messages.redraw);
         wishes_ = {};
     }
-    for (const auto& ask : redraw) ask();
     for (const auto& [id, ask] : close) {
-        if (ask && ask()) continue;
+        const bool asked = ask && ask();
         std::lock_guard lock(mutex_);
-        queue(encode_close_refused(id));
+        if (!asked) {
+            queue(encode_close_refused(id));
+            continue;
+        }
+        // Only a call of the program notices that the window is gone; if the others stand still, they make one now.
+        for (const auto& [other, surface] : surfaces_)
+            if (other != id) wishes_.redraw.insert(other);
+        wake();
     }
+    for (const auto& ask : redraw) ask();
 }
 
 void ControlLink::on_lost(const std::string& why) {

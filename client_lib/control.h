@@ -42,8 +42,9 @@ public:
     void surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title, WindowMessages messages = {});
     void surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height);
     void surface_close(std::uint32_t id);
-    /// The placement of that version holds from `frame` on.
-    void surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame);
+    /// The placement of that version holds from `frame` on. Waits until walld knows; false when the time is over or the
+    /// link breaks.
+    bool surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame, std::chrono::milliseconds timeout);
     /// Asks the program, soon, to draw the window again: what is on the wall was drawn for another layout.
     void ask_to_redraw(std::uint32_t id);
 
@@ -65,7 +66,8 @@ private:
         std::uint32_t width = 0, height = 0;
         std::string title;
         WindowMessages messages;
-        unsigned awaited = 0;  ///< placements that answer us; another one is a move
+        unsigned awaited = 0;     ///< placements that answer us; another one is a move
+        std::uint32_t noted = 0;  ///< layout version that walld knows to be adopted
     };
     /// What the windows are to be told.
     struct Wishes {

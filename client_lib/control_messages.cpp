@@ -17,7 +17,7 @@ namespace envelope {
 constexpr protozero::pbf_tag_type client_hello = 1, surface_open = 2, surface_resize = 3, surface_close = 4,
                                   surface_adopted = 5, close_refused = 6,
                                   client_welcome = 10, refused = 11, placement = 12, node_up = 13, node_down = 14,
-                                  close_request = 15;
+                                  close_request = 15, adoption_noted = 16;
 }
 
 void put_string(pbf_writer& out, protozero::pbf_tag_type tag, std::string_view text) {
@@ -191,6 +191,18 @@ CloseRequest read_close(pbf_reader in) {
     return close;
 }
 
+AdoptionNoted read_noted(pbf_reader in) {
+    AdoptionNoted noted;
+    while (in.next()) {
+        switch (in.tag()) {
+            case 1: noted.surface = read_u32(in); break;
+            case 2: noted.layout_version = read_u32(in); break;
+            default: in.skip();
+        }
+    }
+    return noted;
+}
+
 FromWalld read_envelope(pbf_reader in) {
     FromWalld message;
     while (in.next()) {
@@ -201,6 +213,7 @@ FromWalld read_envelope(pbf_reader in) {
             case envelope::node_up: message = read_node(read_message(in), true); break;
             case envelope::node_down: message = read_node(read_message(in), false); break;
             case envelope::close_request: message = read_close(read_message(in)); break;
+            case envelope::adoption_noted: message = read_noted(read_message(in)); break;
             default: in.skip();
         }
     }

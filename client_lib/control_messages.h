@@ -71,13 +71,19 @@ struct Placement {
     geom::Rect rect;
 };
 
+/// walld knows from which frame on a placement holds.
+struct AdoptionNoted {
+    std::uint32_t surface = 0;
+    std::uint32_t layout_version = 0;
+};
+
 struct CloseRequest {
     std::uint32_t surface = 0;
     std::string reason;
 };
 
 /// A message from walld; nothing for one that this version does not know.
-using FromWalld = std::variant<std::monostate, Welcome, Refused, Placement, NodeInfo, CloseRequest>;
+using FromWalld = std::variant<std::monostate, Welcome, Refused, Placement, NodeInfo, CloseRequest, AdoptionNoted>;
 
 // One encoded Envelope each, without the length in front.
 std::string encode(const Hello& hello);

@@ -243,7 +243,7 @@ void Session::adopt_placement(Surface& surface) {
     const Placement placement = *std::exchange(surface.next, std::nullopt);
     const bool moved = placement.rect != surface.layout.rect;
     apply_layout(surface, placement);
-    control_->surface_adopted(surface.id, placement.layout_version, surface.frame + 1);
+    control_->surface_adopted(surface.id, placement.layout_version, surface.frame + 1, kPlacementTimeout);
     if (moved && (surface.frame > 0 || !surface.options.format.double_buffered)) control_->ask_to_redraw(surface.id);
 }
 
@@ -253,8 +253,10 @@ void Session::take_events() {
     for (const NodeInfo& info : events.node_changes) {
         Node& node = node_slot(info);
         connect(node);
-        for (auto& [id, surface] : surfaces_)
+        for (auto& [id, surface] : surfaces_) {
             if (surface->layout.offscreen) apply_layout(*surface, {});
+            else if (info.up && surface->frame > 0) control_->ask_to_redraw(id);
+        }
     }
     for (const Placement& placement : events.placements) {
         const auto found = surfaces_.find(placement.surface);

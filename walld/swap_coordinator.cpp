@@ -20,15 +20,13 @@ Presents SwapCoordinator::set_nodes(const std::set<std::uint32_t>& nodes, Clock:
 Presents SwapCoordinator::move(const std::set<std::uint32_t>& nodes, std::uint32_t frame, Clock::time_point now) {
     const auto first = std::max(frame, presented_ + 1);
     for (auto& [node, member] : members_) {
-        if (!nodes.contains(node)) {
-            member.until = std::min(member.until, first - 1);
-        } else if (member.leaving()) {  // back before it was gone
-            member.from = first;
-            member.until = UINT32_MAX;
-        }
+        auto& stays = member.stays;
+        if (nodes.contains(node) && member.leaving()) stays.push_back({first, UINT32_MAX});
+        if (!nodes.contains(node) && !member.leaving()) stays.back().until = first - 1;
+        std::erase_if(stays, [](const Stay& stay) { return stay.until < stay.from; });  // two moves before one frame
     }
-    std::erase_if(members_, [](const auto& m) { return m.second.until < m.second.from; });  // it has never come there
-    for (const auto node : nodes) members_.try_emplace(node, Member{.from = first});
+    std::erase_if(members_, [](const auto& m) { return m.second.stays.empty(); });
+    for (const auto node : nodes) members_.try_emplace(node, Member{.stays = {{first, UINT32_MAX}}});
     return advance(now);
 }
 
@@ -48,7 +46,7 @@ Presents SwapCoordinator::rendered(std::uint32_t node, std::uint32_t frame, Cloc
     // One that comes too late for the group shows what it has: better than nothing, and it frees its buffers.
     if (const auto late = members_.find(node); late != members_.end() && late->second.rendered <= presented_) {
         tell(out, node, late->second, late->second.rendered, now);
-        if (late->second.leaving() && late->second.told >= late->second.until) members_.erase(late);
+        forget_past();
     }
     return out;
 }
@@ -86,9 +84,14 @@ bool SwapCoordinator::shown(std::uint32_t frame) const {
 
 std::uint32_t SwapCoordinator::ceiling() const { return held_ ? allowed_ : UINT32_MAX; }
 
+bool SwapCoordinator::Member::takes_part(std::uint32_t frame) const {
+    return std::ranges::any_of(stays, [&](const Stay& stay) { return frame >= stay.from && frame <= stay.until; });
+}
+
 std::uint32_t SwapCoordinator::Member::cap() const {
-    if (rendered >= until) return UINT32_MAX;
-    return std::max(rendered, from > 0 ? from - 1 : 0);
+    const auto stay = std::ranges::find_if(stays, [&](const Stay& s) { return rendered < s.until; });
+    if (stay == stays.end()) return UINT32_MAX;
+    return std::max(rendered, stay->from > 0 ? stay->from - 1 : 0);
 }
 
 /// The last frame that every waited node has rendered as far as it takes part.
@@ -121,6 +124,14 @@ void SwapCoordinator::tell(Presents& out, std::uint32_t node, Member& member, st
     presented_spread_.note(frame, group_of(frame), now);
 }
 
+/// Not before a node has shown its last frame of a stay: it could draw no other one.
+void SwapCoordinator::forget_past() {
+    for (auto& [node, member] : members_) {
+        std::erase_if(member.stays, [&](const Stay& stay) { return stay.until <= presented_ && member.told >= stay.until; });
+    }
+    std::erase_if(members_, [](const auto& m) { return m.second.stays.empty(); });
+}
+
 Presents SwapCoordinator::advance(Clock::time_point now) {
     Presents out;
     const auto frame = std::min(agreed(), ceiling());
@@ -130,8 +141,7 @@ Presents SwapCoordinator::advance(Clock::time_point now) {
         count_frame(now);
         for (auto& [node, member] : members_) tell(out, node, member, std::min(member.rendered, frame), now);
     }
-    // Not before it has shown its last frame: it could draw no other one.
-    std::erase_if(members_, [&](const auto& m) { return m.second.until <= presented_ && m.second.told >= m.second.until; });
+    forget_past();
     if (!someone_ahead()) deadline_.reset();
     else if (!deadline_) deadline_ = now + limit_;
     return out;

@@ -17,6 +17,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <set>
@@ -71,19 +72,23 @@ public:
     Spread::Milliseconds frame_interval() const { return interval_; }
 
 private:
+    /// The frames that a node takes part in, from the first to the last one.
+    struct Stay {
+        std::uint32_t from = 0, until = UINT32_MAX;
+    };
     struct Member {
         std::uint32_t rendered = 0;
         std::uint32_t told = 0;  ///< last frame it was told to show
         bool waited = true;
-        std::uint32_t from = 0;             ///< first frame that it takes part in
-        std::uint32_t until = UINT32_MAX;   ///< the last one
+        std::deque<Stay> stays{Stay{}};  ///< in order; a surface may come back before its last frame here is shown
 
-        bool leaving() const { return until != UINT32_MAX; }
-        bool takes_part(std::uint32_t frame) const { return frame >= from && frame <= until; }
+        bool leaving() const { return stays.back().until != UINT32_MAX; }
+        bool takes_part(std::uint32_t frame) const;
         /// The last frame that it does not hold back.
         std::uint32_t cap() const;
     };
     Presents advance(Clock::time_point now);
+    void forget_past();
     void count_frame(Clock::time_point now);
     void tell(Presents& out, std::uint32_t node, Member& member, std::uint32_t frame, Clock::time_point now);
     std::size_t group_of(std::uint32_t frame) const;

@@ -235,7 +235,12 @@ void Wall::resize_surface(SessionId id, const proto::SurfaceResize& message) {
 void Wall::adopt_placement(SessionId id, const proto::SurfaceAdopted& message, Clock::time_point now) {
     const SurfaceKey key{id, SurfaceId(message.surface())};
     auto* surface = find(key.surface, id);
-    if (!surface || !surface->place.adopt(message.layout_version(), message.frame())) return;
+    if (!surface) return;
+    proto::AdoptionNoted noted;
+    noted.set_surface(message.surface());
+    noted.set_layout_version(message.layout_version());
+    out_.to_client(id, make(&proto::Envelope::mutable_adoption_noted, noted));
+    if (!surface->place.adopt(message.layout_version(), message.frame())) return;
     const auto presents = surface->swap.move(nodes_under(surface->place.drawn()), message.frame(), now);
     // Before the first frame there is nothing to keep in sight; a program without a back buffer never swaps.
     if (message.frame() <= 1 && surface->place.presented(1)) send_stacking();

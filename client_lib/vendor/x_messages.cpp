@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/vendor/x_messages.h"
 
+#include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -57,6 +59,11 @@ private:
     xcb_connection_t* connection_;
 };
 
+std::int64_t now_ms() { return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+constexpr std::int64_t kCloseTakes = 10'000;  // ms; then a program has not obeyed
+constinit std::atomic<std::int64_t> close_asked_at{-kCloseTakes};
+
 bool ask_to_close(const std::string& display, xcb_window_t window) {
     const Server server(display);
     if (!server.open()) return false;
@@ -71,6 +78,7 @@ bool ask_to_close(const std::string& display, xcb_window_t window) {
         event.type = protocols;
         event.data.data32[0] = close;
         event.data.data32[1] = XCB_CURRENT_TIME;
+        close_asked_at = now_ms();
         return server.send(window, XCB_EVENT_MASK_NO_EVENT, &event);
     }
     return false;
@@ -97,5 +105,7 @@ void ask_to_redraw(const std::string& display, xcb_window_t window) {
 WindowMessages window_messages(std::string display, xcb_window_t window) {
     return {[display, window] { return ask_to_close(display, window); }, [display, window] { ask_to_redraw(display, window); }};
 }
+
+bool close_was_asked() { return now_ms() - close_asked_at < kCloseTakes; }
 
 }  // namespace wall::client::vendor

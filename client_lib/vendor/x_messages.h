@@ -15,4 +15,7 @@ namespace wall::client::vendor {
 /// it that takes WM_DELETE_WINDOW.
 WindowMessages window_messages(std::string display, xcb_window_t window);
 
+/// A window was asked to close within the last seconds: it may be gone without a word.
+bool close_was_asked();
+
 }  // namespace wall::client::vendor

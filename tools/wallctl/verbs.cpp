@@ -25,9 +25,9 @@ Outcome<proto::Envelope> exchange(const std::string& walld, const proto::Envelop
     if (!address) return no("invalid", address.error().message);
     auto client = net::ControlClient::connect(*address, kConnectLimit);
     if (!client) return no("unavailable", "walld cannot be reached at " + client.error().message + " (is it running? --walld or WALLGL_WALLD say where)");
-    if (auto sent = client->send(request); !sent) return no("unavailable", sent.error().message);
-    auto answer = client->receive(limit);
-    if (!answer) return no("unavailable", answer.error().message);
+    const auto sent = client->send(request);
+    auto answer = client->receive(limit);  // who is refused may be told so before the request is sent
+    if (!answer) return no("unavailable", sent ? answer.error().message : sent.error().message);
     if (answer->has_refused()) return no("forbidden", "walld refused: " + answer->refused().reason());
     if (!answer->has_operator_reply()) return no("failed", address->text() + " is no walld");
     return std::move(*answer);

@@ -56,9 +56,9 @@ Result<void> check_walld(const std::string& text, std::string* answer_json) {
     proto::Envelope request;
     request.mutable_operator_request()->set_request(1);
     request.mutable_operator_request()->set_verb("status");
-    if (auto sent = client->send(request); !sent) return unreachable({address->text() + ": " + sent.error().message});
-    const auto answer = client->receive(kWalldLimit);
-    if (!answer) return unreachable({address->text() + ": " + answer.error().message});
+    const auto sent = client->send(request);
+    const auto answer = client->receive(kWalldLimit);  // who is refused may be told so before the request is sent
+    if (!answer) return unreachable({address->text() + ": " + (sent ? answer.error() : sent.error()).message});
     if (answer->has_refused()) return fail("walld at " + address->text() + " refused: " + answer->refused().reason());
     if (!answer->has_operator_reply()) return fail(address->text() + " is no walld");
     if (answer_json) *answer_json = answer->operator_reply().json();

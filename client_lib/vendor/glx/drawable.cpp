@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "client_lib/vendor/x_messages.h"
+
 namespace wall::client::glx {
 
 using vendor::XConnection;
@@ -35,8 +37,9 @@ std::shared_ptr<Drawable> Drawables::add_window(Display* display, XID id, const 
 }
 
 std::shared_ptr<Drawable> Drawables::find_or_adopt(Display* display, XID id, const Config& config) {
-    if (auto known = find(display, id)) return known;
-    drop_destroyed_windows();
+    auto known = find(display, id);
+    if (!known || vendor::close_was_asked()) drop_destroyed_windows();
+    if (known) return known;
     return add_window(display, id, config);
 }
 

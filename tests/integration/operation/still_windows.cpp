@@ -80,7 +80,6 @@ private:
         XDestroyWindow(display_, window);
         XSync(display_, False);
         windows_.erase(window);
-        if (!windows_.empty()) draw(windows_.begin()->first);  // GLX notices a window that is gone at the next one made current
     }
     static void say(const char* what, const std::string& colour) {
         printf("%s %s\n", what, colour.c_str());

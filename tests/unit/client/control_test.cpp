@@ -310,16 +310,26 @@ TEST(ControlLink, AWindowIsToldToRedrawAfterAMoveAndNotAfterItsOwnRequests) {
     EXPECT_TRUE(FakeWindow::reaches(window.redrawn, 2));
     linked.link->ask_to_redraw(7);
     linked.walld.send(placement_of(7, 1));
-    linked.link->surface_adopted(1, 3, 12);
-    while (true) {
-        const auto said = linked.walld.receive();
-        if (!said.has_surface_adopted()) continue;
-        EXPECT_EQ(said.surface_adopted().surface(), 1u);
-        EXPECT_EQ(said.surface_adopted().layout_version(), 3u);
-        EXPECT_EQ(said.surface_adopted().frame(), 12u);
-        break;
-    }
-    EXPECT_EQ(window.redrawn, 2);
+    std::this_thread::sleep_for(50ms);
+    EXPECT_EQ(window.redrawn, 2) << "of other surfaces it hears nothing";
+}
+
+TEST(ControlLink, AnAdoptionWaitsUntilWalldKnows) {
+    Linked linked;
+    linked.link->surface_open(1, 300, 200, "");
+    EXPECT_TRUE(linked.walld.receive().has_surface_open());
+    EXPECT_FALSE(linked.link->surface_adopted(1, 3, 12, 20ms));
+    const auto said = linked.walld.receive().surface_adopted();
+    EXPECT_EQ(said.surface(), 1u);
+    EXPECT_EQ(said.layout_version(), 3u);
+    EXPECT_EQ(said.frame(), 12u);
+    proto::Envelope noted;
+    noted.mutable_adoption_noted()->set_surface(1);
+    noted.mutable_adoption_noted()->set_layout_version(4);
+    linked.walld.send(noted);
+    EXPECT_TRUE(linked.link->surface_adopted(1, 4, 12, 2s));
+    linked.walld.hang_up();
+    EXPECT_FALSE(linked.link->surface_adopted(1, 5, 13, 10s)) << "nobody will answer";
 }
 
 TEST(ControlLink, AWindowIsAskedToCloseAndWalldHearsWhenItCannotBe) {

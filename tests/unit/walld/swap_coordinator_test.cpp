@@ -158,6 +158,24 @@ TEST_F(Swap, ThereAndBackAgain) {
     EXPECT_TRUE(swap_.shown(3));
 }
 
+TEST_F(Swap, ANodeThatComesBackIsWaitedForOnBothStays) {
+    swap_.set_nodes({0, 1}, at(0));
+    swap_.move({1}, 2, at(1));
+    swap_.move({0, 1}, 3, at(1));
+    swap_.rendered(1, 3, at(2));
+    EXPECT_EQ(swap_.presented(), 0u);
+    EXPECT_THAT(swap_.rendered(0, 1, at(3)), ElementsAre(PresentTo{0, 1}, PresentTo{1, 2})) << "frame 2 is not its business";
+    EXPECT_THAT(swap_.rendered(0, 3, at(4)), ElementsAre(PresentTo{0, 3}, PresentTo{1, 3}));
+}
+
+TEST_F(Swap, TwoMovesBeforeOneFrameLeaveNothingBehind) {
+    swap_.set_nodes({0}, at(0));
+    swap_.move({1}, 2, at(1));
+    swap_.move({2}, 2, at(1));
+    swap_.rendered(0, 1, at(2));
+    EXPECT_THAT(swap_.rendered(2, 2, at(3)), ElementsAre(PresentTo{2, 2}));
+}
+
 TEST_F(Swap, MeasuresHowFarTheNodesAreApart) {
     swap_.set_nodes({0, 1}, at(0));
     for (std::uint32_t frame = 1; frame <= 3; ++frame) {

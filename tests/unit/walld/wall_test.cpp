@@ -210,9 +210,11 @@ TEST_F(TheWall, AMovedWindowStaysInSightUntilItsFirstFrameAtTheNewPlaceIsPresent
     rendered(0, id, 1);
     ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}));
     EXPECT_EQ(last_to_client(id).placement().rect().x(), 700);
+    EXPECT_EQ(last_to_client(id).placement().layout_version(), 2u);
     const auto& place = wall_.find({id, SurfaceId(1)})->place;
     EXPECT_TRUE(place.moving());
     adopt(id, 3);
+    EXPECT_EQ(last_to_client(id).adoption_noted().layout_version(), 2u);
     rendered(0, id, 2);
     EXPECT_EQ(last_to_node(0).present().frame(), 2u) << "a frame of the old layout is the old nodes' business";
     EXPECT_EQ(place.shown().x, 0);
