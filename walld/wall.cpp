@@ -241,9 +241,12 @@ void Wall::adopt_placement(SessionId id, const proto::SurfaceAdopted& message, C
     noted.set_layout_version(message.layout_version());
     out_.to_client(id, make(&proto::Envelope::mutable_adoption_noted, noted));
     if (!surface->place.adopt(message.layout_version(), message.frame())) return;
-    const auto presents = surface->swap.move(nodes_under(surface->place.drawn()), message.frame(), now);
-    // Before the first frame there is nothing to keep in sight; a program without a back buffer never swaps.
-    if (message.frame() <= 1 && surface->place.presented(1)) send_stacking();
+    const auto nodes = nodes_under(surface->place.drawn());
+    const auto presents = surface->swap.move(nodes, message.frame(), now);
+    // Before the first frame there is nothing to keep in sight; a program without a back buffer never swaps. Where no node
+    // shows it, no frame will be presented.
+    const bool at_once = message.frame() <= 1 || nodes.empty();
+    if (at_once && surface->place.presented(message.frame())) send_stacking();
     present(key, presents);
 }
 

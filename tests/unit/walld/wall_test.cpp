@@ -244,6 +244,20 @@ TEST_F(TheWall, TheFirstFrameAtANewPlaceWaitsForAllItsNodes) {
     EXPECT_EQ(last_to_node(1).present().frame(), 2u);
 }
 
+TEST_F(TheWall, AWindowThatMovesToWhereNoNodeIsDisappears) {
+    join("left");
+    const auto id = open();
+    open_surface(id, 1, 300, 300);
+    rendered(0, id, 1);
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}));
+    adopt(id, 2);
+    EXPECT_EQ(last_to_node(0).stacking().entries_size(), 0);
+    EXPECT_FALSE(wall_.find({id, SurfaceId(1)})->place.moving());
+    join("right");
+    rendered(1, id, 5);
+    EXPECT_EQ(last_to_node(1).present().frame(), 5u) << "and comes back with its node";
+}
+
 TEST_F(TheWall, ALayoutVersionThatWasNeverGivenIsNotAdopted) {
     join("left");
     const auto id = open();
