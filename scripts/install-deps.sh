@@ -24,7 +24,6 @@ test=(
   xscreensaver-gl-extra rss-glx glmark2-x11 apitrace apitrace-tracers
   ffmpeg                             # decodes what our codecs write, and the other way round
   xterm fonts-dejavu-core            # the text desktop of the codec benchmark
-  libglu1-mesa-dev python3-numpy python3-opencv curl systemd
   libglu1-mesa-dev python3-numpy python3-opencv python3-jsonschema python3-yaml curl systemd
 )
 

@@ -18,6 +18,8 @@ namespace wall::walld {
 namespace {
 
 constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
+constexpr const char* kWatchVerb = "watch";  // the one verb with many answers
+constexpr std::chrono::seconds kLookAtConnection{1};
 
 std::string random_bytes(std::size_t count) {
     std::string out(count, '\0');
@@ -242,6 +244,10 @@ asio::awaitable<void> ControlServer::answer_operator(Connection connection, prot
     Outcome<Answer> answer;
     if (!person) {
         answer = tl::unexpected(person.error());
+    } else if (request.verb() == kWatchVerb) {
+        const auto permitted = may(*person, Need::look, "watch the wall", nullptr);
+        if (permitted) co_return co_await serve_watch(connection, std::move(request));
+        answer = tl::unexpected(permitted.error());
     } else {
         Asked asked{request.verb(), request.json().empty() ? nlohmann::json::object() : nlohmann::json::parse(request.json(), nullptr, false), std::move(*person), "control"};
         answer = co_await operators_.carry_out(std::move(asked));
@@ -258,6 +264,35 @@ asio::awaitable<void> ControlServer::answer_operator(Connection connection, prot
     }
     connection->send(make(&proto::Envelope::mutable_operator_reply, reply));
     something_changed();
+}
+
+/// Replies for as long as the connection lasts: what a WebSocket viewer gets, texts as JSON, frames as blobs.
+asio::awaitable<void> ControlServer::serve_watch(Connection connection, proto::OperatorRequest request) {
+    const auto viewer = streams_.add_viewer();
+    const auto requests = WatchRequest::parse(request.json());
+    const auto done = requests ? streams_.watch(*viewer, *requests) : Result<void>(tl::unexpected(requests.error()));
+    proto::OperatorReply reply;
+    reply.set_request(request.request());
+    reply.set_ok(done.has_value());
+    if (!done) {
+        reply.set_error(done.error().message);
+        reply.set_code(name_of(RefusalKind::invalid));
+        connection->send(make(&proto::Envelope::mutable_operator_reply, reply));
+    }
+    while (done && connection->is_open() && !stopping_) {
+        const auto message = streams_.next(*viewer);
+        if (!message) {
+            co_await viewer->news().wait(Clock::now() + kLookAtConnection);
+            continue;
+        }
+        reply.clear_json();
+        reply.clear_blob();
+        if (message->binary) reply.set_blob(message->head + *message->packet);
+        else reply.set_json(message->head);
+        connection->send(make(&proto::Envelope::mutable_operator_reply, reply));
+        co_await connection->drained();
+    }
+    streams_.remove_viewer(*viewer);
 }
 
 // ---- time ----

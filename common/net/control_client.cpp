@@ -29,18 +29,19 @@ Result<void> ControlClient::send(const proto::Envelope& envelope) {
     return {};
 }
 
-Result<proto::Envelope> ControlClient::receive(std::chrono::milliseconds timeout) {
+Result<std::optional<proto::Envelope>> ControlClient::poll(std::chrono::milliseconds timeout) {
     using Clock = std::chrono::steady_clock;
     const auto until = Clock::now() + timeout;
     for (;;) {
         auto message = unframer_.next();
         if (!message) return tl::unexpected(message.error());
-        if (*message) return std::move(**message);
+        if (*message) return std::move(*message);
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now());
         pollfd wait{fd_.get(), POLLIN, 0};
         const int ready = ::poll(&wait, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
         if (ready < 0 && errno == EINTR) continue;
-        if (ready <= 0) return fail("control: no answer within " + std::to_string(timeout.count()) + " ms");
+        if (ready < 0) return fail(std::string("control: ") + std::strerror(errno));
+        if (ready == 0) return std::nullopt;
         const auto room = unframer_.prepare();
         const auto n = ::read(fd_.get(), room.data(), room.size());
         if (n < 0 && errno == EINTR) continue;
@@ -48,6 +49,13 @@ Result<proto::Envelope> ControlClient::receive(std::chrono::milliseconds timeout
         if (n == 0) return fail("control: the connection was closed");
         unframer_.commit(static_cast<std::size_t>(n));
     }
+}
+
+Result<proto::Envelope> ControlClient::receive(std::chrono::milliseconds timeout) {
+    auto message = poll(timeout);
+    if (!message) return tl::unexpected(message.error());
+    if (!*message) return fail("control: no answer within " + std::to_string(timeout.count()) + " ms");
+    return std::move(**message);
 }
 
 }  // namespace wall::net

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 
 #include "common/base/unique_fd.h"
 #include "common/net/address.h"
@@ -16,6 +17,8 @@ public:
     static Result<ControlClient> connect(const Address& address, std::chrono::milliseconds timeout);
 
     Result<void> send(const proto::Envelope& envelope);
+    /// The next message, nothing if it has not all come within `timeout`.
+    Result<std::optional<proto::Envelope>> poll(std::chrono::milliseconds timeout);
     /// The next message, or an error after `timeout`.
     Result<proto::Envelope> receive(std::chrono::milliseconds timeout);
 

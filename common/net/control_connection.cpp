@@ -59,7 +59,8 @@ asio::awaitable<Result<StreamSocket>> Listener::accept() {
     }
 }
 
-ControlConnection::ControlConnection(StreamSocket socket) : socket_(std::move(socket)), peer_(peer_of(socket_.native_handle())) {}
+ControlConnection::ControlConnection(StreamSocket socket) : socket_(std::move(socket)), peer_(peer_of(socket_.native_handle())),
+      drained_(socket_.get_executor(), asio::steady_timer::time_point::max()) {}
 
 asio::awaitable<Result<std::shared_ptr<ControlConnection>>> ControlConnection::connect(Address address) {
     auto to = resolve(address);
@@ -110,7 +111,13 @@ asio::awaitable<void> ControlConnection::write_queue() {
         queue_.pop_front();
     }
     writing_ = false;
+    drained_.cancel();
     if (closing_) close();
+}
+
+asio::awaitable<void> ControlConnection::drained() {
+    const auto self = shared_from_this();
+    while (writing_) co_await drained_.async_wait(kTuple);
 }
 
 void ControlConnection::close() {

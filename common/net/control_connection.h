@@ -7,6 +7,7 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/basic_socket_acceptor.hpp>
 #include <boost/asio/generic/stream_protocol.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -56,6 +57,8 @@ public:
     asio::awaitable<Result<proto::Envelope>> receive();
     /// Queues a message; never waits. Nothing happens after a close.
     void send(const proto::Envelope& envelope);
+    /// Until nothing is queued; for what may wait rather than queue.
+    asio::awaitable<void> drained();
     /// Closes at once; a pending receive() ends.
     void close();
     /// Closes when everything queued has gone out.
@@ -72,6 +75,7 @@ private:
     Unframer unframer_;
     std::deque<std::string> queue_;
     std::size_t queued_bytes_ = 0;
+    asio::steady_timer drained_;  // cancelled when the queue is empty
     bool writing_ = false;
     bool closing_ = false;
 };

@@ -9,6 +9,7 @@
 
 #include "common/net/address.h"
 #include "tools/wallctl/doctor.h"
+#include "tools/wallctl/record.h"
 #include "tools/wallctl/tables.h"
 #include "tools/wallctl/verbs.h"
 
@@ -28,6 +29,7 @@ struct Options {
     std::string id, tile, file, name;
     int x = 0, y = 0, width = 0, height = 0;
     int frames = 1, frame = 1;
+    unsigned fps = 10;
     double seconds = 10;
     bool off = false;
 };
@@ -64,6 +66,11 @@ Outcome<void> screenshot(const Options& options) {
     file << answer->blob;
     if (!file.flush()) return failed(options.file + ": cannot be written");
     return print(options, answer, kNoTable);
+}
+
+Outcome<void> record(const Options& options) {
+    const auto recorded = wallctl::record(options.walld, {options.file, options.tile, options.seconds, options.fps, !options.as_json});
+    return print(options, recorded, kNoTable);
 }
 
 Outcome<void> wait(const Options& options) {
@@ -138,6 +145,11 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
     shot->add_option("FILE", o.file)->required();
     shot->add_option("--tile", o.tile, "only this tile");
     shot->add_option("--session", o.id, "only this program");
+    auto* recording = verb("record", "writes what the wall shows as AVI, without loss (HuffYUV); Ctrl-C ends it early", [&o] { return record(o); });
+    recording->add_option("FILE", o.file)->required();
+    recording->add_option("--seconds", o.seconds, "how long (10)")->check(CLI::Range(0.1, 86400.0));
+    recording->add_option("--fps", o.fps, "frames a second (10)")->check(CLI::Range(1, 60));
+    recording->add_option("--tile", o.tile, "only this tile");
     auto* hold = verb("hold", "shows no further frame of a program until it is stepped", tell(o, "hold", [&o] { return json{{"id", o.id}, {"on", !o.off}}; }));
     add_id(hold, o);
     hold->add_flag("--off", o.off, "lets it run again");
@@ -157,7 +169,7 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
 
 int main(int argc, char** argv) {
     CLI::App app("wallctl: everything an operator does with a wall.");
-    app.footer("Examples:\n  wallctl status\n  wallctl --json sessions\n  wallctl screenshot wall.png\n  wallctl place 3 0 0 1920 1080\n"
+    app.footer("Examples:\n  wallctl status\n  wallctl --json sessions\n  wallctl screenshot wall.png\n  wallctl record wall.avi --seconds 30\n  wallctl place 3 0 0 1920 1080\n"
                "  wallctl --walld 127.0.0.1:7770 nodes\n\nExit code: 0; 1 if walld says no or cannot be reached.");
     Options options;
     Action action;

@@ -3,8 +3,6 @@
 
 #include <fstream>
 
-#include "common/net/control_client.h"
-
 namespace wall::wallctl {
 namespace {
 
@@ -20,22 +18,7 @@ Outcome<std::string> read_token(const std::string& path) {
     return no("failed", path + ": expected a file with a token");
 }
 
-Outcome<proto::Envelope> exchange(const std::string& walld, const proto::Envelope& request, std::chrono::milliseconds limit) {
-    const auto address = net::Address::parse(walld);
-    if (!address) return no("invalid", address.error().message);
-    auto client = net::ControlClient::connect(*address, kConnectLimit);
-    if (!client) return no("unavailable", "walld cannot be reached at " + client.error().message + " (is it running? --walld or WALLGL_WALLD say where)");
-    const auto sent = client->send(request);
-    auto answer = client->receive(limit);  // who is refused may be told so before the request is sent
-    if (!answer) return no("unavailable", sent ? answer.error().message : sent.error().message);
-    if (answer->has_refused()) return no("forbidden", "walld refused: " + answer->refused().reason());
-    if (!answer->has_operator_reply()) return no("failed", address->text() + " is no walld");
-    return std::move(*answer);
-}
-
-}  // namespace
-
-Outcome<Answer> ask(const Walld& walld, const std::string& verb, const nlohmann::json& arguments, std::chrono::milliseconds limit) {
+Outcome<proto::Envelope> request_of(const Walld& walld, const std::string& verb, const nlohmann::json& arguments) {
     const auto token = read_token(walld.token_file);
     if (!token) return tl::unexpected(token.error());
     proto::Envelope envelope;
@@ -44,7 +27,34 @@ Outcome<Answer> ask(const Walld& walld, const std::string& verb, const nlohmann:
     request.set_verb(verb);
     request.set_json(arguments.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     request.set_token(*token);
-    auto answer = exchange(walld.address, envelope, limit);
+    return envelope;
+}
+
+Outcome<proto::Envelope> answer_of(net::ControlClient& client, const Walld& walld, std::chrono::milliseconds limit) {
+    auto answer = client.receive(limit);
+    if (!answer) return no("unavailable", answer.error().message);
+    if (answer->has_refused()) return no("forbidden", "walld refused: " + answer->refused().reason());
+    if (!answer->has_operator_reply()) return no("failed", walld.address + " is no walld");
+    return std::move(*answer);
+}
+
+}  // namespace
+
+Outcome<net::ControlClient> subscribe(const Walld& walld, const std::string& verb, const nlohmann::json& arguments) {
+    const auto request = request_of(walld, verb, arguments);
+    if (!request) return tl::unexpected(request.error());
+    const auto address = net::Address::parse(walld.address);
+    if (!address) return no("invalid", address.error().message);
+    auto client = net::ControlClient::connect(*address, kConnectLimit);
+    if (!client) return no("unavailable", "walld cannot be reached at " + client.error().message + " (is it running? --walld or WALLGL_WALLD say where)");
+    static_cast<void>(client->send(*request));  // who is refused is told so before, and receiving says what else went wrong
+    return std::move(*client);
+}
+
+Outcome<Answer> ask(const Walld& walld, const std::string& verb, const nlohmann::json& arguments, std::chrono::milliseconds limit) {
+    auto client = subscribe(walld, verb, arguments);
+    if (!client) return tl::unexpected(client.error());
+    auto answer = answer_of(*client, walld, limit);
     if (!answer) return tl::unexpected(answer.error());
     auto& reply = *answer->mutable_operator_reply();
     if (!reply.ok()) return tl::unexpected<Failure>({reply.code(), reply.error()});

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// One request to walld and its answer. One thread.
+// One request to walld and its answer, or its answers. One thread.
 #pragma once
 
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "common/base/result.h"
+#include "common/net/control_client.h"
 
 namespace wall::wallctl {
 
@@ -27,6 +27,9 @@ struct Walld {
     std::string address;
     std::string token_file;  ///< holds a token; empty: this Unix user asks
 };
+
+/// A connection on which walld answers the request with many replies.
+Outcome<net::ControlClient> subscribe(const Walld& walld, const std::string& verb, const nlohmann::json& arguments);
 
 Outcome<Answer> ask(const Walld& walld, const std::string& verb, const nlohmann::json& arguments, std::chrono::milliseconds limit);
 

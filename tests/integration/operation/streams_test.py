@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Tiles watched over WebSockets while programs run (docs/streams.md)."""
+import json
 import os
+import signal
 import struct
 import subprocess
 import sys
@@ -125,6 +127,51 @@ class Streams(unittest.TestCase):
         for _ in range(60):
             self.frame(reading, 5)
         self.assertLess(memory() - before, 16 << 20)
+
+    def frames_of(self, avi: Path) -> numpy.ndarray:
+        """RGB, as FFmpeg decodes them."""
+        width, height = self.wall.size
+        raw = subprocess.run(["ffmpeg", "-v", "error", "-i", avi, "-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
+                             check=True, capture_output=True).stdout
+        return numpy.frombuffer(raw, numpy.uint8).reshape(-1, height, width, 3)
+
+    def wall_picture(self) -> numpy.ndarray:
+        with tempfile.NamedTemporaryFile(suffix=".png") as file:
+            self.wall.screenshot(file.name)
+            return load_png(file.name)[:, :, :3]
+
+    def test_a_recording_shows_what_screenshots_show(self) -> None:
+        self.settle()
+        shots = [self.wall_picture()]
+        with tempfile.TemporaryDirectory() as folder:
+            avi = Path(folder) / "wall.avi"
+            recording = subprocess.Popen([self.wall.bin / "wallctl", "--walld", self.wall.address, "--json", "record", avi, "--seconds", "3", "--fps", "10"],
+                                         stdout=subprocess.PIPE, text=True)
+            for _ in range(4):
+                time.sleep(0.6)
+                self.wall.step(self.session)
+                time.sleep(0.3)
+                shots.append(self.wall_picture())
+            said = json.loads(recording.communicate(timeout=20)[0])
+            frames = self.frames_of(avi)
+        self.assertEqual((said["frames"], len(frames)), (30, 30))
+        self.assertFalse((shots[0] == shots[1]).all(), "steps are to be seen")
+        places = [next((i for i, frame in enumerate(frames) if (frame == shot).all()), None) for shot in shots[:3]]
+        self.assertNotIn(None, places, "each screenshot is a frame, bit for bit")
+        self.assertEqual(places, sorted(set(places)), "in their order")
+
+    def test_a_recording_that_is_interrupted_is_a_whole_file(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            avi = Path(folder) / "wall.avi"
+            recording = subprocess.Popen([self.wall.bin / "wallctl", "--walld", self.wall.address, "record", avi, "--seconds", "600"], stderr=subprocess.PIPE, text=True)
+            while not avi.exists() or avi.stat().st_size < 20000:
+                self.assertIsNone(recording.poll())
+                time.sleep(0.05)
+            recording.send_signal(signal.SIGINT)
+            progress = recording.communicate(timeout=20)[1]
+            self.assertEqual(recording.returncode, 0)
+            self.assertIn("of 600.0 s", progress)
+            self.assertGreater(len(self.frames_of(avi)), 0)
 
     def test_a_node_that_comes_back_is_seen_again(self) -> None:
         name, node = self.wall.tile_names[1], self.wall.node_names[1]

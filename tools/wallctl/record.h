@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// wallctl record: what the wall shows, as an AVI file with lossless HuffYUV that every player knows (docs/codecs.md).
+#pragma once
+
+#include "tools/wallctl/verbs.h"
+
+namespace wall::wallctl {
+
+struct Recording {
+    std::string file, tile;  ///< tile empty: the whole wall
+    double seconds = 10;
+    unsigned fps = 10;
+    bool progress = true;    ///< on standard error, once a second
+};
+
+/// {"file", "frames", "bytes", "width", "height", "fps"}. Ctrl-C ends it early and leaves a whole file.
+Outcome<Answer> record(const Walld& walld, const Recording& recording);
+
+}  // namespace wall::wallctl
