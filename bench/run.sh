@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Runs the benchmarks of build/release and prints their tables.
-# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, pack, mesh, traffic, codec)
+# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, switch, pack, mesh, traffic, codec)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -27,6 +27,7 @@ run() {
 }
 
 run state "$build/bench/state_bench" --benchmark_out="$results/state.json" --benchmark_out_format=json --benchmark_color=false
+run switch bench/switch.py --json "$results/switch.json"
 run pack bench/pack.py --json "$results/pack.json"
 run mesh bench/mesh.py --json "$results/mesh.json"
 run traffic bench/traffic.py --json "$results/traffic.json"

@@ -43,7 +43,7 @@ void BlockSender::send_whole(const TargetSet& targets) {
     std::vector<Node*> reached;
     for (const auto& [index, slots] : by_node(targets, *layout_)) {
         Node& node = *session_.nodes()[index];
-        if (!node.alive()) continue;
+        if (!node.takes(context_.draw_surface()->id)) continue;
         auto& buffer = session_.prepare(node, context_, needs_);
         const std::size_t before = buffer.bytes();
         glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32),
@@ -155,7 +155,7 @@ BlockSender::Share& BlockSender::share_of(std::uint32_t index) {
     Share& share = shares_[index];
     if (!share.node) {
         share.node = session_.nodes()[index].get();
-        if (share.node->alive()) share.buffer = &session_.prepare(*share.node, context_, needs_);
+        if (share.node->takes(context_.draw_surface()->id)) share.buffer = &session_.prepare(*share.node, context_, needs_);
     }
     return share;
 }

@@ -159,7 +159,7 @@ void Session::draw(Context& context, const std::optional<PixelRect>& box, const 
     const SurfaceLayout& layout = context.draw_layout();
     for (const auto& [index, slots] : by_node(targets_of(layout, box), layout)) {
         Node& node = *nodes_[index];
-        if (!node.alive()) continue;
+        if (!node.takes(context.draw_surface()->id)) continue;
         wire::PackBuffer& buffer = prepare(node, context, needs);
         before(node, buffer);
         const std::size_t operands = buffer.operand_bytes(), bytes = buffer.bytes();
@@ -188,7 +188,7 @@ std::optional<std::vector<std::byte>> Session::ask(Context& context, Node& node,
     std::uint32_t request = 0;
     {
         std::lock_guard lock(mutex_);
-        if (!node.alive() || !context.draw_surface()) return std::nullopt;
+        if (!node.answers() || !context.draw_surface()) return std::nullopt;
         request = ++last_request_;
         pack(prepare(node, context), request);
         count_round_trip(function);
@@ -206,7 +206,7 @@ std::vector<std::optional<std::vector<std::byte>>> Session::ask_all(Context& con
         std::lock_guard lock(mutex_);
         for (const Target& target : targets) {
             Node& node = node_of(target);
-            asked.emplace_back(node.alive() && context.draw_surface() ? &node : nullptr, ++last_request_);
+            asked.emplace_back(node.answers() && context.draw_surface() ? &node : nullptr, ++last_request_);
             if (asked.back().first) pack(prepare(node, context), asked.back().second, asked.size() - 1);
         }
         for (const auto& [node, request] : asked)

@@ -149,6 +149,7 @@ Welcome read_welcome(pbf_reader in) {
             case 4: welcome.tiles.push_back(read_tile(read_message(in))); break;
             case 5: welcome.nodes.push_back(read_node(read_message(in), true)); break;
             case 6: welcome.caps = read_caps(read_message(in)); break;
+            case 7: welcome.swap_timeout_ms = read_u32(in); break;
             default: in.skip();
         }
     }

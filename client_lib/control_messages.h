@@ -58,6 +58,7 @@ struct Welcome {
     std::vector<TileInfo> tiles;
     std::vector<NodeInfo> nodes;
     Caps caps;
+    std::uint32_t swap_timeout_ms = 250;
 };
 
 struct Refused {

@@ -185,6 +185,11 @@ bool NodeStream::wait_swap(std::uint32_t surface, std::uint32_t frame, int timeo
     return done();
 }
 
+std::size_t NodeStream::queued_bytes() const {
+    std::lock_guard lock(mutex_);
+    return queued_bytes_;
+}
+
 std::string NodeStream::failure() const {
     std::lock_guard lock(mutex_);
     return failure_;

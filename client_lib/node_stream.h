@@ -35,6 +35,9 @@ public:
     /// Waits until the node has drawn `frame` of `surface`; false if it did not in time. Application threads.
     bool wait_swap(std::uint32_t surface, std::uint32_t frame, int timeout_ms);
 
+    /// What waits to be written.
+    std::size_t queued_bytes() const;
+
     bool failed() const { return failed_.load(std::memory_order_acquire); }
     std::string failure() const;
     std::uint64_t bytes_sent() const { return bytes_sent_.load(std::memory_order_relaxed); }

@@ -12,6 +12,7 @@
 #include "client_lib/context.h"
 #include "client_lib/log.h"
 #include "client_lib/options.h"
+#include "client_lib/pacing.h"
 #include "client_lib/process.h"
 #include "client_lib/share_group.h"
 #include "common/glstate/pack_sink.h"
@@ -26,7 +27,6 @@ constexpr int kConnectTimeoutMs = 2000;
 constexpr std::chrono::seconds kPlacementTimeout{2};
 constexpr int kReplyTimeoutMs = 10000;        // a readback behind a long frame of a software renderer
 constexpr std::uint32_t kFramesInFlight = 2;  // packing one while the nodes draw the other
-constexpr int kSlowNodeMs = 250;              // a node later than this is no longer waited for, until it answers again
 constexpr std::size_t kBatchBytes = 256 << 10;  // sent when it reaches this: large enough to be cheap, small enough to overlap
 
 /// DataHello of control.proto, written by hand: three fields do not need a library.
@@ -159,6 +159,7 @@ void Session::connect(Node& node) {
     node.object_stamps.clear();
     node.surfaces.clear();
     node.batch.clear();
+    node.left_out.clear();
     node.slow = false;
     if (!node.info.up) return;
     auto stream = NodeStream::open(node.info.address, encode_hello(id_, node.info.ticket), kConnectTimeoutMs);
@@ -190,6 +191,7 @@ void Session::close_surface(Surface& surface) {
     surfaces_.erase(surface.id);
     if (surface.options.visible) control_->surface_close(surface.id);
     for (auto& node : nodes_) {
+        node->left_out.erase(surface.id);
         if (!node->alive() || node->surfaces.erase(surface.id) == 0) continue;
         glapi::pack::SurfaceDestroy(batch(*node, node->batch_context), surface.id);
         send(*node);
@@ -329,15 +331,17 @@ void Session::submit_block(Context& context) {
 
 void Session::swap(Context* context, Surface& surface) {
     if (context) context->flush_block();
+    bool whole_frames = false;
     {
         std::lock_guard lock(mutex_);
+        whole_frames = std::exchange(surface.cleared, false);
         ++surface.frame;
         surface.drawn = false;
         TargetSet all;
         all.set();
         for (const auto& [index, slots] : by_node(all, surface.layout)) {
             Node& node = *nodes_[index];
-            if (!node.alive()) continue;
+            if (!node.takes(surface.id)) continue;
             auto& buffer = batch(node, context ? context->id : node.batch_context);
             describe_surface(node, surface);
             glapi::pack::Swap(buffer, surface.id, surface.frame);
@@ -345,24 +349,49 @@ void Session::swap(Context* context, Surface& surface) {
         }
         count_frame();
     }
-    wait_for_nodes(surface);
+    wait_for_nodes(surface, whole_frames);
 }
 
-void Session::wait_for_nodes(Surface& surface) {
+// A node that is slow for once (a long frame of all nodes alike) is waited for; one that has stopped is left out. If all
+// are late, the wall holds the frames or has stopped as a whole: then the program goes at the limit's pace.
+void Session::wait_for_nodes(Surface& surface, bool whole_frames) {
     if (surface.frame < kFramesInFlight) return;
-    const std::uint32_t frame = surface.frame - (kFramesInFlight - 1);
-    std::vector<std::pair<Node*, std::shared_ptr<NodeStream>>> waited;
+    struct Waited {
+        Node& node;
+        std::shared_ptr<NodeStream> stream;
+        std::uint32_t frame;
+        NodeProgress progress;
+    };
+    std::vector<Waited> waited;
+    bool all_slow = true;
     {
         std::lock_guard lock(mutex_);
         TargetSet all;
         all.set();
-        for (const auto& [index, slots] : by_node(all, surface.layout))
-            if (nodes_[index]->alive()) waited.emplace_back(nodes_[index].get(), nodes_[index]->stream);
+        for (const auto& [index, slots] : by_node(all, surface.layout)) {
+            Node& node = *nodes_[index];
+            if (!node.alive()) continue;
+            const auto left = node.left_out.find(surface.id);
+            const bool left_out = left != node.left_out.end();
+            waited.push_back({node, node.stream, left_out ? left->second : surface.frame - (kFramesInFlight - 1), {.left_out = left_out}});
+            all_slow = all_slow && node.slow;
+        }
     }
-    // A node that is slow for once (a long frame of all nodes alike) is waited for; one that has stopped is left alone.
-    for (auto& [node, stream] : waited) {
-        const bool done = stream->wait_swap(surface.id, frame, node->slow ? 0 : kSlowNodeMs);
-        node->slow = !done;
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(control_->welcome().swap_timeout_ms);
+    bool someone_done = false;
+    for (Waited& w : waited) {
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
+        const bool patient = all_slow || !w.node.slow;
+        w.progress.done = w.stream->wait_swap(surface.id, w.frame, patient && left > 0 ? static_cast<int>(left) : 0);
+        w.progress.queued_bytes = w.stream->queued_bytes();
+        someone_done = someone_done || w.progress.done;
+    }
+    std::lock_guard lock(mutex_);
+    for (Waited& w : waited) {
+        if (w.node.stream != w.stream) continue;  // another incarnation meanwhile
+        w.node.slow = !w.progress.done;
+        if (!leave_out(w.progress, someone_done, whole_frames)) w.node.left_out.erase(surface.id);
+        else w.node.left_out.try_emplace(surface.id, surface.frame);
     }
 }
 
@@ -373,7 +402,7 @@ void Session::flush(Context* context, bool wait) {
         std::lock_guard lock(mutex_);
         for (auto& node : nodes_) {
             if (!node->alive()) continue;
-            if (wait) {
+            if (wait && node->answers()) {
                 glapi::pack::Sync(batch(*node, node->batch_context), ++last_request_);
                 pending.emplace_back(node->stream, last_request_);
             }

@@ -46,13 +46,17 @@ struct Node {
     std::unordered_map<std::uint32_t, Mirror> mirrors;            ///< by context
     std::unordered_map<std::uint32_t, std::uint64_t> object_stamps;  ///< by object: the stamp of what the node has; absent: nothing
     std::unordered_map<std::uint32_t, std::uint32_t> surfaces;    ///< by surface: layout version it knows
-    std::uint32_t last_frame_waited = 0;
+    std::unordered_map<std::uint32_t, std::uint32_t> left_out;    ///< surfaces whose frames it does not get now: the last one it got
     bool slow = false;                                            ///< missed a frame's limit; not waited for until it answers again
 
     wire::PackBuffer batch;          ///< being packed
     std::uint32_t batch_context = 0; ///< whose
 
     bool alive() const { return stream && !stream->failed(); }
+    /// Whether drawing into the surface goes to it.
+    bool takes(std::uint32_t surface) const { return alive() && (left_out.empty() || !left_out.contains(surface)); }
+    /// Whether it can be expected to answer soon.
+    bool answers() const { return alive() && left_out.empty(); }
 };
 
 class Surface {
@@ -66,6 +70,7 @@ public:
     bool opened = false;       ///< walld knows it
     bool drawn = false;        ///< something was drawn since the last swap
     std::optional<Placement> next;  ///< from walld, for a frame that begins
+    bool cleared = false;      ///< all of its back buffer, since the last swap
 };
 
 class Session {
@@ -143,7 +148,7 @@ private:
     void connect(Node& node);
     void describe_surface(Node& node, Surface& surface);
     Node& node_slot(const NodeInfo& info);
-    void wait_for_nodes(Surface& surface);
+    void wait_for_nodes(Surface& surface, bool whole_frames);
     std::optional<std::vector<std::byte>> wait_reply(Node& node, std::uint32_t request);
     void count_frame();
     void count_round_trip(const char* function);

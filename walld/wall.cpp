@@ -164,6 +164,7 @@ void Wall::welcome_client(SessionId id, const Session& session) {
         caps.push_back(&nodes_[i].hello.caps());
     }
     *welcome.mutable_caps() = common_caps(caps);
+    welcome.set_swap_timeout_ms(static_cast<std::uint32_t>(config_.swap_timeout / std::chrono::milliseconds(1)));
     out_.to_client(id, make(&proto::Envelope::mutable_client_welcome, welcome));
 }
 

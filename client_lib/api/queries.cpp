@@ -22,7 +22,7 @@ std::vector<Node*> live_nodes(Session& session) {
     std::lock_guard lock(session.mutex());
     std::vector<Node*> nodes;
     for (const auto& node : session.nodes())
-        if (node->alive()) nodes.push_back(node.get());
+        if (node->answers()) nodes.push_back(node.get());
     return nodes;
 }
 

@@ -24,7 +24,7 @@ SurfaceLayout single_layer(const Surface& surface, std::uint32_t node) {
 Node* first_alive(Session& session) {
     std::lock_guard lock(session.mutex());
     for (auto& node : session.nodes())
-        if (node->alive()) return node.get();
+        if (node->answers()) return node.get();
     return nullptr;
 }
 

@@ -13,6 +13,12 @@ std::optional<PixelRect> clear_box(const Context& c) {
                      static_cast<float>(box.y + box.height)};
 }
 
+/// Nothing of the back buffer is left from before.
+bool clears_all(const Context& c, GLbitfield mask) {
+    return (mask & GL_COLOR_BUFFER_BIT) != 0 && !c.state.window.scissor_enabled && c.state.window.draw_buffer == GL_BACK &&
+           c.state.color_buffer.color_mask == glstate::ColorMask{1, 1, 1, 1};
+}
+
 }  // namespace
 
 void Clear(Context& c, GLbitfield mask) {
@@ -20,6 +26,7 @@ void Clear(Context& c, GLbitfield mask) {
     if (mask & ~kKnown) return c.error(GL_INVALID_VALUE);
     if (mask == 0 || c.state.local.render_mode != GL_RENDER) return;
     c.draw(clear_box(c), needs_of_clear(), [&](wire::PackBuffer& buffer) { glapi::pack::Clear(buffer, mask); });
+    if (c.draw_surface() && clears_all(c, mask)) c.draw_surface()->cleared = true;
 }
 
 void Accum(Context& c, GLenum op, GLfloat value) {

@@ -68,6 +68,45 @@ void scramble(State& state, std::mt19937& random, unsigned percent) {
     });
 }
 
+TEST(State, EqualValuesAreUnifiedAtTheFirstComparison) {
+    State driver, a, b;
+    for (State* state : {&a, &b}) {
+        glstate::assign<el::fog_density>(*state, 0, 0.5f);
+        glstate::assign<el::modelview>(*state, 0, glstate::Mat4{2});
+    }
+    ASSERT_FALSE(glstate::same_ids<glstate::kSentCategories>(a, b));
+    RecordingSink sink;
+    glstate::diff_and_unify(driver, a, sink);
+    EXPECT_EQ(sink.ids.size(), 2u);
+    EXPECT_TRUE(glstate::same_ids<glstate::kSentCategories>(driver, a));
+    glstate::diff_and_unify(driver, b, sink);
+    EXPECT_EQ(sink.ids.size(), 2u) << "nothing is told";
+    EXPECT_TRUE(glstate::same_ids<glstate::kSentCategories>(a, b));
+    glstate::assign<el::fog_density>(b, 0, 0.25f);
+    EXPECT_FALSE(glstate::same_ids<glstate::mask_of(glstate::Category::fog)>(a, b));
+    EXPECT_TRUE(glstate::same_ids<glstate::mask_of(glstate::Category::matrix)>(a, b));
+    glstate::diff_and_unify(driver, b, sink);
+    glstate::diff_and_unify(driver, a, sink);
+    EXPECT_EQ(sink.ids.size(), 4u) << "there and back";
+    EXPECT_EQ(el::fog_density::ref(driver), 0.5f);
+}
+
+TEST(State, UnifyingGivesWhatDiffGives) {
+    std::mt19937 random(11);
+    std::array<State, 3> states;
+    State plain, unified;
+    for (unsigned round = 0; round < 300; ++round) {
+        State& next = states[random() % states.size()];
+        scramble(next, random, round % 5 == 0 ? 30 : 1);
+        if (random() % 4 == 0) next = states[random() % states.size()];
+        RecordingSink told, told_unified;
+        glstate::diff(plain, static_cast<const State&>(next), told);
+        glstate::diff_and_unify(unified, next, told_unified);
+        ASSERT_EQ(told.ids, told_unified.ids) << round;
+        expect_equal(next, unified);
+    }
+}
+
 TEST(State, RandomStatesTravel) {
     std::mt19937 random(7);
     State app, mirror, node;

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: MIT
+"""A node that stands still (SIGSTOP) for seconds: the programs and the other nodes go on as before, and when it goes on it
+is right again at once. Frames tell their number by their colour (frame_clock.cpp)."""
+import signal
+import sys
+import time
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests" / "support"))
+import cv2  # noqa: E402
+import numpy  # noqa: E402
+from wall import Wall, build_folder  # noqa: E402
+from xserver import XServer  # noqa: E402
+
+TILE = (200, 150)
+STOP = 5.0  # seconds; many times the swap limit, and enough to fill every queue of the busy program
+BEFORE = 3.0  # seconds in which the frame rates of before are taken
+CATCH_UP = 2.0  # seconds after SIGCONT until every tile is right
+KEPT = 0.9  # of the frame rate of before
+ATTEMPTS = 3  # what else the machine does may slow a program for some seconds; the node's standstill does so each time
+
+
+class StoppedNode(unittest.TestCase):
+    # Each over at least two tiles of the node-0-0 side or beside it: name -> rectangle and how it draws. `busy` draws as
+    # fast as it can, far more than sockets and queues hold; `paced` builds each frame on the one before.
+    PROGRAMS = {
+        "busy": ((0, 0, 400, 100), ["--vertices", "20000"]),
+        "paced": ((0, 100, 400, 100), ["--fps", "20", "--egl", "--incremental"]),
+        "elsewhere": ((0, 200, 400, 100), ["--fps", "20"]),
+    }
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.x = cls.enterClassContext(XServer())
+        cls.wall = cls.enterClassContext(Wall(tiles=(2, 2), tile_size=TILE, environment={"LP_NUM_THREADS": "0"}))
+        cls.session = {}
+        for name, (rect, options) in cls.PROGRAMS.items():
+            program = build_folder() / "tests" / "frame_clock"
+            app = cls.wall.run(program, "--size", f"{rect[2]}x{rect[3]}", *options, rect=rect, name=name, env=cls.x.environment())
+            cls.session[name] = cls.wall.wait_session(app)
+        for session in cls.session.values():
+            cls.wall.wait(session, 10)
+
+    def frames(self) -> dict[str, int]:
+        shown = {s["name"]: s["surfaces"][0]["frame"] for s in self.wall.sessions()}
+        return {name: shown[name] for name in self.PROGRAMS}
+
+    def rates(self, seconds: float) -> dict[str, float]:
+        begin, first = time.monotonic(), self.frames()
+        time.sleep(seconds)
+        took, last = time.monotonic() - begin, self.frames()
+        return {name: (last[name] - first[name]) / took for name in first}
+
+    def stop(self, seconds: float) -> dict[str, float]:
+        """Frame rates while a node stands still."""
+        node = self.wall.daemons["node-0-0"]
+        node.send_signal(signal.SIGSTOP)
+        try:
+            return self.rates(seconds)
+        finally:
+            node.send_signal(signal.SIGCONT)
+
+    def numbers(self, picture: numpy.ndarray, name: str) -> set[int]:
+        """The frames that the window's pixels belong to; -1 for a pixel that is of no frame."""
+        x, y, width, height = self.PROGRAMS[name][0]
+        window = picture[y:y + height, x:x + width].reshape(-1, 3).astype(int)  # blue, green, red
+        return set(numpy.where(window[:, 0] == 255, window[:, 2] + 256 * window[:, 1], -1).tolist())
+
+    def assert_all_tiles_right(self) -> None:
+        """With the frames held, all pixels of each window show the frame that walld says is shown."""
+        for session in self.session.values():
+            self.wall.hold(session)
+        try:
+            time.sleep(0.3)  # what was told to be shown when hold came, is
+            shown = self.frames()
+            picture = cv2.imdecode(numpy.frombuffer(self.wall.screenshot(), numpy.uint8), cv2.IMREAD_COLOR)
+            for name in self.PROGRAMS:
+                self.assertEqual(self.numbers(picture, name), {shown[name] & 0xffff}, f"{name} shows another frame on some tile")
+        finally:
+            for session in self.session.values():
+                self.wall.hold(session, on=False)
+
+    def test_the_others_do_not_notice_and_it_catches_up(self) -> None:
+        self.assert_all_tiles_right()
+        for attempt in range(ATTEMPTS):
+            before, during = self.rates(BEFORE), self.stop(STOP)
+            time.sleep(CATCH_UP)
+            self.assert_all_tiles_right()
+            said = ", ".join(f"{name} {before[name]:.1f} -> {during[name]:.1f}" for name in before)
+            print(f"frames/s before and during the standstill: {said}", flush=True)
+            if all(during[name] >= KEPT * before[name] for name in before):
+                break
+        else:
+            self.fail(f"frame rates fell: {said}")
+        for app in self.wall.apps:
+            self.assertIsNone(app.poll(), "no program has ended")
+        for session in self.wall.sessions():
+            self.assertEqual(session["fault"], "")
+
+
+if __name__ == "__main__":
+    unittest.main()

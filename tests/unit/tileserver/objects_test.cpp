@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT
+// Objects of many sessions that all use the same few names: random programs in turns on one driver context draw what each
+// draws alone, and leave nothing behind in the driver.
+#include <array>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <random>
+#include <set>
+
+#include "common/glapi/program_format.h"
+#include "common/wire/batch.h"
+#include "tests/unit/tileserver/test_node.h"
+
+namespace wall::tileserver::test {
+namespace {
+
+constexpr int kWidth = 40, kHeight = 32;
+constexpr geom::Rect kWindow{0, 0, kWidth, kHeight};
+constexpr std::uint32_t kNames = 3;     // of every kind: 1 to 3
+constexpr std::uint32_t kContexts = 2;
+
+/// The same random numbers with every library.
+class Random {
+public:
+    explicit Random(std::uint32_t seed) : engine_(seed) {}
+    std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(engine_()) % n; }
+    std::uint32_t name() { return 1 + below(kNames); }
+    float unit() { return static_cast<float>(below(1000)) / 1000.0f; }
+    float place() { return unit() * 2 - 1; }
+    glstate::Vec4 color() { return {unit(), unit(), unit(), 1}; }
+
+private:
+    std::mt19937 engine_;
+};
+
+std::vector<std::byte> run_content(const wire::PackBuffer& body) {
+    std::vector<std::byte> bytes(wire::padded4(body.commands()) - body.commands());
+    bytes.insert(bytes.end(), body.opcodes().begin(), body.opcodes().end());
+    bytes.insert(bytes.end(), body.operands().begin(), body.operands().end());
+    return bytes;
+}
+
+/// A random program: batches that only a correct client would send.
+class Script {
+public:
+    explicit Script(std::uint32_t seed, int batches) : random_(seed) {
+        for (std::uint32_t context = 1; context <= kContexts; ++context) {
+            Batch first(context);
+            pack::Bind(first.buffer(), 1, 1);
+            first.set<el::viewport>({0, 0, kWidth, kHeight}).set<el::clear_color>(random_.color());
+            first.block(1, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT); });
+            batches_.push_back(first.payload());
+        }
+        for (int i = 0; i < batches; ++i) {
+            Batch batch(1 + random_.below(kContexts));
+            change_objects(batch);
+            change_state(batch);
+            batch.block(1, [this](auto& b) { draw(b); });
+            if (random_.below(3) == 0) count_samples(batch);
+            batches_.push_back(batch.payload());
+        }
+    }
+    const std::vector<std::vector<std::byte>>& batches() const { return batches_; }
+
+private:
+    void change_objects(Batch& batch) {
+        auto& b = batch.buffer();
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            switch (random_.below(8)) {
+                case 0:
+                case 1: define_texture(b); break;
+                case 2: pack::TexDelete(b, random_.name()); break;
+                case 3: define_run(b); break;
+                case 4: delete_run(b); break;
+                case 5: define_program(b); break;
+                case 6: set_uniform(b); break;
+                default: define_map(b); break;
+            }
+        }
+    }
+    void define_texture(wire::PackBuffer& b) {
+        const std::uint32_t name = random_.below(kNames + 1);  // the default one as well
+        std::vector<std::byte> image(8 * 8 * 4);
+        for (auto& byte : image) byte = static_cast<std::byte>(random_.below(256));
+        pack::TexImage(b, name, GL_TEXTURE_2D, 0, GL_RGBA, 8, 8, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, image);
+        pack::TexParameter(b, name, GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, random_.below(2) == 0 ? GL_NEAREST : GL_LINEAR, 0, 0, 0);
+    }
+    void define_run(wire::PackBuffer& b) {
+        const std::uint32_t name = random_.name();
+        wire::PackBuffer body;
+        triangle(body);
+        pack::RunDefine(b, name, static_cast<std::uint32_t>(body.commands()), static_cast<std::uint32_t>(body.operand_bytes()), run_content(body));
+        runs_.insert(name);
+    }
+    void delete_run(wire::PackBuffer& b) {
+        const std::uint32_t name = random_.name();
+        pack::RunDelete(b, name);
+        runs_.erase(name);
+    }
+    /// Few different sources, so that equal ones meet, too.
+    void define_program(wire::PackBuffer& b) {
+        const std::uint32_t name = random_.name();
+        if (random_.below(4) == 0) {
+            pack::ProgramDelete(b, name);
+            programs_.erase(name);
+            return;
+        }
+        constexpr std::array kSources = {"uniform vec4 tint; void main() { gl_FragColor = tint; }", "uniform vec4 tint; void main() { gl_FragColor = tint.bgra; }",
+                                         "uniform vec4 tint; void main() { gl_FragColor = fract(gl_FragCoord.xyxy / 16.0) * tint; }"};
+        const glapi::ProgramDefinition definition{{{GL_FRAGMENT_SHADER, true, kSources[random_.below(kSources.size())]}}, {}, {{1, "tint"}}};
+        pack::ProgramLink(b, 0, name, encode(definition));
+        programs_.insert(name);
+        tint(b, name);
+    }
+    void set_uniform(wire::PackBuffer& b) {
+        const std::uint32_t name = random_.name();
+        if (programs_.contains(name)) tint(b, name);
+    }
+    void tint(wire::PackBuffer& b, std::uint32_t program) {
+        const glstate::Vec4 color = random_.color();
+        pack::Uniform(b, program, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(color)));
+    }
+    void define_map(wire::PackBuffer& b) {
+        std::array<float, 4 * 3> points;
+        for (float& p : points) p = random_.place();
+        pack::Map1(b, GL_MAP1_VERTEX_3, 0, 1, 4, std::as_bytes(std::span(points)));
+        const std::array<float, 2> table = {random_.unit(), random_.unit()};
+        pack::PixelMap(b, GL_PIXEL_MAP_R_TO_R, std::as_bytes(std::span(table)));
+    }
+
+    void change_state(Batch& batch) {
+        batch.set<el::color>(random_.color()).set<el::texture_2d_enabled>(random_.below(2)).set<el::texture_binding_2d>(random_.below(kNames + 1));
+        batch.set<el::blend_enabled>(random_.below(2)).set<el::blend_func>({GL_ONE, GL_ONE, GL_ONE, GL_ZERO});
+        batch.set<el::modelview>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, random_.place() / 2, random_.place() / 2, 0, 1});
+        batch.set<el::map_color>(random_.below(2)).set<el::map1_vertex_3>(random_.below(2)).set<el::depth_test>(random_.below(2));
+        const std::uint32_t program = random_.below(kNames + 1);
+        batch.set<el::current_program>(programs_.contains(program) ? program : 0);
+    }
+    void draw(wire::PackBuffer& b) {
+        triangle(b);
+        if (!runs_.empty()) pack::RunCall(b, *std::next(runs_.begin(), random_.below(static_cast<std::uint32_t>(runs_.size()))));
+        if (random_.below(4) == 0) pack::EvalMesh1(b, GL_LINE, 0, 8);
+        if (random_.below(4) == 0) {
+            std::array<std::byte, 4 * 4 * 4> image;
+            for (auto& byte : image) byte = static_cast<std::byte>(random_.below(256));
+            pack::DrawPixels(b, 4, 4, GL_RGBA, GL_UNSIGNED_BYTE, image);
+        }
+    }
+    void triangle(wire::PackBuffer& b) {
+        pack::Begin(b, GL_TRIANGLES);
+        for (int corner = 0; corner < 3; ++corner) {
+            if (random_.below(2) == 0) pack::Color3f(b, random_.unit(), random_.unit(), random_.unit());
+            pack::TexCoord2f(b, random_.unit() * 2, random_.unit() * 2);
+            pack::Vertex3f(b, random_.place(), random_.place(), random_.place());
+        }
+        pack::End(b);
+    }
+    /// Counted, asked for under a new number each time, and now and then deleted.
+    void count_samples(Batch& batch) {
+        const std::uint32_t query = random_.name();
+        batch.set<el::occlusion_query>(query);
+        batch.block(1, [this](auto& b) { triangle(b); });
+        batch.set<el::occlusion_query>(0);
+        pack::QueryResult(batch.buffer(), ++last_request_, query);
+        if (random_.below(2) == 0) pack::QueryDelete(batch.buffer(), query);
+    }
+
+    Random random_;
+    std::vector<std::vector<std::byte>> batches_;
+    std::set<std::uint32_t> runs_, programs_;
+    std::uint32_t last_request_ = 1000;
+};
+
+struct Outcome {
+    Pixels pixels;
+    std::map<std::uint32_t, std::vector<std::byte>> replies;
+};
+
+class ObjectsTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (!node_.usable()) GTEST_SKIP() << "no driver";
+        node_.node->tiles = {{0, kWindow}};
+    }
+    std::unique_ptr<TestSession> open(std::uint32_t id) {
+        auto session = std::make_unique<TestSession>(*node_.node, id);
+        session->open_surface(kWidth, kHeight, kWindow);
+        return session;
+    }
+    static void run(TestSession& session, const std::vector<std::byte>& payload) {
+        const auto done = session.executor.run_batch(payload);
+        ASSERT_TRUE(done) << done.error().message;
+    }
+    static Outcome outcome(TestSession& session) {
+        Outcome out{session.read(0, kWindow), session.replies};
+        out.replies.erase(99);  // the read itself
+        return out;
+    }
+    Outcome alone(const Script& script) {
+        const auto session = open(1);
+        for (const auto& batch : script.batches()) run(*session, batch);
+        return outcome(*session);
+    }
+    /// Objects that the driver has, by kind.
+    std::map<std::string, int> driver_objects() {
+        constexpr GLuint kHighest = 20000;  // Mesa gives the lowest free names
+        const Gl& gl = node_.driver->gl();
+        std::map<std::string, int> count;
+        for (GLuint name = 1; name < kHighest; ++name) {
+            count["textures"] += gl.IsTexture(name);
+            count["framebuffers"] += gl.IsFramebuffer(name);
+            count["lists"] += gl.IsList(name);
+            count["programs"] += gl.IsProgram(name);
+            count["shaders"] += gl.IsShader(name);
+            count["queries"] += gl.IsQuery(name);
+            count["buffers"] += gl.IsBuffer(name);
+        }
+        return count;
+    }
+    TestNode node_;
+};
+
+TEST_F(ObjectsTest, SessionsInTurnsDrawAsEachAlone) {
+    constexpr std::uint32_t kSessions = 24;
+    constexpr int kBatches = 12;
+    const auto before = driver_objects();
+    std::vector<Script> scripts;
+    std::vector<Outcome> expected;
+    for (std::uint32_t i = 0; i < kSessions; ++i) {
+        scripts.emplace_back(100 + i, kBatches);
+        expected.push_back(alone(scripts.back()));
+    }
+    EXPECT_EQ(driver_objects(), before) << "after each alone";
+    std::vector<std::unique_ptr<TestSession>> sessions;
+    std::vector<std::uint32_t> turns;
+    for (std::uint32_t i = 0; i < kSessions; ++i) {
+        sessions.push_back(open(i + 1));
+        turns.insert(turns.end(), scripts[i].batches().size(), i);
+    }
+    Random random(7);
+    for (std::size_t left = turns.size(); left > 1; --left) std::swap(turns[left - 1], turns[random.below(static_cast<std::uint32_t>(left))]);
+    std::vector<std::size_t> next(kSessions);
+    for (const std::uint32_t who : turns) run(*sessions[who], scripts[who].batches()[next[who]++]);
+    for (std::uint32_t i = 0; i < kSessions; ++i) {
+        const Outcome drawn = outcome(*sessions[i]);
+        EXPECT_EQ(count_different(expected[i].pixels, drawn.pixels), 0u) << "session " << i;
+        EXPECT_EQ(expected[i].replies, drawn.replies) << "session " << i;
+    }
+    EXPECT_GT(driver_objects()["textures"], before.at("textures"));
+    sessions.clear();
+    EXPECT_EQ(driver_objects(), before) << "after all in turns";
+}
+
+TEST_F(ObjectsTest, ScriptsAreOfAllKinds) {
+    // The property means little if nothing is drawn: different seeds draw different pictures, and queries count something.
+    const Outcome a = alone(Script(1, 12)), b = alone(Script(2, 12));
+    EXPECT_GT(count_different(a.pixels, b.pixels), static_cast<std::size_t>(kWidth * kHeight / 4));
+    std::uint64_t most = 0;
+    for (const auto* outcome : {&a, &b})
+        for (const auto& [request, answer] : outcome->replies) {
+            std::uint64_t samples = 0;
+            if (answer.size() == sizeof samples) std::memcpy(&samples, answer.data(), sizeof samples);
+            most = std::max(most, samples);
+        }
+    EXPECT_GT(most, 0u);
+}
+
+TEST_F(ObjectsTest, NamesOfASessionReachNoOther) {
+    const auto owner = open(1), other = open(2);
+    Batch made;
+    const std::vector<std::byte> white(8 * 8 * 4, std::byte{255});
+    pack::TexImage(made.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 8, 8, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, white);
+    wire::PackBuffer body;
+    pack::Begin(body, GL_POINTS);
+    pack::End(body);
+    pack::RunDefine(made.buffer(), 1, static_cast<std::uint32_t>(body.commands()), static_cast<std::uint32_t>(body.operand_bytes()), run_content(body));
+    const glapi::ProgramDefinition definition{{{GL_FRAGMENT_SHADER, true, "uniform vec4 tint; void main() { gl_FragColor = tint; }"}}, {}, {}};
+    pack::ProgramLink(made.buffer(), 0, 1, encode(definition));
+    owner->expect_run(made);
+
+    EXPECT_EQ(other->session.texture(ClientName(1), TextureTarget::t2d), nullptr);
+    const auto refused = [this](auto&& fill) {
+        const auto session = open(3);
+        Batch batch;
+        fill(batch);
+        return !session->run(batch);
+    };
+    EXPECT_TRUE(refused([](Batch& b) { b.block(1, [](auto& p) { pack::RunCall(p, 1); }); })) << "a run of another session";
+    const glstate::Vec4 red = {1, 0, 0, 1};
+    EXPECT_TRUE(refused([&](Batch& b) { pack::Uniform(b.buffer(), 1, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red))); })) << "a program of another session";
+    // Drawing with and deleting another's names does nothing to them, nor does the driver's own number work as a name.
+    const GLuint driver_name = owner->session.texture(ClientName(1), TextureTarget::t2d)->driver.value;
+    for (const std::uint32_t name : {1u, static_cast<std::uint32_t>(driver_name)}) {
+        Batch batch;
+        batch.set<el::texture_2d_enabled>(1).set<el::texture_binding_2d>(name).set<el::color>({0, 0, 1, 1}).set<el::current_program>(1);
+        batch.block(1, [](auto& p) {
+            pack::Begin(p, GL_QUADS);
+            for (const auto& v : {std::array{-1.f, -1.f}, std::array{1.f, -1.f}, std::array{1.f, 1.f}, std::array{-1.f, 1.f}}) pack::Vertex2f(p, v[0], v[1]);
+            pack::End(p);
+        });
+        pack::TexDelete(batch.buffer(), name);
+        pack::RunDelete(batch.buffer(), name);
+        pack::ProgramDelete(batch.buffer(), name);
+        other->expect_run(batch);
+        EXPECT_EQ(other->read(0, {5, 5, 1, 1}), (Pixels{0, 0, 255, 255})) << name;
+    }
+    EXPECT_NE(owner->session.texture(ClientName(1), TextureTarget::t2d), nullptr);
+    EXPECT_TRUE(node_.driver->gl().IsTexture(driver_name));
+    Batch use;
+    use.block(1, [](auto& p) { pack::RunCall(p, 1); });
+    pack::Uniform(use.buffer(), 1, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red)));
+    owner->expect_run(use);
+}
+
+/// Equal contexts of different sessions cost a comparison of values once.
+TEST_F(ObjectsTest, EqualValuesGetOneId) {
+    const auto first = open(1), second = open(2);
+    const auto draw = [](TestSession& session) {
+        Batch batch;
+        batch.set<el::fog_density>(0.25f).set<el::color>({1, 0, 0, 1}).set<el::light_enabled>(1, 2);
+        batch.block(1, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT); });
+        session.expect_run(batch);
+    };
+    draw(*first);
+    draw(*second);
+    const auto& a = first->session.context(ContextId(1)).state;
+    const auto& b = second->session.context(ContextId(1)).state;
+    EXPECT_TRUE(glstate::same_ids<glstate::kSentCategories>(a, b));
+    EXPECT_TRUE(glstate::same_ids<glstate::mask_of(glstate::Category::fog)>(a, node_.driver->mirror));
+}
+
+}  // namespace
+}  // namespace wall::tileserver::test
