@@ -70,6 +70,7 @@ public:
         bind_texture(0, target, texture);
         unit(gl_, 0);
     }
+    void select_first_unit() { unit(gl_, 0); }
     /// The driver unbinds a deleted texture by itself.
     void forget_texture(GLuint texture);
     /// A program of the driver; 0: fixed function.

@@ -31,7 +31,9 @@ std::size_t evaluator_index(GLenum target, bool two_dimensional) {
 std::size_t evaluator_components(std::size_t index) { return kComponents[index]; }
 std::size_t pixel_map_index(GLenum map) { return map < GL_PIXEL_MAP_I_TO_I ? kPixelMaps : std::min<std::size_t>(map - GL_PIXEL_MAP_I_TO_I, kPixelMaps); }
 
-void MapMirror::tell_evaluators(const Gl& gl, const SoftMaps& maps) {
+void MapMirror::tell_evaluators(Driver& driver, const SoftMaps& maps) {
+    const Gl& gl = driver.gl();
+    driver.select_first_unit();  // glMap is an error elsewhere (OpenGL 1.2.1, F.2.13)
     for (std::size_t i = 0; i < kEvaluatorMaps; ++i) {
         if (map1_[i] != maps.map1[i].id) emit_map1(gl, i, maps.map1[i]);
         if (map2_[i] != maps.map2[i].id) emit_map2(gl, i, maps.map2[i]);

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tileserver/gpu/gl.h"
+#include "tileserver/render/driver.h"
 
 namespace wall::tileserver {
 
@@ -35,13 +35,13 @@ struct SoftMaps {
 /// Which maps the driver holds.
 class MapMirror {
 public:
-    void sync_evaluators(const Gl& gl, const SoftMaps& maps) {
-        if (maps.any_evaluator || !evaluators_initial_) tell_evaluators(gl, maps);
+    void sync_evaluators(Driver& driver, const SoftMaps& maps) {
+        if (maps.any_evaluator || !evaluators_initial_) tell_evaluators(driver, maps);
     }
     void sync_pixel_maps(const Gl& gl, const SoftMaps& maps);
 
 private:
-    void tell_evaluators(const Gl& gl, const SoftMaps& maps);
+    void tell_evaluators(Driver& driver, const SoftMaps& maps);
     std::array<std::uint64_t, kEvaluatorMaps> map1_{}, map2_{};
     std::array<std::uint64_t, kPixelMaps> pixel_{};
     bool evaluators_initial_ = true, pixel_initial_ = true;

@@ -37,7 +37,7 @@ bool switch_to(RenderNode& node, Session& session, SoftContext& context, Layer& 
     node.driver.sync(context.state);
     if (context.textures.state_id != textures_id(context) || context.textures.version != session.texture_version()) look_up_textures(session, context);
     node.driver.bind_textures(context.textures.bindings);
-    node.maps.sync_evaluators(node.driver.gl(), context.maps);
+    node.maps.sync_evaluators(node.driver, context.maps);
     node.driver.bind_layer(layer, context.state);
     session.programs.use(ClientName(glstate::el::current_program::ref(context.state)), layer.geometry());
     const ClientName query(glstate::el::occlusion_query::ref(context.state));
