@@ -25,7 +25,11 @@ test=(
   ffmpeg                             # decodes what our codecs write, and the other way round
   xterm fonts-dejavu-core            # the text desktop of the codec benchmark
   libglu1-mesa-dev python3-numpy python3-opencv python3-jsonschema python3-yaml curl systemd
+  chromium                           # the status page in a real browser
 )
+# Node.js may come from elsewhere, with npm in it; Debian's npm does not go with that.
+command -v node >/dev/null || test+=(nodejs)
+command -v npm >/dev/null || test+=(npm)
 
 missing=()
 for package in "${build[@]}" "${run[@]}" "${test[@]}"; do

@@ -32,13 +32,13 @@ stage_release() {
   say "building (release)"
   build release || { failed+=(release); return; }
   say "unit, integration and lint tests"
-  run release release -LE 'golden|fuzz' -j 2
+  run release release -LE 'golden|fuzz|browser' -j 2
 }
 
 stage_golden() {
-  say "golden tests: programs on plain Mesa and on walls, frame by frame"
+  say "golden tests: programs on plain Mesa and on walls, frame by frame; the status page in a browser"
   build release || { failed+=(golden); return; }
-  run golden release -L golden
+  run golden release -L 'golden|browser'
 }
 
 stage_asan() {

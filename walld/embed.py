@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Puts the status page into a header: embed.py PAGE_FOLDER HEADER. Every file with its path and content type; no machine
-paths, deterministic."""
+"""Puts the status page into a header: embed.py PAGE_FOLDER HEADER. Every file of a type that pages have, with its path and
+content type; no machine paths, deterministic."""
 import pathlib
 import sys
 
@@ -21,7 +21,7 @@ def row(file: pathlib.Path) -> str:
 
 def main() -> None:
     folder, header = map(pathlib.Path, sys.argv[1:])
-    rows = "".join(map(row, sorted(folder.iterdir())))
+    rows = "".join(row(file) for file in sorted(folder.iterdir()) if file.suffix in TYPES)
     header.parent.mkdir(parents=True, exist_ok=True)
     header.write_text(
         "// Generated from web-ui-min by walld/embed.py.\n#pragma once\n\n#include <string_view>\n\nnamespace wall::walld {\n"

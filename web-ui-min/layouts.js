@@ -18,9 +18,12 @@ export class Layouts {
   async refresh(may) {
     this.#may = may;
     get('save-layout').hidden = !may;
-    const names = await api.getLayouts().catch(() => []);
+    setText(get('no-layouts'), '');
+    const names = await api.getLayouts().catch(error => {
+      setText(get('no-layouts'), error.message);
+      return [];
+    });
     keyed(get('layouts'), names, name => name, name => this.#makeRow(name), row => row.querySelectorAll('button').forEach(button => { button.disabled = !may; }));
-    get('layouts').hidden = names.length === 0;
   }
 
   #save() {

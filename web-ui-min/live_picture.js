@@ -57,9 +57,9 @@ export class LivePicture {
 
   #setLive(live) {
     this.#live = live;
-    if (!live) for (const { tile } of this.#picture.wanted()) this.#picture.drop(tile);
-    else this.#picture.showWall(undefined);
-    if (!live) this.taken.clear();
+    if (live) return this.#picture.showWall(undefined);
+    for (const { tile } of this.#picture.wanted()) this.#picture.drop(tile);
+    this.taken.clear();
   }
 
   async #poll() {

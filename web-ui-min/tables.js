@@ -18,7 +18,7 @@ function age(ms) {
 }
 
 function windowState({ session, moving, swap_timeouts: timeouts }) {
-  const parts = [session.fault && `fault: ${session.fault}`, session.held && 'held', moving && 'moving', timeouts > 0 && `${timeouts} frames did not wait for a slow node`];
+  const parts = [session.fault && `fault: ${session.fault}`, session.held && 'held', moving && 'moving', timeouts > 0 && `frames that did not wait for a slow node: ${timeouts}`];
   return parts.filter(Boolean).join(', ') || 'runs';
 }
 

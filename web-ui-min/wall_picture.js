@@ -53,9 +53,9 @@ export class WallPicture {
     this.#wall = bitmap;
     this.#draw();
   }
-  /** What to ask for: tiles that are there, in the size that is shown. */
+  /** What to ask for: all tiles, those away for when they come back, in the size that is shown. */
   wanted() {
-    return this.#tiles.filter(tile => !tile.away).map(({ name, rect }) => {
+    return this.#tiles.map(({ name, rect }) => {
       const [, , width, height] = scaledRect(rect, this.scale);
       return { tile: name, width, height };
     });
