@@ -114,6 +114,7 @@ export class HuffyuvDecoder {
   #pixelBits;   // what it takes; 0: more than kIndexBits
   #words; #bit = 0;
   #running = 0; // the sum of the residuals so far, a pixel
+  #opaque;      // the alpha of streams that have none
 
   /** `header`: Uint8Array, as the stream's first message has it. */
   constructor(header, width, height) {
@@ -122,15 +123,16 @@ export class HuffyuvDecoder {
     this.#width = width;
     this.#height = height;
     this.#stream = readHeader(header, height);
+    this.#opaque = this.#stream.alpha ? 0 : kOpaque;
     const [blue, green, red] = this.#stream.tables;
     this.#order = [...(this.#stream.decorrelated ? [green, blue] : [blue, green]), red, ...(this.#stream.alpha ? [red] : [])];
     this.#fillPixelTable();
-    this.#words = new Uint32Array(0);
+    this.#words = new Int32Array(0);
   }
 
   /** A packet (Uint8Array) as Uint8ClampedArray of RGBA rows from the top; a buffer of its own. */
   decode(packet) {
-    const { alpha, gradient, rowsApart } = this.#stream;
+    const { gradient, rowsApart } = this.#stream;
     const end = this.#load(packet);
     const width = this.#width, height = this.#height;
     const picture = new Int32Array(width * height);
@@ -139,12 +141,11 @@ export class HuffyuvDecoder {
       const vertical = gradient && coded >= rowsApart;
       const begin = (height - 1 - coded) * width;
       const skip = coded === 0 ? 1 : 0;
-      if (skip) picture[begin] = this.#running;
+      if (skip) picture[begin] = this.#running | this.#opaque;
       const good = this.#readRow(picture, begin + skip, begin + width, vertical ? rowsApart * width : 0);
       check(this.#bit <= end, `a packet of ${packet.length} bytes ends in coded row ${coded} of ${height}`);
       check(good, `a code that does not exist in coded row ${coded} of ${height}`);
     }
-    if (!alpha) for (let i = 0; i < picture.length; ++i) picture[i] |= kOpaque;
     return new Uint8ClampedArray(picture.buffer);
   }
 
@@ -153,9 +154,9 @@ export class HuffyuvDecoder {
     const count = packet.length >> 2;
     check(count <= (this.#width * this.#height + 4) * kMostPixelWords, `a packet of ${packet.length} bytes; the picture has not as many`);
     const room = count + (this.#width + 1) * kMostPixelWords + 2;
-    if (this.#words.length < room) this.#words = new Uint32Array(room);
+    if (this.#words.length < room) this.#words = new Int32Array(room);
     const view = new DataView(packet.buffer, packet.byteOffset, packet.length);
-    for (let i = 0; i < count; ++i) this.#words[i] = view.getUint32(4 * i, true);
+    for (let i = 0; i < count; ++i) this.#words[i] = view.getInt32(4 * i, true);
     this.#words.fill(0, count, room);
     this.#bit = 0;
     return 32 * count;
@@ -205,15 +206,15 @@ export class HuffyuvDecoder {
 
   /** Pixels `from` to `to`; `above`: how far behind each lies the one it is predicted from, 0 for none. */
   #readRow(picture, from, to, above) {
-    const words = this.#words, pixels = this.#pixels, pixelBits = this.#pixelBits;
+    const words = this.#words, pixels = this.#pixels, pixelBits = this.#pixelBits, opaque = this.#opaque;
     let bit = this.#bit, running = this.#running, good = true;
     for (let i = from; i < to; ++i) {
       const word = bit >>> 5, shift = bit & 31;
       const index = (words[word] << shift | words[word + 1] >>> 1 >>> (31 - shift)) >>> (32 - kIndexBits);
+      const bits = pixelBits[index];
       let residual = pixels[index];
-      if (pixelBits[index] !== 0) {
-        bit += pixelBits[index];
-      } else {
+      bit += bits;
+      if (bits === 0) {
         this.#bit = bit;
         const symbols = this.#order.map(table => this.#symbol(table));
         good &&= !symbols.includes(-1);
@@ -221,7 +222,7 @@ export class HuffyuvDecoder {
         bit = this.#bit;
       }
       running = addBytes(running, residual);
-      picture[i] = above === 0 ? running : addBytes(running, picture[i + above]);
+      picture[i] = (above === 0 ? running : addBytes(running, picture[i + above])) | opaque;
     }
     this.#bit = bit;
     this.#running = running;
