@@ -6,6 +6,7 @@ import { getSnapshot, streamUrl } from './api.js';
 import { WallStream } from './stream.js';
 
 const kRate = 10, kCalmRate = 1;  // frames a second; calm where the reader wants less motion
+const kMostStreams = 256;         // a connection has no more
 const kSnapshotEvery = 1500;      // ms
 const kSettle = 200;              // ms that a new size must last before it is asked for
 
@@ -23,7 +24,10 @@ export class LivePicture {
         this.taken.set(tile, taken);
         picture.show(tile, bitmap);
       },
-      ended: tile => picture.drop(tile),
+      ended: tile => {
+        this.taken.delete(tile);
+        picture.drop(tile);
+      },
       state: live => {
         this.#setLive(live);
         onState(live);
@@ -48,7 +52,7 @@ export class LivePicture {
   }
   #ask() {
     const fps = this.#calm.matches ? kCalmRate : kRate;
-    const wanted = this.#resting ? [] : this.#picture.wanted().map(tile => ({ ...tile, fps }));
+    const wanted = this.#resting ? [] : this.#picture.wanted().slice(0, kMostStreams).map(tile => ({ ...tile, fps }));
     const asked = JSON.stringify(wanted);
     if (asked === this.#asked) return;
     this.#asked = asked;

@@ -7,9 +7,10 @@ import { touch } from './geometry.js';
 const kRateWindow = 3000;  // ms that a rate is taken over
 const kLateAfter = 2500;   // ms without a frame of a node that others have gone on for
 
-/** All windows with what belongs to their session, in the order of their numbers. */
+/** All windows with what belongs to their session, in the order of their numbers, however they lie. */
 export function windowsOf(status) {
-  return status.sessions.flatMap(session => session.surfaces.map(surface => ({ ...surface, session, label: session.name || surface.title || session.program })));
+  const windows = status.sessions.flatMap(session => session.surfaces.map(surface => ({ ...surface, session, label: session.name || surface.title || session.program })));
+  return windows.sort((a, b) => a.id.localeCompare(b.id, 'en', { numeric: true }));
 }
 
 /** As walld decides (docs/security.md): operators all, users their own. */

@@ -85,15 +85,17 @@ export class WallView {
       event.preventDefault();
       if (!window.mayChange) return this.#on.refused(window);
       const step = event.ctrlKey ? kFineStep : kStep, change = event.shiftKey ? resized : moved;
-      this.#place(window, change(window.rect, arrow[0] * step, arrow[1] * step, this.#wall));
+      this.#place(event.currentTarget, window, change(window.rect, arrow[0] * step, arrow[1] * step, this.#wall));
     } else if (['PageUp', 'PageDown', 'Delete', 'Escape'].includes(event.key)) {
       event.preventDefault();
       this.#on.key(event.key, id);
     }
   }
 
-  #place(window, rect) {
+  /** Seen at once; walld follows. */
+  #place(element, window, rect) {
     window.rect = rect;
+    this.#putAt(element, rect);
     this.#on.place(window.id, rect);
   }
 
@@ -106,7 +108,7 @@ export class WallView {
     const { clientX, clientY, pointerId } = event, until = new AbortController(), listen = { signal: until.signal };
     let dragging = false;
     element.setPointerCapture(pointerId);
-    const put = rect => this.#windows.has(id) && this.#place(this.#windows.get(id), rect);
+    const put = rect => this.#windows.has(id) && this.#place(element, this.#windows.get(id), rect);
     element.addEventListener('pointermove', now => {
       const dx = now.clientX - clientX, dy = now.clientY - clientY;
       dragging ||= Math.hypot(dx, dy) >= kDragBegins;

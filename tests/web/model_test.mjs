@@ -47,6 +47,11 @@ test('operators change all windows, users their own, viewers none', () => {
   assert.ok(!mayOperate(alice) && mayOperate({ role: 'operator' }));
 });
 
+test('windows keep their order when they are raised', () => {
+  const session = (id, ...surfaces) => ({ id, program: 'p', name: '', surfaces: surfaces.map(surface => ({ id: `${id}.${surface}`, title: '' })) });
+  assert.deepEqual(windowsOf({ sessions: [session(10, 3), session(2, 30, 4)] }).map(({ id }) => id), ['2.4', '2.30', '10.3']);
+});
+
 // ---- statuses over time ----
 
 const tile = { name: 'A', node: 'left', rect: [0, 0, 320, 240], up: true };
