@@ -15,6 +15,7 @@
 #include "gen/glapi/wire.gen.h"
 #include "gen/glstate/samples.gen.h"
 #include "tileserver/gpu/backend.h"
+#include "tileserver/gpu/memory.h"
 #include "tileserver/render/soft_switch.h"
 
 namespace wall::tileserver {
@@ -55,6 +56,7 @@ struct Ignore final : SessionOutput {
 class Node {
 public:
     explicit Node(To to) {
+        keep_freed_memory();  // as the tileserver does
         if (to == To::null) {
             backend_ = std::make_unique<NullBackend>();
         } else {
@@ -112,6 +114,7 @@ public:
 class EglPair {
 public:
     EglPair() {
+        keep_freed_memory();
         const auto get_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
         display_ = get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
         WALL_ASSERT(eglInitialize(display_, nullptr, nullptr) == EGL_TRUE && eglBindAPI(EGL_OPENGL_API) == EGL_TRUE);

@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "tileserver/gpu/memory.h"
 #include "tileserver/io/node_server.h"
 
 namespace {
@@ -75,6 +76,7 @@ Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node)
 }  // namespace
 
 int main(int argc, char** argv) {
+    wall::tileserver::keep_freed_memory();
     CLI::App app("tileserver: one node of a WallGL wall. It draws what programs send it for its tiles. It connects to walld by itself,\n"
                  "whenever that is there.");
     std::string config_path, node_name;
