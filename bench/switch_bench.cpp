@@ -318,7 +318,9 @@ void Different_Egl(benchmark::State& run) {
         egl.make_current(i, 0);
         glstate::State state;
         set_samples(state, i);
-        Driver(egl.gl()).sync(state);
+        Driver driver(egl.gl());
+        driver.sync(state);
+        driver.sync_current(state);
     }
     time_turns(run, egl.gl(), [&](std::size_t i) {
         egl.make_current(i, 0);

@@ -45,7 +45,7 @@ Driver::Driver(const Gl& gl) : gl_(gl), flip_y_(has_extension(gl, "GL_MESA_frame
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
     // Whatever the driver started with, it now holds what the mirror says.
     glstate::for_each_element([&]<class E>() {
-        if constexpr ((kSynced >> static_cast<unsigned>(E::category) & 1) != 0)
+        if constexpr (((kSynced | kCurrentMask) >> static_cast<unsigned>(E::category) & 1) != 0)
             for (unsigned i = 0; i < E::count; ++i) set<E>(i, E::ref(defaults_, i));
     });
     gl_.Disable(GL_SCISSOR_TEST);
@@ -60,7 +60,7 @@ unsigned Driver::drain_errors() {
 
 bool Driver::fragments_change(const glstate::State& from, const glstate::State& to) {
     for (std::size_t category = 0; category < glstate::kCategoryCount; ++category)
-        if (((kSynced & ~kCurrentMask) >> category & 1) != 0 && from.ids[category] != to.ids[category]) return true;
+        if ((kSynced >> category & 1) != 0 && from.ids[category] != to.ids[category]) return true;
     return false;
 }
 

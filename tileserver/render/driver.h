@@ -46,11 +46,14 @@ public:
 
     /// A glBitmap was drawn. Mesa 22 gathers them, and would draw them by the state of a later one.
     void hold_bitmap() { bitmap_held_ = true; }
-    /// Everything but what depends on the layer or names objects. The state's categories take the driver's value ids
+    /// Everything but vertex attributes and what depends on the layer or names objects. The state's categories take the driver's value ids
     /// where they prove equal.
     void sync(glstate::State& state) {
         if (!glstate::same_ids<kSynced>(mirror, state)) sync_values(state);
     }
+    /// The current attributes; the last thing before geometry, so that Mesa packs them with its vertices. Behind them any
+    /// other change would make it set up each as an array of its own.
+    void sync_current(glstate::State& state) { glstate::diff_and_unify<kCurrentMask>(mirror, state, *this); }
     /// `state` holds what the driver holds since sync() and the vertex attributes that both have seen since.
     void unify_attributes(glstate::State& state) const { glstate::unify_ids(kAttributesMask, state, mirror); }
     void sync_pixel_transfer(const glstate::State& state);
@@ -84,9 +87,6 @@ public:
     /// No scissor for the driver's own work (blits, clears); the next bind_layer() sets it again.
     void disable_scissor();
     void set_unscaled_pixel_zoom();
-
-    /// The current attributes as of `state`, after something else was put there.
-    void sync_current(const glstate::State& state) { glstate::diff<kCurrentMask>(mirror, state, *this); }
 
     /// Takes all of the driver's errors; how many there were.
     unsigned drain_errors();
@@ -124,7 +124,7 @@ private:
     static bool fragments_change(const glstate::State& from, const glstate::State& to);
 
     static constexpr glstate::CategoryMask kSynced =
-        glstate::kSentCategories & ~glstate::kLayerCategories & ~glstate::mask_of(glstate::Category::textures) & ~glstate::mask_of(glstate::Category::objects);
+        glstate::kSentCategories & ~kCurrentMask & ~glstate::kLayerCategories & ~glstate::mask_of(glstate::Category::textures) & ~glstate::mask_of(glstate::Category::objects);
 
     Gl gl_;
     const glstate::State defaults_;

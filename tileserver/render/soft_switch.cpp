@@ -40,6 +40,7 @@ bool switch_to(RenderNode& node, Session& session, SoftContext& context, Layer& 
     node.maps.sync_evaluators(node.driver, context.maps);
     node.driver.bind_layer(layer, context.state);
     session.programs.use(ClientName(glstate::el::current_program::ref(context.state)), layer.geometry());
+    node.driver.sync_current(context.state);
     const ClientName query(glstate::el::occlusion_query::ref(context.state));
     return !query || session.queries.begin(query, layer.geometry().scale_x() * layer.geometry().scale_y());
 }
