@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A headless Chromium that does what it is told on stdin, for tests/support/browser.py: browser.mjs PLAYWRIGHT_FOLDER CHROMIUM.
 // A line is {"open": CONTEXT_OPTIONS} (a new page in a context of its own) or {"call": "mouse.move", "arguments": [...]}
-// (a method of the page); the answer is {"result": ...} or {"error": ...}. {"call": "messages"}: errors in the console.
+// (a method of the page); the answer is {"result": ...} or {"error": ...}. {"call": "messages"}: errors in the console; "devtools": a
+// command of Chromium's DevTools protocol.
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
@@ -10,11 +11,12 @@ const [folder, executablePath] = process.argv.slice(2);
 const { chromium } = createRequire(join(folder, 'package.json'))('playwright-core');
 // Chromium's sandbox does not work for root, and containers have a small /dev/shm.
 const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-dev-shm-usage', '--disable-gpu'] });
-let page, messages;
+let page, devtools, messages;
 
 async function open(options) {
   await page?.context().close();
   page = await (await browser.newContext(options)).newPage();
+  devtools = await page.context().newCDPSession(page);
   messages = [];
   page.on('pageerror', error => messages.push(error.stack));
   page.on('console', message => message.type() === 'error' && messages.push(message.text()));
@@ -22,6 +24,7 @@ async function open(options) {
 
 function call(path, values) {
   if (path === 'messages') return messages;
+  if (path === 'devtools') return devtools.send(...values);
   const names = path.split('.'), method = names.pop();
   const owner = names.reduce((object, name) => object[name], page);
   return owner[method](...values);

@@ -21,6 +21,7 @@ TILE = (320, 240)
 SECRET = "a secret of the lobby's screen"
 SOON = 20.0  # seconds; the machine may have other work
 LIT = 50  # of 255: brighter than the wall's background
+PHONE = {"viewport": {"width": 360, "height": 740}, "deviceScaleFactor": 2, "hasTouch": True, "isMobile": True}
 ROUNDING = 3  # canvas pixels that a drag by whole screen pixels may be off
 
 
@@ -92,15 +93,22 @@ class Page(unittest.TestCase):
         at = ", ".join(f"Math.round({side} * {scale})" for side in rect)
         return f"document.getElementById('picture').getContext('2d').getImageData({at}).data"
 
-    def drag(self, session: int, dx: int, dy: int, grip: tuple[float, float] = (0.5, 0.5)) -> None:
-        """By canvas pixels, from a point of the window (0 to 1)."""
+    def path(self, session: int, dx: int, dy: int, grip: tuple[float, float] = (0.5, 0.5)) -> tuple[float, float, float, float]:
+        """Where a drag by canvas pixels begins and ends on the page; `grip`: the point of the window (0 to 1)."""
         box = self.browser.get(f"{self.window(session)}.getBoundingClientRect().toJSON()")
         scale = self.browser.get("document.getElementById('wall').clientWidth") / 640
         x, y = box["x"] + box["width"] * grip[0], box["y"] + box["height"] * grip[1]
-        self.browser.call("mouse.move", x, y)
+        return x, y, x + dx * scale, y + dy * scale
+
+    def drag(self, session: int, dx: int, dy: int, **grip) -> None:
+        from_x, from_y, x, y = self.path(session, dx, dy, **grip)
+        self.browser.call("mouse.move", from_x, from_y)
         self.browser.call("mouse.down")
-        self.browser.call("mouse.move", x + dx * scale, y + dy * scale, {"steps": 5})
+        self.browser.call("mouse.move", x, y, {"steps": 5})
         self.browser.call("mouse.up")
+
+    def touch(self, kind: str, *points: tuple[float, float]) -> None:
+        self.browser.call("devtools", "Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y} for x, y in points]})
 
     def press(self, session: int, *keys: str) -> None:
         self.browser.get(f"{self.window(session)}.focus()")
@@ -184,7 +192,7 @@ class Page(unittest.TestCase):
         self.browser.until("document.querySelector('#layouts li span')?.textContent === 'morning'")
         self.place(self.small, [400, 300, 160, 120])
         self.browser.call("click", "#layouts >> text=Load")
-        self.until(lambda: self.rect(self.small) == [200, 0, 160, 120], "the window is back")
+        self.until(lambda: self.surface(self.small)["shown_rect"] == [200, 0, 160, 120], "the window is back")
         self.browser.call("click", "#layouts >> text=Delete")
         self.browser.until("document.querySelectorAll('#layouts li').length === 0")
 
@@ -198,8 +206,17 @@ class Page(unittest.TestCase):
         self.browser.call("mouse.click", *self.browser.get("(({x, y, width, height}) => [x + width * 0.75, y + height * 0.75])(document.getElementById('picture').getBoundingClientRect())"))
         self.browser.until("document.getElementById('tile-picture').open && document.getElementById('tile-name').textContent === 'Tile 1-1'")
 
+    def test_a_finger_drags_a_window(self) -> None:
+        self.open(**PHONE)
+        from_x, from_y, x, y = self.path(self.small, 100, 200)
+        self.touch("touchStart", (from_x, from_y))
+        for part in (0.3, 0.7, 1):
+            self.touch("touchMove", (from_x + part * (x - from_x), from_y + part * (y - from_y)))
+        self.touch("touchEnd")
+        self.until(lambda: near(self.rect(self.small), [300, 200, 160, 120]), "the window has moved")
+
     def test_a_phone_in_the_dark(self) -> None:
-        self.open(viewport={"width": 360, "height": 740}, deviceScaleFactor=2, hasTouch=True, isMobile=True, colorScheme="dark", reducedMotion="reduce")
+        self.open(**PHONE, colorScheme="dark", reducedMotion="reduce")
         self.assertEqual(self.browser.get("document.documentElement.scrollWidth"), 360)
         self.assertEqual(self.browser.get("document.getElementById('picture').width"), self.browser.get("Math.min(640, 2 * document.getElementById('wall').clientWidth)"))
         self.assertTrue(self.browser.get("getComputedStyle(document.body).backgroundColor.match(/\\d+/g).every(part => part < 50)"))
