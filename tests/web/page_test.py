@@ -57,7 +57,7 @@ class Page(unittest.TestCase):
     def until(self, done, what: str) -> None:
         end = time.monotonic() + SOON
         while not done():
-            self.assertLess(time.monotonic(), end, what)
+            self.assertLess(time.monotonic(), end, f"{what}: {self.wall.sessions()}\n{self.wall.log('walld')[-3000:]}")
             time.sleep(0.05)
 
     # ---- the wall ----
