@@ -15,7 +15,7 @@ from wall import Wall, build_folder  # noqa: E402
 from xserver import XServer  # noqa: E402
 
 TILE = (200, 150)
-STOP = 5.0  # seconds; many times the swap limit, and enough to fill every queue of the busy program
+STOP = 10.0  # seconds; many times the swap limit, and enough to fill every queue of the busy program
 BEFORE = 3.0  # seconds in which the frame rates of before are taken
 CATCH_UP = 2.0  # seconds after SIGCONT until every tile is right
 KEPT = 0.9  # of the frame rate of before
