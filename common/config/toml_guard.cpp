@@ -54,6 +54,16 @@ std::string shifted(std::string_view text, std::uint32_t from, std::uint32_t to)
 
 }  // namespace
 
+std::uint32_t control_character_line(std::string_view text) {
+    std::uint32_t line = 1;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte == 0x7f || (byte < 0x20 && c != '\t' && c != '\n' && c != '\r')) return line;
+        line += c == '\n';
+    }
+    return 0;
+}
+
 std::string to_private_use(std::string_view utf8) { return shifted(utf8, 0, kPrivateUse); }
 std::string from_private_use(std::string_view utf8) { return shifted(utf8, kPrivateUse, 0); }
 

@@ -109,6 +109,9 @@ const NodeConfig* WallConfig::find_node(std::string_view node) const {
 }
 
 Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name) {
+    if (const auto line = control_character_line(toml)) {
+        return fail(std::string(file_name) + ":" + std::to_string(line) + ": not TOML: a control character: expected tabs and line breaks only");
+    }
     const auto parsed = toml::parse(to_private_use(toml), file_name);
     TreeReader read(file_name);
     if (!parsed) {

@@ -20,5 +20,11 @@ TEST(TomlGuard, LeavesIllFormedBytesAsTheyAre) {
     }
 }
 
+TEST(TomlGuard, FindsControlCharacters) {
+    EXPECT_EQ(control_character_line("a\tb\r\n# \u00e4\n"), 0u);
+    EXPECT_EQ(control_character_line(std::string_view("a = 1\n[\0]", 9)), 2u);
+    EXPECT_EQ(control_character_line("# \x7f"), 1u);
+}
+
 }  // namespace
 }  // namespace wall::config

@@ -149,6 +149,8 @@ INSTANTIATE_TEST_SUITE_P(
     Cases, WrongConfig,
     ::testing::Values(
         Wrong{"syntax", "name = \"lab\"", "name = ", "wall.toml:3: ", "not TOML"},
+        Wrong{"table_without_a_name", "[http]", "[\n]", "wall.toml:", "not TOML"},
+        Wrong{"control_character", "name = \"lab\"", "name = \"l\x01b\"", "wall.toml:3: ", "a control character"},
         Wrong{"stray_character", "name = \"lab\"", "n\u00e4me = \"lab\"", "wall.toml:3: ", "not TOML"},
         Wrong{"stray_character_after_a_quote_in_a_number", "name = \"lab\"", "name = 1'''\u0422", "wall.toml:3: ", "not TOML"},
         Wrong{"unknown_section", "[http]", "[htpp]", "wall.toml:14: ", "expected one of wall, control, http, people, node"},
