@@ -75,11 +75,12 @@ BENCHMARK(DiffEverything);
 
 void DiffOneElementPacked(benchmark::State& run) {
     glstate::State from, to;
+    glstate::ValueHistory history;
     wire::PackBuffer buffer;
     float density = 0;
     for (auto _ : run) {
         glstate::assign<el::fog_density>(to, 0, density += 1);
-        glstate::diff(from, to, glstate::PackSink{buffer});
+        glstate::diff(from, to, glstate::PackSink{buffer, history});
         if (buffer.bytes() > 32 << 10) buffer.clear();
     }
 }
@@ -88,11 +89,12 @@ BENCHMARK(DiffOneElementPacked);
 void DiffEverythingPacked(benchmark::State& run) {
     const glstate::State states[2] = {glstate::State(), everything_changed()};
     glstate::State from = states[0];
+    glstate::ValueHistory history;
     wire::PackBuffer buffer;
     std::size_t bytes = 0;
     for (auto _ : run) {
         buffer.clear();
-        glstate::diff(from, states[from.ids == states[0].ids], glstate::PackSink{buffer});
+        glstate::diff(from, states[from.ids == states[0].ids], glstate::PackSink{buffer, history});
         bytes = buffer.bytes();
     }
     run.counters["bytes"] = static_cast<double>(bytes);

@@ -314,7 +314,7 @@ wire::PackBuffer& Session::prepare(Node& node, Context& context, const Needs& ne
     const std::size_t surface_bytes = buffer.bytes() - start;
     const std::size_t object_bytes = context.share().bring_up_to_date(node, context, buffer);
     const std::size_t state_start = buffer.bytes();
-    glstate::CompactPackSink sink{buffer, mirror.history};
+    glstate::PackSink sink{buffer, mirror.history};
     constexpr auto kCurrent = glstate::mask_of(glstate::Category::current);
     const auto categories = categories_to_send(needs, mirror.state, context.state);
     if (categories & kCurrent) diff_current(mirror.state, context.state, needs, sink);

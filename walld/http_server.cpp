@@ -26,6 +26,7 @@ constexpr std::uint32_t kMaxHeader = 8 << 10, kMaxBody = 64 << 10;  // bytes
 
 constexpr const char* kJson = "application/json";
 constexpr const char* kVia = "http";
+constexpr std::string_view kFull = "HTTP/1.1 503 Service Unavailable\r\nContent-Length: 39\r\nConnection: close\r\n\r\nthis wall has as many viewers as it may";
 constexpr std::string_view kStreamPath = "/api/v1/stream";
 
 /// The page uses nothing but its own files, and is no part of another page.
@@ -123,6 +124,9 @@ asio::awaitable<void> HttpServer::accept() {
         }
         if (open_.size() >= kMaxConnections) {
             spdlog::warn("http_full connections={}", open_.size());
+            boost::system::error_code ignored;  // a fresh socket has room for so few bytes
+            accepted.non_blocking(true, ignored);
+            accepted.write_some(asio::buffer(kFull), ignored);
             continue;
         }
         auto socket = std::make_shared<Socket>(std::move(accepted));

@@ -14,6 +14,8 @@ using nlohmann::json;
 
 json rect_json(const geom::Rect& rect) { return {rect.x, rect.y, rect.width, rect.height}; }
 
+std::string color_text(std::uint32_t rgb) { return fmt::format("#{:06x}", rgb); }
+
 json spread_json(const Spread& spread) {
     const auto ms = [](Spread::Milliseconds value) { return std::round(value.count() * 1000) / 1000; };
     return {{"frames", spread.frames()}, {"last_ms", ms(spread.last())}, {"mean_ms", ms(spread.mean())}, {"most_ms", ms(spread.most())}};
@@ -113,7 +115,7 @@ json person_json(const Person& person) {
 
 json status_json(const Wall& wall) {
     const auto canvas = wall.config().canvas();
-    return {{"wall", {{"name", wall.config().name}, {"width", canvas.width}, {"height", canvas.height}, {"max_sessions", wall.config().max_sessions}}},
+    return {{"wall", {{"name", wall.config().name}, {"width", canvas.width}, {"height", canvas.height}, {"background", color_text(wall.config().background)}, {"max_sessions", wall.config().max_sessions}}},
             {"nodes", nodes_json(wall)},
             {"tiles", tiles_json(wall)},
             {"sessions", sessions_json(wall)}};

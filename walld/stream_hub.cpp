@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "walld/stream_hub.h"
 
-#include <boost/beast/core/detail/base64.hpp>
 #include <nlohmann/json.hpp>
 
 #include "common/codec/codec.h"
+#include "common/net/base64.h"
 #include "walld/messages.h"
 
 namespace wall::walld {
 namespace {
 
 using nlohmann::json;
-
-std::string base64(const std::string& bytes) {
-    namespace coder = boost::beast::detail::base64;
-    std::string out(coder::encoded_size(bytes.size()), '\0');
-    out.resize(coder::encode(out.data(), bytes.data(), bytes.size()));
-    return out;
-}
 
 template <class T>
 void append(std::string& out, T value) {
@@ -215,23 +208,25 @@ void StreamHub::arrived(NodeIndex node, proto::StreamFrame& frame) {
     if (found == by_id_.end() || found->second->first.node != node) return;
     auto& stream = found->second->second;
     if (!frame.error().empty()) return end(stream, frame.error());
-    if (frame.key()) {
-        const auto& key = found->second->first;
-        const json format{{"tile", stream.tile}, {"codec", key.codec}, {"width", frame.width()}, {"height", frame.height()}, {"layout", "rgba"}, {"header", base64(frame.header())}};
-        const std::string text = format.dump();
-        const std::string members = text.substr(1, text.size() - 2);
-        if (members != stream.format) {
-            stream.format = members;
-            for (const auto& [viewer, number] : stream.watchers) viewer->watches_[number].announced = false;
-        }
-    } else if (stream.format.empty()) {
-        return ask_for_more(*found->second);
+    const bool same_size = frame.width() == stream.width && frame.height() == stream.height;
+    if (stream.format.empty() || !same_size) {
+        if (!frame.key()) return ask_for_more(*found->second);
+        note_format(found->second->first, stream, frame);
     }
     ++counters_.frames;
     counters_.bytes += frame.packet().size();
     stream.on_its_way = false;
     deliver(stream, {++stream.sequence, frame.time_us(), frame.key(), std::make_shared<const std::string>(std::move(*frame.mutable_packet()))});
     ask_for_more(*found->second);
+}
+
+void StreamHub::note_format(const Key& key, NodeStream& stream, const proto::StreamFrame& frame) {
+    const json format{{"tile", stream.tile}, {"codec", key.codec}, {"width", frame.width()}, {"height", frame.height()}, {"layout", "rgba"}, {"header", net::to_base64(frame.header())}};
+    const std::string text = format.dump();
+    stream.format = text.substr(1, text.size() - 2);
+    stream.width = frame.width();
+    stream.height = frame.height();
+    for (const auto& [viewer, number] : stream.watchers) viewer->watches_[number].announced = false;
 }
 
 void StreamHub::deliver(NodeStream& stream, const Frame& frame) {

@@ -83,7 +83,7 @@ private:
         std::uint32_t id = 0;
         std::string tile;
         std::string format;  ///< JSON members of the viewers' first message; empty: no frame yet
-        std::uint32_t sequence = 0;
+        std::uint32_t width = 0, height = 0, sequence = 0;
         bool on_its_way = true;  ///< the node was asked for a frame that has not come
         std::set<std::pair<Viewer*, std::uint32_t>> watchers;
     };
@@ -95,6 +95,7 @@ private:
     void leave(Viewer& viewer, std::uint32_t number);
     void start(const Key& key, NodeStream& stream);
     void ask_for_more(Streams::value_type& stream);
+    void note_format(const Key& key, NodeStream& stream, const proto::StreamFrame& frame);
     void deliver(NodeStream& stream, const Frame& frame);
     void end(NodeStream& stream, const std::string& why);
 

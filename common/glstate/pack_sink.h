@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The sink of diff() on the client: every changed value becomes a `State` command of the stream.
+// The sink of diff() on the client: every changed value becomes a command of the stream.
 #pragma once
 
 #include "common/glstate/value_history.h"
@@ -8,16 +8,8 @@
 
 namespace wall::glstate {
 
+/// Small values and matrices that come back take 5 bytes (`StateSmall`, `StateRecall`). `history` is the follower's.
 struct PackSink {
-    wire::PackBuffer& to;
-    template <class E>
-    void set(unsigned i, const typename E::type& v) {
-        glapi::pack_state(to, E::id + i, &v, sizeof v);
-    }
-};
-
-/// The same with less to send: small values and matrices that come back take 5 bytes. `history` is the follower's.
-struct CompactPackSink {
     wire::PackBuffer& to;
     ValueHistory& history;
     template <class E>

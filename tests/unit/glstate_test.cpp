@@ -27,14 +27,26 @@ struct RecordingSink {
 };
 
 /// The receiving side of a stream that holds nothing but state.
-void receive(const wire::PackBuffer& batch, State& state) {
+/// What the executor does with state commands.
+void receive(const wire::PackBuffer& batch, State& state, glstate::ValueHistory& history, std::size_t& recalled) {
     wire::OperandReader in(batch.operands());
     for (std::size_t n = 0; n < batch.commands(); ++n) {
-        ASSERT_EQ(batch.opcode_at(n), static_cast<std::byte>(glapi::Op::State));
-        const auto id = in.get<std::uint32_t>();
-        const auto bytes = glstate::element_bytes(id);
-        ASSERT_NE(bytes, 0u);
-        ASSERT_TRUE(glstate::apply(state, id, in.raw(bytes)));
+        const auto op = static_cast<glapi::Op>(batch.opcode_at(n));
+        const auto word = in.get<std::uint32_t>();
+        if (op == glapi::Op::StateSmall) {
+            const std::uint32_t value = word >> 16;
+            ASSERT_TRUE(glstate::apply(state, word & 0xffff, std::as_bytes(std::span(&value, 1))));
+        } else if (op == glapi::Op::StateRecall) {
+            ++recalled;
+            ASSERT_TRUE(glstate::apply(state, word & 0xffff, history.recall(word & 0xffff, word >> 16)));
+        } else {
+            ASSERT_EQ(op, glapi::Op::State);
+            const auto bytes = glstate::element_bytes(word);
+            ASSERT_NE(bytes, 0u);
+            const auto value = in.raw(bytes);
+            ASSERT_TRUE(glstate::apply(state, word, value));
+            if (bytes == glstate::ValueHistory::kValueBytes) history.add(word, value.data());
+        }
     }
     EXPECT_TRUE(in.ok());
     EXPECT_EQ(in.remaining(), 0u);
@@ -110,17 +122,23 @@ TEST(State, UnifyingGivesWhatDiffGives) {
 TEST(State, RandomStatesTravel) {
     std::mt19937 random(7);
     State app, mirror, node;
+    glstate::ValueHistory sent, received;
+    std::size_t recalled = 0;
     for (unsigned round = 0; round < 300; ++round) {
         scramble(app, random, round % 3 == 0 ? 60 : 2);
+        glstate::Mat4 matrix;
+        matrix[12] = static_cast<float>(random() % 6);
+        glstate::assign<glstate::el::projection>(app, 0, matrix);
         wire::PackBuffer batch;
-        glstate::diff(mirror, app, glstate::PackSink{batch});
-        receive(batch, node);
+        glstate::diff(mirror, app, glstate::PackSink{batch, sent});
+        receive(batch, node, received, recalled);
         expect_equal(app, mirror);
         expect_equal(app, node);
         RecordingSink again;
         glstate::diff(mirror, app, again);
         EXPECT_TRUE(again.ids.empty());
     }
+    EXPECT_GT(recalled, 100u);
 }
 
 TEST(State, StatesOfManyContextsMeet) {

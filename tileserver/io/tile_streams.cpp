@@ -47,7 +47,7 @@ struct TileStreams::Stream {
         const auto kind = encoder->encode(view, want_key || first ? codec::PacketKind::key : codec::PacketKind::delta, packet);
         if (!kind) return tl::unexpected(kind.error());
         out.set_key(*kind == codec::PacketKind::key);
-        if (out.key()) out.set_header(text_of(encoder->stream_header()));
+        if (first) out.set_header(text_of(encoder->stream_header()));
         out.set_packet(text_of(packet));
         return {};
     }
@@ -95,12 +95,15 @@ void TileStreams::picture(Picture picture) {
         if (const auto done = stream->encode(picture, key, frame); !done) frame.set_error(done.error().message);
         asio::post(executor_, [this, id, stream, envelope = std::move(envelope)] {
             const auto still = streams_.find(id);
-            if (still != streams_.end() && still->second == stream) send_(envelope);
+            if (still == streams_.end() || still->second != stream) return;
+            if (!envelope.stream_frame().error().empty()) streams_.erase(still);
+            send_(envelope);
         });
     });
 }
 
 void TileStreams::fail(std::uint32_t stream, const std::string& why) {
+    streams_.erase(stream);
     proto::Envelope envelope;
     envelope.mutable_stream_frame()->set_stream(stream);
     envelope.mutable_stream_frame()->set_error(why);

@@ -2,8 +2,9 @@
 #include "tools/wallctl/live_wall.h"
 
 #include <algorithm>
-#include <boost/beast/core/detail/base64.hpp>
 #include <cstring>
+
+#include "common/net/base64.h"
 
 namespace wall::wallctl {
 namespace {
@@ -18,12 +19,8 @@ constexpr codec::PixelLayout kLayout = codec::PixelLayout::rgba;
 
 tl::unexpected<Failure> no(const char* code, std::string message) { return tl::unexpected<Failure>({code, std::move(message)}); }
 
-std::vector<std::byte> from_base64(const std::string& text) {
-    namespace coder = boost::beast::detail::base64;
-    std::vector<std::byte> out(coder::decoded_size(text.size()));
-    out.resize(coder::decode(out.data(), text.data(), text.size()).first);
-    return out;
-}
+/// "#RRGGBB"
+std::uint32_t color_of(const std::string& text) { return static_cast<std::uint32_t>(std::stoul(text.substr(1), nullptr, 16)); }
 
 geom::Rect rect_of(const json& rect) { return {rect.at(0), rect.at(1), rect.at(2), rect.at(3)}; }
 
@@ -51,7 +48,7 @@ Outcome<std::unique_ptr<LiveWall>> LiveWall::open(const Walld& walld, const std:
     if (const auto fits = codec::check(format); !fits) return no("failed", fits.error().message);
     auto client = subscribe(walld, "watch", {{"watch", watches}});
     if (!client) return tl::unexpected(client.error());
-    return std::unique_ptr<LiveWall>(new LiveWall(std::move(*client), std::move(tiles), format, status->json.at("wall").value("background", 0u)));
+    return std::unique_ptr<LiveWall>(new LiveWall(std::move(*client), std::move(tiles), format, color_of(status->json.at("wall").at("background"))));
 }
 
 LiveWall::LiveWall(net::ControlClient client, std::vector<Tile> tiles, codec::StreamFormat format, std::uint32_t background)
@@ -107,7 +104,7 @@ Result<void> LiveWall::take_text(const json& text) {
         return {};
     }
     tile.format = {text.at("width"), text.at("height"), kLayout, false};
-    const auto header = from_base64(text.at("header"));
+    const auto header = net::from_base64(text.at("header").get<std::string>());
     auto decoder = codec::make_decoder(text.at("codec").get<std::string>(), tile.format, header);
     if (!decoder) return tl::unexpected(decoder.error());
     tile.decoder = std::move(*decoder);

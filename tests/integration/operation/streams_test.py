@@ -26,7 +26,7 @@ class Streams(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
         cls.x = cls.enterClassContext(XServer())
-        cls.wall = cls.enterClassContext(Wall(tiles=(2, 1), tile_size=TILE))
+        cls.wall = cls.enterClassContext(Wall(tiles=(2, 1), tile_size=TILE, options='background = "#204060"'))
         cls.app = cls.wall.run("glxgears", "-geometry", "400x150", env=cls.x.environment(), stdout=subprocess.DEVNULL)
         cls.session = cls.wall.wait_session(cls.app)
         cls.wall.wait(cls.session, 2)
@@ -159,6 +159,22 @@ class Streams(unittest.TestCase):
         places = [next((i for i, frame in enumerate(frames) if (frame == shot).all()), None) for shot in shots[:3]]
         self.assertNotIn(None, places, "each screenshot is a frame, bit for bit")
         self.assertEqual(places, sorted(set(places)), "in their order")
+
+    def test_a_recording_has_the_background_where_a_node_is_away(self) -> None:
+        self.settle()
+        node = self.wall.node_names[1]
+        self.wall.daemons[node].kill()
+        self.wall.daemons[node].wait()
+        while self.wall.nodes()[1]["up"]:
+            time.sleep(0.02)
+        with tempfile.TemporaryDirectory() as folder:
+            avi = Path(folder) / "wall.avi"
+            self.wall.ctl("record", avi, "--seconds", "0.5")
+            frames, shot = self.frames_of(avi), self.wall_picture()
+        self.wall.start_node(node)
+        self.wall.wait_nodes()
+        self.assertEqual(shot[0, TILE[0]].tolist(), [0x20, 0x40, 0x60])
+        self.assertTrue((frames[-1] == shot).all())
 
     def test_a_recording_that_is_interrupted_is_a_whole_file(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
