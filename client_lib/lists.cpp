@@ -12,6 +12,7 @@
 #include "client_lib/block_walk.h"
 #include "client_lib/material.h"
 #include "client_lib/options.h"
+#include "client_lib/sharing.h"
 #include "common/glstate/diff.h"
 #include "common/wire/batch.h"
 
@@ -188,9 +189,18 @@ std::vector<std::byte> encoded(const wire::PackBuffer& content) {
 
 void define_once(Session& session, Node& node, wire::PackBuffer& buffer, const ListRun& run) {
     if (!node.object_stamps.emplace(run.id, 1).second) return;
+    const auto content = encoded(run.content);
+    const auto commands = static_cast<std::uint32_t>(run.content.commands()), operand_bytes = static_cast<std::uint32_t>(run.content.operand_bytes());
+    if (content.size() >= kLeastShared) {
+        glapi::ContentHash hash;
+        hash.RunDefine(commands, operand_bytes, content);
+        const Offer offer = offer_content(session, node, hash.finish(), [&](std::uint32_t request, std::span<const std::byte> key) {
+            glapi::pack::ShareRun(buffer, request, run.id, key);
+        });
+        if (offer == Offer::held) return;
+    }
     const std::size_t before = buffer.bytes();
-    glapi::pack::RunDefine(buffer, run.id, static_cast<std::uint32_t>(run.content.commands()),
-                           static_cast<std::uint32_t>(run.content.operand_bytes()), encoded(run.content));
+    glapi::pack::RunDefine(buffer, run.id, commands, operand_bytes, content);
     session.count_objects(node, buffer.bytes() - before);
 }
 

@@ -169,7 +169,10 @@ std::optional<std::vector<std::byte>> NodeStream::wait_reply(std::uint32_t reque
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, std::chrono::milliseconds(timeout_ms), [&] { return failed() || replies_.contains(request); });
     const auto found = replies_.find(request);
-    if (found == replies_.end()) return std::nullopt;
+    if (found == replies_.end()) {
+        unwanted_.insert(request);
+        return std::nullopt;
+    }
     auto bytes = std::move(found->second);
     replies_.erase(found);
     return bytes;
@@ -279,7 +282,7 @@ void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> paylo
     if (kind == wire::FrameKind::reply && payload.size() >= 4) {
         std::memcpy(words, payload.data(), 4);
         payload.erase(payload.begin(), payload.begin() + 4);
-        replies_[words[0]] = std::move(payload);
+        if (unwanted_.erase(words[0]) == 0) replies_[words[0]] = std::move(payload);
     } else if (kind == wire::FrameKind::swap_done && payload.size() == 8) {
         std::memcpy(words, payload.data(), 8);
         swaps_[words[0]] = words[1];

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "common/base/result.h"
@@ -69,6 +70,7 @@ private:
     std::deque<Outgoing> queue_;
     std::size_t queued_bytes_ = 0;
     std::unordered_map<std::uint32_t, std::vector<std::byte>> replies_;
+    std::unordered_set<std::uint32_t> unwanted_;  ///< requests whose answers nobody waits for any more
     std::unordered_map<std::uint32_t, std::uint32_t> swaps_;  // surface -> last frame drawn
     std::string failure_;
 

@@ -160,7 +160,7 @@ void Session::connect(Node& node) {
     node.surfaces.clear();
     node.batch.clear();
     node.left_out.clear();
-    node.slow = false;
+    node.slow = node.asks_unanswered = false;
     if (!node.info.up) return;
     auto stream = NodeStream::open(node.info.address, encode_hello(id_, node.info.ticket), kConnectTimeoutMs);
     if (!stream) {

@@ -47,6 +47,7 @@ struct Node {
     std::unordered_map<std::uint32_t, std::uint64_t> object_stamps;  ///< by object: the stamp of what the node has; absent: nothing
     std::unordered_map<std::uint32_t, std::uint32_t> surfaces;    ///< by surface: layout version it knows
     std::unordered_map<std::uint32_t, std::uint32_t> left_out;    ///< surfaces whose frames it does not get now: the last one it got
+    bool asks_unanswered = false;                                 ///< a question about content took too long: it gets no more
     bool slow = false;                                            ///< missed a frame's limit; not waited for until it answers again
 
     wire::PackBuffer batch;          ///< being packed
@@ -129,6 +130,15 @@ public:
     /// The node's batch after everything that drawing with this context needs: surfaces, objects, state.
     wire::PackBuffer& prepare(Node& node, Context& context, const Needs& needs = {});
     void send(Node& node);
+    /// Packs a question, `pack(buffer, request)`, into the node's batch, sends it and waits for `limit_ms` with the mutex held.
+    template <class Pack>
+    std::optional<std::vector<std::byte>> ask_now(Node& node, const char* function, int limit_ms, Pack&& pack) {
+        const std::uint32_t request = ++last_request_;
+        pack(node.batch, request);
+        count_round_trip(function);
+        send(node);
+        return node.stream->wait_reply(request, limit_ms);
+    }
     Node& node_of(const Target& target) { return *nodes_[target.node]; }
     void count_geometry(Node& node, std::size_t bytes);
     void count_block(Node& node);

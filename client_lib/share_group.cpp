@@ -4,6 +4,7 @@
 #include "client_lib/context.h"
 #include "client_lib/maps.h"
 #include "client_lib/session.h"
+#include "client_lib/sharing.h"
 
 namespace wall::client {
 namespace {
@@ -96,8 +97,16 @@ std::size_t ShareGroup::bring_up_to_date(Node& node, Context& context, wire::Pac
         const Texture& texture = *found->second;
         auto& known = node.object_stamps[id];
         if (known == texture.stamp) return;
-        pack_texture(texture, known, buffer, limit);
-        known = texture.stamp;
+        const std::uint64_t before = std::exchange(known, texture.stamp);
+        if (before != 0 || content_bytes(texture) < kLeastShared) return pack_texture(texture, before, buffer, limit);
+        const Offer offer = offer_content(context.session(), node, content_key(texture), [&](std::uint32_t request, std::span<const std::byte> key) {
+            glapi::pack::ShareTexture(buffer, request, id, texture.target, key);
+            sent += buffer.bytes() - start;
+            start = 0;  // it goes out
+        });
+        if (offer == Offer::held) return;
+        pack_texture(texture, 0, buffer, limit);
+        if (offer == Offer::wanted) glapi::pack::TexShared(buffer, id);
     };
     for_each_used(context.state, bring_texture);
     if (context.program) {

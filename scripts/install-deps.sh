@@ -13,6 +13,7 @@ build=(
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libsystemd-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   liblz4-dev libzstd-dev             # frame codecs
+  libssl-dev                         # content hashes
   libavcodec-dev libavutil-dev       # only benchmarks: FFmpeg's codecs beside ours
 )
 run=(

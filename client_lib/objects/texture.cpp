@@ -45,44 +45,56 @@ std::vector<std::byte> cut(const TextureLevel& level, const TexBox& box) {
     return out;
 }
 
-/// Packs what a node lacks of one texture.
-class TexturePacker {
+/// The commands that bring a follower of one texture up to date, to a sink that has members of their names without the object.
+template <class Sink>
+class TextureDiff {
 public:
-    TexturePacker(const Texture& texture, wire::PackBuffer& buffer, const std::function<void()>& packed)
-        : texture_(texture), buffer_(buffer), packed_(packed) {}
+    TextureDiff(const Texture& texture, Sink& sink) : texture_(texture), sink_(sink) {}
 
+    void run(std::uint64_t known);
+
+private:
     void parameter(GLenum pname, const std::array<float, 4>& v) {
-        glapi::pack::TexParameter(buffer_, texture_.id, texture_.target, pname, v[0], v[1], v[2], v[3]);
         any_ = true;
-        packed_();
+        sink_.TexParameter(texture_.target, pname, v[0], v[1], v[2], v[3]);
     }
     void current_parameter(GLenum pname) { parameter(pname, parameter_value(texture_.parameters, pname)); }
     void base_level(std::uint64_t known);
     /// What changed of one level since `known`.
     void level(unsigned face, GLint number, std::uint64_t known);
-    bool any() const { return any_; }
-
-private:
     void define(unsigned face, GLint number, const TextureLevel& level);
     void box(unsigned face, GLint number, const TextureLevel& level, const TexBox& box);
     void piece(unsigned face, GLint number, const TextureLevel& level, const TexBox& box);
 
     const Texture& texture_;
-    wire::PackBuffer& buffer_;
-    const std::function<void()>& packed_;
+    Sink& sink_;
     bool any_ = false;
 };
 
+template <class Sink>
+void TextureDiff<Sink>::run(std::uint64_t known) {
+    for (const auto& [pname, stamp] : texture_.parameter_stamps)
+        if (stamp > known) current_parameter(pname);
+    base_level(known);
+    for (unsigned face = 0; face < texture_.face_count(); ++face)
+        for (GLint number = 0; number < static_cast<GLint>(texture_.faces[face].size()); ++number)
+            if (number != texture_.parameters.base_level) level(face, number, known);
+    // A name that a state element carries must exist on the node.
+    if (known == 0 && !any_) current_parameter(GL_TEXTURE_MAG_FILTER);
+}
+
 // The driver makes the mipmaps when it gets the base level while the parameter is set. Nodes never see the parameter
 // otherwise: whether the application had it set when some level came is history that a late node cannot replay.
-void TexturePacker::base_level(std::uint64_t known) {
+template <class Sink>
+void TextureDiff<Sink>::base_level(std::uint64_t known) {
     const bool generate = texture_.generated_stamp > known;
     if (generate) parameter(GL_GENERATE_MIPMAP, {1, 0, 0, 0});
     for (unsigned face = 0; face < texture_.face_count(); ++face) level(face, texture_.parameters.base_level, generate ? 0 : known);
     if (generate) parameter(GL_GENERATE_MIPMAP, {0, 0, 0, 0});
 }
 
-void TexturePacker::level(unsigned face, GLint number, std::uint64_t known) {
+template <class Sink>
+void TextureDiff<Sink>::level(unsigned face, GLint number, std::uint64_t known) {
     const auto& levels = texture_.faces[face];
     if (static_cast<std::size_t>(number) >= levels.size()) return;
     const TextureLevel& level = levels[static_cast<std::size_t>(number)];
@@ -92,24 +104,24 @@ void TexturePacker::level(unsigned face, GLint number, std::uint64_t known) {
         if (change.stamp > known) box(face, number, level, change);
 }
 
-void TexturePacker::define(unsigned face, GLint number, const TextureLevel& level) {
+template <class Sink>
+void TextureDiff<Sink>::define(unsigned face, GLint number, const TextureLevel& level) {
     any_ = true;
     const auto internal = static_cast<GLenum>(level.internal_format);
     const GLenum target = image_target(texture_, face);
     if (level.compressed) {
-        glapi::pack::TexCompressed(buffer_, texture_.id, target, number, internal, level.width, level.height, level.pixels);
-        return packed_();
+        return sink_.TexCompressed(target, number, internal, level.width, level.height, std::span<const std::byte>(level.pixels));
     }
     const bool stored = level.content == LevelContent::stored;
     const bool at_once = stored && level.format == level.data_format && level.type == level.data_type && level.pixels.size() <= kLargestImageCommand;
-    glapi::pack::TexImage(buffer_, texture_.id, target, number, internal, level.width, level.height, level.depth, 0, level.format, level.type,
-                          at_once ? std::span<const std::byte>(level.pixels) : std::span<const std::byte>());
-    packed_();
+    sink_.TexImage(target, number, internal, level.width, level.height, level.depth, 0, level.format, level.type,
+                   at_once ? std::span<const std::byte>(level.pixels) : std::span<const std::byte>());
     if (stored && !at_once) box(face, number, level, {0, 0, 0, level.width, level.height, level.depth, 0});
 }
 
 // A large box goes slice by slice, in as many rows as fit.
-void TexturePacker::box(unsigned face, GLint number, const TextureLevel& level, const TexBox& box) {
+template <class Sink>
+void TextureDiff<Sink>::box(unsigned face, GLint number, const TextureLevel& level, const TexBox& box) {
     const auto layout = glapi::pixel_layout(level.data_format, level.data_type);
     if (!layout) return;
     const std::size_t row = std::max<std::size_t>(glapi::row_bytes(*layout, box.width), 1);
@@ -121,14 +133,43 @@ void TexturePacker::box(unsigned face, GLint number, const TextureLevel& level, 
             piece(face, number, level, {box.x, box.y + y, box.z + z, box.width, std::min(rows, box.height - y), 1, 0});
 }
 
-void TexturePacker::piece(unsigned face, GLint number, const TextureLevel& level, const TexBox& box) {
+template <class Sink>
+void TextureDiff<Sink>::piece(unsigned face, GLint number, const TextureLevel& level, const TexBox& box) {
     const bool whole = box.width == level.width && box.height == level.height && box.depth == level.depth;
     const auto part = whole ? std::vector<std::byte>() : cut(level, box);
-    glapi::pack::TexSubImage(buffer_, texture_.id, image_target(texture_, face), number, box.x, box.y, box.z, box.width, box.height, box.depth,
-                             level.data_format, level.data_type, whole ? std::span<const std::byte>(level.pixels) : std::span<const std::byte>(part));
     any_ = true;
-    packed_();
+    sink_.TexSubImage(image_target(texture_, face), number, box.x, box.y, box.z, box.width, box.height, box.depth, level.data_format, level.data_type,
+                      whole ? std::span<const std::byte>(level.pixels) : std::span<const std::byte>(part));
 }
+
+
+/// Packs them for a node.
+struct TexturePacker {
+    std::uint32_t id;
+    wire::PackBuffer& buffer;
+    const std::function<void()>& packed;
+
+    template <class... Operands>
+    void TexParameter(Operands... operands) {
+        glapi::pack::TexParameter(buffer, id, operands...);
+        packed();
+    }
+    template <class... Operands>
+    void TexImage(Operands... operands) {
+        glapi::pack::TexImage(buffer, id, operands...);
+        packed();
+    }
+    template <class... Operands>
+    void TexSubImage(Operands... operands) {
+        glapi::pack::TexSubImage(buffer, id, operands...);
+        packed();
+    }
+    template <class... Operands>
+    void TexCompressed(Operands... operands) {
+        glapi::pack::TexCompressed(buffer, id, operands...);
+        packed();
+    }
+};
 
 }  // namespace
 
@@ -224,15 +265,25 @@ std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname) {
 }
 
 void pack_texture(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed) {
-    TexturePacker packer(texture, buffer, packed);
-    for (const auto& [pname, stamp] : texture.parameter_stamps)
-        if (stamp > known) packer.current_parameter(pname);
-    packer.base_level(known);
-    for (unsigned face = 0; face < texture.face_count(); ++face)
-        for (GLint level = 0; level < static_cast<GLint>(texture.faces[face].size()); ++level)
-            if (level != texture.parameters.base_level) packer.level(face, level, known);
-    // A name that a state element carries must exist on the node.
-    if (known == 0 && !packer.any()) packer.current_parameter(GL_TEXTURE_MAG_FILTER);
+    TexturePacker packer{texture.id, buffer, packed};
+    TextureDiff(texture, packer).run(known);
+}
+
+const glapi::ContentKey& content_key(const Texture& texture) {
+    auto& [stamp, key] = texture.content_key;
+    if (stamp == texture.stamp) return key;
+    glapi::ContentHash hash;
+    TextureDiff(texture, hash).run(0);
+    key = hash.finish();
+    stamp = texture.stamp;
+    return key;
+}
+
+std::size_t content_bytes(const Texture& texture) {
+    std::size_t bytes = 0;
+    for (const auto& face : texture.faces)
+        for (const auto& level : face) bytes += level.pixels.size();
+    return bytes;
 }
 
 unsigned face_of(GLenum target) {

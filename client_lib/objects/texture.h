@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/glapi/content_hash.h"
 #include "common/glapi/gl_types.h"
 #include "common/wire/pack_buffer.h"
 
@@ -73,6 +74,8 @@ struct Texture {
     std::vector<std::uint32_t> bound_by;  ///< contexts that ever bound it
     std::uint64_t generated_stamp = 0;  ///< of the latest mipmap generation; 0: none
     std::array<std::vector<TextureLevel>, kCubeFaces> faces;
+    /// As of a stamp: see content_key().
+    mutable std::pair<std::uint64_t, glapi::ContentKey> content_key{};
 
     bool is_default() const { return name == 0; }
     unsigned face_count() const { return target == GL_TEXTURE_CUBE_MAP ? kCubeFaces : 1; }
@@ -92,6 +95,11 @@ inline constexpr std::size_t kLargestImageCommand = std::size_t{16} << 20;
 /// Packs everything that changed since `known` (0: the node has nothing). `packed` is called after every command, so that
 /// the caller may send the buffer before it grows too large for a frame.
 void pack_texture(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed = [] {});
+
+/// The name of what pack_texture(texture, 0, ...) would say, but for the texture's id.
+const glapi::ContentKey& content_key(const Texture& texture);
+/// Of all pixels.
+std::size_t content_bytes(const Texture& texture);
 
 /// 0 to 5 for a cube map's face, else 0.
 unsigned face_of(GLenum image_target);

@@ -23,6 +23,11 @@ inline constexpr std::size_t kTextureTargets = static_cast<std::size_t>(TextureT
 GLenum gl_target(TextureTarget target);
 /// Of a target or an image target (cube map faces); kCount: not one of ours.
 TextureTarget texture_target(GLenum target);
+inline bool is_1d(TextureTarget target) { return target == TextureTarget::t1d; }
+/// Its images have a depth.
+inline bool is_3d(TextureTarget target) {
+    return target == TextureTarget::t3d || target == TextureTarget::t2d_array || target == TextureTarget::cube_map_array;
+}
 
 using TextureNames = std::array<std::array<GLuint, kTextureTargets>, kTextureUnits>;
 /// Driver textures at all units; equal ids mean equal names. Id 0: none anywhere.

@@ -11,7 +11,11 @@ namespace wall::tileserver {
 Executor::Executor(RenderNode& node, Session& session, SessionOutput& output)
     : node_(node), session_(session), output_(output), gl_(node.driver.gl()) {}
 
-Executor::~Executor() { end_render_mode(); }
+Executor::~Executor() {
+    end_render_mode();
+    node_.textures.leave(session_.id());
+    node_.runs.leave(session_.id());
+}
 
 Result<void> Executor::run_batch(std::span<const std::byte> payload) {
     const auto batch = wire::split_batch(payload);

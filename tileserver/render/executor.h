@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/glapi/decoder.h"
+#include "tileserver/render/content_store.h"
 #include "tileserver/render/session.h"
 #include "tileserver/render/session_output.h"
 
@@ -22,6 +23,8 @@ namespace wall::tileserver {
 struct RenderNode {
     Driver& driver;
     MapMirror maps;
+    ContentStore<TextureContent> textures;    ///< that sessions may share
+    ContentStore<const Run> runs;
     std::vector<Tile> tiles;
     std::uint64_t damage = 1;                 ///< grows when a tile's picture may have changed
     bool present_at_once = false;             ///< nobody coordinates: show frames when they are done
@@ -40,6 +43,8 @@ public:
     /// The driver is in feedback or selection mode for this session: no other may draw.
     bool exclusive() const { return render_mode_ != GL_RENDER; }
     void present(SurfaceId surface, std::uint32_t frame);
+    /// False: the session waits for content that another one is sending; nothing of it may run.
+    Result<bool> settle_question();
 
     // ---- the decoder's interface ----
     std::uint32_t state_bytes(std::uint32_t id) const;
@@ -183,6 +188,9 @@ public:
                        std::span<const std::byte> blocks);
     void TexParameter(std::uint32_t texture, GLenum target, GLenum pname, float p0, float p1, float p2, float p3);
     void TexDelete(std::uint32_t texture);
+    void ShareTexture(std::uint32_t request, std::uint32_t texture, GLenum target, std::span<const std::byte> key);
+    void TexShared(std::uint32_t texture);
+    void ShareRun(std::uint32_t request, std::uint32_t run, std::span<const std::byte> key);
     void ShaderCompile(std::uint32_t request, GLenum type, std::span<const std::byte> source);
     void ProgramLink(std::uint32_t request, std::uint32_t program, std::span<const std::byte> definition);
     void ProgramDelete(std::uint32_t program);
@@ -196,11 +204,15 @@ public:
     void PixelMap(GLenum map, std::span<const std::byte> values);
 
 private:
-    Run compile_run(std::span<const std::byte> opcodes, std::span<const std::byte> operands);
+    std::shared_ptr<const Run> compile_run(std::span<const std::byte> opcodes, std::span<const std::byte> operands);
+    bool keep_run(std::uint32_t id, std::shared_ptr<const Run> run);
     void finish_tile();
     bool outside_begin();
     Surface* known_surface(std::uint32_t id);
-    /// Binds a texture for the driver's work on the object; null after a refusal.
+    /// Asks the node's store; false: not answered yet.
+    bool answer_question();
+    void ask(std::uint32_t request, std::uint32_t object, GLenum target, std::span<const std::byte> key);
+    /// The texture to change: its own, bound for the driver's work on the object; null after a refusal.
     Texture* bind_for_upload(std::uint32_t name, GLenum target);
     bool check_image(GLenum format, GLenum type, std::int32_t width, std::int32_t height, std::int32_t depth, std::span<const std::byte> pixels);
     template <class Draw>
@@ -225,6 +237,15 @@ private:
     Layer* layer_ = nullptr;
     AttributeTrail trail_;
     glstate::Vec4 raster_{};  // position as the block's bitmaps move it
+
+    /// Does the node have this content? The client waits for the answer.
+    struct Question {
+        std::uint32_t request = 0, object = 0;
+        GLenum target = 0;  ///< of a texture; 0: it is a run
+        glapi::ContentKey key;
+    };
+    std::optional<Question> question_;
+    std::optional<std::pair<std::uint32_t, glapi::ContentKey>> promised_run_;
 
     GLenum render_mode_ = GL_RENDER;
     std::vector<GLfloat> feedback_;

@@ -127,8 +127,8 @@ void Executor::RunCall(std::uint32_t id) {
     if (!outside_begin()) return;
     const auto at = session_.runs.find(id);
     if (at == session_.runs.end()) return refuse("run " + std::to_string(id) + " is not defined");
-    if (draws_) gl_.CallList(at->second.list);
-    trail_.append(at->second.trail);
+    if (draws_) gl_.CallList(at->second->list);
+    trail_.append(at->second->trail);
 }
 
 // ---- selection and feedback ----

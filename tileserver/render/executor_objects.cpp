@@ -12,30 +12,16 @@
 namespace wall::tileserver {
 namespace {
 
-constexpr std::int32_t kMaxTextureExtent = 16384 + 2;  // texels, with borders
-constexpr std::int32_t kMaxLevel = 16;
-
 std::vector<float> floats(std::span<const std::byte> bytes) {
     std::vector<float> out(bytes.size() / sizeof(float));
     if (!out.empty()) std::memcpy(out.data(), bytes.data(), out.size() * sizeof(float));
     return out;
 }
 
-/// The client has applied pixel transfer to the texels that it sends.
-const glstate::State& neutral_state() {
-    static const glstate::State state;
-    return state;
-}
-
 /// Of 4x4 texels; 0: not one of the formats.
 std::size_t s3tc_block_bytes(GLenum format) {
     if (format == GL_COMPRESSED_RGB_S3TC_DXT1_EXT || format == GL_COMPRESSED_RGBA_S3TC_DXT1_EXT) return 8;
     return format == GL_COMPRESSED_RGBA_S3TC_DXT3_EXT || format == GL_COMPRESSED_RGBA_S3TC_DXT5_EXT ? 16 : 0;
-}
-
-bool is_1d(TextureTarget target) { return target == TextureTarget::t1d; }
-bool is_3d(TextureTarget target) {
-    return target == TextureTarget::t3d || target == TextureTarget::t2d_array || target == TextureTarget::cube_map_array;
 }
 
 }  // namespace
@@ -62,40 +48,43 @@ Texture* Executor::bind_for_upload(std::uint32_t name, GLenum target) {
         refuse("texture " + std::to_string(name) + " has another target, or there are too many");
         return nullptr;
     }
-    node_.driver.bind_texture_to_edit(kind, texture->driver.value);
+    if (texture->content.use_count() > 1) {
+        if (!session_.adopt(*texture, texture->content->copy())) refuse("more texture memory than a session may have");
+    } else if (const auto key = std::exchange(texture->content->key, {})) {
+        node_.textures.forget(*key);
+    }
+    if (texture->promise) node_.textures.heard(texture->promise->key, session_.id(), std::chrono::steady_clock::now());
+    node_.driver.bind_texture_to_edit(kind, texture->content->name());
     return texture;
 }
 
 void Executor::TexImage(std::uint32_t name, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
                         std::int32_t depth, std::int32_t border, GLenum format, GLenum type, std::span<const std::byte> pixels) {
     if (width < 0 || height < 0 || depth < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent || depth > kMaxTextureExtent) return refuse("absurd size");
-    if (level < 0 || level > kMaxLevel || border < 0 || border > 1) return refuse("no such level or border");
+    if (level < 0 || level > kMaxTextureLevel || border < 0 || border > 1) return refuse("no such level or border");
     if (!pixels.empty() && !check_image(format, type, width, height, depth, pixels)) return;
     Texture* texture = bind_for_upload(name, target);
     if (texture == nullptr) return;
     const auto estimate = std::uint64_t{4} * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * static_cast<std::uint64_t>(depth);
-    if (!session_.account(*texture, target, level, estimate)) return refuse("more texture memory than a session may have");
-    node_.driver.sync_pixel_transfer(neutral_state());
-    const void* data = pixels.empty() ? nullptr : pixels.data();
-    const auto internal = static_cast<GLint>(internal_format);
-    if (is_1d(texture->target))
-        gl_.TexImage1D(target, level, internal, width, border, format, type, data);
-    else if (is_3d(texture->target))
-        gl_.TexImage3D(target, level, internal, width, height, depth, border, format, type, data);
-    else
-        gl_.TexImage2D(target, level, internal, width, height, border, format, type, data);
+    const TextureContent::Image image{internal_format, format, type, estimate};
+    if (!session_.account(*texture, target, level, image)) return refuse("more texture memory than a session may have");
+    if (texture->promise) texture->promise->hash.TexImage(target, level, internal_format, width, height, depth, border, format, type, pixels);
+    node_.driver.neutral_pixel_transfer();
+    upload_image(gl_, texture->content->target(), target, level, image, {width, height, depth}, pixels.empty() ? nullptr : pixels.data(), border);
 }
 
 void Executor::TexSubImage(std::uint32_t name, GLenum target, std::int32_t level, std::int32_t x, std::int32_t y, std::int32_t z, std::int32_t width,
                            std::int32_t height, std::int32_t depth, GLenum format, GLenum type, std::span<const std::byte> pixels) {
-    if (level < 0 || level > kMaxLevel) return refuse("no such level");
+    if (level < 0 || level > kMaxTextureLevel) return refuse("no such level");
     if (!check_image(format, type, width, height, depth, pixels) || pixels.empty()) return;
     Texture* texture = bind_for_upload(name, target);
     if (texture == nullptr) return;
-    node_.driver.sync_pixel_transfer(neutral_state());
-    if (is_1d(texture->target))
+    if (texture->promise) texture->promise->hash.TexSubImage(target, level, x, y, z, width, height, depth, format, type, pixels);
+    node_.driver.neutral_pixel_transfer();
+    const TextureTarget kind = texture->content->target();
+    if (is_1d(kind))
         gl_.TexSubImage1D(target, level, x, width, format, type, pixels.data());
-    else if (is_3d(texture->target))
+    else if (is_3d(kind))
         gl_.TexSubImage3D(target, level, x, y, z, width, height, depth, format, type, pixels.data());
     else
         gl_.TexSubImage2D(target, level, x, y, width, height, format, type, pixels.data());
@@ -103,20 +92,25 @@ void Executor::TexSubImage(std::uint32_t name, GLenum target, std::int32_t level
 
 void Executor::TexCompressed(std::uint32_t name, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
                              std::span<const std::byte> blocks) {
-    if (width < 0 || height < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent || level < 0 || level > kMaxLevel) return refuse("absurd size");
+    if (width < 0 || height < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent || level < 0 || level > kMaxTextureLevel) return refuse("absurd size");
     const std::size_t block = s3tc_block_bytes(internal_format);
     const auto across = [](std::int32_t texels) { return (static_cast<std::size_t>(texels) + 3) / 4; };
     if (block == 0 || blocks.size() != across(width) * across(height) * block) return refuse("size does not fit the blocks");
     Texture* texture = bind_for_upload(name, target);
     if (texture == nullptr) return;
-    if (!session_.account(*texture, target, level, blocks.size())) return refuse("more texture memory than a session may have");
-    if (texture->target != TextureTarget::t2d && texture->target != TextureTarget::cube_map) return refuse("no such target");
+    const TextureTarget kind = texture->content->target();
+    if (kind != TextureTarget::t2d && kind != TextureTarget::cube_map) return refuse("no such target");
+    if (!session_.account(*texture, target, level, {internal_format, 0, 0, blocks.size()})) return refuse("more texture memory than a session may have");
+    if (texture->promise) texture->promise->hash.TexCompressed(target, level, internal_format, width, height, blocks);
     gl_.CompressedTexImage2D(target, level, internal_format, width, height, 0, static_cast<GLsizei>(blocks.size()), blocks.data());
 }
 
 void Executor::TexParameter(std::uint32_t name, GLenum target, GLenum pname, float p0, float p1, float p2, float p3) {
-    if (bind_for_upload(name, target) == nullptr) return;
+    Texture* texture = bind_for_upload(name, target);
+    if (texture == nullptr) return;
     const std::array<float, 4> values = {p0, p1, p2, p3};
+    texture->content->note_parameter(pname, values);
+    if (texture->promise) texture->promise->hash.TexParameter(target, pname, p0, p1, p2, p3);
     gl_.TexParameterfv(target, pname, values.data());
 }
 
@@ -132,17 +126,20 @@ void Executor::RunDefine(std::uint32_t id, std::uint32_t commands, std::uint32_t
     for (const std::byte op : opcodes)
         if (std::to_integer<std::size_t>(op) >= glapi::kOpCount || glapi::kOpGroups[std::to_integer<std::size_t>(op)] != glapi::OpGroup::geometry)
             return refuse("a run holds geometry only");
-    RunDelete(id);
-    session_.run_bytes += content.size();
-    if (session_.run_bytes > kMaxRunBytes) return refuse("more runs than a session may have");
-    session_.runs[id] = compile_run(opcodes, content.subspan(room));
+    auto run = compile_run(opcodes, content.subspan(room));
+    if (const auto promised = std::exchange(promised_run_, {}); promised && promised->first == id) {
+        glapi::ContentHash hash;
+        hash.RunDefine(commands, operand_bytes, content);
+        if (hash.finish() != promised->second) return refuse("content is not what its name says");
+        run = node_.runs.store(promised->second, std::move(run));
+    }
+    keep_run(id, std::move(run));
 }
 
-Run Executor::compile_run(std::span<const std::byte> opcodes, std::span<const std::byte> operands) {
-    Run run;
-    run.bytes = wire::padded4(opcodes.size()) + operands.size();
-    run.list = gl_.GenLists(1);
-    gl_.NewList(run.list, GL_COMPILE);
+std::shared_ptr<const Run> Executor::compile_run(std::span<const std::byte> opcodes, std::span<const std::byte> operands) {
+    auto run = std::make_shared<Run>(gl_);
+    run->bytes = wire::padded4(opcodes.size()) + operands.size();
+    gl_.NewList(run->list, GL_COMPILE);
     trail_.clear();
     draws_ = true;  // into the list
     const auto done = glapi::decode_run(opcodes, operands, *this);
@@ -152,17 +149,24 @@ Run Executor::compile_run(std::span<const std::byte> opcodes, std::span<const st
         refuse("a run ends between Begin and End");
     }
     gl_.EndList();
-    run.trail = trail_;
+    run->trail = trail_;
     trail_.clear();
     if (!done && !refused()) refuse("run: " + done.error().message);
     return run;
 }
 
+bool Executor::keep_run(std::uint32_t id, std::shared_ptr<const Run> run) {
+    RunDelete(id);
+    session_.run_bytes += run->bytes;
+    session_.runs[id] = std::move(run);
+    if (session_.run_bytes > kMaxRunBytes) refuse("more runs than a session may have");
+    return !refused();
+}
+
 void Executor::RunDelete(std::uint32_t id) {
     const auto at = session_.runs.find(id);
     if (at == session_.runs.end()) return;
-    session_.run_bytes -= at->second.bytes;
-    gl_.DeleteLists(at->second.list, 1);
+    session_.run_bytes -= at->second->bytes;
     session_.runs.erase(at);
 }
 

@@ -56,7 +56,8 @@ public:
         }
         /// True: a batch was executed.
         bool run_one() {
-            const std::vector<std::byte>* next = failed_ ? nullptr : queue_->front();
+            if (failed_ || !settled()) return false;
+            const std::vector<std::byte>* next = queue_->front();
             if (next == nullptr || (needs_shown_frame(*next) && frame_waits())) return false;
             const auto batch = queue_->pop();
             last_run_ = Clock::now();
@@ -74,6 +75,12 @@ public:
         Executor& executor() { return executor_; }
 
     private:
+        bool settled() {
+            const auto settled = executor_.settle_question();
+            if (!settled) fail(settled.error().message);
+            return settled && *settled;
+        }
+
         Loop& loop_;
         StreamId id_;
         std::shared_ptr<BatchQueue> queue_;

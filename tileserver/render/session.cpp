@@ -3,12 +3,6 @@
 
 namespace wall::tileserver {
 
-Session::~Session() {
-    for (auto& [key, texture] : textures_) release(texture);
-    for (auto& [id, run] : runs) driver_.gl().DeleteLists(run.list, 1);
-    driver_.forget_layer();
-}
-
 Surface* Session::surface(SurfaceId id) {
     const auto at = surfaces_.find(id);
     return at == surfaces_.end() ? nullptr : at->second.get();
@@ -38,32 +32,31 @@ Texture* Session::texture(ClientName name, TextureTarget target) {
 
 Texture* Session::make_texture(ClientName name, TextureTarget target) {
     Texture* known = texture(name, target);
-    if (known != nullptr) return known->target == target ? known : nullptr;
+    if (known != nullptr) return known->content->target() == target ? known : nullptr;
     if (target == TextureTarget::kCount || textures_.size() >= kMaxTextures) return nullptr;
-    GLuint made = 0;
-    driver_.gl().CreateTextures(gl_target(target), 1, &made);
     ++texture_version_;
-    return &textures_.emplace(key(name, target), Texture{DriverName(made), target, {}}).first->second;
-}
-
-void Session::release(Texture& texture) {
-    driver_.forget_texture(texture.driver.value);
-    driver_.gl().DeleteTextures(1, &texture.driver.value);
-    for (const auto& [image, bytes] : texture.image_bytes) texture_bytes_ -= bytes;
+    return &textures_.emplace(key(name, target), Texture{std::make_shared<TextureContent>(driver_, target), {}}).first->second;
 }
 
 void Session::delete_texture(ClientName name) {
     const auto at = textures_.find(name.value);
     if (!name || at == textures_.end()) return;
-    release(at->second);
+    texture_bytes_ -= at->second.content->bytes();
     textures_.erase(at);
     ++texture_version_;
 }
 
-bool Session::account(Texture& texture, GLenum target, std::int32_t level, std::uint64_t bytes) {
-    auto& known = texture.image_bytes[{target, level}];
-    texture_bytes_ += bytes - known;
-    known = bytes;
+bool Session::adopt(Texture& texture, std::shared_ptr<TextureContent> content) {
+    texture_bytes_ += content->bytes() - texture.content->bytes();
+    texture.content = std::move(content);
+    ++texture_version_;
+    return texture_bytes_ <= kMaxTextureBytes;
+}
+
+bool Session::account(Texture& texture, GLenum image_target, std::int32_t level, const TextureContent::Image& image) {
+    texture_bytes_ -= texture.content->bytes();
+    texture.content->note_image(image_target, level, image);
+    texture_bytes_ += texture.content->bytes();
     return texture_bytes_ <= kMaxTextureBytes;
 }
 

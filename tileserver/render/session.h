@@ -4,8 +4,8 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -19,6 +19,7 @@
 #include "tileserver/render/queries.h"
 #include "tileserver/render/soft_maps.h"
 #include "tileserver/render/surface.h"
+#include "tileserver/render/texture_content.h"
 
 namespace wall::tileserver {
 
@@ -37,23 +38,33 @@ struct SoftContext {
 };
 
 struct Texture {
-    DriverName driver;
-    TextureTarget target{};
-    std::map<std::pair<GLenum, std::int32_t>, std::uint64_t> image_bytes;  ///< by image target and level: an estimate
+    std::shared_ptr<TextureContent> content;  ///< never null; other sessions may hold it, too
+    /// While its definition comes that was promised under a name: what has come.
+    struct Promise {
+        glapi::ContentKey key;
+        glapi::ContentHash hash;
+    };
+    std::optional<Promise> promise;
 };
 
 /// Geometry that is called by name: a display list of the driver. Mesa cuts quads and strips in a list into other
 /// triangles than outside, so only its own lists give the pixels that the application's list would give.
 struct Run {
-    GLuint list = 0;
+    explicit Run(const Gl& gl) : list(gl.GenLists(1)), gl_(gl) {}
+    ~Run() { gl_.DeleteLists(list, 1); }
+    Run(const Run&) = delete;
+    const GLuint list;
     AttributeTrail trail;  ///< what it leaves behind
     std::size_t bytes = 0;
+
+private:
+    const Gl& gl_;
 };
 
 class Session {
 public:
     Session(Driver& driver, SessionId id) : programs(driver), queries(driver.gl()), driver_(driver), id_(id) {}
-    ~Session();
+    ~Session() { driver_.forget_layer(); }
     Session(const Session&) = delete;
 
     SessionId id() const { return id_; }
@@ -74,18 +85,19 @@ public:
     void delete_texture(ClientName name);
     /// Grows with every texture made or deleted: bindings by name must be looked up again.
     std::uint64_t texture_version() const { return texture_version_; }
-    /// Replaces the size of one image in the session's account; false if that is more than a session may have.
-    bool account(Texture& texture, GLenum target, std::int32_t level, std::uint64_t bytes);
+    /// The texture is that content from now on, which other sessions may hold, too. False: more memory than a session may have.
+    bool adopt(Texture& texture, std::shared_ptr<TextureContent> content);
+    /// Notes the size of one image; false if that is more than a session may have.
+    bool account(Texture& texture, GLenum image_target, std::int32_t level, const TextureContent::Image& image);
+    std::uint64_t texture_bytes() const { return texture_bytes_; }
 
     Programs programs;
     Queries queries;
-    std::unordered_map<std::uint32_t, Run> runs;
+    std::unordered_map<std::uint32_t, std::shared_ptr<const Run>> runs;
     std::uint64_t run_bytes = 0;
 
 private:
     static std::uint64_t key(ClientName name, TextureTarget target);
-    void release(Texture& texture);
-
     Driver& driver_;
     SessionId id_;
     std::unordered_map<ContextId, SoftContext> contexts_;

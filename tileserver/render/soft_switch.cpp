@@ -23,7 +23,7 @@ void look_up_textures(Session& session, SoftContext& context) {
     for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
         for (std::size_t target = 0; target < kTextureTargets; ++target) {
             const Texture* texture = session.texture(ClientName((*names[target])[unit]), static_cast<TextureTarget>(target));
-            if (texture != nullptr && texture->target == static_cast<TextureTarget>(target)) found[unit][target] = texture->driver.value;
+            if (texture != nullptr && texture->content->target() == static_cast<TextureTarget>(target)) found[unit][target] = texture->content->name();
         }
     }
     if (found != bound.bindings.names) bound.bindings = {found == TextureNames{} ? 0 : glstate::next_value_id(), found};

@@ -87,7 +87,9 @@ TEST_F(RasterTest, PositionIsMesas) {
         both([&](const auto& g) { g.TexCoord4f(s, 1, 2, 1), g.Color4f(r, 0.5f, 0, 1); });
         random_position();
         expect_same_place();
-        if (c.state.raster.raster_position_valid) EXPECT_EQ(theirs(GL_CURRENT_RASTER_COLOR), c.state.raster.raster_color);
+        if (c.state.raster.raster_position_valid) {
+            EXPECT_EQ(theirs(GL_CURRENT_RASTER_COLOR), c.state.raster.raster_color);
+        }
     }
 }
 

@@ -290,7 +290,7 @@ TEST_F(ObjectsTest, NamesOfASessionReachNoOther) {
     const glstate::Vec4 red = {1, 0, 0, 1};
     EXPECT_TRUE(refused([&](Batch& b) { pack::Uniform(b.buffer(), 1, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red))); })) << "a program of another session";
     // Drawing with and deleting another's names does nothing to them, nor does the driver's own number work as a name.
-    const GLuint driver_name = owner->session.texture(ClientName(1), TextureTarget::t2d)->driver.value;
+    const GLuint driver_name = owner->session.texture(ClientName(1), TextureTarget::t2d)->content->name();
     for (const std::uint32_t name : {1u, static_cast<std::uint32_t>(driver_name)}) {
         Batch batch;
         batch.set<el::texture_2d_enabled>(1).set<el::texture_binding_2d>(name).set<el::color>({0, 0, 1, 1}).set<el::current_program>(1);

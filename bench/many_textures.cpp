@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// A program with many large textures: defines them, draws a frame with all of them, says so, and goes on showing it until it is
+// ended. Any GLX. bench/share.py runs several of it at once.
+#include <GL/gl.h>
+#include <GL/glx.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <unistd.h>
+#include <vector>
+
+namespace {
+
+struct Options {
+    int textures = 16, texels = 1024;  // 16 of 1024x1024 RGBA: 64 MiB
+    unsigned seed = 1;
+    int window = 128;
+};
+
+bool parse(int argc, char** argv, Options& o) {
+    for (int i = 1; i < argc; i += 2) {
+        const auto number = [&](const char* name, auto& value) {
+            if (std::strcmp(argv[i], name) != 0 || i + 1 >= argc) return false;
+            value = static_cast<std::remove_reference_t<decltype(value)>>(std::atoi(argv[i + 1]));
+            return true;
+        };
+        if (!number("--textures", o.textures) && !number("--texels", o.texels) && !number("--seed", o.seed) && !number("--window", o.window)) return false;
+    }
+    return o.textures > 0 && o.texels > 0 && o.window > 0;
+}
+
+/// Noise, so that nothing in between can compress it.
+std::vector<std::uint32_t> image(const Options& o, int number) {
+    std::vector<std::uint32_t> texels(static_cast<std::size_t>(o.texels) * static_cast<std::size_t>(o.texels));
+    std::uint32_t state = o.seed * 7919u + static_cast<std::uint32_t>(number) + 1;
+    for (auto& texel : texels) {
+        state ^= state << 13, state ^= state >> 17, state ^= state << 5;
+        texel = state;
+    }
+    return texels;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options o;
+    if (!parse(argc, argv, o)) {
+        std::fputs("usage: many_textures [--textures N] [--texels SIDE] [--seed S] [--window PIXELS]\n"
+                   "Shows N textures of SIDE x SIDE RGBA noise side by side. Equal seeds make equal textures.\n", stderr);
+        return 2;
+    }
+    Display* display = XOpenDisplay(nullptr);
+    if (!display) return std::fputs("many_textures: cannot open the display; is DISPLAY set?\n", stderr), 1;
+    int attributes[] = {GLX_RGBA, GLX_DOUBLEBUFFER, 0};
+    XVisualInfo* visual = glXChooseVisual(display, DefaultScreen(display), attributes);
+    if (!visual) return std::fputs("many_textures: no visual\n", stderr), 1;
+    XSetWindowAttributes window_attributes{};
+    const Window root = RootWindow(display, visual->screen);
+    window_attributes.colormap = XCreateColormap(display, root, visual->visual, AllocNone);
+    const auto side = static_cast<unsigned>(o.window);
+    const Window window = XCreateWindow(display, root, 0, 0, side, side, 0, visual->depth, InputOutput, visual->visual, CWColormap, &window_attributes);
+    XMapWindow(display, window);
+    GLXContext context = glXCreateContext(display, visual, nullptr, True);
+    if (!glXMakeCurrent(display, window, context)) return std::fputs("many_textures: no context\n", stderr), 1;
+
+    glEnable(GL_TEXTURE_2D);
+    std::vector<GLuint> names(static_cast<std::size_t>(o.textures));
+    glGenTextures(o.textures, names.data());
+    for (int i = 0; i < o.textures; ++i) {
+        glBindTexture(GL_TEXTURE_2D, names[static_cast<std::size_t>(i)]);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, o.texels, o.texels, 0, GL_RGBA, GL_UNSIGNED_BYTE, image(o, i).data());
+    }
+    for (int frame = 0;; ++frame) {
+        glClear(GL_COLOR_BUFFER_BIT);
+        for (int i = 0; i < o.textures; ++i) {
+            const float bottom = 2.0f * static_cast<float>(i) / static_cast<float>(o.textures) - 1, top = bottom + 2.0f / static_cast<float>(o.textures);
+            glBindTexture(GL_TEXTURE_2D, names[static_cast<std::size_t>(i)]);
+            glBegin(GL_QUADS);
+            glTexCoord2f(0, 0), glVertex2f(-1, bottom);
+            glTexCoord2f(1, 0), glVertex2f(1, bottom);
+            glTexCoord2f(1, 1), glVertex2f(1, top);
+            glTexCoord2f(0, 1), glVertex2f(-1, top);
+            glEnd();
+        }
+        glXSwapBuffers(display, window);
+        if (frame == 0) {
+            glFinish();
+            std::puts("drawn");
+            std::fflush(stdout);
+        }
+        usleep(200000);
+    }
+}

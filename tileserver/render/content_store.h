@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// Equal content of several sessions is held once (AnyGL, section 6: global share). Sessions ask for content by its name before
+// they send it; what somebody is about to send is waited for by the others. The store itself keeps nothing alive. Pure; one
+// thread.
+#pragma once
+
+#include <chrono>
+#include <cstring>
+#include <memory>
+#include <unordered_map>
+
+#include "common/base/ids.h"
+#include "common/glapi/content_hash.h"
+
+namespace wall::tileserver {
+
+/// `T`: what is shared.
+template <class T>
+class ContentStore {
+public:
+    using Clock = std::chrono::steady_clock;
+    /// Who promised content and sends nothing of it for so long does not keep others waiting any more.
+    static constexpr Clock::duration kPromiseLimit = std::chrono::seconds(1);
+
+    struct Answer {
+        std::shared_ptr<T> have;  ///< the content
+        bool send = false;        ///< the asker has to send it, and has promised to. Neither: wait
+    };
+
+    Answer ask(const glapi::ContentKey& key, SessionId asker, Clock::time_point now) {
+        Entry& entry = entries_[key];
+        if (auto held = entry.held.lock()) return {std::move(held), false};
+        if (entry.promised_by && entry.promised_by != asker && now - entry.heard < kPromiseLimit) return {};
+        entry.promised_by = asker;
+        entry.heard = now;
+        return {nullptr, true};
+    }
+    /// More of the promised content has come.
+    void heard(const glapi::ContentKey& key, SessionId from, Clock::time_point now) {
+        const auto at = entries_.find(key);
+        if (at != entries_.end() && at->second.promised_by == from) at->second.heard = now;
+    }
+    /// The content is complete. If it was stored meanwhile, what is held already; use that.
+    std::shared_ptr<T> store(const glapi::ContentKey& key, std::shared_ptr<T> content) {
+        prune();
+        Entry& entry = entries_[key];
+        entry.promised_by = {};
+        if (auto held = entry.held.lock()) return held;
+        entry.held = content;
+        return content;
+    }
+    /// The content does not have this name any more: its only user changes it.
+    void forget(const glapi::ContentKey& key) { entries_.erase(key); }
+    /// The session is gone, and its promises with it.
+    void leave(SessionId session) {
+        for (auto& [key, entry] : entries_)
+            if (entry.promised_by == session) entry.promised_by = {};
+        prune();
+    }
+    std::size_t size() const { return entries_.size(); }
+
+private:
+    struct Entry {
+        std::weak_ptr<T> held;
+        SessionId promised_by;
+        Clock::time_point heard{};
+    };
+    struct FirstBytes {  // of a cryptographic hash: as good as any
+        std::size_t operator()(const glapi::ContentKey& key) const {
+            std::size_t value;
+            std::memcpy(&value, key.data(), sizeof value);
+            return value;
+        }
+    };
+
+    // Names of what is gone, now and then: as many as there are in use do no harm.
+    void prune() {
+        if (entries_.size() < prune_at_) return;
+        std::erase_if(entries_, [](const auto& e) { return e.second.held.expired() && !e.second.promised_by; });
+        prune_at_ = std::max(kPruneFrom, 2 * entries_.size());
+    }
+    static constexpr std::size_t kPruneFrom = 256;
+
+    std::unordered_map<glapi::ContentKey, Entry, FirstBytes> entries_;
+    std::size_t prune_at_ = kPruneFrom;
+};
+
+}  // namespace wall::tileserver

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Content that several sessions have in common (AnyGL, section 6: global share). Before a client sends something large it asks
+// for it by its name; if the node has it, nothing is sent and the sessions hold one object of the driver together, until one
+// of them changes it (Executor::bind_for_upload). Render thread.
+#include <algorithm>
+
+#include "tileserver/render/executor.h"
+
+namespace wall::tileserver {
+namespace {
+
+std::vector<std::byte> answer(bool have) { return {std::byte{have}}; }
+
+}  // namespace
+
+void Executor::ShareTexture(std::uint32_t request, std::uint32_t texture, GLenum target, std::span<const std::byte> key) {
+    if (!bind_for_upload(texture, target)) return;
+    ask(request, texture, target, key);
+}
+
+void Executor::ShareRun(std::uint32_t request, std::uint32_t run, std::span<const std::byte> key) { ask(request, run, 0, key); }
+
+Result<bool> Executor::settle_question() {
+    const bool settled = !question_ || answer_question();
+    if (refused()) return fail(reason());
+    return settled;
+}
+
+void Executor::ask(std::uint32_t request, std::uint32_t object, GLenum target, std::span<const std::byte> key) {
+    if (question_) return refuse("asks before the last question is answered");
+    if (key.size() != sizeof(glapi::ContentKey)) return refuse("a name of content has 32 bytes");
+    question_ = Question{request, object, target, {}};
+    std::copy(key.begin(), key.end(), question_->key.begin());
+    answer_question();
+}
+
+bool Executor::answer_question() {
+    const Question& question = *question_;
+    const auto now = std::chrono::steady_clock::now();
+    bool have = false;
+    if (question.target != 0) {
+        Texture* texture = session_.make_texture(ClientName(question.object), texture_target(question.target));
+        auto found = node_.textures.ask(question.key, session_.id(), now);
+        have = found.have != nullptr;
+        if (!have && !found.send) return false;
+        if (texture == nullptr || (have && found.have->target() != texture->content->target()) ||
+            (have && !session_.adopt(*texture, std::move(found.have))))
+            refuse("no such texture, or more texture memory than a session may have");
+        else if (!have)
+            texture->promise.emplace(Texture::Promise{question.key, {}});
+    } else {
+        auto found = node_.runs.ask(question.key, session_.id(), now);
+        have = found.have != nullptr;
+        if (!have && !found.send) return false;
+        if (have)
+            keep_run(question.object, std::move(found.have));
+        else
+            promised_run_ = {question.object, question.key};
+    }
+    output_.reply(question.request, answer(have));
+    question_.reset();
+    return true;
+}
+
+void Executor::TexShared(std::uint32_t name) {
+    Texture* texture = session_.texture(ClientName(name), TextureTarget::t2d);
+    if (texture == nullptr || !texture->promise) return;  // the client did not wait for the answer, and that was: it is here
+    auto promise = *std::exchange(texture->promise, {});
+    if (promise.hash.finish() != promise.key) return refuse("content is not what its name says");
+    auto held = node_.textures.store(promise.key, texture->content);
+    if (held == texture->content)
+        held->key = promise.key;
+    else if (held->target() == texture->content->target())
+        session_.adopt(*texture, std::move(held));
+}
+
+}  // namespace wall::tileserver

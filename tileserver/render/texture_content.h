@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// A texture of the driver and what it was defined with, which is enough to make a copy of it. Several sessions may hold the
+// same one as long as none changes it (ContentStore). Render thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "common/glapi/content_hash.h"
+#include "tileserver/render/driver.h"
+
+namespace wall::tileserver {
+
+class TextureContent {
+public:
+    TextureContent(Driver& driver, TextureTarget target);
+    ~TextureContent();
+    TextureContent(const TextureContent&) = delete;
+
+    GLuint name() const { return name_; }
+    TextureTarget target() const { return target_; }
+    std::uint64_t bytes() const { return bytes_; }  ///< of all images, by estimate
+
+    /// An image that was defined: of an image target (a cube map's face) and a level.
+    struct Image {
+        GLenum internal_format = 0, format = 0, type = 0;  ///< as the command had them; the driver's choice of storage depends on all
+        std::uint64_t bytes = 0;                           ///< estimate
+    };
+    void note_image(GLenum image_target, std::int32_t level, const Image& image);
+    void note_parameter(GLenum pname, const std::array<float, 4>& value) {
+        parameters_[pname] = value;
+        generated_ |= pname == GL_GENERATE_MIPMAP && value[0] != 0;
+    }
+
+    /// The same texture again, copied by the driver.
+    std::shared_ptr<TextureContent> copy() const;
+
+    std::optional<glapi::ContentKey> key;  ///< its name in the node's store
+
+private:
+    void copy_image(GLenum image_target, std::int32_t level, const Image& image, const TextureContent& to) const;
+
+    Driver& driver_;
+    const TextureTarget target_;
+    GLuint name_ = 0;
+    std::map<std::pair<GLenum, std::int32_t>, Image> images_;
+    std::map<GLenum, std::array<float, 4>> parameters_;
+    bool generated_ = false;  // the driver has made mipmaps
+    std::uint64_t bytes_ = 0;
+};
+
+struct ImageExtent {
+    GLsizei width = 0, height = 0, depth = 0;  ///< texels
+};
+/// Defines an image of the bound texture. `pixels`: null for no content.
+void upload_image(const Gl& gl, TextureTarget target, GLenum image_target, GLint level, const TextureContent::Image& image, const ImageExtent& extent,
+                  const void* pixels, GLint border = 0);
+
+}  // namespace wall::tileserver
