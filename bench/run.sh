@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Runs the benchmarks of build/release and prints their tables.
-# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, switch, pack, mesh, traffic, share, codec)
+# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, switch, pack, mesh, traffic, share, streams, codec)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -32,6 +32,7 @@ run pack bench/pack.py --json "$results/pack.json"
 run mesh bench/mesh.py --json "$results/mesh.json"
 run traffic bench/traffic.py --json "$results/traffic.json"
 run share bench/share.py --json "$results/share.json"
+run streams bench/stream_cost.py --json "$results/streams.json"
 run codec bench/codec.py --json "$results/codec.json"
 
 if [[ -n "$json" ]]; then
