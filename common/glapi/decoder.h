@@ -6,7 +6,8 @@
 //   - one member per command of proto/gl/wire.toml: `void Clear(uint32_t mask)`, ... (bytes operand: std::span<const std::byte>);
 //   - `uint32_t state_bytes(uint32_t id)`, 0 = no such element (glstate::element_bytes), and `bool State(uint32_t id,
 //      std::span<const std::byte> value)`, false = bad value;
-//   - `uint64_t begin_block(uint64_t tiles)`: the tiles to run the block for (all asked for, or fewer),
+//   - `uint64_t begin_block(uint64_t tiles, size_t bytes)`: the tiles to run the block for (all asked for, or fewer); `bytes` of
+//      commands it takes in the batch,
 //     `void begin_tile(unsigned slot)`, `void end_block()`.
 // A member that cannot go on calls `refuse("why")`.
 #pragma once
@@ -49,6 +50,9 @@ struct OpcodeWalk {
     std::size_t take() { return std::to_integer<std::size_t>(*--next); }
 };
 
+/// A Block command itself: its opcode and four words.
+inline constexpr std::size_t kBlockBytes = 1 + 4 * sizeof(std::uint32_t);
+
 inline bool inside_block(OpGroup group) { return group == OpGroup::geometry || group == OpGroup::draw; }
 
 template <class H>
@@ -79,7 +83,7 @@ Result<void> run_block(OpcodeWalk& ops, wire::OperandReader& operands, H& h) {
     if (!operands.ok() || ops.remaining() < commands) return fail("Block: reaches over the batch's end");
     const OpcodeWalk body(std::span(ops.next - commands, commands));
     ops.next -= commands;
-    std::uint64_t tiles = h.begin_block(low | high << 32) & (low | high << 32);
+    std::uint64_t tiles = h.begin_block(low | high << 32, kBlockBytes + commands + bytes) & (low | high << 32);
     for (; tiles != 0 && !h.refused(); tiles &= tiles - 1) {
         h.begin_tile(static_cast<unsigned>(std::countr_zero(tiles)));
         if (auto done = run_drawing(body, wire::OperandReader(content), h, false); !done) return done;

@@ -12,14 +12,14 @@ namespace wall {
 namespace {
 
 struct TestHandler : glapi::NullHandler {
-    std::size_t commands = 0, tiles = 0, blocks = 0;
+    std::size_t commands = 0, tiles = 0, blocks = 0, block_bytes = 0;
     std::vector<float> vertex;
     std::uint32_t color = 0;
     std::vector<std::byte> image;
 
     std::uint32_t state_bytes(std::uint32_t id) { return id == 7 ? 4 : 0; }
     bool State(std::uint32_t, std::span<const std::byte> value) { return ++commands, value.size() == 4; }
-    std::uint64_t begin_block(std::uint64_t mask) { return ++blocks, mask; }
+    std::uint64_t begin_block(std::uint64_t mask, std::size_t bytes) { return block_bytes += bytes, ++blocks, mask; }
     void begin_tile(unsigned) { ++tiles; }
     void Begin(std::uint32_t mode) {
         ++commands;
@@ -68,6 +68,7 @@ TEST(PackedStream, DecodesWhatWasPacked) {
     TestHandler h;
     ASSERT_TRUE(decode(batch, h));
     EXPECT_EQ(h.blocks, 1u);
+    EXPECT_EQ(h.block_bytes, 17u + 5 + 5 + 13 + 1) << "Block, Begin, Color4ub, Vertex3f, End";
     EXPECT_EQ(h.tiles, 2u);
     EXPECT_EQ(h.commands, 3u + 2 * 4);
     EXPECT_EQ(h.vertex, (std::vector<float>{1, 2, 3}));

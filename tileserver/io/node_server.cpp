@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "common/wire/limits.h"
+#include "tileserver/io/node_stats.h"
 
 namespace wall::tileserver {
 namespace {
@@ -262,11 +263,9 @@ void NodeServer::stats(const RenderStats& stats) {
         last_stats_ = std::chrono::steady_clock::now();
         proto::Envelope envelope;
         auto& out = *envelope.mutable_node_stats();
-        out.set_frames(stats.frames);
-        out.set_commands(stats.commands);
-        out.set_gl_errors(stats.gl_errors);
         out.set_bytes_received(bytes_received_);
-        out.set_sessions(stats.sessions);
+        fill_stats(stats, out);
+        tile_streams_.fill_stats(out);
         to_walld(envelope);
     });
 }

@@ -28,11 +28,24 @@ std::string text_of(std::span<const std::byte> bytes) { return {reinterpret_cast
 }  // namespace
 
 struct TileStreams::Stream {
+    /// Since the start; the I/O thread's.
+    struct Cost {
+        std::uint64_t frames = 0, raw_bytes = 0, packet_bytes = 0;
+        std::chrono::steady_clock::duration time{};
+    };
+
     std::string codec;
     bool key = true;  // wanted next
+    Cost cost;
     std::unique_ptr<codec::Encoder> encoder;
     codec::StreamFormat format;
 
+    void count(const proto::StreamFrame& made, std::size_t raw_bytes, std::chrono::steady_clock::duration time) {
+        ++cost.frames;
+        cost.raw_bytes += raw_bytes;
+        cost.packet_bytes += made.packet().size();
+        cost.time += time;
+    }
     Result<void> encode(const Picture& picture, bool want_key, proto::StreamFrame& out) {
         const codec::StreamFormat now{picture.width, picture.height, codec::PixelLayout::rgba, false};
         const bool first = !encoder || !(now == format);
@@ -92,14 +105,28 @@ void TileStreams::picture(Picture picture) {
         frame.set_time_us(now_us());
         frame.set_width(picture.width);
         frame.set_height(picture.height);
+        const auto start = std::chrono::steady_clock::now();
         if (const auto done = stream->encode(picture, key, frame); !done) frame.set_error(done.error().message);
-        asio::post(executor_, [this, id, stream, envelope = std::move(envelope)] {
+        const auto time = std::chrono::steady_clock::now() - start;
+        asio::post(executor_, [this, id, stream, envelope = std::move(envelope), time, raw = picture.rgba.size()] {
             const auto still = streams_.find(id);
             if (still == streams_.end() || still->second != stream) return;
-            if (!envelope.stream_frame().error().empty()) streams_.erase(still);
+            if (envelope.stream_frame().error().empty()) stream->count(envelope.stream_frame(), raw, time);
+            else streams_.erase(still);
             send_(envelope);
         });
     });
+}
+
+void TileStreams::fill_stats(proto::NodeStats& out) const {
+    for (const auto& [id, stream] : streams_) {
+        auto& row = *out.add_streams();
+        row.set_stream(id);
+        row.set_frames(stream->cost.frames);
+        row.set_raw_bytes(stream->cost.raw_bytes);
+        row.set_packet_bytes(stream->cost.packet_bytes);
+        row.set_encode_ns(static_cast<std::uint64_t>(std::chrono::nanoseconds(stream->cost.time).count()));
+    }
 }
 
 void TileStreams::fail(std::uint32_t stream, const std::string& why) {

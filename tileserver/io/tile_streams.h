@@ -29,6 +29,8 @@ public:
     void ready(RenderThread& render, const proto::StreamReady& message);
     /// A picture of a stream. Any executor thread but the pool's.
     void picture(Picture picture);
+    /// What every stream has cost since it was started.
+    void fill_stats(proto::NodeStats& out) const;
 
 private:
     struct Stream;

@@ -47,6 +47,12 @@ public:
         return batch;
     }
 
+    /// Of the batches that wait. Any thread.
+    std::size_t bytes() const {
+        const std::lock_guard lock(mutex_);
+        return bytes_;
+    }
+
 private:
     mutable std::mutex mutex_;
     std::function<void()> on_room_;

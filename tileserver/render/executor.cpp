@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/render/executor.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "common/glstate/elements.h"
 #include "common/wire/batch.h"
 #include "tileserver/render/limits.h"
 #include "tileserver/render/soft_switch.h"
 
 namespace wall::tileserver {
+namespace {
+
+constexpr std::size_t kOpcodeAndWord = 1 + sizeof(std::uint32_t);  // of a state command, without the value
+
+}  // namespace
 
 Executor::Executor(RenderNode& node, Session& session, SessionOutput& output)
     : node_(node), session_(session), output_(output), gl_(node.driver.gl()) {}
@@ -24,27 +32,39 @@ Result<void> Executor::run_batch(std::span<const std::byte> payload) {
     context_ = &session_.context(context_id_);
     if (session_.context_count() > kMaxContexts) return fail("too many contexts");
     surfaces_known_ = false;
-    node_.commands += batch->opcodes.size();
-    auto done = glapi::decode(batch->opcodes, batch->operands, *this);
+    Work& work = session_.work;
+    const auto bytes_before = work.state_bytes + work.geometry_bytes;
+    const auto render_before = work.render;
+    auto done = [&] {
+        const Timed timed(work.decode);
+        return glapi::decode(batch->opcodes, batch->operands, *this);
+    }();
     if (in_block_) end_block();  // the batch was refused within a block
-    node_.gl_errors += node_.driver.drain_errors();
+    work.decode -= work.render - render_before;
+    work.commands += batch->opcodes.size();
+    const auto bytes = batch->opcodes.size() + batch->operands.size(), known = work.state_bytes + work.geometry_bytes - bytes_before;
+    work.object_bytes += bytes - std::min(bytes, known);
+    work.gl_errors += node_.driver.drain_errors();
     return done;
 }
 
 std::uint32_t Executor::state_bytes(std::uint32_t id) const { return glstate::element_bytes(id); }
 
 bool Executor::State(std::uint32_t id, std::span<const std::byte> value) {
+    session_.work.state_bytes += kOpcodeAndWord + value.size();
     if (!glstate::apply(context_->state, id, value)) return false;
     if (value.size() == glstate::ValueHistory::kValueBytes) context_->history.add(id, value.data());
     return true;
 }
 
 void Executor::StateSmall(std::uint32_t word) {
+    session_.work.state_bytes += kOpcodeAndWord;
     const std::uint32_t value = word >> 16;
     if (!glstate::apply(context_->state, word & 0xffff, std::as_bytes(std::span(&value, 1)))) refuse("no such small element");
 }
 
 void Executor::StateRecall(std::uint32_t word) {
+    session_.work.state_bytes += kOpcodeAndWord;
     const std::uint32_t id = word & 0xffff;
     const auto value = context_->history.recall(id, word >> 16);
     if (value.empty() || !glstate::apply(context_->state, id, value)) refuse("recalls a value that it never had");
@@ -52,7 +72,9 @@ void Executor::StateRecall(std::uint32_t word) {
 
 // ---- blocks ----
 
-std::uint64_t Executor::begin_block(std::uint64_t tiles) {
+std::uint64_t Executor::begin_block(std::uint64_t tiles, std::size_t bytes) {
+    session_.work.geometry_bytes += bytes;
+    if (std::exchange(node_.current, context_) != context_) ++session_.work.context_switches;
     if (!surfaces_known_) {
         draw_surface_ = session_.surface(context_->draw);
         read_surface_ = session_.surface(context_->read);

@@ -28,7 +28,8 @@ struct RenderNode {
     std::vector<Tile> tiles;
     std::uint64_t damage = 1;                 ///< grows when a tile's picture may have changed
     bool present_at_once = false;             ///< nobody coordinates: show frames when they are done
-    std::uint64_t commands = 0, gl_errors = 0, frames = 0;  ///< since the start
+    const SoftContext* current = nullptr;     ///< whose state the driver holds; only compared, it may be gone
+    Work ended;                               ///< of sessions that are gone
 
     explicit RenderNode(Driver& d) : driver(d) {}
 };
@@ -51,7 +52,7 @@ public:
     bool State(std::uint32_t id, std::span<const std::byte> value);
     void StateSmall(std::uint32_t word);
     void StateRecall(std::uint32_t word);
-    std::uint64_t begin_block(std::uint64_t tiles);
+    std::uint64_t begin_block(std::uint64_t tiles, std::size_t bytes);
     void begin_tile(unsigned slot);
     void end_block();
 

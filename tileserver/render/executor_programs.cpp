@@ -25,6 +25,7 @@ void Executor::Uniform(std::uint32_t program, std::uint32_t location, GLenum typ
 }
 
 void Executor::QueryResult(std::uint32_t request, std::uint32_t query) {
+    const Timed timed(session_.work.render);
     const std::uint64_t samples = session_.queries.result(ClientName(query));
     std::vector<std::byte> answer(sizeof samples);
     std::memcpy(answer.data(), &samples, sizeof samples);

@@ -13,7 +13,10 @@ Surface* Executor::known_surface(std::uint32_t id) {
 }
 
 void Executor::Sync(std::uint32_t request) {
-    gl_.Finish();
+    {
+        const Timed timed(session_.work.render);
+        gl_.Finish();
+    }
     output_.reply(request, {});
 }
 
@@ -64,10 +67,13 @@ void Executor::ContextDestroy(std::uint32_t context) {
 void Executor::Swap(std::uint32_t id, std::uint32_t frame) {
     Surface* surface = known_surface(id);
     if (surface == nullptr) return;
-    if (surface->waiting_frame()) surface->show_frame();
-    surface->finish_frame(frame);
-    gl_.Flush();
-    ++node_.frames;
+    {
+        const Timed timed(session_.work.render);
+        if (surface->waiting_frame()) surface->show_frame();
+        surface->finish_frame(frame);
+        gl_.Flush();
+    }
+    ++session_.work.frames;
     if (node_.present_at_once || !surface->on_tiles()) surface->show_frame();
     node_.driver.forget_layer();
     ++node_.damage;

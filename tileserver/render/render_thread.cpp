@@ -43,6 +43,7 @@ public:
     public:
         Stream(Loop& loop, StreamId id, SessionId session, std::shared_ptr<BatchQueue> queue)
             : loop_(loop), id_(id), queue_(std::move(queue)), session_(loop.driver_, session), executor_(loop.node_, session_, *this) {}
+        ~Stream() override { loop_.node_.ended += session_.work; }
         void reply(std::uint32_t request, std::vector<std::byte> answer) override { loop_.events_.reply(id_, request, std::move(answer)); }
         void frame_rendered(SurfaceId surface, std::uint32_t frame) override {
             loop_.events_.rendered(id_, session_.id(), surface, frame);
@@ -71,6 +72,7 @@ public:
         bool failed() const { return failed_; }
         bool exclusive() const { return !failed_ && executor_.exclusive(); }
         Clock::time_point last_run() const { return last_run_; }
+        SessionStats stats() const { return {session_.id(), session_.work, queue_->bytes()}; }
         Session& session() { return session_; }
         Executor& executor() { return executor_; }
 
@@ -137,7 +139,9 @@ private:
     void report() {
         if (Clock::now() < next_stats_) return;
         next_stats_ = Clock::now() + kStatsInterval;
-        events_.stats({node_.frames, node_.commands, node_.gl_errors, static_cast<std::uint32_t>(streams_.size())});
+        RenderStats stats{node_.ended, {}, *driver_.gl().objects};
+        for (const auto& [id, stream] : streams_) stats.work += stats.sessions.emplace_back(stream->stats()).work;
+        events_.stats(stats);
     }
 
     Clock::time_point next_stats_ = Clock::now() + kStatsInterval;

@@ -19,14 +19,22 @@
 #include "tileserver/gpu/caps.h"
 #include "tileserver/render/batch_queue.h"
 #include "tileserver/render/compositor.h"
+#include "tileserver/render/work.h"
 
 namespace wall::tileserver {
 
 using StreamId = Id<struct StreamTag>;  ///< of one data connection, unique in the process
 
+/// Of one stream that is open.
+struct SessionStats {
+    SessionId session;
+    Work work;
+    std::size_t queued_bytes = 0;  ///< received, not yet executed
+};
 struct RenderStats {
-    std::uint64_t frames = 0, commands = 0, gl_errors = 0;  ///< since the start
-    std::uint32_t sessions = 0;
+    Work work;  ///< of all sessions since the start
+    std::vector<SessionStats> sessions;
+    DriverObjects objects;
 };
 
 /// What the render thread reports. Called by it; must not block.

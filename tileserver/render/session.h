@@ -20,6 +20,7 @@
 #include "tileserver/render/soft_maps.h"
 #include "tileserver/render/surface.h"
 #include "tileserver/render/texture_content.h"
+#include "tileserver/render/work.h"
 
 namespace wall::tileserver {
 
@@ -95,6 +96,7 @@ public:
     Queries queries;
     std::unordered_map<std::uint32_t, std::shared_ptr<const Run>> runs;
     std::uint64_t run_bytes = 0;
+    Work work;
 
 private:
     static std::uint64_t key(ClientName name, TextureTarget target);

@@ -321,6 +321,46 @@ TEST_F(ExecutorTest, SwapKeepsTheFrameUntilItIsPresented) {
     EXPECT_FALSE(session.session.surface(SurfaceId(1))->waiting_frame());
 }
 
+TEST_F(ExecutorTest, WorkIsCountedByWhatItIsFor) {
+    TestSession session(*node_.node, 1), other(*node_.node, 2);
+    for (TestSession* each : {&session, &other}) each->open_surface(kWidth, kHeight, kWindow);
+    const Work before = session.session.work;
+    Batch batch;
+    const auto& buffer = batch.buffer();
+    batch.set<el::fog_density>(0.5f);
+    const std::size_t state = buffer.bytes();
+    batch.block(1, [](auto& b) { pack::Clear(b, kColorDepth); });
+    const std::size_t geometry = buffer.bytes() - state;
+    pack::TexImage(batch.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, std::vector<std::byte>(4));
+    pack::Swap(batch.buffer(), 1, 1);
+    for (TestSession* each : {&session, &other, &session}) each->expect_run(batch);
+
+    const Work& work = session.session.work;
+    EXPECT_EQ(work.state_bytes - before.state_bytes, 2 * state);
+    EXPECT_EQ(work.geometry_bytes - before.geometry_bytes, 2 * geometry);
+    EXPECT_EQ(work.object_bytes - before.object_bytes, 2 * (buffer.bytes() - state - geometry));
+    EXPECT_EQ(work.commands - before.commands, 2 * buffer.commands());
+    EXPECT_EQ(work.frames, 2u);
+    EXPECT_EQ(work.context_switches, 2u);
+    EXPECT_EQ(other.session.work.context_switches, 1u);
+    EXPECT_GT(work.decode.count(), 0);
+    EXPECT_GT(work.render.count(), 0);
+}
+
+TEST_F(ExecutorTest, ObjectsOfAnEndedSessionAreGivenBack) {
+    const DriverObjects before = *node_.driver->gl().objects;
+    {
+        TestSession session(*node_.node, 1);
+        session.open_surface(kWidth, kHeight, kWindow);
+        Batch batch;
+        pack::TexImage(batch.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, std::vector<std::byte>(4));
+        session.expect_run(batch);
+        EXPECT_GT(node_.driver->gl().objects->textures, before.textures + 1) << "the layer's and the program's";
+        EXPECT_GT(node_.driver->gl().objects->framebuffers, before.framebuffers);
+    }
+    EXPECT_EQ(*node_.driver->gl().objects, before);
+}
+
 TEST_F(ExecutorTest, BadStreamsAreRefusedWithAReason) {
     const auto reason = [this](auto&& fill) {
         TestSession session(*node_.node, 1);

@@ -266,6 +266,33 @@ TEST_F(NodeServerTest, RefusesWhoHasNoTicket) {
     EXPECT_THAT(huge.expect_error(), ::testing::HasSubstr("at most"));
 }
 
+TEST_F(NodeServerTest, SaysWhatASessionCostsUntilItEnds) {
+    {
+        Client client(node_address());
+        client.hello(1, "secret1");
+        client.expect(wire::FrameKind::welcome);
+        client.batch(one_frame({1, 0, 0, 0}, 1));
+        client.expect(wire::FrameKind::swap_done);
+        proto::NodeStats stats;
+        while (stats.frames() == 0) stats = walld_->wait_for(proto::Envelope::kNodeStats).node_stats();
+        ASSERT_EQ(stats.session_stats_size(), 1);
+        const auto& session = stats.session_stats(0);
+        EXPECT_EQ(session.session(), 1u);
+        EXPECT_EQ(session.frames(), 1u);
+        EXPECT_EQ(session.context_switches(), 1u);
+        EXPECT_EQ(session.queued_bytes(), 0u);
+        EXPECT_GT(session.state_bytes(), 0u);
+        EXPECT_GT(session.geometry_bytes(), 0u);
+        EXPECT_EQ(stats.decode_ns(), session.decode_ns());
+        EXPECT_GT(stats.objects().textures(), 0u);
+    }
+    proto::NodeStats stats;
+    do stats = walld_->wait_for(proto::Envelope::kNodeStats).node_stats();
+    while (stats.session_stats_size() > 0);
+    EXPECT_EQ(stats.frames(), 1u) << "the node's total stays";
+    EXPECT_EQ(stats.objects().textures(), 0u);
+}
+
 TEST_F(NodeServerTest, GoesOnWithoutWalldAndFindsItAgain) {
     Client client(node_address());
     client.hello(1, "secret1");

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// What executing a session's stream has cost, since the stream began. Render thread.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace wall::tileserver {
+
+struct Work {
+    using Clock = std::chrono::steady_clock;
+
+    std::uint64_t frames = 0, commands = 0, gl_errors = 0;
+    std::uint64_t state_bytes = 0, geometry_bytes = 0;  ///< of commands: context differences, blocks
+    std::uint64_t object_bytes = 0;                     ///< of all other commands
+    std::uint64_t context_switches = 0;                 ///< blocks that found another context in the driver
+    Clock::duration decode{};                           ///< taking batches apart and calling the driver
+    Clock::duration render{};                           ///< waiting until the driver has ended a frame or an answer
+
+    Work& operator+=(const Work& other) {
+        frames += other.frames;
+        commands += other.commands;
+        gl_errors += other.gl_errors;
+        state_bytes += other.state_bytes;
+        geometry_bytes += other.geometry_bytes;
+        object_bytes += other.object_bytes;
+        context_switches += other.context_switches;
+        decode += other.decode;
+        render += other.render;
+        return *this;
+    }
+};
+
+/// Adds the time of its life to `total`.
+class Timed {
+public:
+    explicit Timed(Work::Clock::duration& total) : total_(total), start_(Work::Clock::now()) {}
+    ~Timed() { total_ += Work::Clock::now() - start_; }
+    Timed(const Timed&) = delete;
+    Timed& operator=(const Timed&) = delete;
+
+private:
+    Work::Clock::duration& total_;
+    Work::Clock::time_point start_;
+};
+
+}  // namespace wall::tileserver
