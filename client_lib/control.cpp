@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr const char* kDefaultAddress = "unix:/run/wallgl/walld.sock";
-constexpr milliseconds kTick{1000};           // statistics are written, a lost link is tried again
+constexpr milliseconds kTick{1000};           // statistics are written and told, a lost link is tried again
 constexpr std::size_t kLengthBytes = 4;       // in front of every envelope, little endian
 constexpr std::size_t kReadChunk = 16 << 10;
 
@@ -297,6 +297,7 @@ void ControlLink::serve() {
         if (fds[1].revents && !read_some()) return;
         if (Clock::now() >= next_tick) {
             stats().write();
+            tell_traffic();
             next_tick = Clock::now() + kTick;
         }
     }
@@ -403,6 +404,13 @@ void ControlLink::tell_windows() {
         wake();
     }
     for (const auto& ask : redraw) ask();
+}
+
+void ControlLink::tell_traffic() {
+    const Traffic traffic = stats().traffic();
+    if (traffic.nodes.empty()) return;  // nothing was sent to anybody yet
+    std::lock_guard lock(mutex_);
+    queue(encode(traffic));
 }
 
 void ControlLink::on_lost(const std::string& why) {

@@ -89,6 +89,7 @@ private:
     bool handle(FromWalld message);
     void arrived(const Placement& placement);
     void tell_windows();
+    void tell_traffic();
     void on_lost(const std::string& why);
     bool reconnect();
 

@@ -15,7 +15,7 @@ using protozero::pbf_writer;
 // Field numbers of Envelope (proto/control.proto).
 namespace envelope {
 constexpr protozero::pbf_tag_type client_hello = 1, surface_open = 2, surface_resize = 3, surface_close = 4,
-                                  surface_adopted = 5, close_refused = 6,
+                                  surface_adopted = 5, close_refused = 6, client_stats = 7,
                                   client_welcome = 10, refused = 11, placement = 12, node_up = 13, node_down = 14,
                                   close_request = 15, adoption_noted = 16;
 }
@@ -267,6 +267,21 @@ std::string encode_surface_adopted(std::uint32_t id, std::uint32_t layout_versio
 
 std::string encode_close_refused(std::uint32_t id) {
     return in_envelope(envelope::close_refused, [&](pbf_writer& out) { out.add_uint32(1, id); });
+}
+
+std::string encode(const Traffic& traffic) {
+    return in_envelope(envelope::client_stats, [&](pbf_writer& out) {
+        out.add_uint64(1, traffic.frames);
+        out.add_uint64(2, traffic.round_trips);
+        out.add_uint64(3, static_cast<std::uint64_t>(traffic.diff_time.count()));
+        for (const auto& node : traffic.nodes) {
+            pbf_writer row(out, 4);
+            row.add_uint32(1, node.node);
+            row.add_uint64(2, node.state_bytes);
+            row.add_uint64(3, node.object_bytes);
+            row.add_uint64(4, node.geometry_bytes);
+        }
+    });
 }
 
 std::string encode_data_hello(std::uint32_t session, std::string_view ticket) {

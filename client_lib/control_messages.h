@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "client_lib/traffic.h"
 #include "common/base/result.h"
 #include "common/geom/rect.h"
 
@@ -93,6 +94,7 @@ std::string encode_surface_resize(std::uint32_t id, std::uint32_t width, std::ui
 std::string encode_surface_close(std::uint32_t id);
 std::string encode_surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame);
 std::string encode_close_refused(std::uint32_t id);
+std::string encode(const Traffic& traffic);
 
 Result<FromWalld> decode_from_walld(std::string_view envelope);
 

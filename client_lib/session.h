@@ -171,6 +171,7 @@ private:
     std::uint32_t id_ = 0;
     std::vector<TileInfo> tiles_;
     std::uint32_t last_request_ = 0;
+    std::uint32_t prepared_ = 0;  ///< counts towards the next sample of the diff time
 };
 
 /// Tile slots of one node as a mask, from a set of targets.

@@ -129,6 +129,25 @@ std::string Stats::node_json(std::size_t index, const NodeCounts& node) {
     return out + "}";
 }
 
+// With the mutex held.
+std::uint64_t Stats::round_trips() const {
+    std::uint64_t sum = 0;
+    for (const auto& [name, n] : round_trips_) sum += n;
+    return sum;
+}
+
+Traffic Stats::traffic() const {
+    Traffic out{.diff_time = std::chrono::nanoseconds(diff_ns_.load(std::memory_order_relaxed))};
+    for (std::uint32_t n = 0; n < kMaxNodes; ++n) {
+        if (!nodes_[n].load(std::memory_order_acquire)) continue;
+        out.nodes.push_back({n, of_node(n, NodeCounter::state_bytes), of_node(n, NodeCounter::object_bytes), of_node(n, NodeCounter::geometry_bytes)});
+    }
+    std::lock_guard lock(mutex_);
+    out.frames = frames_;
+    out.round_trips = round_trips();
+    return out;
+}
+
 // With the mutex held; all but the time.
 std::string Stats::body() const {
     Figures sums{};
@@ -139,13 +158,12 @@ std::string Stats::body() const {
         nodes += (nodes.empty() ? "\n  " : ",\n  ") + node_json(n, *node);
         for (std::size_t i = 0; i < kNodeCounters; ++i) sums[i] += node->total[i].load(std::memory_order_relaxed);
     }
-    std::uint64_t round_trips = 0;
-    for (const auto& [name, n] : round_trips_) round_trips += n;
     std::string out = "\"program\": " + quoted(program_name()) + ",\n \"pid\": " + std::to_string(getpid());
     out += ",\n \"frames\": " + std::to_string(frames_);
     out += ",\n \"total\": " + figures_json([&](std::size_t i) { return sums[i]; });
     out += ",\n \"nodes\": [" + nodes + "]";
-    out += ",\n \"round_trips\": " + std::to_string(round_trips);
+    out += ",\n \"diff_seconds\": " + std::to_string(1e-9 * static_cast<double>(diff_ns_.load(std::memory_order_relaxed)));
+    out += ",\n \"round_trips\": " + std::to_string(round_trips());
     out += ",\n \"round_trips_by_function\": " + map_json(round_trips_);
     out += ",\n \"unsupported\": " + map_json(unsupported_);
     out += ",\n \"counters\": " + map_json(counters_);

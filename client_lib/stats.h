@@ -13,6 +13,8 @@
 #include <string>
 #include <string_view>
 
+#include "client_lib/traffic.h"
+
 namespace wall::client {
 
 /// Counted for each node, in all and frame by frame.
@@ -50,9 +52,13 @@ public:
     /// A call of a function that is not implemented. True the first time for each name: then log it.
     bool count_unsupported(std::string_view function);
 
+    /// Time spent in comparing contexts with what nodes hold. Any thread.
+    void add_diff_time(std::chrono::nanoseconds time) { diff_ns_.fetch_add(static_cast<std::uint64_t>(time.count()), std::memory_order_relaxed); }
+
     /// A frame of a surface has ended: closes the per-frame figures.
     void end_frame();
 
+    Traffic traffic() const;
     std::string json() const;
     /// Writes the file, whole or not at all, if WALLGL_STATS is set and a figure has changed.
     void write();
@@ -70,10 +76,12 @@ private:
     static NodeCounts& make_node(std::atomic<NodeCounts*>& slot);
     static std::string node_json(std::size_t index, const NodeCounts& node);
     std::string body() const;
+    std::uint64_t round_trips() const;
 
     const std::string path_;
     const std::chrono::steady_clock::time_point start_;
     std::array<std::atomic<NodeCounts*>, kMaxNodes> nodes_{};
+    std::atomic<std::uint64_t> diff_ns_{0};
 
     mutable std::mutex mutex_;  // guards what follows
     Names counters_, round_trips_, unsupported_;

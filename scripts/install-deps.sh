@@ -10,7 +10,7 @@ build=(
   libx11-dev libx11-xcb-dev libxcb1-dev
   libboost1.81-dev libprotobuf-dev protobuf-compiler libprotozero-dev
   libexpected-dev libspdlog-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
-  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libsystemd-dev
+  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libsystemd-dev prometheus-cpp-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   liblz4-dev libzstd-dev             # frame codecs
   libssl-dev                         # content hashes
@@ -25,7 +25,7 @@ test=(
   xscreensaver-gl-extra rss-glx glmark2-x11 apitrace apitrace-tracers
   ffmpeg                             # decodes what our codecs write, and the other way round
   xterm fonts-dejavu-core            # the text desktop of the codec benchmark
-  libglu1-mesa-dev python3-numpy python3-opencv python3-jsonschema python3-yaml curl systemd
+  libglu1-mesa-dev python3-numpy python3-opencv python3-jsonschema python3-yaml python3-prometheus-client curl systemd
   chromium                           # the status page in a real browser
 )
 # Node.js may come from elsewhere, with npm in it; Debian's npm does not go with that.

@@ -223,6 +223,7 @@ Result<void> ControlServer::client_says(SessionId session, const proto::Envelope
     if (message.has_surface_open()) return wall_.open_surface(session, message.surface_open(), Clock::now());
     if (message.has_surface_resize()) wall_.resize_surface(session, message.surface_resize());
     else if (message.has_surface_adopted()) wall_.adopt_placement(session, message.surface_adopted(), Clock::now());
+    else if (message.has_client_stats()) wall_.client_reports(session, message.client_stats(), Clock::now());
     else if (message.has_close_refused()) wall_.cannot_close(session, SurfaceId(message.close_refused().surface()));
     else if (message.has_surface_close()) wall_.close_surface(session, SurfaceId(message.surface_close().surface()));
     else return fail("a client may not send that message");

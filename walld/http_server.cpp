@@ -27,7 +27,6 @@ constexpr std::uint32_t kMaxHeader = 8 << 10, kMaxBody = 64 << 10;  // bytes
 constexpr const char* kJson = "application/json";
 constexpr const char* kVia = "http";
 constexpr std::string_view kFull = "HTTP/1.1 503 Service Unavailable\r\nContent-Length: 39\r\nConnection: close\r\n\r\nthis wall has as many viewers as it may";
-constexpr std::string_view kStreamPath = "/api/v1/stream";
 
 /// The page uses nothing but its own files, and is no part of another page.
 constexpr const char* kPolicy = "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -191,7 +190,7 @@ std::optional<HttpServer::Response> HttpServer::local_page(const Request& reques
     if (!reads(request)) return std::nullopt;
     const auto* file = std::ranges::find(kPageFiles, path_of(request), &PageFile::path);
     if (file != std::end(kPageFiles)) return reply(version, http::status::ok, file->type, std::string(file->content));
-    if (path_of(request) != "/healthz") return std::nullopt;
+    if (path_of(request) != kHealthPath) return std::nullopt;
     const bool well = wall_.any_node_up();
     return reply(version, well ? http::status::ok : http::status::service_unavailable, "text/plain", well ? "ok\n" : "no node is up\n");
 }
@@ -215,11 +214,11 @@ tl::expected<Asked, HttpServer::Response> HttpServer::read(const Request& reques
     auto who = identities_.over_http(peer, view(request[http::field::authorization]));
     if (!who) return no(401, who.error());
     const auto path = path_of(request);
-    if (reads(request) && path == "/metrics") {
+    if (reads(request) && path == kMetricsPath) {
         if (const auto permitted = may(*who, Need::look, "read the metrics", nullptr); !permitted) return no(http_status(permitted.error().kind), permitted.error());
-        return tl::unexpected<Response>(reply(request.version(), http::status::ok, "text/plain; version=0.0.4", metrics_text(wall_)));
+        return tl::unexpected<Response>(reply(request.version(), http::status::ok, "text/plain; version=0.0.4", metrics_.text()));
     }
-    if (reads(request) && path == "/api/v1/snapshot.png") return Asked{"screenshot", {{"tile", query_value(query_of(request), "tile")}}, std::move(*who), kVia};
+    if (reads(request) && path == kSnapshotPath) return Asked{"screenshot", {{"tile", query_value(query_of(request), "tile")}}, std::move(*who), kVia};
     auto command = rest_command({view(request.method_string()), path, request.body(), view(request[http::field::content_type]), view(request[http::field::host]),
                                  view(request[http::field::origin]), view(request["Sec-Fetch-Site"])});
     if (!command) return no(command.error().status, command.error().why);

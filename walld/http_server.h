@@ -11,6 +11,7 @@
 #include "common/net/address.h"
 #include "walld/changed.h"
 #include "walld/identity.h"
+#include "walld/metrics.h"
 #include "walld/operator_desk.h"
 #include "walld/stream_hub.h"
 #include "walld/wall.h"
@@ -22,8 +23,8 @@ public:
     static constexpr std::chrono::seconds kIdleLimit{30};
     static constexpr std::size_t kMaxConnections = 256;
 
-    HttpServer(asio::any_io_executor executor, const Wall& wall, const Identities& identities, OperatorDesk& desk, StreamHub& streams)
-        : acceptor_(executor), wall_(wall), identities_(identities), desk_(desk), streams_(streams) {}
+    HttpServer(asio::any_io_executor executor, const Wall& wall, const Identities& identities, OperatorDesk& desk, StreamHub& streams, const WallMetrics& metrics)
+        : acceptor_(executor), wall_(wall), identities_(identities), desk_(desk), streams_(streams), metrics_(metrics) {}
 
     Result<void> listen(const net::Address& address);
     void stop();
@@ -47,6 +48,7 @@ private:
     const Identities& identities_;
     OperatorDesk& desk_;
     StreamHub& streams_;
+    const WallMetrics& metrics_;
     net::Address address_;
     std::map<Socket*, std::weak_ptr<Socket>> open_;
 };

@@ -72,7 +72,8 @@ Result<void> run(config::WallConfig config, const Options& options) {
     auto identities = Identities::open(config.people);
     if (!identities) return tl::unexpected(identities.error());
     ControlServer control(io.get_executor(), std::move(config), std::move(*identities), state);
-    HttpServer http(io.get_executor(), control.wall(), control.identities(), control.operators(), control.streams());
+    const WallMetrics metrics(control.wall(), control.streams(), WALLGL_VERSION);
+    HttpServer http(io.get_executor(), control.wall(), control.identities(), control.operators(), control.streams(), metrics);
     if (auto listening = control.listen(); !listening) return listening;
     if (http_listen) {
         if (auto listening = http.listen(*http_listen); !listening) return listening;

@@ -10,6 +10,12 @@
 
 namespace wall::walld {
 
+// What the server answers to a GET itself; all other paths are in rest.cpp.
+inline constexpr std::string_view kSnapshotPath = "/api/v1/snapshot.png";
+inline constexpr std::string_view kStreamPath = "/api/v1/stream";
+inline constexpr std::string_view kMetricsPath = "/metrics";
+inline constexpr std::string_view kHealthPath = "/healthz";
+
 struct RestRequest {
     std::string_view method, path, body;
     std::string_view content_type;

@@ -24,6 +24,8 @@ void Spread::finish(std::map<std::uint32_t, Open>::iterator frame) {
     ++frames_;
     mean_ += (last_ - mean_) / std::min<double>(static_cast<double>(frames_), kMeanFrames);
     most_ = std::max(most_, last_);
+    sum_ += last_;
+    ++histogram_[static_cast<std::size_t>(std::ranges::lower_bound(kBoundsMs, last_.count()) - kBoundsMs.begin())];
 }
 
 }  // namespace wall::walld

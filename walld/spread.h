@@ -3,6 +3,7 @@
 // Pure; times are parameters.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <map>
@@ -13,6 +14,9 @@ class Spread {
 public:
     using Clock = std::chrono::steady_clock;
     using Milliseconds = std::chrono::duration<double, std::milli>;
+    /// Upper bounds of the histogram, which has one more for what is beyond.
+    static constexpr std::array<double, 10> kBoundsMs{0.5, 1, 2, 4, 8, 16, 33, 66, 133, 250};
+    using Histogram = std::array<std::uint64_t, kBoundsMs.size() + 1>;
 
     /// One node did it with `frame`. `group`: how many will.
     void note(std::uint32_t frame, std::size_t group, Clock::time_point now);
@@ -21,6 +25,8 @@ public:
     Milliseconds last() const { return last_; }
     Milliseconds mean() const { return mean_; }       ///< of about the last 16 frames
     Milliseconds most() const { return most_; }
+    Milliseconds sum() const { return sum_; }
+    const Histogram& histogram() const { return histogram_; }  ///< frames by their time
 
 private:
     struct Open {
@@ -31,7 +37,8 @@ private:
 
     std::map<std::uint32_t, Open> open_;
     std::uint64_t frames_ = 0;
-    Milliseconds last_{}, mean_{}, most_{};
+    Milliseconds last_{}, mean_{}, most_{}, sum_{};
+    Histogram histogram_{};
 };
 
 }  // namespace wall::walld

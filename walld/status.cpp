@@ -40,6 +40,11 @@ json surface_json(const Wall& wall, const SurfaceKey& key) {
             {"skew", {{"rendered", spread_json(surface.swap.rendered_spread())}, {"presented", spread_json(surface.swap.presented_spread())}}}};
 }
 
+json objects_json(const proto::DriverObjects& o) {
+    return {{"textures", o.textures()}, {"buffers", o.buffers()}, {"lists", o.lists()}, {"programs", o.programs()}, {"shaders", o.shaders()},
+            {"framebuffers", o.framebuffers()}, {"renderbuffers", o.renderbuffers()}, {"queries", o.queries()}};
+}
+
 json node_json(const Node& node) {
     return {{"name", node.config->name},
             {"up", node.up},
@@ -53,26 +58,18 @@ json node_json(const Node& node) {
             {"frames", node.stats.frames()},
             {"bytes_received", node.stats.bytes_received()},
             {"commands", node.stats.commands()},
-            {"gl_errors", node.stats.gl_errors()}};
+            {"gl_errors", node.stats.gl_errors()},
+            {"objects", objects_json(node.stats.objects())}};
 }
 
-/// A number for every node, as Prometheus wants it.
-template <class Value>
-void per_node(std::string& out, const Wall& wall, const char* name, const char* type, Value&& value) {
-    out += fmt::format("# TYPE {} {}\n", name, type);
-    for (const auto& node : wall.nodes()) out += fmt::format("{}{{node={}}} {}\n", name, json(node.config->name).dump(), value(node));
+json traffic_json(const SessionTraffic& traffic) {
+    const auto& sent = traffic.sent();
+    const auto& rates = traffic.rates();
+    return {{"frames", traffic.frames()}, {"round_trips", traffic.round_trips()}, {"diff_seconds", traffic.diff_seconds()},
+            {"state_bytes", sent.state}, {"object_bytes", sent.object}, {"geometry_bytes", sent.geometry},
+            {"state_bytes_per_second", std::round(rates.state)}, {"object_bytes_per_second", std::round(rates.object)},
+            {"geometry_bytes_per_second", std::round(rates.geometry)}, {"frame_bytes", std::round(rates.frame_bytes)}};
 }
-
-/// The skew of every surface, in seconds.
-void surface_skew(std::string& out, const Wall& wall) {
-    out += "# TYPE wallgl_surface_rendered_skew_seconds gauge\n";
-    for (const auto& key : wall.stacking()) {
-        const auto mean = std::chrono::duration<double>(wall.find(key)->swap.rendered_spread().mean()).count();
-        out += fmt::format("wallgl_surface_rendered_skew_seconds{{surface=\"{}.{}\"}} {:.6f}\n", key.session.value, key.surface.value, mean);
-    }
-}
-
-void single(std::string& out, const char* name, const char* type, std::uint64_t value) { out += fmt::format("# TYPE {0} {1}\n{0} {2}\n", name, type, value); }
 
 }  // namespace
 
@@ -99,7 +96,7 @@ json session_json(const Wall& wall, SessionId id) {
         if (key.session == id) surfaces.push_back(surface_json(wall, key));
     }
     return {{"id", id.value}, {"pid", session.pid}, {"program", session.program}, {"name", session.name}, {"owner", person_json(session.owner)},
-            {"held", session.held}, {"fault", session.fault}, {"surfaces", std::move(surfaces)}};
+            {"held", session.held}, {"fault", session.fault}, {"traffic", traffic_json(session.traffic)}, {"surfaces", std::move(surfaces)}};
 }
 
 json sessions_json(const Wall& wall) {
@@ -122,27 +119,5 @@ json status_json(const Wall& wall) {
 }
 
 std::string dump(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
-
-std::string metrics_text(const Wall& wall) {
-    std::string out;
-    std::uint64_t surfaces = 0, timeouts = 0;
-    for (const auto& [id, session] : wall.sessions()) {
-        surfaces += session.surfaces.size();
-        for (const auto& [surface_id, surface] : session.surfaces) timeouts += surface.swap.timeouts();
-    }
-    single(out, "wallgl_sessions", "gauge", wall.sessions().size());
-    single(out, "wallgl_surfaces", "gauge", surfaces);
-    single(out, "wallgl_sessions_opened_total", "counter", wall.counters().sessions);
-    single(out, "wallgl_presents_total", "counter", wall.counters().presents);
-    single(out, "wallgl_session_faults_total", "counter", wall.counters().faults);
-    single(out, "wallgl_live_surfaces_swap_timeouts", "gauge", timeouts);
-    surface_skew(out, wall);
-    per_node(out, wall, "wallgl_node_up", "gauge", [](const Node& n) { return n.up ? 1 : 0; });
-    per_node(out, wall, "wallgl_node_frames_total", "counter", [](const Node& n) { return n.stats.frames(); });
-    per_node(out, wall, "wallgl_node_received_bytes_total", "counter", [](const Node& n) { return n.stats.bytes_received(); });
-    per_node(out, wall, "wallgl_node_commands_total", "counter", [](const Node& n) { return n.stats.commands(); });
-    per_node(out, wall, "wallgl_node_gl_errors_total", "counter", [](const Node& n) { return n.stats.gl_errors(); });
-    return out;
-}
 
 }  // namespace wall::walld

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The wall as people and programs read it: JSON (docs/http-api.md) and Prometheus text. Pure.
+// The wall as people and programs read it: JSON (docs/http-api.md). Pure.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,6 +19,5 @@ nlohmann::json person_json(const Person& person);
 nlohmann::json status_json(const Wall& wall);
 /// As text; what is not UTF-8 (programs name themselves) is replaced.
 std::string dump(const nlohmann::json& value);
-std::string metrics_text(const Wall& wall);
 
 }  // namespace wall::walld

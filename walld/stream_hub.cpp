@@ -214,7 +214,9 @@ void StreamHub::arrived(NodeIndex node, proto::StreamFrame& frame) {
         note_format(found->second->first, stream, frame);
     }
     ++counters_.frames;
+    ++stream.frames;
     counters_.bytes += frame.packet().size();
+    stream.bytes += frame.packet().size();
     stream.on_its_way = false;
     deliver(stream, {++stream.sequence, frame.time_us(), frame.key(), std::make_shared<const std::string>(std::move(*frame.mutable_packet()))});
     ask_for_more(*found->second);
@@ -232,7 +234,7 @@ void StreamHub::note_format(const Key& key, NodeStream& stream, const proto::Str
 void StreamHub::deliver(NodeStream& stream, const Frame& frame) {
     for (const auto& [viewer, number] : stream.watchers) {
         Watch& watch = viewer->watches_[number];
-        if (watch.frame) ++counters_.dropped;
+        if (watch.frame) ++counters_.dropped, ++stream.dropped;
         // A difference needs the frame that waits, so that one stays, and a key frame must follow it.
         if (!frame.key && watch.frame) watch.needs_key = true;
         if (!frame.key && watch.needs_key) continue;
@@ -253,6 +255,13 @@ void StreamHub::end(NodeStream& stream, const std::string& why) {
         watch.ended = why;
         viewer->news_.notify();
     }
+}
+
+std::vector<StreamView> StreamHub::views() const {
+    std::vector<StreamView> out;
+    for (const auto& [key, stream] : streams_)
+        out.push_back({stream.id, key.node, stream.tile, key.codec, SessionId(key.session), key.width, key.height, key.fps, stream.watchers.size(), stream.frames, stream.bytes, stream.dropped});
+    return out;
 }
 
 void StreamHub::node_joined(NodeIndex node) {

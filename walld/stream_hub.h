@@ -37,6 +37,17 @@ struct ViewerMessage {
     std::shared_ptr<const std::string> packet;  ///< shared by all viewers; may be null
 };
 
+/// One stream of a node, as an operator sees it.
+struct StreamView {
+    std::uint32_t id = 0;  ///< in the node's messages
+    NodeIndex node = 0;
+    std::string tile, codec;
+    SessionId session;     ///< none: all
+    std::uint32_t width = 0, height = 0, fps = 0;
+    std::size_t viewers = 0;
+    std::uint64_t frames = 0, bytes = 0, dropped = 0;  ///< that have come since it was started; as StreamHub::Counters
+};
+
 class StreamHub {
 public:
     static constexpr std::size_t kMaxWatches = 256;       ///< of one viewer
@@ -62,6 +73,7 @@ public:
         std::uint64_t frames = 0, bytes = 0, dropped = 0;  ///< from nodes; dropped before some viewer got them
     };
     const Counters& counters() const { return counters_; }
+    std::vector<StreamView> views() const;
     std::size_t viewers() const { return viewers_.size(); }
     std::size_t node_streams() const { return streams_.size(); }
 
@@ -85,6 +97,7 @@ private:
         std::string format;  ///< JSON members of the viewers' first message; empty: no frame yet
         std::uint32_t width = 0, height = 0, sequence = 0;
         bool on_its_way = true;  ///< the node was asked for a frame that has not come
+        std::uint64_t frames = 0, bytes = 0, dropped = 0;
         std::set<std::pair<Viewer*, std::uint32_t>> watchers;
     };
     struct Watch;

@@ -82,6 +82,14 @@ bool SwapCoordinator::shown(std::uint32_t frame) const {
     return std::ranges::all_of(members_, [&](const auto& m) { return !m.second.takes_part(frame) || m.second.told >= frame; });
 }
 
+std::uint32_t SwapCoordinator::behind(std::uint32_t node) const {
+    const auto found = members_.find(node);
+    if (found == members_.end()) return 0;
+    const Stay& stay = found->second.stays.back();
+    const auto shown = std::max(found->second.told, stay.from > 0 ? stay.from - 1 : 0), due = std::min(presented_, stay.until);
+    return due > shown ? due - shown : 0;
+}
+
 std::uint32_t SwapCoordinator::ceiling() const { return held_ ? allowed_ : UINT32_MAX; }
 
 bool SwapCoordinator::Member::takes_part(std::uint32_t frame) const {

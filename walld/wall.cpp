@@ -23,7 +23,7 @@ bool extent_ok(std::uint32_t width, std::uint32_t height) {
 }  // namespace
 
 Wall::Wall(config::WallConfig config, Outbox& out, RandomBytes random) : config_(std::move(config)), out_(out), random_(std::move(random)) {
-    for (const auto& node : config_.nodes) nodes_.push_back({.config = &node, .hello = {}, .stats = {}});
+    for (const auto& node : config_.nodes) nodes_.push_back({.config = &node, .hello = {}, .stats = {}, .tiles = std::vector<TileShown>(node.tiles.size())});
 }
 
 // ---- nodes ----
@@ -35,7 +35,10 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
     if (found->up) return fail("node '" + hello.name() + "' is already here, as process " + std::to_string(found->hello.pid()));
     const auto index = static_cast<NodeIndex>(found - nodes_.begin());
     const bool same_process = found->incarnation > 0 && found->hello.pid() == hello.pid();
-    if (!same_process) ++found->incarnation;
+    if (!same_process) {
+        ++found->incarnation;
+        found->stats.Clear();
+    }
     found->up = true;
     found->hello = hello;
     welcome_node(index);
@@ -45,7 +48,7 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
         out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(index, session.tickets[index])));
     }
     out_.to_node(index, stacking_message(index));
-    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.set_nodes(nodes_under(surface.place.drawn()), now)); });
+    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.set_nodes(nodes_under(surface.place.drawn()), now), now); });
     return index;
 }
 
@@ -54,12 +57,12 @@ void Wall::node_leaves(NodeIndex node, Clock::time_point now) {
     proto::NodeDown down;
     down.set_node(node);
     for (const auto& [id, session] : sessions_) out_.to_client(id, make(&proto::Envelope::mutable_node_down, down));
-    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.lose(node, now)); });
+    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.lose(node, now), now); });
 }
 
 void Wall::node_rendered(NodeIndex node, const proto::Rendered& report, Clock::time_point now) {
     const SurfaceKey key{SessionId(report.session()), SurfaceId(report.surface())};
-    if (auto* surface = find(key.surface, key.session)) present(key, surface->swap.rendered(node, report.frame(), now));
+    if (auto* surface = find(key.surface, key.session)) present(key, surface->swap.rendered(node, report.frame(), now), now);
 }
 
 void Wall::node_faults(NodeIndex node, const proto::SessionFault& report) {
@@ -188,7 +191,7 @@ Result<void> Wall::open_surface(SessionId id, const proto::SurfaceOpen& message,
     surface.place = PlacementTrack(first_rect(*session, surface, windows_placed_++));
     auto& kept = session->surfaces.emplace(key.surface, std::move(surface)).first->second;
     stack(key);
-    present(key, kept.swap.set_nodes(nodes_under(kept.place.drawn()), now));
+    present(key, kept.swap.set_nodes(nodes_under(kept.place.drawn()), now), now);
     send_placement(key, kept);
     send_stacking();
     return {};
@@ -248,11 +251,15 @@ void Wall::adopt_placement(SessionId id, const proto::SurfaceAdopted& message, C
     // shows it, no frame will be presented.
     const bool at_once = message.frame() <= 1 || nodes.empty();
     if (at_once && surface->place.presented(message.frame())) send_stacking();
-    present(key, presents);
+    present(key, presents, now);
 }
 
 void Wall::cannot_close(SessionId id, SurfaceId surface) {
     if (auto* found = find(surface, id)) found->cannot_close = true;
+}
+
+void Wall::client_reports(SessionId id, const proto::ClientStats& stats, Clock::time_point now) {
+    if (auto* session = find(id)) session->traffic.note(stats, nodes_.size(), now);
 }
 
 void Wall::close_surface(SessionId id, SurfaceId surface) {
@@ -276,7 +283,7 @@ std::optional<Clock::time_point> Wall::next_deadline() const {
 }
 
 void Wall::tick(Clock::time_point now) {
-    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.tick(now)); });
+    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.tick(now), now); });
 }
 
 // ---- inside ----
@@ -301,9 +308,10 @@ void Wall::want(const SurfaceKey& key, const geom::Rect& rect) {
     send_placement(key, surface);
 }
 
-void Wall::present(const SurfaceKey& key, const Presents& presents) {
+void Wall::present(const SurfaceKey& key, const Presents& presents, Clock::time_point now) {
     // The nodes that it comes to stack it before they show its first frame there, those that it leaves take it away.
-    if (auto& surface = *find(key.surface, key.session); surface.place.presented(surface.swap.presented())) send_stacking();
+    auto& surface = *find(key.surface, key.session);
+    if (surface.place.presented(surface.swap.presented())) send_stacking();
     for (const auto& [node, frame] : presents) {
         proto::Present message;
         message.set_session(key.session.value);
@@ -311,7 +319,21 @@ void Wall::present(const SurfaceKey& key, const Presents& presents) {
         message.set_frame(frame);
         out_.to_node(node, make(&proto::Envelope::mutable_present, message));
         ++counters_.presents;
+        for (std::size_t slot = 0; slot < nodes_[node].tiles.size(); ++slot) {
+            if (!geom::overlaps(nodes_[node].config->tiles[slot].rect, surface.place.shown())) continue;
+            ++nodes_[node].tiles[slot].frames;
+            nodes_[node].tiles[slot].last = now;
+        }
     }
+}
+
+std::uint32_t Wall::tile_lag(NodeIndex node, std::uint32_t slot) const {
+    std::uint32_t most = 0;
+    for (const auto& key : stacking_) {
+        const auto& surface = *find(key);
+        if (geom::overlaps(nodes_[node].config->tiles[slot].rect, surface.place.shown())) most = std::max(most, surface.swap.behind(node));
+    }
+    return most;
 }
 
 void Wall::send_placement(const SurfaceKey& key, const Surface& surface) {

@@ -19,6 +19,7 @@
 #include "walld/layout.h"
 #include "walld/person.h"
 #include "walld/placement_track.h"
+#include "walld/session_traffic.h"
 #include "walld/swap_coordinator.h"
 
 namespace wall::walld {
@@ -33,12 +34,19 @@ public:
     virtual void to_client(SessionId session, const proto::Envelope& message) = 0;
 };
 
+/// A tile as walld knows it to be shown.
+struct TileShown {
+    std::uint64_t frames = 0;  ///< of its windows, since walld started
+    std::optional<Clock::time_point> last;
+};
+
 struct Node {
     const config::NodeConfig* config = nullptr;
     bool up = false;
     std::uint32_t incarnation = 0;  ///< 0: never seen
     proto::NodeHello hello;         ///< of the last connection
-    proto::NodeStats stats;
+    proto::NodeStats stats;         ///< the last that this process has told
+    std::vector<TileShown> tiles;   ///< by slot
 };
 
 struct SurfaceKey {
@@ -67,6 +75,7 @@ struct Session {
     std::string fault;               ///< what a node said against its stream
     std::map<NodeIndex, std::string> tickets;
     std::map<SurfaceId, Surface> surfaces;
+    SessionTraffic traffic;
 };
 
 /// What an operator points at: a session, or one of its surfaces.
@@ -113,6 +122,7 @@ public:
     /// The program draws with a placement from a frame on.
     void adopt_placement(SessionId id, const proto::SurfaceAdopted& message, Clock::time_point now);
     void cannot_close(SessionId id, SurfaceId surface);
+    void client_reports(SessionId id, const proto::ClientStats& stats, Clock::time_point now);
 
     // ---- operators (wall_operate.cpp) ----
     Outcome<void> place_surface(const Target& target, const geom::Rect& rect);
@@ -141,6 +151,8 @@ public:
     const std::vector<SurfaceKey>& stacking() const { return stacking_; }  ///< bottom first
     const Surface* find(const SurfaceKey& key) const;
     const Counters& counters() const { return counters_; }
+    /// The most frames that a node is behind a window on this tile.
+    std::uint32_t tile_lag(NodeIndex node, std::uint32_t slot) const;
 
 private:
     Session* find(SessionId id);
@@ -154,7 +166,7 @@ private:
     WindowName name_of(const SurfaceKey& key) const;
     void stack(const SurfaceKey& key);
     void want(const SurfaceKey& key, const geom::Rect& rect);
-    void present(const SurfaceKey& key, const Presents& presents);
+    void present(const SurfaceKey& key, const Presents& presents, Clock::time_point now);
     void send_placement(const SurfaceKey& key, const Surface& surface);
     void send_stacking();
     void to_all_nodes(const proto::Envelope& message);

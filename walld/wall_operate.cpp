@@ -103,7 +103,7 @@ Outcome<void> Wall::hold(const Target& target, bool on, Clock::time_point now) {
     if (!target.surface) find(target.session)->held = on;
     for (const auto& key : *keys) {
         auto& swap = find(key.surface, key.session)->swap;
-        present(key, on ? swap.hold(now) : swap.release(now));
+        present(key, on ? swap.hold(now) : swap.release(now), now);
     }
     return {};
 }
@@ -112,7 +112,7 @@ Outcome<void> Wall::step(const Target& target, std::uint32_t frames, Clock::time
     const auto keys = surfaces_of(target);
     if (!keys) return tl::unexpected(keys.error());
     if (keys->empty()) return no_window_yet(target.session);
-    for (const auto& key : *keys) present(key, find(key.surface, key.session)->swap.step(frames, now));
+    for (const auto& key : *keys) present(key, find(key.surface, key.session)->swap.step(frames, now), now);
     return {};
 }
 

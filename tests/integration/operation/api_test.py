@@ -58,6 +58,10 @@ class Api(unittest.TestCase):
         self.assertEqual(status, 200, answer)
         return answer
 
+    def without_traffic(self) -> list[dict]:
+        """All sessions, but for what goes on by itself."""
+        return [{key: value for key, value in session.items() if key != "traffic"} for session in self.get("/api/v1/sessions")]
+
     def refused(self, status: int, code: str, method: str, path: str, body: object = None, **options) -> str:
         got, answer = self.wall.rest(method, path, body, **options)
         self.assertEqual(got, status, answer)
@@ -99,9 +103,29 @@ class Api(unittest.TestCase):
                 with self.subTest(f"{method} {path}"):
                     status, answer = self.wall.rest(method.upper(), path.replace("{id}", "999").replace("{name}", "nothing"), {"rect": [0, 0, 10, 10]})
                     self.assertNotIn(status, (405, 415, 500))
+                    self.assertTrue({str(status), "default"} & set(methods[method]["responses"]), f"{status} is not described")
                     if status == 404:
                         self.assertNotEqual(answer["error"]["message"], "not found")
         self.wall.rest("DELETE", "/api/v1/layouts/nothing", {})
+
+    def test_every_route_is_described(self) -> None:
+        routes = set(re.findall(r'\{"([A-Z]+)", "(/[^"]*)"', (ROOT / "walld" / "rest.cpp").read_text()))
+        routes |= {("GET", path) for path in re.findall(r'k\w+Path = "(/[^"]*)"', (ROOT / "walld" / "rest.h").read_text())}
+        described = {(method.upper(), re.sub(r"\{\w+\}", "*", path)) for path, methods in API["paths"].items() for method in set(methods) - {"parameters"}}
+        self.assertIn(("GET", "/metrics"), routes)
+        self.assertIn(("DELETE", "/api/v1/layouts/*"), routes)
+        self.assertEqual(routes, described)
+
+    def test_traffic_is_told(self) -> None:
+        end = time.monotonic() + SOON
+        while (traffic := self.get(f"/api/v1/sessions/{self.session}")["traffic"])["geometry_bytes"] == 0:
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.05)
+        self.assertGreaterEqual(traffic["frames"], 1)
+        self.assertGreater(traffic["state_bytes"], 0)
+        while self.get("/api/v1/nodes")[0]["objects"]["framebuffers"] == 0:
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.05)
 
     def test_windows_are_moved_and_closed(self) -> None:
         here = f"/api/v1/sessions/{self.session}"
@@ -121,7 +145,7 @@ class Api(unittest.TestCase):
         self.assertEqual(self.app.wait(SOON), 0)
 
     def test_wrong_use_is_refused_and_changes_nothing(self) -> None:
-        before = self.get("/api/v1/sessions")
+        before = self.without_traffic()
         here = f"/api/v1/sessions/{self.session}"
         self.assertIn("off the canvas", self.refused(400, "invalid", "PUT", here + "/placement", {"rect": [320, 0, 10, 10]}))
         self.refused(400, "invalid", "PUT", here + "/placement", {"rect": [0, 0, 0, 10]})
@@ -136,7 +160,7 @@ class Api(unittest.TestCase):
         self.refused(404, "not_found", "GET", "/api/v1/elsewhere")
         self.refused(405, "invalid", "POST", "/api/v1/status")
         self.refused(400, "invalid", "PUT", "/api/v1/layouts/.hidden")
-        self.assertEqual(self.get("/api/v1/sessions"), before)
+        self.assertEqual(self.without_traffic(), before)
 
     def test_a_page_of_another_site_changes_nothing(self) -> None:
         here = f"/api/v1/sessions/{self.session}/raise"

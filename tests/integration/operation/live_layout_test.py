@@ -301,7 +301,7 @@ class LiveLayout(unittest.TestCase):
         skew = self.surfaces(session)[0]["skew"]
         self.assertGreater(skew["rendered"]["frames"], 10)
         self.assertGreater(skew["rendered"]["most_ms"], skew["rendered"]["mean_ms"])
-        self.assertIn(f'wallgl_surface_rendered_skew_seconds{{surface="{self.surfaces(session)[0]["id"]}"}}', self.wall.rest("GET", "/metrics")[1])
+        self.assertIn(f'wallgl_surface_rendered_skew_seconds_count{{session="{session}",surface="{self.surfaces(session)[0]["id"]}"}}', self.wall.rest("GET", "/metrics")[1])
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "client_lib/stats.h"
 #include "common/wire/limits.h"
 #include "proto/control.pb.h"
 
@@ -88,7 +89,12 @@ public:
     void hang_up() { peer_.reset(); }
     void send(const std::string& bytes) { EXPECT_EQ(::send(peer_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size())); }
     void send(const proto::Envelope& envelope) { send(framed(envelope)); }
+    /// The next message; what the program tells by the clock is passed over.
     proto::Envelope receive() {
+        for (;;)
+            if (auto envelope = receive_any(); !envelope.has_client_stats()) return envelope;
+    }
+    proto::Envelope receive_any() {
         std::uint32_t size = 0;
         proto::Envelope envelope;
         if (::recv(peer_.get(), &size, 4, MSG_WAITALL) != 4) return envelope;
@@ -188,6 +194,21 @@ TEST(ControlMessages, SurfacesAreWhatProtobufReads) {
     EXPECT_EQ(data.ticket(), std::string("\0x", 2));
 }
 
+TEST(ControlMessages, TrafficIsWhatProtobufReads) {
+    constexpr std::uint64_t kMany = std::uint64_t{1} << 40;
+    proto::Envelope envelope;
+    ASSERT_TRUE(envelope.ParseFromString(encode(Traffic{600, 7, std::chrono::nanoseconds(kMany), {{0, 1, 2, 3}, {4, kMany, 0, 5}}})));
+    const auto& read = envelope.client_stats();
+    EXPECT_EQ(read.frames(), 600u);
+    EXPECT_EQ(read.round_trips(), 7u);
+    EXPECT_EQ(read.diff_ns(), kMany);
+    ASSERT_EQ(read.nodes_size(), 2);
+    EXPECT_EQ(read.nodes(0).object_bytes(), 2u);
+    EXPECT_EQ(read.nodes(1).node(), 4u);
+    EXPECT_EQ(read.nodes(1).state_bytes(), kMany);
+    EXPECT_EQ(read.nodes(1).geometry_bytes(), 5u);
+}
+
 TEST(ControlMessages, ReadsAWholeWelcome) {
     const auto message = decode_from_walld(full_welcome().SerializeAsString());
     ASSERT_TRUE(message);
@@ -237,6 +258,15 @@ TEST(ControlLink, SaysHelloAndTakesTheWelcome) {
     EXPECT_EQ(linked.hello.program(), "glxgears");
     EXPECT_EQ(linked.link->welcome().session, 7u);
     EXPECT_EQ(linked.link->welcome().nodes.size(), 2u);
+}
+
+TEST(ControlLink, TellsEverySecondWhatWasSent) {
+    Linked linked;
+    stats().add_node(3, NodeCounter::geometry_bytes, 1000);
+    const auto told = linked.walld.receive_any().client_stats();
+    ASSERT_EQ(told.nodes_size(), 1);
+    EXPECT_EQ(told.nodes(0).node(), 3u);
+    EXPECT_EQ(told.nodes(0).geometry_bytes(), 1000u);
 }
 
 TEST(ControlLink, PlacementsAndNodesArrive) {

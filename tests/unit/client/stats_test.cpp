@@ -46,6 +46,26 @@ TEST(Stats, NamesWhatWasUnsupportedAndWaitedFor) {
     EXPECT_THAT(stats.json(), HasSubstr("\"counters\": {\"ideal_geometry_bytes\": 11}"));
 }
 
+TEST(Stats, TrafficIsByNode) {
+    Stats stats;
+    EXPECT_TRUE(stats.traffic().nodes.empty());
+    stats.add_node(2, NodeCounter::state_bytes, 10);
+    stats.add_node(2, NodeCounter::geometry_bytes, 30);
+    stats.add_diff_time(std::chrono::microseconds(5));
+    stats.count_round_trip("glReadPixels");
+    stats.count_round_trip("glFinish");
+    stats.end_frame();
+    const Traffic traffic = stats.traffic();
+    ASSERT_EQ(traffic.nodes.size(), 1u);
+    EXPECT_EQ(traffic.nodes[0].node, 2u);
+    EXPECT_EQ(traffic.nodes[0].state_bytes, 10u);
+    EXPECT_EQ(traffic.nodes[0].object_bytes, 0u);
+    EXPECT_EQ(traffic.nodes[0].geometry_bytes, 30u);
+    EXPECT_EQ(traffic.frames, 1u);
+    EXPECT_EQ(traffic.round_trips, 2u);
+    EXPECT_EQ(traffic.diff_time, std::chrono::microseconds(5));
+}
+
 TEST(Stats, ThreadsLoseNothing) {
     Stats stats;
     std::vector<std::thread> threads;

@@ -439,7 +439,41 @@ TEST_F(TheWall, SaysWhatThereIs) {
     EXPECT_EQ(status["nodes"].size(), 2u);
     EXPECT_EQ(status["tiles"][1]["up"], false);
     EXPECT_EQ(status["sessions"][0]["surfaces"][0]["id"], "1.1");
-    EXPECT_NE(metrics_text(wall_).find("wallgl_node_up{node=\"left\"} 1\n"), std::string::npos);
+    EXPECT_EQ(status["sessions"][0]["traffic"]["frame_bytes"], 0);
+}
+
+TEST_F(TheWall, ANewProcessOfANodeBeginsWithoutTheOldFigures) {
+    const auto left = join("left", 1);
+    proto::NodeStats stats;
+    stats.set_frames(5);
+    wall_.node_reports(left, stats);
+    wall_.node_leaves(left, now_);
+    join("left", 1);
+    EXPECT_EQ(wall_.nodes()[left].stats.frames(), 5u) << "the same process";
+    wall_.node_leaves(left, now_);
+    join("left", 2);
+    EXPECT_EQ(wall_.nodes()[left].stats.frames(), 0u);
+}
+
+TEST_F(TheWall, KnowsWhatEachTileShows) {
+    join("left");
+    join("right");
+    const auto id = open();
+    open_surface(id, 1, 1280, 480);
+    EXPECT_FALSE(wall_.nodes()[0].tiles[0].last);
+    rendered(0, id, 1);
+    rendered(1, id, 1);
+    EXPECT_EQ(wall_.nodes()[1].tiles[0].last, now_);
+    rendered(0, id, 2);
+    now_ += std::chrono::seconds(1);
+    wall_.tick(now_);
+    EXPECT_EQ(wall_.nodes()[0].tiles[0].frames, 2u);
+    EXPECT_EQ(wall_.nodes()[0].tiles[0].last, now_);
+    EXPECT_EQ(wall_.nodes()[1].tiles[0].frames, 1u) << "its node is late";
+    EXPECT_EQ(wall_.tile_lag(0, 0), 0u);
+    EXPECT_EQ(wall_.tile_lag(1, 0), 1u);
+    rendered(1, id, 2);
+    EXPECT_EQ(wall_.tile_lag(1, 0), 0u);
 }
 
 TEST(Target, IsASessionOrOneOfItsSurfaces) {

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// What a program has sent, as walld is told it. Counters since the program came to OpenGL.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+namespace wall::client {
+
+/// Bytes of commands packed for one node.
+struct NodeTraffic {
+    std::uint32_t node = 0;
+    std::uint64_t state_bytes = 0, object_bytes = 0, geometry_bytes = 0;
+};
+
+struct Traffic {
+    std::uint64_t frames = 0, round_trips = 0;
+    std::chrono::nanoseconds diff_time{};  ///< comparing contexts with what nodes hold; an estimate
+    std::vector<NodeTraffic> nodes;        ///< those that something was packed for
+};
+
+}  // namespace wall::client
