@@ -29,7 +29,7 @@ export function keyed(parent, items, keyOf, create, update) {
 }
 
 /**
- * Table rows: `columns` are functions from an item to text, or to {text, state}. The first cell heads the row; with
+ * Table rows: `columns` are functions from an item to text, or to {text, state, title}. The first cell heads the row; with
  * `onHead` it is a button.
  */
 export function rows(body, items, keyOf, columns, onHead) {
@@ -39,5 +39,6 @@ export function rows(body, items, keyOf, columns, onHead) {
     const value = column(item), cell = row.cells[i];
     setText(cell.firstElementChild ?? cell, value.text ?? value);
     if (value.state) cell.dataset.state = value.state;
+    if (value.title && cell.title !== value.title) cell.title = value.title;
   }));
 }

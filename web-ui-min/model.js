@@ -55,6 +55,13 @@ export class Rates {
   }
 }
 
+/** Bytes a second that a program sends to all nodes, in all and by kind; undefined where walld does not say. */
+export function trafficOf({ traffic }) {
+  if (!traffic) return undefined;
+  const { state_bytes_per_second: state, object_bytes_per_second: object, geometry_bytes_per_second: geometry, frame_bytes: frame } = traffic;
+  return { state, object, geometry, frame, all: state + object + geometry };
+}
+
 const windowsOn = (tile, windows) => windows.filter(window => touch(window.shown_rect ?? window.rect, tile.rect));
 
 /** `late`: a window on it goes on, but its node has shown nothing for a while. */

@@ -3,6 +3,7 @@
 
 import { get, rows } from './dom.js';
 import { placeText } from './geometry.js';
+import { trafficOf } from './model.js';
 
 const kMissing = '–';
 const number = (value, unit = '') => value === undefined ? kMissing : `${value < 10 ? value.toFixed(1) : value.toFixed(0)}${unit}`;
@@ -10,6 +11,12 @@ const number = (value, unit = '') => value === undefined ? kMissing : `${value <
 function bytes(perSecond) {
   if (perSecond === undefined) return kMissing;
   return perSecond < 1e6 ? `${(perSecond / 1e3).toFixed(1)} kB/s` : `${(perSecond / 1e6).toFixed(1)} MB/s`;
+}
+
+function traffic(session) {
+  const sent = trafficOf(session);
+  if (!sent) return kMissing;
+  return { text: bytes(sent.all), title: `state ${bytes(sent.state)}, objects ${bytes(sent.object)}, geometry ${bytes(sent.geometry)}; ${Math.round(sent.frame)} bytes a frame` };
 }
 
 function age(ms) {
@@ -30,6 +37,7 @@ export function showTables({ status, windows, tiles, rates }, { onWindow, onTile
     window => window.session.owner?.name || kMissing,
     window => placeText(window.rect),
     window => number(rates.frames.get(window.id)?.perSecond),
+    window => traffic(window.session),
     window => number(window.skew?.presented.frames > 0 ? window.skew.presented.last_ms : undefined, ' ms'),
     windowState,
   ], onWindow);

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { moved, resized, scaledRect, touch } from '../../web-ui-min/geometry.js';
-import { mayChange, mayOperate, Rates, tileSkew, tileState, windowsOf } from '../../web-ui-min/model.js';
+import { mayChange, mayOperate, Rates, tileSkew, tileState, trafficOf, windowsOf } from '../../web-ui-min/model.js';
 
 const canvas = { width: 640, height: 480 };
 
@@ -50,6 +50,12 @@ test('operators change all windows, users their own, viewers none', () => {
 test('windows keep their order when they are raised', () => {
   const session = (id, ...surfaces) => ({ id, program: 'p', name: '', surfaces: surfaces.map(surface => ({ id: `${id}.${surface}`, title: '' })) });
   assert.deepEqual(windowsOf({ sessions: [session(10, 3), session(2, 30, 4)] }).map(({ id }) => id), ['2.4', '2.30', '10.3']);
+});
+
+test("a program's traffic is the sum of its kinds", () => {
+  const traffic = { frames: 3, state_bytes_per_second: 10, object_bytes_per_second: 20, geometry_bytes_per_second: 300, frame_bytes: 33 };
+  assert.deepEqual(trafficOf({ traffic }), { state: 10, object: 20, geometry: 300, frame: 33, all: 330 });
+  assert.equal(trafficOf({}), undefined, 'an older walld');
 });
 
 // ---- statuses over time ----

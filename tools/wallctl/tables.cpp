@@ -47,14 +47,22 @@ std::string who(const json& person) {
     return kind == "token" ? "token " + text(person, "name") : text(person, "name");
 }
 
+/// Bytes a second to all nodes; empty before the program has said anything.
+std::string traffic(const json& session) {
+    const auto of = session.value("traffic", json::object());
+    if (of.value("frames", 0) == 0 && of.value("geometry_bytes", 0) == 0) return "";
+    const double bytes = of.value("state_bytes_per_second", 0.0) + of.value("object_bytes_per_second", 0.0) + of.value("geometry_bytes_per_second", 0.0);
+    return fmt::format("{:.1f} kB/s", bytes / 1e3);
+}
+
 void add_session(std::vector<Row>& rows, const json& session) {
     const auto note = is(session, "held") ? "held" : text(session, "fault");
     const auto owner = who(session.value("owner", json::object()));
     const auto surfaces = session.value("surfaces", json::array());
-    if (surfaces.empty()) rows.push_back({text(session, "id"), text(session, "program"), text(session, "name"), owner, text(session, "pid"), "", "", "", note});
+    if (surfaces.empty()) rows.push_back({text(session, "id"), text(session, "program"), text(session, "name"), owner, text(session, "pid"), "", "", "", "", note});
     for (const auto& s : surfaces) {
         rows.push_back({text(s, "id"), text(session, "program"), text(session, "name"), owner, text(session, "pid"),
-                        fmt::format("{}x{}", text(s, "width"), text(s, "height")), place(s), text(s, "frame"), note});
+                        fmt::format("{}x{}", text(s, "width"), text(s, "height")), place(s), text(s, "frame"), traffic(session), note});
     }
 }
 
@@ -76,7 +84,7 @@ std::string tiles_table(const json& tiles) {
 }
 
 std::string sessions_table(const json& sessions) {
-    std::vector<Row> rows{{"ID", "PROGRAM", "NAME", "OWNER", "PID", "WINDOW", "PLACE", "FRAME", "NOTE"}};
+    std::vector<Row> rows{{"ID", "PROGRAM", "NAME", "OWNER", "PID", "WINDOW", "PLACE", "FRAME", "SENT", "NOTE"}};
     for (const auto& session : sessions) add_session(rows, session);
     return table(rows);
 }

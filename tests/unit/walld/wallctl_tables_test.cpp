@@ -21,12 +21,13 @@ TEST(Tables, AlignColumnsAndLeaveOutTrailingBlanks) {
 
 TEST(Tables, ASessionHasALineForEachWindow) {
     const json surface{{"id", "3.1"}, {"width", 300}, {"height", 200}, {"rect", {0, 0, 300, 200}}, {"frame", 7}};
-    const json sessions{{{"id", 3}, {"program", "gears"}, {"name", ""}, {"pid", 42}, {"owner", {{"kind", "user"}, {"name", "alice"}}}, {"held", true}, {"fault", ""}, {"surfaces", {surface}}},
+    const json traffic{{"frames", 7}, {"state_bytes_per_second", 500}, {"object_bytes_per_second", 0}, {"geometry_bytes_per_second", 12000}};
+    const json sessions{{{"id", 3}, {"program", "gears"}, {"name", ""}, {"pid", 42}, {"owner", {{"kind", "user"}, {"name", "alice"}}}, {"held", true}, {"fault", ""}, {"traffic", traffic}, {"surfaces", {surface}}},
                         {{"id", 4}, {"program", "new"}, {"name", "x"}, {"pid", 43}, {"owner", {{"kind", "token"}, {"name", "kiosk"}}}, {"held", false}, {"fault", "bad stream"}, {"surfaces", json::array()}}};
     EXPECT_EQ(sessions_table(sessions),
-              "ID   PROGRAM  NAME  OWNER        PID  WINDOW   PLACE        FRAME  NOTE\n"
-              "3.1  gears          alice        42   300x200  300x200+0+0  7      held\n"
-              "4    new      x     token kiosk  43                                bad stream\n");
+              "ID   PROGRAM  NAME  OWNER        PID  WINDOW   PLACE        FRAME  SENT       NOTE\n"
+              "3.1  gears          alice        42   300x200  300x200+0+0  7      12.5 kB/s  held\n"
+              "4    new      x     token kiosk  43                                           bad stream\n");
 }
 
 }  // namespace
