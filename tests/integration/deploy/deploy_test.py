@@ -37,7 +37,8 @@ class Installed(unittest.TestCase):
     def test_everything_is_in_its_place(self) -> None:
         for ending in ("bin/walld", "bin/tileserver", "bin/wallrun", "bin/wallctl", "libGLX_wallgl.so.0", "libEGL_wallgl.so.0",
                        "lib/systemd/system/walld.service", "lib/systemd/system/tileserver@.service", "lib/sysusers.d/wallgl.conf",
-                       "lib/tmpfiles.d/wallgl.conf", "egl_vendor.d/50_wallgl.json"):
+                       "lib/tmpfiles.d/wallgl.conf", "egl_vendor.d/50_wallgl.json",
+                       "share/wallgl/grafana/wallgl.json", "share/wallgl/prometheus/wallgl.rules.yml", "share/wallgl/prometheus/prometheus.example.yml"):
             self.find(ending)
 
     def test_systemd_accepts_the_units(self) -> None:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Programs come and go, orderly and not: what the daemons took for them they give back. (What is left in the driver is
-counted by tests/unit/tileserver/objects_test.cpp.)"""
+"""Programs come and go, orderly and not: what the daemons took for them they give back, down to the objects of the nodes'
+drivers."""
 import os
 import random
 import signal
@@ -40,6 +40,7 @@ class Leaks(unittest.TestCase):
         cls.x = cls.enterClassContext(XServer())
         cls.wall = cls.enterClassContext(Wall(tiles=(2, 1), tile_size=(200, 300), environment={"LP_NUM_THREADS": "0"}))
         cls.random = random.Random(SEED)
+        cls.seen = set()  # kinds of driver objects that there were
 
     def commands(self) -> list[list[str]]:
         size = f"{WINDOW[0]}x{WINDOW[1]}"
@@ -80,8 +81,10 @@ class Leaks(unittest.TestCase):
                     self.wall.wait(session, self.random.randint(1, 5))
                 except WallError:  # a short one has ended by itself
                     pass
+            self.seen |= {kind for objects in self.objects().values() for kind, count in objects.items() if count > 0}
             while len(running) >= TOGETHER:
                 self.end(running.pop(self.random.randrange(len(running))))
+        self.wall.screenshot()
         for app in running:
             self.end(app)
         end = time.monotonic() + GONE_LIMIT
@@ -94,9 +97,13 @@ class Leaks(unittest.TestCase):
     def used(self) -> dict[str, tuple[int, int]]:
         return {name: (descriptors(daemon.pid), memory(daemon.pid)) for name, daemon in self.wall.daemons.items()}
 
+    def objects(self) -> dict[str, dict[str, int]]:
+        """Of each node's driver, as it has told; it tells once a second."""
+        return {node["name"]: node["objects"] for node in self.wall.nodes()}
+
     def test_what_programs_took_is_given_back(self) -> None:
         self.run_programs(WARM_UP)
-        before = self.used()
+        before, objects = self.used(), self.objects()
         self.run_programs(RUNS)
         after = self.used()
         for name in before:
@@ -104,6 +111,12 @@ class Leaks(unittest.TestCase):
         for name, (files, bytes_used) in before.items():
             self.assertEqual(after[name][0], files, f"descriptors of {name}")
             self.assertLess(after[name][1] - bytes_used, GROWTH, f"memory of {name}")
+        end = time.monotonic() + GONE_LIMIT
+        while self.objects() != objects and time.monotonic() < end:
+            time.sleep(0.1)
+        self.assertEqual(self.objects(), objects, "objects in the drivers")
+        print(f"driver objects: {objects}, meanwhile also {sorted(self.seen)}", flush=True)
+        self.assertLessEqual({"textures", "framebuffers", "lists"}, self.seen, "the programs had some")
 
 
 if __name__ == "__main__":
