@@ -410,7 +410,7 @@ void ControlLink::tell_traffic() {
     const Traffic traffic = stats().traffic();
     if (traffic.nodes.empty()) return;  // nothing was sent to anybody yet
     std::lock_guard lock(mutex_);
-    queue(encode(traffic));
+    if (outbox_.empty()) queue(encode(traffic));  // walld does not read now: the next second's figures will do
 }
 
 void ControlLink::on_lost(const std::string& why) {

@@ -11,6 +11,7 @@ using enum prometheus::MetricType;
 using SessionRef = const Session*;
 using OnNode = const proto::SessionStats*;
 using SurfaceRef = const Surface*;
+using Age = double;  // seconds
 using Bytes = std::uint64_t;
 
 double seconds(std::uint64_t nanoseconds) { return 1e-9 * static_cast<double>(nanoseconds); }
@@ -22,29 +23,44 @@ constexpr MetricRow<SessionRef> kInfo[] = {
 constexpr MetricRow<SessionRef> kSessions[] = {
     {Gauge, "wallgl_session_fault", "1 if a node gave up on the program's stream, else 0.", [](const SessionRef& s) { return s->fault.empty() ? 0.0 : 1.0; }},
     {Gauge, "wallgl_session_held", "1 while frames are shown only when stepped, else 0.", [](const SessionRef& s) { return s->held ? 1.0 : 0.0; }},
-    {Counter, "wallgl_session_frames_total", "Frames that the program has ended.", [](const SessionRef& s) { return static_cast<double>(s->traffic.frames()); }},
-    {Counter, "wallgl_session_round_trips_total", "Times that the program waited for an answer of a node.", [](const SessionRef& s) { return static_cast<double>(s->traffic.round_trips()); }},
-    {Counter, "wallgl_session_diff_seconds_total", "Time of the program in comparing contexts with what nodes hold; an estimate from samples.", [](const SessionRef& s) { return s->traffic.diff_seconds(); }},
+    {Counter, "wallgl_session_frames_total", "Frames that the program has ended.", [](const SessionRef& s) -> double { return s->traffic.frames(); }},
+    {Counter, "wallgl_session_round_trips_total", "Times that the program waited for an answer of a node.",
+     [](const SessionRef& s) -> double { return s->traffic.round_trips(); }},
+    {Counter, "wallgl_session_diff_seconds_total", "Time of the program in comparing contexts with what nodes hold; an estimate from samples.",
+     [](const SessionRef& s) { return s->traffic.diff_seconds(); }},
 };
 constexpr MetricRow<Bytes> kSent[] = {
     {Counter, "wallgl_session_sent_bytes_total", "Bytes of commands that the program has packed for the node, by what they are for.", bytes_of},
 };
 constexpr MetricRow<Bytes> kReceived[] = {
-    {Counter, "wallgl_session_received_bytes_total", "Bytes of commands that the node has executed for the program, by what they are for; object: all that is neither state nor geometry.", bytes_of},
+    {Counter, "wallgl_session_received_bytes_total", "Bytes of commands that the node has executed for the program, by what they are for; object: all that is neither state nor geometry.",
+     bytes_of},
 };
 constexpr MetricRow<OnNode> kOnNodes[] = {
-    {Counter, "wallgl_session_rendered_frames_total", "Frames of the program that the node has drawn.", [](const OnNode& s) { return static_cast<double>(s->frames()); }},
-    {Counter, "wallgl_session_commands_total", "Commands that the node has executed for the program.", [](const OnNode& s) { return static_cast<double>(s->commands()); }},
-    {Counter, "wallgl_session_gl_errors_total", "OpenGL errors of the node's driver in the program's commands.", [](const OnNode& s) { return static_cast<double>(s->gl_errors()); }},
-    {Counter, "wallgl_session_context_switches_total", "Blocks of the program that found another context in the node's driver.", [](const OnNode& s) { return static_cast<double>(s->context_switches()); }},
-    {Counter, "wallgl_session_decode_seconds_total", "Time of the node's render thread in taking the program's batches apart and calling the driver.", [](const OnNode& s) { return seconds(s->decode_ns()); }},
-    {Counter, "wallgl_session_render_seconds_total", "Time of the node's render thread in waiting for the driver to end the program's frames and answers.", [](const OnNode& s) { return seconds(s->render_ns()); }},
-    {Gauge, "wallgl_session_queue_bytes", "Bytes that the node has received from the program and not executed yet; at 64 MiB the program waits.", [](const OnNode& s) { return static_cast<double>(s->queued_bytes()); }},
+    {Counter, "wallgl_session_rendered_frames_total", "Frames of the program that the node has drawn.", [](const OnNode& s) -> double { return s->frames(); }},
+    {Counter, "wallgl_session_commands_total", "Commands that the node has executed for the program.", [](const OnNode& s) -> double { return s->commands(); }},
+    {Counter, "wallgl_session_gl_errors_total", "OpenGL errors of the node's driver in the program's commands.",
+     [](const OnNode& s) -> double { return s->gl_errors(); }},
+    {Counter, "wallgl_session_context_switches_total", "Blocks of the program that found another context in the node's driver.",
+     [](const OnNode& s) -> double { return s->context_switches(); }},
+    {Counter, "wallgl_session_decode_seconds_total", "Time of the node's render thread in taking the program's batches apart and calling the driver.",
+     [](const OnNode& s) { return seconds(s->decode_ns()); }},
+    {Counter, "wallgl_session_render_seconds_total", "Time of the node's render thread in waiting for the driver to end the program's frames and answers.",
+     [](const OnNode& s) { return seconds(s->render_ns()); }},
+    {Gauge, "wallgl_session_queue_bytes", "Bytes that the node has received from the program and not executed yet; at 64 MiB the program waits.",
+     [](const OnNode& s) -> double { return s->queued_bytes(); }},
 };
 constexpr MetricRow<SurfaceRef> kSurfaces[] = {
-    {Counter, "wallgl_surface_presented_frames_total", "Number of the window's last frame that the wall shows.", [](const SurfaceRef& s) { return static_cast<double>(s->swap.presented()); }},
-    {Counter, "wallgl_surface_swap_timeouts_total", "Frames of the window that did not wait for a slow node.", [](const SurfaceRef& s) { return static_cast<double>(s->swap.timeouts()); }},
-    {Gauge, "wallgl_surface_frame_interval_seconds", "Time from one shown frame of the window to the next, the mean of about the last 16.", [](const SurfaceRef& s) { return 1e-3 * s->swap.frame_interval().count(); }},
+    {Counter, "wallgl_surface_presented_frames_total", "Number of the window's last frame that the wall shows.",
+     [](const SurfaceRef& s) -> double { return s->swap.presented(); }},
+    {Counter, "wallgl_surface_swap_timeouts_total", "Frames of the window that did not wait for a slow node.",
+     [](const SurfaceRef& s) -> double { return s->swap.timeouts(); }},
+    {Gauge, "wallgl_surface_frame_interval_seconds", "Time from one shown frame of the window to the next, the mean of about the last 16.",
+     [](const SurfaceRef& s) { return 1e-3 * s->swap.frame_interval().count(); }},
+};
+
+constexpr MetricRow<Age> kAges[] = {
+    {Gauge, "wallgl_surface_frame_age_seconds", "Time since the window's last frame was shown.", [](const Age& age) { return age; }},
 };
 
 template <class Add>
@@ -119,8 +135,14 @@ void add_session_metrics(Families& out, const Observed& observed) {
 
 void add_surface_metrics(Families& out, const Observed& observed) {
     std::vector<Labelled<SurfaceRef>> surfaces;
-    for (const auto& key : observed.wall.stacking()) surfaces.push_back({surface_labels(key), observed.wall.find(key)});
+    std::vector<Labelled<Age>> shown;
+    for (const auto& key : observed.wall.stacking()) {
+        const auto* surface = observed.wall.find(key);
+        surfaces.push_back({surface_labels(key), surface});
+        if (const auto last = surface->swap.last_present()) shown.push_back({surface_labels(key), std::chrono::duration<double>(observed.now - *last).count()});
+    }
     add_table(out, kSurfaces, surfaces);
+    add_table(out, kAges, shown);
     add_skew(out, observed.wall, "wallgl_surface_rendered_skew_seconds", "Time from the first node's report of a frame of the window to the last one's.", &SwapCoordinator::rendered_spread);
     add_skew(out, observed.wall, "wallgl_surface_presented_skew_seconds", "Time from telling the first node to show a frame of the window to telling the last.", &SwapCoordinator::presented_spread);
 }

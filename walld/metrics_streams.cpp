@@ -17,19 +17,24 @@ struct StreamRef {
 };
 
 constexpr MetricRow<HubRef> kHub[] = {
-    {Gauge, "wallgl_viewers", "Who watches live pictures.", [](const HubRef& o) { return static_cast<double>(o->viewers); }},
-    {Counter, "wallgl_hub_frames_total", "Frames of live pictures that nodes have sent since walld started.", [](const HubRef& o) { return static_cast<double>(o->hub.frames); }},
-    {Counter, "wallgl_hub_bytes_total", "Bytes of live pictures that nodes have sent since walld started.", [](const HubRef& o) { return static_cast<double>(o->hub.bytes); }},
-    {Counter, "wallgl_hub_dropped_frames_total", "Frames that gave way to a newer one before a viewer took them, since walld started.", [](const HubRef& o) { return static_cast<double>(o->hub.dropped); }},
+    {Gauge, "wallgl_viewers", "Who watches live pictures.", [](const HubRef& o) -> double { return o->viewers; }},
+    {Counter, "wallgl_hub_frames_total", "Frames of live pictures that nodes have sent since walld started.",
+     [](const HubRef& o) -> double { return o->hub.frames; }},
+    {Counter, "wallgl_hub_bytes_total", "Bytes of live pictures that nodes have sent since walld started.", [](const HubRef& o) -> double { return o->hub.bytes; }},
+    {Counter, "wallgl_hub_dropped_frames_total", "Frames that gave way to a newer one before a viewer took them, since walld started.",
+     [](const HubRef& o) -> double { return o->hub.dropped; }},
 };
 constexpr MetricRow<StreamRef> kStreams[] = {
-    {Gauge, "wallgl_stream_viewers", "Who watches the stream.", [](const StreamRef& s) { return static_cast<double>(s.view->viewers); }},
-    {Counter, "wallgl_stream_frames_total", "Frames of the stream that have come from its node.", [](const StreamRef& s) { return static_cast<double>(s.view->frames); }},
-    {Counter, "wallgl_stream_dropped_frames_total", "Frames of the stream that gave way to a newer one before a viewer took them.", [](const StreamRef& s) { return static_cast<double>(s.view->dropped); }},
-    {Counter, "wallgl_stream_encoded_frames_total", "Pictures that the node has encoded for the stream.", [](const StreamRef& s) { return static_cast<double>(s.node->frames()); }},
-    {Counter, "wallgl_stream_raw_bytes_total", "Bytes of those pictures before encoding.", [](const StreamRef& s) { return static_cast<double>(s.node->raw_bytes()); }},
-    {Counter, "wallgl_stream_packet_bytes_total", "Bytes of those pictures encoded.", [](const StreamRef& s) { return static_cast<double>(s.node->packet_bytes()); }},
-    {Counter, "wallgl_stream_encode_seconds_total", "Time that the node has spent in encoding them.", [](const StreamRef& s) { return 1e-9 * static_cast<double>(s.node->encode_ns()); }},
+    {Gauge, "wallgl_stream_viewers", "Who watches the stream.", [](const StreamRef& s) -> double { return s.view->viewers; }},
+    {Counter, "wallgl_stream_frames_total", "Frames of the stream that have come from its node.", [](const StreamRef& s) -> double { return s.view->frames; }},
+    {Counter, "wallgl_stream_dropped_frames_total", "Frames of the stream that gave way to a newer one before a viewer took them.",
+     [](const StreamRef& s) -> double { return s.view->dropped; }},
+    {Counter, "wallgl_stream_encoded_frames_total", "Pictures that the node has encoded for the stream.",
+     [](const StreamRef& s) -> double { return s.node->frames(); }},
+    {Counter, "wallgl_stream_raw_bytes_total", "Bytes of those pictures before encoding.", [](const StreamRef& s) -> double { return s.node->raw_bytes(); }},
+    {Counter, "wallgl_stream_packet_bytes_total", "Bytes of those pictures encoded.", [](const StreamRef& s) -> double { return s.node->packet_bytes(); }},
+    {Counter, "wallgl_stream_encode_seconds_total", "Time that the node has spent in encoding them.",
+     [](const StreamRef& s) { return 1e-9 * static_cast<double>(s.node->encode_ns()); }},
 };
 
 const proto::StreamStats& told_of(const Node& node, std::uint32_t stream) {

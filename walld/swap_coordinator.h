@@ -61,6 +61,8 @@ public:
     std::uint32_t presented() const { return presented_; }
     /// Every node shows `frame` or a later one.
     bool shown(std::uint32_t frame) const;
+    /// Nothing before the first frame.
+    std::optional<Clock::time_point> last_present() const { return last_present_; }
     /// Presented frames that the node takes part in and was not told to show yet.
     std::uint32_t behind(std::uint32_t node) const;
     bool held() const { return held_; }

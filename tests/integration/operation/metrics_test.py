@@ -192,8 +192,8 @@ class Metrics(unittest.TestCase):
         self.read_frames(self.watch(), 1)
         checked = subprocess.run([PROMTOOL, "check", "metrics"], input=self.scrape().text, capture_output=True, text=True)
         self.assertEqual((checked.returncode, checked.stderr), (0, ""))
-        for what, file in (("rules", RULES), ("config", RULES.with_name("prometheus.example.yml"))):
-            checked = subprocess.run([PROMTOOL, "check", what, file], capture_output=True, text=True)
+        for what, file in (("check rules", RULES), ("check config", RULES.with_name("prometheus.example.yml")), ("test rules", Path(__file__).with_name("alerts.yml"))):
+            checked = subprocess.run([PROMTOOL, *what.split(), file], capture_output=True, text=True)
             self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
 
 

@@ -143,6 +143,7 @@ TEST_F(Metrics, TilesHaveAnAgeOnceTheyHaveShownSomething) {
     rendered(1, id, 1);
     now_ += std::chrono::milliseconds(2500);
     EXPECT_THAT(text(), HasSubstr("wallgl_tile_frame_age_seconds{node=\"left\",tile=\"l\"} 2.5\n"));
+    EXPECT_THAT(text(), HasSubstr("wallgl_surface_frame_age_seconds{session=\"1\",surface=\"1.1\"} 2.5\n"));
     EXPECT_THAT(text(), HasSubstr("wallgl_tile_frames_total{node=\"right\",tile=\"r\"} 1\n"));
     EXPECT_THAT(text(), HasSubstr("wallgl_tile_lag_frames{node=\"right\",tile=\"r\"} 0\n"));
 }
