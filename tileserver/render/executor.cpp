@@ -34,13 +34,8 @@ Result<void> Executor::run_batch(std::span<const std::byte> payload) {
     surfaces_known_ = false;
     Work& work = session_.work;
     const auto bytes_before = work.state_bytes + work.geometry_bytes;
-    const auto render_before = work.render;
-    auto done = [&] {
-        const Timed timed(work.decode);
-        return glapi::decode(batch->opcodes, batch->operands, *this);
-    }();
+    auto done = glapi::decode(batch->opcodes, batch->operands, *this);
     if (in_block_) end_block();  // the batch was refused within a block
-    work.decode -= work.render - render_before;
     work.commands += batch->opcodes.size();
     const auto bytes = batch->opcodes.size() + batch->operands.size(), known = work.state_bytes + work.geometry_bytes - bytes_before;
     work.object_bytes += bytes - std::min(bytes, known);

@@ -55,14 +55,18 @@ public:
                 if (surface->waiting_frame()) return true;
             return false;
         }
-        /// True: a batch was executed.
-        bool run_one() {
+        /// True: a batch was executed. `now` is the time, before and after.
+        bool run_one(Clock::time_point& now) {
             if (failed_ || !settled()) return false;
             const std::vector<std::byte>* next = queue_->front();
             if (next == nullptr || (needs_shown_frame(*next) && frame_waits())) return false;
             const auto batch = queue_->pop();
-            last_run_ = Clock::now();
+            Work& work = session_.work;
+            const auto start = now;
+            const auto render_before = work.render;
             if (const auto done = executor_.run_batch(batch); !done) fail(done.error().message);
+            last_run_ = now = Clock::now();
+            work.decode += now - start - (work.render - render_before);
             return true;
         }
         void fail(std::string reason) {
@@ -103,8 +107,9 @@ public:
     bool round() {
         bool worked = false;
         Stream* only = exclusive();
+        auto now = Clock::now();
         for (auto& [id, stream] : streams_)
-            if (only == nullptr || only == stream.get()) worked |= stream->run_one();
+            if (only == nullptr || only == stream.get()) worked |= stream->run_one(now);
         std::erase_if(streams_, [this](const auto& entry) {
             node_.damage += entry.second->failed() ? 1 : 0;
             return entry.second->failed();

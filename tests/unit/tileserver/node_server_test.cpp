@@ -283,6 +283,7 @@ TEST_F(NodeServerTest, SaysWhatASessionCostsUntilItEnds) {
         EXPECT_EQ(session.queued_bytes(), 0u);
         EXPECT_GT(session.state_bytes(), 0u);
         EXPECT_GT(session.geometry_bytes(), 0u);
+        EXPECT_GT(session.decode_ns(), 0u);
         EXPECT_EQ(stats.decode_ns(), session.decode_ns());
         EXPECT_GT(stats.objects().textures(), 0u);
     }
