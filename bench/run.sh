@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Runs the benchmarks of build/release and prints their tables.
-# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, switch, pack, mesh, traffic, share, streams, codec)
+# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, switch, pack, mesh, march, traffic, share, streams, codec)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -30,6 +30,7 @@ run state "$build/bench/state_bench" --benchmark_out="$results/state.json" --ben
 run switch bench/switch.py --json "$results/switch.json"
 run pack bench/pack.py --json "$results/pack.json"
 run mesh bench/mesh.py --json "$results/mesh.json"
+run march bench/march.py --json "$results/march.json"
 run traffic bench/traffic.py --json "$results/traffic.json"
 run share bench/share.py --json "$results/share.json"
 run streams bench/stream_cost.py --json "$results/streams.json"

@@ -182,6 +182,19 @@ void Session::on_every_node(Context& context, Pack&& pack) {
         if (node->alive()) pack(batch(*node, context.id), *node);
 }
 
+template <class Note, class Pack>
+void Session::synchronize(Context& context, bool at_once, Note&& note, Pack&& pack) {
+    context.flush_block();
+    std::lock_guard lock(mutex_);
+    if (const GLenum error = note(sync_); error != GL_NO_ERROR) return context.error(error);
+    if (!group_) return;
+    for (auto& node : nodes_) {
+        if (!node->alive()) continue;
+        pack(batch(*node, context.id));
+        if (at_once) send(*node);
+    }
+}
+
 template <class Pack>
 std::optional<std::vector<std::byte>> Session::ask(Context& context, Node& node, const char* function, Pack&& pack) {
     context.flush_block();

@@ -25,6 +25,7 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr const char* kDefaultAddress = "unix:/run/wallgl/walld.sock";
+constexpr milliseconds kLeaveLimit{1000};
 constexpr milliseconds kTick{1000};           // statistics are written and told, a lost link is tried again
 constexpr std::size_t kLengthBytes = 4;       // in front of every envelope, little endian
 constexpr std::size_t kReadChunk = 16 << 10;
@@ -147,6 +148,8 @@ Hello Hello::from_environment() {
     hello.program = program_name();
     hello.name = environment("WALLGL_NAME");
     read_token(environment("WALLGL_TOKEN_FILE"), hello);
+    hello.group = parallel();
+    if (const auto text = environment("WALLGL_PARALLEL"); !text.empty() && !hello.group) hello.invalid = parse_parallel(text).error().message;
     const auto hold = environment("WALLGL_HOLD");
     hello.hold = !hold.empty() && hold != "0";
     const auto rect = environment("WALLGL_RECT");
@@ -237,6 +240,19 @@ bool ControlLink::surface_adopted(std::uint32_t id, std::uint32_t layout_version
     queue(encode_surface_adopted(id, layout_version, frame));
     wake();
     return changed_.wait_for(lock, timeout, [&] { return !up_ || surfaces_[id].noted == layout_version; }) && up_;
+}
+
+void ControlLink::leave() {
+    if (in_forked_child() || !hello_.group) return;
+    std::unique_lock lock(mutex_);
+    queue(encode_member_leaves(hello_.group->rank));
+    wake();
+    changed_.wait_for(lock, kLeaveLimit, [&] { return !up_ || outbox_.empty(); });
+}
+
+void ControlLink::on_end(std::function<void(const std::string&)> action) {
+    std::lock_guard lock(mutex_);
+    end_ = std::move(action);
 }
 
 void ControlLink::ask_to_redraw(std::uint32_t id) {
@@ -337,6 +353,7 @@ bool ControlLink::write_some() {
                 break;
             }
         }
+        if (outbox_.empty()) changed_.notify_all();
     }
     if (!why.empty()) on_lost(why);
     return why.empty();
@@ -371,6 +388,10 @@ bool ControlLink::handle(FromWalld message) {
 // With the mutex held.
 void ControlLink::arrived(const Placement& placement) {
     events_.placements.push_back(placement);
+    if (hello_.group) {
+        queue(encode_placement_noted(placement.surface, placement.layout_version));
+        wake();
+    }
     const auto found = surfaces_.find(placement.surface);
     if (found == surfaces_.end()) return;
     placements_[placement.surface] = placement;
@@ -417,17 +438,41 @@ void ControlLink::on_lost(const std::string& why) {
     log(LogLevel::error, "walld_lost address=%s why=%s", address_.c_str(), why.c_str());
     fd_.reset();
     inbox_.clear();
-    std::lock_guard lock(mutex_);
-    outbox_.clear();
-    up_ = false;
-    events_.lost = true;
-    has_events_ = true;
-    changed_.notify_all();
+    {
+        std::lock_guard lock(mutex_);
+        outbox_.clear();
+        up_ = false;
+        events_.lost = true;
+        has_events_ = true;
+        changed_.notify_all();
+    }
+    if (refused_) end_group(why);
+}
+
+void ControlLink::end_group(const std::string& why) {
+    std::unique_lock lock(mutex_);
+    const auto end = hello_.group ? end_ : nullptr;
+    lock.unlock();
+    if (end) end(why);
+}
+
+/// A parallel program cannot come again: its processes would have to begin anew at the same frame. It draws on as long as
+/// walld is away.
+void ControlLink::end_if_walld_is_new() {
+    if (!connect_to(address_, static_cast<int>(kOpenLimit.count()))) return;
+    refused_ = true;
+    const std::string why = "walld was started anew: so must the parallel program be";
+    log(LogLevel::error, "session_ended why=%s", why.c_str());
+    end_group(why);
 }
 
 bool ControlLink::reconnect() {
     if (fd_) return true;
     if (refused_) return false;
+    if (hello_.group) {
+        end_if_walld_is_new();
+        return false;
+    }
     auto opened = greet(hello_, address_, kOpenLimit);
     if (!opened) {
         log(LogLevel::debug, "walld_unreachable why=%s", opened.error().message.c_str());

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -45,6 +46,11 @@ public:
     /// The placement of that version holds from `frame` on. Waits until walld knows; false when the time is over or the
     /// link breaks.
     bool surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame, std::chrono::milliseconds timeout);
+    /// In a parallel program: this process ends in order. Waits a moment until that is said.
+    void leave();
+    /// Called by the background thread when a parallel program's session is over; before any other thread uses the link.
+    void on_end(std::function<void(const std::string& why)> action);
+
     /// Asks the program, soon, to draw the window again: what is on the wall was drawn for another layout.
     void ask_to_redraw(std::uint32_t id);
 
@@ -92,6 +98,8 @@ private:
     void tell_traffic();
     void on_lost(const std::string& why);
     bool reconnect();
+    void end_if_walld_is_new();
+    void end_group(const std::string& why);
 
     const Hello hello_;
     const std::string address_;
@@ -109,6 +117,7 @@ private:
     std::string outbox_;
     Events events_;
     bool up_ = true;
+    std::function<void(const std::string&)> end_;
     std::map<std::uint32_t, OpenSurface> surfaces_;
     Wishes wishes_;
     std::map<std::uint32_t, Placement> placements_;  ///< newest of each since it was opened or resized

@@ -15,7 +15,7 @@ using protozero::pbf_writer;
 // Field numbers of Envelope (proto/control.proto).
 namespace envelope {
 constexpr protozero::pbf_tag_type client_hello = 1, surface_open = 2, surface_resize = 3, surface_close = 4,
-                                  surface_adopted = 5, close_refused = 6, client_stats = 7,
+                                  surface_adopted = 5, close_refused = 6, client_stats = 7, placement_noted = 8, member_leaves = 9,
                                   client_welcome = 10, refused = 11, placement = 12, node_up = 13, node_down = 14,
                                   close_request = 15, adoption_noted = 16;
 }
@@ -163,6 +163,10 @@ Placement read_placement(pbf_reader in) {
             case 1: placement.surface = read_u32(in); break;
             case 2: placement.layout_version = read_u32(in); break;
             case 3: placement.rect = read_rect(read_message(in)); break;
+            case 4: placement.from_frame = read_u32(in); break;
+            case 5: placement.width = read_u32(in); break;
+            case 6: placement.height = read_u32(in); break;
+            case 7: placement.nodes.push_back(read_node(read_message(in), true)); break;
             default: in.skip();
         }
     }
@@ -233,6 +237,11 @@ std::string encode(const Hello& hello) {
         if (hello.fullscreen) out.add_bool(6, true);
         if (hello.hold) out.add_bool(7, true);
         put_string(out, 8, hello.token);
+        if (!hello.group) return;
+        pbf_writer group(out, 9);
+        put_string(group, 1, hello.group->group);
+        group.add_uint32(2, hello.group->rank);
+        group.add_uint32(3, hello.group->members);
     });
 }
 
@@ -282,6 +291,17 @@ std::string encode(const Traffic& traffic) {
             row.add_uint64(4, node.geometry_bytes);
         }
     });
+}
+
+std::string encode_placement_noted(std::uint32_t id, std::uint32_t layout_version) {
+    return in_envelope(envelope::placement_noted, [&](pbf_writer& out) {
+        out.add_uint32(1, id);
+        out.add_uint32(2, layout_version);
+    });
+}
+
+std::string encode_member_leaves(std::uint32_t rank) {
+    return in_envelope(envelope::member_leaves, [&](pbf_writer& out) { out.add_uint32(1, rank); });  // an empty message would not be written
 }
 
 std::string encode_data_hello(std::uint32_t session, std::string_view ticket) {

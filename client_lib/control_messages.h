@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "client_lib/parallel.h"
 #include "client_lib/traffic.h"
 #include "common/base/result.h"
 #include "common/geom/rect.h"
@@ -26,6 +27,7 @@ struct Hello {
     bool fullscreen = false;         ///< WALLGL_RECT=fullscreen
     bool hold = false;               ///< WALLGL_HOLD
     std::string token;               ///< from WALLGL_TOKEN_FILE: who owns the session, if not the Unix user
+    std::optional<Parallel> group;   ///< from WALLGL_PARALLEL
     std::string invalid;             ///< what is wrong in the environment; ControlLink::open fails with it
 
     /// Of this process, from its name and the environment.
@@ -71,6 +73,10 @@ struct Placement {
     std::uint32_t surface = 0;
     std::uint32_t layout_version = 0;
     geom::Rect rect;
+    // To a parallel program.
+    std::uint32_t from_frame = 0;           ///< it holds from this frame on
+    std::uint32_t width = 0, height = 0;    ///< of the window, in every member
+    std::vector<NodeInfo> nodes;            ///< of the session
 };
 
 /// walld knows from which frame on a placement holds.
@@ -95,6 +101,8 @@ std::string encode_surface_close(std::uint32_t id);
 std::string encode_surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame);
 std::string encode_close_refused(std::uint32_t id);
 std::string encode(const Traffic& traffic);
+std::string encode_placement_noted(std::uint32_t id, std::uint32_t layout_version);
+std::string encode_member_leaves(std::uint32_t rank);
 
 Result<FromWalld> decode_from_walld(std::string_view envelope);
 

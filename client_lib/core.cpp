@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "client_lib/context.h"
+#include "client_lib/log.h"
 #include "client_lib/process.h"
 #include "client_lib/share_group.h"
 
@@ -44,7 +45,13 @@ void release() {
 }  // namespace
 
 std::shared_ptr<Surface> create_surface(SurfaceOptions options) {
-    return std::shared_ptr<Surface>(new Surface(next_object_id(), std::move(options)), [](Surface* surface) {
+    auto id = options.visible ? next_window_id() : next_object_id();
+    if (id == 0) {
+        complain_once("wallgl: a parallel program has too many windows; more are not shown on the wall", "windows");
+        options.visible = false;
+        id = next_object_id();
+    }
+    return std::shared_ptr<Surface>(new Surface(id, std::move(options)), [](Surface* surface) {
         if (surface->opened)
             if (auto session = Session::get_if_open()) session->close_surface(*surface);
         delete surface;

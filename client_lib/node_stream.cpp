@@ -21,7 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxQueuedBytes = 64u << 20;         // of one node: about two frames of the heaviest programs
-constexpr auto kStallLimit = std::chrono::seconds(5);      // a node that takes nothing for so long is given up
+constexpr int kStallLimitMs = 5000;                        // a node that takes nothing for so long is given up
 constexpr std::size_t kReadChunk = 64 << 10;
 
 int remaining_ms(Clock::time_point deadline) {
@@ -141,6 +141,12 @@ Result<std::shared_ptr<NodeStream>> NodeStream::open(const std::string& address,
     return std::shared_ptr<NodeStream>(new NodeStream(std::move(*fd)));
 }
 
+template <class Done>
+void NodeStream::wait(std::unique_lock<std::mutex>& lock, int timeout_ms, Done&& done) {
+    if (timeout_ms == kNoLimit) changed_.wait(lock, done);
+    else changed_.wait_for(lock, std::chrono::milliseconds(timeout_ms), done);
+}
+
 void NodeStream::send(std::uint32_t context, wire::PackBuffer batch) {
     if (batch.empty() || failed()) return;
     const std::size_t padding = (4 - batch.commands() % 4) % 4;
@@ -155,8 +161,9 @@ void NodeStream::send(std::uint32_t context, wire::PackBuffer batch) {
     out.body = std::move(batch);
 
     std::unique_lock lock(mutex_);
-    const bool room = changed_.wait_for(lock, kStallLimit, [&] { return failed() || queued_bytes_ < kMaxQueuedBytes; });
-    if (!room) {
+    const auto room = [&] { return failed() || queued_bytes_ < kMaxQueuedBytes; };
+    wait(lock, stalls_ ? kStallLimitMs : kNoLimit, room);
+    if (!room()) {
         lock.unlock();
         give_up("node takes no more data");
         return;
@@ -167,7 +174,7 @@ void NodeStream::send(std::uint32_t context, wire::PackBuffer batch) {
 
 std::optional<std::vector<std::byte>> NodeStream::wait_reply(std::uint32_t request, int timeout_ms) {
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, std::chrono::milliseconds(timeout_ms), [&] { return failed() || replies_.contains(request); });
+    wait(lock, timeout_ms, [&] { return failed() || replies_.contains(request); });
     const auto found = replies_.find(request);
     if (found == replies_.end()) {
         unwanted_.insert(request);
@@ -184,7 +191,7 @@ bool NodeStream::wait_swap(std::uint32_t surface, std::uint32_t frame, int timeo
         const auto found = swaps_.find(surface);
         return found != swaps_.end() && static_cast<std::int32_t>(found->second - frame) >= 0;
     };
-    changed_.wait_for(lock, std::chrono::milliseconds(timeout_ms), [&] { return failed() || done(); });
+    wait(lock, timeout_ms, [&] { return failed() || done(); });
     return done();
 }
 

@@ -27,9 +27,14 @@ public:
     /// Connects and says hello; at most `timeout_ms` in all. `hello` is an encoded DataHello.
     static Result<std::shared_ptr<NodeStream>> open(const std::string& address, const std::string& hello, int timeout_ms);
 
+    static constexpr int kNoLimit = -1;  ///< as timeout_ms
+
     /// Queues a batch. Blocks while more than kMaxQueuedBytes wait (the node is slower than the program), but never
-    /// longer than `kStallLimit`: then the stream counts as failed. Application threads.
+    /// longer than `kStallLimitMs`: then the stream counts as failed. Application threads.
     void send(std::uint32_t context, wire::PackBuffer batch);
+
+    /// No stall fails the stream: the node may hold it for others' sake. Before the first send().
+    void never_stalls() { stalls_ = false; }
 
     /// The answer to `request`; nothing if the stream fails or the time is over. Application threads.
     std::optional<std::vector<std::byte>> wait_reply(std::uint32_t request, int timeout_ms);
@@ -61,7 +66,11 @@ private:
     void handle_frame(wire::FrameKind kind, std::vector<std::byte> payload);
     bool write_some(Outgoing& out);
 
+    template <class Done>
+    void wait(std::unique_lock<std::mutex>& lock, int timeout_ms, Done&& done);
+
     UniqueFd fd_;
+    bool stalls_ = true;
     std::atomic<bool> failed_{false};
     std::atomic<std::uint64_t> bytes_sent_{0};
 

@@ -6,8 +6,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace wall::client {
+
+/// Packing one while the nodes draw the other.
+inline constexpr std::uint32_t kFramesInFlight = 2;
 
 /// More than this is not queued for a node that is late, whatever it costs.
 inline constexpr std::size_t kMaxLateBytes = 8u << 20;

@@ -26,12 +26,11 @@ constexpr int kFinishMs = 500;                          // what is queued when t
 constexpr int kConnectTimeoutMs = 2000;
 constexpr std::chrono::seconds kPlacementTimeout{2};
 constexpr int kReplyTimeoutMs = 10000;        // a readback behind a long frame of a software renderer
-constexpr std::uint32_t kFramesInFlight = 2;  // packing one while the nodes draw the other
 constexpr std::uint32_t kDiffSample = 61;  // one difference in so many is timed: two looks at the clock cost more than comparing equal contexts
 constexpr std::size_t kBatchBytes = 256 << 10;  // sent when it reaches this: large enough to be cheap, small enough to overlap
 
-/// DataHello of control.proto, written by hand: three fields do not need a library.
-std::string encode_hello(std::uint32_t session, const std::string& ticket) {
+/// DataHello of control.proto, written by hand: four fields do not need a library.
+std::string encode_hello(std::uint32_t session, const std::string& ticket, std::uint32_t rank) {
     const auto varint = [](std::string& to, std::uint64_t value) {
         for (; value >= 0x80; value >>= 7) to.push_back(static_cast<char>(value | 0x80));
         to.push_back(static_cast<char>(value));
@@ -43,7 +42,10 @@ std::string encode_hello(std::uint32_t session, const std::string& ticket) {
     varint(out, session);
     out.push_back(0x1a);
     varint(out, ticket.size());
-    return out + ticket;
+    out += ticket;
+    out.push_back(0x20);
+    varint(out, rank);
+    return out;
 }
 
 /// The part of the surface's window that shows in `part` of the canvas.
@@ -75,8 +77,15 @@ std::vector<NodeMask> by_node(const TargetSet& set, const SurfaceLayout& layout)
 }
 
 std::uint32_t next_object_id() {
-    static std::atomic<std::uint32_t> last{0};
+    static std::atomic<std::uint32_t> last{parallel() ? wire::kMaxSharedSurfaces : 0};
     return ++last;
+}
+
+std::uint32_t next_window_id() {
+    static std::atomic<std::uint32_t> last{0};
+    if (!parallel()) return next_object_id();
+    const auto id = ++last;
+    return id <= wire::kMaxSharedSurfaces ? id : 0;
 }
 
 namespace {
@@ -120,6 +129,7 @@ std::shared_ptr<Session> Session::get() {
 }
 
 Session::Session(std::unique_ptr<ControlLink> control) : control_(std::move(control)) {
+    if (group_) control_->on_end([this](const std::string& why) { transport_.give_up_all(why); });
     std::lock_guard lock(mutex_);
     adopt(control_->welcome());
 }
@@ -128,12 +138,14 @@ Session::Session(std::unique_ptr<ControlLink> control) : control_(std::move(cont
 void Session::adopt(const Welcome& welcome) {
     id_ = welcome.session;
     tiles_ = welcome.tiles;
+    for (const TileInfo& tile : tiles_) node_at(tile.node);  // also those that are not up
     for (const NodeInfo& info : welcome.nodes) connect(node_slot(info));
 }
 
 Session::~Session() { finish(); }
 
 void Session::finish() {
+    if (group_) return leave_group();
     {
         std::lock_guard lock(mutex_);
         for (auto& node : nodes_)
@@ -142,12 +154,16 @@ void Session::finish() {
     transport_.drain(kFinishMs);
 }
 
-Node& Session::node_slot(const NodeInfo& info) {
-    while (nodes_.size() <= info.node) {
+Node& Session::node_at(std::uint32_t index) {
+    while (nodes_.size() <= index) {
         nodes_.push_back(std::make_unique<Node>());
         nodes_.back()->index = static_cast<std::uint32_t>(nodes_.size() - 1);
     }
-    Node& node = *nodes_[info.node];
+    return *nodes_[index];
+}
+
+Node& Session::node_slot(const NodeInfo& info) {
+    Node& node = node_at(info.node);
     node.info = info;
     return node;
 }
@@ -163,13 +179,15 @@ void Session::connect(Node& node) {
     node.left_out.clear();
     node.slow = node.asks_unanswered = false;
     if (!node.info.up) return;
-    auto stream = NodeStream::open(node.info.address, encode_hello(id_, node.info.ticket), kConnectTimeoutMs);
+    auto stream = NodeStream::open(node.info.address, encode_hello(id_, node.info.ticket, group_ ? group_->rank : 0), kConnectTimeoutMs);
     if (!stream) {
         log_warning("event=node_refused node=" + std::to_string(node.index) + " reason=\"" + stream.error().message + "\"");
         return;
     }
     node.stream = std::move(*stream);
+    if (group_) node.stream->never_stalls();
     transport_.add(node.stream);
+    if (group_) introduce(node);
 }
 
 void Session::open_surface(Surface& surface) {
@@ -182,7 +200,14 @@ void Session::open_surface(Surface& surface) {
     surface.layout.height = std::max(1u, size.height);
     if (!surface.options.visible) return apply_layout(surface, Placement{});
     control_->surface_open(surface.id, surface.layout.width, surface.layout.height, surface.options.title, surface.options.messages);
-    if (const auto placement = control_->wait_placement(surface.id, kPlacementTimeout)) apply_layout(surface, *placement);
+    const auto placement = control_->wait_placement(surface.id, kPlacementTimeout);
+    if (group_) {
+        surface.window = {surface.layout.width, surface.layout.height};
+        take_events();
+        adopt_agreed(surface);
+    } else if (placement) {
+        apply_layout(surface, *placement);
+    }
 }
 
 void Session::close_surface(Surface& surface) {
@@ -224,6 +249,10 @@ void Session::apply_layout(Surface& surface, const Placement& placement) {
 void Session::begin_frame(Surface& surface) {
     std::lock_guard lock(mutex_);
     take_events();
+    if (common(surface)) {
+        report_window(surface);
+        return adopt_agreed(surface);
+    }
     if (in_frame(surface)) return;
     adopt_placement(surface);
     follow_window(surface);
@@ -254,6 +283,7 @@ void Session::take_events() {
     auto events = control_->take_events();
     if (events.reconnected) adopt(*events.reconnected);
     for (const NodeInfo& info : events.node_changes) {
+        if (group_ && info.up) continue;  // comes with a placement
         Node& node = node_slot(info);
         connect(node);
         for (auto& [id, surface] : surfaces_) {
@@ -263,7 +293,9 @@ void Session::take_events() {
     }
     for (const Placement& placement : events.placements) {
         const auto found = surfaces_.find(placement.surface);
-        if (found != surfaces_.end()) found->second->next = placement;
+        if (found == surfaces_.end()) continue;
+        if (group_) found->second->coming.push_back(placement);
+        else found->second->next = placement;
     }
     for (auto& [id, surface] : surfaces_) adopt_placement(*surface);
 }
@@ -341,9 +373,7 @@ void Session::swap(Context* context, Surface& surface) {
         whole_frames = std::exchange(surface.cleared, false);
         ++surface.frame;
         surface.drawn = false;
-        TargetSet all;
-        all.set();
-        for (const auto& [index, slots] : by_node(all, surface.layout)) {
+        for (const std::uint32_t index : swap_nodes(surface)) {
             Node& node = *nodes_[index];
             if (!node.takes(surface.id)) continue;
             auto& buffer = batch(node, context ? context->id : node.batch_context);
@@ -353,7 +383,20 @@ void Session::swap(Context* context, Surface& surface) {
         }
         count_frame();
     }
-    wait_for_nodes(surface, whole_frames);
+    if (common(surface)) wait_for_group(surface);
+    else wait_for_nodes(surface, whole_frames);
+}
+
+/// All that show the surface; in a parallel program all there are, because its members keep step on each.
+std::vector<std::uint32_t> Session::swap_nodes(const Surface& surface) const {
+    std::vector<std::uint32_t> out;
+    TargetSet all;
+    all.set();
+    if (!common(surface))
+        for (const auto& [index, slots] : by_node(all, surface.layout)) out.push_back(index);
+    else
+        for (const auto& node : nodes_) out.push_back(node->index);
+    return out;
 }
 
 // A node that is slow for once (a long frame of all nodes alike) is waited for; one that has stopped is left out. If all
@@ -416,12 +459,15 @@ void Session::flush(Context* context, bool wait) {
         // Without a back buffer there is no other end of a frame.
         if (const Surface* surface = context ? context->draw_surface() : nullptr; surface && !surface->options.format.double_buffered) take_events();
     }
-    for (auto& [stream, request] : pending) stream->wait_reply(request, kReplyTimeoutMs);
+    for (auto& [stream, request] : pending) stream->wait_reply(request, reply_timeout_ms());
 }
 
 std::optional<std::vector<std::byte>> Session::wait_reply(Node& node, std::uint32_t request) {
-    return node.stream->wait_reply(request, kReplyTimeoutMs);
+    return node.stream->wait_reply(request, reply_timeout_ms());
 }
+
+/// A member of a parallel program may have to wait for the others, however long they take.
+int Session::reply_timeout_ms() const { return group_ ? NodeStream::kNoLimit : kReplyTimeoutMs; }
 
 void Session::count_geometry(Node& node, std::size_t bytes) { stats().add_node(node.index, NodeCounter::geometry_bytes, bytes); }
 void Session::count_block(Node& node) { stats().add_node(node.index, NodeCounter::blocks, 1); }

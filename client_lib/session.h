@@ -6,6 +6,7 @@
 // that the caller holds it.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -16,8 +17,10 @@
 #include "client_lib/core.h"
 #include "client_lib/needs.h"
 #include "client_lib/node_stream.h"
+#include "client_lib/parallel.h"
 #include "client_lib/router.h"
 #include "client_lib/stats.h"
+#include "client_lib/sync_objects.h"
 #include "client_lib/transport.h"
 #include "common/glstate/value_history.h"
 #include "gen/glstate/state.gen.h"
@@ -28,6 +31,8 @@ class Context;
 
 /// Ids of contexts, surfaces and objects on the wire: unique in the process, never 0.
 std::uint32_t next_object_id();
+/// Of a window: in a parallel program the same in all members, which open their windows in the same order; 0: too many.
+std::uint32_t next_window_id();
 
 /// What a node holds of one context.
 struct Mirror {
@@ -72,6 +77,9 @@ public:
     bool drawn = false;        ///< something was drawn since the last swap
     std::optional<Placement> next;  ///< from walld, for a frame that begins
     bool cleared = false;      ///< all of its back buffer, since the last swap
+    // In a parallel program.
+    std::deque<Placement> coming;  ///< for frames that have not begun, in order
+    Extent window;                 ///< of this process's own window, as walld was told
 };
 
 class Session {
@@ -120,6 +128,10 @@ public:
 
     /// Everything queued goes out; `wait` also waits until all nodes have executed it.
     void flush(Context* context, bool wait);
+    /// A command of GL_CR_synchronization. `note(SyncObjects&)` gives its OpenGL error; if there is none, `pack(buffer)` says
+    /// it to all nodes, behind everything before it. `at_once`: others may wait for it, or the stream is held behind it.
+    template <class Note, class Pack>
+    void synchronize(Context& context, bool at_once, Note&& note, Pack&& pack);
     void destroy_context(std::uint32_t context);
 
     // ---- with the mutex held ----
@@ -157,12 +169,26 @@ private:
     void follow_window(Surface& surface);
     void connect(Node& node);
     void describe_surface(Node& node, Surface& surface);
+    Node& node_at(std::uint32_t index);
     Node& node_slot(const NodeInfo& info);
+    std::vector<std::uint32_t> swap_nodes(const Surface& surface) const;
+    int reply_timeout_ms() const;
     void wait_for_nodes(Surface& surface, bool whole_frames);
     std::optional<std::vector<std::byte>> wait_reply(Node& node, std::uint32_t request);
     void count_frame();
     void count_round_trip(const char* function);
 
+    // ---- of a parallel program (session_group.cpp) ----
+    void introduce(Node& node);
+    void adopt_agreed(Surface& surface);
+    void use_node(const NodeInfo& info);
+    void report_window(Surface& surface);
+    void wait_for_group(Surface& surface);
+    void leave_group();
+    bool common(const Surface& surface) const { return group_ && surface.options.visible; }
+
+    const std::optional<Parallel>& group_ = parallel();
+    SyncObjects sync_{group_ ? group_->members : 1};
     std::unique_ptr<ControlLink> control_;
     Transport transport_;
     std::mutex mutex_;

@@ -106,7 +106,11 @@ std::size_t ShareGroup::bring_up_to_date(Node& node, Context& context, wire::Pac
         });
         if (offer == Offer::held) return;
         pack_texture(texture, 0, buffer, limit);
-        if (offer == Offer::wanted) glapi::pack::TexShared(buffer, id);
+        if (offer != Offer::wanted) return;
+        glapi::pack::TexShared(buffer, id);
+        sent += buffer.bytes() - start;
+        context.session().send(node);  // others may be waiting for it
+        start = buffer.bytes();
     };
     for_each_used(context.state, bring_texture);
     if (context.program) {

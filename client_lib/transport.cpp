@@ -51,6 +51,11 @@ void Transport::remove(const NodeStream* stream) {
     std::erase_if(streams_, [&](const auto& s) { return s.get() == stream; });
 }
 
+void Transport::give_up_all(const std::string& why) {
+    std::lock_guard lock(mutex_);
+    for (const auto& stream : streams_) stream->give_up(why);
+}
+
 void Transport::wake() {
     if (wake_pending_.exchange(true)) return;
     const std::uint64_t one = 1;

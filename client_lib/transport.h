@@ -20,6 +20,8 @@ public:
 
     void add(std::shared_ptr<NodeStream> stream);
     void remove(const NodeStream* stream);
+    /// All streams fail, so that nobody waits for them. Any thread.
+    void give_up_all(const std::string& why);
     /// Something was queued.
     void wake();
     /// Sends what is queued, for at most `timeout_ms`, e.g. before the process ends.

@@ -130,10 +130,13 @@ GlVersion offered_version(const Caps& caps) {
     return offered;
 }
 
+/// What no driver need have: it is between the programs and the nodes.
+constexpr const char* kOwnExtensions[] = {"GL_CR_synchronization"};
+
 std::vector<std::string> offered_extensions(const Caps& caps) {
     std::istringstream words(caps.extensions);
     const std::vector<std::string> node{std::istream_iterator<std::string>(words), {}};
-    std::vector<std::string> offered;
+    std::vector<std::string> offered(std::begin(kOwnExtensions), std::end(kOwnExtensions));
     for (const Extension& extension : kExtensions)
         if ((!extension.command || implemented(extension.command)) && std::find(node.begin(), node.end(), extension.name) != node.end())
             offered.emplace_back(extension.name);

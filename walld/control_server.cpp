@@ -31,7 +31,7 @@ std::string random_bytes(std::size_t count) {
 
 ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities, const std::string& state)
     : executor_(executor), changed_(executor), identities_(std::move(identities)), wall_(std::move(config), *this, random_bytes), snapshots_(executor, wall_, *this), streams_(executor, wall_, *this),
-      operators_(wall_, snapshots_, LayoutStore(state), changed_, [this](SessionId id) { if (const auto found = clients_.find(id); found != clients_.end()) refuse(found->second, "closed by an operator"); }),
+      operators_(wall_, snapshots_, LayoutStore(state), changed_, [this](SessionId id) { end_session(id, "closed by an operator"); }),
       deadline_timer_(executor), process_timer_(executor) {}
 
 Result<void> ControlServer::listen() {
@@ -70,7 +70,17 @@ void ControlServer::to_node(NodeIndex node, const proto::Envelope& message) {
 }
 
 void ControlServer::to_client(SessionId session, const proto::Envelope& message) {
-    if (const auto found = clients_.find(session); found != clients_.end()) found->second->send(message);
+    for (const auto& [client, connection] : clients_)
+        if (client.first == session) connection->send(message);
+}
+
+void ControlServer::to_member(SessionId session, Rank rank, const proto::Envelope& message) {
+    if (const auto found = clients_.find({session, rank}); found != clients_.end()) found->second->send(message);
+}
+
+void ControlServer::end_session(SessionId session, const std::string& reason) {
+    for (const auto& [client, connection] : clients_)
+        if (client.first == session) refuse(connection, reason);
 }
 
 // ---- connections ----
@@ -194,38 +204,44 @@ Outcome<void> ControlServer::welcome(const proto::ClientHello& hello, Person& wh
     if (!owner) return tl::unexpected(owner.error());
     who = std::move(*owner);
     if (who.role < Role::user) return walld::refuse(RefusalKind::forbidden, who.text() + " may not put programs on this wall: that needs the role user, and theirs is " + config::name_of(who.role));
-    return wall_.check(hello);
+    if (auto good = wall_.check(hello); !good) return good;
+    return wall_.check_member(hello, who);
 }
 
 asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::ClientHello hello, Person who) {
     if (const auto good = welcome(hello, who); !good) co_return refuse(connection, good.error().message);
     co_await wait_for_nodes();
     if (!wall_.any_node_up()) co_return refuse(connection, "no node of the wall is up: is a tileserver running? (wallctl nodes)");
-    if (const auto still = wall_.check(hello); !still) co_return refuse(connection, still.error().message);
-    const auto id = wall_.open_session(hello, who, [&](SessionId session) { clients_[session] = connection; });
-    spdlog::info("session_open session={} owner=\"{}\" pid={} program=\"{}\" name=\"{}\"", id.value, who.text(), hello.pid(), hello.program(), hello.name());
+    for (const auto& still : {wall_.check(hello), wall_.check_member(hello, who)})
+        if (!still) co_return refuse(connection, still.error().message);
+    const Rank rank = hello.group().rank();
+    const auto id = wall_.open_session(hello, who, Clock::now(), [&](SessionId session) { clients_[{session, rank}] = connection; });
+    spdlog::info("session_open session={} owner=\"{}\" pid={} program=\"{}\" name=\"{}\" group=\"{}\" rank={}", id.value, who.text(), hello.pid(), hello.program(), hello.name(), hello.group().name(), rank);
     something_changed();
     std::string reason;
     while (reason.empty()) {
         auto message = co_await connection->receive();
-        const auto result = message ? client_says(id, *message) : Result<void>(tl::unexpected(message.error()));
+        const auto result = message ? client_says({id, rank}, *message) : Result<void>(tl::unexpected(message.error()));
         if (!result) reason = result.error().message;
         if (message && !result) refuse(connection, reason);
         something_changed();
     }
-    clients_.erase(id);
-    wall_.close_session(id);
-    spdlog::info("session_end session={} reason=\"{}\"", id.value, reason);
+    clients_.erase({id, rank});
+    const auto became = wall_.member_gone(id, rank);
+    spdlog::info("session_end session={} rank={} reason=\"{}\" became=\"{}\"", id.value, rank, reason, became);
     something_changed();
 }
 
-Result<void> ControlServer::client_says(SessionId session, const proto::Envelope& message) {
-    if (message.has_surface_open()) return wall_.open_surface(session, message.surface_open(), Clock::now());
-    if (message.has_surface_resize()) wall_.resize_surface(session, message.surface_resize());
+Result<void> ControlServer::client_says(const ClientId& client, const proto::Envelope& message) {
+    const auto& [session, rank] = client;
+    if (message.has_surface_open()) return wall_.open_surface(session, message.surface_open(), Clock::now(), rank);
+    if (message.has_surface_resize()) wall_.resize_surface(session, message.surface_resize(), Clock::now(), rank);
     else if (message.has_surface_adopted()) wall_.adopt_placement(session, message.surface_adopted(), Clock::now());
     else if (message.has_client_stats()) wall_.client_reports(session, message.client_stats(), Clock::now());
     else if (message.has_close_refused()) wall_.cannot_close(session, SurfaceId(message.close_refused().surface()));
-    else if (message.has_surface_close()) wall_.close_surface(session, SurfaceId(message.surface_close().surface()));
+    else if (message.has_surface_close()) wall_.close_surface(session, SurfaceId(message.surface_close().surface()), rank);
+    else if (message.has_placement_noted()) wall_.placement_noted(session, rank, message.placement_noted(), Clock::now());
+    else if (message.has_member_leaves()) wall_.member_leaves(session, rank, Clock::now());
     else return fail("a client may not send that message");
     return {};
 }
@@ -320,7 +336,7 @@ asio::awaitable<void> ControlServer::watch_processes() {
         for (const auto& [id, connection] : clients_) {
             const auto pid = connection->peer() ? connection->peer()->process : 0;
             if (pid <= 0 || ::kill(pid, 0) == 0 || errno != ESRCH) continue;
-            spdlog::info("session_orphaned session={} pid={}", id.value, pid);
+            spdlog::info("session_orphaned session={} pid={}", id.first.value, pid);
             connection->close();
         }
     }

@@ -39,6 +39,8 @@ public:
 
     void to_node(NodeIndex node, const proto::Envelope& message) override;
     void to_client(SessionId session, const proto::Envelope& message) override;
+    void to_member(SessionId session, Rank rank, const proto::Envelope& message) override;
+    void end_session(SessionId session, const std::string& reason) override;
 
 private:
     using Connection = std::shared_ptr<net::ControlConnection>;
@@ -57,7 +59,9 @@ private:
 
     Outcome<void> welcome(const proto::ClientHello& hello, Person& who) const;
     Result<void> node_says(NodeIndex node, proto::Envelope& message);
-    Result<void> client_says(SessionId session, const proto::Envelope& message);
+    using ClientId = std::pair<SessionId, Rank>;  // rank 0 without a parallel program
+
+    Result<void> client_says(const ClientId& client, const proto::Envelope& message);
     void refuse(const Connection& connection, const std::string& reason);
     void something_changed();
 
@@ -70,7 +74,7 @@ private:
     OperatorDesk operators_;
     std::vector<std::unique_ptr<net::Listener>> listeners_;
     std::map<NodeIndex, Connection> nodes_;
-    std::map<SessionId, Connection> clients_;
+    std::map<ClientId, Connection> clients_;
     std::map<net::ControlConnection*, std::weak_ptr<net::ControlConnection>> all_;
     asio::steady_timer deadline_timer_;
     asio::steady_timer process_timer_;

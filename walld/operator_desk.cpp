@@ -90,7 +90,7 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::session(const Asked& asked) {
 asio::awaitable<Outcome<Answer>> OperatorDesk::place(const Asked& asked) {
     const auto rect = rect_of(asked.arguments, "rect");
     if (!rect) co_return tl::unexpected(rect.error());
-    co_return target_of(asked).and_then([&](const Target& target) { return wall_.place_surface(target, *rect); }).map(done);
+    co_return target_of(asked).and_then([&](const Target& target) { return wall_.place_surface(target, *rect, Clock::now()); }).map(done);
 }
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::raise(const Asked& asked) {
@@ -186,7 +186,7 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::save_layout(const Asked& asked) {
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::load_layout(const Asked& asked) {
     co_return name_of(asked).and_then([&](const std::string& name) { return layouts_.load(name); }).map([&](const Layout& layout) {
-        const auto placed = wall_.load_layout(layout);
+        const auto placed = wall_.load_layout(layout, Clock::now());
         return Answer{{{"placed", placed}, {"waiting", layout.windows.size() - placed}}, {}};
     });
 }

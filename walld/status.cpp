@@ -89,14 +89,23 @@ json tiles_json(const Wall& wall) {
     return out;
 }
 
+/// Of a parallel program.
+json group_json(const ParallelGroup& group) {
+    auto members = json::array();
+    for (const auto& [rank, member] : group.members()) members.push_back({{"rank", rank}, {"pid", member.pid}, {"left", member.left}});
+    return {{"name", group.name()}, {"size", group.size()}, {"members", std::move(members)}};
+}
+
 json session_json(const Wall& wall, SessionId id) {
     const auto& session = wall.sessions().at(id);
     auto surfaces = json::array();
     for (const auto& key : wall.stacking()) {
         if (key.session == id) surfaces.push_back(surface_json(wall, key));
     }
-    return {{"id", id.value}, {"pid", session.pid}, {"program", session.program}, {"name", session.name}, {"owner", person_json(session.owner)},
-            {"held", session.held}, {"fault", session.fault}, {"traffic", traffic_json(session.traffic)}, {"surfaces", std::move(surfaces)}};
+    json out{{"id", id.value}, {"pid", session.pid}, {"program", session.program}, {"name", session.name}, {"owner", person_json(session.owner)},
+             {"held", session.held}, {"fault", session.fault}, {"traffic", traffic_json(session.traffic)}, {"surfaces", std::move(surfaces)}};
+    if (session.group) out["group"] = group_json(*session.group);
+    return out;
 }
 
 json sessions_json(const Wall& wall) {

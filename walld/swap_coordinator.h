@@ -50,6 +50,8 @@ public:
     Presents rendered(std::uint32_t node, std::uint32_t frame, Clock::time_point now);
     Presents tick(Clock::time_point now);
 
+    /// Nothing beyond this frame is presented until it is called again.
+    Presents limit(std::uint32_t frame, Clock::time_point now);
     Presents hold(Clock::time_point now);
     Presents step(std::uint32_t frames, Clock::time_point now);
     /// Ends holding.
@@ -100,7 +102,8 @@ private:
     bool someone_ahead() const;
     std::uint32_t ceiling() const;
 
-    Clock::duration limit_;
+    Clock::duration limit_;  ///< of time, for a late node
+    std::uint32_t last_frame_ = UINT32_MAX;  ///< that may be presented
     std::map<std::uint32_t, Member> members_;
     std::uint32_t presented_ = 0;
     std::optional<Clock::time_point> deadline_;

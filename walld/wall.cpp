@@ -48,7 +48,11 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
         out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(index, session.tickets[index])));
     }
     out_.to_node(index, stacking_message(index));
-    for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.set_nodes(nodes_under(surface.place.drawn()), now), now); });
+    for_each_surface([&](const SurfaceKey& key, Surface& surface) {
+        const auto& session = *find(key.session);
+        present(key, surface.swap.set_nodes(nodes_of(session, surface.place.drawn()), now), now);
+        if (session.group) want(key, surface.place.wanted(), now);  // the members come to the node at the same frame
+    });
     return index;
 }
 
@@ -67,7 +71,13 @@ void Wall::node_rendered(NodeIndex node, const proto::Rendered& report, Clock::t
 
 void Wall::node_faults(NodeIndex node, const proto::SessionFault& report) {
     ++counters_.faults;
-    if (auto* session = find(SessionId(report.session()))) session->fault = nodes_[node].config->name + ": " + report.reason();
+    const SessionId id(report.session());
+    auto* session = find(id);
+    if (!session) return;
+    session->fault = nodes_[node].config->name + ": " + report.reason();
+    if (!session->group) return;
+    out_.end_session(id, session->fault);
+    close_session(id);
 }
 
 void Wall::welcome_node(NodeIndex node) {
@@ -109,7 +119,7 @@ Outcome<void> Wall::check(const proto::ClientHello& hello) const {
     if (hello.version() != wire::kProtocolVersion) {
         return walld::refuse(RefusalKind::invalid, "walld speaks protocol version " + std::to_string(wire::kProtocolVersion) + ", the program's WallGL library " + std::to_string(hello.version()));
     }
-    if (sessions_.size() >= config_.max_sessions) {
+    if (sessions_.size() >= config_.max_sessions && !group_of(hello)) {
         return walld::refuse(RefusalKind::unavailable, "the wall is full: " + std::to_string(config_.max_sessions) + " programs are on it ('max_sessions' in [wall] of wall.toml)");
     }
     if (hello.has_rect()) {
@@ -118,7 +128,8 @@ Outcome<void> Wall::check(const proto::ClientHello& hello) const {
     return {};
 }
 
-SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, const std::function<void(SessionId)>& before_welcome) {
+SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Clock::time_point now, const std::function<void(SessionId)>& before_welcome) {
+    if (const auto* known = group_of(hello)) return join_session(known->first, hello, before_welcome);
     WALL_ASSERT(any_node_up());
     const SessionId id(++last_session_);
     auto& session = sessions_[id];
@@ -129,12 +140,19 @@ SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, cons
     session.held = hello.hold();
     if (hello.has_rect()) session.rect = from_proto(hello.rect());
     if (hello.fullscreen()) session.rect = config_.canvas();
+    session.opened = now;
+    if (hello.has_group()) {
+        session.group.emplace(hello.group().name(), hello.group().members());
+        session.group->joins(hello.group().rank(), hello.pid());
+    }
     ++counters_.sessions;
     before_welcome(id);
     for (NodeIndex i = 0; i < nodes_.size(); ++i) {
-        if (nodes_[i].up) hand_out_ticket(id, session, i);
+        if (!nodes_[i].up) continue;
+        hand_out_ticket(id, session, i);
+        session.group_nodes[i] = nodes_[i].incarnation;
     }
-    welcome_client(id, session);
+    welcome_client(id, session, hello.group().rank());
     return id;
 }
 
@@ -144,10 +162,14 @@ void Wall::hand_out_ticket(SessionId id, Session& session, NodeIndex node) {
     proto::Ticket message;
     message.set_session(id.value);
     message.set_ticket(ticket);
+    if (session.group) {
+        message.set_members(session.group->size());
+        for (const Rank rank : session.group->left()) message.add_left(rank);
+    }
     out_.to_node(node, make(&proto::Envelope::mutable_ticket, message));
 }
 
-void Wall::welcome_client(SessionId id, const Session& session) {
+void Wall::welcome_client(SessionId id, const Session& session, Rank rank) {
     proto::ClientWelcome welcome;
     const auto canvas = config_.canvas();
     welcome.set_session(id.value);
@@ -163,12 +185,14 @@ void Wall::welcome_client(SessionId id, const Session& session) {
             *entry->mutable_rect() = to_proto(tile.rect);
         }
         if (!nodes_[i].up) continue;
-        *welcome.add_nodes() = node_up_message(i, session.tickets.at(i));
+        const auto at_first = session.group_nodes.find(i);
+        const bool same_for_all = !session.group || (at_first != session.group_nodes.end() && at_first->second == nodes_[i].incarnation);
+        if (same_for_all) *welcome.add_nodes() = node_up_message(i, session.tickets.at(i));
         caps.push_back(&nodes_[i].hello.caps());
     }
     *welcome.mutable_caps() = common_caps(caps);
     welcome.set_swap_timeout_ms(static_cast<std::uint32_t>(config_.swap_timeout / std::chrono::milliseconds(1)));
-    out_.to_client(id, make(&proto::Envelope::mutable_client_welcome, welcome));
+    out_.to_member(id, rank, make(&proto::Envelope::mutable_client_welcome, welcome));
 }
 
 void Wall::close_session(SessionId id) {
@@ -180,19 +204,29 @@ void Wall::close_session(SessionId id) {
     send_stacking();
 }
 
-Result<void> Wall::open_surface(SessionId id, const proto::SurfaceOpen& message, Clock::time_point now) {
+Result<void> Wall::open_surface(SessionId id, const proto::SurfaceOpen& message, Clock::time_point now, Rank rank) {
     auto* session = find(id);
     const SurfaceKey key{id, SurfaceId(message.surface())};
-    if (!session || !key.surface || session->surfaces.contains(key.surface)) return fail("surface " + std::to_string(message.surface()) + " cannot be opened: expected a new number");
+    const bool known = session && session->surfaces.contains(key.surface);
+    if (!session || !key.surface || (known && !session->group)) return fail("surface " + std::to_string(message.surface()) + " cannot be opened: expected a new number");
     if (!extent_ok(message.width(), message.height())) return fail("surface of " + std::to_string(message.width()) + "x" + std::to_string(message.height()) + " pixels: expected 1 to " + std::to_string(wire::kMaxSurfaceExtent) + " a side");
+    if (known) {
+        open_for_member(key, message, rank, now);
+        return {};
+    }
     if (session->surfaces.size() >= kMaxSurfaces) return fail("more than " + std::to_string(kMaxSurfaces) + " windows");
-    Surface surface{.width = message.width(), .height = message.height(), .title = message.title().substr(0, kMaxText), .place = PlacementTrack(),
+    Surface surface{.width = message.width(), .height = message.height(), .title = message.title().substr(0, kMaxText), .place = PlacementTrack(), .agreed = {},
                     .swap = SwapCoordinator(config_.swap_timeout, session->held)};
     surface.place = PlacementTrack(first_rect(*session, surface, windows_placed_++));
     auto& kept = session->surfaces.emplace(key.surface, std::move(surface)).first->second;
     stack(key);
-    present(key, kept.swap.set_nodes(nodes_under(kept.place.drawn()), now), now);
-    send_placement(key, kept);
+    present(key, kept.swap.set_nodes(nodes_of(*session, kept.place.drawn()), now), now);
+    if (session->group) {
+        agree(key, now);
+        open_for_member(key, message, rank, now);
+    } else {
+        send_placement(key, kept);
+    }
     send_stacking();
     return {};
 }
@@ -222,10 +256,10 @@ void Wall::stack(const SurfaceKey& key) {
     stacking_.insert(std::ranges::find_if(stacking_, above), key);
 }
 
-void Wall::resize_surface(SessionId id, const proto::SurfaceResize& message) {
+void Wall::resize_surface(SessionId id, const proto::SurfaceResize& message, Clock::time_point now, Rank rank) {
     const SurfaceKey key{id, SurfaceId(message.surface())};
     auto* surface = find(key.surface, id);
-    if (!surface || !extent_ok(message.width(), message.height())) return;
+    if (!surface || rank != 0 || !extent_ok(message.width(), message.height())) return;
     surface->width = message.width();
     surface->height = message.height();
     auto rect = surface->place.wanted();
@@ -233,7 +267,7 @@ void Wall::resize_surface(SessionId id, const proto::SurfaceResize& message) {
         rect.width = static_cast<std::int32_t>(message.width());
         rect.height = static_cast<std::int32_t>(message.height());
     }
-    want(key, rect);
+    want(key, rect, now);
 }
 
 void Wall::adopt_placement(SessionId id, const proto::SurfaceAdopted& message, Clock::time_point now) {
@@ -262,9 +296,11 @@ void Wall::client_reports(SessionId id, const proto::ClientStats& stats, Clock::
     if (auto* session = find(id)) session->traffic.note(stats, nodes_.size(), now);
 }
 
-void Wall::close_surface(SessionId id, SurfaceId surface) {
+void Wall::close_surface(SessionId id, SurfaceId surface, Rank rank) {
     auto* session = find(id);
-    if (!session || session->surfaces.erase(surface) == 0) return;
+    auto* found = find(surface, id);
+    if (!found || !closed_by_all(*session, *found, rank)) return;
+    session->surfaces.erase(surface);
     std::erase(stacking_, SurfaceKey{id, surface});
     send_stacking();
 }
@@ -273,17 +309,19 @@ void Wall::close_surface(SessionId id, SurfaceId surface) {
 
 std::optional<Clock::time_point> Wall::next_deadline() const {
     std::optional<Clock::time_point> out;
+    const auto consider = [&](std::optional<Clock::time_point> deadline) {
+        if (deadline && (!out || *deadline < *out)) out = deadline;
+    };
     for (const auto& [id, session] : sessions_) {
-        for (const auto& [surface_id, surface] : session.surfaces) {
-            const auto deadline = surface.swap.deadline();
-            if (deadline && (!out || *deadline < *out)) out = deadline;
-        }
+        if (session.group && !session.group->all_came()) consider(session.opened + kMembersLimit);
+        for (const auto& [surface_id, surface] : session.surfaces) consider(surface.swap.deadline());
     }
     return out;
 }
 
 void Wall::tick(Clock::time_point now) {
     for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.tick(now), now); });
+    end_overdue_groups(now);
 }
 
 // ---- inside ----
@@ -302,10 +340,11 @@ const Surface* Wall::find(const SurfaceKey& key) const {
     return found == session->second.surfaces.end() ? nullptr : &found->second;
 }
 
-void Wall::want(const SurfaceKey& key, const geom::Rect& rect) {
+void Wall::want(const SurfaceKey& key, const geom::Rect& rect, Clock::time_point now) {
     auto& surface = *find(key.surface, key.session);
     surface.place.want(rect);
-    send_placement(key, surface);
+    if (find(key.session)->group) agree(key, now);
+    else send_placement(key, surface);
 }
 
 void Wall::present(const SurfaceKey& key, const Presents& presents, Clock::time_point now) {
@@ -336,12 +375,16 @@ std::uint32_t Wall::tile_lag(NodeIndex node, std::uint32_t slot) const {
     return most;
 }
 
-void Wall::send_placement(const SurfaceKey& key, const Surface& surface) {
+proto::Placement Wall::placement_of(const SurfaceKey& key, const Surface& surface) const {
     proto::Placement placement;
     placement.set_surface(key.surface.value);
     placement.set_layout_version(surface.place.version());
     *placement.mutable_rect() = to_proto(surface.place.wanted());
-    out_.to_client(key.session, make(&proto::Envelope::mutable_placement, placement));
+    return placement;
+}
+
+void Wall::send_placement(const SurfaceKey& key, const Surface& surface) {
+    out_.to_client(key.session, make(&proto::Envelope::mutable_placement, placement_of(key, surface)));
 }
 
 /// Only what lies on the node: it must not show a window that has moved away, of which it gets no further frame.

@@ -17,6 +17,7 @@
 #include "common/config/wall_config.h"
 #include "proto/control.pb.h"
 #include "walld/layout.h"
+#include "walld/parallel_group.h"
 #include "walld/person.h"
 #include "walld/placement_track.h"
 #include "walld/session_traffic.h"
@@ -31,7 +32,12 @@ class Outbox {
 public:
     virtual ~Outbox() = default;
     virtual void to_node(NodeIndex node, const proto::Envelope& message) = 0;
+    /// To all processes of the session.
     virtual void to_client(SessionId session, const proto::Envelope& message) = 0;
+    /// To one process of a parallel program.
+    virtual void to_member(SessionId session, Rank rank, const proto::Envelope& message) = 0;
+    /// Its processes are told why, and are cut off.
+    virtual void end_session(SessionId session, const std::string& reason) = 0;
 };
 
 /// A tile as walld knows it to be shown.
@@ -63,12 +69,16 @@ struct Surface {
     bool wanted_rect = false;             ///< it is the session's WALLGL_RECT window
     bool cannot_close = false;            ///< its program has no way to be asked
     std::optional<std::size_t> layout_z;  ///< its place in the stacking of the layout that placed it
+    AgreedPlacements agreed;              ///< of a parallel program
     SwapCoordinator swap;
 };
 
 struct Session {
-    std::uint32_t pid = 0;
+    std::uint32_t pid = 0;           ///< of a parallel program's first member
     std::string program, name;
+    std::optional<ParallelGroup> group;
+    std::map<NodeIndex, std::uint32_t> group_nodes;  ///< the members connect to at first: incarnations
+    Clock::time_point opened;
     Person owner;
     std::optional<geom::Rect> rect;  ///< asked for; fullscreen: the canvas
     bool held = false;
@@ -93,6 +103,7 @@ struct Counters {
 class Wall {
 public:
     static constexpr std::size_t kTicketBytes = 16;
+    static constexpr std::chrono::seconds kMembersLimit{60};  ///< for all processes of a parallel program to come
     using RandomBytes = std::function<std::string(std::size_t)>;
 
     Wall(config::WallConfig config, Outbox& out, RandomBytes random);
@@ -111,13 +122,21 @@ public:
     bool any_node_up() const;
     /// Why this program cannot be taken now, if so.
     Outcome<void> check(const proto::ClientHello& hello) const;
+    /// Why it cannot be taken as this person's process of a parallel program, if so.
+    Outcome<void> check_member(const proto::ClientHello& hello, const Person& who) const;
     /// Needs a node that is up and a hello that was checked. The welcome goes to the session's client; the id is known before any message is sent.
-    SessionId open_session(const proto::ClientHello& hello, Person owner, const std::function<void(SessionId)>& before_welcome);
+    /// A parallel program's first member opens it, the others get the same one.
+    SessionId open_session(const proto::ClientHello& hello, Person owner, Clock::time_point now, const std::function<void(SessionId)>& before_welcome);
     void close_session(SessionId id);
-    Result<void> open_surface(SessionId id, const proto::SurfaceOpen& message, Clock::time_point now);
-    /// Always answered with a Placement.
-    void resize_surface(SessionId id, const proto::SurfaceResize& message);
-    void close_surface(SessionId id, SurfaceId surface);
+    /// A process is gone. The session is closed with its last one, and with one that has not left its parallel program: then
+    /// the others are cut off. Gives what became of it, for the log.
+    std::string member_gone(SessionId id, Rank rank);
+    void member_leaves(SessionId id, Rank rank, Clock::time_point now);
+    Result<void> open_surface(SessionId id, const proto::SurfaceOpen& message, Clock::time_point now, Rank rank = 0);
+    /// Always answered with a Placement. In a parallel program rank 0 says how large a window is.
+    void resize_surface(SessionId id, const proto::SurfaceResize& message, Clock::time_point now, Rank rank = 0);
+    void close_surface(SessionId id, SurfaceId surface, Rank rank = 0);
+    void placement_noted(SessionId id, Rank rank, const proto::PlacementNoted& message, Clock::time_point now);
 
     /// The program draws with a placement from a frame on.
     void adopt_placement(SessionId id, const proto::SurfaceAdopted& message, Clock::time_point now);
@@ -125,7 +144,7 @@ public:
     void client_reports(SessionId id, const proto::ClientStats& stats, Clock::time_point now);
 
     // ---- operators (wall_operate.cpp) ----
-    Outcome<void> place_surface(const Target& target, const geom::Rect& rect);
+    Outcome<void> place_surface(const Target& target, const geom::Rect& rect, Clock::time_point now);
     Outcome<void> raise(const Target& target);
     Outcome<void> lower(const Target& target);
     /// Gives the windows that were asked.
@@ -138,7 +157,7 @@ public:
     Layout current_layout() const;
     /// Places and stacks the windows that match, at once; programs that start later get the places left over, until
     /// another layout is loaded. Gives the number of windows placed.
-    std::size_t load_layout(const Layout& layout);
+    std::size_t load_layout(const Layout& layout, Clock::time_point now);
 
     // ---- time ----
     std::optional<Clock::time_point> next_deadline() const;
@@ -159,13 +178,23 @@ private:
     Surface* find(SurfaceId surface, SessionId session);
     proto::NodeUp node_up_message(NodeIndex node, const std::string& ticket) const;
     void welcome_node(NodeIndex node);
-    void welcome_client(SessionId id, const Session& session);
+    void welcome_client(SessionId id, const Session& session, Rank rank);
     void hand_out_ticket(SessionId id, Session& session, NodeIndex node);
     std::set<NodeIndex> nodes_under(const geom::Rect& rect) const;
     geom::Rect first_rect(Session& session, Surface& surface, std::uint32_t number);
     WindowName name_of(const SurfaceKey& key) const;
     void stack(const SurfaceKey& key);
-    void want(const SurfaceKey& key, const geom::Rect& rect);
+    void want(const SurfaceKey& key, const geom::Rect& rect, Clock::time_point now);
+    proto::Placement placement_of(const SurfaceKey& key, const Surface& surface) const;
+    // of parallel programs (wall_group.cpp)
+    const std::pair<const SessionId, Session>* group_of(const proto::ClientHello& hello) const;
+    SessionId join_session(SessionId id, const proto::ClientHello& hello, const std::function<void(SessionId)>& before_welcome);
+    std::set<NodeIndex> nodes_of(const Session& session, const geom::Rect& rect) const;
+    void agree(const SurfaceKey& key, Clock::time_point now);
+    void open_for_member(const SurfaceKey& key, const proto::SurfaceOpen& message, Rank rank, Clock::time_point now);
+    void limit_frames(const SurfaceKey& key, Clock::time_point now);
+    static bool closed_by_all(Session& session, Surface& surface, Rank rank);
+    void end_overdue_groups(Clock::time_point now);
     void present(const SurfaceKey& key, const Presents& presents, Clock::time_point now);
     void send_placement(const SurfaceKey& key, const Surface& surface);
     void send_stacking();

@@ -51,12 +51,12 @@ Outcome<std::vector<SurfaceKey>> Wall::surfaces_of(const Target& target) const {
     return out;
 }
 
-Outcome<void> Wall::place_surface(const Target& target, const geom::Rect& rect) {
+Outcome<void> Wall::place_surface(const Target& target, const geom::Rect& rect, Clock::time_point now) {
     if (auto possible = check_place(config_.canvas(), rect); !possible) return possible;
     const auto key = resolve(target);
     if (!key) return tl::unexpected(key.error());
     find(key->surface, key->session)->scaled = true;
-    want(*key, rect);
+    want(*key, rect, now);
     return {};
 }
 
@@ -133,7 +133,7 @@ Layout Wall::current_layout() const {
     return layout;
 }
 
-std::size_t Wall::load_layout(const Layout& layout) {
+std::size_t Wall::load_layout(const Layout& layout, Clock::time_point now) {
     const auto canvas = config_.canvas();
     free_places_ = scaled_to(layout, canvas.width, canvas.height).windows;
     // Only what cannot be seen on this wall at all is left where it is.
@@ -151,7 +151,7 @@ std::size_t Wall::load_layout(const Layout& layout) {
         placed[entry->z] = key;
         auto rect = entry->rect;
         if (!entry->scaled) rect = {rect.x, rect.y, static_cast<std::int32_t>(surface.width), static_cast<std::int32_t>(surface.height)};
-        want(key, rect);
+        want(key, rect, now);
     }
     for (const auto& [z, key] : placed) {
         std::erase(stacking_, key);

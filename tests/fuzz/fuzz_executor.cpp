@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Batches executed on a real driver, in a session with a window on two tiles. After each input a second session must
-// still draw what it always draws.
+// Batches executed on a real driver, in a session with a window on two tiles and in both members of a parallel program.
+// After each input another session must still draw what it always draws.
 #include <memory>
 
 #include "common/base/assert.h"
@@ -83,6 +83,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         Executor executor(*node->node, session, output);
         open_surface(executor);
         (void)executor.run_batch(fuzz::batch_of(data, size, 1));
+    }
+    {
+        Ignore output;
+        ParallelGroup group(*node->driver, {2, {}});
+        Session member(*node->driver, SessionId(1), &group, 0), other(*node->driver, SessionId(1), &group, 1);
+        Executor executor(*node->node, member, output), others(*node->node, other, output);
+        WALL_ASSERT(group.sync.join(0) && group.sync.join(1));
+        open_surface(executor);
+        open_surface(others);
+        const auto batch = fuzz::batch_of(data, size, 1);
+        (void)executor.run_batch(batch);
+        (void)others.run_batch(batch);
+        group.finish_frames(*node->node);
+        (void)group.sync.deadlock();
     }
     check_others(*node->node);
     return 0;

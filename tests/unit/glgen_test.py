@@ -19,12 +19,16 @@ PROTO = ROOT / "proto/gl"
 class Registry(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.gl = registry.load(REGISTRY)
+        cls.gl = registry.load(REGISTRY, PROTO / "extensions.xml")
 
     def test_signatures(self):
         c = self.gl.commands["glLoadMatrixd"]
         self.assertEqual((c.returns, c.params[0].type, c.params[0].len, c.gl), ("void", "const GLdouble *", "16", "1.0"))
         self.assertEqual(self.gl.commands["glGetString"].returns, "const GLubyte *")
+
+    def test_commands_of_our_own(self):
+        c = self.gl.commands["glBarrierCreateCR"]
+        self.assertEqual((c.declaration, c.extensions, c.gl), ("GLuint name, GLuint count", ["GL_CR_synchronization"], None))
 
     def test_aliases(self):
         self.assertEqual(self.gl.canonical("glActiveTextureARB"), "glActiveTexture")
@@ -34,7 +38,7 @@ class Registry(unittest.TestCase):
 class Commands(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.gl = registry.load(REGISTRY)
+        cls.gl = registry.load(REGISTRY, PROTO / "extensions.xml")
         cls.model = state.load(PROTO / "state.toml")
         cls.commands = commands.load(PROTO / "commands.toml", cls.gl, cls.model)
 
@@ -69,7 +73,7 @@ class Commands(unittest.TestCase):
 
     def test_mistakes_are_refused(self):
         self.assertIn("Begin of the OpenGL core has no class", self.refused('Begin = "hand"\n', ""))
-        self.assertIn("gl.xml has no command glBegins", self.refused("\nBegin = ", "\nBegins = "))
+        self.assertIn("no command glBegins in gl.xml", self.refused("\nBegin = ", "\nBegins = "))
         self.assertIn("Vertex9f is not implemented", self.refused("convert Vertex2f", "convert Vertex9f"))
         self.assertIn("unknown words", self.refused('Begin = "hand"', 'Begin = "hand often"'))
 

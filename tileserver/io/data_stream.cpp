@@ -10,6 +10,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
+#include <algorithm>
 #include <chrono>
 
 #include "common/wire/limits.h"
@@ -77,7 +78,9 @@ asio::awaitable<Result<void>> DataStream::greet() {
     if (hello.version() != wire::kProtocolVersion)
         co_return wall::fail("protocol version " + std::to_string(hello.version()) + ", this node speaks " + std::to_string(wire::kProtocolVersion));
     session_ = SessionId(hello.session());
-    if (!co_await find_ticket(session_, hello.ticket())) co_return wall::fail("no valid ticket for session " + std::to_string(hello.session()));
+    const Admission* admission = co_await find_admission(session_, hello.ticket());
+    if (!admission) co_return wall::fail("no valid ticket for session " + std::to_string(hello.session()));
+    if (hello.rank() >= std::max(1u, admission->membership.members)) co_return wall::fail("session " + std::to_string(hello.session()) + " has no rank " + std::to_string(hello.rank()));
     reader_.set_limit(wire::kMaxFramePayload);
     const auto on_room = [weak = weak_from_this(), executor = socket_.get_executor()] {
         asio::post(executor, [weak] {
@@ -88,17 +91,17 @@ asio::awaitable<Result<void>> DataStream::greet() {
         });
     };
     batches_ = std::make_shared<BatchQueue>(on_room);
-    host_.render().add_stream(id_, session_, batches_);
+    host_.render().add_stream(id_, session_, batches_, admission->membership, hello.rank());
     send(wire::FrameKind::welcome, {});
     spdlog::info("stream_open stream={} session={}", id_.value, session_.value);
     co_return Result<void>{};
 }
 
-asio::awaitable<bool> DataStream::find_ticket(SessionId session, const std::string& given) {
+asio::awaitable<const Admission*> DataStream::find_admission(SessionId session, const std::string& given) {
     const auto until = std::chrono::steady_clock::now() + kTicketLimit;
     for (;;) {
-        if (const std::string* ticket = host_.ticket(session)) co_return session && equal_secret(*ticket, given);
-        if (std::chrono::steady_clock::now() > until || closing_) co_return false;
+        if (const Admission* known = host_.admission(session)) co_return session && equal_secret(known->ticket, given) ? known : nullptr;
+        if (std::chrono::steady_clock::now() > until || closing_) co_return nullptr;
         timer_.expires_after(kTicketPoll);
         co_await timer_.async_wait(kWaitable);
     }

@@ -23,12 +23,18 @@ namespace wall::tileserver {
 
 namespace asio = boost::asio;
 
+/// What walld has said of a session that may come.
+struct Admission {
+    std::string ticket;
+    Membership membership;
+};
+
 /// What a stream needs of the node.
 class StreamHost {
 public:
     virtual ~StreamHost() = default;
     /// Nothing: not known (yet).
-    virtual const std::string* ticket(SessionId session) const = 0;
+    virtual const Admission* admission(SessionId session) const = 0;
     virtual RenderThread& render() = 0;
     virtual void stream_bytes(std::size_t bytes) = 0;
     virtual void stream_closed(StreamId stream) = 0;
@@ -53,7 +59,8 @@ private:
     asio::awaitable<Result<void>> greet();
     asio::awaitable<Result<void>> take_batches();
     asio::awaitable<Result<Frame>> next_frame();
-    asio::awaitable<bool> find_ticket(SessionId session, const std::string& given);
+    /// Null if there is none for that ticket.
+    asio::awaitable<const Admission*> find_admission(SessionId session, const std::string& ticket);
     asio::awaitable<void> write_queue();
 
     StreamHost& host_;

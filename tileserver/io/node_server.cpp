@@ -108,13 +108,14 @@ asio::awaitable<void> NodeServer::accept_clients() {
     }
 }
 
-const std::string* NodeServer::ticket(SessionId session) const {
-    const auto at = tickets_.find(session);
-    return at == tickets_.end() ? nullptr : &at->second;
+const Admission* NodeServer::admission(SessionId session) const {
+    const auto at = admissions_.find(session);
+    return at == admissions_.end() ? nullptr : &at->second;
 }
 
 void NodeServer::end_session(SessionId session) {
-    tickets_.erase(session);
+    admissions_.erase(session);
+    render_->remove_session(session);
     for (const auto& [id, stream] : std::map(streams_))
         if (stream->session() == session) stream->close();
 }
@@ -170,8 +171,7 @@ void NodeServer::handle(const proto::Envelope& envelope) {
         case Case::kNodeWelcome:
             return welcome(envelope.node_welcome());
         case Case::kTicket:
-            tickets_[SessionId(envelope.ticket().session())] = envelope.ticket().ticket();
-            return;
+            return admit(envelope.ticket());
         case Case::kSessionEnd:
             return end_session(SessionId(envelope.session_end().session()));
         case Case::kPresent:
@@ -199,6 +199,11 @@ void NodeServer::handle(const proto::Envelope& envelope) {
     }
 }
 
+void NodeServer::admit(const proto::Ticket& ticket) {
+    const auto members = std::min(ticket.members(), wire::kMaxMembers);
+    admissions_[SessionId(ticket.session())] = {ticket.ticket(), {members, {ticket.left().begin(), ticket.left().end()}}};
+}
+
 void NodeServer::welcome(const proto::NodeWelcome& welcome) {
     std::vector<Tile> tiles;
     for (const auto& tile : welcome.tiles()) tiles.push_back({tile.slot(), rect_of(tile.rect())});
@@ -221,9 +226,14 @@ void NodeServer::reply(StreamId id, std::uint32_t request, std::vector<std::byte
     });
 }
 
-void NodeServer::rendered(StreamId id, SessionId session, SurfaceId surface, std::uint32_t frame) {
+void NodeServer::drawn(StreamId id, SurfaceId surface, std::uint32_t frame) {
     post([=, this] {
         if (DataStream* to = stream(id)) to->send(wire::FrameKind::swap_done, words(surface.value, frame));
+    });
+}
+
+void NodeServer::rendered(SessionId session, SurfaceId surface, std::uint32_t frame) {
+    post([=, this] {
         proto::Envelope envelope;
         auto& rendered = *envelope.mutable_rendered();
         rendered.set_session(session.value);
@@ -241,6 +251,12 @@ void NodeServer::failed(StreamId id, SessionId session, std::string reason) {
         envelope.mutable_session_fault()->set_session(session.value);
         envelope.mutable_session_fault()->set_reason(reason);
         to_walld(envelope);
+    });
+}
+
+void NodeServer::ended(StreamId id, std::string reason) {
+    post([this, id, reason = std::move(reason)] {
+        if (DataStream* to = stream(id)) to->fail(reason);
     });
 }
 

@@ -38,14 +38,16 @@ private:
     NodeServer(asio::any_io_executor executor, net::Address walld, std::string name);
 
     // StreamHost
-    const std::string* ticket(SessionId session) const override;
+    const Admission* admission(SessionId session) const override;
     RenderThread& render() override { return *render_; }
     void stream_bytes(std::size_t bytes) override { bytes_received_ += bytes; }
     void stream_closed(StreamId stream) override { streams_.erase(stream); }
     // NodeEvents: from the render thread
     void reply(StreamId stream, std::uint32_t request, std::vector<std::byte> answer) override;
-    void rendered(StreamId stream, SessionId session, SurfaceId surface, std::uint32_t frame) override;
+    void drawn(StreamId stream, SurfaceId surface, std::uint32_t frame) override;
+    void rendered(SessionId session, SurfaceId surface, std::uint32_t frame) override;
     void failed(StreamId stream, SessionId session, std::string reason) override;
+    void ended(StreamId stream, std::string reason) override;
     void picture(Picture picture) override;
     void stats(const RenderStats& stats) override;
 
@@ -55,6 +57,7 @@ private:
     proto::Envelope hello() const;
     void handle(const proto::Envelope& envelope);
     void welcome(const proto::NodeWelcome& welcome);
+    void admit(const proto::Ticket& ticket);
     void end_session(SessionId session);
     void to_walld(const proto::Envelope& envelope);
     DataStream* stream(StreamId id);
@@ -67,7 +70,7 @@ private:
     std::shared_ptr<net::ControlConnection> link_;  // null: walld is away
     asio::steady_timer retry_;
     bool stopping_ = false, said_unreachable_ = false;
-    std::unordered_map<SessionId, std::string> tickets_;
+    std::unordered_map<SessionId, Admission> admissions_;
     std::map<StreamId, std::shared_ptr<DataStream>> streams_;
     std::uint32_t last_stream_ = 0;
     std::uint64_t bytes_received_ = 0;

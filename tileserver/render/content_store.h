@@ -14,6 +14,9 @@
 
 namespace wall::tileserver {
 
+/// A session, or a member of one.
+using ContentAsker = Id<struct ContentAskerTag, std::uint64_t>;
+
 /// `T`: what is shared.
 template <class T>
 class ContentStore {
@@ -27,7 +30,7 @@ public:
         bool send = false;        ///< the asker has to send it, and has promised to. Neither: wait
     };
 
-    Answer ask(const glapi::ContentKey& key, SessionId asker, Clock::time_point now) {
+    Answer ask(const glapi::ContentKey& key, ContentAsker asker, Clock::time_point now) {
         Entry& entry = entries_[key];
         if (auto held = entry.held.lock()) return {std::move(held), false};
         if (entry.promised_by && entry.promised_by != asker && now - entry.heard < kPromiseLimit) return {};
@@ -36,7 +39,7 @@ public:
         return {nullptr, true};
     }
     /// More of the promised content has come.
-    void heard(const glapi::ContentKey& key, SessionId from, Clock::time_point now) {
+    void heard(const glapi::ContentKey& key, ContentAsker from, Clock::time_point now) {
         const auto at = entries_.find(key);
         if (at != entries_.end() && at->second.promised_by == from) at->second.heard = now;
     }
@@ -51,10 +54,10 @@ public:
     }
     /// The content does not have this name any more: its only user changes it.
     void forget(const glapi::ContentKey& key) { entries_.erase(key); }
-    /// The session is gone, and its promises with it.
-    void leave(SessionId session) {
+    /// It is gone, and its promises with it.
+    void leave(ContentAsker asker) {
         for (auto& [key, entry] : entries_)
-            if (entry.promised_by == session) entry.promised_by = {};
+            if (entry.promised_by == asker) entry.promised_by = {};
         prune();
     }
     std::size_t size() const { return entries_.size(); }
@@ -62,7 +65,7 @@ public:
 private:
     struct Entry {
         std::weak_ptr<T> held;
-        SessionId promised_by;
+        ContentAsker promised_by;
         Clock::time_point heard{};
     };
     struct FirstBytes {  // of a cryptographic hash: as good as any

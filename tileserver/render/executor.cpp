@@ -21,13 +21,14 @@ Executor::Executor(RenderNode& node, Session& session, SessionOutput& output)
 
 Executor::~Executor() {
     end_render_mode();
-    node_.textures.leave(session_.id());
-    node_.runs.leave(session_.id());
+    node_.textures.leave(session_.asker());
+    node_.runs.leave(session_.asker());
 }
 
 Result<void> Executor::run_batch(std::span<const std::byte> payload) {
     const auto batch = wire::split_batch(payload);
     if (!batch) return tl::unexpected(batch.error());
+    if (holds_early(batch->opcodes)) return fail("a command that may hold the stream is not the last one of its batch");
     context_id_ = ContextId(batch->context);
     context_ = &session_.context(context_id_);
     if (session_.context_count() > kMaxContexts) return fail("too many contexts");

@@ -34,6 +34,9 @@ struct RenderNode {
     explicit RenderNode(Driver& d) : driver(d) {}
 };
 
+/// The surface's back buffers are its next picture. It waits to be presented, if somebody will say so (`coordinated`).
+void finish_frame(RenderNode& node, Work& work, Surface& surface, std::uint32_t frame, bool coordinated);
+
 class Executor : public glapi::Handler {
 public:
     Executor(RenderNode& node, Session& session, SessionOutput& output);
@@ -175,6 +178,17 @@ public:
     void ContextDestroy(std::uint32_t context);
     void Swap(std::uint32_t surface, std::uint32_t frame);
 
+    // ---- parallel programs (executor_sync.cpp) ----
+    void Join();
+    void Leave();
+    void BarrierCreate(std::uint32_t barrier, std::uint32_t count);
+    void BarrierDestroy(std::uint32_t barrier);
+    void BarrierExec(std::uint32_t barrier);
+    void SemaphoreCreate(std::uint32_t semaphore, std::uint32_t count, std::int32_t moved);
+    void SemaphoreDestroy(std::uint32_t semaphore);
+    void SemaphoreP(std::uint32_t semaphore);
+    void SemaphoreV(std::uint32_t semaphore);
+
     // ---- answers (executor_read.cpp) ----
     void ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_t x, std::int32_t y, std::int32_t width, std::int32_t height, GLenum format,
                     GLenum type);
@@ -210,6 +224,14 @@ private:
     void finish_tile();
     bool outside_begin();
     Surface* known_surface(std::uint32_t id);
+    bool holds_early(std::span<const std::byte> opcodes) const;
+    /// `say(GroupSync&, Rank)` gives a Result; its error refuses the stream.
+    template <class Say>
+    void say_to_group(Say&& say) {
+        ParallelGroup* group = session_.group();
+        if (group == nullptr) return refuse("not of a parallel program");
+        if (const Result<void> done = say(group->sync, session_.rank()); !done) refuse(done.error().message);
+    }
     /// Asks the node's store; false: not answered yet.
     bool answer_question();
     void ask(std::uint32_t request, std::uint32_t object, GLenum target, std::span<const std::byte> key);

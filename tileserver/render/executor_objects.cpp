@@ -53,7 +53,7 @@ Texture* Executor::bind_for_upload(std::uint32_t name, GLenum target) {
     } else if (const auto key = std::exchange(texture->content->key, {})) {
         node_.textures.forget(*key);
     }
-    if (texture->promise) node_.textures.heard(texture->promise->key, session_.id(), std::chrono::steady_clock::now());
+    if (texture->promise) node_.textures.heard(texture->promise->key, session_.asker(), std::chrono::steady_clock::now());
     node_.driver.bind_texture_to_edit(kind, texture->content->name());
     return texture;
 }

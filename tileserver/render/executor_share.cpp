@@ -40,7 +40,7 @@ bool Executor::answer_question() {
     bool have = false;
     if (question.target != 0) {
         Texture* texture = session_.make_texture(ClientName(question.object), texture_target(question.target));
-        auto found = node_.textures.ask(question.key, session_.id(), now);
+        auto found = node_.textures.ask(question.key, session_.asker(), now);
         have = found.have != nullptr;
         if (!have && !found.send) return false;
         if (texture == nullptr || (have && found.have->target() != texture->content->target()) ||
@@ -49,7 +49,7 @@ bool Executor::answer_question() {
         else if (!have)
             texture->promise.emplace(Texture::Promise{question.key, {}});
     } else {
-        auto found = node_.runs.ask(question.key, session_.id(), now);
+        auto found = node_.runs.ask(question.key, session_.asker(), now);
         have = found.have != nullptr;
         if (!have && !found.send) return false;
         if (have)

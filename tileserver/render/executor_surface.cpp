@@ -25,7 +25,8 @@ void Executor::SurfaceCreate(std::uint32_t surface, std::uint32_t double_buffere
     if (surface == 0) return refuse("surface 0 is none");
     surfaces_known_ = false;
     const LayerFormat layer{double_buffered != 0, alpha_bits != 0, depth_bits != 0, stencil_bits != 0};
-    if (session_.create_surface(SurfaceId(surface), {layer, accum_bits != 0}) == nullptr) refuse("too many surfaces");
+    if (session_.create_surface(SurfaceId(surface), {layer, accum_bits != 0}) != nullptr) return;
+    refuse(session_.shares(SurfaceId(surface)) ? "the members of the parallel program have windows of different formats" : "too many surfaces");
 }
 
 void Executor::SurfacePlace(std::uint32_t id, std::uint32_t layout_version, std::uint32_t window_width, std::uint32_t window_height, std::int32_t x,
@@ -38,10 +39,15 @@ void Executor::SurfacePlace(std::uint32_t id, std::uint32_t layout_version, std:
     if (x < -kFarthest || x > kFarthest || y < -kFarthest || y > kFarthest) return refuse("far off any canvas");
     if (window_width == 0 || window_height == 0) return refuse("an empty window");
     const geom::Rect rect{x, y, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
+    const tileserver::SurfacePlace place{layout_version, window_width, window_height, rect, offscreen != 0};
+    if (session_.shares(SurfaceId(id)) && surface->where().window_width != 0) {
+        if (surface->where() == place) return;
+        if (layout_version <= surface->where().layout_version) return refuse("the members of the parallel program draw for different places");
+    }
     node_.driver.forget_layer();
     node_.driver.disable_scissor();
     ++node_.damage;
-    if (!surface->place({layout_version, window_width, window_height, rect, offscreen != 0}, node_.tiles)) refuse("more pixels than a session may have");
+    if (!surface->place(place, node_.tiles)) refuse("more pixels than a session may have");
 }
 
 void Executor::SurfaceDestroy(std::uint32_t id) {
@@ -67,17 +73,22 @@ void Executor::ContextDestroy(std::uint32_t context) {
 void Executor::Swap(std::uint32_t id, std::uint32_t frame) {
     Surface* surface = known_surface(id);
     if (surface == nullptr) return;
-    {
-        const Timed timed(session_.work.render);
-        if (surface->waiting_frame()) surface->show_frame();
-        surface->finish_frame(frame);
-        gl_.Flush();
-    }
-    ++session_.work.frames;
-    if (node_.present_at_once || !surface->on_tiles()) surface->show_frame();
-    node_.driver.forget_layer();
-    ++node_.damage;
+    if (session_.shares(SurfaceId(id))) return say_to_group([=](GroupSync& sync, Rank rank) { return sync.swap(rank, SurfaceId(id), frame); });
+    finish_frame(node_, session_.work, *surface, frame, surface->on_tiles());
     output_.frame_rendered(SurfaceId(id), frame);
+}
+
+void finish_frame(RenderNode& node, Work& work, Surface& surface, std::uint32_t frame, bool coordinated) {
+    {
+        const Timed timed(work.render);
+        if (surface.waiting_frame()) surface.show_frame();
+        surface.finish_frame(frame);
+        node.driver.gl().Flush();
+    }
+    ++work.frames;
+    if (node.present_at_once || !coordinated) surface.show_frame();
+    node.driver.forget_layer();
+    ++node.damage;
 }
 
 void Executor::present(SurfaceId id, std::uint32_t frame) {

@@ -41,23 +41,26 @@ public:
 
     class Stream final : public SessionOutput {
     public:
-        Stream(Loop& loop, StreamId id, SessionId session, std::shared_ptr<BatchQueue> queue)
-            : loop_(loop), id_(id), queue_(std::move(queue)), session_(loop.driver_, session), executor_(loop.node_, session_, *this) {}
+        Stream(Loop& loop, StreamId id, SessionId session, std::shared_ptr<BatchQueue> queue, std::shared_ptr<ParallelGroup> group, Rank rank)
+            : loop_(loop), id_(id), queue_(std::move(queue)), group_(std::move(group)), session_(loop.driver_, session, group_.get(), rank), executor_(loop.node_, session_, *this) {}
         ~Stream() override { loop_.node_.ended += session_.work; }
         void reply(std::uint32_t request, std::vector<std::byte> answer) override { loop_.events_.reply(id_, request, std::move(answer)); }
         void frame_rendered(SurfaceId surface, std::uint32_t frame) override {
-            loop_.events_.rendered(id_, session_.id(), surface, frame);
+            loop_.events_.drawn(id_, surface, frame);
+            loop_.events_.rendered(session_.id(), surface, frame);
         }
 
         /// A finished frame has not been shown yet.
         bool frame_waits() const {
-            for (const auto& [id, surface] : session_.surfaces())
-                if (surface->waiting_frame()) return true;
-            return false;
+            bool waits = false;
+            session_.for_each_surface([&](SurfaceId, const Surface& surface) { waits = waits || surface.waiting_frame(); });
+            return waits;
         }
+        /// The others of its parallel program must come first.
+        bool held() const { return group_ && group_->sync.waits(session_.rank()); }
         /// True: a batch was executed. `now` is the time, before and after.
         bool run_one(Clock::time_point& now) {
-            if (failed_ || !settled()) return false;
+            if (failed_ || held() || !settled()) return false;
             const std::vector<std::byte>* next = queue_->front();
             if (next == nullptr || (needs_shown_frame(*next) && frame_waits())) return false;
             const auto batch = queue_->pop();
@@ -65,15 +68,27 @@ public:
             const auto start = now;
             const auto render_before = work.render;
             if (const auto done = executor_.run_batch(batch); !done) fail(done.error().message);
+            if (group_) loop_.settle(*this);
             last_run_ = now = Clock::now();
             work.decode += now - start - (work.render - render_before);
             return true;
         }
         void fail(std::string reason) {
             failed_ = true;
+            if (group_) loop_.end_others(*this, "rank " + std::to_string(session_.rank()) + ": " + reason);
             loop_.events_.failed(id_, session_.id(), std::move(reason));
         }
+        /// Without a fault of its own.
+        void end(std::string reason) {
+            failed_ = true;
+            loop_.events_.ended(id_, std::move(reason));
+        }
+        /// Its connection is closed.
+        void close() { closed_ = true; }
+        /// Nothing of it is left to be executed.
+        bool over() const { return failed_ || (closed_ && (!group_ || queue_->front() == nullptr)); }
         bool failed() const { return failed_; }
+        const std::shared_ptr<ParallelGroup>& group() const { return group_; }
         bool exclusive() const { return !failed_ && executor_.exclusive(); }
         Clock::time_point last_run() const { return last_run_; }
         SessionStats stats() const { return {session_.id(), session_.work, queue_->bytes()}; }
@@ -90,10 +105,11 @@ public:
         Loop& loop_;
         StreamId id_;
         std::shared_ptr<BatchQueue> queue_;
+        std::shared_ptr<ParallelGroup> group_;
         Session session_;
         Executor executor_;
         Clock::time_point last_run_ = Clock::now();
-        bool failed_ = false;
+        bool failed_ = false, closed_ = false;
     };
 
     const Surface* find(const StackEntry& entry) {
@@ -110,14 +126,51 @@ public:
         auto now = Clock::now();
         for (auto& [id, stream] : streams_)
             if (only == nullptr || only == stream.get()) worked |= stream->run_one(now);
-        std::erase_if(streams_, [this](const auto& entry) {
-            node_.damage += entry.second->failed() ? 1 : 0;
-            return entry.second->failed();
-        });
+        worked |= remove_ended();
         for (const PictureRequest& due : watches_.due(node_.damage, Clock::now())) compositor_.request(due);
         for (Picture& picture : compositor_.collect(false)) events_.picture(std::move(picture));
         report();
         return worked;
+    }
+    void add(StreamId id, SessionId session, std::shared_ptr<BatchQueue> queue, const Membership& membership, Rank rank) {
+        std::shared_ptr<ParallelGroup> group;
+        for (auto& [other, stream] : streams_)
+            if (stream->session().id() == session && !stream->failed() && stream->group()) group = stream->group();
+        if (!group && membership.members != 0) group = std::make_shared<ParallelGroup>(driver_, membership);
+        streams_.emplace(id, std::make_unique<Stream>(*this, id, session, std::move(queue), std::move(group), rank));
+    }
+    void remove_session(SessionId session) {
+        node_.damage += std::erase_if(streams_, [session](const auto& entry) { return entry.second->session().id() == session; });
+    }
+    /// What a parallel program's stream has set free.
+    void settle(Stream& stream) {
+        for (const auto& [surface, frame] : stream.group()->finish_frames(node_, stream.session().work)) {
+            for (auto& [id, member] : streams_)
+                if (member->group() == stream.group() && !member->failed()) events_.drawn(id, surface, frame);
+            events_.rendered(stream.session().id(), surface, frame);
+        }
+        if (auto reason = stream.failed() ? std::nullopt : stream.group()->sync.deadlock()) stream.fail(std::move(*reason));
+    }
+    void end_others(Stream& stream, const std::string& reason) {
+        for (auto& [id, member] : streams_)
+            if (member.get() != &stream && member->group() == stream.group() && !member->failed()) member->end(reason);
+    }
+    /// True: others may go on without what has ended.
+    bool remove_ended() {
+        bool removed = false;
+        for (auto at = streams_.begin(); at != streams_.end();) {
+            Stream& stream = *at->second;
+            if (!stream.over()) {
+                ++at;
+                continue;
+            }
+            removed = true;
+            ++node_.damage;
+            if (const Rank rank = stream.session().rank(); !stream.failed() && stream.group() && !stream.group()->sync.left(rank))
+                end_others(stream, "rank " + std::to_string(rank) + " of the parallel program is gone");
+            at = streams_.erase(at);
+        }
+        return removed;
     }
     /// How long it may sleep when there is nothing to do.
     Clock::duration nap() const {
@@ -212,14 +265,16 @@ void RenderThread::wake() {
     wake_.notify_one();
 }
 
-void RenderThread::add_stream(StreamId stream, SessionId session, std::shared_ptr<BatchQueue> queue) {
-    post([=](Loop& loop) { loop.streams_.emplace(stream, std::make_unique<Loop::Stream>(loop, stream, session, queue)); });
+void RenderThread::add_stream(StreamId stream, SessionId session, std::shared_ptr<BatchQueue> queue, const Membership& membership, Rank rank) {
+    post([=](Loop& loop) { loop.add(stream, session, queue, membership, rank); });
 }
 void RenderThread::remove_stream(StreamId stream) {
     post([=](Loop& loop) {
-        loop.streams_.erase(stream);
-        ++loop.node_.damage;
+        if (const auto at = loop.streams_.find(stream); at != loop.streams_.end()) at->second->close();
     });
+}
+void RenderThread::remove_session(SessionId session) {
+    post([=](Loop& loop) { loop.remove_session(session); });
 }
 void RenderThread::set_tiles(std::vector<Tile> tiles, std::uint32_t background) {
     post([tiles = std::move(tiles), background](Loop& loop) {
@@ -227,8 +282,9 @@ void RenderThread::set_tiles(std::vector<Tile> tiles, std::uint32_t background) 
         loop.compositor_.set_background(background);
         loop.driver_.disable_scissor();
         for (auto& [id, stream] : loop.streams_)
-            for (const auto& [surface_id, surface] : stream->session().surfaces())
-                if (surface->where().window_width != 0) surface->place(SurfacePlace(surface->where()), tiles);
+            stream->session().for_each_surface([&](SurfaceId, Surface& surface) {
+                if (surface.where().window_width != 0) surface.place(SurfacePlace(surface.where()), tiles);
+            });
     });
 }
 void RenderThread::set_stacking(std::vector<StackEntry> bottom_first) {
@@ -245,8 +301,9 @@ void RenderThread::set_coordinated(bool coordinated) {
         loop.node_.present_at_once = !coordinated;
         if (coordinated) return;
         for (auto& [id, stream] : loop.streams_)
-            for (const auto& [surface_id, surface] : stream->session().surfaces())
-                if (surface->waiting_frame()) stream->executor().present(surface_id, *surface->waiting_frame());
+            stream->session().for_each_surface([&](SurfaceId surface_id, Surface& surface) {
+                if (surface.waiting_frame()) stream->executor().present(surface_id, *surface.waiting_frame());
+            });
     });
 }
 void RenderThread::request_picture(const PictureRequest& request) {

@@ -42,9 +42,14 @@ class NodeEvents {
 public:
     virtual ~NodeEvents() = default;
     virtual void reply(StreamId stream, std::uint32_t request, std::vector<std::byte> answer) = 0;
-    virtual void rendered(StreamId stream, SessionId session, SurfaceId surface, std::uint32_t frame) = 0;
+    /// For the stream's client: a frame of its is drawn.
+    virtual void drawn(StreamId stream, SurfaceId surface, std::uint32_t frame) = 0;
+    /// For walld; in a parallel program once for all its streams.
+    virtual void rendered(SessionId session, SurfaceId surface, std::uint32_t frame) = 0;
     /// The stream's content was bad; its session is gone from this node.
     virtual void failed(StreamId stream, SessionId session, std::string reason) = 0;
+    /// Nothing was wrong with the stream itself, but it cannot go on.
+    virtual void ended(StreamId stream, std::string reason) = 0;
     virtual void picture(Picture picture) = 0;
     virtual void stats(const RenderStats& stats) = 0;  ///< about once a second
 };
@@ -62,9 +67,13 @@ public:
     const Started& started() const { return started_; }
 
     // ---- any thread ----
-    void add_stream(StreamId stream, SessionId session, std::shared_ptr<BatchQueue> queue);
-    /// The session's objects are freed; nothing of the stream is reported after that.
+    /// `rank`: of a parallel program's member.
+    void add_stream(StreamId stream, SessionId session, std::shared_ptr<BatchQueue> queue, const Membership& membership = {}, Rank rank = 0);
+    /// Nothing more comes. The session's objects are freed; a parallel program's stream is executed to its end before,
+    /// because others may wait for what it says.
     void remove_stream(StreamId stream);
+    /// All streams of the session go at once, whatever is left in them.
+    void remove_session(SessionId session);
     void set_tiles(std::vector<Tile> tiles, std::uint32_t background);
     void set_stacking(std::vector<StackEntry> bottom_first);
     void present(SessionId session, SurfaceId surface, std::uint32_t frame);

@@ -4,12 +4,14 @@
 namespace wall::tileserver {
 
 Surface* Session::surface(SurfaceId id) {
+    if (shares(id)) return group_->surface(id);
     const auto at = surfaces_.find(id);
     return at == surfaces_.end() ? nullptr : at->second.get();
 }
 
 Surface* Session::create_surface(SurfaceId id, const SurfaceFormat& format) {
     driver_.forget_layer();
+    if (shares(id)) return group_->open_surface(rank_, id, format);
     if (surfaces_.size() >= kMaxSurfaces && !surfaces_.contains(id)) return nullptr;
     auto& surface = surfaces_[id];
     surface = std::make_unique<Surface>(driver_.gl(), driver_.flip_y(), format, pixels_);
@@ -17,6 +19,7 @@ Surface* Session::create_surface(SurfaceId id, const SurfaceFormat& format) {
 }
 
 void Session::destroy_surface(SurfaceId id) {
+    if (shares(id)) return group_->close_surface(rank_, id);
     driver_.forget_layer();
     surfaces_.erase(id);
 }

@@ -13,8 +13,10 @@
 #include "common/glstate/value_history.h"
 #include "gen/glstate/state.gen.h"
 #include "tileserver/render/attribute_trail.h"
+#include "tileserver/render/content_store.h"
 #include "tileserver/render/driver.h"
 #include "tileserver/render/limits.h"
+#include "tileserver/render/parallel_group.h"
 #include "tileserver/render/programs.h"
 #include "tileserver/render/queries.h"
 #include "tileserver/render/soft_maps.h"
@@ -64,18 +66,30 @@ private:
 
 class Session {
 public:
-    Session(Driver& driver, SessionId id) : programs(driver), queries(driver.gl()), driver_(driver), id_(id) {}
+    /// `group`: of a parallel program, of which this is the member `rank`; outlives the session.
+    Session(Driver& driver, SessionId id, ParallelGroup* group = nullptr, Rank rank = 0)
+        : programs(driver), queries(driver.gl()), driver_(driver), id_(id), group_(group), rank_(rank) {}
     ~Session() { driver_.forget_layer(); }
     Session(const Session&) = delete;
 
     SessionId id() const { return id_; }
+    ContentAsker asker() const { return ContentAsker(std::uint64_t{id_.value} << 32 | rank_); }
+    ParallelGroup* group() const { return group_; }
+    Rank rank() const { return rank_; }
     SoftContext& context(ContextId id) { return contexts_[id]; }
     void destroy_context(ContextId id) { contexts_.erase(id); }
     std::size_t context_count() const { return contexts_.size(); }
 
+    /// Of its own or, in a parallel program, of all members.
     Surface* surface(SurfaceId id);
-    const std::unordered_map<SurfaceId, std::unique_ptr<Surface>>& surfaces() const { return surfaces_; }
-    /// Null if the session has too many.
+    bool shares(SurfaceId id) const { return group_ != nullptr && ParallelGroup::shares(id); }
+    template <class Visit>
+    void for_each_surface(Visit&& visit) const {
+        for (const auto& [id, surface] : surfaces_) visit(id, *surface);
+        if (group_ == nullptr) return;
+        for (const auto& [id, surface] : group_->surfaces()) visit(id, *surface);
+    }
+    /// Null if the session has too many, or if the other members have made it in another format.
     Surface* create_surface(SurfaceId id, const SurfaceFormat& format);
     void destroy_surface(SurfaceId id);
 
@@ -102,6 +116,8 @@ private:
     static std::uint64_t key(ClientName name, TextureTarget target);
     Driver& driver_;
     SessionId id_;
+    ParallelGroup* group_;
+    Rank rank_;
     std::unordered_map<ContextId, SoftContext> contexts_;
     PixelBudget pixels_{kMaxLayerPixels};  // before the surfaces, which use it to the end
     std::unordered_map<SurfaceId, std::unique_ptr<Surface>> surfaces_;

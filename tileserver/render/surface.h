@@ -25,6 +25,7 @@ struct Tile {
 struct SurfaceFormat {
     LayerFormat layer;
     bool accum = false;
+    bool operator==(const SurfaceFormat&) const = default;
 };
 
 struct SurfacePlace {
@@ -32,6 +33,7 @@ struct SurfacePlace {
     std::uint32_t window_width = 0, window_height = 0;
     geom::Rect rect;  ///< canvas pixels that the whole window covers
     bool offscreen = false;
+    bool operator==(const SurfacePlace&) const = default;
 };
 
 class Surface {

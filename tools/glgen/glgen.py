@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Generates everything that follows from gl.xml and proto/gl/*.toml.
+"""Generates everything that follows from gl.xml, proto/gl/extensions.xml and proto/gl/*.toml.
 
     glgen.py --registry gl.xml --proto proto/gl --out build/release/generated/gen
     glgen.py --registry gl.xml --proto proto/gl --coverage docs/opengl-coverage.md [--check]
@@ -31,7 +31,7 @@ class Model:
 
 
 def load(registry_path, proto):
-    gl = registry.load(registry_path)
+    gl = registry.load(registry_path, proto / "extensions.xml")
     elements = state.load(proto / "state.toml")
     return Model(gl, wire.load(proto / "wire.toml"), elements, commands.load(proto / "commands.toml", gl, elements))
 

@@ -26,7 +26,7 @@ class Streams(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
         cls.x = cls.enterClassContext(XServer())
-        cls.wall = cls.enterClassContext(Wall(tiles=(2, 1), tile_size=TILE, options='background = "#204060"'))
+        cls.wall = cls.enterClassContext(Wall(tiles=(2, 1), tile_size=TILE, swap_timeout_ms=10000, options='background = "#204060"'))
         cls.app = cls.wall.run("glxgears", "-geometry", "400x150", env=cls.x.environment(), stdout=subprocess.DEVNULL)
         cls.session = cls.wall.wait_session(cls.app)
         cls.wall.wait(cls.session, 2)

@@ -25,7 +25,7 @@ glapi::ContentKey key_of(int n) {
 // ---- the store ----
 
 using Store = ContentStore<int>;
-constexpr SessionId kA{1}, kB{2}, kC{3};
+constexpr ContentAsker kA{1}, kB{2}, kC{3};
 
 TEST(ContentStoreTest, TheFirstSendsTheOthersWait) {
     Store store;

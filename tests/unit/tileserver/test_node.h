@@ -52,7 +52,8 @@ private:
 
 class TestSession : public SessionOutput {
 public:
-    TestSession(RenderNode& node, std::uint32_t id) : session(node.driver, SessionId(id)), executor(node, session, *this) {}
+    TestSession(RenderNode& node, std::uint32_t id, ParallelGroup* group = nullptr, Rank rank = 0)
+        : session(node.driver, SessionId(id), group, rank), executor(node, session, *this) {}
     void reply(std::uint32_t request, std::vector<std::byte> answer) override { replies[request] = std::move(answer); }
     void frame_rendered(SurfaceId surface, std::uint32_t frame) override { frames.push_back({surface.value, frame}); }
 

@@ -33,6 +33,8 @@ public:
         if (message.has_stream_start() || message.has_stream_stop() || message.has_stream_ready()) nodes[node].push_back(message);
     }
     void to_client(SessionId, const proto::Envelope&) override {}
+    void to_member(SessionId, Rank, const proto::Envelope&) override {}
+    void end_session(SessionId, const std::string&) override {}
     std::map<NodeIndex, std::vector<proto::Envelope>> nodes;
 };
 

@@ -29,9 +29,16 @@ class FakeOutbox : public Outbox {
 public:
     void to_node(NodeIndex node, const proto::Envelope& message) override { nodes[node].push_back(message); }
     void to_client(SessionId session, const proto::Envelope& message) override { clients[session].push_back(message); }
+    void to_member(SessionId session, Rank rank, const proto::Envelope& message) override {
+        clients[session].push_back(message);
+        members[{session, rank}].push_back(message);
+    }
+    void end_session(SessionId session, const std::string& reason) override { ended[session] = reason; }
 
     std::map<NodeIndex, std::vector<proto::Envelope>> nodes;
     std::map<SessionId, std::vector<proto::Envelope>> clients;
+    std::map<std::pair<SessionId, Rank>, std::vector<proto::Envelope>> members;
+    std::map<SessionId, std::string> ended;
 };
 
 class TheWall : public ::testing::Test {
@@ -45,7 +52,7 @@ protected:
         return *wall_.node_joins(hello, now_);
     }
     SessionId open(const proto::ClientHello& hello = {}) {
-        return wall_.open_session(hello, {}, [](SessionId) {});
+        return wall_.open_session(hello, {}, now_, [](SessionId) {});
     }
     geom::Rect open_surface(SessionId id, std::uint32_t surface, std::uint32_t width, std::uint32_t height) {
         proto::SurfaceOpen message;
@@ -180,11 +187,11 @@ TEST_F(TheWall, APlacementFollowsTheWindowUnlessItIsScaled) {
     resize.set_surface(1);
     resize.set_width(400);
     resize.set_height(200);
-    wall_.resize_surface(id, resize);
+    wall_.resize_surface(id, resize, now_);
     EXPECT_EQ(last_to_client(id).placement().rect().width(), 400u);
     EXPECT_EQ(last_to_client(id).placement().layout_version(), 2u);
-    ASSERT_TRUE(wall_.place_surface({id, {}}, {10, 20, 100, 50}));
-    wall_.resize_surface(id, resize);
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {10, 20, 100, 50}, now_));
+    wall_.resize_surface(id, resize, now_);
     EXPECT_EQ(last_to_client(id).placement().rect().width(), 100u);
     EXPECT_EQ(last_to_client(id).placement().layout_version(), 4u) << "a resize is always answered";
 }
@@ -196,7 +203,7 @@ TEST_F(TheWall, ANodeShowsOnlyWhatLiesOnIt) {
     open_surface(id, 1, 300, 300);
     EXPECT_EQ(last_to_node(0).stacking().entries_size(), 1);
     EXPECT_EQ(last_to_node(1).stacking().entries_size(), 0);
-    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}));
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}, now_));
     adopt(id, 1);
     EXPECT_EQ(last_to_node(0).stacking().entries_size(), 0) << "it has moved away";
     EXPECT_EQ(last_to_node(1).stacking().entries_size(), 1);
@@ -208,7 +215,7 @@ TEST_F(TheWall, AMovedWindowStaysInSightUntilItsFirstFrameAtTheNewPlaceIsPresent
     const auto id = open();
     open_surface(id, 1, 300, 300);
     rendered(0, id, 1);
-    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}));
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}, now_));
     EXPECT_EQ(last_to_client(id).placement().rect().x(), 700);
     EXPECT_EQ(last_to_client(id).placement().layout_version(), 2u);
     const auto& place = wall_.find({id, SurfaceId(1)})->place;
@@ -234,7 +241,7 @@ TEST_F(TheWall, TheFirstFrameAtANewPlaceWaitsForAllItsNodes) {
     const auto id = open();
     open_surface(id, 1, 300, 300);
     rendered(0, id, 1);
-    ASSERT_TRUE(wall_.place_surface({id, {}}, {500, 0, 300, 300}));
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {500, 0, 300, 300}, now_));
     adopt(id, 2);
     out_.nodes.clear();
     rendered(0, id, 2);
@@ -249,7 +256,7 @@ TEST_F(TheWall, AWindowThatMovesToWhereNoNodeIsDisappears) {
     const auto id = open();
     open_surface(id, 1, 300, 300);
     rendered(0, id, 1);
-    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}));
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}, now_));
     adopt(id, 2);
     EXPECT_EQ(last_to_node(0).stacking().entries_size(), 0);
     EXPECT_FALSE(wall_.find({id, SurfaceId(1)})->place.moving());
@@ -279,13 +286,13 @@ TEST_F(TheWall, APlacementThatCannotBeChangesNothing) {
     open_surface(id, 1, 300, 300);
     const auto messages = out_.clients[id].size();
     for (const geom::Rect rect : {geom::Rect{0, 0, 0, 10}, {0, 0, 10, -1}, {1280, 0, 10, 10}, {0, -10, 10, 10}, {-2000000000, 0, 10, 10}, {0, 0, 2000000000, 10}}) {
-        const auto placed = wall_.place_surface({id, {}}, rect);
+        const auto placed = wall_.place_surface({id, {}}, rect, now_);
         ASSERT_FALSE(placed);
         EXPECT_EQ(placed.error().kind, RefusalKind::invalid);
     }
-    EXPECT_EQ(wall_.place_surface({SessionId(7), {}}, {0, 0, 10, 10}).error().kind, RefusalKind::not_found);
-    EXPECT_EQ(wall_.place_surface({id, SurfaceId(2)}, {0, 0, 10, 10}).error().kind, RefusalKind::not_found);
-    EXPECT_EQ(wall_.place_surface({open(), {}}, {0, 0, 10, 10}).error().kind, RefusalKind::conflict) << "no window yet";
+    EXPECT_EQ(wall_.place_surface({SessionId(7), {}}, {0, 0, 10, 10}, now_).error().kind, RefusalKind::not_found);
+    EXPECT_EQ(wall_.place_surface({id, SurfaceId(2)}, {0, 0, 10, 10}, now_).error().kind, RefusalKind::not_found);
+    EXPECT_EQ(wall_.place_surface({open(), {}}, {0, 0, 10, 10}, now_).error().kind, RefusalKind::conflict) << "no window yet";
     EXPECT_EQ(out_.clients[id].size(), messages);
     EXPECT_FALSE(wall_.find({id, SurfaceId(1)})->place.moving());
 }
@@ -315,16 +322,16 @@ TEST_F(TheWall, ALayoutBringsWindowsBackAndWaitsForThoseThatAreMissing) {
     const auto gears = open(named("glxgears", "")), map = open(named("viewer", "map"));
     open_surface(gears, 1, 100, 100);
     open_surface(map, 1, 100, 100);
-    ASSERT_TRUE(wall_.place_surface({map, {}}, {600, 10, 200, 300}));
+    ASSERT_TRUE(wall_.place_surface({map, {}}, {600, 10, 200, 300}, now_));
     ASSERT_TRUE(wall_.lower({map, {}}));
     const auto layout = wall_.current_layout();
     ASSERT_EQ(layout.windows.size(), 2u);
 
-    ASSERT_TRUE(wall_.place_surface({map, {}}, {0, 0, 10, 10}));
-    ASSERT_TRUE(wall_.place_surface({gears, {}}, {0, 0, 10, 10}));
+    ASSERT_TRUE(wall_.place_surface({map, {}}, {0, 0, 10, 10}, now_));
+    ASSERT_TRUE(wall_.place_surface({gears, {}}, {0, 0, 10, 10}, now_));
     ASSERT_TRUE(wall_.raise({map, {}}));
     wall_.close_session(gears);
-    EXPECT_EQ(wall_.load_layout(layout), 1u);
+    EXPECT_EQ(wall_.load_layout(layout, now_), 1u);
     EXPECT_EQ(wall_.find({map, SurfaceId(1)})->place.wanted(), (geom::Rect{600, 10, 200, 300}));
     const auto other = open(named("atlantis", ""));
     open_surface(other, 1, 50, 50);
@@ -410,7 +417,7 @@ TEST_F(TheWall, RaiseLowerAndHoldNeedARealSession) {
         EXPECT_FALSE(wall_.lower(wrong));
         EXPECT_FALSE(wall_.hold(wrong, true, now_));
         EXPECT_FALSE(wall_.step(wrong, 1, now_));
-        EXPECT_FALSE(wall_.place_surface(wrong, {0, 0, 1, 1}));
+        EXPECT_FALSE(wall_.place_surface(wrong, {0, 0, 1, 1}, now_));
     }
 }
 
@@ -474,6 +481,173 @@ TEST_F(TheWall, KnowsWhatEachTileShows) {
     EXPECT_EQ(wall_.tile_lag(1, 0), 1u);
     rendered(1, id, 2);
     EXPECT_EQ(wall_.tile_lag(1, 0), 0u);
+}
+
+// ---- parallel programs ----
+
+class AParallelProgram : public TheWall {
+protected:
+    static proto::ClientHello member(std::uint32_t rank, std::uint32_t members = 2) {
+        proto::ClientHello hello;
+        hello.set_version(wire::kProtocolVersion);
+        hello.set_pid(1000 + rank);
+        hello.mutable_group()->set_name("march-1");
+        hello.mutable_group()->set_rank(rank);
+        hello.mutable_group()->set_members(members);
+        return hello;
+    }
+    /// Both members come and open window 1.
+    SessionId start() {
+        const auto id = open(member(0));
+        EXPECT_EQ(open(member(1)), id);
+        for (const Rank rank : {0u, 1u}) open_window(id, rank, 300, 200);
+        note_all(id);
+        return id;
+    }
+    void open_window(SessionId id, Rank rank, std::uint32_t width, std::uint32_t height) {
+        proto::SurfaceOpen message;
+        message.set_surface(1);
+        message.set_width(width);
+        message.set_height(height);
+        EXPECT_TRUE(wall_.open_surface(id, message, now_, rank));
+    }
+    void note(SessionId id, Rank rank, std::uint32_t version) {
+        proto::PlacementNoted message;
+        message.set_surface(1);
+        message.set_layout_version(version);
+        wall_.placement_noted(id, rank, message, now_);
+    }
+    void note_all(SessionId id) {
+        for (const Rank rank : {0u, 1u}) note(id, rank, wall_.find({id, SurfaceId(1)})->place.version());
+    }
+    std::uint32_t presented(SessionId id) { return wall_.find({id, SurfaceId(1)})->swap.presented(); }
+    const Person alice_{Person::Kind::unix_user, "alice", 1000, Role::user};
+    const Person bob_{Person::Kind::unix_user, "bob", 1001, Role::user};
+};
+
+TEST_F(AParallelProgram, IsOneSessionWithOneWindow) {
+    join("left");
+    const auto id = start();
+    EXPECT_EQ(wall_.sessions().size(), 1u);
+    EXPECT_EQ(wall_.stacking().size(), 1u);
+    for (const Rank rank : {0u, 1u}) {
+        const auto& sent = out_.members[{id, rank}];
+        ASSERT_EQ(sent.size(), 2u) << "a welcome and the placement";
+        EXPECT_EQ(sent[0].client_welcome().session(), id.value);
+        EXPECT_EQ(sent[1].placement().width(), 300u);
+        EXPECT_EQ(sent[1].placement().from_frame(), 0u);
+        EXPECT_EQ(sent[1].placement().nodes_size(), 1);
+    }
+    EXPECT_EQ(sessions_json(wall_)[0]["group"]["members"][1]["pid"], 1001);
+}
+
+TEST_F(AParallelProgram, BelongsToItsFirstMembersOwner) {
+    join("left");
+    wall_.open_session(member(0), alice_, now_, [](SessionId) {});
+    EXPECT_TRUE(wall_.check_member(member(1), alice_));
+    EXPECT_EQ(wall_.check_member(member(1), bob_).error().kind, RefusalKind::forbidden);
+    EXPECT_EQ(wall_.check_member(member(0), alice_).error().kind, RefusalKind::conflict);
+    EXPECT_EQ(wall_.check_member(member(1, 3), alice_).error().kind, RefusalKind::conflict);
+    EXPECT_TRUE(wall_.check_member({}, bob_));
+}
+
+TEST_F(AParallelProgram, MovesAtAFrameThatNoMemberHasBegun) {
+    join("left");
+    join("right", 101);
+    const auto id = start();
+    for (std::uint32_t frame = 1; frame <= 10; ++frame)
+        for (const NodeIndex node : {0u, 1u}) rendered(node, id, frame);
+    EXPECT_EQ(presented(id), 10u) << "of both nodes, though the window lies on one";
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 200}, now_));
+    EXPECT_EQ(out_.clients[id].back().placement().from_frame(), 15u);
+    const auto version = out_.clients[id].back().placement().layout_version();
+    const auto render = [&](std::uint32_t frame) {
+        for (const NodeIndex node : {0u, 1u}) rendered(node, id, frame);
+    };
+    render(11);
+    render(12);
+    EXPECT_EQ(presented(id), 11u) << "a member may begin 14 then, and does not know that 15 is another place";
+    note(id, 1, version);
+    EXPECT_EQ(presented(id), 11u);
+    note(id, 0, version);
+    EXPECT_EQ(presented(id), 12u);
+    EXPECT_EQ(wall_.find({id, SurfaceId(1)})->place.shown().x, 0);
+    for (std::uint32_t frame = 13; frame <= 15; ++frame) render(frame);
+    EXPECT_EQ(wall_.find({id, SurfaceId(1)})->place.shown().x, 700);
+}
+
+TEST_F(AParallelProgram, ComesToANewNodeAtTheSameFrame) {
+    join("left");
+    const auto id = start();
+    rendered(0, id, 1);
+    join("right", 101);
+    const auto& placement = out_.clients[id].back().placement();
+    EXPECT_EQ(placement.from_frame(), 6u);
+    EXPECT_EQ(placement.nodes_size(), 2);
+    EXPECT_EQ(out_.nodes[1][1].ticket().members(), 2u);
+}
+
+TEST_F(AParallelProgram, HasTheSizeOfRank0sWindow) {
+    join("left");
+    const auto id = open(member(0));
+    open(member(1));
+    open_window(id, 1, 100, 100);
+    open_window(id, 0, 300, 200);
+    EXPECT_EQ(wall_.find({id, SurfaceId(1)})->width, 300u);
+    proto::SurfaceResize resize;
+    resize.set_surface(1);
+    resize.set_width(50);
+    resize.set_height(60);
+    wall_.resize_surface(id, resize, now_, 1);
+    EXPECT_EQ(wall_.find({id, SurfaceId(1)})->width, 300u);
+    wall_.resize_surface(id, resize, now_, 0);
+    EXPECT_EQ(wall_.find({id, SurfaceId(1)})->width, 50u);
+}
+
+TEST_F(AParallelProgram, EndsAsAWholeWhenAMemberIsGone) {
+    join("left");
+    const auto id = start();
+    EXPECT_NE(wall_.member_gone(id, 1).find("rank 1 (process 1001)"), std::string::npos);
+    EXPECT_NE(out_.ended[id].find("ended without leaving"), std::string::npos);
+    EXPECT_TRUE(wall_.sessions().empty());
+    wall_.member_gone(id, 0);
+}
+
+TEST_F(AParallelProgram, GoesOnWithoutAMemberThatLeaves) {
+    join("left");
+    const auto id = start();
+    wall_.close_surface(id, SurfaceId(1), 1);
+    EXPECT_EQ(wall_.stacking().size(), 1u) << "rank 0 still has it";
+    wall_.member_leaves(id, 1, now_);
+    wall_.member_gone(id, 1);
+    EXPECT_EQ(wall_.sessions().size(), 1u);
+    join("right", 101);
+    EXPECT_EQ(out_.nodes[1][1].ticket().left(0), 1u);
+    wall_.close_surface(id, SurfaceId(1), 0);
+    EXPECT_TRUE(wall_.stacking().empty());
+    wall_.member_leaves(id, 0, now_);
+    wall_.member_gone(id, 0);
+    EXPECT_TRUE(wall_.sessions().empty());
+    EXPECT_TRUE(out_.ended.empty());
+}
+
+TEST_F(AParallelProgram, EndsWhenNotAllMembersCome) {
+    join("left");
+    const auto id = open(member(0));
+    EXPECT_EQ(wall_.next_deadline(), now_ + Wall::kMembersLimit);
+    wall_.tick(now_ + Wall::kMembersLimit);
+    EXPECT_NE(out_.ended[id].find("only 1 of 2 processes"), std::string::npos);
+    EXPECT_TRUE(wall_.sessions().empty());
+}
+
+TEST_F(AParallelProgram, EndsWithANodesFault) {
+    join("left");
+    const auto id = start();
+    proto::SessionFault fault;
+    fault.set_session(id.value);
+    fault.set_reason("Bad: bad");
+    wall_.node_faults(0, fault);
+    EXPECT_EQ(out_.ended[id], "left: Bad: bad");
 }
 
 TEST(Target, IsASessionOrOneOfItsSurfaces) {

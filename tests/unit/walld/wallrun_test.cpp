@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tools/wallrun/launch.h"
+#include "tools/wallrun/members.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,6 +21,31 @@ TEST(Wallrun, SetsTheEnvironmentThatSelectsTheVendor) {
     EXPECT_EQ(set.at("WALLGL_NAME"), "n");
     EXPECT_EQ(set.at("WALLGL_HOLD"), "1");
     EXPECT_FALSE(environment_for({}, files, "").contains("WALLGL_RECT"));
+}
+
+TEST(Wallrun, TakesRanksFromMpi) {
+    std::map<std::string, std::string> variables{{"PMI_RANK", "1"}, {"PMI_SIZE", "2"}};
+    const Environment environment = [&](const char* name) { return variables.contains(name) ? variables[name] : ""; };
+    EXPECT_EQ(rank_from_launcher(environment).value(), (MemberRank{1, 2}));
+    variables["OMPI_COMM_WORLD_RANK"] = "3";
+    EXPECT_EQ(rank_from_launcher(environment).value(), (MemberRank{1, 2})) << "no size with it";
+    variables["OMPI_COMM_WORLD_SIZE"] = "4";
+    EXPECT_EQ(rank_from_launcher(environment).value(), (MemberRank{3, 4}));
+    variables.clear();
+    EXPECT_THAT(rank_from_launcher(environment).error().message, HasSubstr("mpirun"));
+    EXPECT_EQ(parallel_value("g", {3, 4}).value(), "g:3:4");
+    EXPECT_FALSE(parallel_value("", {0, 1}));
+    EXPECT_FALSE(parallel_value("g", {4, 4}));
+    EXPECT_FALSE(parallel_value("g", {0, 1000}));
+    EXPECT_NE(new_group_name("/bin/march"), new_group_name("/bin/march"));
+    EXPECT_THAT(new_group_name("/bin/march"), ::testing::StartsWith("march-"));
+}
+
+TEST(Wallrun, EndsAllProcessesWhenOneFails) {
+    EXPECT_EQ(run_members("g", 3, {"true"}), 0);
+    EXPECT_EQ(run_members("g", 3, {"/bin/sh", "-c", "case $WALLGL_PARALLEL in g:1:3) exit 7;; *) exec sleep 60;; esac"}), 7);
+    EXPECT_EQ(run_members("g", 2, {"/bin/sh", "-c", "case $WALLGL_PARALLEL in g:0:2) kill -9 $$;; *) exec sleep 60;; esac"}), 128 + 9);
+    EXPECT_EQ(run_members("g", 2, {"/nowhere/program"}), 127);
 }
 
 TEST(Wallrun, ChecksRectangles) {

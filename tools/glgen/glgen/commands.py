@@ -94,7 +94,7 @@ def load(path, registry, model):
         assert cls in CLASSES, f"commands.toml: no class {cls}"
         for name, line in entries.items():
             full = "gl" + name
-            assert full in registry.commands, f"commands.toml: gl.xml has no command {full}"
+            assert full in registry.commands, f"commands.toml: no command {full} in gl.xml or extensions.xml"
             assert full not in lines, f"commands.toml: {name} twice"
             lines[full] = _parse(registry.commands[full], cls, line)
     everything = {}

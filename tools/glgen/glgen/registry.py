@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The Khronos registry (gl.xml) as values: every command with its signature, first version and alias."""
+"""The Khronos registry (gl.xml), and what is added to it, as values: every command with its signature, first version and alias."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -86,11 +86,19 @@ def _version(text):
     return tuple(int(x) for x in text.split("."))
 
 
-def load(path):
-    root = ET.parse(path).getroot()
-    commands = {}
+def load(path, *more):
+    """The registry at `path`, and the files in its format that add to it."""
+    gl = Registry({}, {})
+    for each in (path, *more):
+        _add(gl, ET.parse(each).getroot())
+    return gl
+
+
+def _add(gl, root):
+    commands = gl.commands
     for element in root.find("commands"):
         command = _command(element)
+        assert command.name not in commands, f"{command.name} twice"
         commands[command.name] = command
     for feature in root.findall("feature"):
         api, number = feature.get("api"), feature.get("number")
@@ -107,9 +115,7 @@ def load(path):
         for require in extension.findall("require"):
             for item in require.findall("command"):
                 commands[item.get("name")].extensions.append(extension.get("name"))
-    enums = {}
     for block in root.findall("enums"):
         for item in block.findall("enum"):
             if item.get("api") in (None, "gl", "gles2"):
-                enums[item.get("name")] = int(item.get("value"), 0)
-    return Registry(commands, enums)
+                gl.enums[item.get("name")] = int(item.get("value"), 0)

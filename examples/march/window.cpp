@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "examples/march/window.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace march {
+namespace {
+
+template <class T>
+T need(T thing, const char* missing) {
+    if (thing) return thing;
+    std::fprintf(stderr, "march: %s\n", missing);
+    std::exit(1);
+}
+
+}  // namespace
+
+Window::Window(int width, int height) : display_(need(XOpenDisplay(nullptr), "cannot open the display; is DISPLAY set?")) {
+    int wanted[] = {GLX_RGBA, GLX_DOUBLEBUFFER, GLX_DEPTH_SIZE, 24, 0};
+    XVisualInfo* visual = need(glXChooseVisual(display_, DefaultScreen(display_), wanted), "no visual with a depth buffer");
+    XSetWindowAttributes attributes{};
+    const ::Window root = RootWindow(display_, visual->screen);
+    attributes.colormap = XCreateColormap(display_, root, visual->visual, AllocNone);
+    window_ = XCreateWindow(display_, root, 0, 0, static_cast<unsigned>(width), static_cast<unsigned>(height), 0, visual->depth, InputOutput, visual->visual, CWColormap, &attributes);
+    close_ = XInternAtom(display_, "WM_DELETE_WINDOW", False);
+    XSetWMProtocols(display_, window_, &close_, 1);
+    XStoreName(display_, window_, "march");
+    XMapWindow(display_, window_);
+    context_ = need(glXCreateContext(display_, visual, nullptr, True), "no OpenGL context");
+    XFree(visual);
+    need(glXMakeCurrent(display_, window_, context_), "the context cannot be made current");
+}
+
+Window::~Window() {
+    glXMakeCurrent(display_, None, nullptr);
+    glXDestroyContext(display_, context_);
+    XCloseDisplay(display_);
+}
+
+bool Window::is_open() {
+    while (XPending(display_) > 0) {
+        XEvent event;
+        XNextEvent(display_, &event);
+        if (event.type == ClientMessage && static_cast<Atom>(event.xclient.data.l[0]) == close_) open_ = false;
+    }
+    return open_;
+}
+
+}  // namespace march

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/render/parallel_group.h"
+
+#include "tileserver/render/executor.h"
+
+namespace wall::tileserver {
+
+Surface* ParallelGroup::surface(SurfaceId id) {
+    const auto at = surfaces_.find(id);
+    return at == surfaces_.end() ? nullptr : at->second.get();
+}
+
+Surface* ParallelGroup::open_surface(Rank rank, SurfaceId id, const SurfaceFormat& format) {
+    auto& surface = surfaces_[id];
+    if (!surface) surface = std::make_unique<Surface>(driver_.gl(), driver_.flip_y(), format, pixels_);
+    if (!(surface->format() == format)) return nullptr;
+    sync.surface_open(rank, id);
+    return surface.get();
+}
+
+void ParallelGroup::close_surface(Rank rank, SurfaceId id) {
+    if (!sync.surface_close(rank, id)) return;
+    driver_.forget_layer();
+    surfaces_.erase(id);
+}
+
+std::vector<FinishedFrame> ParallelGroup::finish_frames(RenderNode& node, Work& work) {
+    auto finished = sync.take_finished();
+    for (const auto& [id, frame] : finished)
+        if (Surface* shared = surface(id)) finish_frame(node, work, *shared, frame, true);  // also where it is on no tile: all nodes keep step
+    return finished;
+}
+
+}  // namespace wall::tileserver
