@@ -32,6 +32,9 @@ constexpr Step kSteps[] = {
     {{2, 1, "1.20"}, "glUniformMatrix2x3fv"},
 };
 
+/// What no driver need have: it is between the programs and the nodes.
+constexpr const char* kOwnExtensions[] = {"GL_CR_synchronization"};
+
 /// An extension and a command that it stands or falls with; null: words only.
 struct Extension {
     const char* name;
@@ -129,9 +132,6 @@ GlVersion offered_version(const Caps& caps) {
     }
     return offered;
 }
-
-/// What no driver need have: it is between the programs and the nodes.
-constexpr const char* kOwnExtensions[] = {"GL_CR_synchronization"};
 
 std::vector<std::string> offered_extensions(const Caps& caps) {
     std::istringstream words(caps.extensions);
