@@ -26,6 +26,7 @@ using std::chrono::milliseconds;
 
 constexpr const char* kDefaultAddress = "unix:/run/wallgl/walld.sock";
 constexpr milliseconds kLeaveLimit{1000};
+constexpr milliseconds kLifeSign{500};        // a walld that keeps a connection open for so long is there
 constexpr milliseconds kTick{1000};           // statistics are written and told, a lost link is tried again
 constexpr std::size_t kLengthBytes = 4;       // in front of every envelope, little endian
 constexpr std::size_t kReadChunk = 16 << 10;
@@ -459,7 +460,10 @@ void ControlLink::end_group(const std::string& why) {
 /// A parallel program cannot come again: its processes would have to begin anew at the same frame. It draws on as long as
 /// walld is away.
 void ControlLink::end_if_walld_is_new() {
-    if (!connect_to(address_, static_cast<int>(kOpenLimit.count()))) return;
+    const auto fd = connect_to(address_, static_cast<int>(kOpenLimit.count()));
+    if (!fd) return;
+    pollfd closed{fd->get(), POLLIN, 0};  // one that is just dying closes what it has not accepted
+    if (::poll(&closed, 1, static_cast<int>(kLifeSign.count())) != 0) return;
     refused_ = true;
     const std::string why = "walld was started anew: so must the parallel program be";
     log(LogLevel::error, "session_ended why=%s", why.c_str());

@@ -114,15 +114,27 @@ class Wall:
     def _start(self) -> None:
         (self.folder / "wall.toml").write_text(self._description())
         self.address = f"unix:{self.folder}/walld.sock"
-        self._start_daemon("walld", "walld", "--config", self.folder / "wall.toml", "--ready-file", self.folder / "ready")
-        self._until(lambda: (self.folder / "ready").exists(), "walld does not get ready", "walld")
-        self.url = json.loads((self.folder / "ready").read_text())["http"]
+        self._start_walld()
         for name in self.node_names:
             self.start_node(name)
         self.wait_nodes()
 
+    def _start_walld(self) -> None:
+        self._start_daemon("walld", "walld", "--config", self.folder / "wall.toml", "--ready-file", self.folder / "ready")
+        self._until(lambda: (self.folder / "ready").exists(), "walld does not get ready", "walld")
+        self.url = json.loads((self.folder / "ready").read_text())["http"]
+
     def start_node(self, name: str) -> subprocess.Popen:
         return self._start_daemon(name, "tileserver", "--config", self.folder / "wall.toml", "--node", name)
+
+    def restart_walld(self, pause: float = 0) -> None:
+        """Killed, and after `pause` seconds another one on the same addresses (but for HTTP)."""
+        self.daemons["walld"].kill()
+        self.daemons["walld"].wait()
+        time.sleep(pause)
+        (self.folder / "ready").unlink()
+        self._start_walld()
+        self.wait_nodes()
 
     def wait_nodes(self) -> None:
         """Until all nodes are up."""
@@ -179,7 +191,10 @@ class Wall:
     def run(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False, name: str = "",
             hold: bool = False, env: dict[str, str] | None = None, **popen) -> subprocess.Popen:
         """Starts a program on the wall. Its process id is that of the session (wallrun becomes the program)."""
-        line = self.wallrun(*command, rect=rect, fullscreen=fullscreen, name=name, hold=hold)
+        return self.run_line(self.wallrun(*command, rect=rect, fullscreen=fullscreen, name=name, hold=hold), env=env, **popen)
+
+    def run_line(self, line: list[str], *, env: dict[str, str] | None = None, **popen) -> subprocess.Popen:
+        """The same with a command line of wallrun()."""
         app = subprocess.Popen(line, env=env or self._environment, start_new_session=True, preexec_fn=self._before_exec,
                                **{"stdin": subprocess.DEVNULL, **popen})
         self.apps.append(app)

@@ -58,9 +58,7 @@ class Parallel(unittest.TestCase):
         line = self.wall.wallrun(build_folder() / folder / program, "--size", f"{SIZE[0]}x{SIZE[1]}", *arguments, rect=rect, hold=hold)
         line[1:1] = ["--parallel", str(ranks)] if ranks else []
         environment = self.x.environment(**({"WALLGL_LOG": f"error:{log}"} if log else {}))
-        app = subprocess.Popen(line, env=environment, start_new_session=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.wall.apps.append(app)
-        return app
+        return self.wall.run_line(line, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def session(self) -> int:
         return self.wall.wait_session()
@@ -219,6 +217,37 @@ class Parallel(unittest.TestCase):
         self.assert_last_on_top(self.picture(), 2)
         self.wall.hold(session, on=False)
 
+    def test_a_stopped_node_does_not_hold_the_program(self) -> None:
+        self.start("turns", ranks=2)
+        session = self.session()
+        self.wall.wait(session, 10)
+        node = self.wall.daemons["node-0-1"]
+        node.send_signal(signal.SIGSTOP)
+        try:
+            time.sleep(1)
+            self.wall.wait(session, self.frame() + 50)
+        finally:
+            node.send_signal(signal.SIGCONT)
+        time.sleep(2)  # to catch up
+        self.wall.hold(session)
+        time.sleep(0.5)
+        self.assert_last_on_top(self.picture(), 2)
+        self.wall.hold(session, on=False)
+
+    def test_it_draws_on_without_walld_and_ends_with_a_new_one(self) -> None:
+        log = self.folder / "walld.log"
+        with Wall(tiles=(1, 1), tile_size=TILE, environment={"LP_NUM_THREADS": "0"}) as wall:
+            line = wall.wallrun(build_folder() / "tests" / "turns", "--size", "200x150")
+            line[1:1] = ["--parallel", "2"]
+            app = wall.run_line(line, env=self.x.environment(WALLGL_LOG=f"error:{log}"), stdout=subprocess.DEVNULL)
+            wall.wait(wall.wait_session(), 5)
+            wall.restart_walld(pause=2)
+            until(lambda: "session_ended" in log.read_text(), "the processes notice")
+            lost, ended = (min(float(line.split()[1]) for line in log.read_text().splitlines() if word in line) for word in ("walld_lost", "session_ended"))
+            self.assertGreater(ended - lost, 1.5, "not before there is another walld")
+            self.assertIsNone(app.poll(), "the programs themselves are not ended")
+            self.assertEqual(wall.sessions(), [])
+
     def test_wrong_programs_end_with_a_reason(self) -> None:
         for kind, reason in (("counts", "barrier 9 was created with count"), ("deadlock", "no process of the parallel program can go on")):
             with self.subTest(kind):
@@ -241,10 +270,8 @@ class Parallel(unittest.TestCase):
     def by_hand(self, group: str, rank: int, ranks: int, *more: object) -> subprocess.Popen:
         line = self.wall.wallrun(build_folder() / "examples" / "march", "--cells", "16", *more)
         line[1:1] = ["--parallel-group", group]
-        app = subprocess.Popen(line, env=self.x.environment(OMPI_COMM_WORLD_RANK=str(rank), OMPI_COMM_WORLD_SIZE=str(ranks)), start_new_session=True,
-                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.wall.apps.append(app)
-        return app
+        return self.wall.run_line(line, env=self.x.environment(OMPI_COMM_WORLD_RANK=str(rank), OMPI_COMM_WORLD_SIZE=str(ranks)),
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def test_an_mpi_launchers_variables_say_the_rank(self) -> None:
         apps = [self.by_hand("mpi", rank, 2, "--frames", "5") for rank in (0, 1)]
