@@ -16,8 +16,10 @@ namespace {
 struct Options {
     int textures = 16, texels = 1024;  // 16 of 1024x1024 RGBA: 64 MiB
     unsigned seed = 1;
-    int window = 128;
+    int window = 128, global = 0;
 };
+
+constexpr GLenum kGlobalTexture2d = 0x1D002;  // GL_WALLGL_global_texture
 
 bool parse(int argc, char** argv, Options& o) {
     for (int i = 1; i < argc; i += 2) {
@@ -26,7 +28,9 @@ bool parse(int argc, char** argv, Options& o) {
             value = static_cast<std::remove_reference_t<decltype(value)>>(std::atoi(argv[i + 1]));
             return true;
         };
-        if (!number("--textures", o.textures) && !number("--texels", o.texels) && !number("--seed", o.seed) && !number("--window", o.window)) return false;
+        if (!number("--textures", o.textures) && !number("--texels", o.texels) && !number("--seed", o.seed) && !number("--window", o.window) &&
+            !number("--global", o.global))
+            return false;
     }
     return o.textures > 0 && o.texels > 0 && o.window > 0;
 }
@@ -47,8 +51,9 @@ std::vector<std::uint32_t> image(const Options& o, int number) {
 int main(int argc, char** argv) {
     Options o;
     if (!parse(argc, argv, o)) {
-        std::fputs("usage: many_textures [--textures N] [--texels SIDE] [--seed S] [--window PIXELS]\n"
-                   "Shows N textures of SIDE x SIDE RGBA noise side by side. Equal seeds make equal textures.\n", stderr);
+        std::fputs("usage: many_textures [--textures N] [--texels SIDE] [--seed S] [--window PIXELS] [--global 1]\n"
+                   "Shows N textures of SIDE x SIDE RGBA noise side by side. Equal seeds make equal textures.\n"
+                   "--global: the processes of a parallel program share them by name (GL_WALLGL_global_texture).\n", stderr);
         return 2;
     }
     Display* display = XOpenDisplay(nullptr);
@@ -69,7 +74,7 @@ int main(int argc, char** argv) {
     std::vector<GLuint> names(static_cast<std::size_t>(o.textures));
     glGenTextures(o.textures, names.data());
     for (int i = 0; i < o.textures; ++i) {
-        glBindTexture(GL_TEXTURE_2D, names[static_cast<std::size_t>(i)]);
+        glBindTexture(o.global != 0 ? kGlobalTexture2d : GL_TEXTURE_2D, names[static_cast<std::size_t>(i)]);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
         glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, o.texels, o.texels, 0, GL_RGBA, GL_UNSIGNED_BYTE, image(o, i).data());
     }

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Eight programs with the same 64 MiB of textures (bench/many_textures.cpp), started at once, on 2x1 tiles: what the nodes' memory
-and the bytes sent grow from one program to eight; beside them eight programs with different textures.
+and the bytes sent grow from one program to eight; beside them eight programs with different textures, and eight processes of one parallel
+program that share theirs by name (GL_WALLGL_global_texture).
 
 share.py [--programs N] [--json FILE]      exit code 1 if either grows 1.1 times or more
 """
@@ -22,6 +23,7 @@ from xserver import XServer  # noqa: E402
 
 BAR = 1.1
 WINDOW = 128
+ONE, SAME, GLOBAL, DIFFERENT = "one program", "{}, the same textures", "{} processes of one, global textures", "{}, different textures"
 
 
 def resident(pid: int) -> int:
@@ -29,7 +31,7 @@ def resident(pid: int) -> int:
     return 1024 * int(re.search(r"VmRSS:\s+(\d+)", Path(f"/proc/{pid}/status").read_text())[1])
 
 
-def measure(count: int, different: bool, x: XServer) -> dict:
+def measure(count: int, kind: str, x: XServer) -> dict:
     """`count` programs at once, each over the border between the two tiles, on a fresh wall."""
     with Wall(tiles=(2, 1), tile_size=(512, 512), name="share", swap_timeout_ms=10000) as wall, tempfile.TemporaryDirectory() as folder:
         nodes = [wall.daemons[name] for name in wall.node_names]
@@ -38,9 +40,10 @@ def measure(count: int, different: bool, x: XServer) -> dict:
         apps, files = [], []
         for i in range(count):
             files.append(Path(folder) / f"{i}.json")
-            apps.append(wall.run(build_folder() / "bench" / "many_textures", "--seed", i if different else 0, "--window", WINDOW,
-                                 rect=(512 - WINDOW // 2, (i * 61) % (512 - WINDOW), WINDOW, WINDOW),
-                                 env=x.environment(WALLGL_STATS=str(files[-1])), stdout=subprocess.PIPE, text=True))
+            group = {"WALLGL_PARALLEL": f"share:{i}:{count}"} if kind == GLOBAL else {}
+            apps.append(wall.run(build_folder() / "bench" / "many_textures", "--seed", i if kind == DIFFERENT else 0, "--window", WINDOW,
+                                 "--global", int(kind == GLOBAL), rect=(512 - WINDOW // 2, (i * 61) % (512 - WINDOW), WINDOW, WINDOW),
+                                 env=x.environment(WALLGL_STATS=str(files[-1]), **group), stdout=subprocess.PIPE, text=True))
         for app in apps:
             if app.stdout.readline().strip() != "drawn":
                 raise RuntimeError("a program ended early")
@@ -59,19 +62,19 @@ def main() -> int:
     options = arguments.parse_args()
     results = {}
     with XServer() as x:
-        for name, count, different in (("one program", 1, False), (f"{options.programs}, the same textures", options.programs, False),
-                                       (f"{options.programs}, different textures", options.programs, True)):
-            results[name] = measure(count, different, x)
-            one = results["one program"]
+        for kind in (ONE, SAME, GLOBAL, DIFFERENT):
+            name = kind.format(options.programs)
+            results[name] = measure(1 if kind == ONE else options.programs, kind, x)
+            one = results[ONE]
             growth = {kind: results[name][kind] / one[kind] for kind in ("memory_bytes", "sent_bytes")}
             results[name]["growth"] = growth
-            print(f"{name:24} memory of both nodes {results[name]['memory_bytes'] / 2**20:7.1f} MiB ({growth['memory_bytes']:.3f})   "
+            print(f"{name:42} memory of both nodes {results[name]['memory_bytes'] / 2**20:7.1f} MiB ({growth['memory_bytes']:.3f})   "
                   f"sent {results[name]['sent_bytes'] / 2**20:7.1f} MiB ({growth['sent_bytes']:.3f})   "
                   f"first frames after {results[name]['seconds']:.1f} s", flush=True)
     if options.json:
         options.json.write_text(json.dumps(results, indent=1) + "\n")
-    worst = max(results[f"{options.programs}, the same textures"]["growth"].values())
-    print(f"the same textures: grows {worst:.3f} times, less than {BAR} wanted")
+    worst = max(max(results[kind.format(options.programs)]["growth"].values()) for kind in (SAME, GLOBAL))
+    print(f"what is shared grows {worst:.3f} times, less than {BAR} wanted")
     return 0 if worst < BAR else 1
 
 

@@ -98,9 +98,9 @@ std::size_t ShareGroup::bring_up_to_date(Node& node, Context& context, wire::Pac
         auto& known = node.object_stamps[id];
         if (known == texture.stamp) return;
         const std::uint64_t before = std::exchange(known, texture.stamp);
-        if (before != 0 || content_bytes(texture) < kLeastShared) return pack_texture(texture, before, buffer, limit);
+        if (before != 0 || (!texture.global && content_bytes(texture) < kLeastShared)) return pack_texture(texture, before, buffer, limit);
         const Offer offer = offer_content(context.session(), node, content_key(texture), [&](std::uint32_t request, std::span<const std::byte> key) {
-            glapi::pack::ShareTexture(buffer, request, id, texture.target, key);
+            glapi::pack::ShareTexture(buffer, request, id, texture.target, texture.global ? 1 : 0, key);
             sent += buffer.bytes() - start;
             start = 0;  // it goes out
         });

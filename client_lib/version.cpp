@@ -33,7 +33,7 @@ constexpr Step kSteps[] = {
 };
 
 /// What no driver need have: it is between the programs and the nodes.
-constexpr const char* kOwnExtensions[] = {"GL_CR_synchronization"};
+constexpr const char* kOwnExtensions[] = {"GL_CR_synchronization", "GL_WALLGL_global_texture"};
 
 /// An extension and a command that it stands or falls with; null: words only.
 struct Extension {

@@ -237,7 +237,7 @@ Result<void> ControlServer::client_says(const ClientId& client, const proto::Env
     if (message.has_surface_open()) return wall_.open_surface(session, message.surface_open(), Clock::now(), rank);
     if (message.has_surface_resize()) wall_.resize_surface(session, message.surface_resize(), Clock::now(), rank);
     else if (message.has_surface_adopted()) wall_.adopt_placement(session, message.surface_adopted(), Clock::now());
-    else if (message.has_client_stats()) wall_.client_reports(session, message.client_stats(), Clock::now());
+    else if (message.has_client_stats()) wall_.client_reports(session, rank, message.client_stats(), Clock::now());
     else if (message.has_close_refused()) wall_.cannot_close(session, SurfaceId(message.close_refused().surface()));
     else if (message.has_surface_close()) wall_.close_surface(session, SurfaceId(message.surface_close().surface()), rank);
     else if (message.has_placement_noted()) wall_.placement_noted(session, rank, message.placement_noted(), Clock::now());

@@ -9,7 +9,7 @@ namespace {
 
 using enum prometheus::MetricType;
 using SessionRef = const Session*;
-using OnNode = const proto::SessionStats*;
+using OnNode = proto::SessionStats;
 using SurfaceRef = const Surface*;
 using Age = double;  // seconds
 using Bytes = std::uint64_t;
@@ -37,18 +37,18 @@ constexpr MetricRow<Bytes> kReceived[] = {
      bytes_of},
 };
 constexpr MetricRow<OnNode> kOnNodes[] = {
-    {Counter, "wallgl_session_rendered_frames_total", "Frames of the program that the node has drawn.", [](const OnNode& s) -> double { return s->frames(); }},
-    {Counter, "wallgl_session_commands_total", "Commands that the node has executed for the program.", [](const OnNode& s) -> double { return s->commands(); }},
+    {Counter, "wallgl_session_rendered_frames_total", "Frames of the program that the node has drawn.", [](const OnNode& s) -> double { return s.frames(); }},
+    {Counter, "wallgl_session_commands_total", "Commands that the node has executed for the program.", [](const OnNode& s) -> double { return s.commands(); }},
     {Counter, "wallgl_session_gl_errors_total", "OpenGL errors of the node's driver in the program's commands.",
-     [](const OnNode& s) -> double { return s->gl_errors(); }},
+     [](const OnNode& s) -> double { return s.gl_errors(); }},
     {Counter, "wallgl_session_context_switches_total", "Blocks of the program that found another context in the node's driver.",
-     [](const OnNode& s) -> double { return s->context_switches(); }},
+     [](const OnNode& s) -> double { return s.context_switches(); }},
     {Counter, "wallgl_session_decode_seconds_total", "Time of the node's render thread in taking the program's batches apart and calling the driver.",
-     [](const OnNode& s) { return seconds(s->decode_ns()); }},
+     [](const OnNode& s) { return seconds(s.decode_ns()); }},
     {Counter, "wallgl_session_render_seconds_total", "Time of the node's render thread in waiting for the driver to end the program's frames and answers.",
-     [](const OnNode& s) { return seconds(s->render_ns()); }},
+     [](const OnNode& s) { return seconds(s.render_ns()); }},
     {Gauge, "wallgl_session_queue_bytes", "Bytes that the node has received from the program and not executed yet; at 64 MiB the program waits.",
-     [](const OnNode& s) -> double { return s->queued_bytes(); }},
+     [](const OnNode& s) -> double { return s.queued_bytes(); }},
 };
 constexpr MetricRow<SurfaceRef> kSurfaces[] = {
     {Counter, "wallgl_surface_presented_frames_total", "Number of the window's last frame that the wall shows.",
@@ -73,14 +73,29 @@ void by_kind(const Labels& labels, Bytes state, Bytes object, Bytes geometry, Ad
     }
 }
 
-/// What each node that is up says of the programs that are still here; of two streams of one program, the newer one's.
+void add(proto::SessionStats& sum, const proto::SessionStats& more) {
+    sum.set_frames(sum.frames() + more.frames());
+    sum.set_commands(sum.commands() + more.commands());
+    sum.set_gl_errors(sum.gl_errors() + more.gl_errors());
+    sum.set_state_bytes(sum.state_bytes() + more.state_bytes());
+    sum.set_object_bytes(sum.object_bytes() + more.object_bytes());
+    sum.set_geometry_bytes(sum.geometry_bytes() + more.geometry_bytes());
+    sum.set_context_switches(sum.context_switches() + more.context_switches());
+    sum.set_decode_ns(sum.decode_ns() + more.decode_ns());
+    sum.set_render_ns(sum.render_ns() + more.render_ns());
+    sum.set_queued_bytes(sum.queued_bytes() + more.queued_bytes());
+}
+
+/// What each node that is up says of the programs that are still here; of two streams of one process, the newer one's.
 std::vector<Labelled<OnNode>> on_nodes(const Wall& wall) {
     std::vector<Labelled<OnNode>> out;
     for (const auto& node : wall.nodes()) {
-        std::map<SessionId, OnNode> newest;
+        std::map<std::pair<SessionId, Rank>, const proto::SessionStats*> newest;
         for (const auto& session : node.stats.session_stats())
-            if (node.up && wall.sessions().contains(SessionId(session.session()))) newest[SessionId(session.session())] = &session;
-        for (const auto& [id, stats] : newest) out.push_back({{{"session", std::to_string(id.value)}, {"node", node.config->name}}, stats});
+            if (node.up && wall.sessions().contains(SessionId(session.session()))) newest[{SessionId(session.session()), session.rank()}] = &session;
+        std::map<SessionId, OnNode> sums;
+        for (const auto& [process, stats] : newest) add(sums[process.first], *stats);
+        for (auto& [id, stats] : sums) out.push_back({{{"session", std::to_string(id.value)}, {"node", node.config->name}}, std::move(stats)});
     }
     return out;
 }
@@ -125,7 +140,7 @@ void add_session_metrics(Families& out, const Observed& observed) {
     const auto working = on_nodes(observed.wall);
     std::vector<Labelled<Bytes>> received;
     for (const auto& [labels, stats] : working)
-        by_kind(labels, stats->state_bytes(), stats->object_bytes(), stats->geometry_bytes(), [&](Labels with_kind, Bytes n) { received.push_back({std::move(with_kind), n}); });
+        by_kind(labels, stats.state_bytes(), stats.object_bytes(), stats.geometry_bytes(), [&](Labels with_kind, Bytes n) { received.push_back({std::move(with_kind), n}); });
     add_table(out, kInfo, info);
     add_table(out, kSessions, sessions);
     add_table(out, kSent, sent(observed.wall));

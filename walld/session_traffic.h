@@ -29,23 +29,28 @@ public:
         double frame_bytes = 0;                      ///< of a frame, the mean
     };
 
-    /// `nodes`: how many the wall has; what is said of others is passed over.
-    void note(const proto::ClientStats& report, std::size_t nodes, Clock::time_point now);
+    /// `rank`: of the process in a parallel program; each tells its own. `nodes`: how many the wall has; what is said of others
+    /// is passed over.
+    void note(std::uint32_t rank, const proto::ClientStats& report, std::size_t nodes, Clock::time_point now);
 
-    const std::map<std::uint32_t, SentBytes>& by_node() const { return by_node_; }
-    const SentBytes& sent() const { return sent_; }  ///< to all nodes
-    std::uint64_t frames() const { return frames_; }
-    std::uint64_t round_trips() const { return round_trips_; }
-    double diff_seconds() const { return diff_seconds_; }
-    const Rates& rates() const { return rates_; }
+    // Of all processes together; they count the same frames.
+    std::map<std::uint32_t, SentBytes> by_node() const;
+    SentBytes sent() const;  ///< to all nodes
+    std::uint64_t frames() const;
+    std::uint64_t round_trips() const;
+    double diff_seconds() const;
+    Rates rates() const;
 
 private:
-    std::map<std::uint32_t, SentBytes> by_node_;
-    SentBytes sent_;
-    std::uint64_t frames_ = 0, round_trips_ = 0;
-    double diff_seconds_ = 0;
-    Rates rates_;
-    std::optional<Clock::time_point> noted_;
+    struct Process {
+        std::map<std::uint32_t, SentBytes> by_node;
+        SentBytes sent;
+        std::uint64_t frames = 0, round_trips = 0;
+        double diff_seconds = 0;
+        Rates rates;
+        std::optional<Clock::time_point> noted;
+    };
+    std::map<std::uint32_t, Process> processes_;
 };
 
 }  // namespace wall::walld

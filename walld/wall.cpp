@@ -292,8 +292,8 @@ void Wall::cannot_close(SessionId id, SurfaceId surface) {
     if (auto* found = find(surface, id)) found->cannot_close = true;
 }
 
-void Wall::client_reports(SessionId id, const proto::ClientStats& stats, Clock::time_point now) {
-    if (auto* session = find(id)) session->traffic.note(stats, nodes_.size(), now);
+void Wall::client_reports(SessionId id, Rank rank, const proto::ClientStats& stats, Clock::time_point now) {
+    if (auto* session = find(id)) session->traffic.note(rank, stats, nodes_.size(), now);
 }
 
 void Wall::close_surface(SessionId id, SurfaceId surface, Rank rank) {

@@ -141,7 +141,7 @@ public:
     /// The program draws with a placement from a frame on.
     void adopt_placement(SessionId id, const proto::SurfaceAdopted& message, Clock::time_point now);
     void cannot_close(SessionId id, SurfaceId surface);
-    void client_reports(SessionId id, const proto::ClientStats& stats, Clock::time_point now);
+    void client_reports(SessionId id, Rank rank, const proto::ClientStats& stats, Clock::time_point now);
 
     // ---- operators (wall_operate.cpp) ----
     Outcome<void> place_surface(const Target& target, const geom::Rect& rect, Clock::time_point now);

@@ -17,6 +17,9 @@ constexpr GLenum kTargets[] = {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_T
 
 bool is_target(GLenum target) { return std::find(std::begin(kTargets), std::end(kTargets), target) != std::end(kTargets); }
 
+/// GL_WALLGL_global_texture: GL_GLOBAL_TEXTURE_1D, _2D and _3D, above all numbers that Khronos has given (docs/parallel-programs.md).
+constexpr std::pair<GLenum, GLenum> kGlobalTargets[] = {{0x0001'D001, GL_TEXTURE_1D}, {0x0001'D002, GL_TEXTURE_2D}, {0x0001'D003, GL_TEXTURE_3D}};
+
 // A binding of a default texture that has content is its id, in every context that binds name 0.
 std::uint32_t default_id(ShareGroup& share, GLenum target) {
     const auto found = share.default_textures.find(target);
@@ -130,6 +133,9 @@ void DeleteTextures(Context& c, GLsizei n, const GLuint* names) {
 }
 
 void BindTexture(Context& c, GLenum target, GLuint name) {
+    const auto named = std::find_if(std::begin(kGlobalTargets), std::end(kGlobalTargets), [&](const auto& row) { return row.first == target; });
+    const bool global = named != std::end(kGlobalTargets);
+    if (global) target = named->second;
     if (!is_target(target)) return c.error(GL_INVALID_ENUM);
     std::uint32_t id;
     {
@@ -140,6 +146,7 @@ void BindTexture(Context& c, GLenum target, GLuint name) {
             auto texture = c.share().textures.find(name);
             if (texture && texture->target != target) return c.error(GL_INVALID_OPERATION);
             if (!texture) c.share().textures.put(name, texture = make_texture(c.share(), name, target));
+            texture->global |= global;
             auto& users = texture->bound_by;
             if (std::find(users.begin(), users.end(), c.id) == users.end()) users.push_back(c.id);
             id = texture->id;

@@ -171,6 +171,21 @@ struct TexturePacker {
     }
 };
 
+/// Leaves out the pixels.
+struct NameAndShape {
+    glapi::ContentHash& hash;
+    void TexParameter(GLenum target, GLenum pname, float p0, float p1, float p2, float p3) { hash.TexParameter(target, pname, p0, p1, p2, p3); }
+    void TexImage(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height, std::int32_t depth,
+                  std::int32_t border, GLenum format, GLenum type, std::span<const std::byte>) {
+        hash.TexImage(target, level, internal_format, width, height, depth, border, format, type, {});
+    }
+    template <class... Operands>
+    void TexSubImage(Operands...) {}
+    void TexCompressed(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height, std::span<const std::byte>) {
+        hash.TexCompressed(target, level, internal_format, width, height, {});
+    }
+};
+
 }  // namespace
 
 std::uint64_t next_stamp() {
@@ -273,7 +288,13 @@ const glapi::ContentKey& content_key(const Texture& texture) {
     auto& [stamp, key] = texture.content_key;
     if (stamp == texture.stamp) return key;
     glapi::ContentHash hash;
-    TextureDiff(texture, hash).run(0);
+    if (texture.global) {
+        NameAndShape named{hash};
+        hash.OwnName(texture.name);
+        TextureDiff(texture, named).run(0);
+    } else {
+        TextureDiff(texture, hash).run(0);
+    }
     key = hash.finish();
     stamp = texture.stamp;
     return key;

@@ -72,6 +72,7 @@ struct Texture {
     /// Stamp of the latest change of each parameter that differs from its default or once did.
     std::vector<std::pair<GLenum, std::uint64_t>> parameter_stamps;
     std::vector<std::uint32_t> bound_by;  ///< contexts that ever bound it
+    bool global = false;                ///< the processes of the program mean the same by its name (GL_WALLGL_global_texture)
     std::uint64_t generated_stamp = 0;  ///< of the latest mipmap generation; 0: none
     std::array<std::vector<TextureLevel>, kCubeFaces> faces;
     /// As of a stamp: see content_key().
@@ -96,7 +97,8 @@ inline constexpr std::size_t kLargestImageCommand = std::size_t{16} << 20;
 /// the caller may send the buffer before it grows too large for a frame.
 void pack_texture(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed = [] {});
 
-/// The name of what pack_texture(texture, 0, ...) would say, but for the texture's id.
+/// The name of what pack_texture(texture, 0, ...) would say, but for the texture's id. Of a global one: the program's name stands
+/// for the pixels, and nobody looks at them (AnyGL, section 6.2: the same name and parameters are the same texture).
 const glapi::ContentKey& content_key(const Texture& texture);
 /// Of all pixels.
 std::size_t content_bytes(const Texture& texture);

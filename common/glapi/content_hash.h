@@ -40,6 +40,10 @@ public:
                        std::span<const std::byte> blocks) {
         add(Op::TexCompressed, blocks, target, level, internal_format, width, height);
     }
+    /// A name that a program gave, instead of pixels: GL_WALLGL_global_texture.
+    void OwnName(std::uint32_t name) { add(Op::ShareTexture, {}, name); }
+    /// A name of content that is known only in one session.
+    void InSession(std::uint32_t session, const ContentKey& key) { add(Op::ShareTexture, key, session); }
     void RunDefine(std::uint32_t commands, std::uint32_t operand_bytes, std::span<const std::byte> content) {
         add(Op::RunDefine, content, commands, operand_bytes);
     }

@@ -37,6 +37,7 @@ void fill_stats(const RenderStats& stats, proto::NodeStats& out) {
     for (const auto& session : stats.sessions) {
         auto& row = *out.add_session_stats();
         row.set_session(session.session.value);
+        row.set_rank(session.rank);
         fill_work(session.work, row);
         row.set_state_bytes(session.work.state_bytes);
         row.set_object_bytes(session.work.object_bytes);

@@ -203,7 +203,7 @@ public:
                        std::span<const std::byte> blocks);
     void TexParameter(std::uint32_t texture, GLenum target, GLenum pname, float p0, float p1, float p2, float p3);
     void TexDelete(std::uint32_t texture);
-    void ShareTexture(std::uint32_t request, std::uint32_t texture, GLenum target, std::span<const std::byte> key);
+    void ShareTexture(std::uint32_t request, std::uint32_t texture, GLenum target, std::uint32_t own_name, std::span<const std::byte> key);
     void TexShared(std::uint32_t texture);
     void ShareRun(std::uint32_t request, std::uint32_t run, std::span<const std::byte> key);
     void ShaderCompile(std::uint32_t request, GLenum type, std::span<const std::byte> source);
@@ -234,7 +234,7 @@ private:
     }
     /// Asks the node's store; false: not answered yet.
     bool answer_question();
-    void ask(std::uint32_t request, std::uint32_t object, GLenum target, std::span<const std::byte> key);
+    void ask(std::uint32_t request, std::uint32_t object, GLenum target, bool own_name, std::span<const std::byte> key);
     /// The texture to change: its own, bound for the driver's work on the object; null after a refusal.
     Texture* bind_for_upload(std::uint32_t name, GLenum target);
     bool check_image(GLenum format, GLenum type, std::int32_t width, std::int32_t height, std::int32_t depth, std::span<const std::byte> pixels);
@@ -265,6 +265,7 @@ private:
     struct Question {
         std::uint32_t request = 0, object = 0;
         GLenum target = 0;  ///< of a texture; 0: it is a run
+        bool own_name = false;
         glapi::ContentKey key;
     };
     std::optional<Question> question_;

@@ -13,12 +13,13 @@ std::vector<std::byte> answer(bool have) { return {std::byte{have}}; }
 
 }  // namespace
 
-void Executor::ShareTexture(std::uint32_t request, std::uint32_t texture, GLenum target, std::span<const std::byte> key) {
+void Executor::ShareTexture(std::uint32_t request, std::uint32_t texture, GLenum target, std::uint32_t own_name,
+                            std::span<const std::byte> key) {
     if (!bind_for_upload(texture, target)) return;
-    ask(request, texture, target, key);
+    ask(request, texture, target, own_name != 0, key);
 }
 
-void Executor::ShareRun(std::uint32_t request, std::uint32_t run, std::span<const std::byte> key) { ask(request, run, 0, key); }
+void Executor::ShareRun(std::uint32_t request, std::uint32_t run, std::span<const std::byte> key) { ask(request, run, 0, false, key); }
 
 Result<bool> Executor::settle_question() {
     const bool settled = !question_ || answer_question();
@@ -26,11 +27,16 @@ Result<bool> Executor::settle_question() {
     return settled;
 }
 
-void Executor::ask(std::uint32_t request, std::uint32_t object, GLenum target, std::span<const std::byte> key) {
+void Executor::ask(std::uint32_t request, std::uint32_t object, GLenum target, bool own_name, std::span<const std::byte> key) {
     if (question_) return refuse("asks before the last question is answered");
     if (key.size() != sizeof(glapi::ContentKey)) return refuse("a name of content has 32 bytes");
-    question_ = Question{request, object, target, {}};
+    question_ = Question{request, object, target, own_name, {}};
     std::copy(key.begin(), key.end(), question_->key.begin());
+    if (own_name) {
+        glapi::ContentHash hash;
+        hash.InSession(session_.id().value, question_->key);
+        question_->key = hash.finish();
+    }
     answer_question();
 }
 
@@ -47,7 +53,7 @@ bool Executor::answer_question() {
             (have && !session_.adopt(*texture, std::move(found.have))))
             refuse("no such texture, or more texture memory than a session may have");
         else if (!have)
-            texture->promise.emplace(Texture::Promise{question.key, {}});
+            texture->promise.emplace(Texture::Promise{question.key, question.own_name ? std::nullopt : std::optional(glapi::ContentHash())});
     } else {
         auto found = node_.runs.ask(question.key, session_.asker(), now);
         have = found.have != nullptr;
@@ -66,7 +72,7 @@ void Executor::TexShared(std::uint32_t name) {
     Texture* texture = session_.texture(ClientName(name), TextureTarget::t2d);
     if (texture == nullptr || !texture->promise) return;  // the client did not wait for the answer, and that was: it is here
     auto promise = *std::exchange(texture->promise, {});
-    if (promise.hash.finish() != promise.key) return refuse("content is not what its name says");
+    if (promise.hash && promise.hash->finish() != promise.key) return refuse("content is not what its name says");
     auto held = node_.textures.store(promise.key, texture->content);
     if (held == texture->content)
         held->key = promise.key;

@@ -91,7 +91,7 @@ public:
         const std::shared_ptr<ParallelGroup>& group() const { return group_; }
         bool exclusive() const { return !failed_ && executor_.exclusive(); }
         Clock::time_point last_run() const { return last_run_; }
-        SessionStats stats() const { return {session_.id(), session_.work, queue_->bytes()}; }
+        SessionStats stats() const { return {session_.id(), session_.rank(), session_.work, queue_->bytes()}; }
         Session& session() { return session_; }
         Executor& executor() { return executor_; }
 

@@ -28,6 +28,7 @@ using StreamId = Id<struct StreamTag>;  ///< of one data connection, unique in t
 /// Of one stream that is open.
 struct SessionStats {
     SessionId session;
+    Rank rank = 0;  ///< of a member of a parallel program
     Work work;
     std::size_t queued_bytes = 0;  ///< received, not yet executed
 };

@@ -45,7 +45,7 @@ struct Texture {
     /// While its definition comes that was promised under a name: what has come.
     struct Promise {
         glapi::ContentKey key;
-        glapi::ContentHash hash;
+        std::optional<glapi::ContentHash> hash;  ///< of a name that says what the content is
     };
     std::optional<Promise> promise;
 };

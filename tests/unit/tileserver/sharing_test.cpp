@@ -104,7 +104,12 @@ public:
         texture_.mipmaps_generated();
         return *this;
     }
+    Content& global() {
+        texture_.global = true;
+        return *this;
+    }
     GLenum target() const { return texture_.target; }
+    std::uint32_t is_global() const { return texture_.global; }
     glapi::ContentKey key() const { return client::content_key(texture_); }
     void define(wire::PackBuffer& buffer) const { client::pack_texture(texture_, 0, buffer); }
 
@@ -127,7 +132,7 @@ protected:
     static Said ask(TestSession& session, const Content& content) {
         Batch batch;
         session.replies.erase(5);
-        pack::ShareTexture(batch.buffer(), 5, 1, content.target(), content.key());
+        pack::ShareTexture(batch.buffer(), 5, 1, content.target(), content.is_global(), content.key());
         session.expect_run(batch);
         return said(session);
     }
@@ -324,6 +329,16 @@ TEST_F(SharingTest, ALieEndsOnlyTheLiar) {
     EXPECT_EQ(said(*victim), Said::send);
 }
 
+TEST_F(SharingTest, AGlobalTextureIsItsNameWithinASession) {
+    const auto a = open(1), member = open(1), stranger = open(2);
+    define(*a, plain(1).global());
+    EXPECT_EQ(ask(*member, plain(2).global()), Said::have) << "the pixels are not looked at";
+    EXPECT_EQ(count_different(picture(*member), alone(plain(1))), 0u);
+    EXPECT_EQ(ask(*member, plain(2).global().parameter(GL_LINEAR)), Said::send) << "other parameters";
+    EXPECT_EQ(ask(*stranger, plain(1).global()), Said::send) << "another program";
+    EXPECT_EQ(ask(*open(3), plain(1)), Said::send) << "not named by its content";
+}
+
 TEST_F(SharingTest, BadQuestionsAreRefused) {
     const auto refused = [this](auto&& fill) {
         const auto session = open(9);
@@ -333,13 +348,13 @@ TEST_F(SharingTest, BadQuestionsAreRefused) {
     };
     const std::array<std::byte, 31> brief{};
     const std::array<std::byte, 32> whole{};
-    EXPECT_TRUE(refused([&](auto& b) { pack::ShareTexture(b, 1, 1, GL_TEXTURE_2D, brief); }));
-    EXPECT_TRUE(refused([&](auto& b) { pack::ShareTexture(b, 1, 1, 0x1234, whole); }));
+    EXPECT_TRUE(refused([&](auto& b) { pack::ShareTexture(b, 1, 1, GL_TEXTURE_2D, 0, brief); }));
+    EXPECT_TRUE(refused([&](auto& b) { pack::ShareTexture(b, 1, 1, 0x1234, 0, whole); }));
     const auto a = open(1);
     EXPECT_EQ(ask(*a, plain(1)), Said::send);
     EXPECT_TRUE(refused([&](auto& b) {
-        pack::ShareTexture(b, 1, 1, GL_TEXTURE_2D, plain(1).key());  // waits for the other session
-        pack::ShareTexture(b, 2, 2, GL_TEXTURE_2D, whole);
+        pack::ShareTexture(b, 1, 1, GL_TEXTURE_2D, 0, plain(1).key());  // waits for the other session
+        pack::ShareTexture(b, 2, 2, GL_TEXTURE_2D, 0, whole);
     }));
 }
 
