@@ -65,6 +65,11 @@ public:
     bool failing() const { return code_ != 0; }
     const timespec& patience() const { return asked_ ? kEndLimit : kNotice; }
     int code() const { return code_; }
+    /// By somebody else: what ends now does not end by itself.
+    void pass_on(int number) {
+        told_ = true;
+        signal_all(number);
+    }
     void signal_all(int number) const {
         for (const pid_t pid : running_) ::kill(pid, number);
     }
@@ -79,7 +84,7 @@ public:
             std::erase(running_, pid);
             const int code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
             if (code == 0) continue;
-            if (!failing() && any()) std::cerr << "wallrun: process " << pid << " of the parallel program ended with " << code << ": the others are ended, too\n";
+            if (!failing() && !told_ && any()) std::cerr << "wallrun: process " << pid << " of the parallel program ended with " << code << ": the others are ended, too\n";
             fail(code);
         }
     }
@@ -87,7 +92,7 @@ public:
 private:
     std::vector<pid_t> running_;
     int code_ = 0;
-    bool asked_ = false;
+    bool asked_ = false, told_ = false;
 };
 
 }  // namespace
@@ -131,7 +136,7 @@ int run_members(const std::string& group, std::uint32_t members, std::vector<std
     while (all.any()) {
         const int signal = all.failing() ? ::sigtimedwait(&handled, nullptr, &all.patience()) : ::sigwaitinfo(&handled, nullptr);
         if (signal == SIGCHLD) all.reap();
-        else if (signal > 0) all.signal_all(signal);
+        else if (signal > 0) all.pass_on(signal);
         else if (errno == EAGAIN) all.end();
     }
     return all.code();

@@ -225,7 +225,8 @@ class Parallel(unittest.TestCase):
         node.send_signal(signal.SIGSTOP)
         try:
             time.sleep(1)
-            self.wall.wait(session, self.frame() + 50)
+            stood = self.frame()
+            until(lambda: self.frame() > stood + 50, "the program goes on")
         finally:
             node.send_signal(signal.SIGCONT)
         time.sleep(2)  # to catch up
