@@ -79,7 +79,7 @@ void GroupSync::settle_join() {
 }
 
 Result<void> GroupSync::leave(Rank rank) {
-    if (left(rank)) return fail(rank_text(rank) + " has left already");
+    if (left(rank) || waits(rank)) return fail(rank_text(rank) + " cannot leave");
     members_[rank].state = State::left;
     settle_join();
     for (auto& [name, barrier] : barriers_) settle(barrier);
