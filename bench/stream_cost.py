@@ -36,7 +36,7 @@ class Viewer(threading.Thread):
         super().__init__(daemon=True)
         self.frames = self.bytes = 0
         self.socket = WebSocket(wall.url)
-        self.socket.watch(*({"tile": name, "codec": codec, "fps": 10} for name in wall.tile_names))
+        self.socket.watch({"wall": True, "codec": codec, "fps": 10})
         self.start()
 
     def run(self) -> None:

@@ -31,7 +31,7 @@ std::string random_bytes(std::size_t count) {
 
 ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities, const std::string& state)
     : executor_(executor), changed_(executor), identities_(std::move(identities)), wall_(std::move(config), *this, random_bytes), snapshots_(executor, wall_, *this), streams_(executor, wall_, *this),
-      operators_(wall_, snapshots_, LayoutStore(state), changed_, [this](SessionId id) { end_session(id, "closed by an operator"); }),
+      operators_(wall_, snapshots_, streams_, LayoutStore(state), changed_, [this](SessionId id) { end_session(id, "closed by an operator"); }),
       deadline_timer_(executor), process_timer_(executor) {}
 
 Result<void> ControlServer::listen() {
@@ -316,15 +316,21 @@ asio::awaitable<void> ControlServer::serve_watch(Connection connection, proto::O
 
 void ControlServer::something_changed() {
     changed_.notify();
-    const auto next = wall_.next_deadline().value_or(Clock::time_point::max());
-    if (next < deadline_timer_.expiry()) deadline_timer_.expires_at(next);
+    streams_.tick(Clock::now());
+    if (const auto next = next_deadline(); next < deadline_timer_.expiry()) deadline_timer_.expires_at(next);
+}
+
+Clock::time_point ControlServer::next_deadline() const {
+    const auto never = Clock::time_point::max();
+    return std::min(wall_.next_deadline().value_or(never), streams_.next_deadline().value_or(never));
 }
 
 asio::awaitable<void> ControlServer::run_deadlines() {
     while (!stopping_) {
-        deadline_timer_.expires_at(wall_.next_deadline().value_or(Clock::time_point::max()));
+        deadline_timer_.expires_at(next_deadline());
         co_await deadline_timer_.async_wait(kTuple);
         wall_.tick(Clock::now());
+        streams_.tick(Clock::now());
         changed_.notify();
     }
 }

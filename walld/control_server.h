@@ -52,6 +52,7 @@ private:
     asio::awaitable<void> serve_operator(Connection connection, proto::Envelope first, Person who);
     asio::awaitable<void> answer_operator(Connection connection, proto::OperatorRequest request, Person who);
     asio::awaitable<void> serve_watch(Connection connection, proto::OperatorRequest request);
+    Clock::time_point next_deadline() const;
     asio::awaitable<void> run_deadlines();
     asio::awaitable<void> watch_processes();
     asio::awaitable<Result<proto::Envelope>> first_message(Connection connection);

@@ -50,8 +50,9 @@ void add_stream_metrics(Families& out, const Observed& observed) {
     std::vector<Labelled<StreamRef>> streams;
     for (const auto& view : observed.streams) {
         const auto& node = observed.wall.nodes()[view.node];
-        const std::string session = view.session ? std::to_string(view.session.value) : "";
-        streams.push_back({{{"node", node.config->name}, {"tile", view.tile}, {"codec", view.codec}, {"size", fmt::format("{}x{}", view.width, view.height)}, {"fps", std::to_string(view.fps)}, {"session", session}},
+        const std::string session = !view.session ? "" : view.surface ? fmt::format("{}.{}", view.session.value, view.surface.value) : std::to_string(view.session.value);
+        const std::string region = view.crop.empty() ? "" : fmt::format("{},{},{},{}", view.crop.x, view.crop.y, view.crop.width, view.crop.height);
+        streams.push_back({{{"node", node.config->name}, {"tile", view.tile}, {"codec", view.codec}, {"size", fmt::format("{}x{}", view.width, view.height)}, {"fps", std::to_string(view.fps)}, {"session", session}, {"region", region}},
                            {&view, &told_of(node, view.id)}});
     }
     add_table(out, kStreams, streams);

@@ -9,6 +9,7 @@
 #include "walld/arguments.h"
 #include "walld/audit.h"
 #include "walld/status.h"
+#include "walld/stream_status.h"
 
 namespace wall::walld {
 namespace {
@@ -30,6 +31,7 @@ const OperatorDesk::Row OperatorDesk::kVerbs[] = {
     {"tiles", Need::look, &OperatorDesk::tiles},
     {"sessions", Need::look, &OperatorDesk::sessions},
     {"session", Need::look, &OperatorDesk::session},
+    {"streams", Need::look, &OperatorDesk::streams},
     {"whoami", Need::look, &OperatorDesk::whoami},
     {"wait", Need::look, &OperatorDesk::wait},
     {"screenshot", Need::look, &OperatorDesk::screenshot},
@@ -77,9 +79,14 @@ Outcome<void> OperatorDesk::allowed(const Row& row, const Asked& asked) const {
     return refuse(RefusalKind::not_found, "there is no session " + std::to_string(target->session.value));
 }
 
-asio::awaitable<Outcome<Answer>> OperatorDesk::status(const Asked&) { co_return Answer{status_json(wall_), {}}; }
+asio::awaitable<Outcome<Answer>> OperatorDesk::status(const Asked&) {
+    auto status = status_json(wall_, Clock::now());
+    status["streams"] = streams_json(wall_, streams_.views());
+    co_return Answer{std::move(status), {}};
+}
+asio::awaitable<Outcome<Answer>> OperatorDesk::streams(const Asked&) { co_return Answer{streams_json(wall_, streams_.views()), {}}; }
 asio::awaitable<Outcome<Answer>> OperatorDesk::nodes(const Asked&) { co_return Answer{nodes_json(wall_), {}}; }
-asio::awaitable<Outcome<Answer>> OperatorDesk::tiles(const Asked&) { co_return Answer{tiles_json(wall_), {}}; }
+asio::awaitable<Outcome<Answer>> OperatorDesk::tiles(const Asked&) { co_return Answer{tiles_json(wall_, Clock::now()), {}}; }
 asio::awaitable<Outcome<Answer>> OperatorDesk::sessions(const Asked&) { co_return Answer{sessions_json(wall_), {}}; }
 asio::awaitable<Outcome<Answer>> OperatorDesk::whoami(const Asked& asked) { co_return Answer{person_json(asked.who), {}}; }
 

@@ -11,6 +11,7 @@
 #include "walld/layout_store.h"
 #include "walld/person.h"
 #include "walld/snapshot_desk.h"
+#include "walld/stream_hub.h"
 #include "walld/wall.h"
 
 namespace wall::walld {
@@ -31,8 +32,8 @@ struct Answer {
 class OperatorDesk {
 public:
     /// `end_session` cuts a client off. `changed` is notified after every event of the wall.
-    OperatorDesk(Wall& wall, SnapshotDesk& snapshots, LayoutStore layouts, Changed& changed, std::function<void(SessionId)> end_session)
-        : wall_(wall), snapshots_(snapshots), layouts_(std::move(layouts)), changed_(changed), end_session_(std::move(end_session)) {}
+    OperatorDesk(Wall& wall, SnapshotDesk& snapshots, const StreamHub& streams, LayoutStore layouts, Changed& changed, std::function<void(SessionId)> end_session)
+        : wall_(wall), snapshots_(snapshots), streams_(streams), layouts_(std::move(layouts)), changed_(changed), end_session_(std::move(end_session)) {}
 
     asio::awaitable<Outcome<Answer>> carry_out(Asked asked);
 
@@ -53,6 +54,7 @@ private:
     asio::awaitable<Outcome<Answer>> tiles(const Asked&);
     asio::awaitable<Outcome<Answer>> sessions(const Asked&);
     asio::awaitable<Outcome<Answer>> session(const Asked&);
+    asio::awaitable<Outcome<Answer>> streams(const Asked&);
     asio::awaitable<Outcome<Answer>> whoami(const Asked&);
     asio::awaitable<Outcome<Answer>> place(const Asked&);
     asio::awaitable<Outcome<Answer>> raise(const Asked&);
@@ -70,6 +72,7 @@ private:
 
     Wall& wall_;
     SnapshotDesk& snapshots_;
+    const StreamHub& streams_;
     LayoutStore layouts_;
     Changed& changed_;
     std::function<void(SessionId)> end_session_;

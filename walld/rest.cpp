@@ -19,6 +19,7 @@ constexpr Route kRoutes[] = {
     {"GET", "/api/v1/status", "status", nullptr},
     {"GET", "/api/v1/nodes", "nodes", nullptr},
     {"GET", "/api/v1/tiles", "tiles", nullptr},
+    {"GET", "/api/v1/streams", "streams", nullptr},
     {"GET", "/api/v1/whoami", "whoami", nullptr},
     {"GET", "/api/v1/sessions", "sessions", nullptr},
     {"GET", "/api/v1/sessions/*", "session", "id"},

@@ -79,11 +79,16 @@ json nodes_json(const Wall& wall) {
     return out;
 }
 
-json tiles_json(const Wall& wall) {
+json tiles_json(const Wall& wall, Clock::time_point now) {
     auto out = json::array();
-    for (const auto& node : wall.nodes()) {
-        for (std::uint32_t slot = 0; const auto& tile : node.config->tiles) {
-            out.push_back({{"name", tile.name}, {"node", node.config->name}, {"slot", slot++}, {"rect", rect_json(tile.rect)}, {"up", node.up}});
+    for (NodeIndex i = 0; i < wall.nodes().size(); ++i) {
+        const auto& node = wall.nodes()[i];
+        for (std::uint32_t slot = 0; slot < node.tiles.size(); ++slot) {
+            const auto& tile = node.config->tiles[slot];
+            const auto& shown = node.tiles[slot];
+            const auto age = shown.last ? json(std::chrono::duration_cast<std::chrono::milliseconds>(now - *shown.last).count()) : json(nullptr);
+            out.push_back({{"name", tile.name}, {"node", node.config->name}, {"slot", slot}, {"rect", rect_json(tile.rect)}, {"up", node.up},
+                           {"frames", shown.frames}, {"age_ms", age}, {"lag_frames", wall.tile_lag(i, slot)}});
         }
     }
     return out;
@@ -119,11 +124,11 @@ json person_json(const Person& person) {
     return {{"kind", kKinds[static_cast<int>(person.kind)]}, {"name", person.name}, {"role", config::name_of(person.role)}};
 }
 
-json status_json(const Wall& wall) {
+json status_json(const Wall& wall, Clock::time_point now) {
     const auto canvas = wall.config().canvas();
     return {{"wall", {{"name", wall.config().name}, {"width", canvas.width}, {"height", canvas.height}, {"background", color_text(wall.config().background)}, {"max_sessions", wall.config().max_sessions}}},
             {"nodes", nodes_json(wall)},
-            {"tiles", tiles_json(wall)},
+            {"tiles", tiles_json(wall, now)},
             {"sessions", sessions_json(wall)}};
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "walld/stream_hub.h"
 
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "common/codec/codec.h"
 #include "common/net/base64.h"
 #include "walld/messages.h"
 
@@ -17,48 +19,9 @@ void append(std::string& out, T value) {
     for (std::size_t i = 0; i < sizeof value; ++i) out += static_cast<char>(value >> 8 * i & 0xff);
 }
 
-/// An integer from `least` to `most`, `otherwise` if it is not there.
-Result<std::uint32_t> number(const json& from, const char* key, std::uint32_t least, std::uint32_t most, std::uint32_t otherwise) {
-    const auto at = from.find(key);
-    if (at == from.end()) return otherwise;
-    if (at->is_number_integer() && at->get<std::int64_t>() >= least && at->get<std::int64_t>() <= most) return at->get<std::uint32_t>();
-    return fail(std::string(".") + key + ": expected a whole number from " + std::to_string(least) + " to " + std::to_string(most));
-}
-
-Result<std::string> text(const json& from, const char* key, const std::string& otherwise) {
-    const auto at = from.find(key);
-    if (at == from.end() && !otherwise.empty()) return otherwise;
-    if (at != from.end() && at->is_string() && !at->get_ref<const std::string&>().empty()) return at->get<std::string>();
-    return fail(std::string(".") + key + ": expected a text");
-}
-
-Result<WatchRequest> one_request(const json& from) {
-    if (!from.is_object()) return fail(": expected an object");
-    const auto tile = text(from, "tile", ""), codec = text(from, "codec", WatchRequest{}.codec);
-    const auto session = number(from, "session", 1, UINT32_MAX, 0), fps = number(from, "fps", 1, StreamHub::kMaxFps, WatchRequest{}.fps);
-    const auto width = number(from, "width", 1, codec::kMaxExtent, 0), height = number(from, "height", 1, codec::kMaxExtent, 0);
-    for (const auto* wrong : {&tile, &codec})
-        if (!*wrong) return tl::unexpected(wrong->error());
-    for (const auto* wrong : {&session, &fps, &width, &height})
-        if (!*wrong) return tl::unexpected(wrong->error());
-    if (const auto known = codec::find_codec(*codec); !known) return fail(".codec: " + known.error().message);
-    return WatchRequest{*tile, SessionId(*session), *codec, *width, *height, *fps};
-}
+json rect_json(const geom::Rect& rect) { return {rect.x, rect.y, rect.width, rect.height}; }
 
 }  // namespace
-
-Result<std::vector<WatchRequest>> WatchRequest::parse(std::string_view message) {
-    const auto parsed = json::parse(message, nullptr, false);
-    if (!parsed.is_object() || !parsed.contains("watch") || !parsed["watch"].is_array()) return fail("expected {\"watch\": [...]}");
-    if (parsed["watch"].size() > StreamHub::kMaxWatches) return fail("watch: expected at most " + std::to_string(StreamHub::kMaxWatches) + " streams");
-    std::vector<WatchRequest> out;
-    for (const auto& item : parsed["watch"]) {
-        auto request = one_request(item);
-        if (!request) return fail("watch[" + std::to_string(out.size()) + "]" + request.error().message);
-        out.push_back(std::move(*request));
-    }
-    return out;
-}
 
 // ---- viewers ----
 
@@ -74,95 +37,159 @@ std::shared_ptr<StreamHub::Viewer> StreamHub::add_viewer() {
 }
 
 void StreamHub::remove_viewer(Viewer& viewer) {
-    for (std::uint32_t i = 0; i < viewer.watches_.size(); ++i) leave(viewer, i);
+    std::vector<Key> old;
+    for (std::uint32_t i = 0; i < viewer.watches_.size(); ++i) std::ranges::move(leave(viewer, i), std::back_inserter(old));
     viewer.watches_.clear();
+    drop_unwatched(old);
     viewers_.erase(&viewer);
 }
 
-Result<StreamHub::Key> StreamHub::key_of(const WatchRequest& request, std::size_t number) const {
-    for (NodeIndex node = 0; node < wall_.nodes().size(); ++node) {
-        for (std::uint32_t slot = 0; const auto& tile : wall_.nodes()[node].config->tiles) {
-            const auto this_slot = slot++;
-            if (tile.name != request.tile) continue;
-            const auto fitting = [](std::uint32_t wanted, std::int32_t most) { return wanted == 0 ? static_cast<std::uint32_t>(most) : std::min(wanted, static_cast<std::uint32_t>(most)); };
-            return Key{node, this_slot, request.session.value, request.codec, fitting(request.width, tile.rect.width), fitting(request.height, tile.rect.height), request.fps};
-        }
+StreamHub::Watch StreamHub::make_watch(const WatchRequest& request, const StreamScope& scope) const {
+    Watch watch{.request = request, .scope = scope};
+    for (const auto& [node, slot, crop, at] : parts_of(wall_, scope)) {
+        const auto width = static_cast<std::uint32_t>(at.width), height = static_cast<std::uint32_t>(at.height);
+        watch.parts.push_back({.key = {node, slot, scope.session.value, scope.surface.value, crop.x, crop.y, crop.width, crop.height, request.codec, width, height, request.fps}, .at = at});
     }
-    return fail("watch[" + std::to_string(number) + "].tile: there is no tile '" + request.tile + "'");
+    return watch;
+}
+
+bool StreamHub::has_room(const std::vector<Watch>& watches) const {
+    std::set<Key> fresh;
+    for (const auto& watch : watches)
+        for (const auto& part : watch.parts)
+            if (!streams_.contains(part.key)) fresh.insert(part.key);
+    return streams_.size() + fresh.size() <= kMaxNodeStreams;
 }
 
 Result<void> StreamHub::watch(Viewer& viewer, const std::vector<WatchRequest>& requests) {
-    std::vector<Key> keys;
-    std::set<Key> fresh;
+    std::vector<Watch> watches;
     for (const auto& request : requests) {
-        auto key = key_of(request, keys.size());
-        if (!key) return tl::unexpected(key.error());
-        if (!streams_.contains(*key)) fresh.insert(*key);
-        keys.push_back(std::move(*key));
+        const auto scope = scope_of(wall_, request);
+        if (!scope) return fail(fmt::format("watch[{}]{}", watches.size(), scope.error().message));
+        watches.push_back(make_watch(request, *scope));
     }
-    if (streams_.size() + fresh.size() > kMaxNodeStreams) return fail("watch: the wall's " + std::to_string(kMaxNodeStreams) + " streams are all in use");
-    // What stays must not end and begin anew on the node: join first.
-    const auto before = std::exchange(viewer.watches_, {});
-    std::vector<std::pair<Key, std::uint32_t>> old;
-    for (std::uint32_t i = 0; i < before.size(); ++i) old.emplace_back(before[i].key, i);
-    viewer.watches_.resize(keys.size());
-    for (const auto& [key, number] : old) streams_.at(key).watchers.erase({&viewer, number});
-    for (std::uint32_t i = 0; i < keys.size(); ++i) join(viewer, i, keys[i]);
-    for (const auto& [key, number] : old) {
+    if (!has_room(watches)) return fail(fmt::format("watch: the wall's {} streams are all in use", kMaxNodeStreams));
+    std::vector<Key> old;
+    for (std::uint32_t i = 0; i < viewer.watches_.size(); ++i) std::ranges::move(leave(viewer, i), std::back_inserter(old));
+    viewer.watches_ = std::move(watches);
+    for (std::uint32_t i = 0; i < viewer.watches_.size(); ++i) join(viewer, i);
+    drop_unwatched(old);
+    viewer.news_.notify();
+    return {};
+}
+
+/// Gives what may be watched by nobody now. What others join before drop_unwatched() does not end and begin anew.
+std::vector<StreamHub::Key> StreamHub::leave(Viewer& viewer, std::uint32_t number) {
+    std::vector<Key> left;
+    const auto& parts = viewer.watches_[number].parts;
+    for (std::uint32_t i = 0; i < parts.size(); ++i) {
+        streams_.at(parts[i].key).watchers.erase({&viewer, number, i});
+        left.push_back(parts[i].key);
+    }
+    return left;
+}
+
+void StreamHub::join(Viewer& viewer, std::uint32_t number) {
+    const auto& parts = viewer.watches_[number].parts;
+    for (std::uint32_t i = 0; i < parts.size(); ++i) {
+        const Key& key = parts[i].key;
+        const auto [at, fresh] = streams_.try_emplace(key);
+        at->second.watchers.insert({&viewer, number, i});
+        if (!fresh) {
+            ask_for_more(*at);  // an unchanged picture would never come by itself
+            continue;
+        }
+        at->second.id = ++last_id_;
+        by_id_[at->second.id] = at;
+        if (wall_.nodes()[key.node].up) start(key, at->second);
+    }
+}
+
+void StreamHub::drop_unwatched(const std::vector<Key>& keys) {
+    for (const auto& key : keys) {
         const auto at = streams_.find(key);
-        if (at == streams_.end() || !at->second.watchers.empty()) continue;
+        if (at == streams_.end()) continue;
+        if (!at->second.watchers.empty()) {
+            ask_for_more(*at);  // who left may have been the one that was waited for
+            continue;
+        }
         proto::StreamStop stop;
         stop.set_stream(at->second.id);
         out_.to_node(key.node, make(&proto::Envelope::mutable_stream_stop, stop));
         by_id_.erase(at->second.id);
         streams_.erase(at);
     }
+}
+
+void StreamHub::tick(Clock::time_point now) {
+    deadline_.reset();
+    for (auto& [viewer, owner] : viewers_)
+        for (std::uint32_t i = 0; i < viewer->watches_.size(); ++i)
+            if (viewer->watches_[i].request.follows()) follow(*viewer, i, now);
+}
+
+/// Not more often than frames are wanted: each move of the window makes other streams of the nodes.
+void StreamHub::follow(Viewer& viewer, std::uint32_t number, Clock::time_point now) {
+    Watch& watch = viewer.watches_[number];
+    const auto scope = scope_of(wall_, watch.request);
+    if (scope ? watch.scope == *scope : !watch.scope) return;
+    if (scope && now < watch.not_before) {
+        deadline_ = std::min(deadline_.value_or(watch.not_before), watch.not_before);
+        return;
+    }
+    const auto old = leave(viewer, number);
+    if (scope) {
+        watch = make_watch(watch.request, *scope);
+        watch.not_before = now + std::chrono::microseconds(1'000'000 / watch.request.fps);
+    } else {
+        watch = Watch{.request = watch.request, .ended = scope.error().message.substr(scope.error().message.find(": ") + 2)};
+    }
+    join(viewer, number);
+    drop_unwatched(old);
     viewer.news_.notify();
-    return {};
 }
 
-void StreamHub::join(Viewer& viewer, std::uint32_t number, const Key& key) {
-    viewer.watches_[number] = Watch{key, false, true, std::nullopt, {}};
-    const auto [at, fresh] = streams_.try_emplace(key);
-    at->second.watchers.emplace(&viewer, number);
-    if (!fresh) return ask_for_more(*at);  // an unchanged picture would never come by itself
-    at->second.id = ++last_id_;
-    at->second.tile = wall_.nodes()[key.node].config->tiles[key.slot].name;
-    by_id_[at->second.id] = at;
-    if (wall_.nodes()[key.node].up) start(key, at->second);
-}
+std::string StreamHub::tile_name(const Key& key) const { return wall_.nodes()[key.node].config->tiles[key.slot].name; }
 
-void StreamHub::leave(Viewer& viewer, std::uint32_t number) {
-    const auto at = streams_.find(viewer.watches_[number].key);
-    if (at == streams_.end()) return;
-    at->second.watchers.erase({&viewer, number});
-    if (!at->second.watchers.empty()) return ask_for_more(*at);  // it may have been the one that was waited for
-    proto::StreamStop stop;
-    stop.set_stream(at->second.id);
-    out_.to_node(at->first.node, make(&proto::Envelope::mutable_stream_stop, stop));
-    by_id_.erase(at->second.id);
-    streams_.erase(at);
+std::string StreamHub::parts_text(std::uint32_t number, const Watch& watch) const {
+    auto parts = json::array();
+    for (const auto& part : watch.parts) parts.push_back({{"tile", tile_name(part.key)}, {"rect", rect_json(part.at)}, {"away", !wall_.nodes()[part.key.node].up}});
+    return json{{"stream", number}, {"codec", watch.request.codec}, {"layout", "rgba"}, {"width", watch.scope->width}, {"height", watch.scope->height},
+                {"shows", rect_json(watch.scope->rect)}, {"background", fmt::format("#{:06x}", wall_.config().background)}, {"parts", parts}}.dump();
 }
 
 std::optional<ViewerMessage> StreamHub::next(Viewer& viewer) {
     if (!viewer.error_.empty()) return ViewerMessage{false, json{{"error", std::exchange(viewer.error_, {})}}.dump(), nullptr};
     const auto count = static_cast<std::uint32_t>(viewer.watches_.size());
     for (std::uint32_t k = 0; k < count; ++k) {
-        const std::uint32_t i = (viewer.turn_ + k) % count;
-        Watch& watch = viewer.watches_[i];
-        if (!watch.ended.empty()) return ViewerMessage{false, json{{"stream", i}, {"ended", std::exchange(watch.ended, {})}}.dump(), nullptr};
-        if (!watch.frame) continue;
-        auto& stream = *streams_.find(watch.key);
-        if (!watch.announced) {
-            watch.announced = true;
-            return ViewerMessage{false, "{\"stream\": " + std::to_string(i) + ", " + stream.second.format + "}", nullptr};
-        }
-        viewer.turn_ = i + 1;
-        const Frame frame = *std::exchange(watch.frame, std::nullopt);
+        const std::uint32_t number = (viewer.turn_ + k) % count;
+        auto message = next_of(viewer, number);
+        if (!message) continue;
+        if (message->binary) viewer.turn_ = number + 1;
+        return message;
+    }
+    return std::nullopt;
+}
+
+std::optional<ViewerMessage> StreamHub::next_of(Viewer& viewer, std::uint32_t number) {
+    Watch& watch = viewer.watches_[number];
+    if (!watch.ended.empty()) return ViewerMessage{false, json{{"stream", number}, {"ended", std::exchange(watch.ended, {})}}.dump(), nullptr};
+    if (watch.scope && !std::exchange(watch.told, true)) return ViewerMessage{false, parts_text(number, watch), nullptr};
+    const auto count = static_cast<std::uint32_t>(watch.parts.size());
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const std::uint32_t i = (watch.turn + k) % count;
+        Part& part = watch.parts[i];
+        if (!part.ended.empty()) return ViewerMessage{false, json{{"stream", number}, {"part", i}, {"ended", std::exchange(part.ended, {})}}.dump(), nullptr};
+        if (!part.frame) continue;
+        auto& stream = *streams_.find(part.key);
+        if (!std::exchange(part.announced, true)) return ViewerMessage{false, json{{"stream", number}, {"part", i}, {"header", *stream.second.header}}.dump(), nullptr};
+        watch.turn = i + 1;
+        const Frame frame = *std::exchange(part.frame, std::nullopt);
         ViewerMessage out{true, {}, frame.packet};
+        append(out.head, number);
         append(out.head, i);
-        append(out.head, frame.sequence);
         append(out.head, frame.time_us);
+        append(out.head, frame.sequence);
         append(out.head, std::uint32_t{frame.key});
         ask_for_more(stream);
         return out;
@@ -177,12 +204,18 @@ void StreamHub::start(const Key& key, NodeStream& stream) {
     message.set_stream(stream.id);
     message.set_slot(key.slot);
     message.set_session(key.session);
+    message.set_surface(key.surface);
+    auto& crop = *message.mutable_crop();
+    crop.set_x(key.x);
+    crop.set_y(key.y);
+    crop.set_width(static_cast<std::uint32_t>(key.crop_width));
+    crop.set_height(static_cast<std::uint32_t>(key.crop_height));
     message.set_codec(key.codec);
     message.set_width(key.width);
     message.set_height(key.height);
     message.set_interval_us(1'000'000 / key.fps);
     stream.on_its_way = true;
-    stream.format.clear();
+    stream.header.reset();
     out_.to_node(key.node, make(&proto::Envelope::mutable_stream_start, message));
 }
 
@@ -190,10 +223,10 @@ void StreamHub::start(const Key& key, NodeStream& stream) {
 void StreamHub::ask_for_more(Streams::value_type& entry) {
     auto& [key, stream] = entry;
     bool wanted = false, want_key = false;
-    for (const auto& [viewer, number] : stream.watchers) {
-        const Watch& watch = viewer->watches_[number];
-        wanted |= !watch.frame;
-        want_key |= watch.needs_key && !watch.frame;
+    for (const auto& place : stream.watchers) {
+        const Part& part = at(place);
+        wanted |= !part.frame;
+        want_key |= part.needs_key && !part.frame;
     }
     if (!wanted || !wall_.nodes()[key.node].up || (stream.on_its_way && !want_key)) return;
     stream.on_its_way = true;
@@ -208,10 +241,12 @@ void StreamHub::arrived(NodeIndex node, proto::StreamFrame& frame) {
     if (found == by_id_.end() || found->second->first.node != node) return;
     auto& stream = found->second->second;
     if (!frame.error().empty()) return end(stream, frame.error());
-    const bool same_size = frame.width() == stream.width && frame.height() == stream.height;
-    if (stream.format.empty() || !same_size) {
+    const Key& key = found->second->first;
+    if (frame.width() != key.width || frame.height() != key.height)
+        return end(stream, fmt::format("{}x{} pixels came, not {}x{}: do walld and the node read the same wall.toml?", frame.width(), frame.height(), key.width, key.height));
+    if (!stream.header) {
         if (!frame.key()) return ask_for_more(*found->second);
-        note_format(found->second->first, stream, frame);
+        note_header(stream, frame);
     }
     ++counters_.frames;
     ++stream.frames;
@@ -222,45 +257,47 @@ void StreamHub::arrived(NodeIndex node, proto::StreamFrame& frame) {
     ask_for_more(*found->second);
 }
 
-void StreamHub::note_format(const Key& key, NodeStream& stream, const proto::StreamFrame& frame) {
-    const json format{{"tile", stream.tile}, {"codec", key.codec}, {"width", frame.width()}, {"height", frame.height()}, {"layout", "rgba"}, {"header", net::to_base64(frame.header())}};
-    const std::string text = format.dump();
-    stream.format = text.substr(1, text.size() - 2);
-    stream.width = frame.width();
-    stream.height = frame.height();
-    for (const auto& [viewer, number] : stream.watchers) viewer->watches_[number].announced = false;
+void StreamHub::note_header(NodeStream& stream, const proto::StreamFrame& frame) {
+    stream.header = net::to_base64(frame.header());
+    for (const auto& place : stream.watchers) at(place).announced = false;
 }
 
+StreamHub::Part& StreamHub::at(const Place& place) { return place.viewer->watches_[place.stream].parts[place.part]; }
+
 void StreamHub::deliver(NodeStream& stream, const Frame& frame) {
-    for (const auto& [viewer, number] : stream.watchers) {
-        Watch& watch = viewer->watches_[number];
-        if (watch.frame) ++counters_.dropped, ++stream.dropped;
+    for (const auto& place : stream.watchers) {
+        Part& part = at(place);
+        if (part.frame) ++counters_.dropped, ++stream.dropped;
         // A difference needs the frame that waits, so that one stays, and a key frame must follow it.
-        if (!frame.key && watch.frame) watch.needs_key = true;
-        if (!frame.key && watch.needs_key) continue;
-        watch.frame = frame;
-        watch.needs_key = false;
-        viewer->news_.notify();
+        if (!frame.key && part.frame) part.needs_key = true;
+        if (!frame.key && part.needs_key) continue;
+        part.frame = frame;
+        part.needs_key = false;
+        place.viewer->news_.notify();
     }
 }
 
 void StreamHub::end(NodeStream& stream, const std::string& why) {
     stream.on_its_way = false;
-    stream.format.clear();
-    for (const auto& [viewer, number] : stream.watchers) {
-        Watch& watch = viewer->watches_[number];
-        watch.announced = false;
-        watch.needs_key = true;
-        watch.frame.reset();
-        watch.ended = why;
-        viewer->news_.notify();
+    stream.header.reset();
+    for (const auto& place : stream.watchers) {
+        Part& part = at(place);
+        part.announced = false;
+        part.needs_key = true;
+        part.frame.reset();
+        part.ended = why;
+        place.viewer->news_.notify();
     }
 }
 
 std::vector<StreamView> StreamHub::views() const {
     std::vector<StreamView> out;
-    for (const auto& [key, stream] : streams_)
-        out.push_back({stream.id, key.node, stream.tile, key.codec, SessionId(key.session), key.width, key.height, key.fps, stream.watchers.size(), stream.frames, stream.bytes, stream.dropped});
+    for (const auto& [key, stream] : streams_) {
+        const auto& tile = wall_.nodes()[key.node].config->tiles[key.slot];
+        const geom::Rect crop{key.x, key.y, key.crop_width, key.crop_height}, whole{0, 0, tile.rect.width, tile.rect.height};
+        out.push_back({stream.id, key.node, tile.name, key.codec, SessionId(key.session), SurfaceId(key.surface), crop == whole ? geom::Rect{} : crop, key.width, key.height, key.fps,
+                       stream.watchers.size(), stream.frames, stream.bytes, stream.dropped});
+    }
     return out;
 }
 

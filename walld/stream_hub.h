@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Who watches which tile, and the frames on their way from nodes to viewers (docs/streams.md). Viewers that want the same
-// share one stream of the node. For each viewer and stream at most one frame waits; a newer one takes its place. A node
-// makes the next frame when the first viewer has taken the last one, so that nobody slow holds anybody, and nothing is
-// made that nobody can take. One thread.
+// Who watches what, and the frames on their way from nodes to viewers (docs/streams.md). A viewer's stream has a part for
+// each tile that it takes; each part is a stream of the tile's node, which all viewers share that want the same. For each
+// viewer and part at most one frame waits; a newer one takes its place. A node makes the next frame when the first viewer
+// has taken the last one, so that nobody slow holds anybody, and nothing is made that nobody can take. One thread.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,9 @@
 #include <vector>
 
 #include "walld/changed.h"
-#include "walld/wall.h"
+#include "walld/stream_scope.h"
 
 namespace wall::walld {
-
-/// What a viewer asks for: a tile in some size, rate and codec.
-struct WatchRequest {
-    std::string tile;
-    SessionId session;  ///< none: everything that the tile shows
-    std::string codec = "huffyuv";
-    std::uint32_t width = 0, height = 0;  ///< 0: the tile's
-    std::uint32_t fps = 10;
-
-    /// A viewer's message {"watch": [...]}. The error says what was expected, and where.
-    static Result<std::vector<WatchRequest>> parse(std::string_view json);
-};
 
 /// A message for one viewer.
 struct ViewerMessage {
@@ -43,6 +31,8 @@ struct StreamView {
     NodeIndex node = 0;
     std::string tile, codec;
     SessionId session;     ///< none: all
+    SurfaceId surface;     ///< none: all of the session
+    geom::Rect crop;       ///< of the tile; all of it: empty
     std::uint32_t width = 0, height = 0, fps = 0;
     std::size_t viewers = 0;
     std::uint64_t frames = 0, bytes = 0, dropped = 0;  ///< that have come since it was started; as StreamHub::Counters
@@ -50,9 +40,7 @@ struct StreamView {
 
 class StreamHub {
 public:
-    static constexpr std::size_t kMaxWatches = 256;       ///< of one viewer
     static constexpr std::size_t kMaxNodeStreams = 1024;  ///< of the wall
-    static constexpr std::uint32_t kMaxFps = 60;
 
     class Viewer;
 
@@ -68,6 +56,10 @@ public:
     void node_joined(NodeIndex node);
     void node_left(NodeIndex node);
     void arrived(NodeIndex node, proto::StreamFrame& frame);
+    /// After any change of the wall: streams of windows follow them, at their rate.
+    void tick(Clock::time_point now);
+    /// When tick() has to be called even if nothing changes.
+    std::optional<Clock::time_point> next_deadline() const { return deadline_; }
 
     struct Counters {
         std::uint64_t frames = 0, bytes = 0, dropped = 0;  ///< from nodes; dropped before some viewer got them
@@ -80,7 +72,8 @@ public:
 private:
     struct Key {
         NodeIndex node;
-        std::uint32_t slot, session;
+        std::uint32_t slot, session, surface;
+        std::int32_t x, y, crop_width, crop_height;
         std::string codec;
         std::uint32_t width, height, fps;
         auto operator<=>(const Key&) const = default;
@@ -91,24 +84,37 @@ private:
         bool key = false;
         std::shared_ptr<const std::string> packet;
     };
+    /// A part of a viewer's stream: the place in its list of streams, and in the stream.
+    struct Place {
+        Viewer* viewer;
+        std::uint32_t stream, part;
+        auto operator<=>(const Place&) const = default;
+    };
     struct NodeStream {
         std::uint32_t id = 0;
-        std::string tile;
-        std::string format;  ///< JSON members of the viewers' first message; empty: no frame yet
-        std::uint32_t width = 0, height = 0, sequence = 0;
-        bool on_its_way = true;  ///< the node was asked for a frame that has not come
+        std::optional<std::string> header;  ///< the codec's; none: no frame yet
+        std::uint32_t sequence = 0;
+        bool on_its_way = true;             ///< the node was asked for a frame that has not come
         std::uint64_t frames = 0, bytes = 0, dropped = 0;
-        std::set<std::pair<Viewer*, std::uint32_t>> watchers;
+        std::set<Place> watchers;
     };
+    struct Part;
     struct Watch;
 
     using Streams = std::map<Key, NodeStream>;
-    Result<Key> key_of(const WatchRequest& request, std::size_t number) const;
-    void join(Viewer& viewer, std::uint32_t number, const Key& key);
-    void leave(Viewer& viewer, std::uint32_t number);
+    std::string tile_name(const Key& key) const;
+    Watch make_watch(const WatchRequest& request, const StreamScope& scope) const;
+    bool has_room(const std::vector<Watch>& watches) const;
+    std::vector<Key> leave(Viewer& viewer, std::uint32_t number);
+    void join(Viewer& viewer, std::uint32_t number);
+    void drop_unwatched(const std::vector<Key>& keys);
+    void follow(Viewer& viewer, std::uint32_t number, Clock::time_point now);
+    std::optional<ViewerMessage> next_of(Viewer& viewer, std::uint32_t number);
+    std::string parts_text(std::uint32_t number, const Watch& watch) const;
+    static Part& at(const Place& place);
     void start(const Key& key, NodeStream& stream);
     void ask_for_more(Streams::value_type& stream);
-    void note_format(const Key& key, NodeStream& stream, const proto::StreamFrame& frame);
+    void note_header(NodeStream& stream, const proto::StreamFrame& frame);
     void deliver(NodeStream& stream, const Frame& frame);
     void end(NodeStream& stream, const std::string& why);
 
@@ -119,15 +125,27 @@ private:
     std::map<std::uint32_t, Streams::iterator> by_id_;
     std::map<Viewer*, std::shared_ptr<Viewer>> viewers_;
     std::uint32_t last_id_ = 0;
+    std::optional<Clock::time_point> deadline_;
     Counters counters_;
 };
 
-struct StreamHub::Watch {
+struct StreamHub::Part {
     Key key;
-    bool announced = false;  ///< the viewer knows the stream's format
+    geom::Rect at;               ///< in the picture
+    bool announced = false;      ///< the viewer has the codec's header
     bool needs_key = true;       ///< after the frame that waits
     std::optional<Frame> frame;  ///< that waits
     std::string ended;           ///< why there is nothing more, until the viewer was told
+};
+
+struct StreamHub::Watch {
+    WatchRequest request;
+    std::optional<StreamScope> scope;  ///< none: there is no such window any more
+    std::vector<Part> parts;
+    bool told = false;                 ///< the viewer knows the parts
+    std::string ended;                 ///< why there is no scope, until the viewer was told
+    Clock::time_point not_before{};    ///< when it may follow its window again
+    std::uint32_t turn = 0;            ///< the part that is looked at first, for fairness
 };
 
 /// One connection's place in the hub.

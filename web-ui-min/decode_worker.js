@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Worker: turns the packets of streams into pictures, away from the page's thread. It is told a stream's format, then
-// gets packets one at a time, each answered by {stream, bitmap} or {stream, error}.
+// Worker: turns the packets of a stream's parts into pictures, away from the page's thread. It is told a part's size and
+// header, then gets packets one at a time, each answered by {part, bitmap} or {part, error}.
 
 import { HuffyuvDecoder } from './huffyuv.js';
 
-const decoders = new Map();  // by stream: {decoder, width, height}, or {error}
+const decoders = new Map();  // by part: {decoder, width, height}, or {error}
 
-function setFormat({ stream, header, width, height }) {
+function setFormat({ part, header, width, height }) {
   try {
-    decoders.set(stream, { decoder: new HuffyuvDecoder(header, width, height), width, height });
+    decoders.set(part, { decoder: new HuffyuvDecoder(header, width, height), width, height });
   } catch (error) {
-    decoders.set(stream, { error });
+    decoders.set(part, { error });
   }
 }
 
-async function decode({ stream, packet }) {
-  const { decoder, width, height, error } = decoders.get(stream);
+async function decode({ part, packet }) {
+  const { decoder, width, height, error } = decoders.get(part);
   if (error) throw error;
   return createImageBitmap(new ImageData(decoder.decode(packet), width, height));
 }
@@ -24,8 +24,8 @@ onmessage = async ({ data }) => {
   if (data.header) return setFormat(data);
   try {
     const bitmap = await decode(data);
-    postMessage({ stream: data.stream, bitmap }, [bitmap]);
+    postMessage({ part: data.part, bitmap }, [bitmap]);
   } catch (error) {
-    postMessage({ stream: data.stream, error: error.message });
+    postMessage({ part: data.part, error: error.message });
   }
 };

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Brings the wall's picture to life: streams of the tiles in the size that is shown, or pictures of the whole wall at
+// Brings the wall's picture to life: a stream of it in the size that is shown, or pictures of the whole wall at
 // intervals while there is no WebSocket; nothing while the tab is hidden or the picture is paused.
 
 import { getSnapshot, streamUrl } from './api.js';
 import { WallStream } from './stream.js';
 
 const kRate = 10, kCalmRate = 1;  // frames a second; calm where the reader wants less motion
-const kMostStreams = 256;         // a connection has no more
 const kSnapshotEvery = 1500;      // ms
 const kSettle = 200;              // ms that a new size must last before it is asked for
 
 export class LivePicture {
-  #picture; #stream; #live = false; #paused = false; #asked = '';
+  #picture; #stream; #live = false; #paused = false; #asked;
   #settling;
   #calm = matchMedia('(prefers-reduced-motion: reduce)');
   taken = new Map();  // by tile: when its picture was taken, ms since 1970
@@ -52,7 +51,7 @@ export class LivePicture {
   }
   #ask() {
     const fps = this.#calm.matches ? kCalmRate : kRate;
-    const wanted = this.#resting ? [] : this.#picture.wanted().slice(0, kMostStreams).map(tile => ({ ...tile, fps }));
+    const wanted = this.#resting ? undefined : { wall: true, ...this.#picture.size, fps };
     const asked = JSON.stringify(wanted);
     if (asked === this.#asked) return;
     this.#asked = asked;
@@ -62,7 +61,7 @@ export class LivePicture {
   #setLive(live) {
     this.#live = live;
     if (live) return this.#picture.showWall(undefined);
-    for (const { tile } of this.#picture.wanted()) this.#picture.drop(tile);
+    this.#picture.dropTiles();
     this.taken.clear();
   }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The tiles' live pictures: a WebSocket (docs/streams.md) that connects again by itself, and the worker that decodes.
-// While a packet of a stream is being decoded only the newest of those that come is kept: every packet of `huffyuv` is
-// whole by itself.
+// The wall's live picture, tile by tile: a WebSocket (docs/streams.md) that connects again by itself, and the worker that
+// decodes. While a packet of a part is being decoded only the newest of those that come is kept: every packet of
+// `huffyuv` is whole by itself.
 
 import { Backoff } from './backoff.js';
 
 const kCodec = 'huffyuv';
-const kFrameBytes = 20;  // before the packet: stream:u32 sequence:u32 time:u64 flags:u32
+const kFrameBytes = 24;  // before the packet: stream:u32 part:u32 time:u64 sequence:u32 flags:u32
 const kFirstWait = 500, kMostWait = 15000;  // ms
 
 const bytesOfBase64 = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
@@ -15,9 +15,9 @@ export class WallStream {
   #url; #on; #socket; #backoff = new Backoff(kFirstWait, kMostWait);
   #watch = [];
   #worker;
-  #tiles = new Map();    // by stream: the tile's name, as walld said last
-  #busy = new Map();     // by stream: the frame that is being decoded
-  #waiting = new Map();  // by stream: the newest frame after that
+  #parts = [];           // as walld told them last: {tile, rect, known}; known: the decoder has its header
+  #busy = new Map();     // by part: the frame that is being decoded
+  #waiting = new Map();  // by part: the newest frame after that
 
   /** `on`: frame(tile, bitmap, taken), ended(tile, why), state(live), problem(text). `taken`: ms since 1970. */
   constructor(url, on) {
@@ -28,9 +28,9 @@ export class WallStream {
     this.#connect();
   }
 
-  /** [{tile, width, height, fps}] instead of what was watched before. */
-  watch(list) {
-    this.#watch = list.map(entry => ({ ...entry, codec: kCodec }));
+  /** {wall, width, height, fps} instead of what was watched before; undefined: nothing. */
+  watch(entry) {
+    this.#watch = entry ? [{ ...entry, codec: kCodec }] : [];
     this.#sendWatch();
   }
 
@@ -47,7 +47,7 @@ export class WallStream {
     };
     socket.onmessage = ({ data }) => typeof data === 'string' ? this.#told(data) : this.#received(data);
     socket.onclose = () => {
-      this.#tiles.clear();
+      this.#parts = [];
       this.#waiting.clear();
       this.#on.state(false);
       setTimeout(() => this.#connect(), this.#backoff.next());
@@ -58,38 +58,52 @@ export class WallStream {
     const message = JSON.parse(text);
     this.#backoff.reset();
     if (message.error !== undefined) this.#on.problem(message.error);
-    else if (message.ended !== undefined) this.#on.ended(this.#tiles.get(message.stream), message.ended);
-    else if (message.tile !== undefined) this.#setFormat(message);
+    else if (message.parts !== undefined) this.#setParts(message);
+    else if (message.header !== undefined) this.#setHeader(message);
+    else if (message.ended !== undefined) this.#end(message);
   }
 
-  #setFormat({ stream, tile, codec, width, height, header }) {
-    if (codec !== kCodec) return this.#on.problem(`tile ${tile} comes as ${codec}, which this page does not know`);
-    this.#tiles.set(stream, tile);
-    this.#waiting.delete(stream);
-    this.#worker.postMessage({ stream, header: bytesOfBase64(header), width, height });
+  #setParts({ codec, parts }) {
+    if (codec !== kCodec) this.#on.problem(`the wall comes as ${codec}, which this page does not know`);
+    this.#parts = codec === kCodec ? parts : [];
+    this.#waiting.clear();
+  }
+
+  #setHeader({ part, header }) {
+    if (!this.#parts[part]) return;
+    const { rect: [, , width, height] } = this.#parts[part];
+    this.#parts[part].known = true;
+    this.#waiting.delete(part);
+    this.#worker.postMessage({ part, header: bytesOfBase64(header), width, height });
+  }
+
+  #end({ part, ended }) {
+    if (!this.#parts[part]) return;
+    this.#parts[part].known = false;
+    this.#on.ended(this.#parts[part].tile, ended);
   }
 
   #received(message) {
     if (message.byteLength < kFrameBytes) return;
-    const view = new DataView(message), stream = view.getUint32(0, true);
-    if (!this.#tiles.has(stream)) return;
-    const frame = { stream, tile: this.#tiles.get(stream), taken: Number(view.getBigUint64(8, true)) / 1000, message };
-    if (this.#busy.has(stream)) this.#waiting.set(stream, frame);
+    const view = new DataView(message), part = view.getUint32(4, true);
+    if (!this.#parts[part]?.known) return;
+    const frame = { part, tile: this.#parts[part].tile, taken: Number(view.getBigUint64(8, true)) / 1000, message };
+    if (this.#busy.has(part)) this.#waiting.set(part, frame);
     else this.#decode(frame);
   }
 
   #decode(frame) {
-    this.#busy.set(frame.stream, frame);
-    this.#worker.postMessage({ stream: frame.stream, packet: new Uint8Array(frame.message, kFrameBytes) }, [frame.message]);
+    this.#busy.set(frame.part, frame);
+    this.#worker.postMessage({ part: frame.part, packet: new Uint8Array(frame.message, kFrameBytes) }, [frame.message]);
   }
 
-  #decoded({ stream, bitmap, error }) {
-    const { tile, taken } = this.#busy.get(stream);
-    this.#busy.delete(stream);
+  #decoded({ part, bitmap, error }) {
+    const { tile, taken } = this.#busy.get(part);
+    this.#busy.delete(part);
     if (bitmap) this.#on.frame(tile, bitmap, taken);
     else this.#on.problem(`tile ${tile}: ${error}`);
-    const next = this.#waiting.get(stream);
-    this.#waiting.delete(stream);
+    const next = this.#waiting.get(part);
+    this.#waiting.delete(part);
     if (next) this.#decode(next);
   }
 }

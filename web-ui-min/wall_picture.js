@@ -20,8 +20,8 @@ export class WallPicture {
     this.#context = canvas.getContext('2d', { alpha: false });
   }
 
-  /** Pixels of the picture per pixel of the wall. */
-  get scale() { return this.#canvas.width / this.#size.width; }
+  /** Pixels. */
+  get size() { return { width: this.#canvas.width, height: this.#canvas.height }; }
 
   /** `tiles`: [{name, rect, away}] */
   setTiles(size, tiles) {
@@ -53,12 +53,8 @@ export class WallPicture {
     this.#wall = bitmap;
     this.#draw();
   }
-  /** What to ask for: all tiles, those away for when they come back, in the size that is shown. */
-  wanted() {
-    return this.#tiles.map(({ name, rect }) => {
-      const [, , width, height] = scaledRect(rect, this.scale);
-      return { tile: name, width, height };
-    });
+  dropTiles() {
+    for (const tile of [...this.#pictures.keys()]) this.drop(tile);
   }
 
   #draw() {
@@ -68,7 +64,7 @@ export class WallPicture {
       this.#due = false;
       this.#context.fillStyle = kBezel;
       this.#context.fillRect(0, 0, this.#canvas.width, this.#canvas.height);
-      for (const tile of this.#tiles) this.#drawTile(tile, scaledRect(tile.rect, this.scale));
+      for (const tile of this.#tiles) this.#drawTile(tile, scaledRect(tile.rect, this.#size, this.size));
     });
   }
   #drawTile({ name, rect, away }, at) {

@@ -71,7 +71,9 @@ void TileStreams::start(RenderThread& render, const proto::StreamStart& message)
     auto stream = std::make_shared<Stream>();
     stream->codec = message.codec();
     streams_[message.stream()] = std::move(stream);
-    render.watch({message.stream(), true, message.slot(), SessionId(message.session()), message.width(), message.height()},
+    const auto& crop = message.crop();
+    const geom::Rect part{crop.x(), crop.y(), static_cast<std::int32_t>(crop.width()), static_cast<std::int32_t>(crop.height())};
+    render.watch({message.stream(), true, message.slot(), SessionId(message.session()), SurfaceId(message.surface()), part, message.width(), message.height()},
                  std::chrono::microseconds(message.interval_us()));
 }
 

@@ -60,27 +60,29 @@ Compositor::TileTarget& Compositor::target(const Tile& tile) {
     return target = make_target(tile.rect);
 }
 
-/// Halved until one linear step is left, so that every pixel counts.
-Compositor::TileTarget Compositor::scaled(const TileTarget& picture, std::int32_t width, std::int32_t height) const {
+/// A part of the picture, halved until one linear step is left, so that every pixel counts.
+Compositor::TileTarget Compositor::scaled(const TileTarget& picture, geom::Rect part, std::int32_t width, std::int32_t height) const {
     TileTarget from = picture;
-    while (from.rect.width != width || from.rect.height != height) {
-        const geom::Rect size{0, 0, std::max(width, (from.rect.width + 1) / 2), std::max(height, (from.rect.height + 1) / 2)};
+    while (part.width != width || part.height != height) {
+        const geom::Rect size{0, 0, std::max(width, (part.width + 1) / 2), std::max(height, (part.height + 1) / 2)};
         TileTarget to = make_target(size);
-        gl_.BlitNamedFramebuffer(from.framebuffer, to.framebuffer, 0, 0, from.rect.width, from.rect.height, 0, 0, size.width, size.height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+        gl_.BlitNamedFramebuffer(from.framebuffer, to.framebuffer, part.x, part.y, part.right(), part.bottom(), 0, 0, size.width, size.height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
         if (from.texture != picture.texture) release(from);
         from = to;
+        part = size;
     }
     return from;
 }
 
-void Compositor::compose(TileTarget& target, std::uint32_t slot, SessionId only) {
+void Compositor::compose(TileTarget& target, std::uint32_t slot, const StackEntry& only) {
     if (target.composed == node_.damage && target.only == only) return;
     target.composed = node_.damage;
     target.only = only;
     node_.driver.disable_scissor();
     gl_.ClearTexImage(target.texture, 0, GL_RGBA, GL_FLOAT, background_.data());
     for (const StackEntry& entry : stacking_) {
-        if (only && entry.session != only) continue;
+        if (only.session && entry.session != only.session) continue;
+        if (only.surface && entry.surface != only.surface) continue;
         const Surface* surface = find_(entry);
         const Layer* layer = surface != nullptr ? surface->shown_layer(slot) : nullptr;
         if (layer != nullptr) draw_layer(target, *layer);
@@ -105,24 +107,30 @@ void Compositor::request(const PictureRequest& request) {
         return;
     }
     TileTarget& picture = target(*wanted);
-    compose(picture, request.slot, request.session);
+    const geom::Rect whole{0, 0, picture.rect.width, picture.rect.height}, crop = request.crop.empty() ? whole : geom::intersect(request.crop, whole);
+    if (crop.empty()) {
+        refused_.push_back({request, 0, 0, {}, "the tile is smaller than the part of it that is wanted"});
+        return;
+    }
+    compose(picture, request.slot, {request.session, request.surface});
     node_.driver.disable_scissor();
-    const auto width = static_cast<std::int32_t>(at_most(request.width, picture.rect.width));
-    const auto height = static_cast<std::int32_t>(at_most(request.height, picture.rect.height));
-    TileTarget small = scaled(picture, width, height);
-    read_back(request, small);
-    if (small.texture != picture.texture) release(small);
+    const auto width = static_cast<std::int32_t>(at_most(request.width, crop.width));
+    const auto height = static_cast<std::int32_t>(at_most(request.height, crop.height));
+    TileTarget small = scaled(picture, crop, width, height);
+    const bool as_it_is = small.texture == picture.texture;
+    read_back(request, small.framebuffer, as_it_is ? crop : geom::Rect{0, 0, width, height});
+    if (!as_it_is) release(small);
 }
 
-void Compositor::read_back(const PictureRequest& request, const TileTarget& from) {
-    Readback readback{request, static_cast<std::uint32_t>(from.rect.width), static_cast<std::uint32_t>(from.rect.height), 0, nullptr};
+void Compositor::read_back(const PictureRequest& request, GLuint framebuffer, const geom::Rect& part) {
+    Readback readback{request, static_cast<std::uint32_t>(part.width), static_cast<std::uint32_t>(part.height), 0, nullptr};
     node_.driver.neutral_pixel_transfer();
     node_.driver.forget_layer();
     gl_.CreateBuffers(1, &readback.buffer);
-    gl_.NamedBufferStorage(readback.buffer, GLsizeiptr{4} * from.rect.width * from.rect.height, nullptr, GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
-    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, from.framebuffer);
+    gl_.NamedBufferStorage(readback.buffer, GLsizeiptr{4} * part.width * part.height, nullptr, GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
     gl_.BindBuffer(GL_PIXEL_PACK_BUFFER, readback.buffer);
-    gl_.ReadPixels(0, 0, from.rect.width, from.rect.height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    gl_.ReadPixels(part.x, part.y, part.width, part.height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     gl_.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     readback.done = gl_.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl_.Flush();

@@ -19,6 +19,7 @@ namespace wall::tileserver {
 struct StackEntry {
     SessionId session;
     SurfaceId surface;
+    bool operator==(const StackEntry&) const = default;
 };
 
 struct PictureRequest {
@@ -26,7 +27,9 @@ struct PictureRequest {
     bool stream = false;
     std::uint32_t slot = 0;
     SessionId session;                   ///< only its layers; none: all
-    std::uint32_t width = 0, height = 0; ///< 0: the tile's; never more than that
+    SurfaceId surface;                   ///< only this one of the session; none: all
+    geom::Rect crop;                     ///< in pixels of the tile; empty: all of it
+    std::uint32_t width = 0, height = 0; ///< of the picture; 0: the crop's; never more than that
 };
 
 struct Picture {
@@ -57,7 +60,7 @@ private:
         geom::Rect rect;
         GLuint texture = 0, framebuffer = 0;
         std::uint64_t composed = 0;   // RenderNode::damage that the picture shows; 0: none
-        SessionId only;               // of one session only
+        StackEntry only;              // of one session or surface only
     };
     struct Readback {
         PictureRequest request;
@@ -67,12 +70,12 @@ private:
     };
     const Tile* tile(std::uint32_t slot) const;
     TileTarget& target(const Tile& tile);
-    void compose(TileTarget& target, std::uint32_t slot, SessionId only);
+    void compose(TileTarget& target, std::uint32_t slot, const StackEntry& only);
     void draw_layer(const TileTarget& target, const Layer& layer);
     TileTarget make_target(const geom::Rect& rect) const;
-    TileTarget scaled(const TileTarget& picture, std::int32_t width, std::int32_t height) const;
+    TileTarget scaled(const TileTarget& picture, geom::Rect part, std::int32_t width, std::int32_t height) const;
     void release(TileTarget& target) const;
-    void read_back(const PictureRequest& request, const TileTarget& from);
+    void read_back(const PictureRequest& request, GLuint framebuffer, const geom::Rect& part);
     Picture finish(const Readback& readback);
 
     RenderNode& node_;

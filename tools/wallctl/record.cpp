@@ -10,13 +10,14 @@
 
 #include "common/codec/avi.h"
 #include "common/codec/huffyuv.h"
-#include "tools/wallctl/live_wall.h"
+#include "tools/view/live_view.h"
 
 namespace wall::wallctl {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kFirstPictures{5};
+constexpr const char* kCodec = "huffyuv-tiles";  // between walld and here
 
 std::atomic<bool> interrupted = false;
 
@@ -32,6 +33,8 @@ public:
             auto made = codec::huffyuv::make_stream_encoder({frame.width, frame.height, frame.layout, false}, {});
             if (!made) return tl::unexpected(made.error());
             encoder_ = std::move(*made);
+            width_ = frame.width;
+            height_ = frame.height;
         }
         packet_.clear();
         if (auto done = encoder_->encode(frame, codec::PacketKind::key, packet_); !done) return tl::unexpected(done.error());
@@ -48,6 +51,8 @@ public:
     Result<void> finish() { return avi_ ? avi_->finish() : Result<void>(); }
     std::uint64_t frames() const { return avi_ ? avi_->frames() : 0; }
     std::uint64_t bytes() const { return bytes_; }
+    std::uint32_t width() const { return width_; }
+    std::uint32_t height() const { return height_; }
 
 private:
     const Recording& recording_;
@@ -55,6 +60,7 @@ private:
     std::optional<codec::AviWriter> avi_;
     std::vector<std::byte> packet_;
     std::uint64_t bytes_ = 0;
+    std::uint32_t width_ = 0, height_ = 0;
 };
 
 void say(const Recording& recording, const Film& film) {
@@ -63,18 +69,33 @@ void say(const Recording& recording, const Film& film) {
               << static_cast<double>(film.bytes()) / 1e6 << " MB" << std::flush;
 }
 
+/// The picture as it is now. The error says why there will be no more.
+Outcome<codec::Picture> picture_of(const view::LiveView& wall) {
+    codec::Picture picture;
+    std::string failure;
+    wall.look([&](const view::Looked& now) {
+        failure = now.failure;
+        if (failure.empty()) picture = now.builder.picture();
+    });
+    if (!failure.empty()) return tl::unexpected<Failure>({"unavailable", failure});
+    return picture;
+}
+
 }  // namespace
 
 Outcome<Answer> record(const Walld& walld, const Recording& recording) {
-    auto wall = LiveWall::open(walld, recording.tile, recording.fps);
-    if (!wall) return tl::unexpected(wall.error());
-    if (!(*wall)->wait_complete(kFirstPictures)) return failed("not every tile sent a picture within 5 s (wallctl tiles)");
+    nlohmann::json entry{{"codec", kCodec}, {"fps", recording.fps}};
+    if (recording.tile.empty()) entry["wall"] = true;
+    else entry["tile"] = recording.tile;
+    view::LiveView wall([&walld](const nlohmann::json& what) { return view::open_control_feed(walld, nlohmann::json::array({what})); }, entry, view::LiveView::AfterFailure::stay);
+    if (!wall.wait_complete(kFirstPictures)) return failed("not every tile sent a picture within 5 s (wallctl tiles)");
+    if (const auto first = picture_of(wall); !first) return tl::unexpected(first.error());
     ::signal(SIGINT, [](int) { interrupted = true; });
     Film film(recording);
     const auto frames = static_cast<std::uint64_t>(std::max(1.0, recording.seconds * recording.fps + 0.5));
     const auto begin = Clock::now();
     while (film.frames() < frames && !interrupted) {
-        const auto picture = (*wall)->picture();
+        const auto picture = picture_of(wall);
         if (!picture) {
             static_cast<void>(film.finish());
             return failed(recording.file + " ends after " + std::to_string(film.frames()) + " frames: " + picture.error().message);
@@ -85,7 +106,7 @@ Outcome<Answer> record(const Walld& walld, const Recording& recording) {
     }
     if (recording.progress) say(recording, film), std::cerr << '\n';
     if (auto finished = film.finish(); !finished) return failed(finished.error().message);
-    return Answer{{{"file", recording.file}, {"frames", film.frames()}, {"bytes", film.bytes()}, {"width", (*wall)->width()}, {"height", (*wall)->height()}, {"fps", recording.fps}}, {}};
+    return Answer{{{"file", recording.file}, {"frames", film.frames()}, {"bytes", film.bytes()}, {"width", film.width()}, {"height", film.height()}, {"fps", recording.fps}}, {}};
 }
 
 }  // namespace wall::wallctl

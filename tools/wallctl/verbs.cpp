@@ -10,14 +10,6 @@ constexpr std::chrono::seconds kConnectLimit{3};
 
 tl::unexpected<Failure> no(const char* code, std::string message) { return tl::unexpected<Failure>({code, std::move(message)}); }
 
-Outcome<std::string> read_token(const std::string& path) {
-    if (path.empty()) return std::string();
-    std::ifstream file(path);
-    std::string token;
-    if (std::getline(file, token) && !token.empty()) return token;
-    return no("failed", path + ": expected a file with a token");
-}
-
 Outcome<proto::Envelope> request_of(const Walld& walld, const std::string& verb, const nlohmann::json& arguments) {
     const auto token = read_token(walld.token_file);
     if (!token) return tl::unexpected(token.error());
@@ -39,6 +31,14 @@ Outcome<proto::Envelope> answer_of(net::ControlClient& client, const Walld& wall
 }
 
 }  // namespace
+
+Outcome<std::string> read_token(const std::string& path) {
+    if (path.empty()) return std::string();
+    std::ifstream file(path);
+    std::string token;
+    if (std::getline(file, token) && !token.empty()) return token;
+    return no("failed", path + ": expected a file with a token");
+}
 
 Outcome<net::ControlClient> subscribe(const Walld& walld, const std::string& verb, const nlohmann::json& arguments) {
     const auto request = request_of(walld, verb, arguments);

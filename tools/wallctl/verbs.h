@@ -28,6 +28,9 @@ struct Walld {
     std::string token_file;  ///< holds a token; empty: this Unix user asks
 };
 
+/// The token in a file; empty if `path` is.
+Outcome<std::string> read_token(const std::string& path);
+
 /// A connection on which walld answers the request with many replies.
 Outcome<net::ControlClient> subscribe(const Walld& walld, const std::string& verb, const nlohmann::json& arguments);
 

@@ -16,6 +16,7 @@ import yaml
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests" / "support"))
 from wall import Wall, build_folder  # noqa: E402
+from websocket import WebSocket  # noqa: E402
 from xserver import XServer  # noqa: E402
 
 STILL = build_folder() / "tests" / "still_windows"
@@ -82,7 +83,10 @@ class Api(unittest.TestCase):
         check(self.get("/api/v1/status"), "Status")
         check(self.get("/api/v1/whoami"), "Person")
         check(self.get(f"/api/v1/sessions/{self.session}"), "Session")
-        for path, schema in (("nodes", "Node"), ("tiles", "Tile"), ("sessions", "Session")):
+        viewer = self.enterContext(WebSocket(self.wall.url))
+        viewer.watch({"wall": True, "region": [80, 0, 160, 120]}, {"session": self.session})
+        viewer.message()
+        for path, schema in (("nodes", "Node"), ("tiles", "Tile"), ("sessions", "Session"), ("streams", "Stream")):
             answers = self.get(f"/api/v1/{path}")
             self.assertTrue(answers)
             for answer in answers:

@@ -167,7 +167,7 @@ TEST_F(Metrics, SkewIsAHistogram) {
 TEST_F(Metrics, AStreamIsWhatWalldAndItsNodeKnowOfIt) {
     node_tells(join("left"), {});
     streams_ = {{.id = 5, .node = 0, .tile = "l", .codec = "huffyuv", .width = 64, .height = 48, .fps = 10, .viewers = 2, .frames = 3, .dropped = 1}};
-    const std::string labels = "{node=\"left\",tile=\"l\",codec=\"huffyuv\",size=\"64x48\",fps=\"10\",session=\"\"} ";
+    const std::string labels = "{node=\"left\",tile=\"l\",codec=\"huffyuv\",size=\"64x48\",fps=\"10\",session=\"\",region=\"\"} ";
     EXPECT_THAT(text(), HasSubstr("wallgl_stream_viewers" + labels + "2\n"));
     EXPECT_THAT(text(), HasSubstr("wallgl_stream_dropped_frames_total" + labels + "1\n"));
     EXPECT_THAT(text(), HasSubstr("wallgl_stream_raw_bytes_total" + labels + "4000\n"));

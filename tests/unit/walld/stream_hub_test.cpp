@@ -53,10 +53,19 @@ protected:
         EXPECT_TRUE(hub_.watch(*added, requests));
         return added;
     }
-    WatchRequest tile(const std::string& name) {
-        WatchRequest out;
-        out.tile = name;
-        return out;
+    static WatchRequest tile(const std::string& name) { return {.tile = name}; }
+    /// A program's window there, shown with its first frame.
+    SessionId window(const geom::Rect& rect) {
+        proto::ClientHello hello;
+        hello.set_version(wire::kProtocolVersion);
+        const auto id = wall_.open_session(hello, {}, [](SessionId) {});
+        proto::SurfaceOpen open;
+        open.set_surface(1);
+        open.set_width(static_cast<std::uint32_t>(rect.width));
+        open.set_height(static_cast<std::uint32_t>(rect.height));
+        EXPECT_TRUE(wall_.open_surface(id, open, {}));
+        EXPECT_EQ(wall_.find({id, SurfaceId(1)})->place.shown().width, rect.width);
+        return id;
     }
     std::vector<proto::Envelope> said(NodeIndex node) { return std::exchange(out_.nodes[node], {}); }
     std::uint32_t started(NodeIndex node) {
@@ -65,12 +74,12 @@ protected:
         ADD_FAILURE() << "no stream was started";
         return 0;
     }
-    void frame(NodeIndex node, std::uint32_t stream, bool key, const std::string& packet) {
+    void frame(NodeIndex node, std::uint32_t stream, bool key, const std::string& packet, std::uint32_t width = 640, std::uint32_t height = 480) {
         proto::StreamFrame message;
         message.set_stream(stream);
         message.set_key(key);
-        message.set_width(640);
-        message.set_height(480);
+        message.set_width(width);
+        message.set_height(height);
         message.set_packet(packet);
         hub_.arrived(node, message);
     }
@@ -78,7 +87,7 @@ protected:
     std::string next(StreamHub::Viewer& viewer) {
         const auto message = hub_.next(viewer);
         if (!message) return {};
-        if (message->binary) sequence_ = static_cast<unsigned char>(message->head[4]);
+        if (message->binary) part_ = static_cast<unsigned char>(message->head[4]), sequence_ = static_cast<unsigned char>(message->head[16]);
         return message->binary ? *message->packet : message->head;
     }
     bool asked(NodeIndex node, bool key) {
@@ -90,15 +99,16 @@ protected:
     FakeOutbox out_;
     Wall wall_{*config::parse_config(kConfig, "test"), out_, [](std::size_t n) { return std::string(n, 'x'); }};
     StreamHub hub_{io_.get_executor(), wall_, out_};
-    unsigned sequence_ = 0;
+    unsigned part_ = 0, sequence_ = 0;
 };
 
 TEST_F(StreamHubTest, AViewerGetsTheFormatAndThenFrames) {
     const auto one = viewer({tile("l")});
     const auto id = started(0);
+    EXPECT_EQ(next(*one), R"({"background":"#000000","codec":"huffyuv","height":480,"layout":"rgba","parts":[{"away":false,"rect":[0,0,640,480],"tile":"l"}],"shows":[0,0,640,480],"stream":0,"width":640})");
     EXPECT_EQ(next(*one), "");
     frame(0, id, true, "first");
-    EXPECT_THAT(next(*one), HasSubstr("\"width\":640"));
+    EXPECT_EQ(next(*one), R"({"header":"","part":0,"stream":0})");
     EXPECT_FALSE(asked(0, false)) << "nobody has taken the frame";
     EXPECT_EQ(next(*one), "first");
     EXPECT_TRUE(asked(0, false));
@@ -114,7 +124,7 @@ TEST_F(StreamHubTest, ViewersOfTheSameShareAStream) {
     EXPECT_EQ(hub_.node_streams(), 1u);
     EXPECT_TRUE(asked(0, true)) << "an unchanged picture would not come by itself";
     frame(0, id, true, "k");
-    next(*one), next(*two);
+    next(*one), next(*one), next(*two), next(*two);
     EXPECT_EQ(next(*one), "k");
     EXPECT_EQ(next(*two), "k");
     hub_.remove_viewer(*one);
@@ -132,7 +142,7 @@ TEST_F(StreamHubTest, TheNewestWins) {
         while (!next(*quick).empty()) {
         }
     }
-    EXPECT_THAT(next(*slow), HasSubstr("codec"));
+    next(*slow), next(*slow);
     EXPECT_EQ(next(*slow), "3");
     EXPECT_EQ(next(*slow), "");
     EXPECT_EQ(hub_.counters().dropped, 2u);
@@ -142,12 +152,12 @@ TEST_F(StreamHubTest, AfterADroppedDifferenceComesAKeyFrame) {
     const auto slow = viewer({tile("l")}), quick = viewer({tile("l")});
     const auto id = started(0);
     frame(0, id, true, "key");
-    next(*quick), next(*quick);
+    next(*quick), next(*quick), next(*quick);
     said(0);
     frame(0, id, false, "difference");
     EXPECT_EQ(next(*quick), "difference");
     EXPECT_TRUE(asked(0, false)) << "no key frame before the slow one has room for it";
-    next(*slow);
+    next(*slow), next(*slow);
     EXPECT_EQ(next(*slow), "key");
     EXPECT_TRUE(asked(0, true));
     frame(0, id, false, "another");
@@ -160,15 +170,15 @@ TEST_F(StreamHubTest, ANodeThatComesBackStartsAnew) {
     const auto one = viewer({tile("r"), tile("l")});
     const auto id = started(1);
     frame(1, id, true, "k");
-    next(*one), next(*one);
+    next(*one), next(*one), next(*one), next(*one);
     wall_.node_leaves(1, {});
     hub_.node_left(1);
-    EXPECT_THAT(next(*one), HasSubstr("node right is away"));
+    EXPECT_EQ(next(*one), R"({"ended":"node right is away","part":0,"stream":0})");
     said(1);
     join("right");
     EXPECT_EQ(started(1), id);
     frame(1, id, true, "again");
-    EXPECT_THAT(next(*one), HasSubstr("codec"));
+    EXPECT_THAT(next(*one), HasSubstr("header"));
     EXPECT_EQ(next(*one), "again");
 }
 
@@ -197,24 +207,80 @@ TEST_F(StreamHubTest, ForeignFramesAreIgnored) {
     frame(1, id, true, "not its own");
     frame(0, id + 1, true, "not a stream");
     frame(0, id, false, "a difference to nothing");
+    next(*one);
     EXPECT_EQ(next(*one), "");
 }
 
-TEST(WatchRequest, SaysWhatWasExpected) {
-    const auto error = [](const char* text) {
-        const auto parsed = WatchRequest::parse(text);
-        return parsed ? std::string() : parsed.error().message;
+TEST_F(StreamHubTest, AFrameOfAnotherSizeEndsItsPart) {
+    const auto one = viewer({tile("l")});
+    frame(0, started(0), true, "k", 64, 48);
+    next(*one);
+    EXPECT_THAT(next(*one), HasSubstr("64x48 pixels came, not 640x480"));
+}
+
+TEST_F(StreamHubTest, AWallIsAPartForEachTile) {
+    const auto one = viewer({{.wall = true, .width = 320, .height = 120}});
+    const auto left = said(0).at(0).stream_start();
+    EXPECT_EQ(left.width(), 160u);
+    EXPECT_EQ(left.crop().width(), 640u);
+    const auto right = started(1);
+    EXPECT_THAT(next(*one), HasSubstr(R"({"away":false,"rect":[160,0,160,120],"tile":"r"}],"shows":[0,0,1280,480])"));
+    frame(1, right, true, "right", 160, 120);
+    EXPECT_EQ(next(*one), R"({"header":"","part":1,"stream":0})");
+    EXPECT_EQ(next(*one), "right");
+    EXPECT_EQ(part_, 1u);
+    frame(0, left.stream(), true, "left", 160, 120);
+    next(*one);
+    EXPECT_EQ(next(*one), "left");
+    EXPECT_EQ(part_, 0u);
+}
+
+TEST_F(StreamHubTest, ViewersOfAWallAndOfATileShareTheTile) {
+    const auto one = viewer({{.wall = true}}), two = viewer({tile("r")});
+    EXPECT_EQ(hub_.node_streams(), 2u);
+    ASSERT_TRUE(hub_.watch(*one, {tile("l")}));
+    EXPECT_EQ(hub_.node_streams(), 2u);
+    hub_.remove_viewer(*two);
+    EXPECT_EQ(hub_.node_streams(), 1u);
+}
+
+TEST_F(StreamHubTest, AStreamFollowsItsWindowAtItsRate) {
+    const auto id = window({0, 0, 100, 100});
+    const SurfaceKey key{id, SurfaceId(1)};
+    const auto one = viewer({{.session = id, .fps = 10}});
+    EXPECT_EQ(said(0).at(0).stream_start().surface(), 1u);
+    next(*one);
+    const auto move = [&](std::uint32_t version, std::int32_t x) {
+        ASSERT_TRUE(wall_.place_surface({id, {}}, {x, 0, 100, 100}));
+        proto::SurfaceAdopted adopted;
+        adopted.set_surface(1);
+        adopted.set_layout_version(version);
+        adopted.set_frame(version);
+        wall_.adopt_placement(id, adopted, {});
+        proto::Rendered rendered;
+        rendered.set_session(id.value);
+        rendered.set_surface(1);
+        rendered.set_frame(version);
+        wall_.node_rendered(0, rendered, {});
+        wall_.node_rendered(1, rendered, {});
+        ASSERT_EQ(wall_.find(key)->place.shown().x, x);
     };
-    EXPECT_EQ(error(R"({"watch": [{"tile": "l", "fps": 60, "width": 1, "session": 3}]})"), "");
-    EXPECT_EQ(error("{"), "expected {\"watch\": [...]}");
-    EXPECT_EQ(error(R"({"watch": [{"tile": "l"}, 3]})"), "watch[1]: expected an object");
-    EXPECT_EQ(error(R"({"watch": [{}]})"), "watch[0].tile: expected a text");
-    EXPECT_EQ(error(R"({"watch": [{"tile": "l", "fps": 61}]})"), "watch[0].fps: expected a whole number from 1 to 60");
-    EXPECT_EQ(error(R"({"watch": [{"tile": "l", "width": -1}]})"), "watch[0].width: expected a whole number from 1 to 32768");
-    EXPECT_THAT(error(R"({"watch": [{"tile": "l", "codec": "mp3"}]})"), HasSubstr("watch[0].codec: "));
-    std::string many = "{\"watch\": [";
-    for (std::size_t i = 0; i <= StreamHub::kMaxWatches; ++i) many += i ? ",{}" : "{}";
-    EXPECT_THAT(error((many + "]}").c_str()), HasSubstr("at most 256 streams"));
+    const Clock::time_point now{std::chrono::hours(1)};
+    move(2, 600);
+    hub_.tick(now);
+    EXPECT_THAT(next(*one), HasSubstr(R"("parts":[{"away":false,"rect":[0,0,40,100],"tile":"l"},{"away":false,"rect":[40,0,60,100],"tile":"r"}],"shows":[600,0,100,100])"));
+    EXPECT_EQ(hub_.node_streams(), 2u);
+    move(3, 650);
+    hub_.tick(now + std::chrono::milliseconds(1));
+    EXPECT_EQ(next(*one), "") << "it has just been told";
+    ASSERT_EQ(hub_.next_deadline(), now + std::chrono::milliseconds(100));
+    hub_.tick(*hub_.next_deadline());
+    EXPECT_THAT(next(*one), HasSubstr(R"("parts":[{"away":false,"rect":[0,0,100,100],"tile":"r"}])"));
+    EXPECT_FALSE(hub_.next_deadline());
+    wall_.close_session(id);
+    hub_.tick(now + std::chrono::seconds(1));
+    EXPECT_THAT(next(*one), HasSubstr("\"ended\":\"there is no session"));
+    EXPECT_EQ(hub_.node_streams(), 0u);
 }
 
 }  // namespace
