@@ -114,12 +114,14 @@ class Wall:
     def _start(self) -> None:
         (self.folder / "wall.toml").write_text(self._description())
         self.address = f"unix:{self.folder}/walld.sock"
-        self._start_walld()
+        self.start_walld()
         for name in self.node_names:
             self.start_node(name)
         self.wait_nodes()
 
-    def _start_walld(self) -> None:
+    def start_walld(self) -> None:
+        """Until it answers. Its HTTP port may be another one than before."""
+        (self.folder / "ready").unlink(missing_ok=True)
         self._start_daemon("walld", "walld", "--config", self.folder / "wall.toml", "--ready-file", self.folder / "ready")
         self._until(lambda: (self.folder / "ready").exists(), "walld does not get ready", "walld")
         self.url = json.loads((self.folder / "ready").read_text())["http"]
@@ -133,7 +135,7 @@ class Wall:
         self.daemons["walld"].wait()
         time.sleep(pause)
         (self.folder / "ready").unlink()
-        self._start_walld()
+        self.start_walld()
         self.wait_nodes()
 
     def wait_nodes(self) -> None:

@@ -12,6 +12,7 @@
 #include "tools/wallctl/record.h"
 #include "tools/wallctl/tables.h"
 #include "tools/wallctl/verbs.h"
+#include "tools/wallctl/watch.h"
 
 namespace {
 
@@ -30,7 +31,8 @@ struct Options {
     int x = 0, y = 0, width = 0, height = 0;
     int frames = 1, frame = 1;
     unsigned fps = 10;
-    double seconds = 10;
+    double seconds = 10, interval = 1;
+    std::uint64_t count = 0;
     bool off = false;
 };
 
@@ -71,6 +73,10 @@ Outcome<void> screenshot(const Options& options) {
 Outcome<void> record(const Options& options) {
     const auto recorded = wallctl::record(options.walld, {options.file, options.tile, options.seconds, options.fps, !options.as_json});
     return print(options, recorded, kNoTable);
+}
+
+Outcome<void> watch(const Options& options) {
+    return wallctl::watch(options.walld, {std::chrono::milliseconds(static_cast<std::int64_t>(options.interval * 1000)), options.count, options.as_json});
 }
 
 Outcome<void> wait(const Options& options) {
@@ -130,6 +136,10 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
     verb("nodes", "the nodes", show(o, "nodes", nodes_table));
     verb("tiles", "the tiles and their places", show(o, "tiles", tiles_table));
     verb("sessions", "the programs on the wall and their windows", show(o, "sessions", sessions_table));
+    verb("streams", "what is watched live, part by part", show(o, "streams", streams_table));
+    auto* watching = verb("watch", "tiles, programs and streams, refreshed in place; Ctrl-C ends it. With --json a line for each refresh", [&o] { return watch(o); });
+    watching->add_option("--interval", o.interval, "seconds (1)")->check(CLI::Range(0.1, 3600.0));
+    watching->add_option("--count", o.count, "refreshes, then it ends")->check(CLI::PositiveNumber);
     auto* place = verb("place", "puts a window on a rectangle of the wall", tell(o, "place", [&o] {
         return json{{"id", o.id}, {"rect", {o.x, o.y, o.width, o.height}}};
     }));
@@ -169,7 +179,7 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
 
 int main(int argc, char** argv) {
     CLI::App app("wallctl: everything an operator does with a wall.");
-    app.footer("Examples:\n  wallctl status\n  wallctl --json sessions\n  wallctl screenshot wall.png\n  wallctl record wall.avi --seconds 30\n  wallctl place 3 0 0 1920 1080\n"
+    app.footer("Examples:\n  wallctl status\n  wallctl --json sessions\n  wallctl watch\n  wallctl screenshot wall.png\n  wallctl record wall.avi --seconds 30\n  wallctl place 3 0 0 1920 1080\n"
                "  wallctl --walld 127.0.0.1:7770 nodes\n\nExit code: 0; 1 if walld says no or cannot be reached.");
     Options options;
     Action action;

@@ -5,56 +5,14 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <vector>
+
+#include "tools/wallctl/cells.h"
+#include "tools/wallctl/columns.h"
 
 namespace wall::wallctl {
 namespace {
 
 using nlohmann::json;
-using Row = std::vector<std::string>;
-
-/// Columns as wide as their widest cell, two blanks between them.
-std::string table(const std::vector<Row>& rows) {
-    std::vector<std::size_t> widths(rows.front().size());
-    for (const auto& row : rows) {
-        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-    }
-    std::string out;
-    for (const auto& row : rows) {
-        std::string line;
-        for (std::size_t i = 0; i < row.size(); ++i) line += fmt::format("{:<{}}  ", row[i], widths[i]);
-        out += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-    }
-    return out;
-}
-
-std::string text(const json& object, const char* key) {
-    const auto found = object.find(key);
-    if (found == object.end() || found->is_null()) return "";
-    return found->is_string() ? found->get<std::string>() : found->dump();
-}
-
-std::string place(const json& object) {
-    const auto rect = object.value("rect", std::vector<int>(4));
-    return rect.size() == 4 ? fmt::format("{}x{}+{}+{}", rect[2], rect[3], rect[0], rect[1]) : "";
-}
-
-bool is(const json& object, const char* key) { return object.value(key, false); }
-
-std::string who(const json& person) {
-    const auto kind = text(person, "kind");
-    if (kind == "unknown") return "unknown";
-    return kind == "token" ? "token " + text(person, "name") : text(person, "name");
-}
-
-/// Bytes a second to all nodes; empty before the program has said anything.
-std::string traffic(const json& session) {
-    const auto of = session.value("traffic", json::object());
-    if (of.value("frames", 0) == 0 && of.value("geometry_bytes", 0) == 0) return "";
-    const double bytes = of.value("state_bytes_per_second", 0.0) + of.value("object_bytes_per_second", 0.0) + of.value("geometry_bytes_per_second", 0.0);
-    return fmt::format("{:.1f} kB/s", bytes / 1e3);
-}
-
 void add_session(std::vector<Row>& rows, const json& session) {
     const auto note = is(session, "held") ? "held" : text(session, "fault");
     const auto owner = who(session.value("owner", json::object()));
@@ -86,6 +44,15 @@ std::string tiles_table(const json& tiles) {
 std::string sessions_table(const json& sessions) {
     std::vector<Row> rows{{"ID", "PROGRAM", "NAME", "OWNER", "PID", "WINDOW", "PLACE", "FRAME", "SENT", "NOTE"}};
     for (const auto& session : sessions) add_session(rows, session);
+    return table(rows);
+}
+
+std::string streams_table(const json& streams) {
+    std::vector<Row> rows{{"TILE", "NODE", "REGION", "ONLY", "CODEC", "SIZE", "FPS", "VIEWERS", "FRAMES", "DROPPED", "RECEIVED"}};
+    for (const auto& s : streams) {
+        rows.push_back({text(s, "tile"), text(s, "node"), text(s, "region"), text(s, "session"), text(s, "codec"), text(s, "width") + "x" + text(s, "height"), text(s, "fps"),
+                        text(s, "viewers"), text(s, "frames"), text(s, "dropped"), fmt::format("{:.1f} MB", s.value("bytes", 0.0) / 1e6)});
+    }
     return table(rows);
 }
 

@@ -10,6 +10,7 @@ namespace wall::wallctl {
 std::string nodes_table(const nlohmann::json& nodes);
 std::string tiles_table(const nlohmann::json& tiles);
 std::string sessions_table(const nlohmann::json& sessions);
+std::string streams_table(const nlohmann::json& streams);
 std::string status_text(const nlohmann::json& status);
 
 std::string person_text(const nlohmann::json& person);

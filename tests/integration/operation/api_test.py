@@ -95,7 +95,7 @@ class Api(unittest.TestCase):
     def test_wallctl_prints_the_same(self) -> None:
         for verb, schema in (("status", "Status"), ("whoami", "Person")):
             check(self.wall.ctl(verb), schema)
-        for verb, schema in (("nodes", "Node"), ("tiles", "Tile"), ("sessions", "Session")):
+        for verb, schema in (("nodes", "Node"), ("tiles", "Tile"), ("sessions", "Session"), ("streams", "Stream")):
             for answer in self.wall.ctl(verb):
                 check(answer, schema)
         done = subprocess.run([self.wall.bin / "wallctl", "--walld", self.wall.address, "--json", "raise", "999"], capture_output=True, text=True)
