@@ -10,6 +10,7 @@ build=(
   libx11-dev libx11-xcb-dev libxcb1-dev
   libboost1.81-dev libprotobuf-dev protobuf-compiler libprotozero-dev
   libexpected-dev libspdlog-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
+  libsdl2-dev                        # wallview's window
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libsystemd-dev prometheus-cpp-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   liblz4-dev libzstd-dev             # frame codecs
