@@ -213,6 +213,20 @@ class People(unittest.TestCase):
     def test_a_session_belongs_to_the_user_who_started_it(self) -> None:
         self.assertEqual(self.wall.sessions()[0]["owner"], {"kind": "user", "name": "nobody", "role": "user"})
 
+    def test_nobody_joins_another_users_parallel_program(self) -> None:
+        first = self.start("games", WALLGL_PARALLEL="team:0:2")
+        self.addCleanup(first.communicate)
+        self.addCleanup(first.kill)
+        end = time.monotonic() + 20
+        while not (team := [s for s in self.wall.sessions() if "group" in s]):
+            self.assertLess(time.monotonic(), end)
+        check(team[0], "Session")
+        self.assertEqual([m["rank"] for m in team[0]["group"]["members"]], [0])
+        stranger = self.start("nobody", WALLGL_PARALLEL="team:1:2")
+        self.addCleanup(stranger.communicate)
+        self.addCleanup(stranger.kill)
+        self.assertIn("parallel program 'team' belongs to games", stranger.stderr.readline())
+
     def test_each_role_may_what_it_may(self) -> None:
         place = ("place", self.session, 10, 10, 50, 50)
         for user, role, may in (("nobody", "user", True), ("games", "user", False), ("man", "viewer", False), ("daemon", "operator", True)):
