@@ -13,13 +13,23 @@ namespace wall::wallctl {
 namespace {
 
 using nlohmann::json;
+
+/// "march", of a parallel program "march x3/4": processes that are there, and all.
+std::string program(const json& session) {
+    const auto group = session.find("group");
+    if (group == session.end()) return text(session, "program");
+    const auto members = group->value("members", json::array());
+    const auto here = std::count_if(members.begin(), members.end(), [](const json& member) { return !is(member, "left"); });
+    return fmt::format("{} x{}/{}", text(session, "program"), here, text(*group, "size"));
+}
+
 void add_session(std::vector<Row>& rows, const json& session) {
     const auto note = is(session, "held") ? "held" : text(session, "fault");
     const auto owner = who(session.value("owner", json::object()));
     const auto surfaces = session.value("surfaces", json::array());
-    if (surfaces.empty()) rows.push_back({text(session, "id"), text(session, "program"), text(session, "name"), owner, text(session, "pid"), "", "", "", "", note});
+    if (surfaces.empty()) rows.push_back({text(session, "id"), program(session), text(session, "name"), owner, text(session, "pid"), "", "", "", "", note});
     for (const auto& s : surfaces) {
-        rows.push_back({text(s, "id"), text(session, "program"), text(session, "name"), owner, text(session, "pid"),
+        rows.push_back({text(s, "id"), program(session), text(session, "name"), owner, text(session, "pid"),
                         fmt::format("{}x{}", text(s, "width"), text(s, "height")), place(s), text(s, "frame"), traffic(session), note});
     }
 }

@@ -60,10 +60,8 @@ public:
     void in_turn(Draw&& draw) const {
         if (semaphores_) call("glSemaphorePCR", 1 + rank_);
         for (GLuint r = 0; r < ranks_; ++r) {
-            if (!barriers_ ? r == rank_ : true) {
-                if (r == rank_) draw();
-                if (barriers_) all();
-            }
+            if (r == rank_) draw();
+            if (barriers_) all();
         }
         if (semaphores_) call("glSemaphoreVCR", 1 + (rank_ + 1) % ranks_);
     }

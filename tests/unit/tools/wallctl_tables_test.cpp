@@ -30,5 +30,11 @@ TEST(Tables, ASessionHasALineForEachWindow) {
               "4    new      x     token kiosk  43                                           bad stream\n");
 }
 
+TEST(Tables, AParallelProgramSaysHowManyProcessesAreThere) {
+    const json members{{{"rank", 0}, {"left", false}}, {{"rank", 1}, {"left", true}}, {{"rank", 3}, {"left", false}}};
+    const json sessions{{{"id", 1}, {"program", "march"}, {"pid", 7}, {"group", {{"name", "g"}, {"size", 4}, {"members", members}}}, {"surfaces", json::array()}}};
+    EXPECT_NE(sessions_table(sessions).find("march x2/4"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace wall::wallctl
