@@ -31,7 +31,10 @@ std::string random_bytes(std::size_t count) {
 
 ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities, const std::string& state)
     : executor_(executor), changed_(executor), identities_(std::move(identities)), wall_(std::move(config), *this, random_bytes), snapshots_(executor, wall_, *this), streams_(executor, wall_, *this),
-      operators_(wall_, snapshots_, streams_, LayoutStore(state), changed_, [this](SessionId id) { end_session(id, "closed by an operator"); }),
+      operators_(wall_, snapshots_, streams_, LayoutStore(state), changed_, [this](SessionId id) {
+          end_session(id, "closed by an operator");
+          wall_.close_session(id);
+      }),
       deadline_timer_(executor), process_timer_(executor) {}
 
 Result<void> ControlServer::listen() {
