@@ -178,7 +178,7 @@ TEST_F(ControlPlane, AProgramWaitsForANodeThatComesSoon) {
 
 TEST_F(ControlPlane, ForeignBytesEndTheirConnectionOnly) {
     join_both();
-    for (const std::string bytes : {std::string("GET / HTTP/1.1\r\n\r\n"), std::string(64, '\xff'), std::string("\x04\0\0\0????", 8), std::string("\x02\0\0\0\xa2\x01", 6)}) {
+    for (const std::string& bytes : {std::string("GET / HTTP/1.1\r\n\r\n"), std::string(64, '\xff'), std::string("\x04\0\0\0????", 8), std::string("\x02\0\0\0\xa2\x01", 6)}) {
         const auto fd = net::connect_to(walld_.address(), kSoon);
         ASSERT_TRUE(fd);
         ::send(fd->get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);

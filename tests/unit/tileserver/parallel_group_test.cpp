@@ -65,10 +65,10 @@ TEST_F(TwoMembers, EndAFrameTogether) {
     open_both();
     members_[0]->expect_run(swap(1));
     EXPECT_TRUE(group_->sync.waits(0));
-    EXPECT_TRUE(group_->finish_frames(*node_.node).empty());
+    EXPECT_TRUE(group_->finish_frames(*node_.node, members_[1]->session.work).empty());
     EXPECT_FALSE(members_[0]->session.surface(SurfaceId(1))->waiting_frame());
     members_[1]->expect_run(swap(1));
-    EXPECT_EQ(group_->finish_frames(*node_.node), (std::vector<FinishedFrame>{{SurfaceId(1), 1}}));
+    EXPECT_EQ(group_->finish_frames(*node_.node, members_[1]->session.work), (std::vector<FinishedFrame>{{SurfaceId(1), 1}}));
     EXPECT_FALSE(group_->sync.waits(0));
     EXPECT_TRUE(members_[0]->frames.empty()) << "said once, by the group";
 }

@@ -268,7 +268,7 @@ TEST_F(SharingTest, AChangeIsOnlyOnesOwn) {
         const Pixels copied = picture(*b, content.target());
         EXPECT_EQ(count_different(copied, before), 0u) << "the copy";
         EXPECT_EQ(count_different(picture(*a, content.target()), before), 0u) << "the others";
-        EXPECT_EQ(node_.node->gl_errors, 0u);
+        EXPECT_EQ(a->session.work.gl_errors + b->session.work.gl_errors, 0u);
         if (content.target() != GL_TEXTURE_2D) continue;
         Batch overwrite;
         const std::vector<std::byte> red(8 * 8 * 4, std::byte{0x7f});

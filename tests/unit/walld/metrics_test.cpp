@@ -8,6 +8,7 @@
 #include <set>
 
 #include "common/wire/limits.h"
+#include "tests/unit/walld/no_outbox.h"
 
 namespace wall::walld {
 namespace {
@@ -30,12 +31,6 @@ name = "r"
 rect = [640, 0, 640, 480]
 )";
 
-class NoOutbox : public Outbox {
-public:
-    void to_node(NodeIndex, const proto::Envelope&) override {}
-    void to_client(SessionId, const proto::Envelope&) override {}
-};
-
 class Metrics : public ::testing::Test {
 protected:
     NodeIndex join(const std::string& name, std::uint32_t pid = 1) {
@@ -50,7 +45,7 @@ protected:
         proto::ClientHello hello;
         hello.set_version(wire::kProtocolVersion);
         hello.set_program(program);
-        const auto id = wall_.open_session(hello, {}, [](SessionId) {});
+        const auto id = wall_.open_session(hello, {}, {}, [](SessionId) {});
         proto::SurfaceOpen surface;
         surface.set_surface(1);
         surface.set_width(1280);
@@ -110,7 +105,7 @@ TEST_F(Metrics, ASessionHasSeriesUntilItEnds) {
     auto& row = *told.add_nodes();
     row.set_node(1);
     row.set_object_bytes(500);
-    wall_.client_reports(id, told, now_);
+    wall_.client_reports(id, 0, told, now_);
     node_tells(left, {id});
     EXPECT_THAT(text(), HasSubstr("wallgl_session_info{session=\"1\",program=\"gears\",name=\"\",owner=\"\"} 1\n"));
     EXPECT_THAT(text(), HasSubstr("wallgl_session_frames_total{session=\"1\"} 2\n"));

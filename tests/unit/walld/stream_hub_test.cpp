@@ -58,13 +58,13 @@ protected:
     SessionId window(const geom::Rect& rect) {
         proto::ClientHello hello;
         hello.set_version(wire::kProtocolVersion);
-        const auto id = wall_.open_session(hello, {}, [](SessionId) {});
+        const auto id = wall_.open_session(hello, {}, {}, [](SessionId) {});
         proto::SurfaceOpen open;
         open.set_surface(1);
         open.set_width(static_cast<std::uint32_t>(rect.width));
         open.set_height(static_cast<std::uint32_t>(rect.height));
         EXPECT_TRUE(wall_.open_surface(id, open, {}));
-        EXPECT_EQ(wall_.find({id, SurfaceId(1)})->place.shown().width, rect.width);
+        EXPECT_EQ(wall_.find(SurfaceKey{id, SurfaceId(1)})->place.shown().width, rect.width);
         return id;
     }
     std::vector<proto::Envelope> said(NodeIndex node) { return std::exchange(out_.nodes[node], {}); }
@@ -251,7 +251,7 @@ TEST_F(StreamHubTest, AStreamFollowsItsWindowAtItsRate) {
     EXPECT_EQ(said(0).at(0).stream_start().surface(), 1u);
     next(*one);
     const auto move = [&](std::uint32_t version, std::int32_t x) {
-        ASSERT_TRUE(wall_.place_surface({id, {}}, {x, 0, 100, 100}));
+        ASSERT_TRUE(wall_.place_surface({id, {}}, {x, 0, 100, 100}, {}));
         proto::SurfaceAdopted adopted;
         adopted.set_surface(1);
         adopted.set_layout_version(version);

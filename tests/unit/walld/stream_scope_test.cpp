@@ -4,16 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/unit/walld/no_outbox.h"
+
 namespace wall::walld {
 namespace {
 
 using ::testing::HasSubstr;
-
-class NoOutbox : public Outbox {
-public:
-    void to_node(NodeIndex, const proto::Envelope&) override {}
-    void to_client(SessionId, const proto::Envelope&) override {}
-};
 
 class StreamScopeTest : public ::testing::Test {
 protected:
