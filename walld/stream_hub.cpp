@@ -19,6 +19,8 @@ void append(std::string& out, T value) {
     for (std::size_t i = 0; i < sizeof value; ++i) out += static_cast<char>(value >> 8 * i & 0xff);
 }
 
+constexpr const char* kNoRoom = "the wall's streams are all in use";
+
 json rect_json(const geom::Rect& rect) { return {rect.x, rect.y, rect.width, rect.height}; }
 
 }  // namespace
@@ -53,7 +55,7 @@ StreamHub::Watch StreamHub::make_watch(const WatchRequest& request, const Stream
     return watch;
 }
 
-bool StreamHub::has_room(const std::vector<Watch>& watches) const {
+bool StreamHub::has_room(std::span<const Watch> watches) const {
     std::set<Key> fresh;
     for (const auto& watch : watches)
         for (const auto& part : watch.parts)
@@ -68,7 +70,7 @@ Result<void> StreamHub::watch(Viewer& viewer, const std::vector<WatchRequest>& r
         if (!scope) return fail(fmt::format("watch[{}]{}", watches.size(), scope.error().message));
         watches.push_back(make_watch(request, *scope));
     }
-    if (!has_room(watches)) return fail(fmt::format("watch: the wall's {} streams are all in use", kMaxNodeStreams));
+    if (!has_room(watches)) return fail("watch: " + std::string(kNoRoom));
     std::vector<Key> old;
     for (std::uint32_t i = 0; i < viewer.watches_.size(); ++i) std::ranges::move(leave(viewer, i), std::back_inserter(old));
     viewer.watches_ = std::move(watches);
@@ -137,13 +139,14 @@ void StreamHub::follow(Viewer& viewer, std::uint32_t number, Clock::time_point n
         deadline_ = std::min(deadline_.value_or(watch.not_before), watch.not_before);
         return;
     }
-    const auto old = leave(viewer, number);
-    if (scope) {
-        watch = make_watch(watch.request, *scope);
-        watch.not_before = now + std::chrono::microseconds(1'000'000 / watch.request.fps);
-    } else {
-        watch = Watch{.request = watch.request, .ended = scope.error().message.substr(scope.error().message.find(": ") + 2)};
+    Watch next = scope ? make_watch(watch.request, *scope) : Watch{.request = watch.request, .ended = scope.error().message.substr(scope.error().message.find(": ") + 2)};
+    if (!has_room({&next, 1})) {
+        if (!watch.scope) return;  // that was said
+        next = Watch{.request = watch.request, .ended = kNoRoom};
     }
+    const auto old = leave(viewer, number);
+    next.not_before = now + std::chrono::microseconds(1'000'000 / watch.request.fps);
+    watch = std::move(next);
     join(viewer, number);
     drop_unwatched(old);
     viewer.news_.notify();

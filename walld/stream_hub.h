@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -104,7 +105,7 @@ private:
     using Streams = std::map<Key, NodeStream>;
     std::string tile_name(const Key& key) const;
     Watch make_watch(const WatchRequest& request, const StreamScope& scope) const;
-    bool has_room(const std::vector<Watch>& watches) const;
+    bool has_room(std::span<const Watch> watches) const;
     std::vector<Key> leave(Viewer& viewer, std::uint32_t number);
     void join(Viewer& viewer, std::uint32_t number);
     void drop_unwatched(const std::vector<Key>& keys);

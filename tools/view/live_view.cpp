@@ -91,10 +91,11 @@ Result<void> LiveView::receive(Feed& feed, std::uint64_t version) {
 
 Result<void> LiveView::take(const FeedMessage& message) {
     const std::lock_guard lock(mutex_);
+    auto taken = message.binary ? builder_.take_frame(message.data) : builder_.take_text(message.data);
+    if (!taken) return taken;
     failure_.clear();
-    if (!message.binary) return builder_.take_text(message.data);
-    ++frames_;
-    return builder_.take_frame(message.data);
+    frames_ += message.binary ? 1 : 0;
+    return {};
 }
 
 bool LiveView::current(std::uint64_t version) {

@@ -35,7 +35,7 @@ class Installed(unittest.TestCase):
         return found[0]
 
     def test_everything_is_in_its_place(self) -> None:
-        for ending in ("bin/walld", "bin/tileserver", "bin/wallrun", "bin/wallctl", "libGLX_wallgl.so.0", "libEGL_wallgl.so.0",
+        for ending in ("bin/walld", "bin/tileserver", "bin/wallrun", "bin/wallctl", "bin/wallview", "libGLX_wallgl.so.0", "libEGL_wallgl.so.0",
                        "lib/systemd/system/walld.service", "lib/systemd/system/tileserver@.service", "lib/sysusers.d/wallgl.conf",
                        "lib/tmpfiles.d/wallgl.conf", "egl_vendor.d/50_wallgl.json",
                        "share/wallgl/grafana/wallgl.json", "share/wallgl/prometheus/wallgl.rules.yml", "share/wallgl/prometheus/prometheus.example.yml"):

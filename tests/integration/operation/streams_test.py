@@ -93,9 +93,11 @@ class Streams(unittest.TestCase):
             return load_png(file.name)
 
     def settle(self) -> None:
-        """No frame is on its way any more."""
+        """No frame is on its way any more, however busy the machine is."""
         self.wall.hold(self.session)
-        time.sleep(0.3)
+        shown = None
+        while shown != (shown := self.wall.wait(self.session, 1)):
+            time.sleep(0.3)
 
     def test_a_frame_is_the_tiles_picture(self) -> None:
         self.settle()

@@ -67,6 +67,22 @@ protected:
         EXPECT_EQ(wall_.find(SurfaceKey{id, SurfaceId(1)})->place.shown().width, rect.width);
         return id;
     }
+    /// Its next frame is there.
+    void move_window(SessionId id, std::uint32_t version, std::int32_t x) {
+        ASSERT_TRUE(wall_.place_surface({id, {}}, {x, 0, 100, 100}, {}));
+        proto::SurfaceAdopted adopted;
+        adopted.set_surface(1);
+        adopted.set_layout_version(version);
+        adopted.set_frame(version);
+        wall_.adopt_placement(id, adopted, {});
+        proto::Rendered rendered;
+        rendered.set_session(id.value);
+        rendered.set_surface(1);
+        rendered.set_frame(version);
+        wall_.node_rendered(0, rendered, {});
+        wall_.node_rendered(1, rendered, {});
+        ASSERT_EQ(wall_.find({id, SurfaceId(1)})->place.shown().x, x);
+    }
     std::vector<proto::Envelope> said(NodeIndex node) { return std::exchange(out_.nodes[node], {}); }
     std::uint32_t started(NodeIndex node) {
         for (const auto& message : said(node))
@@ -246,25 +262,10 @@ TEST_F(StreamHubTest, ViewersOfAWallAndOfATileShareTheTile) {
 
 TEST_F(StreamHubTest, AStreamFollowsItsWindowAtItsRate) {
     const auto id = window({0, 0, 100, 100});
-    const SurfaceKey key{id, SurfaceId(1)};
     const auto one = viewer({{.session = id, .fps = 10}});
     EXPECT_EQ(said(0).at(0).stream_start().surface(), 1u);
     next(*one);
-    const auto move = [&](std::uint32_t version, std::int32_t x) {
-        ASSERT_TRUE(wall_.place_surface({id, {}}, {x, 0, 100, 100}, {}));
-        proto::SurfaceAdopted adopted;
-        adopted.set_surface(1);
-        adopted.set_layout_version(version);
-        adopted.set_frame(version);
-        wall_.adopt_placement(id, adopted, {});
-        proto::Rendered rendered;
-        rendered.set_session(id.value);
-        rendered.set_surface(1);
-        rendered.set_frame(version);
-        wall_.node_rendered(0, rendered, {});
-        wall_.node_rendered(1, rendered, {});
-        ASSERT_EQ(wall_.find(key)->place.shown().x, x);
-    };
+    const auto move = [&](std::uint32_t version, std::int32_t x) { move_window(id, version, x); };
     const Clock::time_point now{std::chrono::hours(1)};
     move(2, 600);
     hub_.tick(now);
@@ -281,6 +282,31 @@ TEST_F(StreamHubTest, AStreamFollowsItsWindowAtItsRate) {
     hub_.tick(now + std::chrono::seconds(1));
     EXPECT_THAT(next(*one), HasSubstr("\"ended\":\"there is no session"));
     EXPECT_EQ(hub_.node_streams(), 0u);
+}
+
+TEST_F(StreamHubTest, ThereAreOnlySoManyStreams) {
+    const auto id = window({0, 0, 100, 100});
+    const auto follower = viewer({{.session = id}});
+    next(*follower);
+    std::vector<std::shared_ptr<StreamHub::Viewer>> others;
+    for (std::uint32_t height = 1; hub_.node_streams() < StreamHub::kMaxNodeStreams; ++height) {
+        std::vector<WatchRequest> requests;
+        for (std::uint32_t width = 1; width <= WatchRequest::kMost && hub_.node_streams() + requests.size() < StreamHub::kMaxNodeStreams; ++width)
+            requests.push_back({.tile = "l", .width = width, .height = height});
+        others.push_back(viewer(requests));
+    }
+    const auto late = hub_.add_viewer();
+    EXPECT_EQ(hub_.watch(*late, {tile("r")}).error().message, "watch: the wall's streams are all in use");
+    ASSERT_TRUE(hub_.watch(*late, {{.tile = "l", .width = 1, .height = 1}})) << "one that there is";
+    move_window(id, 2, 600);
+    Clock::time_point now{std::chrono::hours(1)};
+    hub_.tick(now);
+    EXPECT_EQ(next(*follower), R"({"ended":"the wall's streams are all in use","stream":0})");
+    hub_.tick(now += std::chrono::seconds(1));
+    EXPECT_EQ(next(*follower), "") << "it was said";
+    hub_.remove_viewer(*others.back());
+    hub_.tick(now += std::chrono::seconds(1));
+    EXPECT_THAT(next(*follower), HasSubstr("\"parts\""));
 }
 
 }  // namespace
