@@ -32,6 +32,13 @@ Outcome<net::Address> address_of(const std::string& url) {
     return std::move(*address);
 }
 
+/// walld's error, or all of the body if that is something else.
+std::string reason_in(const std::string& body) {
+    const auto answer = nlohmann::json::parse(body, nullptr, false);
+    const nlohmann::json::json_pointer message("/error/message");
+    return answer.is_object() && answer.contains(message) && answer[message].is_string() ? answer[message].get<std::string>() : body;
+}
+
 class WebFeed : public Feed {
 public:
     ~WebFeed() override {
@@ -54,7 +61,7 @@ public:
         stream_.read_message_max(kMaxMessage);
         websocket::response_type answer;
         if (!finish([&](auto done) { stream_.async_handshake(answer, address.text(), "/api/v1/stream", done); }, error, kConnectLimit)) error = asio::error::timed_out;
-        if (answer.result() == boost::beast::http::status::unauthorized || answer.result() == boost::beast::http::status::forbidden) return no("forbidden", "walld refused: " + answer.body());
+        if (answer.result() == boost::beast::http::status::unauthorized || answer.result() == boost::beast::http::status::forbidden) return no("forbidden", "walld refused: " + reason_in(answer.body()));
         if (error) return no("unavailable", "no stream from " + address.text() + ": " + error.message());
         stream_.write(asio::buffer(nlohmann::json{{"watch", watch}}.dump()), error);
         if (error) return no("unavailable", address.text() + ": " + error.message());

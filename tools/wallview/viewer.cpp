@@ -4,6 +4,7 @@
 #include <spdlog/fmt/chrono.h>
 #include <spdlog/fmt/fmt.h>
 
+#include <cstdlib>
 #include <ctime>
 #include <iostream>
 
@@ -21,6 +22,12 @@ constexpr std::chrono::milliseconds kSettle{300};  // that a new size must last 
 struct Video {
     ~Video() { SDL_Quit(); }
 };
+
+/// SDL has found only a driver that shows nothing, which nobody asked for.
+bool unseen() {
+    const std::string driver = SDL_GetCurrentVideoDriver();
+    return std::getenv("SDL_VIDEODRIVER") == nullptr && (driver == "offscreen" || driver == "dummy");
+}
 
 /// What is watched in a window of that size: never more pixels than it shows.
 nlohmann::json entry_for(const nlohmann::json& what, const Window::Size& size) {
@@ -90,8 +97,8 @@ private:
             draw_ = true;
         });
         if (!good) return good;
-        say(failure.empty() ? ended : failure, failure.empty());
         if (options_.frames > 0 && shown_ == 0 && !failure.empty()) return fail(failure);
+        say(failure.empty() ? ended : failure, failure.empty());
         if (std::exchange(draw_, false)) window_.draw();
         if (options_.frames > 0 && shown_ >= options_.frames) over_ = true;
         return {};
@@ -132,6 +139,7 @@ private:
 Result<void> run(const view::LiveView::Connect& connect, const Options& options) {
     if (SDL_Init(SDL_INIT_VIDEO) != 0) return fail(std::string("no display: ") + SDL_GetError());
     const Video video;
+    if (unseen()) return fail("no display: neither X nor Wayland nor a monitor (DISPLAY is not set?)");
     SDL_EnableScreenSaver();
     auto window = Window::open(options.title, options.size, options.fullscreen);
     if (!window) return tl::unexpected(window.error());

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "tools/wallview/window.h"
 
+#include <algorithm>
+
 #include "tools/wallview/geometry.h"
+#include "tools/wallview/window_manager.h"
 
 namespace wall::wallview {
 namespace {
@@ -20,7 +23,7 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, const Siz
     if (!out->renderer_) out->renderer_.reset(SDL_CreateRenderer(out->window_.get(), -1, SDL_RENDERER_SOFTWARE));
     if (!out->renderer_) return failed("no renderer");
     out->title_ = title;
-    if (fullscreen) out->toggle_fullscreen();
+    if (fullscreen) out->set_fullscreen(true);
     return out;
 }
 
@@ -30,10 +33,23 @@ void Window::set_title(const std::string& title) {
     SDL_SetWindowTitle(window_.get(), title.c_str());
 }
 
-void Window::toggle_fullscreen() {
-    const bool full = (SDL_GetWindowFlags(window_.get()) & SDL_WINDOW_FULLSCREEN_DESKTOP) != 0;
-    SDL_SetWindowFullscreen(window_.get(), full ? 0 : SDL_WINDOW_FULLSCREEN_DESKTOP);
-    SDL_ShowCursor(full ? SDL_ENABLE : SDL_DISABLE);
+void Window::set_fullscreen(bool on) {
+    fullscreen_ = on;
+    SDL_ShowCursor(on ? SDL_DISABLE : SDL_ENABLE);
+    if (has_window_manager(window_.get())) SDL_SetWindowFullscreen(window_.get(), on ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
+    else put_by_hand(on);
+}
+
+/// Over the screen, or back: a node that only shows the wall has nobody to ask.
+void Window::put_by_hand(bool over_screen) {
+    SDL_Rect to = windowed_;
+    if (over_screen) {
+        SDL_GetWindowPosition(window_.get(), &windowed_.x, &windowed_.y);
+        SDL_GetWindowSize(window_.get(), &windowed_.w, &windowed_.h);
+        if (SDL_GetDisplayBounds(std::max(0, SDL_GetWindowDisplayIndex(window_.get())), &to) != 0) return;
+    }
+    SDL_SetWindowPosition(window_.get(), to.x, to.y);
+    SDL_SetWindowSize(window_.get(), to.w, to.h);
 }
 
 Window::Size Window::size() const {

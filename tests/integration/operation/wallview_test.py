@@ -104,6 +104,13 @@ class WallView(OnADesktop):
         self.wall.step(self.session)
         self.until(lambda: self.shows(self.shot()), "its next frame is")
 
+    def test_full_screen_is_the_screen_without_a_window_manager_too(self) -> None:
+        viewer = self.view("--fullscreen")
+        self.addCleanup(viewer.communicate)
+        self.addCleanup(viewer.kill)
+        # 400x150 pixels of the wall on 1280x1024 ones of the screen
+        self.until(lambda: self.desktop()[512, [2, 1277]].tolist() == [[0x60, 0x40, 0x20]] * 2, "the background is seen at both edges")
+
     def test_what_cannot_be_seen_is_said(self) -> None:
         for options, what in ((("--tile", "nowhere"), "there is no tile 'nowhere'"), (("--session", 999), "there is no session 999"), (("--codec", "mp3"), "codec"),
                               (("--http", "http://127.0.0.1:1"), "cannot be reached"), (("--http", "ftp://x"), "expected http://HOST")):
