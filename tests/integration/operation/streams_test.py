@@ -96,7 +96,7 @@ class Streams(unittest.TestCase):
         """No frame is on its way any more, however busy the machine is."""
         self.wall.hold(self.session)
         shown = None
-        while shown != (shown := self.wall.wait(self.session, 1)):
+        while shown != (shown := self.wall.sessions()[0]["surfaces"][0]["frame"]):
             time.sleep(0.3)
 
     def test_a_frame_is_the_tiles_picture(self) -> None:
