@@ -307,7 +307,7 @@ class RecordingOfTwoPrograms(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
         x = cls.enterClassContext(XServer())
-        cls.wall = cls.enterClassContext(Wall(tiles=(2, 2), tile_size=(160, 120)))
+        cls.wall = cls.enterClassContext(Wall(tiles=(2, 2), tile_size=(160, 120), swap_timeout_ms=10000))
         cls.sessions = []
         for program, rect in ((["glxgears"], (10, 10, 200, 200)), ([HACKS / "atlantis", "--window"], (120, 60, 190, 170))):
             app = cls.wall.run(*program, rect=rect, env=x.environment(), stdout=subprocess.DEVNULL)
