@@ -95,7 +95,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const auto batch = fuzz::batch_of(data, size, 1);
         (void)executor.run_batch(batch);
         (void)others.run_batch(batch);
-        group.finish_frames(*node->node);
+        wall::tileserver::Work work;
+        group.finish_frames(*node->node, work);
         (void)group.sync.deadlock();
     }
     check_others(*node->node);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a viewer asks for is refused with a sentence, or becomes parts that lie in its picture and in their tiles.
+#include "tests/support/no_outbox.h"
 #include "walld/stream_scope.h"
 
 namespace {
@@ -11,12 +12,6 @@ constexpr const char* kConfig =
     "[[node]]\nname = \"n\"\n"
     "[[node.tile]]\nname = \"a\"\nrect = [0, 0, 640, 480]\n"
     "[[node.tile]]\nname = \"b\"\nrect = [701, 13, 333, 271]\n";
-
-class NoOutbox : public Outbox {
-public:
-    void to_node(NodeIndex, const proto::Envelope&) override {}
-    void to_client(SessionId, const proto::Envelope&) override {}
-};
 
 bool inside(const geom::Rect& part, const geom::Rect& whole) { return !part.empty() && geom::intersect(part, whole) == part; }
 

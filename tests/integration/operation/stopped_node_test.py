@@ -16,9 +16,9 @@ from xserver import XServer  # noqa: E402
 
 TILE = (200, 150)
 STOP = 10.0  # seconds; many times the swap limit, and enough to fill every queue of the busy program
-BEFORE = 3.0  # seconds in which the frame rates of before are taken
+BESIDE = 4.0  # seconds before, and again after, in which the usual frame rates are taken: a machine gets faster and slower by itself
 CATCH_UP = 2.0  # seconds after SIGCONT until every tile is right
-KEPT = 0.9  # of the frame rate of before
+KEPT = 0.9  # of the usual frame rate
 ATTEMPTS = 3  # what else the machine does may slow a program for some seconds; the node's standstill does so each time
 
 
@@ -85,12 +85,14 @@ class StoppedNode(unittest.TestCase):
     def test_the_others_do_not_notice_and_it_catches_up(self) -> None:
         self.assert_all_tiles_right()
         for attempt in range(ATTEMPTS):
-            before, during = self.rates(BEFORE), self.stop(STOP)
+            before, during = self.rates(BESIDE), self.stop(STOP)
             time.sleep(CATCH_UP)
             self.assert_all_tiles_right()
-            said = ", ".join(f"{name} {before[name]:.1f} -> {during[name]:.1f}" for name in before)
-            print(f"frames/s before and during the standstill: {said}", flush=True)
-            if all(during[name] >= KEPT * before[name] for name in before):
+            after = self.rates(BESIDE)
+            usual = {name: (before[name] + after[name]) / 2 for name in before}
+            said = ", ".join(f"{name} {before[name]:.1f}, {during[name]:.1f}, {after[name]:.1f}" for name in before)
+            print(f"frames/s before, during and after the standstill: {said}", flush=True)
+            if all(during[name] >= KEPT * usual[name] for name in before):
                 break
         else:
             self.fail(f"frame rates fell: {said}")

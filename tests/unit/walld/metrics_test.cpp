@@ -8,7 +8,7 @@
 #include <set>
 
 #include "common/wire/limits.h"
-#include "tests/unit/walld/no_outbox.h"
+#include "tests/support/no_outbox.h"
 
 namespace wall::walld {
 namespace {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/walld/no_outbox.h"
+#include "tests/support/no_outbox.h"
 
 namespace wall::walld {
 namespace {
