@@ -16,6 +16,8 @@ tl::unexpected<Error> failed(const char* what) { return fail(std::string(what) +
 Result<std::unique_ptr<Window>> Window::open(const std::string& title, const Size& size, bool fullscreen) {
     std::unique_ptr<Window> out(new Window);
     SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "linear");
+    // SDL's software renderer would else go through OpenGL to the screen, and be drawn shifted after a change of size (2.26).
+    SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
     const Uint32 flags = SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI;
     out->window_.reset(SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, size.width, size.height, flags));
     if (!out->window_) return failed("no window");
