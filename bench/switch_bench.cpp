@@ -7,8 +7,11 @@
 #include <EGL/eglext.h>
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <memory>
+#include <vector>
 
 #include "common/base/assert.h"
 #include "common/wire/batch.h"
@@ -246,6 +249,40 @@ void Varying_One(benchmark::State& run, To to) {
 }
 BENCHMARK_CAPTURE(Varying_One, null, To::null)->Name("varying/null driver/one context")->UseRealTime();
 BENCHMARK_CAPTURE(Varying_One, llvmpipe, To::llvmpipe)->Name("varying/llvmpipe/one context")->UseRealTime();
+
+/// Both on one driver in turn, kTurns each: the counter `kept` is the median of what the soft switch reaches of the rate without one.
+/// A driver's speed changes from process to process and from second to second by more than the difference.
+void Varying_Kept(benchmark::State& run) {
+    Node node(To::llvmpipe);
+    Client client(node, 1);
+    std::array<SoftContext*, 2> contexts = {&client.context(1), &client.context(2)};
+    for (std::size_t i = 0; i < 2; ++i) set_varying(contexts[i]->state, i);
+    Layer& layer = client.layer();
+    const auto seconds = [&](auto&& turn) {
+        const auto start = std::chrono::steady_clock::now();
+        for (std::int64_t i = 0; i < kTurns; ++i) turn(static_cast<std::size_t>(i & 1));  // ends with the second's values, as the driver's mirror has them
+        node.gl().Finish();
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    const auto soft = [&](std::size_t i) {
+        benchmark::DoNotOptimize(switch_to(node.node(), client.session, *contexts[i], layer));
+        draw_triangle(node.gl());
+    };
+    const auto one = [&](std::size_t i) {
+        set_values(node.gl(), i);
+        draw_triangle(node.gl());
+    };
+    std::vector<double> kept;
+    seconds(soft), seconds(one);
+    for (auto _ : run) {
+        const double first = seconds(one), switched = seconds(soft), second = seconds(one);
+        kept.push_back((first + second) / 2 / switched);
+    }
+    std::ranges::nth_element(kept, kept.begin() + static_cast<std::ptrdiff_t>(kept.size() / 2));
+    run.counters["kept"] = kept[kept.size() / 2];
+}
+static_assert(kTurns % 2 == 0);
+BENCHMARK(Varying_Kept)->Name("varying/llvmpipe/soft switch and one context in turn")->UseRealTime()->Iterations(101);
 
 void Varying_Egl(benchmark::State& run) {
     EglPair egl;
