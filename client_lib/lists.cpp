@@ -191,13 +191,11 @@ void define_once(Session& session, Node& node, wire::PackBuffer& buffer, const L
     if (!node.object_stamps.emplace(run.id, 1).second) return;
     const auto content = encoded(run.content);
     const auto commands = static_cast<std::uint32_t>(run.content.commands()), operand_bytes = static_cast<std::uint32_t>(run.content.operand_bytes());
-    if (content.size() >= kLeastShared) {
+    if (content.size() >= kLeastShared && may_be_asked(node)) {
         glapi::ContentHash hash;
         hash.RunDefine(commands, operand_bytes, content);
-        const Offer offer = offer_content(session, node, hash.finish(), [&](std::uint32_t request, std::span<const std::byte> key) {
-            glapi::pack::ShareRun(buffer, request, run.id, key);
-        });
-        if (offer == Offer::held) return;
+        const auto ask = [&](wire::PackBuffer& batch, std::uint32_t request) { glapi::pack::ShareRun(batch, request, run.id, hash.finish()); };
+        if (node_holds(session, node, ask)) return;
     }
     const std::size_t before = buffer.bytes();
     glapi::pack::RunDefine(buffer, run.id, commands, operand_bytes, content);

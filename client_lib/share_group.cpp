@@ -98,15 +98,15 @@ std::size_t ShareGroup::bring_up_to_date(Node& node, Context& context, wire::Pac
         auto& known = node.object_stamps[id];
         if (known == texture.stamp) return;
         const std::uint64_t before = std::exchange(known, texture.stamp);
-        if (before != 0 || (!texture.global && content_bytes(texture) < kLeastShared)) return pack_texture(texture, before, buffer, limit);
-        const Offer offer = offer_content(context.session(), node, content_key(texture), [&](std::uint32_t request, std::span<const std::byte> key) {
-            glapi::pack::ShareTexture(buffer, request, id, texture.target, texture.global ? 1 : 0, key);
-            sent += buffer.bytes() - start;
+        const bool worth_asking = before == 0 && (texture.global || content_bytes(texture) >= kLeastShared);
+        if (!worth_asking || !may_be_asked(node)) return pack_texture(texture, before, buffer, limit);
+        const bool held = node_holds(context.session(), node, [&](wire::PackBuffer& batch, std::uint32_t request) {
+            glapi::pack::ShareTexture(batch, request, id, texture.target, texture.global ? 1 : 0, content_key(texture));
+            sent += batch.bytes() - start;
             start = 0;  // it goes out
         });
-        if (offer == Offer::held) return;
+        if (held) return;
         pack_texture(texture, 0, buffer, limit);
-        if (offer != Offer::wanted) return;
         glapi::pack::TexShared(buffer, id);
         sent += buffer.bytes() - start;
         context.session().send(node);  // others may be waiting for it

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
+#include <utility>
 
 #include "client_lib/session.h"
 #include "common/glapi/content_hash.h"
@@ -17,22 +17,16 @@ inline constexpr std::size_t kLeastShared = std::size_t{256} << 10;
 /// The node may be waiting for another program that is sending this very content.
 inline constexpr int kOfferLimitMs = 1500;
 
-enum class Offer {
-    not_made,  ///< the node does not answer: send the content
-    wanted,    ///< send it; the node then keeps it for others, too
-    held,      ///< nothing to do
-};
+/// Whether an answer can be expected soon.
+inline bool may_be_asked(const Node& node) { return node.answers() && !node.slow && !node.asks_unanswered; }
 
-/// `pack(request, key)` packs the question into the node's batch.
+/// `pack(buffer, request)` packs the question into the node's batch. True: the node holds the content. False: send it; the node then
+/// keeps it for others, too, whether its answer was that or came too late.
 template <class Pack>
-Offer offer_content(Session& session, Node& node, const glapi::ContentKey& key, Pack&& pack) {
-    if (!node.answers() || node.slow || node.asks_unanswered) return Offer::not_made;
-    const auto answer = session.ask_now(node, "global share", kOfferLimitMs, [&](wire::PackBuffer&, std::uint32_t request) { pack(request, key); });
-    if (!answer || answer->empty()) {
-        node.asks_unanswered = true;
-        return Offer::not_made;
-    }
-    return answer->front() == std::byte{0} ? Offer::wanted : Offer::held;
+bool node_holds(Session& session, Node& node, Pack&& pack) {
+    const auto answer = session.ask_now(node, "global share", kOfferLimitMs, std::forward<Pack>(pack));
+    node.asks_unanswered = !answer || answer->empty();
+    return !node.asks_unanswered && answer->front() != std::byte{0};
 }
 
 }  // namespace wall::client

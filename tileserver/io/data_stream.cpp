@@ -78,7 +78,7 @@ asio::awaitable<Result<void>> DataStream::greet() {
     if (hello.version() != wire::kProtocolVersion)
         co_return wall::fail("protocol version " + std::to_string(hello.version()) + ", this node speaks " + std::to_string(wire::kProtocolVersion));
     session_ = SessionId(hello.session());
-    const Admission* admission = co_await find_admission(session_, hello.ticket());
+    const auto admission = co_await find_admission(session_, hello.ticket());
     if (!admission) co_return wall::fail("no valid ticket for session " + std::to_string(hello.session()));
     if (hello.rank() >= std::max(1u, admission->membership.members)) co_return wall::fail("session " + std::to_string(hello.session()) + " has no rank " + std::to_string(hello.rank()));
     reader_.set_limit(wire::kMaxFramePayload);
@@ -97,11 +97,11 @@ asio::awaitable<Result<void>> DataStream::greet() {
     co_return Result<void>{};
 }
 
-asio::awaitable<const Admission*> DataStream::find_admission(SessionId session, const std::string& given) {
+asio::awaitable<std::optional<Admission>> DataStream::find_admission(SessionId session, const std::string& given) {
     const auto until = std::chrono::steady_clock::now() + kTicketLimit;
     for (;;) {
-        if (const Admission* known = host_.admission(session)) co_return session && equal_secret(known->ticket, given) ? known : nullptr;
-        if (std::chrono::steady_clock::now() > until || closing_) co_return nullptr;
+        if (const Admission* known = host_.admission(session)) co_return session && equal_secret(known->ticket, given) ? std::optional(*known) : std::nullopt;
+        if (std::chrono::steady_clock::now() > until || closing_) co_return std::nullopt;
         timer_.expires_after(kTicketPoll);
         co_await timer_.async_wait(kWaitable);
     }

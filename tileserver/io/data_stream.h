@@ -10,6 +10,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,8 +60,8 @@ private:
     asio::awaitable<Result<void>> greet();
     asio::awaitable<Result<void>> take_batches();
     asio::awaitable<Result<Frame>> next_frame();
-    /// Null if there is none for that ticket.
-    asio::awaitable<const Admission*> find_admission(SessionId session, const std::string& ticket);
+    /// Nothing if there is none for that ticket.
+    asio::awaitable<std::optional<Admission>> find_admission(SessionId session, const std::string& ticket);
     asio::awaitable<void> write_queue();
 
     StreamHost& host_;

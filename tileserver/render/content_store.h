@@ -8,6 +8,7 @@
 #include <cstring>
 #include <memory>
 #include <unordered_map>
+#include <utility>
 
 #include "common/base/ids.h"
 #include "common/glapi/content_hash.h"
@@ -34,6 +35,10 @@ public:
         Entry& entry = entries_[key];
         if (auto held = entry.held.lock()) return {std::move(held), false};
         if (entry.promised_by && entry.promised_by != asker && now - entry.heard < kPromiseLimit) return {};
+        if (entry.promised_by != asker) {
+            break_promise(asker);
+            promises_[asker] = key;
+        }
         entry.promised_by = asker;
         entry.heard = now;
         return {nullptr, true};
@@ -47,19 +52,15 @@ public:
     std::shared_ptr<T> store(const glapi::ContentKey& key, std::shared_ptr<T> content) {
         prune();
         Entry& entry = entries_[key];
-        entry.promised_by = {};
+        promises_.erase(std::exchange(entry.promised_by, {}));
         if (auto held = entry.held.lock()) return held;
         entry.held = content;
         return content;
     }
     /// The content does not have this name any more: its only user changes it.
     void forget(const glapi::ContentKey& key) { entries_.erase(key); }
-    /// It is gone, and its promises with it.
-    void leave(ContentAsker asker) {
-        for (auto& [key, entry] : entries_)
-            if (entry.promised_by == asker) entry.promised_by = {};
-        prune();
-    }
+    /// It is gone, and its promise with it.
+    void leave(ContentAsker asker) { break_promise(asker); }
     std::size_t size() const { return entries_.size(); }
 
 private:
@@ -76,6 +77,16 @@ private:
         }
     };
 
+    // Each asker has promised one thing, the latest: who asks for more and more fills no memory.
+    void break_promise(ContentAsker asker) {
+        const auto promise = promises_.find(asker);
+        if (promise == promises_.end()) return;
+        if (const auto at = entries_.find(promise->second); at != entries_.end() && at->second.promised_by == asker) {
+            at->second.promised_by = {};
+            if (at->second.held.expired()) entries_.erase(at);
+        }
+        promises_.erase(promise);
+    }
     // Names of what is gone, now and then: as many as there are in use do no harm.
     void prune() {
         if (entries_.size() < prune_at_) return;
@@ -85,6 +96,7 @@ private:
     static constexpr std::size_t kPruneFrom = 256;
 
     std::unordered_map<glapi::ContentKey, Entry, FirstBytes> entries_;
+    std::unordered_map<ContentAsker, glapi::ContentKey> promises_;
     std::size_t prune_at_ = kPruneFrom;
 };
 

@@ -68,7 +68,7 @@ void Executor::TexImage(std::uint32_t name, GLenum target, std::int32_t level, G
     const auto estimate = std::uint64_t{4} * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * static_cast<std::uint64_t>(depth);
     const TextureContent::Image image{internal_format, format, type, estimate};
     if (!session_.account(*texture, target, level, image)) return refuse("more texture memory than a session may have");
-    if (texture->promise && texture->promise->hash) texture->promise->hash->TexImage(target, level, internal_format, width, height, depth, border, format, type, pixels);
+    if (auto* hash = texture->hash()) hash->TexImage(target, level, internal_format, width, height, depth, border, format, type, pixels);
     node_.driver.neutral_pixel_transfer();
     upload_image(gl_, texture->content->target(), target, level, image, {width, height, depth}, pixels.empty() ? nullptr : pixels.data(), border);
 }
@@ -79,7 +79,7 @@ void Executor::TexSubImage(std::uint32_t name, GLenum target, std::int32_t level
     if (!check_image(format, type, width, height, depth, pixels) || pixels.empty()) return;
     Texture* texture = bind_for_upload(name, target);
     if (texture == nullptr) return;
-    if (texture->promise && texture->promise->hash) texture->promise->hash->TexSubImage(target, level, x, y, z, width, height, depth, format, type, pixels);
+    if (auto* hash = texture->hash()) hash->TexSubImage(target, level, x, y, z, width, height, depth, format, type, pixels);
     node_.driver.neutral_pixel_transfer();
     const TextureTarget kind = texture->content->target();
     if (is_1d(kind))
@@ -101,7 +101,7 @@ void Executor::TexCompressed(std::uint32_t name, GLenum target, std::int32_t lev
     const TextureTarget kind = texture->content->target();
     if (kind != TextureTarget::t2d && kind != TextureTarget::cube_map) return refuse("no such target");
     if (!session_.account(*texture, target, level, {internal_format, 0, 0, blocks.size()})) return refuse("more texture memory than a session may have");
-    if (texture->promise && texture->promise->hash) texture->promise->hash->TexCompressed(target, level, internal_format, width, height, blocks);
+    if (auto* hash = texture->hash()) hash->TexCompressed(target, level, internal_format, width, height, blocks);
     gl_.CompressedTexImage2D(target, level, internal_format, width, height, 0, static_cast<GLsizei>(blocks.size()), blocks.data());
 }
 
@@ -110,7 +110,7 @@ void Executor::TexParameter(std::uint32_t name, GLenum target, GLenum pname, flo
     if (texture == nullptr) return;
     const std::array<float, 4> values = {p0, p1, p2, p3};
     texture->content->note_parameter(pname, values);
-    if (texture->promise && texture->promise->hash) texture->promise->hash->TexParameter(target, pname, p0, p1, p2, p3);
+    if (auto* hash = texture->hash()) hash->TexParameter(target, pname, p0, p1, p2, p3);
     gl_.TexParameterfv(target, pname, values.data());
 }
 

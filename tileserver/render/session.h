@@ -48,6 +48,8 @@ struct Texture {
         std::optional<glapi::ContentHash> hash;  ///< of a name that says what the content is
     };
     std::optional<Promise> promise;
+    /// Null: nothing is checked.
+    glapi::ContentHash* hash() { return promise && promise->hash ? &*promise->hash : nullptr; }
 };
 
 /// Geometry that is called by name: a display list of the driver. Mesa cuts quads and strips in a list into other

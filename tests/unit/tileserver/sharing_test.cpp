@@ -61,6 +61,19 @@ TEST(ContentStoreTest, KeepsNothingAlive) {
     EXPECT_LE(store.size(), 512u);
 }
 
+TEST(ContentStoreTest, AnAskerHasOnePromise) {
+    Store store;
+    for (int i = 0; i < 20000; ++i) {
+        glapi::ContentKey key{};
+        std::memcpy(key.data(), &i, sizeof i);
+        EXPECT_TRUE(store.ask(key, kA, {}).send);
+    }
+    EXPECT_EQ(store.size(), 1u);
+    EXPECT_TRUE(store.ask(key_of(7), kB, {}).send) << "it was promised before the last one";
+    store.leave(kA);
+    EXPECT_EQ(store.size(), 1u) << "the other's";
+}
+
 TEST(ContentStoreTest, WhoComesSecondUsesWhatIsThere) {
     Store store;
     const auto first = store.store(key_of(1), std::make_shared<int>(1));

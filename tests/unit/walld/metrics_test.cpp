@@ -8,7 +8,7 @@
 #include <set>
 
 #include "common/wire/limits.h"
-#include "tests/support/no_outbox.h"
+#include "tests/support/small_wall.h"
 
 namespace wall::walld {
 namespace {
@@ -16,20 +16,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char* kConfig = R"(
-[wall]
-name = "lab"
-[[node]]
-name = "left"
-[[node.tile]]
-name = "l"
-rect = [0, 0, 640, 480]
-[[node]]
-name = "right"
-[[node.tile]]
-name = "r"
-rect = [640, 0, 640, 480]
-)";
+const std::string kConfig = std::string("[wall]\nname = \"lab\"\n") + kTwoNodes;
 
 class Metrics : public ::testing::Test {
 protected:

@@ -8,24 +8,12 @@
 #include <cstring>
 
 #include "common/wire/limits.h"
+#include "tests/support/small_wall.h"
 
 namespace wall::walld {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr const char* kConfig = R"(
-[[node]]
-name = "left"
-[[node.tile]]
-name = "l"
-rect = [0, 0, 640, 480]
-[[node]]
-name = "right"
-[[node.tile]]
-name = "r"
-rect = [640, 0, 640, 480]
-)";
 
 class FakeOutbox : public Outbox {
 public:
@@ -113,7 +101,7 @@ protected:
 
     boost::asio::io_context io_;
     FakeOutbox out_;
-    Wall wall_{*config::parse_config(kConfig, "test"), out_, [](std::size_t n) { return std::string(n, 'x'); }};
+    Wall wall_{*config::parse_config(kTwoNodes, "test"), out_, [](std::size_t n) { return std::string(n, 'x'); }};
     StreamHub hub_{io_.get_executor(), wall_, out_};
     unsigned part_ = 0, sequence_ = 0;
 };

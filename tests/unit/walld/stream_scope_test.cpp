@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/no_outbox.h"
+#include "tests/support/small_wall.h"
 
 namespace wall::walld {
 namespace {

@@ -7,23 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "common/wire/limits.h"
+#include "tests/support/small_wall.h"
 #include "walld/status.h"
 
 namespace wall::walld {
 namespace {
-
-constexpr const char* kConfig = R"(
-[[node]]
-name = "left"
-[[node.tile]]
-name = "l"
-rect = [0, 0, 640, 480]
-[[node]]
-name = "right"
-[[node.tile]]
-name = "r"
-rect = [640, 0, 640, 480]
-)";
 
 class FakeOutbox : public Outbox {
 public:
@@ -83,7 +71,7 @@ protected:
     FakeOutbox out_;
     Clock::time_point now_{};
     int tickets_ = 0;
-    Wall wall_{*config::parse_config(kConfig, "test"), out_, [this](std::size_t n) { return std::string(n, static_cast<char>('a' + tickets_++)); }};
+    Wall wall_{*config::parse_config(kTwoNodes, "test"), out_, [this](std::size_t n) { return std::string(n, static_cast<char>('a' + tickets_++)); }};
 };
 
 TEST_F(TheWall, WelcomesANodeWithItsTiles) {

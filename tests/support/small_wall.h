@@ -1,10 +1,23 @@
 // SPDX-License-Identifier: MIT
-// For tests that do not look at what the wall tells its nodes and programs.
+// A wall to test with: two nodes side by side, and an outbox for tests that do not look at what is told to nodes and programs.
 #pragma once
 
 #include "walld/wall.h"
 
 namespace wall::walld {
+
+inline constexpr const char* kTwoNodes = R"(
+[[node]]
+name = "left"
+[[node.tile]]
+name = "l"
+rect = [0, 0, 640, 480]
+[[node]]
+name = "right"
+[[node.tile]]
+name = "r"
+rect = [640, 0, 640, 480]
+)";
 
 class NoOutbox : public Outbox {
 public:
