@@ -6,6 +6,8 @@
 
 #include "client_lib/block_sender.h"
 #include "client_lib/buffer_binding.h"
+#include "client_lib/lists.h"
+#include "client_lib/program_use.h"
 
 namespace wall::client {
 namespace {
@@ -417,19 +419,31 @@ void ArraySet::add(Context& c, ArrayKind kind, unsigned index, const glstate::Cl
     sources_[count_++] = {kind, index, by_command_, base, stride, count, array.size, array.type, loader_of(array.type, conversion)};
 }
 
+void ArraySet::add_constant_vertex(Context& c) {
+    if (has_vertex()) return;
+    c.flush_block();  // the current attributes are in `state` after it
+    constant_vertex_ = c.state.current.vertex_attrib[0];
+    const auto* base = reinterpret_cast<const std::byte*>(constant_vertex_.data());
+    sources_[count_++] = {ArrayKind::vertex, 0, by_command_, base, 0, ArraySource::kNoLimit, 4, GL_FLOAT, loader_of(GL_FLOAT, Conversion::none)};
+}
+
 void send_element(Context& c, const ArraySet& arrays, GLuint element) {
     for (const ArraySource& source : arrays.sources()) send(c, source, element);
 }
 
 void draw_elements(Context& c, GLenum mode, const ElementRange& elements) {
     const bool at_once = c.table == &tables::immediate;
-    const ArraySet arrays(c, !at_once);
-    if (!arrays.has_vertex() || elements.count <= 0) return;
-    if (!at_once) {  // into a list
+    ArraySet arrays(c, !at_once);
+    if (c.program) arrays.add_constant_vertex(c);
+    const bool draws = arrays.has_vertex() && elements.count > 0;
+    if (!at_once && !record_array_draw(c, draws)) return;
+    if (!draws) return;
+    if (!at_once) {
         c.table->Begin(c, mode);
         walk(c, elements, [&](GLuint e) { send_element(c, arrays, e); }, [&] { c.table->End(c), c.table->Begin(c, mode); });
         return c.table->End(c);
     }
+    if (c.program && !may_draw(c)) return;
     SavedCurrent current(c, arrays);
     c.begin_primitive(mode);
     const auto restart = [&] { c.end_primitive(), c.begin_primitive(mode); };

@@ -34,6 +34,10 @@ public:
     /// `by_command`: values are converted as by glColor and the like, not as by a draw.
     ArraySet(Context& c, bool by_command);
     std::span<const ArraySource> sources() const { return {sources_.data(), count_}; }
+    ArraySet(const ArraySet&) = delete;  // sources may point to constant_vertex_
+
+    /// A program may draw without an array of positions: all vertices have the current attribute 0 then.
+    void add_constant_vertex(Context& c);
     bool has_vertex() const { return count_ != 0 && sources_[count_ - 1].kind == ArrayKind::vertex; }
 
 private:
@@ -41,6 +45,7 @@ private:
     std::array<ArraySource, kMaxArrays> sources_;  // not initialized: draws may be small
     std::size_t count_ = 0;
     bool by_command_;
+    glstate::Vec4 constant_vertex_{};
 };
 
 /// Which elements a draw uses: `count` in a row from `first`, or the indices.

@@ -12,6 +12,7 @@
 #include "client_lib/block_walk.h"
 #include "client_lib/material.h"
 #include "client_lib/options.h"
+#include "client_lib/program_use.h"
 #include "client_lib/sharing.h"
 #include "common/glstate/diff.h"
 #include "common/wire/batch.h"
@@ -51,7 +52,7 @@ private:
 // ---- taking a recording apart ----
 
 /// What a recorded command may be part of.
-enum class Role : std::uint8_t { other, begin, end, vertex, attribute };
+enum class Role : std::uint8_t { other, begin, end, vertex, attribute, array_draw };
 
 Role role_of(std::uint16_t command) {
     struct Row {
@@ -71,6 +72,7 @@ Role role_of(std::uint16_t command) {
         {CommandId::FogCoordf, Role::attribute},  {CommandId::MultiTexCoord4f, Role::attribute},
         {CommandId::EdgeFlag, Role::attribute},   {CommandId::Indexf, Role::attribute},
         {CommandId::Materialfv, Role::attribute}, {CommandId::VertexAttrib4f, Role::attribute},
+        {CommandId::DrawArrays, Role::array_draw},
     };
     static constexpr auto kRoles = [] {
         std::array<Role, kCommandCount> roles{};
@@ -88,7 +90,8 @@ std::size_t whole_primitives(std::span<const std::byte> stream) {
     bool inside = false;
     glapi::for_each_record(stream, [&](const Recorded& r) {
         const Role role = role_of(r.command);
-        const bool fits = role == Role::attribute || (inside ? role == Role::vertex || role == Role::end : role == Role::begin && valid_begin(r));
+        const bool starts = role == Role::array_draw || (role == Role::begin && valid_begin(r));
+        const bool fits = role == Role::attribute || (inside ? role == Role::vertex || role == Role::end : starts);
         if (!fits) return false;
         if (role == Role::begin || role == Role::end) inside = role == Role::begin;
         if (!inside) whole = static_cast<std::size_t>(r.payload.data() + r.payload.size() - stream.data());
@@ -142,6 +145,7 @@ public:
         if (scratch_.has_geometry()) run = take();
         scratch_.reset();
         materials_.clear();
+        context_.lists->array_draws.clear();
         return run;
     }
 
@@ -163,6 +167,7 @@ private:
         run->box = scratch_.block_box();
         run->effects = effects_of(run->content);
         run->materials = std::move(materials_);
+        run->array_draws = std::move(context_.lists->array_draws);
         return run;
     }
 
@@ -225,7 +230,7 @@ void follow(Context& c, const std::vector<Node*>& nodes, const ListRun& run) {
 void call_run(Context& c, const ListRun& run) {
     c.flush_block();
     c.settle_modelview();
-    if (!c.draw_surface()) return apply_effects(c.state, run);
+    if (!c.draw_surface() || !may_draw(c)) return apply_effects(c.state, run);
     forget_dead_runs(c);
     const auto box = options().broadcast ? std::nullopt : project(c.projection(), run.box);
     std::vector<Node*> reached;
@@ -305,9 +310,19 @@ constexpr Player kPlayers[] = {
     {Op::EvalPoint2, [](Context& c, const std::byte* at) { api::EvalPoint2(c, static_cast<GLint>(word(at)), static_cast<GLint>(word(at + 4))); }},
 };
 
+// What was drawn from arrays is one command each, and an error here; a glBegin is an error by itself.
 void unpack_run(Context& c, const ListRun& run) {
     BlockWalk walk(run.content, {}, run.content.mark(), {});
+    bool refused = false;
     while (walk.next()) {
+        if (std::binary_search(run.array_draws.begin(), run.array_draws.end(), walk.position().commands - 1)) {
+            c.error(GL_INVALID_OPERATION);
+            refused = true;
+        }
+        if (refused) {
+            refused = walk.op() != Op::End;
+            continue;
+        }
         const auto player = std::find_if(std::begin(kPlayers), std::end(kPlayers), [&](const Player& p) { return p.op == walk.op(); });
         if (player != std::end(kPlayers)) player->play(c, walk.operand());
     }
@@ -346,6 +361,19 @@ void execute_list(Context& c, const DisplayList& list) {
         else
             call_run(c, *item.run);
     }
+}
+
+bool record_array_draw(Context& c, bool draws) {
+    const bool refused = c.packer.inside();
+    c.list().record(static_cast<std::uint16_t>(CommandId::DrawArrays), static_cast<std::uint32_t>(draws && !refused));
+    if (refused) c.error(GL_INVALID_OPERATION);
+    return !refused;
+}
+
+void replay_array_draw(Context& c, std::span<const std::byte> payload) {
+    const bool draws = glapi::RecordReader(payload).get<std::uint32_t>() != 0;
+    if (c.packer.inside()) return c.error(GL_INVALID_OPERATION);
+    if (c.lists->packing && draws) c.lists->array_draws.push_back(c.packer.commands());
 }
 
 void forget_dead_runs(Context& c) {

@@ -34,6 +34,7 @@ struct ListRun {
     };
     std::vector<Effect> effects;
     std::vector<Context::PendingMaterial> materials;  ///< in order
+    std::vector<std::size_t> array_draws;  ///< commands of `content`, each the Begin of what was drawn from arrays
 };
 
 /// A run, or commands to be replayed.
@@ -52,11 +53,17 @@ struct ListState {
     glapi::ListRecorder recorder;
     unsigned depth = 0;    ///< of calls being executed
     bool packing = false;  ///< a run is being packed: materials go into the packer
+    std::vector<std::size_t> array_draws;  ///< of the run being packed
 };
 
 /// Takes a recording apart. Leaves the context as it was.
 std::shared_ptr<DisplayList> compile_list(Context& context, std::span<const std::byte> recording);
 void execute_list(Context& context, const DisplayList& list);
+/// Marks the next recorded primitive as drawn from arrays; `draws`: there will be one. False, and an error, if the command
+/// is executed between glBegin and glEnd.
+bool record_array_draw(Context& context, bool draws);
+/// That mark, replayed or packed into a run.
+void replay_array_draw(Context& context, std::span<const std::byte> payload);
 /// Tells the nodes which runs have gone, whoever let go of them.
 void forget_dead_runs(Context& context);
 

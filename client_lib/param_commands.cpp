@@ -90,6 +90,10 @@ unsigned param_components(ParamFamily family, GLenum pname) {
     return row ? row->components : 0;
 }
 
+bool refuses_one_value(const Context& c, ParamFamily family, GLenum pname) {
+    return c.table == &tables::immediate && param_components(family, pname) > 1;
+}
+
 void convert_params(ParamFamily family, GLenum pname, const GLint* from, GLfloat* to) { convert(family, pname, from, to); }
 void convert_params(ParamFamily family, GLenum pname, const GLdouble* from, GLfloat* to) { convert(family, pname, from, to); }
 GLint rounded_param(GLfloat value) { return to_int(std::round(value)); }
@@ -104,7 +108,7 @@ void get_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLdou
 
 void set_capability(Context& c, GLenum cap, bool on) {
     const CapRow* row = find_cap_row(cap);
-    if (!row) return c.error(GL_INVALID_ENUM);
+    if (!row) return on ? api::EnableClientState(c, cap) : api::DisableClientState(c, cap);  // as GL_EXT_vertex_array had it
     row->set(c, row->index + row->unit_stride * c.active_texture(), on ? 1 : 0);
 }
 

@@ -41,6 +41,9 @@ extern const std::span<const CapRow> kCapRows;  ///< by cap
 
 /// Values that a parameter takes; 0: no such parameter.
 unsigned param_components(ParamFamily family, GLenum pname);
+/// A command for one value that is called with a parameter of several. Display lists take it, with zeros for the others, as
+/// Mesa does.
+bool refuses_one_value(const Context& c, ParamFamily family, GLenum pname);
 /// A parameter's values as floats, integers mapped to fractions where that parameter asks for it.
 void convert_params(ParamFamily family, GLenum pname, const GLint* from, GLfloat* to);
 void convert_params(ParamFamily family, GLenum pname, const GLdouble* from, GLfloat* to);

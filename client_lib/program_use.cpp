@@ -88,6 +88,14 @@ void use_program(Context& c, std::shared_ptr<Program> program) {
     if (const auto before = std::exchange(c.program, std::move(program))) drop_user(c, before);
 }
 
+bool may_draw(Context& c) {
+    if (!c.program) return true;
+    std::lock_guard lock(c.share().mutex);
+    if (!c.program->executable->samplers_conflict()) return true;
+    c.error(GL_INVALID_OPERATION);
+    return false;
+}
+
 namespace {
 
 /// Frees the name; the nodes are told of a program.

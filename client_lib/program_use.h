@@ -19,6 +19,9 @@ void settle_link(Context& c, Program& program);
 /// The context draws with it from now on; null: with none.
 void use_program(Context& c, std::shared_ptr<Program> program);
 
+/// False, and an error, if the context's program cannot draw as its samplers are set.
+bool may_draw(Context& c);
+
 /// One user less; the object goes if it was to be deleted and nothing else uses it.
 void drop_user(Context& c, const std::shared_ptr<GlslObject>& object);
 /// glDeleteShader, glDeleteProgram.

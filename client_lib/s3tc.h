@@ -12,6 +12,10 @@ namespace wall::client {
 
 inline constexpr std::int32_t kS3tcBlock = 4;  ///< texels a side
 
+/// Whether a part (first texel, texels, in one direction) of an image is made of blocks; it may end with the image.
+constexpr bool is_whole_blocks(std::int32_t at, std::int32_t size, std::int32_t all) {
+    return at % kS3tcBlock == 0 && (size % kS3tcBlock == 0 || at + size == all);
+}
 /// Bytes of an image; 0 if the format is none of them.
 std::size_t s3tc_bytes(GLint internal_format, std::int32_t width, std::int32_t height);
 /// RGBA bytes, row by row. `blocks` has s3tc_bytes() bytes.

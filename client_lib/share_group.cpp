@@ -121,11 +121,21 @@ std::size_t ShareGroup::bring_up_to_date(Node& node, Context& context, wire::Pac
     return sent + buffer.bytes() - start;
 }
 
-GLuint texture_name(ShareGroup& share, std::uint32_t id) {
-    if (id == 0) return 0;
+GLuint object_name(ShareGroup& share, glstate::ValueKind kind, std::uint32_t id) {
     std::lock_guard lock(share.mutex);
-    const auto found = share.textures_by_id.find(id);
-    return found == share.textures_by_id.end() ? 0 : found->second->name;
+    const auto name_in = [id](const auto& objects) {
+        const auto found = objects.find(id);
+        return found == objects.end() ? GLuint{0} : found->second->name;
+    };
+    switch (kind) {
+        case glstate::ValueKind::name_texture: return name_in(share.textures_by_id);
+        case glstate::ValueKind::name_buffer: return name_in(share.buffers_by_id);
+        case glstate::ValueKind::name_program: {
+            const auto found = share.program_names.find(id);
+            return found == share.program_names.end() ? 0 : found->second;
+        }
+        default: return 0;  // nothing of this kind can be bound yet
+    }
 }
 
 }  // namespace wall::client

@@ -16,6 +16,7 @@
 #include "client_lib/objects/program.h"
 #include "client_lib/objects/texture.h"
 #include "common/glapi/gl_types.h"
+#include "common/glstate/queries.h"
 #include "common/wire/pack_buffer.h"
 
 namespace wall::client {
@@ -87,7 +88,7 @@ struct ShareGroup {
     std::size_t bring_up_to_date(Node& node, Context& context, wire::PackBuffer& buffer);
 };
 
-/// The application's name of a texture id (glGet of a binding).
-GLuint texture_name(ShareGroup& share, std::uint32_t id);
+/// The application's name of the object that a state element names by its id (glGet of a binding); 0: none.
+GLuint object_name(ShareGroup& share, glstate::ValueKind kind, std::uint32_t id);
 
 }  // namespace wall::client

@@ -6,6 +6,7 @@
 #include "client_lib/attribute_stack.h"
 #include "client_lib/buffer_binding.h"
 #include "client_lib/client_arrays.h"
+#include "client_lib/lists.h"
 #include "client_lib/select.h"
 #include "common/glstate/diff.h"
 
@@ -254,8 +255,8 @@ void PopClientAttrib(Context& c) {
 
 }  // namespace wall::client::api
 
-// A list holds what the arrays contain when it is compiled: Begin, attributes, vertices, End. So these commands record
-// others, and none of them is replayed itself.
+// A list holds what the arrays contain when it is compiled: a DrawArrays without arguments that marks what follows as one
+// command, then Begin, attributes, vertices, End (draw_elements).
 namespace wall::client::compile {
 
 void ArrayElement(Context& c, GLint element) { api::ArrayElement(c, element); }
@@ -278,7 +279,7 @@ void MultiDrawElements(Context& c, GLenum mode, const GLsizei* count, GLenum typ
 namespace wall::client::replay {
 
 void ArrayElement(Context&, std::span<const std::byte>) {}
-void DrawArrays(Context&, std::span<const std::byte>) {}
+void DrawArrays(Context& c, std::span<const std::byte> payload) { replay_array_draw(c, payload); }
 void DrawElements(Context&, std::span<const std::byte>) {}
 void DrawRangeElements(Context&, std::span<const std::byte>) {}
 void MultiDrawArrays(Context&, std::span<const std::byte>) {}

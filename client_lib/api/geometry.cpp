@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "client_lib/context.h"
+#include "client_lib/program_use.h"
 
 namespace wall::client {
 namespace {
@@ -141,7 +142,7 @@ namespace api {
 void Begin(Context& c, GLenum mode) {
     if (mode > GL_POLYGON) return c.error(GL_INVALID_ENUM);
     if (c.packer.inside()) return c.error(GL_INVALID_OPERATION);
-    c.begin_primitive(mode);
+    if (!c.program || may_draw(c)) c.begin_primitive(mode);
 }
 
 void End(Context& c) {
@@ -201,6 +202,7 @@ void VertexAttrib4f(Context& c, GLuint index, GLfloat x, GLfloat y, GLfloat z, G
 void Indexf(Context& c, GLfloat index) { std::memcpy(c.packer.append_rare(Op::Indexf, 4), &index, 4); }
 
 void Rectf(Context& c, GLfloat x1, GLfloat y1, GLfloat x2, GLfloat y2) {
+    if (!may_draw(c)) return;
     c.begin_primitive(GL_QUADS);
     Vertex2f(c, x1, y1);
     Vertex2f(c, x2, y1);

@@ -99,11 +99,11 @@ const Special kSpecials[] = {
     {GL_MAX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_TEXTURE_IMAGE_UNITS, kTextureUnits>},
     {GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, kTextureUnits>},
     {GL_MAX_DRAW_BUFFERS, 1, constant<1>},
-    {GL_NUM_COMPRESSED_TEXTURE_FORMATS, 1, constant<4>},
-    {GL_COMPRESSED_TEXTURE_FORMATS, 4,
+    // For general use: RGBA of DXT1 has but one bit of alpha.
+    {GL_NUM_COMPRESSED_TEXTURE_FORMATS, 1, constant<3>},
+    {GL_COMPRESSED_TEXTURE_FORMATS, 3,
      [](Context&, double* out) {
-         out[0] = GL_COMPRESSED_RGB_S3TC_DXT1_EXT, out[1] = GL_COMPRESSED_RGBA_S3TC_DXT1_EXT;
-         out[2] = GL_COMPRESSED_RGBA_S3TC_DXT3_EXT, out[3] = GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
+         out[0] = GL_COMPRESSED_RGB_S3TC_DXT1_EXT, out[1] = GL_COMPRESSED_RGBA_S3TC_DXT3_EXT, out[2] = GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
      }},
     {GL_MAX_VERTEX_ATTRIBS, 1, limited<GL_MAX_VERTEX_ATTRIBS, kVertexAttributes>},
     {GL_MAX_ELEMENTS_VERTICES, 1, constant<3000>},
@@ -157,10 +157,9 @@ void get_element(Context& c, const glstate::GetEntry& entry, Out* out) {
     const auto category = glstate::element_info(id).category;
     if (category == glstate::Category::current || category == glstate::Category::material) c.flush_block();  // folds attributes
     if (entry.kind > glstate::ValueKind::pointer) {
-        GLint name = 0;
-        glstate::read_components(c.state, id, entry.offset, glstate::ValueKind::unsigned_integer, 1, &name);
-        if (entry.kind == glstate::ValueKind::name_texture) name = static_cast<GLint>(texture_name(c.share(), static_cast<std::uint32_t>(name)));
-        *out = converted<Out>(name);
+        GLint object = 0;
+        glstate::read_components(c.state, id, entry.offset, glstate::ValueKind::unsigned_integer, 1, &object);
+        *out = converted<Out>(object_name(c.share(), entry.kind, static_cast<std::uint32_t>(object)));
         return;
     }
     glstate::read_components(c.state, id, entry.offset, entry.kind, entry.components, out);

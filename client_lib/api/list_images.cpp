@@ -76,11 +76,11 @@ T read(glapi::RecordReader& in) {
 }
 
 template <class... Args>
-void call(Context& c, std::span<const std::byte> payload, void (*function)(Context&, Args...)) {
+void call(Context& c, std::span<const std::byte> payload, void (*GlTable::*function)(Context&, Args...)) {
     glapi::RecordReader in(payload);
     const std::tuple<Args...> args{read<Args>(in)...};  // braces: in order
     const TightUnpack unpack(c);
-    std::apply([&](const Args&... values) { function(c, values...); }, args);
+    std::apply([&](const Args&... values) { (execution_table(c).*function)(c, values...); }, args);
 }
 
 }  // namespace
@@ -91,14 +91,14 @@ void TexImage1D(Context& c, GLenum target, GLint level, GLint internal, GLsizei 
                 const void* pixels) {
     if (is_proxy(target)) return api::TexImage1D(c, target, level, internal, width, border, format, type, pixels);
     record(c, CommandId::TexImage1D, {{width, 1, 1, 1}, format, type, pixels}, target, level, internal, width, border, format, type);
-    if (c.list().execute) api::TexImage1D(c, target, level, internal, width, border, format, type, pixels);
+    if (c.list().execute) execution_table(c).TexImage1D(c, target, level, internal, width, border, format, type, pixels);
 }
 
 void TexImage2D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLint border, GLenum format,
                 GLenum type, const void* pixels) {
     if (is_proxy(target)) return api::TexImage2D(c, target, level, internal, width, height, border, format, type, pixels);
     record(c, CommandId::TexImage2D, {{width, height, 1, 2}, format, type, pixels}, target, level, internal, width, height, border, format, type);
-    if (c.list().execute) api::TexImage2D(c, target, level, internal, width, height, border, format, type, pixels);
+    if (c.list().execute) execution_table(c).TexImage2D(c, target, level, internal, width, height, border, format, type, pixels);
 }
 
 void TexImage3D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLsizei depth, GLint border,
@@ -106,40 +106,40 @@ void TexImage3D(Context& c, GLenum target, GLint level, GLint internal, GLsizei 
     if (is_proxy(target)) return api::TexImage3D(c, target, level, internal, width, height, depth, border, format, type, pixels);
     record(c, CommandId::TexImage3D, {{width, height, depth, 3}, format, type, pixels}, target, level, internal, width, height, depth,
            border, format, type);
-    if (c.list().execute) api::TexImage3D(c, target, level, internal, width, height, depth, border, format, type, pixels);
+    if (c.list().execute) execution_table(c).TexImage3D(c, target, level, internal, width, height, depth, border, format, type, pixels);
 }
 
 void TexSubImage1D(Context& c, GLenum target, GLint level, GLint x, GLsizei width, GLenum format, GLenum type, const void* pixels) {
     record(c, CommandId::TexSubImage1D, {{width, 1, 1, 1}, format, type, pixels}, target, level, x, width, format, type);
-    if (c.list().execute) api::TexSubImage1D(c, target, level, x, width, format, type, pixels);
+    if (c.list().execute) execution_table(c).TexSubImage1D(c, target, level, x, width, format, type, pixels);
 }
 
 void TexSubImage2D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
                    const void* pixels) {
     record(c, CommandId::TexSubImage2D, {{width, height, 1, 2}, format, type, pixels}, target, level, x, y, width, height, format, type);
-    if (c.list().execute) api::TexSubImage2D(c, target, level, x, y, width, height, format, type, pixels);
+    if (c.list().execute) execution_table(c).TexSubImage2D(c, target, level, x, y, width, height, format, type, pixels);
 }
 
 void TexSubImage3D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,
                    GLenum format, GLenum type, const void* pixels) {
     record(c, CommandId::TexSubImage3D, {{width, height, depth, 3}, format, type, pixels}, target, level, x, y, z, width, height, depth,
            format, type);
-    if (c.list().execute) api::TexSubImage3D(c, target, level, x, y, z, width, height, depth, format, type, pixels);
+    if (c.list().execute) execution_table(c).TexSubImage3D(c, target, level, x, y, z, width, height, depth, format, type, pixels);
 }
 
 void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels) {
     record(c, CommandId::DrawPixels, {{width, height, 1, 2}, format, type, pixels}, width, height, format, type);
-    if (c.list().execute) api::DrawPixels(c, width, height, format, type, pixels);
+    if (c.list().execute) execution_table(c).DrawPixels(c, width, height, format, type, pixels);
 }
 
 void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig, GLfloat xmove, GLfloat ymove, const GLubyte* bitmap) {
     record(c, CommandId::Bitmap, {{width, height, 1, 2}, GL_COLOR_INDEX, GL_BITMAP, bitmap}, width, height, xorig, yorig, xmove, ymove);
-    if (c.list().execute) api::Bitmap(c, width, height, xorig, yorig, xmove, ymove, bitmap);
+    if (c.list().execute) execution_table(c).Bitmap(c, width, height, xorig, yorig, xmove, ymove, bitmap);
 }
 
 void PolygonStipple(Context& c, const GLubyte* mask) {
     record(c, CommandId::PolygonStipple, {{32, 32, 1, 2}, GL_COLOR_INDEX, GL_BITMAP, mask});
-    if (c.list().execute) api::PolygonStipple(c, mask);
+    if (c.list().execute) execution_table(c).PolygonStipple(c, mask);
 }
 
 namespace {
@@ -156,7 +156,7 @@ std::ptrdiff_t map_values(unsigned map, GLint ustride, GLint uorder, GLint vstri
 void Map1f(Context& c, GLenum target, GLfloat u1, GLfloat u2, GLint stride, GLint order, const GLfloat* points) {
     c.list().record(static_cast<std::uint16_t>(CommandId::Map1f), target, u1, u2, stride, order,
                     glapi::recorded_array(points, map_values(target - GL_MAP1_COLOR_4, stride, order, 0, 1)));
-    if (c.list().execute) api::Map1f(c, target, u1, u2, stride, order, points);
+    if (c.list().execute) execution_table(c).Map1f(c, target, u1, u2, stride, order, points);
 }
 
 // As floats: that is what the points become anyway.
@@ -165,14 +165,14 @@ void Map1d(Context& c, GLenum target, GLdouble u1, GLdouble u2, GLint stride, GL
     const std::vector<float> values(points, points + count);
     c.list().record(static_cast<std::uint16_t>(CommandId::Map1d), target, static_cast<float>(u1), static_cast<float>(u2), stride, order,
                     glapi::recorded_array(values.data(), count));
-    if (c.list().execute) api::Map1d(c, target, u1, u2, stride, order, points);
+    if (c.list().execute) execution_table(c).Map1d(c, target, u1, u2, stride, order, points);
 }
 
 void Map2f(Context& c, GLenum target, GLfloat u1, GLfloat u2, GLint ustride, GLint uorder, GLfloat v1, GLfloat v2, GLint vstride,
            GLint vorder, const GLfloat* points) {
     c.list().record(static_cast<std::uint16_t>(CommandId::Map2f), target, u1, u2, ustride, uorder, v1, v2, vstride, vorder,
                     glapi::recorded_array(points, map_values(target - GL_MAP2_COLOR_4, ustride, uorder, vstride, vorder)));
-    if (c.list().execute) api::Map2f(c, target, u1, u2, ustride, uorder, v1, v2, vstride, vorder, points);
+    if (c.list().execute) execution_table(c).Map2f(c, target, u1, u2, ustride, uorder, v1, v2, vstride, vorder, points);
 }
 
 void Map2d(Context& c, GLenum target, GLdouble u1, GLdouble u2, GLint ustride, GLint uorder, GLdouble v1, GLdouble v2, GLint vstride,
@@ -181,27 +181,27 @@ void Map2d(Context& c, GLenum target, GLdouble u1, GLdouble u2, GLint ustride, G
     const std::vector<float> values(points, points + count);
     c.list().record(static_cast<std::uint16_t>(CommandId::Map2d), target, static_cast<float>(u1), static_cast<float>(u2), ustride, uorder,
                     static_cast<float>(v1), static_cast<float>(v2), vstride, vorder, glapi::recorded_array(values.data(), count));
-    if (c.list().execute) api::Map2d(c, target, u1, u2, ustride, uorder, v1, v2, vstride, vorder, points);
+    if (c.list().execute) execution_table(c).Map2d(c, target, u1, u2, ustride, uorder, v1, v2, vstride, vorder, points);
 }
 
 }  // namespace compile
 
 namespace replay {
 
-void TexImage1D(Context& c, std::span<const std::byte> payload) { call(c, payload, &api::TexImage1D); }
-void TexImage2D(Context& c, std::span<const std::byte> payload) { call(c, payload, &api::TexImage2D); }
-void TexImage3D(Context& c, std::span<const std::byte> payload) { call(c, payload, &api::TexImage3D); }
-void TexSubImage1D(Context& c, std::span<const std::byte> payload) { call(c, payload, &api::TexSubImage1D); }
-void TexSubImage2D(Context& c, std::span<const std::byte> payload) { call(c, payload, &api::TexSubImage2D); }
-void TexSubImage3D(Context& c, std::span<const std::byte> payload) { call(c, payload, &api::TexSubImage3D); }
-void DrawPixels(Context& c, std::span<const std::byte> payload) { call(c, payload, &api::DrawPixels); }
+void TexImage1D(Context& c, std::span<const std::byte> payload) { call(c, payload, &GlTable::TexImage1D); }
+void TexImage2D(Context& c, std::span<const std::byte> payload) { call(c, payload, &GlTable::TexImage2D); }
+void TexImage3D(Context& c, std::span<const std::byte> payload) { call(c, payload, &GlTable::TexImage3D); }
+void TexSubImage1D(Context& c, std::span<const std::byte> payload) { call(c, payload, &GlTable::TexSubImage1D); }
+void TexSubImage2D(Context& c, std::span<const std::byte> payload) { call(c, payload, &GlTable::TexSubImage2D); }
+void TexSubImage3D(Context& c, std::span<const std::byte> payload) { call(c, payload, &GlTable::TexSubImage3D); }
+void DrawPixels(Context& c, std::span<const std::byte> payload) { call(c, payload, &GlTable::DrawPixels); }
 
-void Bitmap(Context& c, std::span<const std::byte> payload) { call(c, payload, &api::Bitmap); }
-void PolygonStipple(Context& c, std::span<const std::byte> payload) { call(c, payload, &api::PolygonStipple); }
-void Map1f(Context& c, std::span<const std::byte> payload) { call(c, payload, &api::Map1f); }
-void Map1d(Context& c, std::span<const std::byte> payload) { call(c, payload, &api::Map1f); }
-void Map2f(Context& c, std::span<const std::byte> payload) { call(c, payload, &api::Map2f); }
-void Map2d(Context& c, std::span<const std::byte> payload) { call(c, payload, &api::Map2f); }
+void Bitmap(Context& c, std::span<const std::byte> payload) { call(c, payload, &GlTable::Bitmap); }
+void PolygonStipple(Context& c, std::span<const std::byte> payload) { call(c, payload, &GlTable::PolygonStipple); }
+void Map1f(Context& c, std::span<const std::byte> payload) { call(c, payload, &GlTable::Map1f); }
+void Map1d(Context& c, std::span<const std::byte> payload) { call(c, payload, &GlTable::Map1f); }
+void Map2f(Context& c, std::span<const std::byte> payload) { call(c, payload, &GlTable::Map2f); }
+void Map2d(Context& c, std::span<const std::byte> payload) { call(c, payload, &GlTable::Map2f); }
 
 }  // namespace replay
 }  // namespace wall::client

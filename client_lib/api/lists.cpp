@@ -84,9 +84,7 @@ void EndList(Context& c) {
     if (c.lists->name == 0) return c.error(GL_INVALID_OPERATION);
     const GLuint name = c.lists->name;
     const std::vector<std::byte> recording = c.lists->recorder.take();
-    const bool inside = c.packer.inside();  // an executed glBegin is still open
     finish_compiling(c);
-    if (inside) c.table = &tables::inside_begin;
     auto compiled = compile_list(c, recording);
     std::lock_guard lock(c.share().mutex);
     c.share().lists.put(name, std::move(compiled));
@@ -132,7 +130,7 @@ void CallLists(Context& c, GLsizei n, GLenum type, const void* lists) {
     std::vector<GLint> offsets;
     for (GLsizei i = 0; i < n; ++i) offsets.push_back(row->read(lists, i));
     c.list().record(static_cast<std::uint16_t>(CommandId::CallLists), glapi::recorded_array(offsets.data(), n));
-    if (c.list().execute) api::CallLists(c, n, GL_INT, offsets.data());
+    if (c.list().execute) execution_table(c).CallLists(c, n, GL_INT, offsets.data());
 }
 
 }  // namespace wall::client::compile

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "client_lib/buffer_binding.h"
 #include "client_lib/context.h"
 #include "client_lib/maps.h"
 #include "client_lib/objects/texture.h"
@@ -89,10 +90,15 @@ void pixel_map(Context& c, GLenum map, GLsizei size, const In* values, double sc
     if (!is_pixel_map(map)) return c.error(GL_INVALID_ENUM);
     if (size < 1 || size > kMaxPixelMapTable) return c.error(GL_INVALID_VALUE);
     if (map <= GL_PIXEL_MAP_I_TO_A && !std::has_single_bit(static_cast<unsigned>(size))) return c.error(GL_INVALID_VALUE);
-    if (!values) return;
     std::vector<float> table(static_cast<std::size_t>(size));
-    for (std::size_t i = 0; i < table.size(); ++i)
-        table[i] = static_cast<float>(is_index_map(map) ? static_cast<double>(values[i]) : values[i] * scale);
+    const auto* from = static_cast<const std::byte*>(unpack_source(c, values, table.size() * sizeof(In)));
+    if (!from) return;
+    for (float& entry : table) {
+        In value;
+        std::memcpy(&value, from, sizeof value);
+        from += sizeof value;
+        entry = static_cast<float>(is_index_map(map) ? static_cast<double>(value) : value * scale);
+    }
     set_pixel_map(c, map, std::move(table));
 }
 
@@ -100,7 +106,14 @@ template <class Out>
 void get_pixel_map(Context& c, GLenum map, Out* out, double scale) {
     if (!is_pixel_map(map)) return c.error(GL_INVALID_ENUM);
     constexpr double kRounding = std::is_same_v<Out, GLushort> ? 0.5 : 0.0;  // Mesa rounds these only
-    for (const float value : c.maps->pixel.of(map)) *out++ = static_cast<Out>(is_index_map(map) ? value : value * scale + kRounding);
+    const auto values = c.maps->pixel.of(map);
+    auto* to = static_cast<std::byte*>(pack_target(c, out, values.size() * sizeof(Out)));
+    if (!to) return;
+    for (const float value : values) {
+        const auto result = static_cast<Out>(is_index_map(map) ? value : value * scale + kRounding);
+        std::memcpy(to, &result, sizeof result);
+        to += sizeof result;
+    }
 }
 
 // ---- buffers ----

@@ -215,7 +215,7 @@ void ValidateProgram(Context& c, GLuint name) {
     const auto program = settled_program(c, name);
     if (!program) return;
     std::lock_guard lock(c.share().mutex);
-    program->validated = program->linked;
+    program->validated = program->linked && !program->executable->samplers_conflict();
 }
 
 void UseProgram(Context& c, GLuint name) {

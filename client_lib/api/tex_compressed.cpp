@@ -46,14 +46,11 @@ TextureLevel described(const Image& image) {
     return level;
 }
 
-/// Columns and rows of blocks of a part that may end at the image's border only.
-bool whole_blocks(GLint at, GLsizei size, GLint all) { return at % kS3tcBlock == 0 && (size % kS3tcBlock == 0 || at + size == all); }
-
 GLenum sub_image_error(const TextureLevel& level, const Image& part, GLint x, GLint y) {
     if (!level.compressed || level.internal_format != part.format) return GL_INVALID_OPERATION;
     const auto inside = [](GLint at, GLsizei size, GLint all) { return at >= 0 && size >= 0 && std::int64_t{at} + size <= all; };
     if (!inside(x, part.width, level.width) || !inside(y, part.height, level.height)) return GL_INVALID_VALUE;
-    if (!whole_blocks(x, part.width, level.width) || !whole_blocks(y, part.height, level.height)) return GL_INVALID_OPERATION;
+    if (!is_whole_blocks(x, part.width, level.width) || !is_whole_blocks(y, part.height, level.height)) return GL_INVALID_OPERATION;
     return static_cast<std::size_t>(part.bytes) == s3tc_bytes(part.format, part.width, part.height) ? GL_NO_ERROR : GL_INVALID_VALUE;
 }
 

@@ -10,6 +10,7 @@
 #include "client_lib/maps.h"
 #include "client_lib/pixel_store.h"
 #include "client_lib/readback.h"
+#include "client_lib/s3tc.h"
 #include "client_lib/texture_binding.h"
 #include "client_lib/texture_formats.h"
 #include "client_lib/texture_image.h"
@@ -77,6 +78,9 @@ void strip_border(ImageCall& call) {
 std::size_t texels(const ImageCall& call) {
     return static_cast<std::size_t>(call.width) * static_cast<std::size_t>(call.height) * static_cast<std::size_t>(call.depth);
 }
+
+/// More than nodes hold in one level.
+bool too_large(const ImageCall& call) { return texels(call) > kMostTexels; }
 
 template <class T>
 std::vector<std::byte> bytes_of(const std::vector<T>& values) {
@@ -209,7 +213,7 @@ void define_image(Context& c, ImageCall call) {
         strip_border(call);
         TextureLevel& level = c.maps->proxies[{call.target, call.level}];
         level = TextureLevel{};
-        if (!legal_size(c, call)) return;
+        if (!legal_size(c, call) || too_large(call)) return;
         level.internal_format = call.internal_format;
         level.width = call.width, level.height = call.height, level.depth = call.depth;
         level.format = call.format, level.type = call.type;
@@ -220,7 +224,13 @@ void define_image(Context& c, ImageCall call) {
     if (!find_pixels(c, call)) return;
     strip_border(call);
     if (!legal_size(c, call)) return c.error(GL_INVALID_VALUE);
+    if (too_large(call)) return c.error(GL_OUT_OF_MEMORY);
     store_level(c, call, call.pixels ? unpacked(c, call) : TexelData{call.format, call.type, {}});
+}
+
+/// Of an image that the nodes compress.
+bool whole_blocks(const ImageCall& part, const TextureLevel& level) {
+    return is_whole_blocks(part.x, part.width, level.width) && is_whole_blocks(part.y, part.height, level.height);
 }
 
 GLenum sub_image_error(Context& c, const ImageCall& call) {
@@ -234,6 +244,7 @@ GLenum sub_image_error(Context& c, const ImageCall& call) {
     const auto inside = [](GLint at, GLsizei size, GLint all) { return at >= 0 && std::int64_t{at} + size <= all; };
     if (!inside(call.x, call.width, level->width) || !inside(call.y, call.height, level->height) || !inside(call.z, call.depth, level->depth))
         return GL_INVALID_VALUE;
+    if (compressed_block_bytes(level->internal_format) != 0 && !whole_blocks(call, *level)) return GL_INVALID_OPERATION;
     const TextureFormat* internal = find_texture_format(level->internal_format);
     return internal && formats_agree(*internal, call.format) ? GL_NO_ERROR : GL_INVALID_OPERATION;
 }

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "client_lib/param_commands.h"
 #include "client_lib/program_use.h"
 
 namespace wall::client::api {
@@ -108,7 +109,8 @@ Out converted(UniformBase base, std::uint32_t word) {
     if (base == UniformBase::real) {
         GLfloat value;
         std::memcpy(&value, &word, sizeof value);
-        return static_cast<Out>(value);
+        if constexpr (std::is_same_v<Out, GLint>) return rounded_param(value);
+        else return value;
     }
     if (base == UniformBase::unsigned_integer) return static_cast<Out>(word);
     return static_cast<Out>(static_cast<GLint>(word));

@@ -20,11 +20,6 @@ void enable(Context& c, GLuint index, bool enabled) {
     c.set<el::attrib_array>(index, array);
 }
 
-GLuint buffer_name(Context& c, std::uint32_t id) {
-    const auto buffer = buffer_of(c, id);
-    return buffer ? buffer->name : 0;
-}
-
 template <class Out>
 void get(Context& c, GLuint index, GLenum pname, Out* params) {
     if (index >= kVertexAttributes) return c.error(GL_INVALID_VALUE);
@@ -35,7 +30,7 @@ void get(Context& c, GLuint index, GLenum pname, Out* params) {
         case GL_VERTEX_ATTRIB_ARRAY_STRIDE: *params = static_cast<Out>(array.stride); break;
         case GL_VERTEX_ATTRIB_ARRAY_TYPE: *params = static_cast<Out>(array.type); break;
         case GL_VERTEX_ATTRIB_ARRAY_NORMALIZED: *params = static_cast<Out>(array.normalized); break;
-        case GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING: *params = static_cast<Out>(buffer_name(c, array.buffer)); break;
+        case GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING: *params = static_cast<Out>(object_name(c.share(), glstate::ValueKind::name_buffer, array.buffer)); break;
         case GL_CURRENT_VERTEX_ATTRIB:
             if (index == 0) return c.error(GL_INVALID_OPERATION);
             c.flush_block();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstring>
+#include <map>
 
 #include "client_lib/objects/texture.h"
 #include "gen/glapi/wire.gen.h"
@@ -75,6 +76,7 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
     }
     made->attributes = std::move(reflection.attributes);
     made->stamp = made->last_change = next_stamp();
+    made->check_samplers();
     return made;
 }
 
@@ -110,6 +112,13 @@ bool Executable::holds(const Uniform& uniform, std::uint32_t first, std::span<co
 void Executable::store(Uniform& uniform, std::uint32_t first, std::span<const std::uint32_t> words) {
     std::memcpy(words_.data() + uniform.first + std::size_t{first} * uniform.type->words(), words.data(), words.size_bytes());
     uniform.stamp = last_change = next_stamp();
+    if (uniform.type->base == glapi::UniformBase::sampler) check_samplers();
+}
+
+void Executable::check_samplers() {
+    std::map<std::uint32_t, GLenum> targets;  // by unit
+    samplers_conflict_ = false;
+    for_each_sampler([&](std::uint32_t unit, GLenum target) { samplers_conflict_ |= targets.emplace(unit, target).first->second != target; });
 }
 
 glapi::ProgramDefinition Program::definition() const {

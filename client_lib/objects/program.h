@@ -84,6 +84,9 @@ public:
                 for (const std::uint32_t unit : words_of(uniform)) use(unit, uniform.type->texture_target);
     }
 
+    /// Samplers of different targets name one unit: nothing may be drawn (OpenGL 2.1, 2.15.4).
+    bool samplers_conflict() const { return samplers_conflict_; }
+
     std::uint64_t stamp = 0;        ///< of linking
     std::uint64_t last_change = 0;  ///< of a uniform, or `stamp`
     std::vector<std::byte> definition;
@@ -91,8 +94,11 @@ public:
     std::vector<glapi::ActiveAttribute> attributes;
 
 private:
+    void check_samplers();
+
     std::vector<std::uint32_t> words_;
     std::vector<UniformPlace> places_;  ///< by location
+    bool samplers_conflict_ = false;
 };
 
 struct Program : GlslObject {

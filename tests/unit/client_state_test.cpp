@@ -30,8 +30,7 @@ public:
         words_ = &words;
         arrays_.assign(sizeof...(A), std::vector<double>(16));
         text_ = name;
-        std::size_t n = 0;
-        const std::tuple<A...> args{make<A>(n++)...};
+        const auto args = [this]<std::size_t... I>(std::index_sequence<I...>) { return std::tuple<A...>{make<A>(I)...}; }(std::index_sequence_for<A...>{});
         const auto* proc = std::lower_bound(kProcs.data(), kProcs.data() + kProcs.size(), name,
                                             [](const ProcEntry& p, const char* wanted) { return std::strcmp(p.name, wanted) < 0; });
         ASSERT_STREQ(proc->name, name);

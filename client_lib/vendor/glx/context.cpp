@@ -48,6 +48,12 @@ std::shared_ptr<GlxContext> find_context(GLXContext handle) {
     return found != contexts().all.end() && !found->second->destroyed ? found->second : nullptr;
 }
 
+std::shared_ptr<GlxContext> find_usable_context(GLXContext handle) {
+    std::lock_guard lock(contexts().mutex);
+    const auto found = contexts().all.find(handle);
+    return found != contexts().all.end() && (!found->second->destroyed || found->second.get() == current) ? found->second : nullptr;
+}
+
 std::shared_ptr<GlxContext> create_context(const Config& config, const ContextOptions& options) {
     auto core = client::create_context(options);
     if (!core) return nullptr;

@@ -24,6 +24,8 @@ struct GlxContext {
 
 /// Null if the handle is none of ours.
 std::shared_ptr<GlxContext> find_context(GLXContext handle);
+/// The same, or this thread's current one although it was destroyed: it lasts until another is made current.
+std::shared_ptr<GlxContext> find_usable_context(GLXContext handle);
 /// Null if the core does not offer what is asked for.
 std::shared_ptr<GlxContext> create_context(const Config& config, const ContextOptions& options);
 void destroy_context(const std::shared_ptr<GlxContext>& context);

@@ -170,6 +170,12 @@ struct ContextWish {
     int glx_error = -1;
 };
 
+/// A version of OpenGL that there is.
+bool is_version(int major, int minor) {
+    static constexpr int kLastMinor[] = {5, 1, 3, 6};  // of 1.x, 2.x, 3.x, 4.x
+    return major >= 1 && major <= 4 && minor >= 0 && minor <= kLastMinor[major - 1];
+}
+
 ContextWish read_context_attributes(const int* attributes) {
     constexpr int kKnownFlags = GLX_CONTEXT_DEBUG_BIT_ARB | GLX_CONTEXT_FORWARD_COMPATIBLE_BIT_ARB;
     ContextWish wish;
@@ -189,11 +195,11 @@ ContextWish read_context_attributes(const int* attributes) {
     o.debug = flags & GLX_CONTEXT_DEBUG_BIT_ARB;
     o.forward_compatible = flags & GLX_CONTEXT_FORWARD_COMPATIBLE_BIT_ARB;
     o.core_profile = version >= 32 && profile == GLX_CONTEXT_CORE_PROFILE_BIT_ARB;
-    if (version >= 32 && profile != GLX_CONTEXT_CORE_PROFILE_BIT_ARB &&
-        profile != GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB)
+    if (profile != GLX_CONTEXT_CORE_PROFILE_BIT_ARB && profile != GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB)
         wish.glx_error = kGLXBadProfileARB;
     if (flags & ~kKnownFlags) wish.x_error = BadValue;
-    if (render_type != GLX_RGBA_TYPE || (o.forward_compatible && o.major < 3)) wish.x_error = BadMatch;
+    if (render_type == GLX_COLOR_INDEX_TYPE || (o.forward_compatible && o.major < 3) || !is_version(o.major, o.minor)) wish.x_error = BadMatch;
+    else if (render_type != GLX_RGBA_TYPE) wish.x_error = BadValue;
     return wish;
 }
 
@@ -213,7 +219,7 @@ GLXContext create_context_attribs(Display* display, GLXFBConfig handle, GLXConte
 
 void destroy_context_handle(Display* display, GLXContext handle) {
     guarded("glXDestroyContext", [&] {
-        const auto context = find_context(handle);
+        const auto context = find_usable_context(handle);
         if (!context) return send_glx_error(display, GLXBadContext, 0, X_GLXDestroyContext);
         destroy_context(context);
         Drawables::get().drop_destroyed_windows();
@@ -227,7 +233,7 @@ Bool make_context_current_of(Display* display, GLXDrawable draw, GLXDrawable rea
             return False;
         }
         if (!handle) return make_context_current(nullptr, nullptr, nullptr) == MakeCurrentResult::done;
-        const auto context = find_context(handle);
+        const auto context = find_usable_context(handle);
         if (!context) {
             send_glx_error(display, GLXBadContext, 0, X_GLXMakeContextCurrent);
             return False;
@@ -359,9 +365,6 @@ void destroy_drawable(Display* display, XID id, const char* function, int glx_er
     });
 }
 
-void destroy_window(Display* display, GLXWindow id) {
-    destroy_drawable(display, id, "glXDestroyWindow", GLXBadWindow, X_GLXDestroyWindow);
-}
 void destroy_pbuffer(Display* display, GLXPbuffer id) {
     destroy_drawable(display, id, "glXDestroyPbuffer", GLXBadPbuffer, X_GLXDestroyPbuffer);
 }
@@ -372,6 +375,14 @@ void destroy_pixmap(Display* display, GLXPixmap id) {
 /// False: there is no such window.
 bool is_x_window(Display* display, XID id) {
     return XConnection::of(display)->size_of(static_cast<xcb_drawable_t>(id)).has_value();
+}
+
+/// A window that is gone has taken its GLX window with it.
+void destroy_window(Display* display, GLXWindow id) {
+    guarded("glXDestroyWindow", [&] {
+        const bool there = is_x_window(display, id);
+        if (!Drawables::get().destroy(display, id) || !there) send_glx_error(display, GLXBadWindow, id, X_GLXDestroyWindow);
+    });
 }
 
 void query_drawable(Display* display, GLXDrawable id, int name, unsigned int* value) {

@@ -141,6 +141,53 @@ TEST_F(ArraysTest, Errors) {
     EXPECT_EQ(error(), GLenum{GL_STACK_UNDERFLOW});
 }
 
+TEST_F(ArraysTest, BindingsAreToldByTheApplicationsNames) {
+    GLuint names[3];
+    gl().GenBuffers(c, 3, names);
+    gl().BindBuffer(c, GL_ARRAY_BUFFER, names[2]);
+    gl().BindBuffer(c, GL_PIXEL_PACK_BUFFER, names[1]);
+    gl().ColorPointer(c, 4, GL_FLOAT, 0, nullptr);
+    gl().VertexAttribPointer(c, 3, 4, GL_FLOAT, GL_FALSE, 0, nullptr);
+    GLint bound = 0;
+    for (const GLenum word : {GL_ARRAY_BUFFER_BINDING, GL_COLOR_ARRAY_BUFFER_BINDING}) {
+        gl().GetIntegerv(c, word, &bound);
+        EXPECT_EQ(bound, static_cast<GLint>(names[2]));
+    }
+    gl().GetIntegerv(c, GL_PIXEL_PACK_BUFFER_BINDING, &bound);
+    EXPECT_EQ(bound, static_cast<GLint>(names[1]));
+    gl().GetVertexAttribiv(c, 3, GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING, &bound);
+    EXPECT_EQ(bound, static_cast<GLint>(names[2]));
+    gl().GetIntegerv(c, GL_PIXEL_UNPACK_BUFFER_BINDING, &bound);
+    EXPECT_EQ(bound, 0);
+}
+
+TEST_F(ArraysTest, EnableTakesArraysToo) {
+    gl().Enable(c, GL_NORMAL_ARRAY);
+    EXPECT_TRUE(gl().IsEnabled(c, GL_NORMAL_ARRAY));
+    gl().Disable(c, GL_NORMAL_ARRAY);
+    EXPECT_FALSE(gl().IsEnabled(c, GL_NORMAL_ARRAY));
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+}
+
+TEST_F(ArraysTest, PixelMapsComeFromBuffersAndGoThere) {
+    GLuint buffer;
+    gl().GenBuffers(c, 1, &buffer);
+    for (const GLenum target : {GL_PIXEL_UNPACK_BUFFER, GL_PIXEL_PACK_BUFFER}) gl().BindBuffer(c, target, buffer);
+    const GLushort values[4] = {65535, 0, 0, 0};
+    gl().BufferData(c, GL_PIXEL_PACK_BUFFER, sizeof values, values, GL_STREAM_READ);
+    const auto* second = reinterpret_cast<const GLushort*>(std::uintptr_t{2});
+    gl().PixelMapusv(c, GL_PIXEL_MAP_R_TO_R, 2, nullptr);
+    gl().GetPixelMapusv(c, GL_PIXEL_MAP_R_TO_R, const_cast<GLushort*>(second));
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    GLushort now[4];
+    gl().GetBufferSubData(c, GL_PIXEL_PACK_BUFFER, 0, sizeof now, now);
+    EXPECT_EQ(now[0], 65535);
+    EXPECT_EQ(now[1], 65535);
+    EXPECT_EQ(now[2], 0);
+    gl().PixelMapusv(c, GL_PIXEL_MAP_R_TO_R, 4, second);  // over the end
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+}
+
 TEST_F(ArraysTest, ClientAttributesAreKept) {
     gl().PushClientAttrib(c, GL_CLIENT_ALL_ATTRIB_BITS);
     gl().PixelStorei(c, GL_PACK_ALIGNMENT, 8);

@@ -107,6 +107,70 @@ TEST_F(ListTest, StateInsideBeginIsAnError) {
     EXPECT_FALSE(c.state.fog.fog_enabled);
 }
 
+TEST_F(ListTest, ArraysAreOneCommandInAList) {
+    const GLfloat points[6] = {0, 0, 1, 0, 1, 1};
+    gl().VertexPointer(c, 2, GL_FLOAT, 0, points);
+    gl().EnableClientState(c, GL_VERTEX_ARRAY);
+    begin_list(1);
+    gl().Vertex2f(c, 5, 5);  // of a glBegin outside
+    end_list();
+    begin_list(2);
+    triangle(1);
+    gl().DrawArrays(c, GL_TRIANGLES, 0, 3);
+    triangle(2);
+    end_list();
+    ASSERT_EQ(list(2).items.size(), 1u);
+    const ListRun& run = *list(2).items[0].run;
+    EXPECT_EQ(run.content.commands(), 8u + 5 + 8);
+    EXPECT_EQ(run.array_draws, std::vector<std::size_t>{8});
+
+    gl().Begin(c, GL_POINTS);
+    gl().CallList(c, 1);
+    begin_list(3);
+    gl().End(c);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});  // no list is made between glBegin and glEnd
+}
+
+TEST_F(ListTest, ArraysOfAListInsideBeginDrawNothing) {
+    const GLfloat points[6] = {0, 0, 1, 0, 1, 1};
+    gl().VertexPointer(c, 2, GL_FLOAT, 0, points);
+    begin_list(1);
+    gl().Vertex2f(c, 5, 5);
+    gl().DrawArrays(c, GL_TRIANGLES, 0, 3);  // nothing to draw yet, an error all the same
+    gl().EnableClientState(c, GL_VERTEX_ARRAY);
+    gl().DrawArrays(c, GL_TRIANGLES, 0, 3);
+    end_list();
+    gl().Begin(c, GL_POINTS);
+    gl().CallList(c, 1);
+    EXPECT_EQ(c.packer.commands(), 2u);  // Begin and one vertex
+    gl().End(c);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+
+    begin_list(2, GL_COMPILE_AND_EXECUTE);
+    gl().Begin(c, GL_POINTS);
+    gl().DrawArrays(c, GL_TRIANGLES, 0, 3);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().EndList(c);  // so is this
+    gl().End(c);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    end_list();
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().CallList(c, 2);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+}
+
+TEST_F(ListTest, ImagesInsideBeginAreErrorsToo) {
+    const GLubyte byte = 0;
+    begin_list(1, GL_COMPILE_AND_EXECUTE);
+    gl().Begin(c, GL_POINTS);
+    gl().Bitmap(c, 1, 1, 0, 0, 0, 0, &byte);
+    gl().End(c);
+    end_list();
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().CallList(c, 1);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+}
+
 TEST_F(ListTest, NestedListsAreLookedUpWhenCalled) {
     begin_list(1);
     gl().CallList(c, 2);

@@ -48,7 +48,9 @@ def api_header(commands, model):
                "extern const GlTable immediate;     ///< each command at once\n"
                "extern const GlTable inside_begin;  ///< between glBegin and glEnd: most are errors\n"
                "extern const GlTable compile;       ///< into the context's list()\n"
-               "}  // namespace tables\n\n")
+               "}  // namespace tables\n\n"
+               "/// What the context does with a command at once, while a list may be compiled as well: `inside_begin` or `immediate`.\n"
+               "const GlTable& execution_table(const Context& c);\n\n")
     out.append("/// A recorded command's number (common/glapi/recorder.h).\nenum class CommandId : std::uint16_t {\n"
                + "".join(f"    {i.name},\n" for i in canonical) + "};\n"
                f"inline constexpr std::size_t kCommandCount = {len(canonical)};\n"
@@ -84,8 +86,10 @@ def tables_source(commands):
            '#include "client_lib/context.h"\n#include "client_lib/param_commands.h"\n#include "common/glapi/recorder.h"\n'
            '#include "gen/client_lib/api.gen.h"\n\nnamespace wall::client {\n\nnamespace {\n\n'
            "using glapi::recorded_array;\n\n"
-           "/// What a command does at once, while a list may be compiled as well.\n"
-           "const GlTable& execution_table(Context& c) { return c.packer.inside() ? tables::inside_begin : tables::immediate; }\n\n"
+           "/// A command that no list holds, while one is compiled: done at once.\n"
+           "template <auto kCommand, class Function>\nstruct Direct;\n"
+           "template <auto kCommand, class R, class... A>\nstruct Direct<kCommand, R (*)(Context&, A...)> {\n"
+           "    static R call(Context& c, A... a) { return (execution_table(c).*kCommand)(c, a...); }\n};\n\n"
            "/// A command that is an error between glBegin and glEnd.\n"
            "template <class Function>\nstruct RefusedInside;\n"
            "template <class R, class... A>\nstruct RefusedInside<R (*)(Context&, A...)> {\n"
@@ -102,6 +106,7 @@ def tables_source(commands):
         run = "nullptr" if not i.in_list else f"&replay::{i.name}" if "record" in i.flags else f"&replay_{i.name}"
         out.append(f"    {{{run}}},  // {i.name}\n")
     out.append("};\n\n}  // namespace\n\n"
+               "const GlTable& execution_table(const Context& c) { return c.packer.inside() ? tables::inside_begin : tables::immediate; }\n\n"
                "void replay_command(Context& c, std::uint16_t command, std::span<const std::byte> payload) {\n"
                "    if (command < kCommandCount && kReplayRows[command].run) kReplayRows[command].run(c, payload);\n}\n\n"
                "const char* const kCommandNames[kCommandCount] = {\n" + "".join(f'    "gl{i.name}",\n' for i in canonical) + "};\n\n"
@@ -110,7 +115,7 @@ def tables_source(commands):
     out.append(_table("inside_begin", canonical,
                       lambda i: f"&api::{i.name}" if "inside" in i.flags else f"&RefusedInside<decltype(GlTable::{i.name})>::call"))
     out.append(_table("compile", canonical,
-                      lambda i: f"&api::{i.name}" if not i.in_list else f"&compile::{i.name}" if "record" in i.flags else f"&compile_{i.name}"))
+                      lambda i: f"&Direct<&GlTable::{i.name}, decltype(GlTable::{i.name})>::call" if not i.in_list else f"&compile::{i.name}" if "record" in i.flags else f"&compile_{i.name}"))
     out.append("}  // namespace tables\n}  // namespace wall::client\n")
     return "".join(out)
 
@@ -243,5 +248,5 @@ def _param_entry(i, commands):
     if form == "i" and keys.get("fractions"):
         return [f"const GLint given[4] = {{{value}}};", "GLfloat v[4] = {};",
                 f"convert_params(ParamFamily::{family}, {pname}, given, v);", f"{table}({args}, v);"]
-    refusal = [f"if (param_components(ParamFamily::{family}, {pname}) > 1) return c->error(GL_INVALID_ENUM);"] if keys.get("strict") else []
+    refusal = [f"if (refuses_one_value(*c, ParamFamily::{family}, {pname})) return c->error(GL_INVALID_ENUM);"] if keys.get("strict") else []
     return [f"const GLfloat v[4] = {{static_cast<GLfloat>({value})}};", *refusal, f"{table}({args}, v);"]

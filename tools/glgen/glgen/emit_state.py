@@ -114,6 +114,8 @@ def value_kind(e, f):
     component = TYPES[f.type][1]
     if e.name_of:
         return f"name_{e.name_of}"
+    if f.name == "buffer":  # of a client array
+        return "name_buffer"
     if component in ("float", "double") and e.norm:
         return "normalized" if component == "float" else "normalized64"
     return {"flag": "flag", "enum": "enumerant", "i32": "integer", "u32": "unsigned_integer", "u64": "pointer",
@@ -159,7 +161,7 @@ def _params(model):
 
 def tables_header(model):
     families = sorted(model.families)
-    names = sorted({e.name_of for e in model.elements if e.name_of})
+    names = sorted({e.name_of for e in model.elements if e.name_of} | {"buffer"})
     out = [header("proto/gl/state.toml", "Sizes and closed sets that the tables of elements.h and queries.h are declared with.", []),
            "#include <cstddef>\n#include <cstdint>\n\nnamespace wall::glstate {\n\n"]
     out.append(f"inline constexpr std::size_t kElementCount = {len(model.elements)};\n\n")
