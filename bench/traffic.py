@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """What a program sends to walls of 1x1 to 8x4 tiles, a frame: state, objects and geometry, bucketed, ideal (each primitive
-goes to just the tiles that its own box touches, counted by the library in the same run) and broadcast. The program is
-recorded first, so that every wall gets the same frames.
+goes to just the tiles that its own box touches, counted by the library in the same run) and broadcast. `matrices` is how
+often, in that ideal, a node would need other matrices: where a program moves every object, its state cannot grow less than
+this. The program is recorded first, so that every wall gets the same frames.
 
 traffic.py [--seconds N] [--recording NAME] [--tiles CxR]... [--json FILE] [-- PROGRAM ARGS...]
     without a program: xscreensaver's atlantis without the gradient behind the fish, which the papers' did not have
@@ -84,6 +85,7 @@ def measure(recording: Recording, tiles: str, x: XServer) -> dict:
         row[name] = {kind: a_frame(stats, kind) for kind in KINDS}
         row[name]["all_geometry"] = stats["total"]["geometry_bytes"]
     row["ideal_all_geometry"] = bucketed["counters"].get("ideal_geometry_bytes", 0)
+    row["matrices"] = bucketed["counters"].get("ideal_matrices", 0) / max(1, bucketed["frames"])
     row["over_ideal"] = row["bucketed"]["all_geometry"] / max(1, row["ideal_all_geometry"])
     return row
 
@@ -91,6 +93,7 @@ def measure(recording: Recording, tiles: str, x: XServer) -> dict:
 def print_row(row: dict, first: dict) -> None:
     bucketed, broadcast = row["bucketed"], row["broadcast"]
     print(f"{row['tiles']:>6}{bucketed['state']:12,.0f}{bucketed['state'] / max(1, first['bucketed']['state']):7.2f}"
+          f"{row['matrices']:9.2f}{row['matrices'] / max(1, first['matrices']):7.2f}"
           f"{broadcast['state']:12,.0f}{bucketed['object']:12,.0f}{bucketed['geometry']:14,.0f}"
           f"{row['over_ideal']:12.3f}{broadcast['geometry']:14,.0f}{row['frames']:8}", flush=True)
 
@@ -99,7 +102,8 @@ def judge(rows: dict[str, dict]) -> bool:
     good = True
     if "1x1" in rows and "5x5" in rows:
         growth = rows["5x5"]["bucketed"]["state"] / max(1, rows["1x1"]["bucketed"]["state"])
-        print(f"state, 1x1 to 5x5: {growth:.2f} times, at most {STATE_GROWTH} wanted")
+        least = rows["5x5"]["matrices"] / max(1e-9, rows["1x1"]["matrices"])
+        print(f"state, 1x1 to 5x5: {growth:.2f} times, at most {STATE_GROWTH} wanted; matrices must grow {least:.2f} times in these frames")
         good = growth <= STATE_GROWTH
     worst = max(row["over_ideal"] for row in rows.values())
     counted = all(row["ideal_all_geometry"] for row in rows.values())
@@ -122,7 +126,7 @@ def main() -> int:
         else:
             recording = record(options.program or ATLANTIS, options.seconds, Path(folder), x)
         print(f"{' '.join(recording.command)}: bytes a frame to all nodes together")
-        print(f"{'tiles':>6}{'state':>12}{'growth':>7}{'broadcast':>12}{'objects':>12}{'geometry':>14}{'over ideal':>12}{'broadcast':>14}{'frames':>8}")
+        print(f"{'tiles':>6}{'state':>12}{'growth':>7}{'matrices':>9}{'growth':>7}{'broadcast':>12}{'objects':>12}{'geometry':>14}{'over ideal':>12}{'broadcast':>14}{'frames':>8}")
         for tiles in options.tiles or LAYOUTS:
             rows[tiles] = measure(recording, tiles, x)
             print_row(rows[tiles], next(iter(rows.values())))

@@ -29,7 +29,7 @@ void BlockSender::run() {
     if (!packer_.has_geometry() || !layout_ || layout_->targets.empty()) return fold({});
     const auto box = options().broadcast ? std::nullopt : project(context_.projection(), packer_.block_box());
     const TargetSet targets = targets_of(*layout_, box);
-    if (options().count_ideal) session_.count_ideal(ideal_bytes(packer_, context_.projection(), *layout_));
+    if (options().count_ideal) session_.ideal_.count(context_, *layout_);
     needs_ = needs_of_block(context_.state, packer_);
     const auto nodes = by_node(targets, *layout_);
     const bool single = packer_.primitives().size() == 1 && !worth_dividing(packer_.primitives()[0], targets);

@@ -9,13 +9,6 @@
 #include "common/glapi/gl_types.h"
 
 namespace wall::client {
-namespace {
-
-std::size_t bytes_between(wire::PackMark first, wire::PackMark last) {
-    return last.commands - first.commands + last.operand_bytes - first.operand_bytes;
-}
-
-}  // namespace
 
 std::optional<Topology> topology_of(std::uint32_t mode) {
     switch (mode) {
@@ -54,34 +47,6 @@ std::optional<PixelRect> window_rect(const Topology& topology, const std::vector
     if (topology.fan) corners[count++] = vertices[0].window;
     for (std::size_t i = first; i < first + topology.size; ++i) corners[count++] = vertices[i].window;
     return hull_rect(projection, {corners.data(), count});
-}
-
-std::size_t ideal_bytes(const Packer& packer, const Projection& projection, const SurfaceLayout& layout) {
-    constexpr std::size_t kBeginEnd = 6;
-    std::size_t total = 0;
-    for (const Primitive& primitive : packer.primitives()) {
-        const auto topology = topology_of(primitive.mode);
-        const auto nodes = by_node(targets_of(layout, project(projection, primitive.box)), layout);
-        if (!topology || nodes.size() < 2 || !primitive.divisible) {
-            total += nodes.size() * bytes_between(primitive.first, primitive.last);
-            continue;
-        }
-        const auto vertices = scan_vertices(packer, primitive, projection);
-        for (const NodeMask& node : nodes) {
-            std::vector<bool> needed(vertices.size());
-            for (std::size_t v = topology->fan ? 1 : 0; v + topology->size <= vertices.size(); v += topology->step) {
-                const auto touched = by_node(targets_of(layout, window_rect(*topology, vertices, v, projection)), layout);
-                if (std::none_of(touched.begin(), touched.end(), [&](const NodeMask& m) { return m.node == node.node; })) continue;
-                std::fill_n(needed.begin() + static_cast<std::ptrdiff_t>(v), topology->size, true);
-                if (topology->fan) needed[0] = true;
-            }
-            std::size_t bytes = 0;
-            for (std::size_t i = 0; i < vertices.size(); ++i)
-                if (needed[i]) bytes += bytes_between(vertices[i].lead, vertices[i].end);
-            if (bytes > 0) total += bytes + kBeginEnd;
-        }
-    }
-    return total;
 }
 
 }  // namespace wall::client

@@ -37,8 +37,4 @@ std::vector<PackedVertex> scan_vertices(const Packer& packer, const Primitive& p
 std::optional<PixelRect> window_rect(const Topology& topology, const std::vector<PackedVertex>& vertices, std::size_t first,
                                      const Projection& projection);
 
-/// What perfect sorting would send of the block: each node gets exactly the vertices (with their attribute commands) of
-/// the primitives whose own window rectangle touches one of its tiles. Bytes over all nodes; for comparison only.
-std::size_t ideal_bytes(const Packer& packer, const Projection& projection, const SurfaceLayout& layout);
-
 }  // namespace wall::client

@@ -477,7 +477,6 @@ void Session::count_objects(Node& node, std::size_t bytes) {
 void Session::count_state(Node& node, std::size_t bytes) {
     if (bytes) stats().add_node(node.index, NodeCounter::state_bytes, bytes);
 }
-void Session::count_ideal(std::size_t bytes) { stats().add("ideal_geometry_bytes", bytes); }
 void Session::count_frame() { stats().end_frame(); }
 void Session::count_round_trip(const char* function) { stats().count_round_trip(function); }
 

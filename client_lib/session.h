@@ -15,6 +15,7 @@
 
 #include "client_lib/control.h"
 #include "client_lib/core.h"
+#include "client_lib/ideal.h"
 #include "client_lib/needs.h"
 #include "client_lib/node_stream.h"
 #include "client_lib/parallel.h"
@@ -156,7 +157,6 @@ public:
     void count_block(Node& node);
     void count_objects(Node& node, std::size_t bytes);
     void count_state(Node& node, std::size_t bytes);
-    void count_ideal(std::size_t bytes);
 
 private:
     friend class BlockSender;
@@ -197,6 +197,7 @@ private:
     std::uint32_t id_ = 0;
     std::vector<TileInfo> tiles_;
     std::uint32_t last_request_ = 0;
+    IdealTraffic ideal_;  ///< unused without WALLGL_IDEAL
     std::uint32_t prepared_ = 0;  ///< counts towards the next sample of the diff time
 };
 
