@@ -30,11 +30,6 @@ bool reads_normals(const glstate::State& state) {
     return false;
 }
 
-/// Lit vertices have their material's colours, unless those follow the current colour.
-bool reads_color(const glstate::State& state) {
-    return !state.lighting.lighting_enabled || state.material.color_material_enabled;
-}
-
 }  // namespace
 
 Needs needs_of_clear() {

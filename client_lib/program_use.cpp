@@ -3,31 +3,11 @@
 
 #include <utility>
 
+#include "client_lib/ask_one.h"
 #include "client_lib/log.h"
 
 namespace wall::client {
 namespace {
-
-struct Answer {
-    Node* node = nullptr;
-    std::vector<std::byte> bytes;
-};
-
-std::vector<Node*> live_nodes(Session& session) {
-    std::lock_guard lock(session.mutex());
-    std::vector<Node*> nodes;
-    for (const auto& node : session.nodes())
-        if (node->answers()) nodes.push_back(node.get());
-    return nodes;
-}
-
-/// One node's answer; the next one's if it is lost meanwhile.
-template <class Pack>
-std::optional<Answer> ask_one_node(Context& c, const char* function, Pack&& pack) {
-    for (Node* node : live_nodes(c.session()))
-        if (auto bytes = c.session().ask(c, *node, function, pack)) return Answer{node, std::move(*bytes)};
-    return std::nullopt;
-}
 
 constexpr const char* kNoAnswer = "no node of the wall answered\n";
 

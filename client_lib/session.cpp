@@ -37,7 +37,7 @@ std::string encode_hello(std::uint32_t session, const std::string& ticket, std::
     };
     std::string out;
     out.push_back(0x08);
-    varint(out, wire::kProtocolVersion);
+    varint(out, glapi::kStreamVersion);
     out.push_back(0x10);
     varint(out, session);
     out.push_back(0x1a);

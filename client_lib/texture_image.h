@@ -40,4 +40,14 @@ GLenum sub_image_error(Context& c, const ImageCall& call);
 void store_level(Context& c, const ImageCall& call, TexelData data);
 void change_level(Context& c, const ImageCall& call, TexelData data);
 
+// ---- S3TC (api/tex_compressed.cpp) ----
+
+/// What an image of this internal format is compressed to; 0: to nothing that is known here.
+GLint blocks_format(GLint internal_format);
+/// A level that came as pixels and that the nodes compress becomes what a node's driver makes of it: from now on it is
+/// kept and sent as blocks. Nothing happens to any other, or if no node answers.
+void settle_blocks(Context& c, GLenum target, GLint level);
+/// change_level() of such a level: the new pixels are compressed by a node. False: no node answers.
+bool change_blocks(Context& c, const ImageCall& call, const TexelData& data);
+
 }  // namespace wall::client

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Compressed texture images (OpenGL 2.1, 3.8.3): the S3TC formats, kept and sent as they come. Formats for one and three
-// dimensions there are none.
+// Compressed texture images (OpenGL 2.1, 3.8.3): the S3TC formats, kept and sent as they come. An image that comes as pixels
+// is compressed by each node; when the program asks for its blocks or gives some, one node is asked what its driver makes
+// of it. Formats for one and three dimensions there are none.
 #include <algorithm>
 #include <cstring>
 
+#include "client_lib/ask_one.h"
 #include "client_lib/buffer_binding.h"
 #include "client_lib/maps.h"
 #include "client_lib/s3tc.h"
@@ -61,7 +63,69 @@ void copy_blocks(TextureLevel& level, const Image& part, GLint x, GLint y, const
         std::memcpy(level.pixels.data() + static_cast<std::size_t>((y + done) / kS3tcBlock) * row + left, from, part_row);
 }
 
+/// What a node's driver makes of an image; nothing if none answers.
+std::optional<std::vector<std::byte>> compressed(Context& c, const Image& image, GLenum format, GLenum type, std::span<const std::byte> pixels,
+                                                 const char* function) {
+    auto answer = ask_one_node(c, function, [&](wire::PackBuffer& buffer, std::uint32_t request) {
+        glapi::pack::Compress(buffer, request, static_cast<GLenum>(image.format), image.width, image.height, format, type, pixels);
+    });
+    if (!answer || answer->bytes.size() != s3tc_bytes(image.format, image.width, image.height)) return std::nullopt;
+    return std::move(answer->bytes);
+}
+
 }  // namespace
+}  // namespace wall::client::api
+
+namespace wall::client {
+
+GLint blocks_format(GLint internal_format) {
+    const TextureFormat* format = find_texture_format(internal_format);
+    return format && compressed_block_bytes(format->answer) != 0 ? format->answer : 0;
+}
+
+void settle_blocks(Context& c, GLenum target, GLint number) {
+    const auto texture = bound_texture(c, target);
+    api::Image image{target, number, 0, 0, 0, 0};
+    TexelData data;
+    {
+        std::lock_guard lock(c.share().mutex);
+        const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
+        if (!level || level->compressed || level->content == LevelContent::generated || level->width == 0 || level->height == 0) return;
+        image.format = blocks_format(level->internal_format);
+        if (image.format == 0) return;
+        image.width = level->width, image.height = level->height;
+        if (level->content == LevelContent::stored) data = {level->data_format, level->data_type, level->pixels};
+        else data = {GL_RGBA, GL_UNSIGNED_BYTE, std::vector<std::byte>(std::size_t{4} * static_cast<std::size_t>(level->width) * static_cast<std::size_t>(level->height))};
+    }
+    auto blocks = api::compressed(c, image, data.format, data.type, data.bytes, "glGetCompressedTexImage");
+    if (!blocks) return;
+    c.flush_block();
+    std::lock_guard lock(c.share().mutex);
+    TextureLevel& level = *texture->find_level(face_of(target), number);
+    level = api::described(image);
+    level.pixels = std::move(*blocks);
+    level.content = LevelContent::stored;
+    level.stamp = next_stamp();
+    touch(c.share(), *texture);
+}
+
+bool change_blocks(Context& c, const ImageCall& call, const TexelData& data) {
+    const auto texture = texture_to_change(c, call.target);
+    const GLint format = texture->find_level(face_of(call.target), call.level)->internal_format;
+    const api::Image part{call.target, call.level, format, call.width, call.height, 0};
+    const auto blocks = api::compressed(c, part, data.format, data.type, data.bytes, "glTexSubImage2D");
+    if (!blocks) return false;
+    std::lock_guard lock(c.share().mutex);
+    TextureLevel& level = *texture->find_level(face_of(call.target), call.level);
+    api::copy_blocks(level, part, call.x, call.y, blocks->data());
+    level.stamp = next_stamp();
+    touch(c.share(), *texture);
+    return true;
+}
+
+}  // namespace wall::client
+
+namespace wall::client::api {
 
 void CompressedTexImage2D(Context& c, GLenum target, GLint number, GLenum internal, GLsizei width, GLsizei height, GLint border, GLsizei bytes,
                           const void* data) {
@@ -91,6 +155,7 @@ void CompressedTexSubImage2D(Context& c, GLenum target, GLint number, GLint x, G
     if (is_proxy(target) || !legal_target(target) || compressed_block_bytes(static_cast<GLint>(format)) == 0) return c.error(GL_INVALID_ENUM);
     if (number < 0 || number >= level_count(c, target) || bytes < 0) return c.error(GL_INVALID_VALUE);
     const Image part{target, number, static_cast<GLint>(format), width, height, bytes};
+    settle_blocks(c, target, number);
     const auto texture = bound_texture(c, target);
     const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
     if (const GLenum error = level ? sub_image_error(*level, part, x, y) : GLenum{GL_INVALID_OPERATION}) return c.error(error);
@@ -107,6 +172,7 @@ void CompressedTexSubImage2D(Context& c, GLenum target, GLint number, GLint x, G
 void GetCompressedTexImage(Context& c, GLenum target, GLint number, void* pixels) {
     if (is_proxy(target) || object_target(target) == 0 || target == GL_TEXTURE_CUBE_MAP) return c.error(GL_INVALID_ENUM);
     if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE);
+    settle_blocks(c, target, number);
     const auto texture = bound_texture(c, target);
     const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
     if (!level || !level->compressed) return c.error(GL_INVALID_OPERATION);

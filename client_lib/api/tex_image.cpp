@@ -186,6 +186,10 @@ void store_level(Context& c, const ImageCall& call, TexelData data) {
 
 void change_level(Context& c, const ImageCall& call, TexelData data) {
     const auto texture = texture_to_change(c, call.target);
+    if (texture->find_level(face_of(call.target), call.level)->compressed) {
+        if (!change_blocks(c, call, data)) c.error(GL_OUT_OF_MEMORY);
+        return;
+    }
     std::lock_guard lock(c.share().mutex);
     TextureLevel& level = *texture->find_level(face_of(call.target), call.level);
     if (level.content != LevelContent::stored) {
@@ -240,11 +244,11 @@ GLenum sub_image_error(Context& c, const ImageCall& call) {
     if (const GLenum error = glapi::format_type_error(call.format, call.type)) return error;
     const auto texture = bound_texture(c, call.target);
     const TextureLevel* level = texture ? texture->find_level(face_of(call.target), call.level) : nullptr;
-    if (!level || level->compressed) return GL_INVALID_OPERATION;
+    if (!level) return GL_INVALID_OPERATION;
     const auto inside = [](GLint at, GLsizei size, GLint all) { return at >= 0 && std::int64_t{at} + size <= all; };
     if (!inside(call.x, call.width, level->width) || !inside(call.y, call.height, level->height) || !inside(call.z, call.depth, level->depth))
         return GL_INVALID_VALUE;
-    if (compressed_block_bytes(level->internal_format) != 0 && !whole_blocks(call, *level)) return GL_INVALID_OPERATION;
+    if (blocks_format(level->internal_format) != 0 && !whole_blocks(call, *level)) return GL_INVALID_OPERATION;
     const TextureFormat* internal = find_texture_format(level->internal_format);
     return internal && formats_agree(*internal, call.format) ? GL_NO_ERROR : GL_INVALID_OPERATION;
 }

@@ -6,7 +6,7 @@
 
 namespace wall::wire {
 
-inline constexpr std::uint32_t kProtocolVersion = 2;                   ///< control and data; both sides must agree exactly
+inline constexpr std::uint32_t kProtocolVersion = 2;                   ///< of control; both sides must agree exactly (data: kStreamVersion, wire.gen.h)
 inline constexpr std::uint32_t kMaxControlMessage = 64u << 20;         ///< bytes; the largest is a tile's snapshot
 inline constexpr std::uint32_t kMaxFramePayload = 256u << 20;          ///< bytes; the largest is one texture level
 inline constexpr std::uint32_t kMaxTilesPerNode = 64;                  ///< a tile mask is 64 bits

@@ -14,6 +14,7 @@
 #include <chrono>
 
 #include "common/wire/limits.h"
+#include "gen/glapi/wire.gen.h"
 #include "proto/control.pb.h"
 
 namespace wall::tileserver {
@@ -75,8 +76,7 @@ asio::awaitable<Result<void>> DataStream::greet() {
     proto::DataHello hello;
     if (frame->kind != wire::FrameKind::hello || !hello.ParseFromArray(frame->payload.data(), static_cast<int>(frame->payload.size())))
         co_return wall::fail("the first frame is not a hello");
-    if (hello.version() != wire::kProtocolVersion)
-        co_return wall::fail("protocol version " + std::to_string(hello.version()) + ", this node speaks " + std::to_string(wire::kProtocolVersion));
+    if (hello.version() != glapi::kStreamVersion) co_return wall::fail("the program's WallGL library is of another version than this node");
     session_ = SessionId(hello.session());
     const auto admission = co_await find_admission(session_, hello.ticket());
     if (!admission) co_return wall::fail("no valid ticket for session " + std::to_string(hello.session()));

@@ -201,6 +201,8 @@ public:
                      std::int32_t height, std::int32_t depth, GLenum format, GLenum type, std::span<const std::byte> pixels);
     void TexCompressed(std::uint32_t texture, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
                        std::span<const std::byte> blocks);
+    void Compress(std::uint32_t request, GLenum internal_format, std::int32_t width, std::int32_t height, GLenum format, GLenum type,
+                  std::span<const std::byte> pixels);
     void TexParameter(std::uint32_t texture, GLenum target, GLenum pname, float p0, float p1, float p2, float p3);
     void TexDelete(std::uint32_t texture);
     void ShareTexture(std::uint32_t request, std::uint32_t texture, GLenum target, std::uint32_t own_name, std::span<const std::byte> key);

@@ -18,11 +18,14 @@ std::vector<float> floats(std::span<const std::byte> bytes) {
     return out;
 }
 
-/// Of 4x4 texels; 0: not one of the formats.
-std::size_t s3tc_block_bytes(GLenum format) {
-    if (format == GL_COMPRESSED_RGB_S3TC_DXT1_EXT || format == GL_COMPRESSED_RGBA_S3TC_DXT1_EXT) return 8;
-    return format == GL_COMPRESSED_RGBA_S3TC_DXT3_EXT || format == GL_COMPRESSED_RGBA_S3TC_DXT5_EXT ? 16 : 0;
+/// Of an image; 0: not one of the formats, or nothing in it.
+std::size_t s3tc_bytes(GLenum format, std::int32_t width, std::int32_t height) {
+    const auto across = [](std::int32_t texels) { return (static_cast<std::size_t>(texels) + 3) / 4; };
+    const std::size_t blocks = across(width) * across(height);
+    if (format == GL_COMPRESSED_RGB_S3TC_DXT1_EXT || format == GL_COMPRESSED_RGBA_S3TC_DXT1_EXT) return blocks * 8;
+    return format == GL_COMPRESSED_RGBA_S3TC_DXT3_EXT || format == GL_COMPRESSED_RGBA_S3TC_DXT5_EXT ? blocks * 16 : 0;
 }
+bool is_s3tc(GLenum format) { return s3tc_bytes(format, 1, 1) != 0; }
 
 }  // namespace
 
@@ -93,9 +96,7 @@ void Executor::TexSubImage(std::uint32_t name, GLenum target, std::int32_t level
 void Executor::TexCompressed(std::uint32_t name, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
                              std::span<const std::byte> blocks) {
     if (width < 0 || height < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent || level < 0 || level > kMaxTextureLevel) return refuse("absurd size");
-    const std::size_t block = s3tc_block_bytes(internal_format);
-    const auto across = [](std::int32_t texels) { return (static_cast<std::size_t>(texels) + 3) / 4; };
-    if (block == 0 || blocks.size() != across(width) * across(height) * block) return refuse("size does not fit the blocks");
+    if (!is_s3tc(internal_format) || blocks.size() != s3tc_bytes(internal_format, width, height)) return refuse("size does not fit the blocks");
     Texture* texture = bind_for_upload(name, target);
     if (texture == nullptr) return;
     const TextureTarget kind = texture->content->target();
@@ -103,6 +104,22 @@ void Executor::TexCompressed(std::uint32_t name, GLenum target, std::int32_t lev
     if (!session_.account(*texture, target, level, {internal_format, 0, 0, blocks.size()})) return refuse("more texture memory than a session may have");
     if (auto* hash = texture->hash()) hash->TexCompressed(target, level, internal_format, width, height, blocks);
     gl_.CompressedTexImage2D(target, level, internal_format, width, height, 0, static_cast<GLsizei>(blocks.size()), blocks.data());
+}
+
+void Executor::Compress(std::uint32_t request, GLenum internal_format, std::int32_t width, std::int32_t height, GLenum format, GLenum type,
+                        std::span<const std::byte> pixels) {
+    if (width < 1 || height < 1 || width > kMaxTextureExtent || height > kMaxTextureExtent) return refuse("absurd size");
+    if (!is_s3tc(internal_format)) return refuse("no such compressed format");
+    if (!check_image(format, type, width, height, 1, pixels)) return;
+    std::vector<std::byte> blocks(s3tc_bytes(internal_format, width, height));
+    node_.driver.neutral_pixel_transfer();
+    GLuint texture = 0;
+    gl_.CreateTextures(GL_TEXTURE_2D, 1, &texture);
+    gl_.TextureStorage2D(texture, 1, internal_format, width, height);
+    gl_.TextureSubImage2D(texture, 0, 0, 0, width, height, format, type, pixels.data());
+    gl_.GetCompressedTextureImage(texture, 0, static_cast<GLsizei>(blocks.size()), blocks.data());
+    gl_.DeleteTextures(1, &texture);
+    output_.reply(request, std::move(blocks));
 }
 
 void Executor::TexParameter(std::uint32_t name, GLenum target, GLenum pname, float p0, float p1, float p2, float p3) {

@@ -39,7 +39,7 @@ def load(registry_path, proto):
 def generate(m):
     """All generated sources: name below gen/ -> text."""
     return {
-        "glapi/wire.gen.h": emit_wire.wire_header(m.ops),
+        "glapi/wire.gen.h": emit_wire.wire_header(m.ops, m.state.elements),
         "glapi/decode.gen.h": emit_wire.decode_header(m.ops),
         "glapi/null_handler.gen.h": emit_wire.null_handler_header(m.ops),
         "glapi/gl_functions.gen.h": emit_functions.functions_header(m.gl, DRIVER_EXTRA),

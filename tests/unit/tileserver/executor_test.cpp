@@ -185,6 +185,30 @@ TEST_F(ExecutorTest, TexturesAreRemapped) {
                 session.read(0, kWindow));
 }
 
+TEST_F(ExecutorTest, ImagesAreCompressedAsTheDriverDoes) {
+    TestSession session(*node_.node, 1);
+    session.open_surface(kWidth, kHeight, kWindow);
+    const auto objects = *node_.driver->gl().objects;
+    Batch batch;
+    const std::vector<std::byte> white(5 * 3 * 4, std::byte{255});  // ends within its second block
+    pack::Compress(batch.buffer(), 7, GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 5, 3, GL_RGBA, GL_UNSIGNED_BYTE, white);
+    pack::Compress(batch.buffer(), 8, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, 5, 3, GL_RGBA, GL_UNSIGNED_BYTE, white);
+    session.expect_run(batch);
+    ASSERT_EQ(session.replies[7].size(), 2u * 8);
+    ASSERT_EQ(session.replies[8].size(), 2u * 16);
+    std::uint16_t color = 0;
+    std::memcpy(&color, session.replies[7].data(), sizeof color);
+    EXPECT_EQ(color, 0xffff);
+    EXPECT_EQ(node_.driver->gl().objects->textures, objects.textures);
+
+    Batch wrong;
+    pack::Compress(wrong.buffer(), 9, GL_RGBA8, 5, 3, GL_RGBA, GL_UNSIGNED_BYTE, white);
+    EXPECT_FALSE(session.run(wrong));
+    Batch small;
+    pack::Compress(small.buffer(), 9, GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 5, 4, GL_RGBA, GL_UNSIGNED_BYTE, white);
+    EXPECT_FALSE(session.run(small));
+}
+
 TEST_F(ExecutorTest, BlockOnTwoTilesStartsEachFromTheSameAttributes) {
     node_.node->tiles = {{0, {0, 0, 80, kHeight}}, {1, {80, 0, 80, kHeight}}};
     TestSession session(*node_.node, 1);

@@ -87,9 +87,9 @@ public:
         write_all(fd_.get(), wire::encode_frame_header({static_cast<std::uint32_t>(payload.size()), kind}));
         write_all(fd_.get(), payload);
     }
-    void hello(std::uint32_t session, const std::string& ticket) {
+    void hello(std::uint32_t session, const std::string& ticket, std::uint32_t version = glapi::kStreamVersion) {
         proto::DataHello hello;
-        hello.set_version(wire::kProtocolVersion);
+        hello.set_version(version);
         hello.set_session(session);
         hello.set_ticket(ticket);
         const std::string bytes = hello.SerializeAsString();
@@ -258,6 +258,9 @@ TEST_F(NodeServerTest, RefusesWhoHasNoTicket) {
     Client wrong(node_address());
     wrong.hello(1, "guess");
     EXPECT_THAT(wrong.expect_error(), ::testing::HasSubstr("ticket"));
+    Client older(node_address());
+    older.hello(1, "secret1", glapi::kStreamVersion + 1);
+    EXPECT_THAT(older.expect_error(), ::testing::HasSubstr("another version"));
     Client noise(node_address());
     noise.send(wire::FrameKind::batch, {});
     EXPECT_THAT(noise.expect_error(), ::testing::HasSubstr("hello"));

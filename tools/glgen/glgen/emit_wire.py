@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """gen/glapi/wire.gen.h (opcodes, packers) and decode.gen.h (the bounds-checked decoder table)."""
 
+import zlib
+
 from .text import header
 from .wire import CPP, SIZE
 
@@ -19,13 +21,22 @@ common/glapi/decoder.h for what H must offer and for the loop around it.
 """
 
 
-def wire_header(ops):
+def stream_version(ops, elements):
+    """A number that changes with every command and state element of the stream: its CRC-32."""
+    lines = [f"{op.code} {op.name} {op.group} {op.operands} {op.bytes_name} {op.is_state}" for op in ops]
+    lines += [f"{e.id} {e.name} {e.count} {e.fields} {e.defaults}" for e in elements]
+    return zlib.crc32("\n".join(lines).encode())
+
+
+def wire_header(ops, elements):
     out = [header("proto/gl/wire.toml", WIRE_NOTES,
                   ["<array>", "<cstddef>", "<cstdint>", "<cstring>", "<span>", "", '"common/wire/pack_buffer.h"']).replace("#include \n", "\n")]
     out.append("\nnamespace wall::glapi {\n\nenum class Op : std::uint8_t {\n")
     out += [f"    {op.name} = {op.code},\n" for op in ops]
     out.append("};\n\n")
     out.append(f"inline constexpr std::size_t kOpCount = {len(ops)};\n\n")
+    out.append("/// Says which commands and state elements there are: both ends of a stream must have the same.\n"
+               f"inline constexpr std::uint32_t kStreamVersion = {stream_version(ops, elements):#010x};\n\n")
     out.append("/// Where an opcode may stand.\nenum class OpGroup : std::uint8_t { "
                + ", ".join(dict.fromkeys(op.group for op in ops)) + " };\n\n")
     out.append("inline constexpr std::array<const char*, kOpCount> kOpNames = {\n")
