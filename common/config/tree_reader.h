@@ -98,6 +98,22 @@ public:
         return {int(v[0]), int(v[1]), int(v[2]), int(v[3])};
     }
 
+    /// Absent: (0, 0).
+    std::array<std::int32_t, 2> position(const toml::table& table, std::string_view key, std::int64_t most) {
+        const auto* node = table.get(key);
+        if (!node) return {};
+        const auto* array = node->as_array();
+        std::array<std::int32_t, 2> out{};
+        bool good = array && array->size() == out.size();
+        for (std::size_t i = 0; good && i < out.size(); ++i) {
+            const auto* value = array->get(i)->as_integer();
+            good = value && value->get() >= 0 && value->get() <= most;
+            if (good) out[i] = static_cast<std::int32_t>(value->get());
+        }
+        if (!good) refuse(node->source(), quoted(key) + ": expected [x, y] in pixels, each from 0 to " + std::to_string(most));
+        return out;
+    }
+
     /// The tables of `[[key]]`.
     std::vector<const toml::table*> tables(const toml::table& parent, std::string_view key, std::string_view name) {
         const auto* node = need(parent, key, "at least one " + std::string(name), false);

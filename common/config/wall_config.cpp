@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "common/config/read_output.h"
 #include "common/config/read_people.h"
 #include "common/config/tree_reader.h"
 
@@ -53,8 +54,8 @@ void read_http(TreeReader& read, const toml::table& root, WallConfig& out) {
 }
 
 TileConfig read_tile(TreeReader& read, const toml::table& table) {
-    read.only(table, "[[node.tile]]", {"name", "rect"});
-    return {read.text(table, "name"), read.rect(table, "rect")};
+    read.only(table, "[[node.tile]]", {"name", "rect", "output", "display", "monitor", "position"});
+    return {read.text(table, "name"), read.rect(table, "rect"), read_output(read, table)};
 }
 
 NodeConfig read_node(TreeReader& read, const toml::table& table) {
@@ -71,7 +72,10 @@ NodeConfig read_node(TreeReader& read, const toml::table& table) {
     if (tiles.size() >= wire::kOffscreenSlot) {
         read.refuse(table.source(), "node '" + out.name + "' has " + std::to_string(tiles.size()) + " tiles: expected at most " + std::to_string(wire::kOffscreenSlot - 1));
     }
-    for (const auto* tile : tiles) out.tiles.push_back(read_tile(read, *tile));
+    for (const auto* tile : tiles) {
+        out.tiles.push_back(read_tile(read, *tile));
+        check_output(read, *tile, out);
+    }
     return out;
 }
 
@@ -91,6 +95,8 @@ void read_nodes(TreeReader& read, const toml::table& root, WallConfig& out) {
 }  // namespace
 
 const char* name_of(Backend backend) { return backend == Backend::egl ? "egl" : "osmesa"; }
+
+const char* output_name(const TileConfig& tile) { return tile.window ? "window" : "headless"; }
 
 geom::Rect WallConfig::canvas() const {
     geom::Rect out;

@@ -20,10 +20,21 @@ namespace wall::config {
 enum class Backend { egl, osmesa };
 const char* name_of(Backend backend);
 
-struct TileConfig {
-    std::string name;  ///< unique on the wall
-    geom::Rect rect;   ///< on the canvas
+/// A window that shows a tile, on an X display of the node's machine.
+struct WindowConfig {
+    std::string display;      ///< such as ":0"; empty: DISPLAY in the tileserver's environment
+    std::string monitor;      ///< RandR's name of the one that the window covers; empty: of the tile's size, at `x`, `y`
+    std::int32_t x = 0, y = 0;  ///< pixels of the X screen
+    bool operator==(const WindowConfig&) const = default;
 };
+
+struct TileConfig {
+    std::string name;                    ///< unique on the wall
+    geom::Rect rect;                     ///< on the canvas
+    std::optional<WindowConfig> window;  ///< none: headless
+};
+/// `headless` or `window`, as in wall.toml.
+const char* output_name(const TileConfig& tile);
 
 struct NodeConfig {
     std::string name;

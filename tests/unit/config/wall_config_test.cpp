@@ -108,6 +108,41 @@ TEST(WallConfig, NodesAreEnough) {
     EXPECT_EQ(config->swap_timeout.count(), 250);
 }
 
+TEST(WallConfig, ATileIsHeadlessOrAWindow) {
+    const auto config = parse_config(R"(
+[[node]]
+name = "n"
+[[node.tile]]
+name = "memory"
+rect = [0, 0, 10, 10]
+[[node.tile]]
+name = "placed"
+rect = [10, 0, 10, 10]
+output = "window"
+position = [1920, 7]
+[[node.tile]]
+name = "covering"
+rect = [20, 0, 10, 10]
+output = "window"
+monitor = "DP-1"
+[[node]]
+name = "other display"
+[[node.tile]]
+name = "second seat"
+rect = [30, 0, 10, 10]
+output = "window"
+display = ":1"
+)", "wall.toml");
+    ASSERT_TRUE(config) << config.error().message;
+    const auto& tiles = config->nodes[0].tiles;
+    EXPECT_EQ(tiles[0].window, std::nullopt);
+    EXPECT_STREQ(output_name(tiles[0]), "headless");
+    EXPECT_EQ(tiles[1].window, (WindowConfig{.display = "", .monitor = "", .x = 1920, .y = 7}));
+    EXPECT_STREQ(output_name(tiles[1]), "window");
+    EXPECT_EQ(tiles[2].window, (WindowConfig{.display = "", .monitor = "DP-1"}));
+    EXPECT_EQ(config->nodes[1].tiles[0].window, (WindowConfig{.display = ":1", .monitor = ""}));
+}
+
 TEST(People, EachHasTheHighestRoleThatNamesThem) {
     PeopleConfig people;
     people.operators.users = {1};
@@ -173,6 +208,17 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"rect_negative", "[660, 0, 1280, 980]", "[-1, 0, 1280, 980]", "wall.toml:42: ", "expected [x, y, width, height]"},
         Wrong{"rect_empty", "[660, 0, 1280, 980]", "[660, 0, 0, 980]", "wall.toml:42: ", "expected [x, y, width, height]"},
         Wrong{"rect_huge", "[660, 0, 1280, 980]", "[32000, 0, 1280, 980]", "wall.toml:42: ", "expected [x, y, width, height]"},
+        Wrong{"tile_key", "rect = [660", "screen = 1\nrect = [660", "wall.toml:42: ", "expected one of name, rect, output, display, monitor, position"},
+        Wrong{"output", "rect = [0, 500, 640, 480]", "output = \"tv\"\nrect = [0, 500, 640, 480]", "wall.toml:35: ", "'output' is 'tv': expected \"headless\" or \"window\""},
+        Wrong{"output_type", "rect = [0, 500, 640, 480]", "output = 1\nrect = [0, 500, 640, 480]", "wall.toml:35: ", "'output': expected a string"},
+        Wrong{"monitor_without_window", "rect = [0, 500, 640, 480]", "rect = [0, 500, 640, 480]\nmonitor = \"DP-1\"", "wall.toml:36: ", "'monitor' is of a tile in a window: expected output = \"window\" beside it"},
+        Wrong{"monitor_and_position", "rect = [0, 500, 640, 480]", "rect = [0, 500, 640, 480]\noutput = \"window\"\nmonitor = \"DP-1\"\nposition = [0, 0]", "wall.toml:38: ", "'position' beside 'monitor'"},
+        Wrong{"position_type", "rect = [0, 500, 640, 480]", "rect = [0, 500, 640, 480]\noutput = \"window\"\nposition = [1, -1]", "wall.toml:37: ", "'position': expected [x, y] in pixels, each from 0 to 32767"},
+        Wrong{"position_count", "rect = [0, 500, 640, 480]", "rect = [0, 500, 640, 480]\noutput = \"window\"\nposition = 5", "wall.toml:37: ", "'position': expected [x, y]"},
+        Wrong{"display_empty", "rect = [0, 500, 640, 480]", "rect = [0, 500, 640, 480]\noutput = \"window\"\ndisplay = \"\"", "wall.toml:37: ", "'display' is empty"},
+        Wrong{"window_of_osmesa", "rect = [660, 0, 1280, 980]", "rect = [660, 0, 1280, 980]\noutput = \"window\"", "wall.toml:43: ", "expected backend = \"egl\" or output = \"headless\""},
+        Wrong{"two_displays", "rect = [0, 0, 640, 480]\n[[node.tile]]\nname = \"bottom\"", "rect = [0, 0, 640, 480]\noutput = \"window\"\n[[node.tile]]\noutput = \"window\"\ndisplay = \":1\"\nname = \"bottom\"", "wall.toml:36: ", "tile 'bottom' is on display \":1\", tile 'top' on $DISPLAY: expected one display"},
+        Wrong{"one_monitor_twice", "rect = [0, 0, 640, 480]\n[[node.tile]]\nname = \"bottom\"", "rect = [0, 0, 640, 480]\noutput = \"window\"\nmonitor = \"A\"\n[[node.tile]]\noutput = \"window\"\nmonitor = \"A\"\nname = \"bottom\"", "wall.toml:37: ", "monitor 'A' shows tile 'top' already"},
         Wrong{"node_twice", "\"right\"", "\"left\"", "wall.toml:37: ", "node 'left' appears twice"},
         Wrong{"tile_twice", "\"big\"", "\"top\"", "wall.toml:37: ", "tile 'top' appears twice"},
         Wrong{"no_tile", "[[node.tile]]\nname = \"big\"\nrect = [660, 0, 1280, 980]", "", "wall.toml:37: ", "'tile' is missing: expected at least one [[node.tile]]"}),
