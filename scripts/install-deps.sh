@@ -7,7 +7,7 @@ build=(
   g++ cmake ninja-build ccache pkg-config git python3
   khronos-api                        # gl.xml, from which much of the code is generated
   libglvnd-dev libgl-dev libegl-dev libglx-dev
-  libx11-dev libx11-xcb-dev libxcb1-dev
+  libx11-dev libx11-xcb-dev libxcb1-dev libxrandr-dev libxss-dev
   libboost1.81-dev libprotobuf-dev protobuf-compiler libprotozero-dev
   libexpected-dev libspdlog-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
   libsdl2-dev                        # wallview's window
@@ -25,6 +25,7 @@ test=(
   clang-16 libclang-rt-16-dev        # fuzzers
   xscreensaver-gl-extra rss-glx glmark2-x11 apitrace apitrace-tracers
   ffmpeg                             # decodes what our codecs write, and the other way round
+  x11-xserver-utils                  # xrandr: monitors of a display without any
   xterm fonts-dejavu-core            # the text desktop of the codec benchmark
   libglu1-mesa-dev python3-numpy python3-opencv python3-jsonschema python3-yaml python3-prometheus-client curl systemd
   chromium                           # the status page in a real browser

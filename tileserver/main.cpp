@@ -64,11 +64,14 @@ Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node)
     (*server)->start();
     sd_notify(0, ("READY=1\nSTATUS=node " + node.name).c_str());
     spdlog::info("ready node=\"{}\" backend={} listen={}", node.name, config::name_of(node.backend), (*server)->address().text());
-    while (!stopping) io.run_one();
+    while (!stopping && !(*server)->failure()) io.run_one();
+    const auto failure = (*server)->failure();
     (*server)->stop();
+    signals.cancel();
     watchdog.cancel();
     io.run_for(kStopLimit);
     server->reset();
+    if (failure) return fail(*failure);
     spdlog::info("stopped");
     return {};
 }

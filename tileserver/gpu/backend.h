@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Where OpenGL comes from: one driver context (4.5 compatibility) without a window. One implementation per file
-// (egl_backend.cpp, osmesa_backend.cpp). Created and used by the render thread.
+// Where OpenGL comes from: one driver context (4.5 compatibility), without a window, or with those that tiles are shown
+// in. One implementation per file (egl_backend.cpp, egl_x11_backend.cpp, osmesa_backend.cpp). Created and used by the
+// render thread.
 #pragma once
 
 #include <memory>
@@ -9,6 +10,9 @@
 #include "common/base/result.h"
 
 namespace wall::tileserver {
+
+struct WindowRequest;
+class TileWindows;
 
 class GlBackend {
 public:
@@ -22,13 +26,17 @@ public:
     /// A function of the driver by name, null if it has none.
     virtual void* get_proc_address(const char* name) const = 0;
     virtual std::string_view name() const = 0;
+    /// That tiles are shown in; null: all tiles are headless.
+    virtual TileWindows* windows() { return nullptr; }
 };
 
 /// A GPU's EGL device if there is one, else Mesa's surfaceless platform (llvmpipe).
 Result<std::unique_ptr<GlBackend>> open_egl_backend();
 /// Off-screen Mesa, from a library that is looked for now; newer Mesa releases have none.
 Result<std::unique_ptr<GlBackend>> open_osmesa_backend();
-/// By its name in wall.toml: `egl` or `osmesa`.
+/// EGL on an X display, with windows there.
+Result<std::unique_ptr<GlBackend>> open_window_backend(const WindowRequest& request);
+/// Without windows, by its name in wall.toml: `egl` or `osmesa`.
 Result<std::unique_ptr<GlBackend>> open_backend(std::string_view name);
 
 }  // namespace wall::tileserver

@@ -1,44 +1,16 @@
 // SPDX-License-Identifier: MIT
 // The EGL backend: no window system, no surface; all drawing goes to framebuffer objects. Render thread.
-#define EGL_NO_X11
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
-
 #include <array>
-#include <cstdio>
-#include <cstring>
-#include <utility>
 
 #include "tileserver/gpu/backend.h"
+#include "tileserver/gpu/egl_context.h"
 
 namespace wall::tileserver {
 namespace {
 
-constexpr std::array kContextAttributes = {
-    EGL_CONTEXT_MAJOR_VERSION, 4,
-    EGL_CONTEXT_MINOR_VERSION, 5,
-    EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT,
-    EGL_NONE,
-};
-
-std::string egl_error(const char* call) {
-    std::array<char, 32> code{};
-    std::snprintf(code.data(), code.size(), "0x%04x", static_cast<unsigned>(eglGetError()));
-    return std::string(call) + " failed, EGL error " + code.data();
-}
-
 template <class Function>
 Function extension(const char* name) {
     return reinterpret_cast<Function>(eglGetProcAddress(name));
-}
-
-bool has_word(const char* list, std::string_view word) {
-    for (std::string_view rest = list != nullptr ? list : ""; !rest.empty();) {
-        const std::size_t end = std::min(rest.find(' '), rest.size());
-        if (rest.substr(0, end) == word) return true;
-        rest.remove_prefix(std::min(end + 1, rest.size()));
-    }
-    return false;
 }
 
 /// The first device that is not a software rasterizer; no display if there is none.
@@ -85,18 +57,13 @@ private:
     EGLContext context_;
 };
 
-EGLContext create_context(EGLDisplay display) {
-    if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) return EGL_NO_CONTEXT;
-    return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kContextAttributes.data());
-}
-
 }  // namespace
 
 Result<std::unique_ptr<GlBackend>> open_egl_backend() {
     for (const auto find_display : {gpu_display, surfaceless_display}) {
         const EGLDisplay display = find_display();
         if (display == EGL_NO_DISPLAY) continue;
-        const EGLContext context = create_context(display);
+        const EGLContext context = create_egl_context(display);
         if (context != EGL_NO_CONTEXT) return std::make_unique<EglBackend>(display, context);
     }
     return fail("EGL offers no OpenGL 4.5 compatibility context without a window (" + egl_error("eglCreateContext") + ")");

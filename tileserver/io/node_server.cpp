@@ -54,6 +54,18 @@ std::array<std::byte, 8> words(std::uint32_t first, std::uint32_t second) {
     return bytes;
 }
 
+/// The node's tiles that are windows; the configuration has them on one display.
+WindowRequest window_request(const config::WallConfig& wall, const config::NodeConfig& node) {
+    WindowRequest request{{}, wall.background, {}};
+    for (std::uint32_t slot = 0; slot < node.tiles.size(); ++slot) {
+        const auto& tile = node.tiles[slot];
+        if (!tile.window) continue;
+        request.display = tile.window->display;
+        request.windows.push_back({slot, tile.name, tile.window->monitor, {tile.window->x, tile.window->y, tile.rect.width, tile.rect.height}});
+    }
+    return request;
+}
+
 }  // namespace
 
 NodeServer::NodeServer(asio::any_io_executor executor, net::Address walld, std::string name)
@@ -66,7 +78,7 @@ Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor execu
     auto listener = net::Listener::open(executor, node.listen);
     if (!listener) return tl::unexpected(listener.error());
     server->listener_.emplace(std::move(*listener));
-    auto render = RenderThread::start(config::name_of(node.backend), *server);
+    auto render = RenderThread::start(config::name_of(node.backend), *server, window_request(wall, node));
     if (!render) return tl::unexpected(render.error());
     server->render_ = std::move(*render);
     return server;
@@ -284,6 +296,14 @@ void NodeServer::stats(const RenderStats& stats) {
         tile_streams_.fill_stats(out);
         to_walld(envelope);
     });
+}
+
+void NodeServer::scaled(const ScaledTile& tile) {
+    post([tile] { spdlog::warn("tile_scaled tile=\"{}\" size={}x{} window={}x{}", tile.tile, tile.width, tile.height, tile.window_width, tile.window_height); });
+}
+
+void NodeServer::output_lost(std::string reason) {
+    post([this, reason = std::move(reason)]() mutable { failure_ = std::move(reason); });
 }
 
 }  // namespace wall::tileserver

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 
@@ -33,6 +34,8 @@ public:
     const net::Address& address() const { return listener_->address(); }
     /// When the render thread last said something; it does about once a second.
     std::chrono::steady_clock::time_point last_sign_of_life() const { return last_stats_; }
+    /// Why the node cannot go on; none: it can.
+    const std::optional<std::string>& failure() const { return failure_; }
 
 private:
     NodeServer(asio::any_io_executor executor, net::Address walld, std::string name);
@@ -50,6 +53,8 @@ private:
     void ended(StreamId stream, std::string reason) override;
     void picture(Picture picture) override;
     void stats(const RenderStats& stats) override;
+    void scaled(const ScaledTile& tile) override;
+    void output_lost(std::string reason) override;
 
     asio::awaitable<void> accept_clients();
     asio::awaitable<void> keep_link();
@@ -74,6 +79,7 @@ private:
     std::map<StreamId, std::shared_ptr<DataStream>> streams_;
     std::uint32_t last_stream_ = 0;
     std::uint64_t bytes_received_ = 0;
+    std::optional<std::string> failure_;
     std::chrono::steady_clock::time_point last_stats_ = std::chrono::steady_clock::now();
     TileStreams tile_streams_;
     std::unique_ptr<RenderThread> render_;  // last: it is gone before what it reports to

@@ -100,6 +100,14 @@ void Compositor::draw_layer(const TileTarget& target, const Layer& layer) {
     gl_.NamedFramebufferTexture(source_, GL_COLOR_ATTACHMENT0, 0, 0);
 }
 
+std::optional<TilePicture> Compositor::picture(std::uint32_t slot) {
+    const Tile* wanted = tile(slot);
+    if (wanted == nullptr) return {};
+    TileTarget& whole = target(*wanted);
+    compose(whole, slot, {});
+    return TilePicture{whole.framebuffer, whole.rect.width, whole.rect.height};
+}
+
 void Compositor::request(const PictureRequest& request) {
     const Tile* wanted = tile(request.slot);
     if (wanted == nullptr) {

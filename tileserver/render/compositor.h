@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,6 +40,12 @@ struct Picture {
     std::string error;            ///< set: there is no picture
 };
 
+/// A tile as it is to be seen, in the driver.
+struct TilePicture {
+    GLuint framebuffer = 0;              ///< top row first; the compositor's
+    std::int32_t width = 0, height = 0;  ///< pixels
+};
+
 class Compositor {
 public:
     using FindSurface = std::function<const Surface*(const StackEntry&)>;  ///< null: no such surface (yet)
@@ -49,6 +56,8 @@ public:
 
     void set_background(std::uint32_t rgb);
     void set_stacking(std::vector<StackEntry> bottom_first);
+    /// All layers of a tile, composed now unless they are already. Good until the compositor is called again. None: this node has no such tile (yet).
+    std::optional<TilePicture> picture(std::uint32_t slot);
     /// Starts reading a tile; collect() gives the picture later.
     void request(const PictureRequest& request);
     /// The pictures that have arrived. `wait`: all that were requested.

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <future>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "common/wire/batch.h"
@@ -22,6 +23,7 @@ using namespace std::chrono_literals;
 constexpr auto kExclusiveLimit = 2s;
 constexpr auto kStatsInterval = 1s;
 constexpr auto kReadbackPoll = 1ms;
+constexpr auto kLongestNap = 100ms;  // also until an X server's event is seen
 
 /// Ends a frame, or moves a surface: the frame before must be shown first.
 bool needs_shown_frame(const std::vector<std::byte>& payload) {
@@ -35,8 +37,11 @@ bool needs_shown_frame(const std::vector<std::byte>& payload) {
 /// Everything that lives in the render thread.
 class RenderThread::Loop {
 public:
-    Loop(const Gl& gl, NodeEvents& events) : events_(events), driver_(gl), node_(driver_), compositor_(node_, [this](const StackEntry& e) { return find(e); }) {
+    /// `windows`: that the tiles are shown in; null: none.
+    Loop(const Gl& gl, NodeEvents& events, TileWindows* windows)
+        : events_(events), driver_(gl), node_(driver_), compositor_(node_, [this](const StackEntry& e) { return find(e); }) {
         node_.present_at_once = true;
+        if (windows != nullptr) output_.emplace(node_, compositor_, *windows, [this](const ScaledTile& tile) { events_.scaled(tile); });
     }
 
     class Stream final : public SessionOutput {
@@ -127,6 +132,7 @@ public:
         for (auto& [id, stream] : streams_)
             if (only == nullptr || only == stream.get()) worked |= stream->run_one(now);
         worked |= remove_ended();
+        show();
         for (const PictureRequest& due : watches_.due(node_.damage, Clock::now())) compositor_.request(due);
         for (Picture& picture : compositor_.collect(false)) events_.picture(std::move(picture));
         report();
@@ -175,17 +181,29 @@ public:
     /// How long it may sleep when there is nothing to do.
     Clock::duration nap() const {
         if (compositor_.busy()) return kReadbackPoll;
-        return std::min<Clock::duration>(100ms, watches_.next_due(node_.damage, Clock::now()));
+        const auto now = Clock::now();
+        const auto due = std::min<Clock::duration>(kLongestNap, watches_.next_due(node_.damage, now));
+        return output_ ? std::min(due, output_->next_due(now)) : due;
     }
+    /// Without the windows that it was to draw in.
+    bool lost() const { return lost_; }
 
     NodeEvents& events_;
     Driver driver_;
     RenderNode node_;
     Compositor compositor_;
+    std::optional<WindowOutput> output_;  // none: all tiles are headless
     TileWatches watches_;
     std::map<StreamId, std::unique_ptr<Stream>> streams_;  // after what their sessions use to the end
 
 private:
+    void show() {
+        if (!output_) return;
+        auto shown = output_->show(Clock::now());
+        if (shown) return;
+        lost_ = true;
+        events_.output_lost(std::move(shown.error().message));
+    }
     Stream* exclusive() {
         for (auto& [id, stream] : streams_) {
             if (!stream->exclusive()) continue;
@@ -203,14 +221,15 @@ private:
     }
 
     Clock::time_point next_stats_ = Clock::now() + kStatsInterval;
+    bool lost_ = false;
 };
 
-Result<std::unique_ptr<RenderThread>> RenderThread::start(std::string backend, NodeEvents& events) {
+Result<std::unique_ptr<RenderThread>> RenderThread::start(std::string backend, NodeEvents& events, WindowRequest windows) {
     std::unique_ptr<RenderThread> thread(new RenderThread(events));
     std::promise<Result<Started>> promise;
     auto future = promise.get_future();
-    thread->thread_ = std::thread([&promise, self = thread.get(), backend = std::move(backend)]() mutable {
-        self->run(std::move(backend), [&promise](Result<Started> started) { promise.set_value(std::move(started)); });
+    thread->thread_ = std::thread([&promise, self = thread.get(), backend = std::move(backend), windows = std::move(windows)]() mutable {
+        self->run(std::move(backend), std::move(windows), [&promise](Result<Started> started) { promise.set_value(std::move(started)); });
     });
     auto started = future.get();
     if (!started) return tl::unexpected(started.error());
@@ -227,15 +246,19 @@ RenderThread::~RenderThread() {
     if (thread_.joinable()) thread_.join();
 }
 
-void RenderThread::run(std::string backend_name, std::function<void(Result<Started>)> started) {
-    auto backend = open_backend(backend_name);
+void RenderThread::run(std::string backend_name, WindowRequest windows, std::function<void(Result<Started>)> started) {
+    auto backend = windows.windows.empty() ? open_backend(backend_name) : open_window_backend(windows);
     if (!backend) return started(tl::unexpected(backend.error()));
     if (auto current = (*backend)->make_current(); !current) return started(tl::unexpected(current.error()));
     Gl gl;
     gl.load([&](const char* name) { return (*backend)->get_proc_address(name); });
-    Loop loop(gl, events_);
+    Loop loop(gl, events_, (*backend)->windows());
     started(Started{query_caps(gl), backend_name});
-    for (;;) {
+    serve(loop);
+}
+
+void RenderThread::serve(Loop& loop) {
+    while (!loop.lost()) {
         std::vector<std::function<void(Loop&)>> tasks;
         {
             std::unique_lock lock(mutex_);

@@ -19,6 +19,7 @@
 #include "tileserver/gpu/caps.h"
 #include "tileserver/render/batch_queue.h"
 #include "tileserver/render/compositor.h"
+#include "tileserver/render/window_output.h"
 #include "tileserver/render/work.h"
 
 namespace wall::tileserver {
@@ -53,6 +54,10 @@ public:
     virtual void ended(StreamId stream, std::string reason) = 0;
     virtual void picture(Picture picture) = 0;
     virtual void stats(const RenderStats& stats) = 0;  ///< about once a second
+    /// Once for each tile that its window does not show pixel for pixel.
+    virtual void scaled(const ScaledTile& tile) = 0;
+    /// Windows cannot be shown any more; nothing is drawn from then on.
+    virtual void output_lost(std::string reason) = 0;
 };
 
 class RenderThread {
@@ -61,8 +66,8 @@ public:
         GlCaps caps;
         std::string backend;
     };
-    /// Makes the driver's context in the new thread; an error if there is none.
-    static Result<std::unique_ptr<RenderThread>> start(std::string backend, NodeEvents& events);
+    /// Makes the driver's context in the new thread, and opens the windows, if there are any; an error if there is none.
+    static Result<std::unique_ptr<RenderThread>> start(std::string backend, NodeEvents& events, WindowRequest windows = {});
     ~RenderThread();
 
     const Started& started() const { return started_; }
@@ -91,7 +96,8 @@ public:
 private:
     class Loop;
     explicit RenderThread(NodeEvents& events) : events_(events) {}
-    void run(std::string backend, std::function<void(Result<Started>)> started);
+    void run(std::string backend, WindowRequest windows, std::function<void(Result<Started>)> started);
+    void serve(Loop& loop);
     void post(std::function<void(Loop&)> task);
 
     NodeEvents& events_;

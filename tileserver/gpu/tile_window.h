@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// One window of the X server, without decorations and without a cursor, that a tile is drawn in. It works with and
+// without a window manager. Render thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "common/base/result.h"
+#include "common/geom/rect.h"
+#include "tileserver/gpu/x11_display.h"
+
+union _XEvent;
+
+namespace wall::tileserver {
+
+/// What wall.toml says of a tile in a window.
+struct WindowSpec {
+    std::uint32_t slot = 0;  ///< of the tile
+    std::string tile;        ///< its name
+    std::string monitor;     ///< that the window covers; empty: it covers `rect`
+    geom::Rect rect;         ///< pixels of the X screen; with a monitor only the tile's size counts
+};
+
+/// What it is made with. Pixels of 8 bits a channel without alpha, so that they are shown as they are.
+struct WindowLook {
+    unsigned long visual = 0;      ///< its id, of depth kWindowDepth
+    std::uint32_t background = 0;  ///< 0xRRGGBB, until the tile is drawn
+};
+inline constexpr int kWindowDepth = 24;  ///< bits a pixel
+
+class TileWindow {
+public:
+    /// Mapped, not waited for. `display` outlives it.
+    static Result<std::unique_ptr<TileWindow>> open(const X11Display& display, const WindowSpec& spec, const WindowLook& look);
+    ~TileWindow();
+    TileWindow(const TileWindow&) = delete;
+    TileWindow& operator=(const TileWindow&) = delete;
+
+    const WindowSpec& spec() const { return spec_; }
+    unsigned long id() const { return window_; }
+    std::int32_t width() const { return width_; }
+    std::int32_t height() const { return height_; }
+
+    /// One of its events.
+    void take(const _XEvent& event);
+    /// Its content is lost, in whole or in part, or its size is another since drawn().
+    bool exposed() const { return exposed_; }
+    void drawn() { exposed_ = false; }
+    /// Somebody has destroyed it.
+    bool gone() const { return gone_; }
+
+private:
+    TileWindow(const X11Display& display, const WindowSpec& spec) : display_(display), spec_(spec) {}
+    Result<void> create(const geom::Rect& place, const WindowLook& look);
+    void tell_window_manager(const geom::Rect& place) const;
+
+    const X11Display& display_;
+    const WindowSpec spec_;
+    unsigned long window_ = 0, colormap_ = 0, cursor_ = 0;  // of X; 0: none
+    std::int32_t width_ = 0, height_ = 0;                   // pixels
+    bool exposed_ = true, gone_ = false;
+};
+
+}  // namespace wall::tileserver
