@@ -87,7 +87,7 @@ json tiles_json(const Wall& wall, Clock::time_point now) {
             const auto& tile = node.config->tiles[slot];
             const auto& shown = node.tiles[slot];
             const auto age = shown.last ? json(std::chrono::duration_cast<std::chrono::milliseconds>(now - *shown.last).count()) : json(nullptr);
-            out.push_back({{"name", tile.name}, {"node", node.config->name}, {"slot", slot}, {"rect", rect_json(tile.rect)}, {"up", node.up},
+            out.push_back({{"name", tile.name}, {"node", node.config->name}, {"slot", slot}, {"rect", rect_json(tile.rect)}, {"output", config::output_name(tile)}, {"up", node.up},
                            {"frames", shown.frames}, {"age_ms", age}, {"lag_frames", wall.tile_lag(i, slot)}});
         }
     }

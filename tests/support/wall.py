@@ -46,16 +46,17 @@ def _quoted(text: object) -> str:
 
 class Wall:
     """`tiles` are columns and rows, `tile_size` is in pixels. `environment` goes to the daemons, `die_with_parent` ends
-    them with the *thread* that starts the wall. `options` and `people` are lines for wall.toml. `one_node` puts all tiles on one tileserver. `client_build` is
+    them with the *thread* that starts the wall. `options` and `people` are lines for wall.toml. `windows` is an X display on which
+    the tiles are windows, beside each other as on the wall. `one_node` puts all tiles on one tileserver. `client_build` is
     where wallrun and the vendor library come from, if not from `build` (a sanitizer's library does not load into a
     foreign program)."""
 
     def __init__(self, tiles: tuple[int, int] = (2, 2), tile_size: tuple[int, int] = (512, 384), backend: str = "egl", *,
-                 http: str = "127.0.0.1:0", swap_timeout_ms: int = 250, one_node: bool = False, name: str = "test", options: str = "", people: str = "",
+                 http: str = "127.0.0.1:0", swap_timeout_ms: int = 250, one_node: bool = False, name: str = "test", options: str = "", people: str = "", windows: str = "",
                  build: Path | None = None, client_build: Path | None = None, environment: dict[str, str] | None = None, die_with_parent: bool = False):
         self.tiles, self.tile_size, self.backend = tiles, tile_size, backend
         self.http, self.swap_timeout_ms, self.one_node, self.name = http, swap_timeout_ms, one_node, name
-        self.options, self.people = options, people
+        self.options, self.people, self.windows = options, people, windows
         self.bin = (build or build_folder()) / "bin"
         self.client_bin = (client_build or build or build_folder()) / "bin"
         self._environment = dict(os.environ, **(environment or {}))
@@ -97,7 +98,11 @@ class Wall:
     def _tile(self, name: str) -> str:
         column, row = map(int, name.split("-"))
         width, height = self.tile_size
-        return f"[[node.tile]]\nname = {_quoted(name)}\nrect = [{column * width}, {row * height}, {width}, {height}]\n"
+        x, y = column * width, row * height
+        return f"[[node.tile]]\nname = {_quoted(name)}\nrect = [{x}, {y}, {width}, {height}]\n" + self._output(x, y)
+
+    def _output(self, x: int, y: int) -> str:
+        return f'output = "window"\ndisplay = {_quoted(self.windows)}\nposition = [{x}, {y}]\n' if self.windows else ""
 
     def _node(self, name: str, tiles: list[str]) -> str:
         return (f"[[node]]\nname = {_quoted(name)}\nbackend = {_quoted(self.backend)}\n"

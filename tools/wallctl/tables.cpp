@@ -46,8 +46,8 @@ std::string nodes_table(const json& nodes) {
 }
 
 std::string tiles_table(const json& tiles) {
-    std::vector<Row> rows{{"TILE", "NODE", "PLACE", "STATE"}};
-    for (const auto& t : tiles) rows.push_back({text(t, "name"), text(t, "node"), place(t), is(t, "up") ? "up" : "away"});
+    std::vector<Row> rows{{"TILE", "NODE", "PLACE", "OUTPUT", "STATE"}};
+    for (const auto& t : tiles) rows.push_back({text(t, "name"), text(t, "node"), place(t), text(t, "output"), is(t, "up") ? "up" : "away"});
     return table(rows);
 }
 

@@ -11,12 +11,12 @@ namespace {
 using nlohmann::json;
 
 TEST(Tables, AlignColumnsAndLeaveOutTrailingBlanks) {
-    const json tiles{{{"name", "a"}, {"node", "left"}, {"rect", {0, 0, 640, 480}}, {"up", true}},
-                     {{"name", "bottom"}, {"node", "r"}, {"rect", {0, 480, 64, 48}}, {"up", false}}};
+    const json tiles{{{"name", "a"}, {"node", "left"}, {"rect", {0, 0, 640, 480}}, {"output", "headless"}, {"up", true}},
+                     {{"name", "bottom"}, {"node", "r"}, {"rect", {0, 480, 64, 48}}, {"output", "window"}, {"up", false}}};
     EXPECT_EQ(tiles_table(tiles),
-              "TILE    NODE  PLACE        STATE\n"
-              "a       left  640x480+0+0  up\n"
-              "bottom  r     64x48+0+480  away\n");
+              "TILE    NODE  PLACE        OUTPUT    STATE\n"
+              "a       left  640x480+0+0  headless  up\n"
+              "bottom  r     64x48+0+480  window    away\n");
 }
 
 TEST(Tables, ASessionHasALineForEachWindow) {
