@@ -26,10 +26,12 @@ EXIT_NOT_STARTED = 2
 DESCRIPTION = """\
 A wall of virtual tiles on this machine, with real OpenGL programs on it. Without programs: glxgears and xscreensaver's
 atlantis, side by side, until Ctrl-C. With programs and without --seconds it ends when the last of them ends, with the
-worst of their exit codes. With no X display it starts Xvfb for the programs' windows."""
+worst of their exit codes. With no X display it starts Xvfb for the programs' windows; also with --windows, which shows
+the tiles themselves as windows of the desktop."""
 EXAMPLES = """\
 examples:
   scripts/demo.sh
+  scripts/demo.sh --windows
   scripts/demo.sh --tiles 3x1 --tile-size 640x480 --backend osmesa
   scripts/demo.sh --seconds 8 --screenshot out.png -- glxgears -geometry 1024x768
   scripts/demo.sh -- glxgears --and /usr/libexec/xscreensaver/atlantis --window"""
@@ -60,6 +62,7 @@ def parse(words: list[str]) -> tuple[argparse.Namespace, list[list[str]]]:
     parser.add_argument("--tiles", type=pair, default=(2, 2), metavar="CxR", help="columns and rows (2x2)")
     parser.add_argument("--tile-size", type=pair, default=(512, 384), metavar="WxH", help="pixels of a tile (512x384)")
     parser.add_argument("--backend", choices=["egl", "osmesa"], default="egl", help="what the tiles render with (egl)")
+    parser.add_argument("--windows", action="store_true", help="show the tiles as windows of this desktop, beside each other from its top left")
     parser.add_argument("--seconds", type=float, metavar="N", help="end this long after the programs show something")
     parser.add_argument("--screenshot", metavar="FILE", help="write the wall's picture as PNG: before the end with --seconds, "
                         f"else {SETTLE:.0f} seconds after the first frame and at Ctrl-C")
@@ -67,6 +70,10 @@ def parse(words: list[str]) -> tuple[argparse.Namespace, list[list[str]]]:
     options = parser.parse_args(ours)
     if any(not program for program in programs):
         parser.error("a program is missing after -- or --and")
+    if options.windows and not os.environ.get("DISPLAY"):
+        parser.error("--windows: there is no desktop here, DISPLAY is not set: start this in a terminal of the desktop, or leave --windows out")
+    if options.windows and options.backend != "egl":
+        parser.error(f"--windows: {options.backend} draws into memory only: use --backend egl")
     return options, programs
 
 
@@ -83,11 +90,13 @@ def http_port(asked: int | None) -> int:
         return DEFAULT_HTTP if probe.connect_ex(("127.0.0.1", DEFAULT_HTTP)) != 0 else 0
 
 
-def display(stack: contextlib.ExitStack, size: tuple[int, int]) -> str:
-    if os.environ.get("DISPLAY"):
+def display(stack: contextlib.ExitStack, size: tuple[int, int], own: bool) -> str:
+    """Where the programs have their windows; `own`: not on the desktop, which shows the tiles."""
+    if os.environ.get("DISPLAY") and not own:
         return os.environ["DISPLAY"]
     server = stack.enter_context(XServer((max(size[0], 1280), max(size[1], 1024))))
-    print(f"demo: no X display here, started Xvfb {server.display} for the programs' windows", flush=True)
+    why = "the desktop shows the tiles" if own else "no X display here"
+    print(f"demo: {why}, started Xvfb {server.display} for the programs' windows", flush=True)
     return server.display
 
 
@@ -153,8 +162,10 @@ def main() -> int:
         signal.signal(number, interrupt)
     with contextlib.ExitStack() as stack:
         try:
-            around = environment(display(stack, (options.tiles[0] * options.tile_size[0], options.tiles[1] * options.tile_size[1])))
+            size = (options.tiles[0] * options.tile_size[0], options.tiles[1] * options.tile_size[1])
+            around = environment(display(stack, size, options.windows))
             wall = stack.enter_context(Wall(options.tiles, options.tile_size, options.backend, name="demo", die_with_parent=True,
+                                            windows=os.environ["DISPLAY"] if options.windows else "",
                                             http=f"127.0.0.1:{http_port(options.http)}"))
             print(f"demo: a wall of {options.tiles[0]}x{options.tiles[1]} tiles, {wall.size[0]}x{wall.size[1]} pixels, drawn with {options.backend}\n"
                   f"demo: status page {wall.url}\ndemo: operate with build/release/bin/wallctl --walld {wall.address} status", flush=True)

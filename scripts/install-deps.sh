@@ -25,7 +25,7 @@ test=(
   clang-16 libclang-rt-16-dev        # fuzzers
   xscreensaver-gl-extra rss-glx glmark2-x11 apitrace apitrace-tracers
   ffmpeg                             # decodes what our codecs write, and the other way round
-  x11-xserver-utils                  # xrandr: monitors of a display without any
+  x11-utils x11-xserver-utils        # xprop, xwininfo; xrandr: monitors of a display that has none
   xterm fonts-dejavu-core            # the text desktop of the codec benchmark
   libglu1-mesa-dev python3-numpy python3-opencv python3-jsonschema python3-yaml python3-prometheus-client curl systemd
   chromium                           # the status page in a real browser

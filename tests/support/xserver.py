@@ -32,5 +32,10 @@ class XServer:
         self._process.terminate()
         self._process.communicate()
 
+    def kill(self) -> None:
+        """It goes away without a word, as one that crashes."""
+        self._process.kill()
+        self._process.wait()
+
     def environment(self, **more: str) -> dict[str, str]:
-        return dict(os.environ, DISPLAY=self.display, **more)
+        return {**os.environ, "DISPLAY": self.display, **more}

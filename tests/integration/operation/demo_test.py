@@ -14,6 +14,7 @@ ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests" / "support"))
 from compare import load_png  # noqa: E402
 from wall import build_folder  # noqa: E402
+from xserver import XServer  # noqa: E402
 
 DEMO = ["/usr/bin/python3", str(ROOT / "scripts" / "demo.py")]  # what demo.sh runs when all is installed and built
 
@@ -63,6 +64,19 @@ class Demo(unittest.TestCase):
     def test_2x2_osmesa(self) -> None:
         self.gears("2x2", "256x192", "--backend", "osmesa")
 
+    def test_tiles_as_windows_of_a_desktop(self) -> None:
+        with XServer((640, 480)) as desktop:
+            self.environment["DISPLAY"] = desktop.display
+            running = subprocess.Popen([*DEMO, "--http", "0", "--windows", "--tiles", "2x1", "--tile-size", "160x240", "--seconds", "6", "--", "glxgears", "-geometry", "320x240"],
+                                       env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            seen = []
+            while running.poll() is None:
+                seen.append(subprocess.run(["xwininfo", "-root", "-tree"], env=desktop.environment(), capture_output=True, text=True).stdout)
+                time.sleep(0.2)
+            self.assertEqual(running.returncode, 0, running.stdout.read())
+            running.stdout.close()
+        self.assertTrue(any("160x240+0+0" in tree and "160x240+160+0" in tree and "glxgears" not in tree for tree in seen), seen[-3:])
+
     def test_without_seconds_it_ends_with_the_worst_exit_code(self) -> None:
         done = self.demo("--tiles", "1x1", "--", "sh", "-c", "exit 3", "--and", "true")
         self.assertEqual(done.returncode, 3, done.stderr)
@@ -84,7 +98,7 @@ class Demo(unittest.TestCase):
         self.assertEqual(processes_of(self.folder.name), [])
 
     def test_wrong_use_is_told(self) -> None:
-        for arguments in (["--tiles", "2"], ["--backend", "vulkan"], ["--"], ["--nonsense"]):
+        for arguments in (["--tiles", "2"], ["--backend", "vulkan"], ["--"], ["--nonsense"], ["--windows"]):
             done = self.demo(*arguments)
             self.assertEqual(done.returncode, 2)
             self.assertIn("demo.sh: error:", done.stderr)
