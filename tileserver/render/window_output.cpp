@@ -32,7 +32,8 @@ Result<void> WindowOutput::show(Clock::time_point now) {
     return {};
 }
 
-/// The tile's top row comes first, the window's bottom row.
+/// The tile's top row comes first, the window's bottom row. Mesa asks for a window's size once between two swaps, when
+/// something is drawn while the window is bound: that is to be here, and not in somebody's work between.
 Result<void> WindowOutput::draw(std::size_t i) {
     TileWindow& window = windows_.at(i);
     const auto picture = compositor_.picture(window.spec().slot);
@@ -41,8 +42,11 @@ Result<void> WindowOutput::draw(std::size_t i) {
     tell_scaled(window, *picture);
     if (auto selected = windows_.select(i); !selected) return selected;
     node_.driver.disable_scissor();
+    const Gl& gl = node_.driver.gl();
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     const bool as_it_is = window.width() == picture->width && window.height() == picture->height;
-    node_.driver.gl().BlitNamedFramebuffer(picture->framebuffer, 0, 0, 0, picture->width, picture->height, 0, window.height(), window.width(), 0, GL_COLOR_BUFFER_BIT, as_it_is ? GL_NEAREST : GL_LINEAR);
+    gl.BlitNamedFramebuffer(picture->framebuffer, 0, 0, 0, picture->width, picture->height, 0, window.height(), window.width(), 0, GL_COLOR_BUFFER_BIT, as_it_is ? GL_NEAREST : GL_LINEAR);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, picture->framebuffer);
     return windows_.swap(i);
 }
 

@@ -52,6 +52,19 @@ class Installed(unittest.TestCase):
                 verified = output("systemd-analyze", "verify", "--man=no", Path(folder) / instance)
                 self.assertEqual((verified.returncode, verified.stderr.strip()), (0, ""))
 
+    def test_systemd_accepts_a_kiosk(self) -> None:
+        # The X server's unit and what a node with windows adds to its own. There is no X server with a screen here: any program stands for it.
+        with tempfile.TemporaryDirectory() as folder:
+            node, addition = Path(folder) / "tileserver@left.service", Path(folder) / "tileserver@left.service.d"
+            node.write_text(re.sub(r"(?m)^ExecStart=\S*/tileserver ", f"ExecStart={self.find('bin/tileserver')} ", self.find("tileserver@.service").read_text()))
+            addition.mkdir()
+            (addition / "window.conf").write_text(self.find("kiosk/tileserver-window.conf").read_text())
+            x = Path(folder) / "wallgl-x.service"
+            x.write_text(self.find("kiosk/wallgl-x.service").read_text().replace("/usr/bin/Xorg", "/bin/true"))
+            for unit in (node, x):
+                verified = output("systemd-analyze", "verify", "--man=no", unit, env=dict(os.environ, SYSTEMD_UNIT_PATH=f"{folder}:"))
+                self.assertEqual((verified.returncode, verified.stderr.strip()), (0, ""))
+
     def test_sysusers_and_tmpfiles_are_understood(self) -> None:
         users = output("systemd-sysusers", "--dry-run", self.find("lib/sysusers.d/wallgl.conf"))
         if "unrecognized option" not in users.stderr:

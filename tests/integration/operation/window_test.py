@@ -37,6 +37,10 @@ class Screen(XServer):
         tree = subprocess.run(["xwininfo", "-root", "-tree"], env=self.environment(), check=True, capture_output=True, text=True).stdout
         return {name: window for window, name in re.findall(r'(0x[0-9a-f]+) "WallGL tile (.+?)"', tree)}
 
+    def ask(self, request: str, window: str) -> None:
+        """Something of Xlib (XLIB) that another client does with a window."""
+        subprocess.run(["/usr/bin/python3", "-c", XLIB + request, window], env=self.environment(), check=True)
+
 
 class OnAScreen(unittest.TestCase):
     def setUp(self) -> None:
@@ -155,6 +159,37 @@ class Windows(OnAScreen):
         cover.wait()
         self.until(lambda: self.seen(wall), "the program again")
 
+    def test_nothing_is_drawn_while_nothing_changes(self) -> None:
+        wall = self.wall(tiles=(1, 1))
+        session = self.run_clock(wall, (0, 0, *TILE))
+        self.until(lambda: self.seen(wall), "the program")
+        time.sleep(0.5)
+        self.screen.ask(CLEAR, self.screen.windows()["0-0"])
+        time.sleep(1)
+        self.assertTrue((self.screen.picture()[:TILE[1], :TILE[0]] == BACKGROUND).all(), "what was cleared stays so")
+        wall.step(session)
+        self.until(lambda: self.seen(wall), "the next frame")
+
+    def test_a_window_that_somebody_resizes_is_filled(self) -> None:
+        wall = self.wall(tiles=(1, 1))
+        self.run_clock(wall, (0, 0, TILE[0] // 2, TILE[1]))
+        self.until(lambda: self.seen(wall), "the program")
+        self.screen.ask(RESIZE, self.screen.windows()["0-0"])
+
+        def filled() -> bool:
+            picture = self.screen.picture()[:300, :400]
+            left, right = picture[:, :197], picture[:, 203:]
+            return bool((left[..., 2] == 255).all() and (left == left[0, 0]).all() and (right == BACKGROUND).all())
+        self.until(filled, "both halves are twice as large")
+        self.assertIn('tile_scaled tile="0-0" size=200x150 window=400x300', wall.log("node-0-0"))
+
+    def test_a_window_that_somebody_destroys_ends_the_node(self) -> None:
+        wall = self.wall(tiles=(1, 1))
+        self.until(lambda: self.seen(wall), "the tile")
+        self.screen.ask(DESTROY, self.screen.windows()["0-0"])
+        self.assertEqual(wall.daemons["node-0-0"].wait(SOON), 1)
+        self.assertEqual(wall.log("node-0-0").splitlines()[-1], "tileserver: the window of tile '0-0' was destroyed")
+
     def test_the_pointer_is_not_seen(self) -> None:
         self.wall(tiles=(3, 3))
         self.until(lambda: (self.screen.picture(pointer=True)[:450, :600] == BACKGROUND).all(), "no pointer, which X puts in the middle")
@@ -163,8 +198,7 @@ class Windows(OnAScreen):
         wall = self.wall(tiles=(1, 1))
         self.until(lambda: self.seen(wall), "the tile")
         window = self.screen.windows()["0-0"]
-        asked = subprocess.run(["/usr/bin/python3", "-c", CLOSE, window], env=self.screen.environment(), capture_output=True, text=True)
-        self.assertEqual(asked.returncode, 0, asked.stderr)
+        self.screen.ask(CLOSE, window)
         time.sleep(0.5)
         self.assertIsNone(wall.daemons["node-0-0"].poll())
         self.assertTrue(self.seen(wall))
@@ -178,21 +212,33 @@ class Windows(OnAScreen):
         self.assertNotIn("FULLSCREEN", told)
 
 
-# A window manager's close button: the message WM_DELETE_WINDOW.
-CLOSE = """
+# An X client in a process of its own; Python's own Xlib would be one package more.
+XLIB = """
 import ctypes, sys
 x = ctypes.CDLL("libX11.so.6")
 x.XOpenDisplay.restype = ctypes.c_void_p
-x.XInternAtom.argtypes, x.XInternAtom.restype = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int], ctypes.c_ulong
+d, window = ctypes.c_void_p(x.XOpenDisplay(None)), ctypes.c_ulong(int(sys.argv[1], 16))
+"""
+# A window manager's close button: the message WM_DELETE_WINDOW.
+CLOSE = """
 class Message(ctypes.Structure):
     _fields_ = [("type", ctypes.c_int), ("serial", ctypes.c_ulong), ("sent", ctypes.c_int), ("display", ctypes.c_void_p), ("window", ctypes.c_ulong),
                 ("message_type", ctypes.c_ulong), ("format", ctypes.c_int), ("data", ctypes.c_long * 5), ("room", ctypes.c_char * 96)]
-d, window = x.XOpenDisplay(None), int(sys.argv[1], 16)
-atom = lambda name: x.XInternAtom(d, name, 0)
-message = Message(33, 0, 1, d, window, atom(b"WM_PROTOCOLS"), 32, (ctypes.c_long * 5)(atom(b"WM_DELETE_WINDOW")))
-x.XSendEvent.argtypes = [ctypes.c_void_p, ctypes.c_ulong, ctypes.c_int, ctypes.c_long, ctypes.c_void_p]
-assert x.XSendEvent(d, window, 0, 0, ctypes.byref(message))
-x.XSync.argtypes = [ctypes.c_void_p, ctypes.c_int]
+message = Message(33, 0, 1, d, window, x.XInternAtom(d, b"WM_PROTOCOLS", 0), 32, (ctypes.c_long * 5)(x.XInternAtom(d, b"WM_DELETE_WINDOW", 0)))
+assert x.XSendEvent(d, window, 0, ctypes.c_long(0), ctypes.byref(message))
+x.XSync(d, 0)
+"""
+RESIZE = """
+x.XResizeWindow(d, window, 400, 300)
+x.XSync(d, 0)
+"""
+DESTROY = """
+x.XDestroyWindow(d, window)
+x.XSync(d, 0)
+"""
+# Its content is lost, and nobody is told.
+CLEAR = """
+x.XClearWindow(d, window)
 x.XSync(d, 0)
 """
 
