@@ -16,6 +16,18 @@ void refuse_key(TreeReader& read, const toml::table& tile, std::string_view key,
 
 std::string display_text(const WindowConfig& window) { return window.display.empty() ? "$DISPLAY" : "display \"" + window.display + "\""; }
 
+/// Two windows of a node, of which `tile` describes the second.
+void check_beside(TreeReader& read, const toml::table& tile, const TileConfig& second, const TileConfig& first) {
+    const auto &mine = *second.window, &others = *first.window;
+    if (others.display != mine.display) {
+        const auto* key = tile.get("display");
+        read.refuse(key ? key->source() : tile.source(), "tile '" + second.name + "' is on " + display_text(mine) + ", tile '" + first.name + "' on " + display_text(others) +
+                                                             ": expected one display for all windows of a node (or a node for each)");
+    }
+    if (!mine.monitor.empty() && others.monitor == mine.monitor)
+        read.refuse(tile.get("monitor")->source(), "monitor '" + mine.monitor + "' shows tile '" + first.name + "' already: expected one tile for a monitor");
+}
+
 }  // namespace
 
 std::optional<WindowConfig> read_output(TreeReader& read, const toml::table& tile) {
@@ -40,18 +52,11 @@ std::optional<WindowConfig> read_output(TreeReader& read, const toml::table& til
 void check_output(TreeReader& read, const toml::table& tile, const NodeConfig& node) {
     const auto& last = node.tiles.back();
     if (!last.window) return;
-    if (node.backend != Backend::egl) read.refuse(tile.get("output")->source(), "'output' is 'window' on a node with backend \"osmesa\", which draws into memory only: expected backend = \"egl\" or output = \"headless\"");
-    const auto& mine = *last.window;
-    for (const auto& other : std::span(node.tiles).first(node.tiles.size() - 1)) {
-        if (!other.window) continue;
-        if (other.window->display != mine.display) {
-            const auto* key = tile.get("display");
-            read.refuse(key ? key->source() : tile.source(), "tile '" + last.name + "' is on " + display_text(mine) + ", tile '" + other.name + "' on " + display_text(*other.window) + ": expected one display for all windows of a node (or a node for each)");
-        }
-        if (!mine.monitor.empty() && other.window->monitor == mine.monitor) {
-            read.refuse(tile.get("monitor")->source(), "monitor '" + mine.monitor + "' shows tile '" + other.name + "' already: expected one tile for a monitor");
-        }
-    }
+    if (node.backend != Backend::egl)
+        read.refuse(tile.get("output")->source(), "'output' is 'window' on a node with backend \"osmesa\", which draws into memory only: "
+                                                  "expected backend = \"egl\" or output = \"headless\"");
+    for (const auto& other : std::span(node.tiles).first(node.tiles.size() - 1))
+        if (other.window) check_beside(read, tile, last, other);
 }
 
 }  // namespace wall::config

@@ -54,7 +54,8 @@ EGLConfig find_config(Display* x, EGLDisplay display) {
     const VisualID preferred = XVisualIDFromVisual(DefaultVisual(x, DefaultScreen(x)));
     for (const EGLConfig config : std::span(configs).first(static_cast<std::size_t>(count))) {
         const auto visual = static_cast<VisualID>(attribute(display, config, EGL_NATIVE_VISUAL_ID));
-        if (attribute(display, config, EGL_RED_SIZE) != 8 || attribute(display, config, EGL_SAMPLES) != 0 || true_color_visual(x, visual, kWindowDepth) == nullptr) continue;
+        const bool plain = attribute(display, config, EGL_RED_SIZE) == 8 && attribute(display, config, EGL_SAMPLES) == 0;
+        if (!plain || true_color_visual(x, visual, kWindowDepth) == nullptr) continue;
         if (visual == preferred) return config;
         if (found == nullptr) found = config;
     }
@@ -80,11 +81,13 @@ Result<void> EglX11Backend::open(const WindowRequest& request) {
 Result<std::unique_ptr<GlBackend>> open_window_backend(const WindowRequest& request) {
     auto x = X11Display::open(request.display);
     if (!x) return tl::unexpected(x.error());
-    if (!has_word(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_KHR_platform_x11") && !has_word(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_EXT_platform_x11"))
+    const char* known = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    if (!has_word(known, "EGL_KHR_platform_x11") && !has_word(known, "EGL_EXT_platform_x11"))
         return fail("EGL cannot draw to X windows here (it lacks EGL_KHR_platform_x11)");
     const std::array<EGLAttrib, 3> screen = {EGL_PLATFORM_X11_SCREEN_KHR, DefaultScreen((*x)->get()), EGL_NONE};
     const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_X11_KHR, (*x)->get(), screen.data());
-    if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE) return fail("EGL cannot use the X display \"" + (*x)->name() + "\" (" + egl_error("eglInitialize") + ")");
+    if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE)
+        return fail("EGL cannot use the X display \"" + (*x)->name() + "\" (" + egl_error("eglInitialize") + ")");
     auto backend = std::make_unique<EglX11Backend>(std::move(*x), display);
     if (auto opened = backend->open(request); !opened) return tl::unexpected(opened.error());
     return backend;

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/render/compositor.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/tileserver/test_node.h"
+
+namespace wall::tileserver {
+namespace {
+
+constexpr std::uint32_t kSlot = 3;
+constexpr geom::Rect kTile{100, 0, 8, 4};
+
+class TilePictures : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (!test_node.usable()) GTEST_SKIP() << "no EGL here";
+        test_node.node->tiles = {{kSlot, kTile}};
+        compositor.emplace(*test_node.node, [](const StackEntry&) { return nullptr; });
+        compositor->set_background(0xff8000);
+    }
+    void TearDown() override { compositor.reset(); }
+
+    /// First pixel of a screenshot.
+    std::uint32_t shot() {
+        compositor->request({.slot = kSlot});
+        const auto pictures = compositor->collect(true);
+        EXPECT_EQ(pictures.size(), 1u);
+        if (pictures.empty() || pictures[0].rgba.empty()) return 0;
+        const auto byte = [&](std::size_t i) { return std::to_integer<std::uint32_t>(pictures[0].rgba[i]); };
+        return byte(0) << 16 | byte(1) << 8 | byte(2);
+    }
+
+    test::TestNode test_node;
+    std::optional<Compositor> compositor;
+};
+
+TEST_F(TilePictures, AreComposedOnceForAllWhoWantThem) {
+    const auto picture = compositor->picture(kSlot);
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->width, kTile.width);
+    EXPECT_EQ(picture->height, kTile.height);
+    EXPECT_EQ(shot(), 0xff8000u);
+
+    const auto& gl = test_node.driver->gl();
+    constexpr float kOther[] = {0, 0, 1, 1};
+    gl.ClearNamedFramebufferfv(picture->framebuffer, GL_COLOR, 0, kOther);
+    EXPECT_EQ(compositor->picture(kSlot)->framebuffer, picture->framebuffer);
+    EXPECT_EQ(shot(), 0x0000ffu) << "nothing has changed, nothing is composed anew";
+    ++test_node.node->damage;
+    EXPECT_EQ(compositor->picture(kSlot)->framebuffer, picture->framebuffer);
+    EXPECT_EQ(shot(), 0xff8000u);
+}
+
+TEST_F(TilePictures, OfATileThatIsNotThereAreNone) { EXPECT_FALSE(compositor->picture(kSlot + 1)); }
+
+}  // namespace
+}  // namespace wall::tileserver
