@@ -24,6 +24,7 @@ run=(
 test=(
   clang-16 libclang-rt-16-dev        # fuzzers
   xscreensaver-gl-extra rss-glx glmark2-x11 apitrace apitrace-tracers
+  piglit                             # the conformance tests
   ffmpeg                             # decodes what our codecs write, and the other way round
   x11-utils x11-xserver-utils        # xprop, xwininfo; xrandr: monitors of a display that has none
   xterm fonts-dejavu-core            # the text desktop of the codec benchmark

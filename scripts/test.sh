@@ -4,7 +4,7 @@
 # Ends with CTest's own summary of each stage; exit code 1 if anything failed.
 set -uo pipefail
 cd "$(dirname "$0")/.."
-readonly all_stages=(release golden asan tsan fuzz)
+readonly all_stages=(release golden conformance asan tsan fuzz)
 readonly summaries="build/test-summaries"
 begin=$SECONDS
 failed=()
@@ -32,13 +32,19 @@ stage_release() {
   say "building (release)"
   build release || { failed+=(release); return; }
   say "unit, integration and lint tests"
-  run release release -LE 'golden|fuzz|browser' -j 2
+  run release release -LE 'golden|conformance|fuzz|browser' -j 2
 }
 
 stage_golden() {
   say "golden tests: programs on plain Mesa and on walls, frame by frame; the status page in a browser"
   build release || { failed+=(golden); return; }
   run golden release -L 'golden|browser'
+}
+
+stage_conformance() {
+  say "conformance tests: piglit on walls; what fails there, on plain Mesa"
+  build release || { failed+=(conformance); return; }
+  run conformance release -L conformance
 }
 
 stage_asan() {

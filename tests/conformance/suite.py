@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""Which of piglit's tests there are, and which of them ask for what a wall offers."""
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import re
+import shlex
+import subprocess
+import tomllib
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+HOME = Path("/usr/lib/x86_64-linux-gnu/piglit")  # of Debian's package
+PROFILES = ("opengl", "shader", "glslparser")
+OPENGL = re.compile(r"spec@!opengl (\d)\.(\d)(@|$)")
+GLSL = re.compile(r"spec@glsl-(\d)\.(\d)0(@|$)")
+
+
+class SuiteError(RuntimeError):
+    pass
+
+
+@dataclasses.dataclass(frozen=True)
+class Test:
+    name: str
+    command: tuple[str, ...]
+    profile: str
+
+
+@dataclasses.dataclass(frozen=True)
+class LeftOut:
+    pattern: re.Pattern[str]
+    reason: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Offer:
+    """What a wall offers, as piglit's glinfo tells."""
+
+    opengl: tuple[int, int]
+    glsl: tuple[int, int]
+    extensions: frozenset[str]
+
+
+def read_offer(text: str) -> Offer:
+    def version(name: str) -> tuple[int, int]:
+        found = re.search(rf"^{name} = (\d+)\.(\d)", text, re.MULTILINE)
+        if not found:
+            raise SuiteError(f"glinfo does not tell {name}:\n{text}")
+        return int(found[1]), int(found[2])
+
+    extensions = re.findall(r"^GL_([A-Za-z0-9_]+?)(?=PIGLIT|\s|$)", text.partition("Extensions:")[2], re.MULTILINE)
+    return Offer(version("GL_VERSION"), version("GL_SHADING_LANGUAGE_VERSION"), frozenset(map(str.lower, extensions)))
+
+
+def group_of(name: str, offer: Offer) -> str:
+    """The group of a test, or nothing if it is about something that is not offered."""
+    if found := OPENGL.match(name):
+        version = int(found[1]), int(found[2])
+        return f"OpenGL {found[1]}.{found[2]}" if version <= offer.opengl else ""
+    if found := GLSL.match(name):
+        version = int(found[1]), int(found[2])
+        return f"GLSL {found[1]}.{found[2]}0" if version <= offer.glsl else ""
+    if name.startswith("glx@"):
+        return "GLX"
+    if name.startswith("spec@egl"):
+        return "EGL"
+    if name.startswith("shaders@"):
+        return "shaders"
+    return "extensions" if name.startswith("spec@") and name.split("@")[1] in offer.extensions else ""
+
+
+def windowed(words: Iterable[str], home: Path = HOME) -> tuple[str, ...]:
+    """A test's command line without -fbo: framebuffer objects are not offered, and a window is what a wall is about."""
+    program, *arguments = (word for word in words if word != "-fbo")
+    return (str(home / "bin" / Path(program).name), *arguments)
+
+
+def read_list(text: str, profile: str, home: Path = HOME) -> list[Test]:
+    """`text`: lines of `piglit print-cmd`."""
+    pairs = (line.split(" ::: ", 1) for line in text.splitlines() if " ::: " in line)
+    return [Test(name, windowed(shlex.split(command), home), profile) for name, command in pairs]
+
+
+def load_left_out(path: Path) -> list[LeftOut]:
+    entries = tomllib.loads(path.read_text()).get("left_out", [])
+    if any(not entry["reason"].strip() for entry in entries):
+        raise SuiteError(f"{path}: an entry gives no reason")
+    return [LeftOut(re.compile(entry["tests"]), entry["reason"]) for entry in entries]
+
+
+def list_profile(profile: str) -> list[Test]:
+    try:
+        listed = subprocess.run(["piglit", "print-cmd", profile], capture_output=True, text=True, check=True, cwd=HOME)
+    except (OSError, subprocess.CalledProcessError) as error:
+        raise SuiteError(f"piglit does not list its tests ({error}): run scripts/install-deps.sh") from error
+    return read_list(listed.stdout, profile)
+
+
+def all_tests() -> list[Test]:
+    """All that piglit has, by name only once, less those whose program is not in Debian's package."""
+    tests: dict[str, Test] = {}
+    with ThreadPoolExecutor() as pool:  # seconds each
+        for test in itertools.chain.from_iterable(pool.map(list_profile, PROFILES)):
+            if Path(test.command[0]).exists():
+                tests.setdefault(test.name, test)
+    return list(tests.values())
