@@ -97,6 +97,7 @@ const Special kSpecials[] = {
     {GL_MAX_TEXTURE_UNITS, 1, limited<GL_MAX_TEXTURE_UNITS, kTextureUnits>},
     {GL_MAX_TEXTURE_COORDS, 1, limited<GL_MAX_TEXTURE_COORDS, kTextureUnits>},
     {GL_MAX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_TEXTURE_IMAGE_UNITS, kTextureUnits>},
+    {GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, kTextureUnits>},
     {GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, kTextureUnits>},
     {GL_MAX_DRAW_BUFFERS, 1, constant<1>},
     // For general use: RGBA of DXT1 has but one bit of alpha.

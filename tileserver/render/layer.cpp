@@ -81,7 +81,7 @@ std::vector<GLuint> Layer::draw_textures() const {
     std::vector<GLuint> textures;
     const auto [first, second] = attachments(draw_buffer_, format_.double_buffered);
     for (const GLenum attachment : {first, second})
-        if (attachment != GL_NONE) textures.push_back(attachment == kFront || !format_.double_buffered ? front_ : back_);
+        if (attachment != GL_NONE) textures.push_back(attachment == kFront || !format_.double_buffered ? program_front() : back_);
     return textures;
 }
 
@@ -124,12 +124,11 @@ void Layer::finish_frame() {
     if (!format_.double_buffered) return;
     copy(back_, *this, ready_);
     frame_waits_ = true;
+    attach(kFront, program_front());
 }
 
 void Layer::show_frame() {
-    if (!std::exchange(frame_waits_, false)) return;
-    std::swap(front_, ready_);
-    attach(kFront, front_);
+    if (std::exchange(frame_waits_, false)) std::swap(front_, ready_);  // what is attached as the front stays
 }
 
 void Layer::take_content(const Layer& older) {
@@ -143,6 +142,7 @@ void Layer::take_content(const Layer& older) {
         copy(older.back_, older, back_);
         copy(older.ready_, older, ready_);
         frame_waits_ = older.frame_waits_;
+        attach(kFront, program_front());
     }
     if (depth_stencil_ != 0 && older.depth_stencil_ != 0) copy(older.depth_stencil_, older, depth_stencil_);
     mine.area = place;

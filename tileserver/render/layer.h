@@ -80,6 +80,8 @@ public:
     std::vector<std::int16_t> accum;
 
 private:
+    /// To the program the frame that it ended last is the front buffer, shown or not.
+    GLuint program_front() const { return frame_waits_ ? ready_ : front_; }
     GLuint make_texture(GLenum format);
     void attach(GLenum point, GLuint texture);
     void copy(GLuint from, const Layer& source, GLuint to) const;

@@ -345,6 +345,25 @@ TEST_F(ExecutorTest, SwapKeepsTheFrameUntilItIsPresented) {
     EXPECT_FALSE(session.session.surface(SurfaceId(1))->waiting_frame());
 }
 
+TEST_F(ExecutorTest, TheFrontBufferIsTheFrameThatEndedLast) {
+    TestSession session(*node_.node, 1);
+    session.open_surface(kWidth, kHeight, kWindow);
+    const auto frame = [&](const glstate::Vec4& color, std::uint32_t number) {
+        Batch batch;
+        batch.set<el::clear_color>(color).set<el::read_buffer>(GL_FRONT);
+        batch.block(1, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT); });
+        pack::Swap(batch.buffer(), 1, number);
+        session.expect_run(batch);
+        return session.read(0, {0, 0, 1, 1});
+    };
+    EXPECT_EQ(frame({1, 0, 0, 1}, 1), (Pixels{255, 0, 0, 255}));  // shown or not
+    session.executor.present(SurfaceId(1), 1);
+    EXPECT_EQ(session.read(0, {0, 0, 1, 1}), (Pixels{255, 0, 0, 255}));
+    EXPECT_EQ(frame({0, 1, 0, 1}, 2), (Pixels{0, 255, 0, 255}));
+    session.executor.present(SurfaceId(1), 2);
+    EXPECT_EQ(frame({0, 0, 1, 1}, 3), (Pixels{0, 0, 255, 255}));
+}
+
 TEST_F(ExecutorTest, WorkIsCountedByWhatItIsFor) {
     TestSession session(*node_.node, 1), other(*node_.node, 2);
     for (TestSession* each : {&session, &other}) each->open_surface(kWidth, kHeight, kWindow);
