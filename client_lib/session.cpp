@@ -24,6 +24,7 @@ namespace {
 constexpr auto kRetryPause = std::chrono::seconds(10);  // a program that asks for every frame must not wait for every frame
 constexpr int kFinishMs = 500;                          // what is queued when the program ends
 constexpr int kConnectTimeoutMs = 2000;
+constexpr auto kConnectPause = std::chrono::seconds(1);  // between two attempts
 constexpr std::chrono::seconds kPlacementTimeout{2};
 constexpr int kReplyTimeoutMs = 10000;        // a readback behind a long frame of a software renderer
 constexpr std::uint32_t kDiffSample = 61;  // one difference in so many is timed: two looks at the clock cost more than comparing equal contexts
@@ -178,16 +179,40 @@ void Session::connect(Node& node) {
     node.batch.clear();
     node.left_out.clear();
     node.slow = node.asks_unanswered = false;
-    if (!node.info.up) return;
-    auto stream = NodeStream::open(node.info.address, encode_hello(id_, node.info.ticket, group_ ? group_->rank : 0), kConnectTimeoutMs);
+    node.attempt.reset();
+    if (node.info.up) adopt_stream(node, NodeStream::open(node.info.address, encode_hello(id_, node.info.ticket, group_ ? group_->rank : 0), kConnectTimeoutMs));
+}
+
+void Session::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream) {
     if (!stream) {
         log_warning("event=node_refused node=" + std::to_string(node.index) + " reason=\"" + stream.error().message + "\"");
+        node.next_attempt = std::chrono::steady_clock::now() + kConnectPause;
         return;
     }
     node.stream = std::move(*stream);
     if (group_) node.stream->never_stalls();
     transport_.add(node.stream);
     if (group_) introduce(node);
+}
+
+// A node that is there, but did not answer when it was asked. (The members of a parallel program take a node up together.)
+void Session::try_again(Node& node) {
+    if (node.stream || !node.info.up || group_) return;
+    if (node.attempt) {
+        auto outcome = node.attempt->take();
+        if (!outcome) return;
+        node.attempt.reset();
+        adopt_stream(node, std::move(*outcome));
+        if (node.stream) redraw();
+    } else if (std::chrono::steady_clock::now() >= node.next_attempt) {
+        node.attempt = ConnectAttempt::start(node.info.address, encode_hello(id_, node.info.ticket, 0), kConnectTimeoutMs);
+    }
+}
+
+/// Programs that draw only when asked are asked.
+void Session::redraw() {
+    for (const auto& [id, surface] : surfaces_)
+        if (!surface->layout.offscreen && surface->frame > 0) control_->ask_to_redraw(id);
 }
 
 void Session::open_surface(Surface& surface) {
@@ -286,11 +311,11 @@ void Session::take_events() {
         if (group_ && info.up) continue;  // comes with a placement
         Node& node = node_slot(info);
         connect(node);
-        for (auto& [id, surface] : surfaces_) {
+        for (auto& [id, surface] : surfaces_)
             if (surface->layout.offscreen) apply_layout(*surface, {});
-            else if (info.up && surface->frame > 0) control_->ask_to_redraw(id);
-        }
+        if (info.up) redraw();
     }
+    for (const auto& node : nodes_) try_again(*node);
     for (const Placement& placement : events.placements) {
         const auto found = surfaces_.find(placement.surface);
         if (found == surfaces_.end()) continue;

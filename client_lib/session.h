@@ -6,6 +6,7 @@
 // that the caller holds it.
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -13,6 +14,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "client_lib/connect_attempt.h"
 #include "client_lib/control.h"
 #include "client_lib/core.h"
 #include "client_lib/ideal.h"
@@ -55,6 +57,8 @@ struct Node {
     std::unordered_map<std::uint32_t, std::uint32_t> left_out;    ///< surfaces whose frames it does not get now: the last one it got
     bool asks_unanswered = false;                                 ///< a question about content took too long: it gets no more
     bool slow = false;                                            ///< missed a frame's limit; not waited for until it answers again
+    std::shared_ptr<ConnectAttempt> attempt;                      ///< one that is being made since the first failed
+    std::chrono::steady_clock::time_point next_attempt;
 
     wire::PackBuffer batch;          ///< being packed
     std::uint32_t batch_context = 0; ///< whose
@@ -168,6 +172,9 @@ private:
     void adopt_placement(Surface& surface);
     void follow_window(Surface& surface);
     void connect(Node& node);
+    void adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream);
+    void try_again(Node& node);
+    void redraw();
     void describe_surface(Node& node, Surface& surface);
     Node& node_at(std::uint32_t index);
     Node& node_slot(const NodeInfo& info);

@@ -2,32 +2,14 @@
 #include "client_lib/transport.h"
 
 #include <poll.h>
-#include <pthread.h>
-#include <signal.h>
 #include <sys/eventfd.h>
 
 #include <algorithm>
 #include <chrono>
 
+#include "client_lib/process.h"
+
 namespace wall::client {
-namespace {
-
-/// A thread in a foreign process must never run the application's signal handlers.
-class SignalsBlocked {
-public:
-    SignalsBlocked() {
-        sigset_t all;
-        sigfillset(&all);
-        pthread_sigmask(SIG_SETMASK, &all, &before_);
-    }
-    ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-
-private:
-    sigset_t before_;
-};
-
-}  // namespace
-
 Transport::Transport() : wake_fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
     SignalsBlocked blocked;
     thread_ = std::thread([this] { run(); });

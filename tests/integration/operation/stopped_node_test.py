@@ -17,7 +17,9 @@ from xserver import XServer  # noqa: E402
 TILE = (200, 150)
 STOP = 10.0  # seconds; many times the swap limit, and enough to fill every queue of the busy program
 BESIDE = 4.0  # seconds before, and again after, in which the usual frame rates are taken: a machine gets faster and slower by itself
+TAKEN_UP = 8.0  # seconds after SIGCONT until a program that started meanwhile is on it: an attempt that ends, a pause, another
 CATCH_UP = 2.0  # seconds after SIGCONT until every tile is right
+STANDING = 6.0  # seconds from the program's start on; it asks a node for 2, and again after 1
 KEPT = 0.9  # of the usual frame rate
 ATTEMPTS = 3  # what else the machine does may slow a program for some seconds; the node's standstill does so each time
 
@@ -100,6 +102,31 @@ class StoppedNode(unittest.TestCase):
             self.assertIsNone(app.poll(), "no program has ended")
         for session in self.wall.sessions():
             self.assertEqual(session["fault"], "")
+
+
+class StoppedAtTheStart(unittest.TestCase):
+    """A program that starts while a node stands still leaves it out, and takes it up when it goes on."""
+
+    def test_it_reaches_the_node_later(self) -> None:
+        with XServer() as x, Wall(tiles=(2, 1), tile_size=TILE, environment={"LP_NUM_THREADS": "0"}) as wall:
+            node = wall.daemons["node-1-0"]
+            node.send_signal(signal.SIGSTOP)
+            try:
+                app = wall.run(build_folder() / "tests" / "frame_clock", "--size", "400x150", "--fps", "20", rect=(0, 0, 400, 150), env=x.environment())
+                wall.wait_session(app)
+                time.sleep(STANDING)
+                drawn = wall.sessions()[0]["surfaces"][0]["frame"]
+                self.assertGreater(drawn, 20, "the program draws without the node")
+            finally:
+                node.send_signal(signal.SIGCONT)
+            end = time.monotonic() + TAKEN_UP
+            while True:
+                picture = cv2.imdecode(numpy.frombuffer(wall.screenshot(), numpy.uint8), cv2.IMREAD_COLOR)
+                if (picture[:, :, 0] == 255).all():
+                    break
+                self.assertLess(time.monotonic(), end, "the node that stood still shows nothing of the program")
+                time.sleep(0.1)
+            self.assertEqual(wall.sessions()[0]["fault"], "")
 
 
 if __name__ == "__main__":
