@@ -64,12 +64,16 @@ Result<std::unique_ptr<X11Display>> X11Display::open(const std::string& wanted) 
     out->display_ = XOpenDisplay(name.c_str());
     if (out->display_ == nullptr) return fail("the X display \"" + name + "\" cannot be opened: is an X server running there, and does XAUTHORITY name its key?");
     XSetIOErrorExitHandler(out->display_, [](Display*, void* self) { static_cast<X11Display*>(self)->lost_ = true; }, out.get());
+    out->watch_.emplace(ConnectionNumber(out->display_), out->gone());
     return out;
 }
 
 X11Display::~X11Display() {
+    watch_.reset();
     if (display_ != nullptr) XCloseDisplay(display_);
 }
+
+std::string X11Display::gone() const { return "the X server of display \"" + name_ + "\" has gone away"; }
 
 Result<geom::Rect> X11Display::monitor(const std::string& wanted) const {
     int event = 0, error = 0, major = 0, minor = 0;
@@ -107,7 +111,7 @@ void X11Display::suspend_screen_saver() const {
 
 Result<void> X11Display::settle(const std::string& what) const {
     XSync(display_, False);
-    if (lost_) return fail("the X server of display \"" + name_ + "\" has gone away");
+    if (lost_) return fail(gone());
     if (const int code = std::exchange(refused_code, 0); code != 0) {
         std::array<char, 128> text{};
         XGetErrorText(display_, code, text.data(), static_cast<int>(text.size()));

@@ -5,10 +5,12 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/base/result.h"
 #include "common/geom/rect.h"
+#include "tileserver/gpu/x11_watch.h"
 
 struct _XDisplay;
 
@@ -37,10 +39,12 @@ public:
 
 private:
     explicit X11Display(std::string name) : name_(std::move(name)) {}
+    std::string gone() const;
 
     std::string name_;
     _XDisplay* display_ = nullptr;
     bool lost_ = false;
+    std::optional<X11Watch> watch_;
 };
 
 }  // namespace wall::tileserver

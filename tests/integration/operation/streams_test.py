@@ -105,10 +105,12 @@ class Streams(unittest.TestCase):
         names = self.wall.tile_names
         viewer.watch(*({"tile": name, "codec": "raw"} for name in names))
         got = {}
-        for _ in names:
+        while len(got) < len(names):
             frame = self.frame(viewer)
-            self.assertEqual((frame.part, frame.flags), (0, 1))
-            self.assertEqual(self.texts[-1], {"stream": frame.stream, "part": 0, "header": ""})
+            self.assertEqual(frame.part, 0)
+            if frame.stream not in got:
+                self.assertEqual(frame.flags, 1)
+                self.assertEqual(self.texts[-1], {"stream": frame.stream, "part": 0, "header": ""})
             got[frame.stream] = pixels(frame.packet, *TILE)
         for i, name in enumerate(names):
             self.assertTrue((got[i] == self.screenshot(name)[:, :, :3]).all(), name)
