@@ -64,11 +64,22 @@ bool Driver::fragments_change(const glstate::State& from, const glstate::State& 
     return false;
 }
 
+/// glColorMaterial is given while tracking is off: a colour that Mesa 22.3 still holds then (glColor outside of glBegin) would
+/// not reach the parameters that were tracked before.
+void Driver::stop_tracking(const glstate::State& state) {
+    constexpr auto kMaterial = static_cast<std::size_t>(glstate::Category::material);
+    if (mirror.ids[kMaterial] == state.ids[kMaterial] || !mirror.material.color_material_enabled) return;
+    if (glstate::same(mirror.material.color_material, state.material.color_material)) return;
+    gl_.Disable(GL_COLOR_MATERIAL);
+    glstate::assign<glstate::el::color_material_enabled>(mirror, 0, 0);
+}
+
 void Driver::sync_values(glstate::State& state) {
     if (bitmap_held_ && fragments_change(mirror, state)) {
         gl_.Flush();
         bitmap_held_ = false;
     }
+    stop_tracking(state);
     glstate::diff_and_unify<kSynced>(mirror, state, *this);
     if (std::exchange(modelview_changed_, false)) modelview_has_origin_ = glstate::load_modelview(gl_, mirror, modelview_has_origin_);
 }

@@ -117,6 +117,7 @@ private:
     void with_identity_modelview(Call&& call);
     void apply_viewport(const WindowValues& values, bool scaled);
 
+    void stop_tracking(const glstate::State& state);
     void sync_values(glstate::State& state);
     void bind_window(Layer& layer, glstate::State& state);
     void bind_all(const TextureBindings& wanted);

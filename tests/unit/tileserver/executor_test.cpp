@@ -272,6 +272,36 @@ TEST_F(ExecutorTest, TwoSessionsInTurnsDrawAsEachAlone) {
 // Whole pixels, so that the orientation of the reference's memory does not matter.
 constexpr std::array<std::array<float, 4>, 3> kSquares = {{{0.9f, 0.3f, 0.1f, 0.25f}, {0.2f, 0.77f, 0.5f, 0.5f}, {0.13f, 0.41f, 0.99f, 0.75f}}};
 
+// Mesa keeps a colour outside of glBegin to itself for a while; what it tracks may change meanwhile.
+TEST_F(ExecutorTest, ColorMaterialSurvivesASwitch) {
+    const glstate::Vec4 black{0, 0, 0, 1}, white{1, 1, 1, 1}, green{0, 1, 0, 1};
+    TestSession session(*node_.node, 1), other(*node_.node, 2);
+    session.open_surface(kWidth, kHeight, kWindow);
+    other.open_surface(kWidth, kHeight, kWindow);
+    const auto clear = [](auto& b) { pack::Clear(b, kColorDepth); };
+    Batch first;
+    first.set<el::lighting_enabled>(1).set<el::light_enabled>(1).set<el::light_model_ambient>(black);
+    first.set<el::light_ambient>(black).set<el::light_specular>(black).set<el::light_diffuse>(white);
+    first.set<el::material_diffuse>(white).set<el::material_diffuse>(white, 1);
+    first.set<el::color_material>({GL_FRONT_AND_BACK, GL_AMBIENT}).set<el::color_material_enabled>(1).set<el::color>(green);
+    first.block(1, clear);
+    session.expect_run(first);
+    Batch between;
+    between.block(1, [&](auto& b) { pack_fan(b, 0.5f); });
+    other.expect_run(between);
+    Batch second;
+    second.block(1, clear);
+    second.set<el::color_material>({GL_FRONT_AND_BACK, GL_DIFFUSE});
+    second.block(1, [](auto& b) {
+        pack::Begin(b, GL_TRIANGLES);
+        pack::Normal3f(b, 0, 0, 1);
+        for (const auto& [x, y] : {std::pair{-1.0f, -1.0f}, {3.0f, -1.0f}, {-1.0f, 3.0f}}) pack::Vertex2f(b, x, y);
+        pack::End(b);
+    });
+    session.expect_run(second);
+    EXPECT_EQ(session.read(0, {kWidth / 2, kHeight / 2, 1, 1}), (Pixels{0, 255, 0, 255}));
+}
+
 TEST_F(ExecutorTest, AccumulationBuffer) {
     TestSession session(*node_.node, 1);
     session.open_surface(kWidth, kHeight, kWindow, 1, true);
