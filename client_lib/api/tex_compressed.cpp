@@ -16,6 +16,8 @@
 namespace wall::client::api {
 namespace {
 
+constexpr std::size_t kMostAsked = 16u << 20;  // bytes of pixels in one question
+
 bool legal_target(GLenum target) {
     const GLenum object = object_target(target);
     return target != GL_TEXTURE_CUBE_MAP && (object == GL_TEXTURE_2D || object == GL_TEXTURE_CUBE_MAP);
@@ -63,14 +65,23 @@ void copy_blocks(TextureLevel& level, const Image& part, GLint x, GLint y, const
         std::memcpy(level.pixels.data() + static_cast<std::size_t>((y + done) / kS3tcBlock) * row + left, from, part_row);
 }
 
-/// What a node's driver makes of an image; nothing if none answers.
-std::optional<std::vector<std::byte>> compressed(Context& c, const Image& image, GLenum format, GLenum type, std::span<const std::byte> pixels,
-                                                 const char* function) {
-    auto answer = ask_one_node(c, function, [&](wire::PackBuffer& buffer, std::uint32_t request) {
-        glapi::pack::Compress(buffer, request, static_cast<GLenum>(image.format), image.width, image.height, format, type, pixels);
-    });
-    if (!answer || answer->bytes.size() != s3tc_bytes(image.format, image.width, image.height)) return std::nullopt;
-    return std::move(answer->bytes);
+/// What a node's driver makes of an image; nothing if none answers. A large one is asked for in rows of blocks.
+std::optional<std::vector<std::byte>> compressed(Context& c, const Image& image, const TexelData& data, const char* function) {
+    const auto layout = glapi::pixel_layout(data.format, data.type);
+    if (!layout) return std::nullopt;
+    const std::size_t row = glapi::row_bytes(*layout, image.width);
+    const auto most = static_cast<GLsizei>(std::max<std::size_t>(kMostAsked / row / kS3tcBlock, 1)) * kS3tcBlock;
+    std::vector<std::byte> blocks;
+    for (GLsizei y = 0; y < image.height; y += most) {
+        const GLsizei height = std::min(most, image.height - y);
+        const auto pixels = std::span(data.bytes).subspan(static_cast<std::size_t>(y) * row, static_cast<std::size_t>(height) * row);
+        const auto answer = ask_one_node(c, function, [&](wire::PackBuffer& buffer, std::uint32_t request) {
+            glapi::pack::Compress(buffer, request, static_cast<GLenum>(image.format), image.width, height, data.format, data.type, pixels);
+        });
+        if (!answer || answer->bytes.size() != s3tc_bytes(image.format, image.width, height)) return std::nullopt;
+        blocks.insert(blocks.end(), answer->bytes.begin(), answer->bytes.end());
+    }
+    return blocks;
 }
 
 }  // namespace
@@ -97,7 +108,7 @@ void settle_blocks(Context& c, GLenum target, GLint number) {
         if (level->content == LevelContent::stored) data = {level->data_format, level->data_type, level->pixels};
         else data = {GL_RGBA, GL_UNSIGNED_BYTE, std::vector<std::byte>(std::size_t{4} * static_cast<std::size_t>(level->width) * static_cast<std::size_t>(level->height))};
     }
-    auto blocks = api::compressed(c, image, data.format, data.type, data.bytes, "glGetCompressedTexImage");
+    auto blocks = api::compressed(c, image, data, "glGetCompressedTexImage");
     if (!blocks) return;
     c.flush_block();
     std::lock_guard lock(c.share().mutex);
@@ -113,7 +124,7 @@ bool change_blocks(Context& c, const ImageCall& call, const TexelData& data) {
     const auto texture = texture_to_change(c, call.target);
     const GLint format = texture->find_level(face_of(call.target), call.level)->internal_format;
     const api::Image part{call.target, call.level, format, call.width, call.height, 0};
-    const auto blocks = api::compressed(c, part, data.format, data.type, data.bytes, "glTexSubImage2D");
+    const auto blocks = api::compressed(c, part, data, "glTexSubImage2D");
     if (!blocks) return false;
     std::lock_guard lock(c.share().mutex);
     TextureLevel& level = *texture->find_level(face_of(call.target), call.level);
