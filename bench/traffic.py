@@ -93,7 +93,7 @@ def measure(recording: Recording, tiles: str, x: XServer) -> dict:
 def print_row(row: dict, first: dict) -> None:
     bucketed, broadcast = row["bucketed"], row["broadcast"]
     print(f"{row['tiles']:>6}{bucketed['state']:12,.0f}{bucketed['state'] / max(1, first['bucketed']['state']):7.2f}"
-          f"{row['matrices']:9.2f}{row['matrices'] / max(1, first['matrices']):7.2f}"
+          f"{row['matrices']:9.2f}{row['matrices'] / max(1e-9, first['matrices']):7.2f}"
           f"{broadcast['state']:12,.0f}{bucketed['object']:12,.0f}{bucketed['geometry']:14,.0f}"
           f"{row['over_ideal']:12.3f}{broadcast['geometry']:14,.0f}{row['frames']:8}", flush=True)
 

@@ -5,8 +5,6 @@
 #include <array>
 #include <cstring>
 
-#include "client_lib/texture_formats.h"
-
 namespace wall::client {
 namespace {
 
@@ -63,26 +61,21 @@ std::uint8_t interpolated_alpha(const std::byte* block, unsigned i) {
 }
 
 std::array<Texel, 16> decode_block(GLint format, const std::byte* block) {
-    if (compressed_block_bytes(format) == 8) return colors(block, true, format == GL_COMPRESSED_RGBA_S3TC_DXT1_EXT);
+    if (s3tc_block_bytes(format) == 8) return colors(block, true, format == GL_COMPRESSED_RGBA_S3TC_DXT1_EXT);
     auto out = colors(block + 8, false, false);
     for (unsigned i = 0; i < 16; ++i)
         out[i][3] = format == GL_COMPRESSED_RGBA_S3TC_DXT3_EXT ? explicit_alpha(block, i) : interpolated_alpha(block, i);
     return out;
 }
 
-std::size_t blocks_along(std::int32_t texels) { return (static_cast<std::size_t>(texels) + kS3tcBlock - 1) / kS3tcBlock; }
 
 }  // namespace
-
-std::size_t s3tc_bytes(GLint format, std::int32_t width, std::int32_t height) {
-    return blocks_along(width) * blocks_along(height) * compressed_block_bytes(format);
-}
 
 std::vector<std::byte> decode_s3tc(GLint format, std::int32_t width, std::int32_t height, std::span<const std::byte> blocks) {
     std::vector<std::byte> out(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
     const std::byte* block = blocks.data();
     for (std::int32_t y = 0; y < height; y += kS3tcBlock)
-        for (std::int32_t x = 0; x < width; x += kS3tcBlock, block += compressed_block_bytes(format)) {
+        for (std::int32_t x = 0; x < width; x += kS3tcBlock, block += s3tc_block_bytes(format)) {
             const auto texels = decode_block(format, block);
             const std::int32_t columns = std::min(kS3tcBlock, width - x);
             for (std::int32_t row = 0; row < std::min(kS3tcBlock, height - y); ++row)

@@ -159,14 +159,4 @@ ComponentBits stored_bits(const TextureFormat& row, GLenum format, GLenum type) 
     return row.bits;
 }
 
-unsigned compressed_block_bytes(GLint internal_format) {
-    switch (internal_format) {
-        case GL_COMPRESSED_RGB_S3TC_DXT1_EXT:
-        case GL_COMPRESSED_RGBA_S3TC_DXT1_EXT: return 8;
-        case GL_COMPRESSED_RGBA_S3TC_DXT3_EXT:
-        case GL_COMPRESSED_RGBA_S3TC_DXT5_EXT: return 16;
-        default: return 0;
-    }
-}
-
 }  // namespace wall::client

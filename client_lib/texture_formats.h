@@ -28,7 +28,4 @@ const TextureFormat* find_texture_format(GLint internal_format);
 /// Bits as stored: an unsized format follows the pixels that it was defined with.
 ComponentBits stored_bits(const TextureFormat& row, GLenum format, GLenum type);
 
-/// Bytes of a block of 4x4 texels; 0: not a compressed format that a program may upload.
-unsigned compressed_block_bytes(GLint internal_format);
-
 }  // namespace wall::client

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "client_lib/context.h"
+#include "client_lib/objects/texture.h"
 #include "common/glapi/image.h"
 
 namespace wall::client {
@@ -27,6 +28,9 @@ struct TexelData {
     GLenum format = 0, type = 0;
     std::vector<std::byte> bytes;
 };
+
+/// GL_GENERATE_MIPMAP: after a change of a level, with the share group's mutex held.
+void generate_if_asked(Texture& texture, GLint level);
 
 /// How many levels a texture of this target may have.
 GLint level_count(Context& c, GLenum target);

@@ -30,7 +30,7 @@ struct Image {
 };
 
 GLenum image_error(Context& c, const Image& image, GLint border) {
-    if (!legal_target(image.target) || compressed_block_bytes(image.format) == 0) return GL_INVALID_ENUM;
+    if (!legal_target(image.target) || s3tc_block_bytes(image.format) == 0) return GL_INVALID_ENUM;
     const GLint levels = level_count(c, image.target);
     if (image.level < 0 || image.level >= levels || border != 0 || image.width < 0 || image.height < 0) return GL_INVALID_VALUE;
     const GLint most = std::max(1, 1 << (levels - 1) >> image.level);
@@ -91,7 +91,7 @@ namespace wall::client {
 
 GLint blocks_format(GLint internal_format) {
     const TextureFormat* format = find_texture_format(internal_format);
-    return format && compressed_block_bytes(format->answer) != 0 ? format->answer : 0;
+    return format && s3tc_block_bytes(format->answer) != 0 ? format->answer : 0;
 }
 
 void settle_blocks(Context& c, GLenum target, GLint number) {
@@ -130,6 +130,7 @@ bool change_blocks(Context& c, const ImageCall& call, const TexelData& data) {
     TextureLevel& level = *texture->find_level(face_of(call.target), call.level);
     api::copy_blocks(level, part, call.x, call.y, blocks->data());
     level.stamp = next_stamp();
+    generate_if_asked(*texture, call.level);
     touch(c.share(), *texture);
     return true;
 }
@@ -157,13 +158,13 @@ void CompressedTexImage2D(Context& c, GLenum target, GLint number, GLenum intern
     if (from) std::copy(from, from + bytes, level.pixels.begin());
     level.content = LevelContent::stored;
     level.stamp = next_stamp();
-    if (texture->parameters.generate_mipmap && number == texture->parameters.base_level) texture->mipmaps_generated();
+    generate_if_asked(*texture, number);
     touch(c.share(), *texture);
 }
 
 void CompressedTexSubImage2D(Context& c, GLenum target, GLint number, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLsizei bytes,
                              const void* data) {
-    if (is_proxy(target) || !legal_target(target) || compressed_block_bytes(static_cast<GLint>(format)) == 0) return c.error(GL_INVALID_ENUM);
+    if (is_proxy(target) || !legal_target(target) || s3tc_block_bytes(static_cast<GLint>(format)) == 0) return c.error(GL_INVALID_ENUM);
     if (number < 0 || number >= level_count(c, target) || bytes < 0) return c.error(GL_INVALID_VALUE);
     const Image part{target, number, static_cast<GLint>(format), width, height, bytes};
     settle_blocks(c, target, number);
@@ -177,6 +178,7 @@ void CompressedTexSubImage2D(Context& c, GLenum target, GLint number, GLint x, G
     TextureLevel& to = *changed->find_level(face_of(target), number);
     copy_blocks(to, part, x, y, from);
     to.stamp = next_stamp();
+    generate_if_asked(*changed, number);
     touch(c.share(), *changed);
 }
 

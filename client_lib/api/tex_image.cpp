@@ -152,11 +152,11 @@ void copy_box(TextureLevel& level, const TexBox& box, const std::vector<std::byt
         }
 }
 
+}  // namespace
+
 void generate_if_asked(Texture& texture, GLint level) {
     if (texture.parameters.generate_mipmap && level == texture.parameters.base_level) texture.mipmaps_generated();
 }
-
-}  // namespace
 
 GLint level_count(Context& c, GLenum target) {
     if (object_target(target) == GL_TEXTURE_RECTANGLE) return 1;

@@ -65,7 +65,7 @@ bool Driver::fragments_change(const glstate::State& from, const glstate::State& 
 }
 
 /// glColorMaterial is given while tracking is off: a colour that Mesa 22.3 still holds then (glColor outside of glBegin) would
-/// not reach the parameters that were tracked before.
+/// be lost to the material.
 void Driver::stop_tracking(const glstate::State& state) {
     constexpr auto kMaterial = static_cast<std::size_t>(glstate::Category::material);
     if (mirror.ids[kMaterial] == state.ids[kMaterial] || !mirror.material.color_material_enabled) return;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/glapi/image.h"
+#include "common/glapi/s3tc.h"
 #include "common/wire/batch.h"
 #include "tileserver/render/executor.h"
 #include "tileserver/render/limits.h"
@@ -17,15 +18,6 @@ std::vector<float> floats(std::span<const std::byte> bytes) {
     if (!out.empty()) std::memcpy(out.data(), bytes.data(), out.size() * sizeof(float));
     return out;
 }
-
-/// Of an image; 0: not one of the formats, or nothing in it.
-std::size_t s3tc_bytes(GLenum format, std::int32_t width, std::int32_t height) {
-    const auto across = [](std::int32_t texels) { return (static_cast<std::size_t>(texels) + 3) / 4; };
-    const std::size_t blocks = across(width) * across(height);
-    if (format == GL_COMPRESSED_RGB_S3TC_DXT1_EXT || format == GL_COMPRESSED_RGBA_S3TC_DXT1_EXT) return blocks * 8;
-    return format == GL_COMPRESSED_RGBA_S3TC_DXT3_EXT || format == GL_COMPRESSED_RGBA_S3TC_DXT5_EXT ? blocks * 16 : 0;
-}
-bool is_s3tc(GLenum format) { return s3tc_bytes(format, 1, 1) != 0; }
 
 }  // namespace
 
@@ -96,7 +88,7 @@ void Executor::TexSubImage(std::uint32_t name, GLenum target, std::int32_t level
 void Executor::TexCompressed(std::uint32_t name, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
                              std::span<const std::byte> blocks) {
     if (width < 0 || height < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent || level < 0 || level > kMaxTextureLevel) return refuse("absurd size");
-    if (!is_s3tc(internal_format) || blocks.size() != s3tc_bytes(internal_format, width, height)) return refuse("size does not fit the blocks");
+    if (glapi::s3tc_block_bytes(internal_format) == 0 || blocks.size() != glapi::s3tc_bytes(internal_format, width, height)) return refuse("size does not fit the blocks");
     Texture* texture = bind_for_upload(name, target);
     if (texture == nullptr) return;
     const TextureTarget kind = texture->content->target();
@@ -109,9 +101,9 @@ void Executor::TexCompressed(std::uint32_t name, GLenum target, std::int32_t lev
 void Executor::Compress(std::uint32_t request, GLenum internal_format, std::int32_t width, std::int32_t height, GLenum format, GLenum type,
                         std::span<const std::byte> pixels) {
     if (width < 1 || height < 1 || width > kMaxTextureExtent || height > kMaxTextureExtent) return refuse("absurd size");
-    if (!is_s3tc(internal_format)) return refuse("no such compressed format");
+    if (glapi::s3tc_block_bytes(internal_format) == 0) return refuse("no such compressed format");
     if (!check_image(format, type, width, height, 1, pixels)) return;
-    std::vector<std::byte> blocks(s3tc_bytes(internal_format, width, height));
+    std::vector<std::byte> blocks(glapi::s3tc_bytes(internal_format, width, height));
     node_.driver.neutral_pixel_transfer();
     GLuint texture = 0;
     gl_.CreateTextures(GL_TEXTURE_2D, 1, &texture);
