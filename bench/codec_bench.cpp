@@ -233,14 +233,10 @@ int run(int argc, char** argv) {
     int rounds = 7;
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
-        if (argument == "--json" && i + 1 < argc)
-            json = argv[++i];
-        else if (argument == "--rounds" && i + 1 < argc)
-            rounds = std::max(1, std::atoi(argv[++i]));
-        else if (argument == "--only" && i + 1 < argc)
-            only = argv[++i];
-        else
-            folder = argument;
+        if (argument == "--json" && i + 1 < argc) json = argv[++i];
+        else if (argument == "--rounds" && i + 1 < argc) rounds = std::max(1, std::atoi(argv[++i]));
+        else if (argument == "--only" && i + 1 < argc) only = argv[++i];
+        else folder = argument;
     }
     if (folder.empty() || !std::filesystem::is_directory(folder))
         throw std::runtime_error("expected [--json FILE] [--rounds N] [--only SCENE] FOLDER");

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A program with many large textures: defines them, draws a frame with all of them, says so, and goes on showing it until it is
-// ended. Any GLX. bench/share.py runs several of it at once.
+// A program with many large textures: defines them, draws a frame with all of them, says so, and goes on showing it
+// until it is ended. Any GLX. bench/share.py runs several of it at once.
 #include <GL/gl.h>
 #include <GL/glx.h>
 
+#include <unistd.h>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <unistd.h>
 #include <vector>
 
 namespace {
@@ -28,8 +28,8 @@ bool parse(int argc, char** argv, Options& o) {
             value = static_cast<std::remove_reference_t<decltype(value)>>(std::atoi(argv[i + 1]));
             return true;
         };
-        if (!number("--textures", o.textures) && !number("--texels", o.texels) && !number("--seed", o.seed) && !number("--window", o.window) &&
-            !number("--global", o.global))
+        if (!number("--textures", o.textures) && !number("--texels", o.texels) && !number("--seed", o.seed) &&
+            !number("--window", o.window) && !number("--global", o.global))
             return false;
     }
     return o.textures > 0 && o.texels > 0 && o.window > 0;
@@ -51,9 +51,11 @@ std::vector<std::uint32_t> image(const Options& o, int number) {
 int main(int argc, char** argv) {
     Options o;
     if (!parse(argc, argv, o)) {
-        std::fputs("usage: many_textures [--textures N] [--texels SIDE] [--seed S] [--window PIXELS] [--global 1]\n"
-                   "Shows N textures of SIDE x SIDE RGBA noise side by side. Equal seeds make equal textures.\n"
-                   "--global: the processes of a parallel program share them by name (GL_WALLGL_global_texture).\n", stderr);
+        std::fputs(
+            "usage: many_textures [--textures N] [--texels SIDE] [--seed S] [--window PIXELS] [--global 1]\n"
+            "Shows N textures of SIDE x SIDE RGBA noise side by side. Equal seeds make equal textures.\n"
+            "--global: the processes of a parallel program share them by name (GL_WALLGL_global_texture).\n",
+            stderr);
         return 2;
     }
     Display* display = XOpenDisplay(nullptr);
@@ -65,7 +67,8 @@ int main(int argc, char** argv) {
     const Window root = RootWindow(display, visual->screen);
     window_attributes.colormap = XCreateColormap(display, root, visual->visual, AllocNone);
     const auto side = static_cast<unsigned>(o.window);
-    const Window window = XCreateWindow(display, root, 0, 0, side, side, 0, visual->depth, InputOutput, visual->visual, CWColormap, &window_attributes);
+    const Window window = XCreateWindow(display, root, 0, 0, side, side, 0, visual->depth, InputOutput, visual->visual,
+                                        CWColormap, &window_attributes);
     XMapWindow(display, window);
     GLXContext context = glXCreateContext(display, visual, nullptr, True);
     if (!glXMakeCurrent(display, window, context)) return std::fputs("many_textures: no context\n", stderr), 1;
@@ -81,7 +84,8 @@ int main(int argc, char** argv) {
     for (int frame = 0;; ++frame) {
         glClear(GL_COLOR_BUFFER_BIT);
         for (int i = 0; i < o.textures; ++i) {
-            const float bottom = 2.0f * static_cast<float>(i) / static_cast<float>(o.textures) - 1, top = bottom + 2.0f / static_cast<float>(o.textures);
+            const float bottom = 2.0f * static_cast<float>(i) / static_cast<float>(o.textures) - 1,
+                        top = bottom + 2.0f / static_cast<float>(o.textures);
             glBindTexture(GL_TEXTURE_2D, names[static_cast<std::size_t>(i)]);
             glBegin(GL_QUADS);
             glTexCoord2f(0, 0), glVertex2f(-1, bottom);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A mesh of many small triangles in immediate mode, one glBegin for all of it or one for each strip: what a simulation's
-// surface looks like to the packer. Any GLX. `mesh --help` tells the options; bench/mesh.py measures it on a wall.
+// A mesh of many small triangles in immediate mode, one glBegin for all of it or one for each strip: what a
+// simulation's surface looks like to the packer. Any GLX. `mesh --help` tells the options; bench/mesh.py measures it on
+// a wall.
 #include <GL/gl.h>
 #include <GL/glx.h>
 
@@ -41,7 +42,8 @@ void draw_triangles(const Options& o, float time) {
 void draw_strips(const Options& o, float time) {
     for (int row = 0; row < o.rows; ++row) {
         glBegin(GL_TRIANGLE_STRIP);
-        for (int column = 0; column <= o.columns; ++column) vertex(o, column, row + 1, time), vertex(o, column, row, time);
+        for (int column = 0; column <= o.columns; ++column)
+            vertex(o, column, row + 1, time), vertex(o, column, row, time);
         glEnd();
     }
 }
@@ -49,14 +51,10 @@ void draw_strips(const Options& o, float time) {
 bool parse(int argc, char** argv, Options& o) {
     for (int i = 1; i < argc; ++i) {
         const auto is = [&](const char* name) { return std::strcmp(argv[i], name) == 0; };
-        if (is("--strips"))
-            o.strips = true;
-        else if (is("--frames") && i + 1 < argc)
-            o.frames = std::atoi(argv[++i]);
-        else if (is("--size") && i + 1 < argc && std::sscanf(argv[++i], "%dx%d", &o.width, &o.height) == 2)
-            continue;
-        else
-            return false;
+        if (is("--strips")) o.strips = true;
+        else if (is("--frames") && i + 1 < argc) o.frames = std::atoi(argv[++i]);
+        else if (is("--size") && i + 1 < argc && std::sscanf(argv[++i], "%dx%d", &o.width, &o.height) == 2) continue;
+        else return false;
     }
     return o.frames > 0 && o.width > 0 && o.height > 0;
 }
@@ -66,8 +64,10 @@ bool parse(int argc, char** argv, Options& o) {
 int main(int argc, char** argv) {
     Options o;
     if (!parse(argc, argv, o)) {
-        std::fputs("usage: mesh [--strips] [--frames N] [--size WxH]\n"
-                   "Draws N frames of a lit mesh of 35,156 triangles (one glBegin, or one strip a row) and prints frames/s.\n", stderr);
+        std::fputs(
+            "usage: mesh [--strips] [--frames N] [--size WxH]\n"
+            "Draws N frames of a lit mesh of 35,156 triangles (one glBegin, or one strip a row) and prints frames/s.\n",
+            stderr);
         return 2;
     }
     Display* display = XOpenDisplay(nullptr);
@@ -78,8 +78,9 @@ int main(int argc, char** argv) {
     XSetWindowAttributes window_attributes{};
     const Window root = RootWindow(display, visual->screen);
     window_attributes.colormap = XCreateColormap(display, root, visual->visual, AllocNone);
-    const Window window = XCreateWindow(display, root, 0, 0, static_cast<unsigned>(o.width), static_cast<unsigned>(o.height), 0,
-                                        visual->depth, InputOutput, visual->visual, CWColormap, &window_attributes);
+    const Window window =
+        XCreateWindow(display, root, 0, 0, static_cast<unsigned>(o.width), static_cast<unsigned>(o.height), 0,
+                      visual->depth, InputOutput, visual->visual, CWColormap, &window_attributes);
     XMapWindow(display, window);
     GLXContext context = glXCreateContext(display, visual, nullptr, True);
     if (!glXMakeCurrent(display, window, context)) return std::fputs("mesh: no context\n", stderr), 1;

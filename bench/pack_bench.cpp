@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How fast immediate mode goes through the real libGL entry points into whatever vendor is selected: WallGL (on a wall),
-// the bare packer (bench/bare_vendor) or Mesa. What is drawn lies beside the window, so that on a wall every vertex is
-// packed, boxed and sorted but none is sent. bench/pack.py runs the vendors in turn.
+// How fast immediate mode goes through the real libGL entry points into whatever vendor is selected: WallGL (on a
+// wall), the bare packer (bench/bare_vendor) or Mesa. What is drawn lies beside the window, so that on a wall every
+// vertex is packed, boxed and sorted but none is sent. bench/pack.py runs the vendors in turn.
 #include <GL/gl.h>
 #include <GL/glx.h>
 #include <benchmark/benchmark.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What state tracking costs: one context difference when nothing, one element, or everything has changed (T4; the paper,
-// on an 800 MHz machine: 3.3 to 7 us), the same into packed commands, and decoding a packed stream into nothing.
+// What state tracking costs: one context difference when nothing, one element, or everything has changed (T4; the
+// paper, on an 800 MHz machine: 3.3 to 7 us), the same into packed commands, and decoding a packed stream into nothing.
 #include <benchmark/benchmark.h>
 
 #include "common/glstate/diff.h"
@@ -116,7 +116,8 @@ void DecodeVertices(benchmark::State& run) {
     glapi::pack::Begin(body, GL_TRIANGLES);
     for (std::uint32_t i = 0; i < kVertices; ++i) glapi::pack::Vertex3f(body, static_cast<float>(i), 1, 2);
     glapi::pack::End(body);
-    glapi::pack::Block(batch, 1, 0, static_cast<std::uint32_t>(body.commands()), static_cast<std::uint32_t>(body.operand_bytes()));
+    glapi::pack::Block(batch, 1, 0, static_cast<std::uint32_t>(body.commands()),
+                       static_cast<std::uint32_t>(body.operand_bytes()));
     batch.append(body, {}, body.mark());
     NullDriver driver;
     for (auto _ : run) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Switching one driver between contexts (Tracking Graphics State, section 5): the soft switch between identical contexts,
-// between ones that differ in modelview matrix and current colour and draw a triangle each ("varying"), and between wholly
-// different ones; beside it eglMakeCurrent between two contexts of the same driver, and the same drawing in one context. In
-// every "varying" line the driver gets the same: another matrix, another colour, one small triangle.
+// Switching one driver between contexts (Tracking Graphics State, section 5): the soft switch between identical
+// contexts, between ones that differ in modelview matrix and current colour and draw a triangle each ("varying"), and
+// between wholly different ones; beside it eglMakeCurrent between two contexts of the same driver, and the same drawing
+// in one context. In every "varying" line the driver gets the same: another matrix, another colour, one small triangle.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <benchmark/benchmark.h>
@@ -27,15 +27,16 @@ namespace {
 namespace el = glstate::el;
 namespace pack = glapi::pack;
 
-constexpr int kSize = 256;               // pixels of every window, each way
-constexpr std::int64_t kTurns = 1000;    // switches between two glFinish
+constexpr int kSize = 256;             // pixels of every window, each way
+constexpr std::int64_t kTurns = 1000;  // switches between two glFinish
 constexpr std::array<glstate::Vec4, 2> kColors = {{{1, 0.5f, 0, 1}, {0, 0.5f, 1, 1}}};
 constexpr std::array<glstate::Mat4, 2> kMatrices = {{{0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 1, 0, -0.3f, 0, 0, 1},
                                                      {0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 1, 0, 0.3f, 0, 0, 1}}};
 
 // ---- drivers ----
 
-/// Takes every command and does nothing. Callers pass more than it reads, which this machine's calling convention allows.
+/// Takes every command and does nothing. Callers pass more than it reads, which this machine's calling convention
+/// allows.
 long nothing() { return 0; }
 GLenum complete(GLenum) { return GL_FRAMEBUFFER_COMPLETE; }
 
@@ -43,7 +44,8 @@ class NullBackend final : public GlBackend {
 public:
     Result<void> make_current() override { return {}; }
     void* get_proc_address(const char* name) const override {
-        return std::string_view(name) == "glCheckFramebufferStatus" ? reinterpret_cast<void*>(&complete) : reinterpret_cast<void*>(&nothing);
+        return std::string_view(name) == "glCheckFramebufferStatus" ? reinterpret_cast<void*>(&complete)
+                                                                    : reinterpret_cast<void*>(&nothing);
     }
     std::string_view name() const override { return "null"; }
 };
@@ -85,7 +87,8 @@ private:
 
 class Client {
 public:
-    Client(Node& node, std::uint32_t id) : session(node.node().driver, SessionId(id)), executor(node.node(), session, output_) {
+    Client(Node& node, std::uint32_t id)
+        : session(node.node().driver, SessionId(id)), executor(node.node(), session, output_) {
         wire::PackBuffer buffer;
         pack::SurfaceCreate(buffer, 1, 1, 8, 24, 8, 0, 0);
         pack::SurfacePlace(buffer, 1, 1, kSize, kSize, 0, 0, kSize, kSize, 0);
@@ -118,17 +121,36 @@ class EglPair {
 public:
     EglPair() {
         keep_freed_memory();
-        const auto get_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
+        const auto get_display =
+            reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
         display_ = get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
         WALL_ASSERT(eglInitialize(display_, nullptr, nullptr) == EGL_TRUE && eglBindAPI(EGL_OPENGL_API) == EGL_TRUE);
-        const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8,
-                                 EGL_BLUE_SIZE, 8, EGL_DEPTH_SIZE, 24, EGL_STENCIL_SIZE, 8, EGL_NONE};
+        const EGLint wanted[] = {EGL_SURFACE_TYPE,
+                                 EGL_PBUFFER_BIT,
+                                 EGL_RENDERABLE_TYPE,
+                                 EGL_OPENGL_BIT,
+                                 EGL_RED_SIZE,
+                                 8,
+                                 EGL_GREEN_SIZE,
+                                 8,
+                                 EGL_BLUE_SIZE,
+                                 8,
+                                 EGL_DEPTH_SIZE,
+                                 24,
+                                 EGL_STENCIL_SIZE,
+                                 8,
+                                 EGL_NONE};
         EGLConfig config = nullptr;
         EGLint count = 0;
         WALL_ASSERT(eglChooseConfig(display_, wanted, &config, 1, &count) == EGL_TRUE && count == 1);
         const EGLint size[] = {EGL_WIDTH, kSize, EGL_HEIGHT, kSize, EGL_NONE};
-        const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                  EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT, EGL_NONE};
+        const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                  4,
+                                  EGL_CONTEXT_MINOR_VERSION,
+                                  5,
+                                  EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                  EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT,
+                                  EGL_NONE};
         for (std::size_t i = 0; i < 2; ++i) {
             surfaces_[i] = eglCreatePbufferSurface(display_, config, size);
             contexts_[i] = eglCreateContext(display_, config, EGL_NO_CONTEXT, version);
@@ -175,13 +197,14 @@ void set_varying(glstate::State& state, std::size_t who) {
     glstate::assign<el::color>(state, 0, kColors[who]);
 }
 
-/// Every element of the categories that a switch tells at its n-th sample; but for pixel transfer, which makes Mesa fill a
-/// texture anew with each triangle.
+/// Every element of the categories that a switch tells at its n-th sample; but for pixel transfer, which makes Mesa
+/// fill a texture anew with each triangle.
 void set_samples(glstate::State& state, std::size_t n) {
     glstate::for_each_element([&]<class E>() {
-        constexpr auto kKept = glstate::kLayerCategories | glstate::mask_of(glstate::Category::local) | glstate::mask_of(glstate::Category::textures) |
-                               glstate::mask_of(glstate::Category::objects) | glstate::mask_of(glstate::Category::modelview_origin) |
-                               glstate::mask_of(glstate::Category::pixel_transfer);
+        constexpr auto kKept =
+            glstate::kLayerCategories | glstate::mask_of(glstate::Category::local) |
+            glstate::mask_of(glstate::Category::textures) | glstate::mask_of(glstate::Category::objects) |
+            glstate::mask_of(glstate::Category::modelview_origin) | glstate::mask_of(glstate::Category::pixel_transfer);
         if ((kKept & glstate::mask_of(E::category)) != 0) return;
         for (unsigned i = 0; i < E::count; ++i) glstate::assign<E>(state, i, glstate::Samples<E>::values[(n + i) % 3]);
     });
@@ -210,7 +233,9 @@ void Identical_Soft(benchmark::State& run) {
     if (!kFresh)
         for (SoftContext* context : contexts) set_samples(context->state, 1);
     Layer& layer = client.layer();
-    time_turns(run, node.gl(), [&](std::size_t i) { benchmark::DoNotOptimize(switch_to(node.node(), client.session, *contexts[i], layer)); });
+    time_turns(run, node.gl(), [&](std::size_t i) {
+        benchmark::DoNotOptimize(switch_to(node.node(), client.session, *contexts[i], layer));
+    });
 }
 BENCHMARK(Identical_Soft<true>)->Name("identical/soft switch/fresh")->UseRealTime();
 BENCHMARK(Identical_Soft<false>)->Name("identical/soft switch/equal values")->UseRealTime();
@@ -250,8 +275,9 @@ void Varying_One(benchmark::State& run, To to) {
 BENCHMARK_CAPTURE(Varying_One, null, To::null)->Name("varying/null driver/one context")->UseRealTime();
 BENCHMARK_CAPTURE(Varying_One, llvmpipe, To::llvmpipe)->Name("varying/llvmpipe/one context")->UseRealTime();
 
-/// Both on one driver in turn, kTurns each: the counter `kept` is the median of what the soft switch reaches of the rate without one.
-/// A driver's speed changes from process to process and from second to second by more than the difference.
+/// Both on one driver in turn, kTurns each: the counter `kept` is the median of what the soft switch reaches of the
+/// rate without one. A driver's speed changes from process to process and from second to second by more than the
+/// difference.
 void Varying_Kept(benchmark::State& run) {
     Node node(To::llvmpipe);
     Client client(node, 1);
@@ -260,7 +286,8 @@ void Varying_Kept(benchmark::State& run) {
     Layer& layer = client.layer();
     const auto seconds = [&](auto&& turn) {
         const auto start = std::chrono::steady_clock::now();
-        for (std::int64_t i = 0; i < kTurns; ++i) turn(static_cast<std::size_t>(i & 1));  // ends with the second's values, as the driver's mirror has them
+        for (std::int64_t i = 0; i < kTurns; ++i)
+            turn(static_cast<std::size_t>(i & 1));  // ends with the second's values, as the driver's mirror has them
         node.gl().Finish();
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
@@ -311,14 +338,20 @@ void Varying_Batches(benchmark::State& run, To to) {
         pack::Vertex3f(body, 0.1f, -0.1f, 0);
         pack::Vertex3f(body, 0, 0.1f, 0);
         pack::End(body);
-        pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()), static_cast<std::uint32_t>(body.operand_bytes()));
+        pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()),
+                    static_cast<std::uint32_t>(body.operand_bytes()));
         buffer.append(body, {}, body.mark());
         wire::append_batch(payloads[i], {1, buffer.opcodes(), buffer.operands()});
     }
-    time_turns(run, node.gl(), [&](std::size_t i) { benchmark::DoNotOptimize(clients[i]->executor.run_batch(payloads[i])); });
+    time_turns(run, node.gl(),
+               [&](std::size_t i) { benchmark::DoNotOptimize(clients[i]->executor.run_batch(payloads[i])); });
 }
-BENCHMARK_CAPTURE(Varying_Batches, null, To::null)->Name("two windows/null driver/batches of two sessions")->UseRealTime();
-BENCHMARK_CAPTURE(Varying_Batches, llvmpipe, To::llvmpipe)->Name("two windows/llvmpipe/batches of two sessions")->UseRealTime();
+BENCHMARK_CAPTURE(Varying_Batches, null, To::null)
+    ->Name("two windows/null driver/batches of two sessions")
+    ->UseRealTime();
+BENCHMARK_CAPTURE(Varying_Batches, llvmpipe, To::llvmpipe)
+    ->Name("two windows/llvmpipe/batches of two sessions")
+    ->UseRealTime();
 
 void TwoWindows_Egl(benchmark::State& run) {
     EglPair egl;

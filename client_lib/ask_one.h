@@ -15,8 +15,8 @@ struct NodeAnswer {
     std::vector<std::byte> bytes;
 };
 
-/// One node's answer; the next one's if it is lost meanwhile. Nothing: no node answers. `pack(buffer, request)` packs the
-/// question, `function` is for the count of round trips.
+/// One node's answer; the next one's if it is lost meanwhile. Nothing: no node answers. `pack(buffer, request)` packs
+/// the question, `function` is for the count of round trips.
 template <class Pack>
 std::optional<NodeAnswer> ask_one_node(Context& c, const char* function, Pack&& pack) {
     Session& session = c.session();

@@ -22,7 +22,8 @@ struct SavedAttributes {
 };
 
 struct AttributeStacks {
-    std::vector<std::unique_ptr<SavedAttributes>> server, client;  ///< glPushAttrib's, glPushClientAttrib's; oldest first
+    std::vector<std::unique_ptr<SavedAttributes>> server,
+        client;  ///< glPushAttrib's, glPushClientAttrib's; oldest first
 };
 
 /// Gives a category of `state` the value id that it has in `other`, if the content is the same.

@@ -33,10 +33,8 @@ void BlockSender::run() {
     needs_ = needs_of_block(context_.state, packer_);
     const auto nodes = by_node(targets, *layout_);
     const bool single = packer_.primitives().size() == 1 && !worth_dividing(packer_.primitives()[0], targets);
-    if (nodes.size() <= 1 || packer_.has_rare() || options().broadcast || single)
-        send_whole(targets);
-    else
-        send_apart(targets);
+    if (nodes.size() <= 1 || packer_.has_rare() || options().broadcast || single) send_whole(targets);
+    else send_apart(targets);
 }
 
 void BlockSender::send_whole(const TargetSet& targets) {
@@ -47,7 +45,8 @@ void BlockSender::send_whole(const TargetSet& targets) {
         auto& buffer = session_.prepare(node, context_, needs_);
         const std::size_t before = buffer.bytes();
         glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32),
-                           static_cast<std::uint32_t>(packer_.commands()), static_cast<std::uint32_t>(packer_.operand_bytes()));
+                           static_cast<std::uint32_t>(packer_.commands()),
+                           static_cast<std::uint32_t>(packer_.operand_bytes()));
         buffer.append(packer_, {}, packer_.mark());
         session_.count_geometry(node, buffer.bytes() - before);
         session_.count_block(node);
@@ -62,10 +61,8 @@ void BlockSender::send_apart(const TargetSet& block_targets) {
         const auto box = project(context_.projection(), primitive.box);
         const TargetSet targets = targets_of(*layout_, box) & block_targets;
         if (targets.none()) continue;
-        if (worth_dividing(primitive, targets))
-            divide(primitive, targets);
-        else
-            send_primitive(primitive, targets);
+        if (worth_dividing(primitive, targets)) divide(primitive, targets);
+        else send_primitive(primitive, targets);
     }
     for (Share& share : shares_) close_block(share);
 
@@ -115,7 +112,8 @@ void BlockSender::divide(const Primitive& primitive, const TargetSet& targets) {
             if (!share.buffer) continue;
             const auto begin = static_cast<std::int64_t>(start), end = static_cast<std::int64_t>(v + topology.size - 1);
             const std::int64_t gap = topology.independent ? 0 : kGapVertices;
-            if (share.run_first >= 0 && (begin > share.run_last + 1 + gap || share.run_mask != slots)) finish_run(share, primitive);
+            if (share.run_first >= 0 && (begin > share.run_last + 1 + gap || share.run_mask != slots))
+                finish_run(share, primitive);
             if (share.run_first < 0) share.run_first = begin, share.run_mask = slots;
             share.run_last = end;
         }
@@ -155,7 +153,8 @@ BlockSender::Share& BlockSender::share_of(std::uint32_t index) {
     Share& share = shares_[index];
     if (!share.node) {
         share.node = session_.nodes()[index].get();
-        if (share.node->takes(context_.draw_surface()->id)) share.buffer = &session_.prepare(*share.node, context_, needs_);
+        if (share.node->takes(context_.draw_surface()->id))
+            share.buffer = &session_.prepare(*share.node, context_, needs_);
     }
     return share;
 }
@@ -189,7 +188,8 @@ void BlockSender::pack_attributes(Share& share, const AttributePlaces& wanted) {
             continue;
         }
         const std::size_t bytes = operand_bytes_of(wanted.op[i]);
-        std::memcpy(share.buffer->append(static_cast<std::uint8_t>(wanted.op[i]), bytes), packer_.operand_at(wanted.offset[i]), bytes);
+        std::memcpy(share.buffer->append(static_cast<std::uint8_t>(wanted.op[i]), bytes),
+                    packer_.operand_at(wanted.offset[i]), bytes);
         session_.count_geometry(*share.node, bytes + 1);
         share.sent.offset[i] = wanted.offset[i];
         share.sent.op[i] = wanted.op[i];
@@ -208,7 +208,9 @@ void BlockSender::restore_attribute(Share& share, Attribute attribute) {
         case Attribute::color: with4(glapi::pack::Color4f, mirror.color = now.color); break;
         case Attribute::normal: with3(glapi::pack::Normal3f, mirror.normal = now.normal); break;
         case Attribute::texcoord0: with4(glapi::pack::TexCoord4f, mirror.texcoord[0] = now.texcoord[0]); break;
-        case Attribute::secondary_color: with3(glapi::pack::SecondaryColor3f, mirror.secondary_color = now.secondary_color); break;
+        case Attribute::secondary_color:
+            with3(glapi::pack::SecondaryColor3f, mirror.secondary_color = now.secondary_color);
+            break;
         case Attribute::fog_coord: glapi::pack::FogCoordf(buffer, mirror.fog_coord = now.fog_coord); break;
         case Attribute::edge_flag: glapi::pack::EdgeFlag(buffer, mirror.edge_flag = now.edge_flag); break;
         case Attribute::kCount: break;
@@ -245,18 +247,45 @@ void apply_attribute(glstate::State& state, glapi::Op op, const std::byte* opera
     using glapi::Op;
     auto& current = state.current;
     switch (op) {
-        case Op::Color3f: floats(3); current.color = {f[0], f[1], f[2], 1}; break;
-        case Op::Color4f: floats(4); current.color = {f[0], f[1], f[2], f[3]}; break;
+        case Op::Color3f:
+            floats(3);
+            current.color = {f[0], f[1], f[2], 1};
+            break;
+        case Op::Color4f:
+            floats(4);
+            current.color = {f[0], f[1], f[2], f[3]};
+            break;
         case Op::Color4ub:
             for (int i = 0; i < 4; ++i) current.color[i] = static_cast<float>(operand[i]) / 255.0f;
             break;
-        case Op::Normal3f: floats(3); current.normal = {f[0], f[1], f[2]}; break;
-        case Op::TexCoord1f: floats(1); current.texcoord[0] = {f[0], 0, 0, 1}; break;
-        case Op::TexCoord2f: floats(2); current.texcoord[0] = {f[0], f[1], 0, 1}; break;
-        case Op::TexCoord3f: floats(3); current.texcoord[0] = {f[0], f[1], f[2], 1}; break;
-        case Op::TexCoord4f: floats(4); current.texcoord[0] = {f[0], f[1], f[2], f[3]}; break;
-        case Op::SecondaryColor3f: floats(3); current.secondary_color = {f[0], f[1], f[2], 1}; break;
-        case Op::FogCoordf: floats(1); current.fog_coord = f[0]; break;
+        case Op::Normal3f:
+            floats(3);
+            current.normal = {f[0], f[1], f[2]};
+            break;
+        case Op::TexCoord1f:
+            floats(1);
+            current.texcoord[0] = {f[0], 0, 0, 1};
+            break;
+        case Op::TexCoord2f:
+            floats(2);
+            current.texcoord[0] = {f[0], f[1], 0, 1};
+            break;
+        case Op::TexCoord3f:
+            floats(3);
+            current.texcoord[0] = {f[0], f[1], f[2], 1};
+            break;
+        case Op::TexCoord4f:
+            floats(4);
+            current.texcoord[0] = {f[0], f[1], f[2], f[3]};
+            break;
+        case Op::SecondaryColor3f:
+            floats(3);
+            current.secondary_color = {f[0], f[1], f[2], 1};
+            break;
+        case Op::FogCoordf:
+            floats(1);
+            current.fog_coord = f[0];
+            break;
         case Op::EdgeFlag: {
             std::uint32_t flag;
             std::memcpy(&flag, operand, 4);
@@ -273,7 +302,10 @@ void apply_attribute(glstate::State& state, glapi::Op op, const std::byte* opera
             element = {f[0], f[1], f[2], f[3]};
             break;
         }
-        case Op::Indexf: floats(1); current.color_index = f[0]; break;
+        case Op::Indexf:
+            floats(1);
+            current.color_index = f[0];
+            break;
         default: break;
     }
 }

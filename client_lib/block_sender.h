@@ -25,10 +25,10 @@ private:
     struct Share {
         Node* node = nullptr;
         wire::PackBuffer* buffer = nullptr;
-        std::uint64_t mask = 0;        ///< of the open Block; 0: none is open
+        std::uint64_t mask = 0;          ///< of the open Block; 0: none is open
         std::size_t block_operands = 0;  ///< where the open Block's operands stand
         wire::PackMark block_start;
-        AttributePlaces sent;          ///< what the node got of this block's attributes
+        AttributePlaces sent;                        ///< what the node got of this block's attributes
         std::int64_t run_first = -1, run_last = -1;  ///< pending run of vertices of the primitive being divided
         std::uint64_t run_mask = 0;
     };

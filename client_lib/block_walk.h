@@ -54,7 +54,9 @@ public:
     const std::byte* operand() const { return buffer_.operand_at(operand_); }
     wire::PackMark position() const { return at_; }  ///< behind the command
     const AttributePlaces& places() const { return places_; }
-    bool is_vertex() const { return op_ == glapi::Op::Vertex2f || op_ == glapi::Op::Vertex3f || op_ == glapi::Op::Vertex4f; }
+    bool is_vertex() const {
+        return op_ == glapi::Op::Vertex2f || op_ == glapi::Op::Vertex3f || op_ == glapi::Op::Vertex4f;
+    }
     std::array<float, 4> vertex() const {
         std::array<float, 4> v{0, 0, 0, 1};
         std::memcpy(v.data(), operand(), operand_bytes_of(op_));

@@ -34,11 +34,14 @@ template <class T, Conversion kConversion>
 float to_float(T value) {
     constexpr auto kMax = static_cast<double>(std::numeric_limits<T>::max());
     if constexpr (kConversion == Conversion::none || std::is_floating_point_v<T>) return static_cast<float>(value);
-    else if constexpr (std::is_same_v<T, GLubyte> && kConversion == Conversion::command) return static_cast<float>(value) / 255.0f;
-    else if constexpr (std::is_unsigned_v<T> && sizeof(T) < 4) return static_cast<float>(value) * static_cast<float>(1.0 / kMax);
+    else if constexpr (std::is_same_v<T, GLubyte> && kConversion == Conversion::command)
+        return static_cast<float>(value) / 255.0f;
+    else if constexpr (std::is_unsigned_v<T> && sizeof(T) < 4)
+        return static_cast<float>(value) * static_cast<float>(1.0 / kMax);
     else if constexpr (std::is_unsigned_v<T>) return static_cast<float>(value * (1.0 / kMax));
     else if constexpr (kConversion == Conversion::command)
-        return (2.0f * static_cast<float>(value) + 1.0f) * (1.0f / static_cast<float>(2.0 * kMax + (sizeof(T) < 4 ? 1.0 : 0.0)));
+        return (2.0f * static_cast<float>(value) + 1.0f) *
+               (1.0f / static_cast<float>(2.0 * kMax + (sizeof(T) < 4 ? 1.0 : 0.0)));
     else return std::max(static_cast<float>(value) * static_cast<float>(1.0 / kMax), -1.0f);
 }
 
@@ -46,7 +49,8 @@ using Load = void (*)(const std::byte*, GLint, float*);
 
 template <class T, Conversion kConversion>
 void load_values(const std::byte* from, GLint size, float* out) {
-    for (GLint i = 0; i < size; ++i) out[i] = to_float<T, kConversion>(load_one<T>(from + static_cast<std::size_t>(i) * sizeof(T)));
+    for (GLint i = 0; i < size; ++i)
+        out[i] = to_float<T, kConversion>(load_one<T>(from + static_cast<std::size_t>(i) * sizeof(T)));
 }
 
 template <class T>
@@ -75,7 +79,9 @@ Load loader_of(GLenum type, Conversion conversion) {
 /// Whether the two conversions of a byte give the same float; then a colour of bytes may travel as such.
 constexpr std::array<bool, 256> kSameByte = [] {
     std::array<bool, 256> same{};
-    for (int i = 0; i < 256; ++i) same[static_cast<std::size_t>(i)] = static_cast<float>(i) * static_cast<float>(1.0 / 255.0) == static_cast<float>(i) / 255.0f;
+    for (int i = 0; i < 256; ++i)
+        same[static_cast<std::size_t>(i)] =
+            static_cast<float>(i) * static_cast<float>(1.0 / 255.0) == static_cast<float>(i) / 255.0f;
     return same;
 }();
 
@@ -87,8 +93,11 @@ bool same_bytes(const std::byte* at, std::size_t count) {
 
 std::size_t bytes_of(GLenum type) {
     switch (type) {
-        case GL_BYTE: case GL_UNSIGNED_BYTE: return 1;
-        case GL_SHORT: case GL_UNSIGNED_SHORT: case GL_HALF_FLOAT: return 2;
+        case GL_BYTE:
+        case GL_UNSIGNED_BYTE: return 1;
+        case GL_SHORT:
+        case GL_UNSIGNED_SHORT:
+        case GL_HALF_FLOAT: return 2;
         case GL_DOUBLE: return 8;
         default: return 4;
     }
@@ -232,15 +241,17 @@ void pack_direct(Packer& packer, const DirectLayout& layout, GLsizei count, Elem
 
 void pack_direct(Packer& packer, const DirectLayout& layout, const ElementRange& elements) {
     const auto indexed = [&](const auto* indices) {
-        pack_direct(packer, layout, elements.count, [indices](GLsizei i) { return static_cast<std::size_t>(indices[i]); });
+        pack_direct(packer, layout, elements.count,
+                    [indices](GLsizei i) { return static_cast<std::size_t>(indices[i]); });
     };
     switch (elements.type) {
         case GL_UNSIGNED_BYTE: return indexed(static_cast<const GLubyte*>(elements.indices));
         case GL_UNSIGNED_SHORT: return indexed(static_cast<const GLushort*>(elements.indices));
         case GL_UNSIGNED_INT: return indexed(static_cast<const GLuint*>(elements.indices));
         default:
-            pack_direct(packer, layout, elements.count,
-                        [first = elements.first](GLsizei i) { return static_cast<std::size_t>(first) + static_cast<std::size_t>(i); });
+            pack_direct(packer, layout, elements.count, [first = elements.first](GLsizei i) {
+                return static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
+            });
     }
 }
 
@@ -267,7 +278,8 @@ private:
     };
     bool needs_rare() const {
         return std::any_of(arrays_.sources().begin(), arrays_.sources().end(), [](const ArraySource& s) {
-            return s.kind == ArrayKind::index || s.kind == ArrayKind::attrib || (s.kind == ArrayKind::texcoord && s.index != 0);
+            return s.kind == ArrayKind::index || s.kind == ArrayKind::attrib ||
+                   (s.kind == ArrayKind::texcoord && s.index != 0);
         });
     }
     static std::optional<Attribute> remembered(const ArraySource& source) {
@@ -300,7 +312,8 @@ private:
         switch (source.kind) {
             case ArrayKind::edge_flag: return {now.edge_flag ? 1.0f : 0.0f};
             case ArrayKind::fog_coord: return {now.fog_coord};
-            case ArrayKind::secondary_color: return {now.secondary_color[0], now.secondary_color[1], now.secondary_color[2]};
+            case ArrayKind::secondary_color:
+                return {now.secondary_color[0], now.secondary_color[1], now.secondary_color[2]};
             case ArrayKind::color: return now.color;
             case ArrayKind::normal: return {now.normal[0], now.normal[1], now.normal[2]};
             case ArrayKind::texcoord: return now.texcoord[source.index];
@@ -331,7 +344,8 @@ private:
             case ArrayKind::color: return api::Color4f(c_, v[0], v[1], v[2], v[3]);
             case ArrayKind::normal: return api::Normal3f(c_, v[0], v[1], v[2]);
             case ArrayKind::texcoord:
-                if (source.index != 0) return api::MultiTexCoord4f(c_, GL_TEXTURE0 + source.index, v[0], v[1], v[2], v[3]);
+                if (source.index != 0)
+                    return api::MultiTexCoord4f(c_, GL_TEXTURE0 + source.index, v[0], v[1], v[2], v[3]);
                 return api::TexCoord4f(c_, v[0], v[1], v[2], v[3]);
             case ArrayKind::index: return api::Indexf(c_, v[0]);
             case ArrayKind::attrib: return api::VertexAttrib4f(c_, source.index, v[0], v[1], v[2], v[3]);
@@ -348,7 +362,8 @@ private:
 
 void send(Context& c, const ArraySource& source, GLuint element) {
     const std::byte* at = place(source, element);
-    if (source.kind == ArrayKind::color && source.type == GL_UNSIGNED_BYTE && (source.by_command || same_bytes(at, static_cast<std::size_t>(source.size)))) {
+    if (source.kind == ArrayKind::color && source.type == GL_UNSIGNED_BYTE &&
+        (source.by_command || same_bytes(at, static_cast<std::size_t>(source.size)))) {
         const auto byte = [&](GLint i) { return std::to_integer<GLubyte>(at[i]); };
         return c.table->Color4ub(c, byte(0), byte(1), byte(2), source.size == 4 ? byte(3) : GLubyte{255});
     }
@@ -364,7 +379,8 @@ void send(Context& c, const ArraySource& source, GLuint element) {
             return c.table->Color4f(c, v[0], v[1], v[2], v[3]);
         case ArrayKind::normal: return c.table->Normal3f(c, v[0], v[1], v[2]);
         case ArrayKind::texcoord:
-            if (source.index != 0) return c.table->MultiTexCoord4f(c, GL_TEXTURE0 + source.index, v[0], v[1], v[2], v[3]);
+            if (source.index != 0)
+                return c.table->MultiTexCoord4f(c, GL_TEXTURE0 + source.index, v[0], v[1], v[2], v[3]);
             if (source.size == 2) return c.table->TexCoord2f(c, v[0], v[1]);
             return c.table->TexCoord4f(c, v[0], v[1], v[2], v[3]);
         case ArrayKind::attrib: return c.table->VertexAttrib4f(c, source.index, v[0], v[1], v[2], v[3]);
@@ -415,8 +431,11 @@ void ArraySet::add(Context& c, ArrayKind kind, unsigned index, const glstate::Cl
     } else if (!base) {
         return;
     }
-    const Conversion conversion = !array.normalized ? Conversion::none : by_command_ ? Conversion::command : Conversion::fetch;
-    sources_[count_++] = {kind, index, by_command_, base, stride, count, array.size, array.type, loader_of(array.type, conversion)};
+    const Conversion conversion = !array.normalized ? Conversion::none
+                                  : by_command_     ? Conversion::command
+                                                    : Conversion::fetch;
+    sources_[count_++] = {
+        kind, index, by_command_, base, stride, count, array.size, array.type, loader_of(array.type, conversion)};
 }
 
 void ArraySet::add_constant_vertex(Context& c) {
@@ -424,7 +443,15 @@ void ArraySet::add_constant_vertex(Context& c) {
     c.flush_block();  // the current attributes are in `state` after it
     constant_vertex_ = c.state.current.vertex_attrib[0];
     const auto* base = reinterpret_cast<const std::byte*>(constant_vertex_.data());
-    sources_[count_++] = {ArrayKind::vertex, 0, by_command_, base, 0, ArraySource::kNoLimit, 4, GL_FLOAT, loader_of(GL_FLOAT, Conversion::none)};
+    sources_[count_++] = {ArrayKind::vertex,
+                          0,
+                          by_command_,
+                          base,
+                          0,
+                          ArraySource::kNoLimit,
+                          4,
+                          GL_FLOAT,
+                          loader_of(GL_FLOAT, Conversion::none)};
 }
 
 void send_element(Context& c, const ArraySet& arrays, GLuint element) {
@@ -440,7 +467,9 @@ void draw_elements(Context& c, GLenum mode, const ElementRange& elements) {
     if (!draws) return;
     if (!at_once) {
         c.table->Begin(c, mode);
-        walk(c, elements, [&](GLuint e) { send_element(c, arrays, e); }, [&] { c.table->End(c), c.table->Begin(c, mode); });
+        walk(
+            c, elements, [&](GLuint e) { send_element(c, arrays, e); },
+            [&] { c.table->End(c), c.table->Begin(c, mode); });
         return c.table->End(c);
     }
     if (c.program && !may_draw(c)) return;
@@ -448,10 +477,10 @@ void draw_elements(Context& c, GLenum mode, const ElementRange& elements) {
     c.begin_primitive(mode);
     const auto restart = [&] { c.end_primitive(), c.begin_primitive(mode); };
     const bool restarts = elements.type != 0 && c.state.local.primitive_restart;
-    if (DirectLayout layout; !restarts && direct_layout(arrays, layout))
-        pack_direct(c.packer, layout, elements);
+    if (DirectLayout layout; !restarts && direct_layout(arrays, layout)) pack_direct(c.packer, layout, elements);
     else
-        walk(c, elements, [&](GLuint e) { send_element(c, arrays, e); }, restart);
+        walk(
+            c, elements, [&](GLuint e) { send_element(c, arrays, e); }, restart);
     c.end_primitive();
     current.restore();
 }

@@ -11,16 +11,26 @@
 
 namespace wall::client {
 
-enum class ArrayKind : std::uint8_t { edge_flag, index, fog_coord, secondary_color, color, normal, texcoord, attrib, vertex };
+enum class ArrayKind : std::uint8_t {
+    edge_flag,
+    index,
+    fog_coord,
+    secondary_color,
+    color,
+    normal,
+    texcoord,
+    attrib,
+    vertex
+};
 
 /// One enabled array, resolved to memory.
 struct ArraySource {
     ArrayKind kind;
-    unsigned index;      ///< texture unit or attribute
-    bool by_command;     ///< converted as glColor and the like do
+    unsigned index;   ///< texture unit or attribute
+    bool by_command;  ///< converted as glColor and the like do
     const std::byte* base;
     std::size_t stride;
-    std::size_t count;   ///< elements that lie in the buffer object; kNoLimit for client memory
+    std::size_t count;  ///< elements that lie in the buffer object; kNoLimit for client memory
     GLint size;
     GLenum type;
     void (*load)(const std::byte* from, GLint size, float* out);
@@ -52,7 +62,7 @@ private:
 struct ElementRange {
     GLint first = 0;
     GLsizei count = 0;
-    GLenum type = 0;                ///< of the indices; 0: none
+    GLenum type = 0;  ///< of the indices; 0: none
     const void* indices = nullptr;
     GLuint at(GLsizei i) const {
         switch (type) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A connection to a node that is tried in a thread of its own, so that the program goes on meanwhile: a node that did not
-// answer when the program started may take long to do so, or may have been stopped.
+// A connection to a node that is tried in a thread of its own, so that the program goes on meanwhile: a node that did
+// not answer when the program started may take long to do so, or may have been stopped.
 #pragma once
 
 #include <memory>

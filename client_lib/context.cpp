@@ -46,7 +46,8 @@ void Context::bind_surfaces(std::shared_ptr<Surface> draw, std::shared_ptr<Surfa
 // OpenGL 1.2.1, 2.10.2 and 4.1.2: viewport and scissor start with the size of the first window.
 void Context::first_use() {
     used_ = true;
-    const auto width = static_cast<std::int32_t>(draw_->layout.width), height = static_cast<std::int32_t>(draw_->layout.height);
+    const auto width = static_cast<std::int32_t>(draw_->layout.width),
+               height = static_cast<std::int32_t>(draw_->layout.height);
     glstate::assign<glstate::el::viewport>(state, 0, {0, 0, width, height});
     glstate::assign<glstate::el::scissor>(state, 0, {0, 0, width, height});
     const GLenum buffer = draw_->options.format.double_buffered ? GL_BACK : GL_FRONT;
@@ -90,7 +91,8 @@ void Context::settle_modelview() {
 
 void Context::submit_block() {
     if (packer.has_geometry()) settle_modelview();
-    if (packer.inside()) return;  // only commands that are legal inside come here then, and they change nothing that is drawn with
+    if (packer.inside())
+        return;  // only commands that are legal inside come here then, and they change nothing that is drawn with
     if (packer.has_geometry()) session_->submit_block(*this);
     else fold_attributes();
     packer.reset();
@@ -114,7 +116,8 @@ void Context::fold_attributes() {
     }
     if (changed) state.ids[static_cast<std::size_t>(glstate::Category::current)] = glstate::next_value_id();
     folded_material_ = !pending_materials.empty();
-    for (const PendingMaterial& material : pending_materials) assign_material(state, material.face, material.pname, material.value);
+    for (const PendingMaterial& material : pending_materials)
+        assign_material(state, material.face, material.pname, material.value);
 }
 
 }  // namespace wall::client

@@ -15,19 +15,19 @@
 #include "client_lib/packer.h"
 #include "client_lib/router.h"
 #include "client_lib/session.h"
-#include "gen/client_lib/api.gen.h"
 #include "common/glapi/recorder.h"
 #include "common/glstate/diff.h"
+#include "gen/client_lib/api.gen.h"
 
 namespace wall::client {
 
-struct ShareGroup;      // share_group.h: objects
-struct ListState;       // lists.h: display list being compiled, call nesting
-struct AttributeStacks; // attribute_stack.h
-struct SelectState;     // select.h: feedback and selection
-struct Program;         // objects/program.h
-struct OcclusionState;  // occlusion.h
-struct ContextMaps;     // maps.h: evaluator and pixel maps
+struct ShareGroup;       // share_group.h: objects
+struct ListState;        // lists.h: display list being compiled, call nesting
+struct AttributeStacks;  // attribute_stack.h
+struct SelectState;      // select.h: feedback and selection
+struct Program;          // objects/program.h
+struct OcclusionState;   // occlusion.h
+struct ContextMaps;      // maps.h: evaluator and pixel maps
 
 inline constexpr unsigned kTextureUnits = 8;
 inline constexpr unsigned kVertexAttributes = 16;
@@ -36,7 +36,7 @@ inline constexpr std::size_t kBlockBytes = 256 << 10;
 
 /// One matrix stack; the top is the element of glstate::State.
 struct MatrixStack {
-    std::vector<FormedMatrix> below;  ///< saved by glPushMatrix, oldest first
+    std::vector<FormedMatrix> below;       ///< saved by glPushMatrix, oldest first
     std::uint32_t form = form::kIdentity;  ///< the top's
     MatrixOrigin origin{};                 ///< the top's
     unsigned limit = 32;
@@ -148,12 +148,13 @@ private:
 
 template <class Pack>
 void Session::draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Pack&& pack) {
-    draw(context, box, needs, [](Node&, wire::PackBuffer&) {}, std::forward<Pack>(pack), [](Node&) {});
+    draw(
+        context, box, needs, [](Node&, wire::PackBuffer&) {}, std::forward<Pack>(pack), [](Node&) {});
 }
 
 template <class Before, class Pack, class After>
-void Session::draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Before&& before, Pack&& pack,
-                   After&& after) {
+void Session::draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Before&& before,
+                   Pack&& pack, After&& after) {
     std::lock_guard lock(mutex_);
     if (!context.draw_surface()) return;
     const SurfaceLayout& layout = context.draw_layout();
@@ -211,7 +212,8 @@ std::optional<std::vector<std::byte>> Session::ask(Context& context, Node& node,
 }
 
 template <class Pack>
-std::vector<std::optional<std::vector<std::byte>>> Session::ask_all(Context& context, const std::vector<Target>& targets,
+std::vector<std::optional<std::vector<std::byte>>> Session::ask_all(Context& context,
+                                                                    const std::vector<Target>& targets,
                                                                     const char* function, Pack&& pack) {
     context.flush_block();
     std::vector<std::pair<Node*, std::uint32_t>> asked;

@@ -26,9 +26,9 @@ using std::chrono::milliseconds;
 
 constexpr const char* kDefaultAddress = "unix:/run/wallgl/walld.sock";
 constexpr milliseconds kLeaveLimit{1000};
-constexpr milliseconds kLifeSign{500};        // a walld that keeps a connection open for so long is there
-constexpr milliseconds kTick{1000};           // statistics are written and told, a lost link is tried again
-constexpr std::size_t kLengthBytes = 4;       // in front of every envelope, little endian
+constexpr milliseconds kLifeSign{500};   // a walld that keeps a connection open for so long is there
+constexpr milliseconds kTick{1000};      // statistics are written and told, a lost link is tried again
+constexpr std::size_t kLengthBytes = 4;  // in front of every envelope, little endian
 constexpr std::size_t kReadChunk = 16 << 10;
 
 int remaining_ms(Clock::time_point deadline) {
@@ -108,7 +108,9 @@ struct Opened {
 Result<Opened> greet(const Hello& hello, const std::string& address, milliseconds limit) {
     const auto deadline = Clock::now() + limit;
     auto fd = connect_to(address, static_cast<int>(limit.count()));
-    if (!fd) return fail("the wall is not there: " + fd.error().message + " (is walld running? WALLGL_WALLD names its address)");
+    if (!fd)
+        return fail("the wall is not there: " + fd.error().message +
+                    " (is walld running? WALLGL_WALLD names its address)");
     Opened opened{std::move(*fd), {}, {}};
     std::string bytes;
     append_framed(bytes, encode(hello));
@@ -133,7 +135,8 @@ std::string environment(const char* name) {
 void read_token(const std::string& path, Hello& hello) {
     if (path.empty()) return;
     std::ifstream file(path);
-    if (!std::getline(file, hello.token) || hello.token.empty()) hello.invalid = "WALLGL_TOKEN_FILE: expected a file with a token, got '" + path + "'";
+    if (!std::getline(file, hello.token) || hello.token.empty())
+        hello.invalid = "WALLGL_TOKEN_FILE: expected a file with a token, got '" + path + "'";
 }
 
 }  // namespace
@@ -150,7 +153,8 @@ Hello Hello::from_environment() {
     hello.name = environment("WALLGL_NAME");
     read_token(environment("WALLGL_TOKEN_FILE"), hello);
     hello.group = parallel();
-    if (const auto text = environment("WALLGL_PARALLEL"); !text.empty() && !hello.group) hello.invalid = parse_parallel(text).error().message;
+    if (const auto text = environment("WALLGL_PARALLEL"); !text.empty() && !hello.group)
+        hello.invalid = parse_parallel(text).error().message;
     const auto hold = environment("WALLGL_HOLD");
     hello.hold = !hold.empty() && hold != "0";
     const auto rect = environment("WALLGL_RECT");
@@ -161,8 +165,7 @@ Hello Hello::from_environment() {
     char extra;
     if (sscanf(rect.c_str(), "%d,%d,%d,%d%c", &r.x, &r.y, &r.width, &r.height, &extra) != 4 || r.empty())
         hello.invalid = "WALLGL_RECT: expected X,Y,W,H or fullscreen, got '" + rect + "'";
-    else
-        hello.rect = r;
+    else hello.rect = r;
     return hello;
 }
 
@@ -171,8 +174,8 @@ Result<std::unique_ptr<ControlLink>> ControlLink::open(const Hello& hello, const
     if (!hello.invalid.empty()) return fail(hello.invalid);
     auto opened = greet(hello, address, limit);
     if (!opened) return tl::unexpected(opened.error());
-    return std::unique_ptr<ControlLink>(new ControlLink(std::move(opened->fd), hello, address,
-                                                        std::move(opened->welcome), std::move(opened->rest)));
+    return std::unique_ptr<ControlLink>(
+        new ControlLink(std::move(opened->fd), hello, address, std::move(opened->welcome), std::move(opened->rest)));
 }
 
 ControlLink::ControlLink(UniqueFd fd, Hello hello, std::string address, Welcome welcome, std::string rest)
@@ -206,7 +209,8 @@ void ControlLink::queue(const std::string& envelope) {
     if (up_) append_framed(outbox_, envelope);
 }
 
-void ControlLink::surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title, WindowMessages messages) {
+void ControlLink::surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title,
+                               WindowMessages messages) {
     if (in_forked_child()) return;
     std::lock_guard lock(mutex_);
     surfaces_[id] = {width, height, title, std::move(messages), 1, 0};
@@ -235,7 +239,8 @@ void ControlLink::surface_close(std::uint32_t id) {
     wake();
 }
 
-bool ControlLink::surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame, milliseconds timeout) {
+bool ControlLink::surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame,
+                                  milliseconds timeout) {
     if (in_forked_child()) return false;
     std::unique_lock lock(mutex_);
     queue(encode_surface_adopted(id, layout_version, frame));
@@ -310,7 +315,8 @@ void ControlLink::serve() {
                          {fd_.get(), static_cast<short>(POLLIN | (more_to_write ? POLLOUT : 0)), 0}};
         ::poll(fds, 2, remaining_ms(next_tick));
         std::uint64_t count;
-        if (fds[0].revents) [[maybe_unused]] const auto n = ::read(wake_fd_.get(), &count, sizeof count);
+        if (fds[0].revents) [[maybe_unused]]
+            const auto n = ::read(wake_fd_.get(), &count, sizeof count);
         if (fds[1].revents && !read_some()) return;
         if (Clock::now() >= next_tick) {
             stats().write();
@@ -376,7 +382,8 @@ bool ControlLink::handle(FromWalld message) {
             if (node->up) wishes_.redraw.insert(id);
         events_.node_changes.push_back(std::move(*node));
     } else if (auto* noted = std::get_if<AdoptionNoted>(&message)) {
-        if (const auto found = surfaces_.find(noted->surface); found != surfaces_.end()) found->second.noted = noted->layout_version;
+        if (const auto found = surfaces_.find(noted->surface); found != surfaces_.end())
+            found->second.noted = noted->layout_version;
     } else if (auto* close = std::get_if<CloseRequest>(&message)) {
         log(LogLevel::info, "close_requested surface=%u reason=%s", close->surface, close->reason.c_str());
         wishes_.close.insert(close->surface);
@@ -408,9 +415,11 @@ void ControlLink::tell_windows() {
         std::lock_guard lock(mutex_);
         if (wishes_.empty()) return;
         for (const auto id : wishes_.close)
-            if (const auto found = surfaces_.find(id); found != surfaces_.end()) close.emplace_back(id, found->second.messages.close);
+            if (const auto found = surfaces_.find(id); found != surfaces_.end())
+                close.emplace_back(id, found->second.messages.close);
         for (const auto id : wishes_.redraw)
-            if (const auto found = surfaces_.find(id); found != surfaces_.end() && found->second.messages.redraw) redraw.push_back(found->second.messages.redraw);
+            if (const auto found = surfaces_.find(id); found != surfaces_.end() && found->second.messages.redraw)
+                redraw.push_back(found->second.messages.redraw);
         wishes_ = {};
     }
     for (const auto& [id, ask] : close) {
@@ -457,8 +466,8 @@ void ControlLink::end_group(const std::string& why) {
     if (end) end(why);
 }
 
-/// A parallel program cannot come again: its processes would have to begin anew at the same frame. It draws on as long as
-/// walld is away.
+/// A parallel program cannot come again: its processes would have to begin anew at the same frame. It draws on as long
+/// as walld is away.
 void ControlLink::end_if_walld_is_new() {
     const auto fd = connect_to(address_, static_cast<int>(kOpenLimit.count()));
     if (!fd) return;

@@ -40,15 +40,18 @@ public:
     const Welcome& welcome() const { return welcome_; }
 
     /// `messages`: how walld's wishes reach the window.
-    void surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title, WindowMessages messages = {});
+    void surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title,
+                      WindowMessages messages = {});
     void surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height);
     void surface_close(std::uint32_t id);
     /// The placement of that version holds from `frame` on. Waits until walld knows; false when the time is over or the
     /// link breaks.
-    bool surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame, std::chrono::milliseconds timeout);
+    bool surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame,
+                         std::chrono::milliseconds timeout);
     /// In a parallel program: this process ends in order. Waits a moment until that is said.
     void leave();
-    /// Called by the background thread when a parallel program's session is over; before any other thread uses the link.
+    /// Called by the background thread when a parallel program's session is over; before any other thread uses the
+    /// link.
     void on_end(std::function<void(const std::string& why)> action);
 
     /// Asks the program, soon, to draw the window again: what is on the wall was drawn for another layout.
@@ -57,8 +60,9 @@ public:
     struct Events {
         std::vector<Placement> placements;  ///< in order of arrival
         std::vector<NodeInfo> node_changes;
-        bool lost = false;                  ///< the link broke; it is being made again
-        std::optional<Welcome> reconnected; ///< a new session: other id, other tickets. Open surfaces were announced again
+        bool lost = false;  ///< the link broke; it is being made again
+        std::optional<Welcome>
+            reconnected;  ///< a new session: other id, other tickets. Open surfaces were announced again
     };
     /// What came since the last call. One atomic read when nothing did.
     Events take_events();

@@ -15,9 +15,9 @@ using protozero::pbf_writer;
 // Field numbers of Envelope (proto/control.proto).
 namespace envelope {
 constexpr protozero::pbf_tag_type client_hello = 1, surface_open = 2, surface_resize = 3, surface_close = 4,
-                                  surface_adopted = 5, close_refused = 6, client_stats = 7, placement_noted = 8, member_leaves = 9,
-                                  client_welcome = 10, refused = 11, placement = 12, node_up = 13, node_down = 14,
-                                  close_request = 15, adoption_noted = 16;
+                                  surface_adopted = 5, close_refused = 6, client_stats = 7, placement_noted = 8,
+                                  member_leaves = 9, client_welcome = 10, refused = 11, placement = 12, node_up = 13,
+                                  node_down = 14, close_request = 15, adoption_noted = 16;
 }
 
 void put_string(pbf_writer& out, protozero::pbf_tag_type tag, std::string_view text) {
@@ -176,10 +176,8 @@ Placement read_placement(pbf_reader in) {
 Refused read_refused(pbf_reader in) {
     Refused refused;
     while (in.next()) {
-        if (in.tag() == 1)
-            refused.reason = read_string(in);
-        else
-            in.skip();
+        if (in.tag() == 1) refused.reason = read_string(in);
+        else in.skip();
     }
     return refused;
 }
@@ -301,7 +299,8 @@ std::string encode_placement_noted(std::uint32_t id, std::uint32_t layout_versio
 }
 
 std::string encode_member_leaves(std::uint32_t rank) {
-    return in_envelope(envelope::member_leaves, [&](pbf_writer& out) { out.add_uint32(1, rank); });  // an empty message would not be written
+    return in_envelope(envelope::member_leaves,
+                       [&](pbf_writer& out) { out.add_uint32(1, rank); });  // an empty message would not be written
 }
 
 std::string encode_data_hello(std::uint32_t session, std::string_view ticket) {

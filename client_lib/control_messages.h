@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The client's part of proto/control.proto as plain structs, written and read with protozero (header only: libprotobuf's
-// symbols would clash with the application's). Pure; any thread.
+// The client's part of proto/control.proto as plain structs, written and read with protozero (header only:
+// libprotobuf's symbols would clash with the application's). Pure; any thread.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct Hello {
 /// What all nodes of the wall can do: glGetString and glGet values.
 struct Caps {
     std::string vendor, renderer, version, shading_language_version;
-    std::string extensions;  ///< separated by blanks
+    std::string extensions;                                         ///< separated by blanks
     std::unordered_map<std::uint32_t, std::vector<double>> limits;  ///< by GL enum
 };
 
@@ -74,9 +74,9 @@ struct Placement {
     std::uint32_t layout_version = 0;
     geom::Rect rect;
     // To a parallel program.
-    std::uint32_t from_frame = 0;           ///< it holds from this frame on
-    std::uint32_t width = 0, height = 0;    ///< of the window, in every member
-    std::vector<NodeInfo> nodes;            ///< of the session
+    std::uint32_t from_frame = 0;         ///< it holds from this frame on
+    std::uint32_t width = 0, height = 0;  ///< of the window, in every member
+    std::vector<NodeInfo> nodes;          ///< of the session
 };
 
 /// walld knows from which frame on a placement holds.

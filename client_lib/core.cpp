@@ -23,8 +23,8 @@ Packer* closed_packer() {
     return packer;
 }
 
-/// Keeps the thread's context and surfaces alive while they are current. Not destroyed at exit(): programs still draw in
-/// their own exit handlers.
+/// Keeps the thread's context and surfaces alive while they are current. Not destroyed at exit(): programs still draw
+/// in their own exit handlers.
 struct Current {
     std::shared_ptr<Context> context;
     std::shared_ptr<Surface> draw, read;
@@ -60,7 +60,8 @@ std::shared_ptr<Surface> create_surface(SurfaceOptions options) {
 
 std::shared_ptr<Context> create_context(const ContextOptions& options) {
     if (options.core_profile || options.major > 2) return nullptr;
-    return std::make_shared<Context>(options.share ? options.share->share_pointer() : std::make_shared<ShareGroup>(), options);
+    return std::make_shared<Context>(options.share ? options.share->share_pointer() : std::make_shared<ShareGroup>(),
+                                     options);
 }
 
 bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface> draw, std::shared_ptr<Surface> read) {

@@ -32,16 +32,16 @@ struct SurfaceFormat {
 
 struct SurfaceOptions {
     SurfaceFormat format;
-    bool visible = true;                                 ///< a window; false: pbuffer, pixmap (never placed on the wall)
-    Extent size;                                         ///< at creation
-    std::function<std::optional<Extent>()> query_size;   ///< window's size now; empty function: it never changes
+    bool visible = true;                                ///< a window; false: pbuffer, pixmap (never placed on the wall)
+    Extent size;                                        ///< at creation
+    std::function<std::optional<Extent>()> query_size;  ///< window's size now; empty function: it never changes
     std::string title;
-    WindowMessages messages;                             ///< of a window; empty functions: it cannot be spoken to
+    WindowMessages messages;  ///< of a window; empty functions: it cannot be spoken to
 };
 
 struct ContextOptions {
-    Context* share = nullptr;   ///< same share group as this one
-    int major = 1, minor = 0;   ///< least version wanted
+    Context* share = nullptr;  ///< same share group as this one
+    int major = 1, minor = 0;  ///< least version wanted
     bool core_profile = false;
     bool debug = false, forward_compatible = false;
 };

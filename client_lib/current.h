@@ -11,7 +11,7 @@ class Packer;
 #define WALL_TLS __attribute__((tls_model("initial-exec")))
 
 extern constinit thread_local Context* tls_context WALL_TLS;  ///< null: no context is current in this thread
-extern constinit thread_local Packer* tls_packer WALL_TLS;    ///< never null: a closed packer when no context is current
+extern constinit thread_local Packer* tls_packer WALL_TLS;  ///< never null: a closed packer when no context is current
 
 inline Context* current_context_fast() { return tls_context; }
 

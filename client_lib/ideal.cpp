@@ -20,7 +20,8 @@ std::size_t bytes_between(wire::PackMark first, wire::PackMark last) {
 /// A primitive that is divided among nodes.
 class Division {
 public:
-    Division(const Packer& packer, const Primitive& primitive, const Topology& topology, const Projection& projection, const SurfaceLayout& layout)
+    Division(const Packer& packer, const Primitive& primitive, const Topology& topology, const Projection& projection,
+             const SurfaceLayout& layout)
         : topology_(topology), vertices_(scan_vertices(packer, primitive, projection)) {
         for (std::size_t v = topology.fan ? 1 : 0; v + topology.size <= vertices_.size(); v += topology.step)
             touched_.push_back(by_node(targets_of(layout, window_rect(topology, vertices_, v, projection)), layout));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What perfect sorting would send of a program's blocks, to hold our own traffic against (WALLGL_IDEAL=1, bench/traffic.py).
-// Each node gets exactly the vertices (with their attribute commands) of the primitives whose own window rectangle touches
-// one of its tiles, and the matrices only of blocks of which it gets something. The session's mutex is held.
+// What perfect sorting would send of a program's blocks, to hold our own traffic against (WALLGL_IDEAL=1,
+// bench/traffic.py). Each node gets exactly the vertices (with their attribute commands) of the primitives whose own
+// window rectangle touches one of its tiles, and the matrices only of blocks of which it gets something. The session's
+// mutex is held.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +23,8 @@ struct IdealBlock {
 };
 IdealBlock ideal_block(const Packer& packer, const Projection& projection, const SurfaceLayout& layout);
 
-/// Adds the blocks up in the counters `ideal_geometry_bytes` and `ideal_matrices`. The latter counts a set of matrices for
-/// each node that draws with it: state that changes with every object cannot be sent less often.
+/// Adds the blocks up in the counters `ideal_geometry_bytes` and `ideal_matrices`. The latter counts a set of matrices
+/// for each node that draws with it: state that changes with every object cannot be sent less often.
 class IdealTraffic {
 public:
     void count(Context& context, const SurfaceLayout& layout);

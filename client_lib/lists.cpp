@@ -60,18 +60,18 @@ Role role_of(std::uint16_t command) {
         Role role;
     };
     static constexpr Row kRows[] = {
-        {CommandId::Begin, Role::begin},          {CommandId::End, Role::end},
-        {CommandId::Vertex2f, Role::vertex},      {CommandId::Vertex3f, Role::vertex},
-        {CommandId::Vertex4f, Role::vertex},      {CommandId::EvalCoord1f, Role::vertex},
-        {CommandId::EvalCoord2f, Role::vertex},   {CommandId::EvalPoint1, Role::vertex},
-        {CommandId::EvalPoint2, Role::vertex},    {CommandId::Color3f, Role::attribute},
-        {CommandId::Color4f, Role::attribute},    {CommandId::Color4ub, Role::attribute},
-        {CommandId::Normal3f, Role::attribute},   {CommandId::SecondaryColor3f, Role::attribute},
-        {CommandId::TexCoord1f, Role::attribute}, {CommandId::TexCoord2f, Role::attribute},
-        {CommandId::TexCoord3f, Role::attribute}, {CommandId::TexCoord4f, Role::attribute},
-        {CommandId::FogCoordf, Role::attribute},  {CommandId::MultiTexCoord4f, Role::attribute},
-        {CommandId::EdgeFlag, Role::attribute},   {CommandId::Indexf, Role::attribute},
-        {CommandId::Materialfv, Role::attribute}, {CommandId::VertexAttrib4f, Role::attribute},
+        {CommandId::Begin, Role::begin},           {CommandId::End, Role::end},
+        {CommandId::Vertex2f, Role::vertex},       {CommandId::Vertex3f, Role::vertex},
+        {CommandId::Vertex4f, Role::vertex},       {CommandId::EvalCoord1f, Role::vertex},
+        {CommandId::EvalCoord2f, Role::vertex},    {CommandId::EvalPoint1, Role::vertex},
+        {CommandId::EvalPoint2, Role::vertex},     {CommandId::Color3f, Role::attribute},
+        {CommandId::Color4f, Role::attribute},     {CommandId::Color4ub, Role::attribute},
+        {CommandId::Normal3f, Role::attribute},    {CommandId::SecondaryColor3f, Role::attribute},
+        {CommandId::TexCoord1f, Role::attribute},  {CommandId::TexCoord2f, Role::attribute},
+        {CommandId::TexCoord3f, Role::attribute},  {CommandId::TexCoord4f, Role::attribute},
+        {CommandId::FogCoordf, Role::attribute},   {CommandId::MultiTexCoord4f, Role::attribute},
+        {CommandId::EdgeFlag, Role::attribute},    {CommandId::Indexf, Role::attribute},
+        {CommandId::Materialfv, Role::attribute},  {CommandId::VertexAttrib4f, Role::attribute},
         {CommandId::DrawArrays, Role::array_draw},
     };
     static constexpr auto kRoles = [] {
@@ -139,7 +139,8 @@ public:
     /// Null if it draws nothing.
     std::unique_ptr<ListRun> pack(std::span<const std::byte> recorded) {
         enter();
-        glapi::for_each_record(recorded, [&](const Recorded& r) { return replay_command(context_, r.command, r.payload), true; });
+        glapi::for_each_record(recorded,
+                               [&](const Recorded& r) { return replay_command(context_, r.command, r.payload), true; });
         leave();
         std::unique_ptr<ListRun> run;
         if (scratch_.has_geometry()) run = take();
@@ -195,11 +196,14 @@ std::vector<std::byte> encoded(const wire::PackBuffer& content) {
 void define_once(Session& session, Node& node, wire::PackBuffer& buffer, const ListRun& run) {
     if (!node.object_stamps.emplace(run.id, 1).second) return;
     const auto content = encoded(run.content);
-    const auto commands = static_cast<std::uint32_t>(run.content.commands()), operand_bytes = static_cast<std::uint32_t>(run.content.operand_bytes());
+    const auto commands = static_cast<std::uint32_t>(run.content.commands()),
+               operand_bytes = static_cast<std::uint32_t>(run.content.operand_bytes());
     if (content.size() >= kLeastShared && may_be_asked(node)) {
         glapi::ContentHash hash;
         hash.RunDefine(commands, operand_bytes, content);
-        const auto ask = [&](wire::PackBuffer& batch, std::uint32_t request) { glapi::pack::ShareRun(batch, request, run.id, hash.finish()); };
+        const auto ask = [&](wire::PackBuffer& batch, std::uint32_t request) {
+            glapi::pack::ShareRun(batch, request, run.id, hash.finish());
+        };
         if (node_holds(session, node, ask)) return;
     }
     const std::size_t before = buffer.bytes();
@@ -210,7 +214,8 @@ void define_once(Session& session, Node& node, wire::PackBuffer& buffer, const L
 void apply_effects(glstate::State& state, const ListRun& run) {
     const auto before = state.current;
     for (const auto& effect : run.effects) apply_attribute(state, effect.op, run.content.operand_at(effect.operand));
-    if (!glstate::same(before, state.current)) state.ids[static_cast<std::size_t>(Category::current)] = glstate::next_value_id();
+    if (!glstate::same(before, state.current))
+        state.ids[static_cast<std::size_t>(Category::current)] = glstate::next_value_id();
     for (const auto& m : run.materials) assign_material(state, m.face, m.pname, m.value);
 }
 
@@ -237,7 +242,8 @@ void call_run(Context& c, const ListRun& run) {
     const Needs needs = run.materials.empty() ? needs_of_geometry(c.state) : Needs{};
     c.session().draw(
         c, box, needs, [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session(), node, buffer, run); },
-        [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); }, [&](Node& node) { reached.push_back(&node); });
+        [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
+        [&](Node& node) { reached.push_back(&node); });
     apply_effects(c.state, run);
     follow(c, reached, run);
 }
@@ -303,11 +309,15 @@ constexpr Player kPlayers[] = {
     {Op::EdgeFlag, [](Context& c, const std::byte* at) { api::EdgeFlag(c, word(at) != 0); }},
     {Op::Indexf, play_floats<api::Indexf, 1>},
     {Op::VertexAttrib4f, play_vertex_attrib},
-    {Op::Material, [](Context& c, const std::byte* at) { api::Materialfv(c, word(at), word(at + 4), floats<4>(at + 8).data()); }},
+    {Op::Material,
+     [](Context& c, const std::byte* at) { api::Materialfv(c, word(at), word(at + 4), floats<4>(at + 8).data()); }},
     {Op::EvalCoord1f, play_floats<api::EvalCoord1f, 1>},
     {Op::EvalCoord2f, play_floats<api::EvalCoord2f, 2>},
     {Op::EvalPoint1, [](Context& c, const std::byte* at) { api::EvalPoint1(c, static_cast<GLint>(word(at))); }},
-    {Op::EvalPoint2, [](Context& c, const std::byte* at) { api::EvalPoint2(c, static_cast<GLint>(word(at)), static_cast<GLint>(word(at + 4))); }},
+    {Op::EvalPoint2,
+     [](Context& c, const std::byte* at) {
+         api::EvalPoint2(c, static_cast<GLint>(word(at)), static_cast<GLint>(word(at + 4)));
+     }},
 };
 
 // What was drawn from arrays is one command each, and an error here; a glBegin is an error by itself.
@@ -323,7 +333,8 @@ void unpack_run(Context& c, const ListRun& run) {
             refused = walk.op() != Op::End;
             continue;
         }
-        const auto player = std::find_if(std::begin(kPlayers), std::end(kPlayers), [&](const Player& p) { return p.op == walk.op(); });
+        const auto player =
+            std::find_if(std::begin(kPlayers), std::end(kPlayers), [&](const Player& p) { return p.op == walk.op(); });
         if (player != std::end(kPlayers)) player->play(c, walk.operand());
     }
 }
@@ -343,10 +354,8 @@ std::shared_ptr<DisplayList> compile_list(Context& context, std::span<const std:
         std::size_t bytes = whole_primitives(recording);
         auto run = bytes == 0 ? nullptr : packer.pack(recording.first(bytes));
         if (bytes == 0) bytes = first_record_bytes(recording);
-        if (run)
-            list->items.push_back({std::move(run), {}});
-        else
-            add_replay(*list, recording.first(bytes));
+        if (run) list->items.push_back({std::move(run), {}});
+        else add_replay(*list, recording.first(bytes));
         recording = recording.subspan(bytes);
     }
     return list;
@@ -354,12 +363,9 @@ std::shared_ptr<DisplayList> compile_list(Context& context, std::span<const std:
 
 void execute_list(Context& c, const DisplayList& list) {
     for (const ListItem& item : list.items) {
-        if (!item.run)
-            replay_commands(c, item.replay);
-        else if (c.packer.inside())
-            unpack_run(c, *item.run);
-        else
-            call_run(c, *item.run);
+        if (!item.run) replay_commands(c, item.replay);
+        else if (c.packer.inside()) unpack_run(c, *item.run);
+        else call_run(c, *item.run);
     }
 }
 

@@ -24,9 +24,9 @@ struct ListRun {
     ListRun();
     ~ListRun();
     ListRun(const ListRun&) = delete;
-    const std::uint32_t id;     ///< on the wire and in Node::object_stamps
+    const std::uint32_t id;  ///< on the wire and in Node::object_stamps
     wire::PackBuffer content;
-    geom::Box box;              ///< object space
+    geom::Box box;  ///< object space
     /// What a current attribute is afterwards: a command in `content`.
     struct Effect {
         glapi::Op op;
@@ -51,16 +51,16 @@ struct ListState {
     GLuint name = 0;  ///< of the list being compiled; 0: none
     GLenum mode = 0;  ///< GL_COMPILE, GL_COMPILE_AND_EXECUTE; 0: none
     glapi::ListRecorder recorder;
-    unsigned depth = 0;    ///< of calls being executed
-    bool packing = false;  ///< a run is being packed: materials go into the packer
+    unsigned depth = 0;                    ///< of calls being executed
+    bool packing = false;                  ///< a run is being packed: materials go into the packer
     std::vector<std::size_t> array_draws;  ///< of the run being packed
 };
 
 /// Takes a recording apart. Leaves the context as it was.
 std::shared_ptr<DisplayList> compile_list(Context& context, std::span<const std::byte> recording);
 void execute_list(Context& context, const DisplayList& list);
-/// Marks the next recorded primitive as drawn from arrays; `draws`: there will be one. False, and an error, if the command
-/// is executed between glBegin and glEnd.
+/// Marks the next recorded primitive as drawn from arrays; `draws`: there will be one. False, and an error, if the
+/// command is executed between glBegin and glEnd.
 bool record_array_draw(Context& context, bool draws);
 /// That mark, replayed or packed into a run.
 void replay_array_draw(Context& context, std::span<const std::byte> payload);

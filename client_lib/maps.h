@@ -41,8 +41,12 @@ struct ContextMaps {
     std::map<std::pair<GLenum, GLint>, TextureLevel> proxies;
 
     /// Null if the word names no map of this kind.
-    EvaluatorMap* find1(GLenum target) { return target - GL_MAP1_COLOR_4 < kEvaluatorMaps ? &map1[target - GL_MAP1_COLOR_4] : nullptr; }
-    EvaluatorMap* find2(GLenum target) { return target - GL_MAP2_COLOR_4 < kEvaluatorMaps ? &map2[target - GL_MAP2_COLOR_4] : nullptr; }
+    EvaluatorMap* find1(GLenum target) {
+        return target - GL_MAP1_COLOR_4 < kEvaluatorMaps ? &map1[target - GL_MAP1_COLOR_4] : nullptr;
+    }
+    EvaluatorMap* find2(GLenum target) {
+        return target - GL_MAP2_COLOR_4 < kEvaluatorMaps ? &map2[target - GL_MAP2_COLOR_4] : nullptr;
+    }
 
     /// The session's mutex is held.
     void bring_up_to_date(Node& node, wire::PackBuffer& buffer) const;

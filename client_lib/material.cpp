@@ -41,7 +41,8 @@ void visit_values(const glstate::State& state, GLenum face, GLenum pname, Visit&
     if (pname == GL_COLOR_INDEXES) visit_faces<el::material_indexes>(state, face, visit);
 }
 
-constexpr GLenum kNames[] = {GL_AMBIENT, GL_DIFFUSE, GL_SPECULAR, GL_EMISSION, GL_SHININESS, GL_COLOR_INDEXES, GL_AMBIENT_AND_DIFFUSE};
+constexpr GLenum kNames[] = {GL_AMBIENT,   GL_DIFFUSE,       GL_SPECULAR,           GL_EMISSION,
+                             GL_SHININESS, GL_COLOR_INDEXES, GL_AMBIENT_AND_DIFFUSE};
 
 }  // namespace
 
@@ -52,7 +53,9 @@ bool valid_material(GLenum face, GLenum pname) {
 
 bool changes_material(const glstate::State& state, GLenum face, GLenum pname, const glstate::Vec4& value) {
     bool changes = false;
-    visit_values(state, face, pname, [&]<class E>(unsigned i) { changes = changes || !glstate::same(E::ref(state, i), narrowed<E>(value)); });
+    visit_values(state, face, pname, [&]<class E>(unsigned i) {
+        changes = changes || !glstate::same(E::ref(state, i), narrowed<E>(value));
+    });
     return changes;
 }
 

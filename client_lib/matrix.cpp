@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Facts about the order of operations: Mesa 22.3, src/mesa/math/m_matrix.c and util/u_math.c. tests/unit/client/matrix_test.cpp
-// compares with the Mesa of the machine.
+// Facts about the order of operations: Mesa 22.3, src/mesa/math/m_matrix.c and util/u_math.c.
+// tests/unit/client/matrix_test.cpp compares with the Mesa of the machine.
 #include "client_lib/matrix.h"
 
 #include <algorithm>
@@ -23,7 +23,8 @@ Mat4 product_full(const Mat4& a, const Mat4& b) {
     Mat4 p;
     for (int r = 0; r < 4; ++r)
         for (int c = 0; c < 4; ++c)
-            at(p, r, c) = at(a, r, 0) * at(b, 0, c) + at(a, r, 1) * at(b, 1, c) + at(a, r, 2) * at(b, 2, c) + at(a, r, 3) * at(b, 3, c);
+            at(p, r, c) = at(a, r, 0) * at(b, 0, c) + at(a, r, 1) * at(b, 1, c) + at(a, r, 2) * at(b, 2, c) +
+                          at(a, r, 3) * at(b, 3, c);
     return p;
 }
 
@@ -31,7 +32,8 @@ Mat4 product_full(const Mat4& a, const Mat4& b) {
 Mat4 product_affine(const Mat4& a, const Mat4& b) {
     Mat4 p = kIdentity;
     for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) at(p, r, c) = at(a, r, 0) * at(b, 0, c) + at(a, r, 1) * at(b, 1, c) + at(a, r, 2) * at(b, 2, c);
+        for (int c = 0; c < 3; ++c)
+            at(p, r, c) = at(a, r, 0) * at(b, 0, c) + at(a, r, 1) * at(b, 1, c) + at(a, r, 2) * at(b, 2, c);
         at(p, r, 3) = at(a, r, 0) * at(b, 0, 3) + at(a, r, 1) * at(b, 1, 3) + at(a, r, 2) * at(b, 2, 3) + at(a, r, 3);
     }
     return p;
@@ -63,7 +65,9 @@ void multiply_formed(FormedMatrix& matrix, const Mat4& right, std::uint32_t righ
 // ---- form from values ----
 
 bool affine(const Mat4& m) { return m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1; }
-bool flat(const Mat4& m) { return affine(m) && m[2] == 0 && m[6] == 0 && m[8] == 0 && m[9] == 0 && m[10] == 1 && m[14] == 0; }
+bool flat(const Mat4& m) {
+    return affine(m) && m[2] == 0 && m[6] == 0 && m[8] == 0 && m[9] == 0 && m[10] == 1 && m[14] == 0;
+}
 bool diagonal(const Mat4& m) { return m[1] == 0 && m[2] == 0 && m[4] == 0 && m[6] == 0 && m[8] == 0 && m[9] == 0; }
 
 float dot(const float* a, const float* b, int n) {
@@ -73,7 +77,8 @@ float dot(const float* a, const float* b, int n) {
 
 std::uint32_t form_2d(const Mat4& m) {
     std::uint32_t form = 0;
-    if (square(dot(&m[0], &m[0], 2) - 1) > kTiny || square(dot(&m[4], &m[4], 2) - 1) > kTiny) form |= form::kGeneralScale;
+    if (square(dot(&m[0], &m[0], 2) - 1) > kTiny || square(dot(&m[4], &m[4], 2) - 1) > kTiny)
+        form |= form::kGeneralScale;
     return form | (square(dot(&m[0], &m[4], 2)) > kTiny ? form::kGeneral3d : form::kRotation);
 }
 
@@ -232,10 +237,22 @@ Mat4 axis_rotation(int from, int to, float s, float c) {
 Mat4 general_rotation(float x, float y, float z, float s, float c) {
     const float xx = x * x, yy = y * y, zz = z * z, xy = x * y, yz = y * z, zx = z * x;
     const float xs = x * s, ys = y * s, zs = z * s, rest = 1.0f - c;
-    return {rest * xx + c,  rest * xy + zs, rest * zx - ys, 0,  //
-            rest * xy - zs, rest * yy + c,  rest * yz + xs, 0,  //
-            rest * zx + ys, rest * yz - xs, rest * zz + c,  0,  //
-            0,              0,              0,              1};
+    return {rest * xx + c,
+            rest * xy + zs,
+            rest * zx - ys,
+            0,  //
+            rest * xy - zs,
+            rest * yy + c,
+            rest * yz + xs,
+            0,  //
+            rest * zx + ys,
+            rest * yz - xs,
+            rest * zz + c,
+            0,  //
+            0,
+            0,
+            0,
+            1};
 }
 
 constexpr double kPi = 3.14159265358979323846;
@@ -264,7 +281,8 @@ void multiply(FormedMatrix& matrix, const Mat4& right) {
 
 void rotate(FormedMatrix& matrix, float degrees, float x, float y, float z) {
     if (degrees == 0) return;
-    const float s = sinf(static_cast<float>(degrees * kPi / 180.0)), c = cosf(static_cast<float>(degrees * kPi / 180.0));
+    const float s = sinf(static_cast<float>(degrees * kPi / 180.0)),
+                c = cosf(static_cast<float>(degrees * kPi / 180.0));
     Mat4 m;
     if (x == 0 && y == 0 && z != 0) {
         m = axis_rotation(0, 1, z < 0 ? -s : s, c);
@@ -372,7 +390,8 @@ Vec3 transform_direction(const Mat4& m, const Vec4& d) {
 
 Vec4 transform_plane(const Vec4& v, const Mat4& m) {
     Vec4 out;
-    for (std::size_t c = 0; c < 4; ++c) out[c] = v[0] * m[4 * c] + v[1] * m[4 * c + 1] + v[2] * m[4 * c + 2] + v[3] * m[4 * c + 3];
+    for (std::size_t c = 0; c < 4; ++c)
+        out[c] = v[0] * m[4 * c] + v[1] * m[4 * c + 1] + v[2] * m[4 * c + 2] + v[3] * m[4 * c + 3];
     return out;
 }
 

@@ -19,8 +19,8 @@ using glstate::Vec4;
 /// What is known of a matrix from how it was made, as bits. It selects among ways to multiply and to invert that differ
 /// in the last bit, so it is kept by Mesa's rules (m_matrix.c), even the odd one that glLoadIdentity forgets nothing.
 namespace form {
-inline constexpr std::uint32_t kIdentity = 0, kGeneral = 1, kRotation = 2, kTranslation = 4, kUniformScale = 8, kGeneralScale = 16,
-                               kGeneral3d = 32, kPerspective = 64;
+inline constexpr std::uint32_t kIdentity = 0, kGeneral = 1, kRotation = 2, kTranslation = 4, kUniformScale = 8,
+                               kGeneralScale = 16, kGeneral3d = 32, kPerspective = 64;
 inline constexpr std::uint32_t kUnknown = 0x200;  ///< to be found out from the values
 inline constexpr std::uint32_t kAffine = kRotation | kTranslation | kUniformScale | kGeneralScale | kGeneral3d;
 }  // namespace form

@@ -15,8 +15,8 @@ using glstate::CategoryMask;
 using glstate::mask_of;
 
 /// Never read by vertices: other drawing commands bring them up to date.
-constexpr CategoryMask kNotForGeometry =
-    mask_of(Category::pixel_transfer) | mask_of(Category::accumulation) | mask_of(Category::raster) | mask_of(Category::evaluator);
+constexpr CategoryMask kNotForGeometry = mask_of(Category::pixel_transfer) | mask_of(Category::accumulation) |
+                                         mask_of(Category::raster) | mask_of(Category::evaluator);
 /// Read only while lighting is on.
 constexpr CategoryMask kLit = mask_of(Category::material) | mask_of(Category::lights);
 
@@ -64,7 +64,8 @@ Needs needs_of_block(const glstate::State& state, const Packer& packer) {
 
 CategoryMask categories_to_send(const Needs& needs, const glstate::State& mirror, const glstate::State& state) {
     constexpr auto origin = static_cast<std::size_t>(Category::modelview_origin);
-    if (!(needs.categories & mask_of(Category::modelview_origin)) || mirror.ids[origin] == state.ids[origin]) return needs.categories;
+    if (!(needs.categories & mask_of(Category::modelview_origin)) || mirror.ids[origin] == state.ids[origin])
+        return needs.categories;
     const auto& matrix = state.matrix.modelview;
     if (glstate::is_origin_of(state.modelview_origin.modelview_form, matrix)) return needs.categories;
     if (glstate::is_origin_of(mirror.modelview_origin.modelview_form, matrix)) return needs.categories;

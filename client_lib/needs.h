@@ -24,8 +24,8 @@ Needs needs_of_geometry(const glstate::State& state);
 /// A packed block: the same, less what it sets itself in time.
 Needs needs_of_block(const glstate::State& state, const Packer& packer);
 
-/// What of `needs` has to be compared with this mirror: the origin of an earlier modelview matrix waits, too, unless the
-/// node would take its own origin for this matrix's.
+/// What of `needs` has to be compared with this mirror: the origin of an earlier modelview matrix waits, too, unless
+/// the node would take its own origin for this matrix's.
 glstate::CategoryMask categories_to_send(const Needs& needs, const glstate::State& mirror, const glstate::State& state);
 
 /// Makes the mirror's current attributes equal to the context's, but for those that wait, and tells the sink.
@@ -51,7 +51,8 @@ constexpr Attribute attribute_of_element(unsigned i) {
 }
 
 template <class Sink, class... E>
-bool diff_attributes(glstate::ElementList<E...>, glstate::State& mirror, const glstate::State& state, const Needs& needs, Sink& sink) {
+bool diff_attributes(glstate::ElementList<E...>, glstate::State& mirror, const glstate::State& state,
+                     const Needs& needs, Sink& sink) {
     bool equal = true;
     const auto one = [&]<class Element>(unsigned i) {
         if (glstate::same(Element::ref(mirror, i), Element::ref(const_cast<glstate::State&>(state), i))) return;

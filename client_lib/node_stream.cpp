@@ -20,8 +20,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMaxQueuedBytes = 64u << 20;         // of one node: about two frames of the heaviest programs
-constexpr int kStallLimitMs = 5000;                        // a node that takes nothing for so long is given up
+constexpr std::size_t kMaxQueuedBytes = 64u << 20;  // of one node: about two frames of the heaviest programs
+constexpr int kStallLimitMs = 5000;                 // a node that takes nothing for so long is given up
 constexpr std::size_t kReadChunk = 64 << 10;
 
 int remaining_ms(Clock::time_point deadline) {
@@ -129,7 +129,8 @@ Result<std::shared_ptr<NodeStream>> NodeStream::open(const std::string& address,
         !write_all(fd->get(), reinterpret_cast<const std::byte*>(hello.data()), hello.size(), deadline))
         return fail("node at " + address + " does not take the hello");
     std::array<std::byte, wire::kFrameHeaderBytes> answer;
-    if (!read_all(fd->get(), answer.data(), answer.size(), deadline)) return fail("node at " + address + " does not answer");
+    if (!read_all(fd->get(), answer.data(), answer.size(), deadline))
+        return fail("node at " + address + " does not answer");
     const auto frame = wire::decode_frame_header(answer.data());
     if (frame.kind == wire::FrameKind::error && frame.payload_bytes < 4096) {
         std::string text(frame.payload_bytes, '\0');
@@ -216,8 +217,7 @@ bool NodeStream::write_some(Outgoing& out) {
     while (out.sent < total) {
         std::array<iovec, 2> parts;
         int count = 0;
-        if (out.sent < out.head_bytes)
-            parts[count++] = {out.head.data() + out.sent, out.head_bytes - out.sent};
+        if (out.sent < out.head_bytes) parts[count++] = {out.head.data() + out.sent, out.head_bytes - out.sent};
         const std::size_t skip = out.sent > out.head_bytes ? out.sent - out.head_bytes : 0;
         const auto* body = out.body.opcodes().data() + skip;
         parts[count++] = {const_cast<std::byte*>(body), out.body.bytes() - skip};
@@ -283,7 +283,8 @@ void NodeStream::on_readable() {
 
 void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> payload) {
     if (kind == wire::FrameKind::error)
-        return give_up("node ended the session: " + std::string(reinterpret_cast<const char*>(payload.data()), payload.size()));
+        return give_up("node ended the session: " +
+                       std::string(reinterpret_cast<const char*>(payload.data()), payload.size()));
     std::lock_guard lock(mutex_);
     std::uint32_t words[2];
     if (kind == wire::FrameKind::reply && payload.size() >= 4) {

@@ -25,7 +25,8 @@ namespace wall::client {
 class NodeStream {
 public:
     /// Connects and says hello; at most `timeout_ms` in all. `hello` is an encoded DataHello.
-    static Result<std::shared_ptr<NodeStream>> open(const std::string& address, const std::string& hello, int timeout_ms);
+    static Result<std::shared_ptr<NodeStream>> open(const std::string& address, const std::string& hello,
+                                                    int timeout_ms);
 
     static constexpr int kNoLimit = -1;  ///< as timeout_ms
 
@@ -79,7 +80,7 @@ private:
     std::deque<Outgoing> queue_;
     std::size_t queued_bytes_ = 0;
     std::unordered_map<std::uint32_t, std::vector<std::byte>> replies_;
-    std::unordered_set<std::uint32_t> unwanted_;  ///< requests whose answers nobody waits for any more
+    std::unordered_set<std::uint32_t> unwanted_;              ///< requests whose answers nobody waits for any more
     std::unordered_map<std::uint32_t, std::uint32_t> swaps_;  // surface -> last frame drawn
     std::string failure_;
 

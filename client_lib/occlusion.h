@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Occlusion queries of a context (OpenGL 2.1, 4.1.7). The current one is a state element, so that every node knows which
-// of its drawing counts; the answer is the sum over the nodes. Application's thread.
+// Occlusion queries of a context (OpenGL 2.1, 4.1.7). The current one is a state element, so that every node knows
+// which of its drawing counts; the answer is the sum over the nodes. Application's thread.
 #pragma once
 
 #include <memory>

@@ -5,7 +5,7 @@
 namespace wall::client {
 
 struct Options {
-    bool broadcast = false;  ///< WALLGL_BROADCAST=1: everything goes to every node, for comparison
+    bool broadcast = false;    ///< WALLGL_BROADCAST=1: everything goes to every node, for comparison
     bool count_ideal = false;  ///< WALLGL_IDEAL=1: also count what perfect sorting by primitive would send
 };
 

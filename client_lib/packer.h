@@ -25,7 +25,10 @@ struct AttributePlaces {
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     std::array<std::uint32_t, kAttributes> offset;
     std::array<glapi::Op, kAttributes> op;
-    AttributePlaces() { offset.fill(kNone); op.fill(glapi::Op::End); }
+    AttributePlaces() {
+        offset.fill(kNone);
+        op.fill(glapi::Op::End);
+    }
 };
 
 /// One glBegin .. glEnd.
@@ -75,7 +78,10 @@ public:
     /// Forgets the block.
     void reset();
     /// Shut: every entry point goes through the context's table (display list compilation).
-    void set_closed(bool closed) { closed_ = closed; update_limit(); }
+    void set_closed(bool closed) {
+        closed_ = closed;
+        update_limit();
+    }
     bool closed() const { return closed_; }
 
 private:

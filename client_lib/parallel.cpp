@@ -18,11 +18,15 @@ bool read_number(std::string_view text, std::uint32_t& number) {
 
 Result<Parallel> parse_parallel(std::string_view text) {
     const auto second = text.rfind(':');
-    const auto first = second == std::string_view::npos || second == 0 ? std::string_view::npos : text.rfind(':', second - 1);
+    const auto first =
+        second == std::string_view::npos || second == 0 ? std::string_view::npos : text.rfind(':', second - 1);
     Parallel out;
-    const bool numbers = first != std::string_view::npos && read_number(text.substr(first + 1, second - first - 1), out.rank) && read_number(text.substr(second + 1), out.members);
+    const bool numbers = first != std::string_view::npos &&
+                         read_number(text.substr(first + 1, second - first - 1), out.rank) &&
+                         read_number(text.substr(second + 1), out.members);
     if (!numbers || first == 0 || out.members == 0 || out.members > wire::kMaxMembers || out.rank >= out.members)
-        return fail("WALLGL_PARALLEL: expected GROUP:RANK:MEMBERS, ranks from 0, at most " + std::to_string(wire::kMaxMembers) + " members, got '" + std::string(text) + "'");
+        return fail("WALLGL_PARALLEL: expected GROUP:RANK:MEMBERS, ranks from 0, at most " +
+                    std::to_string(wire::kMaxMembers) + " members, got '" + std::string(text) + "'");
     out.group = text.substr(0, first);
     return out;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Being one process of a parallel program: several that draw into the same windows (docs/parallel-programs.md). Any thread.
+// Being one process of a parallel program: several that draw into the same windows (docs/parallel-programs.md). Any
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,8 @@ struct Parallel {
 /// "GROUP:RANK:MEMBERS".
 Result<Parallel> parse_parallel(std::string_view text);
 
-/// What WALLGL_PARALLEL says of this process, read once; nothing without it, or if it is wrong (Hello::invalid says so).
+/// What WALLGL_PARALLEL says of this process, read once; nothing without it, or if it is wrong (Hello::invalid says
+/// so).
 const std::optional<Parallel>& parallel();
 
 }  // namespace wall::client

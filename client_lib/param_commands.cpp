@@ -29,7 +29,8 @@ std::optional<unsigned> index_of(const Context& c, ParamFamily family, GLenum le
     const auto below = [](unsigned i, unsigned count) { return i < count ? std::optional(i) : std::nullopt; };
     if (family == ParamFamily::Light) return below(lead - GL_LIGHT0, el::light_ambient::count);
     if (family == ParamFamily::TexEnv) return c.active_texture();
-    if (family == ParamFamily::Material) return lead == GL_FRONT ? std::optional(0u) : lead == GL_BACK ? std::optional(1u) : std::nullopt;
+    if (family == ParamFamily::Material)
+        return lead == GL_FRONT ? std::optional(0u) : lead == GL_BACK ? std::optional(1u) : std::nullopt;
     if (family != ParamFamily::TexGen) return 0;
     const auto coordinate = below(lead - GL_S, 4);
     return coordinate ? std::optional(c.active_texture() * 4 + *coordinate) : std::nullopt;
@@ -41,7 +42,8 @@ template <class T>
 void convert(ParamFamily family, GLenum pname, const T* from, GLfloat* to) {
     const ParamRow* row = find_row(family, std::nullopt, pname);
     if (!row) return;
-    for (unsigned k = 0; k < row->components; ++k) to[k] = row->normalized ? glapi::to_fraction(from[k]) : static_cast<GLfloat>(from[k]);
+    for (unsigned k = 0; k < row->components; ++k)
+        to[k] = row->normalized ? glapi::to_fraction(from[k]) : static_cast<GLfloat>(from[k]);
 }
 
 template <class T>
@@ -74,12 +76,14 @@ void get_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, T* value
     if (!index || !entry) return c.error(GL_INVALID_ENUM);
     if (family == ParamFamily::Material) settle_materials(c);
     if constexpr (std::is_same_v<T, GLint>)
-        if (entry->kind == glstate::ValueKind::real && family != ParamFamily::Material) return get_truncated(c, entry->id + *index, entry->components, values);
+        if (entry->kind == glstate::ValueKind::real && family != ParamFamily::Material)
+            return get_truncated(c, entry->id + *index, entry->components, values);
     glstate::read_components(c.state, entry->id + *index, 0, entry->kind, entry->components, values);
 }
 
 const CapRow* find_cap_row(GLenum cap) {
-    const auto at = std::lower_bound(kCapRows.begin(), kCapRows.end(), cap, [](const CapRow& row, GLenum word) { return row.cap < word; });
+    const auto at = std::lower_bound(kCapRows.begin(), kCapRows.end(), cap,
+                                     [](const CapRow& row, GLenum word) { return row.cap < word; });
     return at != kCapRows.end() && at->cap == cap ? &*at : nullptr;
 }
 
@@ -94,21 +98,38 @@ bool refuses_one_value(const Context& c, ParamFamily family, GLenum pname) {
     return c.table == &tables::immediate && param_components(family, pname) > 1;
 }
 
-void convert_params(ParamFamily family, GLenum pname, const GLint* from, GLfloat* to) { convert(family, pname, from, to); }
-void convert_params(ParamFamily family, GLenum pname, const GLdouble* from, GLfloat* to) { convert(family, pname, from, to); }
+void convert_params(ParamFamily family, GLenum pname, const GLint* from, GLfloat* to) {
+    convert(family, pname, from, to);
+}
+void convert_params(ParamFamily family, GLenum pname, const GLdouble* from, GLfloat* to) {
+    convert(family, pname, from, to);
+}
 GLint rounded_param(GLfloat value) { return to_int(std::round(value)); }
 
-void set_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, const GLfloat* values) { set_any(c, family, lead, pname, values); }
-void set_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, const GLint* values) { set_any(c, family, lead, pname, values); }
-void set_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, const GLenum* values) { set_any(c, family, lead, pname, values); }
+void set_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, const GLfloat* values) {
+    set_any(c, family, lead, pname, values);
+}
+void set_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, const GLint* values) {
+    set_any(c, family, lead, pname, values);
+}
+void set_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, const GLenum* values) {
+    set_any(c, family, lead, pname, values);
+}
 
-void get_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLfloat* values) { get_any(c, family, lead, pname, values); }
-void get_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLint* values) { get_any(c, family, lead, pname, values); }
-void get_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLdouble* values) { get_any(c, family, lead, pname, values); }
+void get_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLfloat* values) {
+    get_any(c, family, lead, pname, values);
+}
+void get_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLint* values) {
+    get_any(c, family, lead, pname, values);
+}
+void get_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLdouble* values) {
+    get_any(c, family, lead, pname, values);
+}
 
 void set_capability(Context& c, GLenum cap, bool on) {
     const CapRow* row = find_cap_row(cap);
-    if (!row) return on ? api::EnableClientState(c, cap) : api::DisableClientState(c, cap);  // as GL_EXT_vertex_array had it
+    if (!row)
+        return on ? api::EnableClientState(c, cap) : api::DisableClientState(c, cap);  // as GL_EXT_vertex_array had it
     row->set(c, row->index + row->unit_stride * c.active_texture(), on ? 1 : 0);
 }
 
@@ -118,9 +139,10 @@ GLboolean is_capability_set(Context& c, GLenum cap) {
         c.error(GL_INVALID_ENUM);
         return GL_FALSE;
     }
-    const unsigned unit = entry->rule == glstate::IndexRule::none          ? 0
-                          : entry->rule == glstate::IndexRule::client_unit ? c.state.local.client_active_texture - GL_TEXTURE0
-                                                                           : c.active_texture();
+    const unsigned unit = entry->rule == glstate::IndexRule::none ? 0
+                          : entry->rule == glstate::IndexRule::client_unit
+                              ? c.state.local.client_active_texture - GL_TEXTURE0
+                              : c.active_texture();
     GLboolean value = GL_FALSE;
     glstate::read_components(c.state, entry->id + unit * entry->unit_stride, entry->offset, entry->kind, 1, &value);
     return value;

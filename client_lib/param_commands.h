@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the generated state commands stand on: parameters by name (glFog*, glLight*, ...) and glEnable's words, by table.
-// The tables are generated from proto/gl/state.toml. Used by the thread that has the context.
+// What the generated state commands stand on: parameters by name (glFog*, glLight*, ...) and glEnable's words, by
+// table. The tables are generated from proto/gl/state.toml. Used by the thread that has the context.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +22,10 @@ inline constexpr GLenum kAnyParam = ~GLenum{0};
 /// One parameter of a family of commands.
 struct ParamRow {
     ParamFamily family;
-    GLenum target;             ///< of glTexEnv; else 0
-    GLenum pname;              ///< kAnyParam: all that have no row
+    GLenum target;  ///< of glTexEnv; else 0
+    GLenum pname;   ///< kAnyParam: all that have no row
     std::uint8_t components;
-    bool normalized;           ///< integers map to [-1, 1]
+    bool normalized;                                     ///< integers map to [-1, 1]
     void (*set)(Context&, unsigned i, const double* v);  ///< null: the command is written by hand
 };
 extern const std::span<const ParamRow> kParamRows;  ///< by family
@@ -41,8 +41,8 @@ extern const std::span<const CapRow> kCapRows;  ///< by cap
 
 /// Values that a parameter takes; 0: no such parameter.
 unsigned param_components(ParamFamily family, GLenum pname);
-/// A command for one value that is called with a parameter of several. Display lists take it, with zeros for the others, as
-/// Mesa does.
+/// A command for one value that is called with a parameter of several. Display lists take it, with zeros for the
+/// others, as Mesa does.
 bool refuses_one_value(const Context& c, ParamFamily family, GLenum pname);
 /// A parameter's values as floats, integers mapped to fractions where that parameter asks for it.
 void convert_params(ParamFamily family, GLenum pname, const GLint* from, GLfloat* to);
@@ -79,7 +79,9 @@ glstate::Flag to_flag(T value) {
     return value != 0 ? 1 : 0;
 }
 /// Zero for what is no int.
-inline std::int32_t to_int(double v) { return v >= -2147483648.0 && v <= 2147483647.0 ? static_cast<std::int32_t>(v) : 0; }
+inline std::int32_t to_int(double v) {
+    return v >= -2147483648.0 && v <= 2147483647.0 ? static_cast<std::int32_t>(v) : 0;
+}
 inline GLenum to_enum(double v) { return static_cast<GLenum>(to_int(v)); }
 template <class Vector>
 Vector vector(const double* v) {
@@ -89,6 +91,8 @@ Vector vector(const double* v) {
 }
 inline bool is_face(GLenum face) { return face == GL_FRONT || face == GL_BACK || face == GL_FRONT_AND_BACK; }
 /// Whether `face` names face i: 0 front, 1 back.
-inline bool names_face(GLenum face, unsigned i) { return face == GL_FRONT_AND_BACK || face == (i == 0 ? GLenum{GL_FRONT} : GLenum{GL_BACK}); }
+inline bool names_face(GLenum face, unsigned i) {
+    return face == GL_FRONT_AND_BACK || face == (i == 0 ? GLenum{GL_FRONT} : GLenum{GL_BACK});
+}
 
 }  // namespace wall::client

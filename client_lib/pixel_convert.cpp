@@ -32,7 +32,7 @@ std::uint16_t float_to_half(float value) {
     if (magnitude >= 65520.0f) return sign | 0x7c00;
     if (magnitude < 6.103515625e-05f) return sign | static_cast<std::uint16_t>(std::lrint(std::ldexp(magnitude, 24)));
     int exponent;
-    const float fraction = std::frexp(magnitude, &exponent);  // [0.5, 1)
+    const float fraction = std::frexp(magnitude, &exponent);                                 // [0.5, 1)
     const auto mantissa = static_cast<std::uint32_t>(std::lrint(std::ldexp(fraction, 11)));  // [1024, 2048]
     return static_cast<std::uint16_t>(sign | ((static_cast<std::uint32_t>(exponent + 13) << 10) + mantissa));
 }
@@ -41,7 +41,8 @@ double unsigned_max(unsigned bits) { return bits == 32 ? 4294967295.0 : static_c
 
 float unorm(std::uint32_t value, unsigned bits) { return static_cast<float>(value / unsigned_max(bits)); }
 float snorm(std::int32_t value, unsigned bits) {
-    return static_cast<float>(std::max(value / (bits == 32 ? 2147483647.0 : static_cast<double>((1 << (bits - 1)) - 1)), -1.0));
+    return static_cast<float>(
+        std::max(value / (bits == 32 ? 2147483647.0 : static_cast<double>((1 << (bits - 1)) - 1)), -1.0));
 }
 std::uint32_t to_unorm(float value, unsigned bits) {
     if (!(value > 0)) return 0;
@@ -63,7 +64,8 @@ float load_component(GLenum type, const std::byte* at, bool whole) {
         case GL_BYTE: return whole ? load<std::int8_t>(at) : snorm(load<std::int8_t>(at), 8);
         case GL_UNSIGNED_SHORT: return whole ? load<std::uint16_t>(at) : unorm(load<std::uint16_t>(at), 16);
         case GL_SHORT: return whole ? load<std::int16_t>(at) : snorm(load<std::int16_t>(at), 16);
-        case GL_UNSIGNED_INT: return whole ? static_cast<float>(load<std::uint32_t>(at)) : unorm(load<std::uint32_t>(at), 32);
+        case GL_UNSIGNED_INT:
+            return whole ? static_cast<float>(load<std::uint32_t>(at)) : unorm(load<std::uint32_t>(at), 32);
         case GL_INT: return whole ? static_cast<float>(load<std::int32_t>(at)) : snorm(load<std::int32_t>(at), 32);
         case GL_HALF_FLOAT: return half_to_float(load<std::uint16_t>(at));
         default: return load<float>(at);
@@ -133,17 +135,27 @@ constexpr std::uint8_t kLuminance = 4, kIntensity = 5;
 
 Order order_of(GLenum format) {
     switch (format) {
-        case GL_GREEN: case GL_GREEN_INTEGER: return {{1}, 1};
-        case GL_BLUE: case GL_BLUE_INTEGER: return {{2}, 1};
-        case GL_ALPHA: case GL_ALPHA_INTEGER: return {{3}, 1};
-        case GL_LUMINANCE: case GL_LUMINANCE_INTEGER_EXT: return {{kLuminance}, 1};
-        case GL_LUMINANCE_ALPHA: case GL_LUMINANCE_ALPHA_INTEGER_EXT: return {{kLuminance, 3}, 2};
+        case GL_GREEN:
+        case GL_GREEN_INTEGER: return {{1}, 1};
+        case GL_BLUE:
+        case GL_BLUE_INTEGER: return {{2}, 1};
+        case GL_ALPHA:
+        case GL_ALPHA_INTEGER: return {{3}, 1};
+        case GL_LUMINANCE:
+        case GL_LUMINANCE_INTEGER_EXT: return {{kLuminance}, 1};
+        case GL_LUMINANCE_ALPHA:
+        case GL_LUMINANCE_ALPHA_INTEGER_EXT: return {{kLuminance, 3}, 2};
         case GL_INTENSITY: return {{kIntensity}, 1};
-        case GL_RG: case GL_RG_INTEGER: return {{0, 1}, 2};
-        case GL_RGB: case GL_RGB_INTEGER: return {{0, 1, 2}, 3};
-        case GL_BGR: case GL_BGR_INTEGER: return {{2, 1, 0}, 3};
-        case GL_RGBA: case GL_RGBA_INTEGER: return {{0, 1, 2, 3}, 4};
-        case GL_BGRA: case GL_BGRA_INTEGER: return {{2, 1, 0, 3}, 4};
+        case GL_RG:
+        case GL_RG_INTEGER: return {{0, 1}, 2};
+        case GL_RGB:
+        case GL_RGB_INTEGER: return {{0, 1, 2}, 3};
+        case GL_BGR:
+        case GL_BGR_INTEGER: return {{2, 1, 0}, 3};
+        case GL_RGBA:
+        case GL_RGBA_INTEGER: return {{0, 1, 2, 3}, 4};
+        case GL_BGRA:
+        case GL_BGRA_INTEGER: return {{2, 1, 0, 3}, 4};
         case GL_ABGR_EXT: return {{3, 2, 1, 0}, 4};
         default: return {{0}, 1};  // red, depth, indices
     }
@@ -198,13 +210,15 @@ std::vector<Rgba> to_rgba(GLenum format, GLenum type, std::span<const std::byte>
         if (type == GL_FLOAT_32_UNSIGNED_INT_24_8_REV) {
             out[i] = {load<float>(at), static_cast<float>(load<std::uint32_t>(at + 4) & 0xff), 0, 1};
         } else if (type == GL_UNSIGNED_INT_24_8) {
-            out[i] = {unorm(load<std::uint32_t>(at) >> 8, 24), static_cast<float>(load<std::uint32_t>(at) & 0xff), 0, 1};
+            out[i] = {unorm(load<std::uint32_t>(at) >> 8, 24), static_cast<float>(load<std::uint32_t>(at) & 0xff), 0,
+                      1};
         } else if (type == GL_UNSIGNED_INT_5_9_9_9_REV || type == GL_UNSIGNED_INT_10F_11F_11F_REV) {
             out[i] = unpack_special(type, load<std::uint32_t>(at));
         } else if (packed) {
             const std::uint32_t word = load_word(at, layout->pixel_bytes);
             for (unsigned k = 0; k < order.count; ++k) {
-                const std::uint32_t value = word >> shift_of(bits, k, layout->pixel_bytes * 8) & ((1u << bits.bits[k]) - 1);
+                const std::uint32_t value =
+                    word >> shift_of(bits, k, layout->pixel_bytes * 8) & ((1u << bits.bits[k]) - 1);
                 put_component(out[i], order.place[k], whole ? static_cast<float>(value) : unorm(value, bits.bits[k]));
             }
         } else {
@@ -224,8 +238,9 @@ std::vector<float> to_indices(GLenum type, std::span<const std::byte> tight, std
     for (std::int32_t y = 0; y < rows; ++y)
         for (std::int32_t x = 0; x < width; ++x) {
             const std::byte* row = tight.data() + static_cast<std::size_t>(y) * stride;
-            out.push_back(layout->bitmap ? static_cast<float>(std::to_integer<unsigned>(row[x / 8]) >> (7 - x % 8) & 1)
-                                         : load_component(type, row + static_cast<std::size_t>(x) * layout->pixel_bytes, true));
+            out.push_back(layout->bitmap
+                              ? static_cast<float>(std::to_integer<unsigned>(row[x / 8]) >> (7 - x % 8) & 1)
+                              : load_component(type, row + static_cast<std::size_t>(x) * layout->pixel_bytes, true));
         }
     return out;
 }
@@ -263,8 +278,8 @@ bool transfer_matters(const glstate::State& state, GLenum format) {
     if (format == GL_COLOR_INDEX) return true;  // only the maps give it a colour
     if (format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL) return t.depth_scale != 1 || t.depth_bias != 0;
     if (format == GL_STENCIL_INDEX || glapi::is_integer_format(format)) return false;
-    return t.map_color || t.red_scale != 1 || t.red_bias != 0 || t.green_scale != 1 || t.green_bias != 0 || t.blue_scale != 1 ||
-           t.blue_bias != 0 || t.alpha_transfer_scale != 1 || t.alpha_transfer_bias != 0;
+    return t.map_color || t.red_scale != 1 || t.red_bias != 0 || t.green_scale != 1 || t.green_bias != 0 ||
+           t.blue_scale != 1 || t.blue_bias != 0 || t.alpha_transfer_scale != 1 || t.alpha_transfer_bias != 0;
 }
 
 void transfer_colors(const glstate::State& state, const PixelMapTables& maps, std::span<Rgba> pixels) {
@@ -283,7 +298,8 @@ void transfer_depths(const glstate::State& state, std::span<Rgba> pixels) {
     for (Rgba& pixel : pixels) pixel[0] = std::clamp(pixel[0] * t.depth_scale + t.depth_bias, 0.0f, 1.0f);
 }
 
-std::vector<Rgba> indices_to_colors(const glstate::State& state, const PixelMapTables& maps, std::span<const float> indices) {
+std::vector<Rgba> indices_to_colors(const glstate::State& state, const PixelMapTables& maps,
+                                    std::span<const float> indices) {
     const auto& t = state.pixel_transfer;
     std::vector<Rgba> out;
     out.reserve(indices.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Pixels between formats, by way of floating point RGBA, and pixel transfer (OpenGL 1.2.1, 3.6.4 and 4.3.2), for the few
-// cases where the client itself must see pixels: textures defined while a transfer is set, glGetTexImage, sub-images in
-// another format. Everything else is converted by the node's driver. Pure.
+// Pixels between formats, by way of floating point RGBA, and pixel transfer (OpenGL 1.2.1, 3.6.4 and 4.3.2), for the
+// few cases where the client itself must see pixels: textures defined while a transfer is set, glGetTexImage,
+// sub-images in another format. Everything else is converted by the node's driver. Pure.
 #pragma once
 
 #include <array>
@@ -25,7 +25,8 @@ struct PixelMapTables {
 
 /// Tight pixels as RGBA; missing components are 0, alpha 1. Depth, stencil and indices: in the first component.
 std::vector<Rgba> to_rgba(GLenum format, GLenum type, std::span<const std::byte> tight, std::size_t pixels);
-/// Indices (GL_COLOR_INDEX, GL_STENCIL_INDEX), bitmaps included (`width` pixels a row), shift, offset and maps not applied.
+/// Indices (GL_COLOR_INDEX, GL_STENCIL_INDEX), bitmaps included (`width` pixels a row), shift, offset and maps not
+/// applied.
 std::vector<float> to_indices(GLenum type, std::span<const std::byte> tight, std::int32_t width, std::int32_t rows);
 /// Luminance is taken from red.
 std::vector<std::byte> from_rgba(GLenum format, GLenum type, std::span<const Rgba> pixels);
@@ -36,6 +37,7 @@ bool transfer_matters(const glstate::State& state, GLenum format);
 void transfer_colors(const glstate::State& state, const PixelMapTables& maps, std::span<Rgba> pixels);
 void transfer_depths(const glstate::State& state, std::span<Rgba> pixels);
 /// Shift and offset, then the maps from index to colour.
-std::vector<Rgba> indices_to_colors(const glstate::State& state, const PixelMapTables& maps, std::span<const float> indices);
+std::vector<Rgba> indices_to_colors(const glstate::State& state, const PixelMapTables& maps,
+                                    std::span<const float> indices);
 
 }  // namespace wall::client

@@ -24,7 +24,8 @@ std::optional<Topology> topology_of(std::uint32_t mode) {
     }
 }
 
-std::vector<PackedVertex> scan_vertices(const Packer& packer, const Primitive& primitive, const Projection& projection) {
+std::vector<PackedVertex> scan_vertices(const Packer& packer, const Primitive& primitive,
+                                        const Projection& projection) {
     std::vector<PackedVertex> vertices;
     BlockWalk walk(packer, primitive.first, primitive.last, primitive.before);
     walk.next();  // Begin
@@ -40,8 +41,8 @@ std::vector<PackedVertex> scan_vertices(const Packer& packer, const Primitive& p
     return vertices;
 }
 
-std::optional<PixelRect> window_rect(const Topology& topology, const std::vector<PackedVertex>& vertices, std::size_t first,
-                                     const Projection& projection) {
+std::optional<PixelRect> window_rect(const Topology& topology, const std::vector<PackedVertex>& vertices,
+                                     std::size_t first, const Projection& projection) {
     std::array<WindowVertex, kMostVertices> corners;
     std::size_t count = 0;
     if (topology.fan) corners[count++] = vertices[0].window;

@@ -34,7 +34,7 @@ struct PackedVertex {
 std::vector<PackedVertex> scan_vertices(const Packer& packer, const Primitive& primitive, const Projection& projection);
 
 /// Where the point, line, triangle or quad that starts at vertex `first` may be drawn; nothing if that is unknown.
-std::optional<PixelRect> window_rect(const Topology& topology, const std::vector<PackedVertex>& vertices, std::size_t first,
-                                     const Projection& projection);
+std::optional<PixelRect> window_rect(const Topology& topology, const std::vector<PackedVertex>& vertices,
+                                     std::size_t first, const Projection& projection);
 
 }  // namespace wall::client

@@ -39,10 +39,12 @@ private:
 PixelBox clip_to_window(const Context& c, const PixelBox& box) {
     const Surface* surface = c.read_surface();
     if (!surface) return {};
-    return common_part(box, {0, 0, static_cast<std::int32_t>(surface->layout.width), static_cast<std::int32_t>(surface->layout.height)});
+    return common_part(box, {0, 0, static_cast<std::int32_t>(surface->layout.width),
+                             static_cast<std::int32_t>(surface->layout.height)});
 }
 
-std::vector<std::byte> gather_pixels(Context& c, const PixelBox& box, GLenum format, GLenum type, const char* function) {
+std::vector<std::byte> gather_pixels(Context& c, const PixelBox& box, GLenum format, GLenum type,
+                                     const char* function) {
     std::vector<std::byte> pixels(glapi::image_bytes(format, type, box.width, box.height, 1).value_or(0));
     const Surface* surface = c.read_surface();
     const auto layout = glapi::pixel_layout(format, type);
@@ -55,16 +57,18 @@ std::vector<std::byte> gather_pixels(Context& c, const PixelBox& box, GLenum for
         targets.push_back(target);
         parts.push_back(part);
     }
-    const auto answers = c.session().ask_all(c, targets, function, [&](wire::PackBuffer& buffer, std::uint32_t request, std::size_t i) {
-        const PixelBox& part = parts[i];
-        glapi::pack::ReadPixels(buffer, request, targets[i].slot, part.x, part.y, part.width, part.height, format, type);
-    });
+    const auto answers =
+        c.session().ask_all(c, targets, function, [&](wire::PackBuffer& buffer, std::uint32_t request, std::size_t i) {
+            const PixelBox& part = parts[i];
+            glapi::pack::ReadPixels(buffer, request, targets[i].slot, part.x, part.y, part.width, part.height, format,
+                                    type);
+        });
     for (std::size_t i = 0; i < answers.size(); ++i) {
         const PixelBox& part = parts[i];
         const std::size_t bytes = glapi::row_bytes(*layout, part.width) * static_cast<std::size_t>(part.height);
         if (!answers[i] || answers[i]->size() != bytes) continue;
-        glapi::copy_rect(*layout, {pixels.data(), box.width, box.height}, part.x - box.x, part.y - box.y, answers[i]->data(), part.width,
-                         part.width, part.height);
+        glapi::copy_rect(*layout, {pixels.data(), box.width, box.height}, part.x - box.x, part.y - box.y,
+                         answers[i]->data(), part.width, part.width, part.height);
     }
     return pixels;
 }
@@ -76,8 +80,8 @@ std::vector<std::byte> gather_plain(Context& c, const PixelBox& box, GLenum form
     if (inside.width == box.width && inside.height == box.height) return pixels;
     std::vector<std::byte> all(glapi::image_bytes(format, type, box.width, box.height, 1).value_or(0));
     if (inside.empty() || all.empty()) return all;
-    glapi::copy_rect(*glapi::pixel_layout(format, type), {all.data(), box.width, box.height}, inside.x - box.x, inside.y - box.y,
-                     pixels.data(), inside.width, inside.width, inside.height);
+    glapi::copy_rect(*glapi::pixel_layout(format, type), {all.data(), box.width, box.height}, inside.x - box.x,
+                     inside.y - box.y, pixels.data(), inside.width, inside.width, inside.height);
     return all;
 }
 

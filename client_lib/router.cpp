@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kSmallestW = 1e-6f;
 constexpr float kLargestCoordinate = 1e30f;  ///< of clip space; beyond it differences overflow
-constexpr float kRounding = 1e-6f;            ///< of a clip coordinate, relative to the largest
+constexpr float kRounding = 1e-6f;           ///< of a clip coordinate, relative to the largest
 
 __m128 column(const glstate::Mat4& m, int c) { return _mm_loadu_ps(m.data() + 4 * c); }
 
@@ -36,10 +36,11 @@ void grow(PixelRect& rect, const WindowVertex& v) {
     rect.y1 = std::max(rect.y1, v.y);
 }
 
-/// What is in front of the plane where `distance` is 0: the vertices there, and where edges cross it. Nothing if a crossing
-/// is not in front of the eye.
+/// What is in front of the plane where `distance` is 0: the vertices there, and where edges cross it. Nothing if a
+/// crossing is not in front of the eye.
 template <class Distance>
-std::optional<PixelRect> clipped_rect(const Projection& p, std::span<const WindowVertex> vertices, Distance&& distance) {
+std::optional<PixelRect> clipped_rect(const Projection& p, std::span<const WindowVertex> vertices,
+                                      Distance&& distance) {
     PixelRect rect = kNowhere;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const float di = distance(vertices[i]);
@@ -51,7 +52,8 @@ std::optional<PixelRect> clipped_rect(const Projection& p, std::span<const Windo
             const float dj = distance(vertices[j]);
             if ((di >= 0) == (dj >= 0)) continue;
             const __m128 from = _mm_loadu_ps(vertices[i].clip.data()), to = _mm_loadu_ps(vertices[j].clip.data());
-            const WindowVertex cut = to_window(p, _mm_add_ps(from, _mm_mul_ps(_mm_set1_ps(di / (di - dj)), _mm_sub_ps(to, from))));
+            const WindowVertex cut =
+                to_window(p, _mm_add_ps(from, _mm_mul_ps(_mm_set1_ps(di / (di - dj)), _mm_sub_ps(to, from))));
             if (!cut.in_front) return std::nullopt;
             grow(rect, cut);
         }
@@ -65,7 +67,8 @@ glstate::Mat4 multiply(const glstate::Mat4& a, const glstate::Mat4& b) {
     glstate::Mat4 out;
     for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 4; ++r)
-            out[4 * c + r] = a[r] * b[4 * c] + a[4 + r] * b[4 * c + 1] + a[8 + r] * b[4 * c + 2] + a[12 + r] * b[4 * c + 3];
+            out[4 * c + r] =
+                a[r] * b[4 * c] + a[4 + r] * b[4 * c + 1] + a[8 + r] * b[4 * c + 2] + a[12 + r] * b[4 * c + 3];
     return out;
 }
 
@@ -111,7 +114,8 @@ std::optional<PixelRect> hull_rect(const Projection& p, std::span<const WindowVe
     if (!in_front) {
         const float slack = largest * kRounding;
         rect.reset();
-        if (p.near_plane) rect = clipped_rect(p, vertices, [&](const WindowVertex& v) { return v.clip[2] + v.clip[3] + slack; });
+        if (p.near_plane)
+            rect = clipped_rect(p, vertices, [&](const WindowVertex& v) { return v.clip[2] + v.clip[3] + slack; });
         if (!rect) rect = clipped_rect(p, vertices, [](const WindowVertex& v) { return v.clip[3] - 2 * kSmallestW; });
         if (!rect) return std::nullopt;
     }

@@ -29,8 +29,8 @@ using TargetSet = std::bitset<kMaxTargets>;
 struct Target {
     std::uint32_t node = 0;
     std::uint32_t slot = 0;
-    PixelRect area;       ///< of the surface's window
-    geom::Rect pixels;    ///< the same, whole pixels, rounded outwards
+    PixelRect area;     ///< of the surface's window
+    geom::Rect pixels;  ///< the same, whole pixels, rounded outwards
 };
 
 /// How a surface lies on the wall just now.
@@ -45,8 +45,8 @@ struct SurfaceLayout {
 /// The transformation of object space to window pixels, and how far rasterization may reach beyond the vertices.
 struct Projection {
     glstate::Mat4 clip_from_object{};
-    float viewport[4]{};  ///< x, y, width, height
-    float margin = 1;     ///< pixels: half the line width or point size, and one for rounding
+    float viewport[4]{};     ///< x, y, width, height
+    float margin = 1;        ///< pixels: half the line width or point size, and one for rounding
     bool near_plane = true;  ///< clips; not while depths are clamped
 };
 

@@ -18,7 +18,8 @@ std::uint32_t load(const std::byte* at, std::size_t bytes) {
 
 Texel from_565(std::uint32_t c) {
     const std::uint32_t r = c >> 11 & 31, g = c >> 5 & 63, b = c & 31;
-    return {static_cast<std::uint8_t>(r << 3 | r >> 2), static_cast<std::uint8_t>(g << 2 | g >> 4), static_cast<std::uint8_t>(b << 3 | b >> 2), 255};
+    return {static_cast<std::uint8_t>(r << 3 | r >> 2), static_cast<std::uint8_t>(g << 2 | g >> 4),
+            static_cast<std::uint8_t>(b << 3 | b >> 2), 255};
 }
 
 Texel mixed(const Texel& a, const Texel& b, unsigned of_a, unsigned of_b) {
@@ -64,14 +65,15 @@ std::array<Texel, 16> decode_block(GLint format, const std::byte* block) {
     if (s3tc_block_bytes(format) == 8) return colors(block, true, format == GL_COMPRESSED_RGBA_S3TC_DXT1_EXT);
     auto out = colors(block + 8, false, false);
     for (unsigned i = 0; i < 16; ++i)
-        out[i][3] = format == GL_COMPRESSED_RGBA_S3TC_DXT3_EXT ? explicit_alpha(block, i) : interpolated_alpha(block, i);
+        out[i][3] =
+            format == GL_COMPRESSED_RGBA_S3TC_DXT3_EXT ? explicit_alpha(block, i) : interpolated_alpha(block, i);
     return out;
 }
 
-
 }  // namespace
 
-std::vector<std::byte> decode_s3tc(GLint format, std::int32_t width, std::int32_t height, std::span<const std::byte> blocks) {
+std::vector<std::byte> decode_s3tc(GLint format, std::int32_t width, std::int32_t height,
+                                   std::span<const std::byte> blocks) {
     std::vector<std::byte> out(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
     const std::byte* block = blocks.data();
     for (std::int32_t y = 0; y < height; y += kS3tcBlock)
@@ -79,7 +81,9 @@ std::vector<std::byte> decode_s3tc(GLint format, std::int32_t width, std::int32_
             const auto texels = decode_block(format, block);
             const std::int32_t columns = std::min(kS3tcBlock, width - x);
             for (std::int32_t row = 0; row < std::min(kS3tcBlock, height - y); ++row)
-                std::memcpy(out.data() + (static_cast<std::size_t>(y + row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 4,
+                std::memcpy(out.data() + (static_cast<std::size_t>(y + row) * static_cast<std::size_t>(width) +
+                                          static_cast<std::size_t>(x)) *
+                                             4,
                             &texels[static_cast<std::size_t>(row * kS3tcBlock)], static_cast<std::size_t>(columns) * 4);
         }
     return out;

@@ -21,12 +21,15 @@
 namespace wall::client {
 namespace {
 
-constexpr auto kRetryPause = std::chrono::seconds(10);  // a program that asks for every frame must not wait for every frame
-constexpr int kFinishMs = 500;                          // what is queued when the program ends
+constexpr auto kRetryPause =
+    std::chrono::seconds(10);   // a program that asks for every frame must not wait for every frame
+constexpr int kFinishMs = 500;  // what is queued when the program ends
 constexpr std::chrono::seconds kPlacementTimeout{2};
-constexpr int kReplyTimeoutMs = 10000;        // a readback behind a long frame of a software renderer
-constexpr std::uint32_t kDiffSample = 61;  // one difference in so many is timed: two looks at the clock cost more than comparing equal contexts
-constexpr std::size_t kBatchBytes = 256 << 10;  // sent when it reaches this: large enough to be cheap, small enough to overlap
+constexpr int kReplyTimeoutMs = 10000;  // a readback behind a long frame of a software renderer
+constexpr std::uint32_t kDiffSample =
+    61;  // one difference in so many is timed: two looks at the clock cost more than comparing equal contexts
+constexpr std::size_t kBatchBytes =
+    256 << 10;  // sent when it reaches this: large enough to be cheap, small enough to overlap
 
 /// The part of the surface's window that shows in `part` of the canvas.
 Target make_target(const SurfaceLayout& layout, const TileInfo& tile, const geom::Rect& part) {
@@ -36,10 +39,13 @@ Target make_target(const SurfaceLayout& layout, const TileInfo& tile, const geom
     Target target;
     target.node = tile.node;
     target.slot = tile.slot;
-    target.area = {static_cast<float>(part.x - layout.rect.x) * sx, height - static_cast<float>(part.bottom() - layout.rect.y) * sy,
-                   static_cast<float>(part.right() - layout.rect.x) * sx, height - static_cast<float>(part.y - layout.rect.y) * sy};
+    target.area = {static_cast<float>(part.x - layout.rect.x) * sx,
+                   height - static_cast<float>(part.bottom() - layout.rect.y) * sy,
+                   static_cast<float>(part.right() - layout.rect.x) * sx,
+                   height - static_cast<float>(part.y - layout.rect.y) * sy};
     const int x0 = static_cast<int>(std::floor(target.area.x0)), y0 = static_cast<int>(std::floor(target.area.y0));
-    target.pixels = {x0, y0, static_cast<int>(std::ceil(target.area.x1)) - x0, static_cast<int>(std::ceil(target.area.y1)) - y0};
+    target.pixels = {x0, y0, static_cast<int>(std::ceil(target.area.x1)) - x0,
+                     static_cast<int>(std::ceil(target.area.y1)) - y0};
     return target;
 }
 
@@ -146,11 +152,13 @@ void Session::open_surface(Surface& surface) {
     if (surface.opened) return;
     surface.opened = true;
     surfaces_[surface.id] = &surface;
-    const Extent size = surface.options.query_size ? surface.options.query_size().value_or(surface.options.size) : surface.options.size;
+    const Extent size =
+        surface.options.query_size ? surface.options.query_size().value_or(surface.options.size) : surface.options.size;
     surface.layout.width = std::max(1u, size.width);
     surface.layout.height = std::max(1u, size.height);
     if (!surface.options.visible) return apply_layout(surface, Placement{});
-    control_->surface_open(surface.id, surface.layout.width, surface.layout.height, surface.options.title, surface.options.messages);
+    control_->surface_open(surface.id, surface.layout.width, surface.layout.height, surface.options.title,
+                           surface.options.messages);
     const auto placement = control_->wait_placement(surface.id, kPlacementTimeout);
     if (group_) {
         surface.window = {surface.layout.width, surface.layout.height};
@@ -184,7 +192,8 @@ void Session::apply_layout(Surface& surface, const Placement& placement) {
         layout.rect = {0, 0, static_cast<int>(layout.width), static_cast<int>(layout.height)};
         for (auto& node : nodes_) {
             if (!node->alive()) continue;
-            layout.targets.push_back(make_target(layout, TileInfo{node->index, wire::kOffscreenSlot, layout.rect, {}}, layout.rect));
+            layout.targets.push_back(
+                make_target(layout, TileInfo{node->index, wire::kOffscreenSlot, layout.rect, {}}, layout.rect));
             break;
         }
         return;
@@ -211,7 +220,9 @@ void Session::begin_frame(Surface& surface) {
 
 void Session::follow_window(Surface& surface) {
     const auto size = surface.options.query_size ? surface.options.query_size() : std::nullopt;
-    if (!size || !size->width || !size->height || (size->width == surface.layout.width && size->height == surface.layout.height)) return;
+    if (!size || !size->width || !size->height ||
+        (size->width == surface.layout.width && size->height == surface.layout.height))
+        return;
     surface.layout.width = size->width;
     surface.layout.height = size->height;
     control_->surface_resize(surface.id, size->width, size->height);
@@ -272,12 +283,14 @@ void Session::describe_surface(Node& node, Surface& surface) {
     const auto known = node.surfaces.find(surface.id);
     if (known == node.surfaces.end()) {
         const SurfaceFormat& f = surface.options.format;
-        glapi::pack::SurfaceCreate(node.batch, surface.id, f.double_buffered, f.alpha_bits, f.depth_bits, f.stencil_bits, f.accum_bits, f.samples);
+        glapi::pack::SurfaceCreate(node.batch, surface.id, f.double_buffered, f.alpha_bits, f.depth_bits,
+                                   f.stencil_bits, f.accum_bits, f.samples);
     } else if (known->second == layout.version) {
         return;
     }
-    glapi::pack::SurfacePlace(node.batch, surface.id, layout.version, layout.width, layout.height, layout.rect.x, layout.rect.y,
-                              static_cast<std::uint32_t>(layout.rect.width), static_cast<std::uint32_t>(layout.rect.height), layout.offscreen);
+    glapi::pack::SurfacePlace(node.batch, surface.id, layout.version, layout.width, layout.height, layout.rect.x,
+                              layout.rect.y, static_cast<std::uint32_t>(layout.rect.width),
+                              static_cast<std::uint32_t>(layout.rect.height), layout.offscreen);
     node.surfaces[surface.id] = layout.version;
 }
 
@@ -350,8 +363,8 @@ std::vector<std::uint32_t> Session::swap_nodes(const Surface& surface) const {
     return out;
 }
 
-// A node that is slow for once (a long frame of all nodes alike) is waited for; one that has stopped is left out. If all
-// are late, the wall holds the frames or has stopped as a whole: then the program goes at the limit's pace.
+// A node that is slow for once (a long frame of all nodes alike) is waited for; one that has stopped is left out. If
+// all are late, the wall holds the frames or has stopped as a whole: then the program goes at the limit's pace.
 void Session::wait_for_nodes(Surface& surface, bool whole_frames) {
     if (surface.frame < kFramesInFlight) return;
     struct Waited {
@@ -371,14 +384,19 @@ void Session::wait_for_nodes(Surface& surface, bool whole_frames) {
             if (!node.alive()) continue;
             const auto left = node.left_out.find(surface.id);
             const bool left_out = left != node.left_out.end();
-            waited.push_back({node, node.stream, left_out ? left->second : surface.frame - (kFramesInFlight - 1), {.left_out = left_out}});
+            waited.push_back({node,
+                              node.stream,
+                              left_out ? left->second : surface.frame - (kFramesInFlight - 1),
+                              {.left_out = left_out}});
             all_slow = all_slow && node.slow;
         }
     }
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(control_->welcome().swap_timeout_ms);
+    const auto deadline =
+        std::chrono::steady_clock::now() + std::chrono::milliseconds(control_->welcome().swap_timeout_ms);
     bool someone_done = false;
     for (Waited& w : waited) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
+        const auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
         const bool patient = all_slow || !w.node.slow;
         w.progress.done = w.stream->wait_swap(surface.id, w.frame, patient && left > 0 ? static_cast<int>(left) : 0);
         w.progress.queued_bytes = w.stream->queued_bytes();
@@ -408,7 +426,9 @@ void Session::flush(Context* context, bool wait) {
         }
         if (!pending.empty()) count_round_trip("glFinish");
         // Without a back buffer there is no other end of a frame.
-        if (const Surface* surface = context ? context->draw_surface() : nullptr; surface && !surface->options.format.double_buffered) take_events();
+        if (const Surface* surface = context ? context->draw_surface() : nullptr;
+            surface && !surface->options.format.double_buffered)
+            take_events();
     }
     for (auto& [stream, request] : pending) stream->wait_reply(request, reply_timeout_ms());
 }
@@ -420,7 +440,9 @@ std::optional<std::vector<std::byte>> Session::wait_reply(Node& node, std::uint3
 /// A member of a parallel program may have to wait for the others, however long they take.
 int Session::reply_timeout_ms() const { return group_ ? NodeStream::kNoLimit : kReplyTimeoutMs; }
 
-void Session::count_geometry(Node& node, std::size_t bytes) { stats().add_node(node.index, NodeCounter::geometry_bytes, bytes); }
+void Session::count_geometry(Node& node, std::size_t bytes) {
+    stats().add_node(node.index, NodeCounter::geometry_bytes, bytes);
+}
 void Session::count_block(Node& node) { stats().add_node(node.index, NodeCounter::blocks, 1); }
 void Session::count_objects(Node& node, std::size_t bytes) {
     if (bytes) stats().add_node(node.index, NodeCounter::object_bytes, bytes);

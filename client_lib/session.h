@@ -50,18 +50,20 @@ struct Node {
     std::uint32_t index = 0;
     std::string name;
     NodeInfo info;
-    std::shared_ptr<NodeStream> stream;  ///< null: not connected
-    std::unordered_map<std::uint32_t, Mirror> mirrors;            ///< by context
-    std::unordered_map<std::uint32_t, std::uint64_t> object_stamps;  ///< by object: the stamp of what the node has; absent: nothing
-    std::unordered_map<std::uint32_t, std::uint32_t> surfaces;    ///< by surface: layout version it knows
-    std::unordered_map<std::uint32_t, std::uint32_t> left_out;    ///< surfaces whose frames it does not get now: the last one it got
-    bool asks_unanswered = false;                                 ///< a question about content took too long: it gets no more
-    bool slow = false;                                            ///< missed a frame's limit; not waited for until it answers again
-    std::shared_ptr<ConnectAttempt> attempt;                      ///< one that is being made since the first failed
+    std::shared_ptr<NodeStream> stream;                 ///< null: not connected
+    std::unordered_map<std::uint32_t, Mirror> mirrors;  ///< by context
+    std::unordered_map<std::uint32_t, std::uint64_t>
+        object_stamps;  ///< by object: the stamp of what the node has; absent: nothing
+    std::unordered_map<std::uint32_t, std::uint32_t> surfaces;  ///< by surface: layout version it knows
+    std::unordered_map<std::uint32_t, std::uint32_t>
+        left_out;                             ///< surfaces whose frames it does not get now: the last one it got
+    bool asks_unanswered = false;             ///< a question about content took too long: it gets no more
+    bool slow = false;                        ///< missed a frame's limit; not waited for until it answers again
+    std::shared_ptr<ConnectAttempt> attempt;  ///< one that is being made since the first failed
     std::chrono::steady_clock::time_point next_attempt;
 
-    wire::PackBuffer batch;          ///< being packed
-    std::uint32_t batch_context = 0; ///< whose
+    wire::PackBuffer batch;           ///< being packed
+    std::uint32_t batch_context = 0;  ///< whose
 
     bool alive() const { return stream && !stream->failed(); }
     /// Whether drawing into the surface goes to it.
@@ -77,11 +79,11 @@ public:
     const std::uint32_t id;
     const SurfaceOptions options;
     SurfaceLayout layout;
-    std::uint32_t frame = 0;   ///< of the last swap
-    bool opened = false;       ///< walld knows it
-    bool drawn = false;        ///< something was drawn since the last swap
+    std::uint32_t frame = 0;        ///< of the last swap
+    bool opened = false;            ///< walld knows it
+    bool drawn = false;             ///< something was drawn since the last swap
     std::optional<Placement> next;  ///< from walld, for a frame that begins
-    bool cleared = false;      ///< all of its back buffer, since the last swap
+    bool cleared = false;           ///< all of its back buffer, since the last swap
     // In a parallel program.
     std::deque<Placement> coming;  ///< for frames that have not begun, in order
     Extent window;                 ///< of this process's own window, as walld was told
@@ -115,7 +117,8 @@ public:
     void draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Pack&& pack);
     /// The same after `before(node, buffer)` outside of the Block; `after(node)` when it is packed.
     template <class Before, class Pack, class After>
-    void draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Before&& before, Pack&& pack, After&& after);
+    void draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Before&& before, Pack&& pack,
+              After&& after);
     /// Runs `pack(buffer, node)` outside of blocks on every node, with nothing brought up to date.
     template <class Pack>
     void on_every_node(Context& context, Pack&& pack);
@@ -133,8 +136,9 @@ public:
 
     /// Everything queued goes out; `wait` also waits until all nodes have executed it.
     void flush(Context* context, bool wait);
-    /// A command of GL_CR_synchronization. `note(SyncObjects&)` gives its OpenGL error; if there is none, `pack(buffer)` says
-    /// it to all nodes, behind everything before it. `at_once`: others may wait for it, or the stream is held behind it.
+    /// A command of GL_CR_synchronization. `note(SyncObjects&)` gives its OpenGL error; if there is none,
+    /// `pack(buffer)` says it to all nodes, behind everything before it. `at_once`: others may wait for it, or the
+    /// stream is held behind it.
     template <class Note, class Pack>
     void synchronize(Context& context, bool at_once, Note&& note, Pack&& pack);
     void destroy_context(std::uint32_t context);
@@ -147,7 +151,8 @@ public:
     /// The node's batch after everything that drawing with this context needs: surfaces, objects, state.
     wire::PackBuffer& prepare(Node& node, Context& context, const Needs& needs = {});
     void send(Node& node);
-    /// Packs a question, `pack(buffer, request)`, into the node's batch, sends it and waits for `limit_ms` with the mutex held.
+    /// Packs a question, `pack(buffer, request)`, into the node's batch, sends it and waits for `limit_ms` with the
+    /// mutex held.
     template <class Pack>
     std::optional<std::vector<std::byte>> ask_now(Node& node, const char* function, int limit_ms, Pack&& pack) {
         const std::uint32_t request = ++last_request_;
@@ -204,7 +209,7 @@ private:
     std::uint32_t id_ = 0;
     std::vector<TileInfo> tiles_;
     std::uint32_t last_request_ = 0;
-    IdealTraffic ideal_;  ///< unused without WALLGL_IDEAL
+    IdealTraffic ideal_;          ///< unused without WALLGL_IDEAL
     std::uint32_t prepared_ = 0;  ///< counts towards the next sample of the diff time
 };
 

@@ -12,7 +12,7 @@
 namespace wall::client {
 namespace {
 
-constexpr int kLookMs = 20;         // at one node, while none has drawn a frame
+constexpr int kLookMs = 20;          // at one node, while none has drawn a frame
 constexpr int kLeaveLimitMs = 2000;  // for what is queued when the program ends: the others wait for it
 
 }  // namespace
@@ -21,7 +21,8 @@ constexpr int kLeaveLimitMs = 2000;  // for what is queued when the program ends
 void Session::introduce(Node& node) {
     wire::PackBuffer& buffer = batch(node, 0);
     for (const auto& [name, count] : sync_.barriers()) glapi::pack::BarrierCreate(buffer, name, count);
-    for (const auto& [name, semaphore] : sync_.semaphores()) glapi::pack::SemaphoreCreate(buffer, name, semaphore.count, semaphore.moved);
+    for (const auto& [name, semaphore] : sync_.semaphores())
+        glapi::pack::SemaphoreCreate(buffer, name, semaphore.count, semaphore.moved);
     glapi::pack::Join(buffer);
     send(node);
 }
@@ -39,25 +40,29 @@ void Session::adopt_agreed(Surface& surface) {
         surface.layout.version = placement.layout_version;
         if (moved && surface.frame > 0) control_->ask_to_redraw(surface.id);
     }
-    if (!coming.empty()) control_->ask_to_redraw(surface.id);  // a program that draws only when asked comes to that frame, too
+    if (!coming.empty())
+        control_->ask_to_redraw(surface.id);  // a program that draws only when asked comes to that frame, too
 }
 
 /// A node that is connected stays as it is: the others have it like that, too.
 void Session::use_node(const NodeInfo& info) {
-    const bool known = info.node < nodes_.size() && nodes_[info.node]->alive() && nodes_[info.node]->info.incarnation == info.incarnation;
+    const bool known = info.node < nodes_.size() && nodes_[info.node]->alive() &&
+                       nodes_[info.node]->info.incarnation == info.incarnation;
     if (!known) connect(node_slot(info));
 }
 
 /// The window is as large as rank 0 has it.
 void Session::report_window(Surface& surface) {
     const auto size = surface.options.query_size ? surface.options.query_size() : std::nullopt;
-    if (group_->rank != 0 || !size || !size->width || !size->height || (size->width == surface.window.width && size->height == surface.window.height)) return;
+    if (group_->rank != 0 || !size || !size->width || !size->height ||
+        (size->width == surface.window.width && size->height == surface.window.height))
+        return;
     surface.window = *size;
     control_->surface_resize(surface.id, size->width, size->height);
 }
 
-// As long as no node has drawn the frame, a member of the group may be late: however long that takes, it is waited for. A
-// node that is late with what others have drawn is not; what is queued for it has a limit.
+// As long as no node has drawn the frame, a member of the group may be late: however long that takes, it is waited for.
+// A node that is late with what others have drawn is not; what is queued for it has a limit.
 void Session::wait_for_group(Surface& surface) {
     if (surface.frame < kFramesInFlight) return;
     const std::uint32_t frame = surface.frame - (kFramesInFlight - 1);
@@ -68,19 +73,28 @@ void Session::wait_for_group(Surface& surface) {
             if (node->alive()) waited.emplace_back(node.get(), node->stream);
         std::ranges::stable_sort(waited, {}, [](const auto& w) { return w.first->slow; });
     }
-    const auto drawn = [&](const auto& w, int timeout_ms) { return w.second->wait_swap(surface.id, frame, timeout_ms); };
-    const auto some_drawn = [&] { return std::ranges::any_of(waited, [&](const auto& w) { return drawn(w, kLookMs); }); };
-    const auto all_failed = [&] { return std::ranges::all_of(waited, [](const auto& w) { return w.second->failed(); }); };
+    const auto drawn = [&](const auto& w, int timeout_ms) {
+        return w.second->wait_swap(surface.id, frame, timeout_ms);
+    };
+    const auto some_drawn = [&] {
+        return std::ranges::any_of(waited, [&](const auto& w) { return drawn(w, kLookMs); });
+    };
+    const auto all_failed = [&] {
+        return std::ranges::all_of(waited, [](const auto& w) { return w.second->failed(); });
+    };
     while (!some_drawn() && !all_failed()) continue;
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(control_->welcome().swap_timeout_ms);
+    const auto deadline =
+        std::chrono::steady_clock::now() + std::chrono::milliseconds(control_->welcome().swap_timeout_ms);
     for (const auto& w : waited) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
+        const auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
         const bool done = drawn(w, w.first->slow || left <= 0 ? 0 : static_cast<int>(left));
         std::lock_guard lock(mutex_);
         w.first->slow = !done;
         if (done || w.second->queued_bytes() <= kMaxLateBytes || w.first->stream != w.second) continue;
         w.second->give_up("too late with a parallel program's frames");
-        log_warning("event=node_given_up node=" + std::to_string(w.first->index) + " why=\"" + w.second->failure() + "\"");
+        log_warning("event=node_given_up node=" + std::to_string(w.first->index) + " why=\"" + w.second->failure() +
+                    "\"");
         w.first->stream.reset();
     }
 }

@@ -55,12 +55,16 @@ void Session::connect(Node& node) {
     node.left_out.clear();
     node.slow = node.asks_unanswered = false;
     node.attempt.reset();
-    if (node.info.up) adopt_stream(node, NodeStream::open(node.info.address, encode_hello(id_, node.info.ticket, group_ ? group_->rank : 0), kConnectTimeoutMs));
+    if (node.info.up)
+        adopt_stream(node,
+                     NodeStream::open(node.info.address, encode_hello(id_, node.info.ticket, group_ ? group_->rank : 0),
+                                      kConnectTimeoutMs));
 }
 
 void Session::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream) {
     if (!stream) {
-        log_warning("event=node_refused node=" + std::to_string(node.index) + " reason=\"" + stream.error().message + "\"");
+        log_warning("event=node_refused node=" + std::to_string(node.index) + " reason=\"" + stream.error().message +
+                    "\"");
         node.next_attempt = std::chrono::steady_clock::now() + kConnectPause;
         return;
     }
@@ -70,7 +74,8 @@ void Session::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> strea
     if (group_) introduce(node);
 }
 
-// A node that is there, but did not answer when it was asked. (The members of a parallel program take a node up together.)
+// A node that is there, but did not answer when it was asked. (The members of a parallel program take a node up
+// together.)
 void Session::try_again(Node& node) {
     if (node.stream || !node.info.up || group_) return;
     if (node.attempt) {
@@ -80,7 +85,8 @@ void Session::try_again(Node& node) {
         adopt_stream(node, std::move(*outcome));
         if (node.stream) redraw();
     } else if (std::chrono::steady_clock::now() >= node.next_attempt) {
-        node.attempt = ConnectAttempt::start(node.info.address, encode_hello(id_, node.info.ticket, 0), kConnectTimeoutMs);
+        node.attempt =
+            ConnectAttempt::start(node.info.address, encode_hello(id_, node.info.ticket, 0), kConnectTimeoutMs);
     }
 }
 

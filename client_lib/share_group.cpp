@@ -54,8 +54,8 @@ void adopt_default(glstate::State& state, std::uint32_t id) {
         if (E::ref(state, unit) == 0) glstate::assign<E>(state, unit, id);
 }
 
-/// Name 0 of a target stands for the default texture that has got content since it was bound: through another context of
-/// the group, or before glPopAttrib.
+/// Name 0 of a target stands for the default texture that has got content since it was bound: through another context
+/// of the group, or before glPopAttrib.
 void adopt_default(glstate::State& state, const Texture& texture) {
     namespace el = glstate::el;
     switch (texture.target) {

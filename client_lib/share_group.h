@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The objects that contexts share: textures, display lists, buffers, programs. An object has the application's name (glGenTextures), and
-// an id that is unique in the process and stands for it in state elements and on the wire; a deleted and generated name
-// is another object. The mutex guards the tables and the objects in them; it is taken after a session's, never before.
+// The objects that contexts share: textures, display lists, buffers, programs. An object has the application's name
+// (glGenTextures), and an id that is unique in the process and stands for it in state elements and on the wire; a
+// deleted and generated name is another object. The mutex guards the tables and the objects in them; it is taken after
+// a session's, never before.
 #pragma once
 
 #include <algorithm>

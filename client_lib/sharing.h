@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Large content is not sent to a node that has it already from another program (AnyGL, section 6: global share). One short
-// round trip for each large object and node, when it is first drawn with there. The session's mutex is held, and the node's
-// answer is waited for with it.
+// Large content is not sent to a node that has it already from another program (AnyGL, section 6: global share). One
+// short round trip for each large object and node, when it is first drawn with there. The session's mutex is held, and
+// the node's answer is waited for with it.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ inline constexpr int kOfferLimitMs = 1500;
 /// Whether an answer can be expected soon.
 inline bool may_be_asked(const Node& node) { return node.answers() && !node.slow && !node.asks_unanswered; }
 
-/// `pack(buffer, request)` packs the question into the node's batch. True: the node holds the content. False: send it; the node then
-/// keeps it for others, too, whether its answer was that or came too late.
+/// `pack(buffer, request)` packs the question into the node's batch. True: the node holds the content. False: send it;
+/// the node then keeps it for others, too, whether its answer was that or came too late.
 template <class Pack>
 bool node_holds(Session& session, Node& node, Pack&& pack) {
     const auto answer = session.ask_now(node, "global share", kOfferLimitMs, std::forward<Pack>(pack));

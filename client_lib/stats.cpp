@@ -140,7 +140,8 @@ Traffic Stats::traffic() const {
     Traffic out{.diff_time = std::chrono::nanoseconds(diff_ns_.load(std::memory_order_relaxed))};
     for (std::uint32_t n = 0; n < kMaxNodes; ++n) {
         if (!nodes_[n].load(std::memory_order_acquire)) continue;
-        out.nodes.push_back({n, of_node(n, NodeCounter::state_bytes), of_node(n, NodeCounter::object_bytes), of_node(n, NodeCounter::geometry_bytes)});
+        out.nodes.push_back({n, of_node(n, NodeCounter::state_bytes), of_node(n, NodeCounter::object_bytes),
+                             of_node(n, NodeCounter::geometry_bytes)});
     }
     std::lock_guard lock(mutex_);
     out.frames = frames_;
@@ -162,7 +163,8 @@ std::string Stats::body() const {
     out += ",\n \"frames\": " + std::to_string(frames_);
     out += ",\n \"total\": " + figures_json([&](std::size_t i) { return sums[i]; });
     out += ",\n \"nodes\": [" + nodes + "]";
-    out += ",\n \"diff_seconds\": " + std::to_string(1e-9 * static_cast<double>(diff_ns_.load(std::memory_order_relaxed)));
+    out +=
+        ",\n \"diff_seconds\": " + std::to_string(1e-9 * static_cast<double>(diff_ns_.load(std::memory_order_relaxed)));
     out += ",\n \"round_trips\": " + std::to_string(round_trips());
     out += ",\n \"round_trips_by_function\": " + map_json(round_trips_);
     out += ",\n \"unsupported\": " + map_json(unsupported_);

@@ -53,7 +53,9 @@ public:
     bool count_unsupported(std::string_view function);
 
     /// Time spent in comparing contexts with what nodes hold. Any thread.
-    void add_diff_time(std::chrono::nanoseconds time) { diff_ns_.fetch_add(static_cast<std::uint64_t>(time.count()), std::memory_order_relaxed); }
+    void add_diff_time(std::chrono::nanoseconds time) {
+        diff_ns_.fetch_add(static_cast<std::uint64_t>(time.count()), std::memory_order_relaxed);
+    }
 
     /// A frame of a surface has ended: closes the per-frame figures.
     void end_frame();

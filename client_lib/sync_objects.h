@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The barriers and semaphores (GL_CR_synchronization) that this process has created: the errors of the calls, and what a
-// node must be told that comes later. Who waits for whom is decided on the nodes. Pure; whoever owns it guards it.
+// The barriers and semaphores (GL_CR_synchronization) that this process has created: the errors of the calls, and what
+// a node must be told that comes later. Who waits for whom is decided on the nodes. Pure; whoever owns it guards it.
 #pragma once
 
 #include <cstddef>
@@ -27,10 +27,16 @@ public:
 
     // Each gives the call's OpenGL error, GL_NO_ERROR if it is good.
     GLenum barrier_create(std::uint32_t name, std::uint32_t count);
-    GLenum barrier_destroy(std::uint32_t name) { return barriers_.erase(name) != 0 ? GL_NO_ERROR : GL_INVALID_OPERATION; }
-    GLenum barrier_exec(std::uint32_t name) const { return barriers_.contains(name) ? GL_NO_ERROR : GL_INVALID_OPERATION; }
+    GLenum barrier_destroy(std::uint32_t name) {
+        return barriers_.erase(name) != 0 ? GL_NO_ERROR : GL_INVALID_OPERATION;
+    }
+    GLenum barrier_exec(std::uint32_t name) const {
+        return barriers_.contains(name) ? GL_NO_ERROR : GL_INVALID_OPERATION;
+    }
     GLenum semaphore_create(std::uint32_t name, std::uint32_t count);
-    GLenum semaphore_destroy(std::uint32_t name) { return semaphores_.erase(name) != 0 ? GL_NO_ERROR : GL_INVALID_OPERATION; }
+    GLenum semaphore_destroy(std::uint32_t name) {
+        return semaphores_.erase(name) != 0 ? GL_NO_ERROR : GL_INVALID_OPERATION;
+    }
     GLenum semaphore_p(std::uint32_t name);
     GLenum semaphore_v(std::uint32_t name);
 

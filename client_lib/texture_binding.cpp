@@ -69,13 +69,16 @@ std::shared_ptr<Texture> texture_to_change(Context& c, GLenum image_target) {
     return texture;
 }
 
-void touch(ShareGroup& share, Texture& texture) { share.last_change.store(texture.stamp = next_stamp(), std::memory_order_release); }
+void touch(ShareGroup& share, Texture& texture) {
+    share.last_change.store(texture.stamp = next_stamp(), std::memory_order_release);
+}
 
 std::vector<SavedTexture> bound_texture_parameters(Context& c) {
     std::vector<SavedTexture> saved;
     std::lock_guard lock(c.share().mutex);
     for (unsigned unit = 0; unit < kTextureUnits; ++unit)
-        for (const GLenum target : {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE}) {
+        for (const GLenum target :
+             {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE}) {
             const auto found = c.share().textures_by_id.find(bound_id(c, unit, target));
             if (found != c.share().textures_by_id.end()) saved.push_back({found->second, found->second->parameters});
         }
@@ -83,10 +86,11 @@ std::vector<SavedTexture> bound_texture_parameters(Context& c) {
 }
 
 void restore_texture_parameters(Context& c, const std::vector<SavedTexture>& saved) {
-    constexpr GLenum kSent[] = {GL_TEXTURE_BORDER_COLOR, GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER, GL_TEXTURE_WRAP_S,
-                                GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R, GL_TEXTURE_MIN_LOD, GL_TEXTURE_MAX_LOD, GL_TEXTURE_LOD_BIAS,
-                                GL_TEXTURE_BASE_LEVEL, GL_TEXTURE_MAX_LEVEL, GL_TEXTURE_MAX_ANISOTROPY_EXT, GL_TEXTURE_COMPARE_MODE,
-                                GL_TEXTURE_COMPARE_FUNC, GL_DEPTH_TEXTURE_MODE};
+    constexpr GLenum kSent[] = {GL_TEXTURE_BORDER_COLOR, GL_TEXTURE_MIN_FILTER,   GL_TEXTURE_MAG_FILTER,
+                                GL_TEXTURE_WRAP_S,       GL_TEXTURE_WRAP_T,       GL_TEXTURE_WRAP_R,
+                                GL_TEXTURE_MIN_LOD,      GL_TEXTURE_MAX_LOD,      GL_TEXTURE_LOD_BIAS,
+                                GL_TEXTURE_BASE_LEVEL,   GL_TEXTURE_MAX_LEVEL,    GL_TEXTURE_MAX_ANISOTROPY_EXT,
+                                GL_TEXTURE_COMPARE_MODE, GL_TEXTURE_COMPARE_FUNC, GL_DEPTH_TEXTURE_MODE};
     if (saved.empty()) return;
     c.flush_block();
     std::lock_guard lock(c.share().mutex);

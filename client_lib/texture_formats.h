@@ -16,10 +16,10 @@ struct ComponentBits {
 
 struct TextureFormat {
     GLint internal_format;
-    GLenum base;             ///< GL_RGBA, GL_LUMINANCE, ...
-    GLint answer;            ///< what GL_TEXTURE_INTERNAL_FORMAT says: the resolved one of a generic compressed format
+    GLenum base;   ///< GL_RGBA, GL_LUMINANCE, ...
+    GLint answer;  ///< what GL_TEXTURE_INTERNAL_FORMAT says: the resolved one of a generic compressed format
     ComponentBits bits;
-    GLenum component_type;   ///< of the colour components; 0: the driver says none
+    GLenum component_type;  ///< of the colour components; 0: the driver says none
     bool compressed;
 };
 

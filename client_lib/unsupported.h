@@ -6,7 +6,8 @@
 
 namespace wall::client {
 
-/// GL_INVALID_OPERATION in the current context; counted each time, logged the first time. `index`: of kUnsupportedNames.
+/// GL_INVALID_OPERATION in the current context; counted each time, logged the first time. `index`: of
+/// kUnsupportedNames.
 void report_unsupported(std::size_t index);
 
 }  // namespace wall::client

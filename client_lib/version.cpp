@@ -15,7 +15,8 @@ namespace {
 constexpr const char* kWallVersion = "WallGL 0.1";
 
 bool implemented(const char* command) {
-    return std::none_of(std::begin(kUnsupportedNames), std::end(kUnsupportedNames), [&](const char* name) { return std::strcmp(name, command) == 0; });
+    return std::none_of(std::begin(kUnsupportedNames), std::end(kUnsupportedNames),
+                        [&](const char* name) { return std::strcmp(name, command) == 0; });
 }
 
 /// A version and the command that came with it last.
@@ -24,12 +25,8 @@ struct Step {
     const char* command;
 };
 constexpr Step kSteps[] = {
-    {{1, 2, nullptr}, "glTexImage3D"},
-    {{1, 3, nullptr}, "glMultiTexCoord4f"},
-    {{1, 4, nullptr}, "glMultiDrawElements"},
-    {{1, 5, nullptr}, "glBindBuffer"},
-    {{2, 0, "1.10"}, "glUseProgram"},
-    {{2, 1, "1.20"}, "glUniformMatrix2x3fv"},
+    {{1, 2, nullptr}, "glTexImage3D"}, {{1, 3, nullptr}, "glMultiTexCoord4f"}, {{1, 4, nullptr}, "glMultiDrawElements"},
+    {{1, 5, nullptr}, "glBindBuffer"}, {{2, 0, "1.10"}, "glUseProgram"},       {{2, 1, "1.20"}, "glUniformMatrix2x3fv"},
 };
 
 /// What no driver need have: it is between the programs and the nodes.
@@ -119,7 +116,9 @@ GlVersion node_version(const Caps& caps) {
     return version;
 }
 
-bool at_most(const GlVersion& a, const GlVersion& b) { return a.major < b.major || (a.major == b.major && a.minor <= b.minor); }
+bool at_most(const GlVersion& a, const GlVersion& b) {
+    return a.major < b.major || (a.major == b.major && a.minor <= b.minor);
+}
 
 }  // namespace
 
@@ -138,7 +137,8 @@ std::vector<std::string> offered_extensions(const Caps& caps) {
     const std::vector<std::string> node{std::istream_iterator<std::string>(words), {}};
     std::vector<std::string> offered(std::begin(kOwnExtensions), std::end(kOwnExtensions));
     for (const Extension& extension : kExtensions)
-        if ((!extension.command || implemented(extension.command)) && std::find(node.begin(), node.end(), extension.name) != node.end())
+        if ((!extension.command || implemented(extension.command)) &&
+            std::find(node.begin(), node.end(), extension.name) != node.end())
             offered.emplace_back(extension.name);
     return offered;
 }

@@ -63,7 +63,8 @@ Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node)
     asio::co_spawn(io, feed_watchdog(watchdog, **server), asio::detached);
     (*server)->start();
     sd_notify(0, ("READY=1\nSTATUS=node " + node.name).c_str());
-    spdlog::info("ready node=\"{}\" backend={} listen={}", node.name, config::name_of(node.backend), (*server)->address().text());
+    spdlog::info("ready node=\"{}\" backend={} listen={}", node.name, config::name_of(node.backend),
+                 (*server)->address().text());
     while (!stopping && !(*server)->failure()) io.run_one();
     const auto failure = (*server)->failure();
     (*server)->stop();
@@ -80,8 +81,10 @@ Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node)
 
 int main(int argc, char** argv) {
     wall::tileserver::keep_freed_memory();
-    CLI::App app("tileserver: one node of a WallGL wall. It draws what programs send it for its tiles. It connects to walld by itself,\n"
-                 "whenever that is there.");
+    CLI::App app(
+        "tileserver: one node of a WallGL wall. It draws what programs send it for its tiles. It connects to walld by "
+        "itself,\n"
+        "whenever that is there.");
     std::string config_path, node_name;
     app.add_option("--config", config_path, "wall.toml, the description of the wall (docs/operation.md)")->required();
     app.add_option("--node", node_name, "which of its [[node]]s this one is")->required();

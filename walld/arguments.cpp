@@ -9,11 +9,14 @@ namespace {
 
 using nlohmann::json;
 
-tl::unexpected<Refusal> expected(const char* key, const std::string& what) { return refuse(RefusalKind::invalid, "'" + std::string(key) + "': expected " + what); }
+tl::unexpected<Refusal> expected(const char* key, const std::string& what) {
+    return refuse(RefusalKind::invalid, "'" + std::string(key) + "': expected " + what);
+}
 
 /// Integers that JSON writes without a sign can exceed the signed ones.
 std::optional<std::int64_t> integer(const json& value, std::int64_t least, std::int64_t most) {
-    if (!value.is_number_integer() || (value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX)) return std::nullopt;
+    if (!value.is_number_integer() || (value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX))
+        return std::nullopt;
     const auto number = value.get<std::int64_t>();
     return number >= least && number <= most ? std::optional(number) : std::nullopt;
 }
@@ -28,7 +31,8 @@ Outcome<std::string> text_of(const json& arguments, const char* key) {
     return expected(key, "a string");
 }
 
-Outcome<std::int64_t> number_of(const json& arguments, const char* key, std::int64_t otherwise, std::int64_t least, std::int64_t most) {
+Outcome<std::int64_t> number_of(const json& arguments, const char* key, std::int64_t otherwise, std::int64_t least,
+                                std::int64_t most) {
     const auto found = arguments.find(key);
     if (found == arguments.end()) return otherwise;
     if (const auto number = integer(*found, least, most)) return *number;

@@ -29,8 +29,9 @@ std::string target_of(const json& arguments) {
 }  // namespace
 
 std::string audit_line(const Deed& deed) {
-    auto out = fmt::format("audit who={} role={} via={} what={} target={} arguments={}", one_line(deed.who.text()), config::name_of(deed.who.role), deed.via, deed.what,
-                           target_of(deed.arguments), one_line(deed.arguments));
+    auto out = fmt::format("audit who={} role={} via={} what={} target={} arguments={}", one_line(deed.who.text()),
+                           config::name_of(deed.who.role), deed.via, deed.what, target_of(deed.arguments),
+                           one_line(deed.arguments));
     if (!deed.refusal) return out + " result=ok";
     return out + fmt::format(" result={} reason={}", name_of(deed.refusal->kind), one_line(deed.refusal->message));
 }

@@ -17,8 +17,8 @@ struct Deed {
     const Refusal* refusal;           ///< null: it was done
 };
 
-/// `audit who="alice" role=user via=http what=place target="3" arguments={...} result=ok`. What people wrote is quoted and
-/// bounded, so that nobody can forge a line.
+/// `audit who="alice" role=user via=http what=place target="3" arguments={...} result=ok`. What people wrote is quoted
+/// and bounded, so that nobody can forge a line.
 std::string audit_line(const Deed& deed);
 
 }  // namespace wall::walld

@@ -73,7 +73,9 @@ void narrow(proto::GlCaps& ours, const proto::GlCaps& theirs) {
     keep_lower(*ours.mutable_shading_language_version(), theirs.shading_language_version());
     ours.set_extensions(common_words(ours.extensions(), theirs.extensions()));
     auto& limits = *ours.mutable_limits();
-    limits.erase(std::remove_if(limits.begin(), limits.end(), [&](const auto& limit) { return !find(theirs, limit.name()); }), limits.end());
+    limits.erase(
+        std::remove_if(limits.begin(), limits.end(), [&](const auto& limit) { return !find(theirs, limit.name()); }),
+        limits.end());
     for (auto& limit : limits) tighten(limit, *find(theirs, limit.name()));
 }
 

@@ -29,13 +29,21 @@ std::string random_bytes(std::size_t count) {
 
 }  // namespace
 
-ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities, const std::string& state)
-    : executor_(executor), changed_(executor), identities_(std::move(identities)), wall_(std::move(config), *this, random_bytes), snapshots_(executor, wall_, *this), streams_(executor, wall_, *this),
-      operators_(wall_, snapshots_, streams_, LayoutStore(state), changed_, [this](SessionId id) {
-          end_session(id, "closed by an operator");
-          wall_.close_session(id);
-      }),
-      deadline_timer_(executor), process_timer_(executor) {}
+ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities,
+                             const std::string& state)
+    : executor_(executor),
+      changed_(executor),
+      identities_(std::move(identities)),
+      wall_(std::move(config), *this, random_bytes),
+      snapshots_(executor, wall_, *this),
+      streams_(executor, wall_, *this),
+      operators_(wall_, snapshots_, streams_, LayoutStore(state), changed_,
+                 [this](SessionId id) {
+                     end_session(id, "closed by an operator");
+                     wall_.close_session(id);
+                 }),
+      deadline_timer_(executor),
+      process_timer_(executor) {}
 
 Result<void> ControlServer::listen() {
     for (const auto& address : wall_.config().control_listen) {
@@ -152,7 +160,8 @@ asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::No
         refuse(connection, joined.error().message);
         co_return;
     }
-    spdlog::info("node_up node={} incarnation={} address={} backend={} renderer=\"{}\"", hello.name(), known->incarnation, hello.address(), hello.backend(), hello.caps().renderer());
+    spdlog::info("node_up node={} incarnation={} address={} backend={} renderer=\"{}\"", hello.name(),
+                 known->incarnation, hello.address(), hello.backend(), hello.caps().renderer());
     streams_.node_joined(*joined);
     something_changed();
     std::string reason;
@@ -182,7 +191,8 @@ Result<void> ControlServer::node_says(NodeIndex node, proto::Envelope& message) 
         wall_.node_reports(node, message.node_stats());
     } else if (message.has_session_fault()) {
         wall_.node_faults(node, message.session_fault());
-        spdlog::warn("session_fault session={} node={} reason=\"{}\"", message.session_fault().session(), wall_.nodes()[node].config->name, message.session_fault().reason());
+        spdlog::warn("session_fault session={} node={} reason=\"{}\"", message.session_fault().session(),
+                     wall_.nodes()[node].config->name, message.session_fault().reason());
     } else {
         return fail("a node may not send that message");
     }
@@ -206,7 +216,11 @@ Outcome<void> ControlServer::welcome(const proto::ClientHello& hello, Person& wh
     auto owner = identities_.with_token(who, hello.token());
     if (!owner) return tl::unexpected(owner.error());
     who = std::move(*owner);
-    if (who.role < Role::user) return walld::refuse(RefusalKind::forbidden, who.text() + " may not put programs on this wall: that needs the role user, and theirs is " + config::name_of(who.role));
+    if (who.role < Role::user)
+        return walld::refuse(RefusalKind::forbidden,
+                             who.text() +
+                                 " may not put programs on this wall: that needs the role user, and theirs is " +
+                                 config::name_of(who.role));
     if (auto good = wall_.check(hello); !good) return good;
     return wall_.check_member(hello, who);
 }
@@ -214,12 +228,16 @@ Outcome<void> ControlServer::welcome(const proto::ClientHello& hello, Person& wh
 asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::ClientHello hello, Person who) {
     if (const auto good = welcome(hello, who); !good) co_return refuse(connection, good.error().message);
     co_await wait_for_nodes();
-    if (!wall_.any_node_up()) co_return refuse(connection, "no node of the wall is up: is a tileserver running? (wallctl nodes)");
+    if (!wall_.any_node_up())
+        co_return refuse(connection, "no node of the wall is up: is a tileserver running? (wallctl nodes)");
     for (const auto& still : {wall_.check(hello), wall_.check_member(hello, who)})
         if (!still) co_return refuse(connection, still.error().message);
     const Rank rank = hello.group().rank();
-    const auto id = wall_.open_session(hello, who, Clock::now(), [&](SessionId session) { clients_[{session, rank}] = connection; });
-    spdlog::info("session_open session={} owner=\"{}\" pid={} program=\"{}\" name=\"{}\" group=\"{}\" rank={}", id.value, who.text(), hello.pid(), hello.program(), hello.name(), hello.group().name(), rank);
+    const auto id = wall_.open_session(hello, who, Clock::now(), [&](SessionId session) {
+        clients_[{session, rank}] = connection;
+    });
+    spdlog::info("session_open session={} owner=\"{}\" pid={} program=\"{}\" name=\"{}\" group=\"{}\" rank={}",
+                 id.value, who.text(), hello.pid(), hello.program(), hello.name(), hello.group().name(), rank);
     something_changed();
     std::string reason;
     while (reason.empty()) {
@@ -242,8 +260,10 @@ Result<void> ControlServer::client_says(const ClientId& client, const proto::Env
     else if (message.has_surface_adopted()) wall_.adopt_placement(session, message.surface_adopted(), Clock::now());
     else if (message.has_client_stats()) wall_.client_reports(session, rank, message.client_stats(), Clock::now());
     else if (message.has_close_refused()) wall_.cannot_close(session, SurfaceId(message.close_refused().surface()));
-    else if (message.has_surface_close()) wall_.close_surface(session, SurfaceId(message.surface_close().surface()), rank);
-    else if (message.has_placement_noted()) wall_.placement_noted(session, rank, message.placement_noted(), Clock::now());
+    else if (message.has_surface_close())
+        wall_.close_surface(session, SurfaceId(message.surface_close().surface()), rank);
+    else if (message.has_placement_noted())
+        wall_.placement_noted(session, rank, message.placement_noted(), Clock::now());
     else if (message.has_member_leaves()) wall_.member_leaves(session, rank, Clock::now());
     else return fail("a client may not send that message");
     return {};
@@ -259,7 +279,8 @@ asio::awaitable<void> ControlServer::serve_operator(Connection connection, proto
     }
 }
 
-asio::awaitable<void> ControlServer::answer_operator(Connection connection, proto::OperatorRequest request, Person who) {
+asio::awaitable<void> ControlServer::answer_operator(Connection connection, proto::OperatorRequest request,
+                                                     Person who) {
     auto person = identities_.with_token(std::move(who), request.token());
     Outcome<Answer> answer;
     if (!person) {
@@ -269,7 +290,10 @@ asio::awaitable<void> ControlServer::answer_operator(Connection connection, prot
         if (permitted) co_return co_await serve_watch(connection, std::move(request));
         answer = tl::unexpected(permitted.error());
     } else {
-        Asked asked{request.verb(), request.json().empty() ? nlohmann::json::object() : nlohmann::json::parse(request.json(), nullptr, false), std::move(*person), "control"};
+        Asked asked{
+            request.verb(),
+            request.json().empty() ? nlohmann::json::object() : nlohmann::json::parse(request.json(), nullptr, false),
+            std::move(*person), "control"};
         answer = co_await operators_.carry_out(std::move(asked));
     }
     proto::OperatorReply reply;

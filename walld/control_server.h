@@ -21,10 +21,12 @@ class ControlServer : public Outbox {
 public:
     static constexpr std::chrono::seconds kHelloLimit{5};  ///< a peer that has not said what it is by then is cut off
     static constexpr std::chrono::seconds kNodeLimit{4};   ///< how long a program waits for nodes while the wall starts
-    static constexpr std::chrono::seconds kPidCheck{1};    ///< a killed program whose connection lives on in a child is noticed
+    static constexpr std::chrono::seconds kPidCheck{
+        1};  ///< a killed program whose connection lives on in a child is noticed
 
     /// `state`: where layouts are kept; empty: nowhere.
-    ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities, const std::string& state);
+    ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities,
+                  const std::string& state);
 
     /// Starts to listen everywhere that the configuration says.
     Result<void> listen();

@@ -26,12 +26,15 @@ constexpr std::uint32_t kMaxHeader = 8 << 10, kMaxBody = 64 << 10;  // bytes
 
 constexpr const char* kJson = "application/json";
 constexpr const char* kVia = "http";
-constexpr std::string_view kFull = "HTTP/1.1 503 Service Unavailable\r\nContent-Length: 39\r\nConnection: close\r\n\r\nthis wall has as many viewers as it may";
+constexpr std::string_view kFull =
+    "HTTP/1.1 503 Service Unavailable\r\nContent-Length: 39\r\nConnection: close\r\n\r\nthis wall has as many viewers "
+    "as it may";
 
 /// The page uses nothing but its own files, and is no part of another page.
 constexpr const char* kPolicy = "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-http::response<http::string_body> reply(unsigned version, http::status status, std::string_view type, std::string body) {
+http::response<http::string_body> reply(unsigned version, http::status status, std::string_view type,
+                                        std::string body) {
     http::response<http::string_body> out(status, version);
     out.set(http::field::content_type, {type.data(), type.size()});
     out.set(http::field::cache_control, "no-store");
@@ -41,15 +44,21 @@ http::response<http::string_body> reply(unsigned version, http::status status, s
     return out;
 }
 
-http::response<http::string_body> refusal(unsigned version, int status, const Refusal& why) { return reply(version, static_cast<http::status>(status), kJson, dump(error_json(why))); }
+http::response<http::string_body> refusal(unsigned version, int status, const Refusal& why) {
+    return reply(version, static_cast<http::status>(status), kJson, dump(error_json(why)));
+}
 
 std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
 template <class Request>
-bool reads(const Request& request) { return request.method() == http::verb::get || request.method() == http::verb::head; }
+bool reads(const Request& request) {
+    return request.method() == http::verb::get || request.method() == http::verb::head;
+}
 
 template <class Request>
-std::string_view path_of(const Request& request) { return view(request.target()).substr(0, request.target().find('?')); }
+std::string_view path_of(const Request& request) {
+    return view(request.target()).substr(0, request.target().find('?'));
+}
 
 template <class Request>
 std::string_view query_of(const Request& request) {
@@ -69,7 +78,8 @@ std::string decoded(std::string_view text) {
     std::string out;
     for (std::size_t i = 0; i < text.size(); ++i) {
         unsigned value = 0;
-        if (text[i] == '%' && i + 2 < text.size() && std::sscanf(std::string(text.substr(i + 1, 2)).c_str(), "%2x", &value) == 1) {
+        if (text[i] == '%' && i + 2 < text.size() &&
+            std::sscanf(std::string(text.substr(i + 1, 2)).c_str(), "%2x", &value) == 1) {
             out += static_cast<char>(value);
             i += 2;
         } else {
@@ -83,7 +93,8 @@ std::string query_value(std::string_view query, std::string_view key) {
     while (!query.empty()) {
         const auto part = query.substr(0, query.find('&'));
         query.remove_prefix(std::min(query.size(), part.size() + 1));
-        if (part.starts_with(key) && part.substr(key.size()).starts_with('=')) return decoded(part.substr(key.size() + 1));
+        if (part.starts_with(key) && part.substr(key.size()).starts_with('='))
+            return decoded(part.substr(key.size() + 1));
     }
     return {};
 }
@@ -153,7 +164,8 @@ asio::awaitable<void> HttpServer::serve(std::shared_ptr<Socket> socket) {
         auto [read_error, read] = co_await http::async_read(*socket, buffer, parser, kTuple);
         if (read_error) break;
         idle.cancel();  // a program that is asked to close may take its time
-        if (boost::beast::websocket::is_upgrade(parser.get()) && path_of(parser.get()) == kStreamPath && !no_viewer(parser.get(), peer)) {
+        if (boost::beast::websocket::is_upgrade(parser.get()) && path_of(parser.get()) == kStreamPath &&
+            !no_viewer(parser.get(), peer)) {
             co_await serve_viewer(socket, parser.release(), streams_);
             break;
         }
@@ -180,46 +192,61 @@ asio::awaitable<HttpServer::Response> HttpServer::answer(const Request& request,
     auto answer = co_await desk_.carry_out(std::move(*asked));
     if (!answer) co_return refusal(request.version(), http_status(answer.error().kind), answer.error());
     const bool picture = !answer->blob.empty();
-    co_return reply(request.version(), http::status::ok, picture ? "image/png" : kJson, picture ? std::move(answer->blob) : dump(answer->json));
+    co_return reply(request.version(), http::status::ok, picture ? "image/png" : kJson,
+                    picture ? std::move(answer->blob) : dump(answer->json));
 }
 
 /// What anybody who reaches us under a local name gets, and the answer for those who do not.
 std::optional<HttpServer::Response> HttpServer::local_page(const Request& request) const {
     const auto version = request.version();
-    if (!host_ok(view(request[http::field::host]))) return reply(version, http::status::misdirected_request, "text/plain", "this wall answers to local names only\n");
+    if (!host_ok(view(request[http::field::host])))
+        return reply(version, http::status::misdirected_request, "text/plain",
+                     "this wall answers to local names only\n");
     if (!reads(request)) return std::nullopt;
     const auto* file = std::ranges::find(kPageFiles, path_of(request), &PageFile::path);
     if (file != std::end(kPageFiles)) return reply(version, http::status::ok, file->type, std::string(file->content));
     if (path_of(request) != kHealthPath) return std::nullopt;
     const bool well = wall_.any_node_up();
-    return reply(version, well ? http::status::ok : http::status::service_unavailable, "text/plain", well ? "ok\n" : "no node is up\n");
+    return reply(version, well ? http::status::ok : http::status::service_unavailable, "text/plain",
+                 well ? "ok\n" : "no node is up\n");
 }
 
 /// Why this is nobody who may watch, if so.
-std::optional<HttpServer::Response> HttpServer::no_viewer(const Request& request, const std::optional<net::Peer>& peer) const {
+std::optional<HttpServer::Response> HttpServer::no_viewer(const Request& request,
+                                                          const std::optional<net::Peer>& peer) const {
     const auto version = request.version();
     if (!host_ok(view(request[http::field::host]))) return local_page(request);
-    if (!boost::beast::websocket::is_upgrade(request)) return reply(version, http::status::upgrade_required, "text/plain", "expected a WebSocket (docs/streams.md)\n");
+    if (!boost::beast::websocket::is_upgrade(request))
+        return reply(version, http::status::upgrade_required, "text/plain", "expected a WebSocket (docs/streams.md)\n");
     const auto who = identities_.over_http(peer, view(request[http::field::authorization]));
     if (!who) return refusal(version, 401, who.error());
-    if (const auto permitted = may(*who, Need::look, "watch the wall", nullptr); !permitted) return refusal(version, http_status(permitted.error().kind), permitted.error());
+    if (const auto permitted = may(*who, Need::look, "watch the wall", nullptr); !permitted)
+        return refusal(version, http_status(permitted.error().kind), permitted.error());
     const auto origin = view(request[http::field::origin]);
-    if (!origin.empty() && origin != "http://" + std::string(view(request[http::field::host]))) return refusal(version, 403, {RefusalKind::forbidden, "a page of another site may not watch this wall"});
+    if (!origin.empty() && origin != "http://" + std::string(view(request[http::field::host])))
+        return refusal(version, 403, {RefusalKind::forbidden, "a page of another site may not watch this wall"});
     return std::nullopt;
 }
 
 /// What is asked of the desk, or the answer if nothing is.
-tl::expected<Asked, HttpServer::Response> HttpServer::read(const Request& request, const std::optional<net::Peer>& peer) const {
-    const auto no = [&](int status, const Refusal& why) { return tl::unexpected<Response>(refusal(request.version(), status, why)); };
+tl::expected<Asked, HttpServer::Response> HttpServer::read(const Request& request,
+                                                           const std::optional<net::Peer>& peer) const {
+    const auto no = [&](int status, const Refusal& why) {
+        return tl::unexpected<Response>(refusal(request.version(), status, why));
+    };
     auto who = identities_.over_http(peer, view(request[http::field::authorization]));
     if (!who) return no(401, who.error());
     const auto path = path_of(request);
     if (reads(request) && path == kMetricsPath) {
-        if (const auto permitted = may(*who, Need::look, "read the metrics", nullptr); !permitted) return no(http_status(permitted.error().kind), permitted.error());
-        return tl::unexpected<Response>(reply(request.version(), http::status::ok, "text/plain; version=0.0.4", metrics_.text()));
+        if (const auto permitted = may(*who, Need::look, "read the metrics", nullptr); !permitted)
+            return no(http_status(permitted.error().kind), permitted.error());
+        return tl::unexpected<Response>(
+            reply(request.version(), http::status::ok, "text/plain; version=0.0.4", metrics_.text()));
     }
-    if (reads(request) && path == kSnapshotPath) return Asked{"screenshot", {{"tile", query_value(query_of(request), "tile")}}, std::move(*who), kVia};
-    auto command = rest_command({view(request.method_string()), path, request.body(), view(request[http::field::content_type]), view(request[http::field::host]),
+    if (reads(request) && path == kSnapshotPath)
+        return Asked{"screenshot", {{"tile", query_value(query_of(request), "tile")}}, std::move(*who), kVia};
+    auto command = rest_command({view(request.method_string()), path, request.body(),
+                                 view(request[http::field::content_type]), view(request[http::field::host]),
                                  view(request[http::field::origin]), view(request["Sec-Fetch-Site"])});
     if (!command) return no(command.error().status, command.error().why);
     return Asked{std::move(command->verb), std::move(command->arguments), std::move(*who), kVia};

@@ -23,8 +23,14 @@ public:
     static constexpr std::chrono::seconds kIdleLimit{30};
     static constexpr std::size_t kMaxConnections = 256;
 
-    HttpServer(asio::any_io_executor executor, const Wall& wall, const Identities& identities, OperatorDesk& desk, StreamHub& streams, const WallMetrics& metrics)
-        : acceptor_(executor), wall_(wall), identities_(identities), desk_(desk), streams_(streams), metrics_(metrics) {}
+    HttpServer(asio::any_io_executor executor, const Wall& wall, const Identities& identities, OperatorDesk& desk,
+               StreamHub& streams, const WallMetrics& metrics)
+        : acceptor_(executor),
+          wall_(wall),
+          identities_(identities),
+          desk_(desk),
+          streams_(streams),
+          metrics_(metrics) {}
 
     Result<void> listen(const net::Address& address);
     void stop();

@@ -18,16 +18,21 @@ constexpr std::size_t kMinSecret = 16, kMaxSecret = 1024;  // bytes
 constexpr std::string_view kBearer = "Bearer ";
 
 Result<std::string> read_secret(const config::TokenConfig& token) {
-    const auto wrong = [&](const std::string& what) { return fail("token '" + token.name + "': " + token.file + ": " + what); };
+    const auto wrong = [&](const std::string& what) {
+        return fail("token '" + token.name + "': " + token.file + ": " + what);
+    };
     const UniqueFd fd(::open(token.file.c_str(), O_RDONLY | O_CLOEXEC));
     struct stat info {};
     if (!fd || ::fstat(fd.get(), &info) != 0) return wrong("cannot be read");
-    if (!S_ISREG(info.st_mode) || (info.st_mode & 077) != 0) return wrong("expected a file that only its owner can read (chmod 600)");
+    if (!S_ISREG(info.st_mode) || (info.st_mode & 077) != 0)
+        return wrong("expected a file that only its owner can read (chmod 600)");
     std::array<char, kMaxSecret + 1> bytes;
     const auto n = ::read(fd.get(), bytes.data(), bytes.size());
     std::string secret(bytes.data(), n > 0 ? static_cast<std::size_t>(n) : 0);
     while (!secret.empty() && (secret.back() == '\n' || secret.back() == '\r')) secret.pop_back();
-    if (secret.size() < kMinSecret || secret.size() > kMaxSecret) return wrong("expected a secret of " + std::to_string(kMinSecret) + " to " + std::to_string(kMaxSecret) + " bytes");
+    if (secret.size() < kMinSecret || secret.size() > kMaxSecret)
+        return wrong("expected a secret of " + std::to_string(kMinSecret) + " to " + std::to_string(kMaxSecret) +
+                     " bytes");
     return secret;
 }
 
@@ -35,7 +40,8 @@ Result<std::string> read_secret(const config::TokenConfig& token) {
 bool same(std::string_view a, std::string_view b) {
     if (a.size() != b.size()) return false;
     unsigned difference = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+    for (std::size_t i = 0; i < a.size(); ++i)
+        difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
     return difference == 0;
 }
 
@@ -79,7 +85,8 @@ Outcome<Person> Identities::with_token(Person base, std::string_view token) cons
 }
 
 Outcome<Person> Identities::over_http(const std::optional<net::Peer>& peer, std::string_view authorization) const {
-    if (!authorization.empty() && (!authorization.starts_with(kBearer) || authorization.size() == kBearer.size())) return refuse(RefusalKind::forbidden, "expected 'Authorization: Bearer TOKEN'");
+    if (!authorization.empty() && (!authorization.starts_with(kBearer) || authorization.size() == kBearer.size()))
+        return refuse(RefusalKind::forbidden, "expected 'Authorization: Bearer TOKEN'");
     const auto token = authorization.empty() ? authorization : authorization.substr(kBearer.size());
     return with_token(of(peer), token).map([&](Person person) {
         person.role = std::max(person.role, people_.http_role);

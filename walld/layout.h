@@ -3,7 +3,8 @@
 // Rectangles are canvas pixels of the wall that it was saved on; another wall's are scaled. Pure.
 //
 //   {"version": 1, "canvas": [WIDTH, HEIGHT],
-//    "windows": [{"name": "", "program": "glxgears", "title": "glxgears", "rect": [X, Y, W, H], "scaled": true}, ...]}   bottom first
+//    "windows": [{"name": "", "program": "glxgears", "title": "glxgears", "rect": [X, Y, W, H], "scaled": true}, ...]}
+//    bottom first
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ namespace wall::walld {
 
 /// What people call a window.
 struct WindowName {
-    std::string name;     ///< the session's (WALLGL_NAME), may be empty
+    std::string name;  ///< the session's (WALLGL_NAME), may be empty
     std::string program;
     std::string title;
 };

@@ -20,11 +20,16 @@ constexpr const char* kEnding = ".json";
 constexpr std::size_t kMaxName = 64;
 
 bool name_ok(const std::string& name) {
-    const auto good = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.'; };
+    const auto good = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' ||
+               c == '.';
+    };
     return !name.empty() && name.size() <= kMaxName && name[0] != '.' && std::ranges::all_of(name, good);
 }
 
-tl::unexpected<Refusal> failed(const fs::path& path, const std::string& what) { return refuse(RefusalKind::failed, path.string() + ": " + what); }
+tl::unexpected<Refusal> failed(const fs::path& path, const std::string& what) {
+    return refuse(RefusalKind::failed, path.string() + ": " + what);
+}
 
 Outcome<void> write_all(int fd, const std::string& text, const fs::path& path) {
     for (std::size_t done = 0; done < text.size();) {
@@ -51,9 +56,14 @@ Outcome<void> write_whole(const fs::path& path, const std::string& text) {
 }  // namespace
 
 Outcome<fs::path> LayoutStore::path_of(const std::string& name) const {
-    if (folder_.empty()) return refuse(RefusalKind::unavailable, "layouts cannot be kept: walld has no state directory ('state_directory' in [wall] of wall.toml)");
+    if (folder_.empty())
+        return refuse(
+            RefusalKind::unavailable,
+            "layouts cannot be kept: walld has no state directory ('state_directory' in [wall] of wall.toml)");
     if (name_ok(name)) return folder_ / (name + kEnding);
-    return refuse(RefusalKind::invalid, "a layout's name has 1 to " + std::to_string(kMaxName) + " letters, digits, dots, dashes and underscores, and does not begin with a dot");
+    return refuse(RefusalKind::invalid,
+                  "a layout's name has 1 to " + std::to_string(kMaxName) +
+                      " letters, digits, dots, dashes and underscores, and does not begin with a dot");
 }
 
 Outcome<void> LayoutStore::save(const std::string& name, const Layout& layout) const {
@@ -61,7 +71,9 @@ Outcome<void> LayoutStore::save(const std::string& name, const Layout& layout) c
     if (!path) return tl::unexpected(path.error());
     const auto names = list();
     if (!names) return tl::unexpected(names.error());
-    if (names->size() >= kMaxLayouts && !std::ranges::binary_search(*names, name)) return refuse(RefusalKind::conflict, "there are " + std::to_string(kMaxLayouts) + " layouts already: delete one first");
+    if (names->size() >= kMaxLayouts && !std::ranges::binary_search(*names, name))
+        return refuse(RefusalKind::conflict,
+                      "there are " + std::to_string(kMaxLayouts) + " layouts already: delete one first");
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error) return failed(folder_, error.message());
@@ -74,7 +86,8 @@ Outcome<Layout> LayoutStore::load(const std::string& name) const {
     std::ifstream file(*path, std::ios::binary);
     if (!file) return refuse(RefusalKind::not_found, "there is no layout '" + name + "'");
     std::error_code error;
-    if (fs::file_size(*path, error) > kMaxFile || error) return failed(*path, "not a layout: larger than " + std::to_string(kMaxFile) + " bytes, or no file");
+    if (fs::file_size(*path, error) > kMaxFile || error)
+        return failed(*path, "not a layout: larger than " + std::to_string(kMaxFile) + " bytes, or no file");
     std::ostringstream text;
     text << file.rdbuf();
     auto layout = parse_layout(text.str());

@@ -16,7 +16,8 @@ public:
     static constexpr std::size_t kMaxFile = 4 << 20;  ///< bytes
 
     /// `state`: the daemon's state directory; empty: nothing can be kept.
-    explicit LayoutStore(const std::string& state) : folder_(state.empty() ? std::filesystem::path() : std::filesystem::path(state) / "layouts") {}
+    explicit LayoutStore(const std::string& state)
+        : folder_(state.empty() ? std::filesystem::path() : std::filesystem::path(state) / "layouts") {}
 
     /// Replaces one of that name.
     Outcome<void> save(const std::string& name, const Layout& layout) const;

@@ -73,7 +73,8 @@ Result<void> run(config::WallConfig config, const Options& options) {
     if (!identities) return tl::unexpected(identities.error());
     ControlServer control(io.get_executor(), std::move(config), std::move(*identities), state);
     const WallMetrics metrics(control.wall(), control.streams(), WALLGL_VERSION);
-    HttpServer http(io.get_executor(), control.wall(), control.identities(), control.operators(), control.streams(), metrics);
+    HttpServer http(io.get_executor(), control.wall(), control.identities(), control.operators(), control.streams(),
+                    metrics);
     if (auto listening = control.listen(); !listening) return listening;
     if (http_listen) {
         if (auto listening = http.listen(*http_listen); !listening) return listening;
@@ -104,11 +105,16 @@ Result<void> run(config::WallConfig config, const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("walld: the control daemon of a WallGL wall. It knows the nodes, the programs and their windows, and says when\n"
-                 "a frame is shown. Nodes (tileserver) and programs (wallrun) connect to it; operators use wallctl or the status page.");
+    CLI::App app(
+        "walld: the control daemon of a WallGL wall. It knows the nodes, the programs and their windows, and says "
+        "when\n"
+        "a frame is shown. Nodes (tileserver) and programs (wallrun) connect to it; operators use wallctl or the "
+        "status page.");
     Options options;
-    app.add_option("--config", options.config, "wall.toml, the description of the wall (docs/operation.md)")->required();
-    app.add_option("--ready-file", options.ready_file, "write the addresses in use here, as JSON, once everything listens");
+    app.add_option("--config", options.config, "wall.toml, the description of the wall (docs/operation.md)")
+        ->required();
+    app.add_option("--ready-file", options.ready_file,
+                   "write the addresses in use here, as JSON, once everything listens");
     app.add_flag("--check", options.check, "only check the description");
     app.set_version_flag("--version", WALLGL_VERSION);
     CLI11_PARSE(app, argc, argv);

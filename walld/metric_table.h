@@ -39,7 +39,8 @@ void add_table(Families& out, const MetricRow<Subject> (&rows)[kRows], const std
         for (const auto& [labels, subject] : subjects) {
             auto& series = family.metric.emplace_back();
             series.label = labels;
-            (row.type == prometheus::MetricType::Counter ? series.counter.value : series.gauge.value) = row.value(subject);
+            (row.type == prometheus::MetricType::Counter ? series.counter.value : series.gauge.value) =
+                row.value(subject);
         }
     }
 }

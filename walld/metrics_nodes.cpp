@@ -11,8 +11,10 @@ using NodeRef = const Node*;
 double seconds(std::uint64_t nanoseconds) { return 1e-9 * static_cast<double>(nanoseconds); }
 
 constexpr MetricRow<NodeRef> kAlways[] = {
-    {Gauge, "wallgl_node_up", "1 while the node's tileserver is connected, else 0.", [](const NodeRef& n) { return n->up ? 1.0 : 0.0; }},
-    {Counter, "wallgl_node_starts_total", "Tileserver processes that walld has seen for this node.", [](const NodeRef& n) -> double { return n->incarnation; }},
+    {Gauge, "wallgl_node_up", "1 while the node's tileserver is connected, else 0.",
+     [](const NodeRef& n) { return n->up ? 1.0 : 0.0; }},
+    {Counter, "wallgl_node_starts_total", "Tileserver processes that walld has seen for this node.",
+     [](const NodeRef& n) -> double { return n->incarnation; }},
 };
 
 constexpr MetricRow<NodeRef> kInfo[] = {
@@ -26,19 +28,27 @@ std::uint64_t queued(const Node& node) {
 }
 
 constexpr MetricRow<NodeRef> kWhileUp[] = {
-    {Gauge, "wallgl_node_sessions", "Programs with a stream to the node.", [](const NodeRef& n) -> double { return n->stats.sessions(); }},
-    {Counter, "wallgl_node_frames_total", "Frames of windows drawn since the node started.", [](const NodeRef& n) -> double { return n->stats.frames(); }},
+    {Gauge, "wallgl_node_sessions", "Programs with a stream to the node.",
+     [](const NodeRef& n) -> double { return n->stats.sessions(); }},
+    {Counter, "wallgl_node_frames_total", "Frames of windows drawn since the node started.",
+     [](const NodeRef& n) -> double { return n->stats.frames(); }},
     {Counter, "wallgl_node_received_bytes_total", "Bytes received from programs since the node started.",
      [](const NodeRef& n) -> double { return n->stats.bytes_received(); }},
-    {Counter, "wallgl_node_commands_total", "Commands executed since the node started.", [](const NodeRef& n) -> double { return n->stats.commands(); }},
-    {Counter, "wallgl_node_gl_errors_total", "OpenGL errors of the driver since the node started.", [](const NodeRef& n) -> double { return n->stats.gl_errors(); }},
-    {Counter, "wallgl_node_context_switches_total", "Blocks that found another program's context in the driver, since the node started.",
+    {Counter, "wallgl_node_commands_total", "Commands executed since the node started.",
+     [](const NodeRef& n) -> double { return n->stats.commands(); }},
+    {Counter, "wallgl_node_gl_errors_total", "OpenGL errors of the driver since the node started.",
+     [](const NodeRef& n) -> double { return n->stats.gl_errors(); }},
+    {Counter, "wallgl_node_context_switches_total",
+     "Blocks that found another program's context in the driver, since the node started.",
      [](const NodeRef& n) -> double { return n->stats.context_switches(); }},
-    {Counter, "wallgl_node_decode_seconds_total", "Time of the render thread in taking batches apart and calling the driver, since the node started.",
+    {Counter, "wallgl_node_decode_seconds_total",
+     "Time of the render thread in taking batches apart and calling the driver, since the node started.",
      [](const NodeRef& n) { return seconds(n->stats.decode_ns()); }},
-    {Counter, "wallgl_node_render_seconds_total", "Time of the render thread in waiting for the driver to end frames and answers, since the node started.",
+    {Counter, "wallgl_node_render_seconds_total",
+     "Time of the render thread in waiting for the driver to end frames and answers, since the node started.",
      [](const NodeRef& n) { return seconds(n->stats.render_ns()); }},
-    {Gauge, "wallgl_node_queue_bytes", "Bytes that programs have sent and that are not executed yet.", [](const NodeRef& n) -> double { return queued(*n); }},
+    {Gauge, "wallgl_node_queue_bytes", "Bytes that programs have sent and that are not executed yet.",
+     [](const NodeRef& n) -> double { return queued(*n); }},
 };
 
 using Count = std::uint64_t;
@@ -53,13 +63,16 @@ struct TileRef {
     double age;  ///< seconds
 };
 constexpr MetricRow<TileRef> kTiles[] = {
-    {Counter, "wallgl_tile_frames_total", "Times that the tile was told to show a frame of a window, since walld started.",
+    {Counter, "wallgl_tile_frames_total",
+     "Times that the tile was told to show a frame of a window, since walld started.",
      [](const TileRef& t) -> double { return t.shown->frames; }},
     {Gauge, "wallgl_tile_lag_frames", "Frames that the wall shows and this tile does not yet; the most of its windows.",
      [](const TileRef& t) -> double { return t.lag; }},
 };
 constexpr MetricRow<TileRef> kShownTiles[] = {
-    {Gauge, "wallgl_tile_frame_age_seconds", "Time since the tile was told to show a frame. It also grows while its windows stand still: see wallgl_tile_lag_frames.",
+    {Gauge, "wallgl_tile_frame_age_seconds",
+     "Time since the tile was told to show a frame. It also grows while its windows stand still: see "
+     "wallgl_tile_lag_frames.",
      [](const TileRef& t) { return t.age; }},
 };
 
@@ -67,8 +80,10 @@ void add_objects(Families& out, const std::vector<Labelled<NodeRef>>& up) {
     std::vector<Labelled<Count>> counts;
     for (const auto& [labels, node] : up) {
         const auto& o = node->stats.objects();
-        const std::pair<const char*, Count> kinds[] = {{"texture", o.textures()}, {"buffer", o.buffers()}, {"list", o.lists()}, {"program", o.programs()},
-                                                       {"shader", o.shaders()}, {"framebuffer", o.framebuffers()}, {"renderbuffer", o.renderbuffers()}, {"query", o.queries()}};
+        const std::pair<const char*, Count> kinds[] = {
+            {"texture", o.textures()},           {"buffer", o.buffers()}, {"list", o.lists()},
+            {"program", o.programs()},           {"shader", o.shaders()}, {"framebuffer", o.framebuffers()},
+            {"renderbuffer", o.renderbuffers()}, {"query", o.queries()}};
         for (const auto& [kind, count] : kinds) counts.push_back({{labels.front(), {"kind", kind}}, count});
     }
     add_table(out, kObjects, counts);
@@ -99,8 +114,11 @@ void add_node_metrics(Families& out, const Observed& observed) {
         all.push_back({labels, &node});
         if (!node.up) continue;
         up.push_back({labels, &node});
-        info.push_back({{labels.front(), {"backend", label_text(node.hello.backend())}, {"renderer", label_text(node.hello.caps().renderer())},
-                         {"version", label_text(node.hello.caps().version())}}, &node});
+        info.push_back({{labels.front(),
+                         {"backend", label_text(node.hello.backend())},
+                         {"renderer", label_text(node.hello.caps().renderer())},
+                         {"version", label_text(node.hello.caps().version())}},
+                        &node});
     }
     add_table(out, kAlways, all);
     add_table(out, kInfo, info);

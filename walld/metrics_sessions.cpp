@@ -21,33 +21,46 @@ constexpr MetricRow<SessionRef> kInfo[] = {
     {Gauge, "wallgl_session_info", "Always 1; which program it is and whose.", [](const SessionRef&) { return 1.0; }},
 };
 constexpr MetricRow<SessionRef> kSessions[] = {
-    {Gauge, "wallgl_session_fault", "1 if a node gave up on the program's stream, else 0.", [](const SessionRef& s) { return s->fault.empty() ? 0.0 : 1.0; }},
-    {Gauge, "wallgl_session_held", "1 while frames are shown only when stepped, else 0.", [](const SessionRef& s) { return s->held ? 1.0 : 0.0; }},
-    {Counter, "wallgl_session_frames_total", "Frames that the program has ended.", [](const SessionRef& s) -> double { return s->traffic.frames(); }},
+    {Gauge, "wallgl_session_fault", "1 if a node gave up on the program's stream, else 0.",
+     [](const SessionRef& s) { return s->fault.empty() ? 0.0 : 1.0; }},
+    {Gauge, "wallgl_session_held", "1 while frames are shown only when stepped, else 0.",
+     [](const SessionRef& s) { return s->held ? 1.0 : 0.0; }},
+    {Counter, "wallgl_session_frames_total", "Frames that the program has ended.",
+     [](const SessionRef& s) -> double { return s->traffic.frames(); }},
     {Counter, "wallgl_session_round_trips_total", "Times that the program waited for an answer of a node.",
      [](const SessionRef& s) -> double { return s->traffic.round_trips(); }},
-    {Counter, "wallgl_session_diff_seconds_total", "Time of the program in comparing contexts with what nodes hold; an estimate from samples.",
+    {Counter, "wallgl_session_diff_seconds_total",
+     "Time of the program in comparing contexts with what nodes hold; an estimate from samples.",
      [](const SessionRef& s) { return s->traffic.diff_seconds(); }},
 };
 constexpr MetricRow<Bytes> kSent[] = {
-    {Counter, "wallgl_session_sent_bytes_total", "Bytes of commands that the program has packed for the node, by what they are for.", bytes_of},
+    {Counter, "wallgl_session_sent_bytes_total",
+     "Bytes of commands that the program has packed for the node, by what they are for.", bytes_of},
 };
 constexpr MetricRow<Bytes> kReceived[] = {
-    {Counter, "wallgl_session_received_bytes_total", "Bytes of commands that the node has executed for the program, by what they are for; object: all that is neither state nor geometry.",
+    {Counter, "wallgl_session_received_bytes_total",
+     "Bytes of commands that the node has executed for the program, by what they are for; object: all that is neither "
+     "state nor geometry.",
      bytes_of},
 };
 constexpr MetricRow<OnNode> kOnNodes[] = {
-    {Counter, "wallgl_session_rendered_frames_total", "Frames of the program that the node has drawn.", [](const OnNode& s) -> double { return s.frames(); }},
-    {Counter, "wallgl_session_commands_total", "Commands that the node has executed for the program.", [](const OnNode& s) -> double { return s.commands(); }},
+    {Counter, "wallgl_session_rendered_frames_total", "Frames of the program that the node has drawn.",
+     [](const OnNode& s) -> double { return s.frames(); }},
+    {Counter, "wallgl_session_commands_total", "Commands that the node has executed for the program.",
+     [](const OnNode& s) -> double { return s.commands(); }},
     {Counter, "wallgl_session_gl_errors_total", "OpenGL errors of the node's driver in the program's commands.",
      [](const OnNode& s) -> double { return s.gl_errors(); }},
-    {Counter, "wallgl_session_context_switches_total", "Blocks of the program that found another context in the node's driver.",
+    {Counter, "wallgl_session_context_switches_total",
+     "Blocks of the program that found another context in the node's driver.",
      [](const OnNode& s) -> double { return s.context_switches(); }},
-    {Counter, "wallgl_session_decode_seconds_total", "Time of the node's render thread in taking the program's batches apart and calling the driver.",
+    {Counter, "wallgl_session_decode_seconds_total",
+     "Time of the node's render thread in taking the program's batches apart and calling the driver.",
      [](const OnNode& s) { return seconds(s.decode_ns()); }},
-    {Counter, "wallgl_session_render_seconds_total", "Time of the node's render thread in waiting for the driver to end the program's frames and answers.",
+    {Counter, "wallgl_session_render_seconds_total",
+     "Time of the node's render thread in waiting for the driver to end the program's frames and answers.",
      [](const OnNode& s) { return seconds(s.render_ns()); }},
-    {Gauge, "wallgl_session_queue_bytes", "Bytes that the node has received from the program and not executed yet; at 64 MiB the program waits.",
+    {Gauge, "wallgl_session_queue_bytes",
+     "Bytes that the node has received from the program and not executed yet; at 64 MiB the program waits.",
      [](const OnNode& s) -> double { return s.queued_bytes(); }},
 };
 constexpr MetricRow<SurfaceRef> kSurfaces[] = {
@@ -55,12 +68,14 @@ constexpr MetricRow<SurfaceRef> kSurfaces[] = {
      [](const SurfaceRef& s) -> double { return s->swap.presented(); }},
     {Counter, "wallgl_surface_swap_timeouts_total", "Frames of the window that did not wait for a slow node.",
      [](const SurfaceRef& s) -> double { return s->swap.timeouts(); }},
-    {Gauge, "wallgl_surface_frame_interval_seconds", "Time from one shown frame of the window to the next, the mean of about the last 16.",
+    {Gauge, "wallgl_surface_frame_interval_seconds",
+     "Time from one shown frame of the window to the next, the mean of about the last 16.",
      [](const SurfaceRef& s) { return 1e-3 * s->swap.frame_interval().count(); }},
 };
 
 constexpr MetricRow<Age> kAges[] = {
-    {Gauge, "wallgl_surface_frame_age_seconds", "Time since the window's last frame was shown.", [](const Age& age) { return age; }},
+    {Gauge, "wallgl_surface_frame_age_seconds", "Time since the window's last frame was shown.",
+     [](const Age& age) { return age; }},
 };
 
 template <class Add>
@@ -92,10 +107,12 @@ std::vector<Labelled<OnNode>> on_nodes(const Wall& wall) {
     for (const auto& node : wall.nodes()) {
         std::map<std::pair<SessionId, Rank>, const proto::SessionStats*> newest;
         for (const auto& session : node.stats.session_stats())
-            if (node.up && wall.sessions().contains(SessionId(session.session()))) newest[{SessionId(session.session()), session.rank()}] = &session;
+            if (node.up && wall.sessions().contains(SessionId(session.session())))
+                newest[{SessionId(session.session()), session.rank()}] = &session;
         std::map<SessionId, OnNode> sums;
         for (const auto& [process, stats] : newest) add(sums[process.first], *stats);
-        for (auto& [id, stats] : sums) out.push_back({{{"session", std::to_string(id.value)}, {"node", node.config->name}}, std::move(stats)});
+        for (auto& [id, stats] : sums)
+            out.push_back({{{"session", std::to_string(id.value)}, {"node", node.config->name}}, std::move(stats)});
     }
     return out;
 }
@@ -104,23 +121,28 @@ std::vector<Labelled<Bytes>> sent(const Wall& wall) {
     std::vector<Labelled<Bytes>> out;
     for (const auto& [id, session] : wall.sessions())
         for (const auto& [node, bytes] : session.traffic.by_node())
-            by_kind({{"session", std::to_string(id.value)}, {"node", wall.nodes()[node].config->name}}, bytes.state, bytes.object, bytes.geometry,
-                    [&](Labels labels, Bytes n) { out.push_back({std::move(labels), n}); });
+            by_kind({{"session", std::to_string(id.value)}, {"node", wall.nodes()[node].config->name}}, bytes.state,
+                    bytes.object, bytes.geometry, [&](Labels labels, Bytes n) {
+                        out.push_back({std::move(labels), n});
+                    });
     return out;
 }
 
 Labels surface_labels(const SurfaceKey& key) {
-    return {{"session", std::to_string(key.session.value)}, {"surface", fmt::format("{}.{}", key.session.value, key.surface.value)}};
+    return {{"session", std::to_string(key.session.value)},
+            {"surface", fmt::format("{}.{}", key.session.value, key.surface.value)}};
 }
 
 prometheus::ClientMetric::Histogram histogram(const Spread& spread) {
     prometheus::ClientMetric::Histogram out{spread.frames(), 1e-3 * spread.sum().count(), {}};
     std::uint64_t below = 0;
-    for (std::size_t i = 0; i < Spread::kBoundsMs.size(); ++i) out.bucket.push_back({below += spread.histogram()[i], 1e-3 * Spread::kBoundsMs[i]});
+    for (std::size_t i = 0; i < Spread::kBoundsMs.size(); ++i)
+        out.bucket.push_back({below += spread.histogram()[i], 1e-3 * Spread::kBoundsMs[i]});
     return out;
 }
 
-void add_skew(Families& out, const Wall& wall, const char* name, const char* help, const Spread& (SwapCoordinator::*spread)() const) {
+void add_skew(Families& out, const Wall& wall, const char* name, const char* help,
+              const Spread& (SwapCoordinator::*spread)() const) {
     auto& family = out.emplace_back(prometheus::MetricFamily{name, help, Histogram, {}});
     for (const auto& key : wall.stacking()) {
         auto& series = family.metric.emplace_back();
@@ -135,12 +157,19 @@ void add_session_metrics(Families& out, const Observed& observed) {
     std::vector<Labelled<SessionRef>> sessions, info;
     for (const auto& [id, session] : observed.wall.sessions()) {
         sessions.push_back({{{"session", std::to_string(id.value)}}, &session});
-        info.push_back({{{"session", std::to_string(id.value)}, {"program", label_text(session.program)}, {"name", label_text(session.name)}, {"owner", label_text(session.owner.name)}}, &session});
+        info.push_back({{{"session", std::to_string(id.value)},
+                         {"program", label_text(session.program)},
+                         {"name", label_text(session.name)},
+                         {"owner", label_text(session.owner.name)}},
+                        &session});
     }
     const auto working = on_nodes(observed.wall);
     std::vector<Labelled<Bytes>> received;
     for (const auto& [labels, stats] : working)
-        by_kind(labels, stats.state_bytes(), stats.object_bytes(), stats.geometry_bytes(), [&](Labels with_kind, Bytes n) { received.push_back({std::move(with_kind), n}); });
+        by_kind(labels, stats.state_bytes(), stats.object_bytes(), stats.geometry_bytes(),
+                [&](Labels with_kind, Bytes n) {
+                    received.push_back({std::move(with_kind), n});
+                });
     add_table(out, kInfo, info);
     add_table(out, kSessions, sessions);
     add_table(out, kSent, sent(observed.wall));
@@ -154,12 +183,17 @@ void add_surface_metrics(Families& out, const Observed& observed) {
     for (const auto& key : observed.wall.stacking()) {
         const auto* surface = observed.wall.find(key);
         surfaces.push_back({surface_labels(key), surface});
-        if (const auto last = surface->swap.last_present()) shown.push_back({surface_labels(key), std::chrono::duration<double>(observed.now - *last).count()});
+        if (const auto last = surface->swap.last_present())
+            shown.push_back({surface_labels(key), std::chrono::duration<double>(observed.now - *last).count()});
     }
     add_table(out, kSurfaces, surfaces);
     add_table(out, kAges, shown);
-    add_skew(out, observed.wall, "wallgl_surface_rendered_skew_seconds", "Time from the first node's report of a frame of the window to the last one's.", &SwapCoordinator::rendered_spread);
-    add_skew(out, observed.wall, "wallgl_surface_presented_skew_seconds", "Time from telling the first node to show a frame of the window to telling the last.", &SwapCoordinator::presented_spread);
+    add_skew(out, observed.wall, "wallgl_surface_rendered_skew_seconds",
+             "Time from the first node's report of a frame of the window to the last one's.",
+             &SwapCoordinator::rendered_spread);
+    add_skew(out, observed.wall, "wallgl_surface_presented_skew_seconds",
+             "Time from telling the first node to show a frame of the window to telling the last.",
+             &SwapCoordinator::presented_spread);
 }
 
 }  // namespace wall::walld

@@ -18,7 +18,9 @@ using nlohmann::json;
 
 constexpr std::int64_t kMaxWait = 600'000;  // ms
 
-Outcome<Target> target_of(const Asked& asked) { return text_of(asked.arguments, "id").and_then([](const std::string& text) { return Target::parse(text); }); }
+Outcome<Target> target_of(const Asked& asked) {
+    return text_of(asked.arguments, "id").and_then([](const std::string& text) { return Target::parse(text); });
+}
 Outcome<std::string> name_of(const Asked& asked) { return text_of(asked.arguments, "name"); }
 
 Answer done() { return {}; }
@@ -55,7 +57,9 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::carry_out(Asked asked) {
     Outcome<Answer> answer;
     if (const auto permitted = allowed(**row, asked); permitted) answer = co_await (this->*(*row)->run)(asked);
     else answer = tl::unexpected(permitted.error());
-    if ((*row)->need != Need::look) spdlog::info(audit_line({asked.who, asked.via, asked.verb, asked.arguments, answer ? nullptr : &answer.error()}));
+    if ((*row)->need != Need::look)
+        spdlog::info(
+            audit_line({asked.who, asked.via, asked.verb, asked.arguments, answer ? nullptr : &answer.error()}));
     changed_.notify();
     co_return answer;
 }
@@ -84,20 +88,32 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::status(const Asked&) {
     status["streams"] = streams_json(wall_, streams_.views());
     co_return Answer{std::move(status), {}};
 }
-asio::awaitable<Outcome<Answer>> OperatorDesk::streams(const Asked&) { co_return Answer{streams_json(wall_, streams_.views()), {}}; }
+asio::awaitable<Outcome<Answer>> OperatorDesk::streams(const Asked&) {
+    co_return Answer{streams_json(wall_, streams_.views()), {}};
+}
 asio::awaitable<Outcome<Answer>> OperatorDesk::nodes(const Asked&) { co_return Answer{nodes_json(wall_), {}}; }
-asio::awaitable<Outcome<Answer>> OperatorDesk::tiles(const Asked&) { co_return Answer{tiles_json(wall_, Clock::now()), {}}; }
+asio::awaitable<Outcome<Answer>> OperatorDesk::tiles(const Asked&) {
+    co_return Answer{tiles_json(wall_, Clock::now()), {}};
+}
 asio::awaitable<Outcome<Answer>> OperatorDesk::sessions(const Asked&) { co_return Answer{sessions_json(wall_), {}}; }
-asio::awaitable<Outcome<Answer>> OperatorDesk::whoami(const Asked& asked) { co_return Answer{person_json(asked.who), {}}; }
+asio::awaitable<Outcome<Answer>> OperatorDesk::whoami(const Asked& asked) {
+    co_return Answer{person_json(asked.who), {}};
+}
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::session(const Asked& asked) {
-    co_return target_of(asked).and_then([&](const Target& target) { return wall_.surfaces_of(target).map([&](const auto&) { return Answer{session_json(wall_, target.session), {}}; }); });
+    co_return target_of(asked).and_then([&](const Target& target) {
+        return wall_.surfaces_of(target).map([&](const auto&) {
+            return Answer{session_json(wall_, target.session), {}};
+        });
+    });
 }
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::place(const Asked& asked) {
     const auto rect = rect_of(asked.arguments, "rect");
     if (!rect) co_return tl::unexpected(rect.error());
-    co_return target_of(asked).and_then([&](const Target& target) { return wall_.place_surface(target, *rect, Clock::now()); }).map(done);
+    co_return target_of(asked)
+        .and_then([&](const Target& target) { return wall_.place_surface(target, *rect, Clock::now()); })
+        .map(done);
 }
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::raise(const Asked& asked) {
@@ -108,20 +124,26 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::lower(const Asked& asked) {
     co_return target_of(asked).and_then([&](const Target& target) { return wall_.lower(target); }).map(done);
 }
 
-/// Asks the program, as a window manager would; one that does not obey in time, or cannot be asked, is cut off. A window
-/// that is one of several is only asked for.
+/// Asks the program, as a window manager would; one that does not obey in time, or cannot be asked, is cut off. A
+/// window that is one of several is only asked for.
 asio::awaitable<Outcome<Answer>> OperatorDesk::close(const Asked& asked) {
     const auto target = target_of(asked);
     const auto keys = target.and_then([&](const Target& t) { return wall_.ask_to_close(t); });
     if (!keys) co_return tl::unexpected(keys.error());
     const auto open = [&](const SurfaceKey& key) { return wall_.find(key) != nullptr; };
-    const auto obeyed = [&] { return target->surface ? std::ranges::none_of(*keys, open) : !wall_.sessions().contains(target->session); };
-    const auto deaf = [&] { return std::ranges::all_of(*keys, [&](const SurfaceKey& key) { return open(key) && wall_.find(key)->cannot_close; }); };
+    const auto obeyed = [&] {
+        return target->surface ? std::ranges::none_of(*keys, open) : !wall_.sessions().contains(target->session);
+    };
+    const auto deaf = [&] {
+        return std::ranges::all_of(*keys,
+                                   [&](const SurfaceKey& key) { return open(key) && wall_.find(key)->cannot_close; });
+    };
     const auto until = Clock::now() + wall_.config().close_timeout;
     while (!obeyed() && !deaf() && Clock::now() < until) co_await changed_.wait(until);
     if (obeyed()) co_return Answer{{{"closed", "by the program"}}, {}};
     if (target->surface && wall_.sessions().at(target->session).surfaces.size() > 1) {
-        co_return refuse(RefusalKind::conflict, "the program keeps this window open; close the session to take all of it from the wall");
+        co_return refuse(RefusalKind::conflict,
+                         "the program keeps this window open; close the session to take all of it from the wall");
     }
     end_session_(target->session);
     co_return Answer{{{"closed", "by walld"}}, {}};
@@ -130,13 +152,18 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::close(const Asked& asked) {
 asio::awaitable<Outcome<Answer>> OperatorDesk::hold(const Asked& asked) {
     const auto on = flag_of(asked.arguments, "on", true);
     if (!on) co_return tl::unexpected(on.error());
-    co_return target_of(asked).and_then([&](const Target& target) { return wall_.hold(target, *on, Clock::now()); }).map(done);
+    co_return target_of(asked)
+        .and_then([&](const Target& target) { return wall_.hold(target, *on, Clock::now()); })
+        .map(done);
 }
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::step(const Asked& asked) {
     const auto frames = number_of(asked.arguments, "frames", 1, 1, INT32_MAX);
     if (!frames) co_return tl::unexpected(frames.error());
-    co_return target_of(asked).and_then([&](const Target& target) { return wall_.step(target, static_cast<std::uint32_t>(*frames), Clock::now()); }).map(done);
+    co_return target_of(asked)
+        .and_then(
+            [&](const Target& target) { return wall_.step(target, static_cast<std::uint32_t>(*frames), Clock::now()); })
+        .map(done);
 }
 
 /// Answers when the frame is shown on all tiles. The session may still be about to open its window.
@@ -152,9 +179,11 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::wait(const Asked& asked) {
         const auto key = wall_.resolve(*target);
         if (!wall_.sessions().contains(target->session)) co_return tl::unexpected(key.error());
         const auto* surface = key ? wall_.find(*key) : nullptr;
-        if (surface && surface->swap.shown(static_cast<std::uint32_t>(*frame))) co_return Answer{{{"frame", surface->swap.presented()}}, {}};
+        if (surface && surface->swap.shown(static_cast<std::uint32_t>(*frame)))
+            co_return Answer{{{"frame", surface->swap.presented()}}, {}};
         if (Clock::now() >= until) {
-            co_return refuse(RefusalKind::unavailable, "frame " + std::to_string(*frame) + " was not shown within " + std::to_string(*limit) + " ms; the last one is " +
+            co_return refuse(RefusalKind::unavailable, "frame " + std::to_string(*frame) + " was not shown within " +
+                                                           std::to_string(*limit) + " ms; the last one is " +
                                                            std::to_string(surface ? surface->swap.presented() : 0));
         }
         co_await changed_.wait(until);
@@ -183,19 +212,27 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::layouts(const Asked&) {
 }
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::layout(const Asked& asked) {
-    co_return name_of(asked).and_then([&](const std::string& name) { return layouts_.load(name); }).map([](const Layout& layout) { return Answer{json::parse(to_text(layout)), {}}; });
+    co_return name_of(asked)
+        .and_then([&](const std::string& name) { return layouts_.load(name); })
+        .map([](const Layout& layout) {
+            return Answer{json::parse(to_text(layout)), {}};
+        });
 }
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::save_layout(const Asked& asked) {
     const auto layout = wall_.current_layout();
-    co_return name_of(asked).and_then([&](const std::string& name) { return layouts_.save(name, layout); }).map([&] { return Answer{{{"windows", layout.windows.size()}}, {}}; });
+    co_return name_of(asked).and_then([&](const std::string& name) { return layouts_.save(name, layout); }).map([&] {
+        return Answer{{{"windows", layout.windows.size()}}, {}};
+    });
 }
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::load_layout(const Asked& asked) {
-    co_return name_of(asked).and_then([&](const std::string& name) { return layouts_.load(name); }).map([&](const Layout& layout) {
-        const auto placed = wall_.load_layout(layout, Clock::now());
-        return Answer{{{"placed", placed}, {"waiting", layout.windows.size() - placed}}, {}};
-    });
+    co_return name_of(asked)
+        .and_then([&](const std::string& name) { return layouts_.load(name); })
+        .map([&](const Layout& layout) {
+            const auto placed = wall_.load_layout(layout, Clock::now());
+            return Answer{{{"placed", placed}, {"waiting", layout.windows.size() - placed}}, {}};
+        });
 }
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::delete_layout(const Asked& asked) {

@@ -32,8 +32,14 @@ struct Answer {
 class OperatorDesk {
 public:
     /// `end_session` cuts a client off. `changed` is notified after every event of the wall.
-    OperatorDesk(Wall& wall, SnapshotDesk& snapshots, const StreamHub& streams, LayoutStore layouts, Changed& changed, std::function<void(SessionId)> end_session)
-        : wall_(wall), snapshots_(snapshots), streams_(streams), layouts_(std::move(layouts)), changed_(changed), end_session_(std::move(end_session)) {}
+    OperatorDesk(Wall& wall, SnapshotDesk& snapshots, const StreamHub& streams, LayoutStore layouts, Changed& changed,
+                 std::function<void(SessionId)> end_session)
+        : wall_(wall),
+          snapshots_(snapshots),
+          streams_(streams),
+          layouts_(std::move(layouts)),
+          changed_(changed),
+          end_session_(std::move(end_session)) {}
 
     asio::awaitable<Outcome<Answer>> carry_out(Asked asked);
 

@@ -16,18 +16,24 @@ constexpr std::size_t kMaxVersions = 256;  // of one window that no frame has re
 // ---- members ----
 
 Outcome<void> ParallelGroup::check(const proto::Group& hello) {
-    if (hello.name().empty() || hello.name().size() > kMaxName) return refuse(RefusalKind::invalid, "a parallel program needs a name of 1 to " + std::to_string(kMaxName) + " bytes");
+    if (hello.name().empty() || hello.name().size() > kMaxName)
+        return refuse(RefusalKind::invalid,
+                      "a parallel program needs a name of 1 to " + std::to_string(kMaxName) + " bytes");
     if (hello.members() == 0 || hello.members() > wire::kMaxMembers || hello.rank() >= hello.members())
-        return refuse(RefusalKind::invalid, "rank " + std::to_string(hello.rank()) + " of " + std::to_string(hello.members()) + " processes: expected at most " + std::to_string(wire::kMaxMembers) + ", and ranks from 0");
+        return refuse(RefusalKind::invalid, "rank " + std::to_string(hello.rank()) + " of " +
+                                                std::to_string(hello.members()) + " processes: expected at most " +
+                                                std::to_string(wire::kMaxMembers) + ", and ranks from 0");
     return {};
 }
 
 Outcome<void> ParallelGroup::admits(const proto::Group& hello) const {
     if (hello.members() != size_)
-        return refuse(RefusalKind::conflict, "parallel program '" + name_ + "' has " + std::to_string(size_) + " processes, not " + std::to_string(hello.members()));
+        return refuse(RefusalKind::conflict, "parallel program '" + name_ + "' has " + std::to_string(size_) +
+                                                 " processes, not " + std::to_string(hello.members()));
     const auto known = members_.find(hello.rank());
     if (known == members_.end()) return {};
-    return refuse(RefusalKind::conflict, text(hello.rank()) + (known->second.left ? " has ended already" : " is here already"));
+    return refuse(RefusalKind::conflict,
+                  text(hello.rank()) + (known->second.left ? " has ended already" : " is here already"));
 }
 
 bool ParallelGroup::leaves(Rank rank) {
@@ -49,7 +55,8 @@ std::set<Rank> ParallelGroup::left() const {
 
 std::string ParallelGroup::text(Rank rank) const {
     const auto found = members_.find(rank);
-    const auto process = found == members_.end() ? std::string() : " (process " + std::to_string(found->second.pid) + ")";
+    const auto process =
+        found == members_.end() ? std::string() : " (process " + std::to_string(found->second.pid) + ")";
     return "rank " + std::to_string(rank) + process + " of parallel program '" + name_ + "'";
 }
 
@@ -61,7 +68,8 @@ void AgreedPlacements::add(const proto::Placement& placement) {
 }
 
 void AgreedPlacements::presented(std::uint32_t frame) {
-    while (versions_.size() > 1 && std::next(versions_.begin())->second.from_frame() <= frame) versions_.erase(versions_.begin());
+    while (versions_.size() > 1 && std::next(versions_.begin())->second.from_frame() <= frame)
+        versions_.erase(versions_.begin());
 }
 
 void AgreedPlacements::closed(Rank rank) {

@@ -57,7 +57,8 @@ private:
 class AgreedPlacements {
 public:
     /// Frames from the last presented one to that from which a new version holds. A member can have begun the third: it
-    /// draws two ahead of a node, which draws one ahead of what is presented. One more is presented while they are told.
+    /// draws two ahead of a node, which draws one ahead of what is presented. One more is presented while they are
+    /// told.
     static constexpr std::uint32_t kLead = 5;
 
     void add(const proto::Placement& placement);

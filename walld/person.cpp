@@ -30,11 +30,15 @@ bool Person::same_as(const Person& other) const {
 }
 
 Outcome<void> may(const Person& who, Need need, const std::string& what, const Person* owner) {
-    const auto no = [&](const std::string& why) { return refuse(RefusalKind::forbidden, who.text() + " may not " + what + ": " + why); };
+    const auto no = [&](const std::string& why) {
+        return refuse(RefusalKind::forbidden, who.text() + " may not " + what + ": " + why);
+    };
     if (who.role == Role::operator_) return {};
     if (need == Need::look) return who.role >= Role::viewer ? Outcome<void>() : no("that needs the role viewer");
-    if (need == Need::operate) return no("that needs the role operator, and theirs is " + std::string(config::name_of(who.role)));
-    if (who.role < Role::user) return no("that needs the role user, and theirs is " + std::string(config::name_of(who.role)));
+    if (need == Need::operate)
+        return no("that needs the role operator, and theirs is " + std::string(config::name_of(who.role)));
+    if (who.role < Role::user)
+        return no("that needs the role user, and theirs is " + std::string(config::name_of(who.role)));
     if (owner && who.same_as(*owner)) return {};
     return no(owner ? "it belongs to " + owner->text() : "that needs the role operator");
 }

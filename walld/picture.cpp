@@ -27,7 +27,8 @@ Result<std::string> compose_png(const PictureJob& job) {
     cv::Mat canvas(job.view.height, job.view.width, CV_8UC3, background);
     for (const auto& tile : job.tiles) draw(canvas, job.view, tile);
     std::vector<unsigned char> png;
-    if (!cv::imencode(".png", canvas, png, {cv::IMWRITE_PNG_COMPRESSION, kPngLevel})) return fail("picture: cannot be encoded");
+    if (!cv::imencode(".png", canvas, png, {cv::IMWRITE_PNG_COMPRESSION, kPngLevel}))
+        return fail("picture: cannot be encoded");
     return std::string(png.begin(), png.end());
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Where one surface is wanted, drawn and shown. The wall wants a rectangle (a new layout version); the program adopts it
-// between two frames and says with which frame it begins; the wall shows it there once that frame is presented. Until
-// then the surface stays where it is, so that a move leaves neither a hole nor a frame in two places. Pure.
+// Where one surface is wanted, drawn and shown. The wall wants a rectangle (a new layout version); the program adopts
+// it between two frames and says with which frame it begins; the wall shows it there once that frame is presented.
+// Until then the surface stays where it is, so that a move leaves neither a hole nor a frame in two places. Pure.
 //
 //   want(rect) -> version      adopt(version, frame)          presented(frame)
 //   wanted ------------------> drawn -----------------------> shown

@@ -10,7 +10,9 @@
 namespace wall::walld {
 namespace {
 
-double seconds(const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); }
+double seconds(const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
 
 std::uint64_t resident() {
     std::uint64_t all = 0, used = 0;  // pages
@@ -21,7 +23,9 @@ std::uint64_t resident() {
 std::uint64_t descriptors() {
     std::error_code error;
     std::uint64_t count = 0;
-    for (std::filesystem::directory_iterator entry("/proc/self/fd", error), end; !error && entry != end; entry.increment(error)) ++count;
+    for (std::filesystem::directory_iterator entry("/proc/self/fd", error), end; !error && entry != end;
+         entry.increment(error))
+        ++count;
     return count > 0 ? count - 1 : 0;  // the one that counts them
 }
 

@@ -26,6 +26,8 @@ struct Refusal {
 template <class T>
 using Outcome = tl::expected<T, Refusal>;
 
-inline tl::unexpected<Refusal> refuse(RefusalKind kind, std::string message) { return tl::unexpected<Refusal>(Refusal{kind, std::move(message)}); }
+inline tl::unexpected<Refusal> refuse(RefusalKind kind, std::string message) {
+    return tl::unexpected<Refusal>(Refusal{kind, std::move(message)});
+}
 
 }  // namespace wall::walld

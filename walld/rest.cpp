@@ -41,28 +41,36 @@ std::optional<std::string_view> match(std::string_view pattern, std::string_view
     const auto star = pattern.find('*');
     if (star == std::string_view::npos) return pattern == path ? std::optional(std::string_view()) : std::nullopt;
     const auto before = pattern.substr(0, star), after = pattern.substr(star + 1);
-    if (path.size() <= before.size() + after.size() || !path.starts_with(before) || !path.ends_with(after)) return std::nullopt;
+    if (path.size() <= before.size() + after.size() || !path.starts_with(before) || !path.ends_with(after))
+        return std::nullopt;
     const auto part = path.substr(before.size(), path.size() - before.size() - after.size());
     return part.find('/') == std::string_view::npos ? std::optional(part) : std::nullopt;
 }
 
-tl::unexpected<HttpRefusal> no(int status, RefusalKind kind, std::string message) { return tl::unexpected<HttpRefusal>({status, {kind, std::move(message)}}); }
+tl::unexpected<HttpRefusal> no(int status, RefusalKind kind, std::string message) {
+    return tl::unexpected<HttpRefusal>({status, {kind, std::move(message)}});
+}
 
 /// `application/json`, with or without parameters.
-bool is_json(std::string_view content_type) { return content_type.substr(0, content_type.find(';')) == "application/json"; }
+bool is_json(std::string_view content_type) {
+    return content_type.substr(0, content_type.find(';')) == "application/json";
+}
 
 /// Browsers say where a request comes from; programs do not.
 bool same_site(const RestRequest& request) {
-    const bool fetched_here = request.fetch_site.empty() || request.fetch_site == "same-origin" || request.fetch_site == "none";
+    const bool fetched_here =
+        request.fetch_site.empty() || request.fetch_site == "same-origin" || request.fetch_site == "none";
     return fetched_here && (request.origin.empty() || request.origin == "http://" + std::string(request.host));
 }
 
 tl::expected<RestCommand, HttpRefusal> command(const Route& route, std::string_view part, const RestRequest& request) {
     RestCommand out{route.verb, json::object()};
     if (route.method != "GET") {
-        if (!same_site(request)) return no(403, RefusalKind::forbidden, "a page of another site may not change this wall");
+        if (!same_site(request))
+            return no(403, RefusalKind::forbidden, "a page of another site may not change this wall");
         const bool needs_type = route.method != "DELETE" || !request.body.empty();  // no form can send a DELETE
-        if (needs_type && !is_json(request.content_type)) return no(415, RefusalKind::invalid, "expected 'Content-Type: application/json'");
+        if (needs_type && !is_json(request.content_type))
+            return no(415, RefusalKind::invalid, "expected 'Content-Type: application/json'");
         if (!request.body.empty()) out.arguments = json::parse(request.body, nullptr, false);
         if (!out.arguments.is_object()) return no(400, RefusalKind::invalid, "expected a JSON object");
     }
@@ -77,7 +85,8 @@ tl::expected<RestCommand, HttpRefusal> rest_command(const RestRequest& request) 
     for (const auto& route : kRoutes) {
         const auto part = match(route.path, request.path);
         if (!part) continue;
-        if (route.method == request.method || (route.method == "GET" && request.method == "HEAD")) return command(route, *part, request);
+        if (route.method == request.method || (route.method == "GET" && request.method == "HEAD"))
+            return command(route, *part, request);
         allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);
     }
     if (allowed.empty()) return no(404, RefusalKind::not_found, "not found");
@@ -96,6 +105,8 @@ int http_status(RefusalKind kind) {
     return 500;
 }
 
-json error_json(const Refusal& refusal) { return {{"error", {{"code", name_of(refusal.kind)}, {"message", refusal.message}}}}; }
+json error_json(const Refusal& refusal) {
+    return {{"error", {{"code", name_of(refusal.kind)}, {"message", refusal.message}}}};
+}
 
 }  // namespace wall::walld

@@ -19,7 +19,8 @@ SentBytes& SentBytes::operator+=(const SentBytes& other) {
     return *this;
 }
 
-void SessionTraffic::note(std::uint32_t rank, const proto::ClientStats& report, std::size_t nodes, Clock::time_point now) {
+void SessionTraffic::note(std::uint32_t rank, const proto::ClientStats& report, std::size_t nodes,
+                          Clock::time_point now) {
     Process& process = processes_[rank];
     SentBytes sent;
     process.by_node.clear();
@@ -30,8 +31,10 @@ void SessionTraffic::note(std::uint32_t rank, const proto::ClientStats& report, 
         sent += bytes;
     }
     const SentBytes before = std::exchange(process.sent, sent);
-    if (const double seconds = process.noted ? std::chrono::duration<double>(now - *process.noted).count() : 0; seconds > 0) {
-        process.rates = {grown(before.state, sent.state) / seconds, grown(before.object, sent.object) / seconds, grown(before.geometry, sent.geometry) / seconds, 0};
+    if (const double seconds = process.noted ? std::chrono::duration<double>(now - *process.noted).count() : 0;
+        seconds > 0) {
+        process.rates = {grown(before.state, sent.state) / seconds, grown(before.object, sent.object) / seconds,
+                         grown(before.geometry, sent.geometry) / seconds, 0};
         const double frames = grown(process.frames, report.frames());
         if (frames > 0) process.rates.frame_bytes = grown(before.all(), sent.all()) / frames;
     }

@@ -29,8 +29,8 @@ public:
         double frame_bytes = 0;                      ///< of a frame, the mean
     };
 
-    /// `rank`: of the process in a parallel program; each tells its own. `nodes`: how many the wall has; what is said of others
-    /// is passed over.
+    /// `rank`: of the process in a parallel program; each tells its own. `nodes`: how many the wall has; what is said
+    /// of others is passed over.
     void note(std::uint32_t rank, const proto::ClientStats& report, std::size_t nodes, Clock::time_point now);
 
     // Of all processes together; they count the same frames.

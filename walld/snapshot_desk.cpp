@@ -45,7 +45,8 @@ Outcome<std::shared_ptr<SnapshotDesk::Job>> SnapshotDesk::start(const SnapshotQu
             const auto this_slot = slot++;
             if (!query.tile.empty() && tile.name != query.tile) continue;
             found = true;
-            if (!query.tile.empty()) job->picture.view = query.target ? geom::intersect(job->picture.view, tile.rect) : tile.rect;
+            if (!query.tile.empty())
+                job->picture.view = query.target ? geom::intersect(job->picture.view, tile.rect) : tile.rect;
             if (!wall_.nodes()[node].up || !geom::overlaps(tile.rect, job->picture.view)) continue;
             job->picture.tiles.push_back({tile.rect, {}});
             ask(job, node, this_slot, session);
@@ -69,11 +70,14 @@ void SnapshotDesk::arrived(NodeIndex node, proto::Snapshot& snapshot) {
     const auto found = pending_.find(snapshot.request());
     if (found == pending_.end() || found->second.node != node) return;
     auto& tile = found->second.job->picture.tiles[found->second.tile];
-    const auto width = static_cast<std::uint32_t>(tile.rect.width), height = static_cast<std::uint32_t>(tile.rect.height);
+    const auto width = static_cast<std::uint32_t>(tile.rect.width),
+               height = static_cast<std::uint32_t>(tile.rect.height);
     if (!snapshot.error().empty()) {
         spdlog::warn("snapshot_failed node={} error=\"{}\"", wall_.nodes()[node].config->name, snapshot.error());
-    } else if (snapshot.width() != width || snapshot.height() != height || snapshot.rgb().size() != std::size_t{width} * height * 3) {
-        spdlog::warn("snapshot_bad node={} width={} height={} bytes={}", wall_.nodes()[node].config->name, snapshot.width(), snapshot.height(), snapshot.rgb().size());
+    } else if (snapshot.width() != width || snapshot.height() != height ||
+               snapshot.rgb().size() != std::size_t{width} * height * 3) {
+        spdlog::warn("snapshot_bad node={} width={} height={} bytes={}", wall_.nodes()[node].config->name,
+                     snapshot.width(), snapshot.height(), snapshot.rgb().size());
     } else {
         tile.rgb = std::move(*snapshot.mutable_rgb());
     }

@@ -24,7 +24,8 @@ class SnapshotDesk {
 public:
     static constexpr std::chrono::seconds kLimit{5};  ///< a node that has not answered then is left out
 
-    SnapshotDesk(const asio::any_io_executor& executor, const Wall& wall, Outbox& out) : executor_(executor), wall_(wall), out_(out) {}
+    SnapshotDesk(const asio::any_io_executor& executor, const Wall& wall, Outbox& out)
+        : executor_(executor), wall_(wall), out_(out) {}
 
     /// PNG of what the wall shows now.
     asio::awaitable<Outcome<std::string>> take(SnapshotQuery query);

@@ -23,7 +23,7 @@ public:
 
     std::uint64_t frames() const { return frames_; }  ///< measured so far
     Milliseconds last() const { return last_; }
-    Milliseconds mean() const { return mean_; }       ///< of about the last 16 frames
+    Milliseconds mean() const { return mean_; }  ///< of about the last 16 frames
     Milliseconds most() const { return most_; }
     Milliseconds sum() const { return sum_; }
     const Histogram& histogram() const { return histogram_; }  ///< frames by their time

@@ -40,7 +40,8 @@ std::shared_ptr<StreamHub::Viewer> StreamHub::add_viewer() {
 
 void StreamHub::remove_viewer(Viewer& viewer) {
     std::vector<Key> old;
-    for (std::uint32_t i = 0; i < viewer.watches_.size(); ++i) std::ranges::move(leave(viewer, i), std::back_inserter(old));
+    for (std::uint32_t i = 0; i < viewer.watches_.size(); ++i)
+        std::ranges::move(leave(viewer, i), std::back_inserter(old));
     viewer.watches_.clear();
     drop_unwatched(old);
     viewers_.erase(&viewer);
@@ -50,7 +51,9 @@ StreamHub::Watch StreamHub::make_watch(const WatchRequest& request, const Stream
     Watch watch{.request = request, .scope = scope};
     for (const auto& [node, slot, crop, at] : parts_of(wall_, scope)) {
         const auto width = static_cast<std::uint32_t>(at.width), height = static_cast<std::uint32_t>(at.height);
-        watch.parts.push_back({.key = {node, slot, scope.session.value, scope.surface.value, crop.x, crop.y, crop.width, crop.height, request.codec, width, height, request.fps}, .at = at});
+        watch.parts.push_back({.key = {node, slot, scope.session.value, scope.surface.value, crop.x, crop.y, crop.width,
+                                       crop.height, request.codec, width, height, request.fps},
+                               .at = at});
     }
     return watch;
 }
@@ -72,7 +75,8 @@ Result<void> StreamHub::watch(Viewer& viewer, const std::vector<WatchRequest>& r
     }
     if (!has_room(watches)) return fail("watch: " + std::string(kNoRoom));
     std::vector<Key> old;
-    for (std::uint32_t i = 0; i < viewer.watches_.size(); ++i) std::ranges::move(leave(viewer, i), std::back_inserter(old));
+    for (std::uint32_t i = 0; i < viewer.watches_.size(); ++i)
+        std::ranges::move(leave(viewer, i), std::back_inserter(old));
     viewer.watches_ = std::move(watches);
     for (std::uint32_t i = 0; i < viewer.watches_.size(); ++i) join(viewer, i);
     drop_unwatched(old);
@@ -139,7 +143,9 @@ void StreamHub::follow(Viewer& viewer, std::uint32_t number, Clock::time_point n
         deadline_ = std::min(deadline_.value_or(watch.not_before), watch.not_before);
         return;
     }
-    Watch next = scope ? make_watch(watch.request, *scope) : Watch{.request = watch.request, .ended = scope.error().message.substr(scope.error().message.find(": ") + 2)};
+    Watch next = scope ? make_watch(watch.request, *scope)
+                       : Watch{.request = watch.request,
+                               .ended = scope.error().message.substr(scope.error().message.find(": ") + 2)};
     if (!has_room({&next, 1})) {
         if (!watch.scope) return;  // that was said
         next = Watch{.request = watch.request, .ended = kNoRoom};
@@ -156,13 +162,23 @@ std::string StreamHub::tile_name(const Key& key) const { return wall_.nodes()[ke
 
 std::string StreamHub::parts_text(std::uint32_t number, const Watch& watch) const {
     auto parts = json::array();
-    for (const auto& part : watch.parts) parts.push_back({{"tile", tile_name(part.key)}, {"rect", rect_json(part.at)}, {"away", !wall_.nodes()[part.key.node].up}});
-    return json{{"stream", number}, {"codec", watch.request.codec}, {"layout", "rgba"}, {"width", watch.scope->width}, {"height", watch.scope->height},
-                {"shows", rect_json(watch.scope->rect)}, {"background", fmt::format("#{:06x}", wall_.config().background)}, {"parts", parts}}.dump();
+    for (const auto& part : watch.parts)
+        parts.push_back(
+            {{"tile", tile_name(part.key)}, {"rect", rect_json(part.at)}, {"away", !wall_.nodes()[part.key.node].up}});
+    return json{{"stream", number},
+                {"codec", watch.request.codec},
+                {"layout", "rgba"},
+                {"width", watch.scope->width},
+                {"height", watch.scope->height},
+                {"shows", rect_json(watch.scope->rect)},
+                {"background", fmt::format("#{:06x}", wall_.config().background)},
+                {"parts", parts}}
+        .dump();
 }
 
 std::optional<ViewerMessage> StreamHub::next(Viewer& viewer) {
-    if (!viewer.error_.empty()) return ViewerMessage{false, json{{"error", std::exchange(viewer.error_, {})}}.dump(), nullptr};
+    if (!viewer.error_.empty())
+        return ViewerMessage{false, json{{"error", std::exchange(viewer.error_, {})}}.dump(), nullptr};
     const auto count = static_cast<std::uint32_t>(viewer.watches_.size());
     for (std::uint32_t k = 0; k < count; ++k) {
         const std::uint32_t number = (viewer.turn_ + k) % count;
@@ -176,16 +192,23 @@ std::optional<ViewerMessage> StreamHub::next(Viewer& viewer) {
 
 std::optional<ViewerMessage> StreamHub::next_of(Viewer& viewer, std::uint32_t number) {
     Watch& watch = viewer.watches_[number];
-    if (!watch.ended.empty()) return ViewerMessage{false, json{{"stream", number}, {"ended", std::exchange(watch.ended, {})}}.dump(), nullptr};
-    if (watch.scope && !std::exchange(watch.told, true)) return ViewerMessage{false, parts_text(number, watch), nullptr};
+    if (!watch.ended.empty())
+        return ViewerMessage{false, json{{"stream", number}, {"ended", std::exchange(watch.ended, {})}}.dump(),
+                             nullptr};
+    if (watch.scope && !std::exchange(watch.told, true))
+        return ViewerMessage{false, parts_text(number, watch), nullptr};
     const auto count = static_cast<std::uint32_t>(watch.parts.size());
     for (std::uint32_t k = 0; k < count; ++k) {
         const std::uint32_t i = (watch.turn + k) % count;
         Part& part = watch.parts[i];
-        if (!part.ended.empty()) return ViewerMessage{false, json{{"stream", number}, {"part", i}, {"ended", std::exchange(part.ended, {})}}.dump(), nullptr};
+        if (!part.ended.empty())
+            return ViewerMessage{
+                false, json{{"stream", number}, {"part", i}, {"ended", std::exchange(part.ended, {})}}.dump(), nullptr};
         if (!part.frame) continue;
         auto& stream = *streams_.find(part.key);
-        if (!std::exchange(part.announced, true)) return ViewerMessage{false, json{{"stream", number}, {"part", i}, {"header", *stream.second.header}}.dump(), nullptr};
+        if (!std::exchange(part.announced, true))
+            return ViewerMessage{false, json{{"stream", number}, {"part", i}, {"header", *stream.second.header}}.dump(),
+                                 nullptr};
         watch.turn = i + 1;
         const Frame frame = *std::exchange(part.frame, std::nullopt);
         ViewerMessage out{true, {}, frame.packet};
@@ -246,7 +269,8 @@ void StreamHub::arrived(NodeIndex node, proto::StreamFrame& frame) {
     if (!frame.error().empty()) return end(stream, frame.error());
     const Key& key = found->second->first;
     if (frame.width() != key.width || frame.height() != key.height)
-        return end(stream, fmt::format("{}x{} pixels came, not {}x{}: do walld and the node read the same wall.toml?", frame.width(), frame.height(), key.width, key.height));
+        return end(stream, fmt::format("{}x{} pixels came, not {}x{}: do walld and the node read the same wall.toml?",
+                                       frame.width(), frame.height(), key.width, key.height));
     if (!stream.header) {
         if (!frame.key()) return ask_for_more(*found->second);
         note_header(stream, frame);
@@ -256,7 +280,8 @@ void StreamHub::arrived(NodeIndex node, proto::StreamFrame& frame) {
     counters_.bytes += frame.packet().size();
     stream.bytes += frame.packet().size();
     stream.on_its_way = false;
-    deliver(stream, {++stream.sequence, frame.time_us(), frame.key(), std::make_shared<const std::string>(std::move(*frame.mutable_packet()))});
+    deliver(stream, {++stream.sequence, frame.time_us(), frame.key(),
+                     std::make_shared<const std::string>(std::move(*frame.mutable_packet()))});
     ask_for_more(*found->second);
 }
 
@@ -297,9 +322,11 @@ std::vector<StreamView> StreamHub::views() const {
     std::vector<StreamView> out;
     for (const auto& [key, stream] : streams_) {
         const auto& tile = wall_.nodes()[key.node].config->tiles[key.slot];
-        const geom::Rect crop{key.x, key.y, key.crop_width, key.crop_height}, whole{0, 0, tile.rect.width, tile.rect.height};
-        out.push_back({stream.id, key.node, tile.name, key.codec, SessionId(key.session), SurfaceId(key.surface), crop == whole ? geom::Rect{} : crop, key.width, key.height, key.fps,
-                       stream.watchers.size(), stream.frames, stream.bytes, stream.dropped});
+        const geom::Rect crop{key.x, key.y, key.crop_width, key.crop_height},
+            whole{0, 0, tile.rect.width, tile.rect.height};
+        out.push_back({stream.id, key.node, tile.name, key.codec, SessionId(key.session), SurfaceId(key.surface),
+                       crop == whole ? geom::Rect{} : crop, key.width, key.height, key.fps, stream.watchers.size(),
+                       stream.frames, stream.bytes, stream.dropped});
     }
     return out;
 }

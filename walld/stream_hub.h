@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Who watches what, and the frames on their way from nodes to viewers (docs/streams.md). A viewer's stream has a part for
-// each tile that it takes; each part is a stream of the tile's node, which all viewers share that want the same. For each
-// viewer and part at most one frame waits; a newer one takes its place. A node makes the next frame when the first viewer
-// has taken the last one, so that nobody slow holds anybody, and nothing is made that nobody can take. One thread.
+// Who watches what, and the frames on their way from nodes to viewers (docs/streams.md). A viewer's stream has a part
+// for each tile that it takes; each part is a stream of the tile's node, which all viewers share that want the same.
+// For each viewer and part at most one frame waits; a newer one takes its place. A node makes the next frame when the
+// first viewer has taken the last one, so that nobody slow holds anybody, and nothing is made that nobody can take. One
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +23,7 @@ namespace wall::walld {
 /// A message for one viewer.
 struct ViewerMessage {
     bool binary = false;
-    std::string head;                         ///< all of it, or what comes before the packet
+    std::string head;                           ///< all of it, or what comes before the packet
     std::shared_ptr<const std::string> packet;  ///< shared by all viewers; may be null
 };
 
@@ -31,9 +32,9 @@ struct StreamView {
     std::uint32_t id = 0;  ///< in the node's messages
     NodeIndex node = 0;
     std::string tile, codec;
-    SessionId session;     ///< none: all
-    SurfaceId surface;     ///< none: all of the session
-    geom::Rect crop;       ///< of the tile; all of it: empty
+    SessionId session;  ///< none: all
+    SurfaceId surface;  ///< none: all of the session
+    geom::Rect crop;    ///< of the tile; all of it: empty
     std::uint32_t width = 0, height = 0, fps = 0;
     std::size_t viewers = 0;
     std::uint64_t frames = 0, bytes = 0, dropped = 0;  ///< that have come since it was started; as StreamHub::Counters
@@ -45,7 +46,8 @@ public:
 
     class Viewer;
 
-    StreamHub(asio::any_io_executor executor, const Wall& wall, Outbox& out) : executor_(std::move(executor)), wall_(wall), out_(out) {}
+    StreamHub(asio::any_io_executor executor, const Wall& wall, Outbox& out)
+        : executor_(std::move(executor)), wall_(wall), out_(out) {}
 
     std::shared_ptr<Viewer> add_viewer();
     void remove_viewer(Viewer& viewer);
@@ -95,7 +97,7 @@ private:
         std::uint32_t id = 0;
         std::optional<std::string> header;  ///< the codec's; none: no frame yet
         std::uint32_t sequence = 0;
-        bool on_its_way = true;             ///< the node was asked for a frame that has not come
+        bool on_its_way = true;  ///< the node was asked for a frame that has not come
         std::uint64_t frames = 0, bytes = 0, dropped = 0;
         std::set<Place> watchers;
     };
@@ -143,10 +145,10 @@ struct StreamHub::Watch {
     WatchRequest request;
     std::optional<StreamScope> scope;  ///< none: there is no such window any more
     std::vector<Part> parts;
-    bool told = false;                 ///< the viewer knows the parts
-    std::string ended;                 ///< why there is no scope, until the viewer was told
-    Clock::time_point not_before{};    ///< when it may follow its window again
-    std::uint32_t turn = 0;            ///< the part that is looked at first, for fairness
+    bool told = false;               ///< the viewer knows the parts
+    std::string ended;               ///< why there is no scope, until the viewer was told
+    Clock::time_point not_before{};  ///< when it may follow its window again
+    std::uint32_t turn = 0;          ///< the part that is looked at first, for fairness
 };
 
 /// One connection's place in the hub.

@@ -12,10 +12,10 @@
 namespace wall::walld {
 
 struct StreamScope {
-    geom::Rect rect;                         ///< of the canvas
-    std::uint32_t width = 0, height = 0;     ///< of the picture, pixels
-    SessionId session;                       ///< only its windows; none: all
-    SurfaceId surface;                       ///< only this one; none: all
+    geom::Rect rect;                                          ///< of the canvas
+    std::uint32_t width = 0, height = 0;                      ///< of the picture, pixels
+    SessionId session;                                        ///< only its windows; none: all
+    SurfaceId surface;                                        ///< only this one; none: all
     std::optional<std::pair<NodeIndex, std::uint32_t>> tile;  ///< only this one (node, slot)
     bool operator==(const StreamScope&) const = default;
 };

@@ -17,7 +17,8 @@ constexpr std::chrono::seconds kHandshakeLimit{10}, kIdleLimit{30};
 constexpr std::chrono::hours kLongAgo{24};
 
 struct Connection {
-    Connection(std::shared_ptr<asio::ip::tcp::socket> from, StreamHub& the_hub) : socket(std::move(from)), stream(*socket), hub(the_hub), viewer(hub.add_viewer()) {}
+    Connection(std::shared_ptr<asio::ip::tcp::socket> from, StreamHub& the_hub)
+        : socket(std::move(from)), stream(*socket), hub(the_hub), viewer(hub.add_viewer()) {}
     ~Connection() { hub.remove_viewer(*viewer); }
     Connection(const Connection&) = delete;
 
@@ -53,7 +54,8 @@ asio::awaitable<void> send_all(std::shared_ptr<Connection> connection) {
 
 }  // namespace
 
-asio::awaitable<void> serve_viewer(std::shared_ptr<asio::ip::tcp::socket> socket, boost::beast::http::request<boost::beast::http::string_body> request,
+asio::awaitable<void> serve_viewer(std::shared_ptr<asio::ip::tcp::socket> socket,
+                                   boost::beast::http::request<boost::beast::http::string_body> request,
                                    StreamHub& hub) {
     boost::system::error_code ignored;
     socket->set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
@@ -71,7 +73,8 @@ asio::awaitable<void> serve_viewer(std::shared_ptr<asio::ip::tcp::socket> socket
         if (error) break;
         const auto text = buffer.data();
         const auto requests = WatchRequest::parse({static_cast<const char*>(text.data()), text.size()});
-        const auto done = requests ? hub.watch(*connection->viewer, *requests) : Result<void>(tl::unexpected(requests.error()));
+        const auto done =
+            requests ? hub.watch(*connection->viewer, *requests) : Result<void>(tl::unexpected(requests.error()));
         if (!done) connection->viewer->tell_error(done.error().message);
         buffer.clear();
     }

@@ -11,11 +11,22 @@ namespace {
 using nlohmann::json;
 
 json one(const Wall& wall, const StreamView& stream) {
-    json out{{"node", wall.nodes()[stream.node].config->name}, {"tile", stream.tile}, {"codec", stream.codec}, {"width", stream.width}, {"height", stream.height},
-             {"fps", stream.fps}, {"viewers", stream.viewers}, {"frames", stream.frames}, {"bytes", stream.bytes}, {"dropped", stream.dropped},
-             {"region", nullptr}, {"session", nullptr}};
+    json out{{"node", wall.nodes()[stream.node].config->name},
+             {"tile", stream.tile},
+             {"codec", stream.codec},
+             {"width", stream.width},
+             {"height", stream.height},
+             {"fps", stream.fps},
+             {"viewers", stream.viewers},
+             {"frames", stream.frames},
+             {"bytes", stream.bytes},
+             {"dropped", stream.dropped},
+             {"region", nullptr},
+             {"session", nullptr}};
     if (!stream.crop.empty()) out["region"] = {stream.crop.x, stream.crop.y, stream.crop.width, stream.crop.height};
-    if (stream.session) out["session"] = stream.surface ? fmt::format("{}.{}", stream.session.value, stream.surface.value) : std::to_string(stream.session.value);
+    if (stream.session)
+        out["session"] = stream.surface ? fmt::format("{}.{}", stream.session.value, stream.surface.value)
+                                        : std::to_string(stream.session.value);
     return out;
 }
 

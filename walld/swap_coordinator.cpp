@@ -84,14 +84,16 @@ Presents SwapCoordinator::release(Clock::time_point now) {
 
 bool SwapCoordinator::shown(std::uint32_t frame) const {
     if (presented_ < frame || members_.empty()) return false;
-    return std::ranges::all_of(members_, [&](const auto& m) { return !m.second.takes_part(frame) || m.second.told >= frame; });
+    return std::ranges::all_of(members_,
+                               [&](const auto& m) { return !m.second.takes_part(frame) || m.second.told >= frame; });
 }
 
 std::uint32_t SwapCoordinator::behind(std::uint32_t node) const {
     const auto found = members_.find(node);
     if (found == members_.end()) return 0;
     const Stay& stay = found->second.stays.back();
-    const auto shown = std::max(found->second.told, stay.from > 0 ? stay.from - 1 : 0), due = std::min(presented_, stay.until);
+    const auto shown = std::max(found->second.told, stay.from > 0 ? stay.from - 1 : 0),
+               due = std::min(presented_, stay.until);
     return due > shown ? due - shown : 0;
 }
 
@@ -119,19 +121,25 @@ std::uint32_t SwapCoordinator::agreed() const {
 }
 
 bool SwapCoordinator::someone_ahead() const {
-    return presented_ < ceiling() && std::ranges::any_of(members_, [&](const auto& m) { return m.second.waited && m.second.rendered > presented_; });
+    return presented_ < ceiling() && std::ranges::any_of(members_, [&](const auto& m) {
+               return m.second.waited && m.second.rendered > presented_;
+           });
 }
 
 std::size_t SwapCoordinator::group_of(std::uint32_t frame) const {
-    return static_cast<std::size_t>(std::ranges::count_if(members_, [&](const auto& m) { return m.second.takes_part(frame); }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(members_, [&](const auto& m) { return m.second.takes_part(frame); }));
 }
 
 void SwapCoordinator::count_frame(Clock::time_point now) {
-    if (last_present_) interval_ += (Spread::Milliseconds(now - *last_present_) - interval_) / (interval_.count() == 0 ? 1 : kMeanFrames);
+    if (last_present_)
+        interval_ +=
+            (Spread::Milliseconds(now - *last_present_) - interval_) / (interval_.count() == 0 ? 1 : kMeanFrames);
     last_present_ = now;
 }
 
-void SwapCoordinator::tell(Presents& out, std::uint32_t node, Member& member, std::uint32_t frame, Clock::time_point now) {
+void SwapCoordinator::tell(Presents& out, std::uint32_t node, Member& member, std::uint32_t frame,
+                           Clock::time_point now) {
     if (frame <= member.told) return;
     out.push_back({node, member.told = frame});
     presented_spread_.note(frame, group_of(frame), now);
@@ -140,7 +148,8 @@ void SwapCoordinator::tell(Presents& out, std::uint32_t node, Member& member, st
 /// Not before a node has shown its last frame of a stay: it could draw no other one.
 void SwapCoordinator::forget_past() {
     for (auto& [node, member] : members_) {
-        std::erase_if(member.stays, [&](const Stay& stay) { return stay.until <= presented_ && member.told >= stay.until; });
+        std::erase_if(member.stays,
+                      [&](const Stay& stay) { return stay.until <= presented_ && member.told >= stay.until; });
     }
     std::erase_if(members_, [](const auto& m) { return m.second.stays.empty(); });
 }

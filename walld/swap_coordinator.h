@@ -102,7 +102,7 @@ private:
     bool someone_ahead() const;
     std::uint32_t ceiling() const;
 
-    Clock::duration limit_;  ///< of time, for a late node
+    Clock::duration limit_;                  ///< of time, for a late node
     std::uint32_t last_frame_ = UINT32_MAX;  ///< that may be presented
     std::map<std::uint32_t, Member> members_;
     std::uint32_t presented_ = 0;

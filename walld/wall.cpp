@@ -13,8 +13,8 @@
 namespace wall::walld {
 namespace {
 
-constexpr std::size_t kMaxSurfaces = 256;       // of a session
-constexpr std::size_t kMaxText = 256;           // bytes of a program's name or a window's title that are kept
+constexpr std::size_t kMaxSurfaces = 256;  // of a session
+constexpr std::size_t kMaxText = 256;      // bytes of a program's name or a window's title that are kept
 
 bool extent_ok(std::uint32_t width, std::uint32_t height) {
     return width > 0 && height > 0 && width <= wire::kMaxSurfaceExtent && height <= wire::kMaxSurfaceExtent;
@@ -22,17 +22,23 @@ bool extent_ok(std::uint32_t width, std::uint32_t height) {
 
 }  // namespace
 
-Wall::Wall(config::WallConfig config, Outbox& out, RandomBytes random) : config_(std::move(config)), out_(out), random_(std::move(random)) {
-    for (const auto& node : config_.nodes) nodes_.push_back({.config = &node, .hello = {}, .stats = {}, .tiles = std::vector<TileShown>(node.tiles.size())});
+Wall::Wall(config::WallConfig config, Outbox& out, RandomBytes random)
+    : config_(std::move(config)), out_(out), random_(std::move(random)) {
+    for (const auto& node : config_.nodes)
+        nodes_.push_back(
+            {.config = &node, .hello = {}, .stats = {}, .tiles = std::vector<TileShown>(node.tiles.size())});
 }
 
 // ---- nodes ----
 
 Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_point now) {
     const auto found = std::ranges::find(nodes_, hello.name(), [](const Node& n) { return n.config->name; });
-    if (hello.version() != wire::kProtocolVersion) return fail("this walld speaks protocol version " + std::to_string(wire::kProtocolVersion) + ", the node " + std::to_string(hello.version()));
+    if (hello.version() != wire::kProtocolVersion)
+        return fail("this walld speaks protocol version " + std::to_string(wire::kProtocolVersion) + ", the node " +
+                    std::to_string(hello.version()));
     if (found == nodes_.end()) return fail("node '" + hello.name() + "' is not in wall.toml");
-    if (found->up) return fail("node '" + hello.name() + "' is already here, as process " + std::to_string(found->hello.pid()));
+    if (found->up)
+        return fail("node '" + hello.name() + "' is already here, as process " + std::to_string(found->hello.pid()));
     const auto index = static_cast<NodeIndex>(found - nodes_.begin());
     const bool same_process = found->incarnation > 0 && found->hello.pid() == hello.pid();
     if (!same_process) {
@@ -66,7 +72,8 @@ void Wall::node_leaves(NodeIndex node, Clock::time_point now) {
 
 void Wall::node_rendered(NodeIndex node, const proto::Rendered& report, Clock::time_point now) {
     const SurfaceKey key{SessionId(report.session()), SurfaceId(report.surface())};
-    if (auto* surface = find(key.surface, key.session)) present(key, surface->swap.rendered(node, report.frame(), now), now);
+    if (auto* surface = find(key.surface, key.session))
+        present(key, surface->swap.rendered(node, report.frame(), now), now);
 }
 
 void Wall::node_faults(NodeIndex node, const proto::SessionFault& report) {
@@ -105,7 +112,8 @@ proto::NodeUp Wall::node_up_message(NodeIndex node, const std::string& ticket) c
 std::set<NodeIndex> Wall::nodes_under(const geom::Rect& rect) const {
     std::set<NodeIndex> out;
     for (NodeIndex i = 0; i < nodes_.size(); ++i) {
-        const bool shows = std::ranges::any_of(nodes_[i].config->tiles, [&](const auto& tile) { return geom::overlaps(tile.rect, rect); });
+        const bool shows = std::ranges::any_of(nodes_[i].config->tiles,
+                                               [&](const auto& tile) { return geom::overlaps(tile.rect, rect); });
         if (nodes_[i].up && shows) out.insert(i);
     }
     return out;
@@ -117,18 +125,24 @@ bool Wall::any_node_up() const { return std::ranges::any_of(nodes_, &Node::up); 
 
 Outcome<void> Wall::check(const proto::ClientHello& hello) const {
     if (hello.version() != wire::kProtocolVersion) {
-        return walld::refuse(RefusalKind::invalid, "walld speaks protocol version " + std::to_string(wire::kProtocolVersion) + ", the program's WallGL library " + std::to_string(hello.version()));
+        return walld::refuse(RefusalKind::invalid,
+                             "walld speaks protocol version " + std::to_string(wire::kProtocolVersion) +
+                                 ", the program's WallGL library " + std::to_string(hello.version()));
     }
     if (sessions_.size() >= config_.max_sessions && !group_of(hello)) {
-        return walld::refuse(RefusalKind::unavailable, "the wall is full: " + std::to_string(config_.max_sessions) + " programs are on it ('max_sessions' in [wall] of wall.toml)");
+        return walld::refuse(RefusalKind::unavailable,
+                             "the wall is full: " + std::to_string(config_.max_sessions) +
+                                 " programs are on it ('max_sessions' in [wall] of wall.toml)");
     }
     if (hello.has_rect()) {
-        if (auto possible = check_place(config_.canvas(), from_proto(hello.rect())); !possible) return tl::unexpected(possible.error());
+        if (auto possible = check_place(config_.canvas(), from_proto(hello.rect())); !possible)
+            return tl::unexpected(possible.error());
     }
     return {};
 }
 
-SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Clock::time_point now, const std::function<void(SessionId)>& before_welcome) {
+SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Clock::time_point now,
+                             const std::function<void(SessionId)>& before_welcome) {
     if (const auto* known = group_of(hello)) return join_session(known->first, hello, before_welcome);
     WALL_ASSERT(any_node_up());
     const SessionId id(++last_session_);
@@ -186,7 +200,8 @@ void Wall::welcome_client(SessionId id, const Session& session, Rank rank) {
         }
         if (!nodes_[i].up) continue;
         const auto at_first = session.group_nodes.find(i);
-        const bool same_for_all = !session.group || (at_first != session.group_nodes.end() && at_first->second == nodes_[i].incarnation);
+        const bool same_for_all =
+            !session.group || (at_first != session.group_nodes.end() && at_first->second == nodes_[i].incarnation);
         if (same_for_all) *welcome.add_nodes() = node_up_message(i, session.tickets.at(i));
         caps.push_back(&nodes_[i].hello.caps());
     }
@@ -208,14 +223,21 @@ Result<void> Wall::open_surface(SessionId id, const proto::SurfaceOpen& message,
     auto* session = find(id);
     const SurfaceKey key{id, SurfaceId(message.surface())};
     const bool known = session && session->surfaces.contains(key.surface);
-    if (!session || !key.surface || (known && !session->group)) return fail("surface " + std::to_string(message.surface()) + " cannot be opened: expected a new number");
-    if (!extent_ok(message.width(), message.height())) return fail("surface of " + std::to_string(message.width()) + "x" + std::to_string(message.height()) + " pixels: expected 1 to " + std::to_string(wire::kMaxSurfaceExtent) + " a side");
+    if (!session || !key.surface || (known && !session->group))
+        return fail("surface " + std::to_string(message.surface()) + " cannot be opened: expected a new number");
+    if (!extent_ok(message.width(), message.height()))
+        return fail("surface of " + std::to_string(message.width()) + "x" + std::to_string(message.height()) +
+                    " pixels: expected 1 to " + std::to_string(wire::kMaxSurfaceExtent) + " a side");
     if (known) {
         open_for_member(key, message, rank, now);
         return {};
     }
     if (session->surfaces.size() >= kMaxSurfaces) return fail("more than " + std::to_string(kMaxSurfaces) + " windows");
-    Surface surface{.width = message.width(), .height = message.height(), .title = message.title().substr(0, kMaxText), .place = PlacementTrack(), .agreed = {},
+    Surface surface{.width = message.width(),
+                    .height = message.height(),
+                    .title = message.title().substr(0, kMaxText),
+                    .place = PlacementTrack(),
+                    .agreed = {},
                     .swap = SwapCoordinator(config_.swap_timeout, session->held)};
     surface.place = PlacementTrack(first_rect(*session, surface, windows_placed_++));
     auto& kept = session->surfaces.emplace(key.surface, std::move(surface)).first->second;
@@ -234,7 +256,8 @@ Result<void> Wall::open_surface(SessionId id, const proto::SurfaceOpen& message,
 /// The session's wanted rectangle goes to one window at a time; every other one gets its place in the layout that was
 /// loaded, or one where there is room.
 geom::Rect Wall::first_rect(Session& session, Surface& surface, std::uint32_t number) {
-    const bool given = std::ranges::any_of(session.surfaces, [](const auto& entry) { return entry.second.wanted_rect; });
+    const bool given =
+        std::ranges::any_of(session.surfaces, [](const auto& entry) { return entry.second.wanted_rect; });
     if (session.rect && !given) {
         surface.scaled = surface.wanted_rect = true;
         return *session.rect;
@@ -242,11 +265,14 @@ geom::Rect Wall::first_rect(Session& session, Surface& surface, std::uint32_t nu
     if (const auto free = take_place(free_places_, {session.name, session.program, surface.title})) {
         surface.scaled = free->scaled;
         surface.layout_z = free->z;
-        return free->scaled ? free->rect : geom::Rect{free->rect.x, free->rect.y, static_cast<std::int32_t>(surface.width), static_cast<std::int32_t>(surface.height)};
+        return free->scaled ? free->rect
+                            : geom::Rect{free->rect.x, free->rect.y, static_cast<std::int32_t>(surface.width),
+                                         static_cast<std::int32_t>(surface.height)};
     }
     std::vector<geom::Rect> taken;
     for (const auto& key : stacking_) taken.push_back(find(key)->place.wanted());
-    return place(config_.canvas(), taken, static_cast<std::int32_t>(surface.width), static_cast<std::int32_t>(surface.height), number);
+    return place(config_.canvas(), taken, static_cast<std::int32_t>(surface.width),
+                 static_cast<std::int32_t>(surface.height), number);
 }
 
 /// On top, but below what lies above it in the layout that has placed it.
@@ -281,8 +307,8 @@ void Wall::adopt_placement(SessionId id, const proto::SurfaceAdopted& message, C
     if (!surface->place.adopt(message.layout_version(), message.frame())) return;
     const auto nodes = nodes_under(surface->place.drawn());
     const auto presents = surface->swap.move(nodes, message.frame(), now);
-    // Before the first frame there is nothing to keep in sight; a program without a back buffer never swaps. Where no node
-    // shows it, no frame will be presented.
+    // Before the first frame there is nothing to keep in sight; a program without a back buffer never swaps. Where no
+    // node shows it, no frame will be presented.
     const bool at_once = message.frame() <= 1 || nodes.empty();
     if (at_once && surface->place.presented(message.frame())) send_stacking();
     present(key, presents, now);
@@ -331,7 +357,9 @@ Session* Wall::find(SessionId id) {
     return found == sessions_.end() ? nullptr : &found->second;
 }
 
-Surface* Wall::find(SurfaceId surface, SessionId session) { return const_cast<Surface*>(find(SurfaceKey{session, surface})); }
+Surface* Wall::find(SurfaceId surface, SessionId session) {
+    return const_cast<Surface*>(find(SurfaceKey{session, surface}));
+}
 
 const Surface* Wall::find(const SurfaceKey& key) const {
     const auto session = sessions_.find(key.session);
@@ -370,7 +398,8 @@ std::uint32_t Wall::tile_lag(NodeIndex node, std::uint32_t slot) const {
     std::uint32_t most = 0;
     for (const auto& key : stacking_) {
         const auto& surface = *find(key);
-        if (geom::overlaps(nodes_[node].config->tiles[slot].rect, surface.place.shown())) most = std::max(most, surface.swap.behind(node));
+        if (geom::overlaps(nodes_[node].config->tiles[slot].rect, surface.place.shown()))
+            most = std::max(most, surface.swap.behind(node));
     }
     return most;
 }

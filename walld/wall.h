@@ -74,7 +74,7 @@ struct Surface {
 };
 
 struct Session {
-    std::uint32_t pid = 0;           ///< of a parallel program's first member
+    std::uint32_t pid = 0;  ///< of a parallel program's first member
     std::string program, name;
     std::optional<ParallelGroup> group;
     std::map<NodeIndex, std::uint32_t> group_nodes;  ///< the members connect to at first: incarnations
@@ -82,7 +82,7 @@ struct Session {
     Person owner;
     std::optional<geom::Rect> rect;  ///< asked for; fullscreen: the canvas
     bool held = false;
-    std::string fault;               ///< what a node said against its stream
+    std::string fault;  ///< what a node said against its stream
     std::map<NodeIndex, std::string> tickets;
     std::map<SurfaceId, Surface> surfaces;
     SessionTraffic traffic;
@@ -124,12 +124,13 @@ public:
     Outcome<void> check(const proto::ClientHello& hello) const;
     /// Why it cannot be taken as this person's process of a parallel program, if so.
     Outcome<void> check_member(const proto::ClientHello& hello, const Person& who) const;
-    /// Needs a node that is up and a hello that was checked. The welcome goes to the session's client; the id is known before any message is sent.
-    /// A parallel program's first member opens it, the others get the same one.
-    SessionId open_session(const proto::ClientHello& hello, Person owner, Clock::time_point now, const std::function<void(SessionId)>& before_welcome);
+    /// Needs a node that is up and a hello that was checked. The welcome goes to the session's client; the id is known
+    /// before any message is sent. A parallel program's first member opens it, the others get the same one.
+    SessionId open_session(const proto::ClientHello& hello, Person owner, Clock::time_point now,
+                           const std::function<void(SessionId)>& before_welcome);
     void close_session(SessionId id);
-    /// A process is gone. The session is closed with its last one, and with one that has not left its parallel program: then
-    /// the others are cut off. Gives what became of it, for the log.
+    /// A process is gone. The session is closed with its last one, and with one that has not left its parallel program:
+    /// then the others are cut off. Gives what became of it, for the log.
     std::string member_gone(SessionId id, Rank rank);
     void member_leaves(SessionId id, Rank rank, Clock::time_point now);
     Result<void> open_surface(SessionId id, const proto::SurfaceOpen& message, Clock::time_point now, Rank rank = 0);
@@ -188,7 +189,8 @@ private:
     proto::Placement placement_of(const SurfaceKey& key, const Surface& surface) const;
     // of parallel programs (wall_group.cpp)
     const std::pair<const SessionId, Session>* group_of(const proto::ClientHello& hello) const;
-    SessionId join_session(SessionId id, const proto::ClientHello& hello, const std::function<void(SessionId)>& before_welcome);
+    SessionId join_session(SessionId id, const proto::ClientHello& hello,
+                           const std::function<void(SessionId)>& before_welcome);
     std::set<NodeIndex> nodes_of(const Session& session, const geom::Rect& rect) const;
     void agree(const SurfaceKey& key, Clock::time_point now);
     void open_for_member(const SurfaceKey& key, const proto::SurfaceOpen& message, Rank rank, Clock::time_point now);
@@ -209,7 +211,7 @@ private:
     std::map<SessionId, Session> sessions_;
     std::vector<SurfaceKey> stacking_;
     std::uint32_t last_session_ = 0;
-    std::uint32_t windows_placed_ = 0;  ///< of cascades
+    std::uint32_t windows_placed_ = 0;      ///< of cascades
     std::vector<LayoutEntry> free_places_;  ///< of the layout loaded last
     Counters counters_;
 };

@@ -8,7 +8,9 @@
 namespace wall::walld {
 
 const std::pair<const SessionId, Session>* Wall::group_of(const proto::ClientHello& hello) const {
-    const auto found = std::ranges::find_if(sessions_, [&](const auto& entry) { return entry.second.group && entry.second.group->name() == hello.group().name(); });
+    const auto found = std::ranges::find_if(sessions_, [&](const auto& entry) {
+        return entry.second.group && entry.second.group->name() == hello.group().name();
+    });
     return hello.has_group() && found != sessions_.end() ? &*found : nullptr;
 }
 
@@ -17,11 +19,14 @@ Outcome<void> Wall::check_member(const proto::ClientHello& hello, const Person& 
     if (auto good = ParallelGroup::check(hello.group()); !good) return good;
     const auto* known = group_of(hello);
     if (!known) return {};
-    if (!known->second.owner.same_as(who)) return refuse(RefusalKind::forbidden, "parallel program '" + hello.group().name() + "' belongs to " + known->second.owner.text());
+    if (!known->second.owner.same_as(who))
+        return refuse(RefusalKind::forbidden,
+                      "parallel program '" + hello.group().name() + "' belongs to " + known->second.owner.text());
     return known->second.group->admits(hello.group());
 }
 
-SessionId Wall::join_session(SessionId id, const proto::ClientHello& hello, const std::function<void(SessionId)>& before_welcome) {
+SessionId Wall::join_session(SessionId id, const proto::ClientHello& hello,
+                             const std::function<void(SessionId)>& before_welcome) {
     auto& session = *find(id);
     session.group->joins(hello.group().rank(), hello.pid());
     before_welcome(id);
@@ -51,7 +56,9 @@ std::string Wall::member_gone(SessionId id, Rank rank) {
 // ---- placements ----
 
 /// All nodes of the wall take part in every frame, wherever the window lies: the members keep step on each.
-std::set<NodeIndex> Wall::nodes_of(const Session& session, const geom::Rect& rect) const { return session.group ? nodes_under(config_.canvas()) : nodes_under(rect); }
+std::set<NodeIndex> Wall::nodes_of(const Session& session, const geom::Rect& rect) const {
+    return session.group ? nodes_under(config_.canvas()) : nodes_under(rect);
+}
 
 /// A version that holds from a frame on that no member can have begun.
 void Wall::agree(const SurfaceKey& key, Clock::time_point now) {
@@ -76,7 +83,8 @@ void Wall::open_for_member(const SurfaceKey& key, const proto::SurfaceOpen& mess
     auto& surface = *find(key.surface, key.session);
     surface.agreed.opened(rank);
     const bool other_size = message.width() != surface.width || message.height() != surface.height;
-    for (const auto& [version, placement] : surface.agreed.versions()) out_.to_member(key.session, rank, make(&proto::Envelope::mutable_placement, placement));
+    for (const auto& [version, placement] : surface.agreed.versions())
+        out_.to_member(key.session, rank, make(&proto::Envelope::mutable_placement, placement));
     if (rank != 0 || !other_size) return;
     proto::SurfaceResize resize;
     resize.set_surface(key.surface.value);
@@ -115,7 +123,8 @@ void Wall::end_overdue_groups(Clock::time_point now) {
         if (session.group && !session.group->all_came() && now >= session.opened + kMembersLimit) overdue.push_back(id);
     for (const auto id : overdue) {
         const auto& group = *sessions_.at(id).group;
-        out_.end_session(id, "only " + std::to_string(group.members().size()) + " of " + std::to_string(group.size()) + " processes of parallel program '" + group.name() + "' have come within " +
+        out_.end_session(id, "only " + std::to_string(group.members().size()) + " of " + std::to_string(group.size()) +
+                                 " processes of parallel program '" + group.name() + "' have come within " +
                                  std::to_string(kMembersLimit / std::chrono::seconds(1)) + " seconds");
         close_session(id);
     }

@@ -17,20 +17,28 @@ std::optional<T> number(std::string_view text) {
     return value;
 }
 
-tl::unexpected<Refusal> no_session(SessionId id) { return refuse(RefusalKind::not_found, "there is no session " + std::to_string(id.value)); }
-tl::unexpected<Refusal> no_window(const Target& target) {
-    return refuse(RefusalKind::not_found, "session " + std::to_string(target.session.value) + " has no window " + std::to_string(target.surface.value));
+tl::unexpected<Refusal> no_session(SessionId id) {
+    return refuse(RefusalKind::not_found, "there is no session " + std::to_string(id.value));
 }
-tl::unexpected<Refusal> no_window_yet(SessionId id) { return refuse(RefusalKind::conflict, "session " + std::to_string(id.value) + " has no window yet"); }
+tl::unexpected<Refusal> no_window(const Target& target) {
+    return refuse(RefusalKind::not_found, "session " + std::to_string(target.session.value) + " has no window " +
+                                              std::to_string(target.surface.value));
+}
+tl::unexpected<Refusal> no_window_yet(SessionId id) {
+    return refuse(RefusalKind::conflict, "session " + std::to_string(id.value) + " has no window yet");
+}
 
 }  // namespace
 
 Outcome<Target> Target::parse(std::string_view text) {
     const auto dot = text.find('.');
     const auto session = number<std::uint32_t>(text.substr(0, dot));
-    const auto surface = dot == std::string_view::npos ? std::optional<std::uint32_t>(0) : number<std::uint32_t>(text.substr(dot + 1));
+    const auto surface =
+        dot == std::string_view::npos ? std::optional<std::uint32_t>(0) : number<std::uint32_t>(text.substr(dot + 1));
     if (session && surface) return Target{SessionId(*session), SurfaceId(*surface)};
-    return refuse(RefusalKind::invalid, "'" + std::string(text) + "' is no session: expected its number, or NUMBER.SURFACE, as `wallctl sessions` shows them");
+    return refuse(RefusalKind::invalid,
+                  "'" + std::string(text) +
+                      "' is no session: expected its number, or NUMBER.SURFACE, as `wallctl sessions` shows them");
 }
 
 Outcome<SurfaceKey> Wall::resolve(const Target& target) const {
@@ -150,7 +158,9 @@ std::size_t Wall::load_layout(const Layout& layout, Clock::time_point now) {
         surface.layout_z = entry->z;
         placed[entry->z] = key;
         auto rect = entry->rect;
-        if (!entry->scaled) rect = {rect.x, rect.y, static_cast<std::int32_t>(surface.width), static_cast<std::int32_t>(surface.height)};
+        if (!entry->scaled)
+            rect = {rect.x, rect.y, static_cast<std::int32_t>(surface.width),
+                    static_cast<std::int32_t>(surface.height)};
         want(key, rect, now);
     }
     for (const auto& [z, key] : placed) {

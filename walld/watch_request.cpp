@@ -27,7 +27,8 @@ public:
     std::uint32_t number(const char* key, std::uint32_t least, std::uint32_t most, std::uint32_t otherwise) {
         const auto at = from_.find(key);
         if (at == from_.end()) return otherwise;
-        if (at->is_number_integer() && at->get<std::int64_t>() >= least && at->get<std::int64_t>() <= most) return at->get<std::uint32_t>();
+        if (at->is_number_integer() && at->get<std::int64_t>() >= least && at->get<std::int64_t>() <= most)
+            return at->get<std::uint32_t>();
         refuse(key, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
         return otherwise;
     }
@@ -47,7 +48,9 @@ public:
     std::optional<geom::Rect> rect(const char* key) {
         const auto at = from_.find(key);
         if (at == from_.end()) return {};
-        const auto fits = [](const json& n) { return n.is_number_integer() && n.get<std::int64_t>() >= 0 && n.get<std::int64_t>() <= kFarthest; };
+        const auto fits = [](const json& n) {
+            return n.is_number_integer() && n.get<std::int64_t>() >= 0 && n.get<std::int64_t>() <= kFarthest;
+        };
         if (at->is_array() && at->size() == 4 && std::ranges::all_of(*at, fits)) {
             const geom::Rect rect{at->at(0), at->at(1), at->at(2), at->at(3)};
             if (!rect.empty()) return rect;
@@ -88,7 +91,8 @@ Result<WatchRequest> one_request(const json& from) {
 
 Result<std::vector<WatchRequest>> WatchRequest::parse(std::string_view message) {
     const auto parsed = json::parse(message, nullptr, false);
-    if (!parsed.is_object() || !parsed.contains("watch") || !parsed["watch"].is_array()) return fail("expected {\"watch\": [...]}");
+    if (!parsed.is_object() || !parsed.contains("watch") || !parsed["watch"].is_array())
+        return fail("expected {\"watch\": [...]}");
     if (parsed["watch"].size() > kMost) return fail("watch: expected at most " + std::to_string(kMost) + " streams");
     std::vector<WatchRequest> out;
     for (const auto& item : parsed["watch"]) {

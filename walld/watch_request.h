@@ -18,10 +18,10 @@ struct WatchRequest {
     static constexpr std::size_t kMost = 256;  ///< of one viewer
     static constexpr std::uint32_t kMaxFps = 60;
 
-    std::string tile;                  ///< this tile; or
-    bool wall = false;                 ///< the canvas; or, without either, a window of the session
-    SessionId session;                 ///< with a tile or the wall: only its windows; none: all
-    SurfaceId surface;                 ///< only this window; none: all of the session, or its topmost if nothing else is shown
+    std::string tile;   ///< this tile; or
+    bool wall = false;  ///< the canvas; or, without either, a window of the session
+    SessionId session;  ///< with a tile or the wall: only its windows; none: all
+    SurfaceId surface;  ///< only this window; none: all of the session, or its topmost if nothing else is shown
     std::optional<geom::Rect> region;  ///< in pixels of the tile or the canvas
     std::string codec = "huffyuv";
     std::uint32_t width = 0, height = 0;  ///< of the picture; 0: of what it shows

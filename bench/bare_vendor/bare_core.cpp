@@ -47,7 +47,8 @@ thread_local std::shared_ptr<Context> tls_context;
 template <std::size_t kFloats>
 std::byte* put(int opcode) {
     Bare& bare = tls_bare;
-    if (bare.operands >= bare.limit) [[unlikely]] start_anew();
+    if (bare.operands >= bare.limit) [[unlikely]]
+        start_anew();
     std::byte* at = bare.operands;
     *--bare.opcodes = static_cast<std::byte>(opcode);
     bare.operands = at + kFloats * sizeof(float);
@@ -62,10 +63,14 @@ void put_floats(int opcode, Floats... values) {
 }
 
 template <int kOpcode>
-void GLAPIENTRY three_floats(GLfloat x, GLfloat y, GLfloat z) { put_floats(kOpcode, x, y, z); }
+void GLAPIENTRY three_floats(GLfloat x, GLfloat y, GLfloat z) {
+    put_floats(kOpcode, x, y, z);
+}
 
 template <int kOpcode>
-void GLAPIENTRY three_floats_v(const GLfloat* v) { three_floats<kOpcode>(v[0], v[1], v[2]); }
+void GLAPIENTRY three_floats_v(const GLfloat* v) {
+    three_floats<kOpcode>(v[0], v[1], v[2]);
+}
 
 void GLAPIENTRY boxed_vertex(GLfloat x, GLfloat y, GLfloat z) {
     const __m128 at = _mm_movelh_ps(_mm_unpacklo_ps(_mm_set_ss(x), _mm_set_ss(y)), _mm_set_ss(z));
@@ -88,11 +93,15 @@ const GLubyte* GLAPIENTRY get_string(GLenum name) {
 long no_function() { return 0; }
 
 template <class Function>
-ProcAddress address(Function function) { return reinterpret_cast<ProcAddress>(function); }
+ProcAddress address(Function function) {
+    return reinterpret_cast<ProcAddress>(function);
+}
 
 }  // namespace
 
-std::shared_ptr<Surface> create_surface(SurfaceOptions options) { return std::make_shared<Surface>(std::move(options)); }
+std::shared_ptr<Surface> create_surface(SurfaceOptions options) {
+    return std::make_shared<Surface>(std::move(options));
+}
 std::shared_ptr<Context> create_context(const ContextOptions&) { return std::make_shared<Context>(); }
 bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface>, std::shared_ptr<Surface>) {
     start_anew();

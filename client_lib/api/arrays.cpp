@@ -21,7 +21,8 @@ using glstate::ClientArray;
 /// Types that a pointer command takes, as bits from GL_BYTE on.
 constexpr unsigned type_bit(GLenum type) { return type >= GL_BYTE && type <= GL_DOUBLE ? 1u << (type - GL_BYTE) : 0; }
 constexpr unsigned kSigned = type_bit(GL_SHORT) | type_bit(GL_INT) | type_bit(GL_FLOAT) | type_bit(GL_DOUBLE);
-constexpr unsigned kAny = kSigned | type_bit(GL_BYTE) | type_bit(GL_UNSIGNED_BYTE) | type_bit(GL_UNSIGNED_SHORT) | type_bit(GL_UNSIGNED_INT);
+constexpr unsigned kAny =
+    kSigned | type_bit(GL_BYTE) | type_bit(GL_UNSIGNED_BYTE) | type_bit(GL_UNSIGNED_SHORT) | type_bit(GL_UNSIGNED_INT);
 
 struct Allowed {
     GLint min_size, max_size;
@@ -38,7 +39,8 @@ struct Given {
 template <class E>
 void define(Context& c, unsigned i, const Allowed& allowed, const Given& given) {
     if (!(allowed.types & type_bit(given.type))) return c.error(GL_INVALID_ENUM);
-    if (given.size < allowed.min_size || given.size > allowed.max_size || given.stride < 0) return c.error(GL_INVALID_VALUE);
+    if (given.size < allowed.min_size || given.size > allowed.max_size || given.stride < 0)
+        return c.error(GL_INVALID_VALUE);
     ClientArray array = E::ref(c.state, i);
     array.pointer = reinterpret_cast<std::uintptr_t>(given.pointer);
     array.size = given.size;
@@ -80,25 +82,27 @@ struct Interleaved {
     unsigned color_at, normal_at, vertex_at, stride;
 };
 constexpr Interleaved kInterleaved[] = {
-    {0, 0, 0, false, 2, 0, 0, 0, 8},                          // GL_V2F
-    {0, 0, 0, false, 3, 0, 0, 0, 12},                         // GL_V3F
-    {0, 4, GL_UNSIGNED_BYTE, false, 2, 0, 0, 4, 12},          // GL_C4UB_V2F
-    {0, 4, GL_UNSIGNED_BYTE, false, 3, 0, 0, 4, 16},          // GL_C4UB_V3F
-    {0, 3, GL_FLOAT, false, 3, 0, 0, 12, 24},                 // GL_C3F_V3F
-    {0, 0, 0, true, 3, 0, 0, 12, 24},                         // GL_N3F_V3F
-    {0, 4, GL_FLOAT, true, 3, 0, 16, 28, 40},                 // GL_C4F_N3F_V3F
-    {2, 0, 0, false, 3, 0, 0, 8, 20},                         // GL_T2F_V3F
-    {4, 0, 0, false, 4, 0, 0, 16, 32},                        // GL_T4F_V4F
-    {2, 4, GL_UNSIGNED_BYTE, false, 3, 8, 0, 12, 24},         // GL_T2F_C4UB_V3F
-    {2, 3, GL_FLOAT, false, 3, 8, 0, 20, 32},                 // GL_T2F_C3F_V3F
-    {2, 0, 0, true, 3, 0, 8, 20, 32},                         // GL_T2F_N3F_V3F
-    {2, 4, GL_FLOAT, true, 3, 8, 24, 36, 48},                 // GL_T2F_C4F_N3F_V3F
-    {4, 4, GL_FLOAT, true, 4, 16, 32, 44, 60},                // GL_T4F_C4F_N3F_V4F
+    {0, 0, 0, false, 2, 0, 0, 0, 8},                   // GL_V2F
+    {0, 0, 0, false, 3, 0, 0, 0, 12},                  // GL_V3F
+    {0, 4, GL_UNSIGNED_BYTE, false, 2, 0, 0, 4, 12},   // GL_C4UB_V2F
+    {0, 4, GL_UNSIGNED_BYTE, false, 3, 0, 0, 4, 16},   // GL_C4UB_V3F
+    {0, 3, GL_FLOAT, false, 3, 0, 0, 12, 24},          // GL_C3F_V3F
+    {0, 0, 0, true, 3, 0, 0, 12, 24},                  // GL_N3F_V3F
+    {0, 4, GL_FLOAT, true, 3, 0, 16, 28, 40},          // GL_C4F_N3F_V3F
+    {2, 0, 0, false, 3, 0, 0, 8, 20},                  // GL_T2F_V3F
+    {4, 0, 0, false, 4, 0, 0, 16, 32},                 // GL_T4F_V4F
+    {2, 4, GL_UNSIGNED_BYTE, false, 3, 8, 0, 12, 24},  // GL_T2F_C4UB_V3F
+    {2, 3, GL_FLOAT, false, 3, 8, 0, 20, 32},          // GL_T2F_C3F_V3F
+    {2, 0, 0, true, 3, 0, 8, 20, 32},                  // GL_T2F_N3F_V3F
+    {2, 4, GL_FLOAT, true, 3, 8, 24, 36, 48},          // GL_T2F_C4F_N3F_V3F
+    {4, 4, GL_FLOAT, true, 4, 16, 32, 44, 60},         // GL_T4F_C4F_N3F_V4F
 };
 
 // ---- drawing ----
 
-bool is_index_type(GLenum type) { return type == GL_UNSIGNED_BYTE || type == GL_UNSIGNED_SHORT || type == GL_UNSIGNED_INT; }
+bool is_index_type(GLenum type) {
+    return type == GL_UNSIGNED_BYTE || type == GL_UNSIGNED_SHORT || type == GL_UNSIGNED_INT;
+}
 
 bool check_mode(Context& c, GLenum mode) {
     if (mode <= GL_POLYGON) return true;
@@ -122,7 +126,8 @@ void draw_indices(Context& c, GLenum mode, GLsizei count, GLenum type, const voi
         const auto content = buffer_content(c, buffer, reinterpret_cast<std::uintptr_t>(indices));
         const std::size_t bytes = type == GL_UNSIGNED_BYTE ? 1 : type == GL_UNSIGNED_SHORT ? 2 : 4;
         elements.indices = content.data();
-        elements.count = static_cast<GLsizei>(std::min<std::size_t>(static_cast<std::size_t>(count), content.size() / bytes));
+        elements.count =
+            static_cast<GLsizei>(std::min<std::size_t>(static_cast<std::size_t>(count), content.size() / bytes));
     }
     if (elements.indices) draw_elements(c, mode, elements);
 }
@@ -197,7 +202,8 @@ void DrawElements(Context& c, GLenum mode, GLsizei count, GLenum type, const voi
     draw_indices(c, mode, count, type, indices);
 }
 
-void DrawRangeElements(Context& c, GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type, const void* indices) {
+void DrawRangeElements(Context& c, GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type,
+                       const void* indices) {
     if (end < start) return c.error(GL_INVALID_VALUE);
     DrawElements(c, mode, count, type, indices);
 }
@@ -210,7 +216,8 @@ void MultiDrawArrays(Context& c, GLenum mode, const GLint* first, const GLsizei*
     for (GLsizei i = 0; i < draws; ++i) draw_range(c, mode, first[i], count[i]);
 }
 
-void MultiDrawElements(Context& c, GLenum mode, const GLsizei* count, GLenum type, const void* const* indices, GLsizei draws) {
+void MultiDrawElements(Context& c, GLenum mode, const GLsizei* count, GLenum type, const void* const* indices,
+                       GLsizei draws) {
     if (draws < 0) return c.error(GL_INVALID_VALUE);
     if (!check_mode(c, mode)) return;
     if (!is_index_type(type)) return c.error(GL_INVALID_ENUM);
@@ -249,14 +256,14 @@ void PopClientAttrib(Context& c) {
     if (stack.empty()) return c.error(GL_STACK_UNDERFLOW);
     const auto saved = std::move(stack.back());
     stack.pop_back();
-    glstate::for_each_in_client_group(saved->mask,
-                                      [&]<class E>(unsigned i) { c.set<E>(i, E::ref(std::as_const(saved->state), i)); });
+    glstate::for_each_in_client_group(
+        saved->mask, [&]<class E>(unsigned i) { c.set<E>(i, E::ref(std::as_const(saved->state), i)); });
 }
 
 }  // namespace wall::client::api
 
-// A list holds what the arrays contain when it is compiled: a DrawArrays without arguments that marks what follows as one
-// command, then Begin, attributes, vertices, End (draw_elements).
+// A list holds what the arrays contain when it is compiled: a DrawArrays without arguments that marks what follows as
+// one command, then Begin, attributes, vertices, End (draw_elements).
 namespace wall::client::compile {
 
 void ArrayElement(Context& c, GLint element) { api::ArrayElement(c, element); }
@@ -264,13 +271,15 @@ void DrawArrays(Context& c, GLenum mode, GLint first, GLsizei count) { api::Draw
 void DrawElements(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices) {
     api::DrawElements(c, mode, count, type, indices);
 }
-void DrawRangeElements(Context& c, GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type, const void* indices) {
+void DrawRangeElements(Context& c, GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type,
+                       const void* indices) {
     api::DrawRangeElements(c, mode, start, end, count, type, indices);
 }
 void MultiDrawArrays(Context& c, GLenum mode, const GLint* first, const GLsizei* count, GLsizei draws) {
     api::MultiDrawArrays(c, mode, first, count, draws);
 }
-void MultiDrawElements(Context& c, GLenum mode, const GLsizei* count, GLenum type, const void* const* indices, GLsizei draws) {
+void MultiDrawElements(Context& c, GLenum mode, const GLsizei* count, GLenum type, const void* const* indices,
+                       GLsizei draws) {
     api::MultiDrawElements(c, mode, count, type, indices, draws);
 }
 

@@ -22,7 +22,9 @@ void PopAttrib(Context& c) {
     stack.pop_back();
     if (saved->mask & (GL_CURRENT_BIT | GL_LIGHTING_BIT)) c.flush_block();
     glstate::for_each_in_group(saved->mask, [&]<class E>(unsigned i) {
-        if (c.state.ids[static_cast<std::size_t>(E::category)] == saved->state.ids[static_cast<std::size_t>(E::category)]) return;
+        if (c.state.ids[static_cast<std::size_t>(E::category)] ==
+            saved->state.ids[static_cast<std::size_t>(E::category)])
+            return;
         c.set<E>(i, E::ref(std::as_const(saved->state), i));
     });
     unify_value_ids(c.state, saved->state);

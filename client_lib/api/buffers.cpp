@@ -154,7 +154,9 @@ void GetBufferParameteriv(Context& c, GLenum target, GLenum pname, GLint* params
     const auto buffer = bound_buffer(c, target);
     if (!buffer) return;
     switch (pname) {
-        case GL_BUFFER_SIZE: *params = static_cast<GLint>(std::min<std::size_t>(buffer->content.size(), 0x7fffffff)); break;
+        case GL_BUFFER_SIZE:
+            *params = static_cast<GLint>(std::min<std::size_t>(buffer->content.size(), 0x7fffffff));
+            break;
         case GL_BUFFER_USAGE: *params = static_cast<GLint>(buffer->usage); break;
         case GL_BUFFER_ACCESS: *params = static_cast<GLint>(buffer->access); break;
         case GL_BUFFER_MAPPED: *params = buffer->mapped; break;

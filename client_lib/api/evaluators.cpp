@@ -29,7 +29,8 @@ bool good_axis(const Axis<T>& axis, GLint components) {
 template <class T>
 bool check(Context& c, unsigned map, const T* points, std::initializer_list<Axis<T>> axes) {
     for (const Axis<T>& axis : axes)
-        if (axis.from == axis.to || axis.order < 1 || axis.order > kMaxEvaluatorOrder) return c.error(GL_INVALID_VALUE), false;
+        if (axis.from == axis.to || axis.order < 1 || axis.order > kMaxEvaluatorOrder)
+            return c.error(GL_INVALID_VALUE), false;
     if (!points) return c.error(GL_INVALID_VALUE), false;
     if (map >= kEvaluatorMaps) return c.error(GL_INVALID_ENUM), false;
     for (const Axis<T>& axis : axes)
@@ -47,7 +48,8 @@ std::vector<float> tight_points(unsigned map, const T* points, const Axis<T>& u,
     for (GLint i = 0; i < u.order; ++i)
         for (GLint j = 0; j < v.order; ++j)
             for (unsigned k = 0; k < components; ++k)
-                out.push_back(static_cast<float>(points[static_cast<std::ptrdiff_t>(i) * u.stride + static_cast<std::ptrdiff_t>(j) * v.stride + k]));
+                out.push_back(static_cast<float>(
+                    points[static_cast<std::ptrdiff_t>(i) * u.stride + static_cast<std::ptrdiff_t>(j) * v.stride + k]));
     return out;
 }
 
@@ -126,12 +128,12 @@ void Map1f(Context& c, GLenum target, GLfloat u1, GLfloat u2, GLint stride, GLin
 void Map1d(Context& c, GLenum target, GLdouble u1, GLdouble u2, GLint stride, GLint order, const GLdouble* points) {
     define1<GLdouble>(c, target, {u1, u2, stride, order}, points);
 }
-void Map2f(Context& c, GLenum target, GLfloat u1, GLfloat u2, GLint ustride, GLint uorder, GLfloat v1, GLfloat v2, GLint vstride,
-           GLint vorder, const GLfloat* points) {
+void Map2f(Context& c, GLenum target, GLfloat u1, GLfloat u2, GLint ustride, GLint uorder, GLfloat v1, GLfloat v2,
+           GLint vstride, GLint vorder, const GLfloat* points) {
     define2<GLfloat>(c, target, {u1, u2, ustride, uorder}, {v1, v2, vstride, vorder}, points);
 }
-void Map2d(Context& c, GLenum target, GLdouble u1, GLdouble u2, GLint ustride, GLint uorder, GLdouble v1, GLdouble v2, GLint vstride,
-           GLint vorder, const GLdouble* points) {
+void Map2d(Context& c, GLenum target, GLdouble u1, GLdouble u2, GLint ustride, GLint uorder, GLdouble v1, GLdouble v2,
+           GLint vstride, GLint vorder, const GLdouble* points) {
     define2<GLdouble>(c, target, {u1, u2, ustride, uorder}, {v1, v2, vstride, vorder}, points);
 }
 

@@ -42,7 +42,8 @@ bool full(Packer& packer) { return full(packer, packer.next_operand()); }
 
 /// Room in an open packer.
 Packer& room(Context& context) {
-    if (full(context.packer)) [[unlikely]] context.packer.make_room();
+    if (full(context.packer)) [[unlikely]]
+        context.packer.make_room();
     return context.packer;
 }
 
@@ -52,8 +53,8 @@ Packer* open_packer() {
     return full(packer) ? nullptr : &packer;
 }
 
-/// The slow way of an entry point: whatever the context's mode makes of the call. Kept out of line, so that the fast way
-/// needs no stack frame.
+/// The slow way of an entry point: whatever the context's mode makes of the call. Kept out of line, so that the fast
+/// way needs no stack frame.
 template <class Function, class... Args>
 [[gnu::noinline, gnu::cold]] void through_table(Function GlTable::*entry, Args... args) {
     if (tls_context) (tls_context->table->*entry)(*tls_context, args...);
@@ -74,10 +75,8 @@ void pack_vertex3(Packer& packer, float x, float y, float z) {
 }
 
 void pack_vertex4(Packer& packer, float x, float y, float z, float w) {
-    if (w > 0)
-        add_vertex(packer, x / w, y / w, z / w);
-    else
-        packer.mark_unbounded();
+    if (w > 0) add_vertex(packer, x / w, y / w, z / w);
+    else packer.mark_unbounded();
     put_floats(packer, Op::Vertex4f, x, y, z, w);
 }
 
@@ -94,35 +93,43 @@ void pack_color4ub(Packer& packer, GLubyte r, GLubyte g, GLubyte b, GLubyte a) {
 // The packer is full, closed or absent: the table's function makes room, or records, or does nothing.
 
 void GLAPIENTRY gl_entry_Vertex2f(GLfloat x, GLfloat y) {
-    if (Packer* p = open_packer()) [[likely]] return pack_vertex2(*p, x, y);
+    if (Packer* p = open_packer()) [[likely]]
+        return pack_vertex2(*p, x, y);
     through_table(&GlTable::Vertex2f, x, y);
 }
 void GLAPIENTRY gl_entry_Vertex3f(GLfloat x, GLfloat y, GLfloat z) {
-    if (Packer* p = open_packer()) [[likely]] return pack_vertex3(*p, x, y, z);
+    if (Packer* p = open_packer()) [[likely]]
+        return pack_vertex3(*p, x, y, z);
     through_table(&GlTable::Vertex3f, x, y, z);
 }
 void GLAPIENTRY gl_entry_Vertex4f(GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
-    if (Packer* p = open_packer()) [[likely]] return pack_vertex4(*p, x, y, z, w);
+    if (Packer* p = open_packer()) [[likely]]
+        return pack_vertex4(*p, x, y, z, w);
     through_table(&GlTable::Vertex4f, x, y, z, w);
 }
 void GLAPIENTRY gl_entry_Normal3f(GLfloat x, GLfloat y, GLfloat z) {
-    if (Packer* p = open_packer()) [[likely]] return put_attribute(*p, Attribute::normal, Op::Normal3f, x, y, z);
+    if (Packer* p = open_packer()) [[likely]]
+        return put_attribute(*p, Attribute::normal, Op::Normal3f, x, y, z);
     through_table(&GlTable::Normal3f, x, y, z);
 }
 void GLAPIENTRY gl_entry_Color3f(GLfloat r, GLfloat g, GLfloat b) {
-    if (Packer* p = open_packer()) [[likely]] return put_attribute(*p, Attribute::color, Op::Color3f, r, g, b);
+    if (Packer* p = open_packer()) [[likely]]
+        return put_attribute(*p, Attribute::color, Op::Color3f, r, g, b);
     through_table(&GlTable::Color3f, r, g, b);
 }
 void GLAPIENTRY gl_entry_Color4f(GLfloat r, GLfloat g, GLfloat b, GLfloat a) {
-    if (Packer* p = open_packer()) [[likely]] return put_attribute(*p, Attribute::color, Op::Color4f, r, g, b, a);
+    if (Packer* p = open_packer()) [[likely]]
+        return put_attribute(*p, Attribute::color, Op::Color4f, r, g, b, a);
     through_table(&GlTable::Color4f, r, g, b, a);
 }
 void GLAPIENTRY gl_entry_Color4ub(GLubyte r, GLubyte g, GLubyte b, GLubyte a) {
-    if (Packer* p = open_packer()) [[likely]] return pack_color4ub(*p, r, g, b, a);
+    if (Packer* p = open_packer()) [[likely]]
+        return pack_color4ub(*p, r, g, b, a);
     through_table(&GlTable::Color4ub, r, g, b, a);
 }
 void GLAPIENTRY gl_entry_TexCoord2f(GLfloat s, GLfloat t) {
-    if (Packer* p = open_packer()) [[likely]] return put_attribute(*p, Attribute::texcoord0, Op::TexCoord2f, s, t);
+    if (Packer* p = open_packer()) [[likely]]
+        return put_attribute(*p, Attribute::texcoord0, Op::TexCoord2f, s, t);
     through_table(&GlTable::TexCoord2f, s, t);
 }
 
@@ -156,7 +163,9 @@ void Vertex4f(Context& c, GLfloat x, GLfloat y, GLfloat z, GLfloat w) { pack_ver
 void Normal3f(Context& c, GLfloat x, GLfloat y, GLfloat z) {
     put_attribute(room(c), Attribute::normal, Op::Normal3f, x, y, z);
 }
-void Color3f(Context& c, GLfloat r, GLfloat g, GLfloat b) { put_attribute(room(c), Attribute::color, Op::Color3f, r, g, b); }
+void Color3f(Context& c, GLfloat r, GLfloat g, GLfloat b) {
+    put_attribute(room(c), Attribute::color, Op::Color3f, r, g, b);
+}
 void Color4f(Context& c, GLfloat r, GLfloat g, GLfloat b, GLfloat a) {
     put_attribute(room(c), Attribute::color, Op::Color4f, r, g, b, a);
 }
@@ -165,7 +174,9 @@ void SecondaryColor3f(Context& c, GLfloat r, GLfloat g, GLfloat b) {
     put_attribute(room(c), Attribute::secondary_color, Op::SecondaryColor3f, r, g, b);
 }
 void TexCoord1f(Context& c, GLfloat s) { put_attribute(room(c), Attribute::texcoord0, Op::TexCoord1f, s); }
-void TexCoord2f(Context& c, GLfloat s, GLfloat t) { put_attribute(room(c), Attribute::texcoord0, Op::TexCoord2f, s, t); }
+void TexCoord2f(Context& c, GLfloat s, GLfloat t) {
+    put_attribute(room(c), Attribute::texcoord0, Op::TexCoord2f, s, t);
+}
 void TexCoord3f(Context& c, GLfloat s, GLfloat t, GLfloat r) {
     put_attribute(room(c), Attribute::texcoord0, Op::TexCoord3f, s, t, r);
 }

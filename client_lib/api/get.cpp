@@ -30,10 +30,14 @@ const SurfaceFormat& format_of(Context& c) {
 }
 
 template <int kValue>
-void constant(Context&, double* out) { *out = kValue; }
+void constant(Context&, double* out) {
+    *out = kValue;
+}
 
 template <class Stack>
-double depth_of(const Stack& stack) { return static_cast<double>(stack.below.size() + 1); }
+double depth_of(const Stack& stack) {
+    return static_cast<double>(stack.below.size() + 1);
+}
 
 void put_transposed(const glstate::Mat4& m, double* out) {
     const Mat4 t = transposed(m);
@@ -41,11 +45,15 @@ void put_transposed(const glstate::Mat4& m, double* out) {
 }
 
 template <unsigned kMap>
-void pixel_map_size(Context& c, double* out) { *out = static_cast<double>(c.maps->pixel.tables[kMap].size()); }
+void pixel_map_size(Context& c, double* out) {
+    *out = static_cast<double>(c.maps->pixel.tables[kMap].size());
+}
 
 /// The nodes' limit, but no more than the client keeps.
 template <GLenum kName, int kMost>
-void limited(Context& c, double* out) { *out = std::min<double>(kMost, limit_of(c.session().caps(), kName, kMost)); }
+void limited(Context& c, double* out) {
+    *out = std::min<double>(kMost, limit_of(c.session().caps(), kName, kMost));
+}
 
 const Special kSpecials[] = {
     {GL_MODELVIEW_STACK_DEPTH, 1, [](Context& c, double* out) { *out = depth_of(c.modelview_stack); }},
@@ -55,11 +63,15 @@ const Special kSpecials[] = {
     {GL_MAX_PROJECTION_STACK_DEPTH, 1, [](Context& c, double* out) { *out = c.projection_stack.limit; }},
     {GL_MAX_TEXTURE_STACK_DEPTH, 1, [](Context& c, double* out) { *out = c.texture_stacks[0].limit; }},
     {GL_TRANSPOSE_MODELVIEW_MATRIX, 16, [](Context& c, double* out) { put_transposed(c.state.matrix.modelview, out); }},
-    {GL_TRANSPOSE_PROJECTION_MATRIX, 16, [](Context& c, double* out) { put_transposed(c.state.matrix.projection, out); }},
-    {GL_TRANSPOSE_TEXTURE_MATRIX, 16, [](Context& c, double* out) { put_transposed(c.state.matrix.texture_matrix[c.active_texture()], out); }},
+    {GL_TRANSPOSE_PROJECTION_MATRIX, 16,
+     [](Context& c, double* out) { put_transposed(c.state.matrix.projection, out); }},
+    {GL_TRANSPOSE_TEXTURE_MATRIX, 16,
+     [](Context& c, double* out) { put_transposed(c.state.matrix.texture_matrix[c.active_texture()], out); }},
 
-    {GL_ATTRIB_STACK_DEPTH, 1, [](Context& c, double* out) { *out = static_cast<double>(c.attributes->server.size()); }},
-    {GL_CLIENT_ATTRIB_STACK_DEPTH, 1, [](Context& c, double* out) { *out = static_cast<double>(c.attributes->client.size()); }},
+    {GL_ATTRIB_STACK_DEPTH, 1,
+     [](Context& c, double* out) { *out = static_cast<double>(c.attributes->server.size()); }},
+    {GL_CLIENT_ATTRIB_STACK_DEPTH, 1,
+     [](Context& c, double* out) { *out = static_cast<double>(c.attributes->client.size()); }},
     {GL_MAX_ATTRIB_STACK_DEPTH, 1, constant<kAttributeStackLimit>},
     {GL_MAX_CLIENT_ATTRIB_STACK_DEPTH, 1, constant<kAttributeStackLimit>},
     {GL_NAME_STACK_DEPTH, 1, [](Context& c, double* out) { *out = c.select->name_depth; }},
@@ -71,8 +83,10 @@ const Special kSpecials[] = {
     {GL_LIST_MODE, 1, [](Context& c, double* out) { *out = c.lists->mode; }},
     {GL_MAX_LIST_NESTING, 1, constant<kListNestingLimit>},
 
-    {GL_MAP1_GRID_DOMAIN, 2, [](Context& c, double* out) { out[0] = c.state.evaluator.map_grid1.u1, out[1] = c.state.evaluator.map_grid1.u2; }},
-    {GL_MAP2_GRID_SEGMENTS, 2, [](Context& c, double* out) { out[0] = c.state.evaluator.map_grid2.un, out[1] = c.state.evaluator.map_grid2.vn; }},
+    {GL_MAP1_GRID_DOMAIN, 2,
+     [](Context& c, double* out) { out[0] = c.state.evaluator.map_grid1.u1, out[1] = c.state.evaluator.map_grid1.u2; }},
+    {GL_MAP2_GRID_SEGMENTS, 2,
+     [](Context& c, double* out) { out[0] = c.state.evaluator.map_grid2.un, out[1] = c.state.evaluator.map_grid2.vn; }},
     {GL_MAP2_GRID_DOMAIN, 4,
      [](Context& c, double* out) {
          const auto& grid = c.state.evaluator.map_grid2;
@@ -104,7 +118,8 @@ const Special kSpecials[] = {
     {GL_NUM_COMPRESSED_TEXTURE_FORMATS, 1, constant<3>},
     {GL_COMPRESSED_TEXTURE_FORMATS, 3,
      [](Context&, double* out) {
-         out[0] = GL_COMPRESSED_RGB_S3TC_DXT1_EXT, out[1] = GL_COMPRESSED_RGBA_S3TC_DXT3_EXT, out[2] = GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
+         out[0] = GL_COMPRESSED_RGB_S3TC_DXT1_EXT, out[1] = GL_COMPRESSED_RGBA_S3TC_DXT3_EXT,
+         out[2] = GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
      }},
     {GL_MAX_VERTEX_ATTRIBS, 1, limited<GL_MAX_VERTEX_ATTRIBS, kVertexAttributes>},
     {GL_MAX_ELEMENTS_VERTICES, 1, constant<3000>},
@@ -130,7 +145,8 @@ const Special kSpecials[] = {
     {GL_SAMPLE_BUFFERS, 1, [](Context& c, double* out) { *out = format_of(c).samples > 0; }},
     {GL_MAJOR_VERSION, 1, [](Context& c, double* out) { *out = offered_version(c.session().caps()).major; }},
     {GL_MINOR_VERSION, 1, [](Context& c, double* out) { *out = offered_version(c.session().caps()).minor; }},
-    {GL_NUM_EXTENSIONS, 1, [](Context& c, double* out) { *out = static_cast<double>(offered_extensions(c.session().caps()).size()); }},
+    {GL_NUM_EXTENSIONS, 1,
+     [](Context& c, double* out) { *out = static_cast<double>(offered_extensions(c.session().caps()).size()); }},
     {GL_CONTEXT_FLAGS, 1, constant<0>},
     {GL_CONTEXT_PROFILE_MASK, 1, constant<GL_CONTEXT_COMPATIBILITY_PROFILE_BIT>},
     {GL_IMPLEMENTATION_COLOR_READ_FORMAT, 1, constant<GL_RGBA>},
@@ -156,7 +172,8 @@ template <class Out>
 void get_element(Context& c, const glstate::GetEntry& entry, Out* out) {
     const std::uint32_t id = entry.id + index_of(c, entry.rule) * entry.unit_stride;
     const auto category = glstate::element_info(id).category;
-    if (category == glstate::Category::current || category == glstate::Category::material) c.flush_block();  // folds attributes
+    if (category == glstate::Category::current || category == glstate::Category::material)
+        c.flush_block();  // folds attributes
     if (entry.kind > glstate::ValueKind::pointer) {
         GLint object = 0;
         glstate::read_components(c.state, id, entry.offset, glstate::ValueKind::unsigned_integer, 1, &object);
@@ -167,7 +184,9 @@ void get_element(Context& c, const glstate::GetEntry& entry, Out* out) {
 }
 
 /// Colours that are kept as given and answered as a fixed point framebuffer uses them (ARB_color_buffer_float).
-bool answered_clamped(GLenum pname) { return pname == GL_COLOR_CLEAR_VALUE || pname == GL_BLEND_COLOR || pname == GL_FOG_COLOR; }
+bool answered_clamped(GLenum pname) {
+    return pname == GL_COLOR_CLEAR_VALUE || pname == GL_BLEND_COLOR || pname == GL_FOG_COLOR;
+}
 
 template <class Out>
 void get_clamped(Context& c, const glstate::GetEntry& entry, Out* out) {
@@ -204,12 +223,14 @@ const std::uint32_t* flag_of(const Context& c, GLenum cap) {
     const auto* entry = glstate::find_cap(cap);
     if (!entry) return nullptr;
     const std::uint32_t id = entry->id + index_of(c, entry->rule) * entry->unit_stride;
-    return reinterpret_cast<const std::uint32_t*>(reinterpret_cast<const std::byte*>(&c.state) + glstate::element_offset(id));
+    return reinterpret_cast<const std::uint32_t*>(reinterpret_cast<const std::byte*>(&c.state) +
+                                                  glstate::element_offset(id));
 }
 
 template <class Out>
 void get(Context& c, GLenum pname, Out* out) {
-    if (const auto* entry = glstate::find_get(pname)) return answered_clamped(pname) ? get_clamped(c, *entry, out) : get_element(c, *entry, out);
+    if (const auto* entry = glstate::find_get(pname))
+        return answered_clamped(pname) ? get_clamped(c, *entry, out) : get_element(c, *entry, out);
     if (const auto* flag = flag_of(c, pname)) *out = converted<Out>(*flag);
     else if (!get_special(c, pname, out) && !get_limit(c, pname, out)) c.error(GL_INVALID_ENUM);
 }

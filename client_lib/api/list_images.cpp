@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Commands with client memory in display lists: what the memory holds when the list is compiled goes into the list, with
-// tight rows, and is given to the immediate function as such when the list is called (OpenGL 1.2.1, 5.4).
+// Commands with client memory in display lists: what the memory holds when the list is compiled goes into the list,
+// with tight rows, and is given to the immediate function as such when the list is called (OpenGL 1.2.1, 5.4).
 #include <tuple>
 
 #include "client_lib/context.h"
@@ -49,7 +49,8 @@ struct Image {
 /// Empty where the call will fail or has no pixels.
 std::vector<std::byte> tight(Context& c, const Image& image) {
     if (!glapi::image_bytes(image.format, image.type, image.size.width, image.size.height, image.size.depth)) return {};
-    return glapi::unpack_image(unpack_store(c.state), image.size, image.format, image.type, image_source(c, {image.size, image.format, image.type}, image.pixels));
+    return glapi::unpack_image(unpack_store(c.state), image.size, image.format, image.type,
+                               image_source(c, {image.size, image.format, image.type}, image.pixels));
 }
 
 /// Records the arguments, whether there were pixels, and the pixels.
@@ -87,44 +88,55 @@ void call(Context& c, std::span<const std::byte> payload, void (*GlTable::*funct
 
 namespace compile {
 
-void TexImage1D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLint border, GLenum format, GLenum type,
-                const void* pixels) {
-    if (is_proxy(target)) return api::TexImage1D(c, target, level, internal, width, border, format, type, pixels);
-    record(c, CommandId::TexImage1D, {{width, 1, 1, 1}, format, type, pixels}, target, level, internal, width, border, format, type);
-    if (c.list().execute) execution_table(c).TexImage1D(c, target, level, internal, width, border, format, type, pixels);
-}
-
-void TexImage2D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLint border, GLenum format,
+void TexImage1D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLint border, GLenum format,
                 GLenum type, const void* pixels) {
-    if (is_proxy(target)) return api::TexImage2D(c, target, level, internal, width, height, border, format, type, pixels);
-    record(c, CommandId::TexImage2D, {{width, height, 1, 2}, format, type, pixels}, target, level, internal, width, height, border, format, type);
-    if (c.list().execute) execution_table(c).TexImage2D(c, target, level, internal, width, height, border, format, type, pixels);
+    if (is_proxy(target)) return api::TexImage1D(c, target, level, internal, width, border, format, type, pixels);
+    record(c, CommandId::TexImage1D, {{width, 1, 1, 1}, format, type, pixels}, target, level, internal, width, border,
+           format, type);
+    if (c.list().execute)
+        execution_table(c).TexImage1D(c, target, level, internal, width, border, format, type, pixels);
 }
 
-void TexImage3D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLsizei depth, GLint border,
+void TexImage2D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLint border,
                 GLenum format, GLenum type, const void* pixels) {
-    if (is_proxy(target)) return api::TexImage3D(c, target, level, internal, width, height, depth, border, format, type, pixels);
-    record(c, CommandId::TexImage3D, {{width, height, depth, 3}, format, type, pixels}, target, level, internal, width, height, depth,
-           border, format, type);
-    if (c.list().execute) execution_table(c).TexImage3D(c, target, level, internal, width, height, depth, border, format, type, pixels);
+    if (is_proxy(target))
+        return api::TexImage2D(c, target, level, internal, width, height, border, format, type, pixels);
+    record(c, CommandId::TexImage2D, {{width, height, 1, 2}, format, type, pixels}, target, level, internal, width,
+           height, border, format, type);
+    if (c.list().execute)
+        execution_table(c).TexImage2D(c, target, level, internal, width, height, border, format, type, pixels);
 }
 
-void TexSubImage1D(Context& c, GLenum target, GLint level, GLint x, GLsizei width, GLenum format, GLenum type, const void* pixels) {
-    record(c, CommandId::TexSubImage1D, {{width, 1, 1, 1}, format, type, pixels}, target, level, x, width, format, type);
+void TexImage3D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLsizei depth,
+                GLint border, GLenum format, GLenum type, const void* pixels) {
+    if (is_proxy(target))
+        return api::TexImage3D(c, target, level, internal, width, height, depth, border, format, type, pixels);
+    record(c, CommandId::TexImage3D, {{width, height, depth, 3}, format, type, pixels}, target, level, internal, width,
+           height, depth, border, format, type);
+    if (c.list().execute)
+        execution_table(c).TexImage3D(c, target, level, internal, width, height, depth, border, format, type, pixels);
+}
+
+void TexSubImage1D(Context& c, GLenum target, GLint level, GLint x, GLsizei width, GLenum format, GLenum type,
+                   const void* pixels) {
+    record(c, CommandId::TexSubImage1D, {{width, 1, 1, 1}, format, type, pixels}, target, level, x, width, format,
+           type);
     if (c.list().execute) execution_table(c).TexSubImage1D(c, target, level, x, width, format, type, pixels);
 }
 
-void TexSubImage2D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
-                   const void* pixels) {
-    record(c, CommandId::TexSubImage2D, {{width, height, 1, 2}, format, type, pixels}, target, level, x, y, width, height, format, type);
+void TexSubImage2D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height,
+                   GLenum format, GLenum type, const void* pixels) {
+    record(c, CommandId::TexSubImage2D, {{width, height, 1, 2}, format, type, pixels}, target, level, x, y, width,
+           height, format, type);
     if (c.list().execute) execution_table(c).TexSubImage2D(c, target, level, x, y, width, height, format, type, pixels);
 }
 
-void TexSubImage3D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,
-                   GLenum format, GLenum type, const void* pixels) {
-    record(c, CommandId::TexSubImage3D, {{width, height, depth, 3}, format, type, pixels}, target, level, x, y, z, width, height, depth,
-           format, type);
-    if (c.list().execute) execution_table(c).TexSubImage3D(c, target, level, x, y, z, width, height, depth, format, type, pixels);
+void TexSubImage3D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height,
+                   GLsizei depth, GLenum format, GLenum type, const void* pixels) {
+    record(c, CommandId::TexSubImage3D, {{width, height, depth, 3}, format, type, pixels}, target, level, x, y, z,
+           width, height, depth, format, type);
+    if (c.list().execute)
+        execution_table(c).TexSubImage3D(c, target, level, x, y, z, width, height, depth, format, type, pixels);
 }
 
 void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels) {
@@ -132,8 +144,10 @@ void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
     if (c.list().execute) execution_table(c).DrawPixels(c, width, height, format, type, pixels);
 }
 
-void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig, GLfloat xmove, GLfloat ymove, const GLubyte* bitmap) {
-    record(c, CommandId::Bitmap, {{width, height, 1, 2}, GL_COLOR_INDEX, GL_BITMAP, bitmap}, width, height, xorig, yorig, xmove, ymove);
+void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig, GLfloat xmove, GLfloat ymove,
+            const GLubyte* bitmap) {
+    record(c, CommandId::Bitmap, {{width, height, 1, 2}, GL_COLOR_INDEX, GL_BITMAP, bitmap}, width, height, xorig,
+           yorig, xmove, ymove);
     if (c.list().execute) execution_table(c).Bitmap(c, width, height, xorig, yorig, xmove, ymove, bitmap);
 }
 
@@ -146,9 +160,11 @@ namespace {
 
 /// How many values a call of glMap reads; 0 if it will fail.
 std::ptrdiff_t map_values(unsigned map, GLint ustride, GLint uorder, GLint vstride, GLint vorder) {
-    if (map >= kEvaluatorMaps || uorder < 1 || vorder < 1 || uorder > kMaxEvaluatorOrder || vorder > kMaxEvaluatorOrder) return 0;
+    if (map >= kEvaluatorMaps || uorder < 1 || vorder < 1 || uorder > kMaxEvaluatorOrder || vorder > kMaxEvaluatorOrder)
+        return 0;
     if (ustride < 0 || vstride < 0) return 0;
-    return static_cast<std::ptrdiff_t>(uorder - 1) * ustride + static_cast<std::ptrdiff_t>(vorder - 1) * vstride + evaluator_components(map);
+    return static_cast<std::ptrdiff_t>(uorder - 1) * ustride + static_cast<std::ptrdiff_t>(vorder - 1) * vstride +
+           evaluator_components(map);
 }
 
 }  // namespace
@@ -163,24 +179,26 @@ void Map1f(Context& c, GLenum target, GLfloat u1, GLfloat u2, GLint stride, GLin
 void Map1d(Context& c, GLenum target, GLdouble u1, GLdouble u2, GLint stride, GLint order, const GLdouble* points) {
     const auto count = points ? map_values(target - GL_MAP1_COLOR_4, stride, order, 0, 1) : 0;
     const std::vector<float> values(points, points + count);
-    c.list().record(static_cast<std::uint16_t>(CommandId::Map1d), target, static_cast<float>(u1), static_cast<float>(u2), stride, order,
-                    glapi::recorded_array(values.data(), count));
+    c.list().record(static_cast<std::uint16_t>(CommandId::Map1d), target, static_cast<float>(u1),
+                    static_cast<float>(u2), stride, order, glapi::recorded_array(values.data(), count));
     if (c.list().execute) execution_table(c).Map1d(c, target, u1, u2, stride, order, points);
 }
 
-void Map2f(Context& c, GLenum target, GLfloat u1, GLfloat u2, GLint ustride, GLint uorder, GLfloat v1, GLfloat v2, GLint vstride,
-           GLint vorder, const GLfloat* points) {
-    c.list().record(static_cast<std::uint16_t>(CommandId::Map2f), target, u1, u2, ustride, uorder, v1, v2, vstride, vorder,
-                    glapi::recorded_array(points, map_values(target - GL_MAP2_COLOR_4, ustride, uorder, vstride, vorder)));
+void Map2f(Context& c, GLenum target, GLfloat u1, GLfloat u2, GLint ustride, GLint uorder, GLfloat v1, GLfloat v2,
+           GLint vstride, GLint vorder, const GLfloat* points) {
+    c.list().record(
+        static_cast<std::uint16_t>(CommandId::Map2f), target, u1, u2, ustride, uorder, v1, v2, vstride, vorder,
+        glapi::recorded_array(points, map_values(target - GL_MAP2_COLOR_4, ustride, uorder, vstride, vorder)));
     if (c.list().execute) execution_table(c).Map2f(c, target, u1, u2, ustride, uorder, v1, v2, vstride, vorder, points);
 }
 
-void Map2d(Context& c, GLenum target, GLdouble u1, GLdouble u2, GLint ustride, GLint uorder, GLdouble v1, GLdouble v2, GLint vstride,
-           GLint vorder, const GLdouble* points) {
+void Map2d(Context& c, GLenum target, GLdouble u1, GLdouble u2, GLint ustride, GLint uorder, GLdouble v1, GLdouble v2,
+           GLint vstride, GLint vorder, const GLdouble* points) {
     const auto count = points ? map_values(target - GL_MAP2_COLOR_4, ustride, uorder, vstride, vorder) : 0;
     const std::vector<float> values(points, points + count);
-    c.list().record(static_cast<std::uint16_t>(CommandId::Map2d), target, static_cast<float>(u1), static_cast<float>(u2), ustride, uorder,
-                    static_cast<float>(v1), static_cast<float>(v2), vstride, vorder, glapi::recorded_array(values.data(), count));
+    c.list().record(static_cast<std::uint16_t>(CommandId::Map2d), target, static_cast<float>(u1),
+                    static_cast<float>(u2), ustride, uorder, static_cast<float>(v1), static_cast<float>(v2), vstride,
+                    vorder, glapi::recorded_array(values.data(), count));
     if (c.list().execute) execution_table(c).Map2d(c, target, u1, u2, ustride, uorder, v1, v2, vstride, vorder, points);
 }
 

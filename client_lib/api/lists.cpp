@@ -27,7 +27,8 @@ void call_list(Context& c, GLuint name) {
 template <class T>
 GLint element(const void* names, GLsizei i) {
     T value;
-    std::memcpy(&value, static_cast<const std::byte*>(names) + static_cast<std::size_t>(i) * sizeof value, sizeof value);
+    std::memcpy(&value, static_cast<const std::byte*>(names) + static_cast<std::size_t>(i) * sizeof value,
+                sizeof value);
     return to_int(value);
 }
 
@@ -45,8 +46,10 @@ struct NameType {
     GLint (*read)(const void* names, GLsizei i);
 };
 constexpr NameType kNameTypes[] = {
-    {GL_BYTE, element<GLbyte>},   {GL_UNSIGNED_BYTE, element<GLubyte>}, {GL_SHORT, element<GLshort>}, {GL_UNSIGNED_SHORT, element<GLushort>},
-    {GL_INT, element<GLint>},     {GL_UNSIGNED_INT, element<GLuint>},   {GL_FLOAT, element<GLfloat>}, {GL_2_BYTES, group<2>},
+    {GL_BYTE, element<GLbyte>},   {GL_UNSIGNED_BYTE, element<GLubyte>},
+    {GL_SHORT, element<GLshort>}, {GL_UNSIGNED_SHORT, element<GLushort>},
+    {GL_INT, element<GLint>},     {GL_UNSIGNED_INT, element<GLuint>},
+    {GL_FLOAT, element<GLfloat>}, {GL_2_BYTES, group<2>},
     {GL_3_BYTES, group<3>},       {GL_4_BYTES, group<4>},
 };
 
@@ -115,7 +118,8 @@ void DeleteLists(Context& c, GLuint list, GLsizei range) {
     if (range < 0) return c.error(GL_INVALID_VALUE);
     std::lock_guard lock(c.share().mutex);
     auto& lists = c.share().lists;
-    const auto end = std::min<std::uint64_t>(std::uint64_t{list} + static_cast<GLuint>(range), std::uint64_t{lists.last()} + 1);
+    const auto end =
+        std::min<std::uint64_t>(std::uint64_t{list} + static_cast<GLuint>(range), std::uint64_t{lists.last()} + 1);
     for (std::uint64_t name = list; name < end; ++name) lists.erase(static_cast<GLuint>(name));
 }
 

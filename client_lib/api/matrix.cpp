@@ -34,8 +34,10 @@ void change_element(Context& c, unsigned i, MatrixStack& stack, Change&& change)
 template <class Change>
 void change_top(Context& c, Change&& change) {
     const unsigned unit = c.active_texture();
-    if (c.state.local.matrix_mode == GL_MODELVIEW) return change_element<el::modelview>(c, 0, c.modelview_stack, change);
-    if (c.state.local.matrix_mode == GL_PROJECTION) return change_element<el::projection>(c, 0, c.projection_stack, change);
+    if (c.state.local.matrix_mode == GL_MODELVIEW)
+        return change_element<el::modelview>(c, 0, c.modelview_stack, change);
+    if (c.state.local.matrix_mode == GL_PROJECTION)
+        return change_element<el::projection>(c, 0, c.projection_stack, change);
     change_element<el::texture_matrix>(c, unit, c.texture_stacks[unit], change);
 }
 
@@ -114,14 +116,16 @@ void Translatef(Context& c, GLfloat x, GLfloat y, GLfloat z) {
 }
 
 void Frustum(Context& c, GLdouble left, GLdouble right, GLdouble bottom, GLdouble top, GLdouble near, GLdouble far) {
-    const auto l = static_cast<float>(left), r = static_cast<float>(right), b = static_cast<float>(bottom), t = static_cast<float>(top);
+    const auto l = static_cast<float>(left), r = static_cast<float>(right), b = static_cast<float>(bottom),
+               t = static_cast<float>(top);
     const auto n = static_cast<float>(near), f = static_cast<float>(far);
     if (n <= 0 || f <= 0 || n == f || l == r || t == b) return c.error(GL_INVALID_VALUE);
     change_matrix(c, [&](FormedMatrix& matrix) { frustum(matrix, l, r, b, t, n, f); });
 }
 
 void Ortho(Context& c, GLdouble left, GLdouble right, GLdouble bottom, GLdouble top, GLdouble near, GLdouble far) {
-    const auto l = static_cast<float>(left), r = static_cast<float>(right), b = static_cast<float>(bottom), t = static_cast<float>(top);
+    const auto l = static_cast<float>(left), r = static_cast<float>(right), b = static_cast<float>(bottom),
+               t = static_cast<float>(top);
     const auto n = static_cast<float>(near), f = static_cast<float>(far);
     if (l == r || b == t || n == f) return c.error(GL_INVALID_VALUE);
     change_matrix(c, [&](FormedMatrix& matrix) { ortho(matrix, l, r, b, t, n, f); });
@@ -129,7 +133,9 @@ void Ortho(Context& c, GLdouble left, GLdouble right, GLdouble bottom, GLdouble 
 
 void Viewport(Context& c, GLint x, GLint y, GLsizei width, GLsizei height) {
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
-    const auto most = [&](std::size_t i) { return static_cast<GLsizei>(limit_of(c.session().caps(), GL_MAX_VIEWPORT_DIMS, 16384, i)); };
+    const auto most = [&](std::size_t i) {
+        return static_cast<GLsizei>(limit_of(c.session().caps(), GL_MAX_VIEWPORT_DIMS, 16384, i));
+    };
     c.set<el::viewport>(0, {x, y, std::min(width, most(0)), std::min(height, most(1))});
 }
 

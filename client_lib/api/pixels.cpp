@@ -35,14 +35,17 @@ bool has_stencil(const Context& c) { return c.draw_surface() && c.draw_surface()
 /// Whether the buffers that a format means exist.
 bool buffers_exist(const Context& c, GLenum format) {
     switch (format) {
-        case GL_DEPTH_COMPONENT: case GL_DEPTH: return has_depth(c);
-        case GL_STENCIL_INDEX: case GL_STENCIL: return has_stencil(c);
+        case GL_DEPTH_COMPONENT:
+        case GL_DEPTH: return has_depth(c);
+        case GL_STENCIL_INDEX:
+        case GL_STENCIL: return has_stencil(c);
         case GL_DEPTH_STENCIL: return has_depth(c) && has_stencil(c);
         default: return true;
     }
 }
 
-void draw_tight(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type, std::span<const std::byte> pixels) {
+void draw_tight(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type,
+                std::span<const std::byte> pixels) {
     c.draw(drawn_rect(c, static_cast<float>(width), static_cast<float>(height)),
            [&](wire::PackBuffer& buffer) { glapi::pack::DrawPixels(buffer, width, height, format, type, pixels); });
 }
@@ -89,7 +92,8 @@ template <class In>
 void pixel_map(Context& c, GLenum map, GLsizei size, const In* values, double scale) {
     if (!is_pixel_map(map)) return c.error(GL_INVALID_ENUM);
     if (size < 1 || size > kMaxPixelMapTable) return c.error(GL_INVALID_VALUE);
-    if (map <= GL_PIXEL_MAP_I_TO_A && !std::has_single_bit(static_cast<unsigned>(size))) return c.error(GL_INVALID_VALUE);
+    if (map <= GL_PIXEL_MAP_I_TO_A && !std::has_single_bit(static_cast<unsigned>(size)))
+        return c.error(GL_INVALID_VALUE);
     std::vector<float> table(static_cast<std::size_t>(size));
     const auto* from = static_cast<const std::byte*>(unpack_source(c, values, table.size() * sizeof(In)));
     if (!from) return;
@@ -118,7 +122,8 @@ void get_pixel_map(Context& c, GLenum map, Out* out, double scale) {
 
 // ---- buffers ----
 
-/// Bits of the four colour buffers a word names: 1 front left, 2 back left, 4 front right, 8 back right; -1: no such word.
+/// Bits of the four colour buffers a word names: 1 front left, 2 back left, 4 front right, 8 back right; -1: no such
+/// word.
 int named_buffers(GLenum word) {
     switch (word) {
         case GL_NONE: return 0;
@@ -131,7 +136,10 @@ int named_buffers(GLenum word) {
         case GL_LEFT: return 1 | 2;
         case GL_RIGHT: return 4 | 8;
         case GL_FRONT_AND_BACK: return 15;
-        case GL_AUX0: case GL_AUX1: case GL_AUX2: case GL_AUX3: return 16;
+        case GL_AUX0:
+        case GL_AUX1:
+        case GL_AUX2:
+        case GL_AUX3: return 16;
         default: return word >= GL_COLOR_ATTACHMENT0 && word <= GL_COLOR_ATTACHMENT15 ? 16 : -1;
     }
 }
@@ -160,7 +168,9 @@ void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
     if (!buffers_exist(c, format)) return c.error(GL_INVALID_OPERATION);
     if (!c.state.raster.raster_position_valid) return;
-    if (c.state.local.render_mode != GL_RENDER) return feed_back(c, [](wire::PackBuffer& b) { glapi::pack::DrawPixels(b, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, kOnePixel); });
+    if (c.state.local.render_mode != GL_RENDER)
+        return feed_back(
+            c, [](wire::PackBuffer& b) { glapi::pack::DrawPixels(b, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, kOnePixel); });
     if (width == 0 || height == 0) return;
     if (!glapi::image_bytes(format, type, width, height, 1)) return c.error(GL_OUT_OF_MEMORY);
     const void* from = image_source(c, {{width, height}, format, type}, pixels);
@@ -171,18 +181,25 @@ void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
 }
 
 // The client's raster position is the only one: the command that travels moves nothing.
-void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig, GLfloat xmove, GLfloat ymove, const GLubyte* bitmap) {
+void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig, GLfloat xmove, GLfloat ymove,
+            const GLubyte* bitmap) {
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
     if (!c.state.raster.raster_position_valid) return;
     auto position = c.state.raster.raster_position;
     const bool drawing = c.state.local.render_mode == GL_RENDER;
-    if (!drawing) feed_back(c, [](wire::PackBuffer& b) { glapi::pack::Bitmap(b, 1, 1, 0, 0, 0, 0, std::span(kOnePixel).first(1)); });
-    const void* from = drawing && width > 0 && height > 0 ? image_source(c, {{width, height}, GL_COLOR_INDEX, GL_BITMAP}, bitmap) : nullptr;
+    if (!drawing)
+        feed_back(c,
+                  [](wire::PackBuffer& b) { glapi::pack::Bitmap(b, 1, 1, 0, 0, 0, 0, std::span(kOnePixel).first(1)); });
+    const void* from = drawing && width > 0 && height > 0
+                           ? image_source(c, {{width, height}, GL_COLOR_INDEX, GL_BITMAP}, bitmap)
+                           : nullptr;
     if (from) {
         const auto bits = glapi::unpack_image(unpack_store(c.state), {width, height}, GL_COLOR_INDEX, GL_BITMAP, from);
         const float x = position[0] - xorig - kMargin, y = position[1] - yorig - kMargin;
-        const PixelRect box{x, y, x + static_cast<float>(width) + 2 * kMargin, y + static_cast<float>(height) + 2 * kMargin};
-        c.draw(box, [&](wire::PackBuffer& buffer) { glapi::pack::Bitmap(buffer, width, height, xorig, yorig, 0, 0, bits); });
+        const PixelRect box{x, y, x + static_cast<float>(width) + 2 * kMargin,
+                            y + static_cast<float>(height) + 2 * kMargin};
+        c.draw(box,
+               [&](wire::PackBuffer& buffer) { glapi::pack::Bitmap(buffer, width, height, xorig, yorig, 0, 0, bits); });
     }
     position[0] += xmove;
     position[1] += ymove;
@@ -191,13 +208,19 @@ void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yo
 
 void CopyPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLenum what) {
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
-    if (what != GL_COLOR && what != GL_DEPTH && what != GL_STENCIL && what != GL_DEPTH_STENCIL) return c.error(GL_INVALID_ENUM);
+    if (what != GL_COLOR && what != GL_DEPTH && what != GL_STENCIL && what != GL_DEPTH_STENCIL)
+        return c.error(GL_INVALID_ENUM);
     if (!buffers_exist(c, what)) return c.error(GL_INVALID_OPERATION);
     if (!c.state.raster.raster_position_valid || c.state.local.render_mode == GL_SELECT) return;
     const PixelBox from = clip_to_window(c, {x, y, width, height});
     if (from.empty()) return;
-    const GLenum format = what == GL_COLOR ? GL_RGBA : what == GL_DEPTH ? GL_DEPTH_COMPONENT : what == GL_STENCIL ? GL_STENCIL_INDEX : GL_DEPTH_STENCIL;
-    const GLenum type = what == GL_DEPTH ? GL_UNSIGNED_INT : what == GL_DEPTH_STENCIL ? GL_UNSIGNED_INT_24_8 : GL_UNSIGNED_BYTE;
+    const GLenum format = what == GL_COLOR     ? GL_RGBA
+                          : what == GL_DEPTH   ? GL_DEPTH_COMPONENT
+                          : what == GL_STENCIL ? GL_STENCIL_INDEX
+                                               : GL_DEPTH_STENCIL;
+    const GLenum type = what == GL_DEPTH           ? GL_UNSIGNED_INT
+                        : what == GL_DEPTH_STENCIL ? GL_UNSIGNED_INT_24_8
+                                                   : GL_UNSIGNED_BYTE;
     const auto pixels = gather_plain(c, from, format, type, "glCopyPixels");
     const auto position = c.state.raster.raster_position;
     const auto& zoom = c.state.window.pixel_zoom;
@@ -210,8 +233,12 @@ void CopyPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
 }
 
 void PixelMapfv(Context& c, GLenum map, GLsizei size, const GLfloat* values) { pixel_map(c, map, size, values, 1.0); }
-void PixelMapuiv(Context& c, GLenum map, GLsizei size, const GLuint* values) { pixel_map(c, map, size, values, 1 / 4294967295.0); }
-void PixelMapusv(Context& c, GLenum map, GLsizei size, const GLushort* values) { pixel_map(c, map, size, values, 1 / 65535.0); }
+void PixelMapuiv(Context& c, GLenum map, GLsizei size, const GLuint* values) {
+    pixel_map(c, map, size, values, 1 / 4294967295.0);
+}
+void PixelMapusv(Context& c, GLenum map, GLsizei size, const GLushort* values) {
+    pixel_map(c, map, size, values, 1 / 65535.0);
+}
 void GetPixelMapfv(Context& c, GLenum map, GLfloat* values) { get_pixel_map(c, map, values, 1.0); }
 void GetPixelMapuiv(Context& c, GLenum map, GLuint* values) { get_pixel_map(c, map, values, 4294967295.0); }
 void GetPixelMapusv(Context& c, GLenum map, GLushort* values) { get_pixel_map(c, map, values, 65535.0); }

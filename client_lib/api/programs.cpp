@@ -22,8 +22,12 @@ std::shared_ptr<T> object_of(Context& c, GLuint name, GlslObject::Kind kind) {
     c.error(object ? GL_INVALID_OPERATION : GL_INVALID_VALUE);
     return nullptr;
 }
-std::shared_ptr<Shader> shader_of(Context& c, GLuint name) { return object_of<Shader>(c, name, GlslObject::Kind::shader); }
-std::shared_ptr<Program> program_of(Context& c, GLuint name) { return object_of<Program>(c, name, GlslObject::Kind::program); }
+std::shared_ptr<Shader> shader_of(Context& c, GLuint name) {
+    return object_of<Shader>(c, name, GlslObject::Kind::shader);
+}
+std::shared_ptr<Program> program_of(Context& c, GLuint name) {
+    return object_of<Program>(c, name, GlslObject::Kind::program);
+}
 
 /// The program after linking has been settled.
 std::shared_ptr<Program> settled_program(Context& c, GLuint name) {
@@ -73,7 +77,8 @@ GLint active_value(const Program& program, GLenum pname) {
     switch (pname) {
         case GL_ACTIVE_UNIFORMS: return static_cast<GLint>(executable->uniforms.size());
         case GL_ACTIVE_ATTRIBUTES: return static_cast<GLint>(executable->attributes.size());
-        case GL_ACTIVE_UNIFORM_MAX_LENGTH: return longest_name(executable->uniforms, [](const Uniform& u) { return u.full_name(); });
+        case GL_ACTIVE_UNIFORM_MAX_LENGTH:
+            return longest_name(executable->uniforms, [](const Uniform& u) { return u.full_name(); });
         default: return longest_name(executable->attributes, [](const glapi::ActiveAttribute& a) { return a.name; });
     }
 }
@@ -172,7 +177,8 @@ void AttachShader(Context& c, GLuint program_name, GLuint shader_name) {
     const auto shader = program ? shader_of(c, shader_name) : nullptr;
     if (!shader) return;
     std::lock_guard lock(c.share().mutex);
-    if (std::find(program->shaders.begin(), program->shaders.end(), shader) != program->shaders.end()) return c.error(GL_INVALID_OPERATION);
+    if (std::find(program->shaders.begin(), program->shaders.end(), shader) != program->shaders.end())
+        return c.error(GL_INVALID_OPERATION);
     program->shaders.push_back(shader);
     ++shader->users;
 }
@@ -282,7 +288,8 @@ GLint GetAttribLocation(Context& c, GLuint name, const GLchar* attribute) {
     return -1;
 }
 
-void GetActiveUniform(Context& c, GLuint name, GLuint index, GLsizei room, GLsizei* length, GLint* size, GLenum* type, GLchar* out) {
+void GetActiveUniform(Context& c, GLuint name, GLuint index, GLsizei room, GLsizei* length, GLint* size, GLenum* type,
+                      GLchar* out) {
     const auto program = settled_program(c, name);
     if (!program) return;
     std::lock_guard lock(c.share().mutex);
@@ -294,7 +301,8 @@ void GetActiveUniform(Context& c, GLuint name, GLuint index, GLsizei room, GLsiz
     if (type) *type = uniform.type->type;
 }
 
-void GetActiveAttrib(Context& c, GLuint name, GLuint index, GLsizei room, GLsizei* length, GLint* size, GLenum* type, GLchar* out) {
+void GetActiveAttrib(Context& c, GLuint name, GLuint index, GLsizei room, GLsizei* length, GLint* size, GLenum* type,
+                     GLchar* out) {
     const auto program = settled_program(c, name);
     if (!program) return;
     std::lock_guard lock(c.share().mutex);

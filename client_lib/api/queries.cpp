@@ -29,9 +29,10 @@ std::vector<Node*> live_nodes(Session& session) {
 std::uint64_t samples_of(Context& c, OcclusionQuery& query) {
     if (query.answered || query.id == 0) return query.samples;
     for (Node* node : live_nodes(c.session())) {
-        const auto answer = c.session().ask(c, *node, "glGetQueryObject", [&](wire::PackBuffer& buffer, std::uint32_t request) {
-            glapi::pack::QueryResult(buffer, request, query.id);
-        });
+        const auto answer =
+            c.session().ask(c, *node, "glGetQueryObject", [&](wire::PackBuffer& buffer, std::uint32_t request) {
+                glapi::pack::QueryResult(buffer, request, query.id);
+            });
         std::uint64_t samples = 0;
         if (answer && answer->size() == sizeof samples) std::memcpy(&samples, answer->data(), sizeof samples);
         query.samples += samples;
@@ -44,7 +45,8 @@ template <class Out>
 void get(Context& c, GLuint name, GLenum pname, Out* params) {
     const auto query = c.occlusion->queries.find(name);
     if (!query || query == c.occlusion->current) return c.error(GL_INVALID_OPERATION);
-    if (pname == GL_QUERY_RESULT) *params = static_cast<Out>(std::min<std::uint64_t>(samples_of(c, *query), std::numeric_limits<Out>::max()));
+    if (pname == GL_QUERY_RESULT)
+        *params = static_cast<Out>(std::min<std::uint64_t>(samples_of(c, *query), std::numeric_limits<Out>::max()));
     else if (pname == GL_QUERY_RESULT_AVAILABLE) *params = GL_TRUE;  // asking for the result waits
     else c.error(GL_INVALID_ENUM);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The current raster position (OpenGL 1.2.1, 2.12), computed here with the float operations of Mesa's _mesa_RasterPos in
-// their order, so that text lands on the same pixels as in a window.
+// The current raster position (OpenGL 1.2.1, 2.12), computed here with the float operations of Mesa's _mesa_RasterPos
+// in their order, so that text lands on the same pixels as in a window.
 #include <algorithm>
 #include <cmath>
 
@@ -122,7 +122,8 @@ Shading shade(const glstate::State& s, const Vec4& vertex, const Vec3& normal) {
     const auto& m = s.material;
     const bool separate = l.light_model_color_control == GL_SEPARATE_SPECULAR_COLOR;
     Shading out{{0, 0, 0, std::clamp(m.material_diffuse[0][3], 0.0f, 1.0f)}, {0, 0, 0, 1}};
-    for (int k = 0; k < 3; ++k) out.color[k] = m.material_emission[0][k] + l.light_model_ambient[k] * m.material_ambient[0][k];
+    for (int k = 0; k < 3; ++k)
+        out.color[k] = m.material_emission[0][k] + l.light_model_ambient[k] * m.material_ambient[0][k];
     for (unsigned i = 0; i < l.light_enabled.size(); ++i) {
         if (!l.light_enabled[i]) continue;
         Incidence light = incidence(l, i, vertex);
@@ -195,7 +196,8 @@ void set_window_position(const glstate::State& s, const Vec4& clip, RasterState&
     const auto z_scale = static_cast<float>(0.5 * (range.far_value - range.near_value));
     const auto z_offset = static_cast<float>(0.5 * (range.far_value + range.near_value));
     raster.raster_position = {clip[0] * d * half_width + (half_width + static_cast<float>(v.x)),
-                              clip[1] * d * half_height + (half_height + static_cast<float>(v.y)), clip[2] * d * z_scale + z_offset, clip[3]};
+                              clip[1] * d * half_height + (half_height + static_cast<float>(v.y)),
+                              clip[2] * d * z_scale + z_offset, clip[3]};
     if (s.transform.depth_clamp) {
         const auto [low, high] = std::minmax(static_cast<float>(range.near_value), static_cast<float>(range.far_value));
         raster.raster_position[2] = std::clamp(raster.raster_position[2], low, high);
@@ -204,7 +206,8 @@ void set_window_position(const glstate::State& s, const Vec4& clip, RasterState&
 
 bool needs_normal(const glstate::State& s) {
     const auto& generated = s.texture_gen.tex_gen_enabled;
-    return s.lighting.lighting_enabled || std::any_of(generated.begin(), generated.end(), [](glstate::Flag on) { return on != 0; });
+    return s.lighting.lighting_enabled ||
+           std::any_of(generated.begin(), generated.end(), [](glstate::Flag on) { return on != 0; });
 }
 
 /// Not normalized, as in Mesa.
@@ -264,7 +267,8 @@ void RasterPos4f(Context& c, GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
 void WindowPos3f(Context& c, GLfloat x, GLfloat y, GLfloat z) {
     c.flush_block();
     const glstate::State& s = c.state;
-    const auto near = static_cast<float>(s.transform.depth_range.near_value), far = static_cast<float>(s.transform.depth_range.far_value);
+    const auto near = static_cast<float>(s.transform.depth_range.near_value),
+               far = static_cast<float>(s.transform.depth_range.far_value);
     RasterState raster = s.raster;
     raster.raster_position = {x, y, std::clamp(z, 0.0f, 1.0f) * (far - near) + near, 1.0f};
     raster.raster_position_valid = 1;

@@ -29,17 +29,22 @@ std::vector<std::byte> to_bits(const std::vector<std::byte>& pixels, const Pixel
     std::vector<std::byte> bits(row * static_cast<std::size_t>(box.height));
     for (std::int32_t y = 0; y < box.height; ++y)
         for (std::int32_t x = 0; x < box.width; ++x) {
-            const auto value = pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(box.width) + static_cast<std::size_t>(x)];
+            const auto value =
+                pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(box.width) + static_cast<std::size_t>(x)];
             if ((value & std::byte{1}) != std::byte{0})
-                bits[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x) / 8] |= static_cast<std::byte>(0x80 >> (x % 8));
+                bits[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x) / 8] |=
+                    static_cast<std::byte>(0x80 >> (x % 8));
         }
     return bits;
 }
 
 bool has_ten_bits(GLenum type) { return type == GL_UNSIGNED_INT_10_10_10_2 || type == GL_UNSIGNED_INT_2_10_10_10_REV; }
 
-/// What the nodes are asked for. Mesa makes ten bits of eight out of a framebuffer object otherwise than out of a window.
-GLenum gathered_type(GLenum type) { return type == GL_BITMAP ? GL_UNSIGNED_BYTE : has_ten_bits(type) ? GL_FLOAT : type; }
+/// What the nodes are asked for. Mesa makes ten bits of eight out of a framebuffer object otherwise than out of a
+/// window.
+GLenum gathered_type(GLenum type) {
+    return type == GL_BITMAP ? GL_UNSIGNED_BYTE : has_ten_bits(type) ? GL_FLOAT : type;
+}
 
 }  // namespace
 
@@ -59,7 +64,10 @@ void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
     store.skip_rows += box.y - y;
     auto tight = gather_pixels(c, box, format, gathered_type(type), "glReadPixels");
     if (type == GL_BITMAP) tight = to_bits(tight, box);
-    if (has_ten_bits(type)) tight = from_rgba(format, type, to_rgba(format, GL_FLOAT, tight, static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height)));
+    if (has_ten_bits(type))
+        tight = from_rgba(format, type,
+                          to_rgba(format, GL_FLOAT, tight,
+                                  static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height)));
     glapi::pack_image(store, {box.width, box.height}, format, type, tight, to);
 }
 

@@ -17,7 +17,9 @@ SurfaceLayout single_layer(const Surface& surface, std::uint32_t node) {
     const auto width = static_cast<int>(layout.width), height = static_cast<int>(layout.height);
     layout.offscreen = true;
     layout.rect = {0, 0, width, height};
-    layout.targets.assign(1, Target{node, wire::kOffscreenSlot, {0, 0, static_cast<float>(width), static_cast<float>(height)}, layout.rect});
+    layout.targets.assign(
+        1,
+        Target{node, wire::kOffscreenSlot, {0, 0, static_cast<float>(width), static_cast<float>(height)}, layout.rect});
     return layout;
 }
 

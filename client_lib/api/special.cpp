@@ -15,14 +15,15 @@ std::optional<PixelRect> clear_box(const Context& c) {
 
 /// Nothing of the back buffer is left from before.
 bool clears_all(const Context& c, GLbitfield mask) {
-    return (mask & GL_COLOR_BUFFER_BIT) != 0 && !c.state.window.scissor_enabled && c.state.window.draw_buffer == GL_BACK &&
-           c.state.color_buffer.color_mask == glstate::ColorMask{1, 1, 1, 1};
+    return (mask & GL_COLOR_BUFFER_BIT) != 0 && !c.state.window.scissor_enabled &&
+           c.state.window.draw_buffer == GL_BACK && c.state.color_buffer.color_mask == glstate::ColorMask{1, 1, 1, 1};
 }
 
 }  // namespace
 
 void Clear(Context& c, GLbitfield mask) {
-    constexpr GLbitfield kKnown = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT | GL_ACCUM_BUFFER_BIT;
+    constexpr GLbitfield kKnown =
+        GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT | GL_ACCUM_BUFFER_BIT;
     if (mask & ~kKnown) return c.error(GL_INVALID_VALUE);
     if (mask == 0 || c.state.local.render_mode != GL_RENDER) return;
     c.draw(clear_box(c), needs_of_clear(), [&](wire::PackBuffer& buffer) { glapi::pack::Clear(buffer, mask); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// GL_CR_synchronization: the order between the processes of a parallel program (docs/parallel-programs.md). The calls are
-// commands of the stream: none waits.
+// GL_CR_synchronization: the order between the processes of a parallel program (docs/parallel-programs.md). The calls
+// are commands of the stream: none waits.
 #include "client_lib/context.h"
 
 namespace wall::client::api {
@@ -17,36 +17,48 @@ bool may_hold(Context& c) {
 }  // namespace
 
 void BarrierCreateCR(Context& c, GLuint name, GLuint count) {
-    c.session().synchronize(c, false, [=](SyncObjects& own) { return own.barrier_create(name, count); },
-                            [=](wire::PackBuffer& to) { pack::BarrierCreate(to, name, count); });
+    c.session().synchronize(
+        c, false, [=](SyncObjects& own) { return own.barrier_create(name, count); },
+        [=](wire::PackBuffer& to) { pack::BarrierCreate(to, name, count); });
 }
 
 void BarrierDestroyCR(Context& c, GLuint name) {
-    c.session().synchronize(c, false, [=](SyncObjects& own) { return own.barrier_destroy(name); }, [=](wire::PackBuffer& to) { pack::BarrierDestroy(to, name); });
+    c.session().synchronize(
+        c, false, [=](SyncObjects& own) { return own.barrier_destroy(name); },
+        [=](wire::PackBuffer& to) { pack::BarrierDestroy(to, name); });
 }
 
 void BarrierExecCR(Context& c, GLuint name) {
     if (!may_hold(c)) return;
-    c.session().synchronize(c, true, [=](SyncObjects& own) { return own.barrier_exec(name); }, [=](wire::PackBuffer& to) { pack::BarrierExec(to, name); });
+    c.session().synchronize(
+        c, true, [=](SyncObjects& own) { return own.barrier_exec(name); },
+        [=](wire::PackBuffer& to) { pack::BarrierExec(to, name); });
 }
 
 void SemaphoreCreateCR(Context& c, GLuint name, GLuint count) {
-    c.session().synchronize(c, false, [=](SyncObjects& own) { return own.semaphore_create(name, count); },
-                            [=](wire::PackBuffer& to) { pack::SemaphoreCreate(to, name, count, 0); });
+    c.session().synchronize(
+        c, false, [=](SyncObjects& own) { return own.semaphore_create(name, count); },
+        [=](wire::PackBuffer& to) { pack::SemaphoreCreate(to, name, count, 0); });
 }
 
 void SemaphoreDestroyCR(Context& c, GLuint name) {
-    c.session().synchronize(c, false, [=](SyncObjects& own) { return own.semaphore_destroy(name); }, [=](wire::PackBuffer& to) { pack::SemaphoreDestroy(to, name); });
+    c.session().synchronize(
+        c, false, [=](SyncObjects& own) { return own.semaphore_destroy(name); },
+        [=](wire::PackBuffer& to) { pack::SemaphoreDestroy(to, name); });
 }
 
 void SemaphorePCR(Context& c, GLuint name) {
     if (!may_hold(c)) return;
-    c.session().synchronize(c, true, [=](SyncObjects& own) { return own.semaphore_p(name); }, [=](wire::PackBuffer& to) { pack::SemaphoreP(to, name); });
+    c.session().synchronize(
+        c, true, [=](SyncObjects& own) { return own.semaphore_p(name); },
+        [=](wire::PackBuffer& to) { pack::SemaphoreP(to, name); });
 }
 
 // Sent at once: somebody may wait for it.
 void SemaphoreVCR(Context& c, GLuint name) {
-    c.session().synchronize(c, true, [=](SyncObjects& own) { return own.semaphore_v(name); }, [=](wire::PackBuffer& to) { pack::SemaphoreV(to, name); });
+    c.session().synchronize(
+        c, true, [=](SyncObjects& own) { return own.semaphore_v(name); },
+        [=](wire::PackBuffer& to) { pack::SemaphoreV(to, name); });
 }
 
 }  // namespace wall::client::api

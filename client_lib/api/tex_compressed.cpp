@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Compressed texture images (OpenGL 2.1, 3.8.3): the S3TC formats, kept and sent as they come. An image that comes as pixels
-// is compressed by each node; when the program asks for its blocks or gives some, one node is asked what its driver makes
-// of it. Formats for one and three dimensions there are none.
+// Compressed texture images (OpenGL 2.1, 3.8.3): the S3TC formats, kept and sent as they come. An image that comes as
+// pixels is compressed by each node; when the program asks for its blocks or gives some, one node is asked what its
+// driver makes of it. Formats for one and three dimensions there are none.
 #include <algorithm>
 #include <cstring>
 
@@ -32,7 +32,8 @@ struct Image {
 GLenum image_error(Context& c, const Image& image, GLint border) {
     if (!legal_target(image.target) || s3tc_block_bytes(image.format) == 0) return GL_INVALID_ENUM;
     const GLint levels = level_count(c, image.target);
-    if (image.level < 0 || image.level >= levels || border != 0 || image.width < 0 || image.height < 0) return GL_INVALID_VALUE;
+    if (image.level < 0 || image.level >= levels || border != 0 || image.width < 0 || image.height < 0)
+        return GL_INVALID_VALUE;
     const GLint most = std::max(1, 1 << (levels - 1) >> image.level);
     if (image.width > most || image.height > most) return GL_INVALID_VALUE;
     if (object_target(image.target) == GL_TEXTURE_CUBE_MAP && image.width != image.height) return GL_INVALID_VALUE;
@@ -52,21 +53,28 @@ TextureLevel described(const Image& image) {
 
 GLenum sub_image_error(const TextureLevel& level, const Image& part, GLint x, GLint y) {
     if (!level.compressed || level.internal_format != part.format) return GL_INVALID_OPERATION;
-    const auto inside = [](GLint at, GLsizei size, GLint all) { return at >= 0 && size >= 0 && std::int64_t{at} + size <= all; };
+    const auto inside = [](GLint at, GLsizei size, GLint all) {
+        return at >= 0 && size >= 0 && std::int64_t{at} + size <= all;
+    };
     if (!inside(x, part.width, level.width) || !inside(y, part.height, level.height)) return GL_INVALID_VALUE;
-    if (!is_whole_blocks(x, part.width, level.width) || !is_whole_blocks(y, part.height, level.height)) return GL_INVALID_OPERATION;
-    return static_cast<std::size_t>(part.bytes) == s3tc_bytes(part.format, part.width, part.height) ? GL_NO_ERROR : GL_INVALID_VALUE;
+    if (!is_whole_blocks(x, part.width, level.width) || !is_whole_blocks(y, part.height, level.height))
+        return GL_INVALID_OPERATION;
+    return static_cast<std::size_t>(part.bytes) == s3tc_bytes(part.format, part.width, part.height) ? GL_NO_ERROR
+                                                                                                    : GL_INVALID_VALUE;
 }
 
 void copy_blocks(TextureLevel& level, const Image& part, GLint x, GLint y, const std::byte* from) {
-    const std::size_t row = s3tc_bytes(level.internal_format, level.width, kS3tcBlock), part_row = s3tc_bytes(part.format, part.width, kS3tcBlock);
+    const std::size_t row = s3tc_bytes(level.internal_format, level.width, kS3tcBlock),
+                      part_row = s3tc_bytes(part.format, part.width, kS3tcBlock);
     const std::size_t left = s3tc_bytes(part.format, x, kS3tcBlock);
     for (GLsizei done = 0; done < part.height; done += kS3tcBlock, from += part_row)
-        std::memcpy(level.pixels.data() + static_cast<std::size_t>((y + done) / kS3tcBlock) * row + left, from, part_row);
+        std::memcpy(level.pixels.data() + static_cast<std::size_t>((y + done) / kS3tcBlock) * row + left, from,
+                    part_row);
 }
 
 /// What a node's driver makes of an image; nothing if none answers. A large one is asked for in rows of blocks.
-std::optional<std::vector<std::byte>> compressed(Context& c, const Image& image, const TexelData& data, const char* function) {
+std::optional<std::vector<std::byte>> compressed(Context& c, const Image& image, const TexelData& data,
+                                                 const char* function) {
     const auto layout = glapi::pixel_layout(data.format, data.type);
     if (!layout) return std::nullopt;
     const std::size_t row = glapi::row_bytes(*layout, image.width);
@@ -74,9 +82,11 @@ std::optional<std::vector<std::byte>> compressed(Context& c, const Image& image,
     std::vector<std::byte> blocks;
     for (GLsizei y = 0; y < image.height; y += most) {
         const GLsizei height = std::min(most, image.height - y);
-        const auto pixels = std::span(data.bytes).subspan(static_cast<std::size_t>(y) * row, static_cast<std::size_t>(height) * row);
+        const auto pixels =
+            std::span(data.bytes).subspan(static_cast<std::size_t>(y) * row, static_cast<std::size_t>(height) * row);
         const auto answer = ask_one_node(c, function, [&](wire::PackBuffer& buffer, std::uint32_t request) {
-            glapi::pack::Compress(buffer, request, static_cast<GLenum>(image.format), image.width, height, data.format, data.type, pixels);
+            glapi::pack::Compress(buffer, request, static_cast<GLenum>(image.format), image.width, height, data.format,
+                                  data.type, pixels);
         });
         if (!answer || answer->bytes.size() != s3tc_bytes(image.format, image.width, height)) return std::nullopt;
         blocks.insert(blocks.end(), answer->bytes.begin(), answer->bytes.end());
@@ -101,12 +111,17 @@ void settle_blocks(Context& c, GLenum target, GLint number) {
     {
         std::lock_guard lock(c.share().mutex);
         const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
-        if (!level || level->compressed || level->content == LevelContent::generated || level->width == 0 || level->height == 0) return;
+        if (!level || level->compressed || level->content == LevelContent::generated || level->width == 0 ||
+            level->height == 0)
+            return;
         image.format = blocks_format(level->internal_format);
         if (image.format == 0) return;
         image.width = level->width, image.height = level->height;
         if (level->content == LevelContent::stored) data = {level->data_format, level->data_type, level->pixels};
-        else data = {GL_RGBA, GL_UNSIGNED_BYTE, std::vector<std::byte>(std::size_t{4} * static_cast<std::size_t>(level->width) * static_cast<std::size_t>(level->height))};
+        else
+            data = {GL_RGBA, GL_UNSIGNED_BYTE,
+                    std::vector<std::byte>(std::size_t{4} * static_cast<std::size_t>(level->width) *
+                                           static_cast<std::size_t>(level->height))};
     }
     auto blocks = api::compressed(c, image, data, "glGetCompressedTexImage");
     if (!blocks) return;
@@ -139,8 +154,8 @@ bool change_blocks(Context& c, const ImageCall& call, const TexelData& data) {
 
 namespace wall::client::api {
 
-void CompressedTexImage2D(Context& c, GLenum target, GLint number, GLenum internal, GLsizei width, GLsizei height, GLint border, GLsizei bytes,
-                          const void* data) {
+void CompressedTexImage2D(Context& c, GLenum target, GLint number, GLenum internal, GLsizei width, GLsizei height,
+                          GLint border, GLsizei bytes, const void* data) {
     const Image image{target, number, static_cast<GLint>(internal), width, height, bytes};
     const GLenum error = image_error(c, image, border);
     if (is_proxy(target) && legal_target(target)) {
@@ -162,15 +177,17 @@ void CompressedTexImage2D(Context& c, GLenum target, GLint number, GLenum intern
     touch(c.share(), *texture);
 }
 
-void CompressedTexSubImage2D(Context& c, GLenum target, GLint number, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLsizei bytes,
-                             const void* data) {
-    if (is_proxy(target) || !legal_target(target) || s3tc_block_bytes(static_cast<GLint>(format)) == 0) return c.error(GL_INVALID_ENUM);
+void CompressedTexSubImage2D(Context& c, GLenum target, GLint number, GLint x, GLint y, GLsizei width, GLsizei height,
+                             GLenum format, GLsizei bytes, const void* data) {
+    if (is_proxy(target) || !legal_target(target) || s3tc_block_bytes(static_cast<GLint>(format)) == 0)
+        return c.error(GL_INVALID_ENUM);
     if (number < 0 || number >= level_count(c, target) || bytes < 0) return c.error(GL_INVALID_VALUE);
     const Image part{target, number, static_cast<GLint>(format), width, height, bytes};
     settle_blocks(c, target, number);
     const auto texture = bound_texture(c, target);
     const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
-    if (const GLenum error = level ? sub_image_error(*level, part, x, y) : GLenum{GL_INVALID_OPERATION}) return c.error(error);
+    if (const GLenum error = level ? sub_image_error(*level, part, x, y) : GLenum{GL_INVALID_OPERATION})
+        return c.error(error);
     const auto* from = static_cast<const std::byte*>(unpack_source(c, data, static_cast<std::size_t>(bytes)));
     if (!from || bytes == 0) return;
     const auto changed = texture_to_change(c, target);
@@ -183,20 +200,29 @@ void CompressedTexSubImage2D(Context& c, GLenum target, GLint number, GLint x, G
 }
 
 void GetCompressedTexImage(Context& c, GLenum target, GLint number, void* pixels) {
-    if (is_proxy(target) || object_target(target) == 0 || target == GL_TEXTURE_CUBE_MAP) return c.error(GL_INVALID_ENUM);
+    if (is_proxy(target) || object_target(target) == 0 || target == GL_TEXTURE_CUBE_MAP)
+        return c.error(GL_INVALID_ENUM);
     if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE);
     settle_blocks(c, target, number);
     const auto texture = bound_texture(c, target);
     const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
     if (!level || !level->compressed) return c.error(GL_INVALID_OPERATION);
-    if (void* to = pack_target(c, pixels, level->pixels.size())) std::memcpy(to, level->pixels.data(), level->pixels.size());
+    if (void* to = pack_target(c, pixels, level->pixels.size()))
+        std::memcpy(to, level->pixels.data(), level->pixels.size());
 }
 
 // No format is for them.
-void CompressedTexImage1D(Context& c, GLenum, GLint, GLenum, GLsizei, GLint, GLsizei, const void*) { c.error(GL_INVALID_ENUM); }
-void CompressedTexImage3D(Context& c, GLenum, GLint, GLenum, GLsizei, GLsizei, GLsizei, GLint, GLsizei, const void*) { c.error(GL_INVALID_ENUM); }
-void CompressedTexSubImage1D(Context& c, GLenum, GLint, GLint, GLsizei, GLenum, GLsizei, const void*) { c.error(GL_INVALID_ENUM); }
-void CompressedTexSubImage3D(Context& c, GLenum, GLint, GLint, GLint, GLint, GLsizei, GLsizei, GLsizei, GLenum, GLsizei, const void*) {
+void CompressedTexImage1D(Context& c, GLenum, GLint, GLenum, GLsizei, GLint, GLsizei, const void*) {
+    c.error(GL_INVALID_ENUM);
+}
+void CompressedTexImage3D(Context& c, GLenum, GLint, GLenum, GLsizei, GLsizei, GLsizei, GLint, GLsizei, const void*) {
+    c.error(GL_INVALID_ENUM);
+}
+void CompressedTexSubImage1D(Context& c, GLenum, GLint, GLint, GLsizei, GLenum, GLsizei, const void*) {
+    c.error(GL_INVALID_ENUM);
+}
+void CompressedTexSubImage3D(Context& c, GLenum, GLint, GLint, GLint, GLint, GLsizei, GLsizei, GLsizei, GLenum, GLsizei,
+                             const void*) {
     c.error(GL_INVALID_ENUM);
 }
 

@@ -19,7 +19,9 @@ namespace wall::client {
 namespace {
 
 GLint largest_size(Context& c, GLenum target) {
-    const auto limit = [&](GLenum name, double otherwise) { return static_cast<GLint>(limit_of(c.session().caps(), name, otherwise)); };
+    const auto limit = [&](GLenum name, double otherwise) {
+        return static_cast<GLint>(limit_of(c.session().caps(), name, otherwise));
+    };
     switch (object_target(target)) {
         case GL_TEXTURE_3D: return limit(GL_MAX_3D_TEXTURE_SIZE, 2048);
         case GL_TEXTURE_CUBE_MAP: return limit(GL_MAX_CUBE_MAP_TEXTURE_SIZE, 16384);
@@ -76,7 +78,8 @@ void strip_border(ImageCall& call) {
 }
 
 std::size_t texels(const ImageCall& call) {
-    return static_cast<std::size_t>(call.width) * static_cast<std::size_t>(call.height) * static_cast<std::size_t>(call.depth);
+    return static_cast<std::size_t>(call.width) * static_cast<std::size_t>(call.height) *
+           static_cast<std::size_t>(call.depth);
 }
 
 /// More than nodes hold in one level.
@@ -107,7 +110,8 @@ TexelData transferred(Context& c, const ImageCall& call, TexelData data) {
 
 TexelData unpacked(Context& c, const ImageCall& call) {
     const glapi::ImageSize size{call.width, call.height, call.depth, call.dimensions};
-    return transferred(c, call, {call.format, call.type, glapi::unpack_image(call.store, size, call.format, call.type, call.pixels)});
+    return transferred(
+        c, call, {call.format, call.type, glapi::unpack_image(call.store, size, call.format, call.type, call.pixels)});
 }
 
 /// In the buffer object if one is bound. False: not there, and the error is recorded.
@@ -133,7 +137,8 @@ void unify(TextureLevel& level, TexelData& data, std::size_t count) {
     const bool bytes = eight_bits(level.data_format, level.data_type) && eight_bits(data.format, data.type);
     const GLenum format = depth ? GL_DEPTH_COMPONENT : GL_RGBA, type = bytes ? GL_UNSIGNED_BYTE : GL_FLOAT;
     TexelData old{level.data_format, level.data_type, std::move(level.pixels)};
-    const std::size_t all = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height) * static_cast<std::size_t>(level.depth);
+    const std::size_t all = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height) *
+                            static_cast<std::size_t>(level.depth);
     convert(old, all, format, type);
     convert(data, count, format, type);
     level.pixels = std::move(old.bytes);
@@ -147,8 +152,10 @@ void copy_box(TextureLevel& level, const TexBox& box, const std::vector<std::byt
     const std::byte* at = from.data();
     for (GLint z = 0; z < box.depth; ++z)
         for (GLint y = 0; y < box.height; ++y, at += bytes) {
-            const auto line = static_cast<std::size_t>(box.z + z) * static_cast<std::size_t>(level.height) + static_cast<std::size_t>(box.y + y);
-            std::memcpy(level.pixels.data() + line * row + static_cast<std::size_t>(box.x) * layout.pixel_bytes, at, bytes);
+            const auto line = static_cast<std::size_t>(box.z + z) * static_cast<std::size_t>(level.height) +
+                              static_cast<std::size_t>(box.y + y);
+            std::memcpy(level.pixels.data() + line * row + static_cast<std::size_t>(box.x) * layout.pixel_bytes, at,
+                        bytes);
         }
 }
 
@@ -224,7 +231,8 @@ void define_image(Context& c, ImageCall call) {
         return;
     }
     if (error != GL_NO_ERROR) return c.error(error);
-    if (!glapi::image_bytes(call.format, call.type, call.width, call.height, call.depth)) return c.error(GL_OUT_OF_MEMORY);
+    if (!glapi::image_bytes(call.format, call.type, call.width, call.height, call.depth))
+        return c.error(GL_OUT_OF_MEMORY);
     if (!find_pixels(c, call)) return;
     strip_border(call);
     if (!legal_size(c, call)) return c.error(GL_INVALID_VALUE);
@@ -246,7 +254,8 @@ GLenum sub_image_error(Context& c, const ImageCall& call) {
     const TextureLevel* level = texture ? texture->find_level(face_of(call.target), call.level) : nullptr;
     if (!level) return GL_INVALID_OPERATION;
     const auto inside = [](GLint at, GLsizei size, GLint all) { return at >= 0 && std::int64_t{at} + size <= all; };
-    if (!inside(call.x, call.width, level->width) || !inside(call.y, call.height, level->height) || !inside(call.z, call.depth, level->depth))
+    if (!inside(call.x, call.width, level->width) || !inside(call.y, call.height, level->height) ||
+        !inside(call.z, call.depth, level->depth))
         return GL_INVALID_VALUE;
     if (blocks_format(level->internal_format) != 0 && !whole_blocks(call, *level)) return GL_INVALID_OPERATION;
     const TextureFormat* internal = find_texture_format(level->internal_format);
@@ -264,7 +273,8 @@ void define_sub_image(Context& c, ImageCall call) {
 namespace wall::client::api {
 namespace {
 
-ImageCall image_call(Context& c, unsigned dimensions, GLenum target, GLint level, GLenum format, GLenum type, const void* pixels) {
+ImageCall image_call(Context& c, unsigned dimensions, GLenum target, GLint level, GLenum format, GLenum type,
+                     const void* pixels) {
     ImageCall call;
     call.dimensions = dimensions;
     call.target = target;
@@ -324,54 +334,57 @@ void copy_sub_image(Context& c, ImageCall call, From from, const char* function)
 
 }  // namespace
 
-void TexImage1D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLint border, GLenum format, GLenum type,
-                const void* pixels) {
+void TexImage1D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLint border, GLenum format,
+                GLenum type, const void* pixels) {
     ImageCall call = image_call(c, 1, target, level, format, type, pixels);
     call.internal_format = internal, call.border = border, call.width = width;
     define_image(c, call);
 }
 
-void TexImage2D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLint border, GLenum format,
-                GLenum type, const void* pixels) {
+void TexImage2D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLint border,
+                GLenum format, GLenum type, const void* pixels) {
     ImageCall call = image_call(c, 2, target, level, format, type, pixels);
     call.internal_format = internal, call.border = border, call.width = width, call.height = height;
     define_image(c, call);
 }
 
-void TexImage3D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLsizei depth, GLint border,
-                GLenum format, GLenum type, const void* pixels) {
+void TexImage3D(Context& c, GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLsizei depth,
+                GLint border, GLenum format, GLenum type, const void* pixels) {
     ImageCall call = image_call(c, 3, target, level, format, type, pixels);
     call.internal_format = internal, call.border = border, call.width = width, call.height = height, call.depth = depth;
     define_image(c, call);
 }
 
-void TexSubImage1D(Context& c, GLenum target, GLint level, GLint x, GLsizei width, GLenum format, GLenum type, const void* pixels) {
+void TexSubImage1D(Context& c, GLenum target, GLint level, GLint x, GLsizei width, GLenum format, GLenum type,
+                   const void* pixels) {
     ImageCall call = image_call(c, 1, target, level, format, type, pixels);
     call.x = x, call.width = width;
     define_sub_image(c, call);
 }
 
-void TexSubImage2D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
-                   const void* pixels) {
+void TexSubImage2D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height,
+                   GLenum format, GLenum type, const void* pixels) {
     ImageCall call = image_call(c, 2, target, level, format, type, pixels);
     call.x = x, call.y = y, call.width = width, call.height = height;
     define_sub_image(c, call);
 }
 
-void TexSubImage3D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height, GLsizei depth,
-                   GLenum format, GLenum type, const void* pixels) {
+void TexSubImage3D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height,
+                   GLsizei depth, GLenum format, GLenum type, const void* pixels) {
     ImageCall call = image_call(c, 3, target, level, format, type, pixels);
     call.x = x, call.y = y, call.z = z, call.width = width, call.height = height, call.depth = depth;
     define_sub_image(c, call);
 }
 
-void CopyTexImage1D(Context& c, GLenum target, GLint level, GLenum internal, GLint x, GLint y, GLsizei width, GLint border) {
+void CopyTexImage1D(Context& c, GLenum target, GLint level, GLenum internal, GLint x, GLint y, GLsizei width,
+                    GLint border) {
     ImageCall call = image_call(c, 1, target, level, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     call.border = border, call.width = width;
     copy_image(c, call, internal, {x, y}, "glCopyTexImage1D");
 }
 
-void CopyTexImage2D(Context& c, GLenum target, GLint level, GLenum internal, GLint x, GLint y, GLsizei width, GLsizei height, GLint border) {
+void CopyTexImage2D(Context& c, GLenum target, GLint level, GLenum internal, GLint x, GLint y, GLsizei width,
+                    GLsizei height, GLint border) {
     ImageCall call = image_call(c, 2, target, level, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     call.border = border, call.width = width, call.height = height;
     copy_image(c, call, internal, {x, y}, "glCopyTexImage2D");
@@ -383,14 +396,15 @@ void CopyTexSubImage1D(Context& c, GLenum target, GLint level, GLint to_x, GLint
     copy_sub_image(c, call, {x, y}, "glCopyTexSubImage1D");
 }
 
-void CopyTexSubImage2D(Context& c, GLenum target, GLint level, GLint to_x, GLint to_y, GLint x, GLint y, GLsizei width, GLsizei height) {
+void CopyTexSubImage2D(Context& c, GLenum target, GLint level, GLint to_x, GLint to_y, GLint x, GLint y, GLsizei width,
+                       GLsizei height) {
     ImageCall call = image_call(c, 2, target, level, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     call.x = to_x, call.y = to_y, call.width = width, call.height = height;
     copy_sub_image(c, call, {x, y}, "glCopyTexSubImage2D");
 }
 
-void CopyTexSubImage3D(Context& c, GLenum target, GLint level, GLint to_x, GLint to_y, GLint to_z, GLint x, GLint y, GLsizei width,
-                       GLsizei height) {
+void CopyTexSubImage3D(Context& c, GLenum target, GLint level, GLint to_x, GLint to_y, GLint to_z, GLint x, GLint y,
+                       GLsizei width, GLsizei height) {
     ImageCall call = image_call(c, 3, target, level, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     call.x = to_x, call.y = to_y, call.z = to_z, call.width = width, call.height = height;
     copy_sub_image(c, call, {x, y}, "glCopyTexSubImage3D");

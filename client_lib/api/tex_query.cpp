@@ -35,7 +35,8 @@ GLint level_value(const TextureLevel& level, const TextureFormat& format, GLenum
         case GL_TEXTURE_BLUE_TYPE: return type_of(bits.blue);
         case GL_TEXTURE_ALPHA_TYPE: return type_of(bits.alpha);
         case GL_TEXTURE_COMPRESSED: return format.compressed;
-        case GL_TEXTURE_COMPRESSED_IMAGE_SIZE: return static_cast<GLint>(s3tc_bytes(format.answer, level.width, level.height));
+        case GL_TEXTURE_COMPRESSED_IMAGE_SIZE:
+            return static_cast<GLint>(s3tc_bytes(format.answer, level.width, level.height));
         default: known = false; return 0;
     }
 }
@@ -63,7 +64,9 @@ void get_level(Context& c, GLenum target, GLint number, GLenum pname, Out* out) 
     if (is_proxy(target)) {
         const auto found = c.maps->proxies.find({target, number});
         answer(found == c.maps->proxies.end() ? nullptr : &found->second);
-        if (value == GL_RGBA && pname == GL_TEXTURE_INTERNAL_FORMAT && (found == c.maps->proxies.end() || !found->second.defined())) value = 0;
+        if (value == GL_RGBA && pname == GL_TEXTURE_INTERNAL_FORMAT &&
+            (found == c.maps->proxies.end() || !found->second.defined()))
+            value = 0;
     } else {
         const auto texture = bound_texture(c, target);
         std::lock_guard lock(c.share().mutex);
@@ -79,15 +82,30 @@ bool parameter_target(GLenum target) { return object_target(target) == target; }
 unsigned parameter_size(GLenum pname) {
     switch (pname) {
         case GL_TEXTURE_BORDER_COLOR: return 4;
-        case GL_TEXTURE_MIN_FILTER: case GL_TEXTURE_MAG_FILTER: case GL_TEXTURE_WRAP_S: case GL_TEXTURE_WRAP_T: case GL_TEXTURE_WRAP_R:
-        case GL_TEXTURE_PRIORITY: case GL_TEXTURE_MIN_LOD: case GL_TEXTURE_MAX_LOD: case GL_TEXTURE_LOD_BIAS: case GL_TEXTURE_BASE_LEVEL:
-        case GL_TEXTURE_MAX_LEVEL: case GL_TEXTURE_MAX_ANISOTROPY_EXT: case GL_TEXTURE_COMPARE_MODE: case GL_TEXTURE_COMPARE_FUNC:
-        case GL_DEPTH_TEXTURE_MODE: case GL_GENERATE_MIPMAP: case GL_TEXTURE_RESIDENT: return 1;
+        case GL_TEXTURE_MIN_FILTER:
+        case GL_TEXTURE_MAG_FILTER:
+        case GL_TEXTURE_WRAP_S:
+        case GL_TEXTURE_WRAP_T:
+        case GL_TEXTURE_WRAP_R:
+        case GL_TEXTURE_PRIORITY:
+        case GL_TEXTURE_MIN_LOD:
+        case GL_TEXTURE_MAX_LOD:
+        case GL_TEXTURE_LOD_BIAS:
+        case GL_TEXTURE_BASE_LEVEL:
+        case GL_TEXTURE_MAX_LEVEL:
+        case GL_TEXTURE_MAX_ANISOTROPY_EXT:
+        case GL_TEXTURE_COMPARE_MODE:
+        case GL_TEXTURE_COMPARE_FUNC:
+        case GL_DEPTH_TEXTURE_MODE:
+        case GL_GENERATE_MIPMAP:
+        case GL_TEXTURE_RESIDENT: return 1;
         default: return 0;
     }
 }
 
-GLint normalized_int(float value) { return static_cast<GLint>(std::lrint(2147483647.0 * std::clamp(static_cast<double>(value), -1.0, 1.0))); }
+GLint normalized_int(float value) {
+    return static_cast<GLint>(std::lrint(2147483647.0 * std::clamp(static_cast<double>(value), -1.0, 1.0)));
+}
 
 template <class Out>
 void get_parameter(Context& c, GLenum target, GLenum pname, Out* out) {
@@ -95,8 +113,9 @@ void get_parameter(Context& c, GLenum target, GLenum pname, Out* out) {
     const unsigned count = parameter_size(pname);
     if (count == 0) return c.error(GL_INVALID_ENUM);
     const auto texture = bound_texture(c, target);
-    const auto value = pname == GL_TEXTURE_RESIDENT ? std::array<float, 4>{1}
-                                                    : parameter_value(texture ? texture->parameters : Texture(0, 0, target).parameters, pname);
+    const auto value = pname == GL_TEXTURE_RESIDENT
+                           ? std::array<float, 4>{1}
+                           : parameter_value(texture ? texture->parameters : Texture(0, 0, target).parameters, pname);
     constexpr bool kInteger = std::is_same_v<Out, GLint>;
     const bool fraction = pname == GL_TEXTURE_BORDER_COLOR || pname == GL_TEXTURE_PRIORITY;
     for (unsigned i = 0; i < count; ++i) {
@@ -127,7 +146,8 @@ float quantized(float value, unsigned bits, bool to_bytes) {
     if (bits == 0 || bits > 16) return value;
     const auto most = static_cast<float>((1u << bits) - 1);
     const auto number = static_cast<unsigned>(std::lrint(std::clamp(value, 0.0f, 1.0f) * most));
-    if (to_bytes && (bits == 5 || bits == 6)) return static_cast<float>(number << (8 - bits) | number >> (2 * bits - 8)) / 255.0f;
+    if (to_bytes && (bits == 5 || bits == 6))
+        return static_cast<float>(number << (8 - bits) | number >> (2 * bits - 8)) / 255.0f;
     return static_cast<float>(number) / most;
 }
 
@@ -149,11 +169,14 @@ bool readable(GLenum base, GLenum format) {
 /// A mipmap that only the nodes have, computed here by a box filter.
 std::vector<Rgba> halved(const std::vector<Rgba>& from, const TextureLevel& size, const TextureLevel& to) {
     std::vector<Rgba> out;
-    out.reserve(static_cast<std::size_t>(to.width) * static_cast<std::size_t>(to.height) * static_cast<std::size_t>(to.depth));
+    out.reserve(static_cast<std::size_t>(to.width) * static_cast<std::size_t>(to.height) *
+                static_cast<std::size_t>(to.depth));
     const auto at = [&](GLint x, GLint y, GLint z) -> const Rgba& {
         x = std::min(x, size.width - 1), y = std::min(y, size.height - 1), z = std::min(z, size.depth - 1);
-        return from[(static_cast<std::size_t>(z) * static_cast<std::size_t>(size.height) + static_cast<std::size_t>(y)) *
-                        static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x)];
+        return from[(static_cast<std::size_t>(z) * static_cast<std::size_t>(size.height) +
+                     static_cast<std::size_t>(y)) *
+                        static_cast<std::size_t>(size.width) +
+                    static_cast<std::size_t>(x)];
     };
     for (GLint z = 0; z < to.depth; ++z)
         for (GLint y = 0; y < to.height; ++y)
@@ -170,9 +193,11 @@ std::vector<Rgba> halved(const std::vector<Rgba>& from, const TextureLevel& size
 
 std::vector<Rgba> level_texels(Texture& texture, unsigned face, GLint number) {
     const TextureLevel& level = *texture.find_level(face, number);
-    const std::size_t count = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height) * static_cast<std::size_t>(level.depth);
+    const std::size_t count = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height) *
+                              static_cast<std::size_t>(level.depth);
     if (level.compressed)
-        return to_rgba(GL_RGBA, GL_UNSIGNED_BYTE, decode_s3tc(level.internal_format, level.width, level.height, level.pixels), count);
+        return to_rgba(GL_RGBA, GL_UNSIGNED_BYTE,
+                       decode_s3tc(level.internal_format, level.width, level.height, level.pixels), count);
     if (level.content == LevelContent::stored) return to_rgba(level.data_format, level.data_type, level.pixels, count);
     if (level.content == LevelContent::generated && texture.find_level(face, number - 1))
         return halved(level_texels(texture, face, number - 1), *texture.find_level(face, number - 1), level);
@@ -187,8 +212,12 @@ void GetTexLevelParameterfv(Context& c, GLenum target, GLint level, GLenum pname
 void GetTexLevelParameteriv(Context& c, GLenum target, GLint level, GLenum pname, GLint* params) {
     get_level(c, target, level, pname, params);
 }
-void GetTexParameterfv(Context& c, GLenum target, GLenum pname, GLfloat* params) { get_parameter(c, target, pname, params); }
-void GetTexParameteriv(Context& c, GLenum target, GLenum pname, GLint* params) { get_parameter(c, target, pname, params); }
+void GetTexParameterfv(Context& c, GLenum target, GLenum pname, GLfloat* params) {
+    get_parameter(c, target, pname, params);
+}
+void GetTexParameteriv(Context& c, GLenum target, GLenum pname, GLint* params) {
+    get_parameter(c, target, pname, params);
+}
 
 void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum type, void* pixels) {
     if (!level_target(target) || is_proxy(target)) return c.error(GL_INVALID_ENUM);
@@ -219,7 +248,8 @@ void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum 
         }
         tight = from_rgba(format, type, texels);  // luminance is red here, unlike in glReadPixels
     }
-    if (void* to = image_target(c, {size, format, type}, pixels)) glapi::pack_image(pack_store(c.state), size, format, type, tight, to);
+    if (void* to = image_target(c, {size, format, type}, pixels))
+        glapi::pack_image(pack_store(c.state), size, format, type, tight, to);
 }
 
 }  // namespace wall::client::api

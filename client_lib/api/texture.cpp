@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Texture objects: names, binding, parameters (OpenGL 1.2.1, 3.8.4 and 3.8.8). Images: tex_image.cpp, queries: tex_query.cpp.
+// Texture objects: names, binding, parameters (OpenGL 1.2.1, 3.8.4 and 3.8.8). Images: tex_image.cpp, queries:
+// tex_query.cpp.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -15,10 +16,14 @@ namespace {
 
 constexpr GLenum kTargets[] = {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE};
 
-bool is_target(GLenum target) { return std::find(std::begin(kTargets), std::end(kTargets), target) != std::end(kTargets); }
+bool is_target(GLenum target) {
+    return std::find(std::begin(kTargets), std::end(kTargets), target) != std::end(kTargets);
+}
 
-/// GL_WALLGL_global_texture: GL_GLOBAL_TEXTURE_1D, _2D and _3D, above all numbers that Khronos has given (docs/parallel-programs.md).
-constexpr std::pair<GLenum, GLenum> kGlobalTargets[] = {{0x0001'D001, GL_TEXTURE_1D}, {0x0001'D002, GL_TEXTURE_2D}, {0x0001'D003, GL_TEXTURE_3D}};
+/// GL_WALLGL_global_texture: GL_GLOBAL_TEXTURE_1D, _2D and _3D, above all numbers that Khronos has given
+/// (docs/parallel-programs.md).
+constexpr std::pair<GLenum, GLenum> kGlobalTargets[] = {
+    {0x0001'D001, GL_TEXTURE_1D}, {0x0001'D002, GL_TEXTURE_2D}, {0x0001'D003, GL_TEXTURE_3D}};
 
 // A binding of a default texture that has content is its id, in every context that binds name 0.
 std::uint32_t default_id(ShareGroup& share, GLenum target) {
@@ -49,8 +54,13 @@ void forget(Context& c, const std::shared_ptr<Texture>& texture) {
 
 bool valid_wrap(GLenum target, GLenum mode) {
     switch (mode) {
-        case GL_CLAMP: case GL_CLAMP_TO_EDGE: case GL_CLAMP_TO_BORDER: return true;
-        case GL_REPEAT: case GL_MIRRORED_REPEAT: case GL_MIRROR_CLAMP_EXT: case GL_MIRROR_CLAMP_TO_EDGE:
+        case GL_CLAMP:
+        case GL_CLAMP_TO_EDGE:
+        case GL_CLAMP_TO_BORDER: return true;
+        case GL_REPEAT:
+        case GL_MIRRORED_REPEAT:
+        case GL_MIRROR_CLAMP_EXT:
+        case GL_MIRROR_CLAMP_TO_EDGE:
         case GL_MIRROR_CLAMP_TO_BORDER_EXT: return target != GL_TEXTURE_RECTANGLE;
         default: return false;
     }
@@ -79,7 +89,9 @@ Change changed(const TexParameters& old, GLenum target, GLenum pname, const GLfl
     };
     switch (pname) {
         case GL_TEXTURE_MIN_FILTER: p.min_filter = word, check(valid_min_filter(target, word), GL_INVALID_ENUM); break;
-        case GL_TEXTURE_MAG_FILTER: p.mag_filter = word, check(word == GL_NEAREST || word == GL_LINEAR, GL_INVALID_ENUM); break;
+        case GL_TEXTURE_MAG_FILTER:
+            p.mag_filter = word, check(word == GL_NEAREST || word == GL_LINEAR, GL_INVALID_ENUM);
+            break;
         case GL_TEXTURE_WRAP_S: p.wrap_s = word, check(valid_wrap(target, word), GL_INVALID_ENUM); break;
         case GL_TEXTURE_WRAP_T: p.wrap_t = word, check(valid_wrap(target, word), GL_INVALID_ENUM); break;
         case GL_TEXTURE_WRAP_R: p.wrap_r = word, check(valid_wrap(target, word), GL_INVALID_ENUM); break;
@@ -94,13 +106,16 @@ Change changed(const TexParameters& old, GLenum target, GLenum pname, const GLfl
             break;
         case GL_TEXTURE_MAX_LEVEL: p.max_level = number, check(number >= 0, GL_INVALID_VALUE); break;
         case GL_GENERATE_MIPMAP: p.generate_mipmap = params[0] != 0; break;
-        case GL_TEXTURE_MAX_ANISOTROPY_EXT: p.max_anisotropy = std::min(params[0], 16.0f), check(params[0] >= 1, GL_INVALID_VALUE); break;
+        case GL_TEXTURE_MAX_ANISOTROPY_EXT:
+            p.max_anisotropy = std::min(params[0], 16.0f), check(params[0] >= 1, GL_INVALID_VALUE);
+            break;
         case GL_TEXTURE_COMPARE_MODE:
             p.compare_mode = word, check(word == GL_NONE || word == GL_COMPARE_R_TO_TEXTURE, GL_INVALID_ENUM);
             break;
         case GL_TEXTURE_COMPARE_FUNC: p.compare_func = word, check(valid_compare(word), GL_INVALID_ENUM); break;
         case GL_DEPTH_TEXTURE_MODE:
-            p.depth_mode = word, check(word == GL_LUMINANCE || word == GL_INTENSITY || word == GL_ALPHA || word == GL_RED, GL_INVALID_ENUM);
+            p.depth_mode = word,
+            check(word == GL_LUMINANCE || word == GL_INTENSITY || word == GL_ALPHA || word == GL_RED, GL_INVALID_ENUM);
             break;
         default: out.error = GL_INVALID_ENUM;
     }
@@ -133,7 +148,8 @@ void DeleteTextures(Context& c, GLsizei n, const GLuint* names) {
 }
 
 void BindTexture(Context& c, GLenum target, GLuint name) {
-    const auto named = std::find_if(std::begin(kGlobalTargets), std::end(kGlobalTargets), [&](const auto& row) { return row.first == target; });
+    const auto named = std::find_if(std::begin(kGlobalTargets), std::end(kGlobalTargets),
+                                    [&](const auto& row) { return row.first == target; });
     const bool global = named != std::end(kGlobalTargets);
     if (global) target = named->second;
     if (!is_target(target)) return c.error(GL_INVALID_ENUM);
@@ -174,7 +190,8 @@ void PrioritizeTextures(Context& c, GLsizei n, const GLuint* names, const GLfloa
     if (!names || !priorities) return;
     std::lock_guard lock(c.share().mutex);
     for (GLsizei i = 0; i < n; ++i)
-        if (const auto texture = c.share().textures.find(names[i])) texture->parameters.priority = std::clamp(priorities[i], 0.0f, 1.0f);
+        if (const auto texture = c.share().textures.find(names[i]))
+            texture->parameters.priority = std::clamp(priorities[i], 0.0f, 1.0f);
 }
 
 void TexParameterfv(Context& c, GLenum target, GLenum pname, const GLfloat* params) {

@@ -17,7 +17,9 @@ using glapi::UniformBase;
 using glapi::UniformType;
 
 template <class T>
-constexpr UniformBase kBaseOf = std::is_same_v<T, GLfloat> ? UniformBase::real : std::is_same_v<T, GLint> ? UniformBase::integer : UniformBase::unsigned_integer;
+constexpr UniformBase kBaseOf = std::is_same_v<T, GLfloat> ? UniformBase::real
+                                : std::is_same_v<T, GLint> ? UniformBase::integer
+                                                           : UniformBase::unsigned_integer;
 
 /// What a glUniform command brings.
 struct Given {
@@ -53,7 +55,8 @@ GLenum store(Context& c, GLint location, GLsizei count, const Given& given) {
     if (!place) return GL_INVALID_OPERATION;
     Uniform& uniform = executable.uniforms[place->uniform];
     if ((count > 1 && !uniform.array) || !accepts(*uniform.type, given)) return GL_INVALID_OPERATION;
-    const std::size_t elements = std::min(static_cast<std::size_t>(count), static_cast<std::size_t>(uniform.size) - place->element);
+    const std::size_t elements =
+        std::min(static_cast<std::size_t>(count), static_cast<std::size_t>(uniform.size) - place->element);
     if (given.words.size() < elements * given.words_each()) return GL_NO_ERROR;  // a null pointer
     std::span<const std::uint32_t> words = given.words.first(elements * given.words_each());
     std::vector<std::uint32_t> booleans;
@@ -96,12 +99,14 @@ void set_matrices(Context& c, GLint location, GLsizei count, GLboolean transpose
     if (transpose && words != 0) {
         turned.resize(words);
         for (std::size_t i = 0; i < words; ++i) {
-            const std::size_t matrix = i - i % (kColumns * kRows), column = i % (kColumns * kRows) / kRows, row = i % kRows;
+            const std::size_t matrix = i - i % (kColumns * kRows), column = i % (kColumns * kRows) / kRows,
+                              row = i % kRows;
             turned[i] = values[matrix + row * kColumns + column];
         }
         values = turned.data();
     }
-    set(c, location, count, {UniformBase::real, kColumns, kRows, {reinterpret_cast<const std::uint32_t*>(values), words}});
+    set(c, location, count,
+        {UniformBase::real, kColumns, kRows, {reinterpret_cast<const std::uint32_t*>(values), words}});
 }
 
 template <class Out>
@@ -132,7 +137,8 @@ void get(Context& c, GLuint name, GLint location, Out* out) {
     if (!place) return c.error(GL_INVALID_OPERATION);
     const Uniform& uniform = program.executable->uniforms[place->uniform];
     const unsigned words = uniform.type->words();
-    for (const std::uint32_t word : program.executable->words_of(uniform).subspan(std::size_t{place->element} * words, words))
+    for (const std::uint32_t word :
+         program.executable->words_of(uniform).subspan(std::size_t{place->element} * words, words))
         *out++ = converted<Out>(uniform.type->base, word);
 }
 
@@ -141,7 +147,9 @@ void get(Context& c, GLuint name, GLint location, Out* out) {
 void Uniform1f(Context& c, GLint location, GLfloat x) { set_one(c, location, x); }
 void Uniform2f(Context& c, GLint location, GLfloat x, GLfloat y) { set_one(c, location, x, y); }
 void Uniform3f(Context& c, GLint location, GLfloat x, GLfloat y, GLfloat z) { set_one(c, location, x, y, z); }
-void Uniform4f(Context& c, GLint location, GLfloat x, GLfloat y, GLfloat z, GLfloat w) { set_one(c, location, x, y, z, w); }
+void Uniform4f(Context& c, GLint location, GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
+    set_one(c, location, x, y, z, w);
+}
 void Uniform1i(Context& c, GLint location, GLint x) { set_one(c, location, x); }
 void Uniform2i(Context& c, GLint location, GLint x, GLint y) { set_one(c, location, x, y); }
 void Uniform3i(Context& c, GLint location, GLint x, GLint y, GLint z) { set_one(c, location, x, y, z); }
@@ -156,15 +164,33 @@ void Uniform2iv(Context& c, GLint location, GLsizei count, const GLint* v) { set
 void Uniform3iv(Context& c, GLint location, GLsizei count, const GLint* v) { set_vectors<3>(c, location, count, v); }
 void Uniform4iv(Context& c, GLint location, GLsizei count, const GLint* v) { set_vectors<4>(c, location, count, v); }
 
-void UniformMatrix2fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<2, 2>(c, l, n, t, v); }
-void UniformMatrix3fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<3, 3>(c, l, n, t, v); }
-void UniformMatrix4fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<4, 4>(c, l, n, t, v); }
-void UniformMatrix2x3fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<2, 3>(c, l, n, t, v); }
-void UniformMatrix3x2fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<3, 2>(c, l, n, t, v); }
-void UniformMatrix2x4fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<2, 4>(c, l, n, t, v); }
-void UniformMatrix4x2fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<4, 2>(c, l, n, t, v); }
-void UniformMatrix3x4fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<3, 4>(c, l, n, t, v); }
-void UniformMatrix4x3fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) { set_matrices<4, 3>(c, l, n, t, v); }
+void UniformMatrix2fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
+    set_matrices<2, 2>(c, l, n, t, v);
+}
+void UniformMatrix3fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
+    set_matrices<3, 3>(c, l, n, t, v);
+}
+void UniformMatrix4fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
+    set_matrices<4, 4>(c, l, n, t, v);
+}
+void UniformMatrix2x3fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
+    set_matrices<2, 3>(c, l, n, t, v);
+}
+void UniformMatrix3x2fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
+    set_matrices<3, 2>(c, l, n, t, v);
+}
+void UniformMatrix2x4fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
+    set_matrices<2, 4>(c, l, n, t, v);
+}
+void UniformMatrix4x2fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
+    set_matrices<4, 2>(c, l, n, t, v);
+}
+void UniformMatrix3x4fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
+    set_matrices<3, 4>(c, l, n, t, v);
+}
+void UniformMatrix4x3fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
+    set_matrices<4, 3>(c, l, n, t, v);
+}
 
 void GetUniformfv(Context& c, GLuint program, GLint location, GLfloat* params) { get(c, program, location, params); }
 void GetUniformiv(Context& c, GLuint program, GLint location, GLint* params) { get(c, program, location, params); }

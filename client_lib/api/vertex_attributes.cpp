@@ -9,9 +9,7 @@ namespace {
 namespace el = glstate::el;
 using Array = el::attrib_array::type;
 
-bool is_array_type(GLenum type) {
-    return (type >= GL_BYTE && type <= GL_FLOAT) || type == GL_DOUBLE;
-}
+bool is_array_type(GLenum type) { return (type >= GL_BYTE && type <= GL_FLOAT) || type == GL_DOUBLE; }
 
 void enable(Context& c, GLuint index, bool enabled) {
     if (index >= kVertexAttributes) return c.error(GL_INVALID_VALUE);
@@ -30,7 +28,9 @@ void get(Context& c, GLuint index, GLenum pname, Out* params) {
         case GL_VERTEX_ATTRIB_ARRAY_STRIDE: *params = static_cast<Out>(array.stride); break;
         case GL_VERTEX_ATTRIB_ARRAY_TYPE: *params = static_cast<Out>(array.type); break;
         case GL_VERTEX_ATTRIB_ARRAY_NORMALIZED: *params = static_cast<Out>(array.normalized); break;
-        case GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING: *params = static_cast<Out>(object_name(c.share(), glstate::ValueKind::name_buffer, array.buffer)); break;
+        case GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING:
+            *params = static_cast<Out>(object_name(c.share(), glstate::ValueKind::name_buffer, array.buffer));
+            break;
         case GL_CURRENT_VERTEX_ATTRIB:
             if (index == 0) return c.error(GL_INVALID_OPERATION);
             c.flush_block();
@@ -42,7 +42,8 @@ void get(Context& c, GLuint index, GLenum pname, Out* params) {
 
 }  // namespace
 
-void VertexAttribPointer(Context& c, GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride, const void* pointer) {
+void VertexAttribPointer(Context& c, GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride,
+                         const void* pointer) {
     if (index >= kVertexAttributes || size < 1 || size > 4 || stride < 0) return c.error(GL_INVALID_VALUE);
     if (!is_array_type(type)) return c.error(GL_INVALID_ENUM);
     Array array = c.get<el::attrib_array>(index);

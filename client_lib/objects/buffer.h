@@ -19,7 +19,7 @@ struct Buffer {
     GLenum usage = GL_STATIC_DRAW;
     GLenum access = GL_READ_WRITE;  ///< of the latest glMapBuffer
     bool mapped = false;
-    std::uint64_t stamp = 0;        ///< of the latest change
+    std::uint64_t stamp = 0;  ///< of the latest change
 };
 
 }  // namespace wall::client

@@ -39,7 +39,8 @@ bool consistent(const glapi::ActiveUniform& u, const glapi::UniformType* type) {
 }
 
 /// With the driver's choice of locations, so that all nodes make the same one.
-std::vector<std::byte> final_definition(glapi::ProgramDefinition definition, const glapi::ProgramReflection& reflection) {
+std::vector<std::byte> final_definition(glapi::ProgramDefinition definition,
+                                        const glapi::ProgramReflection& reflection) {
     for (const auto& attribute : reflection.attributes) {
         if (attribute.location < 0) continue;
         const auto named = [&](const glapi::AttributeBinding& b) { return b.name == attribute.name; };
@@ -85,19 +86,23 @@ GLint Executable::location_of(std::string_view text) const {
     if (!wanted) return -1;
     for (const Uniform& uniform : uniforms) {
         if (uniform.name != wanted->name || uniform.location < 0) continue;
-        if (wanted->element >= static_cast<std::uint32_t>(uniform.size) || (wanted->indexed && !uniform.array)) return -1;
+        if (wanted->element >= static_cast<std::uint32_t>(uniform.size) || (wanted->indexed && !uniform.array))
+            return -1;
         return uniform.location + static_cast<GLint>(wanted->element);
     }
     return -1;
 }
 
 GLint Executable::attribute_location_of(std::string_view name) const {
-    const auto found = std::find_if(attributes.begin(), attributes.end(), [name](const auto& a) { return a.name == name; });
+    const auto found =
+        std::find_if(attributes.begin(), attributes.end(), [name](const auto& a) { return a.name == name; });
     return found == attributes.end() ? -1 : found->location;
 }
 
 const UniformPlace* Executable::place_of(GLint location) const {
-    return location < 0 || static_cast<std::size_t>(location) >= places_.size() ? nullptr : &places_[static_cast<std::size_t>(location)];
+    return location < 0 || static_cast<std::size_t>(location) >= places_.size()
+               ? nullptr
+               : &places_[static_cast<std::size_t>(location)];
 }
 
 std::span<const std::uint32_t> Executable::words_of(const Uniform& uniform) const {
@@ -106,11 +111,13 @@ std::span<const std::uint32_t> Executable::words_of(const Uniform& uniform) cons
 }
 
 bool Executable::holds(const Uniform& uniform, std::uint32_t first, std::span<const std::uint32_t> words) const {
-    return std::memcmp(words_.data() + uniform.first + std::size_t{first} * uniform.type->words(), words.data(), words.size_bytes()) == 0;
+    return std::memcmp(words_.data() + uniform.first + std::size_t{first} * uniform.type->words(), words.data(),
+                       words.size_bytes()) == 0;
 }
 
 void Executable::store(Uniform& uniform, std::uint32_t first, std::span<const std::uint32_t> words) {
-    std::memcpy(words_.data() + uniform.first + std::size_t{first} * uniform.type->words(), words.data(), words.size_bytes());
+    std::memcpy(words_.data() + uniform.first + std::size_t{first} * uniform.type->words(), words.data(),
+                words.size_bytes());
     uniform.stamp = last_change = next_stamp();
     if (uniform.type->base == glapi::UniformBase::sampler) check_samplers();
 }
@@ -118,7 +125,9 @@ void Executable::store(Uniform& uniform, std::uint32_t first, std::span<const st
 void Executable::check_samplers() {
     std::map<std::uint32_t, GLenum> targets;  // by unit
     samplers_conflict_ = false;
-    for_each_sampler([&](std::uint32_t unit, GLenum target) { samplers_conflict_ |= targets.emplace(unit, target).first->second != target; });
+    for_each_sampler([&](std::uint32_t unit, GLenum target) {
+        samplers_conflict_ |= targets.emplace(unit, target).first->second != target;
+    });
 }
 
 glapi::ProgramDefinition Program::definition() const {

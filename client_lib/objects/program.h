@@ -47,7 +47,7 @@ struct Uniform {
     std::string name;  ///< without "[0]"
     const glapi::UniformType* type = nullptr;
     GLint size = 1;
-    GLint location = -1;      ///< -1: built into GLSL
+    GLint location = -1;  ///< -1: built into GLSL
     bool array = false;
     std::size_t first = 0;    ///< of its words in Executable::words
     std::uint64_t stamp = 0;  ///< of the latest change; 0: as the shader says
@@ -106,8 +106,8 @@ struct Program : GlslObject {
     std::vector<std::shared_ptr<Shader>> shaders;
     std::map<std::string, GLuint> attribute_bindings;
     std::optional<glapi::ProgramDefinition> to_link;  ///< glLinkProgram was called, nobody has asked yet how it went
-    bool linked = false;     ///< GL_LINK_STATUS
-    bool validated = false;  ///< GL_VALIDATE_STATUS
+    bool linked = false;                              ///< GL_LINK_STATUS
+    bool validated = false;                           ///< GL_VALIDATE_STATUS
     std::string log;
     /// Of the last glLinkProgram that succeeded.
     std::unique_ptr<Executable> executable;

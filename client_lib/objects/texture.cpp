@@ -39,13 +39,16 @@ std::vector<std::byte> cut(const TextureLevel& level, const TexBox& box) {
     std::byte* to = out.data();
     for (std::int32_t z = 0; z < box.depth; ++z)
         for (std::int32_t y = 0; y < box.height; ++y, to += bytes) {
-            const auto line = static_cast<std::size_t>(box.z + z) * static_cast<std::size_t>(level.height) + static_cast<std::size_t>(box.y + y);
-            std::memcpy(to, level.pixels.data() + line * row + static_cast<std::size_t>(box.x) * layout->pixel_bytes, bytes);
+            const auto line = static_cast<std::size_t>(box.z + z) * static_cast<std::size_t>(level.height) +
+                              static_cast<std::size_t>(box.y + y);
+            std::memcpy(to, level.pixels.data() + line * row + static_cast<std::size_t>(box.x) * layout->pixel_bytes,
+                        bytes);
         }
     return out;
 }
 
-/// The commands that bring a follower of one texture up to date, to a sink that has members of their names without the object.
+/// The commands that bring a follower of one texture up to date, to a sink that has members of their names without the
+/// object.
 template <class Sink>
 class TextureDiff {
 public:
@@ -89,7 +92,8 @@ template <class Sink>
 void TextureDiff<Sink>::base_level(std::uint64_t known) {
     const bool generate = texture_.generated_stamp > known;
     if (generate) parameter(GL_GENERATE_MIPMAP, {1, 0, 0, 0});
-    for (unsigned face = 0; face < texture_.face_count(); ++face) level(face, texture_.parameters.base_level, generate ? 0 : known);
+    for (unsigned face = 0; face < texture_.face_count(); ++face)
+        level(face, texture_.parameters.base_level, generate ? 0 : known);
     if (generate) parameter(GL_GENERATE_MIPMAP, {0, 0, 0, 0});
 }
 
@@ -110,10 +114,12 @@ void TextureDiff<Sink>::define(unsigned face, GLint number, const TextureLevel& 
     const auto internal = static_cast<GLenum>(level.internal_format);
     const GLenum target = image_target(texture_, face);
     if (level.compressed) {
-        return sink_.TexCompressed(target, number, internal, level.width, level.height, std::span<const std::byte>(level.pixels));
+        return sink_.TexCompressed(target, number, internal, level.width, level.height,
+                                   std::span<const std::byte>(level.pixels));
     }
     const bool stored = level.content == LevelContent::stored;
-    const bool at_once = stored && level.format == level.data_format && level.type == level.data_type && level.pixels.size() <= kLargestImageCommand;
+    const bool at_once = stored && level.format == level.data_format && level.type == level.data_type &&
+                         level.pixels.size() <= kLargestImageCommand;
     sink_.TexImage(target, number, internal, level.width, level.height, level.depth, 0, level.format, level.type,
                    at_once ? std::span<const std::byte>(level.pixels) : std::span<const std::byte>());
     if (stored && !at_once) box(face, number, level, {0, 0, 0, level.width, level.height, level.depth, 0});
@@ -138,10 +144,10 @@ void TextureDiff<Sink>::piece(unsigned face, GLint number, const TextureLevel& l
     const bool whole = box.width == level.width && box.height == level.height && box.depth == level.depth;
     const auto part = whole ? std::vector<std::byte>() : cut(level, box);
     any_ = true;
-    sink_.TexSubImage(image_target(texture_, face), number, box.x, box.y, box.z, box.width, box.height, box.depth, level.data_format, level.data_type,
+    sink_.TexSubImage(image_target(texture_, face), number, box.x, box.y, box.z, box.width, box.height, box.depth,
+                      level.data_format, level.data_type,
                       whole ? std::span<const std::byte>(level.pixels) : std::span<const std::byte>(part));
 }
-
 
 /// Packs them for a node.
 struct TexturePacker {
@@ -174,14 +180,17 @@ struct TexturePacker {
 /// Leaves out the pixels.
 struct NameAndShape {
     glapi::ContentHash& hash;
-    void TexParameter(GLenum target, GLenum pname, float p0, float p1, float p2, float p3) { hash.TexParameter(target, pname, p0, p1, p2, p3); }
-    void TexImage(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height, std::int32_t depth,
-                  std::int32_t border, GLenum format, GLenum type, std::span<const std::byte>) {
+    void TexParameter(GLenum target, GLenum pname, float p0, float p1, float p2, float p3) {
+        hash.TexParameter(target, pname, p0, p1, p2, p3);
+    }
+    void TexImage(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
+                  std::int32_t depth, std::int32_t border, GLenum format, GLenum type, std::span<const std::byte>) {
         hash.TexImage(target, level, internal_format, width, height, depth, border, format, type, {});
     }
     template <class... Operands>
     void TexSubImage(Operands...) {}
-    void TexCompressed(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height, std::span<const std::byte>) {
+    void TexCompressed(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width,
+                       std::int32_t height, std::span<const std::byte>) {
         hash.TexCompressed(target, level, internal_format, width, height, {});
     }
 };
@@ -193,15 +202,19 @@ std::uint64_t next_stamp() {
     return last.fetch_add(1, std::memory_order_relaxed) + 1;
 }
 
-Texture::Texture(std::uint32_t id, GLuint name, GLenum target) : id(id), name(name), target(target), stamp(next_stamp()) {
+Texture::Texture(std::uint32_t id, GLuint name, GLenum target)
+    : id(id), name(name), target(target), stamp(next_stamp()) {
     if (target != GL_TEXTURE_RECTANGLE) return;
     parameters.min_filter = GL_LINEAR;
     parameters.wrap_s = parameters.wrap_t = parameters.wrap_r = GL_CLAMP_TO_EDGE;
 }
 
 void TextureLevel::note_change(TexBox box) {
-    const auto covered = [&](const TexBox& old) { const TexBox u = united(old, box); return u.x == box.x && u.y == box.y && u.z == box.z &&
-                                                  u.width == box.width && u.height == box.height && u.depth == box.depth; };
+    const auto covered = [&](const TexBox& old) {
+        const TexBox u = united(old, box);
+        return u.x == box.x && u.y == box.y && u.z == box.z && u.width == box.width && u.height == box.height &&
+               u.depth == box.depth;
+    };
     changes.erase(std::remove_if(changes.begin(), changes.end(), covered), changes.end());
     changes.push_back(box);
     if (changes.size() <= kMaxChanges) return;
@@ -211,7 +224,9 @@ void TextureLevel::note_change(TexBox box) {
 
 TextureLevel* Texture::find_level(unsigned face, GLint level) {
     auto& levels = faces[face];
-    if (level < 0 || static_cast<std::size_t>(level) >= levels.size() || !levels[static_cast<std::size_t>(level)].defined()) return nullptr;
+    if (level < 0 || static_cast<std::size_t>(level) >= levels.size() ||
+        !levels[static_cast<std::size_t>(level)].defined())
+        return nullptr;
     return &levels[static_cast<std::size_t>(level)];
 }
 
@@ -245,7 +260,8 @@ void Texture::mipmaps_generated() {
         next.stamp = stamp;
         std::int32_t width = from->width, height = from->height, depth = from->depth;
         const bool layered = target == GL_TEXTURE_1D_ARRAY || target == GL_TEXTURE_2D_ARRAY;
-        for (GLint level = base + 1; level <= parameters.max_level && level < static_cast<GLint>(kTextureLevels); ++level) {
+        for (GLint level = base + 1; level <= parameters.max_level && level < static_cast<GLint>(kTextureLevels);
+             ++level) {
             const bool done = width == 1 && (height == 1 || target == GL_TEXTURE_1D_ARRAY) && (depth == 1 || layered);
             if (done) break;
             next.width = width = std::max(1, width / 2);
@@ -279,7 +295,8 @@ std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname) {
     }
 }
 
-void pack_texture(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed) {
+void pack_texture(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer,
+                  const std::function<void()>& packed) {
     TexturePacker packer{texture.id, buffer, packed};
     TextureDiff(texture, packer).run(known);
 }
@@ -308,18 +325,27 @@ std::size_t content_bytes(const Texture& texture) {
 }
 
 unsigned face_of(GLenum target) {
-    if (target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z) return target - GL_TEXTURE_CUBE_MAP_POSITIVE_X;
+    if (target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z)
+        return target - GL_TEXTURE_CUBE_MAP_POSITIVE_X;
     return 0;
 }
 
 GLenum object_target(GLenum target) {
     switch (target) {
-        case GL_TEXTURE_1D: case GL_PROXY_TEXTURE_1D: return GL_TEXTURE_1D;
-        case GL_TEXTURE_2D: case GL_PROXY_TEXTURE_2D: return GL_TEXTURE_2D;
-        case GL_TEXTURE_3D: case GL_PROXY_TEXTURE_3D: return GL_TEXTURE_3D;
-        case GL_TEXTURE_RECTANGLE: case GL_PROXY_TEXTURE_RECTANGLE: return GL_TEXTURE_RECTANGLE;
-        case GL_TEXTURE_CUBE_MAP: case GL_PROXY_TEXTURE_CUBE_MAP: return GL_TEXTURE_CUBE_MAP;
-        default: return target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z ? GL_TEXTURE_CUBE_MAP : GLenum{0};
+        case GL_TEXTURE_1D:
+        case GL_PROXY_TEXTURE_1D: return GL_TEXTURE_1D;
+        case GL_TEXTURE_2D:
+        case GL_PROXY_TEXTURE_2D: return GL_TEXTURE_2D;
+        case GL_TEXTURE_3D:
+        case GL_PROXY_TEXTURE_3D: return GL_TEXTURE_3D;
+        case GL_TEXTURE_RECTANGLE:
+        case GL_PROXY_TEXTURE_RECTANGLE: return GL_TEXTURE_RECTANGLE;
+        case GL_TEXTURE_CUBE_MAP:
+        case GL_PROXY_TEXTURE_CUBE_MAP: return GL_TEXTURE_CUBE_MAP;
+        default:
+            return target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z
+                       ? GL_TEXTURE_CUBE_MAP
+                       : GLenum{0};
     }
 }
 

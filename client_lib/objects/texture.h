@@ -33,15 +33,15 @@ enum class LevelContent : std::uint8_t {
 };
 
 struct TextureLevel {
-    GLint internal_format = 0;  ///< as the application gave it; 0: not defined
+    GLint internal_format = 0;                                  ///< as the application gave it; 0: not defined
     std::int32_t width = 0, height = 0, depth = 0, border = 0;  ///< with border
-    GLenum format = 0, type = 0;            ///< of the call that defined it: the driver's choice of storage depends on them
+    GLenum format = 0, type = 0;  ///< of the call that defined it: the driver's choice of storage depends on them
     GLenum data_format = 0, data_type = 0;  ///< of `pixels`
     bool compressed = false;                ///< pixels as for glCompressedTexImage, format and type 0
     LevelContent content = LevelContent::none;
     std::vector<std::byte> pixels;
-    std::uint64_t stamp = 0;                ///< of the definition
-    std::vector<TexBox> changes;            ///< since then, oldest first
+    std::uint64_t stamp = 0;      ///< of the definition
+    std::vector<TexBox> changes;  ///< since then, oldest first
 
     bool defined() const { return internal_format != 0; }
     void note_change(TexBox box);
@@ -72,7 +72,7 @@ struct Texture {
     /// Stamp of the latest change of each parameter that differs from its default or once did.
     std::vector<std::pair<GLenum, std::uint64_t>> parameter_stamps;
     std::vector<std::uint32_t> bound_by;  ///< contexts that ever bound it
-    bool global = false;                ///< the processes of the program mean the same by its name (GL_WALLGL_global_texture)
+    bool global = false;  ///< the processes of the program mean the same by its name (GL_WALLGL_global_texture)
     std::uint64_t generated_stamp = 0;  ///< of the latest mipmap generation; 0: none
     std::array<std::vector<TextureLevel>, kCubeFaces> faces;
     /// As of a stamp: see content_key().
@@ -93,12 +93,14 @@ std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname);
 /// Images larger than this travel in several pieces.
 inline constexpr std::size_t kLargestImageCommand = std::size_t{16} << 20;
 
-/// Packs everything that changed since `known` (0: the node has nothing). `packed` is called after every command, so that
-/// the caller may send the buffer before it grows too large for a frame.
-void pack_texture(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed = [] {});
+/// Packs everything that changed since `known` (0: the node has nothing). `packed` is called after every command, so
+/// that the caller may send the buffer before it grows too large for a frame.
+void pack_texture(
+    const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed = [] {});
 
-/// The name of what pack_texture(texture, 0, ...) would say, but for the texture's id. Of a global one: the program's name stands
-/// for the pixels, and nobody looks at them (AnyGL, section 6.2: the same name and parameters are the same texture).
+/// The name of what pack_texture(texture, 0, ...) would say, but for the texture's id. Of a global one: the program's
+/// name stands for the pixels, and nobody looks at them (AnyGL, section 6.2: the same name and parameters are the same
+/// texture).
 const glapi::ContentKey& content_key(const Texture& texture);
 /// Of all pixels.
 std::size_t content_bytes(const Texture& texture);

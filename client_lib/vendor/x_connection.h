@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the vendors ask of an X server, over the application's own connection and in its own thread: the size of a
-// window is then right after any request that the program made before. XCB replies carry errors, so a window that is gone
-// never reaches the program's X error handler.
+// window is then right after any request that the program made before. XCB replies carry errors, so a window that is
+// gone never reaches the program's X error handler.
 #pragma once
 
 #include <X11/Xlib.h>
@@ -24,7 +24,8 @@ public:
     static std::shared_ptr<XConnection> of(xcb_connection_t* connection);
 
     /// `display`: the name of its server; empty: DISPLAY.
-    XConnection(xcb_connection_t* connection, std::string display) : connection_(connection), display_(std::move(display)) {}
+    XConnection(xcb_connection_t* connection, std::string display)
+        : connection_(connection), display_(std::move(display)) {}
 
     const std::string& display_name() const { return display_; }
     bool open() const { return connection_.load() != nullptr; }

@@ -23,18 +23,23 @@ std::unique_ptr<T, void (*)(void*)> owned(T* reply) {
 /// Answers of XCB carry errors; none reaches the program's error handler.
 class Server {
 public:
-    explicit Server(const std::string& display) : connection_(xcb_connect(display.empty() ? nullptr : display.c_str(), nullptr)) {}
+    explicit Server(const std::string& display)
+        : connection_(xcb_connect(display.empty() ? nullptr : display.c_str(), nullptr)) {}
     ~Server() { xcb_disconnect(connection_); }
     Server(const Server&) = delete;
 
     bool open() const { return xcb_connection_has_error(connection_) == 0; }
 
     xcb_atom_t atom(const char* name) const {
-        const auto reply = owned(xcb_intern_atom_reply(connection_, xcb_intern_atom(connection_, 1, static_cast<std::uint16_t>(std::strlen(name)), name), nullptr));
+        const auto reply = owned(xcb_intern_atom_reply(
+            connection_, xcb_intern_atom(connection_, 1, static_cast<std::uint16_t>(std::strlen(name)), name),
+            nullptr));
         return reply ? reply->atom : xcb_atom_t{XCB_ATOM_NONE};
     }
     bool has_protocol(xcb_window_t window, xcb_atom_t protocols, xcb_atom_t wanted) const {
-        const auto reply = owned(xcb_get_property_reply(connection_, xcb_get_property(connection_, 0, window, protocols, XCB_ATOM_ATOM, 0, kMaxProtocols), nullptr));
+        const auto reply = owned(xcb_get_property_reply(
+            connection_, xcb_get_property(connection_, 0, window, protocols, XCB_ATOM_ATOM, 0, kMaxProtocols),
+            nullptr));
         if (!reply || reply->format != 32) return false;
         const auto* atoms = static_cast<const xcb_atom_t*>(xcb_get_property_value(reply.get()));
         for (std::uint32_t i = 0; i < reply->value_len; ++i)
@@ -51,7 +56,8 @@ public:
     }
     /// Waits until the server has it.
     bool send(xcb_window_t window, std::uint32_t mask, const void* event) const {
-        const auto error = owned(xcb_request_check(connection_, xcb_send_event_checked(connection_, 0, window, mask, static_cast<const char*>(event))));
+        const auto error = owned(xcb_request_check(
+            connection_, xcb_send_event_checked(connection_, 0, window, mask, static_cast<const char*>(event))));
         return !error && open();
     }
 
@@ -59,7 +65,10 @@ private:
     xcb_connection_t* connection_;
 };
 
-std::int64_t now_ms() { return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+std::int64_t now_ms() {
+    return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
 
 constexpr std::int64_t kCloseTakes = 10'000;  // ms; then a program has not obeyed
 constinit std::atomic<std::int64_t> close_asked_at{-kCloseTakes};
@@ -103,7 +112,8 @@ void ask_to_redraw(const std::string& display, xcb_window_t window) {
 }  // namespace
 
 WindowMessages window_messages(std::string display, xcb_window_t window) {
-    return {[display, window] { return ask_to_close(display, window); }, [display, window] { ask_to_redraw(display, window); }};
+    return {[display, window] { return ask_to_close(display, window); },
+            [display, window] { ask_to_redraw(display, window); }};
 }
 
 bool close_was_asked() { return now_ms() - close_asked_at < kCloseTakes; }

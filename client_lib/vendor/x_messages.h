@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Messages to the windows of an X server, over a connection of our own for just that message: the application's must not
-// be used outside of its own calls. Blocks as long as the server does. Any thread.
+// Messages to the windows of an X server, over a connection of our own for just that message: the application's must
+// not be used outside of its own calls. Blocks as long as the server does. Any thread.
 #pragma once
 
 #include <xcb/xcb.h>
@@ -11,8 +11,8 @@
 
 namespace wall::client::vendor {
 
-/// To `window` of the server with that name (empty: DISPLAY). A window inside of a toolkit's is closed by the one around
-/// it that takes WM_DELETE_WINDOW.
+/// To `window` of the server with that name (empty: DISPLAY). A window inside of a toolkit's is closed by the one
+/// around it that takes WM_DELETE_WINDOW.
 WindowMessages window_messages(std::string display, xcb_window_t window);
 
 /// A window was asked to close within the last seconds: it may be gone without a word.

@@ -17,11 +17,11 @@ struct Id {
     auto operator<=>(const Id&) const = default;
 };
 
-using SessionId = Id<struct SessionTag>;     ///< given by walld, unique while walld runs; 0 = none
-using SurfaceId = Id<struct SurfaceTag>;     ///< given by the client, unique in its session; 0 = none
-using ContextId = Id<struct ContextTag>;     ///< given by the client, unique in its session; 0 = none
-using ClientName = Id<struct ClientNameTag>; ///< an object of a session: unique over kinds, contexts and share groups
-using DriverName = Id<struct DriverNameTag>; ///< the driver's own name of an object
+using SessionId = Id<struct SessionTag>;      ///< given by walld, unique while walld runs; 0 = none
+using SurfaceId = Id<struct SurfaceTag>;      ///< given by the client, unique in its session; 0 = none
+using ContextId = Id<struct ContextTag>;      ///< given by the client, unique in its session; 0 = none
+using ClientName = Id<struct ClientNameTag>;  ///< an object of a session: unique over kinds, contexts and share groups
+using DriverName = Id<struct DriverNameTag>;  ///< the driver's own name of an object
 
 }  // namespace wall
 

@@ -76,10 +76,8 @@ public:
 private:
     void refill_at_end() {
         while (held_ <= 56) {
-            if (at_ < end_)
-                bits_ |= std::to_integer<std::uint64_t>(*at_++) << held_;
-            else
-                ++missing_;
+            if (at_ < end_) bits_ |= std::to_integer<std::uint64_t>(*at_++) << held_;
+            else ++missing_;
             held_ += 8;
         }
     }

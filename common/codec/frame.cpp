@@ -12,12 +12,9 @@ std::string size_of(std::uint64_t width, std::uint64_t height) {
 
 std::string_view name_of(PixelLayout layout) {
     switch (layout) {
-        case PixelLayout::bgra:
-            return "bgra";
-        case PixelLayout::rgba:
-            return "rgba";
-        case PixelLayout::yuy2:
-            return "yuy2";
+        case PixelLayout::bgra: return "bgra";
+        case PixelLayout::rgba: return "rgba";
+        case PixelLayout::yuy2: return "yuy2";
     }
     return "unknown";
 }

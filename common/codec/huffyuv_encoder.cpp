@@ -90,8 +90,7 @@ private:
             std::uint64_t pairs[kGroup / 2];
             std::memcpy(pairs, residuals + i, sizeof pairs);
             const bool zero = ((pairs[0] | pairs[1] | pairs[2] | pairs[3]) & kMask) == 0;
-            if (zero && zero_group_.length > 0)
-                to.put(zero_group_.bits, zero_group_.length);
+            if (zero && zero_group_.length > 0) to.put(zero_group_.bits, zero_group_.length);
             else
                 for (std::size_t k = 0; k < kGroup; ++k) put_pixel(residuals[i + k]);
         }
@@ -136,10 +135,8 @@ public:
     Result<PacketKind> encode(const FrameView& frame, PacketKind, std::vector<std::byte>& out) override {
         if (auto good = codec::check(frame, format_); !good) return tl::unexpected(good.error());
         if (!pixel_coder_) settle(frame);
-        if (format_.layout == PixelLayout::yuy2)
-            encode_yuy2(frame, bands_[0].words);
-        else
-            for_each_index(parallel_, bands_.size(), [&](std::size_t i) { encode_band(frame, i); });
+        if (format_.layout == PixelLayout::yuy2) encode_yuy2(frame, bands_[0].words);
+        else for_each_index(parallel_, bands_.size(), [&](std::size_t i) { encode_band(frame, i); });
         for (std::size_t i = 1; i < bands_.size(); ++i) bands_[0].words.append(bands_[i].words);
         const auto words = bands_[0].words.finish();
         out.insert(out.end(), words.begin(), words.end());

@@ -49,14 +49,10 @@ Result<std::array<Code, 256>> read_table(std::span<const std::byte>& bytes) {
 
 Result<Pixels> pixels_of(unsigned bits) {
     switch (bits) {
-        case 16:
-            return Pixels::yuy2;
-        case 24:
-            return Pixels::rgb24;
-        case 32:
-            return Pixels::rgb32;
-        default:
-            return fail("huffyuv: " + std::to_string(bits) + " bits a pixel; expected 16, 24 or 32");
+        case 16: return Pixels::yuy2;
+        case 24: return Pixels::rgb24;
+        case 32: return Pixels::rgb32;
+        default: return fail("huffyuv: " + std::to_string(bits) + " bits a pixel; expected 16, 24 or 32");
     }
 }
 
@@ -72,19 +68,11 @@ Result<Stream> read_classic(std::uint16_t bit_count, bool interlaced) {
                .tables = classic_tables(*pixels)};
     switch (bit_count & 7) {
         case 0:
-        case 1:
-            break;
-        case 2:
-            out.decorrelate = rgb;
-            break;
-        case 3:
-            out.predictor = Predictor::gradient, out.decorrelate = rgb;
-            break;
-        case 4:
-            out.predictor = Predictor::median;
-            break;
-        default:
-            return fail("huffyuv: method " + std::to_string(bit_count & 7) + " in biBitCount; expected 0 to 4");
+        case 1: break;
+        case 2: out.decorrelate = rgb; break;
+        case 3: out.predictor = Predictor::gradient, out.decorrelate = rgb; break;
+        case 4: out.predictor = Predictor::median; break;
+        default: return fail("huffyuv: method " + std::to_string(bit_count & 7) + " in biBitCount; expected 0 to 4");
     }
     return out;
 }

@@ -101,10 +101,8 @@ void residuals_as(Pixel* out, const std::byte* row, const std::byte* above, std:
 template <class Predictor>
 void residuals(Pixel* out, const std::byte* row, const std::byte* above, std::size_t count, RowStart start,
                bool decorrelate) {
-    if (decorrelate)
-        residuals_as<Predictor, true>(out, row, above, count, start);
-    else
-        residuals_as<Predictor, false>(out, row, above, count, start);
+    if (decorrelate) residuals_as<Predictor, true>(out, row, above, count, start);
+    else residuals_as<Predictor, false>(out, row, above, count, start);
 }
 
 /// Running sums over a row of differences that begins after `carry`; with `above`, that row is added to the sums.

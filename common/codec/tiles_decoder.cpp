@@ -66,8 +66,7 @@ void add_residuals(const Output& to, const Block& block, Mode mode, const Residu
         }
         const std::byte* above = y > 0 ? to.row(block, y - 1) : nullptr;
         const RowStart start = row_start(row, above, block.x);
-        if (mode == Mode::left || above == nullptr)
-            kernels.add_left(row, residual, block.width, start);
+        if (mode == Mode::left || above == nullptr) kernels.add_left(row, residual, block.width, start);
         else
             (mode == Mode::gradient ? kernels.add_gradient : kernels.add_median)(row, residual, above, block.width,
                                                                                  start);

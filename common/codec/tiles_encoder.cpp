@@ -249,10 +249,8 @@ void write_block(const Input& in, const Block& block, std::span<const std::uint3
     if (plan.mode < static_cast<std::uint8_t>(Mode::left)) return;
     const ByteBitWriter before = to;
     const bool alpha = has_alpha(plan.mode);
-    if (!in.format.alpha)
-        write_tokens<false, false>(tokens, tables, to);
-    else
-        alpha ? write_tokens<true, true>(tokens, tables, to) : write_tokens<true, false>(tokens, tables, to);
+    if (!in.format.alpha) write_tokens<false, false>(tokens, tables, to);
+    else alpha ? write_tokens<true, true>(tokens, tables, to) : write_tokens<true, false>(tokens, tables, to);
     const std::size_t raw_bytes = std::size_t{block.width} * block.height * (alpha ? 4 : 3);
     if (static_cast<std::size_t>(to.at() - before.at()) <= raw_bytes) return;
     to = before;

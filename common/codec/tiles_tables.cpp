@@ -160,10 +160,8 @@ Result<std::unique_ptr<DecodeTables>> decode_tables(const Lengths& lengths) {
     auto out = std::make_unique<DecodeTables>();
     for (std::size_t code = 0; code < lengths.size(); ++code) {
         const auto good = fill(lengths[code], [&](std::uint32_t index, std::uint32_t symbol, std::uint8_t length) {
-            if (code == kMain)
-                out->main[index] = main_entry(symbol, length);
-            else
-                out->others[code - 1][index] = {static_cast<std::uint8_t>(symbol), length};
+            if (code == kMain) out->main[index] = main_entry(symbol, length);
+            else out->others[code - 1][index] = {static_cast<std::uint8_t>(symbol), length};
         });
         if (!good) return fail(std::string("the ") + kNames[code] + " code: " + good.error().message);
     }

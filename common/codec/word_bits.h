@@ -45,7 +45,8 @@ private:
     unsigned held_ = 0;          ///< below 32
 };
 
-/// Words in memory that grows. Not for the innermost loop: that takes a copy of writer(), which stays valid for `room` bytes.
+/// Words in memory that grows. Not for the innermost loop: that takes a copy of writer(), which stays valid for `room`
+/// bytes.
 class WordBuffer {
 public:
     void clear() { writer_ = WordBitWriter(bytes_.data()); }

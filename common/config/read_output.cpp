@@ -14,18 +14,22 @@ void refuse_key(TreeReader& read, const toml::table& tile, std::string_view key,
     if (const auto* node = tile.get(key)) read.refuse(node->source(), TreeReader::quoted(key) + " " + std::string(why));
 }
 
-std::string display_text(const WindowConfig& window) { return window.display.empty() ? "$DISPLAY" : "display \"" + window.display + "\""; }
+std::string display_text(const WindowConfig& window) {
+    return window.display.empty() ? "$DISPLAY" : "display \"" + window.display + "\"";
+}
 
 /// Two windows of a node, of which `tile` describes the second.
 void check_beside(TreeReader& read, const toml::table& tile, const TileConfig& second, const TileConfig& first) {
     const auto &mine = *second.window, &others = *first.window;
     if (others.display != mine.display) {
         const auto* key = tile.get("display");
-        read.refuse(key ? key->source() : tile.source(), "tile '" + second.name + "' is on " + display_text(mine) + ", tile '" + first.name + "' on " + display_text(others) +
-                                                             ": expected one display for all windows of a node (or a node for each)");
+        read.refuse(key ? key->source() : tile.source(),
+                    "tile '" + second.name + "' is on " + display_text(mine) + ", tile '" + first.name + "' on " +
+                        display_text(others) + ": expected one display for all windows of a node (or a node for each)");
     }
     if (!mine.monitor.empty() && others.monitor == mine.monitor)
-        read.refuse(tile.get("monitor")->source(), "monitor '" + mine.monitor + "' shows tile '" + first.name + "' already: expected one tile for a monitor");
+        read.refuse(tile.get("monitor")->source(), "monitor '" + mine.monitor + "' shows tile '" + first.name +
+                                                       "' already: expected one tile for a monitor");
 }
 
 }  // namespace
@@ -33,10 +37,12 @@ void check_beside(TreeReader& read, const toml::table& tile, const TileConfig& s
 std::optional<WindowConfig> read_output(TreeReader& read, const toml::table& tile) {
     const auto output = read.text(tile, "output", "headless");
     if (output == "headless") {
-        for (const auto* key : {"display", "monitor", "position"}) refuse_key(read, tile, key, "is of a tile in a window: expected output = \"window\" beside it");
+        for (const auto* key : {"display", "monitor", "position"})
+            refuse_key(read, tile, key, "is of a tile in a window: expected output = \"window\" beside it");
         return {};
     }
-    if (output != "window") read.refuse(tile.get("output")->source(), "'output' is '" + output + "': expected \"headless\" or \"window\"");
+    if (output != "window")
+        read.refuse(tile.get("output")->source(), "'output' is '" + output + "': expected \"headless\" or \"window\"");
     WindowConfig out;
     if (tile.get("display")) out.display = read.text(tile, "display");
     if (tile.get("monitor")) {
@@ -53,8 +59,9 @@ void check_output(TreeReader& read, const toml::table& tile, const NodeConfig& n
     const auto& last = node.tiles.back();
     if (!last.window) return;
     if (node.backend != Backend::egl)
-        read.refuse(tile.get("output")->source(), "'output' is 'window' on a node with backend \"osmesa\", which draws into memory only: "
-                                                  "expected backend = \"egl\" or output = \"headless\"");
+        read.refuse(tile.get("output")->source(),
+                    "'output' is 'window' on a node with backend \"osmesa\", which draws into memory only: "
+                    "expected backend = \"egl\" or output = \"headless\"");
     for (const auto& other : std::span(node.tiles).first(node.tiles.size() - 1))
         if (other.window) check_beside(read, tile, last, other);
 }

@@ -15,7 +15,9 @@ constexpr std::array kRoles{Role::none, Role::viewer, Role::user, Role::operator
 void read_name(TreeReader& read, const toml::node& node, const std::string& name, std::string_view key, Members& out) {
     if (name.starts_with('@')) {
         if (const group* entry = ::getgrnam(name.c_str() + 1)) out.groups.push_back(entry->gr_gid);
-        else read.refuse(node.source(), TreeReader::quoted(key) + ": this machine has no group '" + name.substr(1) + "'");
+        else
+            read.refuse(node.source(),
+                        TreeReader::quoted(key) + ": this machine has no group '" + name.substr(1) + "'");
         return;
     }
     if (const passwd* entry = ::getpwnam(name.c_str())) out.users.push_back(entry->pw_uid);
@@ -34,7 +36,8 @@ Role read_role(TreeReader& read, const toml::table& table, std::string_view key,
     const auto text = read.text(table, key);
     const auto found = std::ranges::find(kRoles, text, [](Role role) { return std::string(name_of(role)); });
     if (found != kRoles.end()) return *found;
-    read.refuse(table.get(key)->source(), TreeReader::quoted(key) + ": expected \"none\", \"viewer\", \"user\" or \"operator\"");
+    read.refuse(table.get(key)->source(),
+                TreeReader::quoted(key) + ": expected \"none\", \"viewer\", \"user\" or \"operator\"");
     return otherwise;
 }
 
@@ -43,8 +46,10 @@ void read_tokens(TreeReader& read, const toml::table& people, std::vector<TokenC
     std::set<std::string> names;
     for (const auto* table : read.tables(people, "token", "[[people.token]]")) {
         read.only(*table, "[[people.token]]", {"name", "file", "role"});
-        out.push_back({read.text(*table, "name"), read.text(*table, "file"), read_role(read, *table, "role", Role::user)});
-        if (!names.insert(out.back().name).second) read.refuse(table->source(), "token '" + out.back().name + "' appears twice: expected unique names");
+        out.push_back(
+            {read.text(*table, "name"), read.text(*table, "file"), read_role(read, *table, "role", Role::user)});
+        if (!names.insert(out.back().name).second)
+            read.refuse(table->source(), "token '" + out.back().name + "' appears twice: expected unique names");
     }
 }
 
@@ -54,7 +59,9 @@ void read_members(TreeReader& read, const toml::table& table, std::string_view k
     const auto* node = table.get(key);
     if (!node) return;
     const auto* array = node->as_array();
-    if (!array) read.refuse(node->source(), TreeReader::quoted(key) + ": expected an array of user names, user numbers or \"@group\"");
+    if (!array)
+        read.refuse(node->source(),
+                    TreeReader::quoted(key) + ": expected an array of user names, user numbers or \"@group\"");
     for (std::size_t i = 0; array && i < array->size(); ++i) read_member(read, *array->get(i), key, out);
 }
 

@@ -41,7 +41,8 @@ std::string shifted(std::string_view text, std::uint32_t from, std::uint32_t to)
     std::string out;
     out.reserve(text.size());
     for (std::size_t i = 0; i < text.size();) {
-        const auto [code, bytes] = static_cast<unsigned char>(text[i]) < 0x80 ? Character{0, 0} : decode(text.substr(i));
+        const auto [code, bytes] =
+            static_cast<unsigned char>(text[i]) < 0x80 ? Character{0, 0} : decode(text.substr(i));
         if (bytes == 0) {
             out += text[i++];
             continue;

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-// toml++ 3.3 asserts of foreign text what it refuses itself just after (a table without a name), and with NDEBUG lets the
-// compiler assume it. Neither must be, in any build.
+// toml++ 3.3 asserts of foreign text what it refuses itself just after (a table without a name), and with NDEBUG lets
+// the compiler assume it. Neither must be, in any build.
 #define TOML_ASSERT(expression) static_assert(true)
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_UNRELEASED_FEATURES 0
@@ -37,7 +37,9 @@ public:
     const std::optional<Error>& error() const { return error_; }
 
     void refuse(const toml::source_region& where, std::string_view what) {
-        if (!error_) error_ = Error{file_ + ":" + std::to_string(std::max(1u, where.begin.line)) + ": " + from_private_use(what)};
+        if (!error_)
+            error_ =
+                Error{file_ + ":" + std::to_string(std::max(1u, where.begin.line)) + ": " + from_private_use(what)};
     }
 
     /// Every key of `table` must be one of `known`.
@@ -46,7 +48,8 @@ public:
             if (std::ranges::find(known, key.str()) != known.end()) continue;
             std::string list;
             for (const auto k : known) list += (list.empty() ? "" : ", ") + std::string(k);
-            refuse(key.source(), "unknown key '" + std::string(key.str()) + "' in " + std::string(name) + ": expected one of " + list);
+            refuse(key.source(), "unknown key '" + std::string(key.str()) + "' in " + std::string(name) +
+                                     ": expected one of " + list);
         }
     }
 
@@ -61,7 +64,8 @@ public:
         return {};
     }
 
-    std::int64_t integer(const toml::table& table, std::string_view key, std::int64_t least, std::int64_t most, std::int64_t otherwise) {
+    std::int64_t integer(const toml::table& table, std::string_view key, std::int64_t least, std::int64_t most,
+                         std::int64_t otherwise) {
         const auto* node = table.get(key);
         if (!node) return otherwise;
         return integer(*node, quoted(key), least, most);
@@ -69,20 +73,24 @@ public:
     std::int64_t integer(const toml::node& node, const std::string& what, std::int64_t least, std::int64_t most) {
         const auto* value = node.as_integer();
         if (value && value->get() >= least && value->get() <= most) return value->get();
-        refuse(node.source(), what + ": expected an integer from " + std::to_string(least) + " to " + std::to_string(most));
+        refuse(node.source(),
+               what + ": expected an integer from " + std::to_string(least) + " to " + std::to_string(most));
         return least;
     }
 
     net::Address address(const toml::node& node, const std::string& what) {
         const auto* value = node.as_string();
-        auto parsed = value ? net::Address::parse(from_private_use(value->get())) : fail("expected a string, unix:PATH or HOST:PORT");
+        auto parsed = value ? net::Address::parse(from_private_use(value->get()))
+                            : fail("expected a string, unix:PATH or HOST:PORT");
         if (parsed) return *parsed;
         refuse(node.source(), what + ": " + parsed.error().message);
         return {};
     }
 
     geom::Rect rect(const toml::table& table, std::string_view key) {
-        constexpr std::string_view expected = ": expected [x, y, width, height] in pixels, none negative, width and height at least 1, nothing beyond 32768";
+        constexpr std::string_view expected =
+            ": expected [x, y, width, height] in pixels, none negative, width and height at least 1, nothing beyond "
+            "32768";
         const auto* node = need(table, key, "[x, y, width, height]", false);
         if (!node) return {};
         const auto* array = node->as_array();
@@ -110,7 +118,8 @@ public:
             good = value && value->get() >= 0 && value->get() <= most;
             if (good) out[i] = static_cast<std::int32_t>(value->get());
         }
-        if (!good) refuse(node->source(), quoted(key) + ": expected [x, y] in pixels, each from 0 to " + std::to_string(most));
+        if (!good)
+            refuse(node->source(), quoted(key) + ": expected [x, y] in pixels, each from 0 to " + std::to_string(most));
         return out;
     }
 
@@ -122,7 +131,8 @@ public:
         for (std::size_t i = 0; array && i < array->size(); ++i) {
             if (const auto* table = array->get(i)->as_table()) out.push_back(table);
         }
-        if (node && (out.empty() || out.size() != array->size())) refuse(node->source(), quoted(key) + ": expected " + std::string(name) + " tables");
+        if (node && (out.empty() || out.size() != array->size()))
+            refuse(node->source(), quoted(key) + ": expected " + std::string(name) + " tables");
         return out;
     }
 

@@ -26,7 +26,8 @@ std::uint32_t read_background(TreeReader& read, const toml::table& wall) {
     std::uint32_t value = 0;
     const char* end = text.data() + text.size();
     if (text.size() == 7 && text[0] == '#' && std::from_chars(text.data() + 1, end, value, 16).ptr == end) return value;
-    read.refuse(wall.get("background") ? wall.get("background")->source() : wall.source(), "'background': expected a colour as \"#RRGGBB\"");
+    read.refuse(wall.get("background") ? wall.get("background")->source() : wall.source(),
+                "'background': expected a colour as \"#RRGGBB\"");
     return 0;
 }
 
@@ -35,8 +36,10 @@ void read_control(TreeReader& read, const toml::table& root, WallConfig& out) {
     read.only(control, "[control]", {"listen", "users"});
     if (const auto* listen = control.get("listen")) {
         const auto* array = listen->as_array();
-        if (!array || array->empty()) read.refuse(listen->source(), "'listen': expected an array of addresses, unix:PATH or HOST:PORT");
-        for (std::size_t i = 0; array && i < array->size(); ++i) out.control_listen.push_back(read.address(*array->get(i), "'listen'"));
+        if (!array || array->empty())
+            read.refuse(listen->source(), "'listen': expected an array of addresses, unix:PATH or HOST:PORT");
+        for (std::size_t i = 0; array && i < array->size(); ++i)
+            out.control_listen.push_back(read.address(*array->get(i), "'listen'"));
     } else {
         out.control_listen.push_back({.path = {}, .host = "127.0.0.1", .port = net::kDefaultControlPort});
     }
@@ -49,7 +52,8 @@ void read_http(TreeReader& read, const toml::table& root, WallConfig& out) {
     const auto& http = read.section(root, "http");
     read.only(http, "[http]", {"listen"});
     const auto* listen = http.get("listen");
-    out.http_listen = listen ? read.address(*listen, "'listen'") : net::Address{.path = {}, .host = "127.0.0.1", .port = net::kDefaultHttpPort};
+    out.http_listen = listen ? read.address(*listen, "'listen'")
+                             : net::Address{.path = {}, .host = "127.0.0.1", .port = net::kDefaultHttpPort};
     if (listen && out.http_listen->is_unix()) read.refuse(listen->source(), "'listen' of [http]: expected HOST:PORT");
 }
 
@@ -70,7 +74,8 @@ NodeConfig read_node(TreeReader& read, const toml::table& table) {
     else out.listen = {.path = {}, .host = "127.0.0.1", .port = net::kDefaultDataPort};
     const auto tiles = read.tables(table, "tile", "[[node.tile]]");
     if (tiles.size() >= wire::kOffscreenSlot) {
-        read.refuse(table.source(), "node '" + out.name + "' has " + std::to_string(tiles.size()) + " tiles: expected at most " + std::to_string(wire::kOffscreenSlot - 1));
+        read.refuse(table.source(), "node '" + out.name + "' has " + std::to_string(tiles.size()) +
+                                        " tiles: expected at most " + std::to_string(wire::kOffscreenSlot - 1));
     }
     for (const auto* tile : tiles) {
         out.tiles.push_back(read_tile(read, *tile));
@@ -85,9 +90,11 @@ void read_nodes(TreeReader& read, const toml::table& root, WallConfig& out) {
     for (const auto* table : read.tables(root, "node", "[[node]]")) {
         out.nodes.push_back(read_node(read, *table));
         const auto& node = out.nodes.back();
-        if (!nodes.insert(node.name).second) read.refuse(table->source(), "node '" + node.name + "' appears twice: expected unique names");
+        if (!nodes.insert(node.name).second)
+            read.refuse(table->source(), "node '" + node.name + "' appears twice: expected unique names");
         for (const auto& tile : node.tiles) {
-            if (!tiles.insert(tile.name).second) read.refuse(table->source(), "tile '" + tile.name + "' appears twice: expected unique names");
+            if (!tiles.insert(tile.name).second)
+                read.refuse(table->source(), "tile '" + tile.name + "' appears twice: expected unique names");
         }
     }
 }
@@ -116,7 +123,8 @@ const NodeConfig* WallConfig::find_node(std::string_view node) const {
 
 Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name) {
     if (const auto line = control_character_line(toml)) {
-        return fail(std::string(file_name) + ":" + std::to_string(line) + ": not TOML: a control character: expected tabs and line breaks only");
+        return fail(std::string(file_name) + ":" + std::to_string(line) +
+                    ": not TOML: a control character: expected tabs and line breaks only");
     }
     const auto parsed = toml::parse(to_private_use(toml), file_name);
     TreeReader read(file_name);
@@ -128,12 +136,16 @@ Result<WallConfig> parse_config(std::string_view toml, std::string_view file_nam
     WallConfig out;
     read.only(root, "the file", {"wall", "control", "http", "people", "node"});
     const auto& wall = read.section(root, "wall");
-    read.only(wall, "[wall]", {"name", "background", "swap_timeout_ms", "close_timeout_ms", "max_sessions", "state_directory"});
+    read.only(wall, "[wall]",
+              {"name", "background", "swap_timeout_ms", "close_timeout_ms", "max_sessions", "state_directory"});
     out.name = read.text(wall, "name", "wall");
     out.background = read_background(read, wall);
-    out.swap_timeout = std::chrono::milliseconds(read.integer(wall, "swap_timeout_ms", 1, kMaxSwapTimeout, out.swap_timeout.count()));
-    out.close_timeout = std::chrono::milliseconds(read.integer(wall, "close_timeout_ms", 0, kMaxCloseTimeout, out.close_timeout.count()));
-    out.max_sessions = static_cast<std::uint32_t>(read.integer(wall, "max_sessions", 1, kMaxSessions, out.max_sessions));
+    out.swap_timeout =
+        std::chrono::milliseconds(read.integer(wall, "swap_timeout_ms", 1, kMaxSwapTimeout, out.swap_timeout.count()));
+    out.close_timeout = std::chrono::milliseconds(
+        read.integer(wall, "close_timeout_ms", 0, kMaxCloseTimeout, out.close_timeout.count()));
+    out.max_sessions =
+        static_cast<std::uint32_t>(read.integer(wall, "max_sessions", 1, kMaxSessions, out.max_sessions));
     if (wall.get("state_directory")) out.state_directory = read.text(wall, "state_directory");
     read_control(read, root, out);
     read_people(read, root, out.people);

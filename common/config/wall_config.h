@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// wall.toml: the one file that describes a wall; walld and every tileserver read it. docs/operation.md documents the keys.
-// Pure (load_config() reads the file). Any thread.
+// wall.toml: the one file that describes a wall; walld and every tileserver read it. docs/operation.md documents the
+// keys. Pure (load_config() reads the file). Any thread.
 #pragma once
 
 #include <chrono>
@@ -22,8 +22,8 @@ const char* name_of(Backend backend);
 
 /// A window that shows a tile, on an X display of the node's machine.
 struct WindowConfig {
-    std::string display;      ///< such as ":0"; empty: DISPLAY in the tileserver's environment
-    std::string monitor;      ///< RandR's name of the one that the window covers; empty: of the tile's size, at `x`, `y`
+    std::string display;  ///< such as ":0"; empty: DISPLAY in the tileserver's environment
+    std::string monitor;  ///< RandR's name of the one that the window covers; empty: of the tile's size, at `x`, `y`
     std::int32_t x = 0, y = 0;  ///< pixels of the X screen
     bool operator==(const WindowConfig&) const = default;
 };
@@ -50,10 +50,11 @@ struct WallConfig {
     PeopleConfig people;                       ///< who may do what
     std::optional<net::Address> http_listen;   ///< none: no HTTP
     std::chrono::milliseconds swap_timeout{250};
-    std::chrono::milliseconds close_timeout{3000};  ///< a program that was asked to close and has not by then is cut off
-    std::uint32_t max_sessions = 256;               ///< programs on the wall at once
-    std::string state_directory;                    ///< for saved layouts; empty: where systemd says, else none
-    std::vector<NodeConfig> nodes;             ///< node index = index
+    std::chrono::milliseconds close_timeout{
+        3000};                         ///< a program that was asked to close and has not by then is cut off
+    std::uint32_t max_sessions = 256;  ///< programs on the wall at once
+    std::string state_directory;       ///< for saved layouts; empty: where systemd says, else none
+    std::vector<NodeConfig> nodes;     ///< node index = index
 
     /// The least rectangle from (0,0) that holds every tile.
     geom::Rect canvas() const;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What an object's content is called, so that a node can tell that it has it already (AnyGL, section 6: global share). The
-// name is the SHA-256 of the commands that define the object, without its id. A program that could make two contents of one
-// name could put its pictures into other people's windows, so a fast checksum would not do. Any thread, one at a time.
+// What an object's content is called, so that a node can tell that it has it already (AnyGL, section 6: global share).
+// The name is the SHA-256 of the commands that define the object, without its id. A program that could make two
+// contents of one name could put its pictures into other people's windows, so a fast checksum would not do. Any thread,
+// one at a time.
 #pragma once
 
 #include <array>
@@ -28,16 +29,18 @@ public:
     void TexParameter(GLenum target, GLenum pname, float p0, float p1, float p2, float p3) {
         add(Op::TexParameter, {}, target, pname, p0, p1, p2, p3);
     }
-    void TexImage(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height, std::int32_t depth,
-                  std::int32_t border, GLenum format, GLenum type, std::span<const std::byte> pixels) {
+    void TexImage(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
+                  std::int32_t depth, std::int32_t border, GLenum format, GLenum type,
+                  std::span<const std::byte> pixels) {
         add(Op::TexImage, pixels, target, level, internal_format, width, height, depth, border, format, type);
     }
-    void TexSubImage(GLenum target, std::int32_t level, std::int32_t x, std::int32_t y, std::int32_t z, std::int32_t width, std::int32_t height,
-                     std::int32_t depth, GLenum format, GLenum type, std::span<const std::byte> pixels) {
+    void TexSubImage(GLenum target, std::int32_t level, std::int32_t x, std::int32_t y, std::int32_t z,
+                     std::int32_t width, std::int32_t height, std::int32_t depth, GLenum format, GLenum type,
+                     std::span<const std::byte> pixels) {
         add(Op::TexSubImage, pixels, target, level, x, y, z, width, height, depth, format, type);
     }
-    void TexCompressed(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
-                       std::span<const std::byte> blocks) {
+    void TexCompressed(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width,
+                       std::int32_t height, std::span<const std::byte> blocks) {
         add(Op::TexCompressed, blocks, target, level, internal_format, width, height);
     }
     /// A name that a program gave, instead of pixels: GL_WALLGL_global_texture.
@@ -54,7 +57,8 @@ public:
 private:
     template <class... Words>
     void add(Op op, std::span<const std::byte> bytes, Words... words) {
-        const std::array head = {static_cast<std::uint32_t>(op), std::bit_cast<std::uint32_t>(words)..., static_cast<std::uint32_t>(bytes.size())};
+        const std::array head = {static_cast<std::uint32_t>(op), std::bit_cast<std::uint32_t>(words)...,
+                                 static_cast<std::uint32_t>(bytes.size())};
         add(std::as_bytes(std::span(head)));
         add(bytes);
     }

@@ -3,10 +3,12 @@
 // its first bad command, with the reason; what came before it has been executed. One thread; H's.
 //
 // H derives from glapi::Handler and offers
-//   - one member per command of proto/gl/wire.toml: `void Clear(uint32_t mask)`, ... (bytes operand: std::span<const std::byte>);
+//   - one member per command of proto/gl/wire.toml: `void Clear(uint32_t mask)`, ... (bytes operand: std::span<const
+//   std::byte>);
 //   - `uint32_t state_bytes(uint32_t id)`, 0 = no such element (glstate::element_bytes), and `bool State(uint32_t id,
 //      std::span<const std::byte> value)`, false = bad value;
-//   - `uint64_t begin_block(uint64_t tiles, size_t bytes)`: the tiles to run the block for (all asked for, or fewer); `bytes` of
+//   - `uint64_t begin_block(uint64_t tiles, size_t bytes)`: the tiles to run the block for (all asked for, or fewer);
+//   `bytes` of
 //      commands it takes in the batch,
 //     `void begin_tile(unsigned slot)`, `void end_block()`.
 // A member that cannot go on calls `refuse("why")`.
@@ -45,7 +47,8 @@ namespace detail {
 struct OpcodeWalk {
     const std::byte* next;  ///< one above the next opcode
     const std::byte* end;   ///< the last opcode
-    explicit OpcodeWalk(std::span<const std::byte> opcodes) : next(opcodes.data() + opcodes.size()), end(opcodes.data()) {}
+    explicit OpcodeWalk(std::span<const std::byte> opcodes)
+        : next(opcodes.data() + opcodes.size()), end(opcodes.data()) {}
     std::size_t remaining() const { return static_cast<std::size_t>(next - end); }
     std::size_t take() { return std::to_integer<std::size_t>(*--next); }
 };
@@ -67,7 +70,8 @@ Result<void> run_drawing(OpcodeWalk ops, wire::OperandReader operands, H& h, boo
     using Table = DecodeTable<H>;
     while (ops.remaining() != 0) {
         const std::size_t op = ops.take();
-        if (op >= kOpCount || !inside_block(kOpGroups[op])) return fail("a block may not hold " + std::string(op < kOpCount ? kOpNames[op] : "an unknown opcode"));
+        if (op >= kOpCount || !inside_block(kOpGroups[op]))
+            return fail("a block may not hold " + std::string(op < kOpCount ? kOpNames[op] : "an unknown opcode"));
         if (nested && static_cast<Op>(op) == Op::RunCall) return fail("a run may not call a run");
         if (!Table::rows[op].run(h, operands)) return refusal(op, h);
     }

@@ -55,7 +55,7 @@ struct TypeRow {
     unsigned element_bytes;
     unsigned packed_bytes;  ///< of a whole pixel; 0: one element a component
     Goes goes = Goes::rgb;
-    bool integers = true;   ///< also with *_INTEGER formats
+    bool integers = true;  ///< also with *_INTEGER formats
 };
 
 constexpr std::array kTypes = {
@@ -86,7 +86,8 @@ constexpr std::array kTypes = {
 };
 
 const FormatRow* find_format(GLenum format) {
-    const auto* at = std::find_if(kFormats.begin(), kFormats.end(), [&](const FormatRow& r) { return r.format == format; });
+    const auto* at =
+        std::find_if(kFormats.begin(), kFormats.end(), [&](const FormatRow& r) { return r.format == format; });
     return at == kFormats.end() ? nullptr : at;
 }
 
@@ -97,8 +98,8 @@ const TypeRow* find_type(GLenum type) {
 
 /// Mesa takes GL_ABGR_EXT only for these.
 bool equal_components(GLenum type) {
-    return type == GL_UNSIGNED_SHORT_4_4_4_4 || type == GL_UNSIGNED_SHORT_4_4_4_4_REV || type == GL_UNSIGNED_INT_8_8_8_8 ||
-           type == GL_UNSIGNED_INT_8_8_8_8_REV;
+    return type == GL_UNSIGNED_SHORT_4_4_4_4 || type == GL_UNSIGNED_SHORT_4_4_4_4_REV ||
+           type == GL_UNSIGNED_INT_8_8_8_8 || type == GL_UNSIGNED_INT_8_8_8_8_REV;
 }
 
 bool packed_fits(const TypeRow& type, GLenum format) {
@@ -143,9 +144,12 @@ void unpack_bits(const PixelStore& store, const std::byte* from, std::byte* to, 
         if (store.lsb_first) std::transform(to, to + bytes, to, reversed_bits);
     } else {
         std::memset(to, 0, bytes);
-        for (std::int32_t i = 0; i < width; ++i) set_bit(to, static_cast<std::size_t>(i), false, bit_at(from, skip + i, store.lsb_first));
+        for (std::int32_t i = 0; i < width; ++i)
+            set_bit(to, static_cast<std::size_t>(i), false, bit_at(from, skip + i, store.lsb_first));
     }
-    if (width % 8 != 0) to[bytes - 1] &= static_cast<std::byte>(0xff00u >> (width % 8));  // stray bits: none, so that equal images are equal
+    if (width % 8 != 0)
+        to[bytes - 1] &=
+            static_cast<std::byte>(0xff00u >> (width % 8));  // stray bits: none, so that equal images are equal
 }
 
 std::size_t image_offset(const PixelStore& store, std::size_t row_stride, const ImageSize& size, std::int32_t slice) {
@@ -180,7 +184,8 @@ bool is_integer_format(GLenum format) {
 // The order of the checks is Mesa's, so that the error is the same where two apply.
 GLenum format_type_error(GLenum format, GLenum type) {
     const FormatRow* f = find_format(format);
-    if (type == GL_BITMAP) return format == GL_COLOR_INDEX || format == GL_STENCIL_INDEX ? GL_NO_ERROR : GL_INVALID_ENUM;
+    if (type == GL_BITMAP)
+        return format == GL_COLOR_INDEX || format == GL_STENCIL_INDEX ? GL_NO_ERROR : GL_INVALID_ENUM;
     const TypeRow* t = find_type(type);
     if (t && t->packed_bytes != 0) {
         if (packed_fits(*t, format)) return GL_NO_ERROR;
@@ -196,7 +201,8 @@ std::optional<PixelLayout> pixel_layout(GLenum format, GLenum type) {
     if (type == GL_BITMAP) return PixelLayout{0, 1, 1, true};
     const TypeRow& t = *find_type(type);
     const unsigned components = components_of(format);
-    return PixelLayout{t.packed_bytes ? t.packed_bytes : t.element_bytes * components, t.element_bytes, components, false};
+    return PixelLayout{t.packed_bytes ? t.packed_bytes : t.element_bytes * components, t.element_bytes, components,
+                       false};
 }
 
 std::size_t row_bytes(const PixelLayout& layout, std::int32_t width) {
@@ -204,7 +210,8 @@ std::size_t row_bytes(const PixelLayout& layout, std::int32_t width) {
     return layout.bitmap ? (pixels + 7) / 8 : pixels * layout.pixel_bytes;
 }
 
-std::optional<std::size_t> image_bytes(GLenum format, GLenum type, std::int32_t width, std::int32_t height, std::int32_t depth) {
+std::optional<std::size_t> image_bytes(GLenum format, GLenum type, std::int32_t width, std::int32_t height,
+                                       std::int32_t depth) {
     const auto layout = pixel_layout(format, type);
     if (!layout || width < 0 || height < 0 || depth < 0) return std::nullopt;
     const std::uint64_t row = row_bytes(*layout, width);  // < 2^31 * 16
@@ -215,7 +222,8 @@ std::optional<std::size_t> image_bytes(GLenum format, GLenum type, std::int32_t 
     return static_cast<std::size_t>(slice * static_cast<std::uint64_t>(depth));
 }
 
-std::size_t row_offset(const PixelStore& store, const PixelLayout& layout, const ImageSize& size, std::int32_t row, std::int32_t slice) {
+std::size_t row_offset(const PixelStore& store, const PixelLayout& layout, const ImageSize& size, std::int32_t row,
+                       std::int32_t slice) {
     const std::size_t stride = row_stride(store, layout, size.width);
     const std::size_t skip = layout.bitmap ? 0 : static_cast<std::size_t>(store.skip_pixels) * layout.pixel_bytes;
     return image_offset(store, stride, size, slice) + stride * static_cast<std::size_t>(store.skip_rows + row) + skip;
@@ -228,7 +236,8 @@ std::size_t memory_bytes(const PixelStore& store, const ImageSize& size, GLenum 
     return row_offset(store, *layout, size, size.height - 1, size.depth - 1) + row_bytes(*layout, width);
 }
 
-std::vector<std::byte> unpack_image(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type, const void* pixels) {
+std::vector<std::byte> unpack_image(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type,
+                                    const void* pixels) {
     const auto layout = pixel_layout(format, type);
     std::vector<std::byte> tight(image_bytes(format, type, size.width, size.height, size.depth).value_or(0));
     if (tight.empty() || !pixels) return tight;
@@ -249,7 +258,8 @@ std::vector<std::byte> unpack_image(const PixelStore& store, const ImageSize& si
     return tight;
 }
 
-void pack_image(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type, std::span<const std::byte> tight, void* pixels) {
+void pack_image(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type,
+                std::span<const std::byte> tight, void* pixels) {
     const auto layout = pixel_layout(format, type);
     if (!layout || !pixels) return;
     const std::size_t bytes = row_bytes(*layout, size.width);
@@ -260,7 +270,8 @@ void pack_image(const PixelStore& store, const ImageSize& size, GLenum format, G
             std::byte* at = to + row_offset(store, *layout, size, row, slice);
             if (layout->bitmap) {
                 for (std::int32_t i = 0; i < size.width; ++i)
-                    set_bit(at, static_cast<std::size_t>(store.skip_pixels + i), store.lsb_first, bit_at(from, static_cast<std::size_t>(i), false));
+                    set_bit(at, static_cast<std::size_t>(store.skip_pixels + i), store.lsb_first,
+                            bit_at(from, static_cast<std::size_t>(i), false));
                 continue;
             }
             std::memcpy(at, from, bytes);
@@ -268,11 +279,12 @@ void pack_image(const PixelStore& store, const ImageSize& size, GLenum format, G
         }
 }
 
-void copy_rect(const PixelLayout& layout, const TightImage& to, std::int32_t to_x, std::int32_t to_y, const std::byte* from,
-               std::int32_t from_width, std::int32_t width, std::int32_t height) {
+void copy_rect(const PixelLayout& layout, const TightImage& to, std::int32_t to_x, std::int32_t to_y,
+               const std::byte* from, std::int32_t from_width, std::int32_t width, std::int32_t height) {
     const std::size_t to_row = row_bytes(layout, to.width), from_row = row_bytes(layout, from_width);
     const std::size_t bytes = row_bytes(layout, width);
-    std::byte* at = to.pixels + static_cast<std::size_t>(to_y) * to_row + static_cast<std::size_t>(to_x) * layout.pixel_bytes;
+    std::byte* at =
+        to.pixels + static_cast<std::size_t>(to_y) * to_row + static_cast<std::size_t>(to_x) * layout.pixel_bytes;
     for (std::int32_t row = 0; row < height; ++row, at += to_row, from += from_row) std::memcpy(at, from, bytes);
 }
 

@@ -44,7 +44,8 @@ std::optional<PixelLayout> pixel_layout(GLenum format, GLenum type);
 /// Bytes of one tight row.
 std::size_t row_bytes(const PixelLayout& layout, std::int32_t width);
 /// Bytes of a tight image; nothing if the pair is not allowed, a size is negative or the product overflows 2^31.
-std::optional<std::size_t> image_bytes(GLenum format, GLenum type, std::int32_t width, std::int32_t height, std::int32_t depth);
+std::optional<std::size_t> image_bytes(GLenum format, GLenum type, std::int32_t width, std::int32_t height,
+                                       std::int32_t depth);
 
 struct ImageSize {
     std::int32_t width = 0, height = 1, depth = 1;
@@ -52,22 +53,25 @@ struct ImageSize {
 };
 
 /// Where a row starts in a program's memory, relative to the pointer it gave; bitmaps: plus `skip_pixels` bits.
-std::size_t row_offset(const PixelStore& store, const PixelLayout& layout, const ImageSize& size, std::int32_t row, std::int32_t slice);
+std::size_t row_offset(const PixelStore& store, const PixelLayout& layout, const ImageSize& size, std::int32_t row,
+                       std::int32_t slice);
 
 /// Bytes of a program's memory that an image reaches over, from the pointer it gave.
 std::size_t memory_bytes(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type);
 
 /// From a program's memory. `size`, `format` and `type` have been checked (image_bytes gives a value).
-std::vector<std::byte> unpack_image(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type, const void* pixels);
+std::vector<std::byte> unpack_image(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type,
+                                    const void* pixels);
 /// Into a program's memory; only the pixels themselves are written.
-void pack_image(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type, std::span<const std::byte> tight, void* pixels);
+void pack_image(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type,
+                std::span<const std::byte> tight, void* pixels);
 
 /// Copies a rectangle of a tight image into another tight image of the same layout; both lie inside their images.
 struct TightImage {
     std::byte* pixels;
     std::int32_t width, height;
 };
-void copy_rect(const PixelLayout& layout, const TightImage& to, std::int32_t to_x, std::int32_t to_y, const std::byte* from,
-               std::int32_t from_width, std::int32_t width, std::int32_t height);
+void copy_rect(const PixelLayout& layout, const TightImage& to, std::int32_t to_x, std::int32_t to_y,
+               const std::byte* from, std::int32_t from_width, std::int32_t width, std::int32_t height);
 
 }  // namespace wall::glapi

@@ -151,8 +151,12 @@ std::optional<ProgramReflection> decode_reflection(std::span<const std::byte> by
     ProgramReflection out;
     out.linked = from.flag();
     out.log = from.text();
-    from.list(out.uniforms, [&] { return ActiveUniform{from.word(), from.word(), from.flag(), from.flag(), from.text(), from.words()}; });
-    from.list(out.attributes, [&] { return ActiveAttribute{from.word(), from.word(), static_cast<std::int32_t>(from.word()), from.text()}; });
+    from.list(out.uniforms, [&] {
+        return ActiveUniform{from.word(), from.word(), from.flag(), from.flag(), from.text(), from.words()};
+    });
+    from.list(out.attributes, [&] {
+        return ActiveAttribute{from.word(), from.word(), static_cast<std::int32_t>(from.word()), from.text()};
+    });
     return if_complete(from, std::move(out));
 }
 
@@ -170,7 +174,8 @@ std::optional<CompileResult> decode_compile_result(std::span<const std::byte> by
 }
 
 const UniformType* find_uniform_type(GLenum type) {
-    const auto* found = std::find_if(std::begin(kUniformTypes), std::end(kUniformTypes), [type](const UniformType& t) { return t.type == type; });
+    const auto* found = std::find_if(std::begin(kUniformTypes), std::end(kUniformTypes),
+                                     [type](const UniformType& t) { return t.type == type; });
     return found == std::end(kUniformTypes) ? nullptr : found;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // How programs travel: what a node needs to link one (ProgramLink), and what the driver found out about it (the reply).
-// Both are sequences of u32 and of strings (u32 count, bytes, padding to 4), in the order of the members here; a list is
-// its length and then its items. Pure.
+// Both are sequences of u32 and of strings (u32 count, bytes, padding to 4), in the order of the members here; a list
+// is its length and then its items. Pure.
 //
-// A client gives its own numbers to uniform locations: those of the uniforms in `uniforms`' order, one for each element,
-// from 0. A node maps them to its driver's.
+// A client gives its own numbers to uniform locations: those of the uniforms in `uniforms`' order, one for each
+// element, from 0. A node maps them to its driver's.
 #pragma once
 
 #include <cstddef>
@@ -46,9 +46,9 @@ struct ProgramDefinition {
 struct ActiveUniform {
     GLenum type = 0;
     std::uint32_t size = 1;
-    bool built_in = false;  ///< gl_ModelViewMatrix and the like: no location
-    bool array = false;     ///< declared as one: its name is told with "[0]"
-    std::string name;       ///< without "[0]"
+    bool built_in = false;               ///< gl_ModelViewMatrix and the like: no location
+    bool array = false;                  ///< declared as one: its name is told with "[0]"
+    std::string name;                    ///< without "[0]"
     std::vector<std::uint32_t> initial;  ///< words of all elements: uniform_words() each
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sizes of images in the S3TC formats (EXT_texture_compression_s3tc), which both ends hold against what they are given. Pure.
+// Sizes of images in the S3TC formats (EXT_texture_compression_s3tc), which both ends hold against what they are given.
+// Pure.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +25,9 @@ constexpr std::size_t s3tc_block_bytes(GLenum format) {
 
 /// Bytes of an image, neither side negative; 0: not one of the formats, or nothing in it.
 constexpr std::size_t s3tc_bytes(GLenum format, std::int32_t width, std::int32_t height) {
-    const auto blocks = [](std::int32_t texels) { return (static_cast<std::size_t>(texels) + kS3tcBlock - 1) / kS3tcBlock; };
+    const auto blocks = [](std::int32_t texels) {
+        return (static_cast<std::size_t>(texels) + kS3tcBlock - 1) / kS3tcBlock;
+    };
     return blocks(width) * blocks(height) * s3tc_block_bytes(format);
 }
 

@@ -50,7 +50,8 @@ bool tracks(const ColorMaterial& m, unsigned face) {
 /// Whether the stored value of an element means nothing now, because the current colour drives it.
 template <class E>
 bool follows_color(const State& s, [[maybe_unused]] unsigned i) {
-    if constexpr (E::category == Category::material) return s.material.color_material_enabled && tracks<E>(s.material.color_material, i);
+    if constexpr (E::category == Category::material)
+        return s.material.color_material_enabled && tracks<E>(s.material.color_material, i);
     return false;
 }
 
@@ -97,7 +98,9 @@ bool diff_value(State& from, const State& to, unsigned i, Sink& sink) {
 template <class E, class Sink>
 bool diff_element(State& from, const State& to, Sink& sink) {
     if constexpr (E::count > 1) {
-        if (std::memcmp(&E::ref(static_cast<const State&>(from), 0), &E::ref(to, 0), sizeof(typename E::type) * E::count) == 0) return false;
+        if (std::memcmp(&E::ref(static_cast<const State&>(from), 0), &E::ref(to, 0),
+                        sizeof(typename E::type) * E::count) == 0)
+            return false;
     }
     bool differs = false;
     for (unsigned i = 0; i < E::count; ++i) differs |= diff_value<E>(from, to, i, sink);
@@ -152,7 +155,8 @@ bool same_pairs(const State& a, const State& b, std::index_sequence<Pair...>) {
 
 }  // namespace detail
 
-/// Makes `from` equal to `to` in the categories of Mask, telling `sink.template set<E>(i, value)` each value that changed.
+/// Makes `from` equal to `to` in the categories of Mask, telling `sink.template set<E>(i, value)` each value that
+/// changed.
 template <CategoryMask Mask = kSentCategories, class Sink>
 void diff(State& from, const State& to, Sink&& sink) {
     detail::diff_categories<Mask>(from, to, sink, std::make_index_sequence<kCategoryCount>{});
@@ -164,8 +168,8 @@ bool same_ids(const State& a, const State& b) {
     return detail::same_pairs<Mask>(a, b, std::make_index_sequence<kCategoryCount / 2>{});
 }
 
-/// diff() for a receiver that goes between several states (T5): a category of `to` that proves equal takes the value id of
-/// `from`, so that it is compared by value once and costs nothing from then on, whoever it is compared with.
+/// diff() for a receiver that goes between several states (T5): a category of `to` that proves equal takes the value id
+/// of `from`, so that it is compared by value once and costs nothing from then on, whoever it is compared with.
 template <CategoryMask Mask = kSentCategories, class Sink>
 void diff_and_unify(State& from, State& to, Sink&& sink) {
     if (same_ids<Mask>(from, to)) return;

@@ -16,16 +16,16 @@ namespace wall::glstate {
 struct ElementInfo {
     const char* name;
     Category category;
-    std::uint16_t id;           ///< of index 0
+    std::uint16_t id;  ///< of index 0
     std::uint16_t count;
-    std::uint16_t bytes;        ///< of one value
-    std::uint32_t offset;       ///< of index 0 in State
-    GLbitfield groups;          ///< glPushAttrib's bits
-    GLbitfield client_groups;   ///< glPushClientAttrib's bits
+    std::uint16_t bytes;       ///< of one value
+    std::uint32_t offset;      ///< of index 0 in State
+    GLbitfield groups;         ///< glPushAttrib's bits
+    GLbitfield client_groups;  ///< glPushClientAttrib's bits
 };
 
-extern const std::array<ElementInfo, kElementCount> kElements;               ///< by first id
-extern const std::array<std::uint16_t, kLastId + 1> kElementOfId;            ///< id -> index in kElements
+extern const std::array<ElementInfo, kElementCount> kElements;     ///< by first id
+extern const std::array<std::uint16_t, kLastId + 1> kElementOfId;  ///< id -> index in kElements
 
 /// The element that `id` (1 to kLastId) belongs to.
 inline const ElementInfo& element_info(std::uint32_t id) { return kElements[kElementOfId[id]]; }
@@ -37,7 +37,9 @@ inline std::size_t element_offset(std::uint32_t id) {
 }
 
 /// Size of a value that may travel; 0 = unknown id, or one of category `local`.
-inline std::uint32_t element_bytes(std::uint32_t id) { return id == 0 || id > kLastSentId ? 0 : element_info(id).bytes; }
+inline std::uint32_t element_bytes(std::uint32_t id) {
+    return id == 0 || id > kLastSentId ? 0 : element_info(id).bytes;
+}
 
 /// Stores a value that has travelled. False: unknown id or wrong size. Values are not judged: what is wrong is the
 /// driver's to refuse.

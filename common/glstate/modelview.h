@@ -36,7 +36,8 @@ inline std::uint32_t modelview_tag(const Mat4& m) {
     };
     std::array<std::uint32_t, 4> lanes = {1, 2, 3, 4};
     for (std::size_t row = 0; row < 4; ++row)
-        for (std::size_t column = 0; column < 4; ++column) lanes[column] = mixed(lanes[column], words[column * 4 + row]);
+        for (std::size_t column = 0; column < 4; ++column)
+            lanes[column] = mixed(lanes[column], words[column * 4 + row]);
     return mixed(mixed(mixed(lanes[0], lanes[1]), lanes[2]), lanes[3]);
 }
 

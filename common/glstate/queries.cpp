@@ -33,11 +33,13 @@ Out from_real(double value) {
     else return static_cast<Out>(value);
 }
 
-/// [-1, 1] maps linearly to the integers' range. What lies outside becomes the least integer, as Mesa's conversion does.
+/// [-1, 1] maps linearly to the integers' range. What lies outside becomes the least integer, as Mesa's conversion
+/// does.
 template <class Out>
 Out from_normalized(double value) {
     if constexpr (std::is_same_v<Out, GLint> || std::is_same_v<Out, GLint64>)
-        return static_cast<Out>(std::abs(value) <= 1 ? static_cast<GLint>(2147483647.0 * value) : std::numeric_limits<GLint>::min());
+        return static_cast<Out>(std::abs(value) <= 1 ? static_cast<GLint>(2147483647.0 * value)
+                                                     : std::numeric_limits<GLint>::min());
     else return from_real<Out>(value);
 }
 
@@ -64,7 +66,8 @@ Out component(const std::byte* at, ValueKind kind, unsigned i) {
 
 template <class Entry, class Key>
 const Entry* find_sorted(std::span<const Entry> entries, GLenum word, Key Entry::*key) {
-    const auto at = std::lower_bound(entries.begin(), entries.end(), word, [key](const Entry& e, GLenum w) { return e.*key < w; });
+    const auto at =
+        std::lower_bound(entries.begin(), entries.end(), word, [key](const Entry& e, GLenum w) { return e.*key < w; });
     return at != entries.end() && (*at).*key == word ? &*at : nullptr;
 }
 
@@ -80,7 +83,8 @@ const ParamEntry* find_param(ParamFamily family, GLenum target, GLenum pname) {
 }
 
 template <class Out>
-void read_components(const State& state, std::uint32_t id, std::uint32_t offset, ValueKind kind, unsigned count, Out* out) {
+void read_components(const State& state, std::uint32_t id, std::uint32_t offset, ValueKind kind, unsigned count,
+                     Out* out) {
     const auto* at = reinterpret_cast<const std::byte*>(&state) + element_offset(id) + offset;
     for (unsigned i = 0; i < count; ++i) out[i] = component<Out>(at, kind, i);
 }

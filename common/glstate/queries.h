@@ -13,7 +13,11 @@
 namespace wall::glstate {
 
 /// What an array's index follows.
-enum class IndexRule : std::uint8_t { none, unit /* active texture unit */, client_unit /* client active texture unit */ };
+enum class IndexRule : std::uint8_t {
+    none,
+    unit /* active texture unit */,
+    client_unit /* client active texture unit */
+};
 
 /// A word that glGet* answers: `components` values from byte `offset` of element `id` + unit * `unit_stride`.
 struct GetEntry {
@@ -44,17 +48,18 @@ struct ParamEntry {
     std::uint16_t id;
 };
 
-extern const std::span<const GetEntry> kGetEntries;      ///< by pname
-extern const std::span<const CapEntry> kCapEntries;      ///< by cap
+extern const std::span<const GetEntry> kGetEntries;  ///< by pname
+extern const std::span<const CapEntry> kCapEntries;  ///< by cap
 extern const std::span<const ParamEntry> kParamEntries;
 
-const GetEntry* find_get(GLenum pname);                  ///< null: not answered from the state
-const CapEntry* find_cap(GLenum cap);                    ///< null: no such word
+const GetEntry* find_get(GLenum pname);                                         ///< null: not answered from the state
+const CapEntry* find_cap(GLenum cap);                                           ///< null: no such word
 const ParamEntry* find_param(ParamFamily family, GLenum target, GLenum pname);  ///< null: no such parameter
 
 /// Reads `count` components of kind `kind` that start at `offset` of value `id`, converted as glGet* does.
 /// Instantiated for GLboolean, GLint, GLint64, GLfloat, GLdouble.
 template <class Out>
-void read_components(const State& state, std::uint32_t id, std::uint32_t offset, ValueKind kind, unsigned count, Out* out);
+void read_components(const State& state, std::uint32_t id, std::uint32_t offset, ValueKind kind, unsigned count,
+                     Out* out);
 
 }  // namespace wall::glstate

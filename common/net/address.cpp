@@ -22,7 +22,8 @@ Result<SocketAddress> resolve_unix(const std::string& path) {
     SocketAddress out;
     auto* address = reinterpret_cast<sockaddr_un*>(&out.storage);
     if (path.size() >= sizeof address->sun_path) {
-        return fail("unix:" + path + ": a socket's path may have at most " + std::to_string(sizeof address->sun_path - 1) + " bytes");
+        return fail("unix:" + path + ": a socket's path may have at most " +
+                    std::to_string(sizeof address->sun_path - 1) + " bytes");
     }
     address->sun_family = AF_UNIX;
     std::memcpy(address->sun_path, path.c_str(), path.size() + 1);

@@ -7,8 +7,8 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/this_coro.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 
@@ -59,14 +59,17 @@ asio::awaitable<Result<StreamSocket>> Listener::accept() {
     }
 }
 
-ControlConnection::ControlConnection(StreamSocket socket) : socket_(std::move(socket)), peer_(peer_of(socket_.native_handle())),
+ControlConnection::ControlConnection(StreamSocket socket)
+    : socket_(std::move(socket)),
+      peer_(peer_of(socket_.native_handle())),
       drained_(socket_.get_executor(), asio::steady_timer::time_point::max()) {}
 
 asio::awaitable<Result<std::shared_ptr<ControlConnection>>> ControlConnection::connect(Address address) {
     auto to = resolve(address);
     if (!to) co_return tl::unexpected(to.error());
     StreamSocket socket(co_await asio::this_coro::executor);
-    const asio::generic::stream_protocol::endpoint endpoint(to->get(), to->length, protocol_of(address, to->family()).protocol());
+    const asio::generic::stream_protocol::endpoint endpoint(to->get(), to->length,
+                                                            protocol_of(address, to->family()).protocol());
     auto [error] = co_await socket.async_connect(endpoint, kTuple);
     if (error) co_return fail(address.text() + ": cannot connect: " + error.message());
     co_return std::make_shared<ControlConnection>(std::move(socket));
@@ -100,7 +103,8 @@ void ControlConnection::send(const proto::Envelope& envelope) {
     if (queued_bytes_ > kMaxQueued) return close();
     if (writing_) return;
     writing_ = true;
-    asio::co_spawn(socket_.get_executor(), [self = shared_from_this()] { return self->write_queue(); }, asio::detached);
+    asio::co_spawn(
+        socket_.get_executor(), [self = shared_from_this()] { return self->write_queue(); }, asio::detached);
 }
 
 asio::awaitable<void> ControlConnection::write_queue() {

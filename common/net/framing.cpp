@@ -42,10 +42,13 @@ Result<std::optional<proto::Envelope>> Unframer::next() {
     std::uint32_t bytes = 0;
     std::memcpy(&bytes, buffer_.data() + read_, kPrefix);
     if (bytes == 0) return refuse("empty message");
-    if (bytes > wire::kMaxControlMessage) return refuse("message of " + std::to_string(bytes) + " bytes; the limit is " + std::to_string(wire::kMaxControlMessage));
+    if (bytes > wire::kMaxControlMessage)
+        return refuse("message of " + std::to_string(bytes) + " bytes; the limit is " +
+                      std::to_string(wire::kMaxControlMessage));
     if (filled_ - read_ - kPrefix < bytes) return std::nullopt;
     std::optional<proto::Envelope> out(std::in_place);
-    if (!out->ParseFromArray(buffer_.data() + read_ + kPrefix, static_cast<int>(bytes))) return refuse("message is not an Envelope");
+    if (!out->ParseFromArray(buffer_.data() + read_ + kPrefix, static_cast<int>(bytes)))
+        return refuse("message is not an Envelope");
     if (out->message_case() == proto::Envelope::MESSAGE_NOT_SET) return refuse("message of an unknown kind");
     read_ += kPrefix + bytes;
     return out;

@@ -51,7 +51,8 @@ std::string proc_text(const sockaddr_storage& address) {
     std::memcpy(words.data(), v6 ? static_cast<const void*>(&in6->sin6_addr) : &in4->sin_addr, v6 ? 16 : 4);
     std::string out;
     char text[16];
-    for (int i = 0; i < (v6 ? 4 : 1); ++i) out.append(text, static_cast<std::size_t>(std::snprintf(text, sizeof text, "%08X", words[i])));
+    for (int i = 0; i < (v6 ? 4 : 1); ++i)
+        out.append(text, static_cast<std::size_t>(std::snprintf(text, sizeof text, "%08X", words[i])));
     out.append(text, static_cast<std::size_t>(std::snprintf(text, sizeof text, ":%04X", ntohs(in4->sin_port))));
     return out;
 }
@@ -104,7 +105,8 @@ Result<UniqueFd> connect_to(const Address& address, std::chrono::milliseconds ti
     if (::connect(fd->get(), to->get(), to->length) != 0) {
         if (errno != EINPROGRESS) return system_error(address, "cannot connect", errno);
         pollfd wait{fd->get(), POLLOUT, 0};
-        if (::poll(&wait, 1, static_cast<int>(timeout.count())) <= 0) return fail(address.text() + ": cannot connect: no answer");
+        if (::poll(&wait, 1, static_cast<int>(timeout.count())) <= 0)
+            return fail(address.text() + ": cannot connect: no answer");
         int error = 0;
         socklen_t size = sizeof error;
         ::getsockopt(fd->get(), SOL_SOCKET, SO_ERROR, &error, &size);

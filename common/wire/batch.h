@@ -14,7 +14,7 @@ namespace wall::wire {
 
 struct BatchView {
     std::uint32_t context = 0;
-    std::span<const std::byte> opcodes;   ///< last first
+    std::span<const std::byte> opcodes;  ///< last first
     std::span<const std::byte> operands;
 };
 
@@ -25,12 +25,15 @@ inline Result<BatchView> split_batch(std::span<const std::byte> payload) {
     BatchHeader header;
     if (payload.size() < sizeof header) return fail("batch: shorter than its header");
     std::memcpy(&header, payload.data(), sizeof header);
-    if (header.opcode_bytes > kMaxFramePayload || header.operand_bytes > kMaxFramePayload) return fail("batch: larger than a frame may be");
+    if (header.opcode_bytes > kMaxFramePayload || header.operand_bytes > kMaxFramePayload)
+        return fail("batch: larger than a frame may be");
     if (header.operand_bytes % 4 != 0) return fail("batch: operands are not a multiple of 4 bytes");
     const std::size_t room = padded4(header.opcode_bytes);
-    if (payload.size() != sizeof header + room + header.operand_bytes) return fail("batch: size differs from its header");
+    if (payload.size() != sizeof header + room + header.operand_bytes)
+        return fail("batch: size differs from its header");
     const auto content = payload.subspan(sizeof header);
-    return BatchView{header.context, content.subspan(room - header.opcode_bytes, header.opcode_bytes), content.subspan(room)};
+    return BatchView{header.context, content.subspan(room - header.opcode_bytes, header.opcode_bytes),
+                     content.subspan(room)};
 }
 
 /// The payload of one batch frame, appended to `to`.

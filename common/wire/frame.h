@@ -47,8 +47,9 @@ inline FrameHeader decode_frame_header(const std::byte* bytes) {
     return h;
 }
 
-/// Start of a batch's payload. Then `opcode_bytes` opcode bytes, *last first* (the packer writes them downwards), padded
-/// in front to a multiple of 4, then `operand_bytes` of operands in order. All commands run in context `context`.
+/// Start of a batch's payload. Then `opcode_bytes` opcode bytes, *last first* (the packer writes them downwards),
+/// padded in front to a multiple of 4, then `operand_bytes` of operands in order. All commands run in context
+/// `context`.
 struct BatchHeader {
     std::uint32_t context;
     std::uint32_t opcode_bytes;

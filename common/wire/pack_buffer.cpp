@@ -27,7 +27,8 @@ void PackBuffer::grow(std::size_t opcodes, std::size_t operand_bytes) {
 void PackBuffer::append(const PackBuffer& from, PackMark first, PackMark last) {
     const std::size_t commands = last.commands - first.commands;
     const std::size_t bytes = last.operand_bytes - first.operand_bytes;
-    if (static_cast<std::size_t>(opcodes_ - base()) < commands || static_cast<std::size_t>(end_of_memory() - operands_) < bytes)
+    if (static_cast<std::size_t>(opcodes_ - base()) < commands ||
+        static_cast<std::size_t>(end_of_memory() - operands_) < bytes)
         grow(commands, bytes);
     opcodes_ -= commands;
     std::memcpy(opcodes_, from.middle_ - last.commands, commands);

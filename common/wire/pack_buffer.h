@@ -29,7 +29,8 @@ public:
 
     /// Appends an opcode with `bytes` of operands (a multiple of 4) and returns where the operands go.
     std::byte* append(std::uint8_t opcode, std::size_t bytes) {
-        if (opcodes_ == base() || static_cast<std::size_t>(end_of_memory() - operands_) < bytes) [[unlikely]] grow(1, bytes);
+        if (opcodes_ == base() || static_cast<std::size_t>(end_of_memory() - operands_) < bytes) [[unlikely]]
+            grow(1, bytes);
         *--opcodes_ = static_cast<std::byte>(opcode);
         std::byte* at = operands_;
         operands_ += bytes;

@@ -20,7 +20,9 @@ float nearness(float d2) { return 1 - d2 / (kRadius * kRadius); }
 
 Field::Field(unsigned seed, int balls) {
     std::mt19937 random(seed);
-    const auto between = [&](float low, float high) { return low + (high - low) * static_cast<float>(random() % 10000) / 10000; };
+    const auto between = [&](float low, float high) {
+        return low + (high - low) * static_cast<float>(random() % 10000) / 10000;
+    };
     for (int i = 0; i < balls; ++i) {
         Ball ball;
         for (float* axis : {&ball.speed.x, &ball.speed.y, &ball.speed.z}) *axis = between(0.01f, 0.04f);
@@ -33,7 +35,8 @@ Field::Field(unsigned seed, int balls) {
 void Field::move_to(int frame) {
     const auto time = static_cast<float>(frame);
     for (Ball& ball : balls_)
-        ball.now = {kSwing * std::sin(ball.speed.x * time + ball.phase.x), kSwing * std::sin(ball.speed.y * time + ball.phase.y),
+        ball.now = {kSwing * std::sin(ball.speed.x * time + ball.phase.x),
+                    kSwing * std::sin(ball.speed.y * time + ball.phase.y),
                     kSwing * std::sin(ball.speed.z * time + ball.phase.z)};
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is drawn: soft balls that move and melt into one another. A function of the seed, the frame and the place only, so
-// that every process can compute its part of it without asking the others.
+// What is drawn: soft balls that move and melt into one another. A function of the seed, the frame and the place only,
+// so that every process can compute its part of it without asking the others.
 #pragma once
 
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // march: an example of a parallel program. Several processes compute a moving surface (marching tetrahedra), each some
-// layers of it, and all draw into the same window; the depth test makes one picture of it. One process alone does as well,
-// on any OpenGL. `march --help` tells how to start it; docs/parallel-programs.md explains the rest.
+// layers of it, and all draw into the same window; the depth test makes one picture of it. One process alone does as
+// well, on any OpenGL. `march --help` tells how to start it; docs/parallel-programs.md explains the rest.
 #include <GL/gl.h>
 
 #include <chrono>
@@ -56,7 +56,8 @@ bool parse(int argc, char** argv, Options& o) {
         else if (name == "--picture") o.picture = value;
         else return false;
     }
-    return argc % 2 == 1 && o.width > 0 && o.height > 0 && o.cells > 0 && o.balls > 0 && o.frames >= 0 && o.rank.own >= 0 && o.rank.own < o.rank.all;
+    return argc % 2 == 1 && o.width > 0 && o.height > 0 && o.cells > 0 && o.balls > 0 && o.frames >= 0 &&
+           o.rank.own >= 0 && o.rank.own < o.rank.all;
 }
 
 /// State is each process's own: all set the same.
@@ -97,7 +98,9 @@ void write_picture(const Options& o) {
     std::FILE* file = std::fopen(o.picture.c_str(), "wb");
     if (!file) return std::perror(o.picture.c_str());
     std::fprintf(file, "P6\n%d %d\n255\n", o.width, o.height);
-    for (int y = o.height - 1; y >= 0; --y) std::fwrite(&pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(o.width) * 3], 3, static_cast<std::size_t>(o.width), file);
+    for (int y = o.height - 1; y >= 0; --y)
+        std::fwrite(&pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(o.width) * 3], 3,
+                    static_cast<std::size_t>(o.width), file);
     std::fclose(file);
 }
 
@@ -132,5 +135,6 @@ int main(int argc, char** argv) {
     }
     glFinish();
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    std::printf("rank %d of %d: %d frames in %.3f s: %.2f frames/s, %.0f triangles/s\n", o.rank.own, o.rank.all, frame, seconds.count(), frame / seconds.count(), triangles / seconds.count());
+    std::printf("rank %d of %d: %d frames in %.3f s: %.2f frames/s, %.0f triangles/s\n", o.rank.own, o.rank.all, frame,
+                seconds.count(), frame / seconds.count(), triangles / seconds.count());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Being one of several processes that draw one picture: which of them, and the barrier between them. It is no call that
-// waits, but a command in the stream of each process: what the others draw behind it comes after what this one has drawn
-// before it, on every tile.
+// waits, but a command in the stream of each process: what the others draw behind it comes after what this one has
+// drawn before it, on every tile.
 #pragma once
 
 #include <GL/glx.h>

@@ -11,7 +11,9 @@ namespace {
 // ascending order, and so has every edge: the same one in all cells that share it.
 constexpr int kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}};
 
-Vec3 mix(const Vec3& a, const Vec3& b, float t) { return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)}; }
+Vec3 mix(const Vec3& a, const Vec3& b, float t) {
+    return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
+}
 
 }  // namespace
 
@@ -38,7 +40,8 @@ void Tetrahedra::sample(const Field& field, int z, std::vector<Point>& layer) co
         }
 }
 
-void Tetrahedra::cell(const Field& field, int x, int y, const std::vector<Point>& below, const std::vector<Point>& above) {
+void Tetrahedra::cell(const Field& field, int x, int y, const std::vector<Point>& below,
+                      const std::vector<Point>& above) {
     std::array<const Point*, 8> corner{};
     unsigned inside = 0;
     for (unsigned i = 0; i < 8; ++i) {
@@ -63,7 +66,8 @@ void Tetrahedra::tetrahedron(const Field& field, const Point& a, const Point& b,
     std::size_t ins = 0, outs = 0;
     for (std::size_t i = 0; i < 4; ++i) points[i]->value > 0 ? in[ins++] = i : out[outs++] = i;
     if (ins == 2) {
-        for (const auto& [i, o] : {std::pair{0, 0}, {0, 1}, {1, 1}, {1, 0}}) cut(in[static_cast<std::size_t>(i)], out[static_cast<std::size_t>(o)]);
+        for (const auto& [i, o] : {std::pair{0, 0}, {0, 1}, {1, 1}, {1, 0}})
+            cut(in[static_cast<std::size_t>(i)], out[static_cast<std::size_t>(o)]);
         triangle(field, cuts[0], cuts[1], cuts[2]);
         triangle(field, cuts[0], cuts[2], cuts[3]);
     } else if (ins == 1 || ins == 3) {

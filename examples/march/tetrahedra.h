@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Marching tetrahedra: the field's surface as triangles, for some layers of a grid of cells. A triangle's corner lies on an
-// edge of the grid and is computed from the two ends of that edge only, always in the same order; so processes that work
-// on neighbouring layers get the corners between them equal to the last bit, and the surface has no seam.
+// Marching tetrahedra: the field's surface as triangles, for some layers of a grid of cells. A triangle's corner lies
+// on an edge of the grid and is computed from the two ends of that edge only, always in the same order; so processes
+// that work on neighbouring layers get the corners between them equal to the last bit, and the surface has no seam.
 #pragma once
 
 #include <vector>

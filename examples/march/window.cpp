@@ -16,13 +16,16 @@ T need(T thing, const char* missing) {
 
 }  // namespace
 
-Window::Window(int width, int height) : display_(need(XOpenDisplay(nullptr), "cannot open the display; is DISPLAY set?")) {
+Window::Window(int width, int height)
+    : display_(need(XOpenDisplay(nullptr), "cannot open the display; is DISPLAY set?")) {
     int wanted[] = {GLX_RGBA, GLX_DOUBLEBUFFER, GLX_DEPTH_SIZE, 24, 0};
-    XVisualInfo* visual = need(glXChooseVisual(display_, DefaultScreen(display_), wanted), "no visual with a depth buffer");
+    XVisualInfo* visual =
+        need(glXChooseVisual(display_, DefaultScreen(display_), wanted), "no visual with a depth buffer");
     XSetWindowAttributes attributes{};
     const ::Window root = RootWindow(display_, visual->screen);
     attributes.colormap = XCreateColormap(display_, root, visual->visual, AllocNone);
-    window_ = XCreateWindow(display_, root, 0, 0, static_cast<unsigned>(width), static_cast<unsigned>(height), 0, visual->depth, InputOutput, visual->visual, CWColormap, &attributes);
+    window_ = XCreateWindow(display_, root, 0, 0, static_cast<unsigned>(width), static_cast<unsigned>(height), 0,
+                            visual->depth, InputOutput, visual->visual, CWColormap, &attributes);
     close_ = XInternAtom(display_, "WM_DELETE_WINDOW", False);
     XSetWMProtocols(display_, window_, &close_, 1);
     XStoreName(display_, window_, "march");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A GLX window with a current context: nothing of it is special to a parallel program. Each process opens its own, and on
-// the wall they are one.
+// A GLX window with a current context: nothing of it is special to a parallel program. Each process opens its own, and
+// on the wall they are one.
 #pragma once
 
 #include <GL/glx.h>

@@ -16,7 +16,8 @@ inline std::vector<std::byte> batch_of(const std::uint8_t* data, std::size_t siz
     if (size < 2) return {};
     const std::size_t opcodes = std::min<std::size_t>(data[0] | data[1] << 8, size - 2);
     std::vector<std::byte> codes(opcodes);
-    for (std::size_t i = 0; i < opcodes; ++i) codes[i] = static_cast<std::byte>(data[2 + i] % (glapi::kOpCount + 1));  // one too many: unknown ones, too
+    for (std::size_t i = 0; i < opcodes; ++i)
+        codes[i] = static_cast<std::byte>(data[2 + i] % (glapi::kOpCount + 1));  // one too many: unknown ones, too
     std::vector<std::byte> operands(wire::padded4(size - 2 - opcodes));
     if (!operands.empty()) std::memcpy(operands.data(), data + 2 + opcodes, size - 2 - opcodes);
     std::vector<std::byte> payload;

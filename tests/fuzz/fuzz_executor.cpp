@@ -63,9 +63,12 @@ void check_others(RenderNode& node) {
     glapi::pack::Clear(body, GL_COLOR_BUFFER_BIT);
     glapi::pack::Color4ub(body, 0xff00ff00);
     glapi::pack::Begin(body, GL_QUADS);
-    for (const auto& [x, y] : {std::array{-1.f, -1.f}, std::array{1.f, -1.f}, std::array{1.f, 1.f}, std::array{-1.f, 1.f}}) glapi::pack::Vertex2f(body, x, y);
+    for (const auto& [x, y] :
+         {std::array{-1.f, -1.f}, std::array{1.f, -1.f}, std::array{1.f, 1.f}, std::array{-1.f, 1.f}})
+        glapi::pack::Vertex2f(body, x, y);
     glapi::pack::End(body);
-    glapi::pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()), static_cast<std::uint32_t>(body.operand_bytes()));
+    glapi::pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()),
+                       static_cast<std::uint32_t>(body.operand_bytes()));
     buffer.append(body, {}, body.mark());
     glapi::pack::ReadPixels(buffer, 1, 0, 16, 16, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
     run(executor, buffer);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A wall to test with: two nodes side by side, and an outbox for tests that do not look at what is told to nodes and programs.
+// A wall to test with: two nodes side by side, and an outbox for tests that do not look at what is told to nodes and
+// programs.
 #pragma once
 
 #include "walld/wall.h"

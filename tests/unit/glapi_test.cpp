@@ -49,12 +49,15 @@ void pack_sample(wire::PackBuffer& to) {
     glapi::pack::Color4ub(body, 0x01020304);
     glapi::pack::Vertex3f(body, 1, 2, 3);
     glapi::pack::End(body);
-    glapi::pack::Block(to, 5, 0, static_cast<std::uint32_t>(body.commands()), static_cast<std::uint32_t>(body.operand_bytes()));
+    glapi::pack::Block(to, 5, 0, static_cast<std::uint32_t>(body.commands()),
+                       static_cast<std::uint32_t>(body.operand_bytes()));
     to.append(body, {}, body.mark());
     glapi::pack::Swap(to, 1, 2);
 }
 
-Result<void> decode(const wire::PackBuffer& batch, TestHandler& h) { return glapi::decode(batch.opcodes(), batch.operands(), h); }
+Result<void> decode(const wire::PackBuffer& batch, TestHandler& h) {
+    return glapi::decode(batch.opcodes(), batch.operands(), h);
+}
 
 TEST(PackedStream, VertexCosts13Bytes) {
     wire::PackBuffer buffer;
@@ -102,10 +105,14 @@ TEST(PackedStream, RefusesMisplacedCommands) {
         return done ? std::string() : done.error().message;
     };
     EXPECT_EQ(refused([](auto& b) { glapi::pack::Begin(b, 4); }), "Begin: outside a block");
-    EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 1, 8), glapi::pack::Swap(b, 1, 1); }), "a block may not hold Swap");
-    EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 1, 16), glapi::pack::Block(b, 1, 0, 0, 0); }), "a block may not hold Block");
-    EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 2, 0), glapi::pack::Swap(b, 1, 1); }), "Block: reaches over the batch's end");
-    EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 1, 4), glapi::pack::Begin(b, 99); }), "Begin: no such mode");
+    EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 1, 8), glapi::pack::Swap(b, 1, 1); }),
+              "a block may not hold Swap");
+    EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 1, 16), glapi::pack::Block(b, 1, 0, 0, 0); }),
+              "a block may not hold Block");
+    EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 2, 0), glapi::pack::Swap(b, 1, 1); }),
+              "Block: reaches over the batch's end");
+    EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 1, 4), glapi::pack::Begin(b, 99); }),
+              "Begin: no such mode");
     EXPECT_EQ(refused([](auto& b) { b.append(200, 0); }), "unknown opcode 200");
     EXPECT_EQ(refused([](auto& b) { glapi::pack_state(b, 8, &b, 4); }), "State: bad operands");
 }

@@ -57,7 +57,8 @@ void expect_equal(const State& a, const State& b) {
     glstate::for_each_element([&]<class E>() {
         if (E::category == glstate::Category::local) return;
         for (unsigned i = 0; i < E::count; ++i)
-            EXPECT_TRUE(glstate::follows_color<E>(a, i) || glstate::same(E::ref(a, i), E::ref(b, i))) << E::name << " " << i;
+            EXPECT_TRUE(glstate::follows_color<E>(a, i) || glstate::same(E::ref(a, i), E::ref(b, i)))
+                << E::name << " " << i;
     });
 }
 
@@ -71,7 +72,8 @@ void scramble(State& state, std::mt19937& random, unsigned percent) {
             for (auto& word : words) word = random() % 8;
             if constexpr (E::id == el::color_material::id) {
                 words[0] = std::array{GL_FRONT, GL_BACK, GL_FRONT_AND_BACK}[random() % 3];
-                words[1] = std::array{GL_EMISSION, GL_AMBIENT, GL_DIFFUSE, GL_SPECULAR, GL_AMBIENT_AND_DIFFUSE}[random() % 5];
+                words[1] =
+                    std::array{GL_EMISSION, GL_AMBIENT, GL_DIFFUSE, GL_SPECULAR, GL_AMBIENT_AND_DIFFUSE}[random() % 5];
             }
             if constexpr (E::id == el::color_material_enabled::id) words[0] %= 2;
             std::memcpy(&value, words, sizeof value);
@@ -217,7 +219,8 @@ TEST(State, ElementTableAgreesWithTheTags) {
         next += E::count;
         EXPECT_EQ(info.bytes, sizeof(typename E::type));
         for (unsigned i = 0; i < E::count; ++i)
-            EXPECT_EQ(reinterpret_cast<std::byte*>(&state) + glstate::element_offset(E::id + i), reinterpret_cast<std::byte*>(&E::ref(state, i)));
+            EXPECT_EQ(reinterpret_cast<std::byte*>(&state) + glstate::element_offset(E::id + i),
+                      reinterpret_cast<std::byte*>(&E::ref(state, i)));
     });
     EXPECT_EQ(next, glstate::kLastId + 1);
 }
@@ -248,7 +251,8 @@ TEST(ColorMaterial, EndOfTrackingLeavesTheCurrentColor) {
     glstate::assign<el::color_material_enabled>(app, 0, 1);
     RecordingSink sink;
     glstate::diff(node, app, sink);
-    for (State* s : {&app, &node}) glstate::assign<el::color>(*s, 0, {0.5f, 0.25f, 0, 1});  // as a block does on both sides
+    for (State* s : {&app, &node})
+        glstate::assign<el::color>(*s, 0, {0.5f, 0.25f, 0, 1});  // as a block does on both sides
     glstate::assign<el::color_material_enabled>(app, 0, 0);
     EXPECT_EQ(app.material.material_diffuse[1], (glstate::Vec4{0.5f, 0.25f, 0, 1}));
     glstate::diff(node, app, sink = {});
@@ -292,14 +296,18 @@ TEST(Groups, HoldWhatTheSpecificationSays) {
 }
 
 TEST(Queries, TablesAreSortedAndComplete) {
-    for (std::size_t n = 1; n < glstate::kGetEntries.size(); ++n) EXPECT_LT(glstate::kGetEntries[n - 1].pname, glstate::kGetEntries[n].pname);
-    for (std::size_t n = 1; n < glstate::kCapEntries.size(); ++n) EXPECT_LT(glstate::kCapEntries[n - 1].cap, glstate::kCapEntries[n].cap);
+    for (std::size_t n = 1; n < glstate::kGetEntries.size(); ++n)
+        EXPECT_LT(glstate::kGetEntries[n - 1].pname, glstate::kGetEntries[n].pname);
+    for (std::size_t n = 1; n < glstate::kCapEntries.size(); ++n)
+        EXPECT_LT(glstate::kCapEntries[n - 1].cap, glstate::kCapEntries[n].cap);
     EXPECT_EQ(glstate::find_get(GL_FOG_DENSITY)->id, el::fog_density::id);
     EXPECT_EQ(glstate::find_get(GL_STENCIL_BACK_REF)->id, el::stencil_func::id + 1);
     EXPECT_EQ(glstate::find_get(0x12345), nullptr);
     EXPECT_EQ(glstate::find_cap(GL_LIGHT5)->id, el::light_enabled::id + 5);
-    EXPECT_EQ(glstate::find_cap(GL_TEXTURE_GEN_R)->id + 3 * glstate::find_cap(GL_TEXTURE_GEN_R)->unit_stride, el::tex_gen_enabled::id + 14);
-    EXPECT_EQ(glstate::find_param(glstate::ParamFamily::TexEnv, GL_TEXTURE_ENV, GL_COMBINE_RGB)->id, el::combine_rgb::id);
+    EXPECT_EQ(glstate::find_cap(GL_TEXTURE_GEN_R)->id + 3 * glstate::find_cap(GL_TEXTURE_GEN_R)->unit_stride,
+              el::tex_gen_enabled::id + 14);
+    EXPECT_EQ(glstate::find_param(glstate::ParamFamily::TexEnv, GL_TEXTURE_ENV, GL_COMBINE_RGB)->id,
+              el::combine_rgb::id);
 }
 
 }  // namespace

@@ -18,10 +18,16 @@ struct Pair {
 
 // Formats that a texture keeps exactly, so that a round trip through Mesa changes nothing.
 constexpr Pair kPairs[] = {
-    {GL_RGBA, GL_UNSIGNED_BYTE, GL_RGBA8}, {GL_RGB, GL_UNSIGNED_BYTE, GL_RGB8},         {GL_BGRA, GL_UNSIGNED_BYTE, GL_RGBA8},
-    {GL_ALPHA, GL_UNSIGNED_BYTE, GL_ALPHA8}, {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE, GL_LUMINANCE8_ALPHA8},
-    {GL_RGBA, GL_UNSIGNED_SHORT, GL_RGBA16}, {GL_RGBA, GL_FLOAT, GL_RGBA32F},           {GL_RGB, GL_UNSIGNED_SHORT_5_6_5, GL_RGB565},
-    {GL_RGBA, GL_UNSIGNED_INT_8_8_8_8, GL_RGBA8}, {GL_RED, GL_UNSIGNED_BYTE, GL_R8},
+    {GL_RGBA, GL_UNSIGNED_BYTE, GL_RGBA8},
+    {GL_RGB, GL_UNSIGNED_BYTE, GL_RGB8},
+    {GL_BGRA, GL_UNSIGNED_BYTE, GL_RGBA8},
+    {GL_ALPHA, GL_UNSIGNED_BYTE, GL_ALPHA8},
+    {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE, GL_LUMINANCE8_ALPHA8},
+    {GL_RGBA, GL_UNSIGNED_SHORT, GL_RGBA16},
+    {GL_RGBA, GL_FLOAT, GL_RGBA32F},
+    {GL_RGB, GL_UNSIGNED_SHORT_5_6_5, GL_RGB565},
+    {GL_RGBA, GL_UNSIGNED_INT_8_8_8_8, GL_RGBA8},
+    {GL_RED, GL_UNSIGNED_BYTE, GL_R8},
 };
 
 PixelStore store_of(unsigned variant) {
@@ -37,10 +43,11 @@ PixelStore store_of(unsigned variant) {
 struct StoreNames {
     GLenum swap, alignment, row_length, skip_pixels, skip_rows, image_height, skip_images;
 };
-constexpr StoreNames kUnpack = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_ALIGNMENT, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_PIXELS,
-                                GL_UNPACK_SKIP_ROWS, GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SKIP_IMAGES};
-constexpr StoreNames kPack = {GL_PACK_SWAP_BYTES, GL_PACK_ALIGNMENT, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_PIXELS,
-                              GL_PACK_SKIP_ROWS, GL_PACK_IMAGE_HEIGHT, GL_PACK_SKIP_IMAGES};
+constexpr StoreNames kUnpack = {GL_UNPACK_SWAP_BYTES,  GL_UNPACK_ALIGNMENT, GL_UNPACK_ROW_LENGTH,
+                                GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS, GL_UNPACK_IMAGE_HEIGHT,
+                                GL_UNPACK_SKIP_IMAGES};
+constexpr StoreNames kPack = {GL_PACK_SWAP_BYTES, GL_PACK_ALIGNMENT,    GL_PACK_ROW_LENGTH, GL_PACK_SKIP_PIXELS,
+                              GL_PACK_SKIP_ROWS,  GL_PACK_IMAGE_HEIGHT, GL_PACK_SKIP_IMAGES};
 
 void apply(const GlFunctions& gl, const StoreNames& names, const PixelStore& s) {
     gl.PixelStorei(names.swap, s.swap_bytes);
@@ -76,7 +83,8 @@ TEST(Image, UnpacksAndPacksAsMesaDoes) {
     const auto& gl = mesa->gl;
     for (const Pair& pair : kPairs)
         for (unsigned variant = 0; variant < 64; ++variant) {
-            SCOPED_TRACE(testing::Message() << std::hex << pair.format << ' ' << pair.type << std::dec << " variant " << variant);
+            SCOPED_TRACE(testing::Message()
+                         << std::hex << pair.format << ' ' << pair.type << std::dec << " variant " << variant);
             PixelStore store = store_of(variant);
             if (pair.type == GL_FLOAT && store.swap_bytes) continue;  // swapped noise has NaN
             if (store.swap_bytes && variant > 7) continue;  // Mesa 22.3 swaps too little of an image with skips
@@ -85,8 +93,12 @@ TEST(Image, UnpacksAndPacksAsMesaDoes) {
             const ImageSize size{13, 11, dimensions == 3 ? 3 : 1, dimensions};
             const auto memory = noise(memory_bytes(store, size, pair.format, pair.type) + 16, pair.type);
             apply(gl, kUnpack, store);
-            if (dimensions == 3) gl.TexImage3D(target, 0, pair.internal, size.width, size.height, size.depth, 0, pair.format, pair.type, memory.data());
-            else gl.TexImage2D(target, 0, pair.internal, size.width, size.height, 0, pair.format, pair.type, memory.data());
+            if (dimensions == 3)
+                gl.TexImage3D(target, 0, pair.internal, size.width, size.height, size.depth, 0, pair.format, pair.type,
+                              memory.data());
+            else
+                gl.TexImage2D(target, 0, pair.internal, size.width, size.height, 0, pair.format, pair.type,
+                              memory.data());
 
             const auto tight = unpack_image(store, size, pair.format, pair.type, memory.data());
             std::vector<std::byte> expected(tight.size());
@@ -126,11 +138,31 @@ TEST(Image, RefusesTheSamePairsAsMesa) {
     const auto mesa = test::MesaContext::open();
     if (!mesa) GTEST_SKIP() << "no Mesa here";
     const auto& gl = mesa->gl;
-    constexpr GLenum kFormats[] = {GL_RED, GL_ALPHA, GL_LUMINANCE, GL_LUMINANCE_ALPHA, GL_RG, GL_RGB, GL_BGR, GL_RGBA, GL_BGRA, GL_ABGR_EXT, 0x1234};
-    constexpr GLenum kTypes[] = {GL_BYTE, GL_UNSIGNED_BYTE, GL_SHORT, GL_UNSIGNED_SHORT, GL_INT, GL_UNSIGNED_INT, GL_FLOAT, GL_HALF_FLOAT,
-                                 GL_UNSIGNED_BYTE_3_3_2, GL_UNSIGNED_SHORT_5_6_5_REV, GL_UNSIGNED_SHORT_4_4_4_4, GL_UNSIGNED_SHORT_1_5_5_5_REV, GL_UNSIGNED_SHORT_4_4_4_4_REV,
-                                 GL_UNSIGNED_SHORT_5_5_5_1, GL_UNSIGNED_INT_10_10_10_2, GL_UNSIGNED_INT_8_8_8_8, GL_UNSIGNED_INT_8_8_8_8_REV, GL_UNSIGNED_INT_2_10_10_10_REV, GL_UNSIGNED_INT_10F_11F_11F_REV,
-                                 GL_UNSIGNED_INT_5_9_9_9_REV, GL_UNSIGNED_INT_24_8, GL_BITMAP, 0x1234};
+    constexpr GLenum kFormats[] = {GL_RED, GL_ALPHA, GL_LUMINANCE, GL_LUMINANCE_ALPHA, GL_RG, GL_RGB,
+                                   GL_BGR, GL_RGBA,  GL_BGRA,      GL_ABGR_EXT,        0x1234};
+    constexpr GLenum kTypes[] = {GL_BYTE,
+                                 GL_UNSIGNED_BYTE,
+                                 GL_SHORT,
+                                 GL_UNSIGNED_SHORT,
+                                 GL_INT,
+                                 GL_UNSIGNED_INT,
+                                 GL_FLOAT,
+                                 GL_HALF_FLOAT,
+                                 GL_UNSIGNED_BYTE_3_3_2,
+                                 GL_UNSIGNED_SHORT_5_6_5_REV,
+                                 GL_UNSIGNED_SHORT_4_4_4_4,
+                                 GL_UNSIGNED_SHORT_1_5_5_5_REV,
+                                 GL_UNSIGNED_SHORT_4_4_4_4_REV,
+                                 GL_UNSIGNED_SHORT_5_5_5_1,
+                                 GL_UNSIGNED_INT_10_10_10_2,
+                                 GL_UNSIGNED_INT_8_8_8_8,
+                                 GL_UNSIGNED_INT_8_8_8_8_REV,
+                                 GL_UNSIGNED_INT_2_10_10_10_REV,
+                                 GL_UNSIGNED_INT_10F_11F_11F_REV,
+                                 GL_UNSIGNED_INT_5_9_9_9_REV,
+                                 GL_UNSIGNED_INT_24_8,
+                                 GL_BITMAP,
+                                 0x1234};
     for (const GLenum format : kFormats)
         for (const GLenum type : kTypes) {
             gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, 4, 4, 0, format, type, nullptr);

@@ -85,9 +85,11 @@ void expect_same_parameters(glapi::GlFunctions& gl, const glstate::State& state,
     for (const auto& e : glstate::kParamEntries) {
         using enum glstate::ParamFamily;
         if (e.family == Light)
-            for (unsigned i = 0; i < 8; ++i) compare(e, i, [&](GLenum p, GLfloat* v) { gl.GetLightfv(GL_LIGHT0 + i, p, v); });
+            for (unsigned i = 0; i < 8; ++i)
+                compare(e, i, [&](GLenum p, GLfloat* v) { gl.GetLightfv(GL_LIGHT0 + i, p, v); });
         if (e.family == Material)
-            for (unsigned i = 0; i < 2; ++i) compare(e, i, [&](GLenum p, GLfloat* v) { gl.GetMaterialfv(i ? GL_BACK : GL_FRONT, p, v); });
+            for (unsigned i = 0; i < 2; ++i)
+                compare(e, i, [&](GLenum p, GLfloat* v) { gl.GetMaterialfv(i ? GL_BACK : GL_FRONT, p, v); });
         if (e.family == TexEnv)
             for (unsigned i = 0; i < 8; ++i) {
                 gl.ActiveTexture(GL_TEXTURE0 + i);
@@ -117,7 +119,7 @@ struct DriverSink : glstate::DriverEmit<glapi::GlFunctions> {
     }
     using DriverEmit::emit;
     template <class E>
-        requires requires { E::id; }
+    requires requires { E::id; }
     void emit(glapi::GlFunctions&, E, unsigned, const typename E::type&) {}
     template <class E>
     void set(unsigned i, const typename E::type& v) {
@@ -146,7 +148,8 @@ TEST_F(MesaState, DriverHoldsWhatItIsTold) {
     glstate::State driver, wanted;
     DriverSink sink(gl());
     const auto told = [&](std::uint32_t id) {
-        return id <= glstate::kLastSentId && !sink.custom[id] && glstate::element_info(id).category != glstate::Category::material;
+        return id <= glstate::kLastSentId && !sink.custom[id] &&
+               glstate::element_info(id).category != glstate::Category::material;
     };
     for (std::size_t n : {0, 1, 2, 0}) {
         set_samples(wanted, n);
@@ -222,8 +225,10 @@ TEST_F(MesaState, IntegersBecomeTheSameFractions) {
     for (int v = 0; v < 256; ++v) expect_color<GLubyte>(gl(), gl().Color4ubv, static_cast<GLubyte>(v));
     for (int v = -32768; v < 32768; v += 7) expect_color<GLshort>(gl(), gl().Color4sv, static_cast<GLshort>(v));
     for (int v = 0; v < 65536; v += 7) expect_color<GLushort>(gl(), gl().Color4usv, static_cast<GLushort>(v));
-    for (std::int64_t v = -2147483648ll; v <= 2147483647ll; v += 123456789) expect_color<GLint>(gl(), gl().Color4iv, static_cast<GLint>(v));
-    for (std::int64_t v = 0; v <= 4294967295ll; v += 123456789) expect_color<GLuint>(gl(), gl().Color4uiv, static_cast<GLuint>(v));
+    for (std::int64_t v = -2147483648ll; v <= 2147483647ll; v += 123456789)
+        expect_color<GLint>(gl(), gl().Color4iv, static_cast<GLint>(v));
+    for (std::int64_t v = 0; v <= 4294967295ll; v += 123456789)
+        expect_color<GLuint>(gl(), gl().Color4uiv, static_cast<GLuint>(v));
 }
 
 TEST_F(MesaState, ParameterIntegersBecomeTheSameFractions) {

@@ -16,7 +16,9 @@ void refuses_prefixes(const std::vector<std::byte>& bytes, Decode&& decode) {
 }
 
 TEST(ProgramFormat, Definition) {
-    const ProgramDefinition in{{{GL_VERTEX_SHADER, true, "void main() {}"}, {GL_FRAGMENT_SHADER, false, ""}}, {{3, "place"}}, {{4, "lights"}, {1, "x"}}};
+    const ProgramDefinition in{{{GL_VERTEX_SHADER, true, "void main() {}"}, {GL_FRAGMENT_SHADER, false, ""}},
+                               {{3, "place"}},
+                               {{4, "lights"}, {1, "x"}}};
     const auto bytes = encode(in);
     const auto out = decode_definition(bytes);
     ASSERT_TRUE(out);
@@ -29,7 +31,8 @@ TEST(ProgramFormat, Definition) {
 }
 
 TEST(ProgramFormat, Reflection) {
-    const ProgramReflection in{true, "fine", {{GL_FLOAT_VEC2, 2, false, true, "uv", {1, 2, 3, 4}}}, {{GL_FLOAT, 1, -1, "gl_Vertex"}}};
+    const ProgramReflection in{
+        true, "fine", {{GL_FLOAT_VEC2, 2, false, true, "uv", {1, 2, 3, 4}}}, {{GL_FLOAT, 1, -1, "gl_Vertex"}}};
     const auto bytes = encode(in);
     const auto out = decode_reflection(bytes);
     ASSERT_TRUE(out);

@@ -46,7 +46,8 @@ public:
         eglDestroyContext(display_, context_);
     }
     Result<void> make_current() override {
-        if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE) return fail(egl_error("eglMakeCurrent"));
+        if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE)
+            return fail(egl_error("eglMakeCurrent"));
         return {};
     }
     void* get_proc_address(const char* name) const override { return reinterpret_cast<void*>(eglGetProcAddress(name)); }
@@ -66,7 +67,8 @@ Result<std::unique_ptr<GlBackend>> open_egl_backend() {
         const EGLContext context = create_egl_context(display);
         if (context != EGL_NO_CONTEXT) return std::make_unique<EglBackend>(display, context);
     }
-    return fail("EGL offers no OpenGL 4.5 compatibility context without a window (" + egl_error("eglCreateContext") + ")");
+    return fail("EGL offers no OpenGL 4.5 compatibility context without a window (" + egl_error("eglCreateContext") +
+                ")");
 }
 
 }  // namespace wall::tileserver

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The EGL backend of a node with tiles in windows: on the X server's display, so that what layers are drawn with and what
-// is shown are one context, and nothing is read back. Render thread.
+// The EGL backend of a node with tiles in windows: on the X server's display, so that what layers are drawn with and
+// what is shown are one context, and nothing is read back. Render thread.
 #include <X11/Xlib.h>
 
 #include <array>
@@ -46,7 +46,17 @@ EGLint attribute(EGLDisplay display, EGLConfig config, EGLint name) {
 
 /// Windows of 8 bits a channel, best of the screen's own visual. Null: there is none.
 EGLConfig find_config(Display* x, EGLDisplay display) {
-    constexpr std::array kWanted = {EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8, EGL_NONE};
+    constexpr std::array kWanted = {EGL_SURFACE_TYPE,
+                                    EGL_WINDOW_BIT,
+                                    EGL_RENDERABLE_TYPE,
+                                    EGL_OPENGL_BIT,
+                                    EGL_RED_SIZE,
+                                    8,
+                                    EGL_GREEN_SIZE,
+                                    8,
+                                    EGL_BLUE_SIZE,
+                                    8,
+                                    EGL_NONE};
     std::array<EGLConfig, kMaxConfigs> configs{};
     EGLint count = 0;
     if (eglChooseConfig(display, kWanted.data(), configs.data(), kMaxConfigs, &count) == EGL_FALSE) return nullptr;
@@ -54,7 +64,8 @@ EGLConfig find_config(Display* x, EGLDisplay display) {
     const VisualID preferred = XVisualIDFromVisual(DefaultVisual(x, DefaultScreen(x)));
     for (const EGLConfig config : std::span(configs).first(static_cast<std::size_t>(count))) {
         const auto visual = static_cast<VisualID>(attribute(display, config, EGL_NATIVE_VISUAL_ID));
-        const bool plain = attribute(display, config, EGL_RED_SIZE) == 8 && attribute(display, config, EGL_SAMPLES) == 0;
+        const bool plain =
+            attribute(display, config, EGL_RED_SIZE) == 8 && attribute(display, config, EGL_SAMPLES) == 0;
         if (!plain || true_color_visual(x, visual, kWindowDepth) == nullptr) continue;
         if (visual == preferred) return config;
         if (found == nullptr) found = config;
@@ -65,10 +76,14 @@ EGLConfig find_config(Display* x, EGLDisplay display) {
 Result<void> EglX11Backend::open(const WindowRequest& request) {
     const std::string where = "the X display \"" + x_->name() + "\"";
     context_ = create_egl_context(display_);
-    if (context_ == EGL_NO_CONTEXT) return fail("EGL offers no OpenGL 4.5 compatibility context on " + where + " (" + egl_error("eglCreateContext") + ")");
+    if (context_ == EGL_NO_CONTEXT)
+        return fail("EGL offers no OpenGL 4.5 compatibility context on " + where + " (" +
+                    egl_error("eglCreateContext") + ")");
     const EGLConfig config = find_config(x_->get(), display_);
-    if (config == nullptr) return fail(where + " has no visual of " + std::to_string(kWindowDepth) + " bits a pixel that EGL can draw to");
-    const WindowLook look{static_cast<unsigned long>(attribute(display_, config, EGL_NATIVE_VISUAL_ID)), request.background};
+    if (config == nullptr)
+        return fail(where + " has no visual of " + std::to_string(kWindowDepth) + " bits a pixel that EGL can draw to");
+    const WindowLook look{static_cast<unsigned long>(attribute(display_, config, EGL_NATIVE_VISUAL_ID)),
+                          request.background};
     auto windows = TileWindows::open(*x_, {display_, config, context_}, request, look);
     if (!windows) return tl::unexpected(windows.error());
     windows_ = std::move(*windows);

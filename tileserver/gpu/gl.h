@@ -15,7 +15,8 @@ namespace wall::tileserver {
 
 /// Names that the driver has given and not got back.
 struct DriverObjects {
-    std::int64_t textures = 0, buffers = 0, lists = 0, programs = 0, shaders = 0, framebuffers = 0, renderbuffers = 0, queries = 0;
+    std::int64_t textures = 0, buffers = 0, lists = 0, programs = 0, shaders = 0, framebuffers = 0, renderbuffers = 0,
+                 queries = 0;
     bool operator==(const DriverObjects&) const = default;
 };
 

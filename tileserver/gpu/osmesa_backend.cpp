@@ -21,8 +21,21 @@ struct OsMesa {
 };
 
 constexpr std::array kContextAttributes = {
-    OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 0, OSMESA_STENCIL_BITS, 0, OSMESA_ACCUM_BITS, 0,
-    OSMESA_PROFILE, OSMESA_COMPAT_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 4, OSMESA_CONTEXT_MINOR_VERSION, 5, 0,
+    OSMESA_FORMAT,
+    OSMESA_RGBA,
+    OSMESA_DEPTH_BITS,
+    0,
+    OSMESA_STENCIL_BITS,
+    0,
+    OSMESA_ACCUM_BITS,
+    0,
+    OSMESA_PROFILE,
+    OSMESA_COMPAT_PROFILE,
+    OSMESA_CONTEXT_MAJOR_VERSION,
+    4,
+    OSMESA_CONTEXT_MINOR_VERSION,
+    5,
+    0,
 };
 
 Result<OsMesa> load_library() {
@@ -35,8 +48,9 @@ Result<OsMesa> load_library() {
         function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
         return function != nullptr;
     };
-    if (!load(mesa.create_context, "OSMesaCreateContextAttribs") || !load(mesa.destroy_context, "OSMesaDestroyContext") ||
-        !load(mesa.make_current, "OSMesaMakeCurrent") || !load(mesa.get_proc_address, "OSMesaGetProcAddress"))
+    if (!load(mesa.create_context, "OSMesaCreateContextAttribs") ||
+        !load(mesa.destroy_context, "OSMesaDestroyContext") || !load(mesa.make_current, "OSMesaMakeCurrent") ||
+        !load(mesa.get_proc_address, "OSMesaGetProcAddress"))
         return fail("the OSMesa library is too old: it lacks OSMesaCreateContextAttribs");
     return mesa;
 }
@@ -49,10 +63,13 @@ public:
         mesa_.destroy_context(context_);
     }
     Result<void> make_current() override {
-        if (mesa_.make_current(context_, pixels_.data(), GL_UNSIGNED_BYTE, kExtent, kExtent) == GL_FALSE) return fail("OSMesaMakeCurrent failed");
+        if (mesa_.make_current(context_, pixels_.data(), GL_UNSIGNED_BYTE, kExtent, kExtent) == GL_FALSE)
+            return fail("OSMesaMakeCurrent failed");
         return {};
     }
-    void* get_proc_address(const char* name) const override { return reinterpret_cast<void*>(mesa_.get_proc_address(name)); }
+    void* get_proc_address(const char* name) const override {
+        return reinterpret_cast<void*>(mesa_.get_proc_address(name));
+    }
     std::string_view name() const override { return "osmesa"; }
 
 private:

@@ -15,8 +15,10 @@ namespace {
 Atom atom(Display* display, const char* name) { return XInternAtom(display, name, False); }
 
 /// A property of 32-bit items; Xlib wants them as longs.
-void set_property(Display* display, Window window, const char* name, Atom type, std::initializer_list<unsigned long> values) {
-    XChangeProperty(display, window, atom(display, name), type, 32, PropModeReplace, reinterpret_cast<const unsigned char*>(values.begin()), static_cast<int>(values.size()));
+void set_property(Display* display, Window window, const char* name, Atom type,
+                  std::initializer_list<unsigned long> values) {
+    XChangeProperty(display, window, atom(display, name), type, 32, PropModeReplace,
+                    reinterpret_cast<const unsigned char*>(values.begin()), static_cast<int>(values.size()));
 }
 
 /// Of one pixel that is not drawn.
@@ -31,7 +33,8 @@ Cursor empty_cursor(Display* display) {
 
 }  // namespace
 
-Result<std::unique_ptr<TileWindow>> TileWindow::open(const X11Display& display, const WindowSpec& spec, const WindowLook& look) {
+Result<std::unique_ptr<TileWindow>> TileWindow::open(const X11Display& display, const WindowSpec& spec,
+                                                     const WindowLook& look) {
     std::unique_ptr<TileWindow> out(new TileWindow(display, spec));
     geom::Rect place = spec.rect;
     if (!spec.monitor.empty()) {
@@ -62,7 +65,8 @@ Result<void> TileWindow::create(const geom::Rect& place, const WindowLook& look)
     attributes.event_mask = ExposureMask | StructureNotifyMask;
     width_ = place.width;
     height_ = place.height;
-    window_ = XCreateWindow(display, root, place.x, place.y, static_cast<unsigned>(width_), static_cast<unsigned>(height_), 0, kWindowDepth, InputOutput, visual,
+    window_ = XCreateWindow(display, root, place.x, place.y, static_cast<unsigned>(width_),
+                            static_cast<unsigned>(height_), 0, kWindowDepth, InputOutput, visual,
                             CWBackPixel | CWBorderPixel | CWColormap | CWCursor | CWEventMask, &attributes);
     tell_window_manager(place);
     XMapRaised(display, window_);
@@ -87,13 +91,15 @@ void TileWindow::tell_window_manager(const geom::Rect& place) const {
     XClassHint program{name.data(), kind.data()};
     if (spec_.monitor.empty()) size.flags |= PMinSize | PMaxSize;
     XSetWMProperties(display, window_, nullptr, nullptr, nullptr, 0, &size, &manners, &program);
-    XChangeProperty(display, window_, atom(display, "_NET_WM_NAME"), atom(display, "UTF8_STRING"), 8, PropModeReplace, reinterpret_cast<const unsigned char*>(title.data()), static_cast<int>(title.size()));
+    XChangeProperty(display, window_, atom(display, "_NET_WM_NAME"), atom(display, "UTF8_STRING"), 8, PropModeReplace,
+                    reinterpret_cast<const unsigned char*>(title.data()), static_cast<int>(title.size()));
 
     // A close button, or its key, asks by a message that take() passes over, instead of ending the connection.
     Atom close = atom(display, "WM_DELETE_WINDOW");
     XSetWMProtocols(display, window_, &close, 1);
     constexpr unsigned long kDecorationsGiven = 2, kNone = 0;
-    set_property(display, window_, "_MOTIF_WM_HINTS", atom(display, "_MOTIF_WM_HINTS"), {kDecorationsGiven, 0, kNone, 0, 0});
+    set_property(display, window_, "_MOTIF_WM_HINTS", atom(display, "_MOTIF_WM_HINTS"),
+                 {kDecorationsGiven, 0, kNone, 0, 0});
     if (spec_.monitor.empty()) return;
     set_property(display, window_, "_NET_WM_STATE", XA_ATOM, {atom(display, "_NET_WM_STATE_FULLSCREEN")});
     set_property(display, window_, "_NET_WM_BYPASS_COMPOSITOR", XA_CARDINAL, {1});
@@ -102,7 +108,8 @@ void TileWindow::tell_window_manager(const geom::Rect& place) const {
 void TileWindow::take(const _XEvent& event) {
     if (event.type == Expose) exposed_ = true;
     if (event.type == DestroyNotify) gone_ = true;
-    if (event.type != ConfigureNotify || (event.xconfigure.width == width_ && event.xconfigure.height == height_)) return;
+    if (event.type != ConfigureNotify || (event.xconfigure.width == width_ && event.xconfigure.height == height_))
+        return;
     width_ = event.xconfigure.width;
     height_ = event.xconfigure.height;
     exposed_ = true;

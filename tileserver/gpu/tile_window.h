@@ -33,7 +33,8 @@ inline constexpr int kWindowDepth = 24;  ///< bits a pixel
 class TileWindow {
 public:
     /// Mapped, not waited for. `display` outlives it.
-    static Result<std::unique_ptr<TileWindow>> open(const X11Display& display, const WindowSpec& spec, const WindowLook& look);
+    static Result<std::unique_ptr<TileWindow>> open(const X11Display& display, const WindowSpec& spec,
+                                                    const WindowLook& look);
     ~TileWindow();
     TileWindow(const TileWindow&) = delete;
     TileWindow& operator=(const TileWindow&) = delete;

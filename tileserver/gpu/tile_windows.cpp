@@ -7,7 +7,8 @@
 
 namespace wall::tileserver {
 
-Result<std::unique_ptr<TileWindows>> TileWindows::open(const X11Display& display, const EglHandles& egl, const WindowRequest& request, const WindowLook& look) {
+Result<std::unique_ptr<TileWindows>> TileWindows::open(const X11Display& display, const EglHandles& egl,
+                                                       const WindowRequest& request, const WindowLook& look) {
     std::unique_ptr<TileWindows> out(new TileWindows(display, egl));
     for (const WindowSpec& spec : request.windows)
         if (auto added = out->add(spec, look); !added) return tl::unexpected(added.error());
@@ -31,8 +32,8 @@ Result<void> TileWindows::add(const WindowSpec& spec, const WindowLook& look) {
     const std::size_t index = windows_.size() - 1;
     if (entry.surface == EGL_NO_SURFACE) return failed(index, "eglCreatePlatformWindowSurface");
     if (auto selected = select(index); !selected) return selected;
-    // One thread shows them all. Were each to wait for its monitor, n monitors would show every n-th picture; so only the first waits, and the
-    // others are swapped right after it.
+    // One thread shows them all. Were each to wait for its monitor, n monitors would show every n-th picture; so only
+    // the first waits, and the others are swapped right after it.
     if (eglSwapInterval(egl_.display, index == 0 ? 1 : 0) == EGL_FALSE) return failed(index, "eglSwapInterval");
     return {};
 }
@@ -57,7 +58,8 @@ Result<void> TileWindows::take_events() {
 
 Result<void> TileWindows::select(std::size_t i) {
     if (current_ == i) return {};
-    if (eglMakeCurrent(egl_.display, windows_[i].surface, windows_[i].surface, egl_.context) == EGL_FALSE) return failed(i, "eglMakeCurrent");
+    if (eglMakeCurrent(egl_.display, windows_[i].surface, windows_[i].surface, egl_.context) == EGL_FALSE)
+        return failed(i, "eglMakeCurrent");
     current_ = i;
     return {};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The windows of a node's tiles as surfaces of its EGL context. One of them is always current, and stays so while layers
-// are drawn: these are framebuffer objects, to which it makes no difference. Render thread.
+// The windows of a node's tiles as surfaces of its EGL context. One of them is always current, and stays so while
+// layers are drawn: these are framebuffer objects, to which it makes no difference. Render thread.
 #pragma once
 
 #include <chrono>
@@ -31,7 +31,8 @@ struct EglHandles {
 class TileWindows {
 public:
     /// Opens them all; the first is current then. `display` outlives it; `look.background` is the request's.
-    static Result<std::unique_ptr<TileWindows>> open(const X11Display& display, const EglHandles& egl, const WindowRequest& request, const WindowLook& look);
+    static Result<std::unique_ptr<TileWindows>> open(const X11Display& display, const EglHandles& egl,
+                                                     const WindowRequest& request, const WindowLook& look);
     ~TileWindows();
     TileWindows(const TileWindows&) = delete;
     TileWindows& operator=(const TileWindows&) = delete;
@@ -52,7 +53,8 @@ private:
         std::unique_ptr<TileWindow> window;
         void* surface = nullptr;  // EGL's
     };
-    TileWindows(const X11Display& display, const EglHandles& egl) : display_(display), egl_(egl), refresh_period_(display.refresh_period()) {}
+    TileWindows(const X11Display& display, const EglHandles& egl)
+        : display_(display), egl_(egl), refresh_period_(display.refresh_period()) {}
     Result<void> add(const WindowSpec& spec, const WindowLook& look);
     Result<void> failed(std::size_t i, const char* call) const;
 

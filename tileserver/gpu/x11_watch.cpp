@@ -24,7 +24,8 @@ bool wait_for(pollfd& what, int timeout) {
 }  // namespace
 
 X11Watch::X11Watch(int connection, std::string message)
-    : stop_(::eventfd(0, EFD_CLOEXEC)), thread_([this, connection, message = std::move(message)] { run(connection, message); }) {}
+    : stop_(::eventfd(0, EFD_CLOEXEC)),
+      thread_([this, connection, message = std::move(message)] { run(connection, message); }) {}
 
 X11Watch::~X11Watch() {
     ::eventfd_write(stop_.get(), 1);

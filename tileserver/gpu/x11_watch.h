@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Ends the process if the X server is gone and the render thread does not notice: Mesa 22.3 draws to a lost connection for
-// ever (seen in xcb_put_image). Usually the render thread notices first, and ends in order.
+// Ends the process if the X server is gone and the render thread does not notice: Mesa 22.3 draws to a lost connection
+// for ever (seen in xcb_put_image). Usually the render thread notices first, and ends in order.
 #pragma once
 
 #include <string>

@@ -3,6 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
@@ -10,7 +11,6 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
-#include <algorithm>
 #include <chrono>
 
 #include "common/wire/limits.h"
@@ -31,7 +31,8 @@ constexpr auto kTicketPoll = 10ms;
 /// Takes the same time wherever they differ.
 bool equal_secret(const std::string& a, const std::string& b) {
     unsigned char difference = a.size() == b.size() ? 0 : 1;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) difference |= static_cast<unsigned char>(a[i] ^ b[i]);
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        difference |= static_cast<unsigned char>(a[i] ^ b[i]);
     return difference == 0;
 }
 
@@ -45,7 +46,8 @@ asio::awaitable<void> DataStream::run() {
     auto done = co_await greet();
     if (done) done = co_await take_batches();
     if (!done && !closing_) {
-        spdlog::info("stream_ended stream={} session={} reason=\"{}\"", id_.value, session_.value, done.error().message);
+        spdlog::info("stream_ended stream={} session={} reason=\"{}\"", id_.value, session_.value,
+                     done.error().message);
         fail(done.error().message);
     }
     if (batches_) host_.render().remove_stream(id_);
@@ -74,13 +76,17 @@ asio::awaitable<Result<void>> DataStream::greet() {
     timer_.cancel();
     if (!frame) co_return tl::unexpected(frame.error());
     proto::DataHello hello;
-    if (frame->kind != wire::FrameKind::hello || !hello.ParseFromArray(frame->payload.data(), static_cast<int>(frame->payload.size())))
+    if (frame->kind != wire::FrameKind::hello ||
+        !hello.ParseFromArray(frame->payload.data(), static_cast<int>(frame->payload.size())))
         co_return wall::fail("the first frame is not a hello");
-    if (hello.version() != glapi::kStreamVersion) co_return wall::fail("the program's WallGL library is of another version than this node");
+    if (hello.version() != glapi::kStreamVersion)
+        co_return wall::fail("the program's WallGL library is of another version than this node");
     session_ = SessionId(hello.session());
     const auto admission = co_await find_admission(session_, hello.ticket());
     if (!admission) co_return wall::fail("no valid ticket for session " + std::to_string(hello.session()));
-    if (hello.rank() >= std::max(1u, admission->membership.members)) co_return wall::fail("session " + std::to_string(hello.session()) + " has no rank " + std::to_string(hello.rank()));
+    if (hello.rank() >= std::max(1u, admission->membership.members))
+        co_return wall::fail("session " + std::to_string(hello.session()) + " has no rank " +
+                             std::to_string(hello.rank()));
     reader_.set_limit(wire::kMaxFramePayload);
     const auto on_room = [weak = weak_from_this(), executor = socket_.get_executor()] {
         asio::post(executor, [weak] {
@@ -100,7 +106,8 @@ asio::awaitable<Result<void>> DataStream::greet() {
 asio::awaitable<std::optional<Admission>> DataStream::find_admission(SessionId session, const std::string& given) {
     const auto until = std::chrono::steady_clock::now() + kTicketLimit;
     for (;;) {
-        if (const Admission* known = host_.admission(session)) co_return session && equal_secret(known->ticket, given) ? std::optional(*known) : std::nullopt;
+        if (const Admission* known = host_.admission(session))
+            co_return session&& equal_secret(known->ticket, given) ? std::optional(*known) : std::nullopt;
         if (std::chrono::steady_clock::now() > until || closing_) co_return std::nullopt;
         timer_.expires_after(kTicketPoll);
         co_await timer_.async_wait(kWaitable);
@@ -111,7 +118,8 @@ asio::awaitable<Result<void>> DataStream::take_batches() {
     while (!closing_) {
         auto frame = co_await next_frame();
         if (!frame) co_return tl::unexpected(frame.error());
-        if (frame->kind != wire::FrameKind::batch) co_return wall::fail("unexpected frame of kind " + std::to_string(static_cast<int>(frame->kind)));
+        if (frame->kind != wire::FrameKind::batch)
+            co_return wall::fail("unexpected frame of kind " + std::to_string(static_cast<int>(frame->kind)));
         room_ = batches_->push(std::move(frame->payload));
         host_.render().wake();
         while (!room_ && !closing_) {
@@ -138,7 +146,8 @@ asio::awaitable<void> DataStream::write_queue() {
     while (!outgoing_.empty()) {
         const auto bytes = std::move(outgoing_.front());
         outgoing_.pop_front();
-        const auto [error, written] = co_await asio::async_write(socket_, asio::buffer(bytes.data(), bytes.size()), kWaitable);
+        const auto [error, written] =
+            co_await asio::async_write(socket_, asio::buffer(bytes.data(), bytes.size()), kWaitable);
         outgoing_bytes_ -= bytes.size();
         if (error) break;
     }

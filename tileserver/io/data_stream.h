@@ -2,7 +2,8 @@
 // One client's data connection: hello and ticket, then batches into a bounded queue for the render thread, answers
 // back. I/O thread.
 //
-//     greeting --hello, good ticket--> open --bad frame, bad batch, session ended--> closing (the error goes out) --> closed
+//     greeting --hello, good ticket--> open --bad frame, bad batch, session ended--> closing (the error goes out) -->
+//     closed
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
@@ -67,7 +68,7 @@ private:
     StreamHost& host_;
     StreamId id_;
     net::StreamSocket socket_;
-    asio::steady_timer timer_;        // of whatever run() waits for besides the socket
+    asio::steady_timer timer_;  // of whatever run() waits for besides the socket
     FrameReader reader_;
     SessionId session_;
     std::shared_ptr<BatchQueue> batches_;

@@ -24,7 +24,8 @@ Result<void> FrameReader::begin_frame() {
     header_ = wire::decode_frame_header(buffer_.data() + read_);
     read_ += wire::kFrameHeaderBytes;
     if (header_.payload_bytes > limit_)
-        return fail("frame of " + std::to_string(header_.payload_bytes) + " bytes, at most " + std::to_string(limit_) + " are allowed");
+        return fail("frame of " + std::to_string(header_.payload_bytes) + " bytes, at most " + std::to_string(limit_) +
+                    " are allowed");
     in_payload_ = true;
     have_ = 0;
     payload_.clear();

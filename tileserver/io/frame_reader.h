@@ -32,19 +32,19 @@ public:
     Result<std::optional<Frame>> next();
 
 private:
-    static constexpr std::size_t kBuffer = 64 << 10;     // bytes
-    static constexpr std::size_t kGrowth = 4 << 20;      // bytes; memory follows what has really come
+    static constexpr std::size_t kBuffer = 64 << 10;  // bytes
+    static constexpr std::size_t kGrowth = 4 << 20;   // bytes; memory follows what has really come
 
     Result<void> begin_frame();
     void take(std::size_t bytes);
 
     std::uint32_t limit_;
     std::vector<std::byte> buffer_ = std::vector<std::byte>(kBuffer);
-    std::size_t read_ = 0, filled_ = 0;   // in buffer_
+    std::size_t read_ = 0, filled_ = 0;  // in buffer_
     bool in_payload_ = false, direct_ = false;
     wire::FrameHeader header_;
     std::vector<std::byte> payload_;
-    std::size_t have_ = 0;                // bytes of payload_ that have come
+    std::size_t have_ = 0;  // bytes of payload_ that have come
     std::optional<Error> failure_;
 };
 

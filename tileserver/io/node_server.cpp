@@ -42,7 +42,8 @@ geom::Rect rect_of(const proto::Rect& rect) {
 std::string to_rgb(std::span<const std::byte> rgba) {
     std::string rgb(rgba.size() / 4 * 3, '\0');
     char* to = rgb.data();
-    for (const std::byte* from = rgba.data(); from != rgba.data() + rgba.size(); from += 4, to += 3) std::memcpy(to, from, 3);
+    for (const std::byte* from = rgba.data(); from != rgba.data() + rgba.size(); from += 4, to += 3)
+        std::memcpy(to, from, 3);
     return rgb;
 }
 
@@ -61,7 +62,10 @@ WindowRequest window_request(const config::WallConfig& wall, const config::NodeC
         const auto& tile = node.tiles[slot];
         if (!tile.window) continue;
         request.display = tile.window->display;
-        request.windows.push_back({slot, tile.name, tile.window->monitor, {tile.window->x, tile.window->y, tile.rect.width, tile.rect.height}});
+        request.windows.push_back({slot,
+                                   tile.name,
+                                   tile.window->monitor,
+                                   {tile.window->x, tile.window->y, tile.rect.width, tile.rect.height}});
     }
     return request;
 }
@@ -69,11 +73,16 @@ WindowRequest window_request(const config::WallConfig& wall, const config::NodeC
 }  // namespace
 
 NodeServer::NodeServer(asio::any_io_executor executor, net::Address walld, std::string name)
-    : executor_(executor), walld_(std::move(walld)), name_(std::move(name)), retry_(executor), tile_streams_(executor, [this](const proto::Envelope& envelope) { to_walld(envelope); }) {}
+    : executor_(executor),
+      walld_(std::move(walld)),
+      name_(std::move(name)),
+      retry_(executor),
+      tile_streams_(executor, [this](const proto::Envelope& envelope) { to_walld(envelope); }) {}
 
 NodeServer::~NodeServer() = default;
 
-Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor executor, const config::WallConfig& wall, const config::NodeConfig& node) {
+Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor executor, const config::WallConfig& wall,
+                                                     const config::NodeConfig& node) {
     std::unique_ptr<NodeServer> server(new NodeServer(executor, wall.control_listen.front(), node.name));
     auto listener = net::Listener::open(executor, node.listen);
     if (!listener) return tl::unexpected(listener.error());
@@ -180,40 +189,34 @@ proto::Envelope NodeServer::hello() const {
 void NodeServer::handle(const proto::Envelope& envelope) {
     using Case = proto::Envelope::MessageCase;
     switch (envelope.message_case()) {
-        case Case::kNodeWelcome:
-            return welcome(envelope.node_welcome());
-        case Case::kTicket:
-            return admit(envelope.ticket());
-        case Case::kSessionEnd:
-            return end_session(SessionId(envelope.session_end().session()));
+        case Case::kNodeWelcome: return welcome(envelope.node_welcome());
+        case Case::kTicket: return admit(envelope.ticket());
+        case Case::kSessionEnd: return end_session(SessionId(envelope.session_end().session()));
         case Case::kPresent:
-            return render_->present(SessionId(envelope.present().session()), SurfaceId(envelope.present().surface()), envelope.present().frame());
+            return render_->present(SessionId(envelope.present().session()), SurfaceId(envelope.present().surface()),
+                                    envelope.present().frame());
         case Case::kStacking: {
             std::vector<StackEntry> entries;
-            for (const auto& entry : envelope.stacking().entries()) entries.push_back({SessionId(entry.session()), SurfaceId(entry.surface())});
+            for (const auto& entry : envelope.stacking().entries())
+                entries.push_back({SessionId(entry.session()), SurfaceId(entry.surface())});
             return render_->set_stacking(std::move(entries));
         }
         case Case::kSnapshotRequest: {
             const auto& request = envelope.snapshot_request();
             return render_->request_picture({request.request(), false, request.slot(), SessionId(request.session())});
         }
-        case Case::kStreamStart:
-            return tile_streams_.start(*render_, envelope.stream_start());
-        case Case::kStreamStop:
-            return tile_streams_.stop(*render_, envelope.stream_stop().stream());
-        case Case::kStreamReady:
-            return tile_streams_.ready(*render_, envelope.stream_ready());
-        case Case::kRefused:
-            spdlog::error("walld_refused reason=\"{}\"", envelope.refused().reason());
-            return;
-        default:
-            spdlog::warn("walld_unexpected_message number={}", static_cast<int>(envelope.message_case()));
+        case Case::kStreamStart: return tile_streams_.start(*render_, envelope.stream_start());
+        case Case::kStreamStop: return tile_streams_.stop(*render_, envelope.stream_stop().stream());
+        case Case::kStreamReady: return tile_streams_.ready(*render_, envelope.stream_ready());
+        case Case::kRefused: spdlog::error("walld_refused reason=\"{}\"", envelope.refused().reason()); return;
+        default: spdlog::warn("walld_unexpected_message number={}", static_cast<int>(envelope.message_case()));
     }
 }
 
 void NodeServer::admit(const proto::Ticket& ticket) {
     const auto members = std::min(ticket.members(), wire::kMaxMembers);
-    admissions_[SessionId(ticket.session())] = {ticket.ticket(), {members, {ticket.left().begin(), ticket.left().end()}}};
+    admissions_[SessionId(ticket.session())] = {ticket.ticket(),
+                                                {members, {ticket.left().begin(), ticket.left().end()}}};
 }
 
 void NodeServer::welcome(const proto::NodeWelcome& welcome) {
@@ -299,7 +302,10 @@ void NodeServer::stats(const RenderStats& stats) {
 }
 
 void NodeServer::scaled(const ScaledTile& tile) {
-    post([tile] { spdlog::warn("tile_scaled tile=\"{}\" size={}x{} window={}x{}", tile.tile, tile.width, tile.height, tile.window_width, tile.window_height); });
+    post([tile] {
+        spdlog::warn("tile_scaled tile=\"{}\" size={}x{} window={}x{}", tile.tile, tile.width, tile.height,
+                     tile.window_width, tile.window_height);
+    });
 }
 
 void NodeServer::output_lost(std::string reason) {

@@ -23,7 +23,8 @@ namespace wall::tileserver {
 class NodeServer final : private StreamHost, private NodeEvents {
 public:
     /// Opens the driver and the listener; the error says what stands in the way.
-    static Result<std::unique_ptr<NodeServer>> open(asio::any_io_executor executor, const config::WallConfig& wall, const config::NodeConfig& node);
+    static Result<std::unique_ptr<NodeServer>> open(asio::any_io_executor executor, const config::WallConfig& wall,
+                                                    const config::NodeConfig& node);
     ~NodeServer() override;
 
     /// Starts to accept clients and to look for walld.

@@ -4,7 +4,9 @@
 namespace wall::tileserver {
 namespace {
 
-std::uint64_t nanoseconds(Work::Clock::duration time) { return static_cast<std::uint64_t>(std::chrono::nanoseconds(time).count()); }
+std::uint64_t nanoseconds(Work::Clock::duration time) {
+    return static_cast<std::uint64_t>(std::chrono::nanoseconds(time).count());
+}
 
 /// What the node's total and a session's figures have in common.
 template <class Out>

@@ -15,7 +15,9 @@ namespace {
 constexpr int kNice = 10;  // programs come first
 
 std::uint64_t now_us() {
-    return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count());
+    return static_cast<std::uint64_t>(
+        std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+            .count());
 }
 
 void give_way() {
@@ -23,7 +25,9 @@ void give_way() {
     static_cast<void>(once);
 }
 
-std::string text_of(std::span<const std::byte> bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+std::string text_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 }  // namespace
 
@@ -55,9 +59,11 @@ struct TileStreams::Stream {
             encoder = std::move(*made);
             format = now;
         }
-        const codec::FrameView view{picture.rgba.data(), picture.width, picture.height, std::ptrdiff_t{4} * picture.width, codec::PixelLayout::rgba};
+        const codec::FrameView view{picture.rgba.data(), picture.width, picture.height,
+                                    std::ptrdiff_t{4} * picture.width, codec::PixelLayout::rgba};
         std::vector<std::byte> packet;
-        const auto kind = encoder->encode(view, want_key || first ? codec::PacketKind::key : codec::PacketKind::delta, packet);
+        const auto kind =
+            encoder->encode(view, want_key || first ? codec::PacketKind::key : codec::PacketKind::delta, packet);
         if (!kind) return tl::unexpected(kind.error());
         out.set_key(*kind == codec::PacketKind::key);
         if (first) out.set_header(text_of(encoder->stream_header()));
@@ -67,13 +73,16 @@ struct TileStreams::Stream {
 };
 
 void TileStreams::start(RenderThread& render, const proto::StreamStart& message) {
-    if (const auto known = codec::find_codec(message.codec()); !known) return fail(message.stream(), known.error().message);
+    if (const auto known = codec::find_codec(message.codec()); !known)
+        return fail(message.stream(), known.error().message);
     auto stream = std::make_shared<Stream>();
     stream->codec = message.codec();
     streams_[message.stream()] = std::move(stream);
     const auto& crop = message.crop();
-    const geom::Rect part{crop.x(), crop.y(), static_cast<std::int32_t>(crop.width()), static_cast<std::int32_t>(crop.height())};
-    render.watch({message.stream(), true, message.slot(), SessionId(message.session()), SurfaceId(message.surface()), part, message.width(), message.height()},
+    const geom::Rect part{crop.x(), crop.y(), static_cast<std::int32_t>(crop.width()),
+                          static_cast<std::int32_t>(crop.height())};
+    render.watch({message.stream(), true, message.slot(), SessionId(message.session()), SurfaceId(message.surface()),
+                  part, message.width(), message.height()},
                  std::chrono::microseconds(message.interval_us()));
 }
 
@@ -99,7 +108,8 @@ void TileStreams::picture(Picture picture) {
     const auto at = streams_.find(id);
     if (at == streams_.end()) return;
     if (!picture.error.empty()) return fail(id, picture.error);
-    asio::post(pool_, [this, id, stream = at->second, key = std::exchange(at->second->key, false), picture = std::move(picture)] {
+    asio::post(pool_, [this, id, stream = at->second, key = std::exchange(at->second->key, false),
+                       picture = std::move(picture)] {
         give_way();
         proto::Envelope envelope;
         auto& frame = *envelope.mutable_stream_frame();

@@ -19,7 +19,8 @@ namespace asio = boost::asio;
 class TileStreams {
 public:
     /// `send`: to walld; called on the executor.
-    TileStreams(asio::any_io_executor executor, std::function<void(const proto::Envelope&)> send) : executor_(std::move(executor)), send_(std::move(send)) {}
+    TileStreams(asio::any_io_executor executor, std::function<void(const proto::Envelope&)> send)
+        : executor_(std::move(executor)), send_(std::move(send)) {}
     /// Waits for the pictures that are being encoded.
     ~TileStreams() { pool_.join(); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The accumulation buffer. Framebuffer objects have none, so it is kept in memory with the arithmetic that Mesa uses for
-// its own (signed 16-bit components, main/accum.c's rounding), so that pictures are the same. Render thread.
+// The accumulation buffer. Framebuffer objects have none, so it is kept in memory with the arithmetic that Mesa uses
+// for its own (signed 16-bit components, main/accum.c's rounding), so that pictures are the same. Render thread.
 #pragma once
 
 #include <array>

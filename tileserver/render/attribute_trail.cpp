@@ -6,7 +6,8 @@ namespace el = glstate::el;
 using glstate::assign;
 
 bool AttributeTrail::material(GLenum face, GLenum pname, const glstate::Vec4& value) {
-    constexpr std::array<GLenum, kMaterials> kNames = {GL_AMBIENT, GL_DIFFUSE, GL_SPECULAR, GL_EMISSION, GL_SHININESS, GL_COLOR_INDEXES};
+    constexpr std::array<GLenum, kMaterials> kNames = {GL_AMBIENT,  GL_DIFFUSE,   GL_SPECULAR,
+                                                       GL_EMISSION, GL_SHININESS, GL_COLOR_INDEXES};
     if (face != GL_FRONT && face != GL_BACK && face != GL_FRONT_AND_BACK) return false;
     bool known = false;
     for (unsigned parameter = 0; parameter < kMaterials; ++parameter) {
@@ -31,7 +32,8 @@ void AttributeTrail::append(const AttributeTrail& later) {
     for (unsigned i = 0; i < attrib_.size(); ++i)
         if (later.attribs_seen_ >> i & 1) attrib_[i] = later.attrib_[i];
     for (unsigned i = 0; i < 2 * kMaterials; ++i)
-        if (later.materials_seen_ >> i & 1) material_[i / kMaterials][i % kMaterials] = later.material_[i / kMaterials][i % kMaterials];
+        if (later.materials_seen_ >> i & 1)
+            material_[i / kMaterials][i % kMaterials] = later.material_[i / kMaterials][i % kMaterials];
     seen_ |= later.seen_;
     attribs_seen_ |= later.attribs_seen_;
     materials_seen_ |= later.materials_seen_;
@@ -57,7 +59,8 @@ void AttributeTrail::fold_materials(glstate::State& state) const {
         const std::uint32_t seen = materials_seen_ >> (face * kMaterials);
         // A parameter that follows the current colour does not take the value in the driver either.
         const auto store = [&]<class E>(E, unsigned parameter) {
-            if ((seen >> parameter & 1) != 0 && !glstate::follows_color<E>(state, face)) assign<E>(state, face, m[parameter]);
+            if ((seen >> parameter & 1) != 0 && !glstate::follows_color<E>(state, face))
+                assign<E>(state, face, m[parameter]);
         };
         store(el::material_ambient{}, 0);
         store(el::material_diffuse{}, 1);

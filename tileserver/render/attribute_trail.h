@@ -23,8 +23,12 @@ public:
     void fog_coord(float c) { seen_ |= kFog, fog_ = c; }
     void edge_flag(bool flag) { seen_ |= kEdge, edge_ = flag ? 1 : 0; }
     void color_index(float c) { seen_ |= kIndex, index_ = c; }
-    void texcoord(unsigned unit, float s, float t, float r, float q) { seen_ |= kTexcoord0 << unit, texcoord_[unit] = {s, t, r, q}; }
-    void vertex_attrib(unsigned i, float x, float y, float z, float w) { attribs_seen_ |= 1u << i, attrib_[i] = {x, y, z, w}; }
+    void texcoord(unsigned unit, float s, float t, float r, float q) {
+        seen_ |= kTexcoord0 << unit, texcoord_[unit] = {s, t, r, q};
+    }
+    void vertex_attrib(unsigned i, float x, float y, float z, float w) {
+        attribs_seen_ |= 1u << i, attrib_[i] = {x, y, z, w};
+    }
     /// False: no such face or parameter.
     bool material(GLenum face, GLenum pname, const glstate::Vec4& value);
 
@@ -35,7 +39,8 @@ public:
 private:
     // ambient, diffuse, specular, emission, shininess, indexes
     static constexpr unsigned kMaterials = 6;
-    static constexpr std::uint32_t kColor = 1, kNormal = 2, kSecondary = 4, kFog = 8, kEdge = 16, kIndex = 32, kTexcoord0 = 64;
+    static constexpr std::uint32_t kColor = 1, kNormal = 2, kSecondary = 4, kFog = 8, kEdge = 16, kIndex = 32,
+                                   kTexcoord0 = 64;
     void set_material(unsigned face, unsigned parameter, const glstate::Vec4& value) {
         materials_seen_ |= 1u << (face * kMaterials + parameter);
         material_[face][parameter] = value;

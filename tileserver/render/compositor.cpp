@@ -33,7 +33,8 @@ void Compositor::set_stacking(std::vector<StackEntry> bottom_first) {
 }
 
 const Tile* Compositor::tile(std::uint32_t slot) const {
-    const auto at = std::find_if(node_.tiles.begin(), node_.tiles.end(), [slot](const Tile& t) { return t.slot == slot; });
+    const auto at =
+        std::find_if(node_.tiles.begin(), node_.tiles.end(), [slot](const Tile& t) { return t.slot == slot; });
     return at == node_.tiles.end() ? nullptr : &*at;
 }
 
@@ -61,12 +62,14 @@ Compositor::TileTarget& Compositor::target(const Tile& tile) {
 }
 
 /// A part of the picture, halved until one linear step is left, so that every pixel counts.
-Compositor::TileTarget Compositor::scaled(const TileTarget& picture, geom::Rect part, std::int32_t width, std::int32_t height) const {
+Compositor::TileTarget Compositor::scaled(const TileTarget& picture, geom::Rect part, std::int32_t width,
+                                          std::int32_t height) const {
     TileTarget from = picture;
     while (part.width != width || part.height != height) {
         const geom::Rect size{0, 0, std::max(width, (part.width + 1) / 2), std::max(height, (part.height + 1) / 2)};
         TileTarget to = make_target(size);
-        gl_.BlitNamedFramebuffer(from.framebuffer, to.framebuffer, part.x, part.y, part.right(), part.bottom(), 0, 0, size.width, size.height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+        gl_.BlitNamedFramebuffer(from.framebuffer, to.framebuffer, part.x, part.y, part.right(), part.bottom(), 0, 0,
+                                 size.width, size.height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
         if (from.texture != picture.texture) release(from);
         from = to;
         part = size;
@@ -96,7 +99,8 @@ void Compositor::draw_layer(const TileTarget& target, const Layer& layer) {
     const geom::Rect& area = layer.geometry().area;
     const std::int32_t x = area.x - target.rect.x, y = area.y - target.rect.y;
     const std::int32_t first = layer.top_row_first() ? 0 : area.height, last = area.height - first;
-    gl_.BlitNamedFramebuffer(source_, target.framebuffer, 0, first, area.width, last, x, y, x + area.width, y + area.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    gl_.BlitNamedFramebuffer(source_, target.framebuffer, 0, first, area.width, last, x, y, x + area.width,
+                             y + area.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     gl_.NamedFramebufferTexture(source_, GL_COLOR_ATTACHMENT0, 0, 0);
 }
 
@@ -115,7 +119,8 @@ void Compositor::request(const PictureRequest& request) {
         return;
     }
     TileTarget& picture = target(*wanted);
-    const geom::Rect whole{0, 0, picture.rect.width, picture.rect.height}, crop = request.crop.empty() ? whole : geom::intersect(request.crop, whole);
+    const geom::Rect whole{0, 0, picture.rect.width, picture.rect.height},
+        crop = request.crop.empty() ? whole : geom::intersect(request.crop, whole);
     if (crop.empty()) {
         refused_.push_back({request, 0, 0, {}, "the tile is smaller than the part of it that is wanted"});
         return;
@@ -131,11 +136,13 @@ void Compositor::request(const PictureRequest& request) {
 }
 
 void Compositor::read_back(const PictureRequest& request, GLuint framebuffer, const geom::Rect& part) {
-    Readback readback{request, static_cast<std::uint32_t>(part.width), static_cast<std::uint32_t>(part.height), 0, nullptr};
+    Readback readback{request, static_cast<std::uint32_t>(part.width), static_cast<std::uint32_t>(part.height), 0,
+                      nullptr};
     node_.driver.neutral_pixel_transfer();
     node_.driver.forget_layer();
     gl_.CreateBuffers(1, &readback.buffer);
-    gl_.NamedBufferStorage(readback.buffer, GLsizeiptr{4} * part.width * part.height, nullptr, GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
+    gl_.NamedBufferStorage(readback.buffer, GLsizeiptr{4} * part.width * part.height, nullptr,
+                           GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
     gl_.BindBuffer(GL_PIXEL_PACK_BUFFER, readback.buffer);
     gl_.ReadPixels(part.x, part.y, part.width, part.height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
@@ -148,11 +155,10 @@ void Compositor::read_back(const PictureRequest& request, GLuint framebuffer, co
 Picture Compositor::finish(const Readback& readback) {
     Picture picture{readback.request, readback.width, readback.height, {}, {}};
     const std::size_t bytes = std::size_t{4} * picture.width * picture.height;
-    const auto* rgba = static_cast<const std::byte*>(gl_.MapNamedBufferRange(readback.buffer, 0, static_cast<GLsizeiptr>(bytes), GL_MAP_READ_BIT));
-    if (rgba != nullptr)
-        picture.rgba.assign(rgba, rgba + bytes);
-    else
-        picture.error = "the driver did not give the pixels";
+    const auto* rgba = static_cast<const std::byte*>(
+        gl_.MapNamedBufferRange(readback.buffer, 0, static_cast<GLsizeiptr>(bytes), GL_MAP_READ_BIT));
+    if (rgba != nullptr) picture.rgba.assign(rgba, rgba + bytes);
+    else picture.error = "the driver did not give the pixels";
     gl_.UnmapNamedBuffer(readback.buffer);
     gl_.DeleteBuffers(1, &readback.buffer);
     gl_.DeleteSync(readback.done);
@@ -163,7 +169,8 @@ std::vector<Picture> Compositor::collect(bool wait) {
     std::vector<Picture> pictures = std::exchange(refused_, {});
     constexpr GLuint64 kLongest = 5'000'000'000;  // ns
     while (!readbacks_.empty()) {
-        const GLenum state = gl_.ClientWaitSync(readbacks_.front().done, GL_SYNC_FLUSH_COMMANDS_BIT, wait ? kLongest : 0);
+        const GLenum state =
+            gl_.ClientWaitSync(readbacks_.front().done, GL_SYNC_FLUSH_COMMANDS_BIT, wait ? kLongest : 0);
         if (state == GL_TIMEOUT_EXPIRED && !wait) break;
         pictures.push_back(finish(readbacks_.front()));
         readbacks_.pop_front();

@@ -24,13 +24,13 @@ struct StackEntry {
 };
 
 struct PictureRequest {
-    std::uint32_t id = 0;                ///< of the request, or of the stream
+    std::uint32_t id = 0;  ///< of the request, or of the stream
     bool stream = false;
     std::uint32_t slot = 0;
-    SessionId session;                   ///< only its layers; none: all
-    SurfaceId surface;                   ///< only this one of the session; none: all
-    geom::Rect crop;                     ///< in pixels of the tile; empty: all of it
-    std::uint32_t width = 0, height = 0; ///< of the picture; 0: the crop's; never more than that
+    SessionId session;                    ///< only its layers; none: all
+    SurfaceId surface;                    ///< only this one of the session; none: all
+    geom::Rect crop;                      ///< in pixels of the tile; empty: all of it
+    std::uint32_t width = 0, height = 0;  ///< of the picture; 0: the crop's; never more than that
 };
 
 struct Picture {
@@ -56,7 +56,8 @@ public:
 
     void set_background(std::uint32_t rgb);
     void set_stacking(std::vector<StackEntry> bottom_first);
-    /// All layers of a tile, composed now unless they are already. Good until the compositor is called again. None: this node has no such tile (yet).
+    /// All layers of a tile, composed now unless they are already. Good until the compositor is called again. None:
+    /// this node has no such tile (yet).
     std::optional<TilePicture> picture(std::uint32_t slot);
     /// Starts reading a tile; collect() gives the picture later.
     void request(const PictureRequest& request);
@@ -68,8 +69,8 @@ private:
     struct TileTarget {
         geom::Rect rect;
         GLuint texture = 0, framebuffer = 0;
-        std::uint64_t composed = 0;   // RenderNode::damage that the picture shows; 0: none
-        StackEntry only;              // of one session or surface only
+        std::uint64_t composed = 0;  // RenderNode::damage that the picture shows; 0: none
+        StackEntry only;             // of one session or surface only
     };
     struct Readback {
         PictureRequest request;

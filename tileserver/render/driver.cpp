@@ -12,8 +12,11 @@ namespace wall::tileserver {
 namespace {
 
 constexpr std::array<GLenum, kTextureTargets> kGlTargets = {
-    GL_TEXTURE_1D,       GL_TEXTURE_2D,       GL_TEXTURE_3D,             GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE,
-    GL_TEXTURE_1D_ARRAY, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_CUBE_MAP_ARRAY, GL_TEXTURE_BUFFER,   GL_TEXTURE_2D_MULTISAMPLE,
+    GL_TEXTURE_1D,        GL_TEXTURE_2D,
+    GL_TEXTURE_3D,        GL_TEXTURE_CUBE_MAP,
+    GL_TEXTURE_RECTANGLE, GL_TEXTURE_1D_ARRAY,
+    GL_TEXTURE_2D_ARRAY,  GL_TEXTURE_CUBE_MAP_ARRAY,
+    GL_TEXTURE_BUFFER,    GL_TEXTURE_2D_MULTISAMPLE,
 };
 
 /// Exact for whole numbers that a viewport may have; absurd ones are cut.
@@ -34,7 +37,8 @@ bool has_extension(const Gl& gl, std::string_view wanted) {
 GLenum gl_target(TextureTarget target) { return kGlTargets[static_cast<std::size_t>(target)]; }
 
 TextureTarget texture_target(GLenum target) {
-    if (target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z) return TextureTarget::cube_map;
+    if (target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z)
+        return TextureTarget::cube_map;
     std::size_t i = 0;
     while (i < kTextureTargets && kGlTargets[i] != target) ++i;
     return static_cast<TextureTarget>(i);
@@ -64,8 +68,8 @@ bool Driver::fragments_change(const glstate::State& from, const glstate::State& 
     return false;
 }
 
-/// glColorMaterial is given while tracking is off: a colour that Mesa 22.3 still holds then (glColor outside of glBegin) would
-/// be lost to the material.
+/// glColorMaterial is given while tracking is off: a colour that Mesa 22.3 still holds then (glColor outside of
+/// glBegin) would be lost to the material.
 void Driver::stop_tracking(const glstate::State& state) {
     constexpr auto kMaterial = static_cast<std::size_t>(glstate::Category::material);
     if (mirror.ids[kMaterial] == state.ids[kMaterial] || !mirror.material.color_material_enabled) return;
@@ -81,10 +85,13 @@ void Driver::sync_values(glstate::State& state) {
     }
     stop_tracking(state);
     glstate::diff_and_unify<kSynced>(mirror, state, *this);
-    if (std::exchange(modelview_changed_, false)) modelview_has_origin_ = glstate::load_modelview(gl_, mirror, modelview_has_origin_);
+    if (std::exchange(modelview_changed_, false))
+        modelview_has_origin_ = glstate::load_modelview(gl_, mirror, modelview_has_origin_);
 }
 
-void Driver::sync_pixel_transfer(const glstate::State& state) { glstate::diff_category<glstate::Category::pixel_transfer>(mirror, state, *this); }
+void Driver::sync_pixel_transfer(const glstate::State& state) {
+    glstate::diff_category<glstate::Category::pixel_transfer>(mirror, state, *this);
+}
 
 // ---- what the driver transforms when it is told ----
 
@@ -100,8 +107,12 @@ void Driver::with_identity_modelview(Call&& call) {
 // Four elements make up one matrix; it is loaded when all of them are known.
 void Driver::emit(Gl&, glstate::el::modelview, unsigned, const glstate::Mat4&) { modelview_changed_ = true; }
 void Driver::emit(Gl&, glstate::el::modelview_base, unsigned, const glstate::Mat4&) { modelview_changed_ = true; }
-void Driver::emit(Gl&, glstate::el::modelview_step, unsigned, const glstate::ModelviewStep&) { modelview_changed_ = true; }
-void Driver::emit(Gl&, glstate::el::modelview_form, unsigned, const glstate::ModelviewForm&) { modelview_changed_ = true; }
+void Driver::emit(Gl&, glstate::el::modelview_step, unsigned, const glstate::ModelviewStep&) {
+    modelview_changed_ = true;
+}
+void Driver::emit(Gl&, glstate::el::modelview_form, unsigned, const glstate::ModelviewForm&) {
+    modelview_changed_ = true;
+}
 void Driver::emit(Gl& gl, glstate::el::projection, unsigned, const glstate::Mat4& v) {
     gl.MatrixMode(GL_PROJECTION);
     gl.LoadMatrixf(v.data());
@@ -140,7 +151,8 @@ void Driver::bind_texture(unsigned i, TextureTarget target, GLuint texture) {
 void Driver::bind_all(const TextureBindings& wanted) {
     for (unsigned i = 0; i < kTextureUnits; ++i) {
         if (bound_textures_.names[i] == wanted.names[i]) continue;
-        for (std::size_t target = 0; target < kTextureTargets; ++target) bind_texture(i, static_cast<TextureTarget>(target), wanted.names[i][target]);
+        for (std::size_t target = 0; target < kTextureTargets; ++target)
+            bind_texture(i, static_cast<TextureTarget>(target), wanted.names[i][target]);
     }
     bound_textures_.id = wanted.id;
 }
@@ -164,8 +176,10 @@ void Driver::bind_window(Layer& layer, glstate::State& state) {
     layer.bind(glstate::el::draw_buffer::ref(state), glstate::el::read_buffer::ref(state));
     const WindowValues wanted = window_values(layer.geometry(), state);
     apply_viewport(wanted, layer.geometry().scaled());
-    if (wanted.scissor_enabled != window_.scissor_enabled) wanted.scissor_enabled ? gl_.Enable(GL_SCISSOR_TEST) : gl_.Disable(GL_SCISSOR_TEST);
-    if (wanted.scissor != window_.scissor) gl_.Scissor(wanted.scissor.x, wanted.scissor.y, wanted.scissor.width, wanted.scissor.height);
+    if (wanted.scissor_enabled != window_.scissor_enabled)
+        wanted.scissor_enabled ? gl_.Enable(GL_SCISSOR_TEST) : gl_.Disable(GL_SCISSOR_TEST);
+    if (wanted.scissor != window_.scissor)
+        gl_.Scissor(wanted.scissor.x, wanted.scissor.y, wanted.scissor.width, wanted.scissor.height);
     if (wanted.stipple != window_.stipple) gl_.PolygonStipple(reinterpret_cast<const GLubyte*>(wanted.stipple.data()));
     if (wanted.pixel_zoom != window_.pixel_zoom) gl_.PixelZoom(wanted.pixel_zoom[0], wanted.pixel_zoom[1]);
     window_ = wanted;
@@ -175,10 +189,8 @@ void Driver::apply_viewport(const WindowValues& values, bool scaled) {
     if (values.viewport == window_.viewport && scaled == viewport_scaled_) return;
     const auto& v = values.viewport;
     viewport_scaled_ = scaled;
-    if (scaled)
-        gl_.ViewportIndexedf(0, v.x, v.y, v.width, v.height);
-    else
-        gl_.Viewport(whole(v.x), whole(v.y), whole(v.width), whole(v.height));
+    if (scaled) gl_.ViewportIndexedf(0, v.x, v.y, v.width, v.height);
+    else gl_.Viewport(whole(v.x), whole(v.y), whole(v.width), whole(v.height));
 }
 
 void Driver::disable_scissor() {

@@ -18,7 +18,19 @@ namespace wall::tileserver {
 inline constexpr unsigned kTextureUnits = glstate::el::texture_binding_2d::count;
 
 /// Texture targets with a binding of their own, in the order of glstate's elements.
-enum class TextureTarget : std::uint8_t { t1d, t2d, t3d, cube_map, rectangle, t1d_array, t2d_array, cube_map_array, buffer, t2d_multisample, kCount };
+enum class TextureTarget : std::uint8_t {
+    t1d,
+    t2d,
+    t3d,
+    cube_map,
+    rectangle,
+    t1d_array,
+    t2d_array,
+    cube_map_array,
+    buffer,
+    t2d_multisample,
+    kCount
+};
 inline constexpr std::size_t kTextureTargets = static_cast<std::size_t>(TextureTarget::kCount);
 GLenum gl_target(TextureTarget target);
 /// Of a target or an image target (cube map faces); kCount: not one of ours.
@@ -26,7 +38,8 @@ TextureTarget texture_target(GLenum target);
 inline bool is_1d(TextureTarget target) { return target == TextureTarget::t1d; }
 /// Its images have a depth.
 inline bool is_3d(TextureTarget target) {
-    return target == TextureTarget::t3d || target == TextureTarget::t2d_array || target == TextureTarget::cube_map_array;
+    return target == TextureTarget::t3d || target == TextureTarget::t2d_array ||
+           target == TextureTarget::cube_map_array;
 }
 
 using TextureNames = std::array<std::array<GLuint, kTextureTargets>, kTextureUnits>;
@@ -51,13 +64,13 @@ public:
 
     /// A glBitmap was drawn. Mesa 22 gathers them, and would draw them by the state of a later one.
     void hold_bitmap() { bitmap_held_ = true; }
-    /// Everything but vertex attributes and what depends on the layer or names objects. The state's categories take the driver's value ids
-    /// where they prove equal.
+    /// Everything but vertex attributes and what depends on the layer or names objects. The state's categories take the
+    /// driver's value ids where they prove equal.
     void sync(glstate::State& state) {
         if (!glstate::same_ids<kSynced>(mirror, state)) sync_values(state);
     }
-    /// The current attributes; the last thing before geometry, so that Mesa packs them with its vertices. Behind them any
-    /// other change would make it set up each as an array of its own.
+    /// The current attributes; the last thing before geometry, so that Mesa packs them with its vertices. Behind them
+    /// any other change would make it set up each as an array of its own.
     void sync_current(glstate::State& state) { glstate::diff_and_unify<kCurrentMask>(mirror, state, *this); }
     /// `state` holds what the driver holds since sync() and the vertex attributes that both have seen since.
     void unify_attributes(glstate::State& state) const { glstate::unify_ids(kAttributesMask, state, mirror); }
@@ -125,12 +138,14 @@ private:
 
     static constexpr auto kWindow = static_cast<std::size_t>(glstate::Category::window);
     static constexpr glstate::CategoryMask kCurrentMask = glstate::mask_of(glstate::Category::current);
-    static constexpr glstate::CategoryMask kAttributesMask = kCurrentMask | glstate::mask_of(glstate::Category::material);
+    static constexpr glstate::CategoryMask kAttributesMask =
+        kCurrentMask | glstate::mask_of(glstate::Category::material);
     /// Whether a category differs that takes part in drawing a bitmap.
     static bool fragments_change(const glstate::State& from, const glstate::State& to);
 
     static constexpr glstate::CategoryMask kSynced =
-        glstate::kSentCategories & ~kCurrentMask & ~glstate::kLayerCategories & ~glstate::mask_of(glstate::Category::textures) & ~glstate::mask_of(glstate::Category::objects);
+        glstate::kSentCategories & ~kCurrentMask & ~glstate::kLayerCategories &
+        ~glstate::mask_of(glstate::Category::textures) & ~glstate::mask_of(glstate::Category::objects);
 
     Gl gl_;
     const glstate::State defaults_;
@@ -138,10 +153,10 @@ private:
     bool modelview_changed_ = false;     // since it was loaded
     bool modelview_has_origin_ = false;  // what was loaded
     TextureBindings bound_textures_;
-    GLuint program_ = 0;             // that the driver draws with
-    Layer* layer_ = nullptr;         // whose window values are in the driver
+    GLuint program_ = 0;      // that the driver draws with
+    Layer* layer_ = nullptr;  // whose window values are in the driver
     bool viewport_scaled_ = false;
-    WindowValues window_;            // what the driver holds
+    WindowValues window_;  // what the driver holds
     bool bitmap_held_ = false;
 };
 

@@ -38,7 +38,8 @@ Result<void> Executor::run_batch(std::span<const std::byte> payload) {
     auto done = glapi::decode(batch->opcodes, batch->operands, *this);
     if (in_block_) end_block();  // the batch was refused within a block
     work.commands += batch->opcodes.size();
-    const auto bytes = batch->opcodes.size() + batch->operands.size(), known = work.state_bytes + work.geometry_bytes - bytes_before;
+    const auto bytes = batch->opcodes.size() + batch->operands.size(),
+               known = work.state_bytes + work.geometry_bytes - bytes_before;
     work.object_bytes += bytes - std::min(bytes, known);
     work.gl_errors += node_.driver.drain_errors();
     return done;
@@ -56,7 +57,8 @@ bool Executor::State(std::uint32_t id, std::span<const std::byte> value) {
 void Executor::StateSmall(std::uint32_t word) {
     session_.work.state_bytes += kOpcodeAndWord;
     const std::uint32_t value = word >> 16;
-    if (!glstate::apply(context_->state, word & 0xffff, std::as_bytes(std::span(&value, 1)))) refuse("no such small element");
+    if (!glstate::apply(context_->state, word & 0xffff, std::as_bytes(std::span(&value, 1))))
+        refuse("no such small element");
 }
 
 void Executor::StateRecall(std::uint32_t word) {
@@ -114,10 +116,13 @@ void Executor::end_block() {
         if (draws_) node_.driver.unify_attributes(context_->state);
         trail_.clear();
     }
-    if (!glstate::same(raster_, glstate::el::raster_position::ref(context_->state))) glstate::assign<glstate::el::raster_position>(context_->state, 0, raster_);
+    if (!glstate::same(raster_, glstate::el::raster_position::ref(context_->state)))
+        glstate::assign<glstate::el::raster_position>(context_->state, 0, raster_);
     in_block_ = draws_ = false;
     const GLenum buffer = glstate::el::draw_buffer::ref(context_->state);
-    if (draw_surface_ != nullptr && (!draw_surface_->format().layer.double_buffered || (buffer != GL_BACK && buffer != GL_BACK_LEFT))) ++node_.damage;
+    if (draw_surface_ != nullptr &&
+        (!draw_surface_->format().layer.double_buffered || (buffer != GL_BACK && buffer != GL_BACK_LEFT)))
+        ++node_.damage;
     layer_ = nullptr;
 }
 

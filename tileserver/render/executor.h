@@ -23,13 +23,13 @@ namespace wall::tileserver {
 struct RenderNode {
     Driver& driver;
     MapMirror maps;
-    ContentStore<TextureContent> textures;    ///< that sessions may share
+    ContentStore<TextureContent> textures;  ///< that sessions may share
     ContentStore<const Run> runs;
     std::vector<Tile> tiles;
-    std::uint64_t damage = 1;                 ///< grows when a tile's picture may have changed
-    bool present_at_once = false;             ///< nobody coordinates: show frames when they are done
-    const SoftContext* current = nullptr;     ///< whose state the driver holds; only compared, it may be gone
-    Work ended;                               ///< of sessions that are gone
+    std::uint64_t damage = 1;              ///< grows when a tile's picture may have changed
+    bool present_at_once = false;          ///< nobody coordinates: show frames when they are done
+    const SoftContext* current = nullptr;  ///< whose state the driver holds; only compared, it may be gone
+    Work ended;                            ///< of sessions that are gone
 
     explicit RenderNode(Driver& d) : driver(d) {}
 };
@@ -157,8 +157,10 @@ public:
     void EvalMesh2(GLenum mode, std::int32_t i1, std::int32_t i2, std::int32_t j1, std::int32_t j2);
     void Clear(std::uint32_t mask);
     void Accum(GLenum op, float value);
-    void DrawPixels(std::int32_t width, std::int32_t height, GLenum format, GLenum type, std::span<const std::byte> pixels);
-    void Bitmap(std::int32_t width, std::int32_t height, float xorig, float yorig, float xmove, float ymove, std::span<const std::byte> bits);
+    void DrawPixels(std::int32_t width, std::int32_t height, GLenum format, GLenum type,
+                    std::span<const std::byte> pixels);
+    void Bitmap(std::int32_t width, std::int32_t height, float xorig, float yorig, float xmove, float ymove,
+                std::span<const std::byte> bits);
     void RunCall(std::uint32_t run);
     void InitNames();
     void LoadName(std::uint32_t name);
@@ -167,12 +169,16 @@ public:
     void PassThrough(float token);
 
     // ---- surfaces (executor_surface.cpp) ----
-    void Block(std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t) { refuse("misplaced"); }  // the decoder's own
+    void Block(std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t) {
+        refuse("misplaced");
+    }  // the decoder's own
     void Sync(std::uint32_t request);
-    void SurfaceCreate(std::uint32_t surface, std::uint32_t double_buffered, std::uint32_t alpha_bits, std::uint32_t depth_bits,
-                       std::uint32_t stencil_bits, std::uint32_t accum_bits, std::uint32_t samples);
-    void SurfacePlace(std::uint32_t surface, std::uint32_t layout_version, std::uint32_t window_width, std::uint32_t window_height, std::int32_t x,
-                      std::int32_t y, std::uint32_t width, std::uint32_t height, std::uint32_t offscreen);
+    void SurfaceCreate(std::uint32_t surface, std::uint32_t double_buffered, std::uint32_t alpha_bits,
+                       std::uint32_t depth_bits, std::uint32_t stencil_bits, std::uint32_t accum_bits,
+                       std::uint32_t samples);
+    void SurfacePlace(std::uint32_t surface, std::uint32_t layout_version, std::uint32_t window_width,
+                      std::uint32_t window_height, std::int32_t x, std::int32_t y, std::uint32_t width,
+                      std::uint32_t height, std::uint32_t offscreen);
     void SurfaceDestroy(std::uint32_t surface);
     void Bind(std::uint32_t draw_surface, std::uint32_t read_surface);
     void ContextDestroy(std::uint32_t context);
@@ -190,22 +196,25 @@ public:
     void SemaphoreV(std::uint32_t semaphore);
 
     // ---- answers (executor_read.cpp) ----
-    void ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_t x, std::int32_t y, std::int32_t width, std::int32_t height, GLenum format,
-                    GLenum type);
+    void ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_t x, std::int32_t y, std::int32_t width,
+                    std::int32_t height, GLenum format, GLenum type);
     void RenderMode(std::uint32_t request, GLenum mode, GLenum feedback_type, std::uint32_t buffer_entries);
 
     // ---- objects (executor_objects.cpp) ----
-    void TexImage(std::uint32_t texture, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
-                  std::int32_t depth, std::int32_t border, GLenum format, GLenum type, std::span<const std::byte> pixels);
-    void TexSubImage(std::uint32_t texture, GLenum target, std::int32_t level, std::int32_t x, std::int32_t y, std::int32_t z, std::int32_t width,
-                     std::int32_t height, std::int32_t depth, GLenum format, GLenum type, std::span<const std::byte> pixels);
-    void TexCompressed(std::uint32_t texture, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
-                       std::span<const std::byte> blocks);
-    void Compress(std::uint32_t request, GLenum internal_format, std::int32_t width, std::int32_t height, GLenum format, GLenum type,
+    void TexImage(std::uint32_t texture, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width,
+                  std::int32_t height, std::int32_t depth, std::int32_t border, GLenum format, GLenum type,
                   std::span<const std::byte> pixels);
+    void TexSubImage(std::uint32_t texture, GLenum target, std::int32_t level, std::int32_t x, std::int32_t y,
+                     std::int32_t z, std::int32_t width, std::int32_t height, std::int32_t depth, GLenum format,
+                     GLenum type, std::span<const std::byte> pixels);
+    void TexCompressed(std::uint32_t texture, GLenum target, std::int32_t level, GLenum internal_format,
+                       std::int32_t width, std::int32_t height, std::span<const std::byte> blocks);
+    void Compress(std::uint32_t request, GLenum internal_format, std::int32_t width, std::int32_t height, GLenum format,
+                  GLenum type, std::span<const std::byte> pixels);
     void TexParameter(std::uint32_t texture, GLenum target, GLenum pname, float p0, float p1, float p2, float p3);
     void TexDelete(std::uint32_t texture);
-    void ShareTexture(std::uint32_t request, std::uint32_t texture, GLenum target, std::uint32_t own_name, std::span<const std::byte> key);
+    void ShareTexture(std::uint32_t request, std::uint32_t texture, GLenum target, std::uint32_t own_name,
+                      std::span<const std::byte> key);
     void TexShared(std::uint32_t texture);
     void ShareRun(std::uint32_t request, std::uint32_t run, std::span<const std::byte> key);
     void ShaderCompile(std::uint32_t request, GLenum type, std::span<const std::byte> source);
@@ -213,11 +222,14 @@ public:
     void ProgramDelete(std::uint32_t program);
     void QueryResult(std::uint32_t request, std::uint32_t query);
     void QueryDelete(std::uint32_t query);
-    void Uniform(std::uint32_t program, std::uint32_t location, GLenum type, std::uint32_t count, std::span<const std::byte> values);
-    void RunDefine(std::uint32_t run, std::uint32_t commands, std::uint32_t operand_bytes, std::span<const std::byte> content);
+    void Uniform(std::uint32_t program, std::uint32_t location, GLenum type, std::uint32_t count,
+                 std::span<const std::byte> values);
+    void RunDefine(std::uint32_t run, std::uint32_t commands, std::uint32_t operand_bytes,
+                   std::span<const std::byte> content);
     void RunDelete(std::uint32_t run);
     void Map1(GLenum target, float u1, float u2, std::int32_t order, std::span<const std::byte> points);
-    void Map2(GLenum target, float u1, float u2, std::int32_t uorder, float v1, float v2, std::int32_t vorder, std::span<const std::byte> points);
+    void Map2(GLenum target, float u1, float u2, std::int32_t uorder, float v1, float v2, std::int32_t vorder,
+              std::span<const std::byte> points);
     void PixelMap(GLenum map, std::span<const std::byte> values);
 
 private:
@@ -239,7 +251,8 @@ private:
     void ask(std::uint32_t request, std::uint32_t object, GLenum target, bool own_name, std::span<const std::byte> key);
     /// The texture to change: its own, bound for the driver's work on the object; null after a refusal.
     Texture* bind_for_upload(std::uint32_t name, GLenum target);
-    bool check_image(GLenum format, GLenum type, std::int32_t width, std::int32_t height, std::int32_t depth, std::span<const std::byte> pixels);
+    bool check_image(GLenum format, GLenum type, std::int32_t width, std::int32_t height, std::int32_t depth,
+                     std::span<const std::byte> pixels);
     template <class Draw>
     void at_raster_position(Draw&& draw);
     void end_render_mode();
@@ -251,11 +264,11 @@ private:
 
     SoftContext* context_ = nullptr;  // of the batch
     ContextId context_id_;
-    Surface* draw_surface_ = nullptr, *read_surface_ = nullptr;  // of the batch's context
+    Surface *draw_surface_ = nullptr, *read_surface_ = nullptr;  // of the batch's context
     bool surfaces_known_ = false;
 
     // Within a block.
-    bool draws_ = false;     // false: only the effects on the soft context count
+    bool draws_ = false;  // false: only the effects on the soft context count
     bool in_begin_ = false;
     bool in_block_ = false;
     bool tile_open_ = false;

@@ -11,18 +11,21 @@ namespace wall::tileserver {
 namespace {
 
 constexpr std::int64_t kMaxScaledBitmap = std::int64_t{1} << 28;  // pixels
-constexpr std::int32_t kMaxEvalSteps = 1 << 16;  // of a mesh, in each direction
+constexpr std::int32_t kMaxEvalSteps = 1 << 16;                   // of a mesh, in each direction
 
 /// A bitmap in which every pixel is repeated: glBitmap knows no zoom. Nearest, anchored at the bottom left.
-std::vector<GLubyte> scale_bitmap(std::span<const std::byte> bits, std::int32_t width, std::int32_t height, std::int32_t new_width, std::int32_t new_height) {
-    const std::size_t row = (static_cast<std::size_t>(width) + 7) / 8, new_row = (static_cast<std::size_t>(new_width) + 7) / 8;
+std::vector<GLubyte> scale_bitmap(std::span<const std::byte> bits, std::int32_t width, std::int32_t height,
+                                  std::int32_t new_width, std::int32_t new_height) {
+    const std::size_t row = (static_cast<std::size_t>(width) + 7) / 8,
+                      new_row = (static_cast<std::size_t>(new_width) + 7) / 8;
     std::vector<GLubyte> out(new_row * static_cast<std::size_t>(new_height));
     for (std::int32_t y = 0; y < new_height; ++y) {
         const std::byte* from = bits.data() + row * static_cast<std::size_t>(std::int64_t{y} * height / new_height);
         for (std::int32_t x = 0; x < new_width; ++x) {
             const auto source = static_cast<std::size_t>(std::int64_t{x} * width / new_width);
             if ((std::to_integer<unsigned>(from[source / 8]) >> (7 - source % 8) & 1) != 0)
-                out[new_row * static_cast<std::size_t>(y) + static_cast<std::size_t>(x) / 8] |= static_cast<GLubyte>(0x80u >> (x % 8));
+                out[new_row * static_cast<std::size_t>(y) + static_cast<std::size_t>(x) / 8] |=
+                    static_cast<GLubyte>(0x80u >> (x % 8));
         }
     }
     return out;
@@ -45,7 +48,9 @@ void Executor::EvalMesh1(GLenum mode, std::int32_t i1, std::int32_t i2) {
 void Executor::EvalMesh2(GLenum mode, std::int32_t i1, std::int32_t i2, std::int32_t j1, std::int32_t j2) {
     if (!outside_begin()) return;
     const std::int64_t across = std::int64_t{i2} - i1, along = std::int64_t{j2} - j1;
-    if (across > kMaxEvalSteps || along > kMaxEvalSteps || (across > 0 && along > 0 && across * along > std::int64_t{kMaxEvalSteps} * 64)) return refuse("mesh is too fine");
+    if (across > kMaxEvalSteps || along > kMaxEvalSteps ||
+        (across > 0 && along > 0 && across * along > std::int64_t{kMaxEvalSteps} * 64))
+        return refuse("mesh is too fine");
     if (draws_) gl_.EvalMesh2(mode, i1, i2, j1, j2);
 }
 
@@ -72,7 +77,9 @@ template <class Draw>
 void Executor::at_raster_position(Draw&& draw) {
     namespace el = glstate::el;
     const glstate::State& state = context_->state;
-    if (el::raster_position_valid::ref(state) == 0 || !std::isfinite(raster_[0]) || !std::isfinite(raster_[1]) || !std::isfinite(raster_[2])) return;
+    if (el::raster_position_valid::ref(state) == 0 || !std::isfinite(raster_[0]) || !std::isfinite(raster_[1]) ||
+        !std::isfinite(raster_[2]))
+        return;
     Driver& driver = node_.driver;
     trail_.fold_into(driver.mirror);
     // glWindowPos takes the current colour for the raster colour, and maps z through the depth range.
@@ -85,7 +92,8 @@ void Executor::at_raster_position(Draw&& draw) {
     const auto& depth = el::depth_range::ref(state);
     const double range = depth.far_value - depth.near_value;
     const auto at = layer_point(layer_->geometry(), raster_[0], raster_[1]);
-    gl_.WindowPos3f(static_cast<float>(at.x), static_cast<float>(at.y), range == 0 ? 0.0f : static_cast<float>((raster_[2] - depth.near_value) / range));
+    gl_.WindowPos3f(static_cast<float>(at.x), static_cast<float>(at.y),
+                    range == 0 ? 0.0f : static_cast<float>((raster_[2] - depth.near_value) / range));
     draw();
     const auto& now = driver.mirror.current;
     gl_.Color4f(now.color[0], now.color[1], now.color[2], now.color[3]);
@@ -93,27 +101,32 @@ void Executor::at_raster_position(Draw&& draw) {
     if (tracking) gl_.Enable(GL_COLOR_MATERIAL);
 }
 
-void Executor::DrawPixels(std::int32_t width, std::int32_t height, GLenum format, GLenum type, std::span<const std::byte> pixels) {
+void Executor::DrawPixels(std::int32_t width, std::int32_t height, GLenum format, GLenum type,
+                          std::span<const std::byte> pixels) {
     if (!outside_begin() || !check_image(format, type, width, height, 1, pixels)) return;
     if (!draws_ || width == 0 || height == 0) return;
     node_.maps.sync_pixel_maps(gl_, context_->maps);
     at_raster_position([&] { gl_.DrawPixels(width, height, format, type, pixels.data()); });
 }
 
-void Executor::Bitmap(std::int32_t width, std::int32_t height, float xorig, float yorig, float xmove, float ymove, std::span<const std::byte> bits) {
+void Executor::Bitmap(std::int32_t width, std::int32_t height, float xorig, float yorig, float xmove, float ymove,
+                      std::span<const std::byte> bits) {
     if (!outside_begin()) return;
     if (width < 0 || height < 0 || width > (1 << 16) || height > (1 << 16)) return refuse("absurd size");
-    if (bits.size() != (static_cast<std::size_t>(width) + 7) / 8 * static_cast<std::size_t>(height)) return refuse("size does not fit the bits");
+    if (bits.size() != (static_cast<std::size_t>(width) + 7) / 8 * static_cast<std::size_t>(height))
+        return refuse("size does not fit the bits");
     if (draws_ && width != 0 && height != 0) {
         node_.driver.hold_bitmap();
         const LayerGeometry& g = layer_->geometry();
         at_raster_position([&] {
-            if (!g.scaled()) return gl_.Bitmap(width, height, xorig, yorig, 0, 0, reinterpret_cast<const GLubyte*>(bits.data()));
+            if (!g.scaled())
+                return gl_.Bitmap(width, height, xorig, yorig, 0, 0, reinterpret_cast<const GLubyte*>(bits.data()));
             const auto new_width = std::max(1, static_cast<std::int32_t>(std::lround(width * g.scale_x())));
             const auto new_height = std::max(1, static_cast<std::int32_t>(std::lround(height * g.scale_y())));
             if (std::int64_t{new_width} * new_height > kMaxScaledBitmap) return;
             const auto scaled = scale_bitmap(bits, width, height, new_width, new_height);
-            gl_.Bitmap(new_width, new_height, static_cast<float>(xorig * g.scale_x()), static_cast<float>(yorig * g.scale_y()), 0, 0, scaled.data());
+            gl_.Bitmap(new_width, new_height, static_cast<float>(xorig * g.scale_x()),
+                       static_cast<float>(yorig * g.scale_y()), 0, 0, scaled.data());
         });
     }
     if (glstate::el::raster_position_valid::ref(context_->state) == 0) return;

@@ -21,10 +21,10 @@ std::vector<float> floats(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-bool Executor::check_image(GLenum format, GLenum type, std::int32_t width, std::int32_t height, std::int32_t depth, std::span<const std::byte> pixels) {
+bool Executor::check_image(GLenum format, GLenum type, std::int32_t width, std::int32_t height, std::int32_t depth,
+                           std::span<const std::byte> pixels) {
     const auto bytes = glapi::image_bytes(format, type, width, height, depth);
-    if (!bytes)
-        refuse("no such format, type or size");
+    if (!bytes) refuse("no such format, type or size");
     else if (*bytes != pixels.size())
         refuse("image has " + std::to_string(pixels.size()) + " bytes, expected " + std::to_string(*bytes));
     return !refused();
@@ -48,59 +48,72 @@ Texture* Executor::bind_for_upload(std::uint32_t name, GLenum target) {
     } else if (const auto key = std::exchange(texture->content->key, {})) {
         node_.textures.forget(*key);
     }
-    if (texture->promise) node_.textures.heard(texture->promise->key, session_.asker(), std::chrono::steady_clock::now());
+    if (texture->promise)
+        node_.textures.heard(texture->promise->key, session_.asker(), std::chrono::steady_clock::now());
     node_.driver.bind_texture_to_edit(kind, texture->content->name());
     return texture;
 }
 
-void Executor::TexImage(std::uint32_t name, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
-                        std::int32_t depth, std::int32_t border, GLenum format, GLenum type, std::span<const std::byte> pixels) {
-    if (width < 0 || height < 0 || depth < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent || depth > kMaxTextureExtent) return refuse("absurd size");
+void Executor::TexImage(std::uint32_t name, GLenum target, std::int32_t level, GLenum internal_format,
+                        std::int32_t width, std::int32_t height, std::int32_t depth, std::int32_t border, GLenum format,
+                        GLenum type, std::span<const std::byte> pixels) {
+    if (width < 0 || height < 0 || depth < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent ||
+        depth > kMaxTextureExtent)
+        return refuse("absurd size");
     if (level < 0 || level > kMaxTextureLevel || border < 0 || border > 1) return refuse("no such level or border");
     if (!pixels.empty() && !check_image(format, type, width, height, depth, pixels)) return;
     Texture* texture = bind_for_upload(name, target);
     if (texture == nullptr) return;
-    const auto estimate = std::uint64_t{4} * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * static_cast<std::uint64_t>(depth);
+    const auto estimate = std::uint64_t{4} * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) *
+                          static_cast<std::uint64_t>(depth);
     const TextureContent::Image image{internal_format, format, type, estimate};
     if (!session_.account(*texture, target, level, image)) return refuse("more texture memory than a session may have");
-    if (auto* hash = texture->hash()) hash->TexImage(target, level, internal_format, width, height, depth, border, format, type, pixels);
+    if (auto* hash = texture->hash())
+        hash->TexImage(target, level, internal_format, width, height, depth, border, format, type, pixels);
     node_.driver.neutral_pixel_transfer();
-    upload_image(gl_, texture->content->target(), target, level, image, {width, height, depth}, pixels.empty() ? nullptr : pixels.data(), border);
+    upload_image(gl_, texture->content->target(), target, level, image, {width, height, depth},
+                 pixels.empty() ? nullptr : pixels.data(), border);
 }
 
-void Executor::TexSubImage(std::uint32_t name, GLenum target, std::int32_t level, std::int32_t x, std::int32_t y, std::int32_t z, std::int32_t width,
-                           std::int32_t height, std::int32_t depth, GLenum format, GLenum type, std::span<const std::byte> pixels) {
+void Executor::TexSubImage(std::uint32_t name, GLenum target, std::int32_t level, std::int32_t x, std::int32_t y,
+                           std::int32_t z, std::int32_t width, std::int32_t height, std::int32_t depth, GLenum format,
+                           GLenum type, std::span<const std::byte> pixels) {
     if (level < 0 || level > kMaxTextureLevel) return refuse("no such level");
     if (!check_image(format, type, width, height, depth, pixels) || pixels.empty()) return;
     Texture* texture = bind_for_upload(name, target);
     if (texture == nullptr) return;
-    if (auto* hash = texture->hash()) hash->TexSubImage(target, level, x, y, z, width, height, depth, format, type, pixels);
+    if (auto* hash = texture->hash())
+        hash->TexSubImage(target, level, x, y, z, width, height, depth, format, type, pixels);
     node_.driver.neutral_pixel_transfer();
     const TextureTarget kind = texture->content->target();
-    if (is_1d(kind))
-        gl_.TexSubImage1D(target, level, x, width, format, type, pixels.data());
-    else if (is_3d(kind))
-        gl_.TexSubImage3D(target, level, x, y, z, width, height, depth, format, type, pixels.data());
-    else
-        gl_.TexSubImage2D(target, level, x, y, width, height, format, type, pixels.data());
+    if (is_1d(kind)) gl_.TexSubImage1D(target, level, x, width, format, type, pixels.data());
+    else if (is_3d(kind)) gl_.TexSubImage3D(target, level, x, y, z, width, height, depth, format, type, pixels.data());
+    else gl_.TexSubImage2D(target, level, x, y, width, height, format, type, pixels.data());
 }
 
-void Executor::TexCompressed(std::uint32_t name, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
-                             std::span<const std::byte> blocks) {
-    if (width < 0 || height < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent || level < 0 || level > kMaxTextureLevel) return refuse("absurd size");
-    if (glapi::s3tc_block_bytes(internal_format) == 0 || blocks.size() != glapi::s3tc_bytes(internal_format, width, height)) return refuse("size does not fit the blocks");
+void Executor::TexCompressed(std::uint32_t name, GLenum target, std::int32_t level, GLenum internal_format,
+                             std::int32_t width, std::int32_t height, std::span<const std::byte> blocks) {
+    if (width < 0 || height < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent || level < 0 ||
+        level > kMaxTextureLevel)
+        return refuse("absurd size");
+    if (glapi::s3tc_block_bytes(internal_format) == 0 ||
+        blocks.size() != glapi::s3tc_bytes(internal_format, width, height))
+        return refuse("size does not fit the blocks");
     Texture* texture = bind_for_upload(name, target);
     if (texture == nullptr) return;
     const TextureTarget kind = texture->content->target();
     if (kind != TextureTarget::t2d && kind != TextureTarget::cube_map) return refuse("no such target");
-    if (!session_.account(*texture, target, level, {internal_format, 0, 0, blocks.size()})) return refuse("more texture memory than a session may have");
+    if (!session_.account(*texture, target, level, {internal_format, 0, 0, blocks.size()}))
+        return refuse("more texture memory than a session may have");
     if (auto* hash = texture->hash()) hash->TexCompressed(target, level, internal_format, width, height, blocks);
-    gl_.CompressedTexImage2D(target, level, internal_format, width, height, 0, static_cast<GLsizei>(blocks.size()), blocks.data());
+    gl_.CompressedTexImage2D(target, level, internal_format, width, height, 0, static_cast<GLsizei>(blocks.size()),
+                             blocks.data());
 }
 
-void Executor::Compress(std::uint32_t request, GLenum internal_format, std::int32_t width, std::int32_t height, GLenum format, GLenum type,
-                        std::span<const std::byte> pixels) {
-    if (width < 1 || height < 1 || width > kMaxTextureExtent || height > kMaxTextureExtent) return refuse("absurd size");
+void Executor::Compress(std::uint32_t request, GLenum internal_format, std::int32_t width, std::int32_t height,
+                        GLenum format, GLenum type, std::span<const std::byte> pixels) {
+    if (width < 1 || height < 1 || width > kMaxTextureExtent || height > kMaxTextureExtent)
+        return refuse("absurd size");
     if (glapi::s3tc_block_bytes(internal_format) == 0) return refuse("no such compressed format");
     if (!check_image(format, type, width, height, 1, pixels)) return;
     std::vector<std::byte> blocks(glapi::s3tc_bytes(internal_format, width, height));
@@ -127,13 +140,16 @@ void Executor::TexDelete(std::uint32_t name) { session_.delete_texture(ClientNam
 
 // ---- runs ----
 
-void Executor::RunDefine(std::uint32_t id, std::uint32_t commands, std::uint32_t operand_bytes, std::span<const std::byte> content) {
+void Executor::RunDefine(std::uint32_t id, std::uint32_t commands, std::uint32_t operand_bytes,
+                         std::span<const std::byte> content) {
     const std::size_t room = wire::padded4(commands);
-    if (operand_bytes > wire::kMaxFramePayload || commands > wire::kMaxFramePayload || content.size() != room + operand_bytes)
+    if (operand_bytes > wire::kMaxFramePayload || commands > wire::kMaxFramePayload ||
+        content.size() != room + operand_bytes)
         return refuse("content does not fit its sizes");
     const auto opcodes = content.subspan(room - commands, commands);
     for (const std::byte op : opcodes)
-        if (std::to_integer<std::size_t>(op) >= glapi::kOpCount || glapi::kOpGroups[std::to_integer<std::size_t>(op)] != glapi::OpGroup::geometry)
+        if (std::to_integer<std::size_t>(op) >= glapi::kOpCount ||
+            glapi::kOpGroups[std::to_integer<std::size_t>(op)] != glapi::OpGroup::geometry)
             return refuse("a run holds geometry only");
     auto run = compile_run(opcodes, content.subspan(room));
     if (const auto promised = std::exchange(promised_run_, {}); promised && promised->first == id) {
@@ -145,7 +161,8 @@ void Executor::RunDefine(std::uint32_t id, std::uint32_t commands, std::uint32_t
     keep_run(id, std::move(run));
 }
 
-std::shared_ptr<const Run> Executor::compile_run(std::span<const std::byte> opcodes, std::span<const std::byte> operands) {
+std::shared_ptr<const Run> Executor::compile_run(std::span<const std::byte> opcodes,
+                                                 std::span<const std::byte> operands) {
     auto run = std::make_shared<Run>(gl_);
     run->bytes = wire::padded4(opcodes.size()) + operands.size();
     gl_.NewList(run->list, GL_COMPILE);
@@ -184,15 +201,20 @@ void Executor::RunDelete(std::uint32_t id) {
 void Executor::Map1(GLenum target, float u1, float u2, std::int32_t order, std::span<const std::byte> points) {
     const std::size_t i = evaluator_index(target, false);
     if (i >= kEvaluatorMaps || order < 1 || order > kMaxEvalOrder || u1 == u2) return refuse("no such map");
-    if (points.size() != sizeof(float) * evaluator_components(i) * static_cast<std::size_t>(order)) return refuse("points do not fit the order");
+    if (points.size() != sizeof(float) * evaluator_components(i) * static_cast<std::size_t>(order))
+        return refuse("points do not fit the order");
     context_->maps.map1[i] = {glstate::next_value_id(), u1, u2, 0, 1, order, 1, floats(points)};
     context_->maps.any_evaluator = true;
 }
 
-void Executor::Map2(GLenum target, float u1, float u2, std::int32_t uorder, float v1, float v2, std::int32_t vorder, std::span<const std::byte> points) {
+void Executor::Map2(GLenum target, float u1, float u2, std::int32_t uorder, float v1, float v2, std::int32_t vorder,
+                    std::span<const std::byte> points) {
     const std::size_t i = evaluator_index(target, true);
-    if (i >= kEvaluatorMaps || uorder < 1 || uorder > kMaxEvalOrder || vorder < 1 || vorder > kMaxEvalOrder || u1 == u2 || v1 == v2) return refuse("no such map");
-    if (points.size() != sizeof(float) * evaluator_components(i) * static_cast<std::size_t>(uorder) * static_cast<std::size_t>(vorder))
+    if (i >= kEvaluatorMaps || uorder < 1 || uorder > kMaxEvalOrder || vorder < 1 || vorder > kMaxEvalOrder ||
+        u1 == u2 || v1 == v2)
+        return refuse("no such map");
+    if (points.size() !=
+        sizeof(float) * evaluator_components(i) * static_cast<std::size_t>(uorder) * static_cast<std::size_t>(vorder))
         return refuse("points do not fit the orders");
     context_->maps.map2[i] = {glstate::next_value_id(), u1, u2, v1, v2, uorder, vorder, floats(points)};
     context_->maps.any_evaluator = true;
@@ -200,7 +222,9 @@ void Executor::Map2(GLenum target, float u1, float u2, std::int32_t uorder, floa
 
 void Executor::PixelMap(GLenum map, std::span<const std::byte> values) {
     const std::size_t i = pixel_map_index(map);
-    if (i >= kPixelMaps || values.empty() || values.size() % sizeof(float) != 0 || values.size() / sizeof(float) > kMaxPixelMapTable) return refuse("no such map");
+    if (i >= kPixelMaps || values.empty() || values.size() % sizeof(float) != 0 ||
+        values.size() / sizeof(float) > kMaxPixelMapTable)
+        return refuse("no such map");
     context_->maps.pixel[i] = {glstate::next_value_id(), floats(values)};
     context_->maps.any_pixel = true;
 }

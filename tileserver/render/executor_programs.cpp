@@ -20,8 +20,10 @@ void Executor::ProgramLink(std::uint32_t request, std::uint32_t program, std::sp
 
 void Executor::ProgramDelete(std::uint32_t program) { session_.programs.erase(ClientName(program)); }
 
-void Executor::Uniform(std::uint32_t program, std::uint32_t location, GLenum type, std::uint32_t count, std::span<const std::byte> values) {
-    if (auto done = session_.programs.set_uniform(ClientName(program), location, type, count, values); !done) refuse(done.error().message);
+void Executor::Uniform(std::uint32_t program, std::uint32_t location, GLenum type, std::uint32_t count,
+                       std::span<const std::byte> values) {
+    if (auto done = session_.programs.set_uniform(ClientName(program), location, type, count, values); !done)
+        refuse(done.error().message);
 }
 
 void Executor::QueryResult(std::uint32_t request, std::uint32_t query) {

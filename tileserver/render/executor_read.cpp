@@ -12,18 +12,22 @@ namespace wall::tileserver {
 namespace {
 
 /// A copy of a part of a scaled layer at the window's own resolution.
-std::unique_ptr<Layer> window_copy(Driver& driver, const Layer& layer, const SurfaceFormat& format, const WindowValues::IntBox& window,
-                                   PixelBudget& budget) {
+std::unique_ptr<Layer> window_copy(Driver& driver, const Layer& layer, const SurfaceFormat& format,
+                                   const WindowValues::IntBox& window, PixelBudget& budget) {
     const geom::Rect size{0, 0, window.width, window.height};
     LayerFormat copy_format = format.layer;
     copy_format.double_buffered = false;
-    auto copy = std::make_unique<Layer>(driver.gl(), driver.flip_y(), LayerGeometry{size, size, static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height)}, copy_format, budget);
+    auto copy = std::make_unique<Layer>(
+        driver.gl(), driver.flip_y(),
+        LayerGeometry{size, size, static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height)},
+        copy_format, budget);
     copy->bind(GL_FRONT, GL_FRONT);
     const auto from = layer_box(layer.geometry(), window);
     driver.disable_scissor();
-    const GLbitfield buffers = GL_COLOR_BUFFER_BIT | (copy_format.depth ? GL_DEPTH_BUFFER_BIT : 0u) | (copy_format.stencil ? GL_STENCIL_BUFFER_BIT : 0u);
-    driver.gl().BlitNamedFramebuffer(layer.framebuffer(), copy->framebuffer(), from.x, from.y, from.x + from.width, from.y + from.height, 0, 0, size.width,
-                                     size.height, buffers, GL_NEAREST);
+    const GLbitfield buffers = GL_COLOR_BUFFER_BIT | (copy_format.depth ? GL_DEPTH_BUFFER_BIT : 0u) |
+                               (copy_format.stencil ? GL_STENCIL_BUFFER_BIT : 0u);
+    driver.gl().BlitNamedFramebuffer(layer.framebuffer(), copy->framebuffer(), from.x, from.y, from.x + from.width,
+                                     from.y + from.height, 0, 0, size.width, size.height, buffers, GL_NEAREST);
     return copy;
 }
 
@@ -36,10 +40,11 @@ std::size_t selection_entries(const std::vector<GLuint>& buffer, GLint hits) {
 
 }  // namespace
 
-void Executor::ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_t x, std::int32_t y, std::int32_t width, std::int32_t height, GLenum format,
-                          GLenum type) {
+void Executor::ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_t x, std::int32_t y, std::int32_t width,
+                          std::int32_t height, GLenum format, GLenum type) {
     constexpr std::int32_t kMost = wire::kMaxSurfaceExtent;
-    if (slot >= wire::kMaxTilesPerNode || width < 0 || height < 0 || width > kMost || height > kMost) return refuse("no such slot or size");
+    if (slot >= wire::kMaxTilesPerNode || width < 0 || height < 0 || width > kMost || height > kMost)
+        return refuse("no such slot or size");
     if (x < -kMost || x > kMost || y < -kMost || y > kMost) return refuse("far outside the window");
     const auto bytes = glapi::image_bytes(format, type, width, height, 1);
     if (!bytes || *bytes > wire::kMaxFramePayload - 8) return refuse("no such format or type, or too large");
@@ -60,7 +65,8 @@ void Executor::ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_
             driver.forget_layer();
         } else {
             const auto at = layer_point(layer->geometry(), x, y);
-            gl_.ReadPixels(static_cast<GLint>(at.x), static_cast<GLint>(at.y), width, height, format, type, answer.data());
+            gl_.ReadPixels(static_cast<GLint>(at.x), static_cast<GLint>(at.y), width, height, format, type,
+                           answer.data());
         }
     }
     output_.reply(request, std::move(answer));
@@ -68,13 +74,16 @@ void Executor::ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_
 
 void Executor::RenderMode(std::uint32_t request, GLenum mode, GLenum feedback_type, std::uint32_t buffer_entries) {
     if (mode != GL_RENDER && mode != GL_SELECT && mode != GL_FEEDBACK) return refuse("no such mode");
-    if (mode == GL_FEEDBACK && (feedback_type < GL_2D || feedback_type > GL_4D_COLOR_TEXTURE)) return refuse("no such feedback type");
+    if (mode == GL_FEEDBACK && (feedback_type < GL_2D || feedback_type > GL_4D_COLOR_TEXTURE))
+        return refuse("no such feedback type");
     if (buffer_entries > kMaxFeedbackEntries) return refuse("buffer is too large");
     const GLenum ended = std::exchange(render_mode_, mode);
     const std::int32_t result = ended == GL_RENDER ? 0 : gl_.RenderMode(GL_RENDER);
     std::span<const std::byte> content;
     if (ended == GL_SELECT) content = std::as_bytes(std::span(selection_).first(selection_entries(selection_, result)));
-    if (ended == GL_FEEDBACK) content = std::as_bytes(std::span(feedback_).first(result < 0 ? feedback_.size() : std::min<std::size_t>(static_cast<std::size_t>(result), feedback_.size())));
+    if (ended == GL_FEEDBACK)
+        content = std::as_bytes(std::span(feedback_).first(
+            result < 0 ? feedback_.size() : std::min<std::size_t>(static_cast<std::size_t>(result), feedback_.size())));
     std::vector<std::byte> answer(sizeof result + content.size());
     std::memcpy(answer.data(), &result, sizeof result);
     if (!content.empty()) std::memcpy(answer.data() + sizeof result, content.data(), content.size());

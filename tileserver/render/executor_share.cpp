@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Content that several sessions have in common (AnyGL, section 6: global share). Before a client sends something large it asks
-// for it by its name; if the node has it, nothing is sent and the sessions hold one object of the driver together, until one
-// of them changes it (Executor::bind_for_upload). Render thread.
+// Content that several sessions have in common (AnyGL, section 6: global share). Before a client sends something large
+// it asks for it by its name; if the node has it, nothing is sent and the sessions hold one object of the driver
+// together, until one of them changes it (Executor::bind_for_upload). Render thread.
 #include <algorithm>
 
 #include "tileserver/render/executor.h"
@@ -19,7 +19,9 @@ void Executor::ShareTexture(std::uint32_t request, std::uint32_t texture, GLenum
     ask(request, texture, target, own_name != 0, key);
 }
 
-void Executor::ShareRun(std::uint32_t request, std::uint32_t run, std::span<const std::byte> key) { ask(request, run, 0, false, key); }
+void Executor::ShareRun(std::uint32_t request, std::uint32_t run, std::span<const std::byte> key) {
+    ask(request, run, 0, false, key);
+}
 
 Result<bool> Executor::settle_question() {
     const bool settled = !question_ || answer_question();
@@ -27,7 +29,8 @@ Result<bool> Executor::settle_question() {
     return settled;
 }
 
-void Executor::ask(std::uint32_t request, std::uint32_t object, GLenum target, bool own_name, std::span<const std::byte> key) {
+void Executor::ask(std::uint32_t request, std::uint32_t object, GLenum target, bool own_name,
+                   std::span<const std::byte> key) {
     if (question_) return refuse("asks before the last question is answered");
     if (key.size() != sizeof(glapi::ContentKey)) return refuse("a name of content has 32 bytes");
     question_ = Question{request, object, target, own_name, {}};
@@ -53,15 +56,14 @@ bool Executor::answer_question() {
             (have && !session_.adopt(*texture, std::move(found.have))))
             refuse("no such texture, or more texture memory than a session may have");
         else if (!have)
-            texture->promise.emplace(Texture::Promise{question.key, question.own_name ? std::nullopt : std::optional(glapi::ContentHash())});
+            texture->promise.emplace(
+                Texture::Promise{question.key, question.own_name ? std::nullopt : std::optional(glapi::ContentHash())});
     } else {
         auto found = node_.runs.ask(question.key, session_.asker(), now);
         have = found.have != nullptr;
         if (!have && !found.send) return false;
-        if (have)
-            keep_run(question.object, std::move(found.have));
-        else
-            promised_run_ = {question.object, question.key};
+        if (have) keep_run(question.object, std::move(found.have));
+        else promised_run_ = {question.object, question.key};
     }
     output_.reply(question.request, answer(have));
     question_.reset();
@@ -70,14 +72,13 @@ bool Executor::answer_question() {
 
 void Executor::TexShared(std::uint32_t name) {
     Texture* texture = session_.texture(ClientName(name), TextureTarget::t2d);
-    if (texture == nullptr || !texture->promise) return;  // the client did not wait for the answer, and that was: it is here
+    if (texture == nullptr || !texture->promise)
+        return;  // the client did not wait for the answer, and that was: it is here
     auto promise = *std::exchange(texture->promise, {});
     if (promise.hash && promise.hash->finish() != promise.key) return refuse("content is not what its name says");
     auto held = node_.textures.store(promise.key, texture->content);
-    if (held == texture->content)
-        held->key = promise.key;
-    else if (held->target() == texture->content->target())
-        session_.adopt(*texture, std::move(held));
+    if (held == texture->content) held->key = promise.key;
+    else if (held->target() == texture->content->target()) session_.adopt(*texture, std::move(held));
 }
 
 }  // namespace wall::tileserver

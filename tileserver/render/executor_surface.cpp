@@ -20,21 +20,25 @@ void Executor::Sync(std::uint32_t request) {
     output_.reply(request, {});
 }
 
-void Executor::SurfaceCreate(std::uint32_t surface, std::uint32_t double_buffered, std::uint32_t alpha_bits, std::uint32_t depth_bits,
-                             std::uint32_t stencil_bits, std::uint32_t accum_bits, std::uint32_t) {
+void Executor::SurfaceCreate(std::uint32_t surface, std::uint32_t double_buffered, std::uint32_t alpha_bits,
+                             std::uint32_t depth_bits, std::uint32_t stencil_bits, std::uint32_t accum_bits,
+                             std::uint32_t) {
     if (surface == 0) return refuse("surface 0 is none");
     surfaces_known_ = false;
     const LayerFormat layer{double_buffered != 0, alpha_bits != 0, depth_bits != 0, stencil_bits != 0};
     if (session_.create_surface(SurfaceId(surface), {layer, accum_bits != 0}) != nullptr) return;
-    refuse(session_.shares(SurfaceId(surface)) ? "the members of the parallel program have windows of different formats" : "too many surfaces");
+    refuse(session_.shares(SurfaceId(surface)) ? "the members of the parallel program have windows of different formats"
+                                               : "too many surfaces");
 }
 
-void Executor::SurfacePlace(std::uint32_t id, std::uint32_t layout_version, std::uint32_t window_width, std::uint32_t window_height, std::int32_t x,
-                            std::int32_t y, std::uint32_t width, std::uint32_t height, std::uint32_t offscreen) {
+void Executor::SurfacePlace(std::uint32_t id, std::uint32_t layout_version, std::uint32_t window_width,
+                            std::uint32_t window_height, std::int32_t x, std::int32_t y, std::uint32_t width,
+                            std::uint32_t height, std::uint32_t offscreen) {
     Surface* surface = known_surface(id);
     if (surface == nullptr) return;
     constexpr std::uint32_t kMost = wire::kMaxSurfaceExtent;
-    if (window_width > kMost || window_height > kMost || width > kMost || height > kMost) return refuse("larger than a surface may be");
+    if (window_width > kMost || window_height > kMost || width > kMost || height > kMost)
+        return refuse("larger than a surface may be");
     constexpr std::int32_t kFarthest = 1 << 24;  // canvas pixels
     if (x < -kFarthest || x > kFarthest || y < -kFarthest || y > kFarthest) return refuse("far off any canvas");
     if (window_width == 0 || window_height == 0) return refuse("an empty window");
@@ -42,7 +46,8 @@ void Executor::SurfacePlace(std::uint32_t id, std::uint32_t layout_version, std:
     const tileserver::SurfacePlace place{layout_version, window_width, window_height, rect, offscreen != 0};
     if (session_.shares(SurfaceId(id)) && surface->where().window_width != 0) {
         if (surface->where() == place) return;
-        if (layout_version <= surface->where().layout_version) return refuse("the members of the parallel program draw for different places");
+        if (layout_version <= surface->where().layout_version)
+            return refuse("the members of the parallel program draw for different places");
     }
     node_.driver.forget_layer();
     node_.driver.disable_scissor();
@@ -73,7 +78,8 @@ void Executor::ContextDestroy(std::uint32_t context) {
 void Executor::Swap(std::uint32_t id, std::uint32_t frame) {
     Surface* surface = known_surface(id);
     if (surface == nullptr) return;
-    if (session_.shares(SurfaceId(id))) return say_to_group([=](GroupSync& sync, Rank rank) { return sync.swap(rank, SurfaceId(id), frame); });
+    if (session_.shares(SurfaceId(id)))
+        return say_to_group([=](GroupSync& sync, Rank rank) { return sync.swap(rank, SurfaceId(id), frame); });
     finish_frame(node_, session_.work, *surface, frame, surface->on_tiles());
     output_.frame_rendered(SurfaceId(id), frame);
 }
@@ -94,7 +100,9 @@ void finish_frame(RenderNode& node, Work& work, Surface& surface, std::uint32_t 
 
 void Executor::present(SurfaceId id, std::uint32_t frame) {
     Surface* surface = session_.surface(id);
-    if (surface == nullptr || !surface->waiting_frame() || static_cast<std::int32_t>(frame - *surface->waiting_frame()) < 0) return;
+    if (surface == nullptr || !surface->waiting_frame() ||
+        static_cast<std::int32_t>(frame - *surface->waiting_frame()) < 0)
+        return;
     surface->show_frame();
     node_.driver.forget_layer();
     ++node_.damage;

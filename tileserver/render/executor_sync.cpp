@@ -9,14 +9,17 @@
 namespace wall::tileserver {
 namespace {
 
-constexpr glapi::Op kHolding[] = {glapi::Op::Join, glapi::Op::Leave, glapi::Op::BarrierExec, glapi::Op::SemaphoreP, glapi::Op::Swap};
+constexpr glapi::Op kHolding[] = {glapi::Op::Join, glapi::Op::Leave, glapi::Op::BarrierExec, glapi::Op::SemaphoreP,
+                                  glapi::Op::Swap};
 
 }  // namespace
 
 /// `opcodes`: last first. What would stand behind a command that holds would be executed too early.
 bool Executor::holds_early(std::span<const std::byte> opcodes) const {
     if (session_.group() == nullptr || opcodes.size() < 2) return false;
-    return std::ranges::any_of(kHolding, [&](glapi::Op op) { return std::memchr(opcodes.data() + 1, static_cast<int>(op), opcodes.size() - 1) != nullptr; });
+    return std::ranges::any_of(kHolding, [&](glapi::Op op) {
+        return std::memchr(opcodes.data() + 1, static_cast<int>(op), opcodes.size() - 1) != nullptr;
+    });
 }
 
 void Executor::Join() {

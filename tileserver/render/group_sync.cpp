@@ -11,11 +11,13 @@ constexpr std::int64_t kMaxValue = std::int64_t{1} << 31;  // of a semaphore, an
 
 std::string rank_text(Rank rank) { return "rank " + std::to_string(rank); }
 
-Result<void> unknown(const char* what, std::uint32_t name) { return fail(std::string(what) + " " + std::to_string(name) + " does not exist"); }
+Result<void> unknown(const char* what, std::uint32_t name) {
+    return fail(std::string(what) + " " + std::to_string(name) + " does not exist");
+}
 
 Result<void> other_count(const char* what, std::uint32_t name, std::uint32_t before, Rank rank, std::uint32_t now) {
-    return fail(std::string(what) + " " + std::to_string(name) + " was created with count " + std::to_string(before) + ", by " + rank_text(rank) +
-                " with count " + std::to_string(now));
+    return fail(std::string(what) + " " + std::to_string(name) + " was created with count " + std::to_string(before) +
+                ", by " + rank_text(rank) + " with count " + std::to_string(now));
 }
 
 }  // namespace
@@ -45,7 +47,8 @@ std::string GroupSync::waiting_text(Rank rank) const {
         case Reason::join: return " waits for the others to come";
         case Reason::barrier: return " waits in barrier " + std::to_string(member.name);
         case Reason::semaphore: return " waits for semaphore " + std::to_string(member.name);
-        case Reason::swap: return " has ended frame " + std::to_string(member.frame) + " of window " + std::to_string(member.name);
+        case Reason::swap:
+            return " has ended frame " + std::to_string(member.frame) + " of window " + std::to_string(member.name);
     }
     return {};
 }
@@ -57,7 +60,9 @@ Result<void> GroupSync::running(Rank rank) const {
     return fail(rank_text(rank) + " has not joined its group, or has left it");
 }
 
-void GroupSync::hold(Rank rank, Reason reason, std::uint32_t name, std::uint32_t frame) { members_[rank] = {State::waiting, true, reason, name, frame}; }
+void GroupSync::hold(Rank rank, Reason reason, std::uint32_t name, std::uint32_t frame) {
+    members_[rank] = {State::waiting, true, reason, name, frame};
+}
 
 std::uint32_t GroupSync::possible(const std::set<Rank>& without) const {
     std::uint32_t count = 0;
@@ -90,7 +95,8 @@ Result<void> GroupSync::leave(Rank rank) {
 // ---- barriers ----
 
 Result<void> GroupSync::barrier_create(Rank rank, std::uint32_t name, std::uint32_t count) {
-    if (name == 0 || count == 0 || count > size()) return fail("barrier " + std::to_string(name) + " of " + std::to_string(count) + " members");
+    if (name == 0 || count == 0 || count > size())
+        return fail("barrier " + std::to_string(name) + " of " + std::to_string(count) + " members");
     const auto [at, made] = barriers_.try_emplace(name, Barrier{count, {}, {}});
     if (barriers_.size() > kMaxObjects) return fail("too many barriers");
     if (at->second.count != count) return other_count("barrier", name, at->second.count, rank, count);
@@ -125,7 +131,8 @@ void GroupSync::settle(Barrier& barrier) {
 // ---- semaphores ----
 
 Result<void> GroupSync::semaphore_create(Rank rank, std::uint32_t name, std::uint32_t count, std::int32_t moved) {
-    if (name == 0 || count >= kMaxValue) return fail("semaphore " + std::to_string(name) + " of " + std::to_string(count));
+    if (name == 0 || count >= kMaxValue)
+        return fail("semaphore " + std::to_string(name) + " of " + std::to_string(count));
     const auto [at, made] = semaphores_.try_emplace(name, Semaphore{count, count, {}, {}});
     if (semaphores_.size() > kMaxObjects) return fail("too many semaphores");
     auto& semaphore = at->second;
@@ -188,9 +195,11 @@ bool GroupSync::surface_close(Rank rank, SurfaceId surface) {
 Result<void> GroupSync::swap(Rank rank, SurfaceId surface, std::uint32_t frame) {
     if (auto good = running(rank); !good) return good;
     const auto at = surfaces_.find(surface);
-    if (at == surfaces_.end() || at->second.closed.contains(rank)) return fail(rank_text(rank) + " has no window " + std::to_string(surface.value));
+    if (at == surfaces_.end() || at->second.closed.contains(rank))
+        return fail(rank_text(rank) + " has no window " + std::to_string(surface.value));
     auto& last = at->second.swapped[rank];
-    if (frame <= last) return fail(rank_text(rank) + " ends frame " + std::to_string(frame) + " after frame " + std::to_string(last));
+    if (frame <= last)
+        return fail(rank_text(rank) + " ends frame " + std::to_string(frame) + " after frame " + std::to_string(last));
     last = frame;
     hold(rank, Reason::swap, surface.value, frame);
     settle(surface, at->second);
@@ -210,7 +219,8 @@ void GroupSync::settle(SurfaceId surface, Frames& frames) {
     finished_.push_back({surface, *least});
     for (Rank rank = 0; rank < size(); ++rank) {
         const Member& member = members_[rank];
-        if (waits(rank) && member.reason == Reason::swap && member.name == surface.value && member.frame <= *least) release(rank);
+        if (waits(rank) && member.reason == Reason::swap && member.name == surface.value && member.frame <= *least)
+            release(rank);
     }
 }
 

@@ -14,16 +14,12 @@ std::pair<GLenum, GLenum> attachments(GLenum buffer, bool double_buffered) {
     const GLenum front = double_buffered ? kFront : kBack;
     switch (buffer) {
         case GL_FRONT:
-        case GL_FRONT_LEFT:
-            return {front, GL_NONE};
+        case GL_FRONT_LEFT: return {front, GL_NONE};
         case GL_BACK:
-        case GL_BACK_LEFT:
-            return {kBack, GL_NONE};
+        case GL_BACK_LEFT: return {kBack, GL_NONE};
         case GL_LEFT:
-        case GL_FRONT_AND_BACK:
-            return double_buffered ? std::pair{kBack, kFront} : std::pair{front, GLenum{GL_NONE}};
-        default:
-            return {GL_NONE, GL_NONE};
+        case GL_FRONT_AND_BACK: return double_buffered ? std::pair{kBack, kFront} : std::pair{front, GLenum{GL_NONE}};
+        default: return {GL_NONE, GL_NONE};
     }
 }
 
@@ -61,7 +57,8 @@ GLuint Layer::make_texture(GLenum format) {
     gl_.CreateTextures(GL_TEXTURE_2D, 1, &texture);
     gl_.TextureStorage2D(texture, 1, format, width(), height());
     const bool color = format != GL_DEPTH24_STENCIL8;  // a window starts all zero
-    gl_.ClearTexImage(texture, 0, color ? GL_RGBA : GL_DEPTH_STENCIL, color ? GL_UNSIGNED_BYTE : GL_UNSIGNED_INT_24_8, nullptr);
+    gl_.ClearTexImage(texture, 0, color ? GL_RGBA : GL_DEPTH_STENCIL, color ? GL_UNSIGNED_BYTE : GL_UNSIGNED_INT_24_8,
+                      nullptr);
     return texture;
 }
 
@@ -74,14 +71,16 @@ void Layer::bind(GLenum draw_buffer, GLenum read_buffer) {
         const std::array buffers = {first, second};
         gl_.DrawBuffers(second == GL_NONE ? 1 : 2, buffers.data());
     }
-    if (std::exchange(read_buffer_, read_buffer) != read_buffer) gl_.ReadBuffer(attachments(read_buffer, format_.double_buffered).first);
+    if (std::exchange(read_buffer_, read_buffer) != read_buffer)
+        gl_.ReadBuffer(attachments(read_buffer, format_.double_buffered).first);
 }
 
 std::vector<GLuint> Layer::draw_textures() const {
     std::vector<GLuint> textures;
     const auto [first, second] = attachments(draw_buffer_, format_.double_buffered);
     for (const GLenum attachment : {first, second})
-        if (attachment != GL_NONE) textures.push_back(attachment == kFront || !format_.double_buffered ? program_front() : back_);
+        if (attachment != GL_NONE)
+            textures.push_back(attachment == kFront || !format_.double_buffered ? program_front() : back_);
     return textures;
 }
 
@@ -90,14 +89,16 @@ namespace {
 /// Turns an image upside down where the driver's rows go down.
 void reverse_rows(std::vector<std::uint8_t>& pixels, std::size_t row_bytes, std::size_t rows) {
     for (std::size_t y = 0; y < rows / 2; ++y)
-        std::swap_ranges(&pixels[y * row_bytes], &pixels[y * row_bytes] + row_bytes, &pixels[(rows - 1 - y) * row_bytes]);
+        std::swap_ranges(&pixels[y * row_bytes], &pixels[y * row_bytes] + row_bytes,
+                         &pixels[(rows - 1 - y) * row_bytes]);
 }
 
 }  // namespace
 
 void Layer::read_texture(GLuint texture, const geom::Rect& area, std::vector<std::uint8_t>& pixels) const {
     const std::int32_t y = flip_y_ ? height() - area.bottom() : area.y;
-    gl_.GetTextureSubImage(texture, 0, area.x, y, 0, area.width, area.height, 1, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(pixels.size()), pixels.data());
+    gl_.GetTextureSubImage(texture, 0, area.x, y, 0, area.width, area.height, 1, GL_RGBA, GL_UNSIGNED_BYTE,
+                           static_cast<GLsizei>(pixels.size()), pixels.data());
     if (flip_y_) reverse_rows(pixels, static_cast<std::size_t>(area.width) * 4, static_cast<std::size_t>(area.height));
 }
 
@@ -116,8 +117,8 @@ void Layer::copy(GLuint from, const Layer& source, GLuint to) const {
         return flip_y_ ? common.y - area.y : area.bottom() - common.bottom();
     };
     gl_.Flush();  // Mesa 22.3 leaves vertices of glBegin/glEnd that it still holds out of the copy
-    gl_.CopyImageSubData(from, GL_TEXTURE_2D, 0, common.x - source.geometry_.area.x, row(source), 0, to, GL_TEXTURE_2D, 0,
-                         common.x - geometry_.area.x, row(*this), 0, common.width, common.height, 1);
+    gl_.CopyImageSubData(from, GL_TEXTURE_2D, 0, common.x - source.geometry_.area.x, row(source), 0, to, GL_TEXTURE_2D,
+                         0, common.x - geometry_.area.x, row(*this), 0, common.width, common.height, 1);
 }
 
 void Layer::finish_frame() {

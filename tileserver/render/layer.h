@@ -24,12 +24,15 @@ struct LayerFormat {
 
 /// What decides how a window's pixels lie in a layer; `area` within `surface`.
 struct LayerGeometry {
-    geom::Rect surface;                               ///< canvas pixels; offscreen: {0, 0, window}
-    geom::Rect area;                                  ///< canvas pixels that the layer holds
+    geom::Rect surface;  ///< canvas pixels; offscreen: {0, 0, window}
+    geom::Rect area;     ///< canvas pixels that the layer holds
     std::uint32_t window_width = 0, window_height = 0;
     bool operator==(const LayerGeometry&) const = default;
 
-    bool scaled() const { return surface.width != static_cast<std::int32_t>(window_width) || surface.height != static_cast<std::int32_t>(window_height); }
+    bool scaled() const {
+        return surface.width != static_cast<std::int32_t>(window_width) ||
+               surface.height != static_cast<std::int32_t>(window_height);
+    }
     double scale_x() const { return static_cast<double>(surface.width) / window_width; }
     double scale_y() const { return static_cast<double>(surface.height) / window_height; }
     /// The layer's bottom left in the surface's pixels, y up.
@@ -57,7 +60,8 @@ public:
     bool top_row_first() const { return flip_y_; }
     bool complete() const { return complete_; }
 
-    /// Makes it the framebuffer that is drawn to and read from, with these of the window's buffers (GL_BACK, GL_NONE...).
+    /// Makes it the framebuffer that is drawn to and read from, with these of the window's buffers (GL_BACK,
+    /// GL_NONE...).
     void bind(GLenum draw_buffer, GLenum read_buffer);
     /// End of a frame: a copy of the back buffer waits to be shown. Nothing for a single-buffered surface.
     void finish_frame();
@@ -92,7 +96,7 @@ private:
     LayerFormat format_;
     bool flip_y_, complete_ = false, frame_waits_ = false;
     GLuint framebuffer_ = 0;
-    GLuint front_ = 0, back_ = 0, ready_ = 0, depth_stencil_ = 0;  // textures; 0: none
+    GLuint front_ = 0, back_ = 0, ready_ = 0, depth_stencil_ = 0;           // textures; 0: none
     GLenum draw_buffer_ = GL_INVALID_ENUM, read_buffer_ = GL_INVALID_ENUM;  // bound last
 };
 

@@ -27,7 +27,8 @@ void ParallelGroup::close_surface(Rank rank, SurfaceId id) {
 std::vector<FinishedFrame> ParallelGroup::finish_frames(RenderNode& node, Work& work) {
     auto finished = sync.take_finished();
     for (const auto& [id, frame] : finished)
-        if (Surface* shared = surface(id)) finish_frame(node, work, *shared, frame, true);  // also where it is on no tile: all nodes keep step
+        if (Surface* shared = surface(id))
+            finish_frame(node, work, *shared, frame, true);  // also where it is on no tile: all nodes keep step
     return finished;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the members of a parallel program share on this node: the windows (their layers, with depth and stencil), and the
-// order between their streams. Contexts and objects are each member's own (Session). Lives as long as the first to the
-// last of the members' streams. Render thread.
+// What the members of a parallel program share on this node: the windows (their layers, with depth and stencil), and
+// the order between their streams. Contexts and objects are each member's own (Session). Lives as long as the first to
+// the last of the members' streams. Render thread.
 #pragma once
 
 #include <map>
@@ -27,7 +27,8 @@ struct Membership {
 
 class ParallelGroup {
 public:
-    ParallelGroup(Driver& driver, const Membership& membership) : sync(membership.members, membership.left), driver_(driver) {}
+    ParallelGroup(Driver& driver, const Membership& membership)
+        : sync(membership.members, membership.left), driver_(driver) {}
 
     GroupSync sync;
 
@@ -38,8 +39,8 @@ public:
     /// The first member makes it. Null: it has another format.
     Surface* open_surface(Rank rank, SurfaceId id, const SurfaceFormat& format);
     void close_surface(Rank rank, SurfaceId id);
-    /// All frames that the members have ended since the last call become the surfaces' waiting frames. `work`: of who ended
-    /// them.
+    /// All frames that the members have ended since the last call become the surfaces' waiting frames. `work`: of who
+    /// ended them.
     std::vector<FinishedFrame> finish_frames(RenderNode& node, Work& work);
 
 private:

@@ -10,7 +10,9 @@
 namespace wall::tileserver {
 namespace {
 
-std::string_view text(std::span<const std::byte> bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+std::string_view text(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 bool is_shader_type(GLenum type) { return type == GL_VERTEX_SHADER || type == GL_FRAGMENT_SHADER; }
 
@@ -26,7 +28,8 @@ std::string read_log(GetLength&& get_length, GetLog&& get_log) {
     return log;
 }
 
-void set_matrix(const Gl& gl, GLuint program, GLint location, GLsizei count, const glapi::UniformType& type, const GLfloat* v) {
+void set_matrix(const Gl& gl, GLuint program, GLint location, GLsizei count, const glapi::UniformType& type,
+                const GLfloat* v) {
     using Call = decltype(gl.ProgramUniformMatrix2fv);
     const Call calls[3][3] = {
         {gl.ProgramUniformMatrix2fv, gl.ProgramUniformMatrix2x3fv, gl.ProgramUniformMatrix2x4fv},
@@ -36,16 +39,20 @@ void set_matrix(const Gl& gl, GLuint program, GLint location, GLsizei count, con
     calls[type.columns - 2][type.rows - 2](program, location, count, GL_FALSE, v);
 }
 
-void set_vector(const Gl& gl, GLuint program, GLint location, GLsizei count, const glapi::UniformType& type, const std::byte* values) {
-    const auto call = [&](const auto (&calls)[4], auto* v) { calls[type.rows - 1](program, location, count, v); };
+void set_vector(const Gl& gl, GLuint program, GLint location, GLsizei count, const glapi::UniformType& type,
+                const std::byte* values) {
+    const auto call = [&](const auto(&calls)[4], auto* v) { calls[type.rows - 1](program, location, count, v); };
     if (type.base == glapi::UniformBase::real) {
-        const decltype(gl.ProgramUniform1fv) calls[] = {gl.ProgramUniform1fv, gl.ProgramUniform2fv, gl.ProgramUniform3fv, gl.ProgramUniform4fv};
+        const decltype(gl.ProgramUniform1fv) calls[] = {gl.ProgramUniform1fv, gl.ProgramUniform2fv,
+                                                        gl.ProgramUniform3fv, gl.ProgramUniform4fv};
         call(calls, reinterpret_cast<const GLfloat*>(values));
     } else if (type.base == glapi::UniformBase::unsigned_integer) {
-        const decltype(gl.ProgramUniform1uiv) calls[] = {gl.ProgramUniform1uiv, gl.ProgramUniform2uiv, gl.ProgramUniform3uiv, gl.ProgramUniform4uiv};
+        const decltype(gl.ProgramUniform1uiv) calls[] = {gl.ProgramUniform1uiv, gl.ProgramUniform2uiv,
+                                                         gl.ProgramUniform3uiv, gl.ProgramUniform4uiv};
         call(calls, reinterpret_cast<const GLuint*>(values));
     } else {
-        const decltype(gl.ProgramUniform1iv) calls[] = {gl.ProgramUniform1iv, gl.ProgramUniform2iv, gl.ProgramUniform3iv, gl.ProgramUniform4iv};
+        const decltype(gl.ProgramUniform1iv) calls[] = {gl.ProgramUniform1iv, gl.ProgramUniform2iv,
+                                                        gl.ProgramUniform3iv, gl.ProgramUniform4iv};
         call(calls, reinterpret_cast<const GLint*>(values));
     }
 }
@@ -56,7 +63,8 @@ std::array<float, 4> window_of(const LayerGeometry& g, bool upper_left) {
     const std::int32_t y = upper_left ? g.area.y - g.surface.y : g.offset_y();
     if (!g.scaled()) return {1, 1, static_cast<float>(g.offset_x()), static_cast<float>(y)};
     const double sx = 1 / g.scale_x(), sy = 1 / g.scale_y();
-    return {static_cast<float>(sx), static_cast<float>(sy), static_cast<float>(g.offset_x() * sx), static_cast<float>(y * sy)};
+    return {static_cast<float>(sx), static_cast<float>(sy), static_cast<float>(g.offset_x() * sx),
+            static_cast<float>(y * sy)};
 }
 
 }  // namespace
@@ -80,8 +88,9 @@ Result<std::vector<std::byte>> Programs::compile(GLenum type, std::span<const st
     gl_.CompileShader(shader);
     GLint compiled = 0;
     gl_.GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
-    glapi::CompileResult result{compiled != 0, read_log([&](GLint* n) { gl_.GetShaderiv(shader, GL_INFO_LOG_LENGTH, n); },
-                                                        [&](GLsizei n, GLsizei* w, GLchar* to) { gl_.GetShaderInfoLog(shader, n, w, to); })};
+    glapi::CompileResult result{
+        compiled != 0, read_log([&](GLint* n) { gl_.GetShaderiv(shader, GL_INFO_LOG_LENGTH, n); },
+                                [&](GLsizei n, GLsizei* w, GLchar* to) { gl_.GetShaderInfoLog(shader, n, w, to); })};
     gl_.DeleteShader(shader);
     return encode(result);
 }
@@ -89,7 +98,8 @@ Result<std::vector<std::byte>> Programs::compile(GLenum type, std::span<const st
 GLuint Programs::build_shader(const glapi::ShaderSource& shader, bool& upper_left) {
     const GLuint made = gl_.CreateShader(shader.type);
     if (!shader.compiled) return made;
-    const PatchedShader patched = shader.type == GL_FRAGMENT_SHADER ? patch_fragment_shader(shader.source) : PatchedShader{shader.source};
+    const PatchedShader patched =
+        shader.type == GL_FRAGMENT_SHADER ? patch_fragment_shader(shader.source) : PatchedShader{shader.source};
     upper_left |= patched.upper_left;
     const GLchar* string = patched.source.data();
     const auto length = static_cast<GLint>(patched.source.size());
@@ -105,7 +115,8 @@ Programs::Built Programs::build(const glapi::ProgramDefinition& definition) {
         shaders.push_back(build_shader(shader, built.upper_left));
         gl_.AttachShader(built.program, shaders.back());
     }
-    for (const auto& attribute : definition.attributes) gl_.BindAttribLocation(built.program, attribute.index, attribute.name.c_str());
+    for (const auto& attribute : definition.attributes)
+        gl_.BindAttribLocation(built.program, attribute.index, attribute.name.c_str());
     gl_.LinkProgram(built.program);
     for (const GLuint shader : shaders) {
         gl_.DetachShader(built.program, shader);
@@ -114,7 +125,8 @@ Programs::Built Programs::build(const glapi::ProgramDefinition& definition) {
     return built;
 }
 
-Result<std::vector<std::byte>> Programs::link(ClientName name, std::span<const std::byte> bytes, bool wants_reflection) {
+Result<std::vector<std::byte>> Programs::link(ClientName name, std::span<const std::byte> bytes,
+                                              bool wants_reflection) {
     const auto definition = glapi::decode_definition(bytes);
     if (!definition) return fail("bad program definition");
     for (const auto& shader : definition->shaders)
@@ -122,7 +134,8 @@ Result<std::vector<std::byte>> Programs::link(ClientName name, std::span<const s
     std::size_t locations = 0;
     for (const auto& uniform : definition->uniforms)
         if ((locations += uniform.size) > kMaxProgramLocations) return fail("too many uniforms");
-    if (!name || (programs_.size() >= kMaxPrograms && !programs_.contains(name.value))) return fail("too many programs");
+    if (!name || (programs_.size() >= kMaxPrograms && !programs_.contains(name.value)))
+        return fail("too many programs");
 
     const Built built = build(*definition);
     GLint linked = 0;
@@ -139,7 +152,11 @@ Result<std::vector<std::byte>> Programs::link(ClientName name, std::span<const s
             if (!uniform.built_in) names.push_back({uniform.size, uniform.name});
     Program& program = programs_[name.value];
     release(program);
-    program = {built.program, map_locations(built.program, names), gl_.GetUniformLocation(built.program, kWindowUniform), built.upper_left, {}};
+    program = {built.program,
+               map_locations(built.program, names),
+               gl_.GetUniformLocation(built.program, kWindowUniform),
+               built.upper_left,
+               {}};
     return encode(reflection);
 }
 
@@ -186,8 +203,10 @@ void Programs::read_uniforms(GLuint program, glapi::ProgramReflection& out) cons
         GLsizei length = 0;
         GLint size = 0;
         GLenum type = 0;
-        gl_.GetActiveUniform(program, static_cast<GLuint>(i), static_cast<GLsizei>(name.size()), &length, &size, &type, name.data());
-        glapi::ActiveUniform uniform{type, static_cast<std::uint32_t>(size), false, false, name.substr(0, static_cast<std::size_t>(length)), {}};
+        gl_.GetActiveUniform(program, static_cast<GLuint>(i), static_cast<GLsizei>(name.size()), &length, &size, &type,
+                             name.data());
+        glapi::ActiveUniform uniform{
+            type, static_cast<std::uint32_t>(size), false, false, name.substr(0, static_cast<std::size_t>(length)), {}};
         if (uniform.name == kWindowUniform) continue;
         if (uniform.name.ends_with("[0]")) {
             uniform.array = true;
@@ -211,7 +230,8 @@ void Programs::read_initial(GLuint program, glapi::ActiveUniform& uniform) const
         words.fill(0);
         const GLint location = element_location(program, uniform.name, i);
         if (location >= 0) {
-            if (type->base == glapi::UniformBase::real) gl_.GetUniformfv(program, location, reinterpret_cast<GLfloat*>(words.data()));
+            if (type->base == glapi::UniformBase::real)
+                gl_.GetUniformfv(program, location, reinterpret_cast<GLfloat*>(words.data()));
             else gl_.GetUniformiv(program, location, reinterpret_cast<GLint*>(words.data()));
         }
         uniform.initial.insert(uniform.initial.end(), words.begin(), words.begin() + type->words());
@@ -227,8 +247,10 @@ void Programs::read_attributes(GLuint program, glapi::ProgramReflection& out) co
         GLsizei length = 0;
         GLint size = 0;
         GLenum type = 0;
-        gl_.GetActiveAttrib(program, static_cast<GLuint>(i), static_cast<GLsizei>(name.size()), &length, &size, &type, name.data());
-        glapi::ActiveAttribute attribute{type, static_cast<std::uint32_t>(size), -1, name.substr(0, static_cast<std::size_t>(length))};
+        gl_.GetActiveAttrib(program, static_cast<GLuint>(i), static_cast<GLsizei>(name.size()), &length, &size, &type,
+                            name.data());
+        glapi::ActiveAttribute attribute{type, static_cast<std::uint32_t>(size), -1,
+                                         name.substr(0, static_cast<std::size_t>(length))};
         attribute.location = gl_.GetAttribLocation(program, attribute.name.c_str());
         out.attributes.push_back(std::move(attribute));
     }
@@ -236,17 +258,21 @@ void Programs::read_attributes(GLuint program, glapi::ProgramReflection& out) co
 
 // ---- drawing ----
 
-Result<void> Programs::set_uniform(ClientName name, std::uint32_t location, GLenum type_name, std::uint32_t count, std::span<const std::byte> values) {
+Result<void> Programs::set_uniform(ClientName name, std::uint32_t location, GLenum type_name, std::uint32_t count,
+                                   std::span<const std::byte> values) {
     const auto at = programs_.find(name.value);
     if (at == programs_.end()) return fail("no such program");
     const auto* type = glapi::find_uniform_type(type_name);
     const Program& program = at->second;
     if (type == nullptr) return fail("no such type");
-    if (count == 0 || location >= program.locations.size() || count > program.locations.size() - location) return fail("no such location");
+    if (count == 0 || location >= program.locations.size() || count > program.locations.size() - location)
+        return fail("no such location");
     if (values.size() != std::size_t{count} * type->words() * 4) return fail("size does not fit the values");
     const GLint here = program.locations[location];
     if (here < 0) return {};
-    if (type->matrix()) set_matrix(gl_, program.driver, here, static_cast<GLsizei>(count), *type, reinterpret_cast<const GLfloat*>(values.data()));
+    if (type->matrix())
+        set_matrix(gl_, program.driver, here, static_cast<GLsizei>(count), *type,
+                   reinterpret_cast<const GLfloat*>(values.data()));
     else set_vector(gl_, program.driver, here, static_cast<GLsizei>(count), *type, values.data());
     return {};
 }
@@ -258,7 +284,8 @@ void Programs::use_named(ClientName name, const LayerGeometry& layer) {
     driver_.use_program(program.driver);
     if (program.window < 0) return;
     const auto value = window_of(layer, program.upper_left);
-    if (std::exchange(program.window_value, value) != value) gl_.ProgramUniform4fv(program.driver, program.window, 1, value.data());
+    if (std::exchange(program.window_value, value) != value)
+        gl_.ProgramUniform4fv(program.driver, program.window, 1, value.data());
 }
 
 }  // namespace wall::tileserver

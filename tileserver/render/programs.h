@@ -18,7 +18,7 @@
 
 namespace wall::tileserver {
 
-inline constexpr std::size_t kMaxPrograms = 1 << 14;       ///< of a session
+inline constexpr std::size_t kMaxPrograms = 1 << 14;          ///< of a session
 inline constexpr std::size_t kMaxProgramLocations = 1 << 18;  ///< elements of all uniforms of a program
 
 class Programs {
@@ -29,18 +29,20 @@ public:
 
     /// Tries to compile; the encoded CompileResult. An error: no such kind of shader.
     Result<std::vector<std::byte>> compile(GLenum type, std::span<const std::byte> source);
-    /// Links and takes the result's place if that works. The encoded ProgramReflection if `reflect`. An error: bad bytes.
+    /// Links and takes the result's place if that works. The encoded ProgramReflection if `reflect`. An error: bad
+    /// bytes.
     Result<std::vector<std::byte>> link(ClientName name, std::span<const std::byte> definition, bool reflect);
     void erase(ClientName name);
-    Result<void> set_uniform(ClientName name, std::uint32_t location, GLenum type, std::uint32_t count, std::span<const std::byte> values);
+    Result<void> set_uniform(ClientName name, std::uint32_t location, GLenum type, std::uint32_t count,
+                             std::span<const std::byte> values);
     /// The driver draws with it, in this layer. Name 0 or an unknown one: with none.
     void use(ClientName name, const LayerGeometry& layer) { name ? use_named(name, layer) : driver_.use_program(0); }
 
 private:
     struct Program {
         GLuint driver = 0;
-        std::vector<GLint> locations;   ///< by the client's location; -1: not active here
-        GLint window = -1;              ///< location of kWindowUniform
+        std::vector<GLint> locations;  ///< by the client's location; -1: not active here
+        GLint window = -1;             ///< location of kWindowUniform
         bool upper_left = false;
         std::array<float, 4> window_value{};
     };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Occlusion queries of one session. A query is a part of the soft context: while it is current, each tile of each block
-// is counted by a driver query of its own, so that nothing of other sessions is; the answer is their sum. Render thread.
+// is counted by a driver query of its own, so that nothing of other sessions is; the answer is their sum. Render
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,8 @@ public:
     ~Queries();
     Queries(const Queries&) = delete;
 
-    /// Counts what is drawn from here to end(). `scale`: pixels of the layer for each one of the window. False: too many.
+    /// Counts what is drawn from here to end(). `scale`: pixels of the layer for each one of the window. False: too
+    /// many.
     bool begin(ClientName name, double scale);
     void end();
     /// Waits for the driver.

@@ -28,7 +28,9 @@ constexpr auto kLongestNap = 100ms;  // also until an X server's event is seen
 /// Ends a frame, or moves a surface: the frame before must be shown first.
 bool needs_shown_frame(const std::vector<std::byte>& payload) {
     const auto batch = wire::split_batch(payload);
-    const auto has = [&](glapi::Op op) { return std::memchr(batch->opcodes.data(), static_cast<int>(op), batch->opcodes.size()) != nullptr; };
+    const auto has = [&](glapi::Op op) {
+        return std::memchr(batch->opcodes.data(), static_cast<int>(op), batch->opcodes.size()) != nullptr;
+    };
     return batch && !batch->opcodes.empty() && (has(glapi::Op::Swap) || has(glapi::Op::SurfacePlace));
 }
 
@@ -39,17 +41,29 @@ class RenderThread::Loop {
 public:
     /// `windows`: that the tiles are shown in; null: none.
     Loop(const Gl& gl, NodeEvents& events, TileWindows* windows)
-        : events_(events), driver_(gl), node_(driver_), compositor_(node_, [this](const StackEntry& e) { return find(e); }) {
+        : events_(events),
+          driver_(gl),
+          node_(driver_),
+          compositor_(node_, [this](const StackEntry& e) { return find(e); }) {
         node_.present_at_once = true;
-        if (windows != nullptr) output_.emplace(node_, compositor_, *windows, [this](const ScaledTile& tile) { events_.scaled(tile); });
+        if (windows != nullptr)
+            output_.emplace(node_, compositor_, *windows, [this](const ScaledTile& tile) { events_.scaled(tile); });
     }
 
     class Stream final : public SessionOutput {
     public:
-        Stream(Loop& loop, StreamId id, SessionId session, std::shared_ptr<BatchQueue> queue, std::shared_ptr<ParallelGroup> group, Rank rank)
-            : loop_(loop), id_(id), queue_(std::move(queue)), group_(std::move(group)), session_(loop.driver_, session, group_.get(), rank), executor_(loop.node_, session_, *this) {}
+        Stream(Loop& loop, StreamId id, SessionId session, std::shared_ptr<BatchQueue> queue,
+               std::shared_ptr<ParallelGroup> group, Rank rank)
+            : loop_(loop),
+              id_(id),
+              queue_(std::move(queue)),
+              group_(std::move(group)),
+              session_(loop.driver_, session, group_.get(), rank),
+              executor_(loop.node_, session_, *this) {}
         ~Stream() override { loop_.node_.ended += session_.work; }
-        void reply(std::uint32_t request, std::vector<std::byte> answer) override { loop_.events_.reply(id_, request, std::move(answer)); }
+        void reply(std::uint32_t request, std::vector<std::byte> answer) override {
+            loop_.events_.reply(id_, request, std::move(answer));
+        }
         void frame_rendered(SurfaceId surface, std::uint32_t frame) override {
             loop_.events_.drawn(id_, surface, frame);
             loop_.events_.rendered(session_.id(), surface, frame);
@@ -58,7 +72,8 @@ public:
         /// A finished frame has not been shown yet.
         bool frame_waits() const {
             bool waits = false;
-            session_.for_each_surface([&](SurfaceId, const Surface& surface) { waits = waits || surface.waiting_frame(); });
+            session_.for_each_surface(
+                [&](SurfaceId, const Surface& surface) { waits = waits || surface.waiting_frame(); });
             return waits;
         }
         /// The others of its parallel program must come first.
@@ -138,7 +153,8 @@ public:
         report();
         return worked;
     }
-    void add(StreamId id, SessionId session, std::shared_ptr<BatchQueue> queue, const Membership& membership, Rank rank) {
+    void add(StreamId id, SessionId session, std::shared_ptr<BatchQueue> queue, const Membership& membership,
+             Rank rank) {
         std::shared_ptr<ParallelGroup> group;
         for (auto& [other, stream] : streams_)
             if (stream->session().id() == session && !stream->failed() && stream->group()) group = stream->group();
@@ -146,7 +162,8 @@ public:
         streams_.emplace(id, std::make_unique<Stream>(*this, id, session, std::move(queue), std::move(group), rank));
     }
     void remove_session(SessionId session) {
-        node_.damage += std::erase_if(streams_, [session](const auto& entry) { return entry.second->session().id() == session; });
+        node_.damage +=
+            std::erase_if(streams_, [session](const auto& entry) { return entry.second->session().id() == session; });
     }
     /// What a parallel program's stream has set free.
     void settle(Stream& stream) {
@@ -155,7 +172,8 @@ public:
                 if (member->group() == stream.group() && !member->failed()) events_.drawn(id, surface, frame);
             events_.rendered(stream.session().id(), surface, frame);
         }
-        if (auto reason = stream.failed() ? std::nullopt : stream.group()->sync.deadlock()) stream.fail(std::move(*reason));
+        if (auto reason = stream.failed() ? std::nullopt : stream.group()->sync.deadlock())
+            stream.fail(std::move(*reason));
     }
     void end_others(Stream& stream, const std::string& reason) {
         for (auto& [id, member] : streams_)
@@ -172,7 +190,8 @@ public:
             }
             removed = true;
             ++node_.damage;
-            if (const Rank rank = stream.session().rank(); !stream.failed() && stream.group() && !stream.group()->sync.left(rank))
+            if (const Rank rank = stream.session().rank();
+                !stream.failed() && stream.group() && !stream.group()->sync.left(rank))
                 end_others(stream, "rank " + std::to_string(rank) + " of the parallel program is gone");
             at = streams_.erase(at);
         }
@@ -224,13 +243,16 @@ private:
     bool lost_ = false;
 };
 
-Result<std::unique_ptr<RenderThread>> RenderThread::start(std::string backend, NodeEvents& events, WindowRequest windows) {
+Result<std::unique_ptr<RenderThread>> RenderThread::start(std::string backend, NodeEvents& events,
+                                                          WindowRequest windows) {
     std::unique_ptr<RenderThread> thread(new RenderThread(events));
     std::promise<Result<Started>> promise;
     auto future = promise.get_future();
-    thread->thread_ = std::thread([&promise, self = thread.get(), backend = std::move(backend), windows = std::move(windows)]() mutable {
-        self->run(std::move(backend), std::move(windows), [&promise](Result<Started> started) { promise.set_value(std::move(started)); });
-    });
+    thread->thread_ = std::thread(
+        [&promise, self = thread.get(), backend = std::move(backend), windows = std::move(windows)]() mutable {
+            self->run(std::move(backend), std::move(windows),
+                      [&promise](Result<Started> started) { promise.set_value(std::move(started)); });
+        });
     auto started = future.get();
     if (!started) return tl::unexpected(started.error());
     thread->started_ = std::move(*started);
@@ -288,7 +310,8 @@ void RenderThread::wake() {
     wake_.notify_one();
 }
 
-void RenderThread::add_stream(StreamId stream, SessionId session, std::shared_ptr<BatchQueue> queue, const Membership& membership, Rank rank) {
+void RenderThread::add_stream(StreamId stream, SessionId session, std::shared_ptr<BatchQueue> queue,
+                              const Membership& membership, Rank rank) {
     post([=](Loop& loop) { loop.add(stream, session, queue, membership, rank); });
 }
 void RenderThread::remove_stream(StreamId stream) {

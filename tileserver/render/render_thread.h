@@ -66,15 +66,18 @@ public:
         GlCaps caps;
         std::string backend;
     };
-    /// Makes the driver's context in the new thread, and opens the windows, if there are any; an error if there is none.
-    static Result<std::unique_ptr<RenderThread>> start(std::string backend, NodeEvents& events, WindowRequest windows = {});
+    /// Makes the driver's context in the new thread, and opens the windows, if there are any; an error if there is
+    /// none.
+    static Result<std::unique_ptr<RenderThread>> start(std::string backend, NodeEvents& events,
+                                                       WindowRequest windows = {});
     ~RenderThread();
 
     const Started& started() const { return started_; }
 
     // ---- any thread ----
     /// `rank`: of a parallel program's member.
-    void add_stream(StreamId stream, SessionId session, std::shared_ptr<BatchQueue> queue, const Membership& membership = {}, Rank rank = 0);
+    void add_stream(StreamId stream, SessionId session, std::shared_ptr<BatchQueue> queue,
+                    const Membership& membership = {}, Rank rank = 0);
     /// Nothing more comes. The session's objects are freed; a parallel program's stream is executed to its end before,
     /// because others may wait for what it says.
     void remove_stream(StreamId stream);

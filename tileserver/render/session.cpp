@@ -38,7 +38,8 @@ Texture* Session::make_texture(ClientName name, TextureTarget target) {
     if (known != nullptr) return known->content->target() == target ? known : nullptr;
     if (target == TextureTarget::kCount || textures_.size() >= kMaxTextures) return nullptr;
     ++texture_version_;
-    return &textures_.emplace(key(name, target), Texture{std::make_shared<TextureContent>(driver_, target), {}}).first->second;
+    return &textures_.emplace(key(name, target), Texture{std::make_shared<TextureContent>(driver_, target), {}})
+                .first->second;
 }
 
 void Session::delete_texture(ClientName name) {

@@ -102,7 +102,8 @@ public:
     void delete_texture(ClientName name);
     /// Grows with every texture made or deleted: bindings by name must be looked up again.
     std::uint64_t texture_version() const { return texture_version_; }
-    /// The texture is that content from now on, which other sessions may hold, too. False: more memory than a session may have.
+    /// The texture is that content from now on, which other sessions may hold, too. False: more memory than a session
+    /// may have.
     bool adopt(Texture& texture, std::shared_ptr<TextureContent> content);
     /// Notes the size of one image; false if that is more than a session may have.
     bool account(Texture& texture, GLenum image_target, std::int32_t level, const TextureContent::Image& image);

@@ -59,7 +59,8 @@ private:
     bool skip_comment() {
         const std::string_view two = text_.substr(at_, 2);
         if (two == "//") at_ = std::min(text_.find('\n', at_), text_.size());
-        else if (two == "/*") at_ = text_.find("*/", at_ + 2) == text_.npos ? text_.size() : text_.find("*/", at_ + 2) + 2;
+        else if (two == "/*")
+            at_ = text_.find("*/", at_ + 2) == text_.npos ? text_.size() : text_.find("*/", at_ + 2) + 2;
         else return false;
         return true;
     }
@@ -107,8 +108,8 @@ private:
 
 std::string declaration(bool es) {
     const std::string name = kWindowUniform, precision = es ? "highp " : "";
-    return "\nuniform " + precision + "vec4 " + name + ";\n#define " + std::string(kReplacement) + " vec4(gl_FragCoord.xy * " + name + ".xy + " + name +
-           ".zw, gl_FragCoord.zw)\n";
+    return "\nuniform " + precision + "vec4 " + name + ";\n#define " + std::string(kReplacement) +
+           " vec4(gl_FragCoord.xy * " + name + ".xy + " + name + ".zw, gl_FragCoord.zw)\n";
 }
 
 }  // namespace

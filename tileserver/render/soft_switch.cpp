@@ -8,13 +8,16 @@ using Names = std::array<std::uint32_t, kTextureUnits>;
 
 std::array<const Names*, kTextureTargets> names_by_target(const glstate::State& state) {
     const auto& t = state.textures;
-    return {&t.texture_binding_1d,       &t.texture_binding_2d,       &t.texture_binding_3d,
-            &t.texture_binding_cube_map, &t.texture_binding_rectangle, &t.texture_binding_1d_array,
-            &t.texture_binding_2d_array, &t.texture_binding_cube_map_array, &t.texture_binding_buffer,
-            &t.texture_binding_2d_multisample};
+    return {&t.texture_binding_1d,        &t.texture_binding_2d,
+            &t.texture_binding_3d,        &t.texture_binding_cube_map,
+            &t.texture_binding_rectangle, &t.texture_binding_1d_array,
+            &t.texture_binding_2d_array,  &t.texture_binding_cube_map_array,
+            &t.texture_binding_buffer,    &t.texture_binding_2d_multisample};
 }
 
-std::uint64_t textures_id(const SoftContext& context) { return context.state.ids[static_cast<std::size_t>(glstate::Category::textures)]; }
+std::uint64_t textures_id(const SoftContext& context) {
+    return context.state.ids[static_cast<std::size_t>(glstate::Category::textures)];
+}
 
 void look_up_textures(Session& session, SoftContext& context) {
     BoundTextures& bound = context.textures;
@@ -22,8 +25,10 @@ void look_up_textures(Session& session, SoftContext& context) {
     TextureNames found{};
     for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
         for (std::size_t target = 0; target < kTextureTargets; ++target) {
-            const Texture* texture = session.texture(ClientName((*names[target])[unit]), static_cast<TextureTarget>(target));
-            if (texture != nullptr && texture->content->target() == static_cast<TextureTarget>(target)) found[unit][target] = texture->content->name();
+            const Texture* texture =
+                session.texture(ClientName((*names[target])[unit]), static_cast<TextureTarget>(target));
+            if (texture != nullptr && texture->content->target() == static_cast<TextureTarget>(target))
+                found[unit][target] = texture->content->name();
         }
     }
     if (found != bound.bindings.names) bound.bindings = {found == TextureNames{} ? 0 : glstate::next_value_id(), found};
@@ -35,7 +40,8 @@ void look_up_textures(Session& session, SoftContext& context) {
 
 bool switch_to(RenderNode& node, Session& session, SoftContext& context, Layer& layer) {
     node.driver.sync(context.state);
-    if (context.textures.state_id != textures_id(context) || context.textures.version != session.texture_version()) look_up_textures(session, context);
+    if (context.textures.state_id != textures_id(context) || context.textures.version != session.texture_version())
+        look_up_textures(session, context);
     node.driver.bind_textures(context.textures.bindings);
     node.maps.sync_evaluators(node.driver, context.maps);
     node.driver.bind_layer(layer, context.state);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The soft context switch (Tracking Graphics State, section 5): the one driver context is brought from whatever it holds
-// to what a session's context wants, on the layer that is drawn to. What is the same costs a comparison of ids. Render thread.
+// The soft context switch (Tracking Graphics State, section 5): the one driver context is brought from whatever it
+// holds to what a session's context wants, on the layer that is drawn to. What is the same costs a comparison of ids.
+// Render thread.
 #pragma once
 
 #include "tileserver/render/executor.h"

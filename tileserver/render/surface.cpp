@@ -11,11 +11,13 @@ std::unique_ptr<Layer> Surface::make_layer(const LayerGeometry& geometry, const 
     if (pixels > budget_.left) forget_older();
     if (pixels > budget_.left) return nullptr;
     auto layer = std::make_unique<Layer>(gl_, flip_y_, geometry, format_.layer, budget_);
-    if (older && older->geometry().scale_x() == geometry.scale_x() && older->geometry().scale_y() == geometry.scale_y()) layer->take_content(*older);
+    if (older && older->geometry().scale_x() == geometry.scale_x() && older->geometry().scale_y() == geometry.scale_y())
+        layer->take_content(*older);
     return layer;
 }
 
-/// The layer that was there stays in sight. Without a back buffer, and before the first frame, there is nothing to keep.
+/// The layer that was there stays in sight. Without a back buffer, and before the first frame, there is nothing to
+/// keep.
 void Surface::replace(std::uint32_t slot, std::unique_ptr<Layer> layer) {
     if (format_.layer.double_buffered && shown_once_) {
         if (!replaced_[slot]) older_[slot] = std::move(layers_[slot]);
@@ -53,14 +55,16 @@ const Layer* Surface::shown_layer(std::uint32_t slot) const { return (replaced_[
 Layer* Surface::layer(std::uint32_t slot) {
     auto& layer = layers_[slot];
     if (!layer && slot == wire::kOffscreenSlot && place_.window_width != 0 && place_.window_height != 0) {
-        const geom::Rect window{0, 0, static_cast<std::int32_t>(place_.window_width), static_cast<std::int32_t>(place_.window_height)};
+        const geom::Rect window{0, 0, static_cast<std::int32_t>(place_.window_width),
+                                static_cast<std::int32_t>(place_.window_height)};
         layer = make_layer({window, window, place_.window_width, place_.window_height}, nullptr);
     }
     return layer.get();
 }
 
 bool Surface::on_tiles() const {
-    return std::any_of(layers_.begin(), layers_.begin() + wire::kOffscreenSlot, [](const auto& layer) { return layer != nullptr; });
+    return std::any_of(layers_.begin(), layers_.begin() + wire::kOffscreenSlot,
+                       [](const auto& layer) { return layer != nullptr; });
 }
 
 void Surface::finish_frame(std::uint32_t frame) {

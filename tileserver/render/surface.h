@@ -38,13 +38,15 @@ struct SurfacePlace {
 
 class Surface {
 public:
-    Surface(const Gl& gl, bool flip_y, const SurfaceFormat& format, PixelBudget& budget) : gl_(gl), flip_y_(flip_y), format_(format), budget_(budget) {}
+    Surface(const Gl& gl, bool flip_y, const SurfaceFormat& format, PixelBudget& budget)
+        : gl_(gl), flip_y_(flip_y), format_(format), budget_(budget) {}
 
-    /// Makes the layers anew where they differ; what stays in sight keeps its pixels. What the wall shows stays as it is
-    /// until the first frame drawn there is shown. False: that is more than the session may have, and some layers are
-    /// missing. No frame may wait to be shown: it would be lost.
+    /// Makes the layers anew where they differ; what stays in sight keeps its pixels. What the wall shows stays as it
+    /// is until the first frame drawn there is shown. False: that is more than the session may have, and some layers
+    /// are missing. No frame may wait to be shown: it would be lost.
     bool place(const SurfacePlace& place, const std::vector<Tile>& tiles);
-    /// Null if the surface does not reach the tile. The off-screen slot gives a layer of the whole window for any surface.
+    /// Null if the surface does not reach the tile. The off-screen slot gives a layer of the whole window for any
+    /// surface.
     Layer* layer(std::uint32_t slot);
     const Layer* layer(std::uint32_t slot) const { return layers_[slot].get(); }
 

@@ -21,8 +21,8 @@ void TextureContent::note_image(GLenum image_target, std::int32_t level, const I
     known = image;
 }
 
-// Through the processor's memory, image by image, in the format of the definition: glCopyImageSubData would refuse incomplete
-// textures. (glGetnTexImage of Mesa 22.3 writes nothing, and reports nothing.)
+// Through the processor's memory, image by image, in the format of the definition: glCopyImageSubData would refuse
+// incomplete textures. (glGetnTexImage of Mesa 22.3 writes nothing, and reports nothing.)
 std::shared_ptr<TextureContent> TextureContent::copy() const {
     const Gl& gl = driver_.gl();
     auto made = std::make_shared<TextureContent>(driver_, target_);
@@ -42,7 +42,8 @@ std::shared_ptr<TextureContent> TextureContent::copy() const {
     return made;
 }
 
-void TextureContent::copy_image(GLenum image_target, std::int32_t level, const Image& image, const TextureContent& to) const {
+void TextureContent::copy_image(GLenum image_target, std::int32_t level, const Image& image,
+                                const TextureContent& to) const {
     const Gl& gl = driver_.gl();
     driver_.bind_texture_to_edit(target_, name_);
     ImageExtent extent;
@@ -50,27 +51,32 @@ void TextureContent::copy_image(GLenum image_target, std::int32_t level, const I
     gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_HEIGHT, &extent.height);
     gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_DEPTH, &extent.depth);
     const bool compressed = image.format == 0;
-    const std::uint64_t bytes = compressed ? image.bytes : glapi::image_bytes(image.format, image.type, extent.width, extent.height, extent.depth).value_or(0);
+    const std::uint64_t bytes =
+        compressed
+            ? image.bytes
+            : glapi::image_bytes(image.format, image.type, extent.width, extent.height, extent.depth).value_or(0);
     std::vector<std::byte> pixels(bytes);
     const auto size = static_cast<GLsizei>(bytes);
     if (bytes != 0 && compressed) gl.GetCompressedTexImage(image_target, level, pixels.data());
     if (bytes != 0 && !compressed) gl.GetTexImage(image_target, level, image.format, image.type, pixels.data());
     driver_.bind_texture_to_edit(target_, to.name_);
     if (compressed)
-        gl.CompressedTexImage2D(image_target, level, image.internal_format, extent.width, extent.height, 0, size, pixels.data());
-    else
-        upload_image(gl, target_, image_target, level, image, extent, pixels.data());
+        gl.CompressedTexImage2D(image_target, level, image.internal_format, extent.width, extent.height, 0, size,
+                                pixels.data());
+    else upload_image(gl, target_, image_target, level, image, extent, pixels.data());
 }
 
-void upload_image(const Gl& gl, TextureTarget target, GLenum image_target, GLint level, const TextureContent::Image& image, const ImageExtent& extent,
-                  const void* pixels, GLint border) {
+void upload_image(const Gl& gl, TextureTarget target, GLenum image_target, GLint level,
+                  const TextureContent::Image& image, const ImageExtent& extent, const void* pixels, GLint border) {
     const auto internal = static_cast<GLint>(image.internal_format);
     if (is_1d(target))
         gl.TexImage1D(image_target, level, internal, extent.width, border, image.format, image.type, pixels);
     else if (is_3d(target))
-        gl.TexImage3D(image_target, level, internal, extent.width, extent.height, extent.depth, border, image.format, image.type, pixels);
+        gl.TexImage3D(image_target, level, internal, extent.width, extent.height, extent.depth, border, image.format,
+                      image.type, pixels);
     else
-        gl.TexImage2D(image_target, level, internal, extent.width, extent.height, border, image.format, image.type, pixels);
+        gl.TexImage2D(image_target, level, internal, extent.width, extent.height, border, image.format, image.type,
+                      pixels);
 }
 
 }  // namespace wall::tileserver

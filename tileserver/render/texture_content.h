@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A texture of the driver and what it was defined with, which is enough to make a copy of it. Several sessions may hold the
-// same one as long as none changes it (ContentStore). Render thread.
+// A texture of the driver and what it was defined with, which is enough to make a copy of it. Several sessions may hold
+// the same one as long as none changes it (ContentStore). Render thread.
 #pragma once
 
 #include <array>
@@ -27,8 +27,9 @@ public:
 
     /// An image that was defined: of an image target (a cube map's face) and a level.
     struct Image {
-        GLenum internal_format = 0, format = 0, type = 0;  ///< as the command had them; the driver's choice of storage depends on all
-        std::uint64_t bytes = 0;                           ///< estimate
+        GLenum internal_format = 0, format = 0,
+               type = 0;          ///< as the command had them; the driver's choice of storage depends on all
+        std::uint64_t bytes = 0;  ///< estimate
     };
     void note_image(GLenum image_target, std::int32_t level, const Image& image);
     void note_parameter(GLenum pname, const std::array<float, 4>& value) {
@@ -57,7 +58,7 @@ struct ImageExtent {
     GLsizei width = 0, height = 0, depth = 0;  ///< texels
 };
 /// Defines an image of the bound texture. `pixels`: null for no content.
-void upload_image(const Gl& gl, TextureTarget target, GLenum image_target, GLint level, const TextureContent::Image& image, const ImageExtent& extent,
-                  const void* pixels, GLint border = 0);
+void upload_image(const Gl& gl, TextureTarget target, GLenum image_target, GLint level,
+                  const TextureContent::Image& image, const ImageExtent& extent, const void* pixels, GLint border = 0);
 
 }  // namespace wall::tileserver

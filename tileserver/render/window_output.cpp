@@ -6,14 +6,19 @@
 namespace wall::tileserver {
 namespace {
 
-/// A little less than the monitor's period, so that the swap itself finds the beat. The thread would wait in a swap that comes much too early,
-/// and all programs with it.
+/// A little less than the monitor's period, so that the swap itself finds the beat. The thread would wait in a swap
+/// that comes much too early, and all programs with it.
 constexpr auto of_period(std::chrono::nanoseconds period) { return period * 7 / 8; }
 
 }  // namespace
 
-WindowOutput::WindowOutput(RenderNode& node, Compositor& compositor, TileWindows& windows, std::function<void(const ScaledTile&)> scaled)
-    : node_(node), compositor_(compositor), windows_(windows), scaled_(std::move(scaled)), interval_(of_period(windows.refresh_period())) {}
+WindowOutput::WindowOutput(RenderNode& node, Compositor& compositor, TileWindows& windows,
+                           std::function<void(const ScaledTile&)> scaled)
+    : node_(node),
+      compositor_(compositor),
+      windows_(windows),
+      scaled_(std::move(scaled)),
+      interval_(of_period(windows.refresh_period())) {}
 
 bool WindowOutput::any_wanted() const {
     for (std::size_t i = 0; i < windows_.count(); ++i)
@@ -45,14 +50,16 @@ Result<void> WindowOutput::draw(std::size_t i) {
     const Gl& gl = node_.driver.gl();
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     const bool as_it_is = window.width() == picture->width && window.height() == picture->height;
-    gl.BlitNamedFramebuffer(picture->framebuffer, 0, 0, 0, picture->width, picture->height, 0, window.height(), window.width(), 0, GL_COLOR_BUFFER_BIT, as_it_is ? GL_NEAREST : GL_LINEAR);
+    gl.BlitNamedFramebuffer(picture->framebuffer, 0, 0, 0, picture->width, picture->height, 0, window.height(),
+                            window.width(), 0, GL_COLOR_BUFFER_BIT, as_it_is ? GL_NEAREST : GL_LINEAR);
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, picture->framebuffer);
     return windows_.swap(i);
 }
 
 void WindowOutput::tell_scaled(const TileWindow& window, const TilePicture& picture) {
     if (window.width() == picture.width && window.height() == picture.height) return;
-    if (told_.insert(window.spec().slot).second) scaled_({window.spec().tile, picture.width, picture.height, window.width(), window.height()});
+    if (told_.insert(window.spec().slot).second)
+        scaled_({window.spec().tile, picture.width, picture.height, window.width(), window.height()});
 }
 
 WindowOutput::Clock::duration WindowOutput::next_due(Clock::time_point now) const {

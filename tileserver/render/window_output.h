@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Shows tiles in their windows: composes and draws when something has changed or the X server has lost a picture, and at
-// most once for each picture of the monitors. Render thread.
+// Shows tiles in their windows: composes and draws when something has changed or the X server has lost a picture, and
+// at most once for each picture of the monitors. Render thread.
 #pragma once
 
 #include <chrono>
@@ -25,7 +25,8 @@ public:
     using Clock = std::chrono::steady_clock;
 
     /// `scaled` hears of each tile once. All outlive it.
-    WindowOutput(RenderNode& node, Compositor& compositor, TileWindows& windows, std::function<void(const ScaledTile&)> scaled);
+    WindowOutput(RenderNode& node, Compositor& compositor, TileWindows& windows,
+                 std::function<void(const ScaledTile&)> scaled);
 
     /// What is due now. An error: nothing can be shown any more.
     Result<void> show(Clock::time_point now);

@@ -20,8 +20,8 @@ struct WindowValues {
         std::int32_t x = 0, y = 0, width = 0, height = 0;
         bool operator==(const IntBox&) const = default;
     };
-    Box viewport;       ///< layer pixels, y up
-    IntBox scissor;     ///< layer pixels, y up
+    Box viewport;    ///< layer pixels, y up
+    IntBox scissor;  ///< layer pixels, y up
     bool scissor_enabled = false;
     std::array<std::uint32_t, 32> stipple{};  ///< row 0 at the bottom, first pixel in the highest bit of the first byte
     std::array<float, 2> pixel_zoom{1, 1};

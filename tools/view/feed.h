@@ -30,6 +30,7 @@ public:
 /// `watch`: the list in {"watch": [...]}. The control connection tells a wrong one with the first next().
 Outcome<std::unique_ptr<Feed>> open_control_feed(const Walld& walld, const nlohmann::json& watch);
 /// `url`: http://HOST[:PORT]; port 80 if not given.
-Outcome<std::unique_ptr<Feed>> open_web_feed(const std::string& url, const std::string& token_file, const nlohmann::json& watch);
+Outcome<std::unique_ptr<Feed>> open_web_feed(const std::string& url, const std::string& token_file,
+                                             const nlohmann::json& watch);
 
 }  // namespace wall::view

@@ -10,7 +10,9 @@ constexpr std::chrono::milliseconds kFirstWait{250}, kMostWait{5000};
 }  // namespace
 
 LiveView::LiveView(Connect connect, nlohmann::json entry, AfterFailure after, std::function<void()> news)
-    : connect_(std::move(connect)), after_(after), news_(std::move(news)), entry_(std::move(entry)), thread_([this] { run(); }) {}
+    : connect_(std::move(connect)), after_(after), news_(std::move(news)), entry_(std::move(entry)), thread_([this] {
+          run();
+      }) {}
 
 LiveView::~LiveView() {
     {

@@ -16,7 +16,7 @@ namespace wall::view {
 /// What somebody looks at.
 struct Looked {
     const PictureBuilder& builder;
-    std::uint64_t frames = 0;  ///< decoded since the start
+    std::uint64_t frames = 0;    ///< decoded since the start
     const std::string& failure;  ///< why nothing comes; empty: connected, or about to be
 };
 
@@ -27,7 +27,8 @@ public:
     enum class AfterFailure { stay, connect_again };
 
     /// `news`: called by the thread when look() has something else to show; must not block.
-    LiveView(Connect connect, nlohmann::json entry, AfterFailure after, std::function<void()> news = [] {});
+    LiveView(
+        Connect connect, nlohmann::json entry, AfterFailure after, std::function<void()> news = [] {});
     ~LiveView();
 
     // ---- any thread ----

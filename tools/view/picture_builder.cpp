@@ -23,11 +23,15 @@ std::uint32_t read_u32(const char* from) {
 }
 
 /// "#RRGGBB"
-std::uint32_t color_of(const std::string& text) { return static_cast<std::uint32_t>(std::stoul(text.substr(1), nullptr, 16)); }
+std::uint32_t color_of(const std::string& text) {
+    return static_cast<std::uint32_t>(std::stoul(text.substr(1), nullptr, 16));
+}
 
 geom::Rect rect_of(const json& rect) { return {rect.at(0), rect.at(1), rect.at(2), rect.at(3)}; }
 
-std::byte* pixel(codec::Picture& picture, std::int32_t x, std::int32_t y) { return picture.row(static_cast<std::uint32_t>(y)) + std::ptrdiff_t{4} * x; }
+std::byte* pixel(codec::Picture& picture, std::int32_t x, std::int32_t y) {
+    return picture.row(static_cast<std::uint32_t>(y)) + std::ptrdiff_t{4} * x;
+}
 
 }  // namespace
 
@@ -37,7 +41,8 @@ Result<void> PictureBuilder::take_text(std::string_view text) try {
     if (message.contains("parts")) return set_parts(message);
     if (message.contains("part")) {
         const std::size_t number = message.at("part");
-        return number < parts_.size() ? take_part(message, parts_[number]) : fail("walld speaks of a part that it has not told");
+        return number < parts_.size() ? take_part(message, parts_[number])
+                                      : fail("walld speaks of a part that it has not told");
     }
     if (!message.contains("ended")) return {};
     ended_ = message.at("ended");
@@ -55,7 +60,8 @@ Result<void> PictureBuilder::set_parts(const json& text) {
     std::vector<Part> parts;
     for (const auto& part : text.at("parts")) {
         parts.push_back({part.at("tile"), rect_of(part.at("rect")), !part.at("away").get<bool>(), false, nullptr});
-        if (geom::intersect(parts.back().at, whole) != parts.back().at) return fail("walld speaks of a part outside the picture");
+        if (geom::intersect(parts.back().at, whole) != parts.back().at)
+            return fail("walld speaks of a part outside the picture");
     }
     // A window that moves keeps its picture until its new parts come.
     const auto old = std::exchange(picture_, codec::Picture(format));
@@ -82,7 +88,9 @@ Result<void> PictureBuilder::take_part(const json& text, Part& part) {
         return {};
     }
     const auto header = net::from_base64(text.at("header").get<std::string>());
-    auto decoder = codec::make_decoder(codec_, {static_cast<std::uint32_t>(part.at.width), static_cast<std::uint32_t>(part.at.height), kLayout, false}, header);
+    auto decoder = codec::make_decoder(
+        codec_, {static_cast<std::uint32_t>(part.at.width), static_cast<std::uint32_t>(part.at.height), kLayout, false},
+        header);
     if (!decoder) return tl::unexpected(decoder.error());
     part.expected = true;
     part.decoder = std::move(*decoder);
@@ -90,7 +98,9 @@ Result<void> PictureBuilder::take_part(const json& text, Part& part) {
 }
 
 Result<void> PictureBuilder::take_frame(std::string_view frame) {
-    if (frame.size() < kFrameHead) return fail("a frame of " + std::to_string(frame.size()) + " bytes: expected at least " + std::to_string(kFrameHead));
+    if (frame.size() < kFrameHead)
+        return fail("a frame of " + std::to_string(frame.size()) + " bytes: expected at least " +
+                    std::to_string(kFrameHead));
     const auto number = read_u32(frame.data() + 4);
     if (number >= parts_.size() || !parts_[number].decoder) return fail("a frame of a part that was not announced");
     Part& part = parts_[number];
@@ -102,15 +112,20 @@ Result<void> PictureBuilder::take_frame(std::string_view frame) {
 }
 
 bool PictureBuilder::complete() const {
-    return format_.width > 0 && ended_.empty() && std::ranges::all_of(parts_, [](const Part& part) { return part.shown || !part.expected; });
+    return format_.width > 0 && ended_.empty() &&
+           std::ranges::all_of(parts_, [](const Part& part) { return part.shown || !part.expected; });
 }
 
 void PictureBuilder::paint(const geom::Rect& at, const codec::FrameView& frame) {
-    for (std::int32_t y = 0; y < at.height; ++y) std::memcpy(pixel(picture_, at.x, at.y + y), frame.row(static_cast<std::uint32_t>(y)), std::size_t{4} * static_cast<std::size_t>(at.width));
+    for (std::int32_t y = 0; y < at.height; ++y)
+        std::memcpy(pixel(picture_, at.x, at.y + y), frame.row(static_cast<std::uint32_t>(y)),
+                    std::size_t{4} * static_cast<std::size_t>(at.width));
 }
 
 void PictureBuilder::clear(const geom::Rect& at) {
-    const std::array<std::uint8_t, 4> color{static_cast<std::uint8_t>(background_ >> 16), static_cast<std::uint8_t>(background_ >> 8), static_cast<std::uint8_t>(background_), 255};
+    const std::array<std::uint8_t, 4> color{static_cast<std::uint8_t>(background_ >> 16),
+                                            static_cast<std::uint8_t>(background_ >> 8),
+                                            static_cast<std::uint8_t>(background_), 255};
     for (std::int32_t y = at.y; y < at.bottom(); ++y)
         for (std::int32_t x = at.x; x < at.right(); ++x) std::memcpy(pixel(picture_, x, y), color.data(), 4);
 }

@@ -17,10 +17,13 @@ using boost::system::error_code;
 using tcp = asio::ip::tcp;
 
 constexpr std::chrono::seconds kConnectLimit{3}, kIdleLimit{30};
-constexpr std::size_t kMaxMessage = std::size_t{512} << 20;  // bytes; a raw frame of codec::kMaxPixels and what comes before it
+constexpr std::size_t kMaxMessage = std::size_t{512}
+                                    << 20;  // bytes; a raw frame of codec::kMaxPixels and what comes before it
 constexpr std::string_view kScheme = "http://";
 
-tl::unexpected<Failure> no(const char* code, std::string message) { return tl::unexpected<Failure>({code, std::move(message)}); }
+tl::unexpected<Failure> no(const char* code, std::string message) {
+    return tl::unexpected<Failure>({code, std::move(message)});
+}
 
 Outcome<net::Address> address_of(const std::string& url) {
     if (!url.starts_with(kScheme)) return no("invalid", "'" + url + "': expected http://HOST[:PORT]");
@@ -36,7 +39,9 @@ Outcome<net::Address> address_of(const std::string& url) {
 std::string reason_in(const std::string& body) {
     const auto answer = nlohmann::json::parse(body, nullptr, false);
     const nlohmann::json::json_pointer message("/error/message");
-    return answer.is_object() && answer.contains(message) && answer[message].is_string() ? answer[message].get<std::string>() : body;
+    return answer.is_object() && answer.contains(message) && answer[message].is_string()
+               ? answer[message].get<std::string>()
+               : body;
 }
 
 class WebFeed : public Feed {
@@ -52,7 +57,13 @@ public:
         tcp::resolver resolver(io_);
         error_code error;
         const auto where = resolver.resolve(address.host, std::to_string(address.port), error);
-        if (!error && !finish([&](auto done) { asio::async_connect(stream_.next_layer(), where, [done](error_code e, const auto&) { done(e); }); }, error, kConnectLimit)) error = asio::error::timed_out;
+        if (!error && !finish(
+                          [&](auto done) {
+                              asio::async_connect(stream_.next_layer(), where,
+                                                  [done](error_code e, const auto&) { done(e); });
+                          },
+                          error, kConnectLimit))
+            error = asio::error::timed_out;
         if (error) return no("unavailable", "walld cannot be reached at " + address.text() + ": " + error.message());
         stream_.set_option(websocket::stream_base::timeout{kConnectLimit, kIdleLimit, true});
         stream_.set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
@@ -60,8 +71,12 @@ public:
         }));
         stream_.read_message_max(kMaxMessage);
         websocket::response_type answer;
-        if (!finish([&](auto done) { stream_.async_handshake(answer, address.text(), "/api/v1/stream", done); }, error, kConnectLimit)) error = asio::error::timed_out;
-        if (answer.result() == boost::beast::http::status::unauthorized || answer.result() == boost::beast::http::status::forbidden) return no("forbidden", "walld refused: " + reason_in(answer.body()));
+        if (!finish([&](auto done) { stream_.async_handshake(answer, address.text(), "/api/v1/stream", done); }, error,
+                    kConnectLimit))
+            error = asio::error::timed_out;
+        if (answer.result() == boost::beast::http::status::unauthorized ||
+            answer.result() == boost::beast::http::status::forbidden)
+            return no("forbidden", "walld refused: " + reason_in(answer.body()));
         if (error) return no("unavailable", "no stream from " + address.text() + ": " + error.message());
         stream_.write(asio::buffer(nlohmann::json{{"watch", watch}}.dump()), error);
         if (error) return no("unavailable", address.text() + ": " + error.message());
@@ -112,7 +127,8 @@ private:
 
 }  // namespace
 
-Outcome<std::unique_ptr<Feed>> open_web_feed(const std::string& url, const std::string& token_file, const nlohmann::json& watch) {
+Outcome<std::unique_ptr<Feed>> open_web_feed(const std::string& url, const std::string& token_file,
+                                             const nlohmann::json& watch) {
     const auto address = address_of(url);
     if (!address) return tl::unexpected(address.error());
     const auto token = wallctl::read_token(token_file);

@@ -31,12 +31,15 @@ std::string who(const json& person) {
     return kind == "token" ? "token " + text(person, "name") : text(person, "name");
 }
 
-std::string per_second(double bytes) { return bytes < 1e6 ? fmt::format("{:.1f} kB/s", bytes / 1e3) : fmt::format("{:.1f} MB/s", bytes / 1e6); }
+std::string per_second(double bytes) {
+    return bytes < 1e6 ? fmt::format("{:.1f} kB/s", bytes / 1e3) : fmt::format("{:.1f} MB/s", bytes / 1e6);
+}
 
 std::string traffic(const json& session) {
     const auto of = session.value("traffic", json::object());
     if (of.value("frames", 0) == 0 && of.value("geometry_bytes", 0) == 0) return "";
-    return per_second(of.value("state_bytes_per_second", 0.0) + of.value("object_bytes_per_second", 0.0) + of.value("geometry_bytes_per_second", 0.0));
+    return per_second(of.value("state_bytes_per_second", 0.0) + of.value("object_bytes_per_second", 0.0) +
+                      of.value("geometry_bytes_per_second", 0.0));
 }
 
 }  // namespace wall::wallctl

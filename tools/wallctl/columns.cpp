@@ -10,7 +10,9 @@ constexpr std::string_view kEllipsis = "…";
 constexpr std::size_t kGap = 2;  // cells between columns
 
 bool begins_character(char byte) { return (static_cast<unsigned char>(byte) & 0xc0) != 0x80; }
-std::size_t cells(std::string_view text) { return static_cast<std::size_t>(std::ranges::count_if(text, begins_character)); }
+std::size_t cells(std::string_view text) {
+    return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+}
 
 /// The columns that are shown, and how wide they are.
 struct Shown {
@@ -44,7 +46,8 @@ std::string table(const std::vector<Row>& rows, std::span<const int> ranks, std:
     std::string out;
     for (const auto& row : rows) {
         std::string line;
-        for (const auto column : shown.columns) line += row[column] + std::string(shown.widths[column] - cells(row[column]) + kGap, ' ');
+        for (const auto column : shown.columns)
+            line += row[column] + std::string(shown.widths[column] - cells(row[column]) + kGap, ' ');
         out += cut(line.substr(0, line.find_last_not_of(' ') + 1), width) + "\n";
     }
     return out;
@@ -60,7 +63,8 @@ std::string cut(std::string_view text, std::size_t width) {
 
 std::string printable(std::string_view text) {
     std::string out(text);
-    std::ranges::replace_if(out, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+    std::ranges::replace_if(
+        out, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
     return out;
 }
 

@@ -14,8 +14,9 @@ using Row = std::vector<std::string>;
 
 inline constexpr std::size_t kAnyWidth = std::string::npos;
 
-/// Columns as wide as their widest cell, two blanks between them; the first row is the headings. Lines are at most `width`
-/// cells: columns go where that does not suffice, the highest of `ranks` first and never rank 0, then lines are cut.
+/// Columns as wide as their widest cell, two blanks between them; the first row is the headings. Lines are at most
+/// `width` cells: columns go where that does not suffice, the highest of `ranks` first and never rank 0, then lines are
+/// cut.
 std::string table(const std::vector<Row>& rows, std::span<const int> ranks = {}, std::size_t width = kAnyWidth);
 
 /// At most so many cells; the last one is an ellipsis if something is missing.

@@ -23,7 +23,8 @@ void add_wall(std::vector<Finding>& out, const std::string& status_json) {
     const auto status = nlohmann::json::parse(status_json, nullptr, false);
     for (const auto& node : status.value("nodes", nlohmann::json::array())) {
         const bool up = node.value("up", false);
-        out.push_back({"node " + node.value("name", ""), up, up ? node.value("renderer", "") : "is away: start tileserver --node " + node.value("name", "")});
+        out.push_back({"node " + node.value("name", ""), up,
+                       up ? node.value("renderer", "") : "is away: start tileserver --node " + node.value("name", "")});
     }
     for (const auto& session : status.value("sessions", nlohmann::json::array())) {
         const auto fault = session.value("fault", "");
@@ -36,7 +37,9 @@ void add_wall(std::vector<Finding>& out, const std::string& status_json) {
 std::vector<Finding> examine(const std::string& walld, const std::string& tool) {
     std::vector<Finding> out{vendor_finding(tool)};
     const char* display = std::getenv("DISPLAY");
-    out.push_back({"X display", display && *display, display && *display ? display : "DISPLAY is not set: programs need one for their windows (Xvfb will do)"});
+    out.push_back(
+        {"X display", display && *display,
+         display && *display ? display : "DISPLAY is not set: programs need one for their windows (Xvfb will do)"});
     std::string status;
     out.push_back(from("walld", wallrun::check_walld(walld, &status), walld));
     if (!status.empty()) add_wall(out, status);

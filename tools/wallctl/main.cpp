@@ -20,9 +20,10 @@ using namespace wall;
 using namespace wall::wallctl;
 using nlohmann::json;
 
-constexpr std::chrono::seconds kLimit{10};       // for an answer
-constexpr std::chrono::seconds kCloseLimit{65};  // a program that is asked to close may take as long as wall.toml allows
-constexpr std::chrono::seconds kWaitSlack{2};    // on top of what walld itself waits
+constexpr std::chrono::seconds kLimit{10};  // for an answer
+constexpr std::chrono::seconds kCloseLimit{
+    65};                                       // a program that is asked to close may take as long as wall.toml allows
+constexpr std::chrono::seconds kWaitSlack{2};  // on top of what walld itself waits
 
 struct Options {
     Walld walld{net::kDefaultWalld, {}};
@@ -54,8 +55,11 @@ Action show(const Options& options, const char* verb, std::string (*table)(const
     return [&options, verb, table] { return print(options, ask(options.walld, verb, json::object(), kLimit), table); };
 }
 
-Action tell(const Options& options, const char* verb, std::function<json()> arguments, std::chrono::milliseconds limit = kLimit) {
-    return [&options, verb, arguments, limit] { return print(options, ask(options.walld, verb, arguments(), limit), kNoTable); };
+Action tell(const Options& options, const char* verb, std::function<json()> arguments,
+            std::chrono::milliseconds limit = kLimit) {
+    return [&options, verb, arguments, limit] {
+        return print(options, ask(options.walld, verb, arguments(), limit), kNoTable);
+    };
 }
 
 Outcome<void> screenshot(const Options& options) {
@@ -71,12 +75,14 @@ Outcome<void> screenshot(const Options& options) {
 }
 
 Outcome<void> record(const Options& options) {
-    const auto recorded = wallctl::record(options.walld, {options.file, options.tile, options.seconds, options.fps, !options.as_json});
+    const auto recorded =
+        wallctl::record(options.walld, {options.file, options.tile, options.seconds, options.fps, !options.as_json});
     return print(options, recorded, kNoTable);
 }
 
 Outcome<void> watch(const Options& options) {
-    return wallctl::watch(options.walld, {std::chrono::milliseconds(static_cast<std::int64_t>(options.interval * 1000)), options.count, options.as_json});
+    return wallctl::watch(options.walld, {std::chrono::milliseconds(static_cast<std::int64_t>(options.interval * 1000)),
+                                          options.count, options.as_json});
 }
 
 Outcome<void> wait(const Options& options) {
@@ -87,13 +93,15 @@ Outcome<void> wait(const Options& options) {
 
 Outcome<void> doctor(const Options& options) {
     std::error_code error;
-    const auto findings = examine(options.walld.address, std::filesystem::read_symlink("/proc/self/exe", error).string());
+    const auto findings =
+        examine(options.walld.address, std::filesystem::read_symlink("/proc/self/exe", error).string());
     json out = json::array();
     bool good = true;
     for (const auto& finding : findings) {
         good = good && finding.good;
         out.push_back({{"check", finding.check}, {"good", finding.good}, {"detail", finding.detail}});
-        if (!options.as_json) std::cout << (finding.good ? "ok    " : "WRONG ") << finding.check << ": " << finding.detail << '\n';
+        if (!options.as_json)
+            std::cout << (finding.good ? "ok    " : "WRONG ") << finding.check << ": " << finding.detail << '\n';
     }
     if (options.as_json) std::cout << out.dump(2) << '\n';
     if (!good) return failed("something is wrong, see above");
@@ -115,7 +123,9 @@ void add_layouts(CLI::App& app, Options& o, Action& action) {
         return sub;
     };
     const auto named = [&](const char* name, const char* wire, const char* about, std::string (*text)(const json&)) {
-        auto* sub = verb(name, about, [&o, wire, text] { return print(o, ask(o.walld, wire, json{{"name", o.name}}, kLimit), text); });
+        auto* sub = verb(name, about, [&o, wire, text] {
+            return print(o, ask(o.walld, wire, json{{"name", o.name}}, kLimit), text);
+        });
         sub->add_option("NAME", o.name, "letters, digits, dots, dashes, underscores")->required();
     };
     verb("list", "the layouts there are", show(o, "layouts", names_text));
@@ -137,12 +147,14 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
     verb("tiles", "the tiles and their places", show(o, "tiles", tiles_table));
     verb("sessions", "the programs on the wall and their windows", show(o, "sessions", sessions_table));
     verb("streams", "what is watched live, part by part", show(o, "streams", streams_table));
-    auto* watching = verb("watch", "tiles, programs and streams, refreshed in place; Ctrl-C ends it. With --json a line for each refresh", [&o] { return watch(o); });
+    auto* watching = verb(
+        "watch", "tiles, programs and streams, refreshed in place; Ctrl-C ends it. With --json a line for each refresh",
+        [&o] { return watch(o); });
     watching->add_option("--interval", o.interval, "seconds (1)")->check(CLI::Range(0.1, 3600.0));
     watching->add_option("--count", o.count, "refreshes, then it ends")->check(CLI::PositiveNumber);
     auto* place = verb("place", "puts a window on a rectangle of the wall", tell(o, "place", [&o] {
-        return json{{"id", o.id}, {"rect", {o.x, o.y, o.width, o.height}}};
-    }));
+                           return json{{"id", o.id}, {"rect", {o.x, o.y, o.width, o.height}}};
+                       }));
     add_id(place, o);
     place->add_option("X", o.x)->required();
     place->add_option("Y", o.y)->required();
@@ -150,20 +162,27 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
     place->add_option("H", o.height)->required();
     add_id(verb("raise", "puts a window before all others", tell(o, "raise", with_id)), o);
     add_id(verb("lower", "puts a window behind all others", tell(o, "lower", with_id)), o);
-    add_id(verb("close", "asks a program to close; one that does not in time is cut off", tell(o, "close", with_id, kCloseLimit)), o);
+    add_id(verb("close", "asks a program to close; one that does not in time is cut off",
+                tell(o, "close", with_id, kCloseLimit)),
+           o);
     auto* shot = verb("screenshot", "writes what the wall shows as PNG", [&o] { return screenshot(o); });
     shot->add_option("FILE", o.file)->required();
     shot->add_option("--tile", o.tile, "only this tile");
     shot->add_option("--session", o.id, "only this program");
-    auto* recording = verb("record", "writes what the wall shows as AVI, without loss (HuffYUV); Ctrl-C ends it early", [&o] { return record(o); });
+    auto* recording = verb("record", "writes what the wall shows as AVI, without loss (HuffYUV); Ctrl-C ends it early",
+                           [&o] { return record(o); });
     recording->add_option("FILE", o.file)->required();
     recording->add_option("--seconds", o.seconds, "how long (10)")->check(CLI::Range(0.1, 86400.0));
     recording->add_option("--fps", o.fps, "frames a second (10)")->check(CLI::Range(1, 60));
     recording->add_option("--tile", o.tile, "only this tile");
-    auto* hold = verb("hold", "shows no further frame of a program until it is stepped", tell(o, "hold", [&o] { return json{{"id", o.id}, {"on", !o.off}}; }));
+    auto* hold = verb("hold", "shows no further frame of a program until it is stepped", tell(o, "hold", [&o] {
+                          return json{{"id", o.id}, {"on", !o.off}};
+                      }));
     add_id(hold, o);
     hold->add_flag("--off", o.off, "lets it run again");
-    auto* step = verb("step", "shows the next frames of a held program", tell(o, "step", [&o] { return json{{"id", o.id}, {"frames", o.frames}}; }));
+    auto* step = verb("step", "shows the next frames of a held program", tell(o, "step", [&o] {
+                          return json{{"id", o.id}, {"frames", o.frames}};
+                      }));
     add_id(step, o);
     step->add_option("N", o.frames, "how many (1)")->check(CLI::PositiveNumber);
     auto* waiting = verb("wait", "returns when a frame is shown on all tiles", [&o] { return wait(o); });
@@ -179,14 +198,18 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
 
 int main(int argc, char** argv) {
     CLI::App app("wallctl: everything an operator does with a wall.");
-    app.footer("Examples:\n  wallctl status\n  wallctl --json sessions\n  wallctl watch\n  wallctl screenshot wall.png\n  wallctl record wall.avi --seconds 30\n  wallctl place 3 0 0 1920 1080\n"
-               "  wallctl --walld 127.0.0.1:7770 nodes\n\nExit code: 0; 1 if walld says no or cannot be reached.");
+    app.footer(
+        "Examples:\n  wallctl status\n  wallctl --json sessions\n  wallctl watch\n  wallctl screenshot wall.png\n  "
+        "wallctl record wall.avi --seconds 30\n  wallctl place 3 0 0 1920 1080\n"
+        "  wallctl --walld 127.0.0.1:7770 nodes\n\nExit code: 0; 1 if walld says no or cannot be reached.");
     Options options;
     Action action;
     if (const char* walld = std::getenv("WALLGL_WALLD"); walld && *walld) options.walld.address = walld;
     if (const char* token = std::getenv("WALLGL_TOKEN_FILE"); token) options.walld.token_file = token;
-    app.add_option("--walld", options.walld.address, "where walld is: unix:PATH or HOST:PORT (WALLGL_WALLD)")->type_name("ADDR");
-    app.add_option("--token-file", options.walld.token_file, "asks as the token in this file (WALLGL_TOKEN_FILE)")->type_name("FILE");
+    app.add_option("--walld", options.walld.address, "where walld is: unix:PATH or HOST:PORT (WALLGL_WALLD)")
+        ->type_name("ADDR");
+    app.add_option("--token-file", options.walld.token_file, "asks as the token in this file (WALLGL_TOKEN_FILE)")
+        ->type_name("FILE");
     app.add_flag("--json", options.as_json, "JSON instead of tables");
     app.set_version_flag("--version", WALLGL_VERSION);
     app.require_subcommand(1);
@@ -195,7 +218,9 @@ int main(int argc, char** argv) {
     try {
         if (const auto done = action(); !done) {
             std::cerr << "wallctl: " << done.error().message << '\n';
-            if (options.as_json) std::cout << json{{"error", {{"code", done.error().code}, {"message", done.error().message}}}}.dump(2) << '\n';
+            if (options.as_json)
+                std::cout << json{{"error", {{"code", done.error().code}, {"message", done.error().message}}}}.dump(2)
+                          << '\n';
             return 1;
         }
     } catch (const std::exception& error) {

@@ -37,11 +37,17 @@ public:
             height_ = frame.height;
         }
         packet_.clear();
-        if (auto done = encoder_->encode(frame, codec::PacketKind::key, packet_); !done) return tl::unexpected(done.error());
+        if (auto done = encoder_->encode(frame, codec::PacketKind::key, packet_); !done)
+            return tl::unexpected(done.error());
         if (!avi_) {
             const auto header = encoder_->stream_header();
-            auto avi = codec::AviWriter::create(recording_.file, {frame.width, frame.height, {'H', 'F', 'Y', 'U'}, codec::huffyuv::bit_count(encoder_->stream()),
-                                                                  recording_.fps, 1, {header.begin(), header.end()}});
+            auto avi = codec::AviWriter::create(recording_.file, {frame.width,
+                                                                  frame.height,
+                                                                  {'H', 'F', 'Y', 'U'},
+                                                                  codec::huffyuv::bit_count(encoder_->stream()),
+                                                                  recording_.fps,
+                                                                  1,
+                                                                  {header.begin(), header.end()}});
             if (!avi) return tl::unexpected(avi.error());
             avi_.emplace(std::move(*avi));
         }
@@ -65,8 +71,9 @@ private:
 
 void say(const Recording& recording, const Film& film) {
     const double seconds = static_cast<double>(film.frames()) / recording.fps;
-    std::cerr << "\rrecording: " << std::fixed << std::setprecision(1) << seconds << " of " << recording.seconds << " s, " << film.frames() << " frames, "
-              << static_cast<double>(film.bytes()) / 1e6 << " MB" << std::flush;
+    std::cerr << "\rrecording: " << std::fixed << std::setprecision(1) << seconds << " of " << recording.seconds
+              << " s, " << film.frames() << " frames, " << static_cast<double>(film.bytes()) / 1e6 << " MB"
+              << std::flush;
 }
 
 /// The picture as it is now. The error says why there will be no more.
@@ -87,7 +94,9 @@ Outcome<Answer> record(const Walld& walld, const Recording& recording) {
     nlohmann::json entry{{"codec", kCodec}, {"fps", recording.fps}};
     if (recording.tile.empty()) entry["wall"] = true;
     else entry["tile"] = recording.tile;
-    view::LiveView wall([&walld](const nlohmann::json& what) { return view::open_control_feed(walld, nlohmann::json::array({what})); }, entry, view::LiveView::AfterFailure::stay);
+    view::LiveView wall(
+        [&walld](const nlohmann::json& what) { return view::open_control_feed(walld, nlohmann::json::array({what})); },
+        entry, view::LiveView::AfterFailure::stay);
     if (!wall.wait_complete(kFirstPictures)) return failed("not every tile sent a picture within 5 s (wallctl tiles)");
     if (const auto first = picture_of(wall); !first) return tl::unexpected(first.error());
     ::signal(SIGINT, [](int) { interrupted = true; });
@@ -98,7 +107,8 @@ Outcome<Answer> record(const Walld& walld, const Recording& recording) {
         const auto picture = picture_of(wall);
         if (!picture) {
             static_cast<void>(film.finish());
-            return failed(recording.file + " ends after " + std::to_string(film.frames()) + " frames: " + picture.error().message);
+            return failed(recording.file + " ends after " + std::to_string(film.frames()) +
+                          " frames: " + picture.error().message);
         }
         if (auto added = film.add(picture->view()); !added) return failed(added.error().message);
         if (recording.progress && film.frames() % recording.fps == 0) say(recording, film);
@@ -106,7 +116,13 @@ Outcome<Answer> record(const Walld& walld, const Recording& recording) {
     }
     if (recording.progress) say(recording, film), std::cerr << '\n';
     if (auto finished = film.finish(); !finished) return failed(finished.error().message);
-    return Answer{{{"file", recording.file}, {"frames", film.frames()}, {"bytes", film.bytes()}, {"width", film.width()}, {"height", film.height()}, {"fps", recording.fps}}, {}};
+    return Answer{{{"file", recording.file},
+                   {"frames", film.frames()},
+                   {"bytes", film.bytes()},
+                   {"width", film.width()},
+                   {"height", film.height()},
+                   {"fps", recording.fps}},
+                  {}};
 }
 
 }  // namespace wall::wallctl

@@ -10,7 +10,7 @@ struct Recording {
     std::string file, tile;  ///< tile empty: the whole wall
     double seconds = 10;
     unsigned fps = 10;
-    bool progress = true;    ///< on standard error, once a second
+    bool progress = true;  ///< on standard error, once a second
 };
 
 /// {"file", "frames", "bytes", "width", "height", "fps"}. Ctrl-C ends it early and leaves a whole file.

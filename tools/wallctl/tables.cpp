@@ -19,7 +19,8 @@ std::string program(const json& session) {
     const auto group = session.find("group");
     if (group == session.end()) return text(session, "program");
     const auto members = group->value("members", json::array());
-    const auto here = std::count_if(members.begin(), members.end(), [](const json& member) { return !is(member, "left"); });
+    const auto here =
+        std::count_if(members.begin(), members.end(), [](const json& member) { return !is(member, "left"); });
     return fmt::format("{} x{}/{}", text(session, "program"), here, text(*group, "size"));
 }
 
@@ -27,10 +28,13 @@ void add_session(std::vector<Row>& rows, const json& session) {
     const auto note = is(session, "held") ? "held" : text(session, "fault");
     const auto owner = who(session.value("owner", json::object()));
     const auto surfaces = session.value("surfaces", json::array());
-    if (surfaces.empty()) rows.push_back({text(session, "id"), program(session), text(session, "name"), owner, text(session, "pid"), "", "", "", "", note});
+    if (surfaces.empty())
+        rows.push_back({text(session, "id"), program(session), text(session, "name"), owner, text(session, "pid"), "",
+                        "", "", "", note});
     for (const auto& s : surfaces) {
         rows.push_back({text(s, "id"), program(session), text(session, "name"), owner, text(session, "pid"),
-                        fmt::format("{}x{}", text(s, "width"), text(s, "height")), place(s), text(s, "frame"), traffic(session), note});
+                        fmt::format("{}x{}", text(s, "width"), text(s, "height")), place(s), text(s, "frame"),
+                        traffic(session), note});
     }
 }
 
@@ -39,15 +43,17 @@ void add_session(std::vector<Row>& rows, const json& session) {
 std::string nodes_table(const json& nodes) {
     std::vector<Row> rows{{"NODE", "STATE", "BACKEND", "ADDRESS", "PID", "TILES", "FRAMES", "RECEIVED", "RENDERER"}};
     for (const auto& n : nodes) {
-        rows.push_back({text(n, "name"), is(n, "up") ? "up" : "away", text(n, "backend"), text(n, "address"), text(n, "pid"), text(n, "tiles"),
-                        text(n, "frames"), fmt::format("{:.1f} MB", n.value("bytes_received", 0.0) / 1e6), text(n, "renderer")});
+        rows.push_back({text(n, "name"), is(n, "up") ? "up" : "away", text(n, "backend"), text(n, "address"),
+                        text(n, "pid"), text(n, "tiles"), text(n, "frames"),
+                        fmt::format("{:.1f} MB", n.value("bytes_received", 0.0) / 1e6), text(n, "renderer")});
     }
     return table(rows);
 }
 
 std::string tiles_table(const json& tiles) {
     std::vector<Row> rows{{"TILE", "NODE", "PLACE", "OUTPUT", "STATE"}};
-    for (const auto& t : tiles) rows.push_back({text(t, "name"), text(t, "node"), place(t), text(t, "output"), is(t, "up") ? "up" : "away"});
+    for (const auto& t : tiles)
+        rows.push_back({text(t, "name"), text(t, "node"), place(t), text(t, "output"), is(t, "up") ? "up" : "away"});
     return table(rows);
 }
 
@@ -58,10 +64,12 @@ std::string sessions_table(const json& sessions) {
 }
 
 std::string streams_table(const json& streams) {
-    std::vector<Row> rows{{"TILE", "NODE", "REGION", "ONLY", "CODEC", "SIZE", "FPS", "VIEWERS", "FRAMES", "DROPPED", "RECEIVED"}};
+    std::vector<Row> rows{
+        {"TILE", "NODE", "REGION", "ONLY", "CODEC", "SIZE", "FPS", "VIEWERS", "FRAMES", "DROPPED", "RECEIVED"}};
     for (const auto& s : streams) {
-        rows.push_back({text(s, "tile"), text(s, "node"), text(s, "region"), text(s, "session"), text(s, "codec"), text(s, "width") + "x" + text(s, "height"), text(s, "fps"),
-                        text(s, "viewers"), text(s, "frames"), text(s, "dropped"), fmt::format("{:.1f} MB", s.value("bytes", 0.0) / 1e6)});
+        rows.push_back({text(s, "tile"), text(s, "node"), text(s, "region"), text(s, "session"), text(s, "codec"),
+                        text(s, "width") + "x" + text(s, "height"), text(s, "fps"), text(s, "viewers"),
+                        text(s, "frames"), text(s, "dropped"), fmt::format("{:.1f} MB", s.value("bytes", 0.0) / 1e6)});
     }
     return table(rows);
 }
@@ -70,9 +78,9 @@ std::string status_text(const json& status) {
     const auto& wall = status.at("wall");
     const auto& nodes = status.at("nodes");
     const auto up = std::ranges::count_if(nodes, [](const json& n) { return is(n, "up"); });
-    return fmt::format("wall {}: {}x{} pixels, {} tiles, {} of {} nodes up, {} programs\n\n{}\n{}", text(wall, "name"), text(wall, "width"),
-                       text(wall, "height"), status.at("tiles").size(), up, nodes.size(), status.at("sessions").size(), nodes_table(nodes),
-                       sessions_table(status.at("sessions")));
+    return fmt::format("wall {}: {}x{} pixels, {} tiles, {} of {} nodes up, {} programs\n\n{}\n{}", text(wall, "name"),
+                       text(wall, "width"), text(wall, "height"), status.at("tiles").size(), up, nodes.size(),
+                       status.at("sessions").size(), nodes_table(nodes), sessions_table(status.at("sessions")));
 }
 
 std::string person_text(const json& person) { return fmt::format("{}, role {}\n", who(person), text(person, "role")); }
@@ -83,6 +91,9 @@ std::string names_text(const json& names) {
     return out;
 }
 
-std::string placed_text(const json& loaded) { return fmt::format("{} windows placed, {} places wait for programs\n", text(loaded, "placed"), text(loaded, "waiting")); }
+std::string placed_text(const json& loaded) {
+    return fmt::format("{} windows placed, {} places wait for programs\n", text(loaded, "placed"),
+                       text(loaded, "waiting"));
+}
 
 }  // namespace wall::wallctl

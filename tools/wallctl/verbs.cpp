@@ -8,7 +8,9 @@ namespace {
 
 constexpr std::chrono::seconds kConnectLimit{3};
 
-tl::unexpected<Failure> no(const char* code, std::string message) { return tl::unexpected<Failure>({code, std::move(message)}); }
+tl::unexpected<Failure> no(const char* code, std::string message) {
+    return tl::unexpected<Failure>({code, std::move(message)});
+}
 
 Outcome<proto::Envelope> request_of(const Walld& walld, const std::string& verb, const nlohmann::json& arguments) {
     const auto token = read_token(walld.token_file);
@@ -46,12 +48,16 @@ Outcome<net::ControlClient> subscribe(const Walld& walld, const std::string& ver
     const auto address = net::Address::parse(walld.address);
     if (!address) return no("invalid", address.error().message);
     auto client = net::ControlClient::connect(*address, kConnectLimit);
-    if (!client) return no("unavailable", "walld cannot be reached at " + client.error().message + " (is it running? --walld or WALLGL_WALLD say where)");
-    static_cast<void>(client->send(*request));  // who is refused is told so before, and receiving says what else went wrong
+    if (!client)
+        return no("unavailable", "walld cannot be reached at " + client.error().message +
+                                     " (is it running? --walld or WALLGL_WALLD say where)");
+    static_cast<void>(
+        client->send(*request));  // who is refused is told so before, and receiving says what else went wrong
     return std::move(*client);
 }
 
-Outcome<Answer> ask(const Walld& walld, const std::string& verb, const nlohmann::json& arguments, std::chrono::milliseconds limit) {
+Outcome<Answer> ask(const Walld& walld, const std::string& verb, const nlohmann::json& arguments,
+                    std::chrono::milliseconds limit) {
     auto client = subscribe(walld, verb, arguments);
     if (!client) return tl::unexpected(client.error());
     auto answer = answer_of(*client, walld, limit);

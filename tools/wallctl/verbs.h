@@ -34,6 +34,7 @@ Outcome<std::string> read_token(const std::string& path);
 /// A connection on which walld answers the request with many replies.
 Outcome<net::ControlClient> subscribe(const Walld& walld, const std::string& verb, const nlohmann::json& arguments);
 
-Outcome<Answer> ask(const Walld& walld, const std::string& verb, const nlohmann::json& arguments, std::chrono::milliseconds limit);
+Outcome<Answer> ask(const Walld& walld, const std::string& verb, const nlohmann::json& arguments,
+                    std::chrono::milliseconds limit);
 
 }  // namespace wall::wallctl

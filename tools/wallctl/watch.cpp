@@ -21,7 +21,7 @@ namespace {
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::seconds kLimit{3};     // for an answer
+constexpr std::chrono::seconds kLimit{3};  // for an answer
 constexpr std::chrono::seconds kSayBackFor{5};
 // ECMA-48: cursor off and on, clear, home, erase to the end of the line and of the screen
 constexpr const char* kBegin = "\x1b[?25l\x1b[2J";
@@ -40,7 +40,8 @@ bool in_place() { return ::isatty(STDOUT_FILENO) == 1; }
 Screen screen() {
     winsize size{};
     if (!in_place()) return {number_of("COLUMNS", kAnyWidth), kAnyWidth};
-    if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 1) return {size.ws_col, size.ws_row - 1u};
+    if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 1)
+        return {size.ws_col, size.ws_row - 1u};
     return {number_of("COLUMNS", 80), number_of("LINES", 24) - 1};
 }
 
@@ -112,8 +113,11 @@ private:
     }
     std::string note(const Outcome<Answer>& answer, Clock::time_point now) const {
         const auto seconds = [](Clock::duration time) { return std::chrono::duration<double>(time).count(); };
-        if (!answer) return fmt::format("WALLD DOES NOT ANSWER for {:.0f} s; this is what it said last", seconds(now - *away_since_));
-        if (back_ && now - back_->first < kSayBackFor) return fmt::format("walld is back after {:.0f} s", seconds(back_->second));
+        if (!answer)
+            return fmt::format("WALLD DOES NOT ANSWER for {:.0f} s; this is what it said last",
+                               seconds(now - *away_since_));
+        if (back_ && now - back_->first < kSayBackFor)
+            return fmt::format("walld is back after {:.0f} s", seconds(back_->second));
         return fmt::format("{:%H:%M:%S}", fmt::localtime(std::time(nullptr)));
     }
     void print_text(const Outcome<Answer>& answer, Clock::time_point now) {
@@ -132,7 +136,8 @@ private:
     json status_, rated_;
     Clock::time_point at_{};
     std::optional<Clock::time_point> away_since_;
-    std::optional<std::pair<Clock::time_point, Clock::duration>> back_;  ///< when it came back, and how long it was away
+    std::optional<std::pair<Clock::time_point, Clock::duration>>
+        back_;  ///< when it came back, and how long it was away
     bool first_ = true;
 };
 

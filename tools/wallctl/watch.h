@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// wallctl watch: the wall in a terminal, refreshed in place; elsewhere a block of text for each refresh, or a line of JSON.
+// wallctl watch: the wall in a terminal, refreshed in place; elsewhere a block of text for each refresh, or a line of
+// JSON.
 #pragma once
 
 #include "tools/wallctl/verbs.h"
@@ -12,8 +13,8 @@ struct Watching {
     bool as_json = false;
 };
 
-/// Until it has refreshed `count` times, or SIGINT or SIGTERM. A walld that goes away is said and waited for; one that is
-/// not there in the beginning is an error.
+/// Until it has refreshed `count` times, or SIGINT or SIGTERM. A walld that goes away is said and waited for; one that
+/// is not there in the beginning is an error.
 Outcome<void> watch(const Walld& walld, const Watching& watching);
 
 }  // namespace wall::wallctl

@@ -7,8 +7,8 @@
 
 namespace wall::wallctl {
 
-/// `now` with "frames_per_second" in tiles, surfaces and streams, and "bytes_per_second" in streams, where the one before
-/// (null: none) knows them too. `seconds`: between the two.
+/// `now` with "frames_per_second" in tiles, surfaces and streams, and "bytes_per_second" in streams, where the one
+/// before (null: none) knows them too. `seconds`: between the two.
 nlohmann::json with_rates(const nlohmann::json& before, nlohmann::json now, double seconds);
 
 struct Screen {

@@ -36,13 +36,14 @@ Result<VendorFiles> find_vendor(const std::string& tool) {
         std::error_code error;
         if (fs::exists(folder / kGlxVendor, error)) return VendorFiles{folder.string(), (root / kEglJson).string()};
     }
-    return fail(std::string("the vendor library ") + kGlxVendor + " is missing: looked in " + folders[0].string() + " and " + folders[1].string() +
-                " (build it, or install WallGL completely)");
+    return fail(std::string("the vendor library ") + kGlxVendor + " is missing: looked in " + folders[0].string() +
+                " and " + folders[1].string() + " (build it, or install WallGL completely)");
 }
 
 Result<void> check_vendor(const VendorFiles& files) {
     std::error_code error;
-    if (!fs::exists(files.egl_json, error)) return fail(files.egl_json + " is missing: EGL programs would silently use another library");
+    if (!fs::exists(files.egl_json, error))
+        return fail(files.egl_json + " is missing: EGL programs would silently use another library");
     auto glx = check_loads(files.folder + "/" + kGlxVendor, "__glx_Main");
     return glx ? check_loads(files.folder + "/" + kEglVendor, "__egl_Main") : glx;
 }
@@ -50,7 +51,10 @@ Result<void> check_vendor(const VendorFiles& files) {
 Result<void> check_walld(const std::string& text, std::string* answer_json) {
     const auto address = net::Address::parse(text);
     if (!address) return tl::unexpected(address.error());
-    const auto unreachable = [&](const Error& why) { return fail("walld cannot be reached at " + why.message + " (is it running? --walld or WALLGL_WALLD say where)"); };
+    const auto unreachable = [&](const Error& why) {
+        return fail("walld cannot be reached at " + why.message +
+                    " (is it running? --walld or WALLGL_WALLD say where)");
+    };
     auto client = net::ControlClient::connect(*address, kWalldLimit);
     if (!client) return unreachable(client.error());
     proto::Envelope request;
@@ -69,11 +73,14 @@ Result<void> check_rect(const std::string& rect) {
     int x = 0, y = 0, width = 0, height = 0;
     char extra = 0;
     if (rect.empty() || rect == "fullscreen") return {};
-    if (std::sscanf(rect.c_str(), "%d,%d,%d,%d%c", &x, &y, &width, &height, &extra) == 4 && width > 0 && height > 0) return {};
-    return fail("rectangle '" + rect + "': expected X,Y,W,H in canvas pixels, for example 0,0,1920,1080, or fullscreen");
+    if (std::sscanf(rect.c_str(), "%d,%d,%d,%d%c", &x, &y, &width, &height, &extra) == 4 && width > 0 && height > 0)
+        return {};
+    return fail("rectangle '" + rect +
+                "': expected X,Y,W,H in canvas pixels, for example 0,0,1920,1080, or fullscreen");
 }
 
-std::map<std::string, std::string> environment_for(const Launch& launch, const VendorFiles& files, const std::string& library_path) {
+std::map<std::string, std::string> environment_for(const Launch& launch, const VendorFiles& files,
+                                                   const std::string& library_path) {
     std::map<std::string, std::string> out{
         {"__GLX_VENDOR_LIBRARY_NAME", "wallgl"},
         {"__EGL_VENDOR_LIBRARY_FILENAMES", files.egl_json},

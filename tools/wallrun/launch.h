@@ -33,6 +33,7 @@ Result<void> check_walld(const std::string& address, std::string* answer_json = 
 Result<void> check_rect(const std::string& rect);
 
 /// Variables to set; LD_LIBRARY_PATH goes before what is there (`library_path`).
-std::map<std::string, std::string> environment_for(const Launch& launch, const VendorFiles& files, const std::string& library_path);
+std::map<std::string, std::string> environment_for(const Launch& launch, const VendorFiles& files,
+                                                   const std::string& library_path);
 
 }  // namespace wall::wallrun

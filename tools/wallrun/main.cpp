@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// wallrun: starts an unmodified OpenGL program on the wall. Checks first, because GLVND says nothing when it falls back.
+// wallrun: starts an unmodified OpenGL program on the wall. Checks first, because GLVND says nothing when it falls
+// back.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -18,12 +19,13 @@ namespace {
 using namespace wall;
 using namespace wall::wallrun;
 
-constexpr int kExitNotStarted = 2;    // ours: nothing was started
-constexpr int kExitNotFound = 127;    // as a shell says it
+constexpr int kExitNotStarted = 2;  // ours: nothing was started
+constexpr int kExitNotFound = 127;  // as a shell says it
 
 constexpr const char* kAbout =
     "wallrun: starts an OpenGL program on the wall.\n\n"
-    "The program needs no change. Its window keeps its own size; on the wall it is placed pixel by pixel where there is\n"
+    "The program needs no change. Its window keeps its own size; on the wall it is placed pixel by pixel where there "
+    "is\n"
     "room, or, with --rect or --fullscreen, drawn anew at the size given there. It still needs an X display for its\n"
     "window and its input (Xvfb will do).";
 constexpr const char* kExamples =
@@ -31,12 +33,14 @@ constexpr const char* kExamples =
     "  wallrun -- glxgears\n"
     "  wallrun --fullscreen -- glxgears                 over the whole wall, at the wall's resolution\n"
     "  wallrun --rect 0,0,1920,1080 --name left -- PROGRAM ARGUMENTS\n"
-    "  wallrun --parallel 4 -- PROGRAM                  four processes draw into one window (docs/parallel-programs.md)\n"
+    "  wallrun --parallel 4 -- PROGRAM                  four processes draw into one window "
+    "(docs/parallel-programs.md)\n"
     "  mpirun -n 4 wallrun --parallel-group NAME -- PROGRAM   the same, started by MPI\n"
-    "  wallrun --walld 127.0.0.1:7770 -- PROGRAM        a walld elsewhere than " ;
+    "  wallrun --walld 127.0.0.1:7770 -- PROGRAM        a walld elsewhere than ";
 constexpr const char* kExits =
     "\n\nEnvironment: WALLGL_WALLD (as --walld), WALLGL_LOG=debug|info|warn, WALLGL_STATS=FILE (counters as JSON).\n"
-    "Exit code: the program's own; 2 if it was not started, 127 if it is not found. With --parallel the first one that is\n"
+    "Exit code: the program's own; 2 if it was not started, 127 if it is not found. With --parallel the first one that "
+    "is\n"
     "not 0 (128 + the signal, if one ended it); the other processes are ended then.";
 
 [[noreturn]] void give_up(const Error& error) {
@@ -69,12 +73,19 @@ int main(int argc, char** argv) {
     std::uint32_t parallel = 0;
     std::string group;
     app.add_option("--walld", launch.walld, "where walld is: unix:PATH or HOST:PORT")->type_name("ADDR");
-    auto* rect = app.add_option("--rect", launch.rect, "the first window covers this part of the wall, in pixels")->type_name("X,Y,W,H");
+    auto* rect = app.add_option("--rect", launch.rect, "the first window covers this part of the wall, in pixels")
+                     ->type_name("X,Y,W,H");
     app.add_flag("--fullscreen", fullscreen, "the first window covers the whole wall")->excludes(rect);
     app.add_option("--name", launch.name, "what wallctl and the status page call it");
     app.add_flag("--hold", launch.hold, "frames are shown only on `wallctl step` (to look at one after the other)");
-    auto* processes = app.add_option("--parallel", parallel, "a parallel program: so many processes draw into its windows together")->type_name("N");
-    app.add_option("--parallel-group", group, "this is one process of a parallel program that mpirun starts; a name that no other one on the wall has")->type_name("NAME")->excludes(processes);
+    auto* processes =
+        app.add_option("--parallel", parallel, "a parallel program: so many processes draw into its windows together")
+            ->type_name("N");
+    app.add_option(
+           "--parallel-group", group,
+           "this is one process of a parallel program that mpirun starts; a name that no other one on the wall has")
+        ->type_name("NAME")
+        ->excludes(processes);
     app.add_option("command", command, "the program and its arguments, after --")->required()->type_name("");
     app.set_version_flag("--version", WALLGL_VERSION);
     app.prefix_command(false);
@@ -85,7 +96,8 @@ int main(int argc, char** argv) {
     if (*processes && parallel == 0) give_up({"--parallel: expected at least one process"});
     if (parallel > 0) group = new_group_name(command[0]);
     if (!group.empty()) {
-        const auto member = parallel > 0 ? Result<MemberRank>({0, parallel}) : rank_from_launcher([](const char* name) { return from_environment(name); });
+        const auto member = parallel > 0 ? Result<MemberRank>({0, parallel})
+                                         : rank_from_launcher([](const char* name) { return from_environment(name); });
         if (!member) give_up(member.error());
         const auto value = parallel_value(group, *member);
         if (!value) give_up(value.error());
@@ -93,7 +105,8 @@ int main(int argc, char** argv) {
     }
     const auto files = checked_vendor();
     if (auto good = check_walld(launch.walld); !good) give_up(good.error());
-    for (const auto& [name, value] : environment_for(launch, files, from_environment("LD_LIBRARY_PATH"))) ::setenv(name.c_str(), value.c_str(), 1);
+    for (const auto& [name, value] : environment_for(launch, files, from_environment("LD_LIBRARY_PATH")))
+        ::setenv(name.c_str(), value.c_str(), 1);
 
     if (parallel > 0) return run_members(group, parallel, command);
     std::vector<char*> arguments;

@@ -21,8 +21,9 @@
 namespace wall::wallrun {
 namespace {
 
-constexpr timespec kNotice{.tv_sec = 0, .tv_nsec = 300'000'000};  // for the others to hear from walld why, and to say so
-constexpr timespec kEndLimit{.tv_sec = 5, .tv_nsec = 0};          // for SIGTERM to be obeyed
+constexpr timespec kNotice{.tv_sec = 0,
+                           .tv_nsec = 300'000'000};       // for the others to hear from walld why, and to say so
+constexpr timespec kEndLimit{.tv_sec = 5, .tv_nsec = 0};  // for SIGTERM to be obeyed
 constexpr int kNotFound = 127, kNotStarted = 126;         // as a shell says it
 
 struct Variables {
@@ -84,7 +85,9 @@ public:
             std::erase(running_, pid);
             const int code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
             if (code == 0) continue;
-            if (!failing() && !told_ && any()) std::cerr << "wallrun: process " << pid << " of the parallel program ended with " << code << ": the others are ended, too\n";
+            if (!failing() && !told_ && any())
+                std::cerr << "wallrun: process " << pid << " of the parallel program ended with " << code
+                          << ": the others are ended, too\n";
             fail(code);
         }
     }
@@ -101,16 +104,20 @@ Result<MemberRank> rank_from_launcher(const Environment& environment) {
     for (const auto& names : kLaunchers) {
         MemberRank found;
         if (environment(names.rank).empty()) continue;
-        if (read_number(environment(names.rank), found.rank) && read_number(environment(names.members), found.members)) return found;
+        if (read_number(environment(names.rank), found.rank) && read_number(environment(names.members), found.members))
+            return found;
     }
-    return fail("no MPI launcher has said which rank this process has: expected OMPI_COMM_WORLD_RANK and OMPI_COMM_WORLD_SIZE, or PMI_RANK and PMI_SIZE "
-                "(mpirun -n N wallrun --parallel-group NAME -- PROGRAM; without MPI: wallrun --parallel N -- PROGRAM)");
+    return fail(
+        "no MPI launcher has said which rank this process has: expected OMPI_COMM_WORLD_RANK and OMPI_COMM_WORLD_SIZE, "
+        "or PMI_RANK and PMI_SIZE "
+        "(mpirun -n N wallrun --parallel-group NAME -- PROGRAM; without MPI: wallrun --parallel N -- PROGRAM)");
 }
 
 Result<std::string> parallel_value(const std::string& group, const MemberRank& member) {
     if (group.empty() || member.members == 0 || member.members > wire::kMaxMembers || member.rank >= member.members)
-        return fail("a parallel program needs a name and 1 to " + std::to_string(wire::kMaxMembers) + " processes with ranks from 0: got '" + group + "', rank " +
-                    std::to_string(member.rank) + " of " + std::to_string(member.members));
+        return fail("a parallel program needs a name and 1 to " + std::to_string(wire::kMaxMembers) +
+                    " processes with ranks from 0: got '" + group + "', rank " + std::to_string(member.rank) + " of " +
+                    std::to_string(member.members));
     return group + ":" + std::to_string(member.rank) + ":" + std::to_string(member.members);
 }
 
@@ -134,7 +141,8 @@ int run_members(const std::string& group, std::uint32_t members, std::vector<std
         else all.fail(kNotStarted);
     }
     while (all.any()) {
-        const int signal = all.failing() ? ::sigtimedwait(&handled, nullptr, &all.patience()) : ::sigwaitinfo(&handled, nullptr);
+        const int signal =
+            all.failing() ? ::sigtimedwait(&handled, nullptr, &all.patience()) : ::sigwaitinfo(&handled, nullptr);
         if (signal == SIGCHLD) all.reap();
         else if (signal > 0) all.pass_on(signal);
         else if (errno == EAGAIN) all.end();

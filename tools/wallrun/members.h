@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The processes of a parallel program (docs/parallel-programs.md): each gets WALLGL_PARALLEL=GROUP:RANK:MEMBERS. One thread.
+// The processes of a parallel program (docs/parallel-programs.md): each gets WALLGL_PARALLEL=GROUP:RANK:MEMBERS. One
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -25,9 +26,9 @@ Result<std::string> parallel_value(const std::string& group, const MemberRank& m
 /// A name that no other parallel program has.
 std::string new_group_name(const std::string& program);
 
-/// Starts `members` processes of a command and waits for all. When one fails (a signal, or an exit code that is not 0) the
-/// others get SIGTERM soon, as an MPI launcher does it, and SIGKILL after a while. SIGINT, SIGTERM and SIGHUP go to all of them.
-/// Gives the first failure's exit code (128 + the signal), or 0.
+/// Starts `members` processes of a command and waits for all. When one fails (a signal, or an exit code that is not 0)
+/// the others get SIGTERM soon, as an MPI launcher does it, and SIGKILL after a while. SIGINT, SIGTERM and SIGHUP go to
+/// all of them. Gives the first failure's exit code (128 + the signal), or 0.
 int run_members(const std::string& group, std::uint32_t members, std::vector<std::string> command);
 
 }  // namespace wall::wallrun

@@ -39,12 +39,15 @@ nlohmann::json entry_for(const nlohmann::json& what, const Window::Size& size) {
 class Viewer {
 public:
     Viewer(const view::LiveView::Connect& connect, const Options& options, Window& window)
-        : options_(options), window_(window), asked_(window.size()),
-          live_(connect, entry_for(options.what, asked_), view::LiveView::AfterFailure::connect_again, [event = SDL_RegisterEvents(1)] {
-              SDL_Event news{};
-              news.type = event;
-              SDL_PushEvent(&news);
-          }) {}
+        : options_(options),
+          window_(window),
+          asked_(window.size()),
+          live_(connect, entry_for(options.what, asked_), view::LiveView::AfterFailure::connect_again,
+                [event = SDL_RegisterEvents(1)] {
+                    SDL_Event news{};
+                    news.type = event;
+                    SDL_PushEvent(&news);
+                }) {}
 
     Result<void> run() {
         while (!over_) {
@@ -71,7 +74,8 @@ private:
     }
     void change(Uint8 event) {
         if (event == SDL_WINDOWEVENT_MINIMIZED || event == SDL_WINDOWEVENT_HIDDEN) live_.pause(true);
-        if (event == SDL_WINDOWEVENT_RESTORED || event == SDL_WINDOWEVENT_SHOWN || event == SDL_WINDOWEVENT_MAXIMIZED) live_.pause(false);
+        if (event == SDL_WINDOWEVENT_RESTORED || event == SDL_WINDOWEVENT_SHOWN || event == SDL_WINDOWEVENT_MAXIMIZED)
+            live_.pause(false);
         if (event == SDL_WINDOWEVENT_SIZE_CHANGED) resized_ = Clock::now();
         draw_ = true;
     }
@@ -106,7 +110,9 @@ private:
     void say(const std::string& problem, bool connected) {
         if (problem == said_) return;
         said_ = problem;
-        const auto note = problem.empty() ? "" : connected ? " (" + problem + ")" : " (connecting again: " + problem + ")";
+        const auto note = problem.empty() ? ""
+                          : connected     ? " (" + problem + ")"
+                                          : " (connecting again: " + problem + ")";
         window_.set_title(options_.title + note);
         std::cerr << "wallview: " << (problem.empty() ? "connected" : problem) << '\n';
     }

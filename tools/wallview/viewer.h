@@ -9,12 +9,12 @@
 namespace wall::wallview {
 
 struct Options {
-    nlohmann::json what;          ///< an entry of a watch list, without a size
-    std::string title;            ///< of what is seen
-    Window::Size size;            ///< of the window
+    nlohmann::json what;  ///< an entry of a watch list, without a size
+    std::string title;    ///< of what is seen
+    Window::Size size;    ///< of the window
     bool fullscreen = false;
-    std::uint64_t frames = 0;     ///< complete pictures, then it ends; 0: until somebody ends it
-    std::string save;             ///< the last picture goes there in the end
+    std::uint64_t frames = 0;  ///< complete pictures, then it ends; 0: until somebody ends it
+    std::string save;          ///< the last picture goes there in the end
 };
 
 /// Until somebody ends it. With `frames`, a failure before the first picture is an error; else it is tried again.

@@ -16,10 +16,12 @@ tl::unexpected<Error> failed(const char* what) { return fail(std::string(what) +
 Result<std::unique_ptr<Window>> Window::open(const std::string& title, const Size& size, bool fullscreen) {
     std::unique_ptr<Window> out(new Window);
     SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "linear");
-    // SDL's software renderer would else go through OpenGL to the screen, and be drawn shifted after a change of size (2.26).
+    // SDL's software renderer would else go through OpenGL to the screen, and be drawn shifted after a change of size
+    // (2.26).
     SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
     const Uint32 flags = SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI;
-    out->window_.reset(SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, size.width, size.height, flags));
+    out->window_.reset(SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, size.width,
+                                        size.height, flags));
     if (!out->window_) return failed("no window");
     out->renderer_.reset(SDL_CreateRenderer(out->window_.get(), -1, 0));
     if (!out->renderer_) out->renderer_.reset(SDL_CreateRenderer(out->window_.get(), -1, SDL_RENDERER_SOFTWARE));
@@ -38,7 +40,8 @@ void Window::set_title(const std::string& title) {
 void Window::set_fullscreen(bool on) {
     fullscreen_ = on;
     SDL_ShowCursor(on ? SDL_DISABLE : SDL_ENABLE);
-    if (has_window_manager(window_.get())) SDL_SetWindowFullscreen(window_.get(), on ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
+    if (has_window_manager(window_.get()))
+        SDL_SetWindowFullscreen(window_.get(), on ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
     else put_by_hand(on);
 }
 
@@ -63,12 +66,14 @@ Window::Size Window::size() const {
 Result<void> Window::set_picture(const codec::FrameView& picture) {
     const Size size{static_cast<int>(picture.width), static_cast<int>(picture.height)};
     if (!texture_ || size != picture_) {
-        texture_.reset(SDL_CreateTexture(renderer_.get(), SDL_PIXELFORMAT_RGBA32, SDL_TEXTUREACCESS_STREAMING, size.width, size.height));
+        texture_.reset(SDL_CreateTexture(renderer_.get(), SDL_PIXELFORMAT_RGBA32, SDL_TEXTUREACCESS_STREAMING,
+                                         size.width, size.height));
         if (!texture_) return failed("no texture");
         SDL_SetTextureBlendMode(texture_.get(), SDL_BLENDMODE_NONE);
         picture_ = size;
     }
-    if (SDL_UpdateTexture(texture_.get(), nullptr, picture.pixels, static_cast<int>(picture.stride)) != 0) return failed("no picture");
+    if (SDL_UpdateTexture(texture_.get(), nullptr, picture.pixels, static_cast<int>(picture.stride)) != 0)
+        return failed("no picture");
     return {};
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A window of the desktop with one picture in it, through SDL 2 and whatever renderer it finds, software too. Main thread.
+// A window of the desktop with one picture in it, through SDL 2 and whatever renderer it finds, software too. Main
+// thread.
 #pragma once
 
 #include <SDL.h>

@@ -18,7 +18,8 @@ bool has_window_manager(SDL_Window* window) {
     int format = 0;
     unsigned long count = 0, after = 0;
     unsigned char* value = nullptr;
-    const int status = XGetWindowProperty(display, DefaultRootWindow(display), check, 0, 1, False, XA_WINDOW, &type, &format, &count, &after, &value);
+    const int status = XGetWindowProperty(display, DefaultRootWindow(display), check, 0, 1, False, XA_WINDOW, &type,
+                                          &format, &count, &after, &value);
     if (value != nullptr) XFree(value);
     return status == Success && count == 1;
 }

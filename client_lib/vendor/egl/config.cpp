@@ -134,9 +134,15 @@ std::optional<EGLint> attribute(const Config& c, EGLint name) {
         case EGL_TRANSPARENT_TYPE: return EGL_NONE;
         default: break;
     }
-    constexpr EGLint kZero[] = {EGL_LUMINANCE_SIZE,      EGL_ALPHA_MASK_SIZE,         EGL_BIND_TO_TEXTURE_RGB,
-                                EGL_BIND_TO_TEXTURE_RGBA, EGL_LEVEL,                  EGL_MIN_SWAP_INTERVAL,
-                                EGL_TRANSPARENT_RED_VALUE, EGL_TRANSPARENT_GREEN_VALUE, EGL_TRANSPARENT_BLUE_VALUE};
+    constexpr EGLint kZero[] = {EGL_LUMINANCE_SIZE,
+                                EGL_ALPHA_MASK_SIZE,
+                                EGL_BIND_TO_TEXTURE_RGB,
+                                EGL_BIND_TO_TEXTURE_RGBA,
+                                EGL_LEVEL,
+                                EGL_MIN_SWAP_INTERVAL,
+                                EGL_TRANSPARENT_RED_VALUE,
+                                EGL_TRANSPARENT_GREEN_VALUE,
+                                EGL_TRANSPARENT_BLUE_VALUE};
     if (std::find(std::begin(kZero), std::end(kZero), name) != std::end(kZero)) return 0;
     return std::nullopt;
 }

@@ -36,7 +36,7 @@ struct EglSurface {
     std::uint32_t native = 0;  ///< X id of a window or pixmap
     std::shared_ptr<vendor::XConnection> connection;
     std::shared_ptr<Surface> core;
-    Extent size;               ///< pbuffer, pixmap
+    Extent size;  ///< pbuffer, pixmap
     bool single_buffered = false;
     EGLint swap_behavior = EGL_BUFFER_DESTROYED;
     EGLint swap_interval = 1;

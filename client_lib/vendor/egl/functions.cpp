@@ -225,9 +225,8 @@ EGLSurface create_offscreen(EGLDisplay handle, EGLConfig config_handle, std::sha
 }
 
 EGLSurface create_window_surface(EGLDisplay display, EGLConfig config, EGLNativeWindowType window, const EGLint* list) {
-    return guarded("eglCreateWindowSurface", EGL_NO_SURFACE, [&] {
-        return create_window(display, config, static_cast<std::uint32_t>(window), read_list(list));
-    });
+    return guarded("eglCreateWindowSurface", EGL_NO_SURFACE,
+                   [&] { return create_window(display, config, static_cast<std::uint32_t>(window), read_list(list)); });
 }
 
 /// A platform's native handle is passed by address: Window* for X11, xcb_window_t* for XCB.
@@ -338,10 +337,8 @@ EGLBoolean surface_attrib(EGLDisplay handle, EGLSurface surface_handle, EGLint n
         if (!display) return EGLBoolean{EGL_FALSE};
         const auto surface = display->surface(surface_handle);
         if (!surface) return refuse(EGL_BAD_SURFACE);
-        if (name == EGL_SWAP_BEHAVIOR)
-            surface->swap_behavior = value;
-        else if (name != EGL_MIPMAP_LEVEL && name != EGL_MULTISAMPLE_RESOLVE)
-            return refuse(EGL_BAD_ATTRIBUTE);
+        if (name == EGL_SWAP_BEHAVIOR) surface->swap_behavior = value;
+        else if (name != EGL_MIPMAP_LEVEL && name != EGL_MULTISAMPLE_RESOLVE) return refuse(EGL_BAD_ATTRIBUTE);
         return succeed();
     });
 }
@@ -354,10 +351,8 @@ EGLBoolean swap(EGLDisplay handle, EGLSurface surface_handle) {
         if (!display) return EGLBoolean{EGL_FALSE};
         const auto surface = display->surface(surface_handle);
         if (!surface) return refuse(EGL_BAD_SURFACE);
-        if (surface->kind != SurfaceKind::window || surface->single_buffered)
-            flush_current(false);
-        else
-            swap_buffers(*surface->core);
+        if (surface->kind != SurfaceKind::window || surface->single_buffered) flush_current(false);
+        else swap_buffers(*surface->core);
         return succeed();
     });
 }
@@ -418,13 +413,15 @@ EGLContext create_context_handle(EGLDisplay handle, EGLConfig config_handle, EGL
         const Config* config = display->config(config_handle);
         if (!config) return refuse(EGL_BAD_CONFIG, EGL_NO_CONTEXT);
         if (glvnd.load()->getCurrentApi() != EGL_OPENGL_API) {
-            if (stats().count_unsupported("OpenGL ES context")) log(LogLevel::warn, "unsupported feature=opengl_es_context");
+            if (stats().count_unsupported("OpenGL ES context"))
+                log(LogLevel::warn, "unsupported feature=opengl_es_context");
             return refuse(EGL_BAD_MATCH, EGL_NO_CONTEXT);
         }
         auto wish = read_context_attributes(list);
         if (wish.error != EGL_SUCCESS) return refuse(wish.error, EGL_NO_CONTEXT);
         std::shared_ptr<EglContext> sharing;
-        if (share != EGL_NO_CONTEXT && !(sharing = display->context(share))) return refuse(EGL_BAD_CONTEXT, EGL_NO_CONTEXT);
+        if (share != EGL_NO_CONTEXT && !(sharing = display->context(share)))
+            return refuse(EGL_BAD_CONTEXT, EGL_NO_CONTEXT);
         if (sharing) wish.options.share = sharing->core.get();
         auto core = client::create_context(wish.options);
         if (!core) return refuse(EGL_BAD_MATCH, EGL_NO_CONTEXT);

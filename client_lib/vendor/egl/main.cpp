@@ -27,7 +27,8 @@ void* get_proc_address(const char* name) {
     });
 }
 
-/// Installed beside the system's own manifests the library is offered to every EGL program: it is for those on the wall.
+/// Installed beside the system's own manifests the library is offered to every EGL program: it is for those on the
+/// wall.
 bool meant_for_us() {
     const char* manifests = std::getenv("__EGL_VENDOR_LIBRARY_FILENAMES");
     const char* glx_vendor = std::getenv("__GLX_VENDOR_LIBRARY_NAME");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/vendor/glx/config.h"
 
-
 #include <map>
 #include <memory>
 #include <string>

@@ -51,7 +51,9 @@ std::shared_ptr<GlxContext> find_context(GLXContext handle) {
 std::shared_ptr<GlxContext> find_usable_context(GLXContext handle) {
     std::lock_guard lock(contexts().mutex);
     const auto found = contexts().all.find(handle);
-    return found != contexts().all.end() && (!found->second->destroyed || found->second.get() == current) ? found->second : nullptr;
+    return found != contexts().all.end() && (!found->second->destroyed || found->second.get() == current)
+               ? found->second
+               : nullptr;
 }
 
 std::shared_ptr<GlxContext> create_context(const Config& config, const ContextOptions& options) {
@@ -67,10 +69,8 @@ std::shared_ptr<GlxContext> create_context(const Config& config, const ContextOp
 
 void destroy_context(const std::shared_ptr<GlxContext>& context) {
     std::lock_guard lock(contexts().mutex);
-    if (context->current)
-        context->destroyed = true;
-    else
-        contexts().all.erase(context.get());
+    if (context->current) context->destroyed = true;
+    else contexts().all.erase(context.get());
 }
 
 GlxContext* thread_context() { return current; }

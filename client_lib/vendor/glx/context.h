@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// GLXContexts. A handle is the address of a GlxContext; destroying one that is current is deferred until it is released.
+// GLXContexts. A handle is the address of a GlxContext; destroying one that is current is deferred until it is
+// released.
 #pragma once
 
 #include <GL/glx.h>

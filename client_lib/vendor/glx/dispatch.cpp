@@ -48,7 +48,8 @@ GLXFBConfig* choose_fb_config(Display* display, int screen, int* attributes, int
 
 GLXContext create_context(Display* display, GLXFBConfig config, int type, GLXContext share, Bool direct) {
     auto* vendor = api().vendorFromFBConfig(display, config);
-    auto* call = implementation<GLXContext(Display*, GLXFBConfig, int, GLXContext, Bool)>(vendor, CreateContextWithConfigSGIX);
+    auto* call =
+        implementation<GLXContext(Display*, GLXFBConfig, int, GLXContext, Bool)>(vendor, CreateContextWithConfigSGIX);
     GLXContext context = call ? call(display, config, type, share, direct) : nullptr;
     if (context) api().addVendorContextMapping(display, context, vendor);
     return context;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// GLX drawables: X windows (a GLXWindow has its window's own XID), pbuffers and pixmaps, each with a surface. Any thread.
+// GLX drawables: X windows (a GLXWindow has its window's own XID), pbuffers and pixmaps, each with a surface. Any
+// thread.
 #pragma once
 
 #include <GL/glx.h>
@@ -21,13 +22,13 @@ struct Drawable {
     XID id = 0;
     DrawableKind kind = DrawableKind::window;
     const Config* config = nullptr;
-    Display* display = nullptr;     ///< valid while the connection is open
+    Display* display = nullptr;  ///< valid while the connection is open
     std::shared_ptr<vendor::XConnection> connection;
     std::shared_ptr<Surface> surface;
-    Extent size;                    ///< pbuffer, pixmap
+    Extent size;  ///< pbuffer, pixmap
     bool preserved_contents = true;
-    bool made_by_glx = false;       ///< glXCreateWindow and the like, not a bare X window
-    int current_in = 0;             ///< contexts that have it current
+    bool made_by_glx = false;  ///< glXCreateWindow and the like, not a bare X window
+    int current_in = 0;        ///< contexts that have it current
     int swap_interval = 1;
     unsigned long event_mask = 0;
 };
@@ -48,7 +49,8 @@ public:
 
     void now_current(const std::shared_ptr<Drawable>& drawable);
     void no_longer_current(const std::shared_ptr<Drawable>& drawable);
-    /// Forgets bare windows that the program has destroyed: X does not tell us. Costs a round trip for each that is idle.
+    /// Forgets bare windows that the program has destroyed: X does not tell us. Costs a round trip for each that is
+    /// idle.
     void drop_destroyed_windows();
 
 private:

@@ -50,7 +50,8 @@ Glyph glyph_of(const XFontStruct& font, unsigned code) {
     const unsigned columns = font.max_char_or_byte2 - font.min_char_or_byte2 + 1;
     const bool two_bytes = font.min_byte1 != 0 || font.max_byte1 != 0;
     const unsigned row = two_bytes ? code >> 8 & 0xff : 0, column = two_bytes ? code & 0xff : code;
-    if (row < font.min_byte1 || row > font.max_byte1 || column < font.min_char_or_byte2 || column > font.max_char_or_byte2)
+    if (row < font.min_byte1 || row > font.max_byte1 || column < font.min_char_or_byte2 ||
+        column > font.max_char_or_byte2)
         return {};
     if (!font.per_char) return {font.min_bounds, true};
     const auto& metrics = font.per_char[(row - font.min_byte1) * columns + column - font.min_char_or_byte2];
@@ -87,7 +88,8 @@ public:
         XDrawString16(display_, pixmap_, gc_, -m.lbearing, m.ascent, &text, 1);
         const unsigned stride = (width + 7) / 8;
         std::vector<GLubyte> bits(stride * height);
-        XImage* image = XGetImage(display_, pixmap_, 0, 0, std::min(width, width_), std::min(height, height_), 1, XYPixmap);
+        XImage* image =
+            XGetImage(display_, pixmap_, 0, 0, std::min(width, width_), std::min(height, height_), 1, XYPixmap);
         if (!image) return bits;
         for (int y = 0; y < image->height; ++y)
             for (int x = 0; x < image->width; ++x)
@@ -132,8 +134,8 @@ bool use_x_font(Display* display, Font font, int first, int count, int list_base
     if (!info || !gl.complete()) return false;
     GlyphPainter painter(display, font, *info);
     gl.PushClientAttrib(GL_CLIENT_PIXEL_STORE_BIT);
-    for (const GLenum name : {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS,
-                              GL_UNPACK_SKIP_PIXELS})
+    for (const GLenum name :
+         {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS})
         gl.PixelStorei(name, 0);
     gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     for (int i = 0; i < count; ++i)

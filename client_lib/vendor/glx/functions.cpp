@@ -143,8 +143,9 @@ GLXContext make_context(Display* display, const Config* config, GLXContext share
 
 GLXContext create_context_of_visual(Display* display, XVisualInfo* visual, GLXContext share, Bool) {
     return guarded("glXCreateContext", GLXContext{}, [&]() -> GLXContext {
-        const Config* config =
-            valid_screen(display, visual->screen) ? Screen::of(display, visual->screen).of_visual(visual->visualid) : nullptr;
+        const Config* config = valid_screen(display, visual->screen)
+                                   ? Screen::of(display, visual->screen).of_visual(visual->visualid)
+                                   : nullptr;
         if (!config) {
             send_x_error(display, BadValue, visual->visualid, X_GLXCreateContext);
             return nullptr;
@@ -198,7 +199,8 @@ ContextWish read_context_attributes(const int* attributes) {
     if (profile != GLX_CONTEXT_CORE_PROFILE_BIT_ARB && profile != GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB)
         wish.glx_error = kGLXBadProfileARB;
     if (flags & ~kKnownFlags) wish.x_error = BadValue;
-    if (render_type == GLX_COLOR_INDEX_TYPE || (o.forward_compatible && o.major < 3) || !is_version(o.major, o.minor)) wish.x_error = BadMatch;
+    if (render_type == GLX_COLOR_INDEX_TYPE || (o.forward_compatible && o.major < 3) || !is_version(o.major, o.minor))
+        wish.x_error = BadMatch;
     else if (render_type != GLX_RGBA_TYPE) wish.x_error = BadValue;
     return wish;
 }
@@ -207,10 +209,8 @@ GLXContext create_context_attribs(Display* display, GLXFBConfig handle, GLXConte
     return guarded("glXCreateContextAttribsARB", GLXContext{}, [&]() -> GLXContext {
         const auto wish = read_context_attributes(attributes);
         if (wish.x_error != 0 || wish.glx_error >= 0) {
-            if (wish.x_error != 0)
-                send_x_error(display, wish.x_error, 0, X_GLXCreateContextAttribsARB);
-            else
-                send_glx_error(display, wish.glx_error, 0, X_GLXCreateContextAttribsARB);
+            if (wish.x_error != 0) send_x_error(display, wish.x_error, 0, X_GLXCreateContextAttribsARB);
+            else send_glx_error(display, wish.glx_error, 0, X_GLXCreateContextAttribsARB);
             return nullptr;
         }
         return make_context(display, Config::from(handle), share, wish.options, X_GLXCreateContextAttribsARB);
@@ -353,8 +353,9 @@ GLXPixmap create_pixmap(Display* display, GLXFBConfig handle, Pixmap pixmap, con
 
 GLXPixmap create_glx_pixmap(Display* display, XVisualInfo* visual, Pixmap pixmap) {
     return guarded("glXCreateGLXPixmap", GLXPixmap{0}, [&] {
-        const Config* config =
-            valid_screen(display, visual->screen) ? Screen::of(display, visual->screen).of_visual(visual->visualid) : nullptr;
+        const Config* config = valid_screen(display, visual->screen)
+                                   ? Screen::of(display, visual->screen).of_visual(visual->visualid)
+                                   : nullptr;
         return make_pixmap(display, config, pixmap, X_GLXCreateGLXPixmap);
     });
 }
@@ -381,7 +382,8 @@ bool is_x_window(Display* display, XID id) {
 void destroy_window(Display* display, GLXWindow id) {
     guarded("glXDestroyWindow", [&] {
         const bool there = is_x_window(display, id);
-        if (!Drawables::get().destroy(display, id) || !there) send_glx_error(display, GLXBadWindow, id, X_GLXDestroyWindow);
+        if (!Drawables::get().destroy(display, id) || !there)
+            send_glx_error(display, GLXBadWindow, id, X_GLXDestroyWindow);
     });
 }
 

@@ -22,7 +22,8 @@ SCENE(clears, 4) {
     clear(0.1f, 0.2f, 0.3f);
     glEnable(GL_SCISSOR_TEST);
     for (int i = 0; i < 40; ++i) {
-        glScissor(static_cast<int>(random_bits() % 420) - 20, static_cast<int>(random_bits() % 320) - 20, 30 + i * 3, 90 - i * 2);
+        glScissor(static_cast<int>(random_bits() % 420) - 20, static_cast<int>(random_bits() % 320) - 20, 30 + i * 3,
+                  90 - i * 2);
         glColorMask(i % 2, i % 3 > 0, frame != 1, 1);
         glClearColor(random_unit(), random_unit(), random_unit(), random_unit());
         glClear(i % 4 ? GL_COLOR_BUFFER_BIT : GL_DEPTH_BUFFER_BIT);
@@ -52,8 +53,10 @@ SCENE(depth, 8) {
 }
 
 SCENE(blending, 6) {
-    const GLenum sources[] = {GL_ONE, GL_SRC_ALPHA, GL_DST_COLOR, GL_ONE_MINUS_DST_ALPHA, GL_SRC_ALPHA_SATURATE, GL_ZERO};
-    const GLenum destinations[] = {GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_SRC_COLOR, GL_DST_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_COLOR};
+    const GLenum sources[] = {GL_ONE, GL_SRC_ALPHA, GL_DST_COLOR, GL_ONE_MINUS_DST_ALPHA, GL_SRC_ALPHA_SATURATE,
+                              GL_ZERO};
+    const GLenum destinations[] = {GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_SRC_COLOR, GL_DST_ALPHA,
+                                   GL_ONE, GL_ONE_MINUS_SRC_COLOR};
     glClearColor(0.3f, 0.4f, 0.5f, 0.6f);
     glClear(GL_COLOR_BUFFER_BIT);
     cell_view(0, 1, 1);
@@ -64,7 +67,8 @@ SCENE(blending, 6) {
 }
 
 SCENE(logic_and_alpha, 8) {
-    const GLenum operations[] = {GL_CLEAR, GL_XOR, GL_INVERT, GL_OR_REVERSE, GL_EQUIV, GL_NAND, GL_COPY_INVERTED, GL_AND};
+    const GLenum operations[] = {GL_CLEAR, GL_XOR,  GL_INVERT,        GL_OR_REVERSE,
+                                 GL_EQUIV, GL_NAND, GL_COPY_INVERTED, GL_AND};
     const GLenum functions[] = {GL_NEVER, GL_LESS, GL_EQUAL, GL_LEQUAL, GL_GREATER, GL_NOTEQUAL, GL_GEQUAL, GL_ALWAYS};
     clear(0.2f, 0.4f, 0.6f);
     glShadeModel(GL_FLAT);

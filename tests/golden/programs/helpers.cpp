@@ -52,7 +52,8 @@ void cell_view(int index, int columns, int rows) {
     const float w = 2.0f / static_cast<float>(columns), h = 2.0f / static_cast<float>(rows);
     glMatrixMode(GL_PROJECTION);
     glLoadIdentity();
-    glTranslatef(-1 + w * (static_cast<float>(index % columns) + 0.5f), 1 - h * (static_cast<float>(index / columns) + 0.5f), 0);
+    glTranslatef(-1 + w * (static_cast<float>(index % columns) + 0.5f),
+                 1 - h * (static_cast<float>(index / columns) + 0.5f), 0);
     glScalef(w * 0.4573f, h * 0.4591f, 1);  // odd: no pixel's centre lies on the border of two texels
     glMatrixMode(GL_MODELVIEW);
     glLoadIdentity();
@@ -95,7 +96,8 @@ void checker_texture(GLuint name, int size) {
         for (int x = 0; x < size; ++x) {
             const bool odd = ((x / 4) ^ (y / 4)) & 1;
             const auto ramp = [&](int at) { return static_cast<unsigned char>(255 * at / (size - 1)); };
-            texels.insert(texels.end(), {odd ? ramp(x) : static_cast<unsigned char>(230), odd ? ramp(y) : static_cast<unsigned char>(200),
+            texels.insert(texels.end(), {odd ? ramp(x) : static_cast<unsigned char>(230),
+                                         odd ? ramp(y) : static_cast<unsigned char>(200),
                                          odd ? static_cast<unsigned char>(40) : ramp(x), ramp(size - 1 - y)});
         }
     glBindTexture(GL_TEXTURE_2D, name);

@@ -19,8 +19,9 @@ struct Vertex {
 std::vector<Vertex> vertices(int count) {
     std::vector<Vertex> made;
     for (int i = 0; i < count; ++i)
-        made.push_back({random_unit() * 2 - 1, random_unit() * 2 - 1, random_unit() - 0.5f, static_cast<GLubyte>(random_bits()),
-                        static_cast<GLubyte>(random_bits()), static_cast<GLubyte>(random_bits()), 255, static_cast<GLshort>(i % 3),
+        made.push_back({random_unit() * 2 - 1, random_unit() * 2 - 1, random_unit() - 0.5f,
+                        static_cast<GLubyte>(random_bits()), static_cast<GLubyte>(random_bits()),
+                        static_cast<GLubyte>(random_bits()), 255, static_cast<GLshort>(i % 3),
                         static_cast<GLshort>(i % 2), 0, 0, 127, 0, static_cast<GLboolean>(i % 4 != 0)});
     return made;
 }
@@ -34,7 +35,8 @@ void point_to(const std::vector<Vertex>& v) {
 }
 
 void disable_arrays() {
-    for (const GLenum array : {GL_VERTEX_ARRAY, GL_COLOR_ARRAY, GL_TEXTURE_COORD_ARRAY, GL_NORMAL_ARRAY, GL_EDGE_FLAG_ARRAY})
+    for (const GLenum array :
+         {GL_VERTEX_ARRAY, GL_COLOR_ARRAY, GL_TEXTURE_COORD_ARRAY, GL_NORMAL_ARRAY, GL_EDGE_FLAG_ARRAY})
         glDisableClientState(array);
 }
 
@@ -66,7 +68,7 @@ SCENE(list_state, 4) {  // lists that change state, matrices, textures and attri
         glNewList(4, GL_COMPILE);
         glLoadIdentity();
         glDisable(GL_TEXTURE_2D);
-        glCallList(9);  // defined later
+        glCallList(9);   // defined later
         glCallList(77);  // never
         glEndList();
         glNewList(9, GL_COMPILE_AND_EXECUTE);
@@ -85,7 +87,8 @@ SCENE(list_state, 4) {  // lists that change state, matrices, textures and attri
     GLfloat colour[4], matrix[16];
     glGetFloatv(GL_CURRENT_COLOR, colour);
     glGetFloatv(GL_MODELVIEW_MATRIX, matrix);
-    say("after lists: %.5g %.5g %.5g, at %.5g %.5g, texture %d", colour[0], colour[1], colour[2], matrix[12], matrix[13], glIsEnabled(GL_TEXTURE_2D));
+    say("after lists: %.5g %.5g %.5g, at %.5g %.5g, texture %d", colour[0], colour[1], colour[2], matrix[12],
+        matrix[13], glIsEnabled(GL_TEXTURE_2D));
     glCallList(4);
     if (frame == 2) {  // redefined
         glNewList(9, GL_COMPILE);
@@ -290,8 +293,9 @@ SCENE(array_types, 2) {
 }
 
 SCENE(interleaved_arrays, 2) {
-    const GLenum formats[] = {GL_V2F, GL_V3F, GL_C4UB_V2F, GL_C4UB_V3F, GL_C3F_V3F, GL_N3F_V3F, GL_C4F_N3F_V3F,
-                              GL_T2F_V3F, GL_T4F_V4F, GL_T2F_C4UB_V3F, GL_T2F_C3F_V3F, GL_T2F_N3F_V3F, GL_T2F_C4F_N3F_V3F, GL_T4F_C4F_N3F_V4F};
+    const GLenum formats[] = {GL_V2F,         GL_V3F,         GL_C4UB_V2F,        GL_C4UB_V3F,       GL_C3F_V3F,
+                              GL_N3F_V3F,     GL_C4F_N3F_V3F, GL_T2F_V3F,         GL_T4F_V4F,        GL_T2F_C4UB_V3F,
+                              GL_T2F_C3F_V3F, GL_T2F_N3F_V3F, GL_T2F_C4F_N3F_V3F, GL_T4F_C4F_N3F_V4F};
     clear();
     checker_texture(4, 8);
     std::vector<GLfloat> data;
@@ -342,7 +346,8 @@ SCENE(evaluators, 5) {
     } else if (frame == 3) {
         for (int j = 0; j < 11; ++j) {
             glBegin(GL_QUAD_STRIP);
-            for (int i = 0; i <= 14; ++i) glEvalPoint2(i, j), glEvalCoord2f(static_cast<float>(i) / 14, static_cast<float>(j + 1) * 2 / 11);
+            for (int i = 0; i <= 14; ++i)
+                glEvalPoint2(i, j), glEvalCoord2f(static_cast<float>(i) / 14, static_cast<float>(j + 1) * 2 / 11);
             glEnd();
         }
     } else {
@@ -369,8 +374,8 @@ SCENE(evaluators, 5) {
     GLfloat current[4];
     glGetFloatv(GL_CURRENT_COLOR, current);  // evaluation leaves the current colour alone
     say("colour %.5g %.5g %.5g", current[0], current[1], current[2]);
-    for (const GLenum name : {GL_MAP2_VERTEX_3, GL_MAP2_COLOR_4, GL_MAP2_TEXTURE_COORD_2, GL_AUTO_NORMAL, GL_LIGHTING, GL_LIGHT0,
-                              GL_TEXTURE_2D, GL_MAP1_VERTEX_4, GL_MAP1_COLOR_4, GL_DEPTH_TEST})
+    for (const GLenum name : {GL_MAP2_VERTEX_3, GL_MAP2_COLOR_4, GL_MAP2_TEXTURE_COORD_2, GL_AUTO_NORMAL, GL_LIGHTING,
+                              GL_LIGHT0, GL_TEXTURE_2D, GL_MAP1_VERTEX_4, GL_MAP1_COLOR_4, GL_DEPTH_TEST})
         glDisable(name);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// golden_scenes NAME [--frames=N] [--pause] [--raw=FILE]   draws a scene and writes each frame to standard output as PNM,
+// golden_scenes NAME [--frames=N] [--pause] [--raw=FILE]   draws a scene and writes each frame to standard output as
+// PNM,
 //   just before it is shown; lines of results go to standard error behind "= ". --pause waits for a line on standard
 //   input after each frame. --raw also appends each frame as RGBA bytes, bottom row first, to FILE.
 // golden_scenes --list                                     prints NAME FRAMES swaps|flushes of each scene.
@@ -57,7 +58,8 @@ Options parse(int argc, char** argv) {
 std::vector<unsigned char> read_frame(const Scene& scene, Size size) {
     glPushAttrib(GL_PIXEL_MODE_BIT);
     glPushClientAttrib(GL_CLIENT_PIXEL_STORE_BIT);
-    for (const GLenum name : {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS})
+    for (const GLenum name :
+         {GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS})
         glPixelStorei(name, 0);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     for (const GLenum name : {GL_RED_SCALE, GL_GREEN_SCALE, GL_BLUE_SCALE, GL_ALPHA_SCALE}) glPixelTransferf(name, 1);
@@ -114,7 +116,8 @@ int main(int argc, char** argv) {
     auto all = scenes();
     std::sort(all.begin(), all.end(), [](const Scene& a, const Scene& b) { return a.name < b.name; });
     if (options.list) {
-        for (const Scene& scene : all) std::printf("%s %d %s\n", scene.name.c_str(), scene.frames, swaps(scene) ? "swaps" : "flushes");
+        for (const Scene& scene : all)
+            std::printf("%s %d %s\n", scene.name.c_str(), scene.frames, swaps(scene) ? "swaps" : "flushes");
         return 0;
     }
     const auto found = std::find_if(all.begin(), all.end(), [&](const Scene& s) { return s.name == options.scene; });

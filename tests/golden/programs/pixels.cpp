@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Pixel paths: drawing, reading and copying rectangles of pixels, bitmaps, zoom, transfer, storage. Zooms are odd numbers:
-// a fragment's centre on the very border of two zoomed pixels may take either, and other tiles decide otherwise.
+// Pixel paths: drawing, reading and copying rectangles of pixels, bitmaps, zoom, transfer, storage. Zooms are odd
+// numbers: a fragment's centre on the very border of two zoomed pixels may take either, and other tiles decide
+// otherwise.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -34,9 +35,9 @@ void background(Size canvas) {
 }
 
 void plain_storage() {
-    for (const GLenum name : {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_PIXELS,
-                              GL_UNPACK_SKIP_ROWS, GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH,
-                              GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS})
+    for (const GLenum name :
+         {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS,
+          GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS})
         glPixelStorei(name, 0);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
@@ -52,11 +53,22 @@ std::uint64_t checksum(const std::vector<GLubyte>& bytes) {
 
 SCENE(draw_pixels, 5) {
     background(canvas);
-    struct Kind { GLenum format, type; int components; };
-    const Kind kinds[] = {{GL_RGBA, GL_UNSIGNED_BYTE, 4}, {GL_RGB, GL_UNSIGNED_BYTE, 3}, {GL_BGRA, GL_UNSIGNED_BYTE, 4},
-                          {GL_LUMINANCE, GL_UNSIGNED_BYTE, 1}, {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE, 2}, {GL_RED, GL_BYTE, 1},
-                          {GL_RGBA, GL_UNSIGNED_SHORT_4_4_4_4, 1}, {GL_RGB, GL_UNSIGNED_SHORT_5_6_5, 1},
-                          {GL_RGBA, GL_UNSIGNED_INT_8_8_8_8, 1}, {GL_GREEN, GL_SHORT, 1}, {GL_RGB, GL_UNSIGNED_INT, 3}, {GL_BGR, GL_UNSIGNED_BYTE, 3}};
+    struct Kind {
+        GLenum format, type;
+        int components;
+    };
+    const Kind kinds[] = {{GL_RGBA, GL_UNSIGNED_BYTE, 4},
+                          {GL_RGB, GL_UNSIGNED_BYTE, 3},
+                          {GL_BGRA, GL_UNSIGNED_BYTE, 4},
+                          {GL_LUMINANCE, GL_UNSIGNED_BYTE, 1},
+                          {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE, 2},
+                          {GL_RED, GL_BYTE, 1},
+                          {GL_RGBA, GL_UNSIGNED_SHORT_4_4_4_4, 1},
+                          {GL_RGB, GL_UNSIGNED_SHORT_5_6_5, 1},
+                          {GL_RGBA, GL_UNSIGNED_INT_8_8_8_8, 1},
+                          {GL_GREEN, GL_SHORT, 1},
+                          {GL_RGB, GL_UNSIGNED_INT, 3},
+                          {GL_BGR, GL_UNSIGNED_BYTE, 3}};
     const auto image = random_image(40 * 40 * 16);
     if (frame == 1) glPixelZoom(1.713f, 2.317f);
     if (frame == 2) glPixelZoom(-1.513f, 0.537f);
@@ -121,7 +133,8 @@ SCENE(pixel_transfer, 4) {
     }
     if (frame == 1) {
         const GLfloat map[] = {0.9f, 0.1f, 0.6f, 0.3f};
-        for (const GLenum to : {GL_PIXEL_MAP_R_TO_R, GL_PIXEL_MAP_G_TO_G, GL_PIXEL_MAP_B_TO_B, GL_PIXEL_MAP_A_TO_A}) glPixelMapfv(to, 4, map);
+        for (const GLenum to : {GL_PIXEL_MAP_R_TO_R, GL_PIXEL_MAP_G_TO_G, GL_PIXEL_MAP_B_TO_B, GL_PIXEL_MAP_A_TO_A})
+            glPixelMapfv(to, 4, map);
         glPixelTransferi(GL_MAP_COLOR, 1);
         glColorMask(1, 1, 0, 0);  // Mesa's mapped blue and alpha are undefined
     }
@@ -277,19 +290,33 @@ SCENE(depth_and_stencil_pixels, 3) {
 
 SCENE(read_pixels, 1) {
     background(canvas);
-    struct Kind { GLenum format, type; int bytes; };
-    const Kind kinds[] = {{GL_RGBA, GL_UNSIGNED_BYTE, 4}, {GL_BGRA, GL_UNSIGNED_BYTE, 4}, {GL_RGB, GL_UNSIGNED_BYTE, 3},
-                          {GL_BGR, GL_UNSIGNED_BYTE, 3}, {GL_RED, GL_UNSIGNED_BYTE, 1}, {GL_ALPHA, GL_UNSIGNED_BYTE, 1},
-                          {GL_LUMINANCE, GL_UNSIGNED_BYTE, 1}, {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE, 2}, {GL_RGBA, GL_UNSIGNED_SHORT, 8},
-                          {GL_RGB, GL_FLOAT, 12}, {GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV, 4}, {GL_RGB, GL_UNSIGNED_SHORT_5_6_5, 2},
-                          {GL_BGRA, GL_UNSIGNED_SHORT_1_5_5_5_REV, 2}, {GL_RGBA, GL_BYTE, 4}, {GL_BLUE, GL_INT, 4},
+    struct Kind {
+        GLenum format, type;
+        int bytes;
+    };
+    const Kind kinds[] = {{GL_RGBA, GL_UNSIGNED_BYTE, 4},
+                          {GL_BGRA, GL_UNSIGNED_BYTE, 4},
+                          {GL_RGB, GL_UNSIGNED_BYTE, 3},
+                          {GL_BGR, GL_UNSIGNED_BYTE, 3},
+                          {GL_RED, GL_UNSIGNED_BYTE, 1},
+                          {GL_ALPHA, GL_UNSIGNED_BYTE, 1},
+                          {GL_LUMINANCE, GL_UNSIGNED_BYTE, 1},
+                          {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE, 2},
+                          {GL_RGBA, GL_UNSIGNED_SHORT, 8},
+                          {GL_RGB, GL_FLOAT, 12},
+                          {GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV, 4},
+                          {GL_RGB, GL_UNSIGNED_SHORT_5_6_5, 2},
+                          {GL_BGRA, GL_UNSIGNED_SHORT_1_5_5_5_REV, 2},
+                          {GL_RGBA, GL_BYTE, 4},
+                          {GL_BLUE, GL_INT, 4},
                           {GL_RGBA, GL_UNSIGNED_INT_10_10_10_2, 4}};
     // Clears of exact colours, so that one wall of several tiles answers the very same bytes.
     glEnable(GL_SCISSOR_TEST);
     for (int i = 0; i < 300; ++i) {
         glScissor(static_cast<int>(random_bits() % 380), static_cast<int>(random_bits() % 280), 30, 30);
         glClearColor(static_cast<float>(random_bits() % 256) / 255.0f, static_cast<float>(random_bits() % 256) / 255.0f,
-                     static_cast<float>(random_bits() % 256) / 255.0f, static_cast<float>(random_bits() % 256) / 255.0f);
+                     static_cast<float>(random_bits() % 256) / 255.0f,
+                     static_cast<float>(random_bits() % 256) / 255.0f);
         glClear(GL_COLOR_BUFFER_BIT);
     }
     glScissor(0, 0, canvas.width, canvas.height);
@@ -297,16 +324,22 @@ SCENE(read_pixels, 1) {
     for (int storage = 0; storage < 3; ++storage)
         for (const Kind& kind : kinds) {
             plain_storage();
-            if (storage == 1) glPixelStorei(GL_PACK_ALIGNMENT, 1), glPixelStorei(GL_PACK_ROW_LENGTH, 61), glPixelStorei(GL_PACK_SKIP_PIXELS, 5);
-            if (storage == 2) glPixelStorei(GL_PACK_ALIGNMENT, 8), glPixelStorei(GL_PACK_SKIP_ROWS, 3), glPixelStorei(GL_PACK_SWAP_BYTES, 1);
+            if (storage == 1)
+                glPixelStorei(GL_PACK_ALIGNMENT, 1), glPixelStorei(GL_PACK_ROW_LENGTH, 61),
+                    glPixelStorei(GL_PACK_SKIP_PIXELS, 5);
+            if (storage == 2)
+                glPixelStorei(GL_PACK_ALIGNMENT, 8), glPixelStorei(GL_PACK_SKIP_ROWS, 3),
+                    glPixelStorei(GL_PACK_SWAP_BYTES, 1);
             std::vector<GLubyte> read(64 * 64 * 16, 0xa5);
             glReadPixels(181, 131, 43, 37, kind.format, kind.type, read.data());
-            say("read %d %04x %04x: %016llx", storage, kind.format, kind.type, static_cast<unsigned long long>(checksum(read)));
+            say("read %d %04x %04x: %016llx", storage, kind.format, kind.type,
+                static_cast<unsigned long long>(checksum(read)));
             say_error("read");
         }
     plain_storage();
     std::vector<GLubyte> outside(40 * 40 * 4, 0x5a);
-    glReadPixels(-10, -10, 40, 40, GL_RGBA, GL_UNSIGNED_BYTE, outside.data());  // what lies outside stays as it was, here
+    glReadPixels(-10, -10, 40, 40, GL_RGBA, GL_UNSIGNED_BYTE,
+                 outside.data());  // what lies outside stays as it was, here
     glReadPixels(380, 280, 40, 40, GL_RGBA, GL_UNSIGNED_BYTE, outside.data());
     say("inside part %d %d %d", outside[0], outside[1], outside[2]);
     GLfloat depth = -1;
@@ -337,7 +370,8 @@ SCENE(raster_positions, 2) {
             glGetFloatv(GL_CURRENT_RASTER_COLOR, colour);
             glGetFloatv(GL_CURRENT_RASTER_DISTANCE, &distance);
         }
-        say("raster %d %.4g %.4g %.4g %.4g colour %.4g %.4g distance %.4g", valid, window[0], window[1], window[2], window[3], colour[0], colour[2], distance);
+        say("raster %d %.4g %.4g %.4g %.4g colour %.4g %.4g distance %.4g", valid, window[0], window[1], window[2],
+            window[3], colour[0], colour[2], distance);
     }
     glDisable(GL_LIGHTING);
     glDisable(GL_LIGHT0);

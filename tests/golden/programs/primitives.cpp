@@ -51,7 +51,8 @@ void one_long_strip(Size canvas) {
     for (int i = 0; i < 20000; ++i) {
         const float t = static_cast<float>(i) * 0.0045f, r = 0.2f + static_cast<float>(i) * 0.00006f;
         glColor3f(0.5f + 0.5f * std::sin(t), 0.5f + 0.5f * std::cos(t * 0.7f), static_cast<float>(i % 2));
-        glVertex3f(r * std::cos(t) * (i % 2 ? 0.9f : 1.0f), r * std::sin(t) * (i % 2 ? 0.9f : 1.0f), static_cast<float>(i) * 0.00002f);
+        glVertex3f(r * std::cos(t) * (i % 2 ? 0.9f : 1.0f), r * std::sin(t) * (i % 2 ? 0.9f : 1.0f),
+                   static_cast<float>(i) * 0.00002f);
     }
     glEnd();
 }
@@ -71,8 +72,8 @@ void long_line_strip(Size canvas, GLenum mode) {
 }  // namespace
 
 SCENE(primitive_modes, 3) {
-    const GLenum modes[] = {GL_POINTS, GL_LINES, GL_LINE_STRIP, GL_LINE_LOOP, GL_TRIANGLES,
-                            GL_TRIANGLE_STRIP, GL_TRIANGLE_FAN, GL_QUADS, GL_QUAD_STRIP, GL_POLYGON};
+    const GLenum modes[] = {GL_POINTS,         GL_LINES,        GL_LINE_STRIP, GL_LINE_LOOP,  GL_TRIANGLES,
+                            GL_TRIANGLE_STRIP, GL_TRIANGLE_FAN, GL_QUADS,      GL_QUAD_STRIP, GL_POLYGON};
     clear(0.1f, 0.1f, 0.2f);
     glShadeModel(frame == 1 ? GL_FLAT : GL_SMOOTH);  // flat: the provoking vertex
     for (int i = 0; i < 20; ++i) {
@@ -129,7 +130,8 @@ SCENE(points, 2) {
         glBegin(GL_POINTS);
         for (int i = 0; i < 12; ++i) {
             glColor4f(random_unit(), random_unit(), 1, 0.7f);
-            glVertex2f(random_unit() * static_cast<float>(canvas.width), random_unit() * static_cast<float>(canvas.height));
+            glVertex2f(random_unit() * static_cast<float>(canvas.width),
+                       random_unit() * static_cast<float>(canvas.height));
         }
         glEnd();
     }
@@ -156,7 +158,8 @@ SCENE(lines, 4) {
         glColor4f(random_unit(), random_unit(), random_unit(), 0.8f);
         glBegin(i % 3 ? GL_LINES : GL_LINE_STRIP);
         for (int k = 0; k < 4; ++k)
-            glVertex2f(random_unit() * static_cast<float>(canvas.width), random_unit() * static_cast<float>(canvas.height));
+            glVertex2f(random_unit() * static_cast<float>(canvas.width),
+                       random_unit() * static_cast<float>(canvas.height));
         glEnd();
     }
     glLineWidth(1);
@@ -260,7 +263,9 @@ SCENE(rectangles_viewports, 3) {
         glMatrixMode(GL_MODELVIEW);
         glColor3f(random_unit(), random_unit(), random_unit());
         glBegin(GL_POLYGON);
-        for (int k = 0; k < 9; ++k) glVertex2f(1.3f * std::cos(static_cast<float>(k) * 0.698f), 1.3f * std::sin(static_cast<float>(k) * 0.698f));
+        for (int k = 0; k < 9; ++k)
+            glVertex2f(1.3f * std::cos(static_cast<float>(k) * 0.698f),
+                       1.3f * std::sin(static_cast<float>(k) * 0.698f));
         glEnd();
         if (i == frame) glClear(GL_COLOR_BUFFER_BIT);
     }

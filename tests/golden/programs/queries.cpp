@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What OpenGL answers: every query of 1.1 after scripted calls, errors, attribute stacks, matrices, feedback, selection.
+// What OpenGL answers: every query of 1.1 after scripted calls, errors, attribute stacks, matrices, feedback,
+// selection.
 #include <cmath>
 #include <cstring>
 
@@ -13,49 +14,199 @@ struct Query {
     const char* text;
     int values;
 };
-#define Q(NAME, VALUES) {GL_##NAME, #NAME, VALUES}
+#define Q(NAME, VALUES) \
+    { GL_##NAME, #NAME, VALUES }
 
 const Query kQueries[] = {
-    Q(ACCUM_ALPHA_BITS, 1), Q(ACCUM_CLEAR_VALUE, 4), Q(ALPHA_BIAS, 1), Q(ALPHA_SCALE, 1), Q(ALPHA_TEST, 1), Q(ALPHA_TEST_FUNC, 1),
-    Q(ALPHA_TEST_REF, 1), Q(ATTRIB_STACK_DEPTH, 1), Q(AUTO_NORMAL, 1), Q(AUX_BUFFERS, 1), Q(BLEND, 1), Q(BLEND_DST, 1), Q(BLEND_SRC, 1),
-    Q(BLUE_BIAS, 1), Q(BLUE_SCALE, 1), Q(CLIENT_ATTRIB_STACK_DEPTH, 1), Q(CLIP_PLANE0, 1), Q(CLIP_PLANE5, 1), Q(COLOR_ARRAY, 1),
-    Q(COLOR_ARRAY_SIZE, 1), Q(COLOR_ARRAY_STRIDE, 1), Q(COLOR_ARRAY_TYPE, 1), Q(COLOR_CLEAR_VALUE, 4), Q(COLOR_LOGIC_OP, 1),
-    Q(COLOR_MATERIAL, 1), Q(COLOR_MATERIAL_FACE, 1), Q(COLOR_MATERIAL_PARAMETER, 1), Q(COLOR_WRITEMASK, 4), Q(CULL_FACE, 1),
-    Q(CULL_FACE_MODE, 1), Q(CURRENT_COLOR, 4), Q(CURRENT_NORMAL, 3), Q(CURRENT_RASTER_COLOR, 4), Q(CURRENT_RASTER_DISTANCE, 1),
-    Q(CURRENT_RASTER_POSITION, 4), Q(CURRENT_RASTER_POSITION_VALID, 1), Q(CURRENT_RASTER_TEXTURE_COORDS, 4), Q(CURRENT_TEXTURE_COORDS, 4),
-    Q(DEPTH_BIAS, 1), Q(DEPTH_BITS, 1), Q(DEPTH_CLEAR_VALUE, 1), Q(DEPTH_FUNC, 1), Q(DEPTH_RANGE, 2), Q(DEPTH_SCALE, 1), Q(DEPTH_TEST, 1),
-    Q(DEPTH_WRITEMASK, 1), Q(DITHER, 1), Q(DOUBLEBUFFER, 1), Q(DRAW_BUFFER, 1), Q(EDGE_FLAG, 1), Q(EDGE_FLAG_ARRAY, 1),
-    Q(EDGE_FLAG_ARRAY_STRIDE, 1), Q(FEEDBACK_BUFFER_SIZE, 1), Q(FEEDBACK_BUFFER_TYPE, 1), Q(FOG, 1), Q(FOG_COLOR, 4), Q(FOG_DENSITY, 1),
-    Q(FOG_END, 1), Q(FOG_HINT, 1), Q(FOG_MODE, 1), Q(FOG_START, 1), Q(FRONT_FACE, 1), Q(GREEN_BIAS, 1), Q(GREEN_BITS, 1), Q(GREEN_SCALE, 1),
-    Q(INDEX_OFFSET, 1), Q(INDEX_SHIFT, 1), Q(LIGHT0, 1), Q(LIGHT7, 1), Q(LIGHTING, 1), Q(LIGHT_MODEL_AMBIENT, 4),
-    Q(LIGHT_MODEL_LOCAL_VIEWER, 1), Q(LIGHT_MODEL_TWO_SIDE, 1), Q(LINE_SMOOTH, 1), Q(LINE_SMOOTH_HINT, 1), Q(LINE_STIPPLE, 1),
-    Q(LINE_STIPPLE_PATTERN, 1), Q(LINE_STIPPLE_REPEAT, 1), Q(LINE_WIDTH, 1), Q(LIST_BASE, 1), Q(LIST_INDEX, 1), Q(LIST_MODE, 1),
-    Q(LOGIC_OP_MODE, 1), Q(MAP1_COLOR_4, 1), Q(MAP1_GRID_DOMAIN, 2), Q(MAP1_GRID_SEGMENTS, 1), Q(MAP2_GRID_DOMAIN, 4),
-    Q(MAP2_GRID_SEGMENTS, 2), Q(MAP2_VERTEX_3, 1), Q(MAP_COLOR, 1), Q(MAP_STENCIL, 1), Q(MATRIX_MODE, 1), Q(MAX_CLIP_PLANES, 1),
-    Q(MAX_EVAL_ORDER, 1), Q(MAX_LIGHTS, 1), Q(MAX_ATTRIB_STACK_DEPTH, 1), Q(MAX_CLIENT_ATTRIB_STACK_DEPTH, 1),
-    Q(MAX_MODELVIEW_STACK_DEPTH, 1), Q(MAX_NAME_STACK_DEPTH, 1), Q(MAX_PIXEL_MAP_TABLE, 1), Q(MAX_PROJECTION_STACK_DEPTH, 1),
-    Q(MAX_TEXTURE_STACK_DEPTH, 1), Q(MAX_LIST_NESTING, 1), Q(MODELVIEW_MATRIX, 16), Q(MODELVIEW_STACK_DEPTH, 1), Q(NAME_STACK_DEPTH, 1),
-    Q(NORMALIZE, 1), Q(NORMAL_ARRAY, 1), Q(NORMAL_ARRAY_STRIDE, 1), Q(NORMAL_ARRAY_TYPE, 1), Q(PACK_ALIGNMENT, 1), Q(PACK_LSB_FIRST, 1),
-    Q(PACK_ROW_LENGTH, 1), Q(PACK_SKIP_PIXELS, 1), Q(PACK_SKIP_ROWS, 1), Q(PACK_SWAP_BYTES, 1), Q(PERSPECTIVE_CORRECTION_HINT, 1),
-    Q(PIXEL_MAP_A_TO_A_SIZE, 1), Q(PIXEL_MAP_I_TO_I_SIZE, 1), Q(PIXEL_MAP_I_TO_R_SIZE, 1), Q(POINT_SIZE, 1), Q(POINT_SMOOTH, 1),
-    Q(POINT_SMOOTH_HINT, 1), Q(POLYGON_MODE, 2), Q(POLYGON_OFFSET_FACTOR, 1), Q(POLYGON_OFFSET_FILL, 1), Q(POLYGON_OFFSET_LINE, 1),
-    Q(POLYGON_OFFSET_POINT, 1), Q(POLYGON_OFFSET_UNITS, 1), Q(POLYGON_SMOOTH, 1), Q(POLYGON_SMOOTH_HINT, 1), Q(POLYGON_STIPPLE, 1),
-    Q(PROJECTION_MATRIX, 16), Q(PROJECTION_STACK_DEPTH, 1), Q(READ_BUFFER, 1), Q(RED_BIAS, 1), Q(RED_BITS, 1), Q(RED_SCALE, 1),
-    Q(RENDER_MODE, 1), Q(RGBA_MODE, 1), Q(SCISSOR_BOX, 4), Q(SCISSOR_TEST, 1), Q(SELECTION_BUFFER_SIZE, 1), Q(SHADE_MODEL, 1),
-    Q(STENCIL_BITS, 1), Q(STENCIL_CLEAR_VALUE, 1), Q(STENCIL_FAIL, 1), Q(STENCIL_FUNC, 1), Q(STENCIL_PASS_DEPTH_FAIL, 1),
-    Q(STENCIL_PASS_DEPTH_PASS, 1), Q(STENCIL_REF, 1), Q(STENCIL_TEST, 1), Q(STENCIL_VALUE_MASK, 1), Q(STENCIL_WRITEMASK, 1), Q(STEREO, 1),
-    Q(SUBPIXEL_BITS, 1), Q(TEXTURE_1D, 1), Q(TEXTURE_2D, 1), Q(TEXTURE_BINDING_1D, 1), Q(TEXTURE_BINDING_2D, 1),
-    Q(TEXTURE_COORD_ARRAY, 1), Q(TEXTURE_COORD_ARRAY_SIZE, 1), Q(TEXTURE_COORD_ARRAY_STRIDE, 1), Q(TEXTURE_COORD_ARRAY_TYPE, 1),
-    Q(TEXTURE_GEN_Q, 1), Q(TEXTURE_GEN_S, 1), Q(TEXTURE_MATRIX, 16), Q(TEXTURE_STACK_DEPTH, 1), Q(UNPACK_ALIGNMENT, 1),
-    Q(UNPACK_LSB_FIRST, 1), Q(UNPACK_ROW_LENGTH, 1), Q(UNPACK_SKIP_PIXELS, 1), Q(UNPACK_SKIP_ROWS, 1), Q(UNPACK_SWAP_BYTES, 1),
-    Q(VERTEX_ARRAY, 1), Q(VERTEX_ARRAY_SIZE, 1), Q(VERTEX_ARRAY_STRIDE, 1), Q(VERTEX_ARRAY_TYPE, 1), Q(VIEWPORT, 4), Q(ZOOM_X, 1), Q(ZOOM_Y, 1),
+    Q(ACCUM_ALPHA_BITS, 1),
+    Q(ACCUM_CLEAR_VALUE, 4),
+    Q(ALPHA_BIAS, 1),
+    Q(ALPHA_SCALE, 1),
+    Q(ALPHA_TEST, 1),
+    Q(ALPHA_TEST_FUNC, 1),
+    Q(ALPHA_TEST_REF, 1),
+    Q(ATTRIB_STACK_DEPTH, 1),
+    Q(AUTO_NORMAL, 1),
+    Q(AUX_BUFFERS, 1),
+    Q(BLEND, 1),
+    Q(BLEND_DST, 1),
+    Q(BLEND_SRC, 1),
+    Q(BLUE_BIAS, 1),
+    Q(BLUE_SCALE, 1),
+    Q(CLIENT_ATTRIB_STACK_DEPTH, 1),
+    Q(CLIP_PLANE0, 1),
+    Q(CLIP_PLANE5, 1),
+    Q(COLOR_ARRAY, 1),
+    Q(COLOR_ARRAY_SIZE, 1),
+    Q(COLOR_ARRAY_STRIDE, 1),
+    Q(COLOR_ARRAY_TYPE, 1),
+    Q(COLOR_CLEAR_VALUE, 4),
+    Q(COLOR_LOGIC_OP, 1),
+    Q(COLOR_MATERIAL, 1),
+    Q(COLOR_MATERIAL_FACE, 1),
+    Q(COLOR_MATERIAL_PARAMETER, 1),
+    Q(COLOR_WRITEMASK, 4),
+    Q(CULL_FACE, 1),
+    Q(CULL_FACE_MODE, 1),
+    Q(CURRENT_COLOR, 4),
+    Q(CURRENT_NORMAL, 3),
+    Q(CURRENT_RASTER_COLOR, 4),
+    Q(CURRENT_RASTER_DISTANCE, 1),
+    Q(CURRENT_RASTER_POSITION, 4),
+    Q(CURRENT_RASTER_POSITION_VALID, 1),
+    Q(CURRENT_RASTER_TEXTURE_COORDS, 4),
+    Q(CURRENT_TEXTURE_COORDS, 4),
+    Q(DEPTH_BIAS, 1),
+    Q(DEPTH_BITS, 1),
+    Q(DEPTH_CLEAR_VALUE, 1),
+    Q(DEPTH_FUNC, 1),
+    Q(DEPTH_RANGE, 2),
+    Q(DEPTH_SCALE, 1),
+    Q(DEPTH_TEST, 1),
+    Q(DEPTH_WRITEMASK, 1),
+    Q(DITHER, 1),
+    Q(DOUBLEBUFFER, 1),
+    Q(DRAW_BUFFER, 1),
+    Q(EDGE_FLAG, 1),
+    Q(EDGE_FLAG_ARRAY, 1),
+    Q(EDGE_FLAG_ARRAY_STRIDE, 1),
+    Q(FEEDBACK_BUFFER_SIZE, 1),
+    Q(FEEDBACK_BUFFER_TYPE, 1),
+    Q(FOG, 1),
+    Q(FOG_COLOR, 4),
+    Q(FOG_DENSITY, 1),
+    Q(FOG_END, 1),
+    Q(FOG_HINT, 1),
+    Q(FOG_MODE, 1),
+    Q(FOG_START, 1),
+    Q(FRONT_FACE, 1),
+    Q(GREEN_BIAS, 1),
+    Q(GREEN_BITS, 1),
+    Q(GREEN_SCALE, 1),
+    Q(INDEX_OFFSET, 1),
+    Q(INDEX_SHIFT, 1),
+    Q(LIGHT0, 1),
+    Q(LIGHT7, 1),
+    Q(LIGHTING, 1),
+    Q(LIGHT_MODEL_AMBIENT, 4),
+    Q(LIGHT_MODEL_LOCAL_VIEWER, 1),
+    Q(LIGHT_MODEL_TWO_SIDE, 1),
+    Q(LINE_SMOOTH, 1),
+    Q(LINE_SMOOTH_HINT, 1),
+    Q(LINE_STIPPLE, 1),
+    Q(LINE_STIPPLE_PATTERN, 1),
+    Q(LINE_STIPPLE_REPEAT, 1),
+    Q(LINE_WIDTH, 1),
+    Q(LIST_BASE, 1),
+    Q(LIST_INDEX, 1),
+    Q(LIST_MODE, 1),
+    Q(LOGIC_OP_MODE, 1),
+    Q(MAP1_COLOR_4, 1),
+    Q(MAP1_GRID_DOMAIN, 2),
+    Q(MAP1_GRID_SEGMENTS, 1),
+    Q(MAP2_GRID_DOMAIN, 4),
+    Q(MAP2_GRID_SEGMENTS, 2),
+    Q(MAP2_VERTEX_3, 1),
+    Q(MAP_COLOR, 1),
+    Q(MAP_STENCIL, 1),
+    Q(MATRIX_MODE, 1),
+    Q(MAX_CLIP_PLANES, 1),
+    Q(MAX_EVAL_ORDER, 1),
+    Q(MAX_LIGHTS, 1),
+    Q(MAX_ATTRIB_STACK_DEPTH, 1),
+    Q(MAX_CLIENT_ATTRIB_STACK_DEPTH, 1),
+    Q(MAX_MODELVIEW_STACK_DEPTH, 1),
+    Q(MAX_NAME_STACK_DEPTH, 1),
+    Q(MAX_PIXEL_MAP_TABLE, 1),
+    Q(MAX_PROJECTION_STACK_DEPTH, 1),
+    Q(MAX_TEXTURE_STACK_DEPTH, 1),
+    Q(MAX_LIST_NESTING, 1),
+    Q(MODELVIEW_MATRIX, 16),
+    Q(MODELVIEW_STACK_DEPTH, 1),
+    Q(NAME_STACK_DEPTH, 1),
+    Q(NORMALIZE, 1),
+    Q(NORMAL_ARRAY, 1),
+    Q(NORMAL_ARRAY_STRIDE, 1),
+    Q(NORMAL_ARRAY_TYPE, 1),
+    Q(PACK_ALIGNMENT, 1),
+    Q(PACK_LSB_FIRST, 1),
+    Q(PACK_ROW_LENGTH, 1),
+    Q(PACK_SKIP_PIXELS, 1),
+    Q(PACK_SKIP_ROWS, 1),
+    Q(PACK_SWAP_BYTES, 1),
+    Q(PERSPECTIVE_CORRECTION_HINT, 1),
+    Q(PIXEL_MAP_A_TO_A_SIZE, 1),
+    Q(PIXEL_MAP_I_TO_I_SIZE, 1),
+    Q(PIXEL_MAP_I_TO_R_SIZE, 1),
+    Q(POINT_SIZE, 1),
+    Q(POINT_SMOOTH, 1),
+    Q(POINT_SMOOTH_HINT, 1),
+    Q(POLYGON_MODE, 2),
+    Q(POLYGON_OFFSET_FACTOR, 1),
+    Q(POLYGON_OFFSET_FILL, 1),
+    Q(POLYGON_OFFSET_LINE, 1),
+    Q(POLYGON_OFFSET_POINT, 1),
+    Q(POLYGON_OFFSET_UNITS, 1),
+    Q(POLYGON_SMOOTH, 1),
+    Q(POLYGON_SMOOTH_HINT, 1),
+    Q(POLYGON_STIPPLE, 1),
+    Q(PROJECTION_MATRIX, 16),
+    Q(PROJECTION_STACK_DEPTH, 1),
+    Q(READ_BUFFER, 1),
+    Q(RED_BIAS, 1),
+    Q(RED_BITS, 1),
+    Q(RED_SCALE, 1),
+    Q(RENDER_MODE, 1),
+    Q(RGBA_MODE, 1),
+    Q(SCISSOR_BOX, 4),
+    Q(SCISSOR_TEST, 1),
+    Q(SELECTION_BUFFER_SIZE, 1),
+    Q(SHADE_MODEL, 1),
+    Q(STENCIL_BITS, 1),
+    Q(STENCIL_CLEAR_VALUE, 1),
+    Q(STENCIL_FAIL, 1),
+    Q(STENCIL_FUNC, 1),
+    Q(STENCIL_PASS_DEPTH_FAIL, 1),
+    Q(STENCIL_PASS_DEPTH_PASS, 1),
+    Q(STENCIL_REF, 1),
+    Q(STENCIL_TEST, 1),
+    Q(STENCIL_VALUE_MASK, 1),
+    Q(STENCIL_WRITEMASK, 1),
+    Q(STEREO, 1),
+    Q(SUBPIXEL_BITS, 1),
+    Q(TEXTURE_1D, 1),
+    Q(TEXTURE_2D, 1),
+    Q(TEXTURE_BINDING_1D, 1),
+    Q(TEXTURE_BINDING_2D, 1),
+    Q(TEXTURE_COORD_ARRAY, 1),
+    Q(TEXTURE_COORD_ARRAY_SIZE, 1),
+    Q(TEXTURE_COORD_ARRAY_STRIDE, 1),
+    Q(TEXTURE_COORD_ARRAY_TYPE, 1),
+    Q(TEXTURE_GEN_Q, 1),
+    Q(TEXTURE_GEN_S, 1),
+    Q(TEXTURE_MATRIX, 16),
+    Q(TEXTURE_STACK_DEPTH, 1),
+    Q(UNPACK_ALIGNMENT, 1),
+    Q(UNPACK_LSB_FIRST, 1),
+    Q(UNPACK_ROW_LENGTH, 1),
+    Q(UNPACK_SKIP_PIXELS, 1),
+    Q(UNPACK_SKIP_ROWS, 1),
+    Q(UNPACK_SWAP_BYTES, 1),
+    Q(VERTEX_ARRAY, 1),
+    Q(VERTEX_ARRAY_SIZE, 1),
+    Q(VERTEX_ARRAY_STRIDE, 1),
+    Q(VERTEX_ARRAY_TYPE, 1),
+    Q(VIEWPORT, 4),
+    Q(ZOOM_X, 1),
+    Q(ZOOM_Y, 1),
 };
 #undef Q
 
 void say_values(const char* kind, const char* name, const GLdouble* values, int count) {
     char line[512];
     int at = 0;
-    for (int i = 0; i < count; ++i) at += std::snprintf(line + at, sizeof line - static_cast<std::size_t>(at), " %.6g", values[i]);
+    for (int i = 0; i < count; ++i)
+        at += std::snprintf(line + at, sizeof line - static_cast<std::size_t>(at), " %.6g", values[i]);
     say("%s %s%s", kind, name, line);
 }
 
@@ -86,12 +237,14 @@ void ask_objects() {
     GLfloat answer[4] = {};
     GLint whole[4] = {};
     for (GLenum i = 0; i < 8; i += 3)
-        for (const GLenum name : {GL_AMBIENT, GL_DIFFUSE, GL_SPECULAR, GL_POSITION, GL_SPOT_DIRECTION, GL_SPOT_EXPONENT,
-                                  GL_SPOT_CUTOFF, GL_CONSTANT_ATTENUATION, GL_LINEAR_ATTENUATION, GL_QUADRATIC_ATTENUATION}) {
+        for (const GLenum name :
+             {GL_AMBIENT, GL_DIFFUSE, GL_SPECULAR, GL_POSITION, GL_SPOT_DIRECTION, GL_SPOT_EXPONENT, GL_SPOT_CUTOFF,
+              GL_CONSTANT_ATTENUATION, GL_LINEAR_ATTENUATION, GL_QUADRATIC_ATTENUATION}) {
             std::memset(answer, 0, sizeof answer);
             glGetLightfv(GL_LIGHT0 + i, name, answer);
             glGetLightiv(GL_LIGHT0 + i, name, whole);
-            say("light %u %04x: %.5g %.5g %.5g %.5g i %d %d", i, name, answer[0], answer[1], answer[2], answer[3], whole[0], whole[1]);
+            say("light %u %04x: %.5g %.5g %.5g %.5g i %d %d", i, name, answer[0], answer[1], answer[2], answer[3],
+                whole[0], whole[1]);
         }
     for (const GLenum coordinate : {GL_S, GL_T, GL_R, GL_Q})
         for (const GLenum name : {GL_TEXTURE_GEN_MODE, GL_OBJECT_PLANE, GL_EYE_PLANE}) {
@@ -322,8 +475,13 @@ SCENE(errors, 1) {
 }
 
 SCENE(attribute_stacks, 8) {
-    const GLbitfield bits[] = {GL_CURRENT_BIT | GL_POINT_BIT, GL_LIGHTING_BIT, GL_ENABLE_BIT, GL_TEXTURE_BIT, GL_TRANSFORM_BIT | GL_VIEWPORT_BIT,
-                               GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT, GL_POLYGON_BIT | GL_LINE_BIT | GL_FOG_BIT | GL_HINT_BIT,
+    const GLbitfield bits[] = {GL_CURRENT_BIT | GL_POINT_BIT,
+                               GL_LIGHTING_BIT,
+                               GL_ENABLE_BIT,
+                               GL_TEXTURE_BIT,
+                               GL_TRANSFORM_BIT | GL_VIEWPORT_BIT,
+                               GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT,
+                               GL_POLYGON_BIT | GL_LINE_BIT | GL_FOG_BIT | GL_HINT_BIT,
                                GL_ALL_ATTRIB_BITS};
     clear(0, 0, 0.4f);
     // What `bits` do not cover stays changed, also in later frames. Mesa 22 forgets what changed under an inner mask
@@ -356,7 +514,8 @@ SCENE(matrices, 2) {
     const GLfloat shear[] = {1, 0.3f, 0, 0, 0.2f, 1, 0, 0, 0, 0, 1, 0, 0.1f, 0.2f, 0, 1};
     const GLdouble squeeze[] = {0.7, 0, 0, 0, 0, 0.9, 0, 0, 0, 0, 1, 0, 0, 0, 0.2, 1};
     for (int i = 0; i < 30; ++i) {
-        if (i % 5 == 4) glPopMatrix(); else glPushMatrix();
+        if (i % 5 == 4) glPopMatrix();
+        else glPushMatrix();
         if (i % 3 == 0) glMultMatrixf(shear);
         if (i % 3 == 1) glMultMatrixd(squeeze);
         glRotatef(static_cast<float>(i) * 17.3f, random_unit(), random_unit(), random_unit() + 0.1f);
@@ -392,8 +551,8 @@ SCENE(current_values, 2) {  // after End, arrays and lists
         glGetFloatv(GL_CURRENT_COLOR, colour);
         glGetFloatv(GL_CURRENT_TEXTURE_COORDS, coordinate);
         glGetFloatv(GL_CURRENT_NORMAL, normal);
-        say("%s: %.6g %.6g %.6g %.6g, %.6g %.6g %.6g %.6g, %.6g %.6g %.6g", when, colour[0], colour[1], colour[2], colour[3],
-            coordinate[0], coordinate[1], coordinate[2], coordinate[3], normal[0], normal[1], normal[2]);
+        say("%s: %.6g %.6g %.6g %.6g, %.6g %.6g %.6g %.6g, %.6g %.6g %.6g", when, colour[0], colour[1], colour[2],
+            colour[3], coordinate[0], coordinate[1], coordinate[2], coordinate[3], normal[0], normal[1], normal[2]);
     };
     ask("after End");
     glColor3b(-5, 100, 127);
@@ -441,8 +600,8 @@ SCENE(feedback, 2) {
         const GLint values = glRenderMode(GL_RENDER);
         say("feedback %04x: %d", type, values);
         for (int i = 0; i + 8 <= values; i += 8)
-            say("  %.5g %.5g %.5g %.5g %.5g %.5g %.5g %.5g", buffer[i], buffer[i + 1], buffer[i + 2], buffer[i + 3], buffer[i + 4],
-                buffer[i + 5], buffer[i + 6], buffer[i + 7]);
+            say("  %.5g %.5g %.5g %.5g %.5g %.5g %.5g %.5g", buffer[i], buffer[i + 1], buffer[i + 2], buffer[i + 3],
+                buffer[i + 4], buffer[i + 5], buffer[i + 6], buffer[i + 7]);
     }
     say_error("feedback");
     tilted_triangle();
@@ -468,7 +627,8 @@ SCENE(selection, 2) {
     say("hits %d", hits);
     const GLuint* at = buffer;
     for (GLint i = 0; i < hits && at + 3 < buffer + 256; ++i) {
-        say("  %u names, depth %.6g to %.6g, first %u last %u", at[0], at[1] / 4294967295.0, at[2] / 4294967295.0, at[3], at[2 + at[0]]);
+        say("  %u names, depth %.6g to %.6g, first %u last %u", at[0], at[1] / 4294967295.0, at[2] / 4294967295.0,
+            at[3], at[2 + at[0]]);
         at += 3 + at[0];
     }
     say_error("selection");

@@ -56,14 +56,14 @@ void cell_view(int index, int columns, int rows);
 
 /// Radius 1, with normals and texture coordinates; without its poles no quad is degenerate.
 void lit_sphere(int slices = 24, int stacks = 12, bool poles = true);
-void unit_square();                                 ///< [-1, 1]^2 at z = 0, texture coordinates 0..1, normal +z
-unsigned random_bits();                             ///< a fixed sequence, started anew for every frame
-float random_unit();                                ///< 0..1
+void unit_square();      ///< [-1, 1]^2 at z = 0, texture coordinates 0..1, normal +z
+unsigned random_bits();  ///< a fixed sequence, started anew for every frame
+float random_unit();     ///< 0..1
 void restart_random();
 void checker_texture(GLuint name, int size);  ///< RGBA, coloured checks with a varying alpha; nearest, repeat
 
-#define SCENE(NAME, FRAMES, ...)                                                              \
-    static void scene_##NAME(int frame, ::golden::Size canvas);                               \
+#define SCENE(NAME, FRAMES, ...)                                                                 \
+    static void scene_##NAME(int frame, ::golden::Size canvas);                                  \
     static const ::golden::Register register_##NAME{#NAME, FRAMES, scene_##NAME, ##__VA_ARGS__}; \
     static void scene_##NAME([[maybe_unused]] int frame, [[maybe_unused]] ::golden::Size canvas)
 

@@ -59,10 +59,13 @@ std::vector<Vertex> torus_strip(int steps) {
 }
 
 constexpr const char* kLitVertex =
-    "#version 120\nattribute vec3 place; attribute vec3 bent; uniform mat4 projection; uniform mat3 turn; uniform vec3 light[2]; varying vec3 shade;\n"
-    "void main() { vec3 n = normalize(turn * bent); shade = vec3(max(dot(n, light[0]), 0.0), max(dot(n, light[1]), 0.0), 0.2);\n"
+    "#version 120\nattribute vec3 place; attribute vec3 bent; uniform mat4 projection; uniform mat3 turn; uniform vec3 "
+    "light[2]; varying vec3 shade;\n"
+    "void main() { vec3 n = normalize(turn * bent); shade = vec3(max(dot(n, light[0]), 0.0), max(dot(n, light[1]), "
+    "0.0), 0.2);\n"
     "  gl_Position = projection * vec4(turn * place, 1.0); }";
-constexpr const char* kLitFragment = "#version 120\nvarying vec3 shade; uniform vec4 tint; void main() { gl_FragColor = vec4(shade, 1.0) * tint; }";
+constexpr const char* kLitFragment =
+    "#version 120\nvarying vec3 shade; uniform vec4 tint; void main() { gl_FragColor = vec4(shade, 1.0) * tint; }";
 
 void set_lit_uniforms(GLuint program, int frame) {
     const float c = std::cos(0.3f * static_cast<float>(frame)), s = std::sin(0.3f * static_cast<float>(frame));
@@ -104,7 +107,8 @@ SCENE(glsl_buffers, 3) {
         program = program_of(kLitVertex, kLitFragment, "bent");
         glGenBuffers(2, buffers);
         glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
-        glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(), GL_STATIC_DRAW);
+        glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
+                     GL_STATIC_DRAW);
         std::vector<GLushort> order(vertices.size());
         for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<GLushort>(order.size() - 1 - i);
         glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers[1]);
@@ -140,9 +144,10 @@ SCENE(glsl_frag_coord, 2) {
     clear();
     static GLuint program;
     if (frame == 0)
-        program = program_of(kFixedVertex,
-                             "uniform float period; void main() { vec2 p = fract(gl_FragCoord.xy / period);\n"
-                             "  if (distance(p, vec2(0.5)) > 0.45) discard; gl_FragColor = vec4(p, gl_FragCoord.z, 1.0); }");
+        program =
+            program_of(kFixedVertex,
+                       "uniform float period; void main() { vec2 p = fract(gl_FragCoord.xy / period);\n"
+                       "  if (distance(p, vec2(0.5)) > 0.45) discard; gl_FragColor = vec4(p, gl_FragCoord.z, 1.0); }");
     pixel_view(canvas);
     glUseProgram(program);
     glUniform1f(glGetUniformLocation(program, "period"), frame == 0 ? 16.0f : 7.0f);
@@ -159,11 +164,14 @@ SCENE(glsl_fixed_state, 3) {
     if (frame == 0) {
         glGenTextures(1, &texture);
         checker_texture(texture, 16);
-        program = program_of("varying vec4 color; void main() { gl_Position = ftransform(); vec3 n = normalize(gl_NormalMatrix * gl_Normal);\n"
-                             "  vec3 l = normalize(gl_LightSource[0].position.xyz);\n"
-                             "  color = gl_FrontMaterial.diffuse * max(dot(n, l), 0.1) + gl_Color * 0.2; gl_TexCoord[0] = gl_TextureMatrix[0] * gl_MultiTexCoord0; }",
-                             "uniform sampler2D image; uniform bool inverted; varying vec4 color; void main() {\n"
-                             "  vec4 t = texture2D(image, gl_TexCoord[0].st); gl_FragColor = color * (inverted ? vec4(1.0) - t : t); }");
+        program = program_of(
+            "varying vec4 color; void main() { gl_Position = ftransform(); vec3 n = normalize(gl_NormalMatrix * "
+            "gl_Normal);\n"
+            "  vec3 l = normalize(gl_LightSource[0].position.xyz);\n"
+            "  color = gl_FrontMaterial.diffuse * max(dot(n, l), 0.1) + gl_Color * 0.2; gl_TexCoord[0] = "
+            "gl_TextureMatrix[0] * gl_MultiTexCoord0; }",
+            "uniform sampler2D image; uniform bool inverted; varying vec4 color; void main() {\n"
+            "  vec4 t = texture2D(image, gl_TexCoord[0].st); gl_FragColor = color * (inverted ? vec4(1.0) - t : t); }");
     }
     perspective_view(canvas);
     glEnable(GL_DEPTH_TEST);
@@ -193,10 +201,14 @@ SCENE(glsl_values, 2) {
     clear(0.3f, 0.3f, 0.3f);
     static GLuint program;
     if (frame == 0)
-        program = program_of("#version 120\nattribute vec4 way; varying vec4 color; void main() { gl_Position = gl_Vertex; color = way; }",
-                             "#version 120\nuniform mat2x3 skew; uniform ivec2 counts = ivec2(3, 5); uniform bvec3 flags; uniform vec2 pairs[3]; varying vec4 color;\n"
-                             "void main() { vec3 v = skew * pairs[2] + vec3(flags) * 0.25; gl_FragColor = vec4(v + color.rgb * float(counts.x) / float(counts.y), 1.0); }",
-                             "way");
+        program = program_of(
+            "#version 120\nattribute vec4 way; varying vec4 color; void main() { gl_Position = gl_Vertex; color = way; "
+            "}",
+            "#version 120\nuniform mat2x3 skew; uniform ivec2 counts = ivec2(3, 5); uniform bvec3 flags; uniform vec2 "
+            "pairs[3]; varying vec4 color;\n"
+            "void main() { vec3 v = skew * pairs[2] + vec3(flags) * 0.25; gl_FragColor = vec4(v + color.rgb * "
+            "float(counts.x) / float(counts.y), 1.0); }",
+            "way");
     glUseProgram(program);
     const auto at = [&](const char* name) { return glGetUniformLocation(program, name); };
     const GLfloat skew[] = {0.1f, 0.2f, 0.3f, 0.3f, 0.1f, 0}, pairs[] = {0, 0, 0, 0, 0.5f, 1};
@@ -239,7 +251,9 @@ SCENE(glsl_in_lists, 2) {
     clear();
     static GLuint program;
     if (frame == 0) {
-        program = program_of(kFixedVertex, "uniform vec4 tint; uniform float more[2]; void main() { gl_FragColor = tint + vec4(more[0], more[1], 0.0, 0.0); }");
+        program = program_of(kFixedVertex,
+                             "uniform vec4 tint; uniform float more[2]; void main() { gl_FragColor = tint + "
+                             "vec4(more[0], more[1], 0.0, 0.0); }");
         glNewList(1, GL_COMPILE);
         glUseProgram(program);
         glUniform4f(glGetUniformLocation(program, "tint"), 0.2f, 0.4f, 0.6f, 1);
@@ -265,7 +279,8 @@ SCENE(compressed_texture, 2) {
     if (frame == 0) {
         program = glCreateProgramObjectARB();
         const GLhandleARB shader = glCreateShaderObjectARB(GL_FRAGMENT_SHADER_ARB);
-        const GLcharARB* source = "uniform sampler2D image; void main() { gl_FragColor = texture2D(image, gl_TexCoord[0].st); }";
+        const GLcharARB* source =
+            "uniform sampler2D image; void main() { gl_FragColor = texture2D(image, gl_TexCoord[0].st); }";
         glShaderSourceARB(shader, 1, &source, nullptr);
         glCompileShaderARB(shader);
         glAttachObjectARB(program, shader);
@@ -279,7 +294,8 @@ SCENE(compressed_texture, 2) {
     unsigned char blocks[4 * 4 * 16];
     restart_random();
     for (unsigned char& byte : blocks) byte = static_cast<unsigned char>(random_bits());
-    const GLenum formats[] = {GL_COMPRESSED_RGB_S3TC_DXT1_EXT, GL_COMPRESSED_RGBA_S3TC_DXT1_EXT, GL_COMPRESSED_RGBA_S3TC_DXT3_EXT, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT};
+    const GLenum formats[] = {GL_COMPRESSED_RGB_S3TC_DXT1_EXT, GL_COMPRESSED_RGBA_S3TC_DXT1_EXT,
+                              GL_COMPRESSED_RGBA_S3TC_DXT3_EXT, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT};
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glEnable(GL_BLEND);
@@ -289,13 +305,15 @@ SCENE(compressed_texture, 2) {
     for (int i = 0; i < 4; ++i) {
         const GLsizei bytes = i < 2 ? 4 * 4 * 8 : 4 * 4 * 16;
         glCompressedTexImage2D(GL_TEXTURE_2D, 0, formats[i], 16, 16, 0, bytes, blocks);
-        if (frame == 1) glCompressedTexSubImage2D(GL_TEXTURE_2D, 0, 4, 8, 8, 4, formats[i], i < 2 ? 16 : 32, blocks + 40);
+        if (frame == 1)
+            glCompressedTexSubImage2D(GL_TEXTURE_2D, 0, 4, 8, 8, 4, formats[i], i < 2 ? 16 : 32, blocks + 40);
         GLint compressed = 0, size = 0;
         glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_COMPRESSED, &compressed);
         glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_COMPRESSED_IMAGE_SIZE, &size);
         unsigned char texels[16 * 16 * 4];
         glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels);
-        say("%d, %d bytes, %d %d %d %d, %d %d %d %d", compressed, size, texels[0], texels[1], texels[2], texels[3], texels[404], texels[405], texels[406],
+        say("%d, %d bytes, %d %d %d %d, %d %d %d %d", compressed, size, texels[0], texels[1], texels[2], texels[3],
+            texels[404], texels[405], texels[406],
             texels[407] / 4);  // llvmpipe, which Mesa asks, approximates the alphas of DXT5
         cell_view(i, 2, 2);
         unit_square();
@@ -315,7 +333,8 @@ SCENE(occlusion, 2) {
     glEnable(GL_DEPTH_TEST);
     const auto box = [](GLfloat x, GLfloat y, GLfloat width, GLfloat height, GLfloat z) {
         glBegin(GL_QUADS);
-        glVertex3f(x, y, z), glVertex3f(x + width, y, z), glVertex3f(x + width, y + height, z), glVertex3f(x, y + height, z);
+        glVertex3f(x, y, z), glVertex3f(x + width, y, z), glVertex3f(x + width, y + height, z),
+            glVertex3f(x, y + height, z);
         glEnd();
     };
     glColor3f(0.2f, 0.3f, 0.9f);

@@ -90,12 +90,13 @@ SCENE(color_material, 6) {
     for (int i = 0; i < 14; ++i) {
         glColor3f(random_unit(), random_unit(), random_unit());
         glNormal3f(std::sin(static_cast<float>(i)), 0.3f, 1);
-        glVertex3f(-1.6f + 0.5f * static_cast<float>(i / 2), i % 2 ? 0.2f : 1.2f, std::sin(static_cast<float>(i)) * 0.4f);
+        glVertex3f(-1.6f + 0.5f * static_cast<float>(i / 2), i % 2 ? 0.2f : 1.2f,
+                   std::sin(static_cast<float>(i)) * 0.4f);
     }
     glEnd();
     glColor3f(0.1f, 0.8f, 0.9f);
     glDisable(GL_COLOR_MATERIAL);
-    glColor3f(1, 1, 1);  // must not reach the material any more
+    glColor3f(1, 1, 1);     // must not reach the material any more
     glBegin(GL_TRIANGLES);  // materials between vertices
     for (int i = 0; i < 9; ++i) {
         const GLfloat diffuse[] = {random_unit(), random_unit(), random_unit(), 1};
@@ -248,15 +249,20 @@ SCENE(texture_environments, 4) {
 SCENE(texture_filters, 6) {  // a floor to the horizon
     clear();
     perspective_view(canvas);
-    const GLint filters[] = {GL_NEAREST, GL_LINEAR, GL_NEAREST_MIPMAP_NEAREST, GL_LINEAR_MIPMAP_NEAREST,
-                             GL_NEAREST_MIPMAP_LINEAR, GL_LINEAR_MIPMAP_LINEAR};
+    const GLint filters[] = {GL_NEAREST,
+                             GL_LINEAR,
+                             GL_NEAREST_MIPMAP_NEAREST,
+                             GL_LINEAR_MIPMAP_NEAREST,
+                             GL_NEAREST_MIPMAP_LINEAR,
+                             GL_LINEAR_MIPMAP_LINEAR};
     glEnable(GL_TEXTURE_2D);
     glBindTexture(GL_TEXTURE_2D, 3);
     for (int level = 0, size = 64; size; ++level, size /= 2) {
         std::vector<GLubyte> texels;
         for (int i = 0; i < size * size; ++i)
             for (int c = 0; c < 3; ++c)
-                texels.push_back(static_cast<GLubyte>(((i / size / 4 + i % size / 4) & 1) ? 255 - 30 * level : 40 * (c == level % 3)));
+                texels.push_back(static_cast<GLubyte>(((i / size / 4 + i % size / 4) & 1) ? 255 - 30 * level
+                                                                                          : 40 * (c == level % 3)));
         glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
         glTexImage2D(GL_TEXTURE_2D, level, GL_RGB, size, size, 0, GL_RGB, GL_UNSIGNED_BYTE, texels.data());
     }
@@ -321,7 +327,8 @@ SCENE(texture_updates, 4) {  // sub-images, 1D, proxies, reading back, objects k
     glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_INTERNAL_FORMAT, &components);
     glTexImage2D(GL_PROXY_TEXTURE_2D, 0, GL_RGBA, 1 << 20, 1 << 20, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     glGetTexLevelParameteriv(GL_PROXY_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &proxy);
-    say("texture sum %lu width %d red %d format %x proxy %d is %d %d", sum, width, red, components, proxy, glIsTexture(11), glIsTexture(99));
+    say("texture sum %lu width %d red %d format %x proxy %d is %d %d", sum, width, red, components, proxy,
+        glIsTexture(11), glIsTexture(99));
 }
 
 SCENE(copy_texture, 3) {  // out of the picture, over tile borders

@@ -31,9 +31,9 @@ protected:
         const ::Window root = DefaultRootWindow(display_);
         XSetWindowAttributes attributes{};
         attributes.colormap = XCreateColormap(display_, root, visual, AllocNone);
-        window_ = XCreateWindow(display_, root, 0, 0, static_cast<unsigned>(size.width),
-                                static_cast<unsigned>(size.height), 0, depth, InputOutput, visual,
-                                CWBorderPixel | CWColormap, &attributes);
+        window_ =
+            XCreateWindow(display_, root, 0, 0, static_cast<unsigned>(size.width), static_cast<unsigned>(size.height),
+                          0, depth, InputOutput, visual, CWBorderPixel | CWColormap, &attributes);
         XMapWindow(display_, window_);
         XSync(display_, False);
     }
@@ -45,13 +45,38 @@ protected:
 class GlxWindow : public XWindow {
 public:
     GlxWindow(Size size, const Needs& needs) {
-        const int wanted[] = {GLX_RENDER_TYPE, GLX_RGBA_BIT, GLX_DRAWABLE_TYPE, GLX_WINDOW_BIT, GLX_X_VISUAL_TYPE, GLX_TRUE_COLOR,
-                              GLX_RED_SIZE, 8, GLX_GREEN_SIZE, 8, GLX_BLUE_SIZE, 8, GLX_ALPHA_SIZE, 8,
-                              GLX_DEPTH_SIZE, 24, GLX_STENCIL_SIZE, 8, GLX_ACCUM_RED_SIZE, 16, GLX_ACCUM_GREEN_SIZE, 16,
-                              GLX_ACCUM_BLUE_SIZE, 16, GLX_ACCUM_ALPHA_SIZE, 16,
-                              GLX_DOUBLEBUFFER, needs.double_buffered ? True : False, None};
+        const int wanted[] = {GLX_RENDER_TYPE,
+                              GLX_RGBA_BIT,
+                              GLX_DRAWABLE_TYPE,
+                              GLX_WINDOW_BIT,
+                              GLX_X_VISUAL_TYPE,
+                              GLX_TRUE_COLOR,
+                              GLX_RED_SIZE,
+                              8,
+                              GLX_GREEN_SIZE,
+                              8,
+                              GLX_BLUE_SIZE,
+                              8,
+                              GLX_ALPHA_SIZE,
+                              8,
+                              GLX_DEPTH_SIZE,
+                              24,
+                              GLX_STENCIL_SIZE,
+                              8,
+                              GLX_ACCUM_RED_SIZE,
+                              16,
+                              GLX_ACCUM_GREEN_SIZE,
+                              16,
+                              GLX_ACCUM_BLUE_SIZE,
+                              16,
+                              GLX_ACCUM_ALPHA_SIZE,
+                              16,
+                              GLX_DOUBLEBUFFER,
+                              needs.double_buffered ? True : False,
+                              None};
         int count = 0;
-        GLXFBConfig* configs = must(glXChooseFBConfig(display_, DefaultScreen(display_), wanted, &count), "find a GLX config");
+        GLXFBConfig* configs =
+            must(glXChooseFBConfig(display_, DefaultScreen(display_), wanted, &count), "find a GLX config");
         XVisualInfo* visual = must(glXGetVisualFromFBConfig(display_, configs[0]), "find its visual");
         open(size, visual->visual, visual->depth);
         context_ = must(glXCreateNewContext(display_, configs[0], GLX_RGBA_TYPE, nullptr, True), "create a context");
@@ -74,8 +99,21 @@ public:
     EglWindow(Size size, const Needs&) {
         egl_ = must(eglGetDisplay(reinterpret_cast<EGLNativeDisplayType>(display_)), "open an EGL display");
         must(eglInitialize(egl_, nullptr, nullptr), "initialize EGL");
-        const EGLint wanted[] = {EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8, EGL_ALPHA_SIZE, 8, EGL_DEPTH_SIZE, 24,
-                                 EGL_STENCIL_SIZE, 8, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+        const EGLint wanted[] = {EGL_RED_SIZE,
+                                 8,
+                                 EGL_GREEN_SIZE,
+                                 8,
+                                 EGL_BLUE_SIZE,
+                                 8,
+                                 EGL_ALPHA_SIZE,
+                                 8,
+                                 EGL_DEPTH_SIZE,
+                                 24,
+                                 EGL_STENCIL_SIZE,
+                                 8,
+                                 EGL_RENDERABLE_TYPE,
+                                 EGL_OPENGL_BIT,
+                                 EGL_NONE};
         EGLConfig config{};
         EGLint count = 0, id = 0;
         must(eglChooseConfig(egl_, wanted, &config, 1, &count) && count == 1, "find an EGL config");
@@ -105,7 +143,11 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Window> Window::by_glx(Size size, const Needs& needs) { return std::make_unique<GlxWindow>(size, needs); }
-std::unique_ptr<Window> Window::by_egl(Size size, const Needs& needs) { return std::make_unique<EglWindow>(size, needs); }
+std::unique_ptr<Window> Window::by_glx(Size size, const Needs& needs) {
+    return std::make_unique<GlxWindow>(size, needs);
+}
+std::unique_ptr<Window> Window::by_egl(Size size, const Needs& needs) {
+    return std::make_unique<EglWindow>(size, needs);
+}
 
 }  // namespace golden

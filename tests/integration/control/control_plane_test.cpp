@@ -16,14 +16,16 @@
 namespace wall::test {
 namespace {
 
-using ::testing::HasSubstr;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using ::testing::HasSubstr;
 
 class ControlPlane : public ::testing::Test {
 protected:
     Peer connect() { return Peer(walld_.connect()); }
-    Output wallctl(const std::string& arguments) { return run(std::string(WALLCTL_PROGRAM) + " --walld " + walld_.address().text() + " " + arguments); }
+    Output wallctl(const std::string& arguments) {
+        return run(std::string(WALLCTL_PROGRAM) + " --walld " + walld_.address().text() + " " + arguments);
+    }
     void join_both() {
         left_.join("left");
         right_.join("right");
@@ -102,7 +104,8 @@ TEST_F(ControlPlane, APictureComesFromTheNodes) {
         node->say(answer);
     }
     EXPECT_EQ(shot.get().exit_code, 0);
-    const auto size = run("/usr/bin/python3 -c \"import cv2; p = cv2.imread('" + file + "'); print(p.shape, p[0, 0], p[0, 127])\"");
+    const auto size =
+        run("/usr/bin/python3 -c \"import cv2; p = cv2.imread('" + file + "'); print(p.shape, p[0, 0], p[0, 127])\"");
     EXPECT_EQ(size.text, "(48, 128, 3) [64 64 64] [192 192 192]\n");
 }
 
@@ -127,7 +130,8 @@ TEST_F(ControlPlane, AKilledProgramIsNoticedThoughItsChildKeepsTheConnection) {
         Peer program(walld_.connect());
         program.open();
         const pid_t child = ::fork();
-        if (child != 0) [[maybe_unused]] const auto written = ::write(started[1], &child, sizeof child);
+        if (child != 0) [[maybe_unused]]
+            const auto written = ::write(started[1], &child, sizeof child);
         for (;;) ::pause();
     }
     pid_t child = -1;
@@ -142,9 +146,7 @@ TEST_F(ControlPlane, ANodeThatRestartsIsToldToTheProgram) {
     join_both();
     auto program = connect();
     program.open();
-    {
-        const auto gone = std::move(left_);
-    }
+    { const auto gone = std::move(left_); }
     ASSERT_TRUE(program.hear(proto::Envelope::kNodeDown));
     auto again = connect();
     again.join("left", 2);
@@ -178,13 +180,15 @@ TEST_F(ControlPlane, AProgramWaitsForANodeThatComesSoon) {
 
 TEST_F(ControlPlane, ForeignBytesEndTheirConnectionOnly) {
     join_both();
-    for (const std::string& bytes : {std::string("GET / HTTP/1.1\r\n\r\n"), std::string(64, '\xff'), std::string("\x04\0\0\0????", 8), std::string("\x02\0\0\0\xa2\x01", 6)}) {
+    for (const std::string& bytes : {std::string("GET / HTTP/1.1\r\n\r\n"), std::string(64, '\xff'),
+                                     std::string("\x04\0\0\0????", 8), std::string("\x02\0\0\0\xa2\x01", 6)}) {
         const auto fd = net::connect_to(walld_.address(), kSoon);
         ASSERT_TRUE(fd);
         ::send(fd->get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
         ::shutdown(fd->get(), SHUT_WR);
         char sink[1024];
-        while (::read(fd->get(), sink, sizeof sink) > 0) {}
+        while (::read(fd->get(), sink, sizeof sink) > 0) {
+        }
     }
     auto program = connect();
     EXPECT_EQ(program.open().nodes_size(), 2);

@@ -56,14 +56,17 @@ TemporaryFolder::~TemporaryFolder() { std::filesystem::remove_all(path_); }
 
 Walld::Walld(const std::string& more) {
     const bool own_control = more.find("[control]") != std::string::npos;
-    std::ofstream(folder_.file("wall.toml")) << (own_control ? "" : "[control]\nlisten = [\"unix:" + folder_.file("walld.sock") + "\"]\n")
-                                             << "[http]\nlisten = \"127.0.0.1:0\"\n" << more << kNodes;
+    std::ofstream(folder_.file("wall.toml"))
+        << (own_control ? "" : "[control]\nlisten = [\"unix:" + folder_.file("walld.sock") + "\"]\n")
+        << "[http]\nlisten = \"127.0.0.1:0\"\n"
+        << more << kNodes;
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, 2, folder_.file("log").c_str(), O_WRONLY | O_CREAT, 0600);
     std::string config = folder_.file("wall.toml"), ready_file = folder_.file("ready"), program = WALLD_PROGRAM;
     std::string options[] = {"--config", "--ready-file"};
-    char* arguments[] = {program.data(), options[0].data(), config.data(), options[1].data(), ready_file.data(), nullptr};
+    char* arguments[] = {program.data(),    options[0].data(), config.data(),
+                         options[1].data(), ready_file.data(), nullptr};
     EXPECT_EQ(posix_spawn(&process_, WALLD_PROGRAM, &actions, nullptr, arguments, environ), 0);
     posix_spawn_file_actions_destroy(&actions);
 }
@@ -97,7 +100,8 @@ std::string Walld::http_get(const std::string& path) const {
     if (!fd || ::send(fd->get(), request.data(), request.size(), MSG_NOSIGNAL) < 0) return "";
     std::string answer;
     char bytes[4096];
-    for (ssize_t n; (n = ::read(fd->get(), bytes, sizeof bytes)) > 0;) answer.append(bytes, static_cast<std::size_t>(n));
+    for (ssize_t n; (n = ::read(fd->get(), bytes, sizeof bytes)) > 0;)
+        answer.append(bytes, static_cast<std::size_t>(n));
     return answer.starts_with("HTTP/1.1 200 ") ? answer.substr(answer.find("\r\n\r\n") + 4) : "";
 }
 

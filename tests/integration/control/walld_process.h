@@ -58,7 +58,8 @@ public:
     explicit Peer(net::ControlClient client) : client_(std::move(client)) {}
 
     void say(const proto::Envelope& message);
-    /// The next message of this kind; earlier ones are skipped. Nothing if the connection ends first or it takes too long.
+    /// The next message of this kind; earlier ones are skipped. Nothing if the connection ends first or it takes too
+    /// long.
     std::optional<proto::Envelope> hear(proto::Envelope::MessageCase kind, std::chrono::milliseconds limit = kSoon);
     bool closed(std::chrono::milliseconds limit = kSoon);
 

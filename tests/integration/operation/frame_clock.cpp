@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A program whose picture tells which frame it shows: the whole window has one colour, made from the frame's number. So a
-// tile that shows another frame than its neighbours, or half a frame, is seen in a screenshot.
+// A program whose picture tells which frame it shows: the whole window has one colour, made from the frame's number. So
+// a tile that shows another frame than its neighbours, or half a frame, is seen in a screenshot.
 //
 // frame_clock [--size WxH] [--vertices N] [--fps N] [--incremental] [--egl]     runs until it is ended
 //   --vertices: so many vertices a frame, in triangles of the same colour
@@ -31,7 +31,8 @@ Options parse(int argc, char** argv) {
         if (std::strcmp(argv[i], "--incremental") == 0) options.incremental = true;
         if (std::strcmp(argv[i], "--egl") == 0) options.egl = true;
         if (i + 1 == argc) continue;
-        if (std::strcmp(argv[i], "--size") == 0) std::sscanf(argv[i + 1], "%dx%d", &options.size.width, &options.size.height);
+        if (std::strcmp(argv[i], "--size") == 0)
+            std::sscanf(argv[i + 1], "%dx%d", &options.size.width, &options.size.height);
         if (std::strcmp(argv[i], "--fps") == 0) options.fps = std::atoi(argv[i + 1]);
         if (std::strcmp(argv[i], "--vertices") == 0) options.vertices = std::atoi(argv[i + 1]);
     }
@@ -50,7 +51,8 @@ void draw(unsigned frame, int vertices) {
     for (int i = 6; i < vertices; ++i) {
         const auto at = static_cast<float>(i / 3);
         const float corner = static_cast<float>(i % 3) * 2.1f;
-        glVertex2f(0.9f * std::sin(at) + 0.01f * std::sin(corner), 0.9f * std::cos(at * 1.7f) + 0.01f * std::cos(corner));
+        glVertex2f(0.9f * std::sin(at) + 0.01f * std::sin(corner),
+                   0.9f * std::cos(at * 1.7f) + 0.01f * std::cos(corner));
     }
     glEnd();
 }
@@ -59,10 +61,12 @@ void draw(unsigned frame, int vertices) {
 
 int main(int argc, char** argv) {
     const Options options = parse(argc, argv);
-    const auto window = options.egl ? golden::Window::by_egl(options.size, {}) : golden::Window::by_glx(options.size, {});
+    const auto window =
+        options.egl ? golden::Window::by_egl(options.size, {}) : golden::Window::by_glx(options.size, {});
     const auto start = std::chrono::steady_clock::now();
     for (unsigned frame = 1;; ++frame) {
-        if (options.fps != 0) std::this_thread::sleep_until(start + std::chrono::milliseconds(1000) * frame / options.fps);
+        if (options.fps != 0)
+            std::this_thread::sleep_until(start + std::chrono::milliseconds(1000) * frame / options.fps);
         if (frame == 1 || !options.incremental) glClear(GL_COLOR_BUFFER_BIT);
         draw(frame, options.vertices);
         window->swap();

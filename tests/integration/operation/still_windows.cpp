@@ -48,7 +48,9 @@ public:
             XEvent event;
             XNextEvent(display_, &event);
             if (event.type == Expose && event.xexpose.count == 0) draw(event.xexpose.window);
-            if (event.type == ClientMessage && event.xclient.message_type == protocols_ && Atom(event.xclient.data.l[0]) == delete_) close(event.xclient.window);
+            if (event.type == ClientMessage && event.xclient.message_type == protocols_ &&
+                Atom(event.xclient.data.l[0]) == delete_)
+                close(event.xclient.window);
         }
     }
 
@@ -57,7 +59,9 @@ private:
         XSetWindowAttributes attributes{};
         attributes.event_mask = ExposureMask;
         attributes.colormap = XCreateColormap(display_, DefaultRootWindow(display_), visual_->visual, AllocNone);
-        const Window window = XCreateWindow(display_, DefaultRootWindow(display_), 0, 0, kWidth, kHeight, 0, visual_->depth, InputOutput, visual_->visual, CWEventMask | CWColormap, &attributes);
+        const Window window =
+            XCreateWindow(display_, DefaultRootWindow(display_), 0, 0, kWidth, kHeight, 0, visual_->depth, InputOutput,
+                          visual_->visual, CWEventMask | CWColormap, &attributes);
         XStoreName(display_, window, colour.c_str());
         if (options_.close) XSetWMProtocols(display_, window, &delete_, 1);
         XMapWindow(display_, window);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A parallel program whose picture is right only if its processes draw in the order that semaphores and barriers say:
-// no depth test, each frame a pile of squares, one of each rank in turn, whose last one lies on top. The colour of a pixel
-// tells the frame and who drew it last.
+// no depth test, each frame a pile of squares, one of each rank in turn, whose last one lies on top. The colour of a
+// pixel tells the frame and who drew it last.
 //
 // turns [--size WxH] [--frames N] [--fps N] [--order semaphores|barriers|none] [--misuse NAME] [--leave-at N]
 //   green: rank and layer of the last square; red, blue: the frame's number, from frame N on the last one stays
@@ -51,7 +51,8 @@ void call(const char* name, Arguments... arguments) {
 /// Semaphore 1 + rank: it is that rank's turn.
 class Order {
 public:
-    Order(const std::string& kind, GLuint rank, GLuint ranks) : semaphores_(kind == "semaphores"), barriers_(kind == "barriers"), rank_(rank), ranks_(ranks) {
+    Order(const std::string& kind, GLuint rank, GLuint ranks)
+        : semaphores_(kind == "semaphores"), barriers_(kind == "barriers"), rank_(rank), ranks_(ranks) {
         call("glBarrierCreateCR", GLuint{1}, ranks);
         for (GLuint r = 0; r < ranks && semaphores_; ++r) call("glSemaphoreCreateCR", 1 + r, GLuint{r == 0});
     }
@@ -72,7 +73,8 @@ private:
 };
 
 void square(unsigned frame, GLuint rank, int layer) {
-    glColor3ub(static_cast<GLubyte>(frame), static_cast<GLubyte>(16 * layer + static_cast<int>(rank) + 1), static_cast<GLubyte>(128 + (frame >> 8) % 128));
+    glColor3ub(static_cast<GLubyte>(frame), static_cast<GLubyte>(16 * layer + static_cast<int>(rank) + 1),
+               static_cast<GLubyte>(128 + (frame >> 8) % 128));
     const float inner = 1 - 0.25f * static_cast<float>(layer);
     glRectf(-inner, -inner, inner, inner);
 }
@@ -100,9 +102,11 @@ int main(int argc, char** argv) {
     std::fflush(stdout);
     const auto start = std::chrono::steady_clock::now();
     for (unsigned frame = 1;; ++frame) {
-        if (options.frames != 0 && frame > static_cast<unsigned>(options.frames)) std::this_thread::sleep_for(std::chrono::hours(1));
+        if (options.frames != 0 && frame > static_cast<unsigned>(options.frames))
+            std::this_thread::sleep_for(std::chrono::hours(1));
         if (options.leave_at != 0 && rank > 0 && frame > static_cast<unsigned>(options.leave_at)) return 0;
-        if (options.fps != 0) std::this_thread::sleep_until(start + std::chrono::milliseconds(1000) * frame / options.fps);
+        if (options.fps != 0)
+            std::this_thread::sleep_until(start + std::chrono::milliseconds(1000) * frame / options.fps);
         if (rank == 0) glClear(GL_COLOR_BUFFER_BIT);
         order.all();
         for (int layer = 0; layer < kLayers; ++layer) order.in_turn([&] { square(frame, rank, layer); });

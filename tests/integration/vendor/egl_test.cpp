@@ -60,7 +60,8 @@ TEST_F(Egl, ConfigurationsAreAMatrix) {
     ASSERT_TRUE(eglGetConfigs(display, all.data(), 100, &count));
     std::set<std::vector<EGLint>> kinds;
     for (EGLint i = 0; i < count; ++i)
-        kinds.insert({attrib(all[i], EGL_ALPHA_SIZE), attrib(all[i], EGL_DEPTH_SIZE), attrib(all[i], EGL_STENCIL_SIZE)});
+        kinds.insert(
+            {attrib(all[i], EGL_ALPHA_SIZE), attrib(all[i], EGL_DEPTH_SIZE), attrib(all[i], EGL_STENCIL_SIZE)});
     EXPECT_EQ(kinds.size(), 8u);
     EGLConfig plain = config();
     EXPECT_EQ(attrib(plain, EGL_STENCIL_SIZE), 0);

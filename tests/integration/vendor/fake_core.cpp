@@ -21,7 +21,8 @@ public:
 class Surface {
 public:
     explicit Surface(SurfaceOptions o) : options(std::move(o)), id(++last) {
-        log(LogLevel::info, "fake_surface_made id=%d visible=%d size=%ux%u double=%d alpha=%d depth=%d stencil=%d title=%s", id,
+        log(LogLevel::info,
+            "fake_surface_made id=%d visible=%d size=%ux%u double=%d alpha=%d depth=%d stencil=%d title=%s", id,
             options.visible, options.size.width, options.size.height, options.format.double_buffered,
             options.format.alpha_bits, options.format.depth_bits, options.format.stencil_bits, options.title.c_str());
     }
@@ -67,7 +68,9 @@ void gen_names(GLsizei n, GLuint* names) {
 
 }  // namespace
 
-std::shared_ptr<Surface> create_surface(SurfaceOptions options) { return std::make_shared<Surface>(std::move(options)); }
+std::shared_ptr<Surface> create_surface(SurfaceOptions options) {
+    return std::make_shared<Surface>(std::move(options));
+}
 
 std::shared_ptr<Context> create_context(const ContextOptions& options) {
     log(LogLevel::info, "fake_context version=%d.%d core=%d shared=%d", options.major, options.minor,
@@ -97,7 +100,8 @@ Context* current_context() { return current.get(); }
 
 void swap_buffers(Surface& surface) {
     const auto size = surface.now();
-    log(LogLevel::info, "fake_swap surface=%d frame=%d size=%ux%u", surface.id, ++surface.frame, size.width, size.height);
+    log(LogLevel::info, "fake_swap surface=%d frame=%d size=%ux%u", surface.id, ++surface.frame, size.width,
+        size.height);
 }
 
 Extent surface_size(const Surface& surface) { return surface.now(); }

@@ -270,8 +270,8 @@ TEST_F(Glx, WrongUseIsAnXError) {
     const auto config = configs()[0];
     const int too_new[] = {GLX_CONTEXT_MAJOR_VERSION_ARB, 4, GLX_CONTEXT_MINOR_VERSION_ARB, 6, None};
     EXPECT_FALSE(create(display, config, nullptr, True, too_new));
-    const int es[] = {GLX_CONTEXT_MAJOR_VERSION_ARB, 3, GLX_CONTEXT_MINOR_VERSION_ARB, 2,
-                      GLX_CONTEXT_PROFILE_MASK_ARB, 4, None};
+    const int es[] = {
+        GLX_CONTEXT_MAJOR_VERSION_ARB, 3, GLX_CONTEXT_MINOR_VERSION_ARB, 2, GLX_CONTEXT_PROFILE_MASK_ARB, 4, None};
     EXPECT_FALSE(create(display, config, nullptr, True, es));
     const int nonsense[] = {0x7777, 1, None};
     EXPECT_FALSE(create(display, config, nullptr, True, nonsense));

@@ -100,7 +100,8 @@ TEST_F(ArraysTest, CurrentColorInTheBlockIsRestored) {
 
 TEST_F(ArraysTest, OnlyReferencedVerticesAreTouched) {
     const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-    auto* memory = static_cast<std::byte*>(::mmap(nullptr, 3 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+    auto* memory =
+        static_cast<std::byte*>(::mmap(nullptr, 3 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
     ASSERT_NE(memory, MAP_FAILED);
     ::mprotect(memory, page, PROT_NONE);
     ::mprotect(memory + 2 * page, page, PROT_NONE);

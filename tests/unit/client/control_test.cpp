@@ -66,7 +66,9 @@ proto::Envelope full_welcome() {
 /// walld, as far as one client sees it: a listening socket and one connection.
 class FakeWalld {
 public:
-    FakeWalld() : path_(std::filesystem::temp_directory_path() / ("wallgl_control_" + std::to_string(getpid()))) { listen(); }
+    FakeWalld() : path_(std::filesystem::temp_directory_path() / ("wallgl_control_" + std::to_string(getpid()))) {
+        listen();
+    }
     ~FakeWalld() {
         stop_listening();
         hang_up();
@@ -87,7 +89,9 @@ public:
     }
     void accept() { peer_ = UniqueFd(::accept(listener_.get(), nullptr, nullptr)); }
     void hang_up() { peer_.reset(); }
-    void send(const std::string& bytes) { EXPECT_EQ(::send(peer_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size())); }
+    void send(const std::string& bytes) {
+        EXPECT_EQ(::send(peer_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size()));
+    }
     void send(const proto::Envelope& envelope) { send(framed(envelope)); }
     /// The next message; what the program tells by the clock is passed over.
     proto::Envelope receive() {
@@ -197,7 +201,8 @@ TEST(ControlMessages, SurfacesAreWhatProtobufReads) {
 TEST(ControlMessages, TrafficIsWhatProtobufReads) {
     constexpr std::uint64_t kMany = std::uint64_t{1} << 40;
     proto::Envelope envelope;
-    ASSERT_TRUE(envelope.ParseFromString(encode(Traffic{600, 7, std::chrono::nanoseconds(kMany), {{0, 1, 2, 3}, {4, kMany, 0, 5}}})));
+    ASSERT_TRUE(envelope.ParseFromString(
+        encode(Traffic{600, 7, std::chrono::nanoseconds(kMany), {{0, 1, 2, 3}, {4, kMany, 0, 5}}})));
     const auto& read = envelope.client_stats();
     EXPECT_EQ(read.frames(), 600u);
     EXPECT_EQ(read.round_trips(), 7u);
@@ -302,7 +307,11 @@ struct FakeWindow {
     std::atomic<int> closed{0}, redrawn{0};
     bool has_close = true;
     WindowMessages messages() {
-        return {[this] { ++closed; return has_close; }, [this] { ++redrawn; }};
+        return {[this] {
+                    ++closed;
+                    return has_close;
+                },
+                [this] { ++redrawn; }};
     }
     static bool reaches(const std::atomic<int>& count, int value) {
         for (int i = 0; i < 200 && count < value; ++i) std::this_thread::sleep_for(10ms);

@@ -22,7 +22,10 @@ public:
             case 1: rotate_any(); break;
             case 2: do_translate(); break;
             case 3: do_scale(); break;
-            case 4: gl_.LoadIdentity(); load_identity(ours); break;
+            case 4:
+                gl_.LoadIdentity();
+                load_identity(ours);
+                break;
             case 5: do_ortho(); break;
             case 6: do_frustum(); break;
             case 7: do_multiply(); break;
@@ -97,7 +100,8 @@ private:
 
 // A zero's sign may differ: Mesa's choice of product depends on when it last drew. No pixel depends on it.
 void expect_same(const Mat4& ours, const Mat4& mesas, unsigned seed, int step) {
-    for (std::size_t i = 0; i < 16; ++i) ASSERT_EQ(ours[i], mesas[i]) << "seed " << seed << " step " << step << " element " << i;
+    for (std::size_t i = 0; i < 16; ++i)
+        ASSERT_EQ(ours[i], mesas[i]) << "seed " << seed << " step " << step << " element " << i;
 }
 
 TEST(Matrix, EqualsMesa) {
@@ -133,7 +137,8 @@ TEST(Matrix, InverseEqualsMesa) {
             GLdouble theirs[4];
             mesa->gl.GetClipPlane(GL_CLIP_PLANE0, theirs);
             const Vec4 ours = transform_plane({0.3f, -0.7f, 0.2f, 1.5f}, inverse(sequence.ours));
-            for (std::size_t i = 0; i < 4; ++i) ASSERT_EQ(ours[i], static_cast<float>(theirs[i])) << "seed " << seed << " step " << step;
+            for (std::size_t i = 0; i < 4; ++i)
+                ASSERT_EQ(ours[i], static_cast<float>(theirs[i])) << "seed " << seed << " step " << step;
         }
         form_left = sequence.ours.form;
     }

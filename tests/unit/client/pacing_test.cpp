@@ -14,7 +14,8 @@ constexpr NodeProgress kBack{.done = true, .left_out = true, .queued_bytes = 0};
 
 TEST(Pacing, OneThatIsInTimeGetsTheFrame) {
     EXPECT_FALSE(leave_out({.done = true}, true, true));
-    EXPECT_FALSE(leave_out({.done = true, .queued_bytes = kMaxLateBytes + 1}, true, true)) << "a long queue is no sin of one that draws";
+    EXPECT_FALSE(leave_out({.done = true, .queued_bytes = kMaxLateBytes + 1}, true, true))
+        << "a long queue is no sin of one that draws";
 }
 
 TEST(Pacing, OneThatIsLateAloneMissesWholeFrames) {

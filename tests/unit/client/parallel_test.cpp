@@ -18,7 +18,8 @@ TEST(Parallel, IsReadFromOneWord) {
     EXPECT_EQ(member->rank, 2u);
     EXPECT_EQ(member->members, 4u);
     EXPECT_EQ(parse_parallel("a:b:0:1")->group, "a:b");
-    for (const char* wrong : {"", "x", "x:0", ":0:1", "x:1:1", "x:0:0", "x:0:65", "x:-1:2", "x:0:2:", "x:0:2y", "x: 0:2"})
+    for (const char* wrong :
+         {"", "x", "x:0", ":0:1", "x:1:1", "x:0:0", "x:0:65", "x:-1:2", "x:0:2:", "x:0:2y", "x: 0:2"})
         EXPECT_FALSE(parse_parallel(wrong)) << wrong;
 }
 

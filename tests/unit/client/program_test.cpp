@@ -31,7 +31,8 @@ TEST(ExecutableTest, LocationsAreDense) {
     EXPECT_EQ(e->location_of("weights[0]"), 1);
     EXPECT_EQ(e->location_of("weights[2]"), 3);
     EXPECT_EQ(e->location_of("images[1]"), 5);
-    for (const char* none : {"weights[3]", "color[0]", "weights[", "weights[]", "weights[01]", "weights[-1]", "other", "", "]", "gl_ModelViewMatrix"})
+    for (const char* none : {"weights[3]", "color[0]", "weights[", "weights[]", "weights[01]", "weights[-1]", "other",
+                             "", "]", "gl_ModelViewMatrix"})
         EXPECT_EQ(e->location_of(none), -1) << none;
     EXPECT_EQ(e->attribute_location_of("place"), 5);
     EXPECT_EQ(e->attribute_location_of("places"), -1);

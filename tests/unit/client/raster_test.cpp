@@ -21,10 +21,14 @@ protected:
     /// The same calls on both sides.
     struct Ours {
         Context& c;
-        void Viewport(GLint x, GLint y, GLsizei w, GLsizei h) const { glstate::assign<glstate::el::viewport>(c.state, 0, {x, y, w, h}); }
+        void Viewport(GLint x, GLint y, GLsizei w, GLsizei h) const {
+            glstate::assign<glstate::el::viewport>(c.state, 0, {x, y, w, h});
+        }
         void MatrixMode(GLenum m) const { c.table->MatrixMode(c, m); }
         void LoadIdentity() const { c.table->LoadIdentity(c); }
-        void Frustum(double l, double r, double b, double t, double n, double f) const { c.table->Frustum(c, l, r, b, t, n, f); }
+        void Frustum(double l, double r, double b, double t, double n, double f) const {
+            c.table->Frustum(c, l, r, b, t, n, f);
+        }
         void Translatef(float x, float y, float z) const { c.table->Translatef(c, x, y, z); }
         void Rotatef(float a, float x, float y, float z) const { c.table->Rotatef(c, a, x, y, z); }
         void Scalef(float x, float y, float z) const { c.table->Scalef(c, x, y, z); }
@@ -114,12 +118,14 @@ TEST_F(RasterTest, LitColorIsMesas) {
         random_view();
         const bool positional = i % 2;
         const float position[4] = {number(-3, 3), number(-3, 3), number(1, 5), positional ? 1.0f : 0.0f};
-        const float diffuse[4] = {number(0, 1), number(0, 1), number(0, 1), 0.7f}, specular[4] = {0.5f, 0.6f, 0.7f, 1}, shininess = 12;
+        const float diffuse[4] = {number(0, 1), number(0, 1), number(0, 1), 0.7f}, specular[4] = {0.5f, 0.6f, 0.7f, 1},
+                    shininess = 12;
         const float x = number(-1, 1), y = number(-1, 1);
         both([&](const auto& g) {
             g.Enable(GL_LIGHTING), g.Enable(GL_LIGHT0);
             g.Lightfv(GL_LIGHT0, GL_POSITION, position);
-            g.Materialfv(GL_FRONT, GL_DIFFUSE, diffuse), g.Materialfv(GL_FRONT, GL_SPECULAR, specular), g.Materialfv(GL_FRONT, GL_SHININESS, &shininess);
+            g.Materialfv(GL_FRONT, GL_DIFFUSE, diffuse), g.Materialfv(GL_FRONT, GL_SPECULAR, specular),
+                g.Materialfv(GL_FRONT, GL_SHININESS, &shininess);
             g.Normal3f(x, y, 0.8f);
         });
         random_position();

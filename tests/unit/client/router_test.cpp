@@ -13,7 +13,9 @@ namespace {
 Projection perspective(float near_plane, float far_plane) {
     Projection p;
     const float depth = near_plane - far_plane;
-    p.clip_from_object = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, (far_plane + near_plane) / depth, -1, 0, 0, 2 * far_plane * near_plane / depth, 0};
+    p.clip_from_object = {
+        1, 0, 0, 0, 0, 1, 0, 0, 0, 0, (far_plane + near_plane) / depth, -1, 0, 0, 2 * far_plane * near_plane / depth,
+        0};
     p.viewport[2] = p.viewport[3] = 100;
     return p;
 }

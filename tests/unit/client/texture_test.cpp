@@ -22,10 +22,17 @@ TEST(TextureFormats, AreWhatMesaAnswers) {
     struct Pixels {
         GLenum format, type;
     };
-    constexpr Pixels kPixels[] = {{GL_RGBA, GL_UNSIGNED_BYTE}, {GL_RGB, GL_UNSIGNED_SHORT_5_6_5}, {GL_RGBA, GL_UNSIGNED_SHORT_4_4_4_4},
-                                  {GL_RGBA, GL_UNSIGNED_SHORT_5_5_5_1}, {GL_BGRA, GL_UNSIGNED_SHORT_1_5_5_5_REV}, {GL_RGBA, GL_FLOAT},
-                                  {GL_RGB, GL_UNSIGNED_BYTE_3_3_2}, {GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV}, {GL_LUMINANCE, GL_UNSIGNED_BYTE},
-                                  {GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT}, {GL_DEPTH_COMPONENT, GL_FLOAT}};
+    constexpr Pixels kPixels[] = {{GL_RGBA, GL_UNSIGNED_BYTE},
+                                  {GL_RGB, GL_UNSIGNED_SHORT_5_6_5},
+                                  {GL_RGBA, GL_UNSIGNED_SHORT_4_4_4_4},
+                                  {GL_RGBA, GL_UNSIGNED_SHORT_5_5_5_1},
+                                  {GL_BGRA, GL_UNSIGNED_SHORT_1_5_5_5_REV},
+                                  {GL_RGBA, GL_FLOAT},
+                                  {GL_RGB, GL_UNSIGNED_BYTE_3_3_2},
+                                  {GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV},
+                                  {GL_LUMINANCE, GL_UNSIGNED_BYTE},
+                                  {GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT},
+                                  {GL_DEPTH_COMPONENT, GL_FLOAT}};
     unsigned compared = 0;
     for (GLint internal = 1; internal < 0x9000; ++internal) {
         const TextureFormat* row = find_texture_format(internal);
@@ -55,7 +62,8 @@ TEST(TextureFormats, AreWhatMesaAnswers) {
 /// Names of the commands in a buffer.
 std::vector<std::string> commands(const wire::PackBuffer& buffer) {
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < buffer.commands(); ++i) names.emplace_back(glapi::kOpNames[std::to_integer<std::size_t>(buffer.opcode_at(i))]);
+    for (std::size_t i = 0; i < buffer.commands(); ++i)
+        names.emplace_back(glapi::kOpNames[std::to_integer<std::size_t>(buffer.opcode_at(i))]);
     return names;
 }
 

@@ -19,18 +19,12 @@ inline constexpr std::array kKinds{Kind::flat,           Kind::noise, Kind::grad
 inline std::uint8_t sample_of(Kind kind, std::uint32_t x, std::uint32_t y, std::size_t channel, std::mt19937& random) {
     const auto ramp = static_cast<std::uint8_t>((x * (channel + 1) + y * 3) / 7);
     switch (kind) {
-        case Kind::flat:
-            return static_cast<std::uint8_t>(40 * (channel + 1));
-        case Kind::noise:
-            return static_cast<std::uint8_t>(random());
-        case Kind::gradient:
-            return ramp;
-        case Kind::noisy_gradient:
-            return static_cast<std::uint8_t>(ramp + random() % 5);
-        case Kind::text:
-            return (x * 2654435761u ^ (y / 2) * 40503u) >> 13 & 1 && x / 20 % 2 == 0 ? 30 : 250;
-        case Kind::sparse:
-            return random() % 97 == 0 ? static_cast<std::uint8_t>(random()) : 7;
+        case Kind::flat: return static_cast<std::uint8_t>(40 * (channel + 1));
+        case Kind::noise: return static_cast<std::uint8_t>(random());
+        case Kind::gradient: return ramp;
+        case Kind::noisy_gradient: return static_cast<std::uint8_t>(ramp + random() % 5);
+        case Kind::text: return (x * 2654435761u ^ (y / 2) * 40503u) >> 13 & 1 && x / 20 % 2 == 0 ? 30 : 250;
+        case Kind::sparse: return random() % 97 == 0 ? static_cast<std::uint8_t>(random()) : 7;
     }
     return 0;
 }

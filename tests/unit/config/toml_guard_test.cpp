@@ -14,7 +14,8 @@ TEST(TomlGuard, GoesThereAndBack) {
 }
 
 TEST(TomlGuard, LeavesIllFormedBytesAsTheyAre) {
-    for (const std::string text : {"\xff", "\xc3", "\xc0\xaf", "\xe4\xb8", "\xed\xa0\x80", "\xf5\x80\x80\x80", "\x80 a"}) {
+    for (const std::string text :
+         {"\xff", "\xc3", "\xc0\xaf", "\xe4\xb8", "\xed\xa0\x80", "\xf5\x80\x80\x80", "\x80 a"}) {
         EXPECT_EQ(to_private_use(text), text);
         EXPECT_EQ(from_private_use(text), text);
     }

@@ -95,7 +95,10 @@ TEST(WallConfig, ReadsEverything) {
 }
 
 TEST(WallConfig, NamesAndCommentsMayBeInAnyLanguage) {
-    const auto config = parse_config("# f\u00fcr alle\n[wall]\nname='W\u00e4nde \\\\ \"'\n[[node]]\nname=\"\\\"\u4e00\"\n[[node.tile]]\nname=\"\"\"t\u00e9 \"\" \"\"\"\nrect=[0,0,1,1]\n", "wall.toml");
+    const auto config = parse_config(
+        "# f\u00fcr alle\n[wall]\nname='W\u00e4nde \\\\ "
+        "\"'\n[[node]]\nname=\"\\\"\u4e00\"\n[[node.tile]]\nname=\"\"\"t\u00e9 \"\" \"\"\"\nrect=[0,0,1,1]\n",
+        "wall.toml");
     ASSERT_TRUE(config) << config.error().message;
     EXPECT_EQ(config->nodes[0].name, "\"\u4e00");
 }
@@ -132,7 +135,8 @@ name = "second seat"
 rect = [30, 0, 10, 10]
 output = "window"
 display = ":1"
-)", "wall.toml");
+)",
+                                     "wall.toml");
     ASSERT_TRUE(config) << config.error().message;
     const auto& tiles = config->nodes[0].tiles;
     EXPECT_EQ(tiles[0].window, std::nullopt);
@@ -161,7 +165,7 @@ TEST(People, EachHasTheHighestRoleThatNamesThem) {
 
 struct Wrong {
     const char* name;
-    const char* from;   ///< text of kGood that is replaced
+    const char* from;  ///< text of kGood that is replaced
     const char* to;
     const char* where;  ///< how the error starts
     const char* what;   ///< what it must say
@@ -187,41 +191,70 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"table_without_a_name", "[http]", "[\n]", "wall.toml:", "not TOML"},
         Wrong{"control_character", "name = \"lab\"", "name = \"l\x01b\"", "wall.toml:3: ", "a control character"},
         Wrong{"stray_character", "name = \"lab\"", "n\u00e4me = \"lab\"", "wall.toml:3: ", "not TOML"},
-        Wrong{"stray_character_after_a_quote_in_a_number", "name = \"lab\"", "name = 1'''\u0422", "wall.toml:3: ", "not TOML"},
-        Wrong{"unknown_section", "[http]", "[htpp]", "wall.toml:14: ", "expected one of wall, control, http, people, node"},
-        Wrong{"unknown_key", "swap_timeout_ms", "swap_timeout", "wall.toml:5: ", "expected one of name, background, swap_timeout_ms, close_timeout_ms, max_sessions, state_directory"},
+        Wrong{"stray_character_after_a_quote_in_a_number", "name = \"lab\"", "name = 1'''\u0422",
+              "wall.toml:3: ", "not TOML"},
+        Wrong{"unknown_section", "[http]", "[htpp]",
+              "wall.toml:14: ", "expected one of wall, control, http, people, node"},
+        Wrong{"unknown_key", "swap_timeout_ms", "swap_timeout", "wall.toml:5: ",
+              "expected one of name, background, swap_timeout_ms, close_timeout_ms, max_sessions, state_directory"},
         Wrong{"name_type", "\"lab\"", "7", "wall.toml:3: ", "'name': expected a string"},
         Wrong{"colour", "#102030", "grey", "wall.toml:4: ", "expected a colour as \"#RRGGBB\""},
         Wrong{"timeout_range", "= 100", "= 0", "wall.toml:5: ", "expected an integer from 1 to 10000"},
         Wrong{"address", "127.0.0.1:7770", "here", "wall.toml:11: ", "expected unix:PATH or HOST:PORT"},
-        Wrong{"listen_type", "[\"unix:/run/wallgl/walld.sock\", \"127.0.0.1:7770\"]", "7770", "wall.toml:11: ", "expected an array of addresses"},
+        Wrong{"listen_type", "[\"unix:/run/wallgl/walld.sock\", \"127.0.0.1:7770\"]", "7770",
+              "wall.toml:11: ", "expected an array of addresses"},
         Wrong{"user", "\"root\"", "\"no such user\"", "wall.toml:12: ", "this machine has no user 'no such user'"},
-        Wrong{"no_group", "\"@root\"", "\"@no such group\"", "wall.toml:18: ", "'operators': this machine has no group 'no such group'"},
+        Wrong{"no_group", "\"@root\"", "\"@no such group\"",
+              "wall.toml:18: ", "'operators': this machine has no group 'no such group'"},
         Wrong{"member_type", "[77]", "[1.5]", "wall.toml:19: ", "expected user names, user numbers or \"@group\""},
         Wrong{"member_list", "[77]", "77", "wall.toml:19: ", "'viewers': expected an array"},
-        Wrong{"role", "\"viewer\"", "\"king\"", "wall.toml:20: ", "expected \"none\", \"viewer\", \"user\" or \"operator\""},
+        Wrong{"role", "\"viewer\"", "\"king\"",
+              "wall.toml:20: ", "expected \"none\", \"viewer\", \"user\" or \"operator\""},
         Wrong{"token_file", "file = \"/etc/wallgl/kiosk.token\"", "", "wall.toml:22: ", "'file' is missing"},
         Wrong{"sessions", "= 7", "= 0", "wall.toml:7: ", "expected an integer from 1 to 10000"},
         Wrong{"http_unix", "127.0.0.1:7780", "unix:/x", "wall.toml:15: ", "expected HOST:PORT"},
         Wrong{"backend", "\"osmesa\"", "\"vulkan\"", "wall.toml:39: ", "expected \"egl\" or \"osmesa\""},
-        Wrong{"rect_count", "[660, 0, 1280, 980]", "[660, 0, 1280]", "wall.toml:42: ", "expected [x, y, width, height]"},
-        Wrong{"rect_negative", "[660, 0, 1280, 980]", "[-1, 0, 1280, 980]", "wall.toml:42: ", "expected [x, y, width, height]"},
-        Wrong{"rect_empty", "[660, 0, 1280, 980]", "[660, 0, 0, 980]", "wall.toml:42: ", "expected [x, y, width, height]"},
-        Wrong{"rect_huge", "[660, 0, 1280, 980]", "[32000, 0, 1280, 980]", "wall.toml:42: ", "expected [x, y, width, height]"},
-        Wrong{"tile_key", "rect = [660", "screen = 1\nrect = [660", "wall.toml:42: ", "expected one of name, rect, output, display, monitor, position"},
-        Wrong{"output", "rect = [0, 500, 640, 480]", "output = \"tv\"\nrect = [0, 500, 640, 480]", "wall.toml:35: ", "'output' is 'tv': expected \"headless\" or \"window\""},
-        Wrong{"output_type", "rect = [0, 500, 640, 480]", "output = 1\nrect = [0, 500, 640, 480]", "wall.toml:35: ", "'output': expected a string"},
-        Wrong{"monitor_without_window", "rect = [0, 500, 640, 480]", "rect = [0, 500, 640, 480]\nmonitor = \"DP-1\"", "wall.toml:36: ", "'monitor' is of a tile in a window: expected output = \"window\" beside it"},
-        Wrong{"monitor_and_position", "rect = [0, 500, 640, 480]", "rect = [0, 500, 640, 480]\noutput = \"window\"\nmonitor = \"DP-1\"\nposition = [0, 0]", "wall.toml:38: ", "'position' beside 'monitor'"},
-        Wrong{"position_type", "rect = [0, 500, 640, 480]", "rect = [0, 500, 640, 480]\noutput = \"window\"\nposition = [1, -1]", "wall.toml:37: ", "'position': expected [x, y] in pixels, each from 0 to 32767"},
-        Wrong{"position_count", "rect = [0, 500, 640, 480]", "rect = [0, 500, 640, 480]\noutput = \"window\"\nposition = 5", "wall.toml:37: ", "'position': expected [x, y]"},
-        Wrong{"display_empty", "rect = [0, 500, 640, 480]", "rect = [0, 500, 640, 480]\noutput = \"window\"\ndisplay = \"\"", "wall.toml:37: ", "'display' is empty"},
-        Wrong{"window_of_osmesa", "rect = [660, 0, 1280, 980]", "rect = [660, 0, 1280, 980]\noutput = \"window\"", "wall.toml:43: ", "expected backend = \"egl\" or output = \"headless\""},
-        Wrong{"two_displays", "rect = [0, 0, 640, 480]\n[[node.tile]]\nname = \"bottom\"", "rect = [0, 0, 640, 480]\noutput = \"window\"\n[[node.tile]]\noutput = \"window\"\ndisplay = \":1\"\nname = \"bottom\"", "wall.toml:36: ", "tile 'bottom' is on display \":1\", tile 'top' on $DISPLAY: expected one display"},
-        Wrong{"one_monitor_twice", "rect = [0, 0, 640, 480]\n[[node.tile]]\nname = \"bottom\"", "rect = [0, 0, 640, 480]\noutput = \"window\"\nmonitor = \"A\"\n[[node.tile]]\noutput = \"window\"\nmonitor = \"A\"\nname = \"bottom\"", "wall.toml:37: ", "monitor 'A' shows tile 'top' already"},
+        Wrong{"rect_count", "[660, 0, 1280, 980]", "[660, 0, 1280]",
+              "wall.toml:42: ", "expected [x, y, width, height]"},
+        Wrong{"rect_negative", "[660, 0, 1280, 980]", "[-1, 0, 1280, 980]",
+              "wall.toml:42: ", "expected [x, y, width, height]"},
+        Wrong{"rect_empty", "[660, 0, 1280, 980]", "[660, 0, 0, 980]",
+              "wall.toml:42: ", "expected [x, y, width, height]"},
+        Wrong{"rect_huge", "[660, 0, 1280, 980]", "[32000, 0, 1280, 980]",
+              "wall.toml:42: ", "expected [x, y, width, height]"},
+        Wrong{"tile_key", "rect = [660", "screen = 1\nrect = [660",
+              "wall.toml:42: ", "expected one of name, rect, output, display, monitor, position"},
+        Wrong{"output", "rect = [0, 500, 640, 480]", "output = \"tv\"\nrect = [0, 500, 640, 480]",
+              "wall.toml:35: ", "'output' is 'tv': expected \"headless\" or \"window\""},
+        Wrong{"output_type", "rect = [0, 500, 640, 480]", "output = 1\nrect = [0, 500, 640, 480]",
+              "wall.toml:35: ", "'output': expected a string"},
+        Wrong{"monitor_without_window", "rect = [0, 500, 640, 480]", "rect = [0, 500, 640, 480]\nmonitor = \"DP-1\"",
+              "wall.toml:36: ", "'monitor' is of a tile in a window: expected output = \"window\" beside it"},
+        Wrong{"monitor_and_position", "rect = [0, 500, 640, 480]",
+              "rect = [0, 500, 640, 480]\noutput = \"window\"\nmonitor = \"DP-1\"\nposition = [0, 0]",
+              "wall.toml:38: ", "'position' beside 'monitor'"},
+        Wrong{"position_type", "rect = [0, 500, 640, 480]",
+              "rect = [0, 500, 640, 480]\noutput = \"window\"\nposition = [1, -1]",
+              "wall.toml:37: ", "'position': expected [x, y] in pixels, each from 0 to 32767"},
+        Wrong{"position_count", "rect = [0, 500, 640, 480]",
+              "rect = [0, 500, 640, 480]\noutput = \"window\"\nposition = 5",
+              "wall.toml:37: ", "'position': expected [x, y]"},
+        Wrong{"display_empty", "rect = [0, 500, 640, 480]",
+              "rect = [0, 500, 640, 480]\noutput = \"window\"\ndisplay = \"\"", "wall.toml:37: ", "'display' is empty"},
+        Wrong{"window_of_osmesa", "rect = [660, 0, 1280, 980]", "rect = [660, 0, 1280, 980]\noutput = \"window\"",
+              "wall.toml:43: ", "expected backend = \"egl\" or output = \"headless\""},
+        Wrong{"two_displays", "rect = [0, 0, 640, 480]\n[[node.tile]]\nname = \"bottom\"",
+              "rect = [0, 0, 640, 480]\noutput = \"window\"\n[[node.tile]]\noutput = \"window\"\ndisplay = "
+              "\":1\"\nname = \"bottom\"",
+              "wall.toml:36: ", "tile 'bottom' is on display \":1\", tile 'top' on $DISPLAY: expected one display"},
+        Wrong{"one_monitor_twice", "rect = [0, 0, 640, 480]\n[[node.tile]]\nname = \"bottom\"",
+              "rect = [0, 0, 640, 480]\noutput = \"window\"\nmonitor = \"A\"\n[[node.tile]]\noutput = "
+              "\"window\"\nmonitor = \"A\"\nname = \"bottom\"",
+              "wall.toml:37: ", "monitor 'A' shows tile 'top' already"},
         Wrong{"node_twice", "\"right\"", "\"left\"", "wall.toml:37: ", "node 'left' appears twice"},
         Wrong{"tile_twice", "\"big\"", "\"top\"", "wall.toml:37: ", "tile 'top' appears twice"},
-        Wrong{"no_tile", "[[node.tile]]\nname = \"big\"\nrect = [660, 0, 1280, 980]", "", "wall.toml:37: ", "'tile' is missing: expected at least one [[node.tile]]"}),
+        Wrong{"no_tile", "[[node.tile]]\nname = \"big\"\nrect = [660, 0, 1280, 980]", "",
+              "wall.toml:37: ", "'tile' is missing: expected at least one [[node.tile]]"}),
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST(WallConfig, AnEmptyOneLacksNodes) {

@@ -7,7 +7,8 @@ namespace wall::net {
 namespace {
 
 TEST(Address, ParsesAndPrintsWhatItParsed) {
-    for (const char* text : {"unix:/run/wallgl/walld.sock", "127.0.0.1:7770", "localhost:0", "[::1]:65535", "render-3:7790"}) {
+    for (const char* text :
+         {"unix:/run/wallgl/walld.sock", "127.0.0.1:7770", "localhost:0", "[::1]:65535", "render-3:7790"}) {
         const auto address = Address::parse(text);
         ASSERT_TRUE(address) << text;
         EXPECT_EQ(address->text(), text);
@@ -15,7 +16,8 @@ TEST(Address, ParsesAndPrintsWhatItParsed) {
 }
 
 TEST(Address, RefusesWhatIsNone) {
-    for (const char* text : {"", "unix:", "host", ":7770", "host:", "host:70000", "host:-1", "host:7x", "::1:7770", "a/b:1"}) {
+    for (const char* text :
+         {"", "unix:", "host", ":7770", "host:", "host:70000", "host:-1", "host:7x", "::1:7770", "a/b:1"}) {
         const auto address = Address::parse(text);
         ASSERT_FALSE(address) << text;
         EXPECT_NE(address.error().message.find("expected unix:PATH or HOST:PORT"), std::string::npos);
@@ -23,8 +25,10 @@ TEST(Address, RefusesWhatIsNone) {
 }
 
 TEST(Address, KnowsWhatOnlyThisMachineReaches) {
-    for (const char* text : {"unix:/x", "127.0.0.1:1", "127.1.2.3:1", "localhost:1", "[::1]:1"}) EXPECT_TRUE(Address::parse(text)->local()) << text;
-    for (const char* text : {"0.0.0.0:1", "192.168.0.1:1", "[::]:1", "example.org:1", "128.0.0.1:1"}) EXPECT_FALSE(Address::parse(text)->local()) << text;
+    for (const char* text : {"unix:/x", "127.0.0.1:1", "127.1.2.3:1", "localhost:1", "[::1]:1"})
+        EXPECT_TRUE(Address::parse(text)->local()) << text;
+    for (const char* text : {"0.0.0.0:1", "192.168.0.1:1", "[::]:1", "example.org:1", "128.0.0.1:1"})
+        EXPECT_FALSE(Address::parse(text)->local()) << text;
 }
 
 TEST(Address, RefusesASocketPathThatTheKernelWouldCut) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "common/net/framing.h"
 
-#include <algorithm>
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include <cstring>
 #include <random>
@@ -30,7 +30,8 @@ TEST(Framing, GivesBackWhatWasFramedInAnyPortions) {
         std::uint32_t seen = 0;
         for (std::size_t at = 0; at < bytes.size(); at += portion) {
             feed(unframer, std::string_view(bytes).substr(at, portion));
-            for (auto message = unframer.next(); message && *message; message = unframer.next()) EXPECT_EQ((*message)->rendered().frame(), ++seen);
+            for (auto message = unframer.next(); message && *message; message = unframer.next())
+                EXPECT_EQ((*message)->rendered().frame(), ++seen);
         }
         EXPECT_EQ(seen, 3u);
         EXPECT_TRUE(unframer.at_boundary());
@@ -82,7 +83,8 @@ TEST(Framing, SurvivesGarbage) {
         bytes[random() % bytes.size()] = static_cast<char>(random());
         bytes += static_cast<char>(random());
         feed(unframer, bytes);
-        for (auto message = unframer.next(); message && *message; message = unframer.next()) {}
+        for (auto message = unframer.next(); message && *message; message = unframer.next()) {
+        }
     }
 }
 

@@ -2,9 +2,9 @@
 // What the executor draws, compared with the same commands given to plain Mesa directly.
 #include "tileserver/render/executor.h"
 
+#include <gmock/gmock.h>
 #include <cmath>
 #include <cstring>
-#include <gmock/gmock.h>
 
 #include "tests/unit/tileserver/test_node.h"
 
@@ -67,7 +67,10 @@ TEST_F(ExecutorTest, GeometryIsTheSameAsPlainMesa) {
     TestSession session(*node_.node, 1);
     session.open_surface(kWidth, kHeight, kWindow);
     Batch batch;
-    batch.set<el::clear_color>({0.2f, 0.1f, 0.4f, 0}).set<el::depth_test>(1).set<el::fog_enabled>(1).set<el::fog_density>(0.4f);
+    batch.set<el::clear_color>({0.2f, 0.1f, 0.4f, 0})
+        .set<el::depth_test>(1)
+        .set<el::fog_enabled>(1)
+        .set<el::fog_density>(0.4f);
     batch.block(1, [](auto& b) {
         pack::Clear(b, kColorDepth);
         pack_fan(b, 0.8f);
@@ -90,7 +93,9 @@ TEST_F(ExecutorTest, LightsAndPlanesAreTakenInEyeCoordinates) {
     const glstate::Mat4 modelview = {0.8f, 0.1f, 0, 0, -0.1f, 0.7f, 0.2f, 0, 0, 0.3f, 0.9f, 0, 0.1f, -0.1f, 0.2f, 1};
     Batch batch;
     batch.set<el::modelview>(modelview).set<el::lighting_enabled>(1).set<el::light_enabled>(1);
-    batch.set<el::light_position>({0.3f, 0.5f, 1, 1}).set<el::clip_plane_enabled>(1).set<el::clip_plane>({1, 0.3f, 0, 0.4f});
+    batch.set<el::light_position>({0.3f, 0.5f, 1, 1})
+        .set<el::clip_plane_enabled>(1)
+        .set<el::clip_plane>({1, 0.3f, 0, 0.4f});
     batch.set<el::normalize>(1).set<el::color_material_enabled>(1);
     const auto body = [](auto& b) {
         pack::Clear(b, kColorDepth);
@@ -105,7 +110,8 @@ TEST_F(ExecutorTest, LightsAndPlanesAreTakenInEyeCoordinates) {
                     gl.Lightfv(GL_LIGHT0, GL_POSITION, light.data());
                     gl.ClipPlane(GL_CLIP_PLANE0, plane.data());
                     gl.LoadMatrixf(modelview.data());
-                    for (const GLenum cap : {GL_LIGHTING, GL_LIGHT0, GL_CLIP_PLANE0, GL_NORMALIZE, GL_COLOR_MATERIAL}) gl.Enable(cap);
+                    for (const GLenum cap : {GL_LIGHTING, GL_LIGHT0, GL_CLIP_PLANE0, GL_NORMALIZE, GL_COLOR_MATERIAL})
+                        gl.Enable(cap);
                     gl.Clear(kColorDepth);
                     gl.Normal3f(0.2f, 0.3f, 1);
                     draw_fan(gl, 0.9f);
@@ -120,7 +126,9 @@ TEST_F(ExecutorTest, ImagesAtTheRasterPosition) {
     for (std::size_t i = 0; i < image.size(); ++i) image[i] = static_cast<std::byte>(i * 11);
     for (std::size_t i = 0; i < bits.size(); ++i) bits[i] = static_cast<std::byte>(i * 37 + 5);
     Batch batch;
-    batch.set<el::raster_position>({31.5f, 20.25f, 0.3f, 1}).set<el::raster_color>({0.9f, 0.2f, 0.1f, 1}).set<el::pixel_zoom>({1.5f, 2});
+    batch.set<el::raster_position>({31.5f, 20.25f, 0.3f, 1})
+        .set<el::raster_color>({0.9f, 0.2f, 0.1f, 1})
+        .set<el::pixel_zoom>({1.5f, 2});
     batch.set<el::color>({0.1f, 0.8f, 0.3f, 1});
     batch.block(1, [&](auto& b) {
         pack::Clear(b, kColorDepth);
@@ -139,7 +147,8 @@ TEST_F(ExecutorTest, ImagesAtTheRasterPosition) {
                     gl.WindowPos3f(31.5f, 20.25f, 0.3f);
                     gl.PixelZoom(1.5f, 2);
                     gl.DrawPixels(20, 10, GL_RGB, GL_UNSIGNED_BYTE, image.data());
-                    for (int i = 0; i < 3; ++i) gl.Bitmap(20, 13, 1, 2, 17.25f, 20, reinterpret_cast<const GLubyte*>(bits.data()));
+                    for (int i = 0; i < 3; ++i)
+                        gl.Bitmap(20, 13, 1, 2, 17.25f, 20, reinterpret_cast<const GLubyte*>(bits.data()));
                     gl.Color3f(0.1f, 0.8f, 0.3f);
                     gl.Begin(GL_LINES);
                     gl.Vertex2f(-0.9f, -0.9f);
@@ -218,14 +227,18 @@ TEST_F(ExecutorTest, BlockOnTwoTilesStartsEachFromTheSameAttributes) {
     batch.block(3, [](auto& b) {
         pack::Clear(b, kColorDepth);
         pack::Begin(b, GL_QUADS);  // the red that the block starts with, on both tiles
-        for (const auto& v : {std::array{-1.f, -1.f}, std::array{1.f, -1.f}, std::array{1.f, 0.f}, std::array{-1.f, 0.f}}) pack::Vertex2f(b, v[0], v[1]);
+        for (const auto& v :
+             {std::array{-1.f, -1.f}, std::array{1.f, -1.f}, std::array{1.f, 0.f}, std::array{-1.f, 0.f}})
+            pack::Vertex2f(b, v[0], v[1]);
         pack::Color3f(b, 0, 0, 1);
-        for (const auto& v : {std::array{-1.f, 0.f}, std::array{1.f, 0.f}, std::array{1.f, 1.f}, std::array{-1.f, 1.f}}) pack::Vertex2f(b, v[0], v[1]);
+        for (const auto& v : {std::array{-1.f, 0.f}, std::array{1.f, 0.f}, std::array{1.f, 1.f}, std::array{-1.f, 1.f}})
+            pack::Vertex2f(b, v[0], v[1]);
         pack::End(b);
     });
     session.expect_run(batch);
     for (std::uint32_t slot : {0u, 1u}) {
-        const auto low = session.read(slot, {static_cast<int>(slot) * 80 + 10, 10, 1, 1}), high = session.read(slot, {static_cast<int>(slot) * 80 + 10, 100, 1, 1});
+        const auto low = session.read(slot, {static_cast<int>(slot) * 80 + 10, 10, 1, 1}),
+                   high = session.read(slot, {static_cast<int>(slot) * 80 + 10, 100, 1, 1});
         EXPECT_EQ(low, (Pixels{255, 0, 0, 255})) << slot;
         EXPECT_EQ(high, (Pixels{0, 0, 255, 255})) << slot;
     }
@@ -244,7 +257,10 @@ TEST_F(ExecutorTest, TwoSessionsInTurnsDrawAsEachAlone) {
     const auto frame_of = [](int who, float size) {
         Batch batch;
         if (who == 0) batch.set<el::fog_enabled>(1).set<el::fog_density>(size).set<el::cull_face_enabled>(1);
-        if (who == 1) batch.set<el::blend_enabled>(1).set<el::blend_func>({GL_ONE, GL_ONE, GL_ONE, GL_ONE}).set<el::shade_model>(GL_FLAT);
+        if (who == 1)
+            batch.set<el::blend_enabled>(1)
+                .set<el::blend_func>({GL_ONE, GL_ONE, GL_ONE, GL_ONE})
+                .set<el::shade_model>(GL_FLAT);
         batch.block(1, [size](auto& b) {
             pack::Clear(b, kColorDepth);
             pack_fan(b, size);
@@ -270,7 +286,8 @@ TEST_F(ExecutorTest, TwoSessionsInTurnsDrawAsEachAlone) {
 }
 
 // Whole pixels, so that the orientation of the reference's memory does not matter.
-constexpr std::array<std::array<float, 4>, 3> kSquares = {{{0.9f, 0.3f, 0.1f, 0.25f}, {0.2f, 0.77f, 0.5f, 0.5f}, {0.13f, 0.41f, 0.99f, 0.75f}}};
+constexpr std::array<std::array<float, 4>, 3> kSquares = {
+    {{0.9f, 0.3f, 0.1f, 0.25f}, {0.2f, 0.77f, 0.5f, 0.5f}, {0.13f, 0.41f, 0.99f, 0.75f}}};
 
 // Mesa keeps a colour outside of glBegin to itself for a while; what it tracks may change meanwhile.
 TEST_F(ExecutorTest, ColorMaterialSurvivesASwitch) {
@@ -283,7 +300,9 @@ TEST_F(ExecutorTest, ColorMaterialSurvivesASwitch) {
     first.set<el::lighting_enabled>(1).set<el::light_enabled>(1).set<el::light_model_ambient>(black);
     first.set<el::light_ambient>(black).set<el::light_specular>(black).set<el::light_diffuse>(white);
     first.set<el::material_diffuse>(white).set<el::material_diffuse>(white, 1);
-    first.set<el::color_material>({GL_FRONT_AND_BACK, GL_AMBIENT}).set<el::color_material_enabled>(1).set<el::color>(green);
+    first.set<el::color_material>({GL_FRONT_AND_BACK, GL_AMBIENT})
+        .set<el::color_material_enabled>(1)
+        .set<el::color>(green);
     first.block(1, clear);
     session.expect_run(first);
     Batch between;
@@ -312,7 +331,9 @@ TEST_F(ExecutorTest, AccumulationBuffer) {
         batch.block(1, [&](auto& b) {
             pack::Begin(b, GL_QUADS);
             pack::Color4f(b, c[0], c[1], c[2], c[3]);
-            for (const auto& v : {std::array{-1.f, -1.f}, std::array{c[3], -1.f}, std::array{c[3], c[3]}, std::array{-1.f, c[3]}}) pack::Vertex2f(b, v[0], v[1]);
+            for (const auto& v :
+                 {std::array{-1.f, -1.f}, std::array{c[3], -1.f}, std::array{c[3], c[3]}, std::array{-1.f, c[3]}})
+                pack::Vertex2f(b, v[0], v[1]);
             pack::End(b);
             pack::Accum(b, GL_ACCUM, 0.31f);
         });
@@ -404,7 +425,8 @@ TEST_F(ExecutorTest, WorkIsCountedByWhatItIsFor) {
     const std::size_t state = buffer.bytes();
     batch.block(1, [](auto& b) { pack::Clear(b, kColorDepth); });
     const std::size_t geometry = buffer.bytes() - state;
-    pack::TexImage(batch.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, std::vector<std::byte>(4));
+    pack::TexImage(batch.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                   std::vector<std::byte>(4));
     pack::Swap(batch.buffer(), 1, 1);
     for (TestSession* each : {&session, &other, &session}) each->expect_run(batch);
 
@@ -425,7 +447,8 @@ TEST_F(ExecutorTest, ObjectsOfAnEndedSessionAreGivenBack) {
         TestSession session(*node_.node, 1);
         session.open_surface(kWidth, kHeight, kWindow);
         Batch batch;
-        pack::TexImage(batch.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, std::vector<std::byte>(4));
+        pack::TexImage(batch.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                       std::vector<std::byte>(4));
         session.expect_run(batch);
         EXPECT_GT(node_.driver->gl().objects->textures, before.textures + 1) << "the layer's and the program's";
         EXPECT_GT(node_.driver->gl().objects->framebuffers, before.framebuffers);
@@ -442,13 +465,21 @@ TEST_F(ExecutorTest, BadStreamsAreRefusedWithAReason) {
         const auto done = session.run(batch);
         return done ? std::string("accepted") : done.error().message;
     };
-    EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::Begin(p, GL_LINES); }); }), ::testing::HasSubstr("Begin"));
+    EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::Begin(p, GL_LINES); }); }),
+                ::testing::HasSubstr("Begin"));
     EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::End(p); }); }), ::testing::HasSubstr("End"));
     EXPECT_THAT(reason([](Batch& b) { pack::Clear(b.buffer(), 1); }), ::testing::HasSubstr("Clear"));
-    EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::DrawPixels(p, 100, 100, GL_RGBA, GL_UNSIGNED_BYTE, {}); }); }), ::testing::HasSubstr("DrawPixels"));
-    EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::RunCall(p, 3); }); }), ::testing::HasSubstr("not defined"));
+    EXPECT_THAT(reason([](Batch& b) {
+                    b.block(1, [](auto& p) { pack::DrawPixels(p, 100, 100, GL_RGBA, GL_UNSIGNED_BYTE, {}); });
+                }),
+                ::testing::HasSubstr("DrawPixels"));
+    EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::RunCall(p, 3); }); }),
+                ::testing::HasSubstr("not defined"));
     EXPECT_THAT(reason([](Batch& b) { pack::Swap(b.buffer(), 8, 1); }), ::testing::HasSubstr("Swap"));
-    EXPECT_THAT(reason([](Batch& b) { pack::TexImage(b.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 1 << 30, 4, 1, 0, GL_RGBA, GL_FLOAT, {}); }), ::testing::HasSubstr("TexImage"));
+    EXPECT_THAT(reason([](Batch& b) {
+                    pack::TexImage(b.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 1 << 30, 4, 1, 0, GL_RGBA, GL_FLOAT, {});
+                }),
+                ::testing::HasSubstr("TexImage"));
     // Another session goes on.
     TestSession session(*node_.node, 2);
     session.open_surface(kWidth, kHeight, kWindow);

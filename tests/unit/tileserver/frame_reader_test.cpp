@@ -41,7 +41,8 @@ TEST_P(FrameReaderPortions, GivesEveryFrameWhole) {
     FrameReader reader(8 << 20);
     const auto frames = feed(reader, bytes, GetParam());
     ASSERT_EQ(frames.size(), sizes.size());
-    for (std::size_t i = 0; i < sizes.size(); ++i) EXPECT_EQ(frames[i].payload, std::vector<std::byte>(sizes[i], static_cast<std::byte>(i))) << i;
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+        EXPECT_EQ(frames[i].payload, std::vector<std::byte>(sizes[i], static_cast<std::byte>(i))) << i;
 }
 
 INSTANTIATE_TEST_SUITE_P(Portions, FrameReaderPortions, ::testing::Values(1000, 65'536, 3'000'000, 100'000'000));

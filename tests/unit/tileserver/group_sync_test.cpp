@@ -84,8 +84,10 @@ TEST_F(Group, ABarrierNeverWaitsForMoreThanCanCome) {
 TEST_F(Group, BarriersAreCreatedByEachWithTheSameCount) {
     EXPECT_TRUE(two_.barrier_create(0, 1, 2));
     EXPECT_TRUE(two_.barrier_create(1, 1, 2));
-    EXPECT_THAT(two_.barrier_create(1, 1, 1).error().message, HasSubstr("barrier 1 was created with count 2, by rank 1 with count 1"));
-    for (const auto& [name, count] : {std::pair{0u, 1u}, {2u, 0u}, {2u, 3u}}) EXPECT_FALSE(two_.barrier_create(0, name, count));
+    EXPECT_THAT(two_.barrier_create(1, 1, 1).error().message,
+                HasSubstr("barrier 1 was created with count 2, by rank 1 with count 1"));
+    for (const auto& [name, count] : {std::pair{0u, 1u}, {2u, 0u}, {2u, 3u}})
+        EXPECT_FALSE(two_.barrier_create(0, name, count));
     EXPECT_FALSE(two_.barrier_exec(0, 9));
     EXPECT_FALSE(two_.barrier_destroy(0, 9));
     EXPECT_TRUE(two_.barrier_destroy(0, 1));

@@ -49,7 +49,8 @@ TEST_P(LayerTest, DrawsTheSamePixelsAsAWindow) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, LayerTest, ::testing::Combine(::testing::Values("egl", "osmesa"), ::testing::Bool()));
+INSTANTIATE_TEST_SUITE_P(Backends, LayerTest,
+                         ::testing::Combine(::testing::Values("egl", "osmesa"), ::testing::Bool()));
 
 }  // namespace
 }  // namespace wall::tileserver

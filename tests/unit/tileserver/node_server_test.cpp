@@ -116,7 +116,8 @@ public:
     void expect(wire::FrameKind kind) {
         const auto frame = next();
         ASSERT_TRUE(frame);
-        EXPECT_EQ(frame->kind, kind) << std::string(reinterpret_cast<const char*>(frame->payload.data()), frame->payload.size());
+        EXPECT_EQ(frame->kind, kind) << std::string(reinterpret_cast<const char*>(frame->payload.data()),
+                                                    frame->payload.size());
     }
     std::string expect_error() {
         const auto frame = next();
@@ -136,7 +137,8 @@ protected:
         char name[] = "/tmp/wallgl-node-test-XXXXXX";
         folder_ = ::mkdtemp(name);
         config_.control_listen = {*net::Address::parse("unix:" + folder_ + "/walld.sock")};
-        config_.nodes = {{"n", config::Backend::egl, *net::Address::parse("unix:" + folder_ + "/n.sock"), {{"t", {0, 0, 64, 48}}}}};
+        config_.nodes = {
+            {"n", config::Backend::egl, *net::Address::parse("unix:" + folder_ + "/n.sock"), {{"t", {0, 0, 64, 48}}}}};
         walld_.emplace(config_.control_listen.front());
         auto server = NodeServer::open(io_.get_executor(), config_, config_.nodes.front());
         ASSERT_TRUE(server) << server.error().message;
@@ -180,7 +182,8 @@ protected:
         pack::Bind(buffer, 1, 1);
         glapi::pack_state(buffer, glstate::el::clear_color::id, &color, sizeof color);
         pack::Clear(body, GL_COLOR_BUFFER_BIT);
-        pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()), static_cast<std::uint32_t>(body.operand_bytes()));
+        pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()),
+                    static_cast<std::uint32_t>(body.operand_bytes()));
         buffer.append(body, {}, body.mark());
         pack::Swap(buffer, 1, frame);
         return buffer;
@@ -192,7 +195,8 @@ protected:
         walld_->send(request);
         const auto snapshot = walld_->wait_for(proto::Envelope::kSnapshot).snapshot();
         if (snapshot.request() != last_request_ || snapshot.rgb().size() != 64 * 48 * 3) return {};
-        return {static_cast<unsigned char>(snapshot.rgb()[0]), static_cast<unsigned char>(snapshot.rgb()[1]), static_cast<unsigned char>(snapshot.rgb()[2])};
+        return {static_cast<unsigned char>(snapshot.rgb()[0]), static_cast<unsigned char>(snapshot.rgb()[1]),
+                static_cast<unsigned char>(snapshot.rgb()[2])};
     }
     void stack_session(std::uint32_t session) {
         proto::Envelope stacking;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Objects of many sessions that all use the same few names: random programs in turns on one driver context draw what each
-// draws alone, and leave nothing behind in the driver.
+// Objects of many sessions that all use the same few names: random programs in turns on one driver context draw what
+// each draws alone, and leave nothing behind in the driver.
 #include <array>
 #include <cstring>
 #include <map>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kWidth = 40, kHeight = 32;
 constexpr geom::Rect kWindow{0, 0, kWidth, kHeight};
-constexpr std::uint32_t kNames = 3;     // of every kind: 1 to 3
+constexpr std::uint32_t kNames = 3;  // of every kind: 1 to 3
 constexpr std::uint32_t kContexts = 2;
 
 /// The same random numbers with every library.
@@ -84,13 +84,15 @@ private:
         std::vector<std::byte> image(8 * 8 * 4);
         for (auto& byte : image) byte = static_cast<std::byte>(random_.below(256));
         pack::TexImage(b, name, GL_TEXTURE_2D, 0, GL_RGBA, 8, 8, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, image);
-        pack::TexParameter(b, name, GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, random_.below(2) == 0 ? GL_NEAREST : GL_LINEAR, 0, 0, 0);
+        pack::TexParameter(b, name, GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER,
+                           random_.below(2) == 0 ? GL_NEAREST : GL_LINEAR, 0, 0, 0);
     }
     void define_run(wire::PackBuffer& b) {
         const std::uint32_t name = random_.name();
         wire::PackBuffer body;
         triangle(body);
-        pack::RunDefine(b, name, static_cast<std::uint32_t>(body.commands()), static_cast<std::uint32_t>(body.operand_bytes()), run_content(body));
+        pack::RunDefine(b, name, static_cast<std::uint32_t>(body.commands()),
+                        static_cast<std::uint32_t>(body.operand_bytes()), run_content(body));
         runs_.insert(name);
     }
     void delete_run(wire::PackBuffer& b) {
@@ -106,9 +108,12 @@ private:
             programs_.erase(name);
             return;
         }
-        constexpr std::array kSources = {"uniform vec4 tint; void main() { gl_FragColor = tint; }", "uniform vec4 tint; void main() { gl_FragColor = tint.bgra; }",
-                                         "uniform vec4 tint; void main() { gl_FragColor = fract(gl_FragCoord.xyxy / 16.0) * tint; }"};
-        const glapi::ProgramDefinition definition{{{GL_FRAGMENT_SHADER, true, kSources[random_.below(kSources.size())]}}, {}, {{1, "tint"}}};
+        constexpr std::array kSources = {
+            "uniform vec4 tint; void main() { gl_FragColor = tint; }",
+            "uniform vec4 tint; void main() { gl_FragColor = tint.bgra; }",
+            "uniform vec4 tint; void main() { gl_FragColor = fract(gl_FragCoord.xyxy / 16.0) * tint; }"};
+        const glapi::ProgramDefinition definition{
+            {{GL_FRAGMENT_SHADER, true, kSources[random_.below(kSources.size())]}}, {}, {{1, "tint"}}};
         pack::ProgramLink(b, 0, name, encode(definition));
         programs_.insert(name);
         tint(b, name);
@@ -130,16 +135,21 @@ private:
     }
 
     void change_state(Batch& batch) {
-        batch.set<el::color>(random_.color()).set<el::texture_2d_enabled>(random_.below(2)).set<el::texture_binding_2d>(random_.below(kNames + 1));
+        batch.set<el::color>(random_.color())
+            .set<el::texture_2d_enabled>(random_.below(2))
+            .set<el::texture_binding_2d>(random_.below(kNames + 1));
         batch.set<el::blend_enabled>(random_.below(2)).set<el::blend_func>({GL_ONE, GL_ONE, GL_ONE, GL_ZERO});
         batch.set<el::modelview>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, random_.place() / 2, random_.place() / 2, 0, 1});
-        batch.set<el::map_color>(random_.below(2)).set<el::map1_vertex_3>(random_.below(2)).set<el::depth_test>(random_.below(2));
+        batch.set<el::map_color>(random_.below(2))
+            .set<el::map1_vertex_3>(random_.below(2))
+            .set<el::depth_test>(random_.below(2));
         const std::uint32_t program = random_.below(kNames + 1);
         batch.set<el::current_program>(programs_.contains(program) ? program : 0);
     }
     void draw(wire::PackBuffer& b) {
         triangle(b);
-        if (!runs_.empty()) pack::RunCall(b, *std::next(runs_.begin(), random_.below(static_cast<std::uint32_t>(runs_.size()))));
+        if (!runs_.empty())
+            pack::RunCall(b, *std::next(runs_.begin(), random_.below(static_cast<std::uint32_t>(runs_.size()))));
         if (random_.below(4) == 0) pack::EvalMesh1(b, GL_LINE, 0, 8);
         if (random_.below(4) == 0) {
             std::array<std::byte, 4 * 4 * 4> image;
@@ -239,7 +249,8 @@ TEST_F(ObjectsTest, SessionsInTurnsDrawAsEachAlone) {
         turns.insert(turns.end(), scripts[i].batches().size(), i);
     }
     Random random(7);
-    for (std::size_t left = turns.size(); left > 1; --left) std::swap(turns[left - 1], turns[random.below(static_cast<std::uint32_t>(left))]);
+    for (std::size_t left = turns.size(); left > 1; --left)
+        std::swap(turns[left - 1], turns[random.below(static_cast<std::uint32_t>(left))]);
     std::vector<std::size_t> next(kSessions);
     for (const std::uint32_t who : turns) run(*sessions[who], scripts[who].batches()[next[who]++]);
     for (std::uint32_t i = 0; i < kSessions; ++i) {
@@ -253,7 +264,8 @@ TEST_F(ObjectsTest, SessionsInTurnsDrawAsEachAlone) {
 }
 
 TEST_F(ObjectsTest, ScriptsAreOfAllKinds) {
-    // The property means little if nothing is drawn: different seeds draw different pictures, and queries count something.
+    // The property means little if nothing is drawn: different seeds draw different pictures, and queries count
+    // something.
     const Outcome a = alone(Script(1, 12)), b = alone(Script(2, 12));
     EXPECT_GT(count_different(a.pixels, b.pixels), static_cast<std::size_t>(kWidth * kHeight / 4));
     std::uint64_t most = 0;
@@ -274,8 +286,10 @@ TEST_F(ObjectsTest, NamesOfASessionReachNoOther) {
     wire::PackBuffer body;
     pack::Begin(body, GL_POINTS);
     pack::End(body);
-    pack::RunDefine(made.buffer(), 1, static_cast<std::uint32_t>(body.commands()), static_cast<std::uint32_t>(body.operand_bytes()), run_content(body));
-    const glapi::ProgramDefinition definition{{{GL_FRAGMENT_SHADER, true, "uniform vec4 tint; void main() { gl_FragColor = tint; }"}}, {}, {}};
+    pack::RunDefine(made.buffer(), 1, static_cast<std::uint32_t>(body.commands()),
+                    static_cast<std::uint32_t>(body.operand_bytes()), run_content(body));
+    const glapi::ProgramDefinition definition{
+        {{GL_FRAGMENT_SHADER, true, "uniform vec4 tint; void main() { gl_FragColor = tint; }"}}, {}, {}};
     pack::ProgramLink(made.buffer(), 0, 1, encode(definition));
     owner->expect_run(made);
 
@@ -286,17 +300,25 @@ TEST_F(ObjectsTest, NamesOfASessionReachNoOther) {
         fill(batch);
         return !session->run(batch);
     };
-    EXPECT_TRUE(refused([](Batch& b) { b.block(1, [](auto& p) { pack::RunCall(p, 1); }); })) << "a run of another session";
+    EXPECT_TRUE(refused([](Batch& b) { b.block(1, [](auto& p) { pack::RunCall(p, 1); }); }))
+        << "a run of another session";
     const glstate::Vec4 red = {1, 0, 0, 1};
-    EXPECT_TRUE(refused([&](Batch& b) { pack::Uniform(b.buffer(), 1, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red))); })) << "a program of another session";
+    EXPECT_TRUE(refused([&](Batch& b) {
+        pack::Uniform(b.buffer(), 1, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red)));
+    })) << "a program of another session";
     // Drawing with and deleting another's names does nothing to them, nor does the driver's own number work as a name.
     const GLuint driver_name = owner->session.texture(ClientName(1), TextureTarget::t2d)->content->name();
     for (const std::uint32_t name : {1u, static_cast<std::uint32_t>(driver_name)}) {
         Batch batch;
-        batch.set<el::texture_2d_enabled>(1).set<el::texture_binding_2d>(name).set<el::color>({0, 0, 1, 1}).set<el::current_program>(1);
+        batch.set<el::texture_2d_enabled>(1)
+            .set<el::texture_binding_2d>(name)
+            .set<el::color>({0, 0, 1, 1})
+            .set<el::current_program>(1);
         batch.block(1, [](auto& p) {
             pack::Begin(p, GL_QUADS);
-            for (const auto& v : {std::array{-1.f, -1.f}, std::array{1.f, -1.f}, std::array{1.f, 1.f}, std::array{-1.f, 1.f}}) pack::Vertex2f(p, v[0], v[1]);
+            for (const auto& v :
+                 {std::array{-1.f, -1.f}, std::array{1.f, -1.f}, std::array{1.f, 1.f}, std::array{-1.f, 1.f}})
+                pack::Vertex2f(p, v[0], v[1]);
             pack::End(p);
         });
         pack::TexDelete(batch.buffer(), name);

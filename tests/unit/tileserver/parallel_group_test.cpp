@@ -68,19 +68,22 @@ TEST_F(TwoMembers, EndAFrameTogether) {
     EXPECT_TRUE(group_->finish_frames(*node_.node, members_[1]->session.work).empty());
     EXPECT_FALSE(members_[0]->session.surface(SurfaceId(1))->waiting_frame());
     members_[1]->expect_run(swap(1));
-    EXPECT_EQ(group_->finish_frames(*node_.node, members_[1]->session.work), (std::vector<FinishedFrame>{{SurfaceId(1), 1}}));
+    EXPECT_EQ(group_->finish_frames(*node_.node, members_[1]->session.work),
+              (std::vector<FinishedFrame>{{SurfaceId(1), 1}}));
     EXPECT_FALSE(group_->sync.waits(0));
     EXPECT_TRUE(members_[0]->frames.empty()) << "said once, by the group";
 }
 
 TEST_F(TwoMembers, MustMeanTheSameWindow) {
     members_[0]->open_surface(32, 32, kTile);
-    EXPECT_THAT(refusal(1, just([](auto& b) { pack::SurfaceCreate(b, 1, 0, 0, 24, 8, 16, 0); })), HasSubstr("different formats"));
+    EXPECT_THAT(refusal(1, just([](auto& b) { pack::SurfaceCreate(b, 1, 0, 0, 24, 8, 16, 0); })),
+                HasSubstr("different formats"));
 }
 
 TEST_F(TwoMembers, MustMeanTheSamePlace) {
     open_both();
-    EXPECT_THAT(refusal(1, just([](auto& b) { pack::SurfacePlace(b, 1, 1, 32, 32, 5, 5, 32, 32, 0); })), HasSubstr("different places"));
+    EXPECT_THAT(refusal(1, just([](auto& b) { pack::SurfacePlace(b, 1, 1, 32, 32, 5, 5, 32, 32, 0); })),
+                HasSubstr("different places"));
 }
 
 TEST_F(TwoMembers, AMemberMayCloseTheWindow) {
@@ -96,8 +99,9 @@ TEST_F(TwoMembers, AMemberMayCloseTheWindow) {
 
 TEST_F(TwoMembers, NothingStandsBehindWhatMayHold) {
     open_both();
-    for (const auto& hold : std::vector<std::function<void(wire::PackBuffer&)>>{[](auto& b) { pack::BarrierExec(b, 1); }, [](auto& b) { pack::SemaphoreP(b, 1); },
-                                                                                 [](auto& b) { pack::Swap(b, 1, 1); }, [](auto& b) { pack::Leave(b); }}) {
+    for (const auto& hold : std::vector<std::function<void(wire::PackBuffer&)>>{
+             [](auto& b) { pack::BarrierExec(b, 1); }, [](auto& b) { pack::SemaphoreP(b, 1); },
+             [](auto& b) { pack::Swap(b, 1, 1); }, [](auto& b) { pack::Leave(b); }}) {
         Batch batch;
         hold(batch.buffer());
         pack::SemaphoreV(batch.buffer(), 1);

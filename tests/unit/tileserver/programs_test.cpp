@@ -21,14 +21,17 @@ using namespace std::string_literals;
 std::string patched(const std::string& source) { return patch_fragment_shader(source).source; }
 
 TEST(ShaderPatch, LeavesOthersAlone) {
-    const std::string source = "// gl_FragCoord\nvoid main() { /* gl_FragCoord */ float my_gl_FragCoord = 1.0; gl_FragColor = vec4(my_gl_FragCoord); }\n";
+    const std::string source =
+        "// gl_FragCoord\nvoid main() { /* gl_FragCoord */ float my_gl_FragCoord = 1.0; gl_FragColor = "
+        "vec4(my_gl_FragCoord); }\n";
     EXPECT_EQ(patched(source), source);
     EXPECT_FALSE(patch_fragment_shader(source).reads_window);
 }
 
 TEST(ShaderPatch, DeclaresBehindVersionAndExtensions) {
     const std::string source =
-        "#version 120\n#ifdef GL_ARB_x\n#extension GL_ARB_x : enable\n#endif\n#ifdef GL_ES\nprecision mediump float;\n#endif\n"
+        "#version 120\n#ifdef GL_ARB_x\n#extension GL_ARB_x : enable\n#endif\n#ifdef GL_ES\nprecision mediump "
+        "float;\n#endif\n"
         "void main() { gl_FragColor = gl_FragCoord; }";
     const std::string out = patched(source);
     const auto declared = out.find("uniform vec4 wallgl_Window;");
@@ -38,14 +41,19 @@ TEST(ShaderPatch, DeclaresBehindVersionAndExtensions) {
 }
 
 TEST(ShaderPatch, KeepsRedeclarations) {
-    const std::string out = patched("#version 150\nlayout(origin_upper_left) in vec4 gl_FragCoord;\nout vec4 c;\nvoid main() { c = gl_FragCoord; }\n");
+    const std::string out = patched(
+        "#version 150\nlayout(origin_upper_left) in vec4 gl_FragCoord;\nout vec4 c;\nvoid main() { c = gl_FragCoord; "
+        "}\n");
     EXPECT_NE(out.find("in vec4 gl_FragCoord;"), out.npos);
     EXPECT_NE(out.find("c = wallgl_FragCoord;"), out.npos);
-    EXPECT_TRUE(patch_fragment_shader("layout(origin_upper_left) in vec4 gl_FragCoord; void main() { vec4 a = gl_FragCoord; }").upper_left);
+    EXPECT_TRUE(
+        patch_fragment_shader("layout(origin_upper_left) in vec4 gl_FragCoord; void main() { vec4 a = gl_FragCoord; }")
+            .upper_left);
 }
 
 TEST(ShaderPatch, ReplacesInExpressions) {
-    EXPECT_NE(patched("void main() { gl_FragColor = vec4(gl_FragCoord.xy, vec2(1e2 * gl_FragCoord)); }").find("vec4(wallgl_FragCoord.xy, vec2(1e2 * wallgl_FragCoord))"),
+    EXPECT_NE(patched("void main() { gl_FragColor = vec4(gl_FragCoord.xy, vec2(1e2 * gl_FragCoord)); }")
+                  .find("vec4(wallgl_FragCoord.xy, vec2(1e2 * wallgl_FragCoord))"),
               std::string::npos);
 }
 
@@ -55,7 +63,9 @@ TEST(ShaderPatch, ReplacesInMacrosAndGoesOverContinuedLines) {
 }
 
 TEST(ShaderPatch, TakesAnyBytes) {
-    for (const std::string& source : {""s, "#"s, "/*"s, "\\"s, "#version"s, "gl_FragCoord"s, "#if\ngl_FragCoord"s, "1e"s, "\n#\n#endif\n"s}) patched(source);
+    for (const std::string& source :
+         {""s, "#"s, "/*"s, "\\"s, "#version"s, "gl_FragCoord"s, "#if\ngl_FragCoord"s, "1e"s, "\n#\n#endif\n"s})
+        patched(source);
 }
 
 // ---- the driver ----
@@ -84,7 +94,8 @@ protected:
         EXPECT_TRUE(reflection);
         return reflection.value_or(glapi::ProgramReflection{});
     }
-    Result<void> set(std::uint32_t program, std::uint32_t location, GLenum type, std::uint32_t count, const std::vector<float>& values) {
+    Result<void> set(std::uint32_t program, std::uint32_t location, GLenum type, std::uint32_t count,
+                     const std::vector<float>& values) {
         return programs_->set_uniform(ClientName(program), location, type, count, std::as_bytes(std::span(values)));
     }
     test::Pixels draw(std::uint32_t program, const LayerGeometry& geometry) {
@@ -104,25 +115,31 @@ protected:
     std::unique_ptr<Programs> programs_;
 };
 
-constexpr const char* kVertex = "attribute vec3 place; void main() { gl_Position = gl_Vertex + vec4(place * 0.0, 0.0); }";
+constexpr const char* kVertex =
+    "attribute vec3 place; void main() { gl_Position = gl_Vertex + vec4(place * 0.0, 0.0); }";
 
 glapi::ProgramDefinition with_fragment(const std::string& fragment) {
     return {{{GL_VERTEX_SHADER, true, kVertex}, {GL_FRAGMENT_SHADER, true, fragment}}, {{3, "place"}}, {}};
 }
 
 TEST_F(ProgramsTest, TellsHowCompilingWent) {
-    auto good = glapi::decode_compile_result(*programs_->compile(GL_VERTEX_SHADER, std::as_bytes(std::span(std::string_view(kVertex)))));
+    auto good = glapi::decode_compile_result(
+        *programs_->compile(GL_VERTEX_SHADER, std::as_bytes(std::span(std::string_view(kVertex)))));
     EXPECT_TRUE(good->compiled);
-    auto bad = glapi::decode_compile_result(*programs_->compile(GL_FRAGMENT_SHADER, std::as_bytes(std::span(std::string_view("nonsense")))));
+    auto bad = glapi::decode_compile_result(
+        *programs_->compile(GL_FRAGMENT_SHADER, std::as_bytes(std::span(std::string_view("nonsense")))));
     EXPECT_FALSE(bad->compiled);
     EXPECT_FALSE(bad->log.empty());
     EXPECT_FALSE(programs_->compile(GL_FLOAT, {}));
 }
 
 TEST_F(ProgramsTest, ReflectsUniformsAndAttributes) {
-    const auto r = link(1, with_fragment("#version 120\nuniform float a = 2.5; uniform vec3 many[3]; uniform sampler2D image; uniform bool on;\n"
-                                         "void main() { gl_FragColor = vec4(many[0] + many[2] * a, on ? 1.0 : 0.0) * texture2D(image, gl_FragCoord.xy) *"
-                                         " gl_LightSource[0].diffuse; }"));
+    const auto r = link(
+        1, with_fragment(
+               "#version 120\nuniform float a = 2.5; uniform vec3 many[3]; uniform sampler2D image; uniform bool on;\n"
+               "void main() { gl_FragColor = vec4(many[0] + many[2] * a, on ? 1.0 : 0.0) * texture2D(image, "
+               "gl_FragCoord.xy) *"
+               " gl_LightSource[0].diffuse; }"));
     ASSERT_TRUE(r.linked) << r.log;
     const auto find = [&](const std::string& name) {
         for (const auto& u : r.uniforms)
@@ -151,7 +168,8 @@ TEST_F(ProgramsTest, AProgramThatDoesNotLinkLeavesTheEarlierOne) {
 }
 
 TEST_F(ProgramsTest, UniformsGoByTheClientsLocations) {
-    glapi::ProgramDefinition definition = with_fragment("uniform vec3 low; uniform float high[2];\nvoid main() { gl_FragColor = vec4(low.x, high[0], high[1], 1.0); }");
+    glapi::ProgramDefinition definition = with_fragment(
+        "uniform vec3 low; uniform float high[2];\nvoid main() { gl_FragColor = vec4(low.x, high[0], high[1], 1.0); }");
     definition.uniforms = {{2, "high"}, {1, "gone"}, {1, "low"}};  // another node listed them so
     ASSERT_TRUE(link(1, definition).linked);
     EXPECT_TRUE(set(1, 0, GL_FLOAT, 2, {0.2f, 0.4f}));
@@ -173,10 +191,13 @@ TEST_F(ProgramsTest, RefusesWhatNoClientSends) {
     EXPECT_FALSE(set(1, 0, GL_FLOAT_VEC4, 1, {0, 0, 0}));
     EXPECT_FALSE(set(1, 0, 0x1234, 1, {0}));
     const auto bytes = encode(with_fragment("void main() {}"));
-    for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_FALSE(programs_->link(ClientName(3), std::span(bytes).first(n), false)) << n;
+    for (std::size_t n = 0; n < bytes.size(); ++n)
+        EXPECT_FALSE(programs_->link(ClientName(3), std::span(bytes).first(n), false)) << n;
 }
 
-constexpr const char* kStripes = "void main() { gl_FragColor = vec4(fract(gl_FragCoord.x / 16.0), fract(gl_FragCoord.y / 16.0), gl_FragCoord.x / 64.0, 1.0); }";
+constexpr const char* kStripes =
+    "void main() { gl_FragColor = vec4(fract(gl_FragCoord.x / 16.0), fract(gl_FragCoord.y / 16.0), gl_FragCoord.x / "
+    "64.0, 1.0); }";
 
 TEST_F(ProgramsTest, FragCoordIsTheWindows) {
     ASSERT_TRUE(link(1, with_fragment(kStripes)).linked);
@@ -186,12 +207,16 @@ TEST_F(ProgramsTest, FragCoordIsTheWindows) {
     const auto piece = draw(1, {surface, part, 48, 40});
     const int left = part.x - surface.x, bottom = surface.bottom() - part.bottom();
     for (int y = 0; y < part.height; ++y)
-        EXPECT_EQ(std::memcmp(&piece[static_cast<std::size_t>(y * part.width) * 4], &whole[static_cast<std::size_t>((y + bottom) * 48 + left) * 4],
-                              static_cast<std::size_t>(part.width) * 4), 0) << "row " << y;
+        EXPECT_EQ(std::memcmp(&piece[static_cast<std::size_t>(y * part.width) * 4],
+                              &whole[static_cast<std::size_t>((y + bottom) * 48 + left) * 4],
+                              static_cast<std::size_t>(part.width) * 4),
+                  0)
+            << "row " << y;
 }
 
 TEST_F(ProgramsTest, FragCoordIsScaledWithTheWindow) {
-    ASSERT_TRUE(link(1, with_fragment("void main() { gl_FragColor = vec4(gl_FragCoord.xy / 32.0, 0.0, 1.0); }")).linked);
+    ASSERT_TRUE(
+        link(1, with_fragment("void main() { gl_FragColor = vec4(gl_FragCoord.xy / 32.0, 0.0, 1.0); }")).linked);
     const geom::Rect surface{0, 0, 64, 64};
     const auto pixels = draw(1, {surface, surface, 32, 32});
     const std::uint8_t* last = &pixels[(64 * 64 - 1) * 4];

@@ -15,12 +15,28 @@
 namespace wall::tileserver::test {
 
 ReferenceWindow::ReferenceWindow(int width, int height, bool alpha) : width_(width), height_(height) {
-    const auto get_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
+    const auto get_display =
+        reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
     display_ = get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
     WALL_ASSERT(eglInitialize(display_, nullptr, nullptr) == EGL_TRUE);
     eglBindAPI(EGL_OPENGL_API);
-    const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8,
-                             EGL_BLUE_SIZE, 8, EGL_ALPHA_SIZE, alpha ? 8 : 0, EGL_DEPTH_SIZE, 24, EGL_STENCIL_SIZE, 8, EGL_NONE};
+    const EGLint wanted[] = {EGL_SURFACE_TYPE,
+                             EGL_PBUFFER_BIT,
+                             EGL_RENDERABLE_TYPE,
+                             EGL_OPENGL_BIT,
+                             EGL_RED_SIZE,
+                             8,
+                             EGL_GREEN_SIZE,
+                             8,
+                             EGL_BLUE_SIZE,
+                             8,
+                             EGL_ALPHA_SIZE,
+                             alpha ? 8 : 0,
+                             EGL_DEPTH_SIZE,
+                             24,
+                             EGL_STENCIL_SIZE,
+                             8,
+                             EGL_NONE};
     EGLConfig configs[64];
     EGLint count = 0;
     eglChooseConfig(display_, wanted, configs, 64, &count);
@@ -34,8 +50,13 @@ ReferenceWindow::ReferenceWindow(int width, int height, bool alpha) : width_(wid
     WALL_ASSERT(chosen != nullptr);
     const EGLint size[] = {EGL_WIDTH, width, EGL_HEIGHT, height, EGL_NONE};
     surface_ = eglCreatePbufferSurface(display_, chosen, size);
-    const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                              EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT, EGL_NONE};
+    const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION,
+                              4,
+                              EGL_CONTEXT_MINOR_VERSION,
+                              5,
+                              EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                              EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT,
+                              EGL_NONE};
     context_ = eglCreateContext(display_, chosen, EGL_NO_CONTEXT, version);
     WALL_ASSERT(context_ != EGL_NO_CONTEXT);
     make_current();
@@ -48,7 +69,9 @@ ReferenceWindow::~ReferenceWindow() {
     eglDestroySurface(display_, surface_);
 }
 
-void ReferenceWindow::make_current() { WALL_ASSERT(eglMakeCurrent(display_, surface_, surface_, context_) == EGL_TRUE); }
+void ReferenceWindow::make_current() {
+    WALL_ASSERT(eglMakeCurrent(display_, surface_, surface_, context_) == EGL_TRUE);
+}
 
 Pixels ReferenceWindow::read() const { return read_pixels(gl_, width_, height_); }
 
@@ -65,15 +88,29 @@ Function osmesa(const char* name) {
 std::unique_ptr<AccumReference> AccumReference::open(int width, int height) {
     const auto create = osmesa<decltype(&OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs");
     if (create == nullptr) return nullptr;
-    const int wanted[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_STENCIL_BITS, 8, OSMESA_ACCUM_BITS, 16,
-                          OSMESA_PROFILE, OSMESA_COMPAT_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 0, 0};
+    const int wanted[] = {OSMESA_FORMAT,
+                          OSMESA_RGBA,
+                          OSMESA_DEPTH_BITS,
+                          24,
+                          OSMESA_STENCIL_BITS,
+                          8,
+                          OSMESA_ACCUM_BITS,
+                          16,
+                          OSMESA_PROFILE,
+                          OSMESA_COMPAT_PROFILE,
+                          OSMESA_CONTEXT_MAJOR_VERSION,
+                          3,
+                          OSMESA_CONTEXT_MINOR_VERSION,
+                          0,
+                          0};
     std::unique_ptr<AccumReference> window(new AccumReference);
     window->width_ = width;
     window->height_ = height;
     window->memory_.resize(static_cast<std::size_t>(width) * height * 4);
     window->context_ = create(wanted, nullptr);
     const auto make_current = osmesa<decltype(&OSMesaMakeCurrent)>("OSMesaMakeCurrent");
-    WALL_ASSERT(make_current(static_cast<OSMesaContext>(window->context_), window->memory_.data(), GL_UNSIGNED_BYTE, width, height) == GL_TRUE);
+    WALL_ASSERT(make_current(static_cast<OSMesaContext>(window->context_), window->memory_.data(), GL_UNSIGNED_BYTE,
+                             width, height) == GL_TRUE);
     const auto get = osmesa<decltype(&OSMesaGetProcAddress)>("OSMesaGetProcAddress");
     window->gl_.load([get](const char* name) { return reinterpret_cast<void*>(get(name)); });
     return window;

@@ -32,7 +32,8 @@ private:
     Gl gl_;
 };
 
-/// Plain Mesa with an accumulation buffer, which no EGL configuration has: off-screen Mesa. Null where that is not installed.
+/// Plain Mesa with an accumulation buffer, which no EGL configuration has: off-screen Mesa. Null where that is not
+/// installed.
 class AccumReference {
 public:
     static std::unique_ptr<AccumReference> open(int width, int height);

@@ -29,16 +29,19 @@ void lines_and_points(const Gl& gl) {
         gl.LineWidth(width);
         gl.PointSize(width * 2);
         gl.Begin(GL_LINE_STRIP);
-        for (int i = 0; i < 40; ++i) gl.Vertex2f(-0.95f + 0.0487f * static_cast<float>(i), 0.8f * std::sin(static_cast<float>(i) * width));
+        for (int i = 0; i < 40; ++i)
+            gl.Vertex2f(-0.95f + 0.0487f * static_cast<float>(i), 0.8f * std::sin(static_cast<float>(i) * width));
         gl.End();
         gl.Begin(GL_POINTS);
-        for (int i = 0; i < 40; ++i) gl.Vertex2f(-0.93f + 0.0471f * static_cast<float>(i), 0.9f * std::cos(static_cast<float>(i) * width));
+        for (int i = 0; i < 40; ++i)
+            gl.Vertex2f(-0.93f + 0.0471f * static_cast<float>(i), 0.9f * std::cos(static_cast<float>(i) * width));
         gl.End();
     }
     gl.Enable(GL_LINE_STIPPLE);
     gl.LineStipple(2, 0xf3c5);
     gl.Begin(GL_LINE_LOOP);
-    for (int i = 0; i < 7; ++i) gl.Vertex2f(0.7f * std::cos(static_cast<float>(i)), 0.7f * std::sin(static_cast<float>(i)));
+    for (int i = 0; i < 7; ++i)
+        gl.Vertex2f(0.7f * std::cos(static_cast<float>(i)), 0.7f * std::sin(static_cast<float>(i)));
     gl.End();
     gl.Disable(GL_LINE_STIPPLE);
     gl.Enable(GL_LINE_SMOOTH);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Equal content of several sessions is one object of the driver, and nobody can see it: not in the picture when another one
-// changes it, not by lying about a name.
+// Equal content of several sessions is one object of the driver, and nobody can see it: not in the picture when another
+// one changes it, not by lying about a name.
 #include <array>
 #include <deque>
 #include <functional>
@@ -91,7 +91,8 @@ constexpr geom::Rect kWindow{0, 0, kWidth, kHeight};
 class Content {
 public:
     explicit Content(GLenum target = GL_TEXTURE_2D) : texture_(1, 1, target) {}
-    Content& level(GLint number, GLint internal_format, int size, GLenum format, GLenum type, std::uint32_t seed, unsigned face = 0) {
+    Content& level(GLint number, GLint internal_format, int size, GLenum format, GLenum type, std::uint32_t seed,
+                   unsigned face = 0) {
         client::TextureLevel& level = texture_.level_at(face, number);
         const bool compressed = format == 0;
         level.internal_format = internal_format;
@@ -101,7 +102,8 @@ public:
         level.type = level.data_type = type;
         level.compressed = compressed;
         level.content = client::LevelContent::stored;
-        const std::size_t bytes = compressed ? static_cast<std::size_t>(size / 4 * (size / 4)) * 8 : glapi::image_bytes(format, type, size, size, level.depth).value();
+        const std::size_t bytes = compressed ? static_cast<std::size_t>(size / 4 * (size / 4)) * 8
+                                             : glapi::image_bytes(format, type, size, size, level.depth).value();
         level.pixels.resize(bytes);
         std::mt19937 random(seed);
         for (auto& byte : level.pixels) byte = static_cast<std::byte>(random() & (type == GL_FLOAT ? 0x3f : 0xff));
@@ -180,7 +182,8 @@ protected:
         batch.block(1, [&](auto& b) {
             pack::Clear(b, GL_COLOR_BUFFER_BIT);
             pack::Begin(b, GL_QUADS);
-            for (const auto& v : {std::array{-1.f, -1.f}, std::array{1.f, -1.f}, std::array{1.f, 1.f}, std::array{-1.f, 1.f}}) {
+            for (const auto& v :
+                 {std::array{-1.f, -1.f}, std::array{1.f, -1.f}, std::array{1.f, 1.f}, std::array{-1.f, 1.f}}) {
                 pack::TexCoord3f(b, v[0] * 1.5f, v[1] * 1.5f, target == GL_TEXTURE_CUBE_MAP ? 1.0f : v[0] / 2);
                 pack::Vertex2f(b, v[0], v[1]);
             }
@@ -199,7 +202,9 @@ protected:
     TestNode node_;
 };
 
-Content plain(std::uint32_t seed) { return Content().level(0, GL_RGBA, 16, GL_RGBA, GL_UNSIGNED_BYTE, seed).parameter(GL_NEAREST); }
+Content plain(std::uint32_t seed) {
+    return Content().level(0, GL_RGBA, 16, GL_RGBA, GL_UNSIGNED_BYTE, seed).parameter(GL_NEAREST);
+}
 
 TEST_F(SharingTest, EqualContentIsOneObject) {
     const auto a = open(1), b = open(2), c = open(3);
@@ -244,20 +249,33 @@ struct Case {
 TEST_F(SharingTest, AChangeIsOnlyOnesOwn) {
     std::vector<Case> cases;
     cases.push_back({"RGBA8", plain(3)});
-    cases.push_back({"GL_RGB of bytes", Content().level(0, GL_RGB, 16, GL_RGB, GL_UNSIGNED_BYTE, 4).parameter(GL_LINEAR)});
-    cases.push_back({"BGRA", Content().level(0, GL_RGBA8, 16, GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV, 5).parameter(GL_LINEAR)});
+    cases.push_back(
+        {"GL_RGB of bytes", Content().level(0, GL_RGB, 16, GL_RGB, GL_UNSIGNED_BYTE, 4).parameter(GL_LINEAR)});
+    cases.push_back(
+        {"BGRA", Content().level(0, GL_RGBA8, 16, GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV, 5).parameter(GL_LINEAR)});
     cases.push_back({"565", Content().level(0, GL_RGB, 16, GL_RGB, GL_UNSIGNED_SHORT_5_6_5, 6).parameter(GL_NEAREST)});
-    cases.push_back({"luminance alpha", Content().level(0, GL_LUMINANCE_ALPHA, 16, GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE, 7).parameter(GL_NEAREST)});
-    cases.push_back({"intensity", Content().level(0, GL_INTENSITY8, 16, GL_LUMINANCE, GL_UNSIGNED_BYTE, 8).parameter(GL_NEAREST)});
+    cases.push_back(
+        {"luminance alpha",
+         Content().level(0, GL_LUMINANCE_ALPHA, 16, GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE, 7).parameter(GL_NEAREST)});
+    cases.push_back(
+        {"intensity", Content().level(0, GL_INTENSITY8, 16, GL_LUMINANCE, GL_UNSIGNED_BYTE, 8).parameter(GL_NEAREST)});
     cases.push_back({"one number", Content().level(0, 1, 16, GL_RED, GL_UNSIGNED_BYTE, 9).parameter(GL_NEAREST)});
     cases.push_back({"float", Content().level(0, GL_RGBA32F, 16, GL_RGBA, GL_FLOAT, 10).parameter(GL_NEAREST)});
     cases.push_back({"S3TC", Content().level(0, GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 16, 0, 0, 11).parameter(GL_NEAREST)});
-    cases.push_back({"all levels", Content().level(0, GL_RGBA, 8, GL_RGBA, GL_UNSIGNED_BYTE, 12).level(1, GL_RGBA, 4, GL_RGBA, GL_UNSIGNED_BYTE, 13)
-                                       .level(2, GL_RGBA, 2, GL_RGBA, GL_UNSIGNED_BYTE, 14).level(3, GL_RGBA, 1, GL_RGBA, GL_UNSIGNED_BYTE, 15)
+    cases.push_back({"all levels", Content()
+                                       .level(0, GL_RGBA, 8, GL_RGBA, GL_UNSIGNED_BYTE, 12)
+                                       .level(1, GL_RGBA, 4, GL_RGBA, GL_UNSIGNED_BYTE, 13)
+                                       .level(2, GL_RGBA, 2, GL_RGBA, GL_UNSIGNED_BYTE, 14)
+                                       .level(3, GL_RGBA, 1, GL_RGBA, GL_UNSIGNED_BYTE, 15)
                                        .parameter(GL_NEAREST_MIPMAP_NEAREST)});
-    cases.push_back({"incomplete", Content().level(0, GL_RGBA, 16, GL_RGBA, GL_UNSIGNED_BYTE, 16).level(3, GL_RGBA, 7, GL_RGBA, GL_UNSIGNED_BYTE, 17)});
-    cases.push_back({"generated", Content().level(0, GL_RGBA, 64, GL_RGBA, GL_UNSIGNED_BYTE, 18).parameter(GL_LINEAR_MIPMAP_LINEAR).mipmaps()});
-    cases.push_back({"3D", Content(GL_TEXTURE_3D).level(0, GL_RGBA, 8, GL_RGBA, GL_UNSIGNED_BYTE, 19).parameter(GL_LINEAR)});
+    cases.push_back({"incomplete", Content()
+                                       .level(0, GL_RGBA, 16, GL_RGBA, GL_UNSIGNED_BYTE, 16)
+                                       .level(3, GL_RGBA, 7, GL_RGBA, GL_UNSIGNED_BYTE, 17)});
+    cases.push_back(
+        {"generated",
+         Content().level(0, GL_RGBA, 64, GL_RGBA, GL_UNSIGNED_BYTE, 18).parameter(GL_LINEAR_MIPMAP_LINEAR).mipmaps()});
+    cases.push_back(
+        {"3D", Content(GL_TEXTURE_3D).level(0, GL_RGBA, 8, GL_RGBA, GL_UNSIGNED_BYTE, 19).parameter(GL_LINEAR)});
     Content cube(GL_TEXTURE_CUBE_MAP);
     for (unsigned face = 0; face < 6; ++face) cube.level(0, GL_RGB, 8, GL_RGB, GL_UNSIGNED_BYTE, 20 + face, face);
     cases.push_back({"cube", cube.parameter(GL_LINEAR)});
@@ -296,7 +314,8 @@ TEST_F(SharingTest, TheOnlyOneChangesItInPlace) {
     define(*a, plain(1));
     const GLuint name = driver_name(*a);
     Batch change;
-    pack::TexSubImage(change.buffer(), 1, GL_TEXTURE_2D, 0, 3, 3, 0, 1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, std::array<std::byte, 4>{});
+    pack::TexSubImage(change.buffer(), 1, GL_TEXTURE_2D, 0, 3, 3, 0, 1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE,
+                      std::array<std::byte, 4>{});
     a->expect_run(change);
     EXPECT_EQ(driver_name(*a), name);
     EXPECT_EQ(ask(*b, plain(1)), Said::send) << "it is not that content any more";
@@ -376,12 +395,14 @@ TEST_F(SharingTest, RunsAreShared) {
     wire::PackBuffer body;
     pack::Color3f(body, 0, 1, 0);
     pack::Begin(body, GL_QUADS);
-    for (const auto& v : {std::array{-1.f, -1.f}, std::array{1.f, -1.f}, std::array{1.f, 1.f}, std::array{-1.f, 1.f}}) pack::Vertex2f(body, v[0], v[1]);
+    for (const auto& v : {std::array{-1.f, -1.f}, std::array{1.f, -1.f}, std::array{1.f, 1.f}, std::array{-1.f, 1.f}})
+        pack::Vertex2f(body, v[0], v[1]);
     pack::End(body);
     std::vector<std::byte> content(wire::padded4(body.commands()) - body.commands());
     content.insert(content.end(), body.opcodes().begin(), body.opcodes().end());
     content.insert(content.end(), body.operands().begin(), body.operands().end());
-    const auto commands = static_cast<std::uint32_t>(body.commands()), bytes = static_cast<std::uint32_t>(body.operand_bytes());
+    const auto commands = static_cast<std::uint32_t>(body.commands()),
+               bytes = static_cast<std::uint32_t>(body.operand_bytes());
     glapi::ContentHash hash;
     hash.RunDefine(commands, bytes, content);
     const auto key = hash.finish();
@@ -422,9 +443,11 @@ TEST_F(SharingTest, SessionsInTurnsDrawAsEachAlone) {
         Batch batch;
         if (act.what == Act::change) {
             const std::vector<std::byte> part(16, static_cast<std::byte>(act.seed * 40));
-            pack::TexSubImage(batch.buffer(), 1, GL_TEXTURE_2D, 0, static_cast<int>(act.seed % 12), 2, 0, 2, 2, 1, GL_RGBA, GL_UNSIGNED_BYTE, part);
+            pack::TexSubImage(batch.buffer(), 1, GL_TEXTURE_2D, 0, static_cast<int>(act.seed % 12), 2, 0, 2, 2, 1,
+                              GL_RGBA, GL_UNSIGNED_BYTE, part);
         } else if (act.what == Act::recolor) {
-            pack::TexParameter(batch.buffer(), 1, GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, act.seed % 2 != 0 ? GL_NEAREST : GL_LINEAR, 0, 0, 0);
+            pack::TexParameter(batch.buffer(), 1, GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER,
+                               act.seed % 2 != 0 ? GL_NEAREST : GL_LINEAR, 0, 0, 0);
         } else {
             pack::TexDelete(batch.buffer(), 1);
         }
@@ -489,7 +512,8 @@ TEST_F(SharingTest, SessionsInTurnsDrawAsEachAlone) {
     }
     EXPECT_GT(held, 10);
     EXPECT_GT(waited, 0);
-    for (std::uint32_t i = 0; i < kSessions; ++i) EXPECT_EQ(count_different(picture(*sessions[i]), expected[i]), 0u) << "session " << i;
+    for (std::uint32_t i = 0; i < kSessions; ++i)
+        EXPECT_EQ(count_different(picture(*sessions[i]), expected[i]), 0u) << "session " << i;
 }
 
 }  // namespace

@@ -17,10 +17,12 @@ TestNode::TestNode(std::string_view backend) : backend_(open_backend(backend)) {
 
 TestNode::~TestNode() = default;
 
-void TestSession::open_surface(int window_width, int window_height, const geom::Rect& rect, std::uint32_t context, bool alpha) {
+void TestSession::open_surface(int window_width, int window_height, const geom::Rect& rect, std::uint32_t context,
+                               bool alpha) {
     Batch batch(context);
     pack::SurfaceCreate(batch.buffer(), 1, 1, alpha ? 8 : 0, 24, 8, 16, 0);
-    pack::SurfacePlace(batch.buffer(), 1, 1, static_cast<std::uint32_t>(window_width), static_cast<std::uint32_t>(window_height), rect.x, rect.y,
+    pack::SurfacePlace(batch.buffer(), 1, 1, static_cast<std::uint32_t>(window_width),
+                       static_cast<std::uint32_t>(window_height), rect.x, rect.y,
                        static_cast<std::uint32_t>(rect.width), static_cast<std::uint32_t>(rect.height), 0);
     pack::Bind(batch.buffer(), 1, 1);
     batch.set<el::viewport>({0, 0, window_width, window_height});

@@ -34,8 +34,8 @@ public:
     Batch& block(std::uint64_t tiles, Draw&& draw) {
         wire::PackBuffer body;
         draw(body);
-        pack::Block(buffer_, static_cast<std::uint32_t>(tiles), static_cast<std::uint32_t>(tiles >> 32), static_cast<std::uint32_t>(body.commands()),
-                    static_cast<std::uint32_t>(body.operand_bytes()));
+        pack::Block(buffer_, static_cast<std::uint32_t>(tiles), static_cast<std::uint32_t>(tiles >> 32),
+                    static_cast<std::uint32_t>(body.commands()), static_cast<std::uint32_t>(body.operand_bytes()));
         buffer_.append(body, {}, body.mark());
         return *this;
     }
@@ -63,7 +63,8 @@ public:
         EXPECT_TRUE(done) << done.error().message;
     }
     /// A double-buffered surface 1 of the given window at a place on the canvas, bound to context 1.
-    void open_surface(int window_width, int window_height, const geom::Rect& rect, std::uint32_t context = 1, bool alpha = false);
+    void open_surface(int window_width, int window_height, const geom::Rect& rect, std::uint32_t context = 1,
+                      bool alpha = false);
     /// RGBA of the back buffer on one tile, bottom row first, the part (x, y, width, height) of the window.
     Pixels read(std::uint32_t slot, const geom::Rect& part, std::uint32_t context = 1);
 

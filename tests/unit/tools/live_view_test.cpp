@@ -28,7 +28,10 @@ public:
     ~ScriptedFeed() override { --script_.open; }
     Result<std::optional<FeedMessage>> next(std::chrono::milliseconds) override {
         if (script_.broken) return fail("the stream ended");
-        if (!std::exchange(told_, true)) return FeedMessage{false, R"({"stream": 0, "codec": "raw", "width": 2, "height": 1, "background": "#000000", "parts": []})"};
+        if (!std::exchange(told_, true))
+            return FeedMessage{
+                false,
+                R"({"stream": 0, "codec": "raw", "width": 2, "height": 1, "background": "#000000", "parts": []})"};
         std::this_thread::sleep_for(1ms);
         return std::nullopt;
     }

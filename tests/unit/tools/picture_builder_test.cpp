@@ -14,20 +14,30 @@ using ::testing::HasSubstr;
 
 constexpr std::uint32_t kBackground = 0x204060ff;  // red first, as pixels are written below
 
-json part(const char* tile, const geom::Rect& at, bool away = false) { return {{"tile", tile}, {"rect", {at.x, at.y, at.width, at.height}}, {"away", away}}; }
+json part(const char* tile, const geom::Rect& at, bool away = false) {
+    return {{"tile", tile}, {"rect", {at.x, at.y, at.width, at.height}}, {"away", away}};
+}
 
 class PictureBuilderTest : public ::testing::Test {
 protected:
     Result<void> tell(json text) { return builder_.take_text(text.dump()); }
     Result<void> parts(std::vector<json> list, std::uint32_t width = 5, std::uint32_t height = 2) {
-        return tell({{"stream", 0}, {"codec", "raw"}, {"layout", "rgba"}, {"width", width}, {"height", height}, {"shows", {0, 0, width, height}}, {"background", "#204060"}, {"parts", list}});
+        return tell({{"stream", 0},
+                     {"codec", "raw"},
+                     {"layout", "rgba"},
+                     {"width", width},
+                     {"height", height},
+                     {"shows", {0, 0, width, height}},
+                     {"background", "#204060"},
+                     {"parts", list}});
     }
     Result<void> header(int number) { return tell({{"stream", 0}, {"part", number}, {"header", ""}}); }
     /// All of one colour, 0xRRGGBBAA.
     Result<void> frame(std::uint32_t number, std::uint32_t width, std::uint32_t height, std::uint32_t color) {
         const codec::StreamFormat format{width, height, codec::PixelLayout::rgba, false};
         codec::Picture picture(format);
-        for (std::size_t i = 0; i < picture.bytes().size(); ++i) picture.bytes()[i] = static_cast<std::byte>(color >> (24 - 8 * (i % 4)));
+        for (std::size_t i = 0; i < picture.bytes().size(); ++i)
+            picture.bytes()[i] = static_cast<std::byte>(color >> (24 - 8 * (i % 4)));
         std::vector<std::byte> packet;
         EXPECT_TRUE((*codec::make_encoder("raw", format))->encode(picture.view(), codec::PacketKind::key, packet));
         std::string message(24, '\0');
@@ -38,7 +48,8 @@ protected:
     std::uint32_t at(std::uint32_t x, std::uint32_t y) const {
         const auto view = builder_.picture().view();
         std::uint32_t out = 0;
-        for (int i = 0; i < 4; ++i) out = out << 8 | static_cast<std::uint32_t>(view.row(y)[4 * x + static_cast<std::uint32_t>(i)]);
+        for (int i = 0; i < 4; ++i)
+            out = out << 8 | static_cast<std::uint32_t>(view.row(y)[4 * x + static_cast<std::uint32_t>(i)]);
         return out;
     }
     PictureBuilder builder_;

@@ -11,8 +11,9 @@ namespace {
 using nlohmann::json;
 
 TEST(Tables, AlignColumnsAndLeaveOutTrailingBlanks) {
-    const json tiles{{{"name", "a"}, {"node", "left"}, {"rect", {0, 0, 640, 480}}, {"output", "headless"}, {"up", true}},
-                     {{"name", "bottom"}, {"node", "r"}, {"rect", {0, 480, 64, 48}}, {"output", "window"}, {"up", false}}};
+    const json tiles{
+        {{"name", "a"}, {"node", "left"}, {"rect", {0, 0, 640, 480}}, {"output", "headless"}, {"up", true}},
+        {{"name", "bottom"}, {"node", "r"}, {"rect", {0, 480, 64, 48}}, {"output", "window"}, {"up", false}}};
     EXPECT_EQ(tiles_table(tiles),
               "TILE    NODE  PLACE        OUTPUT    STATE\n"
               "a       left  640x480+0+0  headless  up\n"
@@ -21,9 +22,27 @@ TEST(Tables, AlignColumnsAndLeaveOutTrailingBlanks) {
 
 TEST(Tables, ASessionHasALineForEachWindow) {
     const json surface{{"id", "3.1"}, {"width", 300}, {"height", 200}, {"rect", {0, 0, 300, 200}}, {"frame", 7}};
-    const json traffic{{"frames", 7}, {"state_bytes_per_second", 500}, {"object_bytes_per_second", 0}, {"geometry_bytes_per_second", 12000}};
-    const json sessions{{{"id", 3}, {"program", "gears"}, {"name", ""}, {"pid", 42}, {"owner", {{"kind", "user"}, {"name", "alice"}}}, {"held", true}, {"fault", ""}, {"traffic", traffic}, {"surfaces", {surface}}},
-                        {{"id", 4}, {"program", "new"}, {"name", "x"}, {"pid", 43}, {"owner", {{"kind", "token"}, {"name", "kiosk"}}}, {"held", false}, {"fault", "bad stream"}, {"surfaces", json::array()}}};
+    const json traffic{{"frames", 7},
+                       {"state_bytes_per_second", 500},
+                       {"object_bytes_per_second", 0},
+                       {"geometry_bytes_per_second", 12000}};
+    const json sessions{{{"id", 3},
+                         {"program", "gears"},
+                         {"name", ""},
+                         {"pid", 42},
+                         {"owner", {{"kind", "user"}, {"name", "alice"}}},
+                         {"held", true},
+                         {"fault", ""},
+                         {"traffic", traffic},
+                         {"surfaces", {surface}}},
+                        {{"id", 4},
+                         {"program", "new"},
+                         {"name", "x"},
+                         {"pid", 43},
+                         {"owner", {{"kind", "token"}, {"name", "kiosk"}}},
+                         {"held", false},
+                         {"fault", "bad stream"},
+                         {"surfaces", json::array()}}};
     EXPECT_EQ(sessions_table(sessions),
               "ID   PROGRAM  NAME  OWNER        PID  WINDOW   PLACE        FRAME  SENT       NOTE\n"
               "3.1  gears          alice        42   300x200  300x200+0+0  7      12.5 kB/s  held\n"
@@ -32,7 +51,11 @@ TEST(Tables, ASessionHasALineForEachWindow) {
 
 TEST(Tables, AParallelProgramSaysHowManyProcessesAreThere) {
     const json members{{{"rank", 0}, {"left", false}}, {{"rank", 1}, {"left", true}}, {{"rank", 3}, {"left", false}}};
-    const json sessions{{{"id", 1}, {"program", "march"}, {"pid", 7}, {"group", {{"name", "g"}, {"size", 4}, {"members", members}}}, {"surfaces", json::array()}}};
+    const json sessions{{{"id", 1},
+                         {"program", "march"},
+                         {"pid", 7},
+                         {"group", {{"name", "g"}, {"size", 4}, {"members", members}}},
+                         {"surfaces", json::array()}}};
     EXPECT_NE(sessions_table(sessions).find("march x2/4"), std::string::npos);
 }
 

@@ -19,19 +19,58 @@ using ::testing::Not;
 constexpr Screen kEndless{kAnyWidth, kAnyWidth};
 
 json surface(int frame, double skew) {
-    return {{"id", "3.1"}, {"rect", {0, 0, 100, 100}}, {"shown_rect", {0, 0, 100, 100}}, {"frame", frame}, {"skew", {{"presented", {{"frames", frame}, {"last_ms", skew}}}}}};
+    return {{"id", "3.1"},
+            {"rect", {0, 0, 100, 100}},
+            {"shown_rect", {0, 0, 100, 100}},
+            {"frame", frame},
+            {"skew", {{"presented", {{"frames", frame}, {"last_ms", skew}}}}}};
 }
 
 json status(int frames) {
     return {{"wall", {{"name", "lab"}, {"width", 200}, {"height", 100}}},
             {"nodes", {{{"name", "left"}, {"up", true}}, {{"name", "right"}, {"up", false}}}},
-            {"tiles", {{{"name", "l"}, {"node", "left"}, {"rect", {0, 0, 100, 100}}, {"up", true}, {"frames", frames}, {"age_ms", 20}, {"lag_frames", 0}},
-                       {{"name", "r"}, {"node", "right"}, {"rect", {100, 0, 100, 100}}, {"up", false}, {"frames", 0}, {"age_ms", nullptr}, {"lag_frames", 0}}}},
-            {"sessions", {{{"id", 3}, {"program", "gears"}, {"name", ""}, {"pid", 42}, {"owner", {{"kind", "user"}, {"name", "alice"}}}, {"held", false}, {"fault", ""},
-                           {"traffic", {{"frames", 7}, {"state_bytes_per_second", 0}, {"object_bytes_per_second", 0}, {"geometry_bytes_per_second", 12000}}},
-                           {"surfaces", {surface(frames, 1.5)}}}}},
-            {"streams", {{{"tile", "l"}, {"node", "left"}, {"region", nullptr}, {"session", nullptr}, {"codec", "huffyuv"}, {"width", 50}, {"height", 50}, {"fps", 10},
-                          {"viewers", 2}, {"frames", frames / 2}, {"bytes", 1000 * frames}, {"dropped", 1}}}}};
+            {"tiles",
+             {{{"name", "l"},
+               {"node", "left"},
+               {"rect", {0, 0, 100, 100}},
+               {"up", true},
+               {"frames", frames},
+               {"age_ms", 20},
+               {"lag_frames", 0}},
+              {{"name", "r"},
+               {"node", "right"},
+               {"rect", {100, 0, 100, 100}},
+               {"up", false},
+               {"frames", 0},
+               {"age_ms", nullptr},
+               {"lag_frames", 0}}}},
+            {"sessions",
+             {{{"id", 3},
+               {"program", "gears"},
+               {"name", ""},
+               {"pid", 42},
+               {"owner", {{"kind", "user"}, {"name", "alice"}}},
+               {"held", false},
+               {"fault", ""},
+               {"traffic",
+                {{"frames", 7},
+                 {"state_bytes_per_second", 0},
+                 {"object_bytes_per_second", 0},
+                 {"geometry_bytes_per_second", 12000}}},
+               {"surfaces", {surface(frames, 1.5)}}}}},
+            {"streams",
+             {{{"tile", "l"},
+               {"node", "left"},
+               {"region", nullptr},
+               {"session", nullptr},
+               {"codec", "huffyuv"},
+               {"width", 50},
+               {"height", 50},
+               {"fps", 10},
+               {"viewers", 2},
+               {"frames", frames / 2},
+               {"bytes", 1000 * frames},
+               {"dropped", 1}}}}};
 }
 
 TEST(WatchText, ShowsRatesBetweenTwoStatuses) {
@@ -68,7 +107,10 @@ TEST(WatchText, FitsEveryScreen) {
             std::istringstream lines(watch_text(rated, "12:00:00", {columns, rows}));
             std::size_t count = 0;
             for (std::string line; std::getline(lines, line); ++count) {
-                if (!line.ends_with("more lines")) EXPECT_LE(std::ranges::count_if(line, [](char c) { return (c & 0xc0) != 0x80; }), static_cast<std::ptrdiff_t>(columns)) << line;
+                if (!line.ends_with("more lines"))
+                    EXPECT_LE(std::ranges::count_if(line, [](char c) { return (c & 0xc0) != 0x80; }),
+                              static_cast<std::ptrdiff_t>(columns))
+                        << line;
             }
             EXPECT_LE(count, rows);
         }

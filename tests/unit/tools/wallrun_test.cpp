@@ -12,7 +12,8 @@ using ::testing::HasSubstr;
 
 TEST(Wallrun, SetsTheEnvironmentThatSelectsTheVendor) {
     const VendorFiles files{"/opt/lib", "/opt/share/50_wallgl.json"};
-    const auto set = environment_for({.walld = "unix:/w", .rect = "1,2,3,4", .name = "n", .hold = true}, files, "/other");
+    const auto set =
+        environment_for({.walld = "unix:/w", .rect = "1,2,3,4", .name = "n", .hold = true}, files, "/other");
     EXPECT_EQ(set.at("__GLX_VENDOR_LIBRARY_NAME"), "wallgl");
     EXPECT_EQ(set.at("__EGL_VENDOR_LIBRARY_FILENAMES"), "/opt/share/50_wallgl.json");
     EXPECT_EQ(set.at("LD_LIBRARY_PATH"), "/opt/lib:/other");
@@ -43,14 +44,18 @@ TEST(Wallrun, TakesRanksFromMpi) {
 
 TEST(Wallrun, EndsAllProcessesWhenOneFails) {
     EXPECT_EQ(run_members("g", 3, {"true"}), 0);
-    EXPECT_EQ(run_members("g", 3, {"/bin/sh", "-c", "case $WALLGL_PARALLEL in g:1:3) exit 7;; *) exec sleep 60;; esac"}), 7);
-    EXPECT_EQ(run_members("g", 2, {"/bin/sh", "-c", "case $WALLGL_PARALLEL in g:0:2) kill -9 $$;; *) exec sleep 60;; esac"}), 128 + 9);
+    EXPECT_EQ(
+        run_members("g", 3, {"/bin/sh", "-c", "case $WALLGL_PARALLEL in g:1:3) exit 7;; *) exec sleep 60;; esac"}), 7);
+    EXPECT_EQ(
+        run_members("g", 2, {"/bin/sh", "-c", "case $WALLGL_PARALLEL in g:0:2) kill -9 $$;; *) exec sleep 60;; esac"}),
+        128 + 9);
     EXPECT_EQ(run_members("g", 2, {"/nowhere/program"}), 127);
 }
 
 TEST(Wallrun, ChecksRectangles) {
     for (const char* good : {"", "fullscreen", "0,0,1,1", "-5,0,10,10"}) EXPECT_TRUE(check_rect(good)) << good;
-    for (const char* bad : {"1,2,3", "1,2,3,4,5", "1,2,0,4", "1,2,3,-4", "a", "1x2+3+4"}) EXPECT_FALSE(check_rect(bad)) << bad;
+    for (const char* bad : {"1,2,3", "1,2,3,4,5", "1,2,0,4", "1,2,3,-4", "a", "1x2+3+4"})
+        EXPECT_FALSE(check_rect(bad)) << bad;
 }
 
 TEST(Wallrun, SaysWhatIsWrongWithTheVendor) {
@@ -63,7 +68,8 @@ TEST(Wallrun, SaysWhatIsWrongWithTheVendor) {
 TEST(Wallrun, SaysWhereWalldWasLookedFor) {
     const auto result = check_walld("unix:/nowhere/walld.sock");
     ASSERT_FALSE(result);
-    EXPECT_THAT(result.error().message, HasSubstr("unix:/nowhere/walld.sock: cannot connect: No such file or directory"));
+    EXPECT_THAT(result.error().message,
+                HasSubstr("unix:/nowhere/walld.sock: cannot connect: No such file or directory"));
 }
 
 }  // namespace

@@ -8,7 +8,8 @@
 namespace wall::walld {
 namespace {
 
-proto::GlCaps caps(const char* version, const char* extensions, std::vector<std::pair<std::uint32_t, std::vector<double>>> limits) {
+proto::GlCaps caps(const char* version, const char* extensions,
+                   std::vector<std::pair<std::uint32_t, std::vector<double>>> limits) {
     proto::GlCaps out;
     out.set_vendor("Mesa");
     out.set_version(version);

@@ -52,7 +52,8 @@ TEST_F(WhoIsThere, ATokenStandsForSomebodyElse) {
     EXPECT_EQ(kiosk->text(), "token kiosk");
     EXPECT_EQ(kiosk->role, Role::user);
     EXPECT_EQ(who.with_token(who.of(net::Peer{0, 1}), "")->name, "root");
-    for (const char* wrong : {"0", "0123456789abcdeF", "0123456789abcdef0"}) EXPECT_FALSE(who.with_token({}, wrong)) << wrong;
+    for (const char* wrong : {"0", "0123456789abcdeF", "0123456789abcdef0"})
+        EXPECT_FALSE(who.with_token({}, wrong)) << wrong;
 }
 
 TEST_F(WhoIsThere, OverHttpEverybodyIsAtLeastAViewer) {
@@ -60,7 +61,8 @@ TEST_F(WhoIsThere, OverHttpEverybodyIsAtLeastAViewer) {
     EXPECT_EQ(who.over_http(std::nullopt, "")->role, Role::viewer);
     EXPECT_EQ(who.over_http(net::Peer{77, 0}, "")->role, Role::operator_);
     EXPECT_EQ(who.over_http(std::nullopt, std::string("Bearer ") + kSecret)->role, Role::user);
-    for (const char* wrong : {"Bearer", "Bearer ", "Bearer x", "Basic eDp5", kSecret}) EXPECT_FALSE(who.over_http(net::Peer{77, 0}, wrong)) << wrong;
+    for (const char* wrong : {"Bearer", "Bearer ", "Bearer x", "Basic eDp5", kSecret})
+        EXPECT_FALSE(who.over_http(net::Peer{77, 0}, wrong)) << wrong;
     people_.http_role = Role::none;
     EXPECT_EQ(Identities::open(people_)->over_http(std::nullopt, "")->role, Role::none);
 }

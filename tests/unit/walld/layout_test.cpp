@@ -17,7 +17,10 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-const Layout kLayout{1280, 480, {{{"", "glxgears", "gears"}, {0, 0, 300, 300}, false, 0}, {{"map", "viewer", "Map"}, {-10, 20, 640, 480}, true, 1}}};
+const Layout kLayout{1280,
+                     480,
+                     {{{"", "glxgears", "gears"}, {0, 0, 300, 300}, false, 0},
+                      {{"map", "viewer", "Map"}, {-10, 20, 640, 480}, true, 1}}};
 
 TEST(Layout, ComesBackFromItsText) {
     const auto again = parse_layout(to_text(kLayout));
@@ -37,10 +40,14 @@ TEST(Layout, EveryBeginningOfATextIsRefused) {
 }
 
 TEST(Layout, WhatCannotBeIsRefused) {
-    for (const char* wrong : {"[]", "{}", R"({"version": 2, "canvas": [1, 1], "windows": []})", R"({"version": 1, "canvas": [0, 1], "windows": []})",
-                              R"({"version": 1, "canvas": [1, 1], "windows": {}})", R"({"version": 1, "canvas": [1, 1], "windows": [{}]})",
-                              R"({"version": 1, "canvas": [1, 1], "windows": [{"name": "", "program": "", "title": "", "rect": [0, 0, 0, 1], "scaled": true}]})",
-                              R"({"version": 1, "canvas": [1, 1], "windows": [{"name": 1, "program": "", "title": "", "rect": [0, 0, 1, 1], "scaled": true}]})"}) {
+    for (const char* wrong :
+         {"[]", "{}", R"({"version": 2, "canvas": [1, 1], "windows": []})",
+          R"({"version": 1, "canvas": [0, 1], "windows": []})", R"({"version": 1, "canvas": [1, 1], "windows": {}})",
+          R"({"version": 1, "canvas": [1, 1], "windows": [{}]})",
+          R"({"version": 1, "canvas": [1, 1], "windows": )"
+          R"([{"name": "", "program": "", "title": "", "rect": [0, 0, 0, 1], "scaled": true}]})",
+          R"({"version": 1, "canvas": [1, 1], "windows": )"
+          R"([{"name": 1, "program": "", "title": "", "rect": [0, 0, 1, 1], "scaled": true}]})"}) {
         const auto layout = parse_layout(wrong);
         ASSERT_FALSE(layout) << wrong;
         EXPECT_THAT(layout.error().message, HasSubstr("not a layout: "));
@@ -54,7 +61,9 @@ TEST(Layout, FitsAnotherCanvas) {
 }
 
 TEST(Layout, PlacesGoToTheBestMatch) {
-    std::vector<LayoutEntry> places{{{"", "gears", "left"}, {1, 0, 1, 1}}, {{"", "gears", "right"}, {2, 0, 1, 1}}, {{"map", "viewer", ""}, {3, 0, 1, 1}}};
+    std::vector<LayoutEntry> places{{{"", "gears", "left"}, {1, 0, 1, 1}},
+                                    {{"", "gears", "right"}, {2, 0, 1, 1}},
+                                    {{"map", "viewer", ""}, {3, 0, 1, 1}}};
     EXPECT_FALSE(take_place(places, {"", "atlantis", "left"}));
     EXPECT_FALSE(take_place(places, {"other", "gears", "left"})) << "it has a name of its own";
     EXPECT_EQ(take_place(places, {"", "gears", "right"})->rect.x, 2);
@@ -66,7 +75,9 @@ TEST(Layout, PlacesGoToTheBestMatch) {
 class Store : public ::testing::Test {
 protected:
     ~Store() override { std::filesystem::remove_all(folder_); }
-    void write(const std::string& name, const std::string& text) { std::ofstream(folder_ + "/layouts/" + name) << text; }
+    void write(const std::string& name, const std::string& text) {
+        std::ofstream(folder_ + "/layouts/" + name) << text;
+    }
     static std::string make_folder() {
         std::string path = "/tmp/wallgl-layouts-XXXXXX";
         return ::mkdtemp(path.data());

@@ -64,7 +64,9 @@ protected:
         stream.set_raw_bytes(4000);
         wall_.node_reports(node, stats);
     }
-    Families families() { return metric_families({wall_, streams_, hub_, 1, ProcessFigures{2, 3 << 20, 9}, 1000.5, "1.2", now_}); }
+    Families families() {
+        return metric_families({wall_, streams_, hub_, 1, ProcessFigures{2, 3 << 20, 9}, 1000.5, "1.2", now_});
+    }
     std::string text() { return prometheus::TextSerializer().Serialize(families()); }
 
     NoOutbox out_;
@@ -96,8 +98,10 @@ TEST_F(Metrics, ASessionHasSeriesUntilItEnds) {
     node_tells(left, {id});
     EXPECT_THAT(text(), HasSubstr("wallgl_session_info{session=\"1\",program=\"gears\",name=\"\",owner=\"\"} 1\n"));
     EXPECT_THAT(text(), HasSubstr("wallgl_session_frames_total{session=\"1\"} 2\n"));
-    EXPECT_THAT(text(), HasSubstr("wallgl_session_sent_bytes_total{session=\"1\",node=\"right\",kind=\"object\"} 500\n"));
-    EXPECT_THAT(text(), HasSubstr("wallgl_session_received_bytes_total{session=\"1\",node=\"left\",kind=\"geometry\"} 1000\n"));
+    EXPECT_THAT(text(),
+                HasSubstr("wallgl_session_sent_bytes_total{session=\"1\",node=\"right\",kind=\"object\"} 500\n"));
+    EXPECT_THAT(text(),
+                HasSubstr("wallgl_session_received_bytes_total{session=\"1\",node=\"left\",kind=\"geometry\"} 1000\n"));
     EXPECT_THAT(text(), HasSubstr("wallgl_session_queue_bytes{session=\"1\",node=\"left\"} 64\n"));
     EXPECT_THAT(text(), HasSubstr("wallgl_node_queue_bytes{node=\"left\"} 64\n"));
     wall_.close_session(id);
@@ -113,7 +117,9 @@ TEST_F(Metrics, ANodeThatIsAwaySaysNothing) {
     EXPECT_THAT(text(), HasSubstr("renderer=\"llvm\\\"pipe\""));
     wall_.node_leaves(left, now_);
     EXPECT_THAT(text(), HasSubstr("wallgl_node_up{node=\"left\"} 0\n"));
-    for (const char* gone : {"wallgl_node_frames_total{", "wallgl_node_objects{", "wallgl_node_info{", "wallgl_session_received_bytes_total{"}) EXPECT_THAT(text(), Not(HasSubstr(gone)));
+    for (const char* gone : {"wallgl_node_frames_total{", "wallgl_node_objects{", "wallgl_node_info{",
+                             "wallgl_session_received_bytes_total{"})
+        EXPECT_THAT(text(), Not(HasSubstr(gone)));
 }
 
 TEST_F(Metrics, TilesHaveAnAgeOnceTheyHaveShownSomething) {
@@ -148,8 +154,18 @@ TEST_F(Metrics, SkewIsAHistogram) {
 
 TEST_F(Metrics, AStreamIsWhatWalldAndItsNodeKnowOfIt) {
     node_tells(join("left"), {});
-    streams_ = {{.id = 5, .node = 0, .tile = "l", .codec = "huffyuv", .width = 64, .height = 48, .fps = 10, .viewers = 2, .frames = 3, .dropped = 1}};
-    const std::string labels = "{node=\"left\",tile=\"l\",codec=\"huffyuv\",size=\"64x48\",fps=\"10\",session=\"\",region=\"\"} ";
+    streams_ = {{.id = 5,
+                 .node = 0,
+                 .tile = "l",
+                 .codec = "huffyuv",
+                 .width = 64,
+                 .height = 48,
+                 .fps = 10,
+                 .viewers = 2,
+                 .frames = 3,
+                 .dropped = 1}};
+    const std::string labels =
+        "{node=\"left\",tile=\"l\",codec=\"huffyuv\",size=\"64x48\",fps=\"10\",session=\"\",region=\"\"} ";
     EXPECT_THAT(text(), HasSubstr("wallgl_stream_viewers" + labels + "2\n"));
     EXPECT_THAT(text(), HasSubstr("wallgl_stream_dropped_frames_total" + labels + "1\n"));
     EXPECT_THAT(text(), HasSubstr("wallgl_stream_raw_bytes_total" + labels + "4000\n"));

@@ -13,14 +13,17 @@ namespace {
 Person user(const char* name, std::uint32_t number, Role role) { return {Person::Kind::unix_user, name, number, role}; }
 
 TEST(Person, MayDoWhatTheRoleAllows) {
-    const auto viewer = user("vera", 1, Role::viewer), alice = user("alice", 2, Role::user), bob = user("bob", 3, Role::user), olga = user("olga", 4, Role::operator_);
+    const auto viewer = user("vera", 1, Role::viewer), alice = user("alice", 2, Role::user),
+               bob = user("bob", 3, Role::user), olga = user("olga", 4, Role::operator_);
     const Person token{Person::Kind::token, "alice", 0, Role::user}, unknown{};
-    for (const auto& who : {viewer, alice, olga, token}) EXPECT_TRUE(may(who, Need::look, "look", nullptr)) << who.text();
+    for (const auto& who : {viewer, alice, olga, token})
+        EXPECT_TRUE(may(who, Need::look, "look", nullptr)) << who.text();
     EXPECT_FALSE(may(unknown, Need::look, "look", nullptr));
 
     EXPECT_TRUE(may(alice, Need::own, "move session 1", &alice));
     EXPECT_TRUE(may(olga, Need::own, "move session 1", &alice));
-    for (const auto& who : {viewer, bob, token, unknown}) EXPECT_FALSE(may(who, Need::own, "move session 1", &alice)) << who.text();
+    for (const auto& who : {viewer, bob, token, unknown})
+        EXPECT_FALSE(may(who, Need::own, "move session 1", &alice)) << who.text();
     EXPECT_FALSE(may(viewer, Need::own, "move session 1", &viewer)) << "a viewer moves nothing";
     EXPECT_FALSE(may({.role = Role::user}, Need::own, "move session 1", &unknown)) << "nobody unknown owns anything";
 
@@ -43,8 +46,10 @@ TEST(Audit, IsOneLineThatNobodyCanForge) {
     const Refusal refusal{RefusalKind::forbidden, "no\n\"way\""};
     const auto line = audit_line({evil, "http", what, arguments, &refusal});
     EXPECT_EQ(line.find('\n'), std::string::npos);
-    EXPECT_EQ(line, "audit who=\"al\\\"ice\\naudit who=root\" role=user via=http what=place target=\"3\\nx\" arguments={\"id\":\"3\\nx\",\"rect\":[0,0,1,1]} result=forbidden "
-                    "reason=\"no\\n\\\"way\\\"\"");
+    EXPECT_EQ(line,
+              "audit who=\"al\\\"ice\\naudit who=root\" role=user via=http what=place target=\"3\\nx\" "
+              "arguments={\"id\":\"3\\nx\",\"rect\":[0,0,1,1]} result=forbidden "
+              "reason=\"no\\n\\\"way\\\"\"");
     EXPECT_NE(audit_line({evil, "http", what, arguments, nullptr}).find(" result=ok"), std::string::npos);
     EXPECT_LT(audit_line({evil, "http", what, {{"id", std::string(100000, 'x')}}, nullptr}).size(), 2000u);
 }

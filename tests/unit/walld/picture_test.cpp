@@ -8,7 +8,9 @@
 namespace wall::walld {
 namespace {
 
-cv::Mat decode(const std::string& png) { return cv::imdecode(std::vector<unsigned char>(png.begin(), png.end()), cv::IMREAD_COLOR); }
+cv::Mat decode(const std::string& png) {
+    return cv::imdecode(std::vector<unsigned char>(png.begin(), png.end()), cv::IMREAD_COLOR);
+}
 cv::Vec3b rgb(unsigned char r, unsigned char g, unsigned char b) { return {b, g, r}; }
 
 TilePicture plain(geom::Rect rect, std::string pixel) {
@@ -36,7 +38,8 @@ TEST(Picture, AViewCutsTiles) {
 }
 
 TEST(Picture, AMissingTileIsBackgroundAndAnEmptyViewAnError) {
-    EXPECT_EQ(decode(*compose_png({{0, 0, 2, 2}, 0xffffff, {{{0, 0, 2, 2}, {}}}})).at<cv::Vec3b>(0, 0), rgb(255, 255, 255));
+    EXPECT_EQ(decode(*compose_png({{0, 0, 2, 2}, 0xffffff, {{{0, 0, 2, 2}, {}}}})).at<cv::Vec3b>(0, 0),
+              rgb(255, 255, 255));
     EXPECT_FALSE(compose_png({}));
 }
 

@@ -16,7 +16,8 @@ TEST(Placement, StartsAtTheTopLeft) { EXPECT_EQ(place(kCanvas, {}, 300, 200, 0),
 
 TEST(Placement, GoesOnBesideThenBelow) {
     std::vector<Rect> taken;
-    for (const auto& expected : {Rect{0, 0, 500, 300}, Rect{500, 0, 500, 300}, Rect{0, 300, 500, 300}, Rect{500, 300, 500, 300}}) {
+    for (const auto& expected :
+         {Rect{0, 0, 500, 300}, Rect{500, 0, 500, 300}, Rect{0, 300, 500, 300}, Rect{500, 300, 500, 300}}) {
         taken.push_back(place(kCanvas, taken, 500, 300, 0));
         EXPECT_EQ(taken.back(), expected);
     }
@@ -33,14 +34,17 @@ TEST(Placement, CascadesWhenThereIsNoRoom) {
     EXPECT_EQ(place(kCanvas, taken, 300, 200, 2), (Rect{2 * kCascadeStep, 2 * kCascadeStep, 300, 200}));
 }
 
-TEST(Placement, AWindowLargerThanTheCanvasStartsInItsCorner) { EXPECT_EQ(place(kCanvas, {}, 2000, 200, 0), (Rect{0, 0, 2000, 200})); }
+TEST(Placement, AWindowLargerThanTheCanvasStartsInItsCorner) {
+    EXPECT_EQ(place(kCanvas, {}, 2000, 200, 0), (Rect{0, 0, 2000, 200}));
+}
 
 TEST(Placement, NeverOverlapsWhileThereIsRoomAndStaysOnTheCanvas) {
     std::mt19937 random(3);
     for (int round = 0; round < 200; ++round) {
         std::vector<Rect> taken;
         for (std::uint32_t i = 0; i < 20; ++i) {
-            const auto rect = place(kCanvas, taken, static_cast<int>(random() % 400 + 1), static_cast<int>(random() % 300 + 1), i);
+            const auto rect =
+                place(kCanvas, taken, static_cast<int>(random() % 400 + 1), static_cast<int>(random() % 300 + 1), i);
             EXPECT_EQ(geom::intersect(rect, kCanvas), rect);
             taken.push_back(rect);
         }

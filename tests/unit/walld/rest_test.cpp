@@ -8,7 +8,9 @@
 namespace wall::walld {
 namespace {
 
-RestRequest ask(std::string_view method, std::string_view path, std::string_view body = {}) { return {method, path, body, "application/json", "localhost:7780", {}, {}}; }
+RestRequest ask(std::string_view method, std::string_view path, std::string_view body = {}) {
+    return {method, path, body, "application/json", "localhost:7780", {}, {}};
+}
 
 int status(const RestRequest& request) {
     const auto command = rest_command(request);
@@ -24,11 +26,15 @@ TEST(Rest, APathIsAVerbWithItsTarget) {
     EXPECT_EQ(rest_command(ask("GET", "/api/v1/sessions"))->verb, "sessions");
     EXPECT_EQ(rest_command(ask("HEAD", "/api/v1/sessions"))->verb, "sessions");
     EXPECT_EQ(rest_command(ask("POST", "/api/v1/layouts/day/load"))->arguments["name"], "day");
-    EXPECT_EQ(rest_command(ask("PUT", "/api/v1/sessions/3/placement", R"({"id": "9", "rect": []})"))->arguments["id"], "3") << "the path says what is meant";
+    EXPECT_EQ(rest_command(ask("PUT", "/api/v1/sessions/3/placement", R"({"id": "9", "rect": []})"))->arguments["id"],
+              "3")
+        << "the path says what is meant";
 }
 
 TEST(Rest, OtherPathsAndMethodsAreRefused) {
-    for (const char* path : {"/api/v1/", "/api/v1/sessions/", "/api/v1/sessions//raise", "/api/v1/sessions/1/2/raise", "/api/v2/status", "", "/api/v1/layouts/../load/x"}) EXPECT_EQ(status(ask("GET", path)), 404) << path;
+    for (const char* path : {"/api/v1/", "/api/v1/sessions/", "/api/v1/sessions//raise", "/api/v1/sessions/1/2/raise",
+                             "/api/v2/status", "", "/api/v1/layouts/../load/x"})
+        EXPECT_EQ(status(ask("GET", path)), 404) << path;
     EXPECT_EQ(status(ask("POST", "/api/v1/status")), 405);
     EXPECT_EQ(rest_command(ask("PATCH", "/api/v1/sessions/1")).error().why.message, "expected GET, DELETE");
     EXPECT_EQ(status(ask("OPTIONS", "/api/v1/sessions/1/raise")), 405) << "no page elsewhere gets a leave to ask";
@@ -37,7 +43,8 @@ TEST(Rest, OtherPathsAndMethodsAreRefused) {
 TEST(Rest, AChangeIsJsonAndFromHere) {
     auto request = ask("POST", "/api/v1/sessions/1/raise");
     EXPECT_EQ(status(request), 200);
-    for (const char* type : {"", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data", "application/jsonx", "text/plain;application/json"}) {
+    for (const char* type : {"", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data",
+                             "application/jsonx", "text/plain;application/json"}) {
         request.content_type = type;
         EXPECT_EQ(status(request), 415) << type;
     }
@@ -63,7 +70,8 @@ TEST(Rest, AChangeIsJsonAndFromHere) {
 }
 
 TEST(Rest, ABodyIsAnObject) {
-    for (const char* body : {"{", "[]", "1", "null", "\xff"}) EXPECT_EQ(status(ask("PUT", "/api/v1/sessions/1/placement", body)), 400) << body;
+    for (const char* body : {"{", "[]", "1", "null", "\xff"})
+        EXPECT_EQ(status(ask("PUT", "/api/v1/sessions/1/placement", body)), 400) << body;
 }
 
 TEST(Arguments, OfAnotherKindAreNamed) {
@@ -72,7 +80,8 @@ TEST(Arguments, OfAnotherKindAreNamed) {
     EXPECT_EQ(*text_of(good, "id"), "3");
     EXPECT_FALSE(*flag_of(good, "on", true));
     EXPECT_EQ(*number_of(good, "frames", 1, 1, 5), 1);
-    for (const char* wrong : {"{}", R"({"rect": 1})", R"({"rect": [1, 2, 3]})", R"({"rect": [1, 2, 3, 4.5]})", R"({"rect": [1, 2, 3, "4"]})", R"({"rect": [1, 2, 3, 99999999999]})",
+    for (const char* wrong : {"{}", R"({"rect": 1})", R"({"rect": [1, 2, 3]})", R"({"rect": [1, 2, 3, 4.5]})",
+                              R"({"rect": [1, 2, 3, "4"]})", R"({"rect": [1, 2, 3, 99999999999]})",
                               R"({"rect": [1, 2, 3, 18446744073709551615]})"}) {
         const auto rect = rect_of(nlohmann::json::parse(wrong), "rect");
         ASSERT_FALSE(rect) << wrong;

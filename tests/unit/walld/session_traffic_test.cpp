@@ -25,7 +25,9 @@ proto::ClientStats report(std::uint64_t frames, std::initializer_list<SentBytes>
 
 class Traffic : public ::testing::Test {
 protected:
-    SessionTraffic::Clock::time_point at(int ms) const { return SessionTraffic::Clock::time_point{} + milliseconds(ms); }
+    SessionTraffic::Clock::time_point at(int ms) const {
+        return SessionTraffic::Clock::time_point{} + milliseconds(ms);
+    }
     SessionTraffic traffic_;
 };
 
@@ -75,7 +77,8 @@ TEST(SpreadHistogram, CountsEveryFrameOnce) {
         spread.note(frame++, 2, start + milliseconds(ms));
     }
     EXPECT_DOUBLE_EQ(spread.sum().count(), 306);
-    EXPECT_EQ(spread.histogram(), (Spread::Histogram{1, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1})) << "a bound belongs to its bucket";
+    EXPECT_EQ(spread.histogram(), (Spread::Histogram{1, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1}))
+        << "a bound belongs to its bucket";
 }
 
 }  // namespace

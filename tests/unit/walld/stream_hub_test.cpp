@@ -18,7 +18,8 @@ using ::testing::HasSubstr;
 class FakeOutbox : public Outbox {
 public:
     void to_node(NodeIndex node, const proto::Envelope& message) override {
-        if (message.has_stream_start() || message.has_stream_stop() || message.has_stream_ready()) nodes[node].push_back(message);
+        if (message.has_stream_start() || message.has_stream_stop() || message.has_stream_ready())
+            nodes[node].push_back(message);
     }
     void to_client(SessionId, const proto::Envelope&) override {}
     void to_member(SessionId, Rank, const proto::Envelope&) override {}
@@ -78,7 +79,8 @@ protected:
         ADD_FAILURE() << "no stream was started";
         return 0;
     }
-    void frame(NodeIndex node, std::uint32_t stream, bool key, const std::string& packet, std::uint32_t width = 640, std::uint32_t height = 480) {
+    void frame(NodeIndex node, std::uint32_t stream, bool key, const std::string& packet, std::uint32_t width = 640,
+               std::uint32_t height = 480) {
         proto::StreamFrame message;
         message.set_stream(stream);
         message.set_key(key);
@@ -91,12 +93,15 @@ protected:
     std::string next(StreamHub::Viewer& viewer) {
         const auto message = hub_.next(viewer);
         if (!message) return {};
-        if (message->binary) part_ = static_cast<unsigned char>(message->head[4]), sequence_ = static_cast<unsigned char>(message->head[16]);
+        if (message->binary)
+            part_ = static_cast<unsigned char>(message->head[4]),
+            sequence_ = static_cast<unsigned char>(message->head[16]);
         return message->binary ? *message->packet : message->head;
     }
     bool asked(NodeIndex node, bool key) {
         const auto messages = said(node);
-        return std::any_of(messages.begin(), messages.end(), [key](const auto& m) { return m.has_stream_ready() && m.stream_ready().key() == key; });
+        return std::any_of(messages.begin(), messages.end(),
+                           [key](const auto& m) { return m.has_stream_ready() && m.stream_ready().key() == key; });
     }
 
     boost::asio::io_context io_;
@@ -109,7 +114,10 @@ protected:
 TEST_F(StreamHubTest, AViewerGetsTheFormatAndThenFrames) {
     const auto one = viewer({tile("l")});
     const auto id = started(0);
-    EXPECT_EQ(next(*one), R"({"background":"#000000","codec":"huffyuv","height":480,"layout":"rgba","parts":[{"away":false,"rect":[0,0,640,480],"tile":"l"}],"shows":[0,0,640,480],"stream":0,"width":640})");
+    EXPECT_EQ(
+        next(*one),
+        R"({"background":"#000000","codec":"huffyuv","height":480,"layout":"rgba",)"
+        R"("parts":[{"away":false,"rect":[0,0,640,480],"tile":"l"}],"shows":[0,0,640,480],"stream":0,"width":640})");
     EXPECT_EQ(next(*one), "");
     frame(0, id, true, "first");
     EXPECT_EQ(next(*one), R"({"header":"","part":0,"stream":0})");
@@ -257,7 +265,8 @@ TEST_F(StreamHubTest, AStreamFollowsItsWindowAtItsRate) {
     const Clock::time_point now{std::chrono::hours(1)};
     move(2, 600);
     hub_.tick(now);
-    EXPECT_THAT(next(*one), HasSubstr(R"("parts":[{"away":false,"rect":[0,0,40,100],"tile":"l"},{"away":false,"rect":[40,0,60,100],"tile":"r"}],"shows":[600,0,100,100])"));
+    EXPECT_THAT(next(*one), HasSubstr(R"("parts":[{"away":false,"rect":[0,0,40,100],"tile":"l"},)"
+                                      R"({"away":false,"rect":[40,0,60,100],"tile":"r"}],"shows":[600,0,100,100])"));
     EXPECT_EQ(hub_.node_streams(), 2u);
     move(3, 650);
     hub_.tick(now + std::chrono::milliseconds(1));
@@ -279,7 +288,9 @@ TEST_F(StreamHubTest, ThereAreOnlySoManyStreams) {
     std::vector<std::shared_ptr<StreamHub::Viewer>> others;
     for (std::uint32_t height = 1; hub_.node_streams() < StreamHub::kMaxNodeStreams; ++height) {
         std::vector<WatchRequest> requests;
-        for (std::uint32_t width = 1; width <= WatchRequest::kMost && hub_.node_streams() + requests.size() < StreamHub::kMaxNodeStreams; ++width)
+        for (std::uint32_t width = 1;
+             width <= WatchRequest::kMost && hub_.node_streams() + requests.size() < StreamHub::kMaxNodeStreams;
+             ++width)
             requests.push_back({.tile = "l", .width = width, .height = height});
         others.push_back(viewer(requests));
     }

@@ -15,7 +15,9 @@ class StreamScopeTest : public ::testing::Test {
 protected:
     static std::string config() {
         std::string out = "[[node]]\nname = \"n\"\n";
-        for (const auto* tile : {"\"a\"\nrect = [0, 0, 101, 77]", "\"b\"\nrect = [101, 0, 99, 77]", "\"c\"\nrect = [0, 77, 101, 33]", "\"d\"\nrect = [101, 77, 99, 33]", "\"far\"\nrect = [220, 0, 50, 110]"})
+        for (const auto* tile :
+             {"\"a\"\nrect = [0, 0, 101, 77]", "\"b\"\nrect = [101, 0, 99, 77]", "\"c\"\nrect = [0, 77, 101, 33]",
+              "\"d\"\nrect = [101, 77, 99, 33]", "\"far\"\nrect = [220, 0, 50, 110]"})
             out += std::string("[[node.tile]]\nname = ") + tile + "\n";
         return out;
     }
@@ -68,11 +70,14 @@ TEST_F(StreamScopeTest, TilesThatTouchTouchInThePictureInEverySize) {
             EXPECT_LE(part.at.width, part.crop.width);
             EXPECT_LE(part.at.height, part.crop.height);
             for (auto y = part.at.y; y < part.at.bottom(); ++y)
-                for (auto x = part.at.x; x < part.at.right(); ++x) ++covered.at(static_cast<std::size_t>(y) * whole.width + static_cast<std::size_t>(x));
+                for (auto x = part.at.x; x < part.at.right(); ++x)
+                    ++covered.at(static_cast<std::size_t>(y) * whole.width + static_cast<std::size_t>(x));
         }
         const auto left_four = static_cast<std::int32_t>(whole.width * 200 / 270);
         for (std::uint32_t y = 0; y < whole.height; ++y)
-            for (std::int32_t x = 0; x < left_four; ++x) EXPECT_EQ(covered[y * whole.width + static_cast<std::uint32_t>(x)], 1) << width << ": " << x << "," << y;
+            for (std::int32_t x = 0; x < left_four; ++x)
+                EXPECT_EQ(covered[y * whole.width + static_cast<std::uint32_t>(x)], 1)
+                    << width << ": " << x << "," << y;
     }
 }
 
@@ -108,9 +113,12 @@ TEST(WatchRequest, SaysWhatWasExpected) {
     EXPECT_EQ(error(R"({"wall": 1})"), "watch[0].wall: expected true or false");
     EXPECT_EQ(error(R"({"tile": "l", "wall": true})"), "watch[0]: expected a tile or the wall, not both");
     EXPECT_EQ(error(R"({"tile": "l", "surface": 1})"), "watch[0].surface: expected a session with it");
-    EXPECT_EQ(error(R"({"session": 3, "region": [0, 0, 1, 1]})"), "watch[0].region: goes with a tile or the wall; a window is shown as a whole");
-    for (const auto* region : {"[0, 0, 1]", "[0, 0, 1, 0]", "[-1, 0, 1, 1]", "[0, 0, 1, 99999]", "[0.5, 0, 1, 1]", "\"all\""})
-        EXPECT_EQ(error(std::string(R"({"wall": true, "region": )") + region + "}"), "watch[0].region: expected [x, y, width, height] in pixels");
+    EXPECT_EQ(error(R"({"session": 3, "region": [0, 0, 1, 1]})"),
+              "watch[0].region: goes with a tile or the wall; a window is shown as a whole");
+    for (const auto* region :
+         {"[0, 0, 1]", "[0, 0, 1, 0]", "[-1, 0, 1, 1]", "[0, 0, 1, 99999]", "[0.5, 0, 1, 1]", "\"all\""})
+        EXPECT_EQ(error(std::string(R"({"wall": true, "region": )") + region + "}"),
+                  "watch[0].region: expected [x, y, width, height] in pixels");
     EXPECT_EQ(error(R"({"tile": "l", "fps": 61})"), "watch[0].fps: expected a whole number from 1 to 60");
     EXPECT_EQ(error(R"({"tile": "l", "width": -1})"), "watch[0].width: expected a whole number from 1 to 32768");
     EXPECT_THAT(error(R"({"tile": "l", "codec": "mp3"})"), HasSubstr("watch[0].codec: "));

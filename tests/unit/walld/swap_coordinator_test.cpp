@@ -7,9 +7,9 @@
 namespace wall::walld {
 namespace {
 
+using std::chrono::milliseconds;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-using std::chrono::milliseconds;
 
 class Swap : public ::testing::Test {
 protected:
@@ -164,7 +164,8 @@ TEST_F(Swap, ANodeThatComesBackIsWaitedForOnBothStays) {
     swap_.move({0, 1}, 3, at(1));
     swap_.rendered(1, 3, at(2));
     EXPECT_EQ(swap_.presented(), 0u);
-    EXPECT_THAT(swap_.rendered(0, 1, at(3)), ElementsAre(PresentTo{0, 1}, PresentTo{1, 2})) << "frame 2 is not its business";
+    EXPECT_THAT(swap_.rendered(0, 1, at(3)), ElementsAre(PresentTo{0, 1}, PresentTo{1, 2}))
+        << "frame 2 is not its business";
     EXPECT_THAT(swap_.rendered(0, 3, at(4)), ElementsAre(PresentTo{0, 3}, PresentTo{1, 3}));
 }
 

@@ -71,7 +71,8 @@ protected:
     FakeOutbox out_;
     Clock::time_point now_{};
     int tickets_ = 0;
-    Wall wall_{*config::parse_config(kTwoNodes, "test"), out_, [this](std::size_t n) { return std::string(n, static_cast<char>('a' + tickets_++)); }};
+    Wall wall_{*config::parse_config(kTwoNodes, "test"), out_,
+               [this](std::size_t n) { return std::string(n, static_cast<char>('a' + tickets_++)); }};
 };
 
 TEST_F(TheWall, WelcomesANodeWithItsTiles) {
@@ -145,7 +146,8 @@ TEST_F(TheWall, TheWantedRectangleGoesToTheFirstWindowOnly) {
     EXPECT_EQ(open_surface(id, 1, 300, 300), (geom::Rect{0, 0, 1280, 480}));
     EXPECT_EQ(open_surface(id, 2, 300, 300).width, 300);
     wall_.close_surface(id, SurfaceId(1));
-    EXPECT_EQ(open_surface(id, 3, 300, 300), (geom::Rect{0, 0, 1280, 480})) << "a probe window was closed; this is the real one";
+    EXPECT_EQ(open_surface(id, 3, 300, 300), (geom::Rect{0, 0, 1280, 480}))
+        << "a probe window was closed; this is the real one";
 }
 
 TEST_F(TheWall, ARectangleMustBePossible) {
@@ -273,14 +275,20 @@ TEST_F(TheWall, APlacementThatCannotBeChangesNothing) {
     const auto id = open();
     open_surface(id, 1, 300, 300);
     const auto messages = out_.clients[id].size();
-    for (const geom::Rect rect : {geom::Rect{0, 0, 0, 10}, {0, 0, 10, -1}, {1280, 0, 10, 10}, {0, -10, 10, 10}, {-2000000000, 0, 10, 10}, {0, 0, 2000000000, 10}}) {
+    for (const geom::Rect rect : {geom::Rect{0, 0, 0, 10},
+                                  {0, 0, 10, -1},
+                                  {1280, 0, 10, 10},
+                                  {0, -10, 10, 10},
+                                  {-2000000000, 0, 10, 10},
+                                  {0, 0, 2000000000, 10}}) {
         const auto placed = wall_.place_surface({id, {}}, rect, now_);
         ASSERT_FALSE(placed);
         EXPECT_EQ(placed.error().kind, RefusalKind::invalid);
     }
     EXPECT_EQ(wall_.place_surface({SessionId(7), {}}, {0, 0, 10, 10}, now_).error().kind, RefusalKind::not_found);
     EXPECT_EQ(wall_.place_surface({id, SurfaceId(2)}, {0, 0, 10, 10}, now_).error().kind, RefusalKind::not_found);
-    EXPECT_EQ(wall_.place_surface({open(), {}}, {0, 0, 10, 10}, now_).error().kind, RefusalKind::conflict) << "no window yet";
+    EXPECT_EQ(wall_.place_surface({open(), {}}, {0, 0, 10, 10}, now_).error().kind, RefusalKind::conflict)
+        << "no window yet";
     EXPECT_EQ(out_.clients[id].size(), messages);
     EXPECT_FALSE(wall_.find({id, SurfaceId(1)})->place.moving());
 }
@@ -325,7 +333,9 @@ TEST_F(TheWall, ALayoutBringsWindowsBackAndWaitsForThoseThatAreMissing) {
     open_surface(other, 1, 50, 50);
     const auto again = open(named("glxgears", ""));
     EXPECT_EQ(open_surface(again, 1, 120, 90), (geom::Rect{0, 0, 120, 90})) << "as large as its window, as it was then";
-    const auto position = [&](SessionId id) { return std::ranges::find(wall_.stacking(), SurfaceKey{id, SurfaceId(1)}) - wall_.stacking().begin(); };
+    const auto position = [&](SessionId id) {
+        return std::ranges::find(wall_.stacking(), SurfaceKey{id, SurfaceId(1)}) - wall_.stacking().begin();
+    };
     EXPECT_LT(position(map), position(again));
     EXPECT_EQ(open_surface(open(named("glxgears", "")), 1, 120, 90).x, 120) << "that place is taken";
 }
@@ -642,7 +652,8 @@ TEST_F(AParallelProgram, EndsWithANodesFault) {
 TEST(Target, IsASessionOrOneOfItsSurfaces) {
     EXPECT_EQ(Target::parse("3")->session, SessionId(3));
     EXPECT_EQ(Target::parse("3.4")->surface, SurfaceId(4));
-    for (const char* wrong : {"", "x", "3.", ".4", "3.x", "-1", "99999999999"}) EXPECT_FALSE(Target::parse(wrong)) << wrong;
+    for (const char* wrong : {"", "x", "3.", ".4", "3.x", "-1", "99999999999"})
+        EXPECT_FALSE(Target::parse(wrong)) << wrong;
 }
 
 }  // namespace
