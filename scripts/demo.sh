@@ -12,14 +12,10 @@ for word in "$@"; do
   esac
 done
 
-"$root/scripts/install-deps.sh"
+"$root/scripts/install-deps.sh" demo
 if [[ -n "${WALLGL_BUILD:-}" ]]; then
   echo "demo: using the build in $WALLGL_BUILD"
 else
-  echo "demo: building (the first time takes some minutes)"
-  cd "$root"
-  [[ -f build/release/build.ninja ]] || cmake --preset release --log-level=WARNING
-  cmake --build --preset release --target walld tileserver wallrun wallctl wallgl_vendor | tail -n 1
-  cd - >/dev/null
+  "$root/scripts/build.py" --keep --folder release --name "demo: building" demo walld tileserver wallrun wallctl wallgl_vendor
 fi
 exec /usr/bin/python3 "$root/scripts/demo.py" "$@"

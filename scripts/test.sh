@@ -1,24 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs what is missing, builds, and runs every test: scripts/test.sh [STAGE...], stages as listed below.
-# Ends with CTest's own summary of each stage; exit code 1 if anything failed.
+# Ends with CTest's own summary of each stage; exit code 1 if anything failed. `fresh` runs only when it is named: it
+# does everything once more on a clean Debian 12 (scripts/fresh.sh).
 set -uo pipefail
 cd "$(dirname "$0")/.."
-readonly all_stages=(release golden conformance asan tsan fuzz)
+readonly all_stages=(release golden conformance asan tsan fuzz) on_request=(fresh)
 readonly summaries="build/test-summaries"
 begin=$SECONDS
 failed=()
 
 say() { printf '\n== test: %s (%d:%02d)\n' "$1" $(((SECONDS - begin) / 60)) $(((SECONDS - begin) % 60)); }
 
-# build PRESET [TARGET...]: quiet unless it fails.
-build() {
-  local preset=$1; shift
-  local targets=(); [[ $# -eq 0 ]] || targets=(--target "$@")
-  cmake --preset "$preset" --log-level=WARNING >/dev/null && cmake --build --preset "$preset" "${targets[@]}" >"$summaries/build-$preset.log" 2>&1 && return
-  tail -n 60 "$summaries/build-$preset.log"
-  return 1
-}
+# build PRESET [TARGET...]
+build() { scripts/build.py --name "test: building ($1)" "$@"; }
 
 # run STAGE PRESET CTEST-ARGS...: its summary is kept for the end.
 run() {
@@ -70,14 +65,21 @@ stage_fuzz() {
   run fuzz asan -L fuzz -j 2
 }
 
+stage_fresh() {
+  say "the commands of the README on a clean Debian 12"
+  scripts/fresh.sh && return
+  failed+=(fresh)
+}
+
 stages=("$@")
 [[ $# -gt 0 ]] || stages=("${all_stages[@]}")
 for stage in "${stages[@]}"; do
-  [[ " ${all_stages[*]} " == *" $stage "* ]] || { echo "test: unknown stage '$stage'; there are: ${all_stages[*]}" >&2; exit 2; }
+  [[ " ${all_stages[*]} ${on_request[*]} " == *" $stage "* ]] ||
+    { echo "test: unknown stage '$stage'; there are: ${all_stages[*]}, and on request ${on_request[*]}" >&2; exit 2; }
 done
 
 say "installing what is missing"
-scripts/install-deps.sh || exit 2
+scripts/install-deps.sh test || exit 2
 rm -rf "$summaries" && mkdir -p "$summaries"
 for stage in "${stages[@]}"; do "stage_$stage"; done
 

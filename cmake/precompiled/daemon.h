@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: MIT
+// What speaks the control protocol, with logging and JSON: the daemons and the operator's programs.
+#pragma once
+
+#include <spdlog/spdlog.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cmake/precompiled/net.h"

@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Runs the README's commands where nothing is installed: in a clean Debian 12 root (mmdebstrap) with a clone of what is
+# committed. The compiler's cache and downloaded packages of this machine are mounted, everything else is the root's own.
+# As root: scripts/fresh.sh [--keep] [COMMAND]   COMMAND: of bash, in the clone; by default both commands of the README
+set -euo pipefail
+project="$(cd "$(dirname "$0")/.." && pwd)"
+work="$project/build/fresh" root="$project/build/fresh/root"
+keep=""
+[[ ${1:-} != --keep ]] || { keep=1; shift; }
+# The page of the demo would be everybody's; a port of its own lets a demo outside go on.
+command=${1:-"time scripts/demo.sh --seconds 8 --http 0 --screenshot /tmp/wall.png && time scripts/test.sh"}
+
+[[ $(id -u) -eq 0 ]] || { echo "fresh: mounting needs root: run this with sudo" >&2; exit 2; }
+command -v mmdebstrap >/dev/null || { echo "fresh: mmdebstrap is missing: scripts/install-deps.sh test" >&2; exit 2; }
+if [[ ${WALLGL_FRESH_INSIDE:-} != 1 ]]; then
+  # Mounts and processes of a namespace end with it, however this ends.
+  exec env WALLGL_FRESH_INSIDE=1 unshare --mount --pid --fork --kill-child --mount-proc "$0" ${keep:+--keep} "$command"
+fi
+
+mkdir -p "$work/archives" "$work/root"
+rm -rf "${root:?}"
+echo "fresh: making a clean Debian 12"
+mmdebstrap --quiet --variant=apt bookworm "$root" || { echo "fresh: mmdebstrap failed, see above" >&2; exit 1; }
+cp /etc/resolv.conf "$root/etc/resolv.conf"
+git clone --quiet --no-local "$project" "$root/srv/wallgl"
+mount --bind "$work/archives" "$root/var/cache/apt/archives"
+for folder in proc sys dev; do mount --rbind "/$folder" "$root/$folder"; done
+mount -t tmpfs tmpfs "$root/tmp"
+cache="${CCACHE_DIR:-$HOME/.cache/ccache}"
+mkdir -p "$cache" "$root/ccache"
+mount --bind "$cache" "$root/ccache"
+
+echo "fresh: $command"
+result=0
+env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 CCACHE_DIR=/ccache \
+  chroot "$root" bash -c "cd /srv/wallgl && $command" </dev/null || result=$?
+[[ ! -f "$root/tmp/wall.png" ]] || cp "$root/tmp/wall.png" "$work/wall.png"
+if [[ -z $keep ]]; then
+  umount -R "$root/ccache" "$root/tmp" "$root/dev" "$root/sys" "$root/proc" "$root/var/cache/apt/archives"
+  rm -rf --one-file-system "${root:?}"
+fi
+echo "fresh: exit code $result"
+exit "$result"
