@@ -100,7 +100,6 @@ public:
     ~Session();
 
     const Caps& caps() const { return control_->welcome().caps; }
-    std::uint32_t next_id() { return next_object_id(); }
 
     void open_surface(Surface& surface);
     void close_surface(Surface& surface);
