@@ -93,6 +93,14 @@ class Files(unittest.TestCase):
             self.assertEqual(e.bytes % 4, 0)
             following += e.count
 
+    def test_a_list_of_values_that_no_element_names_is_refused(self):
+        text = (PROTO / "state.toml").read_text()
+        with tempfile.NamedTemporaryFile("w", suffix=".toml") as f:
+            f.write(text.replace("[valid]\n", '[valid]\nnobody = ["GL_ONE"]\n', 1))
+            f.flush()
+            with self.assertRaisesRegex(AssertionError, "no element names the list nobody"):
+                state.load(f.name)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -10,10 +10,16 @@ def setters_source(commands, model, registry):
     out = [header("proto/gl/state.toml and proto/gl/commands.toml", "Commands that set one element of the state, or read parameters.", [], pragma=False),
            '#include <array>\n\n#include "client_lib/context.h"\n#include "client_lib/param_commands.h"\n#include "gen/client_lib/api.gen.h"\n\n'
            "namespace wall::client {\n\nnamespace el = glstate::el;\nusing namespace glstate;  // value types\n\nnamespace {\n\n"]
+    body = _body(commands, model, registry)
     for name, words in model.valid.items():
-        if not words[0].isdigit():
+        if f"kValid_{name})" in body:
             out.append(f"constexpr GLenum kValid_{name}[] = {{\n" + "".join(f"    {w},\n" for w in words) + "};\n")
-    out.append("\n// ---- parameters: v is what the command gave, i the element's index ----\n\n")
+    return "".join(out) + body
+
+
+def _body(commands, model, registry):
+    """All but the lists of enums, of which it names some."""
+    out = ["\n// ---- parameters: v is what the command gave, i the element's index ----\n\n"]
     for e in model.elements:
         if e.param and not e.hand and not model.families[e.family].get("hand"):
             out.append(_param_setter(e, model))

@@ -233,6 +233,11 @@ def _element(name, category, keys, next_id, structs, shared):
                    tuple(keys.get("client_groups", "").split()), keys)
 
 
+def _named_lists(elements):
+    """The lists of [valid] that elements name, for all their fields or for single ones."""
+    return {name for e in elements for f in e.fields for name in [e.of_field("valid", f.name)] if isinstance(name, str)}
+
+
 def load(path):
     with open(path, "rb") as f:
         data = tomllib.load(f)
@@ -255,4 +260,6 @@ def load(path):
     assert categories[-1].name == "local", "state.toml: local must be the last category (its elements have no wire ids)"
     names = [e.name for e in model.elements]
     assert len(names) == len(set(names)), "state.toml: an element's name twice"
+    unused = set(valid) - _named_lists(model.elements)
+    assert not unused, f"state.toml: no element names the list {', '.join(sorted(unused))} of [valid]"
     return model
