@@ -47,7 +47,7 @@ private:
     asio::awaitable<Response> answer(const Request& request, const std::optional<net::Peer>& peer);
     std::optional<Response> local_page(const Request& request) const;
     std::optional<Response> no_viewer(const Request& request, const std::optional<net::Peer>& peer) const;
-    tl::expected<Asked, Response> read(const Request& request, const std::optional<net::Peer>& peer) const;
+    Expected<Asked, Response> read(const Request& request, const std::optional<net::Peer>& peer) const;
 
     asio::ip::tcp::acceptor acceptor_;
     const Wall& wall_;
