@@ -3,9 +3,12 @@
 // JSON.
 #pragma once
 
-#include "tools/wallctl/verbs.h"
+#include "tools/request/request.h"
 
 namespace wall::wallctl {
+
+using request::Outcome;
+using request::Walld;
 
 struct Watching {
     std::chrono::milliseconds interval{1000};
