@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The row kernels over vectors of WALL_VECTOR_BYTES bytes (GCC's and clang's vector extension: no intrinsics, any
 // processor). Everything here is in an unnamed namespace and always inlined, so that no function leaves this build.
-#include "common/codec/row_kernels_simd.h"
+#include "common/codec/row_kernels.h"
 
 #define WALL_INLINE inline __attribute__((always_inline))
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "common/config/wall_config.h"
+#include "common/config/load_config.h"
 
 #include <algorithm>
 #include <array>
@@ -100,26 +100,6 @@ void read_nodes(TreeReader& read, const toml::table& root, WallConfig& out) {
 }
 
 }  // namespace
-
-const char* name_of(Backend backend) { return backend == Backend::egl ? "egl" : "osmesa"; }
-
-const char* output_name(const TileConfig& tile) { return tile.window ? "window" : "headless"; }
-
-geom::Rect WallConfig::canvas() const {
-    geom::Rect out;
-    for (const auto& node : nodes) {
-        for (const auto& tile : node.tiles) {
-            out.width = std::max(out.width, tile.rect.right());
-            out.height = std::max(out.height, tile.rect.bottom());
-        }
-    }
-    return out;
-}
-
-const NodeConfig* WallConfig::find_node(std::string_view node) const {
-    const auto found = std::ranges::find(nodes, node, &NodeConfig::name);
-    return found == nodes.end() ? nullptr : &*found;
-}
 
 Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name) {
     if (const auto line = control_character_line(toml)) {

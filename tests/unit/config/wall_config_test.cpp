@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "common/config/wall_config.h"
+#include "common/config/load_config.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
