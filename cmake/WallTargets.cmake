@@ -19,11 +19,18 @@ endif()
 find_package(Threads REQUIRED)
 
 set(WALLGL_SANITIZE "" CACHE STRING "Sanitizers, as in -fsanitize=")
+option(WALLGL_WERROR "Warnings are errors (the presets say so); off for compilers that nobody has tried" OFF)
 set(WALL_GEN_ROOT "${CMAKE_BINARY_DIR}/generated")
 
 # Float results must equal those of Mesa's own C code, so no contraction into fused operations.
 # GCC's SLP vectorizer merges the packer's pointer updates into one store that stalls (docs/benchmarks.md).
-set(WALL_COMPILE_OPTIONS -Wall -Wextra -Wpedantic -Wno-missing-field-initializers -ffp-contract=off)
+# With GCC -Wconversion is about values, not about signs; so it is with clang.
+set(WALL_COMPILE_OPTIONS
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers
+  -Werror=unused-result -ffp-contract=off)
+if(WALLGL_WERROR)
+  list(APPEND WALL_COMPILE_OPTIONS -Werror)
+endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(APPEND WALL_COMPILE_OPTIONS -fno-tree-slp-vectorize)
 endif()
@@ -32,7 +39,8 @@ function(wall_setup target)
   target_include_directories(${target} PUBLIC "${CMAKE_SOURCE_DIR}" "${WALL_GEN_ROOT}")
   target_compile_options(${target} PRIVATE ${WALL_COMPILE_OPTIONS})
   if(WALLGL_SANITIZE)
-    target_compile_options(${target} PRIVATE -fsanitize=${WALLGL_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+    target_compile_options(${target} PRIVATE -fsanitize=${WALLGL_SANITIZE} -fno-omit-frame-pointer
+      -fno-sanitize-recover=undefined)
     target_link_options(${target} PRIVATE -fsanitize=${WALLGL_SANITIZE})
   endif()
 endfunction()
