@@ -15,7 +15,8 @@ say() { printf '\n== test: %s (%d:%02d)\n' "$1" $(((SECONDS - begin) / 60)) $(((
 build() {
   local preset=$1; shift
   local targets=(); [[ $# -eq 0 ]] || targets=(--target "$@")
-  cmake --preset "$preset" --log-level=WARNING >/dev/null && cmake --build --preset "$preset" "${targets[@]}" >"$summaries/build-$preset.log" 2>&1 && return
+  cmake --preset "$preset" --log-level=WARNING >/dev/null &&
+    cmake --build --preset "$preset" "${targets[@]}" >"$summaries/build-$preset.log" 2>&1 && return
   tail -n 60 "$summaries/build-$preset.log"
   return 1
 }
@@ -73,7 +74,9 @@ stage_fuzz() {
 stages=("$@")
 [[ $# -gt 0 ]] || stages=("${all_stages[@]}")
 for stage in "${stages[@]}"; do
-  [[ " ${all_stages[*]} " == *" $stage "* ]] || { echo "test: unknown stage '$stage'; there are: ${all_stages[*]}" >&2; exit 2; }
+  [[ " ${all_stages[*]} " == *" $stage "* ]] && continue
+  echo "test: unknown stage '$stage'; there are: ${all_stages[*]}" >&2
+  exit 2
 done
 
 say "installing what is missing"
