@@ -16,8 +16,8 @@ struct Watching {
     bool as_json = false;
 };
 
-/// Until it has refreshed `count` times, or SIGINT or SIGTERM. A walld that goes away is said and waited for; one that
-/// is not there in the beginning is an error.
+/// Runs until it has refreshed `count` times, or until SIGINT or SIGTERM. A walld that goes away is said and waited
+/// for; one that is not there in the beginning is an error.
 Outcome<void> watch(const Walld& walld, const Watching& watching);
 
 }  // namespace wall::wallctl
