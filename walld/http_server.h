@@ -34,7 +34,7 @@ public:
 
     Result<void> listen(const net::Address& address);
     void stop();
-    /// With the port that the kernel chose.
+    /// The address listened on, with the port that the kernel chose.
     const net::Address& address() const { return address_; }
 
 private:
