@@ -19,6 +19,7 @@
 #include "gen/glstate/samples.gen.h"
 #include "tileserver/gpu/backend.h"
 #include "tileserver/gpu/memory.h"
+#include "tileserver/render/executor.h"
 #include "tileserver/render/soft_switch.h"
 
 namespace wall::tileserver {

@@ -92,7 +92,6 @@ private:
     // ---- background thread ----
     void run();
     void serve();
-    bool wait_for_io();
     bool read_some();
     bool write_some();
     bool take_messages();

@@ -13,6 +13,4 @@ class Packer;
 extern constinit thread_local Context* tls_context WALL_TLS;  ///< null: no context is current in this thread
 extern constinit thread_local Packer* tls_packer WALL_TLS;  ///< never null: a closed packer when no context is current
 
-inline Context* current_context_fast() { return tls_context; }
-
 }  // namespace wall::client

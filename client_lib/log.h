@@ -23,10 +23,7 @@ inline bool log_enabled(LogLevel level) {
 /// One line; the format is printf's.
 [[gnu::format(printf, 2, 3)]] void log(LogLevel level, const char* format, ...);
 
-inline void log_error(const std::string& event) { log(LogLevel::error, "%s", event.c_str()); }
 inline void log_warning(const std::string& event) { log(LogLevel::warn, "%s", event.c_str()); }
-inline void log_info(const std::string& event) { log(LogLevel::info, "%s", event.c_str()); }
-inline void log_debug(const std::string& event) { log(LogLevel::debug, "%s", event.c_str()); }
 
 /// A line on stderr that everybody sees, at most once per process for each topic (a string literal). Goes to the log
 /// as well.

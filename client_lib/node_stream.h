@@ -47,7 +47,6 @@ public:
 
     bool failed() const { return failed_.load(std::memory_order_acquire); }
     std::string failure() const;
-    std::uint64_t bytes_sent() const { return bytes_sent_.load(std::memory_order_relaxed); }
 
     // ---- transport thread ----
     int fd() const { return fd_.get(); }
@@ -73,7 +72,6 @@ private:
     UniqueFd fd_;
     bool stalls_ = true;
     std::atomic<bool> failed_{false};
-    std::atomic<std::uint64_t> bytes_sent_{0};
 
     mutable std::mutex mutex_;  // guards what follows
     std::condition_variable changed_;

@@ -74,7 +74,7 @@ struct Node {
 
 class Surface {
 public:
-    Surface(std::uint32_t id, SurfaceOptions options) : id(id), options(std::move(options)) {}
+    Surface(std::uint32_t own_id, SurfaceOptions own_options) : id(own_id), options(std::move(own_options)) {}
     ~Surface();
     const std::uint32_t id;
     const SurfaceOptions options;
@@ -100,7 +100,6 @@ public:
     ~Session();
 
     const Caps& caps() const { return control_->welcome().caps; }
-    std::uint32_t next_id() { return next_object_id(); }
 
     void open_surface(Surface& surface);
     void close_surface(Surface& surface);

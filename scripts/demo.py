@@ -62,16 +62,20 @@ def parse(words: list[str]) -> tuple[argparse.Namespace, list[list[str]]]:
     parser.add_argument("--tiles", type=pair, default=(2, 2), metavar="CxR", help="columns and rows (2x2)")
     parser.add_argument("--tile-size", type=pair, default=(512, 384), metavar="WxH", help="pixels of a tile (512x384)")
     parser.add_argument("--backend", choices=["egl", "osmesa"], default="egl", help="what the tiles render with (egl)")
-    parser.add_argument("--windows", action="store_true", help="show the tiles as windows of this desktop, beside each other from its top left")
+    parser.add_argument("--windows", action="store_true",
+                        help="show the tiles as windows of this desktop, beside each other from its top left")
     parser.add_argument("--seconds", type=float, metavar="N", help="end this long after the programs show something")
-    parser.add_argument("--screenshot", metavar="FILE", help="write the wall's picture as PNG: before the end with --seconds, "
+    parser.add_argument("--screenshot", metavar="FILE",
+                        help="write the wall's picture as PNG: before the end with --seconds, "
                         f"else {SETTLE:.0f} seconds after the first frame and at Ctrl-C")
-    parser.add_argument("--http", type=int, metavar="PORT", help=f"port of the status page ({DEFAULT_HTTP}, or a free one)")
+    parser.add_argument("--http", type=int, metavar="PORT",
+                        help=f"port of the status page ({DEFAULT_HTTP}, or a free one)")
     options = parser.parse_args(ours)
     if any(not program for program in programs):
         parser.error("a program is missing after -- or --and")
     if options.windows and not os.environ.get("DISPLAY"):
-        parser.error("--windows: there is no desktop here, DISPLAY is not set: start this in a terminal of the desktop, or leave --windows out")
+        parser.error("--windows: there is no desktop here, DISPLAY is not set: start this in a terminal of the "
+                     "desktop, or leave --windows out")
     if options.windows and options.backend != "egl":
         parser.error(f"--windows: {options.backend} draws into memory only: use --backend egl")
     return options, programs
@@ -164,11 +168,14 @@ def main() -> int:
         try:
             size = (options.tiles[0] * options.tile_size[0], options.tiles[1] * options.tile_size[1])
             around = environment(display(stack, size, options.windows))
-            wall = stack.enter_context(Wall(options.tiles, options.tile_size, options.backend, name="demo", die_with_parent=True,
+            wall = stack.enter_context(Wall(options.tiles, options.tile_size, options.backend, name="demo",
+                                            die_with_parent=True,
                                             windows=os.environ["DISPLAY"] if options.windows else "",
                                             http=f"127.0.0.1:{http_port(options.http)}"))
-            print(f"demo: a wall of {options.tiles[0]}x{options.tiles[1]} tiles, {wall.size[0]}x{wall.size[1]} pixels, drawn with {options.backend}\n"
-                  f"demo: status page {wall.url}\ndemo: operate with build/release/bin/wallctl --walld {wall.address} status", flush=True)
+            print(f"demo: a wall of {options.tiles[0]}x{options.tiles[1]} tiles, {wall.size[0]}x{wall.size[1]} pixels, "
+                  f"drawn with {options.backend}\n"
+                  f"demo: status page {wall.url}\n"
+                  f"demo: operate with build/release/bin/wallctl --walld {wall.address} status", flush=True)
             apps = []
             for program in programs or default_programs(wall.size):
                 apps.append(wall.run(*program, env=around))

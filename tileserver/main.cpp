@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "common/config/load_config.h"
 #include "tileserver/gpu/memory.h"
 #include "tileserver/io/node_server.h"
 

@@ -17,7 +17,7 @@ public:
     explicit Changed(const asio::any_io_executor& executor) : timer_(executor, Clock::time_point::max()) {}
 
     void notify() { timer_.cancel(); }
-    /// Until the next notify(), or until `deadline`. Look again, the change may be another one.
+    /// Waits until the next notify(), or until `deadline`. Look again, the change may be another one.
     asio::awaitable<void> wait(Clock::time_point deadline);
 
 private:

@@ -229,8 +229,8 @@ std::optional<HttpServer::Response> HttpServer::no_viewer(const Request& request
 }
 
 /// What is asked of the desk, or the answer if nothing is.
-tl::expected<Asked, HttpServer::Response> HttpServer::read(const Request& request,
-                                                           const std::optional<net::Peer>& peer) const {
+Expected<Asked, HttpServer::Response> HttpServer::read(const Request& request,
+                                                       const std::optional<net::Peer>& peer) const {
     const auto no = [&](int status, const Refusal& why) {
         return tl::unexpected<Response>(refusal(request.version(), status, why));
     };

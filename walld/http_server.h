@@ -34,7 +34,7 @@ public:
 
     Result<void> listen(const net::Address& address);
     void stop();
-    /// With the port that the kernel chose.
+    /// The address listened on, with the port that the kernel chose.
     const net::Address& address() const { return address_; }
 
 private:
@@ -47,7 +47,7 @@ private:
     asio::awaitable<Response> answer(const Request& request, const std::optional<net::Peer>& peer);
     std::optional<Response> local_page(const Request& request) const;
     std::optional<Response> no_viewer(const Request& request, const std::optional<net::Peer>& peer) const;
-    tl::expected<Asked, Response> read(const Request& request, const std::optional<net::Peer>& peer) const;
+    Expected<Asked, Response> read(const Request& request, const std::optional<net::Peer>& peer) const;
 
     asio::ip::tcp::acceptor acceptor_;
     const Wall& wall_;

@@ -20,7 +20,7 @@ public:
     static Result<Identities> open(const config::PeopleConfig& people);
 
     Person of(const std::optional<net::Peer>& peer) const;
-    /// With `token` (none: empty), the one it stands for instead of `base`.
+    /// The person that `token` stands for; `base` if there is none (empty).
     Outcome<Person> with_token(Person base, std::string_view token) const;
     /// Over HTTP everybody has at least the role that the configuration gives.
     Outcome<Person> over_http(const std::optional<net::Peer>& peer, std::string_view authorization) const;

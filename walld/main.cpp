@@ -15,6 +15,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common/config/load_config.h"
 #include "walld/control_server.h"
 #include "walld/http_server.h"
 #include "walld/service_manager.h"

@@ -7,6 +7,7 @@
 
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -15,13 +16,27 @@ namespace wall::walld {
 using Families = std::vector<prometheus::MetricFamily>;
 using Labels = std::vector<prometheus::ClientMetric::Label>;
 
+/// How a figure is read off a subject: a lambda without captures that returns any number, or a function.
+template <class Subject>
+class Reading {
+public:
+    template <class Read>
+    requires std::is_empty_v<Read>
+    constexpr Reading(Read) : read_([](const Subject& subject) { return static_cast<double>(Read{}(subject)); }) {}
+    constexpr Reading(double (*read)(const Subject&)) : read_(read) {}
+    double operator()(const Subject& subject) const { return read_(subject); }
+
+private:
+    double (*read_)(const Subject&);
+};
+
 /// One series for each subject.
 template <class Subject>
 struct MetricRow {
     prometheus::MetricType type;  ///< Counter or Gauge
     const char* name;
     const char* help;
-    double (*value)(const Subject&);
+    Reading<Subject> value;
 };
 
 /// What the series of one subject are told apart by.

@@ -13,25 +13,25 @@ using enum prometheus::MetricType;
 
 constexpr MetricRow<const Observed*> kWallRows[] = {
     {Gauge, "wallgl_sessions", "Programs on the wall.",
-     [](const Observed* const& o) -> double { return o->wall.sessions().size(); }},
+     [](const Observed* const& o) { return o->wall.sessions().size(); }},
     {Gauge, "wallgl_sessions_limit", "Programs that may be on the wall at once.",
-     [](const Observed* const& o) -> double { return o->wall.config().max_sessions; }},
+     [](const Observed* const& o) { return o->wall.config().max_sessions; }},
     {Gauge, "wallgl_surfaces", "Windows on the wall.",
-     [](const Observed* const& o) -> double { return o->wall.stacking().size(); }},
+     [](const Observed* const& o) { return o->wall.stacking().size(); }},
     {Counter, "wallgl_sessions_opened_total", "Programs that have come since walld started.",
-     [](const Observed* const& o) -> double { return o->wall.counters().sessions; }},
+     [](const Observed* const& o) { return o->wall.counters().sessions; }},
     {Counter, "wallgl_session_faults_total", "Programs' streams that a node gave up on since walld started.",
-     [](const Observed* const& o) -> double { return o->wall.counters().faults; }},
+     [](const Observed* const& o) { return o->wall.counters().faults; }},
     {Counter, "wallgl_presents_total", "Times that a node was told to show a frame of a window.",
-     [](const Observed* const& o) -> double { return o->wall.counters().presents; }},
+     [](const Observed* const& o) { return o->wall.counters().presents; }},
     {Gauge, "process_start_time_seconds", "When walld started, in seconds since 1970.",
      [](const Observed* const& o) { return o->started; }},
     {Counter, "process_cpu_seconds_total", "CPU time of walld.",
      [](const Observed* const& o) { return o->process.cpu_seconds; }},
     {Gauge, "process_resident_memory_bytes", "Resident memory of walld.",
-     [](const Observed* const& o) -> double { return o->process.resident_bytes; }},
+     [](const Observed* const& o) { return o->process.resident_bytes; }},
     {Gauge, "process_open_fds", "Open file descriptors of walld.",
-     [](const Observed* const& o) -> double { return o->process.open_files; }},
+     [](const Observed* const& o) { return o->process.open_files; }},
 };
 
 double one(const bool&) { return 1; }

@@ -45,7 +45,7 @@ public:
     /// Made when walld starts.
     WallMetrics(const Wall& wall, const StreamHub& streams, std::string version);
     std::vector<prometheus::MetricFamily> Collect() const override;
-    /// In the text format 0.0.4.
+    /// All metrics in Prometheus' text format 0.0.4.
     std::string text() const;
 
 private:

@@ -14,7 +14,7 @@ constexpr MetricRow<NodeRef> kAlways[] = {
     {Gauge, "wallgl_node_up", "1 while the node's tileserver is connected, else 0.",
      [](const NodeRef& n) { return n->up ? 1.0 : 0.0; }},
     {Counter, "wallgl_node_starts_total", "Tileserver processes that walld has seen for this node.",
-     [](const NodeRef& n) -> double { return n->incarnation; }},
+     [](const NodeRef& n) { return n->incarnation; }},
 };
 
 constexpr MetricRow<NodeRef> kInfo[] = {
@@ -29,18 +29,18 @@ std::uint64_t queued(const Node& node) {
 
 constexpr MetricRow<NodeRef> kWhileUp[] = {
     {Gauge, "wallgl_node_sessions", "Programs with a stream to the node.",
-     [](const NodeRef& n) -> double { return n->stats.sessions(); }},
+     [](const NodeRef& n) { return n->stats.sessions(); }},
     {Counter, "wallgl_node_frames_total", "Frames of windows drawn since the node started.",
-     [](const NodeRef& n) -> double { return n->stats.frames(); }},
+     [](const NodeRef& n) { return n->stats.frames(); }},
     {Counter, "wallgl_node_received_bytes_total", "Bytes received from programs since the node started.",
-     [](const NodeRef& n) -> double { return n->stats.bytes_received(); }},
+     [](const NodeRef& n) { return n->stats.bytes_received(); }},
     {Counter, "wallgl_node_commands_total", "Commands executed since the node started.",
-     [](const NodeRef& n) -> double { return n->stats.commands(); }},
+     [](const NodeRef& n) { return n->stats.commands(); }},
     {Counter, "wallgl_node_gl_errors_total", "OpenGL errors of the driver since the node started.",
-     [](const NodeRef& n) -> double { return n->stats.gl_errors(); }},
+     [](const NodeRef& n) { return n->stats.gl_errors(); }},
     {Counter, "wallgl_node_context_switches_total",
      "Blocks that found another program's context in the driver, since the node started.",
-     [](const NodeRef& n) -> double { return n->stats.context_switches(); }},
+     [](const NodeRef& n) { return n->stats.context_switches(); }},
     {Counter, "wallgl_node_decode_seconds_total",
      "Time of the render thread in taking batches apart and calling the driver, since the node started.",
      [](const NodeRef& n) { return seconds(n->stats.decode_ns()); }},
@@ -48,12 +48,12 @@ constexpr MetricRow<NodeRef> kWhileUp[] = {
      "Time of the render thread in waiting for the driver to end frames and answers, since the node started.",
      [](const NodeRef& n) { return seconds(n->stats.render_ns()); }},
     {Gauge, "wallgl_node_queue_bytes", "Bytes that programs have sent and that are not executed yet.",
-     [](const NodeRef& n) -> double { return queued(*n); }},
+     [](const NodeRef& n) { return queued(*n); }},
 };
 
 using Count = std::uint64_t;
 constexpr MetricRow<Count> kObjects[] = {
-    {Gauge, "wallgl_node_objects", "Objects in the node's driver by kind.", [](const Count& n) -> double { return n; }},
+    {Gauge, "wallgl_node_objects", "Objects in the node's driver by kind.", [](const Count& n) { return n; }},
 };
 
 /// A tile and what is known of it.
@@ -65,9 +65,9 @@ struct TileRef {
 constexpr MetricRow<TileRef> kTiles[] = {
     {Counter, "wallgl_tile_frames_total",
      "Times that the tile was told to show a frame of a window, since walld started.",
-     [](const TileRef& t) -> double { return t.shown->frames; }},
+     [](const TileRef& t) { return t.shown->frames; }},
     {Gauge, "wallgl_tile_lag_frames", "Frames that the wall shows and this tile does not yet; the most of its windows.",
-     [](const TileRef& t) -> double { return t.lag; }},
+     [](const TileRef& t) { return t.lag; }},
 };
 constexpr MetricRow<TileRef> kShownTiles[] = {
     {Gauge, "wallgl_tile_frame_age_seconds",

@@ -64,7 +64,7 @@ public:
     void add(const proto::Placement& placement);
     /// The members' frames up to this one are on show: what held before is forgotten.
     void presented(std::uint32_t frame);
-    /// In order: the one that holds, and those that will.
+    /// The placements in order: the one that holds, and those that will.
     const std::map<std::uint32_t, proto::Placement>& versions() const { return versions_; }
 
     void opened(Rank rank) { noted_.try_emplace(rank, 0); }

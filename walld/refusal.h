@@ -3,8 +3,9 @@
 #pragma once
 
 #include <string>
-#include <tl/expected.hpp>
 #include <utility>
+
+#include "common/base/result.h"
 
 namespace wall::walld {
 
@@ -24,7 +25,7 @@ struct Refusal {
 };
 
 template <class T>
-using Outcome = tl::expected<T, Refusal>;
+using Outcome = Expected<T, Refusal>;
 
 inline tl::unexpected<Refusal> refuse(RefusalKind kind, std::string message) {
     return tl::unexpected<Refusal>(Refusal{kind, std::move(message)});

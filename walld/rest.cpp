@@ -63,7 +63,7 @@ bool same_site(const RestRequest& request) {
     return fetched_here && (request.origin.empty() || request.origin == "http://" + std::string(request.host));
 }
 
-tl::expected<RestCommand, HttpRefusal> command(const Route& route, std::string_view part, const RestRequest& request) {
+Expected<RestCommand, HttpRefusal> command(const Route& route, std::string_view part, const RestRequest& request) {
     RestCommand out{route.verb, json::object()};
     if (route.method != "GET") {
         if (!same_site(request))
@@ -80,7 +80,7 @@ tl::expected<RestCommand, HttpRefusal> command(const Route& route, std::string_v
 
 }  // namespace
 
-tl::expected<RestCommand, HttpRefusal> rest_command(const RestRequest& request) {
+Expected<RestCommand, HttpRefusal> rest_command(const RestRequest& request) {
     std::string allowed;
     for (const auto& route : kRoutes) {
         const auto part = match(route.path, request.path);

@@ -35,7 +35,7 @@ struct RestCommand {
 
 /// A page of another site must not change the wall through a browser on this machine: what changes something is neither
 /// sent from elsewhere nor a form.
-tl::expected<RestCommand, HttpRefusal> rest_command(const RestRequest& request);
+Expected<RestCommand, HttpRefusal> rest_command(const RestRequest& request);
 
 int http_status(RefusalKind kind);
 /// {"error": {"code": ..., "message": ...}}

@@ -23,7 +23,7 @@ class SessionTraffic {
 public:
     using Clock = std::chrono::steady_clock;
 
-    /// Between the last two reports.
+    /// The rates between the last two reports.
     struct Rates {
         double state = 0, object = 0, geometry = 0;  ///< bytes a second
         double frame_bytes = 0;                      ///< of a frame, the mean
@@ -33,7 +33,7 @@ public:
     /// of others is passed over.
     void note(std::uint32_t rank, const proto::ClientStats& report, std::size_t nodes, Clock::time_point now);
 
-    // Of all processes together; they count the same frames.
+    // The sums over all processes, which count the same frames.
     std::map<std::uint32_t, SentBytes> by_node() const;
     SentBytes sent() const;  ///< to all nodes
     std::uint64_t frames() const;

@@ -12,12 +12,12 @@ namespace wall::walld {
 nlohmann::json nodes_json(const Wall& wall);
 nlohmann::json tiles_json(const Wall& wall, Clock::time_point now);
 nlohmann::json sessions_json(const Wall& wall);
-/// Of one that exists.
+/// One session, which must exist.
 nlohmann::json session_json(const Wall& wall, SessionId id);
 nlohmann::json person_json(const Person& person);
 /// All of the above, and the wall's own data.
 nlohmann::json status_json(const Wall& wall, Clock::time_point now);
-/// As text; what is not UTF-8 (programs name themselves) is replaced.
+/// A status as text; what is not UTF-8 (programs name themselves) is replaced.
 std::string dump(const nlohmann::json& value);
 
 }  // namespace wall::walld

@@ -59,7 +59,7 @@ public:
     void node_joined(NodeIndex node);
     void node_left(NodeIndex node);
     void arrived(NodeIndex node, proto::StreamFrame& frame);
-    /// After any change of the wall: streams of windows follow them, at their rate.
+    /// To be called after any change of the wall: streams of windows follow them, at their rate.
     void tick(Clock::time_point now);
     /// When tick() has to be called even if nothing changes.
     std::optional<Clock::time_point> next_deadline() const { return deadline_; }
@@ -157,7 +157,7 @@ public:
     explicit Viewer(const asio::any_io_executor& executor) : news_(executor) {}
     /// Notified when next() may have something.
     Changed& news() { return news_; }
-    /// For a message that made no sense; the last one is enough.
+    /// Says that a message made no sense; the last such answer is enough.
     void tell_error(const std::string& what);
 
 private:

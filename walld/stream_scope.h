@@ -31,8 +31,8 @@ struct StreamPart {
 /// The error says which member of the request is wrong (".tile: there is no tile 'x'").
 Result<StreamScope> scope_of(const Wall& wall, const WatchRequest& request);
 
-/// In the order of nodes and slots, tiles that are away too. Edges are rounded, so that tiles that touch on the canvas
-/// touch in the picture.
+/// The parts in the order of nodes and slots, those of tiles that are away too. Edges are rounded, so that tiles that
+/// touch on the canvas touch in the picture.
 std::vector<StreamPart> parts_of(const Wall& wall, const StreamScope& scope);
 
 }  // namespace wall::walld

@@ -11,7 +11,7 @@
 
 namespace wall::walld {
 
-/// Until either side closes. `request` is an upgrade that was checked.
+/// Serves the viewer until either side closes. `request` is an upgrade that was checked.
 asio::awaitable<void> serve_viewer(std::shared_ptr<asio::ip::tcp::socket> socket,
                                    boost::beast::http::request<boost::beast::http::string_body> request,
                                    StreamHub& hub);

@@ -70,11 +70,12 @@ public:
     bool held() const { return held_; }
     std::uint64_t timeouts() const { return timeouts_; }
 
-    /// Between the first node's report of a frame and the last one's.
+    /// The time between the first node's report of a frame and the last one's.
     const Spread& rendered_spread() const { return rendered_spread_; }
-    /// Between telling the first node to show a frame and the last one; more than nothing only where a node was late.
+    /// The time between telling the first node to show a frame and the last one; more than nothing only where a node
+    /// was late.
     const Spread& presented_spread() const { return presented_spread_; }
-    /// From one presented frame to the next, the mean of about the last 16.
+    /// The time from one presented frame to the next, the mean of about the last 16.
     Spread::Milliseconds frame_interval() const { return interval_; }
 
 private:

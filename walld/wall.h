@@ -36,7 +36,7 @@ public:
     virtual void to_client(SessionId session, const proto::Envelope& message) = 0;
     /// To one process of a parallel program.
     virtual void to_member(SessionId session, Rank rank, const proto::Envelope& message) = 0;
-    /// Its processes are told why, and are cut off.
+    /// The session's processes are told why, and are cut off.
     virtual void end_session(SessionId session, const std::string& reason) = 0;
 };
 

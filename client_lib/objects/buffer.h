@@ -11,7 +11,7 @@
 namespace wall::client {
 
 struct Buffer {
-    Buffer(std::uint32_t id, GLuint name) : id(id), name(name) {}
+    Buffer(std::uint32_t own_id, GLuint own_name) : id(own_id), name(own_name) {}
     const std::uint32_t id;  ///< in state elements and client arrays
     const GLuint name;       ///< the application's
 

@@ -23,7 +23,7 @@ namespace wall::client {
 /// Shaders and programs share one space of names (OpenGL 2.1, 2.15.1).
 struct GlslObject {
     enum class Kind : std::uint8_t { shader, program };
-    GlslObject(Kind kind, std::uint32_t id, GLuint name) : kind(kind), id(id), name(name) {}
+    GlslObject(Kind own_kind, std::uint32_t own_id, GLuint own_name) : kind(own_kind), id(own_id), name(own_name) {}
     virtual ~GlslObject() = default;
     const Kind kind;
     const std::uint32_t id;  ///< on the wire, and in the state element current_program
@@ -33,7 +33,8 @@ struct GlslObject {
 };
 
 struct Shader : GlslObject {
-    Shader(std::uint32_t id, GLuint name, GLenum type) : GlslObject(Kind::shader, id, name), type(type) {}
+    Shader(std::uint32_t own_id, GLuint own_name, GLenum own_type)
+        : GlslObject(Kind::shader, own_id, own_name), type(own_type) {}
     const GLenum type;
     std::string source;
     enum class State : std::uint8_t { not_compiled, unknown, compiled, failed };
@@ -102,7 +103,7 @@ private:
 };
 
 struct Program : GlslObject {
-    Program(std::uint32_t id, GLuint name) : GlslObject(Kind::program, id, name) {}
+    Program(std::uint32_t own_id, GLuint own_name) : GlslObject(Kind::program, own_id, own_name) {}
     std::vector<std::shared_ptr<Shader>> shaders;
     std::map<std::string, GLuint> attribute_bindings;
     std::optional<glapi::ProgramDefinition> to_link;  ///< glLinkProgram was called, nobody has asked yet how it went

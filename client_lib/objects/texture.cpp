@@ -202,8 +202,8 @@ std::uint64_t next_stamp() {
     return last.fetch_add(1, std::memory_order_relaxed) + 1;
 }
 
-Texture::Texture(std::uint32_t id, GLuint name, GLenum target)
-    : id(id), name(name), target(target), stamp(next_stamp()) {
+Texture::Texture(std::uint32_t own_id, GLuint own_name, GLenum own_target)
+    : id(own_id), name(own_name), target(own_target), stamp(next_stamp()) {
     if (target != GL_TEXTURE_RECTANGLE) return;
     parameters.min_filter = GL_LINEAR;
     parameters.wrap_s = parameters.wrap_t = parameters.wrap_r = GL_CLAMP_TO_EDGE;

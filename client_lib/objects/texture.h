@@ -62,7 +62,7 @@ struct TexParameters {
 };
 
 struct Texture {
-    Texture(std::uint32_t id, GLuint name, GLenum target);
+    Texture(std::uint32_t own_id, GLuint own_name, GLenum own_target);
     const std::uint32_t id;
     const GLuint name;
     const GLenum target;

@@ -26,7 +26,7 @@ public:
         pending_ >>= held_ & 56;
         held_ &= 7;
     }
-    /// Where the bytes end, the last one filled with zero bits.
+    /// Returns where the bytes end; the last one is filled with zero bits.
     std::byte* finish() const { return to_ + (held_ > 0 ? 1 : 0); }
     std::byte* at() const { return to_; }
     void move_to(std::byte* to) { to_ = to; }

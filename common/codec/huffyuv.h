@@ -20,7 +20,7 @@ struct EncoderOptions {
 /// An encoder that tells also what an AVI file must say (huffyuv_format.h).
 class StreamEncoder : public Encoder {
 public:
-    /// After the first encode().
+    /// The stream that the packets belong to; known after the first encode().
     virtual const Stream& stream() const = 0;
 };
 

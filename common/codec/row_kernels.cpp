@@ -7,8 +7,6 @@
 #include <cstring>
 #include <vector>
 
-#include "common/codec/row_kernels_simd.h"
-
 namespace wall::codec {
 namespace {
 

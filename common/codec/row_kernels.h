@@ -54,4 +54,10 @@ const RowKernels& row_kernels();
 /// All that this processor runs, the plain C++ one first.
 std::span<const RowKernels* const> all_row_kernels();
 
+// The SIMD builds among them: row_kernels.inl compiled with 16-byte vectors (SSE2 on x86-64) and with AVX2.
+const RowKernels& base_row_kernels();
+#if WALL_HAS_AVX2_KERNELS
+const RowKernels& avx2_row_kernels();  ///< only where the processor has AVX2
+#endif
+
 }  // namespace wall::codec

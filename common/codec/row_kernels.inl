@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The row kernels over vectors of WALL_VECTOR_BYTES bytes (GCC's and clang's vector extension: no intrinsics, any
 // processor). Everything here is in an unnamed namespace and always inlined, so that no function leaves this build.
-#include "common/codec/row_kernels_simd.h"
+#include "common/codec/row_kernels.h"
 
 #define WALL_INLINE inline __attribute__((always_inline))
 
@@ -185,6 +185,8 @@ std::uint64_t nonzero(const Pixel* residuals, std::size_t count, Pixel mask) {
     return bits;
 }
 
+constexpr std::uint8_t kBelowSteps[] = {0, 1, 3, 7, 15, 31, 63};  // the magnitudes before another bit counts
+
 std::uint32_t cost(const Pixel* residuals, std::size_t count, Pixel mask) {
     Words sum{};
     const auto count_vector = [&](Words r) {
@@ -192,7 +194,7 @@ std::uint32_t cost(const Pixel* residuals, std::size_t count, Pixel mask) {
         const Bytes bytes = reinterpret_cast<Bytes>(r);
         const Bytes magnitude = smaller(bytes, -bytes);
         Bytes reached{};  // comparisons give 255 = -1 where true
-        for (const std::uint8_t below : {0, 1, 3, 7, 15, 31, 63}) reached -= reinterpret_cast<Bytes>(magnitude > below);
+        for (const auto below : kBelowSteps) reached -= reinterpret_cast<Bytes>(magnitude > below);
         const Words by_byte = reinterpret_cast<Words>(reached);
         sum += (by_byte & 255) + (by_byte >> 8 & 255) + (by_byte >> 16 & 255) + (by_byte >> 24);
         sum += reinterpret_cast<Words>(r != 0) & 3;

@@ -41,10 +41,10 @@ inline constexpr std::uint32_t kOpaqueBlack = 0xff000000;  ///< left of a slice'
 // Symbols of the main code. The first 256 are green's residual, and blue's and red's codes follow. Residuals of all
 // three colours are one symbol when each is -1 to 2, or when blue and red are zero (grey, where all change alike); runs
 // of zero pixels are one.
-inline constexpr std::size_t kSmall = 256;         ///< + three digits of two bits
-inline constexpr std::size_t kGrey = kSmall + 64;  ///< + green's residual
-inline constexpr std::size_t kRuns = kGrey + 256;  ///< + run class
-inline constexpr std::size_t kRest = kRuns + 32;   ///< zero to the block's end
+inline constexpr std::uint32_t kSmall = 256;         ///< + three digits of two bits
+inline constexpr std::uint32_t kGrey = kSmall + 64;  ///< + green's residual
+inline constexpr std::uint32_t kRuns = kGrey + 256;  ///< + run class
+inline constexpr std::uint32_t kRest = kRuns + 32;   ///< zero to the block's end
 inline constexpr std::size_t kMainSymbols = kRest + 1;
 inline constexpr unsigned kLongestCode = 12;  ///< bits; four codes and their pixel fit a refill of 56
 inline constexpr std::array<std::size_t, 4> kSymbols{kMainSymbols, 256, 256, 256};  ///< main (green), blue, red, alpha

@@ -72,14 +72,13 @@ Result<void> read_code(std::span<std::uint8_t> lengths, ByteBitReader& from) {
 DecodeTables::Main main_entry(std::uint32_t symbol, std::uint8_t length) {
     if (symbol < kSmall) return {symbol, 0, length, 0};
     if (symbol == kRest) return {0, DecodeTables::kToTheEnd, length, 0};
-    if (symbol >= kGrey && symbol < kRuns)
-        return {(symbol - static_cast<std::uint32_t>(kGrey)) * 0x010101, 1, length, 0};
+    if (symbol >= kGrey && symbol < kRuns) return {(symbol - kGrey) * 0x010101, 1, length, 0};
     if (symbol < kRuns) {
         const auto digit = [&](unsigned shift) { return ((symbol - kSmall) >> shift & 3) - 1; };
         const std::uint32_t blue = digit(0), green = digit(2), red = digit(4);
         return {((blue + green) & 255) | (green & 255) << 8 | ((red + green) & 255) << 16, 1, length, 0};
     }
-    const std::uint32_t run = symbol - static_cast<std::uint32_t>(kRuns);
+    const std::uint32_t run = symbol - kRuns;
     if (run < 16) return {0, static_cast<std::uint16_t>(run + 1), length, 0};
     const std::uint32_t power = 4 + (run - 16) / 2;
     return {0, static_cast<std::uint16_t>((1u << power) + ((run - 16) % 2 << (power - 1)) + 1), length,

@@ -36,11 +36,11 @@ inline constexpr std::size_t kMostTableBytes = (kMainSymbols + 3 * 256) / 2 + 16
 void write_lengths(const Lengths& lengths, ByteBitWriter& to);
 Result<Lengths> read_lengths(ByteBitReader& from);
 
-/// For the encoder: bits above 8 bits of length, by symbol.
+/// One code as an encoder uses it: for each symbol its bits above 8 bits of length.
 using EncodeTable = std::array<std::uint32_t, kMainSymbols>;
 std::array<EncodeTable, 4> encode_tables(const Lengths& lengths);
 
-/// For the decoder, by the next kLongestCode bits.
+/// All codes as a decoder uses them: by the next kLongestCode bits.
 struct DecodeTables {
     /// Symbols but green are all done alike: the value is a pixel's residual, then `advance` and what the extra bits
     /// say more pixels follow it that are zero.

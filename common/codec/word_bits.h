@@ -29,7 +29,7 @@ public:
         pending_ <<= full;
         held_ -= full;
     }
-    /// Where the words end, the last one filled with zero bits.
+    /// Returns where the words end; the last one is filled with zero bits.
     std::byte* finish() {
         if (held_ > 0) put(0, 32 - held_);
         return to_;
@@ -70,7 +70,7 @@ public:
         }
         if (other.writer_.held() > 0) to.put(other.writer_.held_bits(), other.writer_.held());
     }
-    /// All words, the last one filled with zero bits.
+    /// Returns all words; the last one is filled with zero bits.
     std::span<const std::byte> finish() { return {bytes_.data(), writer(8).finish()}; }
 
 private:

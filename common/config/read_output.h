@@ -9,9 +9,9 @@
 
 namespace wall::config {
 
-/// Of one [[node.tile]]; none: headless.
+/// Reads the window of one [[node.tile]]; none: the tile is headless.
 std::optional<WindowConfig> read_output(TreeReader& read, const toml::table& tile);
-/// That the node's last tile, which `tile` describes, goes with the backend and with the tiles before it.
+/// Checks that the node's last tile, which `tile` describes, goes with the backend and with the tiles before it.
 void check_output(TreeReader& read, const toml::table& tile, const NodeConfig& node);
 
 }  // namespace wall::config

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// wall.toml: the one file that describes a wall; walld and every tileserver read it. docs/operation.md documents the
-// keys. Pure (load_config() reads the file). Any thread.
+// What wall.toml says (load_config.h reads it): the one description of a wall, for walld and every tileserver.
+// docs/operation.md documents the keys. Pure; any thread.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "common/base/result.h"
 #include "common/config/people.h"
 #include "common/geom/rect.h"
 #include "common/net/address.h"
@@ -60,9 +59,5 @@ struct WallConfig {
     geom::Rect canvas() const;
     const NodeConfig* find_node(std::string_view node) const;
 };
-
-/// The error is one line, `FILE:LINE: what is wrong: what was expected`.
-Result<WallConfig> load_config(const std::string& path);
-Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name);
 
 }  // namespace wall::config

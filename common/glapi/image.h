@@ -59,10 +59,10 @@ std::size_t row_offset(const PixelStore& store, const PixelLayout& layout, const
 /// Bytes of a program's memory that an image reaches over, from the pointer it gave.
 std::size_t memory_bytes(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type);
 
-/// From a program's memory. `size`, `format` and `type` have been checked (image_bytes gives a value).
+/// Copies an image from a program's memory. `size`, `format` and `type` have been checked (image_bytes gives a value).
 std::vector<std::byte> unpack_image(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type,
                                     const void* pixels);
-/// Into a program's memory; only the pixels themselves are written.
+/// Copies an image into a program's memory; only the pixels themselves are written.
 void pack_image(const PixelStore& store, const ImageSize& size, GLenum format, GLenum type,
                 std::span<const std::byte> tight, void* pixels);
 

@@ -112,7 +112,7 @@ bool diff_list(ElementList<E...>, State& from, const State& to, Sink& sink) {
     return (static_cast<unsigned>(diff_element<E>(from, to, sink)) | ... | 0u) != 0;
 }
 
-// With To = State equal categories get one value id, that of `from`.
+// Where To is State, equal categories get one value id, that of `from`.
 template <CategoryMask Mask, std::size_t C, class To, class Sink>
 void diff_if_wanted(State& from, To& to, Sink& sink) {
     if constexpr ((Mask >> C & 1) != 0) {
@@ -222,7 +222,7 @@ void for_each_in_group(GLbitfield mask, F&& f) {
     });
 }
 
-/// The same for glPushClientAttrib.
+/// Does the same for glPushClientAttrib.
 template <class F>
 void for_each_in_client_group(GLbitfield mask, F&& f) {
     for_each_element([&]<class E>() {

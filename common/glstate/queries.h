@@ -12,7 +12,7 @@
 
 namespace wall::glstate {
 
-/// What an array's index follows.
+/// Says what an array's index follows.
 enum class IndexRule : std::uint8_t {
     none,
     unit /* active texture unit */,

@@ -57,7 +57,7 @@ public:
     asio::awaitable<Result<proto::Envelope>> receive();
     /// Queues a message; never waits. Nothing happens after a close.
     void send(const proto::Envelope& envelope);
-    /// Until nothing is queued; for what may wait rather than queue.
+    /// Waits until nothing is queued; senders call it that may wait rather than queue.
     asio::awaitable<void> drained();
     /// Closes at once; a pending receive() ends.
     void close();

@@ -42,7 +42,7 @@ TEST(ValueHistory, BothEndsStayAlike) {
     ValueHistory sender, receiver;
     std::mt19937 random(5);
     for (int i = 0; i < 5000; ++i) {
-        const std::uint32_t element = random() % 3;
+        const auto element = static_cast<std::uint32_t>(random() % 3);
         const Matrix value = numbered(static_cast<int>(random() % 12));
         if (const auto place = sender.find(element, value.data())) {
             sender.recall(element, *place);

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "common/base/ids.h"
-#include "tileserver/render/executor.h"
+#include "tileserver/render/render_node.h"
 
 namespace wall::tileserver {
 

@@ -198,9 +198,4 @@ void Driver::disable_scissor() {
     layer_ = nullptr;
 }
 
-void Driver::set_unscaled_pixel_zoom() {
-    if (std::exchange(window_.pixel_zoom, {1, 1}) != std::array<float, 2>{1, 1}) gl_.PixelZoom(1, 1);
-    layer_ = nullptr;
-}
-
 }  // namespace wall::tileserver

@@ -104,7 +104,6 @@ public:
     }
     /// No scissor for the driver's own work (blits, clears); the next bind_layer() sets it again.
     void disable_scissor();
-    void set_unscaled_pixel_zoom();
 
     /// Takes all of the driver's errors; how many there were.
     unsigned drain_errors();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/render/parallel_group.h"
 
-#include "tileserver/render/executor.h"
+#include "tileserver/render/render_node.h"
 
 namespace wall::tileserver {
 

@@ -11,6 +11,7 @@
 
 #include "common/wire/batch.h"
 #include "tileserver/gpu/backend.h"
+#include "tileserver/render/executor.h"
 #include "tileserver/render/tile_watches.h"
 
 namespace wall::tileserver {

@@ -19,6 +19,7 @@
 #include "tileserver/gpu/caps.h"
 #include "tileserver/render/batch_queue.h"
 #include "tileserver/render/compositor.h"
+#include "tileserver/render/parallel_group.h"
 #include "tileserver/render/window_output.h"
 #include "tileserver/render/work.h"
 

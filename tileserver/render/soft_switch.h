@@ -4,7 +4,8 @@
 // Render thread.
 #pragma once
 
-#include "tileserver/render/executor.h"
+#include "tileserver/render/render_node.h"
+#include "tileserver/render/session.h"
 
 namespace wall::tileserver {
 

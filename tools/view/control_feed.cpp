@@ -27,7 +27,7 @@ private:
 }  // namespace
 
 Outcome<std::unique_ptr<Feed>> open_control_feed(const Walld& walld, const nlohmann::json& watch) {
-    auto client = wallctl::subscribe(walld, "watch", {{"watch", watch}});
+    auto client = request::subscribe(walld, "watch", {{"watch", watch}});
     if (!client) return tl::unexpected(client.error());
     return std::make_unique<ControlFeed>(std::move(*client));
 }

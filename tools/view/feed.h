@@ -7,13 +7,13 @@
 #include <optional>
 #include <string>
 
-#include "tools/wallctl/verbs.h"
+#include "tools/request/request.h"
 
 namespace wall::view {
 
-using wallctl::Failure;
-using wallctl::Outcome;
-using wallctl::Walld;
+using request::Failure;
+using request::Outcome;
+using request::Walld;
 
 struct FeedMessage {
     bool binary = false;

@@ -36,7 +36,7 @@ public:
     void watch(nlohmann::json entry);
     /// A paused view has no connection, so that nobody makes or decodes pictures for it.
     void pause(bool paused);
-    /// While `look` runs nothing is decoded.
+    /// Nothing is decoded while `look` runs.
     void look(const std::function<void(const Looked&)>& look) const;
     /// Waits until the picture is complete, or there is a failure; false if that takes longer.
     bool wait_complete(std::chrono::milliseconds limit);

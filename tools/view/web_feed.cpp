@@ -131,7 +131,7 @@ Outcome<std::unique_ptr<Feed>> open_web_feed(const std::string& url, const std::
                                              const nlohmann::json& watch) {
     const auto address = address_of(url);
     if (!address) return tl::unexpected(address.error());
-    const auto token = wallctl::read_token(token_file);
+    const auto token = request::read_token(token_file);
     if (!token) return tl::unexpected(token.error());
     auto feed = std::make_unique<WebFeed>();
     if (const auto open = feed->open(*address, *token, watch); !open) return tl::unexpected(open.error());

@@ -9,7 +9,7 @@ namespace wall::wallctl {
 
 std::string text(const nlohmann::json& object, const char* key);
 bool is(const nlohmann::json& object, const char* key);
-/// Its "rect" as WxH+X+Y.
+/// The "rect" of a JSON object as WxH+X+Y.
 std::string place(const nlohmann::json& object);
 /// A user's name, or "token NAME".
 std::string who(const nlohmann::json& person);

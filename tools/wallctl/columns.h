@@ -19,10 +19,10 @@ inline constexpr std::size_t kAnyWidth = std::string::npos;
 /// cut.
 std::string table(const std::vector<Row>& rows, std::span<const int> ranks = {}, std::size_t width = kAnyWidth);
 
-/// At most so many cells; the last one is an ellipsis if something is missing.
+/// The text cut to so many cells; the last one is an ellipsis if something is missing.
 std::string cut(std::string_view text, std::size_t width);
 
-/// Without control characters, so that no program's name moves the cursor.
+/// The text without control characters, so that no program's name moves the cursor.
 std::string printable(std::string_view text);
 
 }  // namespace wall::wallctl

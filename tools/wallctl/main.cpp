@@ -8,10 +8,10 @@
 #include <iostream>
 
 #include "common/net/address.h"
+#include "tools/request/request.h"
 #include "tools/wallctl/doctor.h"
 #include "tools/wallctl/record.h"
 #include "tools/wallctl/tables.h"
-#include "tools/wallctl/verbs.h"
 #include "tools/wallctl/watch.h"
 
 namespace {
@@ -19,6 +19,7 @@ namespace {
 using namespace wall;
 using namespace wall::wallctl;
 using nlohmann::json;
+using request::ask;
 
 constexpr std::chrono::seconds kLimit{10};  // for an answer
 constexpr std::chrono::seconds kCloseLimit{

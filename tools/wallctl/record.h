@@ -2,9 +2,14 @@
 // wallctl record: what the wall shows, as an AVI file with lossless HuffYUV that every player knows (docs/codecs.md).
 #pragma once
 
-#include "tools/wallctl/verbs.h"
+#include "tools/request/request.h"
 
 namespace wall::wallctl {
+
+using request::Answer;
+using request::Failure;
+using request::Outcome;
+using request::Walld;
 
 struct Recording {
     std::string file, tile;  ///< tile empty: the whole wall

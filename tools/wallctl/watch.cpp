@@ -18,6 +18,9 @@
 namespace wall::wallctl {
 namespace {
 
+using request::Answer;
+using request::ask;
+
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 

@@ -3,9 +3,12 @@
 // JSON.
 #pragma once
 
-#include "tools/wallctl/verbs.h"
+#include "tools/request/request.h"
 
 namespace wall::wallctl {
+
+using request::Outcome;
+using request::Walld;
 
 struct Watching {
     std::chrono::milliseconds interval{1000};
@@ -13,8 +16,8 @@ struct Watching {
     bool as_json = false;
 };
 
-/// Until it has refreshed `count` times, or SIGINT or SIGTERM. A walld that goes away is said and waited for; one that
-/// is not there in the beginning is an error.
+/// Runs until it has refreshed `count` times, or until SIGINT or SIGTERM. A walld that goes away is said and waited
+/// for; one that is not there in the beginning is an error.
 Outcome<void> watch(const Walld& walld, const Watching& watching);
 
 }  // namespace wall::wallctl

@@ -14,7 +14,7 @@ using namespace wall;
 using nlohmann::json;
 
 struct Arguments {
-    wallctl::Walld walld{net::kDefaultWalld, {}};
+    view::Walld walld{net::kDefaultWalld, {}};
     std::string http, tile, session, codec = "huffyuv-tiles";
     std::vector<int> region, size{960, 540};
     unsigned fps = 30;

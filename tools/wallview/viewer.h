@@ -17,7 +17,7 @@ struct Options {
     std::string save;          ///< the last picture goes there in the end
 };
 
-/// Until somebody ends it. With `frames`, a failure before the first picture is an error; else it is tried again.
+/// Runs until somebody ends it. With `frames`, a failure before the first picture is an error; else it is tried again.
 Result<void> run(const view::LiveView::Connect& connect, const Options& options);
 
 }  // namespace wall::wallview

@@ -71,11 +71,6 @@ const Config* Screen::of_visual(VisualID visual) const {
     return found != by_visual_.end() ? found->second : nullptr;
 }
 
-const Config* Screen::of_id(int id) const {
-    const auto i = static_cast<std::size_t>(id - kFirstConfigId);
-    return id >= kFirstConfigId && i < configs_.size() ? configs_[i] : nullptr;
-}
-
 void Screen::choose_for_visual(const Config& config) {
     std::lock_guard lock(mutex_);
     by_visual_[config.visual] = &config;

@@ -36,7 +36,6 @@ public:
     std::span<const Config* const> configs() const { return configs_; }
     /// Null for a visual that is not offered.
     const Config* of_visual(VisualID visual) const;
-    const Config* of_id(int id) const;
     /// glXChooseVisual has answered `config`: where several share a visual, it now stands for this one.
     void choose_for_visual(const Config& config);
 

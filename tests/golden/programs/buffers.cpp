@@ -24,7 +24,7 @@ SCENE(clears, 4) {
     for (int i = 0; i < 40; ++i) {
         glScissor(static_cast<int>(random_bits() % 420) - 20, static_cast<int>(random_bits() % 320) - 20, 30 + i * 3,
                   90 - i * 2);
-        glColorMask(i % 2, i % 3 > 0, frame != 1, 1);
+        glColorMask(i % 2 > 0, i % 3 > 0, frame != 1, 1);
         glClearColor(random_unit(), random_unit(), random_unit(), random_unit());
         glClear(i % 4 ? GL_COLOR_BUFFER_BIT : GL_DEPTH_BUFFER_BIT);
     }

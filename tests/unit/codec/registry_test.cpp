@@ -156,8 +156,8 @@ TEST_P(EveryCodec, SurvivesFlippedBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, EveryCodec, testing::ValuesIn(codecs().begin(), codecs().end()),
-                         [](const auto& info) {
-                             std::string name(info.param->name);
+                         [](const auto& test) {
+                             std::string name(test.param->name);
                              std::replace(name.begin(), name.end(), '-', '_');
                              return name;
                          });

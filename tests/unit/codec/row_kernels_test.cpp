@@ -105,7 +105,7 @@ TEST_P(RowKernelsTest, AllEqualSeesEveryPixel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Builds, RowKernelsTest, testing::ValuesIn(all_row_kernels().begin(), all_row_kernels().end()),
-                         [](const auto& info) { return std::string(info.param->name); });
+                         [](const auto& test) { return std::string(test.param->name); });
 
 }  // namespace
 }  // namespace wall::codec

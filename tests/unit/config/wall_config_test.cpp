@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "common/config/wall_config.h"
+#include "common/config/load_config.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -255,7 +255,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"tile_twice", "\"big\"", "\"top\"", "wall.toml:37: ", "tile 'top' appears twice"},
         Wrong{"no_tile", "[[node.tile]]\nname = \"big\"\nrect = [660, 0, 1280, 980]", "",
               "wall.toml:37: ", "'tile' is missing: expected at least one [[node.tile]]"}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& test) { return std::string(test.param.name); });
 
 TEST(WallConfig, AnEmptyOneLacksNodes) {
     const auto config = parse_config("", "wall.toml");

@@ -107,10 +107,11 @@ TEST(WatchText, FitsEveryScreen) {
             std::istringstream lines(watch_text(rated, "12:00:00", {columns, rows}));
             std::size_t count = 0;
             for (std::string line; std::getline(lines, line); ++count) {
-                if (!line.ends_with("more lines"))
+                if (!line.ends_with("more lines")) {
                     EXPECT_LE(std::ranges::count_if(line, [](char c) { return (c & 0xc0) != 0x80; }),
                               static_cast<std::ptrdiff_t>(columns))
                         << line;
+                }
             }
             EXPECT_LE(count, rows);
         }

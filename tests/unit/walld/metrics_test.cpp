@@ -7,6 +7,7 @@
 
 #include <set>
 
+#include "common/config/load_config.h"
 #include "common/wire/limits.h"
 #include "tests/support/small_wall.h"
 

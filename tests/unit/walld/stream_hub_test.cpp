@@ -7,6 +7,7 @@
 #include <boost/asio/io_context.hpp>
 #include <cstring>
 
+#include "common/config/load_config.h"
 #include "common/wire/limits.h"
 #include "tests/support/small_wall.h"
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/config/load_config.h"
 #include "tests/support/small_wall.h"
 
 namespace wall::walld {

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/config/load_config.h"
 #include "common/wire/limits.h"
 #include "tests/support/small_wall.h"
 #include "walld/status.h"

@@ -6,9 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "common/base/result.h"
 #include "common/net/control_client.h"
 
-namespace wall::wallctl {
+namespace wall::request {
 
 struct Answer {
     nlohmann::json json;
@@ -20,7 +21,7 @@ struct Failure {
     std::string code, message;
 };
 template <class T>
-using Outcome = tl::expected<T, Failure>;
+using Outcome = Expected<T, Failure>;
 
 /// Where walld is, and as whom it is asked.
 struct Walld {
@@ -37,4 +38,4 @@ Outcome<net::ControlClient> subscribe(const Walld& walld, const std::string& ver
 Outcome<Answer> ask(const Walld& walld, const std::string& verb, const nlohmann::json& arguments,
                     std::chrono::milliseconds limit);
 
-}  // namespace wall::wallctl
+}  // namespace wall::request

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "tools/wallctl/verbs.h"
+#include "tools/request/request.h"
 
 #include <fstream>
 
-namespace wall::wallctl {
+namespace wall::request {
 namespace {
 
 constexpr std::chrono::seconds kConnectLimit{3};
@@ -67,4 +67,4 @@ Outcome<Answer> ask(const Walld& walld, const std::string& verb, const nlohmann:
     return Answer{nlohmann::json::parse(reply.json(), nullptr, false), std::move(*reply.mutable_blob())};
 }
 
-}  // namespace wall::wallctl
+}  // namespace wall::request

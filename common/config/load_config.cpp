@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "common/config/load_config.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "common/config/read_output.h"
+#include "common/config/read_people.h"
+#include "common/config/tree_reader.h"
+
+namespace wall::config {
+namespace {
+
+constexpr std::int64_t kMaxSwapTimeout = 10'000;   // ms
+constexpr std::int64_t kMaxCloseTimeout = 60'000;  // ms
+constexpr std::int64_t kMaxSessions = 10'000;
+constexpr std::array kBackends{Backend::egl, Backend::osmesa};
+
+std::uint32_t read_background(TreeReader& read, const toml::table& wall) {
+    const auto text = read.text(wall, "background", "#000000");
+    std::uint32_t value = 0;
+    const char* end = text.data() + text.size();
+    if (text.size() == 7 && text[0] == '#' && std::from_chars(text.data() + 1, end, value, 16).ptr == end) return value;
+    read.refuse(wall.get("background") ? wall.get("background")->source() : wall.source(),
+                "'background': expected a colour as \"#RRGGBB\"");
+    return 0;
+}
+
+void read_control(TreeReader& read, const toml::table& root, WallConfig& out) {
+    const auto& control = read.section(root, "control");
+    read.only(control, "[control]", {"listen", "users"});
+    if (const auto* listen = control.get("listen")) {
+        const auto* array = listen->as_array();
+        if (!array || array->empty())
+            read.refuse(listen->source(), "'listen': expected an array of addresses, unix:PATH or HOST:PORT");
+        for (std::size_t i = 0; array && i < array->size(); ++i)
+            out.control_listen.push_back(read.address(*array->get(i), "'listen'"));
+    } else {
+        out.control_listen.push_back({.path = {}, .host = "127.0.0.1", .port = net::kDefaultControlPort});
+    }
+    read_members(read, control, "users", out.people.users);
+}
+
+void read_http(TreeReader& read, const toml::table& root, WallConfig& out) {
+    const auto* node = root.get("http");
+    if (!node) return;
+    const auto& http = read.section(root, "http");
+    read.only(http, "[http]", {"listen"});
+    const auto* listen = http.get("listen");
+    out.http_listen = listen ? read.address(*listen, "'listen'")
+                             : net::Address{.path = {}, .host = "127.0.0.1", .port = net::kDefaultHttpPort};
+    if (listen && out.http_listen->is_unix()) read.refuse(listen->source(), "'listen' of [http]: expected HOST:PORT");
+}
+
+TileConfig read_tile(TreeReader& read, const toml::table& table) {
+    read.only(table, "[[node.tile]]", {"name", "rect", "output", "display", "monitor", "position"});
+    return {read.text(table, "name"), read.rect(table, "rect"), read_output(read, table)};
+}
+
+NodeConfig read_node(TreeReader& read, const toml::table& table) {
+    read.only(table, "[[node]]", {"name", "backend", "listen", "tile"});
+    NodeConfig out;
+    out.name = read.text(table, "name");
+    const auto backend = read.text(table, "backend", "egl");
+    const auto found = std::ranges::find(kBackends, backend, [](Backend b) { return std::string(name_of(b)); });
+    if (found != kBackends.end()) out.backend = *found;
+    else read.refuse(table.get("backend")->source(), "'backend' is '" + backend + "': expected \"egl\" or \"osmesa\"");
+    if (const auto* listen = table.get("listen")) out.listen = read.address(*listen, "'listen'");
+    else out.listen = {.path = {}, .host = "127.0.0.1", .port = net::kDefaultDataPort};
+    const auto tiles = read.tables(table, "tile", "[[node.tile]]");
+    if (tiles.size() >= wire::kOffscreenSlot) {
+        read.refuse(table.source(), "node '" + out.name + "' has " + std::to_string(tiles.size()) +
+                                        " tiles: expected at most " + std::to_string(wire::kOffscreenSlot - 1));
+    }
+    for (const auto* tile : tiles) {
+        out.tiles.push_back(read_tile(read, *tile));
+        check_output(read, *tile, out);
+    }
+    return out;
+}
+
+/// Names must be unique: they are how people and daemons point at things.
+void read_nodes(TreeReader& read, const toml::table& root, WallConfig& out) {
+    std::set<std::string> nodes, tiles;
+    for (const auto* table : read.tables(root, "node", "[[node]]")) {
+        out.nodes.push_back(read_node(read, *table));
+        const auto& node = out.nodes.back();
+        if (!nodes.insert(node.name).second)
+            read.refuse(table->source(), "node '" + node.name + "' appears twice: expected unique names");
+        for (const auto& tile : node.tiles) {
+            if (!tiles.insert(tile.name).second)
+                read.refuse(table->source(), "tile '" + tile.name + "' appears twice: expected unique names");
+        }
+    }
+}
+
+}  // namespace
+
+Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name) {
+    if (const auto line = control_character_line(toml)) {
+        return fail(std::string(file_name) + ":" + std::to_string(line) +
+                    ": not TOML: a control character: expected tabs and line breaks only");
+    }
+    const auto parsed = toml::parse(to_private_use(toml), file_name);
+    TreeReader read(file_name);
+    if (!parsed) {
+        read.refuse(parsed.error().source(), "not TOML: " + std::string(parsed.error().description()));
+        return tl::unexpected(*read.error());
+    }
+    const toml::table& root = parsed.table();
+    WallConfig out;
+    read.only(root, "the file", {"wall", "control", "http", "people", "node"});
+    const auto& wall = read.section(root, "wall");
+    read.only(wall, "[wall]",
+              {"name", "background", "swap_timeout_ms", "close_timeout_ms", "max_sessions", "state_directory"});
+    out.name = read.text(wall, "name", "wall");
+    out.background = read_background(read, wall);
+    out.swap_timeout =
+        std::chrono::milliseconds(read.integer(wall, "swap_timeout_ms", 1, kMaxSwapTimeout, out.swap_timeout.count()));
+    out.close_timeout = std::chrono::milliseconds(
+        read.integer(wall, "close_timeout_ms", 0, kMaxCloseTimeout, out.close_timeout.count()));
+    out.max_sessions =
+        static_cast<std::uint32_t>(read.integer(wall, "max_sessions", 1, kMaxSessions, out.max_sessions));
+    if (wall.get("state_directory")) out.state_directory = read.text(wall, "state_directory");
+    read_control(read, root, out);
+    read_people(read, root, out.people);
+    read_http(read, root, out);
+    read_nodes(read, root, out);
+    if (read.error()) return tl::unexpected(*read.error());
+    return out;
+}
+
+Result<WallConfig> load_config(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return fail(path + ": cannot be read: expected a wall description (docs/operation.md)");
+    std::ostringstream text;
+    text << file.rdbuf();
+    return parse_config(text.str(), path);
+}
+
+}  // namespace wall::config

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// Reading wall.toml. The error is one line, `FILE:LINE: what is wrong: what was expected`. Any thread.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "common/base/result.h"
+#include "common/config/wall_config.h"
+
+namespace wall::config {
+
+Result<WallConfig> load_config(const std::string& path);
+/// `file_name` is for the error only.
+Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name);
+
+}  // namespace wall::config

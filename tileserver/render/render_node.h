@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// What all sessions of a node draw with: the driver, its tiles, and what sessions may share. Render thread.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tileserver/render/content_store.h"
+#include "tileserver/render/driver.h"
+#include "tileserver/render/soft_maps.h"
+#include "tileserver/render/surface.h"
+#include "tileserver/render/texture_content.h"
+#include "tileserver/render/work.h"
+
+namespace wall::tileserver {
+
+struct Run;
+struct SoftContext;
+
+/// What the executors of a node share.
+struct RenderNode {
+    Driver& driver;
+    MapMirror maps;
+    ContentStore<TextureContent> textures;  ///< that sessions may share
+    ContentStore<const Run> runs;
+    std::vector<Tile> tiles;
+    std::uint64_t damage = 1;              ///< grows when a tile's picture may have changed
+    bool present_at_once = false;          ///< nobody coordinates: show frames when they are done
+    const SoftContext* current = nullptr;  ///< whose state the driver holds; only compared, it may be gone
+    Work ended;                            ///< of sessions that are gone
+
+    explicit RenderNode(Driver& d) : driver(d) {}
+};
+
+/// The surface's back buffers are its next picture. It waits to be presented, if somebody will say so (`coordinated`).
+void finish_frame(RenderNode& node, Work& work, Surface& surface, std::uint32_t frame, bool coordinated);
+
+}  // namespace wall::tileserver
