@@ -6,8 +6,7 @@ import { placeText } from './geometry.js';
 import { trafficOf } from './model.js';
 
 const kMissing = '–';
-const number = (value, unit = '') =>
-    value === undefined ? kMissing : `${value < 10 ? value.toFixed(1) : value.toFixed(0)}${unit}`;
+const number = (value, unit = '') => value === undefined ? kMissing : `${value < 10 ? value.toFixed(1) : value.toFixed(0)}${unit}`;
 
 function bytes(perSecond) {
   if (perSecond === undefined) return kMissing;
@@ -17,8 +16,7 @@ function bytes(perSecond) {
 function traffic(session) {
   const sent = trafficOf(session);
   if (!sent) return kMissing;
-  const parts = `state ${bytes(sent.state)}, objects ${bytes(sent.object)}, geometry ${bytes(sent.geometry)}`;
-  return { text: bytes(sent.all), title: `${parts}; ${Math.round(sent.frame)} bytes a frame` };
+  return { text: bytes(sent.all), title: `state ${bytes(sent.state)}, objects ${bytes(sent.object)}, geometry ${bytes(sent.geometry)}; ${Math.round(sent.frame)} bytes a frame` };
 }
 
 function age(ms) {
@@ -27,8 +25,7 @@ function age(ms) {
 }
 
 function windowState({ session, moving, swap_timeouts: timeouts }) {
-  const parts = [session.fault && `fault: ${session.fault}`, session.held && 'held', moving && 'moving',
-      timeouts > 0 && `frames that did not wait for a slow node: ${timeouts}`];
+  const parts = [session.fault && `fault: ${session.fault}`, session.held && 'held', moving && 'moving', timeouts > 0 && `frames that did not wait for a slow node: ${timeouts}`];
   return parts.filter(Boolean).join(', ') || 'runs';
 }
 

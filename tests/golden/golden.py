@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Plays recorded programs and scenes of our own on plain Mesa and on a wall, and compares every frame: as glReadPixels
-returns it and as the composed wall shows it. On one tile they are the same, on several they match (DESIGN.md, section
-8). Also compared: what the scenes' queries answered, and that no query waited for an answer of the wall.
+returns it and as the composed wall shows it. On one tile they are the same, on several they match (DESIGN.md, section 8).
+Also compared: what the scenes' queries answered, and that no query waited for an answer of the wall.
 
 golden.py --tiles CxR|mesa [--only NAME]... [--backend egl|osmesa] [--report FOLDER] [--references FOLDER]
     mesa instead of a wall compares Mesa with itself: it checks these tests, and writes the references.
@@ -56,8 +56,7 @@ class Comparison:
 
     def _exit(self) -> Outcome:
         given = self._given
-        good = (given.exit_code == self._reference.exit_code == 0 and not given.problems
-                and len(given.read) == self._subject.frames)
+        good = given.exit_code == self._reference.exit_code == 0 and not given.problems and len(given.read) == self._subject.frames
         detail = [f"exit code {given.exit_code}, {len(given.read)} of {self._subject.frames} frames", *given.problems]
         return Outcome(self._check("exit"), good, "; ".join(detail) + ("" if good else "\n" + given.errors[-2000:]))
 
@@ -70,8 +69,7 @@ class Comparison:
         bad = {name: count for name, count in waited.items()
                if name.startswith(LOCAL_ANSWERS) and not name.startswith(REMOTE_ANSWERS)}
         missing = self._tiles != "mesa" and "round_trips" not in self._given.stats
-        return Outcome(self._check("round_trips"), not bad and not missing,
-                       "no statistics" if missing else f"{bad or waited}")
+        return Outcome(self._check("round_trips"), not bad and not missing, "no statistics" if missing else f"{bad or waited}")
 
     def _picture(self, view: str, number: int, picture) -> Outcome:
         check = self._check(view, number)
@@ -98,8 +96,7 @@ def play_all(subjects: list[Subject], options: argparse.Namespace, x: XServer) -
             outcomes = list(Comparison(subject, tiles, reference, stage.play(subject), options.report).outcomes())
             wrong = sum(not outcome.good for outcome in outcomes)
             waits = next(outcome.detail for outcome in outcomes if outcome.check.view == "round_trips")
-            print(f"{subject.kind} {subject.name}: {len(outcomes) - wrong} of {len(outcomes)} right, round trips "
-                  f"{waits}, "
+            print(f"{subject.kind} {subject.name}: {len(outcomes) - wrong} of {len(outcomes)} right, round trips {waits}, "
                   f"{time.monotonic() - start:.1f} s", flush=True)
             yield from outcomes
 
@@ -114,8 +111,7 @@ def main() -> int:
     arguments.add_argument("--tiles", default="mesa")
     arguments.add_argument("--backend", default="egl", choices=["egl", "osmesa"])
     arguments.add_argument("--only", action="append", default=[], help="recording or scene; may be given again")
-    arguments.add_argument("--report", type=Path, default=Path("test-output/golden"),
-                           help="folder for pictures of failures")
+    arguments.add_argument("--report", type=Path, default=Path("test-output/golden"), help="folder for pictures of failures")
     arguments.add_argument("--references", type=Path, help="folder of frames on Mesa; written with --tiles mesa")
     options = arguments.parse_args()
     subjects = [*load_recordings(), *load_scenes(build_folder() / "tests" / "golden_scenes")]

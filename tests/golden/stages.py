@@ -43,8 +43,7 @@ class MesaStage:
     """The X server's own OpenGL: Mesa's llvmpipe."""
 
     def __init__(self, x: XServer):
-        # With its sRGB extension Mesa 22 lets glAccum convert a window's colours to and from sRGB, even while sRGB is
-        # off.
+        # With its sRGB extension Mesa 22 lets glAccum convert a window's colours to and from sRGB, even while sRGB is off.
         self._environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", vblank_mode="0",
                                           MESA_EXTENSION_OVERRIDE="-GL_EXT_framebuffer_sRGB")
         for name in ("__GLX_VENDOR_LIBRARY_NAME", "__EGL_VENDOR_LIBRARY_FILENAMES"):
@@ -72,8 +71,7 @@ class References:
     def keep(self, subject: Subject, given: Performance) -> None:
         if self._folder:
             told = json.dumps({"text": given.text, "exit_code": given.exit_code, "frames": len(given.read)})
-            np.savez(self._folder / f"{subject.name}.npz", told=np.array(told),
-                     **{f"f{i}": each for i, each in enumerate(given.read)})
+            np.savez(self._folder / f"{subject.name}.npz", told=np.array(told), **{f"f{i}": each for i, each in enumerate(given.read)})
 
     def find(self, subject: Subject) -> Performance | None:
         path = self._folder / f"{subject.name}.npz" if self._folder else None
@@ -81,13 +79,12 @@ class References:
             return None
         with np.load(path) as kept:
             told = json.loads(str(kept["told"]))
-            return Performance(read=[kept[f"f{i}"] for i in range(told["frames"])], text=told["text"],
-                               exit_code=told["exit_code"])
+            return Performance(read=[kept[f"f{i}"] for i in range(told["frames"])], text=told["text"], exit_code=told["exit_code"])
 
 
 class WallStage:
-    """A wall of `tiles`, just large enough for the subjects' window. On one tile the window fills it; on several it
-    lies where tile borders cut it at odd places."""
+    """A wall of `tiles`, just large enough for the subjects' window. On one tile the window fills it; on several it lies
+    where tile borders cut it at odd places."""
 
     SLACK = {(1, 1): (0, 0), (2, 2): (12, 10), (3, 2): (20, 14)}  # pixels of the wall beside the window
 
@@ -160,8 +157,7 @@ class _Session:
             time.sleep(0.25)
         while self.surface()["frame"] < frame:
             if time.monotonic() > end:
-                raise WallError(f"not shown within {SHOWN_LIMIT:.0f} seconds (last is {self.surface()['frame']} of "
-                                f"{frame})")
+                raise WallError(f"not shown within {SHOWN_LIMIT:.0f} seconds (last is {self.surface()['frame']} of {frame})")
             time.sleep(0.01)
 
 

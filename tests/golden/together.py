@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Eight recorded programs at once, of both window systems, one over the other on 3x2 tiles, each stopped at a frame of
-its own. The composed wall is the same as the picture put together from each program run alone on that wall, and matches
-the one put together from each program's frame on plain Mesa (DESIGN.md, section 8).
+its own. The composed wall is the same as the picture put together from each program run alone on that wall, and matches the
+one put together from each program's frame on plain Mesa (DESIGN.md, section 8).
 
 together.py [--report FOLDER]
 """
@@ -26,12 +26,9 @@ from wall import Wall  # noqa: E402
 from xserver import XServer  # noqa: E402
 
 TILES, TILE_SIZE = (3, 2), (310, 290)
-# Name, frame that stays on the wall, left top corner. Nothing lies at a tile's border; the last two reach over the
-# wall's edge.
-CAST = [("glxgears", 2, (30, 20)), ("glmark2_build", 1, (250, 60)), ("atlantis", 3, (470, 15)),
-        ("boing", 2, (120, 190)),
-        ("menger", 3, (330, 230)), ("dangerball", 2, (505, 265)), ("morph3d", 3, (-60, 250)),
-        ("solarwinds", 4, (600, 140))]
+# Name, frame that stays on the wall, left top corner. Nothing lies at a tile's border; the last two reach over the wall's edge.
+CAST = [("glxgears", 2, (30, 20)), ("glmark2_build", 1, (250, 60)), ("atlantis", 3, (470, 15)), ("boing", 2, (120, 190)),
+        ("menger", 3, (330, 230)), ("dangerball", 2, (505, 265)), ("morph3d", 3, (-60, 250)), ("solarwinds", 4, (600, 140))]
 SEED = 8  # of the order in which they are raised
 SHOWN_LIMIT = 30.0  # seconds until the wall shows every frame
 
@@ -106,8 +103,7 @@ def on_mesa(x: XServer, recordings: dict[str, Recording]) -> dict[str, np.ndarra
     return {name: stage.play(recordings[name]).read[frame] for name, frame, _ in CAST}
 
 
-def expected_pictures(order: list[str], alone: dict[str, np.ndarray],
-                      mesa: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def expected_pictures(order: list[str], alone: dict[str, np.ndarray], mesa: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """The wall from each program alone on it, and from plain Mesa; `order` is bottom first."""
     corners = {name: corner for name, _, corner in CAST}
     shape = next(iter(alone.values())).shape
@@ -122,8 +118,7 @@ def expected_pictures(order: list[str], alone: dict[str, np.ndarray],
 
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    arguments.add_argument("--report", type=Path, default=Path("test-output/together"),
-                           help="folder for pictures of failures")
+    arguments.add_argument("--report", type=Path, default=Path("test-output/together"), help="folder for pictures of failures")
     options = arguments.parse_args()
     recordings = {recording.name: recording for recording in load_recordings()}
     with XServer() as x, Wall(tiles=TILES, tile_size=TILE_SIZE, swap_timeout_ms=10000, name="together") as wall:
@@ -137,8 +132,7 @@ def main() -> int:
             shown = composed(wall)
     from_alone, from_mesa = expected_pictures(order, alone, mesa)
     good = True
-    for what, verdict, expected in (("alone", compare.same(from_alone, shown), from_alone),
-                                    ("mesa", compare.match(from_mesa, shown), from_mesa)):
+    for what, verdict, expected in (("alone", compare.same(from_alone, shown), from_alone), ("mesa", compare.match(from_mesa, shown), from_mesa)):
         print(f"against each program {'alone on the wall' if what == 'alone' else 'on plain Mesa'}: {verdict}")
         if not verdict.good:
             options.report.mkdir(parents=True, exist_ok=True)

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from glgen import commands, emit_client, emit_docs, emit_functions, emit_samples  # noqa: E402
-from glgen import emit_setters, emit_state, emit_wire, registry, state, wire  # noqa: E402
+from glgen import commands, emit_client, emit_docs, emit_functions, emit_samples, emit_setters, emit_state, emit_wire  # noqa: E402
+from glgen import registry, state, wire  # noqa: E402
 
 DRIVER_EXTRA = ["glFramebufferParameteriMESA", "glGetFramebufferParameterivMESA"]
 
