@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The data connection to one node. The application's threads queue whole batches and wait for answers; one transport
-// thread per process (transport.h) moves the bytes, so that sending overlaps with packing (WireGL, 3.3).
+// thread per process (transport.h) moves the bytes, so that sending overlaps with packing (W4.1).
 #pragma once
 
 #include <atomic>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The geometry packer: what glBegin, glVertex3f, glColor3f and their like write into, and the record of it that the
-// router sorts (WireGL, "Distributed Rendering" 3.1 and 3.2). It holds one *block*: the geometry since the last change
-// of state. One packer per context, used by the thread that has the context.
+// router sorts (W3.1, W3.2). It holds one *block*: the geometry since the last change of state. One packer per context,
+// used by the thread that has the context.
 //
 // Current attributes are not copied on every call (T3.2): the packer remembers where the last one of each kind was
 // packed, and they are read back from there when somebody asks.

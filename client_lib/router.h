@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sort-first: from geometry to the tiles it may touch (WireGL, "Distributed Rendering" 3.2; T6.1). Conservative: what
-// cannot be bounded goes to every tile of the surface. Pure; the caller's thread.
+// Sort-first: from geometry to the tiles it may touch (W3.2, T6.1). Conservative: what cannot be bounded goes
+// to every tile of the surface. Pure; the caller's thread.
 #pragma once
 
 #include <array>

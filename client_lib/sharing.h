@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Large content is not sent to a node that has it already from another program (AnyGL, section 6: global share). One
+// Large content is not sent to a node that has it already from another program (A6: global share). One
 // short round trip for each large object and node, when it is first drawn with there. The session's mutex is held, and
 // the node's answer is waited for with it.
 #pragma once

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // glBegin .. glEnd and everything between, as fast as it goes: one compare, one opcode, the operands, the box
-// (WireGL, "Distributed Rendering" 3.1). The entry points here do not go through the context's table; a closed packer
+// (W3.1). The entry points here do not go through the context's table; a closed packer
 // (no context, list compilation) has a limit that sends them to it.
 #include <cstring>
 

@@ -99,7 +99,7 @@ void pack_texture(
     const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed = [] {});
 
 /// The name of what pack_texture(texture, 0, ...) would say, but for the texture's id. Of a global one: the program's
-/// name stands for the pixels, and nobody looks at them (AnyGL, section 6.2: the same name and parameters are the same
+/// name stands for the pixels, and nobody looks at them (A6.2: the same name and parameters are the same
 /// texture).
 const glapi::ContentKey& content_key(const Texture& texture);
 /// Of all pixels.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The registry of frame codecs (paper A5.4: what a monitor stream is compressed with is a choice, named in the stream).
+// The registry of frame codecs (A5.4: what a monitor stream is compressed with is a choice, named in the stream).
 // A codec is one file that defines a `Codec`, and one line in codec_list.h. docs/codecs.md describes the formats.
 #pragma once
 

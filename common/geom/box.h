@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An axis-aligned box in object space, kept while vertices are packed (WireGL, "Distributed Rendering" 3.2). Pure.
+// An axis-aligned box in object space, kept while vertices are packed (W3.2). Pure.
 #pragma once
 
 #include <emmintrin.h>

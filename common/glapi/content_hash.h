@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an object's content is called, so that a node can tell that it has it already (AnyGL, section 6: global share).
+// What an object's content is called, so that a node can tell that it has it already (A6: global share).
 // The name is the SHA-256 of the commands that define the object, without its id. A program that could make two
 // contents of one name could put its pictures into other people's windows, so a fast checksum would not do. Any thread,
 // one at a time.

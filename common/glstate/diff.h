@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // diff(from, to): the one operation behind state updates of nodes, soft context switches, recovery and migration
-// (T3, T4, T5; DESIGN.md section 1). A State belongs to one thread at a time.
+// (T3, T4, T5; DESIGN, section 1). A State belongs to one thread at a time.
 //
 // Colour material (T3.2's cumulative attribute): while glColorMaterial tracking is on, the tracked material parameters
 // follow the current colour in the driver, without anybody storing them. Their stored values mean nothing then and are

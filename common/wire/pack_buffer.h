@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A growing batch of packed commands (WireGL, "Distributed Rendering" 3.1): one-byte opcodes written downwards, 4-byte
-// aligned operands upwards, in one allocation, so that one pointer pair describes it and one header sends it.
+// A growing batch of packed commands (W3.1): one-byte opcodes written downwards, 4-byte aligned operands upwards, in
+// one allocation, so that one pointer pair describes it and one header sends it.
 //
 //     |      free |  op n ... op 1 op 0 | operands 0, 1, ... n |     free |
 //     begin       ^ opcodes_            ^ middle_              ^ operands_  end

@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Iterable
 from pathlib import Path
 
-VIEWS = ("read", "shown", "text", "exit", "round_trips")
+VIEWS = ("read", "shown", "text", "exit", "round_trips", "reference")
 
 
 @dataclasses.dataclass(frozen=True, order=True)

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Plays recorded programs and scenes of our own on plain Mesa and on a wall, and compares every frame: as glReadPixels
-returns it and as the composed wall shows it. On one tile they are the same, on several they match (DESIGN.md, section 8).
-Also compared: what the scenes' queries answered, and that no query waited for an answer of the wall.
+returns it and as the composed wall shows it. They are the same: on one tile as in a plain window, on several as plain
+Mesa draws each tile's part, everything moved by the tile's place in the window (docs/golden-tests.md). Also compared:
+what the scenes' queries answered, that no query waited for an answer of the wall, and that the moved reference matches
+the plain one.
 
 golden.py --tiles CxR|mesa [--only NAME]... [--backend egl|osmesa] [--report FOLDER] [--references FOLDER]
     mesa instead of a wall compares Mesa with itself: it checks these tests, and writes the references.
@@ -10,6 +12,7 @@ golden.py --tiles CxR|mesa [--only NAME]... [--backend egl|osmesa] [--report FOL
 from __future__ import annotations
 
 import argparse
+import concurrent.futures
 import contextlib
 import difflib
 import sys
@@ -22,8 +25,8 @@ sys.path.insert(0, str(HERE.parent / "support"))
 
 import compare  # noqa: E402
 from expectations import Check, Outcome, judge, load  # noqa: E402
-from stages import MesaStage, Performance, References, WallStage  # noqa: E402
-from subjects import Subject, load_recordings, load_scenes  # noqa: E402
+from stages import MesaStage, MovedStage, Performance, References, WallStage  # noqa: E402
+from subjects import WINDOW, Subject, load_recordings, load_scenes  # noqa: E402
 from wall import build_folder  # noqa: E402
 from xserver import XServer  # noqa: E402
 
@@ -35,33 +38,47 @@ NO_PICTURE = "no picture"
 
 
 class Comparison:
-    """Of one subject's two performances, on the wall named `tiles`."""
+    """Of a subject's performances: `plain` in a window of plain Mesa, `moved` there in the tiles' parts (on one tile it
+    is not needed), and `given` on the wall named `tiles`."""
 
-    def __init__(self, subject: Subject, tiles: str, reference: Performance, given: Performance, report: Path):
+    def __init__(self, subject: Subject, tiles: str, plain: Performance, moved: Performance | None, given: Performance,
+                 report: Path):
         self._subject, self._tiles, self._report = subject, tiles, report
-        self._reference, self._given = reference, given
-        self._right = compare.same if tiles in ("1x1", "mesa") else compare.match
+        self._plain, self._moved, self._given = plain, moved, given
 
     def outcomes(self) -> Iterator[Outcome]:
         yield self._exit()
         yield self._text()
         yield self._round_trips()
+        right = self._moved or self._plain
         for number in self._subject.compared:
-            yield self._picture("read", number, self._given.read[number] if number < len(self._given.read) else None)
+            yield self._picture("read", number, right.read, frame_of(self._given.read, number))
             if self._tiles != "mesa" and number in self._subject.shown:
-                yield self._picture("shown", number, self._given.shown.get(number))
+                yield self._picture("shown", number, right.read, self._given.shown.get(number))
+        if self._moved:
+            yield from self._reference(self._moved)
+
+    def _reference(self, moved: Performance) -> Iterator[Outcome]:
+        """Moving changes nothing but rounding; and nothing at all where the whole window is one part."""
+        if moved.problems or moved.exit_code != 0:
+            detail = "; ".join([f"exit code {moved.exit_code}", *moved.problems])
+            yield Outcome(self._check("reference"), False, detail + "\n" + moved.errors[-2000:])
+        for number in self._subject.compared:
+            yield self._picture("reference", number, self._plain.read, frame_of(moved.read, number),
+                                compare.same if self._tiles == "mesa" else compare.match)
 
     def _check(self, view: str, frame: int = -1) -> Check:
         return Check(self._subject.name, self._tiles, view, frame)
 
     def _exit(self) -> Outcome:
         given = self._given
-        good = given.exit_code == self._reference.exit_code == 0 and not given.problems and len(given.read) == self._subject.frames
+        good = given.exit_code == self._plain.exit_code == 0 and not given.problems
+        good = good and len(given.read) == self._subject.frames
         detail = [f"exit code {given.exit_code}, {len(given.read)} of {self._subject.frames} frames", *given.problems]
         return Outcome(self._check("exit"), good, "; ".join(detail) + ("" if good else "\n" + given.errors[-2000:]))
 
     def _text(self) -> Outcome:
-        lines = list(difflib.unified_diff(self._reference.text, self._given.text, "mesa", "wall", lineterm="", n=0))
+        lines = list(difflib.unified_diff(self._plain.text, self._given.text, "mesa", "wall", lineterm="", n=0))
         return Outcome(self._check("text"), not lines, "\n".join(lines[:16]))
 
     def _round_trips(self) -> Outcome:
@@ -71,29 +88,62 @@ class Comparison:
         missing = self._tiles != "mesa" and "round_trips" not in self._given.stats
         return Outcome(self._check("round_trips"), not bad and not missing, "no statistics" if missing else f"{bad or waited}")
 
-    def _picture(self, view: str, number: int, picture) -> Outcome:
-        check = self._check(view, number)
-        if picture is None or number >= len(self._reference.read):
+    def _picture(self, view: str, number: int, references: list, picture, right=compare.same) -> Outcome:
+        check, reference = self._check(view, number), frame_of(references, number)
+        if picture is None or reference is None:
             return Outcome(check, False, NO_PICTURE)
-        reference = self._reference.read[number]
-        verdict = self._right(reference, picture)
+        verdict = right(reference, picture)
         if not verdict.good:
             name = f"{self._subject.name}-{self._tiles}-{view}-{number}.png"
             compare.save_png(self._report / name, compare.difference_picture(reference, picture))
         return Outcome(check, verdict.good, str(verdict))
 
 
-def play_all(subjects: list[Subject], options: argparse.Namespace, x: XServer) -> Iterator[Outcome]:
-    mesa, references, tiles = MesaStage(x), References(options.references), options.tiles
+def frame_of(pictures: list, number: int):
+    return pictures[number] if number < len(pictures) else None
+
+
+class Played:
+    """Each subject's references on plain Mesa: the whole window, and in parts. They are made one subject ahead, on the
+    processor's time that the wall leaves."""
+
+    def __init__(self, subjects: list[Subject], whole: MesaStage, parts: MovedStage | None, kept: References,
+                 keep: bool):
+        self._subjects, self._whole, self._parts, self._kept, self._keep = subjects, whole, parts, kept, keep
+
+    def __iter__(self) -> Iterator[tuple[Subject, Performance, Performance | None]]:
+        with concurrent.futures.ThreadPoolExecutor(1) as beside:
+            ahead = beside.submit(self._play, self._subjects[0])
+            for i, subject in enumerate(self._subjects):
+                plain, moved = ahead.result()
+                if i + 1 < len(self._subjects):
+                    ahead = beside.submit(self._play, self._subjects[i + 1])
+                yield subject, plain, moved
+
+    def _play(self, subject: Subject) -> tuple[Performance, Performance | None]:
+        plain = (None if self._keep else self._kept.find(subject)) or self._whole.play(subject)
+        if self._keep:
+            self._kept.keep(subject, plain)
+        return plain, self._parts.play(subject) if self._parts else None
+
+
+def play_all(subjects: list[Subject], options: argparse.Namespace) -> Iterator[Outcome]:
+    tiles = options.tiles
     with contextlib.ExitStack() as stack:
-        stage = mesa if tiles == "mesa" else stack.enter_context(
-            WallStage(x, tuple(map(int, tiles.split("x"))), options.backend))
-        for subject in subjects:
+        def x_server() -> XServer:
+            return stack.enter_context(XServer())
+
+        if tiles == "mesa":
+            stage, parts = MesaStage(x_server()), [(0, 0, *WINDOW)]
+        else:
+            stage = stack.enter_context(WallStage(x_server(), tuple(map(int, tiles.split("x"))), options.backend))
+            parts = stage.parts() if tiles != "1x1" else []
+        servers = [x_server() for _ in parts or [()]]
+        moved = MovedStage(parts, build_folder(), servers) if parts else None
+        played = Played(subjects, MesaStage(servers[0]), moved, References(options.references), keep=tiles == "mesa")
+        for subject, plain, in_parts in played:
             start = time.monotonic()
-            reference = (references.find(subject) if tiles != "mesa" else None) or mesa.play(subject)
-            if tiles == "mesa":
-                references.keep(subject, reference)
-            outcomes = list(Comparison(subject, tiles, reference, stage.play(subject), options.report).outcomes())
+            outcomes = list(Comparison(subject, tiles, plain, in_parts, stage.play(subject), options.report).outcomes())
             wrong = sum(not outcome.good for outcome in outcomes)
             waits = next(outcome.detail for outcome in outcomes if outcome.check.view == "round_trips")
             print(f"{subject.kind} {subject.name}: {len(outcomes) - wrong} of {len(outcomes)} right, round trips {waits}, "
@@ -119,8 +169,7 @@ def main() -> int:
     if unknown:
         arguments.error(f"no recording or scene {', '.join(sorted(unknown))}")
     chosen = [subject for subject in subjects if not options.only or subject.name in options.only]
-    with XServer() as x:
-        judgement = judge(play_all(chosen, options, x), load(HERE / "expectations.toml"))
+    judgement = judge(play_all(chosen, options), load(HERE / "expectations.toml"))
     for outcome in most_telling(judgement.failures):
         print(f"FAILED {outcome.check}: {outcome.detail}")
     for check in judgement.unexpected_passes:

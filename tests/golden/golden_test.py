@@ -11,7 +11,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from expectations import Check, Outcome, judge, load  # noqa: E402
 from golden import Comparison  # noqa: E402
-from stages import Performance  # noqa: E402
+from stages import Performance, parts_of  # noqa: E402
 from subjects import Recording, Scene, load_recordings, read_frame  # noqa: E402
 
 
@@ -26,23 +26,50 @@ class Compared(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
-        self.reference, self.given = performance(), performance()
+        self.reference, self.moved, self.given = performance(), performance(), performance()
 
     def wrong(self, tiles="1x1", subject=Scene("it", 3, True, Path())):
-        report = Path(self.folder.name)
-        outcomes = Comparison(subject, tiles, self.reference, self.given, report).outcomes()
+        report, moved = Path(self.folder.name), None if tiles == "1x1" else self.moved
+        outcomes = Comparison(subject, tiles, self.reference, moved, self.given, report).outcomes()
         return sorted((o.check.view, o.check.frame) for o in outcomes if not o.good)
+
+    @staticmethod
+    def rounded(pictures, number):
+        """One pixel of one picture differs by one level."""
+        pictures[number] = pictures[number].copy()
+        pictures[number][0, 0, 0] ^= 1
 
     def test_right(self):
         self.assertEqual(self.wrong(), [])
         self.assertEqual(self.wrong("2x2"), [])
 
     def test_one_pixel_by_one_level(self):
-        self.given.read[1] = self.given.read[1].copy()
-        self.given.read[1][0, 0, 0] ^= 1
+        self.rounded(self.given.read, 1)
         self.assertEqual(self.wrong(), [("read", 1)])
-        self.assertEqual(self.wrong("2x2"), [])
+        self.assertEqual(self.wrong("2x2"), [("read", 1)])
         self.assertTrue((Path(self.folder.name) / "it-1x1-read-1.png").exists())
+
+    def test_several_tiles_round_as_the_moved_reference_does(self):
+        self.rounded(self.moved.read, 1)
+        self.assertEqual(self.wrong("2x2"), [("read", 1), ("shown", 1)])
+        self.rounded(self.given.read, 1)
+        self.rounded(self.given.shown, 1)
+        self.assertEqual(self.wrong("2x2"), [])
+
+    def test_a_moved_reference_of_the_whole_window_is_the_plain_one(self):
+        self.rounded(self.moved.read, 2)
+        self.rounded(self.given.read, 2)
+        self.assertEqual(self.wrong("mesa"), [("reference", 2)])
+
+    def test_a_moved_reference_that_shows_something_else(self):
+        self.moved.read[2] = self.given.read[2] = self.given.shown[2] = np.roll(self.moved.read[2], 1, axis=1)
+        self.assertEqual(self.wrong("2x2"), [("reference", 2)])
+
+    def test_a_moved_reference_that_failed(self):
+        self.moved.problems = ["a tile's process ended with 3"]
+        self.assertEqual(self.wrong("2x2"), [("reference", -1)])
+        self.moved = Performance(exit_code=3)
+        self.assertIn(("read", 0), self.wrong("2x2"))
 
     def test_composed_wall(self):
         self.given.shown[2] = np.roll(self.given.shown[2], 1, axis=1)
@@ -88,6 +115,17 @@ class Compared(unittest.TestCase):
         self.assertEqual(self.wrong(subject=recording), [])
         self.given.read[1] = self.given.read[2]
         self.assertEqual(self.wrong(subject=recording), [("read", 1)])
+
+
+class Parts(unittest.TestCase):
+    def test_of_a_window_over_all_tiles(self):
+        self.assertEqual(parts_of((4, 5, 400, 300), (2, 2), (206, 155)),
+                         [(0, 0, 202, 150), (202, 0, 198, 150), (0, 150, 202, 150), (202, 150, 198, 150)])
+
+    def test_only_what_lies_on_the_wall(self):
+        self.assertEqual(parts_of((-60, 250, 400, 300), (3, 2), (310, 290)),
+                         [(60, 0, 310, 40), (370, 0, 30, 40), (60, 40, 310, 260), (370, 40, 30, 260)])
+        self.assertEqual(parts_of((600, 0, 400, 300), (3, 1), (310, 290)), [(0, 0, 20, 290), (20, 0, 310, 290)])
 
 
 class Judged(unittest.TestCase):

@@ -17,6 +17,7 @@ from subjects import WINDOW, Play, Subject
 from wall import Wall, WallError
 from xserver import XServer
 
+Rect = tuple[int, int, int, int]  # x, y, width, height in pixels, y down
 SHOWN_LIMIT = 10.0  # seconds until a frame that was read must be on the wall
 
 
@@ -39,15 +40,21 @@ class Performance:
         self.errors = "\n".join(line for line in said.splitlines() if not line.startswith("= "))
 
 
+def mesa_environment(x: XServer) -> dict[str, str]:
+    """For programs that use the X server's own OpenGL, Mesa's llvmpipe."""
+    # With its sRGB extension Mesa 22 lets glAccum convert a window's colours to and from sRGB, even while sRGB is off.
+    environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", vblank_mode="0",
+                                MESA_EXTENSION_OVERRIDE="-GL_EXT_framebuffer_sRGB")
+    for name in ("__GLX_VENDOR_LIBRARY_NAME", "__EGL_VENDOR_LIBRARY_FILENAMES"):
+        environment.pop(name, None)
+    return environment
+
+
 class MesaStage:
-    """The X server's own OpenGL: Mesa's llvmpipe."""
+    """The whole window on plain Mesa."""
 
     def __init__(self, x: XServer):
-        # With its sRGB extension Mesa 22 lets glAccum convert a window's colours to and from sRGB, even while sRGB is off.
-        self._environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", vblank_mode="0",
-                                          MESA_EXTENSION_OVERRIDE="-GL_EXT_framebuffer_sRGB")
-        for name in ("__GLX_VENDOR_LIBRARY_NAME", "__EGL_VENDOR_LIBRARY_FILENAMES"):
-            self._environment.pop(name, None)
+        self._environment = mesa_environment(x)
 
     def play(self, subject: Subject) -> Performance:
         given = Performance()
@@ -56,6 +63,38 @@ class MesaStage:
             given.read.append(frame)
             play.go_on()
         given.end(play)
+        return given
+
+
+class MovedStage:
+    """Plain Mesa, drawing a window in parts: for each of `tiles` one process with everything moved so that the tile's
+    left top pixel is that of its window (moved/). That is what a tile of a wall does, so a wall's picture is the same.
+    Each process has an X server of its own, since Mesa reads a front buffer back from the screen."""
+
+    def __init__(self, tiles: list[Rect], build: Path, servers: list[XServer]):
+        self._tiles = tiles
+        self._words = ";".join(",".join(map(str, numbers)) for numbers in (WINDOW, *tiles))
+        library = build / "tests" / "moved"
+        vendor = {"__GLX_VENDOR_LIBRARY_NAME": "moved", "__EGL_VENDOR_LIBRARY_FILENAMES": str(library / "moved.json"),
+                  "LD_LIBRARY_PATH": str(library), "GOLDEN_TILES": self._words}
+        self._environments = [mesa_environment(server) | vendor | {"GOLDEN_TILE": str(i)}
+                              for i, server in enumerate(servers[:len(tiles)])]
+
+    def play(self, subject: Subject) -> Performance:
+        """The frames are those of all tiles put together; text and exit code are the first tile's. Another tile's
+        process that fails is a problem."""
+        given = Performance()
+        with tempfile.NamedTemporaryFile(prefix="golden-share-") as share:
+            plays = [Play(subject, dict(environment, GOLDEN_SHARE=share.name), unseen=i > 0)
+                     for i, environment in enumerate(self._environments)]
+            for frame in plays[0].frames():
+                given.read.append(frame)
+                plays[0].go_on()
+            given.end(plays[0])
+            for play in plays[1:]:
+                code, said = play.finish()
+                if code != 0:
+                    given.problems.append(f"a tile's process ended with {code}: {said[-200:]}")
         return given
 
 
@@ -82,6 +121,17 @@ class References:
             return Performance(read=[kept[f"f{i}"] for i in range(told["frames"])], text=told["text"], exit_code=told["exit_code"])
 
 
+def parts_of(window: Rect, tiles: tuple[int, int], tile_size: tuple[int, int]) -> list[Rect]:
+    """What each tile shows of a window at `window` on the wall, in the window's pixels. Tiles that show nothing are
+    left out."""
+    def cuts(axis: int) -> list[tuple[int, int]]:
+        start, whole, size = window[axis], window[axis + 2], tile_size[axis]
+        ends = [(max(i * size - start, 0), min((i + 1) * size - start, whole)) for i in range(tiles[axis])]
+        return [(first, end - first) for first, end in ends if end > first]
+
+    return [(x, y, width, height) for y, height in cuts(1) for x, width in cuts(0)]
+
+
 class WallStage:
     """A wall of `tiles`, just large enough for the subjects' window. On one tile the window fills it; on several it lies
     where tile borders cut it at odd places."""
@@ -101,6 +151,9 @@ class WallStage:
 
     def __exit__(self, *_) -> None:
         self._wall.__exit__(*_)
+
+    def parts(self) -> list[Rect]:
+        return parts_of((*self._origin, *WINDOW), self._wall.tiles, self._wall.tile_size)
 
     def play(self, subject: Subject) -> Performance:
         given = Performance()

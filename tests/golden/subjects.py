@@ -3,6 +3,7 @@
 be run anywhere OpenGL is, and give their frames as glReadPixels returned them."""
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import os
 import re
@@ -20,6 +21,7 @@ HERE = Path(__file__).resolve().parent
 WINDOW = (400, 300)  # of every subject
 WARM_UP = 1  # frames of a recording that are not compared
 FRAME_LIMIT_BYTES = 64 << 20
+MOST_FRAMES = 1000  # of any subject
 
 _PNM = re.compile(rb"P6\n(?:#[^\n]*\n)*(\d+) (\d+)\n255\n")
 
@@ -123,16 +125,28 @@ def read_frame(stream: IO[bytes]) -> np.ndarray | None:
     return np.frombuffer(data, np.uint8).reshape(height, width, 3)
 
 
+@contextlib.contextmanager
+def _lines_of_nothing() -> Iterator[IO[bytes]]:
+    """What to read for a scene that pauses after each frame, and that nobody lets go on."""
+    with tempfile.TemporaryFile() as file:
+        file.write(b"\n" * MOST_FRAMES)
+        file.seek(0)
+        yield file
+
+
 class Play:
     """A running subject. `frames()` yields its pictures; while the caller looks at frame n, frame n has not been
     swapped yet, and frames before it have. `text()` after the end: what a scene printed besides."""
 
-    def __init__(self, subject: Subject, environment: dict[str, str], prefix: list[str] = ()):
+    def __init__(self, subject: Subject, environment: dict[str, str], prefix: list[str] = (), *, unseen: bool = False):
+        """Nobody looks at the frames of one that is `unseen`: it never stops for them."""
         self.subject = subject
         self._errors = tempfile.TemporaryFile()
-        self._process = subprocess.Popen([*prefix, *subject.argv()], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                         stderr=self._errors, env=dict(environment, **subject.environment()),
-                                         start_new_session=True)
+        with _lines_of_nothing() if unseen else contextlib.nullcontext(subprocess.PIPE) as stdin:
+            self._process = subprocess.Popen([*prefix, *subject.argv()], stdin=stdin,
+                                             stdout=subprocess.DEVNULL if unseen else subprocess.PIPE,
+                                             stderr=self._errors, env=dict(environment, **subject.environment()),
+                                             start_new_session=True)
 
     def frames(self) -> Iterator[np.ndarray]:
         while (frame := read_frame(self._process.stdout)) is not None:

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""When is a picture right? The two words of DESIGN.md, section 8, for pictures given as (height, width, channels)
+"""When is a picture right? The two words of docs/design.md, section 8, for pictures given as (height, width, channels)
 arrays of uint8, top row first:
 
 same   every pixel identical.
-match  for several tiles against one window, whose offset viewports round differently: few pixels differ by more than
-       2 levels, and next to none lie outside the range of the reference's 3x3 neighbourhood widened by 8.
+match  for several tiles against one window, where no reference can be made whose viewport is offset in the same way and
+       rounds as theirs does: few pixels differ by more than 2 levels, and next to none lie outside the range of the
+       reference's 3x3 neighbourhood widened by 8.
 
 As a program: compare.py same|match REFERENCE.png PICTURE.png [--diff DIFF.png]; exit code 1 if it is not.
 """

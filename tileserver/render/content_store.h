@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Equal content of several sessions is held once (AnyGL, section 6: global share). Sessions ask for content by its name
+// Equal content of several sessions is held once (A6: global share). Sessions ask for content by its name
 // before they send it; what somebody is about to send is waited for by the others. The store itself keeps nothing
 // alive. Pure; one thread.
 #pragma once

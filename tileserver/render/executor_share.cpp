@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Content that several sessions have in common (AnyGL, section 6: global share). Before a client sends something large
+// Content that several sessions have in common (A6: global share). Before a client sends something large
 // it asks for it by its name; if the node has it, nothing is sent and the sessions hold one object of the driver
 // together, until one of them changes it (Executor::bind_for_upload). Render thread.
 #include <algorithm>

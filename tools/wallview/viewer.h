@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// wallview: a stream in a window of the desktop (the display node of AnyGL, section 5.4 of that paper). The main thread
-// has the window; LiveView's receives and decodes.
+// wallview: a stream in a window of the desktop (a display node, A3.4). The main thread has the window; LiveView's
+// receives and decodes.
 #pragma once
 
 #include "tools/view/live_view.h"

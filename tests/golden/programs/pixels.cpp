@@ -139,7 +139,7 @@ SCENE(pixel_transfer, 4) {
         glColorMask(1, 1, 0, 0);  // Mesa's mapped blue and alpha are undefined
     }
     if (frame == 2) {  // their use is not compared: Mesa 22 draws images of colour indices in wrong colours
-        const GLfloat map[] = {0, 0.25f, 0.5f, 1, 0.2f, 0.7f, 0.1f, 0.9f};
+        const GLfloat map[] = {0, 0.25f, 0.5f, 1, 0.2f, 0.7f, 0.1f, 0.9f, 0.4f};
         for (const GLenum to : {GL_PIXEL_MAP_I_TO_R, GL_PIXEL_MAP_I_TO_G, GL_PIXEL_MAP_I_TO_B, GL_PIXEL_MAP_I_TO_A})
             glPixelMapfv(to, 8, map + (to % 2));
         glPixelTransferi(GL_INDEX_SHIFT, -1);

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "tests/golden/moved/calls.h"
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "tests/golden/moved/mesa.h"
+#include "tests/golden/moved/place.h"
+#include "tests/golden/moved/reads.h"
+
+namespace golden::moved {
+namespace {
+
+Lookup g_lookup = nullptr;
+
+void Viewport(GLint x, GLint y, GLsizei width, GLsizei height) {
+    mesa().Viewport(x + place().dx(), y + place().dy(), width, height);
+}
+
+void Scissor(GLint x, GLint y, GLsizei width, GLsizei height) {
+    mesa().Scissor(x + place().dx(), y + place().dy(), width, height);
+}
+
+void PolygonStipple(const GLubyte* mask) {
+    if (integer(GL_UNPACK_ROW_LENGTH) != 0 || integer(GL_UNPACK_SKIP_ROWS) != 0 ||
+        integer(GL_UNPACK_SKIP_PIXELS) != 0 || integer(GL_UNPACK_LSB_FIRST) != 0 || integer(GL_UNPACK_ALIGNMENT) > 4)
+        stop("glPolygonStipple out of an image that is not stored plainly");
+    std::array<GLubyte, 128> moved{};
+    for (unsigned row = 0; row < 32; ++row) {
+        std::uint32_t bits = 0;
+        std::memcpy(&bits, mask + std::size_t{4} * row, 4);
+        const std::uint32_t rotated = __builtin_bswap32(std::rotr(__builtin_bswap32(bits), place().dx() & 31));
+        std::memcpy(&moved[std::size_t{4} * ((row + static_cast<unsigned>(place().dy())) % 32)], &rotated, 4);
+    }
+    mesa().PolygonStipple(moved.data());
+}
+
+template <class T>
+void answer_in_window_pixels(GLenum name, T* values) {
+    if (name != GL_VIEWPORT && name != GL_SCISSOR_BOX && name != GL_CURRENT_RASTER_POSITION) return;
+    values[0] -= static_cast<T>(place().dx());
+    values[1] -= static_cast<T>(place().dy());
+}
+void GetIntegerv(GLenum name, GLint* values) {
+    mesa().GetIntegerv(name, values);
+    answer_in_window_pixels(name, values);
+}
+void GetFloatv(GLenum name, GLfloat* values) {
+    mesa().GetFloatv(name, values);
+    answer_in_window_pixels(name, values);
+}
+void GetDoublev(GLenum name, GLdouble* values) {
+    mesa().GetDoublev(name, values);
+    answer_in_window_pixels(name, values);
+}
+
+/// gl_FragCoord of the window, out of that of this process.
+void ShaderSource(GLuint shader, GLsizei count, const GLchar* const* strings, const GLint* lengths) {
+    std::string source;
+    for (GLsizei i = 0; i < count; ++i)
+        source.append(strings[i], lengths != nullptr && lengths[i] >= 0 ? static_cast<std::size_t>(lengths[i])
+                                                                        : std::strlen(strings[i]));
+    constexpr std::string_view kName = "gl_FragCoord";
+    if (source.find("origin_upper_left") != source.npos) stop("origin_upper_left");
+    const std::string moved = "(gl_FragCoord - vec4(" + std::to_string(place().dx()) + ".0, " +
+                              std::to_string(place().dy()) + ".0, 0.0, 0.0))";
+    for (std::size_t at = 0; (at = source.find(kName, at)) != source.npos; at += moved.size())
+        source.replace(at, kName.size(), moved);
+    const GLchar* whole = source.c_str();
+    mesa().ShaderSource(shader, 1, &whole, nullptr);
+}
+
+/// In the place of what nothing here moves. A program that calls it has no moved reference.
+void never() { stop("a function that works in window pixels and is not known here"); }
+
+struct Replacement {
+    std::string_view name;
+    void (*function)();
+};
+
+template <class Function>
+Replacement with(std::string_view name, Function* function) {
+    return {name, reinterpret_cast<void (*)()>(function)};
+}
+
+constexpr std::array<std::string_view, 6> kNeverStart = {"glWindowPos",      "glViewportIndexed", "glViewportArray",
+                                                         "glScissorIndexed", "glScissorArray",    "glBlitFramebuffer"};
+
+}  // namespace
+
+Found find(const char* name) { return {g_lookup(name)}; }
+
+const Mesa& mesa() {
+    static const Mesa table;
+    return table;
+}
+
+int integer(GLenum name) {
+    GLint value = 0;
+    mesa().GetIntegerv(name, &value);
+    return value;
+}
+
+void use(Lookup lookup) { g_lookup = lookup; }
+
+void* replacement(std::string_view name) {
+    static const std::array replacements = {
+        with("glViewport", Viewport),
+        with("glScissor", Scissor),
+        with("glPolygonStipple", PolygonStipple),
+        with("glGetIntegerv", GetIntegerv),
+        with("glGetFloatv", GetFloatv),
+        with("glGetDoublev", GetDoublev),
+        with("glShaderSource", ShaderSource),
+        with("glReadPixels", ReadPixels),
+        with("glCopyPixels", CopyPixels),
+        with("glCopyTexImage1D", CopyTexImage1D),
+        with("glCopyTexImage2D", CopyTexImage2D),
+        with("glCopyTexSubImage1D", CopyTexSubImage1D),
+        with("glCopyTexSubImage2D", CopyTexSubImage2D),
+    };
+    for (const Replacement& each : replacements)
+        if (each.name == name) return reinterpret_cast<void*>(each.function);
+    for (const std::string_view start : kNeverStart)
+        if (name.starts_with(start)) return reinterpret_cast<void*>(&never);
+    return nullptr;
+}
+
+void move_new_context() {
+    std::array<GLint, 4> viewport{}, scissor{};
+    mesa().GetIntegerv(GL_VIEWPORT, viewport.data());
+    mesa().GetIntegerv(GL_SCISSOR_BOX, scissor.data());
+    Viewport(viewport[0], viewport[1], viewport[2], viewport[3]);
+    Scissor(scissor[0], scissor[1], scissor[2], scissor[3]);
+}
+
+}  // namespace golden::moved

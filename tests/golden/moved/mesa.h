@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// Mesa's own functions, for those that stand in their place.
+#pragma once
+
+#define GL_GLEXT_PROTOTYPES 1
+#include <GL/gl.h>
+#include <GL/glext.h>
+
+namespace golden::moved {
+
+/// A function of Mesa, as whatever type it is assigned to.
+struct Found {
+    void* function;
+    template <class Function>
+    operator Function*() const {  // NOLINT: that is what it is for
+        return reinterpret_cast<Function*>(function);
+    }
+};
+Found find(const char* name);
+
+struct Mesa {
+    decltype(&glViewport) Viewport = find("glViewport");
+    decltype(&glScissor) Scissor = find("glScissor");
+    decltype(&glPolygonStipple) PolygonStipple = find("glPolygonStipple");
+    decltype(&glGetIntegerv) GetIntegerv = find("glGetIntegerv");
+    decltype(&glGetFloatv) GetFloatv = find("glGetFloatv");
+    decltype(&glGetDoublev) GetDoublev = find("glGetDoublev");
+    decltype(&glShaderSource) ShaderSource = find("glShaderSource");
+    decltype(&glReadPixels) ReadPixels = find("glReadPixels");
+    decltype(&glDrawPixels) DrawPixels = find("glDrawPixels");
+    decltype(&glBitmap) Bitmap = find("glBitmap");
+    decltype(&glTexImage1D) TexImage1D = find("glTexImage1D");
+    decltype(&glTexImage2D) TexImage2D = find("glTexImage2D");
+    decltype(&glTexSubImage1D) TexSubImage1D = find("glTexSubImage1D");
+    decltype(&glTexSubImage2D) TexSubImage2D = find("glTexSubImage2D");
+    decltype(&glPixelStorei) PixelStorei = find("glPixelStorei");
+    decltype(&glPixelTransferf) PixelTransferf = find("glPixelTransferf");
+    decltype(&glPushClientAttrib) PushClientAttrib = find("glPushClientAttrib");
+    decltype(&glPopClientAttrib) PopClientAttrib = find("glPopClientAttrib");
+};
+const Mesa& mesa();
+
+/// The value of a state variable, as Mesa has it.
+int integer(GLenum name);
+
+}  // namespace golden::moved
