@@ -47,7 +47,6 @@ ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig 
 
 Result<void> ControlServer::listen() {
     for (const auto& address : wall_.config().control_listen) {
-        if (!address.local()) return fail(net::non_local_refusal(address));
         auto listener = net::Listener::open(executor_, address);
         if (!listener) return tl::unexpected(listener.error());
         listeners_.push_back(std::make_unique<net::Listener>(std::move(*listener)));

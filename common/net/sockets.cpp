@@ -84,7 +84,7 @@ std::optional<Peer> owner_of_tcp_peer(int fd) {
 }  // namespace
 
 Result<UniqueFd> listen_on(const Address& address) {
-    auto to = resolve(address);
+    auto to = resolve_for_listening(address);
     if (!to) return tl::unexpected(to.error());
     auto fd = open_socket(address, *to, SOCK_NONBLOCK);
     if (!fd) return fd;
