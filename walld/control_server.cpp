@@ -11,6 +11,7 @@
 #include <boost/asio/use_awaitable.hpp>
 
 #include "common/base/assert.h"
+#include "common/json/parse_json.h"
 #include "walld/messages.h"
 #include "walld/status.h"
 
@@ -289,11 +290,14 @@ asio::awaitable<void> ControlServer::answer_operator(Connection connection, prot
         if (permitted) co_return co_await serve_watch(connection, std::move(request));
         answer = tl::unexpected(permitted.error());
     } else {
-        Asked asked{
-            request.verb(),
-            request.json().empty() ? nlohmann::json::object() : nlohmann::json::parse(request.json(), nullptr, false),
-            std::move(*person), "control"};
-        answer = co_await operators_.carry_out(std::move(asked));
+        Result<nlohmann::json> arguments = nlohmann::json::object();
+        if (!request.json().empty()) arguments = parse_json(request.json(), kRequestJson);
+        if (arguments) {
+            Asked asked{request.verb(), std::move(*arguments), std::move(*person), "control"};
+            answer = co_await operators_.carry_out(std::move(asked));
+        } else {
+            answer = walld::refuse(RefusalKind::invalid, "arguments: " + arguments.error().message);
+        }
     }
     proto::OperatorReply reply;
     reply.set_request(request.request());
