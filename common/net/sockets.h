@@ -18,6 +18,8 @@ namespace wall::net {
 Result<UniqueFd> listen_on(const Address& address);
 /// A connected, blocking socket.
 Result<UniqueFd> connect_to(const Address& address, std::chrono::milliseconds timeout);
+/// A daemon may open as many files as its hard limit says: each peer takes one.
+void use_all_descriptors();
 /// The address that a listening socket has got (port 0 resolved).
 Address bound_address(int fd, const Address& asked);
 
