@@ -16,6 +16,7 @@
 #include "client_lib/node_stream.h"
 #include "client_lib/process.h"
 #include "client_lib/stats.h"
+#include "common/base/address.h"
 #include "common/wire/limits.h"
 
 namespace wall::client {
@@ -24,7 +25,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr const char* kDefaultAddress = "unix:/run/wallgl/walld.sock";
 constexpr milliseconds kLeaveLimit{1000};
 constexpr milliseconds kLifeSign{500};   // a walld that keeps a connection open for so long is there
 constexpr milliseconds kTick{1000};      // statistics are written and told, a lost link is tried again
@@ -143,7 +143,7 @@ void read_token(const std::string& path, Hello& hello) {
 
 std::string walld_address() {
     const auto given = environment("WALLGL_WALLD");
-    return given.empty() ? kDefaultAddress : given;
+    return given.empty() ? kDefaultWalld : given;
 }
 
 Hello Hello::from_environment() {

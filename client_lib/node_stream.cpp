@@ -2,17 +2,17 @@
 #include "client_lib/node_stream.h"
 
 #include <fcntl.h>
-#include <netdb.h>
+#include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
-#include <sys/un.h>
 
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 
+#include "common/base/address.h"
 #include "common/wire/limits.h"
 
 namespace wall::client {
@@ -38,43 +38,16 @@ bool poll_for(int fd, short events, Clock::time_point deadline) {
     }
 }
 
-Result<UniqueFd> start_connect(int family, const sockaddr* address, socklen_t size, const std::string& text,
-                               Clock::time_point deadline) {
-    UniqueFd fd(::socket(family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+Result<UniqueFd> start_connect(const SocketAddress& to, const std::string& text, Clock::time_point deadline) {
+    UniqueFd fd(::socket(to.family(), SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     if (!fd) return fail("cannot make a socket: " + std::string(std::strerror(errno)));
-    if (::connect(fd.get(), address, size) != 0) {
+    if (::connect(fd.get(), to.get(), to.length) != 0) {
         if (errno != EINPROGRESS) return fail("cannot connect to " + text + ": " + std::strerror(errno));
         if (!poll_for(fd.get(), POLLOUT, deadline)) return fail("no answer from " + text);
         int error = 0;
         socklen_t length = sizeof error;
         ::getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &error, &length);
         if (error != 0) return fail("cannot connect to " + text + ": " + std::strerror(error));
-    }
-    return fd;
-}
-
-Result<UniqueFd> connect_unix(const std::string& path, const std::string& text, Clock::time_point deadline) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    if (path.size() >= sizeof address.sun_path) return fail("socket path too long: " + path);
-    std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
-    return start_connect(AF_UNIX, reinterpret_cast<const sockaddr*>(&address), sizeof address, text, deadline);
-}
-
-Result<UniqueFd> connect_tcp(const std::string& text, Clock::time_point deadline) {
-    const auto colon = text.rfind(':');
-    if (colon == std::string::npos) return fail("expected unix:PATH or HOST:PORT, got '" + text + "'");
-    addrinfo hints{};
-    hints.ai_socktype = SOCK_STREAM;
-    hints.ai_flags = AI_NUMERICSERV;
-    addrinfo* found = nullptr;
-    const int code = ::getaddrinfo(text.substr(0, colon).c_str(), text.substr(colon + 1).c_str(), &hints, &found);
-    if (code != 0) return fail("cannot resolve " + text + ": " + ::gai_strerror(code));
-    std::unique_ptr<addrinfo, void (*)(addrinfo*)> guard(found, ::freeaddrinfo);
-    auto fd = start_connect(found->ai_family, found->ai_addr, found->ai_addrlen, text, deadline);
-    if (fd) {
-        const int one = 1;
-        ::setsockopt(fd->get(), IPPROTO_TCP, TCP_NODELAY, &one, sizeof one);
     }
     return fd;
 }
@@ -115,8 +88,14 @@ bool read_all(int fd, std::byte* data, std::size_t size, Clock::time_point deadl
 
 Result<UniqueFd> connect_to(const std::string& address, int timeout_ms) {
     const auto deadline = Clock::now() + std::chrono::milliseconds(timeout_ms);
-    if (address.rfind("unix:", 0) == 0) return connect_unix(address.substr(5), address, deadline);
-    return connect_tcp(address, deadline);
+    const auto parsed = Address::parse(address);
+    if (!parsed) return tl::unexpected(parsed.error());
+    const auto to = resolve(*parsed);
+    if (!to) return tl::unexpected(to.error());
+    auto fd = start_connect(*to, address, deadline);
+    const int one = 1;
+    if (fd && !parsed->is_unix()) ::setsockopt(fd->get(), IPPROTO_TCP, TCP_NODELAY, &one, sizeof one);
+    return fd;
 }
 
 Result<std::shared_ptr<NodeStream>> NodeStream::open(const std::string& address, const std::string& hello,

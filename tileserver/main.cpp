@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // tileserver, one node of a wall: read wall.toml, open the driver, serve clients until a signal.
 #include <signal.h>
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
 #include <systemd/sd-daemon.h>
 
 #include <CLI/CLI.hpp>
@@ -16,6 +14,8 @@
 #include <iostream>
 
 #include "common/config/load_config.h"
+#include "common/log/log.h"
+#include "common/net/sockets.h"
 #include "tileserver/gpu/memory.h"
 #include "tileserver/io/node_server.h"
 
@@ -28,13 +28,6 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kStopLimit{2};     // what has not ended by itself then is dropped
 constexpr std::chrono::seconds kRenderStall{30};  // a render thread that says nothing for so long hangs
 constexpr int kExitUsage = 2;
-
-/// journald adds its own time.
-void set_up_log(const std::string& node) {
-    spdlog::set_default_logger(spdlog::stderr_logger_mt("tileserver " + node));
-    spdlog::set_pattern(std::getenv("JOURNAL_STREAM") ? "%l %v" : "%Y-%m-%dT%H:%M:%S.%e %n %l %v");
-    spdlog::flush_on(spdlog::level::info);
-}
 
 /// Tells systemd that both threads are alive, as often as it wants to hear it.
 asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const NodeServer& server) {
@@ -57,15 +50,15 @@ Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node)
     asio::signal_set signals(io, SIGINT, SIGTERM);
     signals.async_wait([&](const boost::system::error_code& error, int signal) {
         if (error) return;
-        spdlog::info("stopping signal={}", signal);
+        log::info("stopping signal={}", signal);
         sd_notify(0, "STOPPING=1");
         stopping = true;
     });
     asio::co_spawn(io, feed_watchdog(watchdog, **server), asio::detached);
     (*server)->start();
     sd_notify(0, ("READY=1\nSTATUS=node " + node.name).c_str());
-    spdlog::info("ready node=\"{}\" backend={} listen={}", node.name, config::name_of(node.backend),
-                 (*server)->address().text());
+    log::info("ready node={} backend={} listen={}", log::quoted(node.name), log::plain(config::name_of(node.backend)),
+              log::quoted((*server)->address().text()));
     while (!stopping && !(*server)->failure()) io.run_one();
     const auto failure = (*server)->failure();
     (*server)->stop();
@@ -74,7 +67,7 @@ Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node)
     io.run_for(kStopLimit);
     server->reset();
     if (failure) return fail(*failure);
-    spdlog::info("stopped");
+    log::info("stopped");
     return {};
 }
 
@@ -93,7 +86,8 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
 
     ::signal(SIGPIPE, SIG_IGN);
-    set_up_log(node_name);
+    net::use_all_descriptors();
+    log::begin("tileserver " + node_name);
     try {
         const auto wall = config::load_config(config_path);
         if (!wall) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "walld/changed.h"
 
-#include <spdlog/spdlog.h>
-
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <exception>
+
+#include "common/log/log.h"
 
 namespace wall::walld {
 
@@ -23,7 +23,7 @@ void spawn(const asio::any_io_executor& executor, const char* name, asio::awaita
         try {
             if (failure) std::rethrow_exception(failure);
         } catch (const std::exception& error) {
-            spdlog::error("task_failed task={} error=\"{}\"", name, error.what());
+            log::error("task_failed task={} error={}", log::plain(name), log::quoted(error.what()));
         }
     });
 }

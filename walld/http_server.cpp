@@ -102,7 +102,6 @@ std::string query_value(std::string_view query, std::string_view key) {
 }  // namespace
 
 Result<void> HttpServer::listen(const net::Address& address) {
-    if (!address.local()) return fail(net::non_local_refusal(address));
     auto fd = net::listen_on(address);
     if (!fd) return tl::unexpected(fd.error());
     const auto to = net::resolve(address);

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "common/json/parse_json.h"
 #include "common/wire/limits.h"
 
 namespace wall::walld {
@@ -67,15 +68,21 @@ std::optional<int> match(const WindowName& entry, const WindowName& window) {
 
 }  // namespace
 
-std::string to_text(const Layout& layout) {
+json layout_json(const Layout& layout) {
     json out{{"version", kVersion}, {"canvas", {layout.width, layout.height}}, {"windows", json::array()}};
     for (const auto& entry : layout.windows) out["windows"].push_back(entry_json(entry));
-    return out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+    return out;
+}
+
+std::string to_text(const Layout& layout) {
+    return layout_json(layout).dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
 Result<Layout> parse_layout(const std::string& text) {
+    const auto parsed = parse_json(text, kFileJson);
+    if (!parsed) return fail("not a layout: " + parsed.error().message);
     try {
-        return layout_of(json::parse(text));
+        return layout_of(*parsed);
     } catch (const std::exception& error) {
         return fail(std::string("not a layout: ") + error.what());
     }

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,7 @@ struct Layout {
     std::vector<LayoutEntry> windows;    ///< bottom first
 };
 
+nlohmann::json layout_json(const Layout& layout);
 std::string to_text(const Layout& layout);
 Result<Layout> parse_layout(const std::string& text);
 /// The same layout on a canvas of that size.

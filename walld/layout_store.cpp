@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "common/base/unique_fd.h"
+#include "common/json/parse_json.h"
 
 namespace wall::walld {
 namespace {
@@ -86,8 +87,8 @@ Outcome<Layout> LayoutStore::load(const std::string& name) const {
     std::ifstream file(*path, std::ios::binary);
     if (!file) return refuse(RefusalKind::not_found, "there is no layout '" + name + "'");
     std::error_code error;
-    if (fs::file_size(*path, error) > kMaxFile || error)
-        return failed(*path, "not a layout: larger than " + std::to_string(kMaxFile) + " bytes, or no file");
+    if (fs::file_size(*path, error) > kFileJson.bytes || error)
+        return failed(*path, "not a layout: larger than " + std::to_string(kFileJson.bytes) + " bytes, or no file");
     std::ostringstream text;
     text << file.rdbuf();
     auto layout = parse_layout(text.str());

@@ -13,7 +13,6 @@ namespace wall::walld {
 class LayoutStore {
 public:
     static constexpr std::size_t kMaxLayouts = 1000;
-    static constexpr std::size_t kMaxFile = 4 << 20;  ///< bytes
 
     /// `state`: the daemon's state directory; empty: nothing can be kept.
     explicit LayoutStore(const std::string& state)

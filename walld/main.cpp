@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // walld, the wall's control daemon: read wall.toml, listen, run until a signal.
 #include <signal.h>
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -16,6 +14,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/load_config.h"
+#include "common/log/log.h"
+#include "common/net/sockets.h"
 #include "walld/control_server.h"
 #include "walld/http_server.h"
 #include "walld/service_manager.h"
@@ -34,20 +34,14 @@ struct Options {
     bool check = false;
 };
 
-/// journald adds its own time.
-void set_up_log() {
-    spdlog::set_default_logger(spdlog::stderr_logger_st("walld"));
-    spdlog::set_pattern(std::getenv("JOURNAL_STREAM") ? "%l %v" : "%Y-%m-%dT%H:%M:%S.%e %n %l %v");
-    spdlog::flush_on(spdlog::level::info);
-}
-
 /// For whoever starts a wall with port 0: written whole, then given its name.
 void write_ready_file(const std::string& path, const ControlServer& control, const HttpServer& http, bool has_http) {
     nlohmann::json ready{{"pid", ::getpid()}, {"control", nlohmann::json::array()}};
     for (const auto& address : control.addresses()) ready["control"].push_back(address.text());
     if (has_http) ready["http"] = "http://" + http.address().text() + "/";
     std::ofstream(path + ".new") << ready.dump() << '\n';
-    if (std::rename((path + ".new").c_str(), path.c_str()) != 0) spdlog::error("ready_file_failed path={}", path);
+    if (std::rename((path + ".new").c_str(), path.c_str()) != 0)
+        log::error("ready_file_failed path={}", log::quoted(path));
 }
 
 asio::awaitable<void> feed_watchdog(asio::steady_timer& timer) {
@@ -87,7 +81,7 @@ Result<void> run(config::WallConfig config, const Options& options) {
     spawn(io.get_executor(), "watchdog", feed_watchdog(watchdog));
     signals.async_wait([&](const boost::system::error_code& error, int signal) {
         if (error) return;
-        spdlog::info("stopping signal={}", signal);
+        log::info("stopping signal={}", signal);
         notify_stopping();
         http.stop();
         control.stop();
@@ -95,11 +89,11 @@ Result<void> run(config::WallConfig config, const Options& options) {
         io.stop();
     });
     notify_ready("wall " + control.wall().config().name);
-    spdlog::info("ready wall=\"{}\" nodes={}", control.wall().config().name, control.wall().nodes().size());
+    log::info("ready wall={} nodes={}", log::quoted(control.wall().config().name), control.wall().nodes().size());
     io.run();
     io.restart();
     io.run_for(kStopLimit);  // connections see that they are closed
-    spdlog::info("stopped");
+    log::info("stopped");
     return {};
 }
 
@@ -121,7 +115,8 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
 
     ::signal(SIGPIPE, SIG_IGN);
-    set_up_log();
+    net::use_all_descriptors();
+    log::begin("walld");
     try {
         auto config = config::load_config(options.config);
         if (!config) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/json/parse_json.h"
+
 namespace wall::walld {
 namespace {
 
@@ -45,7 +47,8 @@ constexpr MetricRow<std::ptrdiff_t> kNodesRow[] = {{Gauge, "wallgl_nodes", "Node
 
 std::string label_text(const std::string& text) {
     const auto replaced = nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-    return nlohmann::json::parse(replaced).get<std::string>();
+    const auto text_again = parse_json(replaced, kAnswerJson);
+    return text_again ? text_again->get<std::string>() : std::string();
 }
 
 void add_wall_metrics(Families& out, const Observed& observed) {

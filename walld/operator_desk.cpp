@@ -215,7 +215,7 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::layout(const Asked& asked) {
     co_return name_of(asked)
         .and_then([&](const std::string& name) { return layouts_.load(name); })
         .map([](const Layout& layout) {
-            return Answer{json::parse(to_text(layout)), {}};
+            return Answer{layout_json(layout), {}};
         });
 }
 

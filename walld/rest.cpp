@@ -3,6 +3,8 @@
 
 #include <optional>
 
+#include "common/json/parse_json.h"
+
 namespace wall::walld {
 namespace {
 
@@ -71,7 +73,11 @@ Expected<RestCommand, HttpRefusal> command(const Route& route, std::string_view 
         const bool needs_type = route.method != "DELETE" || !request.body.empty();  // no form can send a DELETE
         if (needs_type && !is_json(request.content_type))
             return no(415, RefusalKind::invalid, "expected 'Content-Type: application/json'");
-        if (!request.body.empty()) out.arguments = json::parse(request.body, nullptr, false);
+        if (!request.body.empty()) {
+            auto arguments = parse_json(request.body, kRequestJson);
+            if (!arguments) return no(400, RefusalKind::invalid, arguments.error().message);
+            out.arguments = std::move(*arguments);
+        }
         if (!out.arguments.is_object()) return no(400, RefusalKind::invalid, "expected a JSON object");
     }
     if (route.key) out.arguments[route.key] = part;

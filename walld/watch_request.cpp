@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/codec/codec.h"
+#include "common/json/parse_json.h"
 
 namespace wall::walld {
 namespace {
@@ -90,12 +91,13 @@ Result<WatchRequest> one_request(const json& from) {
 }  // namespace
 
 Result<std::vector<WatchRequest>> WatchRequest::parse(std::string_view message) {
-    const auto parsed = json::parse(message, nullptr, false);
-    if (!parsed.is_object() || !parsed.contains("watch") || !parsed["watch"].is_array())
-        return fail("expected {\"watch\": [...]}");
-    if (parsed["watch"].size() > kMost) return fail("watch: expected at most " + std::to_string(kMost) + " streams");
+    const auto parsed = parse_json(message, kRequestJson);
+    if (!parsed) return tl::unexpected(parsed.error());
+    const auto watch = parsed->is_object() ? parsed->find("watch") : parsed->end();
+    if (watch == parsed->end() || !watch->is_array()) return fail("expected {\"watch\": [...]}");
+    if (watch->size() > kMost) return fail("watch: expected at most " + std::to_string(kMost) + " streams");
     std::vector<WatchRequest> out;
-    for (const auto& item : parsed["watch"]) {
+    for (const auto& item : *watch) {
         auto request = one_request(item);
         if (!request) return fail("watch[" + std::to_string(out.size()) + "]" + request.error().message);
         out.push_back(std::move(*request));

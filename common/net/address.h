@@ -1,50 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Where something listens, as people write it: `unix:PATH` or `HOST:PORT` (an IPv6 host in brackets). Pure, but for
-// resolve(), which may ask the name service. Any thread.
+// What the daemons and tools add to addresses (common/base/address.h): the ports, and where a daemon may listen. Pure.
+// Any thread.
 #pragma once
 
-#include <sys/socket.h>
-
-#include <cstdint>
-#include <string>
-#include <string_view>
-
-#include "common/base/result.h"
+#include "common/base/address.h"
 
 namespace wall::net {
 
-struct Address {
-    std::string path;        ///< of a Unix socket; empty: TCP
-    std::string host;        ///< TCP
-    std::uint16_t port = 0;  ///< TCP; 0 when listening: the kernel chooses
-
-    static Result<Address> parse(std::string_view text);
-
-    bool is_unix() const { return !path.empty(); }
-    /// True for what only this machine can reach: a Unix socket, `localhost`, 127.0.0.0/8, ::1.
-    bool local() const;
-    std::string text() const;
-    bool operator==(const Address&) const = default;
-};
+using wall::Address;
+using wall::kDefaultWalld;
+using wall::resolve;
+using wall::SocketAddress;
 
 inline constexpr std::uint16_t kDefaultControlPort = 7770;
 inline constexpr std::uint16_t kDefaultHttpPort = 7780;
 inline constexpr std::uint16_t kDefaultDataPort = 7790;
 
-/// Where walld is when nobody says otherwise (WALLGL_WALLD, --walld).
-inline constexpr const char* kDefaultWalld = "unix:/run/wallgl/walld.sock";
-
-/// Why a daemon does not listen there, for its start-up error.
-std::string non_local_refusal(const Address& address);
-
-/// What the socket calls want.
-struct SocketAddress {
-    sockaddr_storage storage{};
-    socklen_t length = 0;
-
-    int family() const { return storage.ss_family; }
-    const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
-};
-Result<SocketAddress> resolve(const Address& address);
+/// The socket address to listen on. An error for one that other machines reach, which no daemon listens on
+/// (docs/security.md).
+Result<SocketAddress> resolve_for_listening(const Address& address);
 
 }  // namespace wall::net

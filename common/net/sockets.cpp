@@ -5,6 +5,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -84,7 +85,7 @@ std::optional<Peer> owner_of_tcp_peer(int fd) {
 }  // namespace
 
 Result<UniqueFd> listen_on(const Address& address) {
-    auto to = resolve(address);
+    auto to = resolve_for_listening(address);
     if (!to) return tl::unexpected(to.error());
     auto fd = open_socket(address, *to, SOCK_NONBLOCK);
     if (!fd) return fd;
@@ -114,6 +115,13 @@ Result<UniqueFd> connect_to(const Address& address, std::chrono::milliseconds ti
     }
     ::fcntl(fd->get(), F_SETFL, ::fcntl(fd->get(), F_GETFL) & ~O_NONBLOCK);
     return fd;
+}
+
+void use_all_descriptors() {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+    limit.rlim_cur = limit.rlim_max;
+    ::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 Address bound_address(int fd, const Address& asked) {

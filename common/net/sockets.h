@@ -13,10 +13,13 @@
 
 namespace wall::net {
 
-/// A listening socket. A stale Unix socket file is replaced; one that somebody listens on is an error.
+/// A listening socket, which other machines cannot reach: such an address is refused. A stale Unix socket file is
+/// replaced; one that somebody listens on is an error.
 Result<UniqueFd> listen_on(const Address& address);
 /// A connected, blocking socket.
 Result<UniqueFd> connect_to(const Address& address, std::chrono::milliseconds timeout);
+/// A daemon may open as many files as its hard limit says: each peer takes one.
+void use_all_descriptors();
 /// The address that a listening socket has got (port 0 resolved).
 Address bound_address(int fd, const Address& asked);
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/io/data_stream.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
@@ -13,6 +11,7 @@
 #include <boost/asio/write.hpp>
 #include <chrono>
 
+#include "common/log/log.h"
 #include "common/wire/limits.h"
 #include "gen/glapi/wire.gen.h"
 #include "proto/control.pb.h"
@@ -46,8 +45,8 @@ asio::awaitable<void> DataStream::run() {
     auto done = co_await greet();
     if (done) done = co_await take_batches();
     if (!done && !closing_) {
-        spdlog::info("stream_ended stream={} session={} reason=\"{}\"", id_.value, session_.value,
-                     done.error().message);
+        log::info("stream_ended stream={} session={} reason={}", id_.value, session_.value,
+                  log::quoted(done.error().message));
         fail(done.error().message);
     }
     if (batches_) host_.render().remove_stream(id_);
@@ -99,7 +98,7 @@ asio::awaitable<Result<void>> DataStream::greet() {
     batches_ = std::make_shared<BatchQueue>(on_room);
     host_.render().add_stream(id_, session_, batches_, admission->membership, hello.rank());
     send(wire::FrameKind::welcome, {});
-    spdlog::info("stream_open stream={} session={}", id_.value, session_.value);
+    log::info("stream_open stream={} session={}", id_.value, session_.value);
     co_return Result<void>{};
 }
 

@@ -3,6 +3,8 @@
 
 #include <fstream>
 
+#include "common/json/parse_json.h"
+
 namespace wall::request {
 namespace {
 
@@ -64,7 +66,9 @@ Outcome<Answer> ask(const Walld& walld, const std::string& verb, const nlohmann:
     if (!answer) return tl::unexpected(answer.error());
     auto& reply = *answer->mutable_operator_reply();
     if (!reply.ok()) return tl::unexpected<Failure>({reply.code(), reply.error()});
-    return Answer{nlohmann::json::parse(reply.json(), nullptr, false), std::move(*reply.mutable_blob())};
+    auto json = parse_json(reply.json(), kAnswerJson);
+    if (!json) return no("failed", "walld's answer: " + json.error().message);
+    return Answer{std::move(*json), std::move(*reply.mutable_blob())};
 }
 
 }  // namespace wall::request

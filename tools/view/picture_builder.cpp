@@ -6,6 +6,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "common/json/parse_json.h"
 #include "common/net/base64.h"
 
 namespace wall::view {
@@ -36,7 +37,9 @@ std::byte* pixel(codec::Picture& picture, std::int32_t x, std::int32_t y) {
 }  // namespace
 
 Result<void> PictureBuilder::take_text(std::string_view text) try {
-    const auto message = json::parse(text);
+    const auto parsed = parse_json(text, kAnswerJson);
+    if (!parsed) return fail("walld said what is not expected: " + parsed.error().message);
+    const json& message = *parsed;
     if (message.contains("error")) return fail(message.at("error").get<std::string>());
     if (message.contains("parts")) return set_parts(message);
     if (message.contains("part")) {

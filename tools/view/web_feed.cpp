@@ -6,6 +6,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket.hpp>
 
+#include "common/json/parse_json.h"
 #include "tools/view/feed.h"
 
 namespace wall::view {
@@ -37,10 +38,10 @@ Outcome<net::Address> address_of(const std::string& url) {
 
 /// walld's error, or all of the body if that is something else.
 std::string reason_in(const std::string& body) {
-    const auto answer = nlohmann::json::parse(body, nullptr, false);
+    const auto answer = parse_json(body, kAnswerJson);
     const nlohmann::json::json_pointer message("/error/message");
-    return answer.is_object() && answer.contains(message) && answer[message].is_string()
-               ? answer[message].get<std::string>()
+    return answer && answer->is_object() && answer->contains(message) && answer->at(message).is_string()
+               ? answer->at(message).get<std::string>()
                : body;
 }
 

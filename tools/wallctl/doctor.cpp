@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "common/json/parse_json.h"
 #include "tools/wallrun/launch.h"
 
 namespace wall::wallctl {
@@ -20,7 +21,10 @@ Finding vendor_finding(const std::string& tool) {
 }
 
 void add_wall(std::vector<Finding>& out, const std::string& status_json) {
-    const auto status = nlohmann::json::parse(status_json, nullptr, false);
+    const auto parsed = parse_json(status_json, kAnswerJson);
+    if (!parsed || !parsed->is_object())
+        return out.push_back({"walld's answer", false, "no status that is understood"});
+    const auto& status = *parsed;
     for (const auto& node : status.value("nodes", nlohmann::json::array())) {
         const bool up = node.value("up", false);
         out.push_back({"node " + node.value("name", ""), up,

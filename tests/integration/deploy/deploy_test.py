@@ -10,6 +10,7 @@ import unittest
 from pathlib import Path
 
 BUILD, WALLD = Path(sys.argv.pop(1)), Path(sys.argv.pop(1))
+MOST_CONNECTIONS = 10_000 + 2048 + 1024 + 256  # max_sessions in wall.toml, walld/quota.h, and what is open besides
 EXAMPLES = Path(__file__).resolve().parents[3] / "deploy" / "examples"
 
 
@@ -51,6 +52,16 @@ class Installed(unittest.TestCase):
                 (Path(folder) / instance).write_text(text)
                 verified = output("systemd-analyze", "verify", "--man=no", Path(folder) / instance)
                 self.assertEqual((verified.returncode, verified.stderr.strip()), (0, ""))
+
+    def test_no_daemon_takes_the_whole_machine(self) -> None:
+        for unit in ("walld.service", "tileserver@.service"):
+            with self.subTest(unit):
+                text = self.find(unit).read_text()
+                descriptors = re.findall(r"(?m)^LimitNOFILE=(\d+)$", text)
+                memory = re.findall(r"(?m)^MemoryMax=(\d+)%$", text)
+                self.assertEqual((len(descriptors), len(memory)), (1, 1))
+                self.assertGreaterEqual(int(descriptors[0]), MOST_CONNECTIONS)
+                self.assertLess(int(memory[0]), 100)
 
     def test_systemd_accepts_a_kiosk(self) -> None:
         # The X server's unit and what a node with windows adds to its own. There is no X server with a screen here: any program stands for it.

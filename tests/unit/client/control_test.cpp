@@ -3,6 +3,7 @@
 #include "client_lib/control.h"
 
 #include <gmock/gmock.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "client_lib/node_stream.h"
 #include "client_lib/stats.h"
 #include "common/wire/limits.h"
 #include "proto/control.pb.h"
@@ -511,6 +513,29 @@ TEST(Hello, ComesFromTheEnvironment) {
     unsetenv("WALLGL_RECT");
     unsetenv("WALLGL_NAME");
     unsetenv("WALLGL_HOLD");
+}
+
+// ---- addresses ----
+
+TEST(ConnectTo, UnderstandsAnIPv6Address) {
+    UniqueFd listener(::socket(AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    sockaddr_in6 address{};
+    address.sin6_family = AF_INET6;
+    address.sin6_addr = in6addr_loopback;
+    socklen_t size = sizeof address;
+    ASSERT_EQ(::bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), size), 0);
+    ASSERT_EQ(::listen(listener.get(), 1), 0);
+    ASSERT_EQ(::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
+    const auto connected = connect_to("[::1]:" + std::to_string(ntohs(address.sin6_port)), 5000);
+    EXPECT_TRUE(connected) << connected.error().message;
+}
+
+TEST(ConnectTo, SaysWhatAnAddressIs) {
+    for (const char* wrong : {"", "nowhere", "::1:7770", "host:port", "host:70000", "unix:"}) {
+        const auto connected = connect_to(wrong, 100);
+        ASSERT_FALSE(connected) << wrong;
+        EXPECT_THAT(connected.error().message, HasSubstr("expected unix:PATH or HOST:PORT"));
+    }
 }
 
 }  // namespace

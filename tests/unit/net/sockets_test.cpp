@@ -44,5 +44,16 @@ TEST_F(TcpPeer, ThatHasClosedItsSocketIsNobodyRatherThanRoot) {
     EXPECT_FALSE(peer_of(accepted.get()));
 }
 
+TEST(Listening, IsForThisMachineOnlyWhoeverAsks) {
+    for (const char* text : {"0.0.0.0:0", "[::]:0", "192.0.2.1:0", "[::ffff:127.0.0.1]:0", "wall.example:0"}) {
+        const auto listener = listen_on(*Address::parse(text));
+        ASSERT_FALSE(listener) << text;
+        EXPECT_NE(listener.error().message.find("can be reached from other machines"), std::string::npos)
+            << listener.error().message;
+    }
+    for (const char* text : {"127.0.0.1:0", "127.9.9.9:0", "localhost:0", "[::1]:0"})
+        EXPECT_TRUE(listen_on(*Address::parse(text))) << text;
+}
+
 }  // namespace
 }  // namespace wall::net

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "common/net/address.h"
+#include "common/base/address.h"
 
 #include <gtest/gtest.h>
 
-namespace wall::net {
+namespace wall {
 namespace {
 
 TEST(Address, ParsesAndPrintsWhatItParsed) {
@@ -31,10 +31,17 @@ TEST(Address, KnowsWhatOnlyThisMachineReaches) {
         EXPECT_FALSE(Address::parse(text)->local()) << text;
 }
 
+TEST(Address, TheResolvedOneKnowsItToo) {
+    for (const char* text : {"unix:/x", "127.0.0.1:1", "127.1.2.3:1", "[::1]:1"})
+        EXPECT_TRUE(resolve(*Address::parse(text))->local()) << text;
+    for (const char* text : {"0.0.0.0:1", "192.168.0.1:1", "[::]:1", "[::ffff:127.0.0.1]:1", "128.0.0.1:1"})
+        EXPECT_FALSE(resolve(*Address::parse(text))->local()) << text;
+}
+
 TEST(Address, RefusesASocketPathThatTheKernelWouldCut) {
     EXPECT_TRUE(resolve({.path = std::string(107, 'x')}));
     EXPECT_FALSE(resolve({.path = std::string(108, 'x')}));
 }
 
 }  // namespace
-}  // namespace wall::net
+}  // namespace wall
