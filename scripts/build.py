@@ -35,9 +35,12 @@ class Progress:
         if self.failing or text.startswith("ninja: "):
             self.failure.append(text)
 
+    def elapsed(self) -> str:
+        minutes, seconds = divmod(int(self.clock() - self.begin), 60)
+        return f"{minutes}:{seconds:02}"
+
     def step(self, done: int, of: int, what: str) -> None:
-        elapsed = int(self.clock() - self.begin)
-        state = f"{self.name}: {done} of {of}, {elapsed // 60}:{elapsed % 60:02}"
+        state = f"{self.name}: {done} of {of}, {self.elapsed()}"
         if self.terminal:
             self.out.write(f"\r{f'{state}, {what}'[:COLUMNS]:{COLUMNS}}")
             self.out.flush()
@@ -48,8 +51,7 @@ class Progress:
     def end(self, result: int) -> None:
         if self.terminal:
             self.out.write(f"\r{'':{COLUMNS}}\r")
-        elapsed = int(self.clock() - self.begin)
-        print(f"{self.name}: {'done' if result == 0 else 'FAILED'} after {elapsed // 60}:{elapsed % 60:02}", file=self.out)
+        print(f"{self.name}: {'done' if result == 0 else 'FAILED'} after {self.elapsed()}", file=self.out)
         for text in self.failure if result else []:
             print(text, file=self.out)
         self.out.flush()

@@ -16,6 +16,7 @@ done
 if [[ -n "${WALLGL_BUILD:-}" ]]; then
   echo "demo: using the build in $WALLGL_BUILD"
 else
-  "$root/scripts/build.py" --keep --folder release --name "demo: building" demo walld tileserver wallrun wallctl wallgl_vendor
+  "$root/scripts/build.py" --keep --folder release --name "demo: building" demo \
+    walld tileserver wallrun wallctl wallgl_vendor
 fi
 exec /usr/bin/python3 "$root/scripts/demo.py" "$@"

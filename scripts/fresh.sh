@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Runs the README's commands where nothing is installed: in a clean Debian 12 root (mmdebstrap) with a clone of what is
-# committed. The compiler's cache and downloaded packages of this machine are mounted, everything else is the root's own.
+# committed. The compiler's cache and the packages downloaded before are mounted, everything else is the root's own.
 # As root: scripts/fresh.sh [--keep] [COMMAND]   COMMAND: of bash, in the clone; by default both commands of the README
 set -euo pipefail
 project="$(cd "$(dirname "$0")/.." && pwd)"

@@ -73,8 +73,16 @@ fi
 echo "install-deps: installing for '$purpose': ${missing[*]}"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-# Quiet but for its progress: hundreds of lines a package hide what matters.
-"${as_root[@]}" apt-get update -q >"$log" 2>&1 || { cat "$log"; echo "install-deps: apt-get update failed, see above" >&2; exit 1; }
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}" 2>&1 | tee "$log" |
-  awk '/newly installed/ {print "install-deps: " $0; of = $3 + $1} /^Setting up/ {done++; if (of && int(done * 10 / of) > tenth) {tenth = int(done * 10 / of); print "install-deps: set up " done " of " of}} {fflush()}' ||
-  { cat "$log"; echo "install-deps: apt-get install failed, see above" >&2; exit 1; }
+failed() {
+  cat "$log" >&2
+  echo "install-deps: apt-get $1 failed, see above" >&2
+  exit 1
+}
+# Of thousands of lines people see the count and each tenth.
+progress='/newly installed/ { print "install-deps: " $0; of = $1 + $3 }
+          /^Setting up/ && of && int(++done * 10 / of) > tenth {
+            tenth = int(done * 10 / of); print "install-deps: " done " of " of " packages set up" }
+          { fflush() }'
+"${as_root[@]}" apt-get update -q >"$log" 2>&1 || failed update
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}" 2>&1 |
+  tee "$log" | awk "$progress" || failed install

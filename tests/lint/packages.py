@@ -22,25 +22,26 @@ class Installed:
     """The packages of this machine, and what they pull in (without what they only recommend)."""
 
     def __init__(self, status: str | None = None) -> None:
-        """`status`: lines as dpkg-query prints them with FORMAT."""
+        """`status`: lines as query() returns them."""
         self.needs: dict[str, list[list[str]]] = {}
         self.providers: dict[str, set[str]] = {}
         self.essential: set[str] = set()
         for line in (status if status is not None else self.query()).splitlines():
             package, essential, provides, *depends = line.split("\t")
-            self.needs[package] = [self.names(group, "|") for text in depends for group in text.split(",") if group.strip()]
+            groups = [group for text in depends for group in text.split(",") if group.strip()]
+            self.needs[package] = [self.names(group, "|") for group in groups]
             for name in [package, *self.names(provides, ",")]:
                 self.providers.setdefault(name, set()).add(package)
             if essential:
                 self.essential.add(package)
 
-    FORMAT = r"${Package}\t${Essential}${Priority;1}\t${Provides}\t${Depends}\t${Pre-Depends}\n"
+    FORMAT = r"${db:Status-Status}\t${Package}\t${Essential} ${Priority}\t${Provides}\t${Depends}\t${Pre-Depends}\n"
 
-    @staticmethod
-    def query() -> str:
+    @classmethod
+    def query(cls) -> str:
+        """A line for each package: name, "base" or nothing, what it provides, what it needs (in two fields)."""
         # Of priority `required` is what a minimal system has beside the essential packages.
-        text = subprocess.run(["dpkg-query", "-W", "-f", r"${db:Status-Status}\t${Package}\t${Essential} ${Priority}\t"
-                               r"${Provides}\t${Depends}\t${Pre-Depends}\n"], check=True, capture_output=True, text=True).stdout
+        text = subprocess.run(["dpkg-query", "-W", "-f", cls.FORMAT], check=True, capture_output=True, text=True).stdout
         lines = []
         for line in text.splitlines():
             status, package, importance, *rest = line.split("\t")

@@ -21,7 +21,8 @@ def headers(build: Path) -> set[Path]:
 
 
 def tracked(*patterns: str) -> list[Path]:
-    printed = subprocess.run(["git", "-C", ROOT, "ls-files", "-z", *patterns], check=True, capture_output=True, text=True).stdout
+    command = ["git", "-C", ROOT, "ls-files", "-z", *patterns]
+    printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     return [ROOT / name for name in printed.split("\0") if name]
 
 
@@ -29,7 +30,8 @@ def programs(files: list[Path]) -> set[Path]:
     names = set()
     for file in files:
         names |= (started_by_python if file.suffix == ".py" else started_by_shell)(file.read_text())
-    return {Path(path) for name in names - NODE - NOT_STARTED if (path := shutil.which(name, path="/usr/sbin:/usr/bin:/sbin:/bin"))}
+    found = (shutil.which(name, path="/usr/sbin:/usr/bin:/sbin:/bin") for name in names - NODE - NOT_STARTED)
+    return {Path(path) for path in found if path}
 
 
 class AFreshMachine(unittest.TestCase):
@@ -51,13 +53,13 @@ class AFreshMachine(unittest.TestCase):
     def test_has_the_programs_that_scripts_and_tests_start(self) -> None:
         used = programs(tracked("*.py", "*.sh"))
         for name in ("Xvfb", "glretrace", "ffmpeg", "chromium", "piglit"):
-            self.assertIn(name, {path.name for path in used}, "the search for programs finds what is known to be started")
+            self.assertIn(name, {path.name for path in used}, "what is known to be started is found")
         self.assertEqual(missing(used, "test", self.installed), [])
 
 
 class TheCheckItself(unittest.TestCase):
-    STATUS = "\n".join(["app\t\t\tlibapp (>= 1), mail-server | postfix\t", "libapp\t\t\t\tbase-files", "base-files\tbase\t\t\t",
-                        "exim\t\tmail-server\t\t", "postfix\t\tmail-server\t\t", "other\t\t\tlibapp\t"])
+    STATUS = "\n".join(["app\t\t\tlibapp (>= 1), mail-server | postfix\t", "libapp\t\t\t\tbase-files",
+                        "base-files\tbase\t\t\t", "exim\t\tmail-server\t\t", "postfix\t\tmail-server\t\t", "other\t\t\tlibapp\t"])
 
     def test_follows_what_a_package_pulls_in(self) -> None:
         self.assertEqual(Installed(self.STATUS).closure(["app"]), {"app", "libapp", "base-files", "exim", "postfix"})
@@ -77,7 +79,7 @@ class TheCheckItself(unittest.TestCase):
                          {"ls", "-l", "play", "glretrace"})
 
     def test_finds_programs_in_shell(self) -> None:
-        text = 'A=1 ls -l | sort -n\n# awk\nif grep x; then exec tar x; fi\n"${root[@]}" env B=2 apt-get update && cat <<T\nmake\nT\n'
+        text = 'A=1 ls -l | sort -n\n# awk\nif grep x; then exec tar x; fi\n"${root[@]}" env B=2 apt-get update && cat x\n'
         found = started_by_shell(text)
         self.assertLessEqual({"ls", "sort", "grep", "tar", "cat", "apt-get"}, found)
         self.assertNotIn("awk", found)

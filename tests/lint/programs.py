@@ -8,16 +8,16 @@ import re
 
 # Where a command begins in a line of a shell script: behind separators, keywords and assignments.
 COMMAND = re.compile(r"""(?:^|[|&;(`])\s*
-                         (?:(?:if|then|elif|else|while|until|do|!|exec|env|time|command\s-v|nice|[A-Za-z_]\w*=\S*|"?\$\{?\w[^\s]*)\s+)*
+                         (?:(?:if|then|elif|else|while|until|do|!|exec|env|time|command\s-v|nice
+                               |[A-Za-z_]\w*=\S*|"?\$\{?\w[^\s]*)\s+)*
                          ([A-Za-z_][\w.+-]*)""", re.VERBOSE)
 COMMENT = re.compile(r"(^|\s)#.*")
 
 
 def started_by_python(text: str) -> set[str]:
     """Every text in it that is one word: programs stand in lists, tables and calls of many functions."""
-    return {node.value for node in ast.walk(ast.parse(text))
-            if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value and not node.value.isspace()
-            and len(node.value.split()) == 1}
+    texts = (node.value for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Constant))
+    return {text for text in texts if isinstance(text, str) and text.split() == [text]}
 
 
 def started_by_shell(text: str) -> set[str]:
