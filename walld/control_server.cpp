@@ -2,7 +2,6 @@
 #include "walld/control_server.h"
 
 #include <signal.h>
-#include <spdlog/spdlog.h>
 #include <sys/random.h>
 #include <unistd.h>
 
@@ -12,6 +11,7 @@
 
 #include "common/base/assert.h"
 #include "common/json/parse_json.h"
+#include "common/log/log.h"
 #include "walld/messages.h"
 #include "walld/status.h"
 
@@ -51,7 +51,7 @@ Result<void> ControlServer::listen() {
         auto listener = net::Listener::open(executor_, address);
         if (!listener) return tl::unexpected(listener.error());
         listeners_.push_back(std::make_unique<net::Listener>(std::move(*listener)));
-        spdlog::info("control_listening address={}", listeners_.back()->address().text());
+        log::info("control_listening address={}", log::quoted(listeners_.back()->address().text()));
     }
     for (auto& listener : listeners_) spawn(executor_, "accept", accept(*listener));
     spawn(executor_, "deadlines", run_deadlines());
@@ -100,7 +100,7 @@ asio::awaitable<void> ControlServer::accept(net::Listener& listener) {
     while (!stopping_) {
         auto socket = co_await listener.accept();
         if (!socket) {
-            if (!stopping_) spdlog::error("accept_failed error=\"{}\"", socket.error().message);
+            if (!stopping_) log::error("accept_failed error={}", log::quoted(socket.error().message));
             co_return;
         }
         auto connection = std::make_shared<net::ControlConnection>(std::move(*socket));
@@ -116,12 +116,17 @@ void ControlServer::refuse(const Connection& connection, const std::string& reas
 
 asio::awaitable<void> ControlServer::serve(Connection connection) {
     auto who = identities_.of(connection->peer());
+    auto place = peers_.take(who.text());
     if (who.role == Role::none) {
-        spdlog::warn("peer_refused user=\"{}\"", who.text());
+        log::warn("peer_refused user={}", log::quoted(who.text()));
         refuse(connection, who.text() + " may not use this wall: add them to [people] in wall.toml");
+    } else if (!place) {
+        log::warn("peer_refused reason={}", log::quoted(place.error().message));
+        refuse(connection, place.error().message);
     } else if (auto first = co_await first_message(connection)) {
         if (first->has_node_hello()) co_await serve_node(connection, first->node_hello(), who);
-        else if (first->has_client_hello()) co_await serve_client(connection, first->client_hello(), std::move(who));
+        else if (first->has_client_hello())
+            co_await serve_client(connection, first->client_hello(), std::move(who), std::move(*place));
         else if (first->has_operator_request()) co_await serve_operator(connection, std::move(*first), std::move(who));
         else refuse(connection, "expected a hello of a node or a client, or an operator's request");
     }
@@ -136,7 +141,8 @@ asio::awaitable<Result<proto::Envelope>> ControlServer::first_message(Connection
     });
     auto message = co_await connection->receive();
     limit->cancel();
-    if (!message && message.error().message != "closed") spdlog::warn("peer_bad error=\"{}\"", message.error().message);
+    if (!message && message.error().message != "closed")
+        log::warn("peer_bad error={}", log::quoted(message.error().message));
     co_return message;
 }
 
@@ -145,7 +151,7 @@ asio::awaitable<Result<proto::Envelope>> ControlServer::first_message(Connection
 asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::NodeHello hello, const Person& who) {
     // Nodes get every session's tickets and pixels.
     if (const auto permitted = may(who, Need::operate, "run a node", nullptr); !permitted) {
-        spdlog::warn("node_refused node=\"{}\" reason=\"{}\"", hello.name(), permitted.error().message);
+        log::warn("node_refused node={} reason={}", log::quoted(hello.name()), log::quoted(permitted.error().message));
         co_return refuse(connection, permitted.error().message);
     }
     const auto known = std::ranges::find(wall_.nodes(), hello.name(), [](const Node& n) { return n.config->name; });
@@ -156,12 +162,13 @@ asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::No
     const auto joined = wall_.node_joins(hello, Clock::now());
     if (!joined) {
         if (first) nodes_.erase(expected);
-        spdlog::warn("node_refused node=\"{}\" reason=\"{}\"", hello.name(), joined.error().message);
+        log::warn("node_refused node={} reason={}", log::quoted(hello.name()), log::quoted(joined.error().message));
         refuse(connection, joined.error().message);
         co_return;
     }
-    spdlog::info("node_up node={} incarnation={} address={} backend={} renderer=\"{}\"", hello.name(),
-                 known->incarnation, hello.address(), hello.backend(), hello.caps().renderer());
+    log::info("node_up node={} incarnation={} address={} backend={} renderer={}", log::quoted(hello.name()),
+              known->incarnation, log::quoted(hello.address()), log::quoted(hello.backend()),
+              log::quoted(hello.caps().renderer()));
     streams_.node_joined(*joined);
     something_changed();
     std::string reason;
@@ -176,7 +183,7 @@ asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::No
     wall_.node_leaves(*joined, Clock::now());
     snapshots_.node_left(*joined);
     streams_.node_left(*joined);
-    spdlog::info("node_down node={} reason=\"{}\"", hello.name(), reason);
+    log::info("node_down node={} reason={}", log::quoted(hello.name()), log::quoted(reason));
     something_changed();
 }
 
@@ -191,8 +198,8 @@ Result<void> ControlServer::node_says(NodeIndex node, proto::Envelope& message) 
         wall_.node_reports(node, message.node_stats());
     } else if (message.has_session_fault()) {
         wall_.node_faults(node, message.session_fault());
-        spdlog::warn("session_fault session={} node={} reason=\"{}\"", message.session_fault().session(),
-                     wall_.nodes()[node].config->name, message.session_fault().reason());
+        log::warn("session_fault session={} node={} reason={}", message.session_fault().session(),
+                  log::quoted(wall_.nodes()[node].config->name), log::quoted(message.session_fault().reason()));
     } else {
         return fail("a node may not send that message");
     }
@@ -225,7 +232,9 @@ Outcome<void> ControlServer::welcome(const proto::ClientHello& hello, Person& wh
     return wall_.check_member(hello, who);
 }
 
-asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::ClientHello hello, Person who) {
+/// Programs on the wall have a limit of their own (max_sessions), so `place` is given back when this is one.
+asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::ClientHello hello, Person who,
+                                                  Quota::Place place) {
     if (const auto good = welcome(hello, who); !good) co_return refuse(connection, good.error().message);
     co_await wait_for_nodes();
     if (!wall_.any_node_up())
@@ -236,8 +245,10 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
     const auto id = wall_.open_session(hello, who, Clock::now(), [&](SessionId session) {
         clients_[{session, rank}] = connection;
     });
-    spdlog::info("session_open session={} owner=\"{}\" pid={} program=\"{}\" name=\"{}\" group=\"{}\" rank={}",
-                 id.value, who.text(), hello.pid(), hello.program(), hello.name(), hello.group().name(), rank);
+    place.leave();
+    log::info("session_open session={} owner={} pid={} program={} name={} group={} rank={}", id.value,
+              log::quoted(who.text()), hello.pid(), log::quoted(hello.program()), log::quoted(hello.name()),
+              log::quoted(hello.group().name()), rank);
     something_changed();
     std::string reason;
     while (reason.empty()) {
@@ -249,7 +260,8 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
     }
     clients_.erase({id, rank});
     const auto became = wall_.member_gone(id, rank);
-    spdlog::info("session_end session={} rank={} reason=\"{}\" became=\"{}\"", id.value, rank, reason, became);
+    log::info("session_end session={} rank={} reason={} became={}", id.value, rank, log::quoted(reason),
+              log::quoted(became));
     something_changed();
 }
 
@@ -274,20 +286,51 @@ Result<void> ControlServer::client_says(const ClientId& client, const proto::Env
 asio::awaitable<void> ControlServer::serve_operator(Connection connection, proto::Envelope first, Person who) {
     Result<proto::Envelope> message(std::move(first));
     while (message && message->has_operator_request()) {
-        spawn(executor_, "operator", answer_operator(connection, std::move(*message->mutable_operator_request()), who));
+        auto& request = *message->mutable_operator_request();
+        if (auto place = requests_.take(who.text()); place) {
+            spawn(executor_, "operator", answer_operator(connection, std::move(request), who, std::move(*place)));
+        } else {
+            Outcome<Answer> no = tl::unexpected(place.error());
+            co_await send_answer(connection, request.request(), std::move(no));
+        }
         message = co_await connection->receive();
     }
 }
 
-asio::awaitable<void> ControlServer::answer_operator(Connection connection, proto::OperatorRequest request,
-                                                     Person who) {
+/// In parts, each when the one before is gone: an answer may be as large as a picture of the wall.
+asio::awaitable<void> ControlServer::send_answer(Connection connection, std::uint32_t request, Outcome<Answer> answer) {
+    proto::OperatorReply reply;
+    reply.set_request(request);
+    reply.set_ok(answer.has_value());
+    if (!answer) {
+        reply.set_error(answer.error().message);
+        reply.set_code(name_of(answer.error().kind));
+    }
+    const auto json = answer ? dump(answer->json) : std::string();
+    const auto blob = answer ? answer->blob : nullptr;
+    const std::string_view bytes = blob ? std::string_view(*blob) : std::string_view();
+    net::ReplyParts parts(std::move(reply), json, bytes, {});
+    co_await send_parts(connection, std::move(parts));
+}
+
+asio::awaitable<void> ControlServer::send_parts(Connection connection, net::ReplyParts parts) {
+    for (auto part = parts.next(); part && connection->is_open(); part = parts.next()) {
+        const bool last = !part->more();
+        connection->send(make(&proto::Envelope::mutable_operator_reply, *part));
+        if (!last) co_await connection->drained();
+    }
+}
+
+asio::awaitable<void> ControlServer::answer_operator(Connection connection, proto::OperatorRequest request, Person who,
+                                                     Quota::Place place) {
     auto person = identities_.with_token(std::move(who), request.token());
     Outcome<Answer> answer;
     if (!person) {
         answer = tl::unexpected(person.error());
     } else if (request.verb() == kWatchVerb) {
         const auto permitted = may(*person, Need::look, "watch the wall", nullptr);
-        if (permitted) co_return co_await serve_watch(connection, std::move(request));
+        place.leave();  // what is watched has limits of its own
+        if (permitted) co_return co_await serve_watch(connection, std::move(request), std::move(*person));
         answer = tl::unexpected(permitted.error());
     } else {
         Result<nlohmann::json> arguments = nlohmann::json::object();
@@ -299,47 +342,39 @@ asio::awaitable<void> ControlServer::answer_operator(Connection connection, prot
             answer = walld::refuse(RefusalKind::invalid, "arguments: " + arguments.error().message);
         }
     }
-    proto::OperatorReply reply;
-    reply.set_request(request.request());
-    reply.set_ok(answer.has_value());
-    if (answer) {
-        reply.set_json(dump(answer->json));
-        reply.set_blob(std::move(answer->blob));
-    } else {
-        reply.set_error(answer.error().message);
-        reply.set_code(name_of(answer.error().kind));
-    }
-    connection->send(make(&proto::Envelope::mutable_operator_reply, reply));
+    co_await send_answer(connection, request.request(), std::move(answer));
     something_changed();
 }
 
 /// Replies for as long as the connection lasts: what a WebSocket viewer gets, texts as JSON, frames as blobs.
-asio::awaitable<void> ControlServer::serve_watch(Connection connection, proto::OperatorRequest request) {
-    const auto viewer = streams_.add_viewer();
+asio::awaitable<void> ControlServer::serve_watch(Connection connection, proto::OperatorRequest request, Person who) {
+    const auto viewer = streams_.add_viewer(who);
+    if (!viewer) {
+        Outcome<Answer> no = tl::unexpected(viewer.error());
+        co_return co_await send_answer(connection, request.request(), std::move(no));
+    }
     const auto requests = WatchRequest::parse(request.json());
-    const auto done = requests ? streams_.watch(*viewer, *requests) : Result<void>(tl::unexpected(requests.error()));
+    const auto done = requests ? streams_.watch(**viewer, *requests) : Result<void>(tl::unexpected(requests.error()));
+    if (!done) {
+        Outcome<Answer> no = walld::refuse(RefusalKind::invalid, done.error().message);
+        co_await send_answer(connection, request.request(), std::move(no));
+    }
     proto::OperatorReply reply;
     reply.set_request(request.request());
-    reply.set_ok(done.has_value());
-    if (!done) {
-        reply.set_error(done.error().message);
-        reply.set_code(name_of(RefusalKind::invalid));
-        connection->send(make(&proto::Envelope::mutable_operator_reply, reply));
-    }
+    reply.set_ok(true);
     while (done && connection->is_open() && !stopping_) {
-        const auto message = streams_.next(*viewer);
+        const auto message = streams_.next(**viewer);
         if (!message) {
-            co_await viewer->news().wait(Clock::now() + kLookAtConnection);
+            co_await (*viewer)->news().wait(Clock::now() + kLookAtConnection);
             continue;
         }
-        reply.clear_json();
-        reply.clear_blob();
-        if (message->binary) reply.set_blob(message->head + *message->packet);
-        else reply.set_json(message->head);
-        connection->send(make(&proto::Envelope::mutable_operator_reply, reply));
+        const std::string_view head(message->head), nothing;
+        const std::string_view packet = message->packet ? std::string_view(*message->packet) : nothing;
+        net::ReplyParts parts(reply, message->binary ? nothing : head, message->binary ? head : nothing, packet);
+        co_await send_parts(connection, std::move(parts));
         co_await connection->drained();
     }
-    streams_.remove_viewer(*viewer);
+    streams_.remove_viewer(**viewer);
 }
 
 // ---- time ----
@@ -372,7 +407,7 @@ asio::awaitable<void> ControlServer::watch_processes() {
         for (const auto& [id, connection] : clients_) {
             const auto pid = connection->peer() ? connection->peer()->process : 0;
             if (pid <= 0 || ::kill(pid, 0) == 0 || errno != ESRCH) continue;
-            spdlog::info("session_orphaned session={} pid={}", id.first.value, pid);
+            log::info("session_orphaned session={} pid={}", id.first.value, pid);
             connection->close();
         }
     }

@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "common/net/control_connection.h"
+#include "common/net/reply_parts.h"
 #include "walld/changed.h"
 #include "walld/identity.h"
 #include "walld/operator_desk.h"
+#include "walld/quota.h"
 #include "walld/snapshot_desk.h"
 #include "walld/stream_hub.h"
 #include "walld/wall.h"
@@ -50,10 +52,13 @@ private:
     asio::awaitable<void> accept(net::Listener& listener);
     asio::awaitable<void> serve(Connection connection);
     asio::awaitable<void> serve_node(Connection connection, proto::NodeHello hello, const Person& who);
-    asio::awaitable<void> serve_client(Connection connection, proto::ClientHello hello, Person who);
+    asio::awaitable<void> serve_client(Connection connection, proto::ClientHello hello, Person who, Quota::Place place);
     asio::awaitable<void> serve_operator(Connection connection, proto::Envelope first, Person who);
-    asio::awaitable<void> answer_operator(Connection connection, proto::OperatorRequest request, Person who);
-    asio::awaitable<void> serve_watch(Connection connection, proto::OperatorRequest request);
+    asio::awaitable<void> answer_operator(Connection connection, proto::OperatorRequest request, Person who,
+                                          Quota::Place place);
+    asio::awaitable<void> serve_watch(Connection connection, proto::OperatorRequest request, Person who);
+    asio::awaitable<void> send_answer(Connection connection, std::uint32_t request, Outcome<Answer> answer);
+    asio::awaitable<void> send_parts(Connection connection, net::ReplyParts parts);
     Clock::time_point next_deadline() const;
     asio::awaitable<void> run_deadlines();
     asio::awaitable<void> watch_processes();
@@ -70,6 +75,7 @@ private:
 
     asio::any_io_executor executor_;
     Changed changed_;
+    Quota peers_{kPeerConnections}, requests_{kRequests};
     Identities identities_;
     Wall wall_;
     SnapshotDesk snapshots_;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "walld/http_server.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -10,7 +8,9 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "common/log/log.h"
 #include "common/net/sockets.h"
 #include "gen/walld/page.gen.h"
 #include "walld/rest.h"
@@ -26,16 +26,15 @@ constexpr std::uint32_t kMaxHeader = 8 << 10, kMaxBody = 64 << 10;  // bytes
 
 constexpr const char* kJson = "application/json";
 constexpr const char* kVia = "http";
-constexpr std::string_view kFull =
-    "HTTP/1.1 503 Service Unavailable\r\nContent-Length: 39\r\nConnection: close\r\n\r\nthis wall has as many viewers "
-    "as it may";
+constexpr const char* kRetryAfter = "1";  // seconds
+constexpr unsigned kVersion = 11;         // HTTP/1.1
 
 /// The page uses nothing but its own files, and is no part of another page.
 constexpr const char* kPolicy = "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-http::response<http::string_body> reply(unsigned version, http::status status, std::string_view type,
-                                        std::string body) {
-    http::response<http::string_body> out(status, version);
+http::response<HttpBody> reply(unsigned version, http::status status, std::string_view type,
+                               HttpBody::value_type body) {
+    http::response<HttpBody> out(status, version);
     out.set(http::field::content_type, {type.data(), type.size()});
     out.set(http::field::cache_control, "no-store");
     out.set("X-Content-Type-Options", "nosniff");
@@ -44,8 +43,26 @@ http::response<http::string_body> reply(unsigned version, http::status status, s
     return out;
 }
 
-http::response<http::string_body> refusal(unsigned version, int status, const Refusal& why) {
-    return reply(version, static_cast<http::status>(status), kJson, dump(error_json(why)));
+http::response<HttpBody> reply(unsigned version, http::status status, std::string_view type, std::string text) {
+    return reply(version, status, type, HttpBody::value_type{std::move(text), nullptr});
+}
+
+http::response<HttpBody> refusal(unsigned version, int status, const Refusal& why) {
+    auto out = reply(version, static_cast<http::status>(status), kJson, dump(error_json(why)));
+    if (why.kind == RefusalKind::busy) out.set(http::field::retry_after, kRetryAfter);
+    return out;
+}
+
+/// What a connection gets that is one too many: its socket is fresh, and has room for so few bytes.
+void turn_away(asio::ip::tcp::socket& socket, const Refusal& why) {
+    auto answer = refusal(kVersion, http_status(why.kind), why);
+    answer.keep_alive(false);
+    answer.prepare_payload();
+    std::ostringstream text;
+    text << answer.base() << answer.body().bytes();
+    boost::system::error_code ignored;
+    socket.non_blocking(true, ignored);
+    socket.write_some(asio::buffer(text.str()), ignored);
 }
 
 std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
@@ -110,7 +127,7 @@ Result<void> HttpServer::listen(const net::Address& address) {
     acceptor_.assign(to->family() == AF_INET6 ? asio::ip::tcp::v6() : asio::ip::tcp::v4(), fd->get(), error);
     if (error) return fail(address.text() + ": " + error.message());
     address_ = net::bound_address(fd->release(), address);
-    spdlog::info("http_listening url=http://{}/", address_.text());
+    log::info("http_listening url={}", log::quoted("http://" + address_.text() + "/"));
     spawn(acceptor_.get_executor(), "http_accept", accept());
     return {};
 }
@@ -118,8 +135,8 @@ Result<void> HttpServer::listen(const net::Address& address) {
 void HttpServer::stop() {
     boost::system::error_code ignored;
     acceptor_.close(ignored);
-    for (auto& [key, socket] : std::exchange(open_, {})) {
-        if (const auto open = socket.lock()) open->close(ignored);
+    for (auto& [key, connection] : std::exchange(open_, {})) {
+        if (const auto open = connection.lock()) open->socket.close(ignored);
     }
 }
 
@@ -131,22 +148,24 @@ asio::awaitable<void> HttpServer::accept() {
             co_await pause.async_wait(kTuple);
             continue;
         }
-        if (open_.size() >= kMaxConnections) {
-            spdlog::warn("http_full connections={}", open_.size());
-            boost::system::error_code ignored;  // a fresh socket has room for so few bytes
-            accepted.non_blocking(true, ignored);
-            accepted.write_some(asio::buffer(kFull), ignored);
+        auto peer = net::peer_of(accepted.native_handle());
+        auto place = connections_.take(peer ? "user " + std::to_string(peer->user) : "somebody unknown");
+        if (!place) {
+            log::warn("http_full reason={}", log::quoted(place.error().message));
+            turn_away(accepted, place.error());
             continue;
         }
-        auto socket = std::make_shared<Socket>(std::move(accepted));
-        open_[socket.get()] = socket;
-        spawn(acceptor_.get_executor(), "http", serve(std::move(socket)));
+        auto connection = std::make_shared<Connection>(std::move(accepted), peer, std::move(*place));
+        open_[connection.get()] = connection;
+        spawn(acceptor_.get_executor(), "http", serve(std::move(connection)));
     }
 }
 
-asio::awaitable<void> HttpServer::serve(std::shared_ptr<Socket> socket) {
-    const auto peer = net::peer_of(socket->native_handle());
-    boost::beast::flat_buffer buffer;
+asio::awaitable<void> HttpServer::serve(std::shared_ptr<Connection> connection) {
+    const std::shared_ptr<Socket> socket(connection, &connection->socket);
+    const auto& peer = connection->peer;
+    // Requests that come while one is answered wait in the kernel, but for what the last reading brought of them.
+    boost::beast::flat_buffer buffer(kMaxHeader + kMaxBody);
     asio::steady_timer idle(socket->get_executor());
     const auto limit = [&] {
         idle.expires_after(kIdleLimit);
@@ -163,36 +182,42 @@ asio::awaitable<void> HttpServer::serve(std::shared_ptr<Socket> socket) {
         auto [read_error, read] = co_await http::async_read(*socket, buffer, parser, kTuple);
         if (read_error) break;
         idle.cancel();  // a program that is asked to close may take its time
-        if (boost::beast::websocket::is_upgrade(parser.get()) && path_of(parser.get()) == kStreamPath &&
-            !no_viewer(parser.get(), peer)) {
-            co_await serve_viewer(socket, parser.release(), streams_);
-            break;
+        Response response;
+        if (path_of(parser.get()) == kStreamPath) {
+            auto who = viewer(parser.get(), peer);
+            auto added = who ? streams_.add_viewer(*who) : Outcome<std::shared_ptr<StreamHub::Viewer>>();
+            if (who && added) {
+                co_await serve_viewer(socket, parser.release(), streams_, std::move(*added));
+                break;
+            }
+            if (who) response = refusal(parser.get().version(), http_status(added.error().kind), added.error());
+            else response = std::move(who.error());
+        } else {
+            response = co_await answer(parser.get(), peer);
         }
-        auto response = co_await answer(parser.get(), peer);
         response.keep_alive(parser.get().keep_alive());
         response.prepare_payload();
-        if (parser.get().method() == http::verb::head) response.body().clear();
+        if (parser.get().method() == http::verb::head) response.body() = {};
         limit();
         auto [write_error, written] = co_await http::async_write(*socket, response, kTuple);
         go_on = !write_error && response.keep_alive() && acceptor_.is_open();
     }
-    open_.erase(socket.get());
+    open_.erase(connection.get());
     boost::system::error_code ignored;
     socket->shutdown(Socket::shutdown_both, ignored);
     socket->close(ignored);
 }
 
 asio::awaitable<HttpServer::Response> HttpServer::answer(const Request& request, const std::optional<net::Peer>& peer) {
-    auto next = local_page(request);
-    if (!next && path_of(request) == kStreamPath) next = no_viewer(request, peer);
-    if (next) co_return std::move(*next);
+    if (auto page = local_page(request)) co_return std::move(*page);
     auto asked = read(request, peer);
     if (!asked) co_return std::move(asked.error());
     auto answer = co_await desk_.carry_out(std::move(*asked));
     if (!answer) co_return refusal(request.version(), http_status(answer.error().kind), answer.error());
-    const bool picture = !answer->blob.empty();
-    co_return reply(request.version(), http::status::ok, picture ? "image/png" : kJson,
-                    picture ? std::move(answer->blob) : dump(answer->json));
+    if (answer->blob)
+        co_return reply(request.version(), http::status::ok, "image/png",
+                        HttpBody::value_type{{}, std::move(answer->blob)});
+    co_return reply(request.version(), http::status::ok, kJson, dump(answer->json));
 }
 
 /// What anybody who reaches us under a local name gets, and the answer for those who do not.
@@ -210,21 +235,23 @@ std::optional<HttpServer::Response> HttpServer::local_page(const Request& reques
                  well ? "ok\n" : "no node is up\n");
 }
 
-/// Why this is nobody who may watch, if so.
-std::optional<HttpServer::Response> HttpServer::no_viewer(const Request& request,
-                                                          const std::optional<net::Peer>& peer) const {
+/// Who wants to watch, or the answer for one who may not.
+tl::expected<Person, HttpServer::Response> HttpServer::viewer(const Request& request,
+                                                              const std::optional<net::Peer>& peer) const {
     const auto version = request.version();
-    if (!host_ok(view(request[http::field::host]))) return local_page(request);
+    const auto no = [](Response answer) { return tl::unexpected<Response>(std::move(answer)); };
+    if (!host_ok(view(request[http::field::host]))) return no(*local_page(request));
     if (!boost::beast::websocket::is_upgrade(request))
-        return reply(version, http::status::upgrade_required, "text/plain", "expected a WebSocket (docs/streams.md)\n");
-    const auto who = identities_.over_http(peer, view(request[http::field::authorization]));
-    if (!who) return refusal(version, 401, who.error());
+        return no(
+            reply(version, http::status::upgrade_required, "text/plain", "expected a WebSocket (docs/streams.md)\n"));
+    auto who = identities_.over_http(peer, view(request[http::field::authorization]));
+    if (!who) return no(refusal(version, 401, who.error()));
     if (const auto permitted = may(*who, Need::look, "watch the wall", nullptr); !permitted)
-        return refusal(version, http_status(permitted.error().kind), permitted.error());
+        return no(refusal(version, http_status(permitted.error().kind), permitted.error()));
     const auto origin = view(request[http::field::origin]);
     if (!origin.empty() && origin != "http://" + std::string(view(request[http::field::host])))
-        return refusal(version, 403, {RefusalKind::forbidden, "a page of another site may not watch this wall"});
-    return std::nullopt;
+        return no(refusal(version, 403, {RefusalKind::forbidden, "a page of another site may not watch this wall"}));
+    return std::move(*who);
 }
 
 /// What is asked of the desk, or the answer if nothing is.

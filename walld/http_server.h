@@ -10,9 +10,11 @@
 
 #include "common/net/address.h"
 #include "walld/changed.h"
+#include "walld/http_body.h"
 #include "walld/identity.h"
 #include "walld/metrics.h"
 #include "walld/operator_desk.h"
+#include "walld/quota.h"
 #include "walld/stream_hub.h"
 #include "walld/wall.h"
 
@@ -21,7 +23,6 @@ namespace wall::walld {
 class HttpServer {
 public:
     static constexpr std::chrono::seconds kIdleLimit{30};
-    static constexpr std::size_t kMaxConnections = 256;
 
     HttpServer(asio::any_io_executor executor, const Wall& wall, const Identities& identities, OperatorDesk& desk,
                StreamHub& streams, const WallMetrics& metrics)
@@ -39,14 +40,19 @@ public:
 
 private:
     using Request = boost::beast::http::request<boost::beast::http::string_body>;
-    using Response = boost::beast::http::response<boost::beast::http::string_body>;
+    using Response = boost::beast::http::response<HttpBody>;
     using Socket = asio::ip::tcp::socket;
+    struct Connection {
+        Socket socket;
+        std::optional<net::Peer> peer;
+        Quota::Place place;
+    };
 
     asio::awaitable<void> accept();
-    asio::awaitable<void> serve(std::shared_ptr<Socket> socket);
+    asio::awaitable<void> serve(std::shared_ptr<Connection> connection);
     asio::awaitable<Response> answer(const Request& request, const std::optional<net::Peer>& peer);
     std::optional<Response> local_page(const Request& request) const;
-    std::optional<Response> no_viewer(const Request& request, const std::optional<net::Peer>& peer) const;
+    Expected<Person, Response> viewer(const Request& request, const std::optional<net::Peer>& peer) const;
     Expected<Asked, Response> read(const Request& request, const std::optional<net::Peer>& peer) const;
 
     asio::ip::tcp::acceptor acceptor_;
@@ -56,7 +62,8 @@ private:
     StreamHub& streams_;
     const WallMetrics& metrics_;
     net::Address address_;
-    std::map<Socket*, std::weak_ptr<Socket>> open_;
+    Quota connections_{kHttpConnections};
+    std::map<Connection*, std::weak_ptr<Connection>> open_;
 };
 
 }  // namespace wall::walld

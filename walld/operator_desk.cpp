@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "walld/operator_desk.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <boost/asio/this_coro.hpp>
 
+#include "common/log/log.h"
 #include "walld/arguments.h"
 #include "walld/audit.h"
 #include "walld/status.h"
@@ -58,8 +57,8 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::carry_out(Asked asked) {
     if (const auto permitted = allowed(**row, asked); permitted) answer = co_await (this->*(*row)->run)(asked);
     else answer = tl::unexpected(permitted.error());
     if ((*row)->need != Need::look)
-        spdlog::info(
-            audit_line({asked.who, asked.via, asked.verb, asked.arguments, answer ? nullptr : &answer.error()}));
+        log::info("{}", log::plain(audit_line(
+                            {asked.who, asked.via, asked.verb, asked.arguments, answer ? nullptr : &answer.error()})));
     changed_.notify();
     co_return answer;
 }
@@ -202,7 +201,7 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::screenshot(const Asked& asked) {
     }
     auto png = co_await snapshots_.take(std::move(query));
     if (!png) co_return tl::unexpected(png.error());
-    co_return Answer{{{"bytes", png->size()}}, std::move(*png)};
+    co_return Answer{{{"bytes", (*png)->size()}}, std::move(*png)};
 }
 
 // ---- layouts ----

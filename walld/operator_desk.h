@@ -26,7 +26,7 @@ struct Asked {
 
 struct Answer {
     nlohmann::json json = nlohmann::json::object();
-    std::string blob;
+    Png blob;  ///< none: null
 };
 
 class OperatorDesk {

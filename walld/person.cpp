@@ -9,6 +9,7 @@ const char* name_of(RefusalKind kind) {
         case RefusalKind::forbidden: return "forbidden";
         case RefusalKind::not_found: return "not_found";
         case RefusalKind::conflict: return "conflict";
+        case RefusalKind::busy: return "busy";
         case RefusalKind::unavailable: return "unavailable";
         case RefusalKind::failed: return "failed";
     }

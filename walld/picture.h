@@ -13,7 +13,12 @@ namespace wall::walld {
 
 struct TilePicture {
     geom::Rect rect;  ///< on the canvas
-    std::string rgb;  ///< rect.width * rect.height * 3 bytes, top row first; empty: nothing came
+    std::string rgb;  ///< what has come of its rect.width * rect.height * 3 bytes, top row first
+
+    std::size_t bytes() const;
+    bool complete() const { return rgb.size() == bytes(); }
+    /// The next part of a picture of `width` x `height` pixels. False: it is of another size, out of order or too long.
+    bool add(std::uint32_t width, std::uint32_t height, std::uint64_t offset, const std::string& part);
 };
 
 struct PictureJob {
@@ -22,7 +27,7 @@ struct PictureJob {
     std::vector<TilePicture> tiles;
 };
 
-/// PNG, 8 bits RGB.
-Result<std::string> compose_png(const PictureJob& job);
+/// PNG, 8 bits RGB. A tile that has not all come is left out. Takes the tiles, so that each is freed when it is drawn.
+Result<std::string> compose_png(PictureJob job);
 
 }  // namespace wall::walld

@@ -14,6 +14,7 @@ enum class RefusalKind {
     forbidden,    ///< the person may not
     not_found,    ///< there is no such thing
     conflict,     ///< not as things are now
+    busy,         ///< too much of it is going on: later
     unavailable,  ///< what it needs is away
     failed,       ///< our own fault
 };

@@ -105,6 +105,7 @@ int http_status(RefusalKind kind) {
         case RefusalKind::forbidden: return 403;
         case RefusalKind::not_found: return 404;
         case RefusalKind::conflict: return 409;
+        case RefusalKind::busy: return 429;
         case RefusalKind::unavailable: return 503;
         case RefusalKind::failed: return 500;
     }

@@ -1,35 +1,76 @@
 // SPDX-License-Identifier: MIT
 #include "walld/snapshot_desk.h"
 
-#include <spdlog/spdlog.h>
-
+#include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/use_awaitable.hpp>
 
+#include "common/log/log.h"
 #include "walld/messages.h"
 
 namespace wall::walld {
 namespace {
 
-asio::awaitable<Result<std::string>> compose(PictureJob job) { co_return compose_png(job); }
+asio::awaitable<Result<std::string>> compose(PictureJob job) { co_return compose_png(std::move(job)); }
 
 }  // namespace
 
-asio::awaitable<Outcome<std::string>> SnapshotDesk::take(SnapshotQuery query) {
-    auto started = start(query);
-    if (!started) co_return tl::unexpected(started.error());
-    const auto job = *started;
-    const auto until = Clock::now() + kLimit;
-    while (job->missing > 0 && Clock::now() < until) co_await job->done.wait(until);
-    std::erase_if(pending_, [&](const auto& entry) { return entry.second.job == job; });
-    if (job->missing > 0) spdlog::warn("snapshot_incomplete tiles_missing={}", job->missing);
-    auto png = co_await asio::co_spawn(composing_, compose(std::move(job->picture)), asio::use_awaitable);
-    if (!png) co_return refuse(RefusalKind::conflict, png.error().message);
-    co_return std::move(*png);
+asio::awaitable<Outcome<Png>> SnapshotDesk::take(SnapshotQuery query) {
+    const auto job = join(std::move(query));
+    if (!job) co_return tl::unexpected(job.error());
+    begin_next();
+    while (!(*job)->result) co_await (*job)->changed.wait(Clock::time_point::max());
+    co_return *(*job)->result;
 }
 
-Outcome<std::shared_ptr<SnapshotDesk::Job>> SnapshotDesk::start(const SnapshotQuery& query) {
-    auto job = std::make_shared<Job>(executor_);
+/// One that waits and is the same, or a new one in the line.
+Outcome<std::shared_ptr<SnapshotDesk::Job>> SnapshotDesk::join(SnapshotQuery query) {
+    const auto same = std::ranges::find_if(waiting_, [&](const auto& job) { return job->query == query; });
+    if (same != waiting_.end()) return *same;
+    if (waiting_.size() >= kMaxWaiting)
+        return refuse(RefusalKind::busy, std::to_string(waiting_.size()) +
+                                             " pictures of this wall wait to be made already: ask again later");
+    return waiting_.emplace_back(std::make_shared<Job>(executor_, std::move(query)));
+}
+
+void SnapshotDesk::begin_next() {
+    while (being_made_ < kAtOnce && !waiting_.empty()) {
+        ++being_made_;
+        spawn(executor_, "picture", make(std::move(waiting_.front())));
+        waiting_.pop_front();
+    }
+}
+
+asio::awaitable<void> SnapshotDesk::make(std::shared_ptr<Job> job) {
+    std::string failure;
+    try {
+        job->result = co_await picture_of(job);
+    } catch (const std::exception& error) {  // memory is short for a picture of that size
+        failure = error.what();
+    }
+    if (!job->result) {
+        log::error("picture_failed error={}", log::quoted(failure));
+        job->result = refuse(RefusalKind::failed, "the picture cannot be made: " + failure);
+    }
+    std::erase_if(pending_, [&](const auto& entry) { return entry.second.job == job; });
+    job->changed.notify();
+    --being_made_;
+    begin_next();
+}
+
+asio::awaitable<Outcome<Png>> SnapshotDesk::picture_of(const std::shared_ptr<Job>& job) {
+    if (const auto asked = ask_nodes(job); !asked) co_return tl::unexpected(asked.error());
+    while (job->missing > 0 && Clock::now() < job->heard + kLimit) co_await job->changed.wait(job->heard + kLimit);
+    std::erase_if(pending_, [&](const auto& entry) { return entry.second.job == job; });
+    if (job->missing > 0) log::warn("snapshot_incomplete tiles_missing={}", job->missing);
+    auto png = co_await asio::co_spawn(composing_, compose(std::move(job->picture)), asio::use_awaitable);
+    if (!png) co_return refuse(RefusalKind::conflict, png.error().message);
+    co_return std::make_shared<const std::string>(std::move(*png));
+}
+
+Outcome<void> SnapshotDesk::ask_nodes(const std::shared_ptr<Job>& job) {
+    const auto& query = job->query;
+    job->heard = Clock::now();
     job->picture.view = wall_.config().canvas();
     job->picture.background = wall_.config().background;
     SessionId session;
@@ -53,7 +94,7 @@ Outcome<std::shared_ptr<SnapshotDesk::Job>> SnapshotDesk::start(const SnapshotQu
         }
     }
     if (!found) return refuse(RefusalKind::not_found, "there is no tile '" + query.tile + "'");
-    return job;
+    return {};
 }
 
 void SnapshotDesk::ask(const std::shared_ptr<Job>& job, NodeIndex node, std::uint32_t slot, SessionId session) {
@@ -63,23 +104,26 @@ void SnapshotDesk::ask(const std::shared_ptr<Job>& job, NodeIndex node, std::uin
     request.set_session(session.value);
     pending_.emplace(last_request_, Pending{job, job->picture.tiles.size() - 1, node});
     ++job->missing;
-    out_.to_node(node, make(&proto::Envelope::mutable_snapshot_request, request));
+    out_.to_node(node, walld::make(&proto::Envelope::mutable_snapshot_request, request));
 }
 
 void SnapshotDesk::arrived(NodeIndex node, proto::Snapshot& snapshot) {
     const auto found = pending_.find(snapshot.request());
     if (found == pending_.end() || found->second.node != node) return;
-    auto& tile = found->second.job->picture.tiles[found->second.tile];
-    const auto width = static_cast<std::uint32_t>(tile.rect.width),
-               height = static_cast<std::uint32_t>(tile.rect.height);
+    Job& job = *found->second.job;
+    TilePicture& tile = job.picture.tiles[found->second.tile];
+    job.heard = Clock::now();
+    job.changed.notify();
+    const auto& name = wall_.nodes()[node].config->name;
     if (!snapshot.error().empty()) {
-        spdlog::warn("snapshot_failed node={} error=\"{}\"", wall_.nodes()[node].config->name, snapshot.error());
-    } else if (snapshot.width() != width || snapshot.height() != height ||
-               snapshot.rgb().size() != std::size_t{width} * height * 3) {
-        spdlog::warn("snapshot_bad node={} width={} height={} bytes={}", wall_.nodes()[node].config->name,
-                     snapshot.width(), snapshot.height(), snapshot.rgb().size());
-    } else {
-        tile.rgb = std::move(*snapshot.mutable_rgb());
+        log::warn("snapshot_failed node={} error={}", log::quoted(name), log::quoted(snapshot.error()));
+        tile.rgb.clear();
+    } else if (!tile.add(snapshot.width(), snapshot.height(), snapshot.offset(), snapshot.rgb())) {
+        log::warn("snapshot_bad node={} width={} height={} offset={} bytes={}", log::quoted(name), snapshot.width(),
+                  snapshot.height(), snapshot.offset(), snapshot.rgb().size());
+        tile.rgb.clear();
+    } else if (!tile.complete()) {
+        return;
     }
     finish(found);
 }
@@ -91,10 +135,12 @@ void SnapshotDesk::node_left(NodeIndex node) {
     }
 }
 
+/// All of the tile is there, or nothing more of it will come.
 void SnapshotDesk::finish(std::map<std::uint32_t, Pending>::iterator pending) {
     const auto job = pending->second.job;
     pending_.erase(pending);
-    if (--job->missing == 0) job->done.notify();
+    --job->missing;
+    job->changed.notify();
 }
 
 }  // namespace wall::walld

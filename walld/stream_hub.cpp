@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/codec/frame.h"
 #include "common/net/base64.h"
 #include "walld/messages.h"
 
@@ -20,6 +21,7 @@ void append(std::string& out, T value) {
 }
 
 constexpr const char* kNoRoom = "the wall's streams are all in use";
+constexpr std::uint64_t kMaxPacket = std::uint64_t{8} * codec::kMaxPixels;  // bytes; twice what pixels have
 
 json rect_json(const geom::Rect& rect) { return {rect.x, rect.y, rect.width, rect.height}; }
 
@@ -32,8 +34,10 @@ void StreamHub::Viewer::tell_error(const std::string& what) {
     news_.notify();
 }
 
-std::shared_ptr<StreamHub::Viewer> StreamHub::add_viewer() {
-    auto viewer = std::make_shared<Viewer>(executor_);
+Outcome<std::shared_ptr<StreamHub::Viewer>> StreamHub::add_viewer(const Person& who) {
+    auto place = places_.take(who.text());
+    if (!place) return tl::unexpected(place.error());
+    auto viewer = std::make_shared<Viewer>(executor_, who.text(), std::move(*place));
     viewers_[viewer.get()] = viewer;
     return viewer;
 }
@@ -58,12 +62,46 @@ StreamHub::Watch StreamHub::make_watch(const WatchRequest& request, const Stream
     return watch;
 }
 
-bool StreamHub::has_room(std::span<const Watch> watches) const {
+/// The nodes' streams that a person watches without these.
+std::set<StreamHub::Key> StreamHub::watched_by(const std::string& who, std::span<const Watch> but) const {
+    std::set<Key> keys;
+    for (const auto& [viewer, owner] : viewers_) {
+        if (viewer->who_ != who) continue;
+        for (const auto& watch : viewer->watches_) {
+            if (std::ranges::any_of(but, [&](const Watch& other) { return &other == &watch; })) continue;
+            for (const auto& part : watch.parts) keys.insert(part.key);
+        }
+    }
+    return keys;
+}
+
+/// Whether the viewer may watch these in place of those, beside what is watched otherwise.
+Result<void> StreamHub::check_room(const Viewer& viewer, std::span<const Watch> watches,
+                                   std::span<const Watch> instead_of) const {
+    const auto parts_of = [](std::span<const Watch> of) {
+        std::size_t parts = 0;
+        for (const auto& watch : of) parts += watch.parts.size();
+        return parts;
+    };
+    const auto parts = parts_of(viewer.watches_) - parts_of(instead_of) + parts_of(watches);
+    if (parts > kMaxPartsOfViewer)
+        return fail(fmt::format("{} parts of tiles are more than the {} of a viewer", parts, kMaxPartsOfViewer));
+    auto mine = watched_by(viewer.who_, instead_of);
     std::set<Key> fresh;
-    for (const auto& watch : watches)
-        for (const auto& part : watch.parts)
+    for (const auto& watch : watches) {
+        for (const auto& part : watch.parts) {
+            mine.insert(part.key);
             if (!streams_.contains(part.key)) fresh.insert(part.key);
-    return streams_.size() + fresh.size() <= kMaxNodeStreams;
+        }
+    }
+    if (mine.size() > kMaxStreamsOfOne)
+        return fail(fmt::format("{} may watch {} different parts of tiles, and these would be {}", viewer.who_,
+                                kMaxStreamsOfOne, mine.size()));
+    std::uint64_t pixels = 0;
+    for (const auto& [key, stream] : streams_) pixels += key.pixels();
+    for (const auto& key : fresh) pixels += key.pixels();
+    if (streams_.size() + fresh.size() > kMaxNodeStreams || pixels > kMaxPixels) return fail(kNoRoom);
+    return {};
 }
 
 Result<void> StreamHub::watch(Viewer& viewer, const std::vector<WatchRequest>& requests) {
@@ -73,7 +111,7 @@ Result<void> StreamHub::watch(Viewer& viewer, const std::vector<WatchRequest>& r
         if (!scope) return fail(fmt::format("watch[{}]{}", watches.size(), scope.error().message));
         watches.push_back(make_watch(request, *scope));
     }
-    if (!has_room(watches)) return fail("watch: " + std::string(kNoRoom));
+    if (auto room = check_room(viewer, watches, viewer.watches_); !room) return fail("watch: " + room.error().message);
     std::vector<Key> old;
     for (std::uint32_t i = 0; i < viewer.watches_.size(); ++i)
         std::ranges::move(leave(viewer, i), std::back_inserter(old));
@@ -146,9 +184,9 @@ void StreamHub::follow(Viewer& viewer, std::uint32_t number, Clock::time_point n
     Watch next = scope ? make_watch(watch.request, *scope)
                        : Watch{.request = watch.request,
                                .ended = scope.error().message.substr(scope.error().message.find(": ") + 2)};
-    if (!has_room({&next, 1})) {
+    if (const auto room = check_room(viewer, {&next, 1}, {&watch, 1}); !room) {
         if (!watch.scope) return;  // that was said
-        next = Watch{.request = watch.request, .ended = kNoRoom};
+        next = Watch{.request = watch.request, .ended = room.error().message};
     }
     const auto old = leave(viewer, number);
     next.not_before = now + std::chrono::microseconds(1'000'000 / watch.request.fps);
@@ -242,6 +280,7 @@ void StreamHub::start(const Key& key, NodeStream& stream) {
     message.set_interval_us(1'000'000 / key.fps);
     stream.on_its_way = true;
     stream.header.reset();
+    stream.coming.reset();
     out_.to_node(key.node, make(&proto::Envelope::mutable_stream_start, message));
 }
 
@@ -267,6 +306,9 @@ void StreamHub::arrived(NodeIndex node, proto::StreamFrame& frame) {
     if (found == by_id_.end() || found->second->first.node != node) return;
     auto& stream = found->second->second;
     if (!frame.error().empty()) return end(stream, frame.error());
+    const auto whole = add_part(stream, frame);
+    if (!whole) return end(stream, whole.error().message);
+    if (!*whole) return;
     const Key& key = found->second->first;
     if (frame.width() != key.width || frame.height() != key.height)
         return end(stream, fmt::format("{}x{} pixels came, not {}x{}: do walld and the node read the same wall.toml?",
@@ -283,6 +325,33 @@ void StreamHub::arrived(NodeIndex node, proto::StreamFrame& frame) {
     deliver(stream, {++stream.sequence, frame.time_us(), frame.key(),
                      std::make_shared<const std::string>(std::move(*frame.mutable_packet()))});
     ask_for_more(*found->second);
+}
+
+/// True: `frame` is whole now. Frames of a stream come one after the other, each in parts in order.
+Result<bool> StreamHub::add_part(NodeStream& stream, proto::StreamFrame& frame) {
+    auto& coming = stream.coming;
+    if (frame.offset() == 0 && frame.packet().size() >= frame.packet_bytes()) {
+        coming.reset();
+        return true;
+    }
+    const bool first = frame.offset() == 0;
+    const bool fits =
+        frame.packet_bytes() <= kMaxPacket && frame.offset() + frame.packet().size() <= frame.packet_bytes();
+    if (!fits || (!first && (!coming || coming->packet_bytes() != frame.packet_bytes() ||
+                             coming->packet().size() != frame.offset()))) {
+        coming.reset();
+        return fail("the node's parts of a frame do not fit together");
+    }
+    if (first) {
+        coming = std::move(frame);
+        coming->mutable_packet()->reserve(coming->packet_bytes());
+        return false;
+    }
+    coming->mutable_packet()->append(frame.packet());
+    if (coming->packet().size() < coming->packet_bytes()) return false;
+    frame = std::move(*coming);
+    coming.reset();
+    return true;
 }
 
 void StreamHub::note_header(NodeStream& stream, const proto::StreamFrame& frame) {
@@ -308,6 +377,7 @@ void StreamHub::deliver(NodeStream& stream, const Frame& frame) {
 void StreamHub::end(NodeStream& stream, const std::string& why) {
     stream.on_its_way = false;
     stream.header.reset();
+    stream.coming.reset();
     for (const auto& place : stream.watchers) {
         Part& part = at(place);
         part.announced = false;

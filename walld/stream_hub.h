@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "walld/changed.h"
+#include "walld/quota.h"
 #include "walld/stream_scope.h"
 
 namespace wall::walld {
@@ -42,14 +43,18 @@ struct StreamView {
 
 class StreamHub {
 public:
-    static constexpr std::size_t kMaxNodeStreams = 1024;  ///< of the wall
+    static constexpr std::size_t kMaxNodeStreams = 1024;                 ///< of the wall
+    static constexpr std::size_t kMaxStreamsOfOne = 512;                 ///< of those that one person watches
+    static constexpr std::size_t kMaxPartsOfViewer = 1024;               ///< in all that a viewer watches
+    static constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 28;  ///< of a picture of each of the wall's
 
     class Viewer;
 
     StreamHub(asio::any_io_executor executor, const Wall& wall, Outbox& out)
         : executor_(std::move(executor)), wall_(wall), out_(out) {}
 
-    std::shared_ptr<Viewer> add_viewer();
+    /// Refused when there are as many viewers as there may be. Is to be removed in the end.
+    Outcome<std::shared_ptr<Viewer>> add_viewer(const Person& who);
     void remove_viewer(Viewer& viewer);
     /// Replaces what the viewer watched; on an error it goes on with that.
     Result<void> watch(Viewer& viewer, const std::vector<WatchRequest>& requests);
@@ -80,6 +85,7 @@ private:
         std::string codec;
         std::uint32_t width, height, fps;
         auto operator<=>(const Key&) const = default;
+        std::uint64_t pixels() const { return std::uint64_t{width} * height; }
     };
     struct Frame {
         std::uint32_t sequence = 0;
@@ -100,6 +106,7 @@ private:
         bool on_its_way = true;  ///< the node was asked for a frame that has not come
         std::uint64_t frames = 0, bytes = 0, dropped = 0;
         std::set<Place> watchers;
+        std::optional<proto::StreamFrame> coming;  ///< of which parts are still to come
     };
     struct Part;
     struct Watch;
@@ -107,7 +114,10 @@ private:
     using Streams = std::map<Key, NodeStream>;
     std::string tile_name(const Key& key) const;
     Watch make_watch(const WatchRequest& request, const StreamScope& scope) const;
-    bool has_room(std::span<const Watch> watches) const;
+    std::set<Key> watched_by(const std::string& who, std::span<const Watch> but) const;
+    Result<void> check_room(const Viewer& viewer, std::span<const Watch> watches,
+                            std::span<const Watch> instead_of) const;
+    static Result<bool> add_part(NodeStream& stream, proto::StreamFrame& frame);
     std::vector<Key> leave(Viewer& viewer, std::uint32_t number);
     void join(Viewer& viewer, std::uint32_t number);
     void drop_unwatched(const std::vector<Key>& keys);
@@ -126,6 +136,7 @@ private:
     Outbox& out_;
     Streams streams_;
     std::map<std::uint32_t, Streams::iterator> by_id_;
+    Quota places_{kViewers};
     std::map<Viewer*, std::shared_ptr<Viewer>> viewers_;
     std::uint32_t last_id_ = 0;
     std::optional<Clock::time_point> deadline_;
@@ -154,7 +165,8 @@ struct StreamHub::Watch {
 /// One connection's place in the hub.
 class StreamHub::Viewer {
 public:
-    explicit Viewer(const asio::any_io_executor& executor) : news_(executor) {}
+    Viewer(const asio::any_io_executor& executor, std::string who, Quota::Place place)
+        : news_(executor), who_(std::move(who)), place_(std::move(place)) {}
     /// Notified when next() may have something.
     Changed& news() { return news_; }
     /// Says that a message made no sense; the last such answer is enough.
@@ -163,6 +175,8 @@ public:
 private:
     friend class StreamHub;
     Changed news_;
+    std::string who_;
+    Quota::Place place_;
     std::vector<Watch> watches_;
     std::string error_;
     std::uint32_t turn_ = 0;  ///< the stream that is looked at first, for fairness

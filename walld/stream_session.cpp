@@ -17,8 +17,8 @@ constexpr std::chrono::seconds kHandshakeLimit{10}, kIdleLimit{30};
 constexpr std::chrono::hours kLongAgo{24};
 
 struct Connection {
-    Connection(std::shared_ptr<asio::ip::tcp::socket> from, StreamHub& the_hub)
-        : socket(std::move(from)), stream(*socket), hub(the_hub), viewer(hub.add_viewer()) {}
+    Connection(std::shared_ptr<asio::ip::tcp::socket> from, StreamHub& the_hub, std::shared_ptr<StreamHub::Viewer> who)
+        : socket(std::move(from)), stream(*socket), hub(the_hub), viewer(std::move(who)) {}
     ~Connection() { hub.remove_viewer(*viewer); }
     Connection(const Connection&) = delete;
 
@@ -55,12 +55,12 @@ asio::awaitable<void> send_all(std::shared_ptr<Connection> connection) {
 }  // namespace
 
 asio::awaitable<void> serve_viewer(std::shared_ptr<asio::ip::tcp::socket> socket,
-                                   boost::beast::http::request<boost::beast::http::string_body> request,
-                                   StreamHub& hub) {
+                                   boost::beast::http::request<boost::beast::http::string_body> request, StreamHub& hub,
+                                   std::shared_ptr<StreamHub::Viewer> viewer) {
     boost::system::error_code ignored;
     socket->set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
     socket->set_option(asio::ip::tcp::no_delay(true), ignored);
-    const auto connection = std::make_shared<Connection>(std::move(socket), hub);
+    const auto connection = std::make_shared<Connection>(std::move(socket), hub, std::move(viewer));
     auto& stream = connection->stream;
     stream.set_option(websocket::stream_base::timeout{kHandshakeLimit, kIdleLimit, true});
     stream.read_message_max(kMaxMessage);

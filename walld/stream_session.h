@@ -11,9 +11,10 @@
 
 namespace wall::walld {
 
-/// Serves the viewer until either side closes. `request` is an upgrade that was checked.
+/// Serves the viewer until either side closes. `request` is an upgrade that was checked; `viewer` is removed from the
+/// hub in the end.
 asio::awaitable<void> serve_viewer(std::shared_ptr<asio::ip::tcp::socket> socket,
-                                   boost::beast::http::request<boost::beast::http::string_body> request,
-                                   StreamHub& hub);
+                                   boost::beast::http::request<boost::beast::http::string_body> request, StreamHub& hub,
+                                   std::shared_ptr<StreamHub::Viewer> viewer);
 
 }  // namespace wall::walld

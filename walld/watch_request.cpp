@@ -92,12 +92,12 @@ Result<WatchRequest> one_request(const json& from) {
 
 Result<std::vector<WatchRequest>> WatchRequest::parse(std::string_view message) {
     const auto parsed = parse_json(message, kRequestJson);
-    if (!parsed) return tl::unexpected(parsed.error());
-    const auto watch = parsed->is_object() ? parsed->find("watch") : parsed->end();
-    if (watch == parsed->end() || !watch->is_array()) return fail("expected {\"watch\": [...]}");
-    if (watch->size() > kMost) return fail("watch: expected at most " + std::to_string(kMost) + " streams");
+    const bool good = parsed && parsed->is_object() && parsed->contains("watch") && parsed->at("watch").is_array();
+    if (!good) return fail("expected {\"watch\": [...]}");
+    const json& watch = parsed->at("watch");
+    if (watch.size() > kMost) return fail("watch: expected at most " + std::to_string(kMost) + " streams");
     std::vector<WatchRequest> out;
-    for (const auto& item : *watch) {
+    for (const auto& item : watch) {
         auto request = one_request(item);
         if (!request) return fail("watch[" + std::to_string(out.size()) + "]" + request.error().message);
         out.push_back(std::move(*request));

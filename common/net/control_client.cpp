@@ -20,8 +20,9 @@ Result<ControlClient> ControlClient::connect(const Address& address, std::chrono
 
 Result<void> ControlClient::send(const proto::Envelope& envelope) {
     const auto bytes = frame(envelope);
-    for (std::size_t sent = 0; sent < bytes.size();) {
-        const auto n = ::send(fd_.get(), bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+    if (!bytes) return tl::unexpected(bytes.error());
+    for (std::size_t sent = 0; sent < bytes->size();) {
+        const auto n = ::send(fd_.get(), bytes->data() + sent, bytes->size() - sent, MSG_NOSIGNAL);
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) return fail(std::string("control: ") + std::strerror(errno));
         sent += static_cast<std::size_t>(n);
@@ -29,13 +30,28 @@ Result<void> ControlClient::send(const proto::Envelope& envelope) {
     return {};
 }
 
-Result<std::optional<proto::Envelope>> ControlClient::poll(std::chrono::milliseconds timeout) {
-    using Clock = std::chrono::steady_clock;
-    const auto until = Clock::now() + timeout;
+/// The next whole message of what has come.
+Result<std::optional<proto::Envelope>> ControlClient::next() {
     for (;;) {
         auto message = unframer_.next();
+        if (!message || !*message || !(*message)->has_operator_reply()) return message;
+        auto answer = answer_.add(std::move(*(*message)->mutable_operator_reply()));
+        if (!answer) return tl::unexpected(answer.error());
+        if (!*answer) continue;
+        *(*message)->mutable_operator_reply() = std::move(**answer);
+        return message;
+    }
+}
+
+Result<std::optional<proto::Envelope>> ControlClient::poll(std::chrono::milliseconds timeout) {
+    using Clock = std::chrono::steady_clock;
+    auto until = Clock::now() + timeout;
+    for (;;) {
+        const auto parts = answer_.parts();
+        auto message = next();
         if (!message) return tl::unexpected(message.error());
         if (*message) return std::move(*message);
+        if (answer_.parts() != parts) until = Clock::now() + timeout;
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now());
         pollfd wait{fd_.get(), POLLIN, 0};
         const int ready = ::poll(&wait, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));

@@ -90,6 +90,7 @@ asio::awaitable<Result<proto::Envelope>> ControlConnection::receive() {
             const bool ours = !socket_.is_open();
             const bool orderly = error == asio::error::eof && unframer_.at_boundary();
             close();
+            if (failure_) co_return tl::unexpected(*failure_);
             co_return fail(ours || orderly ? "closed" : "control: " + error.message());
         }
         unframer_.commit(bytes);
@@ -98,9 +99,12 @@ asio::awaitable<Result<proto::Envelope>> ControlConnection::receive() {
 
 void ControlConnection::send(const proto::Envelope& envelope) {
     if (!is_open()) return;
-    queue_.push_back(frame(envelope));
+    auto bytes = frame(envelope);
+    if (!bytes) return give_up(std::move(bytes.error()));
+    queue_.push_back(std::move(*bytes));
     queued_bytes_ += queue_.back().size();
-    if (queued_bytes_ > kMaxQueued) return close();
+    if (queued_bytes_ > kMaxQueued)
+        return give_up({"control: " + std::to_string(queued_bytes_) + " bytes wait that the peer does not read"});
     if (writing_) return;
     writing_ = true;
     asio::co_spawn(
@@ -122,6 +126,11 @@ asio::awaitable<void> ControlConnection::write_queue() {
 asio::awaitable<void> ControlConnection::drained() {
     const auto self = shared_from_this();
     while (writing_) co_await drained_.async_wait(kTuple);
+}
+
+void ControlConnection::give_up(Error why) {
+    failure_ = std::move(why);
+    close();
 }
 
 void ControlConnection::close() {

@@ -55,7 +55,8 @@ public:
 
     /// The next message. The error says "closed" for an orderly end, else what was wrong; the socket is closed then.
     asio::awaitable<Result<proto::Envelope>> receive();
-    /// Queues a message; never waits. Nothing happens after a close.
+    /// Queues a message; never waits. Nothing happens after a close. A message that is too large ends the connection,
+    /// as does a reader for whom too much waits; receive() tells why.
     void send(const proto::Envelope& envelope);
     /// Waits until nothing is queued; senders call it that may wait rather than queue.
     asio::awaitable<void> drained();
@@ -69,13 +70,15 @@ public:
 
 private:
     asio::awaitable<void> write_queue();
+    void give_up(Error why);
 
     StreamSocket socket_;
     std::optional<Peer> peer_;
     Unframer unframer_;
     std::deque<std::string> queue_;
     std::size_t queued_bytes_ = 0;
-    asio::steady_timer drained_;  // cancelled when the queue is empty
+    std::optional<Error> failure_;  // why we closed it, if somebody should know
+    asio::steady_timer drained_;    // cancelled when the queue is empty
     bool writing_ = false;
     bool closing_ = false;
 };

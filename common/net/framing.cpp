@@ -3,7 +3,6 @@
 
 #include <cstring>
 
-#include "common/base/assert.h"
 #include "common/wire/limits.h"
 
 namespace wall::net {
@@ -11,11 +10,20 @@ namespace {
 
 constexpr std::size_t kPrefix = sizeof(std::uint32_t);
 
+Error size_error(std::size_t bytes) {
+    return {bytes == 0 ? "control: empty message"
+                       : "control: message of " + std::to_string(bytes) + " bytes; the limit is " +
+                             std::to_string(wire::kMaxControlMessage)};
+}
+
+bool size_ok(std::size_t bytes) { return bytes > 0 && bytes <= wire::kMaxControlMessage; }
+
 }  // namespace
 
-std::string frame(const proto::Envelope& envelope) {
-    const auto bytes = static_cast<std::uint32_t>(envelope.ByteSizeLong());
-    WALL_ASSERT(bytes > 0 && bytes <= wire::kMaxControlMessage);
+Result<std::string> frame(const proto::Envelope& envelope) {
+    const std::size_t size = envelope.ByteSizeLong();
+    if (!size_ok(size)) return tl::unexpected(size_error(size));
+    const auto bytes = static_cast<std::uint32_t>(size);
     std::string out(kPrefix + bytes, '\0');
     std::memcpy(out.data(), &bytes, kPrefix);
     envelope.SerializeWithCachedSizesToArray(reinterpret_cast<std::uint8_t*>(out.data() + kPrefix));
@@ -34,22 +42,19 @@ std::span<std::byte> Unframer::prepare(std::size_t bytes) {
 
 Result<std::optional<proto::Envelope>> Unframer::next() {
     if (failure_) return tl::unexpected(*failure_);
-    const auto refuse = [&](std::string why) -> tl::unexpected<Error> {
-        failure_ = Error{"control: " + std::move(why)};
+    const auto refuse = [&](Error why) -> tl::unexpected<Error> {
+        failure_ = std::move(why);
         return tl::unexpected(*failure_);
     };
     if (filled_ - read_ < kPrefix) return std::nullopt;
     std::uint32_t bytes = 0;
     std::memcpy(&bytes, buffer_.data() + read_, kPrefix);
-    if (bytes == 0) return refuse("empty message");
-    if (bytes > wire::kMaxControlMessage)
-        return refuse("message of " + std::to_string(bytes) + " bytes; the limit is " +
-                      std::to_string(wire::kMaxControlMessage));
+    if (!size_ok(bytes)) return refuse(size_error(bytes));
     if (filled_ - read_ - kPrefix < bytes) return std::nullopt;
     std::optional<proto::Envelope> out(std::in_place);
     if (!out->ParseFromArray(buffer_.data() + read_ + kPrefix, static_cast<int>(bytes)))
-        return refuse("message is not an Envelope");
-    if (out->message_case() == proto::Envelope::MESSAGE_NOT_SET) return refuse("message of an unknown kind");
+        return refuse({"control: message is not an Envelope"});
+    if (out->message_case() == proto::Envelope::MESSAGE_NOT_SET) return refuse({"control: message of an unknown kind"});
     read_ += kPrefix + bytes;
     return out;
 }

@@ -18,8 +18,9 @@
 
 namespace wall::net {
 
-/// One message as it goes out.
-std::string frame(const proto::Envelope& envelope);
+/// One message as it goes out. An error for one that no Unframer would take; what may be large goes in parts
+/// (docs/streams.md, reply_parts.h).
+Result<std::string> frame(const proto::Envelope& envelope);
 
 /// Takes bytes in any portions, gives messages. A failure is final: the stream cannot be trusted after it.
 class Unframer {

@@ -7,8 +7,9 @@
 namespace wall::wire {
 
 inline constexpr std::uint32_t kProtocolVersion =
-    2;  ///< of control; both sides must agree exactly (data: kStreamVersion, wire.gen.h)
-inline constexpr std::uint32_t kMaxControlMessage = 64u << 20;  ///< bytes; the largest is a tile's snapshot
+    3;  ///< of control; both sides must agree exactly (data: kStreamVersion, wire.gen.h)
+inline constexpr std::uint32_t kMaxControlMessage = 64u << 20;  ///< bytes; the largest is the stacking of many windows
+inline constexpr std::uint32_t kControlPart = 1u << 20;         ///< bytes of a picture or an answer in one message
 inline constexpr std::uint32_t kMaxFramePayload = 256u << 20;   ///< bytes; the largest is one texture level
 inline constexpr std::uint32_t kMaxTilesPerNode = 64;           ///< a tile mask is 64 bits
 inline constexpr std::uint32_t kOffscreenSlot = 63;             ///< tile slot of a surface that is on no tile

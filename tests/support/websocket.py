@@ -20,18 +20,18 @@ class WebSocket:
     def __init__(self, url: str, path: str = "/api/v1/stream", timeout: float = 10, **headers: str):
         where = urlparse(url)
         self.socket = socket.create_connection((where.hostname, where.port), timeout)
-        self.buffer = b""
+        self.buffer = bytearray()
         lines = [f"GET {path} HTTP/1.1", f"Host: {where.netloc}", "Upgrade: websocket", "Connection: Upgrade", "Sec-WebSocket-Version: 13",
                  "Sec-WebSocket-Key: " + base64.b64encode(os.urandom(16)).decode()]
         lines += [f"{name}: {value}" for name, value in headers.items()]
         self.socket.sendall("\r\n".join(lines + ["", ""]).encode())
         while b"\r\n\r\n" not in self.buffer:
             self._more()
-        head, self.buffer = self.buffer.split(b"\r\n\r\n", 1)
+        head = self._take(self.buffer.index(b"\r\n\r\n") + 4)
         status = int(head.split()[1])
         if status != 101:
             self.socket.close()
-            raise Refused(status, self.buffer.decode(errors="replace"))
+            raise Refused(status, bytes(self.buffer).decode(errors="replace"))
 
     def __enter__(self) -> "WebSocket":
         return self
@@ -50,7 +50,7 @@ class WebSocket:
     def message(self, timeout: float = 10) -> dict | bytes:
         """The next message: parsed text, or bytes. TimeoutError if none comes."""
         self.socket.settimeout(timeout)
-        whole = b""
+        whole = bytearray()
         while True:
             first, second = self._take(2)
             size = second & 0x7F
@@ -65,12 +65,13 @@ class WebSocket:
             binary = kind == 2 if kind else binary
             whole += payload
             if first & 0x80:
-                return whole if binary else json.loads(whole)
+                return bytes(whole) if binary else json.loads(whole)
 
     def _take(self, count: int) -> bytes:
         while len(self.buffer) < count:
             self._more()
-        out, self.buffer = self.buffer[:count], self.buffer[count:]
+        out = bytes(self.buffer[:count])
+        del self.buffer[:count]
         return out
 
     def _more(self) -> None:

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/io/node_server.h"
 
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <boost/asio/as_tuple.hpp>
@@ -11,6 +10,7 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <cstring>
 
+#include "common/log/log.h"
 #include "common/wire/limits.h"
 #include "tileserver/io/node_stats.h"
 
@@ -37,14 +37,6 @@ void fill_caps(const GlCaps& caps, proto::GlCaps& out) {
 
 geom::Rect rect_of(const proto::Rect& rect) {
     return {rect.x(), rect.y(), static_cast<std::int32_t>(rect.width()), static_cast<std::int32_t>(rect.height())};
-}
-
-std::string to_rgb(std::span<const std::byte> rgba) {
-    std::string rgb(rgba.size() / 4 * 3, '\0');
-    char* to = rgb.data();
-    for (const std::byte* from = rgba.data(); from != rgba.data() + rgba.size(); from += 4, to += 3)
-        std::memcpy(to, from, 3);
-    return rgb;
 }
 
 /// Two 32-bit values as a payload.
@@ -77,7 +69,10 @@ NodeServer::NodeServer(asio::any_io_executor executor, net::Address walld, std::
       walld_(std::move(walld)),
       name_(std::move(name)),
       retry_(executor),
-      tile_streams_(executor, [this](const proto::Envelope& envelope) { to_walld(envelope); }) {}
+      parts_(executor),
+      tile_streams_(
+          executor, [this](const proto::Envelope& envelope) { to_walld(envelope); },
+          [this](Parts parts) { parts_.send(std::move(parts)); }) {}
 
 NodeServer::~NodeServer() = default;
 
@@ -119,7 +114,7 @@ asio::awaitable<void> NodeServer::accept_clients() {
     for (;;) {
         auto socket = co_await listener_->accept();
         if (!socket) {
-            if (!stopping_) spdlog::error("listener_failed error=\"{}\"", socket.error().message);
+            if (!stopping_) log::error("listener_failed error={}", log::quoted(socket.error().message));
             co_return;
         }
         const StreamId id(++last_stream_);
@@ -149,12 +144,15 @@ asio::awaitable<void> NodeServer::keep_link() {
         if (link) {
             said_unreachable_ = false;
             link_ = *link;
+            parts_.use(*link);
             co_await use_link(*link);
             link_.reset();
+            parts_.use(nullptr);
             tile_streams_.stop_all(*render_);
             render_->set_coordinated(false);
         } else if (!std::exchange(said_unreachable_, true)) {
-            spdlog::warn("walld_unreachable address={} error=\"{}\"", walld_.text(), link.error().message);
+            log::warn("walld_unreachable address={} error={}", log::quoted(walld_.text()),
+                      log::quoted(link.error().message));
         }
         if (stopping_) break;
         retry_.expires_after(kRetryInterval);
@@ -167,7 +165,7 @@ asio::awaitable<void> NodeServer::use_link(std::shared_ptr<net::ControlConnectio
     for (;;) {
         const auto envelope = co_await link->receive();
         if (!envelope) {
-            if (!stopping_) spdlog::warn("walld_lost reason=\"{}\"", envelope.error().message);
+            if (!stopping_) log::warn("walld_lost reason={}", log::quoted(envelope.error().message));
             co_return;
         }
         handle(*envelope);
@@ -208,8 +206,8 @@ void NodeServer::handle(const proto::Envelope& envelope) {
         case Case::kStreamStart: return tile_streams_.start(*render_, envelope.stream_start());
         case Case::kStreamStop: return tile_streams_.stop(*render_, envelope.stream_stop().stream());
         case Case::kStreamReady: return tile_streams_.ready(*render_, envelope.stream_ready());
-        case Case::kRefused: spdlog::error("walld_refused reason=\"{}\"", envelope.refused().reason()); return;
-        default: spdlog::warn("walld_unexpected_message number={}", static_cast<int>(envelope.message_case()));
+        case Case::kRefused: log::error("walld_refused reason={}", log::quoted(envelope.refused().reason())); return;
+        default: log::warn("walld_unexpected_message number={}", static_cast<int>(envelope.message_case()));
     }
 }
 
@@ -222,7 +220,7 @@ void NodeServer::admit(const proto::Ticket& ticket) {
 void NodeServer::welcome(const proto::NodeWelcome& welcome) {
     std::vector<Tile> tiles;
     for (const auto& tile : welcome.tiles()) tiles.push_back({tile.slot(), rect_of(tile.rect())});
-    spdlog::info("walld_welcome node={} tiles={}", welcome.node(), tiles.size());
+    log::info("walld_welcome node={} tiles={}", welcome.node(), tiles.size());
     render_->set_tiles(std::move(tiles), welcome.background());
     render_->set_coordinated(true);
 }
@@ -260,7 +258,7 @@ void NodeServer::rendered(SessionId session, SurfaceId surface, std::uint32_t fr
 
 void NodeServer::failed(StreamId id, SessionId session, std::string reason) {
     post([this, id, session, reason = std::move(reason)] {
-        spdlog::warn("session_fault stream={} session={} reason=\"{}\"", id.value, session.value, reason);
+        log::warn("session_fault stream={} session={} reason={}", id.value, session.value, log::quoted(reason));
         if (DataStream* to = stream(id)) to->fail(reason);
         proto::Envelope envelope;
         envelope.mutable_session_fault()->set_session(session.value);
@@ -277,15 +275,8 @@ void NodeServer::ended(StreamId id, std::string reason) {
 
 void NodeServer::picture(Picture picture) {
     post([this, picture = std::move(picture)]() mutable {
-        if (picture.request.stream) return tile_streams_.picture(std::move(picture));
-        proto::Envelope envelope;
-        auto& snapshot = *envelope.mutable_snapshot();
-        snapshot.set_request(picture.request.id);
-        snapshot.set_width(picture.width);
-        snapshot.set_height(picture.height);
-        snapshot.set_rgb(to_rgb(picture.rgba));
-        snapshot.set_error(picture.error);
-        to_walld(envelope);
+        if (picture.request.stream) tile_streams_.picture(std::move(picture));
+        else parts_.send(snapshot_parts(std::move(picture)));
     });
 }
 
@@ -303,8 +294,8 @@ void NodeServer::stats(const RenderStats& stats) {
 
 void NodeServer::scaled(const ScaledTile& tile) {
     post([tile] {
-        spdlog::warn("tile_scaled tile=\"{}\" size={}x{} window={}x{}", tile.tile, tile.width, tile.height,
-                     tile.window_width, tile.window_height);
+        log::warn("tile_scaled tile={} size={}x{} window={}x{}", log::quoted(tile.tile), tile.width, tile.height,
+                  tile.window_width, tile.window_height);
     });
 }
 

@@ -15,6 +15,7 @@
 #include "common/config/wall_config.h"
 #include "common/net/control_connection.h"
 #include "tileserver/io/data_stream.h"
+#include "tileserver/io/part_sender.h"
 #include "tileserver/io/tile_streams.h"
 #include "tileserver/render/render_thread.h"
 
@@ -82,6 +83,7 @@ private:
     std::uint64_t bytes_received_ = 0;
     std::optional<std::string> failure_;
     std::chrono::steady_clock::time_point last_stats_ = std::chrono::steady_clock::now();
+    PartSender parts_;
     TileStreams tile_streams_;
     std::unique_ptr<RenderThread> render_;  // last: it is gone before what it reports to
 };

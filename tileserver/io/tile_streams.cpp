@@ -36,6 +36,14 @@ struct TileStreams::Stream {
     struct Cost {
         std::uint64_t frames = 0, raw_bytes = 0, packet_bytes = 0;
         std::chrono::steady_clock::duration time{};
+
+        Cost& operator+=(const Cost& other) {
+            frames += other.frames;
+            raw_bytes += other.raw_bytes;
+            packet_bytes += other.packet_bytes;
+            time += other.time;
+            return *this;
+        }
     };
 
     std::string codec;
@@ -44,13 +52,8 @@ struct TileStreams::Stream {
     std::unique_ptr<codec::Encoder> encoder;
     codec::StreamFormat format;
 
-    void count(const proto::StreamFrame& made, std::size_t raw_bytes, std::chrono::steady_clock::duration time) {
-        ++cost.frames;
-        cost.raw_bytes += raw_bytes;
-        cost.packet_bytes += made.packet().size();
-        cost.time += time;
-    }
-    Result<void> encode(const Picture& picture, bool want_key, proto::StreamFrame& out) {
+    Result<void> encode(const Picture& picture, bool want_key, proto::StreamFrame& out,
+                        std::vector<std::byte>& packet) {
         const codec::StreamFormat now{picture.width, picture.height, codec::PixelLayout::rgba, false};
         const bool first = !encoder || !(now == format);
         if (first) {
@@ -61,15 +64,21 @@ struct TileStreams::Stream {
         }
         const codec::FrameView view{picture.rgba.data(), picture.width, picture.height,
                                     std::ptrdiff_t{4} * picture.width, codec::PixelLayout::rgba};
-        std::vector<std::byte> packet;
         const auto kind =
             encoder->encode(view, want_key || first ? codec::PacketKind::key : codec::PacketKind::delta, packet);
         if (!kind) return tl::unexpected(kind.error());
         out.set_key(*kind == codec::PacketKind::key);
         if (first) out.set_header(text_of(encoder->stream_header()));
-        out.set_packet(text_of(packet));
         return {};
     }
+};
+
+/// A frame that the pool has encoded.
+struct TileStreams::Made {
+    proto::StreamFrame head;
+    std::vector<std::byte> packet;
+    Stream::Cost cost;                 ///< of this one
+    std::shared_ptr<const void> hold;  ///< the picture's share of what may be on its way
 };
 
 void TileStreams::start(RenderThread& render, const proto::StreamStart& message) {
@@ -111,23 +120,33 @@ void TileStreams::picture(Picture picture) {
     asio::post(pool_, [this, id, stream = at->second, key = std::exchange(at->second->key, false),
                        picture = std::move(picture)] {
         give_way();
-        proto::Envelope envelope;
-        auto& frame = *envelope.mutable_stream_frame();
-        frame.set_stream(id);
-        frame.set_time_us(now_us());
-        frame.set_width(picture.width);
-        frame.set_height(picture.height);
-        const auto start = std::chrono::steady_clock::now();
-        if (const auto done = stream->encode(picture, key, frame); !done) frame.set_error(done.error().message);
-        const auto time = std::chrono::steady_clock::now() - start;
-        asio::post(executor_, [this, id, stream, envelope = std::move(envelope), time, raw = picture.rgba.size()] {
-            const auto still = streams_.find(id);
-            if (still == streams_.end() || still->second != stream) return;
-            if (envelope.stream_frame().error().empty()) stream->count(envelope.stream_frame(), raw, time);
-            else streams_.erase(still);
-            send_(envelope);
-        });
+        auto made = std::make_shared<Made>(make(*stream, id, key, picture));
+        asio::post(executor_, [this, stream, made] { deliver(stream, std::move(*made)); });
     });
+}
+
+/// On the pool's thread.
+TileStreams::Made TileStreams::make(Stream& stream, std::uint32_t id, bool key, const Picture& picture) {
+    Made made;
+    made.head.set_stream(id);
+    made.head.set_time_us(now_us());
+    made.head.set_width(picture.width);
+    made.head.set_height(picture.height);
+    const auto start = std::chrono::steady_clock::now();
+    const auto done = stream.encode(picture, key, made.head, made.packet);
+    if (!done) made.head.set_error(done.error().message);
+    made.cost = {1, picture.rgba.size(), made.packet.size(), std::chrono::steady_clock::now() - start};
+    made.hold = picture.hold;
+    return made;
+}
+
+void TileStreams::deliver(const std::shared_ptr<Stream>& stream, Made made) {
+    const auto id = made.head.stream();
+    const auto still = streams_.find(id);
+    if (still == streams_.end() || still->second != stream) return;
+    if (!made.head.error().empty()) return fail(id, made.head.error());
+    stream->cost += made.cost;
+    send_parts_(frame_parts(std::move(made.head), std::move(made.packet), std::move(made.hold)));
 }
 
 void TileStreams::fill_stats(proto::NodeStats& out) const {

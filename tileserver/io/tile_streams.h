@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "proto/control.pb.h"
+#include "tileserver/io/part_sender.h"
 #include "tileserver/render/render_thread.h"
 
 namespace wall::tileserver {
@@ -18,9 +19,10 @@ namespace asio = boost::asio;
 
 class TileStreams {
 public:
-    /// `send`: to walld; called on the executor.
-    TileStreams(asio::any_io_executor executor, std::function<void(const proto::Envelope&)> send)
-        : executor_(std::move(executor)), send_(std::move(send)) {}
+    /// `send` and `send_parts`: to walld; called on the executor.
+    TileStreams(asio::any_io_executor executor, std::function<void(const proto::Envelope&)> send,
+                std::function<void(Parts)> send_parts)
+        : executor_(std::move(executor)), send_(std::move(send)), send_parts_(std::move(send_parts)) {}
     /// Waits for the pictures that are being encoded.
     ~TileStreams() { pool_.join(); }
 
@@ -35,10 +37,14 @@ public:
 
 private:
     struct Stream;
+    struct Made;
+    static Made make(Stream& stream, std::uint32_t id, bool key, const Picture& picture);
+    void deliver(const std::shared_ptr<Stream>& stream, Made made);
     void fail(std::uint32_t stream, const std::string& why);
 
     asio::any_io_executor executor_;
     std::function<void(const proto::Envelope&)> send_;
+    std::function<void(Parts)> send_parts_;
     std::map<std::uint32_t, std::shared_ptr<Stream>> streams_;
     asio::thread_pool pool_{1};
 };

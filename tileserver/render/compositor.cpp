@@ -136,12 +136,18 @@ void Compositor::request(const PictureRequest& request) {
 }
 
 void Compositor::read_back(const PictureRequest& request, GLuint framebuffer, const geom::Rect& part) {
-    Readback readback{request, static_cast<std::uint32_t>(part.width), static_cast<std::uint32_t>(part.height), 0,
-                      nullptr};
+    const std::size_t bytes =
+        std::size_t{4} * static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height);
+    Readback readback{request,
+                      static_cast<std::uint32_t>(part.width),
+                      static_cast<std::uint32_t>(part.height),
+                      0,
+                      nullptr,
+                      budget_.hold(bytes)};
     node_.driver.neutral_pixel_transfer();
     node_.driver.forget_layer();
     gl_.CreateBuffers(1, &readback.buffer);
-    gl_.NamedBufferStorage(readback.buffer, GLsizeiptr{4} * part.width * part.height, nullptr,
+    gl_.NamedBufferStorage(readback.buffer, static_cast<GLsizeiptr>(bytes), nullptr,
                            GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
     gl_.BindBuffer(GL_PIXEL_PACK_BUFFER, readback.buffer);
@@ -149,11 +155,11 @@ void Compositor::read_back(const PictureRequest& request, GLuint framebuffer, co
     gl_.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     readback.done = gl_.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl_.Flush();
-    readbacks_.push_back(readback);
+    readbacks_.push_back(std::move(readback));
 }
 
 Picture Compositor::finish(const Readback& readback) {
-    Picture picture{readback.request, readback.width, readback.height, {}, {}};
+    Picture picture{readback.request, readback.width, readback.height, {}, {}, readback.hold};
     const std::size_t bytes = std::size_t{4} * picture.width * picture.height;
     const auto* rgba = static_cast<const std::byte*>(
         gl_.MapNamedBufferRange(readback.buffer, 0, static_cast<GLsizeiptr>(bytes), GL_MAP_READ_BIT));
@@ -168,7 +174,7 @@ Picture Compositor::finish(const Readback& readback) {
 std::vector<Picture> Compositor::collect(bool wait) {
     std::vector<Picture> pictures = std::exchange(refused_, {});
     constexpr GLuint64 kLongest = 5'000'000'000;  // ns
-    while (!readbacks_.empty()) {
+    while (!readbacks_.empty() && (wait || pictures.size() < kMostAtOnce)) {
         const GLenum state =
             gl_.ClientWaitSync(readbacks_.front().done, GL_SYNC_FLUSH_COMMANDS_BIT, wait ? kLongest : 0);
         if (state == GL_TIMEOUT_EXPIRED && !wait) break;

@@ -7,12 +7,14 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/base/ids.h"
+#include "tileserver/render/picture_budget.h"
 #include "tileserver/render/render_node.h"
 
 namespace wall::tileserver {
@@ -36,8 +38,9 @@ struct PictureRequest {
 struct Picture {
     PictureRequest request;
     std::uint32_t width = 0, height = 0;
-    std::vector<std::byte> rgba;  ///< top row first, 4 bytes a pixel, no padding
-    std::string error;            ///< set: there is no picture
+    std::vector<std::byte> rgba;       ///< top row first, 4 bytes a pixel, no padding
+    std::string error;                 ///< set: there is no picture
+    std::shared_ptr<const void> hold;  ///< its share of the PictureBudget, until the last copy of this is gone
 };
 
 /// A tile as it is to be seen, in the driver.
@@ -61,9 +64,13 @@ public:
     std::optional<TilePicture> picture(std::uint32_t slot);
     /// Starts reading a tile; collect() gives the picture later.
     void request(const PictureRequest& request);
-    /// The pictures that have arrived. `wait`: all that were requested.
+    /// The pictures that have arrived, at most kMostAtOnce. `wait`: all that were requested.
     std::vector<Picture> collect(bool wait);
     bool busy() const { return !readbacks_.empty() || !refused_.empty(); }
+    /// No picture should be requested now: too many are on their way.
+    bool full() const { return budget_.spent(); }
+
+    static constexpr std::size_t kMostAtOnce = 4;  ///< so that the copying does not hold up the drawing
 
 private:
     struct TileTarget {
@@ -77,6 +84,7 @@ private:
         std::uint32_t width = 0, height = 0;
         GLuint buffer = 0;
         GLsync done = nullptr;
+        std::shared_ptr<const void> hold;
     };
     const Tile* tile(std::uint32_t slot) const;
     TileTarget& target(const Tile& tile);
@@ -95,6 +103,7 @@ private:
     std::vector<StackEntry> stacking_;
     std::map<std::uint32_t, TileTarget> targets_;  // by slot
     GLuint source_ = 0;                            // framebuffer that a layer's texture is read through
+    PictureBudget budget_;
     std::deque<Readback> readbacks_;
     std::vector<Picture> refused_;
 };

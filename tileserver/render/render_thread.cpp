@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <deque>
 #include <future>
 #include <map>
 #include <optional>
@@ -149,7 +150,7 @@ public:
             if (only == nullptr || only == stream.get()) worked |= stream->run_one(now);
         worked |= remove_ended();
         show();
-        for (const PictureRequest& due : watches_.due(node_.damage, Clock::now())) compositor_.request(due);
+        request_pictures();
         for (Picture& picture : compositor_.collect(false)) events_.picture(std::move(picture));
         report();
         return worked;
@@ -200,11 +201,14 @@ public:
     }
     /// How long it may sleep when there is nothing to do.
     Clock::duration nap() const {
-        if (compositor_.busy()) return kReadbackPoll;
+        if (compositor_.busy() || compositor_.full()) return kReadbackPoll;
         const auto now = Clock::now();
+        if (!asked_.empty()) return {};
         const auto due = std::min<Clock::duration>(kLongestNap, watches_.next_due(node_.damage, now));
         return output_ ? std::min(due, output_->next_due(now)) : due;
     }
+    /// A tile's picture, once.
+    void ask(const PictureRequest& request) { asked_.push_back(request); }
     /// Without the windows that it was to draw in.
     bool lost() const { return lost_; }
 
@@ -217,6 +221,19 @@ public:
     std::map<StreamId, std::unique_ptr<Stream>> streams_;  // after what their sessions use to the end
 
 private:
+    /// A few in each round: drawing goes on, however many are wanted.
+    void request_pictures() {
+        for (std::size_t i = 0; i < Compositor::kMostAtOnce && !compositor_.full(); ++i) {
+            if (!asked_.empty()) {
+                compositor_.request(asked_.front());
+                asked_.pop_front();
+                continue;
+            }
+            const auto due = watches_.due(node_.damage, Clock::now(), 1);
+            if (due.empty()) return;
+            compositor_.request(due.front());
+        }
+    }
     void show() {
         if (!output_) return;
         auto shown = output_->show(Clock::now());
@@ -240,6 +257,7 @@ private:
         events_.stats(stats);
     }
 
+    std::deque<PictureRequest> asked_;
     Clock::time_point next_stats_ = Clock::now() + kStatsInterval;
     bool lost_ = false;
 };
@@ -354,7 +372,7 @@ void RenderThread::set_coordinated(bool coordinated) {
     });
 }
 void RenderThread::request_picture(const PictureRequest& request) {
-    post([=](Loop& loop) { loop.compositor_.request(request); });
+    post([=](Loop& loop) { loop.ask(request); });
 }
 void RenderThread::watch(const PictureRequest& request, std::chrono::microseconds interval) {
     post([=](Loop& loop) { loop.watches_.add(request, interval); });

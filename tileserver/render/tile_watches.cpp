@@ -16,14 +16,19 @@ void TileWatches::ready(std::uint32_t stream, bool even_unchanged) {
     at->second.even_unchanged |= even_unchanged;
 }
 
-std::vector<PictureRequest> TileWatches::due(std::uint64_t damage, Clock::time_point now) {
+std::vector<PictureRequest> TileWatches::due(std::uint64_t damage, Clock::time_point now, std::size_t most) {
+    std::vector<Watch*> wanted;
+    for (auto& [stream, watch] : watches_)
+        if (watch.wants(damage) && now >= watch.not_before) wanted.push_back(&watch);
+    const auto taken = wanted.begin() + static_cast<std::ptrdiff_t>(std::min(most, wanted.size()));
+    std::ranges::partial_sort(wanted, taken, {}, &Watch::not_before);
+    wanted.erase(taken, wanted.end());
     std::vector<PictureRequest> out;
-    for (auto& [stream, watch] : watches_) {
-        if (!watch.wants(damage) || now < watch.not_before) continue;
-        watch.ready = watch.even_unchanged = false;
-        watch.shown = damage;
-        watch.not_before = now + watch.interval;
-        out.push_back(watch.request);
+    for (Watch* watch : wanted) {
+        watch->ready = watch->even_unchanged = false;
+        watch->shown = damage;
+        watch->not_before = now + watch->interval;
+        out.push_back(watch->request);
     }
     return out;
 }

@@ -21,8 +21,9 @@ public:
     void remove(std::uint32_t stream) { watches_.erase(stream); }
     void ready(std::uint32_t stream, bool even_unchanged);
 
-    /// The pictures to take now; each is taken to be on its way. `damage`: grows when any tile may have changed.
-    std::vector<PictureRequest> due(std::uint64_t damage, Clock::time_point now);
+    /// The pictures to take now, at most `most`, those first that could have been taken first; each is taken to be on
+    /// its way. `damage`: grows when any tile may have changed.
+    std::vector<PictureRequest> due(std::uint64_t damage, Clock::time_point now, std::size_t most);
     /// How long until a picture is due if nothing changes but the time.
     Clock::duration next_due(std::uint64_t damage, Clock::time_point now) const;
 

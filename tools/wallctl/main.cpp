@@ -22,6 +22,7 @@ using nlohmann::json;
 using request::ask;
 
 constexpr std::chrono::seconds kLimit{10};  // for an answer
+constexpr std::chrono::seconds kPictureLimit{120};  // it may wait in line, and a large one takes long to encode
 constexpr std::chrono::seconds kCloseLimit{
     65};                                       // a program that is asked to close may take as long as wall.toml allows
 constexpr std::chrono::seconds kWaitSlack{2};  // on top of what walld itself waits
@@ -67,7 +68,7 @@ Outcome<void> screenshot(const Options& options) {
     json arguments = json::object();
     if (!options.tile.empty()) arguments["tile"] = options.tile;
     if (!options.id.empty()) arguments["id"] = options.id;
-    const auto answer = ask(options.walld, "screenshot", arguments, kLimit);
+    const auto answer = ask(options.walld, "screenshot", arguments, kPictureLimit);
     if (!answer) return tl::unexpected(answer.error());
     std::ofstream file(options.file, std::ios::binary);
     file << answer->blob;

@@ -41,6 +41,8 @@ public:
     net::Address address() const { return *net::Address::parse("unix:" + folder_.file("walld.sock")); }
     /// The body of an HTTP answer; "" unless it is 200.
     std::string http_get(const std::string& path) const;
+    /// Where it serves HTTP; it must be ready.
+    net::Address http() const { return *net::Address::parse(http_); }
     void signal(int number) const;
     /// Waits for its end.
     Ended wait(std::chrono::milliseconds limit = kSoon);

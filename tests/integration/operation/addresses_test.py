@@ -52,7 +52,8 @@ class OtherMachines(unittest.TestCase):
     def refused(self, program: str, description: str, address: str) -> None:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "wall.toml"
-            path.write_text(description.replace("HERE", f"unix:{folder}/walld.sock").replace("THERE", f"{address}:0"))
+            description = description.replace("LOCAL", f"unix:{folder}/walld.sock")
+            path.write_text(description.replace("ELSEWHERE", f"{address}:0"))
             node = ["--node", "n"] if program == "tileserver" else []
             command = [build_folder() / "bin" / program, "--config", path, *node]
             done = subprocess.run(command, capture_output=True, text=True, timeout=60)
@@ -64,9 +65,9 @@ class OtherMachines(unittest.TestCase):
         node, tile = '[[node]]\nname = "n"\n', '[[node.tile]]\nname = "t"\nrect = [0, 0, 64, 48]\n'
         for address in self.REACHED:
             with self.subTest(address):
-                self.refused("tileserver", control.format("HERE") + node + 'listen = "THERE"\n' + tile, address)
-                self.refused("walld", control.format("THERE") + node + tile, address)
-                self.refused("walld", control.format("HERE") + http.format("THERE") + node + tile, address)
+                self.refused("tileserver", control.format("LOCAL") + node + 'listen = "ELSEWHERE"\n' + tile, address)
+                self.refused("walld", control.format("ELSEWHERE") + node + tile, address)
+                self.refused("walld", control.format("LOCAL") + http.format("ELSEWHERE") + node + tile, address)
 
 
 if __name__ == "__main__":

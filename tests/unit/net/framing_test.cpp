@@ -24,7 +24,7 @@ void feed(Unframer& unframer, std::string_view bytes) {
 }
 
 TEST(Framing, GivesBackWhatWasFramedInAnyPortions) {
-    const std::string bytes = frame(rendered(1)) + frame(rendered(2)) + frame(rendered(3));
+    const std::string bytes = *frame(rendered(1)) + *frame(rendered(2)) + *frame(rendered(3));
     for (std::size_t portion = 1; portion <= bytes.size(); ++portion) {
         Unframer unframer;
         std::uint32_t seen = 0;
@@ -39,7 +39,7 @@ TEST(Framing, GivesBackWhatWasFramedInAnyPortions) {
 }
 
 TEST(Framing, EveryProperPrefixIsIncomplete) {
-    const std::string bytes = frame(rendered(7));
+    const std::string bytes = *frame(rendered(7));
     for (std::size_t length = 0; length < bytes.size(); ++length) {
         Unframer unframer;
         feed(unframer, bytes.substr(0, length));
@@ -57,11 +57,20 @@ TEST(Framing, RefusesAnOversizedMessageBeforeItCame) {
     EXPECT_FALSE(unframer.next());
 }
 
+TEST(Framing, AMessageThatNobodyWouldTakeIsAnError) {
+    proto::Envelope large;
+    large.mutable_snapshot()->set_rgb(std::string(wire::kMaxControlMessage, 'x'));
+    const auto framed = frame(large);
+    ASSERT_FALSE(framed);
+    EXPECT_NE(framed.error().message.find("the limit is 67108864"), std::string::npos) << framed.error().message;
+    EXPECT_FALSE(frame(proto::Envelope()));
+}
+
 TEST(Framing, AFailureIsFinal) {
     Unframer unframer;
     feed(unframer, std::string_view("\0\0\0\0", 4));
     EXPECT_FALSE(unframer.next());
-    feed(unframer, frame(rendered(1)));
+    feed(unframer, *frame(rendered(1)));
     EXPECT_FALSE(unframer.next());
 }
 
@@ -79,7 +88,7 @@ TEST(Framing, SurvivesGarbage) {
     std::mt19937 random(1);
     for (int round = 0; round < 2000; ++round) {
         Unframer unframer;
-        std::string bytes = frame(rendered(static_cast<std::uint32_t>(round)));
+        std::string bytes = *frame(rendered(static_cast<std::uint32_t>(round)));
         bytes[random() % bytes.size()] = static_cast<char>(random());
         bytes += static_cast<char>(random());
         feed(unframer, bytes);

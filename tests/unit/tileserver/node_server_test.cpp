@@ -55,7 +55,7 @@ public:
     }
     void drop() { link_.reset(); }
     void send(const proto::Envelope& envelope) {
-        const std::string bytes = net::frame(envelope);
+        const std::string bytes = *net::frame(envelope);
         write_all(link_.get(), std::as_bytes(std::span(bytes)));
     }
     /// The next message of one kind; others are passed over.

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 namespace wall::tileserver {
 namespace {
 
@@ -10,14 +12,14 @@ using namespace std::chrono_literals;
 
 class TileWatchesTest : public ::testing::Test {
 protected:
-    std::size_t due(std::uint64_t damage) { return watches_.due(damage, now_).size(); }
+    std::size_t due(std::uint64_t damage) { return watches_.due(damage, now_, 1000).size(); }
     TileWatches watches_;
     TileWatches::Clock::time_point now_{};
 };
 
 TEST_F(TileWatchesTest, TheFirstPictureComesAtOnceAndTheNextAfterReady) {
     watches_.add({7, true}, 100ms);
-    const auto first = watches_.due(1, now_);
+    const auto first = watches_.due(1, now_, 1000);
     ASSERT_EQ(first.size(), 1u);
     EXPECT_EQ(first[0].id, 7u);
     now_ += 1s;
@@ -53,6 +55,23 @@ TEST_F(TileWatchesTest, ARemovedStreamIsForgotten) {
     watches_.remove(7);
     watches_.ready(7, true);
     EXPECT_EQ(due(1), 0u);
+}
+
+TEST_F(TileWatchesTest, ManyTakeTurnsAFewAtATime) {
+    for (std::uint32_t stream = 0; stream < 1024; ++stream) watches_.add({stream, true}, 100ms);
+    std::map<std::uint32_t, int> taken;
+    for (int round = 0; round < 1024; ++round, now_ += 1ms) {
+        const auto due = watches_.due(static_cast<std::uint64_t>(round), now_, 4);
+        EXPECT_LE(due.size(), 4u);
+        EXPECT_EQ(watches_.next_due(static_cast<std::uint64_t>(round), now_), TileWatches::Clock::duration{})
+            << "more could be taken at once";
+        for (const auto& request : due) {
+            ++taken[request.id];
+            watches_.ready(request.id, false);
+        }
+    }
+    EXPECT_EQ(taken.size(), 1024u);
+    for (const auto& [stream, count] : taken) EXPECT_EQ(count, 4) << "none comes before its turn: " << stream;
 }
 
 }  // namespace

@@ -54,6 +54,11 @@ TEST(Layout, WhatCannotBeIsRefused) {
     }
 }
 
+TEST(Layout, AFileThatIsTooDeepIsRefused) {
+    EXPECT_THAT(parse_layout(std::string(1'000'000, '[') + std::string(1'000'000, ']')).error().message,
+                HasSubstr("not a layout: JSON: expected at most 16 arrays and objects"));
+}
+
 TEST(Layout, FitsAnotherCanvas) {
     const auto twice = scaled_to(kLayout, 2560, 240);
     EXPECT_EQ(twice.windows[0].rect, (geom::Rect{0, 0, 600, 150}));

@@ -74,6 +74,19 @@ TEST(Rest, ABodyIsAnObject) {
         EXPECT_EQ(status(ask("PUT", "/api/v1/sessions/1/placement", body)), 400) << body;
 }
 
+TEST(Rest, ABodyThatIsTooDeepIsRefusedBeforeItIsParsed) {
+    const auto deep = "{\"id\": " + std::string(30'000, '[') + std::string(30'000, ']') + "}";
+    const auto refused = rest_command(ask("PUT", "/api/v1/sessions/1/placement", deep));
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().status, 400);
+    EXPECT_EQ(refused.error().why.message, "JSON: expected at most 16 arrays and objects in each other");
+}
+
+TEST(Rest, WhatIsTooMuchAtOnceHasAStatusOfItsOwn) {
+    EXPECT_EQ(http_status(RefusalKind::busy), 429);
+    EXPECT_STREQ(name_of(RefusalKind::busy), "busy");
+}
+
 TEST(Arguments, OfAnotherKindAreNamed) {
     const auto good = nlohmann::json::parse(R"({"rect": [-1, 0, 5, 6], "id": 3, "on": false})");
     EXPECT_EQ(*rect_of(good, "rect"), (geom::Rect{-1, 0, 5, 6}));

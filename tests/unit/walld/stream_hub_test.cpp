@@ -38,12 +38,28 @@ protected:
         hub_.node_joined(*wall_.node_joins(hello, {}));
     }
     void SetUp() override { join("left"), join("right"); }
-    std::shared_ptr<StreamHub::Viewer> viewer(std::vector<WatchRequest> requests) {
-        auto added = hub_.add_viewer();
+    static Person person(const std::string& name) { return {Person::Kind::unix_user, name, 1, Role::viewer}; }
+    /// Each of another person, unless somebody is named.
+    std::shared_ptr<StreamHub::Viewer> viewer(std::vector<WatchRequest> requests, std::string who = {}) {
+        auto added = *hub_.add_viewer(person(who.empty() ? "viewer " + std::to_string(++viewers_) : who));
         EXPECT_TRUE(hub_.watch(*added, requests));
         return added;
     }
     static WatchRequest tile(const std::string& name) { return {.tile = name}; }
+    /// As many as a viewer may ask for, all different.
+    static std::vector<WatchRequest> many(const std::string& name) {
+        std::vector<WatchRequest> out;
+        for (std::uint32_t width = 1; width <= WatchRequest::kMost; ++width)
+            out.push_back({.tile = name, .width = width});
+        return out;
+    }
+    static std::string small_tiles(int count) {
+        std::string out = "[[node]]\nname = \"n\"\n";
+        for (int i = 0; i < count; ++i)
+            out += "[[node.tile]]\nname = \"" + std::to_string(i) + "\"\nrect = [" + std::to_string(64 * i) +
+                   ", 0, 64, 48]\n";
+        return out;
+    }
     /// A program's window there, shown with its first frame.
     SessionId window(const geom::Rect& rect) {
         proto::ClientHello hello;
@@ -109,7 +125,7 @@ protected:
     FakeOutbox out_;
     Wall wall_{*config::parse_config(kTwoNodes, "test"), out_, [](std::size_t n) { return std::string(n, 'x'); }};
     StreamHub hub_{io_.get_executor(), wall_, out_};
-    unsigned part_ = 0, sequence_ = 0;
+    unsigned part_ = 0, sequence_ = 0, viewers_ = 0;
 };
 
 TEST_F(StreamHubTest, AViewerGetsTheFormatAndThenFrames) {
@@ -295,7 +311,7 @@ TEST_F(StreamHubTest, ThereAreOnlySoManyStreams) {
             requests.push_back({.tile = "l", .width = width, .height = height});
         others.push_back(viewer(requests));
     }
-    const auto late = hub_.add_viewer();
+    const auto late = *hub_.add_viewer(person("late"));
     EXPECT_EQ(hub_.watch(*late, {tile("r")}).error().message, "watch: the wall's streams are all in use");
     ASSERT_TRUE(hub_.watch(*late, {{.tile = "l", .width = 1, .height = 1}})) << "one that there is";
     move_window(id, 2, 600);
@@ -307,6 +323,123 @@ TEST_F(StreamHubTest, ThereAreOnlySoManyStreams) {
     hub_.remove_viewer(*others.back());
     hub_.tick(now += std::chrono::seconds(1));
     EXPECT_THAT(next(*follower), HasSubstr("\"parts\""));
+}
+
+TEST_F(StreamHubTest, OnePersonCannotTakeAllStreams) {
+    for (const char* name : {"l", "r"}) viewer(many(name), "greedy");
+    const auto third = *hub_.add_viewer(person("greedy"));
+    EXPECT_EQ(hub_.watch(*third, {tile("r")}).error().message,
+              "watch: greedy may watch 512 different parts of tiles, and these would be 513");
+    EXPECT_TRUE(hub_.watch(*third, many("r"))) << "those cost nobody anything";
+    viewer({tile("r")}, "modest");
+}
+
+TEST_F(StreamHubTest, AViewerWatchesOnlySoManyParts) {
+    const auto one = *hub_.add_viewer(person("one"));
+    const std::vector<WatchRequest> walls(WatchRequest::kMost, {.wall = true});
+    EXPECT_TRUE(hub_.watch(*one, walls)) << "512 parts, two of them different";
+    Wall wide(*config::parse_config(small_tiles(5), "test"), out_, [](std::size_t n) { return std::string(n, 'x'); });
+    StreamHub hub(io_.get_executor(), wide, out_);
+    const auto two = *hub.add_viewer(person("two"));
+    EXPECT_EQ(hub.watch(*two, walls).error().message, "watch: 1280 parts of tiles are more than the 1024 of a viewer");
+}
+
+TEST_F(StreamHubTest, WhatIsWatchedInsteadDoesNotCount) {
+    const auto one = viewer(many("l"), "same"), two = viewer(many("r"), "same");
+    EXPECT_TRUE(hub_.watch(*one, many("l"))) << "all 512 are taken, and these are among them";
+    EXPECT_TRUE(hub_.watch(*one, {tile("l")}));
+    EXPECT_TRUE(hub_.watch(*two, many("l")));
+}
+
+TEST_F(StreamHubTest, OnePersonHasOnlySoManyViewersAndAllTogetherToo) {
+    std::vector<std::shared_ptr<StreamHub::Viewer>> viewers;
+    for (std::size_t i = 0; i < kViewers.of_one; ++i) viewers.push_back(*hub_.add_viewer(person("greedy")));
+    const auto more = hub_.add_viewer(person("greedy"));
+    ASSERT_FALSE(more);
+    EXPECT_EQ(more.error().kind, RefusalKind::busy);
+    EXPECT_THAT(more.error().message, HasSubstr("greedy has 256 live views of this wall"));
+    for (std::size_t i = hub_.viewers(); i < kViewers.in_all; ++i)
+        viewers.push_back(*hub_.add_viewer(person(std::to_string(i))));
+    EXPECT_THAT(hub_.add_viewer(person("late")).error().message, HasSubstr("there are 768 live views"));
+    hub_.remove_viewer(*viewers.front());
+    viewers.erase(viewers.begin());
+    EXPECT_TRUE(hub_.add_viewer(person("greedy")));
+}
+
+TEST(StreamHubPixels, AllStreamsTogetherHaveALimit) {
+    constexpr const char* kHuge = R"(
+[[node]]
+name = "left"
+[[node.tile]]
+name = "huge"
+rect = [0, 0, 16384, 16384]
+)";
+    NoOutbox out;
+    const Wall wall(*config::parse_config(kHuge, "test"), out, [](std::size_t n) { return std::string(n, 'x'); });
+    boost::asio::io_context io;
+    StreamHub hub(io.get_executor(), wall, out);
+    const auto viewer = *hub.add_viewer({});
+    EXPECT_TRUE(hub.watch(*viewer, {{.tile = "huge"}}));
+    EXPECT_FALSE(hub.watch(*viewer, {{.tile = "huge"}, {.tile = "huge", .width = 1, .height = 1}}));
+}
+
+TEST_F(StreamHubTest, AFrameComesInParts) {
+    const auto one = viewer({tile("l")});
+    const auto id = started(0);
+    next(*one);
+    proto::StreamFrame first;
+    first.set_stream(id);
+    first.set_key(true);
+    first.set_width(640);
+    first.set_height(480);
+    first.set_header("header");
+    first.set_packet_bytes(10);
+    first.set_packet("abcd");
+    hub_.arrived(0, first);
+    EXPECT_EQ(next(*one), "") << "it is not whole";
+    EXPECT_EQ(hub_.counters().frames, 0u);
+    for (const auto& [offset, bytes] : {std::pair{4, "efgh"}, std::pair{8, "ij"}}) {
+        proto::StreamFrame more;
+        more.set_stream(id);
+        more.set_packet_bytes(10);
+        more.set_offset(static_cast<std::uint64_t>(offset));
+        more.set_packet(bytes);
+        hub_.arrived(0, more);
+    }
+    EXPECT_THAT(next(*one), HasSubstr("\"header\""));
+    EXPECT_THAT(next(*one), ::testing::EndsWith("abcdefghij"));
+    EXPECT_EQ(hub_.counters().frames, 1u);
+}
+
+TEST_F(StreamHubTest, PartsThatDoNotFitEndTheStreamAndNothingElse) {
+    const auto one = viewer({tile("l")});
+    const auto id = started(0);
+    next(*one);
+    const auto part = [&](std::uint64_t all, std::uint64_t offset, std::size_t bytes) {
+        proto::StreamFrame frame;
+        frame.set_stream(id);
+        frame.set_key(true);
+        frame.set_width(640);
+        frame.set_height(480);
+        frame.set_packet_bytes(all);
+        frame.set_offset(offset);
+        frame.set_packet(std::string(bytes, 'x'));
+        hub_.arrived(0, frame);
+    };
+    const std::vector<std::vector<std::array<std::uint64_t, 3>>> wrong{
+        {{10, 4, 4}},                      // without a beginning
+        {{10, 0, 4}, {10, 5, 4}},          // a gap
+        {{10, 0, 4}, {12, 4, 4}},          // of another frame
+        {{10, 0, 4}, {10, 4, 7}},          // longer than it said
+        {{std::uint64_t{1} << 60, 0, 4}},  // larger than any
+        {{10, UINT64_MAX, 4}},             // whose end wraps
+    };
+    for (const auto& parts : wrong) {
+        for (const auto& [all, offset, bytes] : parts) part(all, offset, bytes);
+        EXPECT_THAT(next(*one), HasSubstr("do not fit together")) << parts.front()[1];
+    }
+    part(4, 0, 4);
+    EXPECT_THAT(next(*one), HasSubstr("\"header\"")) << "the next whole frame is good again";
 }
 
 }  // namespace

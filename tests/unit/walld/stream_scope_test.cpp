@@ -107,6 +107,7 @@ TEST(WatchRequest, SaysWhatWasExpected) {
     EXPECT_EQ(error(R"({"tile": "l", "fps": 60, "width": 1, "session": 3, "surface": 1, "region": [0, 0, 1, 1]})"), "");
     EXPECT_EQ(error(R"({"wall": true, "fit": true}, {"session": 3})"), "");
     EXPECT_EQ(WatchRequest::parse("{").error().message, "expected {\"watch\": [...]}");
+    EXPECT_FALSE(WatchRequest::parse("{\"watch\": " + std::string(30'000, '[') + std::string(30'000, ']') + "}"));
     EXPECT_EQ(error(R"({"tile": "l"}, 3)"), "watch[1]: expected an object");
     EXPECT_EQ(error("{}"), R"(watch[0]: expected "tile": NAME, "wall": true or "session": NUMBER)");
     EXPECT_EQ(error(R"({"wall": false})"), R"(watch[0]: expected "tile": NAME, "wall": true or "session": NUMBER)");
