@@ -40,6 +40,30 @@ void PolygonStipple(const GLubyte* mask) {
 }
 
 template <class T>
+void WindowPos3(T x, T y, T z) {
+    mesa().WindowPos3d(static_cast<GLdouble>(x) + place().dx(), static_cast<GLdouble>(y) + place().dy(),
+                       static_cast<GLdouble>(z));
+}
+template <class T>
+void WindowPos3v(const T* at) {
+    WindowPos3(at[0], at[1], at[2]);
+}
+template <class T>
+void WindowPos2(T x, T y) {
+    WindowPos3(x, y, T{0});
+}
+template <class T>
+void WindowPos2v(const T* at) {
+    WindowPos3(at[0], at[1], T{0});
+}
+
+/// What is drawn into a framebuffer object must stay where it is, and is not told apart here.
+void BindFramebuffer(GLenum target, GLuint framebuffer) {
+    if (framebuffer != 0) stop("framebuffer objects");
+    mesa().BindFramebuffer(target, 0);
+}
+
+template <class T>
 void answer_in_window_pixels(GLenum name, T* values) {
     if (name != GL_VIEWPORT && name != GL_SCISSOR_BOX && name != GL_CURRENT_RASTER_POSITION) return;
     values[0] -= static_cast<T>(place().dx());
@@ -87,8 +111,16 @@ Replacement with(std::string_view name, Function* function) {
     return {name, reinterpret_cast<void (*)()>(function)};
 }
 
-constexpr std::array<std::string_view, 6> kNeverStart = {"glWindowPos",      "glViewportIndexed", "glViewportArray",
-                                                         "glScissorIndexed", "glScissorArray",    "glBlitFramebuffer"};
+constexpr std::array<std::string_view, 9> kNeverStart = {
+    "glViewportIndexed",   "glViewportArray", "glScissorIndexed",      "glScissorArray", "glBlitFramebuffer",
+    "glCopyTexSubImage3D", "glReadnPixels",   "glCopyTextureSubImage", "glProgramString"};
+
+/// The name without what marks it as an extension's.
+std::string_view core_name(std::string_view name) {
+    for (const std::string_view suffix : {"ARB", "EXT", "MESA", "KHR"})
+        if (name.ends_with(suffix)) return name.substr(0, name.size() - suffix.size());
+    return name;
+}
 
 }  // namespace
 
@@ -112,6 +144,23 @@ void* replacement(std::string_view name) {
         with("glViewport", Viewport),
         with("glScissor", Scissor),
         with("glPolygonStipple", PolygonStipple),
+        with("glWindowPos2s", WindowPos2<GLshort>),
+        with("glWindowPos2i", WindowPos2<GLint>),
+        with("glWindowPos2f", WindowPos2<GLfloat>),
+        with("glWindowPos2d", WindowPos2<GLdouble>),
+        with("glWindowPos2sv", WindowPos2v<GLshort>),
+        with("glWindowPos2iv", WindowPos2v<GLint>),
+        with("glWindowPos2fv", WindowPos2v<GLfloat>),
+        with("glWindowPos2dv", WindowPos2v<GLdouble>),
+        with("glWindowPos3s", WindowPos3<GLshort>),
+        with("glWindowPos3i", WindowPos3<GLint>),
+        with("glWindowPos3f", WindowPos3<GLfloat>),
+        with("glWindowPos3d", WindowPos3<GLdouble>),
+        with("glWindowPos3sv", WindowPos3v<GLshort>),
+        with("glWindowPos3iv", WindowPos3v<GLint>),
+        with("glWindowPos3fv", WindowPos3v<GLfloat>),
+        with("glWindowPos3dv", WindowPos3v<GLdouble>),
+        with("glBindFramebuffer", BindFramebuffer),
         with("glGetIntegerv", GetIntegerv),
         with("glGetFloatv", GetFloatv),
         with("glGetDoublev", GetDoublev),
@@ -123,10 +172,11 @@ void* replacement(std::string_view name) {
         with("glCopyTexSubImage1D", CopyTexSubImage1D),
         with("glCopyTexSubImage2D", CopyTexSubImage2D),
     };
+    const std::string_view core = core_name(name);
     for (const Replacement& each : replacements)
-        if (each.name == name) return reinterpret_cast<void*>(each.function);
+        if (each.name == core) return reinterpret_cast<void*>(each.function);
     for (const std::string_view start : kNeverStart)
-        if (name.starts_with(start)) return reinterpret_cast<void*>(&never);
+        if (core.starts_with(start)) return reinterpret_cast<void*>(&never);
     return nullptr;
 }
 

@@ -21,6 +21,8 @@ Found find(const char* name);
 struct Mesa {
     decltype(&glViewport) Viewport = find("glViewport");
     decltype(&glScissor) Scissor = find("glScissor");
+    decltype(&glWindowPos3d) WindowPos3d = find("glWindowPos3d");
+    decltype(&glBindFramebuffer) BindFramebuffer = find("glBindFramebuffer");
     decltype(&glPolygonStipple) PolygonStipple = find("glPolygonStipple");
     decltype(&glGetIntegerv) GetIntegerv = find("glGetIntegerv");
     decltype(&glGetFloatv) GetFloatv = find("glGetFloatv");

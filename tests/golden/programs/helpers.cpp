@@ -17,6 +17,12 @@ unsigned random_bits() {
     return g_random >> 8;
 }
 
+std::vector<GLubyte> random_image(std::size_t bytes) {
+    std::vector<GLubyte> image(bytes);
+    for (auto& value : image) value = static_cast<GLubyte>(random_bits());
+    return image;
+}
+
 float random_unit() { return static_cast<float>(random_bits() & 0xffff) / 65535.0f; }
 
 void clear(float r, float g, float b) {

@@ -12,12 +12,6 @@
 namespace golden {
 namespace {
 
-std::vector<GLubyte> random_image(std::size_t bytes) {
-    std::vector<GLubyte> image(bytes);
-    for (auto& value : image) value = static_cast<GLubyte>(random_bits());
-    return image;
-}
-
 void background(Size canvas) {
     clear();
     pixel_view(canvas);
@@ -347,40 +341,6 @@ SCENE(read_pixels, 1) {
     say("depth %.5g", depth);
     glReadPixels(0, 0, 1, 1, GL_COLOR_INDEX, GL_UNSIGNED_BYTE, outside.data());
     say_error("colour index");
-}
-
-SCENE(raster_positions, 2) {
-    clear();
-    perspective_view(canvas);
-    const auto bits = random_image(8 * 16);
-    const GLfloat position[] = {1, 1, 3, 1};
-    glEnable(GL_LIGHT0);
-    glLightfv(GL_LIGHT0, GL_POSITION, position);
-    for (int i = 0; i < 40; ++i) {
-        if (frame) (i % 2 ? glEnable : glDisable)(GL_LIGHTING);
-        glNormal3f(0.3f, 0.2f, 0.9f);
-        glColor3f(random_unit(), random_unit(), random_unit());
-        glRasterPos3f(random_unit() * 4 - 2, random_unit() * 3 - 1.5f, random_unit() * 3 - 1.5f);
-        glBitmap(16, 16, 8, 8, 0, 0, bits.data());
-        GLboolean valid = 0;
-        GLfloat window[4] = {}, colour[4] = {}, distance = 0;
-        glGetBooleanv(GL_CURRENT_RASTER_POSITION_VALID, &valid);
-        if (valid) {
-            glGetFloatv(GL_CURRENT_RASTER_POSITION, window);
-            glGetFloatv(GL_CURRENT_RASTER_COLOR, colour);
-            glGetFloatv(GL_CURRENT_RASTER_DISTANCE, &distance);
-        }
-        say("raster %d %.4g %.4g %.4g %.4g colour %.4g %.4g distance %.4g", valid, window[0], window[1], window[2],
-            window[3], colour[0], colour[2], distance);
-    }
-    glDisable(GL_LIGHTING);
-    glDisable(GL_LIGHT0);
-    glColor3f(1, 1, 1);
-    glRasterPos4d(0.5, 0.5, 0, 2);
-    const GLshort at[] = {0, -1};
-    glBitmap(16, 16, 0, 0, 5, 5, bits.data());
-    glRasterPos2sv(at);
-    glBitmap(16, 16, 0, 0, 5, 5, bits.data());
 }
 
 }  // namespace golden

@@ -59,6 +59,7 @@ void lit_sphere(int slices = 24, int stacks = 12, bool poles = true);
 void unit_square();      ///< [-1, 1]^2 at z = 0, texture coordinates 0..1, normal +z
 unsigned random_bits();  ///< a fixed sequence, started anew for every frame
 float random_unit();     ///< 0..1
+std::vector<GLubyte> random_image(std::size_t bytes);
 void restart_random();
 void checker_texture(GLuint name, int size);  ///< RGBA, coloured checks with a varying alpha; nearest, repeat
 
