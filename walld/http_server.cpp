@@ -236,7 +236,7 @@ std::optional<HttpServer::Response> HttpServer::local_page(const Request& reques
 }
 
 /// Who wants to watch, or the answer for one who may not.
-tl::expected<Person, HttpServer::Response> HttpServer::viewer(const Request& request,
+Expected<Person, HttpServer::Response> HttpServer::viewer(const Request& request,
                                                               const std::optional<net::Peer>& peer) const {
     const auto version = request.version();
     const auto no = [](Response answer) { return tl::unexpected<Response>(std::move(answer)); };

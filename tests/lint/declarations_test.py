@@ -10,18 +10,18 @@ import unittest
 import project
 
 # Comments and literals hold no uses. (A name that only a macro puts together with ## would have to be excepted here.)
-NO_CODE = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])'""", re.DOTALL)
+NO_CODE = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])'""", re.DOTALL)
 NAME = re.compile(r"\b[A-Za-z_]\w*")
 # A type, a name and a parenthesis; no statement begins with a type's name and goes on so.
-DECLARATION = re.compile(r"\b(?!return\b|co_\w+\b|else\b|throw\b|new\b)[A-Za-z_]\w*(?:<[^;{}()]*>)?[ "
-                         r"&*]+([A-Za-z_]\w*)\(")
+DECLARATION = re.compile(r"\b(?!return\b|co_\w+\b|else\b|throw\b|new\b)[A-Za-z_]\w*(?:<[^;{}()]*>)?[ &*]+"
+                         r"([A-Za-z_]\w*)\(")
 DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*$", re.MULTILINE)
 # The same at the beginning of a line of a source file, with a body.
 DEFINITION = re.compile(r"^[A-Za-z_](?:[^;{}()]*[ &*:])?([A-Za-z_]\w*)\([^;{}]*\)[^;{}()]*\{", re.MULTILINE)
 
 
 def code_of(text: str) -> str:
-    """Without comments and literals; a digit separator or an apostrophe in none of them stays."""
+    """Without comments and literals; an apostrophe that separates digits stays."""
     return NO_CODE.sub(" ", text)
 
 
