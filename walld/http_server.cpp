@@ -237,7 +237,7 @@ std::optional<HttpServer::Response> HttpServer::local_page(const Request& reques
 
 /// Who wants to watch, or the answer for one who may not.
 Expected<Person, HttpServer::Response> HttpServer::viewer(const Request& request,
-                                                              const std::optional<net::Peer>& peer) const {
+                                                          const std::optional<net::Peer>& peer) const {
     const auto version = request.version();
     const auto no = [](Response answer) { return tl::unexpected<Response>(std::move(answer)); };
     if (!host_ok(view(request[http::field::host]))) return no(*local_page(request));

@@ -21,7 +21,7 @@ using namespace wall::wallctl;
 using nlohmann::json;
 using request::ask;
 
-constexpr std::chrono::seconds kLimit{10};  // for an answer
+constexpr std::chrono::seconds kLimit{10};          // for an answer
 constexpr std::chrono::seconds kPictureLimit{120};  // it may wait in line, and a large one takes long to encode
 constexpr std::chrono::seconds kCloseLimit{
     65};                                       // a program that is asked to close may take as long as wall.toml allows
