@@ -161,17 +161,19 @@ asio::awaitable<void> HttpServer::accept() {
     }
 }
 
+// GCC 12 inlines Asio's allocation of this coroutine's frame, but not its release, and takes them for a mismatch.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 asio::awaitable<void> HttpServer::serve(std::shared_ptr<Connection> connection) {
-    const std::shared_ptr<Socket> socket(connection, &connection->socket);
-    const auto& peer = connection->peer;
+    Socket& socket = connection->socket;
     // Requests that come while one is answered wait in the kernel, but for what the last reading brought of them.
     boost::beast::flat_buffer buffer(kMaxHeader + kMaxBody);
-    asio::steady_timer idle(socket->get_executor());
+    asio::steady_timer idle(socket.get_executor());
     const auto limit = [&] {
         idle.expires_after(kIdleLimit);
-        idle.async_wait([weak = std::weak_ptr(socket)](const boost::system::error_code& cancelled) {
+        idle.async_wait([weak = std::weak_ptr(connection)](const boost::system::error_code& cancelled) {
             boost::system::error_code ignored;
-            if (const auto open = weak.lock(); open && !cancelled) open->close(ignored);
+            if (const auto open = weak.lock(); open && !cancelled) open->socket.close(ignored);
         });
     };
     for (bool go_on = true; go_on;) {
@@ -179,36 +181,41 @@ asio::awaitable<void> HttpServer::serve(std::shared_ptr<Connection> connection) 
         http::request_parser<http::string_body> parser;
         parser.header_limit(kMaxHeader);
         parser.body_limit(kMaxBody);
-        auto [read_error, read] = co_await http::async_read(*socket, buffer, parser, kTuple);
+        auto [read_error, read] = co_await http::async_read(socket, buffer, parser, kTuple);
         if (read_error) break;
-        idle.cancel();  // a program that is asked to close may take its time
-        Response response;
-        if (path_of(parser.get()) == kStreamPath) {
-            auto who = viewer(parser.get(), peer);
-            auto added = who ? streams_.add_viewer(*who) : Outcome<std::shared_ptr<StreamHub::Viewer>>();
-            if (who && added) {
-                co_await serve_viewer(socket, parser.release(), streams_, std::move(*added));
-                break;
-            }
-            if (who) response = refusal(parser.get().version(), http_status(added.error().kind), added.error());
-            else response = std::move(who.error());
-        } else {
-            response = co_await answer(parser.get(), peer);
-        }
-        response.keep_alive(parser.get().keep_alive());
-        response.prepare_payload();
-        if (parser.get().method() == http::verb::head) response.body() = {};
+        idle.cancel();                     // a program that is asked to close may take its time
+        std::optional<Response> response;  // none: there was a viewer, and all is said
+        if (path_of(parser.get()) == kStreamPath) response = co_await serve_stream(connection, parser.get());
+        else response = co_await answer(parser.get(), connection->peer);
+        if (!response) break;
+        response->keep_alive(parser.get().keep_alive());
+        response->prepare_payload();
+        if (parser.get().method() == http::verb::head) response->body() = {};
         limit();
-        auto [write_error, written] = co_await http::async_write(*socket, response, kTuple);
-        go_on = !write_error && response.keep_alive() && acceptor_.is_open();
+        auto [write_error, written] = co_await http::async_write(socket, *response, kTuple);
+        go_on = !write_error && response->keep_alive() && acceptor_.is_open();
     }
     open_.erase(connection.get());
     boost::system::error_code ignored;
-    socket->shutdown(Socket::shutdown_both, ignored);
-    socket->close(ignored);
+    socket.shutdown(Socket::shutdown_both, ignored);
+    socket.close(ignored);
+}
+#pragma GCC diagnostic pop
+
+/// Until the viewer has gone; an answer for one who may not watch.
+asio::awaitable<std::optional<HttpServer::Response>> HttpServer::serve_stream(std::shared_ptr<Connection> connection,
+                                                                              const Request& request) {
+    const auto who = viewer(request, connection->peer);
+    if (!who) co_return who.error();
+    auto place = streams_.add_viewer(*who);
+    if (!place) co_return refusal(request.version(), http_status(place.error().kind), place.error());
+    std::shared_ptr<Socket> socket(connection, &connection->socket);
+    co_await serve_viewer(std::move(socket), request, streams_, std::move(*place));
+    co_return std::nullopt;
 }
 
-asio::awaitable<HttpServer::Response> HttpServer::answer(const Request& request, const std::optional<net::Peer>& peer) {
+asio::awaitable<std::optional<HttpServer::Response>> HttpServer::answer(const Request& request,
+                                                                        const std::optional<net::Peer>& peer) {
     if (auto page = local_page(request)) co_return std::move(*page);
     auto asked = read(request, peer);
     if (!asked) co_return std::move(asked.error());

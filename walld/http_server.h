@@ -50,7 +50,9 @@ private:
 
     asio::awaitable<void> accept();
     asio::awaitable<void> serve(std::shared_ptr<Connection> connection);
-    asio::awaitable<Response> answer(const Request& request, const std::optional<net::Peer>& peer);
+    asio::awaitable<std::optional<Response>> serve_stream(std::shared_ptr<Connection> connection,
+                                                          const Request& request);
+    asio::awaitable<std::optional<Response>> answer(const Request& request, const std::optional<net::Peer>& peer);
     std::optional<Response> local_page(const Request& request) const;
     Expected<Person, Response> viewer(const Request& request, const std::optional<net::Peer>& peer) const;
     Expected<Asked, Response> read(const Request& request, const std::optional<net::Peer>& peer) const;

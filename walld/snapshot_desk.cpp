@@ -36,8 +36,9 @@ Outcome<std::shared_ptr<SnapshotDesk::Job>> SnapshotDesk::join(SnapshotQuery que
 void SnapshotDesk::begin_next() {
     while (being_made_ < kAtOnce && !waiting_.empty()) {
         ++being_made_;
-        spawn(executor_, "picture", make(std::move(waiting_.front())));
-        waiting_.pop_front();
+        auto job = std::move(waiting_.front());
+        waiting_.pop_front();  // before it is made, which may come back here at once
+        spawn(executor_, "picture", make(std::move(job)));
     }
 }
 

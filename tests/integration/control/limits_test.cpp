@@ -23,9 +23,9 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-constexpr std::uint32_t kWidth = 7680, kHeight = 4320;
+constexpr std::uint32_t kWidth = 4800, kHeight = 4800;  // 69 MB without alpha; a message has at most 64 MiB
 constexpr const char* kLargeTile =
-    "[[node]]\nname = \"large\"\n[[node.tile]]\nname = \"big\"\nrect = [0, 48, 7680, 4320]\n";
+    "[[node]]\nname = \"large\"\n[[node.tile]]\nname = \"big\"\nrect = [0, 48, 4800, 4800]\n";
 
 proto::Envelope request(std::uint32_t number, const std::string& verb, const std::string& json) {
     proto::Envelope out;
