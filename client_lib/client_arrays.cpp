@@ -469,7 +469,10 @@ void draw_elements(Context& c, GLenum mode, const ElementRange& elements) {
         c.table->Begin(c, mode);
         walk(
             c, elements, [&](GLuint e) { send_element(c, arrays, e); },
-            [&] { c.table->End(c), c.table->Begin(c, mode); });
+            [&] {
+                c.table->End(c);
+                if (record_array_draw(c, true)) c.table->Begin(c, mode);
+            });
         return c.table->End(c);
     }
     if (c.program && !may_draw(c)) return;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
-#include <map>
 #include <mutex>
 #include <utility>
 
@@ -49,140 +48,6 @@ private:
     std::atomic<bool> any_{false};
 };
 
-// ---- taking a recording apart ----
-
-/// What a recorded command may be part of.
-enum class Role : std::uint8_t { other, begin, end, vertex, attribute, array_draw };
-
-Role role_of(std::uint16_t command) {
-    struct Row {
-        CommandId command;
-        Role role;
-    };
-    static constexpr Row kRows[] = {
-        {CommandId::Begin, Role::begin},           {CommandId::End, Role::end},
-        {CommandId::Vertex2f, Role::vertex},       {CommandId::Vertex3f, Role::vertex},
-        {CommandId::Vertex4f, Role::vertex},       {CommandId::EvalCoord1f, Role::vertex},
-        {CommandId::EvalCoord2f, Role::vertex},    {CommandId::EvalPoint1, Role::vertex},
-        {CommandId::EvalPoint2, Role::vertex},     {CommandId::Color3f, Role::attribute},
-        {CommandId::Color4f, Role::attribute},     {CommandId::Color4ub, Role::attribute},
-        {CommandId::Normal3f, Role::attribute},    {CommandId::SecondaryColor3f, Role::attribute},
-        {CommandId::TexCoord1f, Role::attribute},  {CommandId::TexCoord2f, Role::attribute},
-        {CommandId::TexCoord3f, Role::attribute},  {CommandId::TexCoord4f, Role::attribute},
-        {CommandId::FogCoordf, Role::attribute},   {CommandId::MultiTexCoord4f, Role::attribute},
-        {CommandId::EdgeFlag, Role::attribute},    {CommandId::Indexf, Role::attribute},
-        {CommandId::Materialfv, Role::attribute},  {CommandId::VertexAttrib4f, Role::attribute},
-        {CommandId::DrawArrays, Role::array_draw},
-    };
-    static constexpr auto kRoles = [] {
-        std::array<Role, kCommandCount> roles{};
-        for (const Row& row : kRows) roles[static_cast<std::size_t>(row.command)] = row.role;
-        return roles;
-    }();
-    return kRoles[command];
-}
-
-bool valid_begin(const Recorded& r) { return glapi::RecordReader(r.payload).get<GLenum>() <= GL_POLYGON; }
-
-/// Bytes from the start of `stream` that are whole primitives and what may lie between them.
-std::size_t whole_primitives(std::span<const std::byte> stream) {
-    std::size_t whole = 0;
-    bool inside = false;
-    glapi::for_each_record(stream, [&](const Recorded& r) {
-        const Role role = role_of(r.command);
-        const bool starts = role == Role::array_draw || (role == Role::begin && valid_begin(r));
-        const bool fits = role == Role::attribute || (inside ? role == Role::vertex || role == Role::end : starts);
-        if (!fits) return false;
-        if (role == Role::begin || role == Role::end) inside = role == Role::begin;
-        if (!inside) whole = static_cast<std::size_t>(r.payload.data() + r.payload.size() - stream.data());
-        return true;
-    });
-    return whole;
-}
-
-std::size_t first_record_bytes(std::span<const std::byte> stream) {
-    std::size_t bytes = 0;
-    glapi::for_each_record(stream, [&](const Recorded& r) {
-        bytes = static_cast<std::size_t>(r.payload.data() + r.payload.size() - stream.data());
-        return false;
-    });
-    return bytes;
-}
-
-/// The last command of each attribute.
-std::vector<ListRun::Effect> effects_of(const wire::PackBuffer& content) {
-    std::map<std::pair<unsigned, std::uint32_t>, ListRun::Effect> last;  // by kind and unit or index
-    BlockWalk walk(content, {}, content.mark(), {});
-    while (walk.next()) {
-        const Op op = walk.op();
-        const ListRun::Effect effect{op, static_cast<std::uint32_t>(walk.operand() - content.operands().data())};
-        if (const auto attribute = attribute_of(op)) {
-            last[{static_cast<unsigned>(*attribute), 0}] = effect;
-        } else if (op == Op::MultiTexCoord4f || op == Op::VertexAttrib4f) {
-            std::uint32_t index;
-            std::memcpy(&index, walk.operand(), sizeof index);
-            last[{100 + static_cast<unsigned>(op), index}] = effect;
-        } else if (op == Op::Indexf) {
-            last[{100 + static_cast<unsigned>(op), 0}] = effect;
-        }
-    }
-    std::vector<ListRun::Effect> effects;
-    for (const auto& [key, effect] : last) effects.push_back(effect);
-    return effects;
-}
-
-/// Replays recorded geometry into a packer of its own.
-class RunPacker {
-public:
-    explicit RunPacker(Context& context) : context_(context) { scratch_.set_closed(true); }
-
-    /// Null if it draws nothing.
-    std::unique_ptr<ListRun> pack(std::span<const std::byte> recorded) {
-        enter();
-        glapi::for_each_record(recorded,
-                               [&](const Recorded& r) { return replay_command(context_, r.command, r.payload), true; });
-        leave();
-        std::unique_ptr<ListRun> run;
-        if (scratch_.has_geometry()) run = take();
-        scratch_.reset();
-        materials_.clear();
-        context_.lists->array_draws.clear();
-        return run;
-    }
-
-private:
-    void enter() {
-        std::swap(context_.packer, scratch_);
-        std::swap(context_.pending_materials, materials_);
-        context_.lists->packing = true;
-    }
-    void leave() {
-        std::swap(context_.packer, scratch_);
-        std::swap(context_.pending_materials, materials_);
-        context_.lists->packing = false;
-    }
-    std::unique_ptr<ListRun> take() {
-        auto run = std::make_unique<ListRun>();
-        run->content = wire::PackBuffer(scratch_.operand_bytes() + 4);
-        run->content.append(scratch_, {}, scratch_.mark());
-        run->box = scratch_.block_box();
-        run->effects = effects_of(run->content);
-        run->materials = std::move(materials_);
-        run->array_draws = std::move(context_.lists->array_draws);
-        return run;
-    }
-
-    Context& context_;
-    Packer scratch_;
-    std::vector<Context::PendingMaterial> materials_;
-};
-
-void add_replay(DisplayList& list, std::span<const std::byte> recorded) {
-    if (list.items.empty() || list.items.back().run) list.items.emplace_back();
-    auto& replay = list.items.back().replay;
-    replay.insert(replay.end(), recorded.begin(), recorded.end());
-}
-
 // ---- drawing a run ----
 
 std::vector<std::byte> encoded(const wire::PackBuffer& content) {
@@ -211,12 +76,13 @@ void define_once(Session& session, Node& node, wire::PackBuffer& buffer, const L
     session.count_objects(node, buffer.bytes() - before);
 }
 
-void apply_effects(glstate::State& state, const ListRun& run) {
+void apply_effects(glstate::State& state, const ListRun& run, const ListRun::Effects& effects) {
     const auto before = state.current;
-    for (const auto& effect : run.effects) apply_attribute(state, effect.op, run.content.operand_at(effect.operand));
+    for (const auto& effect : effects.attributes)
+        apply_attribute(state, effect.op, run.content.operand_at(effect.operand));
     if (!glstate::same(before, state.current))
         state.ids[static_cast<std::size_t>(Category::current)] = glstate::next_value_id();
-    for (const auto& m : run.materials) assign_material(state, m.face, m.pname, m.value);
+    for (const auto& m : effects.materials) assign_material(state, m.face, m.pname, m.value);
 }
 
 /// The nodes that ran it have its effects; the others get the difference when they next need it.
@@ -226,25 +92,34 @@ void follow(Context& c, const std::vector<Node*>& nodes, const ListRun& run) {
         const auto mirror = node->mirrors.find(c.id);
         if (mirror == node->mirrors.end()) continue;
         glstate::State& state = mirror->second.state;
-        apply_effects(state, run);
+        apply_effects(state, run, run.in_driver);
         unify_id(state, c.state, Category::current);
-        if (!run.materials.empty()) unify_id(state, c.state, Category::material);
+        if (!run.in_driver.materials.empty()) unify_id(state, c.state, Category::material);
     }
+}
+
+Needs needs_of_run(const Context& c, const ListRun& run) {
+    if (!run.in_driver.materials.empty()) return {};
+    Needs needs = needs_of_geometry(c.state);
+    needs.settled |= run.settled;
+    return needs;
 }
 
 void call_run(Context& c, const ListRun& run) {
     c.flush_block();
     c.settle_modelview();
-    if (!c.draw_surface() || !may_draw(c)) return apply_effects(c.state, run);
+    if (!c.draw_surface() || !may_draw(c)) return apply_effects(c.state, run, run.in_context);
     forget_dead_runs(c);
-    const auto box = options().broadcast ? std::nullopt : project(c.projection(), run.box);
+    // A program's shader puts the vertices anywhere.
+    const bool bounded = !options().broadcast && !c.program;
+    const auto box = bounded ? project(c.projection(), run.box) : std::nullopt;
     std::vector<Node*> reached;
-    const Needs needs = run.materials.empty() ? needs_of_geometry(c.state) : Needs{};
     c.session().draw(
-        c, box, needs, [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session(), node, buffer, run); },
+        c, box, needs_of_run(c, run),
+        [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session(), node, buffer, run); },
         [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
         [&](Node& node) { reached.push_back(&node); });
-    apply_effects(c.state, run);
+    apply_effects(c.state, run, run.in_context);
     follow(c, reached, run);
 }
 
@@ -347,39 +222,12 @@ void replay_commands(Context& c, std::span<const std::byte> recorded) {
 
 glapi::ListRecorder& Context::list() { return lists->recorder; }
 
-std::shared_ptr<DisplayList> compile_list(Context& context, std::span<const std::byte> recording) {
-    auto list = std::make_shared<DisplayList>();
-    RunPacker packer(context);
-    while (!recording.empty()) {
-        std::size_t bytes = whole_primitives(recording);
-        auto run = bytes == 0 ? nullptr : packer.pack(recording.first(bytes));
-        if (bytes == 0) bytes = first_record_bytes(recording);
-        if (run) list->items.push_back({std::move(run), {}});
-        else add_replay(*list, recording.first(bytes));
-        recording = recording.subspan(bytes);
-    }
-    return list;
-}
-
 void execute_list(Context& c, const DisplayList& list) {
     for (const ListItem& item : list.items) {
         if (!item.run) replay_commands(c, item.replay);
         else if (c.packer.inside()) unpack_run(c, *item.run);
         else call_run(c, *item.run);
     }
-}
-
-bool record_array_draw(Context& c, bool draws) {
-    const bool refused = c.packer.inside();
-    c.list().record(static_cast<std::uint16_t>(CommandId::DrawArrays), static_cast<std::uint32_t>(draws && !refused));
-    if (refused) c.error(GL_INVALID_OPERATION);
-    return !refused;
-}
-
-void replay_array_draw(Context& c, std::span<const std::byte> payload) {
-    const bool draws = glapi::RecordReader(payload).get<std::uint32_t>() != 0;
-    if (c.packer.inside()) return c.error(GL_INVALID_OPERATION);
-    if (c.lists->packing && draws) c.lists->array_draws.push_back(c.packer.commands());
 }
 
 void forget_dead_runs(Context& c) {

@@ -32,8 +32,14 @@ struct ListRun {
         glapi::Op op;
         std::uint32_t operand;
     };
-    std::vector<Effect> effects;
-    std::vector<Context::PendingMaterial> materials;  ///< in order
+    /// What calling it leaves behind.
+    struct Effects {
+        std::vector<Effect> attributes;
+        std::vector<Context::PendingMaterial> materials;  ///< in order
+    };
+    Effects in_driver;                     ///< the driver of a node that ran it holds these
+    Effects in_context;                    ///< the program may see these (list_compile.cpp has the difference)
+    std::uint32_t settled = 0;             ///< attributes that it sets before its first vertex, as in Needs::settled
     std::vector<std::size_t> array_draws;  ///< commands of `content`, each the Begin of what was drawn from arrays
 };
 

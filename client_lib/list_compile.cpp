@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: MIT
+// glEndList: a recording is taken apart into runs of whole primitives and commands to be replayed (lists.h).
+//
+// Current values behind primitives that come from arrays. OpenGL leaves them undefined; Mesa decides it for a *group*,
+// the primitives between two other commands: a group whose last primitive comes from arrays leaves the current values
+// alone, any other leaves its last vertex's. Within a group later primitives see what earlier ones set. Programs rely
+// on it, so the context does the same. A node's driver, which knows runs as glBegin .. glEnd only, has the values of
+// the last vertex in any case: behind a group that the context forgets, a run ends before a vertex could see the
+// difference.
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <utility>
+
+#include "client_lib/block_walk.h"
+#include "client_lib/lists.h"
+
+namespace wall::client {
+namespace {
+
+using glapi::Op;
+using glapi::Recorded;
+
+// ---- the recording ----
+
+/// What a recorded command may be part of.
+enum class Role : std::uint8_t { other, begin, end, vertex, attribute, array_draw };
+
+struct RoleRow {
+    CommandId command;
+    Role role;
+};
+constexpr RoleRow kRoleRows[] = {
+    {CommandId::Begin, Role::begin},           {CommandId::End, Role::end},
+    {CommandId::Vertex2f, Role::vertex},       {CommandId::Vertex3f, Role::vertex},
+    {CommandId::Vertex4f, Role::vertex},       {CommandId::EvalCoord1f, Role::vertex},
+    {CommandId::EvalCoord2f, Role::vertex},    {CommandId::EvalPoint1, Role::vertex},
+    {CommandId::EvalPoint2, Role::vertex},     {CommandId::Color3f, Role::attribute},
+    {CommandId::Color4f, Role::attribute},     {CommandId::Color4ub, Role::attribute},
+    {CommandId::Normal3f, Role::attribute},    {CommandId::SecondaryColor3f, Role::attribute},
+    {CommandId::TexCoord1f, Role::attribute},  {CommandId::TexCoord2f, Role::attribute},
+    {CommandId::TexCoord3f, Role::attribute},  {CommandId::TexCoord4f, Role::attribute},
+    {CommandId::FogCoordf, Role::attribute},   {CommandId::MultiTexCoord4f, Role::attribute},
+    {CommandId::EdgeFlag, Role::attribute},    {CommandId::Indexf, Role::attribute},
+    {CommandId::Materialfv, Role::attribute},  {CommandId::VertexAttrib4f, Role::attribute},
+    {CommandId::DrawArrays, Role::array_draw},
+};
+constexpr auto kRoles = [] {
+    std::array<Role, kCommandCount> roles{};
+    for (const RoleRow& row : kRoleRows) roles[static_cast<std::size_t>(row.command)] = row.role;
+    return roles;
+}();
+
+/// Whether glVertexAttrib is a vertex within glBegin .. glEnd.
+bool is_vertex(const Recorded& r) {
+    return static_cast<CommandId>(r.command) == CommandId::VertexAttrib4f &&
+           glapi::RecordReader(r.payload).get<std::uint32_t>() == 0;
+}
+
+bool valid_begin(const Recorded& r) { return glapi::RecordReader(r.payload).get<GLenum>() <= GL_POLYGON; }
+
+constexpr std::uint64_t kMaterialBit = std::uint64_t{1} << 63;
+
+/// A recorded vertex attribute as a bit; several forms of one attribute have the same.
+std::uint64_t attribute_bit(const Recorded& r) {
+    const auto command = static_cast<CommandId>(r.command);
+    const auto indexed = [&](unsigned first) {
+        return std::uint64_t{1} << (first + (glapi::RecordReader(r.payload).get<std::uint32_t>() & 15));
+    };
+    switch (command) {
+        case CommandId::Color3f:
+        case CommandId::Color4f:
+        case CommandId::Color4ub: return 1;
+        case CommandId::Normal3f: return 2;
+        case CommandId::SecondaryColor3f: return 4;
+        case CommandId::FogCoordf: return 8;
+        case CommandId::EdgeFlag: return 16;
+        case CommandId::Indexf: return 32;
+        case CommandId::VertexAttrib4f: return indexed(16);
+        case CommandId::MultiTexCoord4f: return indexed(32);  // GL_TEXTURE0 is a multiple of 16
+        case CommandId::Materialfv: return kMaterialBit;
+        default: return std::uint64_t{1} << 32;  // the first texture unit's
+    }
+}
+static_assert(GL_TEXTURE0 % 16 == 0);
+
+/// Follows the groups of a recording, and which attributes the driver would have other values for than the context.
+class GroupScan {
+public:
+    bool inside() const { return inside_; }
+    /// Takes the next command; false if it has to begin another run.
+    bool take(const Recorded& r, Role role) {
+        switch (role) {
+            case Role::array_draw: marked_ = glapi::RecordReader(r.payload).get<std::uint32_t>() != 0; break;
+            case Role::begin:
+                inside_ = true;
+                from_arrays_ = std::exchange(marked_, false);
+                break;
+            case Role::end: inside_ = false; break;
+            case Role::vertex: return forgotten_ == 0;
+            case Role::attribute:
+                if (inside_ && is_vertex(r)) return forgotten_ == 0;
+                note(attribute_bit(r));
+                break;
+            case Role::other: break;
+        }
+        return true;
+    }
+
+private:
+    void note(std::uint64_t bit) {
+        if (inside_) {
+            group_ |= bit;
+        } else {
+            if (from_arrays_) forgotten_ |= group_;
+            group_ = 0;
+        }
+        if (bit != kMaterialBit) forgotten_ &= ~bit;  // there are many materials: one does not make up for another
+    }
+
+    bool inside_ = false, marked_ = false, from_arrays_ = false;
+    std::uint64_t group_ = 0;      ///< set within the primitives of this group
+    std::uint64_t forgotten_ = 0;  ///< set within an earlier group that ended with arrays, and not since
+};
+
+/// Bytes from the start of `stream` that are whole primitives and what may lie between them, and fit into one run.
+std::size_t whole_primitives(std::span<const std::byte> stream) {
+    std::size_t whole = 0;
+    GroupScan groups;
+    glapi::for_each_record(stream, [&](const Recorded& r) {
+        const Role role = kRoles[r.command];
+        const bool starts = role == Role::array_draw || (role == Role::begin && valid_begin(r));
+        const bool fits =
+            role == Role::attribute || (groups.inside() ? role == Role::vertex || role == Role::end : starts);
+        if (!fits || !groups.take(r, role)) return false;
+        if (!groups.inside() && role != Role::array_draw)
+            whole = static_cast<std::size_t>(r.payload.data() + r.payload.size() - stream.data());
+        return true;
+    });
+    return whole;
+}
+
+std::size_t first_record_bytes(std::span<const std::byte> stream) {
+    std::size_t bytes = 0;
+    glapi::for_each_record(stream, [&](const Recorded& r) {
+        bytes = static_cast<std::size_t>(r.payload.data() + r.payload.size() - stream.data());
+        return false;
+    });
+    return bytes;
+}
+
+// ---- a run ----
+
+bool makes_vertex(Op op) {
+    switch (op) {
+        case Op::Vertex2f:
+        case Op::Vertex3f:
+        case Op::Vertex4f:
+        case Op::EvalCoord1f:
+        case Op::EvalCoord2f:
+        case Op::EvalPoint1:
+        case Op::EvalPoint2: return true;
+        default: return false;
+    }
+}
+
+/// Copies packed primitives. What is set behind a primitive's last vertex comes behind its glEnd: it means the same,
+/// but Mesa's lists lose what they hold between a last vertex and glEnd.
+void copy_primitives(const wire::PackBuffer& from, wire::PackBuffer& to) {
+    BlockWalk walk(from, {}, from.mark(), {});
+    wire::PackMark copied, vertex;  // behind what was copied; behind the latest vertex or glBegin
+    while (walk.next()) {
+        const wire::PackMark here = walk.position();
+        if (makes_vertex(walk.op()) || walk.op() == Op::Begin) vertex = here;
+        if (walk.op() != Op::End) continue;
+        to.append(from, copied, vertex);
+        glapi::pack::End(to);
+        to.append(from, vertex, {here.commands - 1, here.operand_bytes});
+        copied = here;
+    }
+    to.append(from, copied, from.mark());
+}
+
+/// Collects effects; a later one takes the place of an earlier one.
+class EffectList {
+public:
+    void add(const BlockWalk& walk, std::uint32_t operand) {
+        const Op op = walk.op();
+        const ListRun::Effect effect{op, operand};
+        if (const auto attribute = attribute_of(op)) {
+            last_[{static_cast<unsigned>(*attribute), 0}] = effect;
+        } else if (op == Op::MultiTexCoord4f || op == Op::VertexAttrib4f) {
+            std::uint32_t index;
+            std::memcpy(&index, walk.operand(), sizeof index);
+            last_[{kOthers + static_cast<unsigned>(op), index}] = effect;
+        } else if (op == Op::Indexf) {
+            last_[{kOthers + static_cast<unsigned>(op), 0}] = effect;
+        } else if (op == Op::Material) {
+            Context::PendingMaterial material{};
+            std::memcpy(&material.face, walk.operand(), 4);
+            std::memcpy(&material.pname, walk.operand() + 4, 4);
+            std::memcpy(material.value.data(), walk.operand() + 8, sizeof material.value);
+            materials_.push_back(material);
+        }
+    }
+    void add(EffectList&& later) {
+        for (const auto& [key, effect] : later.last_) last_[key] = effect;
+        materials_.insert(materials_.end(), later.materials_.begin(), later.materials_.end());
+        later.clear();
+    }
+    void clear() { last_.clear(), materials_.clear(); }
+    ListRun::Effects take() {
+        ListRun::Effects effects;
+        for (const auto& [key, effect] : last_) effects.attributes.push_back(effect);
+        effects.materials = std::move(materials_);
+        return effects;
+    }
+
+private:
+    static constexpr unsigned kOthers = 100;
+    std::map<std::pair<unsigned, std::uint32_t>, ListRun::Effect> last_;  ///< by kind, and unit or index
+    std::vector<Context::PendingMaterial> materials_;
+};
+
+/// What calling the run leaves behind, in a driver and in the context.
+void find_effects(ListRun& run) {
+    EffectList driver, context, group;
+    bool inside = false, from_arrays = false;
+    const auto end_group = [&] {
+        if (from_arrays) group.clear();
+        else context.add(std::move(group));
+    };
+    BlockWalk walk(run.content, {}, run.content.mark(), {});
+    while (walk.next()) {
+        const auto operand = static_cast<std::uint32_t>(walk.operand() - run.content.operands().data());
+        if (walk.op() == Op::Begin) {
+            inside = true;
+            from_arrays =
+                std::binary_search(run.array_draws.begin(), run.array_draws.end(), walk.position().commands - 1);
+        } else if (walk.op() == Op::End) {
+            inside = false;
+        } else if (!makes_vertex(walk.op())) {
+            if (!inside) end_group();
+            driver.add(walk, operand);
+            (inside ? group : context).add(walk, operand);
+        }
+    }
+    end_group();
+    run.in_driver = driver.take();
+    run.in_context = context.take();
+}
+
+/// Attributes that the run sets itself before anything could see their old values.
+std::uint32_t settled_by(const wire::PackBuffer& content) {
+    Needs needs;
+    BlockWalk walk(content, {}, content.mark(), {});
+    while (walk.next() && !makes_vertex(walk.op()))
+        if (const auto attribute = attribute_of(walk.op())) needs.settle(*attribute);
+    return needs.settled;
+}
+
+/// Replays recorded geometry into a packer of its own.
+class RunPacker {
+public:
+    explicit RunPacker(Context& context) : context_(context) { scratch_.set_closed(true); }
+
+    /// Null if it draws nothing.
+    std::unique_ptr<ListRun> pack(std::span<const std::byte> recorded) {
+        swap();
+        context_.lists->packing = true;
+        glapi::for_each_record(recorded,
+                               [&](const Recorded& r) { return replay_command(context_, r.command, r.payload), true; });
+        context_.lists->packing = false;
+        swap();
+        std::unique_ptr<ListRun> run;
+        if (scratch_.has_geometry()) run = take();
+        scratch_.reset();
+        materials_.clear();
+        context_.lists->array_draws.clear();
+        return run;
+    }
+
+private:
+    /// What the list is drawn with, a program or none, is known when it is called.
+    void swap() {
+        std::swap(context_.packer, scratch_);
+        std::swap(context_.pending_materials, materials_);
+        std::swap(context_.program, program_);
+    }
+    std::unique_ptr<ListRun> take() {
+        auto run = std::make_unique<ListRun>();
+        run->content = wire::PackBuffer(scratch_.operand_bytes() + 4);
+        copy_primitives(scratch_, run->content);
+        run->box = scratch_.block_box();
+        run->array_draws = std::move(context_.lists->array_draws);
+        find_effects(*run);
+        run->settled = settled_by(run->content);
+        return run;
+    }
+
+    Context& context_;
+    Packer scratch_;
+    std::vector<Context::PendingMaterial> materials_;
+    std::shared_ptr<Program> program_;
+};
+
+void add_replay(DisplayList& list, std::span<const std::byte> recorded) {
+    if (list.items.empty() || list.items.back().run) list.items.emplace_back();
+    auto& replay = list.items.back().replay;
+    replay.insert(replay.end(), recorded.begin(), recorded.end());
+}
+
+}  // namespace
+
+std::shared_ptr<DisplayList> compile_list(Context& context, std::span<const std::byte> recording) {
+    auto list = std::make_shared<DisplayList>();
+    RunPacker packer(context);
+    while (!recording.empty()) {
+        std::size_t bytes = whole_primitives(recording);
+        auto run = bytes == 0 ? nullptr : packer.pack(recording.first(bytes));
+        if (bytes == 0) bytes = first_record_bytes(recording);
+        if (run) list->items.push_back({std::move(run), {}});
+        else add_replay(*list, recording.first(bytes));
+        recording = recording.subspan(bytes);
+    }
+    return list;
+}
+
+bool record_array_draw(Context& c, bool draws) {
+    const bool refused = c.packer.inside();
+    c.list().record(static_cast<std::uint16_t>(CommandId::DrawArrays), static_cast<std::uint32_t>(draws && !refused));
+    if (refused) c.error(GL_INVALID_OPERATION);
+    return !refused;
+}
+
+void replay_array_draw(Context& c, std::span<const std::byte> payload) {
+    const bool draws = glapi::RecordReader(payload).get<std::uint32_t>() != 0;
+    if (c.packer.inside()) return c.error(GL_INVALID_OPERATION);
+    if (c.lists->packing && draws) c.lists->array_draws.push_back(c.packer.commands());
+}
+
+}  // namespace wall::client
