@@ -6,6 +6,7 @@
 #include "client_lib/attribute_stack.h"
 #include "client_lib/block_sender.h"
 #include "client_lib/block_walk.h"
+#include "client_lib/guard.h"
 #include "client_lib/lists.h"
 #include "client_lib/maps.h"
 #include "client_lib/material.h"
@@ -33,8 +34,12 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextOptions&)
 
 Context::~Context() {
     if (!session_) return;
-    if (program) use_program(*this, nullptr);
-    session_->destroy_context(id);
+    try {
+        if (program) use_program(*this, nullptr);
+        session_->destroy_context(id);
+    } catch (...) {
+        caught_exception("the end of a context");
+    }
 }
 
 void Context::bind_surfaces(std::shared_ptr<Surface> draw, std::shared_ptr<Surface> read) {
@@ -93,10 +98,25 @@ void Context::submit_block() {
     if (packer.has_geometry()) settle_modelview();
     if (packer.inside())
         return;  // only commands that are legal inside come here then, and they change nothing that is drawn with
-    if (packer.has_geometry()) session_->submit_block(*this);
-    else fold_attributes();
+    try {
+        if (packer.has_geometry()) session_->submit_block(*this);
+        else fold_attributes();
+    } catch (...) {  // the geometry is lost, what it set is not
+        fold_attributes();
+        forget_block();
+        throw;
+    }
+    forget_block();
+}
+
+void Context::forget_block() {
     packer.reset();
     pending_materials.clear();
+}
+
+void Context::lose() {
+    lost_ = true;
+    forget_block();
 }
 
 // Attributes go from the packed block to `state` (T3.2). Frequent ones are remembered by place; rare ones are found by

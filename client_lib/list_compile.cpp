@@ -266,12 +266,11 @@ public:
 
     /// Null if it draws nothing.
     std::unique_ptr<ListRun> pack(std::span<const std::byte> recorded) {
-        swap();
-        context_.lists->packing = true;
-        glapi::for_each_record(recorded,
-                               [&](const Recorded& r) { return replay_command(context_, r.command, r.payload), true; });
-        context_.lists->packing = false;
-        swap();
+        {
+            const Replaying replaying(*this);
+            glapi::for_each_record(
+                recorded, [&](const Recorded& r) { return replay_command(context_, r.command, r.payload), true; });
+        }
         std::unique_ptr<ListRun> run;
         if (scratch_.has_geometry()) run = take();
         scratch_.reset();
@@ -281,6 +280,17 @@ public:
     }
 
 private:
+    /// While it lives the context packs into the scratch packer; also where replaying fails.
+    class Replaying {
+    public:
+        explicit Replaying(RunPacker& packer) : packer_(packer) { packer_.swap(), set(true); }
+        ~Replaying() { packer_.swap(), set(false); }
+        Replaying(const Replaying&) = delete;
+
+    private:
+        void set(bool packing) { packer_.context_.lists->packing = packing; }
+        RunPacker& packer_;
+    };
     /// What the list is drawn with, a program or none, is known when it is called.
     void swap() {
         std::swap(context_.packer, scratch_);

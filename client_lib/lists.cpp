@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <list>
 #include <mutex>
 #include <utility>
 
@@ -30,12 +31,12 @@ public:
         static auto* runs = new DeadRuns();
         return *runs;
     }
-    void add(std::uint32_t id) {
+    void add(std::list<std::uint32_t>& ids) {
         std::lock_guard lock(mutex_);
-        ids_.push_back(id);
+        ids_.splice(ids_.end(), ids);
         any_.store(true, std::memory_order_release);
     }
-    std::vector<std::uint32_t> take() {
+    std::list<std::uint32_t> take() {
         if (!any_.load(std::memory_order_acquire)) return {};
         std::lock_guard lock(mutex_);
         any_.store(false, std::memory_order_relaxed);
@@ -44,7 +45,7 @@ public:
 
 private:
     std::mutex mutex_;
-    std::vector<std::uint32_t> ids_;
+    std::list<std::uint32_t> ids_;
     std::atomic<bool> any_{false};
 };
 
@@ -239,7 +240,8 @@ void forget_dead_runs(Context& c) {
     });
 }
 
-ListRun::ListRun() : id(next_object_id()) {}
-ListRun::~ListRun() { DeadRuns::get().add(id); }
+// What its end needs is made now.
+ListRun::ListRun() : id(next_object_id()), obituary_{id} { DeadRuns::get(); }
+ListRun::~ListRun() { DeadRuns::get().add(obituary_); }
 
 }  // namespace wall::client

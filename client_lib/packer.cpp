@@ -40,6 +40,7 @@ void Packer::make_room() {
 
 void Packer::begin(std::uint32_t mode) {
     if (tight()) make_room();
+    if (primitives_.size() == primitives_.capacity()) primitives_.reserve(2 * primitives_.size() + kSlack);
     inside_ = true;
     open_ = Primitive{};
     open_.first = mark();
@@ -50,8 +51,9 @@ void Packer::begin(std::uint32_t mode) {
     update_limit();
 }
 
+// There is room for it: whoever packed before left some, and begin() made place for the primitive. So an end cannot
+// fail for want of memory, and the program and this are always of one mind about what is inside.
 void Packer::end() {
-    if (tight()) make_room();
     inside_ = false;
     glapi::pack::End(*this);
     if (box.empty()) {  // no vertex: nothing to draw, but its attributes count

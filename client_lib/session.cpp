@@ -325,8 +325,15 @@ wire::PackBuffer& Session::prepare(Node& node, Context& context, const Needs& ne
 }
 
 void Session::submit_block(Context& context) {
-    std::lock_guard lock(mutex_);
-    BlockSender(*this, context).run();
+    packing([&] { BlockSender(*this, context).run(); });
+}
+
+void Session::distrust_nodes() {
+    for (auto& node : nodes_) {
+        if (!node->alive()) continue;
+        node->stream->give_up("out of memory");  // short enough to need none
+        node->batch.clear();
+    }
 }
 
 void Session::swap(Context* context, Surface& surface) {

@@ -187,6 +187,19 @@ private:
     int reply_timeout_ms() const;
     void wait_for_nodes(Surface& surface, bool whole_frames);
     std::optional<std::vector<std::byte>> wait_reply(Node& node, std::uint32_t request);
+    /// Runs `body` with the mutex held. Where it throws, batches and mirrors may be half made: the nodes' streams fail
+    /// then, so that every node begins again at time zero.
+    template <class Body>
+    decltype(auto) packing(Body&& body) {
+        std::lock_guard lock(mutex_);
+        try {
+            return std::forward<Body>(body)();
+        } catch (...) {
+            distrust_nodes();
+            throw;
+        }
+    }
+    void distrust_nodes();
     void count_frame();
     void count_round_trip(const char* function);
 

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "client_lib/context.h"
+#include "client_lib/entry_guard.h"
 #include "client_lib/program_use.h"
 
 namespace wall::client {
@@ -56,8 +57,13 @@ Packer* open_packer() {
 /// The slow way of an entry point: whatever the context's mode makes of the call. Kept out of line, so that the fast
 /// way needs no stack frame.
 template <class Function, class... Args>
-[[gnu::noinline, gnu::cold]] void through_table(Function GlTable::*entry, Args... args) {
-    if (tls_context) (tls_context->table->*entry)(*tls_context, args...);
+[[gnu::noinline, gnu::cold]] void through_table(const char* name, Function GlTable::*entry, Args... args) {
+    if (!tls_context) return;
+    try {
+        (tls_context->table->*entry)(*tls_context, args...);
+    } catch (...) {
+        entry_failed(name);
+    }
 }
 
 void add_vertex(Packer& packer, float x, float y, float z) {
@@ -95,42 +101,42 @@ void pack_color4ub(Packer& packer, GLubyte r, GLubyte g, GLubyte b, GLubyte a) {
 void GLAPIENTRY gl_entry_Vertex2f(GLfloat x, GLfloat y) {
     if (Packer* p = open_packer()) [[likely]]
         return pack_vertex2(*p, x, y);
-    through_table(&GlTable::Vertex2f, x, y);
+    through_table("glVertex2f", &GlTable::Vertex2f, x, y);
 }
 void GLAPIENTRY gl_entry_Vertex3f(GLfloat x, GLfloat y, GLfloat z) {
     if (Packer* p = open_packer()) [[likely]]
         return pack_vertex3(*p, x, y, z);
-    through_table(&GlTable::Vertex3f, x, y, z);
+    through_table("glVertex3f", &GlTable::Vertex3f, x, y, z);
 }
 void GLAPIENTRY gl_entry_Vertex4f(GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
     if (Packer* p = open_packer()) [[likely]]
         return pack_vertex4(*p, x, y, z, w);
-    through_table(&GlTable::Vertex4f, x, y, z, w);
+    through_table("glVertex4f", &GlTable::Vertex4f, x, y, z, w);
 }
 void GLAPIENTRY gl_entry_Normal3f(GLfloat x, GLfloat y, GLfloat z) {
     if (Packer* p = open_packer()) [[likely]]
         return put_attribute(*p, Attribute::normal, Op::Normal3f, x, y, z);
-    through_table(&GlTable::Normal3f, x, y, z);
+    through_table("glNormal3f", &GlTable::Normal3f, x, y, z);
 }
 void GLAPIENTRY gl_entry_Color3f(GLfloat r, GLfloat g, GLfloat b) {
     if (Packer* p = open_packer()) [[likely]]
         return put_attribute(*p, Attribute::color, Op::Color3f, r, g, b);
-    through_table(&GlTable::Color3f, r, g, b);
+    through_table("glColor3f", &GlTable::Color3f, r, g, b);
 }
 void GLAPIENTRY gl_entry_Color4f(GLfloat r, GLfloat g, GLfloat b, GLfloat a) {
     if (Packer* p = open_packer()) [[likely]]
         return put_attribute(*p, Attribute::color, Op::Color4f, r, g, b, a);
-    through_table(&GlTable::Color4f, r, g, b, a);
+    through_table("glColor4f", &GlTable::Color4f, r, g, b, a);
 }
 void GLAPIENTRY gl_entry_Color4ub(GLubyte r, GLubyte g, GLubyte b, GLubyte a) {
     if (Packer* p = open_packer()) [[likely]]
         return pack_color4ub(*p, r, g, b, a);
-    through_table(&GlTable::Color4ub, r, g, b, a);
+    through_table("glColor4ub", &GlTable::Color4ub, r, g, b, a);
 }
 void GLAPIENTRY gl_entry_TexCoord2f(GLfloat s, GLfloat t) {
     if (Packer* p = open_packer()) [[likely]]
         return put_attribute(*p, Attribute::texcoord0, Op::TexCoord2f, s, t);
-    through_table(&GlTable::TexCoord2f, s, t);
+    through_table("glTexCoord2f", &GlTable::TexCoord2f, s, t);
 }
 
 void GLAPIENTRY gl_entry_Vertex2fv(const GLfloat* v) { gl_entry_Vertex2f(v[0], v[1]); }

@@ -157,7 +157,7 @@ def _replay(i):
 
 def entries_source(commands, registry):
     out = [header("gl.xml and proto/gl/commands.toml", "The functions that applications call, and their names.", [], pragma=False),
-           '#include "client_lib/context.h"\n#include "client_lib/current.h"\n#include "client_lib/param_commands.h"\n'
+           '#include "client_lib/context.h"\n#include "client_lib/current.h"\n#include "client_lib/entry_guard.h"\n#include "client_lib/param_commands.h"\n'
            '#include "client_lib/unsupported.h"\n#include "common/glapi/convert.h"\n#include "gen/client_lib/api.gen.h"\n\n'
            "namespace wall::client {\nnamespace {\n\nusing glapi::to_fraction;\n\n"]
     for i in commands.unique:
@@ -180,13 +180,25 @@ def entries_source(commands, registry):
 
 
 def _entry(i, commands, registry):
+    """Nothing that is thrown leaves it. What another entry point by hand does goes straight there."""
     returns = i.command.returns
+    head = f"{returns} GLAPIENTRY gl_entry_{i.name}({i.command.declaration}) {{\n"
+    if i.way in ("convert", "as") and "hot" in commands.all["gl" + i.target].flags:
+        return f"{head}    gl_entry_{i.target}({', '.join(_target_args(i, registry))});\n}}\n"
     none = "return;" if returns == "void" else "return {};"
-    lines = [f"{returns} GLAPIENTRY gl_entry_{i.name}({i.command.declaration}) {{\n",
-             f"    Context* c = tls_context;\n    if (!c) {none}\n"]
-    lines += [f"    {line}\n" for line in _entry_body(i, commands, registry)]
-    lines.append("}\n")
+    lines = [head, f"    Context* c = tls_context;\n    if (!c) {none}\n    try {{\n"]
+    lines += [f"        {line}\n" for line in _entry_body(i, commands, registry)]
+    lines.append(f'    }} catch (...) {{\n        entry_failed("gl{i.name}");\n')
+    lines += [] if returns == "void" else [f"        {none}\n"]
+    lines.append("    }\n}\n")
     return "".join(lines)
+
+
+def _target_args(i, registry):
+    target = registry.commands["gl" + i.target]
+    if i.way == "as":
+        return [_converted(p.type, a, False) for p, a in zip(target.params, i.args)]
+    return _convert_args(i, target)
 
 
 def _call(i, name, args):
@@ -197,11 +209,8 @@ def _call(i, name, args):
 def _entry_body(i, commands, registry):
     if commands.has_slot(i):
         return [_call(i, i.name, [p.name for p in i.command.params])]
-    if i.way == "as":
-        target = registry.commands["gl" + i.target]
-        return [_call(i, i.target, [_converted(p.type, a, False) for p, a in zip(target.params, i.args)])]
-    if i.way == "convert":
-        return [_call(i, i.target, _convert_args(i, registry.commands["gl" + i.target]))]
+    if i.way in ("as", "convert"):
+        return [_call(i, i.target, _target_args(i, registry))]
     return _param_entry(i, commands)
 
 
