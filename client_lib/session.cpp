@@ -22,8 +22,9 @@ namespace wall::client {
 namespace {
 
 constexpr auto kRetryPause =
-    std::chrono::seconds(10);   // a program that asks for every frame must not wait for every frame
-constexpr int kFinishMs = 500;  // what is queued when the program ends
+    std::chrono::seconds(10);       // a program that asks for every frame must not wait for every frame
+constexpr int kFinishMs = 500;      // what is queued when the program ends
+constexpr int kEndMarginMs = 1500;  // for the rest of the end
 constexpr std::chrono::seconds kPlacementTimeout{2};
 constexpr int kReplyTimeoutMs = 10000;  // a readback behind a long frame of a software renderer
 constexpr std::uint32_t kDiffSample =
@@ -108,9 +109,11 @@ std::shared_ptr<Session> Session::get() {
         return nullptr;
     }
     only.session.reset(new Session(std::move(*control)));
-    at_process_end([] {
-        if (const auto session = get_if_open()) session->finish();
-    });
+    at_process_end(
+        [] {
+            if (const auto session = get_if_open()) session->finish();
+        },
+        parallel() ? kLeaveLimitMs + kEndMarginMs : kFinishMs + kEndMarginMs);
     return only.session;
 }
 

@@ -169,6 +169,8 @@ public:
 
 private:
     friend class BlockSender;
+    /// For what is queued when a member of a parallel program ends: the others wait for it.
+    static constexpr int kLeaveLimitMs = 2000;
     explicit Session(std::unique_ptr<ControlLink> control);
     void adopt(const Welcome& welcome);
     void apply_layout(Surface& surface, const Placement& placement);
