@@ -6,6 +6,7 @@
 #include "client_lib/attribute_stack.h"
 #include "client_lib/block_sender.h"
 #include "client_lib/block_walk.h"
+#include "client_lib/buffer_binding.h"
 #include "client_lib/guard.h"
 #include "client_lib/lists.h"
 #include "client_lib/maps.h"
@@ -27,6 +28,7 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextOptions&)
       attributes(std::make_unique<AttributeStacks>()),
       select(std::make_unique<SelectState>()),
       maps(std::make_unique<ContextMaps>()),
+      buffers(std::make_unique<BufferUse>()),
       occlusion(std::make_unique<OcclusionState>()),
       share_(std::move(share)) {
     for (auto& stack : texture_stacks) stack.limit = 10;

@@ -28,6 +28,7 @@ struct SelectState;      // select.h: feedback and selection
 struct Program;          // objects/program.h
 struct OcclusionState;   // occlusion.h
 struct ContextMaps;      // maps.h: evaluator and pixel maps
+struct BufferUse;        // buffer_binding.h
 
 inline constexpr unsigned kTextureUnits = 8;
 inline constexpr unsigned kVertexAttributes = 16;
@@ -88,7 +89,7 @@ public:
     }
 
     Session& session() { return *session_; }
-    ShareGroup& share() { return *share_; }
+    ShareGroup& share() const { return *share_; }
     const std::shared_ptr<ShareGroup>& share_pointer() const { return share_; }
     Surface* draw_surface() const { return draw_.get(); }
     Surface* read_surface() const { return read_.get(); }
@@ -102,6 +103,7 @@ public:
     std::unique_ptr<SelectState> select;
     glapi::ListRecorder& list();  ///< of the list being compiled
     std::unique_ptr<ContextMaps> maps;
+    std::unique_ptr<BufferUse> buffers;
     std::shared_ptr<Program> program;  ///< drawn with; null: fixed function
     std::unique_ptr<OcclusionState> occlusion;
 
