@@ -5,7 +5,6 @@
 
 #include "client_lib/attribute_stack.h"
 #include "client_lib/block_sender.h"
-#include "client_lib/block_walk.h"
 #include "client_lib/buffer_binding.h"
 #include "client_lib/guard.h"
 #include "client_lib/lists.h"
@@ -121,20 +120,13 @@ void Context::lose() {
     forget_block();
 }
 
-// Attributes go from the packed block to `state` (T3.2). Frequent ones are remembered by place; rare ones are found by
-// walking the block.
+// Attributes go from the packed block to `state` (T3.2).
 void Context::fold_attributes() {
     bool changed = false;
-    if (packer.has_rare()) {
-        BlockWalk walk(packer, {}, packer.mark(), {});
-        while (walk.next()) apply_attribute(state, walk.op(), walk.operand());
+    for (std::size_t i = 0; i < kAttributes; ++i) {
+        if (!packer.last[i]) continue;
+        glstate::apply_attribute(state, packer.last_op[i], packer.last[i]);
         changed = true;
-    } else {
-        for (std::size_t i = 0; i < kAttributes; ++i) {
-            if (!packer.last[i]) continue;
-            apply_attribute(state, packer.last_op[i], packer.last[i]);
-            changed = true;
-        }
     }
     if (changed) state.ids[static_cast<std::size_t>(glstate::Category::current)] = glstate::next_value_id();
     folded_material_ = !pending_materials.empty();

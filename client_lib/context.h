@@ -166,7 +166,7 @@ void Session::draw(Context& context, const std::optional<PixelRect>& box, const 
     packing([&] {
         if (!context.draw_surface()) return;
         const SurfaceLayout& layout = context.draw_layout();
-        for (const auto& [index, slots] : by_node(targets_of(layout, box), layout)) {
+        for (const auto& [index, slots] : targets_of(layout, box)) {
             Node& node = *nodes_[index];
             if (!node.takes(context.draw_surface()->id)) continue;
             wire::PackBuffer& buffer = prepare(node, context, needs);

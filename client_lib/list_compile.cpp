@@ -8,8 +8,10 @@
 // the last vertex in any case: behind a group that the context forgets, a run ends before a vertex could see the
 // difference.
 #include <algorithm>
+#include <array>
 #include <cstring>
-#include <map>
+#include <iterator>
+#include <optional>
 #include <utility>
 
 #include "client_lib/block_walk.h"
@@ -26,28 +28,18 @@ using glapi::Recorded;
 /// What a recorded command may be part of.
 enum class Role : std::uint8_t { other, begin, end, vertex, attribute, array_draw };
 
-struct RoleRow {
-    CommandId command;
-    Role role;
-};
-constexpr RoleRow kRoleRows[] = {
-    {CommandId::Begin, Role::begin},           {CommandId::End, Role::end},
-    {CommandId::Vertex2f, Role::vertex},       {CommandId::Vertex3f, Role::vertex},
-    {CommandId::Vertex4f, Role::vertex},       {CommandId::EvalCoord1f, Role::vertex},
-    {CommandId::EvalCoord2f, Role::vertex},    {CommandId::EvalPoint1, Role::vertex},
-    {CommandId::EvalPoint2, Role::vertex},     {CommandId::Color3f, Role::attribute},
-    {CommandId::Color4f, Role::attribute},     {CommandId::Color4ub, Role::attribute},
-    {CommandId::Normal3f, Role::attribute},    {CommandId::SecondaryColor3f, Role::attribute},
-    {CommandId::TexCoord1f, Role::attribute},  {CommandId::TexCoord2f, Role::attribute},
-    {CommandId::TexCoord3f, Role::attribute},  {CommandId::TexCoord4f, Role::attribute},
-    {CommandId::FogCoordf, Role::attribute},   {CommandId::MultiTexCoord4f, Role::attribute},
-    {CommandId::EdgeFlag, Role::attribute},    {CommandId::Indexf, Role::attribute},
-    {CommandId::Materialfv, Role::attribute},  {CommandId::VertexAttrib4f, Role::attribute},
-    {CommandId::DrawArrays, Role::array_draw},
-};
 constexpr auto kRoles = [] {
     std::array<Role, kCommandCount> roles{};
-    for (const RoleRow& row : kRoleRows) roles[static_cast<std::size_t>(row.command)] = row.role;
+    const auto role = [&](CommandId command) -> Role& { return roles[static_cast<std::size_t>(command)]; };
+    for (const RecordedAttribute& row : kRecordedAttributes) role(row.command) = Role::attribute;
+    role(CommandId::Materialfv) = Role::attribute;
+    role(CommandId::Begin) = Role::begin;
+    role(CommandId::End) = Role::end;
+    role(CommandId::DrawArrays) = Role::array_draw;
+    for (const CommandId vertex :
+         {CommandId::Vertex2f, CommandId::Vertex3f, CommandId::Vertex4f, CommandId::EvalCoord1f, CommandId::EvalCoord2f,
+          CommandId::EvalPoint1, CommandId::EvalPoint2})
+        role(vertex) = Role::vertex;
     return roles;
 }();
 
@@ -60,29 +52,18 @@ bool is_vertex(const Recorded& r) {
 bool valid_begin(const Recorded& r) { return glapi::RecordReader(r.payload).get<GLenum>() <= GL_POLYGON; }
 
 constexpr std::uint64_t kMaterialBit = std::uint64_t{1} << 63;
+static_assert(kAttributes < 63);
 
 /// A recorded vertex attribute as a bit; several forms of one attribute have the same.
 std::uint64_t attribute_bit(const Recorded& r) {
-    const auto command = static_cast<CommandId>(r.command);
-    const auto indexed = [&](unsigned first) {
-        return std::uint64_t{1} << (first + (glapi::RecordReader(r.payload).get<std::uint32_t>() & 15));
-    };
-    switch (command) {
-        case CommandId::Color3f:
-        case CommandId::Color4f:
-        case CommandId::Color4ub: return 1;
-        case CommandId::Normal3f: return 2;
-        case CommandId::SecondaryColor3f: return 4;
-        case CommandId::FogCoordf: return 8;
-        case CommandId::EdgeFlag: return 16;
-        case CommandId::Indexf: return 32;
-        case CommandId::VertexAttrib4f: return indexed(16);
-        case CommandId::MultiTexCoord4f: return indexed(32);  // GL_TEXTURE0 is a multiple of 16
-        case CommandId::Materialfv: return kMaterialBit;
-        default: return std::uint64_t{1} << 32;  // the first texture unit's
-    }
+    const auto* row =
+        std::ranges::find(kRecordedAttributes, static_cast<CommandId>(r.command), &RecordedAttribute::command);
+    if (row == std::end(kRecordedAttributes)) return kMaterialBit;
+    const auto& sets = glstate::attribute_command(row->op);
+    const auto index = sets.indexed ? glapi::RecordReader(r.payload).get<std::uint32_t>() % sets.count : 0;
+    return std::uint64_t{1} << (sets.place + index);
 }
-static_assert(GL_TEXTURE0 % 16 == 0);
+static_assert(GL_TEXTURE0 % kTextureUnits == 0);  // so that a texture unit's word gives its number
 
 /// Follows the groups of a recording, and which attributes the driver would have other values for than the context.
 class GroupScan {
@@ -185,40 +166,29 @@ void copy_primitives(const wire::PackBuffer& from, wire::PackBuffer& to) {
 class EffectList {
 public:
     void add(const BlockWalk& walk, std::uint32_t operand) {
-        const Op op = walk.op();
-        const ListRun::Effect effect{op, operand};
-        if (const auto attribute = attribute_of(op)) {
-            last_[{static_cast<unsigned>(*attribute), 0}] = effect;
-        } else if (op == Op::MultiTexCoord4f || op == Op::VertexAttrib4f) {
-            std::uint32_t index;
-            std::memcpy(&index, walk.operand(), sizeof index);
-            last_[{kOthers + static_cast<unsigned>(op), index}] = effect;
-        } else if (op == Op::Indexf) {
-            last_[{kOthers + static_cast<unsigned>(op), 0}] = effect;
-        } else if (op == Op::Material) {
-            Context::PendingMaterial material{};
-            std::memcpy(&material.face, walk.operand(), 4);
-            std::memcpy(&material.pname, walk.operand() + 4, 4);
-            std::memcpy(material.value.data(), walk.operand() + 8, sizeof material.value);
-            materials_.push_back(material);
-        }
+        if (walk.sets_attribute()) last_[place_of(walk.attribute())] = ListRun::Effect{walk.op(), operand};
+        if (walk.op() != Op::Material) return;
+        Context::PendingMaterial material{};
+        std::memcpy(&material.face, walk.operand(), 4);
+        std::memcpy(&material.pname, walk.operand() + 4, 4);
+        std::memcpy(material.value.data(), walk.operand() + 8, sizeof material.value);
+        materials_.push_back(material);
     }
-    void add(EffectList&& later) {
-        for (const auto& [key, effect] : later.last_) last_[key] = effect;
+    void add(const EffectList& later) {
+        for (std::size_t i = 0; i < kAttributes; ++i)
+            if (later.last_[i]) last_[i] = later.last_[i];
         materials_.insert(materials_.end(), later.materials_.begin(), later.materials_.end());
-        later.clear();
     }
-    void clear() { last_.clear(), materials_.clear(); }
     ListRun::Effects take() {
         ListRun::Effects effects;
-        for (const auto& [key, effect] : last_) effects.attributes.push_back(effect);
+        for (const auto& effect : last_)
+            if (effect) effects.attributes.push_back(*effect);
         effects.materials = std::move(materials_);
         return effects;
     }
 
 private:
-    static constexpr unsigned kOthers = 100;
-    std::map<std::pair<unsigned, std::uint32_t>, ListRun::Effect> last_;  ///< by kind, and unit or index
+    std::array<std::optional<ListRun::Effect>, kAttributes> last_;
     std::vector<Context::PendingMaterial> materials_;
 };
 
@@ -227,8 +197,8 @@ void find_effects(ListRun& run) {
     EffectList driver, context, group;
     bool inside = false, from_arrays = false;
     const auto end_group = [&] {
-        if (from_arrays) group.clear();
-        else context.add(std::move(group));
+        if (!from_arrays) context.add(group);
+        group = {};
     };
     BlockWalk walk(run.content, {}, run.content.mark(), {});
     while (walk.next()) {
@@ -255,7 +225,7 @@ std::uint32_t settled_by(const wire::PackBuffer& content) {
     Needs needs;
     BlockWalk walk(content, {}, content.mark(), {});
     while (walk.next() && !makes_vertex(walk.op()))
-        if (const auto attribute = attribute_of(walk.op())) needs.settle(*attribute);
+        if (walk.sets_attribute()) needs.settle(walk.attribute());
     return needs.settled;
 }
 

@@ -8,7 +8,6 @@
 #include <mutex>
 #include <utility>
 
-#include "client_lib/block_sender.h"
 #include "client_lib/block_walk.h"
 #include "client_lib/material.h"
 #include "client_lib/options.h"
@@ -80,7 +79,7 @@ void define_once(Session& session, Node& node, wire::PackBuffer& buffer, const L
 void apply_effects(glstate::State& state, const ListRun& run, const ListRun::Effects& effects) {
     const auto before = state.current;
     for (const auto& effect : effects.attributes)
-        apply_attribute(state, effect.op, run.content.operand_at(effect.operand));
+        glstate::apply_attribute(state, effect.op, run.content.operand_at(effect.operand));
     if (!glstate::same(before, state.current))
         state.ids[static_cast<std::size_t>(Category::current)] = glstate::next_value_id();
     for (const auto& m : effects.materials) assign_material(state, m.face, m.pname, m.value);
@@ -145,22 +144,12 @@ void play_floats(Context& c, const std::byte* at) {
     std::apply([&](auto... f) { kFunction(c, f...); }, floats<N>(at));
 }
 
-void play_multi_tex_coord(Context& c, const std::byte* at) {
-    const auto f = floats<4>(at + 4);
-    api::MultiTexCoord4f(c, GL_TEXTURE0 + word(at), f[0], f[1], f[2], f[3]);
-}
-
 void play_vertex_attrib(Context& c, const std::byte* at) {
     const auto f = floats<4>(at + 4);
     api::VertexAttrib4f(c, word(at), f[0], f[1], f[2], f[3]);
 }
 
-void play_color4ub(Context& c, const std::byte* at) {
-    GLubyte v[4];
-    std::memcpy(v, at, sizeof v);
-    api::Color4ub(c, v[0], v[1], v[2], v[3]);
-}
-
+/// What is more than an attribute: glVertexAttrib may be a vertex.
 struct Player {
     Op op;
     void (*play)(Context&, const std::byte*);
@@ -171,19 +160,6 @@ constexpr Player kPlayers[] = {
     {Op::Vertex2f, play_floats<api::Vertex2f, 2>},
     {Op::Vertex3f, play_floats<api::Vertex3f, 3>},
     {Op::Vertex4f, play_floats<api::Vertex4f, 4>},
-    {Op::Normal3f, play_floats<api::Normal3f, 3>},
-    {Op::Color3f, play_floats<api::Color3f, 3>},
-    {Op::Color4f, play_floats<api::Color4f, 4>},
-    {Op::Color4ub, play_color4ub},
-    {Op::SecondaryColor3f, play_floats<api::SecondaryColor3f, 3>},
-    {Op::TexCoord1f, play_floats<api::TexCoord1f, 1>},
-    {Op::TexCoord2f, play_floats<api::TexCoord2f, 2>},
-    {Op::TexCoord3f, play_floats<api::TexCoord3f, 3>},
-    {Op::TexCoord4f, play_floats<api::TexCoord4f, 4>},
-    {Op::MultiTexCoord4f, play_multi_tex_coord},
-    {Op::FogCoordf, play_floats<api::FogCoordf, 1>},
-    {Op::EdgeFlag, [](Context& c, const std::byte* at) { api::EdgeFlag(c, word(at) != 0); }},
-    {Op::Indexf, play_floats<api::Indexf, 1>},
     {Op::VertexAttrib4f, play_vertex_attrib},
     {Op::Material,
      [](Context& c, const std::byte* at) { api::Materialfv(c, word(at), word(at + 4), floats<4>(at + 8).data()); }},
@@ -195,6 +171,12 @@ constexpr Player kPlayers[] = {
          api::EvalPoint2(c, static_cast<GLint>(word(at)), static_cast<GLint>(word(at + 4)));
      }},
 };
+
+/// An attribute as it stands in the run.
+void play_attribute(Context& c, const BlockWalk& walk) {
+    const std::size_t bytes = operand_bytes_of(walk.op());
+    std::memcpy(c.packer.append_attribute(walk.attribute(), walk.op(), bytes), walk.operand(), bytes);
+}
 
 // What was drawn from arrays is one command each, and an error here; a glBegin is an error by itself.
 void unpack_run(Context& c, const ListRun& run) {
@@ -212,6 +194,7 @@ void unpack_run(Context& c, const ListRun& run) {
         const auto player =
             std::find_if(std::begin(kPlayers), std::end(kPlayers), [&](const Player& p) { return p.op == walk.op(); });
         if (player != std::end(kPlayers)) player->play(c, walk.operand());
+        else if (walk.sets_attribute()) play_attribute(c, walk);
     }
 }
 

@@ -45,7 +45,6 @@ void Packer::begin(std::uint32_t mode) {
     open_ = Primitive{};
     open_.first = mark();
     open_.mode = mode;
-    open_.before = places();
     box = geom::Box{};
     glapi::pack::Begin(*this, mode);
     update_limit();
@@ -62,10 +61,18 @@ void Packer::end() {
     }
     open_.last = mark();
     open_.box = box;
-    open_.after = places();
     block_box_.add(box);
     primitives_.push_back(open_);
     update_limit();
+}
+
+std::byte* Packer::append_attribute(Attribute attribute, glapi::Op op, std::size_t bytes) {
+    if (tight()) make_room();
+    std::byte* at = append(static_cast<std::uint8_t>(op), bytes);
+    last[place_of(attribute)] = at;
+    last_op[place_of(attribute)] = op;
+    update_limit();
+    return at;
 }
 
 std::byte* Packer::append_rare(glapi::Op op, std::size_t bytes) {
@@ -75,16 +82,6 @@ std::byte* Packer::append_rare(glapi::Op op, std::size_t bytes) {
     std::byte* at = append(static_cast<std::uint8_t>(op), bytes);
     update_limit();
     return at;
-}
-
-AttributePlaces Packer::places() const {
-    AttributePlaces places;
-    for (std::size_t i = 0; i < kAttributes; ++i) {
-        if (!last[i]) continue;
-        places.offset[i] = static_cast<std::uint32_t>(last[i] - operands().data());
-        places.op[i] = last_op[i];
-    }
-    return places;
 }
 
 void Packer::reset() {

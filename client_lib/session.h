@@ -31,6 +31,7 @@
 namespace wall::client {
 
 class Context;
+struct SortScratch;  // block_sender.h
 
 /// Ids of contexts, surfaces and objects on the wire: unique in the process, never 0.
 std::uint32_t next_object_id();
@@ -224,15 +225,9 @@ private:
     std::uint32_t id_ = 0;
     std::vector<TileInfo> tiles_;
     std::uint32_t last_request_ = 0;
+    const std::unique_ptr<SortScratch> sort_scratch_;
     IdealTraffic ideal_;          ///< unused without WALLGL_IDEAL
     std::uint32_t prepared_ = 0;  ///< counts towards the next sample of the diff time
 };
-
-/// Tile slots of one node as a mask, from a set of targets.
-struct NodeMask {
-    std::uint32_t node;
-    std::uint64_t slots;
-};
-std::vector<NodeMask> by_node(const TargetSet& set, const SurfaceLayout& layout);
 
 }  // namespace wall::client

@@ -135,7 +135,7 @@ void GLAPIENTRY gl_entry_Color4ub(GLubyte r, GLubyte g, GLubyte b, GLubyte a) {
 }
 void GLAPIENTRY gl_entry_TexCoord2f(GLfloat s, GLfloat t) {
     if (Packer* p = open_packer()) [[likely]]
-        return put_attribute(*p, Attribute::texcoord0, Op::TexCoord2f, s, t);
+        return put_attribute(*p, Attribute::texcoord, Op::TexCoord2f, s, t);
     through_table("glTexCoord2f", &GlTable::TexCoord2f, s, t);
 }
 
@@ -179,15 +179,13 @@ void Color4ub(Context& c, GLubyte r, GLubyte g, GLubyte b, GLubyte a) { pack_col
 void SecondaryColor3f(Context& c, GLfloat r, GLfloat g, GLfloat b) {
     put_attribute(room(c), Attribute::secondary_color, Op::SecondaryColor3f, r, g, b);
 }
-void TexCoord1f(Context& c, GLfloat s) { put_attribute(room(c), Attribute::texcoord0, Op::TexCoord1f, s); }
-void TexCoord2f(Context& c, GLfloat s, GLfloat t) {
-    put_attribute(room(c), Attribute::texcoord0, Op::TexCoord2f, s, t);
-}
+void TexCoord1f(Context& c, GLfloat s) { put_attribute(room(c), Attribute::texcoord, Op::TexCoord1f, s); }
+void TexCoord2f(Context& c, GLfloat s, GLfloat t) { put_attribute(room(c), Attribute::texcoord, Op::TexCoord2f, s, t); }
 void TexCoord3f(Context& c, GLfloat s, GLfloat t, GLfloat r) {
-    put_attribute(room(c), Attribute::texcoord0, Op::TexCoord3f, s, t, r);
+    put_attribute(room(c), Attribute::texcoord, Op::TexCoord3f, s, t, r);
 }
 void TexCoord4f(Context& c, GLfloat s, GLfloat t, GLfloat r, GLfloat q) {
-    put_attribute(room(c), Attribute::texcoord0, Op::TexCoord4f, s, t, r, q);
+    put_attribute(room(c), Attribute::texcoord, Op::TexCoord4f, s, t, r, q);
 }
 void FogCoordf(Context& c, GLfloat coord) { put_attribute(room(c), Attribute::fog_coord, Op::FogCoordf, coord); }
 void EdgeFlag(Context& c, GLboolean flag) {
@@ -201,7 +199,7 @@ void MultiTexCoord4f(Context& c, GLenum unit, GLfloat s, GLfloat t, GLfloat r, G
     if (unit < GL_TEXTURE0 || unit >= GL_TEXTURE0 + kTextureUnits) return c.error(GL_INVALID_ENUM);
     if (unit == GL_TEXTURE0) return TexCoord4f(c, s, t, r, q);
     const std::uint32_t index = unit - GL_TEXTURE0;
-    std::byte* at = c.packer.append_rare(Op::MultiTexCoord4f, 20);
+    std::byte* at = c.packer.append_attribute(Attribute::texcoord + index, Op::MultiTexCoord4f, 20);
     std::memcpy(at, &index, sizeof index);
     const float values[4] = {s, t, r, q};
     std::memcpy(at + 4, values, sizeof values);
@@ -210,13 +208,13 @@ void MultiTexCoord4f(Context& c, GLenum unit, GLfloat s, GLfloat t, GLfloat r, G
 void VertexAttrib4f(Context& c, GLuint index, GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
     if (index >= kVertexAttributes) return c.error(GL_INVALID_VALUE);
     if (index == 0 && c.packer.inside()) return Vertex4f(c, x, y, z, w);
-    std::byte* at = c.packer.append_rare(Op::VertexAttrib4f, 20);
+    std::byte* at = c.packer.append_attribute(Attribute::vertex_attrib + index, Op::VertexAttrib4f, 20);
     std::memcpy(at, &index, sizeof index);
     const float values[4] = {x, y, z, w};
     std::memcpy(at + 4, values, sizeof values);
 }
 
-void Indexf(Context& c, GLfloat index) { std::memcpy(c.packer.append_rare(Op::Indexf, 4), &index, 4); }
+void Indexf(Context& c, GLfloat index) { put_attribute(room(c), Attribute::color_index, Op::Indexf, index); }
 
 void Rectf(Context& c, GLfloat x1, GLfloat y1, GLfloat x2, GLfloat y2) {
     if (!may_draw(c)) return;

@@ -152,7 +152,7 @@ TEST_F(ListRunTest, AttributesBeforeTheFirstVertexNeedNotBeBroughtUpToDate) {
     const std::uint32_t settled = list.items[0].run->settled;
     EXPECT_TRUE(settled >> static_cast<unsigned>(Attribute::color) & 1);
     EXPECT_TRUE(settled >> static_cast<unsigned>(Attribute::normal) & 1);
-    EXPECT_FALSE(settled >> static_cast<unsigned>(Attribute::texcoord0) & 1);
+    EXPECT_FALSE(settled >> static_cast<unsigned>(Attribute::texcoord) & 1);
 }
 
 TEST_F(ListRunTest, TheBoxIsTheSameWhetherAProgramIsUsedOrNot) {
