@@ -13,30 +13,45 @@
 
 namespace wall::client {
 
+/// One node's share of a block that is taken apart.
+struct NodeShare {
+    Node* node = nullptr;
+    wire::PackBuffer* buffer = nullptr;
+    std::uint64_t mask = 0;          ///< of the open Block; 0: none is open
+    std::size_t block_operands = 0;  ///< where the open Block's operands stand
+    wire::PackMark block_start;
+    AttributePlaces sent;                        ///< what the node got of this block's attributes
+    std::int64_t run_first = -1, run_last = -1;  ///< pending run of vertices of the primitive being divided
+    std::uint64_t run_mask = 0;
+};
+
+/// What sorting writes into, kept by the session from block to block, so that no triangle asks for memory. Guarded by
+/// the session's mutex.
+struct SortScratch {
+    std::vector<NodeShare> shares;   ///< by node
+    NodeMasks touched;               ///< by a primitive
+    NodeMasks touched_part;          ///< by a triangle of it
+    std::vector<Target> candidates;  ///< that a primitive's triangles may touch
+    VertexScan vertices;             ///< of the primitive being divided
+};
+
 class BlockSender {
 public:
-    BlockSender(Session& session, Context& context) : session_(session), context_(context), packer_(context.packer) {}
+    BlockSender(Session& session, Context& context, SortScratch& scratch)
+        : session_(session), context_(context), packer_(context.packer), scratch_(scratch) {}
 
     /// Sends the block and leaves `context.state` and all mirrors as they are after it.
     void run();
 
 private:
-    /// One node's share of a block that is taken apart.
-    struct Share {
-        Node* node = nullptr;
-        wire::PackBuffer* buffer = nullptr;
-        std::uint64_t mask = 0;          ///< of the open Block; 0: none is open
-        std::size_t block_operands = 0;  ///< where the open Block's operands stand
-        wire::PackMark block_start;
-        AttributePlaces sent;                        ///< what the node got of this block's attributes
-        std::int64_t run_first = -1, run_last = -1;  ///< pending run of vertices of the primitive being divided
-        std::uint64_t run_mask = 0;
-    };
-    void send_whole(const TargetSet& targets);
-    void send_apart(const TargetSet& targets);
-    void send_primitive(const Primitive& primitive, const TargetSet& targets);
-    bool worth_dividing(const Primitive& primitive, const TargetSet& targets) const;
-    void divide(const Primitive& primitive, const TargetSet& targets);
+    using Share = NodeShare;
+    void send_whole(const NodeMasks& nodes);
+    void send_apart();
+    void send_primitive(const Primitive& primitive, BlockWalk& walk);
+    bool may_be_divided(const Primitive& primitive) const;
+    void divide(const Primitive& primitive, const AttributePlaces& before, const std::optional<PixelRect>& rect);
+    void add_to_run(Share& share, const Primitive& primitive, std::int64_t first, std::int64_t last,
+                    std::uint64_t mask);
     void finish_run(Share& share, const Primitive& primitive);
 
     Share& share_of(std::uint32_t node);
@@ -44,6 +59,7 @@ private:
     void close_block(Share& share);
     void pack_attributes(Share& share, const AttributePlaces& wanted);
     void restore_attribute(Share& share, Attribute attribute);
+    void begin_part(Share& share, const Primitive& primitive);
     void copy(Share& share, wire::PackMark first, wire::PackMark last);
 
     void fold(const std::vector<Node*>& whole);
@@ -51,13 +67,9 @@ private:
     Session& session_;
     Context& context_;
     Packer& packer_;
+    SortScratch& scratch_;
     const SurfaceLayout* layout_ = nullptr;
     Needs needs_;
-    std::vector<Share> shares_;
-    std::vector<PackedVertex> vertices_;  ///< of the primitive being divided
 };
-
-/// Sets the current attribute that a packed attribute command stands for.
-void apply_attribute(glstate::State& state, glapi::Op op, const std::byte* operand);
 
 }  // namespace wall::client

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Walks the packed commands of one primitive, forwards, knowing where each attribute was last set. Pure.
+// Walks packed commands, forwards, knowing where each attribute was last set. Pure.
 #pragma once
 
 #include <array>
 #include <cstring>
-#include <optional>
 
 #include "client_lib/packer.h"
 
@@ -13,23 +12,16 @@ namespace wall::client {
 /// Operands of a geometry command; all of them have a fixed size.
 inline std::size_t operand_bytes_of(glapi::Op op) { return glapi::kOpFixedBytes[static_cast<std::size_t>(op)]; }
 
-inline std::optional<Attribute> attribute_of(glapi::Op op) {
-    using glapi::Op;
-    switch (op) {
-        case Op::Color3f:
-        case Op::Color4f:
-        case Op::Color4ub: return Attribute::color;
-        case Op::Normal3f: return Attribute::normal;
-        case Op::TexCoord1f:
-        case Op::TexCoord2f:
-        case Op::TexCoord3f:
-        case Op::TexCoord4f: return Attribute::texcoord0;
-        case Op::SecondaryColor3f: return Attribute::secondary_color;
-        case Op::FogCoordf: return Attribute::fog_coord;
-        case Op::EdgeFlag: return Attribute::edge_flag;
-        default: return std::nullopt;
+/// Where the latest operands of each attribute stand in a block; kNone: not set in it.
+struct AttributePlaces {
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    std::array<std::uint32_t, kAttributes> offset;
+    std::array<glapi::Op, kAttributes> op;
+    AttributePlaces() {
+        offset.fill(kNone);
+        op.fill(glapi::Op::End);
     }
-}
+};
 
 class BlockWalk {
 public:
@@ -43,17 +35,24 @@ public:
         operand_ = at_.operand_bytes;
         ++at_.commands;
         at_.operand_bytes += operand_bytes_of(op_);
-        if (const auto attribute = attribute_of(op_)) {
-            places_.offset[static_cast<std::size_t>(*attribute)] = static_cast<std::uint32_t>(operand_);
-            places_.op[static_cast<std::size_t>(*attribute)] = op_;
+        if (sets_attribute()) {
+            const std::size_t place = place_of(attribute());
+            places_.offset[place] = static_cast<std::uint32_t>(operand_);
+            places_.op[place] = op_;
         }
         return true;
+    }
+    /// Goes over all commands before `mark`.
+    void go_to(wire::PackMark mark) {
+        while (at_.commands < mark.commands && next()) continue;
     }
 
     glapi::Op op() const { return op_; }
     const std::byte* operand() const { return buffer_.operand_at(operand_); }
     wire::PackMark position() const { return at_; }  ///< behind the command
     const AttributePlaces& places() const { return places_; }
+    bool sets_attribute() const { return glstate::attribute_command(op_).sets_one(); }
+    Attribute attribute() const { return glstate::attribute_set_by(op_, operand()); }  ///< that it sets
     bool is_vertex() const {
         return op_ == glapi::Op::Vertex2f || op_ == glapi::Op::Vertex3f || op_ == glapi::Op::Vertex4f;
     }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "client_lib/block_sender.h"
+#include "client_lib/block_walk.h"
 #include "client_lib/buffer_binding.h"
 #include "client_lib/lists.h"
 #include "client_lib/program_use.h"
@@ -125,8 +125,6 @@ struct DirectLayout {
     std::size_t count = 0;
 };
 
-std::size_t slot_of(Attribute attribute) { return static_cast<std::size_t>(attribute); }
-
 bool direct(const ArraySource& source, DirectArray& out) {
     static constexpr Op kVertices[] = {Op::Vertex2f, Op::Vertex3f, Op::Vertex4f};
     static constexpr Op kTexCoords[] = {Op::TexCoord1f, Op::TexCoord2f, Op::TexCoord3f, Op::TexCoord4f};
@@ -135,12 +133,12 @@ bool direct(const ArraySource& source, DirectArray& out) {
     if (source.count != ArraySource::kNoLimit) return false;
     switch (source.kind) {
         case ArrayKind::vertex: out.op = kVertices[source.size - 2]; return floats && source.size <= 3;
-        case ArrayKind::normal: out.op = Op::Normal3f, out.slot = slot_of(Attribute::normal); return floats;
+        case ArrayKind::normal: out.op = Op::Normal3f, out.slot = place_of(Attribute::normal); return floats;
         case ArrayKind::texcoord:
-            out.op = kTexCoords[source.size - 1], out.slot = slot_of(Attribute::texcoord0);
+            out.op = kTexCoords[source.size - 1], out.slot = place_of(Attribute::texcoord);
             return floats && source.index == 0;
         case ArrayKind::color:
-            out.slot = slot_of(Attribute::color);
+            out.slot = place_of(Attribute::color);
             out.op = !floats ? Op::Color4ub : source.size == 3 ? Op::Color3f : Op::Color4f;
             if (!floats) out.bytes = 4;
             return floats || (source.type == GL_UNSIGNED_BYTE && source.size == 4);
@@ -262,95 +260,47 @@ void pack_direct(Packer& packer, const DirectLayout& layout, const ElementRange&
 class SavedCurrent {
 public:
     SavedCurrent(Context& c, const ArraySet& arrays) : c_(c), arrays_(arrays) {
-        if (c.packer.has_rare() || needs_rare()) c.flush_block();
-        for (std::size_t i = 0; i < arrays.sources().size(); ++i) save(arrays.sources()[i], saved_[i]);
+        for (std::size_t i = 0; i < arrays.sources().size(); ++i)
+            if (const auto attribute = attribute_of(arrays.sources()[i])) save(*attribute, saved_[i]);
     }
     void restore() {
-        for (std::size_t i = 0; i < arrays_.sources().size(); ++i) restore(arrays_.sources()[i], saved_[i]);
+        for (std::size_t i = 0; i < arrays_.sources().size(); ++i)
+            if (const auto attribute = attribute_of(arrays_.sources()[i])) restore(*attribute, saved_[i]);
     }
 
 private:
-    /// A value of the state, or the packed command that is newer.
+    /// The command that sets it again.
     struct Saved {
-        bool packed;
         Op op;
-        glstate::Vec4 value;
+        std::array<std::byte, glstate::kMostAttributeBytes> operand;
     };
-    bool needs_rare() const {
-        return std::any_of(arrays_.sources().begin(), arrays_.sources().end(), [](const ArraySource& s) {
-            return s.kind == ArrayKind::index || s.kind == ArrayKind::attrib ||
-                   (s.kind == ArrayKind::texcoord && s.index != 0);
-        });
-    }
-    static std::optional<Attribute> remembered(const ArraySource& source) {
+    static std::optional<Attribute> attribute_of(const ArraySource& source) {
         switch (source.kind) {
             case ArrayKind::edge_flag: return Attribute::edge_flag;
+            case ArrayKind::index: return Attribute::color_index;
             case ArrayKind::fog_coord: return Attribute::fog_coord;
             case ArrayKind::secondary_color: return Attribute::secondary_color;
             case ArrayKind::color: return Attribute::color;
             case ArrayKind::normal: return Attribute::normal;
-            case ArrayKind::texcoord: return source.index == 0 ? std::optional(Attribute::texcoord0) : std::nullopt;
-            case ArrayKind::index:
-            case ArrayKind::attrib:
+            case ArrayKind::texcoord: return Attribute::texcoord + source.index;
+            case ArrayKind::attrib: return Attribute::vertex_attrib + source.index;
             case ArrayKind::vertex: return std::nullopt;
         }
         return std::nullopt;
     }
-    void save(const ArraySource& source, Saved& out) const {
-        const auto attribute = remembered(source);
-        const std::byte* packed = attribute ? c_.packer.last[slot_of(*attribute)] : nullptr;
-        out.packed = packed != nullptr;
-        if (packed) {
-            out.op = c_.packer.last_op[slot_of(*attribute)];
-            std::memcpy(out.value.data(), packed, glapi::kOpFixedBytes[static_cast<std::size_t>(out.op)]);
+    /// The packed command is newer than the state.
+    void save(Attribute attribute, Saved& out) const {
+        const std::size_t place = place_of(attribute);
+        if (c_.packer.last[place]) {
+            out.op = c_.packer.last_op[place];
+            std::memcpy(out.operand.data(), c_.packer.last[place], operand_bytes_of(out.op));
         } else {
-            out.value = state_value(source);
+            out.op = glstate::write_attribute(c_.state, attribute, out.operand.data());
         }
     }
-    glstate::Vec4 state_value(const ArraySource& source) const {
-        const auto& now = c_.state.current;
-        switch (source.kind) {
-            case ArrayKind::edge_flag: return {now.edge_flag ? 1.0f : 0.0f};
-            case ArrayKind::fog_coord: return {now.fog_coord};
-            case ArrayKind::secondary_color:
-                return {now.secondary_color[0], now.secondary_color[1], now.secondary_color[2]};
-            case ArrayKind::color: return now.color;
-            case ArrayKind::normal: return {now.normal[0], now.normal[1], now.normal[2]};
-            case ArrayKind::texcoord: return now.texcoord[source.index];
-            case ArrayKind::index: return {now.color_index};
-            case ArrayKind::attrib: return now.vertex_attrib[source.index];
-            case ArrayKind::vertex: break;
-        }
-        return {};
-    }
-    void repack(Attribute attribute, const Saved& saved) {
-        Packer& packer = c_.packer;
-        if (packer.next_operand() >= packer.limit) packer.make_room();
-        const std::size_t bytes = glapi::kOpFixedBytes[static_cast<std::size_t>(saved.op)];
-        std::byte* at = packer.next_operand();
-        std::memcpy(at, saved.value.data(), bytes);
-        *--packer.next_opcode() = static_cast<std::byte>(saved.op);
-        packer.next_operand() = at + bytes;
-        packer.last[slot_of(attribute)] = at;
-        packer.last_op[slot_of(attribute)] = saved.op;
-    }
-    void restore(const ArraySource& source, const Saved& saved) {
-        if (saved.packed) return repack(*remembered(source), saved);
-        const auto& v = saved.value;
-        switch (source.kind) {
-            case ArrayKind::edge_flag: return api::EdgeFlag(c_, v[0] != 0 ? GL_TRUE : GL_FALSE);
-            case ArrayKind::fog_coord: return api::FogCoordf(c_, v[0]);
-            case ArrayKind::secondary_color: return api::SecondaryColor3f(c_, v[0], v[1], v[2]);
-            case ArrayKind::color: return api::Color4f(c_, v[0], v[1], v[2], v[3]);
-            case ArrayKind::normal: return api::Normal3f(c_, v[0], v[1], v[2]);
-            case ArrayKind::texcoord:
-                if (source.index != 0)
-                    return api::MultiTexCoord4f(c_, GL_TEXTURE0 + source.index, v[0], v[1], v[2], v[3]);
-                return api::TexCoord4f(c_, v[0], v[1], v[2], v[3]);
-            case ArrayKind::index: return api::Indexf(c_, v[0]);
-            case ArrayKind::attrib: return api::VertexAttrib4f(c_, source.index, v[0], v[1], v[2], v[3]);
-            case ArrayKind::vertex: return;
-        }
+    void restore(Attribute attribute, const Saved& saved) {
+        const std::size_t bytes = operand_bytes_of(saved.op);
+        std::memcpy(c_.packer.append_attribute(attribute, saved.op, bytes), saved.operand.data(), bytes);
     }
 
     Context& c_;
@@ -425,7 +375,8 @@ void ArraySet::add(Context& c, ArrayKind kind, unsigned index, const glstate::Cl
     const auto* base = reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(array.pointer));
     std::size_t count = ArraySource::kNoLimit;
     if (array.buffer) {
-        const auto content = buffer_content(c, array.buffer, static_cast<std::uintptr_t>(array.pointer));
+        readings_.push_back(buffer_content(c, array.buffer, static_cast<std::uintptr_t>(array.pointer)));
+        const auto content = readings_.back().bytes();
         base = content.data();
         count = content.size() < bytes ? 0 : (content.size() - bytes) / stride + 1;
     } else if (!base) {
@@ -469,7 +420,10 @@ void draw_elements(Context& c, GLenum mode, const ElementRange& elements) {
         c.table->Begin(c, mode);
         walk(
             c, elements, [&](GLuint e) { send_element(c, arrays, e); },
-            [&] { c.table->End(c), c.table->Begin(c, mode); });
+            [&] {
+                c.table->End(c);
+                if (record_array_draw(c, true)) c.table->Begin(c, mode);
+            });
         return c.table->End(c);
     }
     if (c.program && !may_draw(c)) return;

@@ -6,8 +6,10 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "client_lib/context.h"
+#include "client_lib/objects/buffer.h"
 
 namespace wall::client {
 
@@ -56,6 +58,7 @@ private:
     std::size_t count_ = 0;
     bool by_command_;
     glstate::Vec4 constant_vertex_{};
+    std::vector<BufferReading> readings_;  ///< of the buffers that the sources lie in
 };
 
 /// Which elements a draw uses: `count` in a row from `first`, or the indices.

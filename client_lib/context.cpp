@@ -5,7 +5,8 @@
 
 #include "client_lib/attribute_stack.h"
 #include "client_lib/block_sender.h"
-#include "client_lib/block_walk.h"
+#include "client_lib/buffer_binding.h"
+#include "client_lib/guard.h"
 #include "client_lib/lists.h"
 #include "client_lib/maps.h"
 #include "client_lib/material.h"
@@ -26,6 +27,7 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextOptions&)
       attributes(std::make_unique<AttributeStacks>()),
       select(std::make_unique<SelectState>()),
       maps(std::make_unique<ContextMaps>()),
+      buffers(std::make_unique<BufferUse>()),
       occlusion(std::make_unique<OcclusionState>()),
       share_(std::move(share)) {
     for (auto& stack : texture_stacks) stack.limit = 10;
@@ -33,8 +35,12 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextOptions&)
 
 Context::~Context() {
     if (!session_) return;
-    if (program) use_program(*this, nullptr);
-    session_->destroy_context(id);
+    try {
+        if (program) use_program(*this, nullptr);
+        session_->destroy_context(id);
+    } catch (...) {
+        caught_exception("the end of a context");
+    }
 }
 
 void Context::bind_surfaces(std::shared_ptr<Surface> draw, std::shared_ptr<Surface> read) {
@@ -93,26 +99,34 @@ void Context::submit_block() {
     if (packer.has_geometry()) settle_modelview();
     if (packer.inside())
         return;  // only commands that are legal inside come here then, and they change nothing that is drawn with
-    if (packer.has_geometry()) session_->submit_block(*this);
-    else fold_attributes();
+    try {
+        if (packer.has_geometry()) session_->submit_block(*this);
+        else fold_attributes();
+    } catch (...) {  // the geometry is lost, what it set is not
+        fold_attributes();
+        forget_block();
+        throw;
+    }
+    forget_block();
+}
+
+void Context::forget_block() {
     packer.reset();
     pending_materials.clear();
 }
 
-// Attributes go from the packed block to `state` (T3.2). Frequent ones are remembered by place; rare ones are found by
-// walking the block.
+void Context::lose() {
+    lost_ = true;
+    forget_block();
+}
+
+// Attributes go from the packed block to `state` (T3.2).
 void Context::fold_attributes() {
     bool changed = false;
-    if (packer.has_rare()) {
-        BlockWalk walk(packer, {}, packer.mark(), {});
-        while (walk.next()) apply_attribute(state, walk.op(), walk.operand());
+    for (std::size_t i = 0; i < kAttributes; ++i) {
+        if (!packer.last[i]) continue;
+        glstate::apply_attribute(state, packer.last_op[i], packer.last[i]);
         changed = true;
-    } else {
-        for (std::size_t i = 0; i < kAttributes; ++i) {
-            if (!packer.last[i]) continue;
-            apply_attribute(state, packer.last_op[i], packer.last[i]);
-            changed = true;
-        }
     }
     if (changed) state.ids[static_cast<std::size_t>(glstate::Category::current)] = glstate::next_value_id();
     folded_material_ = !pending_materials.empty();

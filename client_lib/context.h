@@ -28,6 +28,7 @@ struct SelectState;      // select.h: feedback and selection
 struct Program;          // objects/program.h
 struct OcclusionState;   // occlusion.h
 struct ContextMaps;      // maps.h: evaluator and pixel maps
+struct BufferUse;        // buffer_binding.h
 
 inline constexpr unsigned kTextureUnits = 8;
 inline constexpr unsigned kVertexAttributes = 16;
@@ -88,7 +89,7 @@ public:
     }
 
     Session& session() { return *session_; }
-    ShareGroup& share() { return *share_; }
+    ShareGroup& share() const { return *share_; }
     const std::shared_ptr<ShareGroup>& share_pointer() const { return share_; }
     Surface* draw_surface() const { return draw_.get(); }
     Surface* read_surface() const { return read_.get(); }
@@ -102,6 +103,7 @@ public:
     std::unique_ptr<SelectState> select;
     glapi::ListRecorder& list();  ///< of the list being compiled
     std::unique_ptr<ContextMaps> maps;
+    std::unique_ptr<BufferUse> buffers;
     std::shared_ptr<Program> program;  ///< drawn with; null: fixed function
     std::unique_ptr<OcclusionState> occlusion;
 
@@ -132,8 +134,13 @@ public:
 
     std::atomic<bool> in_use{false};  ///< current in some thread
 
+    /// After a failure of ours in the middle of a command: nothing is drawn with it any more.
+    void lose();
+    bool lost() const { return lost_; }
+
 private:
     void submit_block();
+    void forget_block();
     void first_use();
 
     std::shared_ptr<Session> session_;
@@ -141,6 +148,7 @@ private:
     std::shared_ptr<Surface> draw_, read_;
     GLenum error_ = GL_NO_ERROR;
     bool used_ = false;
+    bool lost_ = false;
     bool folded_material_ = false;
     Projection projection_;
     std::array<std::uint64_t, 3> projection_ids_{};
@@ -155,59 +163,63 @@ void Session::draw(Context& context, const std::optional<PixelRect>& box, const 
 template <class Before, class Pack, class After>
 void Session::draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Before&& before,
                    Pack&& pack, After&& after) {
-    std::lock_guard lock(mutex_);
-    if (!context.draw_surface()) return;
-    const SurfaceLayout& layout = context.draw_layout();
-    for (const auto& [index, slots] : by_node(targets_of(layout, box), layout)) {
-        Node& node = *nodes_[index];
-        if (!node.takes(context.draw_surface()->id)) continue;
-        wire::PackBuffer& buffer = prepare(node, context, needs);
-        before(node, buffer);
-        const std::size_t operands = buffer.operand_bytes(), bytes = buffer.bytes();
-        glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32), 0, 0);
-        const auto start = buffer.mark();
-        pack(buffer);
-        const auto end = buffer.mark();
-        const std::uint32_t counts[2] = {static_cast<std::uint32_t>(end.commands - start.commands),
-                                         static_cast<std::uint32_t>(end.operand_bytes - start.operand_bytes)};
-        std::memcpy(buffer.operand_at(operands + 8), counts, sizeof counts);
-        count_geometry(node, buffer.bytes() - bytes);
-        after(node);
-    }
+    packing([&] {
+        if (!context.draw_surface()) return;
+        const SurfaceLayout& layout = context.draw_layout();
+        for (const auto& [index, slots] : targets_of(layout, box)) {
+            Node& node = *nodes_[index];
+            if (!node.takes(context.draw_surface()->id)) continue;
+            wire::PackBuffer& buffer = prepare(node, context, needs);
+            before(node, buffer);
+            const std::size_t operands = buffer.operand_bytes(), bytes = buffer.bytes();
+            glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32), 0,
+                               0);
+            const auto start = buffer.mark();
+            pack(buffer);
+            const auto end = buffer.mark();
+            const std::uint32_t counts[2] = {static_cast<std::uint32_t>(end.commands - start.commands),
+                                             static_cast<std::uint32_t>(end.operand_bytes - start.operand_bytes)};
+            std::memcpy(buffer.operand_at(operands + 8), counts, sizeof counts);
+            count_geometry(node, buffer.bytes() - bytes);
+            after(node);
+        }
+    });
 }
 
 template <class Pack>
 void Session::on_every_node(Context& context, Pack&& pack) {
-    std::lock_guard lock(mutex_);
-    for (auto& node : nodes_)
-        if (node->alive()) pack(batch(*node, context.id), *node);
+    packing([&] {
+        for (auto& node : nodes_)
+            if (node->alive()) pack(batch(*node, context.id), *node);
+    });
 }
 
 template <class Note, class Pack>
 void Session::synchronize(Context& context, bool at_once, Note&& note, Pack&& pack) {
     context.flush_block();
-    std::lock_guard lock(mutex_);
-    if (const GLenum error = note(sync_); error != GL_NO_ERROR) return context.error(error);
-    if (!group_) return;
-    for (auto& node : nodes_) {
-        if (!node->alive()) continue;
-        pack(batch(*node, context.id));
-        if (at_once) send(*node);
-    }
+    packing([&] {
+        if (const GLenum error = note(sync_); error != GL_NO_ERROR) return context.error(error);
+        if (!group_) return;
+        for (auto& node : nodes_) {
+            if (!node->alive()) continue;
+            pack(batch(*node, context.id));
+            if (at_once) send(*node);
+        }
+    });
 }
 
 template <class Pack>
 std::optional<std::vector<std::byte>> Session::ask(Context& context, Node& node, const char* function, Pack&& pack) {
     context.flush_block();
-    std::uint32_t request = 0;
-    {
-        std::lock_guard lock(mutex_);
-        if (!node.answers() || !context.draw_surface()) return std::nullopt;
-        request = ++last_request_;
-        pack(prepare(node, context), request);
+    const std::uint32_t request = packing([&]() -> std::uint32_t {
+        if (!node.answers() || !context.draw_surface()) return 0;
+        const std::uint32_t next = ++last_request_;
+        pack(prepare(node, context), next);
         count_round_trip(function);
         send(node);
-    }
+        return next;
+    });
+    if (request == 0) return std::nullopt;
     return wait_reply(node, request);
 }
 
@@ -217,8 +229,7 @@ std::vector<std::optional<std::vector<std::byte>>> Session::ask_all(Context& con
                                                                     const char* function, Pack&& pack) {
     context.flush_block();
     std::vector<std::pair<Node*, std::uint32_t>> asked;
-    {
-        std::lock_guard lock(mutex_);
+    packing([&] {
         for (const Target& target : targets) {
             Node& node = node_of(target);
             asked.emplace_back(node.answers() && context.draw_surface() ? &node : nullptr, ++last_request_);
@@ -227,7 +238,7 @@ std::vector<std::optional<std::vector<std::byte>>> Session::ask_all(Context& con
         for (const auto& [node, request] : asked)
             if (node) send(*node);
         if (!targets.empty()) count_round_trip(function);
-    }
+    });
     std::vector<std::optional<std::vector<std::byte>>> answers;
     for (const auto& [node, request] : asked) answers.push_back(node ? wait_reply(*node, request) : std::nullopt);
     return answers;

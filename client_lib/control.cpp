@@ -127,7 +127,7 @@ Result<Opened> greet(const Hello& hello, const std::string& address, millisecond
 }
 
 std::string environment(const char* name) {
-    const char* value = getenv(name);
+    const char* value = secure_getenv(name);
     return value ? value : "";
 }
 

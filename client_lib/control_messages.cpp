@@ -5,6 +5,7 @@
 #include <protozero/pbf_writer.hpp>
 
 #include "common/wire/limits.h"
+#include "gen/glapi/wire.gen.h"
 
 namespace wall::client {
 namespace {
@@ -303,12 +304,13 @@ std::string encode_member_leaves(std::uint32_t rank) {
                        [&](pbf_writer& out) { out.add_uint32(1, rank); });  // an empty message would not be written
 }
 
-std::string encode_data_hello(std::uint32_t session, std::string_view ticket) {
+std::string encode_data_hello(std::uint32_t session, std::string_view ticket, std::uint32_t rank) {
     std::string bytes;
     pbf_writer out(bytes);
-    out.add_uint32(1, wire::kProtocolVersion);
+    out.add_uint32(1, glapi::kStreamVersion);
     out.add_uint32(2, session);
     out.add_bytes(3, ticket.data(), ticket.size());
+    out.add_uint32(4, rank);
     return bytes;
 }
 

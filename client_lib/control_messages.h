@@ -107,6 +107,6 @@ std::string encode_member_leaves(std::uint32_t rank);
 Result<FromWalld> decode_from_walld(std::string_view envelope);
 
 /// The first message on a data stream, for NodeStream::open.
-std::string encode_data_hello(std::uint32_t session, std::string_view ticket);
+std::string encode_data_hello(std::uint32_t session, std::string_view ticket, std::uint32_t rank);
 
 }  // namespace wall::client

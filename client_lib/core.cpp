@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "client_lib/context.h"
+#include "client_lib/guard.h"
 #include "client_lib/log.h"
 #include "client_lib/process.h"
 #include "client_lib/share_group.h"
@@ -38,11 +39,15 @@ void release() {
         last->context->session().flush(nullptr, false);
         last->context->in_use = false;
     }
-    tls_context = nullptr;
-    tls_packer = closed_packer();
+    go_dark();
 }
 
 }  // namespace
+
+void go_dark() {
+    tls_context = nullptr;
+    tls_packer = closed_packer();
+}
 
 std::shared_ptr<Surface> create_surface(SurfaceOptions options) {
     auto id = options.visible ? next_window_id() : next_object_id();
@@ -52,8 +57,12 @@ std::shared_ptr<Surface> create_surface(SurfaceOptions options) {
         id = next_object_id();
     }
     return std::shared_ptr<Surface>(new Surface(id, std::move(options)), [](Surface* surface) {
-        if (surface->opened)
-            if (auto session = Session::get_if_open()) session->close_surface(*surface);
+        try {
+            if (surface->opened)
+                if (auto session = Session::get_if_open()) session->close_surface(*surface);
+        } catch (...) {
+            caught_exception("the end of a surface");
+        }
         delete surface;
     });
 }
@@ -92,6 +101,10 @@ bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface> dra
         at_thread_end(release);
     }
     *current = {std::move(context), std::move(draw), std::move(read)};
+    if (current->context->lost()) {
+        go_dark();
+        return true;
+    }
     tls_context = current->context.get();
     tls_packer = &current->context->packer;
     return true;

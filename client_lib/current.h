@@ -13,4 +13,7 @@ class Packer;
 extern constinit thread_local Context* tls_context WALL_TLS;  ///< null: no context is current in this thread
 extern constinit thread_local Packer* tls_packer WALL_TLS;  ///< never null: a closed packer when no context is current
 
+/// The calling thread's commands do nothing from now on, as if no context were current.
+void go_dark();
+
 }  // namespace wall::client

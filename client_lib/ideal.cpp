@@ -22,9 +22,10 @@ class Division {
 public:
     Division(const Packer& packer, const Primitive& primitive, const Topology& topology, const Projection& projection,
              const SurfaceLayout& layout)
-        : topology_(topology), vertices_(scan_vertices(packer, primitive, projection)) {
+        : topology_(topology) {
+        vertices_.scan(packer, primitive, {}, projection);
         for (std::size_t v = topology.fan ? 1 : 0; v + topology.size <= vertices_.size(); v += topology.step)
-            touched_.push_back(by_node(targets_of(layout, window_rect(topology, vertices_, v, projection)), layout));
+            touched_.push_back(targets_of(layout, window_rect(topology, vertices_, v, projection)));
     }
     /// Bytes that this node needs; 0: none of the triangles touches it.
     std::size_t bytes_for(std::uint32_t node) const {
@@ -39,14 +40,14 @@ public:
         }
         std::size_t bytes = 0;
         for (std::size_t i = 0; i < vertices_.size(); ++i)
-            if (needed[i]) bytes += bytes_between(vertices_[i].lead, vertices_[i].end);
+            if (needed[i]) bytes += bytes_between(vertices_.lead(i), vertices_.lead(i + 1));
         return bytes > 0 ? bytes + kBeginEnd : 0;
     }
 
 private:
     const Topology& topology_;
-    const std::vector<PackedVertex> vertices_;
-    std::vector<std::vector<NodeMask>> touched_;  ///< by triangle
+    VertexScan vertices_;
+    std::vector<NodeMasks> touched_;  ///< by triangle
 };
 
 }  // namespace
@@ -60,7 +61,7 @@ IdealBlock ideal_block(const Packer& packer, const Projection& projection, const
     };
     for (const Primitive& primitive : packer.primitives()) {
         const auto topology = topology_of(primitive.mode);
-        const auto nodes = by_node(targets_of(layout, project(projection, primitive.box)), layout);
+        const auto nodes = targets_of(layout, project(projection, primitive.box));
         if (!topology || nodes.size() < 2 || !primitive.divisible) {
             for (const NodeMask& node : nodes) add(node.node, bytes_between(primitive.first, primitive.last));
             continue;

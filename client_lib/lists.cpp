@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
-#include <map>
+#include <list>
 #include <mutex>
 #include <utility>
 
-#include "client_lib/block_sender.h"
 #include "client_lib/block_walk.h"
 #include "client_lib/material.h"
 #include "client_lib/options.h"
@@ -31,12 +30,12 @@ public:
         static auto* runs = new DeadRuns();
         return *runs;
     }
-    void add(std::uint32_t id) {
+    void add(std::list<std::uint32_t>& ids) {
         std::lock_guard lock(mutex_);
-        ids_.push_back(id);
+        ids_.splice(ids_.end(), ids);
         any_.store(true, std::memory_order_release);
     }
-    std::vector<std::uint32_t> take() {
+    std::list<std::uint32_t> take() {
         if (!any_.load(std::memory_order_acquire)) return {};
         std::lock_guard lock(mutex_);
         any_.store(false, std::memory_order_relaxed);
@@ -45,143 +44,9 @@ public:
 
 private:
     std::mutex mutex_;
-    std::vector<std::uint32_t> ids_;
+    std::list<std::uint32_t> ids_;
     std::atomic<bool> any_{false};
 };
-
-// ---- taking a recording apart ----
-
-/// What a recorded command may be part of.
-enum class Role : std::uint8_t { other, begin, end, vertex, attribute, array_draw };
-
-Role role_of(std::uint16_t command) {
-    struct Row {
-        CommandId command;
-        Role role;
-    };
-    static constexpr Row kRows[] = {
-        {CommandId::Begin, Role::begin},           {CommandId::End, Role::end},
-        {CommandId::Vertex2f, Role::vertex},       {CommandId::Vertex3f, Role::vertex},
-        {CommandId::Vertex4f, Role::vertex},       {CommandId::EvalCoord1f, Role::vertex},
-        {CommandId::EvalCoord2f, Role::vertex},    {CommandId::EvalPoint1, Role::vertex},
-        {CommandId::EvalPoint2, Role::vertex},     {CommandId::Color3f, Role::attribute},
-        {CommandId::Color4f, Role::attribute},     {CommandId::Color4ub, Role::attribute},
-        {CommandId::Normal3f, Role::attribute},    {CommandId::SecondaryColor3f, Role::attribute},
-        {CommandId::TexCoord1f, Role::attribute},  {CommandId::TexCoord2f, Role::attribute},
-        {CommandId::TexCoord3f, Role::attribute},  {CommandId::TexCoord4f, Role::attribute},
-        {CommandId::FogCoordf, Role::attribute},   {CommandId::MultiTexCoord4f, Role::attribute},
-        {CommandId::EdgeFlag, Role::attribute},    {CommandId::Indexf, Role::attribute},
-        {CommandId::Materialfv, Role::attribute},  {CommandId::VertexAttrib4f, Role::attribute},
-        {CommandId::DrawArrays, Role::array_draw},
-    };
-    static constexpr auto kRoles = [] {
-        std::array<Role, kCommandCount> roles{};
-        for (const Row& row : kRows) roles[static_cast<std::size_t>(row.command)] = row.role;
-        return roles;
-    }();
-    return kRoles[command];
-}
-
-bool valid_begin(const Recorded& r) { return glapi::RecordReader(r.payload).get<GLenum>() <= GL_POLYGON; }
-
-/// Bytes from the start of `stream` that are whole primitives and what may lie between them.
-std::size_t whole_primitives(std::span<const std::byte> stream) {
-    std::size_t whole = 0;
-    bool inside = false;
-    glapi::for_each_record(stream, [&](const Recorded& r) {
-        const Role role = role_of(r.command);
-        const bool starts = role == Role::array_draw || (role == Role::begin && valid_begin(r));
-        const bool fits = role == Role::attribute || (inside ? role == Role::vertex || role == Role::end : starts);
-        if (!fits) return false;
-        if (role == Role::begin || role == Role::end) inside = role == Role::begin;
-        if (!inside) whole = static_cast<std::size_t>(r.payload.data() + r.payload.size() - stream.data());
-        return true;
-    });
-    return whole;
-}
-
-std::size_t first_record_bytes(std::span<const std::byte> stream) {
-    std::size_t bytes = 0;
-    glapi::for_each_record(stream, [&](const Recorded& r) {
-        bytes = static_cast<std::size_t>(r.payload.data() + r.payload.size() - stream.data());
-        return false;
-    });
-    return bytes;
-}
-
-/// The last command of each attribute.
-std::vector<ListRun::Effect> effects_of(const wire::PackBuffer& content) {
-    std::map<std::pair<unsigned, std::uint32_t>, ListRun::Effect> last;  // by kind and unit or index
-    BlockWalk walk(content, {}, content.mark(), {});
-    while (walk.next()) {
-        const Op op = walk.op();
-        const ListRun::Effect effect{op, static_cast<std::uint32_t>(walk.operand() - content.operands().data())};
-        if (const auto attribute = attribute_of(op)) {
-            last[{static_cast<unsigned>(*attribute), 0}] = effect;
-        } else if (op == Op::MultiTexCoord4f || op == Op::VertexAttrib4f) {
-            std::uint32_t index;
-            std::memcpy(&index, walk.operand(), sizeof index);
-            last[{100 + static_cast<unsigned>(op), index}] = effect;
-        } else if (op == Op::Indexf) {
-            last[{100 + static_cast<unsigned>(op), 0}] = effect;
-        }
-    }
-    std::vector<ListRun::Effect> effects;
-    for (const auto& [key, effect] : last) effects.push_back(effect);
-    return effects;
-}
-
-/// Replays recorded geometry into a packer of its own.
-class RunPacker {
-public:
-    explicit RunPacker(Context& context) : context_(context) { scratch_.set_closed(true); }
-
-    /// Null if it draws nothing.
-    std::unique_ptr<ListRun> pack(std::span<const std::byte> recorded) {
-        enter();
-        glapi::for_each_record(recorded,
-                               [&](const Recorded& r) { return replay_command(context_, r.command, r.payload), true; });
-        leave();
-        std::unique_ptr<ListRun> run;
-        if (scratch_.has_geometry()) run = take();
-        scratch_.reset();
-        materials_.clear();
-        context_.lists->array_draws.clear();
-        return run;
-    }
-
-private:
-    void enter() {
-        std::swap(context_.packer, scratch_);
-        std::swap(context_.pending_materials, materials_);
-        context_.lists->packing = true;
-    }
-    void leave() {
-        std::swap(context_.packer, scratch_);
-        std::swap(context_.pending_materials, materials_);
-        context_.lists->packing = false;
-    }
-    std::unique_ptr<ListRun> take() {
-        auto run = std::make_unique<ListRun>();
-        run->content = wire::PackBuffer(scratch_.operand_bytes() + 4);
-        run->content.append(scratch_, {}, scratch_.mark());
-        run->box = scratch_.block_box();
-        run->effects = effects_of(run->content);
-        run->materials = std::move(materials_);
-        run->array_draws = std::move(context_.lists->array_draws);
-        return run;
-    }
-
-    Context& context_;
-    Packer scratch_;
-    std::vector<Context::PendingMaterial> materials_;
-};
-
-void add_replay(DisplayList& list, std::span<const std::byte> recorded) {
-    if (list.items.empty() || list.items.back().run) list.items.emplace_back();
-    auto& replay = list.items.back().replay;
-    replay.insert(replay.end(), recorded.begin(), recorded.end());
-}
 
 // ---- drawing a run ----
 
@@ -211,12 +76,13 @@ void define_once(Session& session, Node& node, wire::PackBuffer& buffer, const L
     session.count_objects(node, buffer.bytes() - before);
 }
 
-void apply_effects(glstate::State& state, const ListRun& run) {
+void apply_effects(glstate::State& state, const ListRun& run, const ListRun::Effects& effects) {
     const auto before = state.current;
-    for (const auto& effect : run.effects) apply_attribute(state, effect.op, run.content.operand_at(effect.operand));
+    for (const auto& effect : effects.attributes)
+        glstate::apply_attribute(state, effect.op, run.content.operand_at(effect.operand));
     if (!glstate::same(before, state.current))
         state.ids[static_cast<std::size_t>(Category::current)] = glstate::next_value_id();
-    for (const auto& m : run.materials) assign_material(state, m.face, m.pname, m.value);
+    for (const auto& m : effects.materials) assign_material(state, m.face, m.pname, m.value);
 }
 
 /// The nodes that ran it have its effects; the others get the difference when they next need it.
@@ -226,25 +92,34 @@ void follow(Context& c, const std::vector<Node*>& nodes, const ListRun& run) {
         const auto mirror = node->mirrors.find(c.id);
         if (mirror == node->mirrors.end()) continue;
         glstate::State& state = mirror->second.state;
-        apply_effects(state, run);
+        apply_effects(state, run, run.in_driver);
         unify_id(state, c.state, Category::current);
-        if (!run.materials.empty()) unify_id(state, c.state, Category::material);
+        if (!run.in_driver.materials.empty()) unify_id(state, c.state, Category::material);
     }
+}
+
+Needs needs_of_run(const Context& c, const ListRun& run) {
+    if (!run.in_driver.materials.empty()) return {};
+    Needs needs = needs_of_geometry(c.state);
+    needs.settled |= run.settled;
+    return needs;
 }
 
 void call_run(Context& c, const ListRun& run) {
     c.flush_block();
     c.settle_modelview();
-    if (!c.draw_surface() || !may_draw(c)) return apply_effects(c.state, run);
+    if (!c.draw_surface() || !may_draw(c)) return apply_effects(c.state, run, run.in_context);
     forget_dead_runs(c);
-    const auto box = options().broadcast ? std::nullopt : project(c.projection(), run.box);
+    // A program's shader puts the vertices anywhere.
+    const bool bounded = !options().broadcast && !c.program;
+    const auto box = bounded ? project(c.projection(), run.box) : std::nullopt;
     std::vector<Node*> reached;
-    const Needs needs = run.materials.empty() ? needs_of_geometry(c.state) : Needs{};
     c.session().draw(
-        c, box, needs, [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session(), node, buffer, run); },
+        c, box, needs_of_run(c, run),
+        [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session(), node, buffer, run); },
         [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
         [&](Node& node) { reached.push_back(&node); });
-    apply_effects(c.state, run);
+    apply_effects(c.state, run, run.in_context);
     follow(c, reached, run);
 }
 
@@ -269,22 +144,12 @@ void play_floats(Context& c, const std::byte* at) {
     std::apply([&](auto... f) { kFunction(c, f...); }, floats<N>(at));
 }
 
-void play_multi_tex_coord(Context& c, const std::byte* at) {
-    const auto f = floats<4>(at + 4);
-    api::MultiTexCoord4f(c, GL_TEXTURE0 + word(at), f[0], f[1], f[2], f[3]);
-}
-
 void play_vertex_attrib(Context& c, const std::byte* at) {
     const auto f = floats<4>(at + 4);
     api::VertexAttrib4f(c, word(at), f[0], f[1], f[2], f[3]);
 }
 
-void play_color4ub(Context& c, const std::byte* at) {
-    GLubyte v[4];
-    std::memcpy(v, at, sizeof v);
-    api::Color4ub(c, v[0], v[1], v[2], v[3]);
-}
-
+/// What is more than an attribute: glVertexAttrib may be a vertex.
 struct Player {
     Op op;
     void (*play)(Context&, const std::byte*);
@@ -295,19 +160,6 @@ constexpr Player kPlayers[] = {
     {Op::Vertex2f, play_floats<api::Vertex2f, 2>},
     {Op::Vertex3f, play_floats<api::Vertex3f, 3>},
     {Op::Vertex4f, play_floats<api::Vertex4f, 4>},
-    {Op::Normal3f, play_floats<api::Normal3f, 3>},
-    {Op::Color3f, play_floats<api::Color3f, 3>},
-    {Op::Color4f, play_floats<api::Color4f, 4>},
-    {Op::Color4ub, play_color4ub},
-    {Op::SecondaryColor3f, play_floats<api::SecondaryColor3f, 3>},
-    {Op::TexCoord1f, play_floats<api::TexCoord1f, 1>},
-    {Op::TexCoord2f, play_floats<api::TexCoord2f, 2>},
-    {Op::TexCoord3f, play_floats<api::TexCoord3f, 3>},
-    {Op::TexCoord4f, play_floats<api::TexCoord4f, 4>},
-    {Op::MultiTexCoord4f, play_multi_tex_coord},
-    {Op::FogCoordf, play_floats<api::FogCoordf, 1>},
-    {Op::EdgeFlag, [](Context& c, const std::byte* at) { api::EdgeFlag(c, word(at) != 0); }},
-    {Op::Indexf, play_floats<api::Indexf, 1>},
     {Op::VertexAttrib4f, play_vertex_attrib},
     {Op::Material,
      [](Context& c, const std::byte* at) { api::Materialfv(c, word(at), word(at + 4), floats<4>(at + 8).data()); }},
@@ -319,6 +171,12 @@ constexpr Player kPlayers[] = {
          api::EvalPoint2(c, static_cast<GLint>(word(at)), static_cast<GLint>(word(at + 4)));
      }},
 };
+
+/// An attribute as it stands in the run.
+void play_attribute(Context& c, const BlockWalk& walk) {
+    const std::size_t bytes = operand_bytes_of(walk.op());
+    std::memcpy(c.packer.append_attribute(walk.attribute(), walk.op(), bytes), walk.operand(), bytes);
+}
 
 // What was drawn from arrays is one command each, and an error here; a glBegin is an error by itself.
 void unpack_run(Context& c, const ListRun& run) {
@@ -336,6 +194,7 @@ void unpack_run(Context& c, const ListRun& run) {
         const auto player =
             std::find_if(std::begin(kPlayers), std::end(kPlayers), [&](const Player& p) { return p.op == walk.op(); });
         if (player != std::end(kPlayers)) player->play(c, walk.operand());
+        else if (walk.sets_attribute()) play_attribute(c, walk);
     }
 }
 
@@ -347,39 +206,12 @@ void replay_commands(Context& c, std::span<const std::byte> recorded) {
 
 glapi::ListRecorder& Context::list() { return lists->recorder; }
 
-std::shared_ptr<DisplayList> compile_list(Context& context, std::span<const std::byte> recording) {
-    auto list = std::make_shared<DisplayList>();
-    RunPacker packer(context);
-    while (!recording.empty()) {
-        std::size_t bytes = whole_primitives(recording);
-        auto run = bytes == 0 ? nullptr : packer.pack(recording.first(bytes));
-        if (bytes == 0) bytes = first_record_bytes(recording);
-        if (run) list->items.push_back({std::move(run), {}});
-        else add_replay(*list, recording.first(bytes));
-        recording = recording.subspan(bytes);
-    }
-    return list;
-}
-
 void execute_list(Context& c, const DisplayList& list) {
     for (const ListItem& item : list.items) {
         if (!item.run) replay_commands(c, item.replay);
         else if (c.packer.inside()) unpack_run(c, *item.run);
         else call_run(c, *item.run);
     }
-}
-
-bool record_array_draw(Context& c, bool draws) {
-    const bool refused = c.packer.inside();
-    c.list().record(static_cast<std::uint16_t>(CommandId::DrawArrays), static_cast<std::uint32_t>(draws && !refused));
-    if (refused) c.error(GL_INVALID_OPERATION);
-    return !refused;
-}
-
-void replay_array_draw(Context& c, std::span<const std::byte> payload) {
-    const bool draws = glapi::RecordReader(payload).get<std::uint32_t>() != 0;
-    if (c.packer.inside()) return c.error(GL_INVALID_OPERATION);
-    if (c.lists->packing && draws) c.lists->array_draws.push_back(c.packer.commands());
 }
 
 void forget_dead_runs(Context& c) {
@@ -391,7 +223,8 @@ void forget_dead_runs(Context& c) {
     });
 }
 
-ListRun::ListRun() : id(next_object_id()) {}
-ListRun::~ListRun() { DeadRuns::get().add(id); }
+// What its end needs is made now.
+ListRun::ListRun() : id(next_object_id()), obituary_{id} { DeadRuns::get(); }
+ListRun::~ListRun() { DeadRuns::get().add(obituary_); }
 
 }  // namespace wall::client

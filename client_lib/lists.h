@@ -7,6 +7,7 @@
 // Lists belong to the share group; they do not change once they are there. A context's thread.
 #pragma once
 
+#include <list>
 #include <memory>
 #include <vector>
 
@@ -32,9 +33,18 @@ struct ListRun {
         glapi::Op op;
         std::uint32_t operand;
     };
-    std::vector<Effect> effects;
-    std::vector<Context::PendingMaterial> materials;  ///< in order
+    /// What calling it leaves behind.
+    struct Effects {
+        std::vector<Effect> attributes;
+        std::vector<Context::PendingMaterial> materials;  ///< in order
+    };
+    Effects in_driver;                     ///< the driver of a node that ran it holds these
+    Effects in_context;                    ///< the program may see these (list_compile.cpp has the difference)
+    std::uint32_t settled = 0;             ///< attributes that it sets before its first vertex, as in Needs::settled
     std::vector<std::size_t> array_draws;  ///< commands of `content`, each the Begin of what was drawn from arrays
+
+private:
+    std::list<std::uint32_t> obituary_;  ///< its id, for DeadRuns: a destructor must not ask for memory
 };
 
 /// A run, or commands to be replayed.

@@ -39,7 +39,7 @@ int level_of(std::string_view name) {
 int detail::read_log_environment() {
     std::lock_guard lock(environment_mutex);
     if (log_level >= 0) return log_level;
-    const char* text = getenv("WALLGL_LOG");
+    const char* text = secure_getenv("WALLGL_LOG");
     const std::string_view value = text ? text : "";
     const auto colon = value.find(':');
     if (colon != value.npos) {

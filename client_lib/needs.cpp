@@ -53,8 +53,7 @@ Needs needs_of_geometry(const glstate::State& state) {
 Needs needs_of_block(const glstate::State& state, const Packer& packer) {
     if (packer.has_rare() || packer.primitives().empty()) return {};
     Needs needs = needs_of_geometry(state);
-    const Primitive& first = packer.primitives().front();
-    BlockWalk walk(packer, first.first, first.last, first.before);
+    BlockWalk walk(packer, {}, packer.primitives().front().last, {});
     while (walk.next() && !walk.is_vertex()) {
     }
     for (std::size_t i = 0; i < kAttributes; ++i)

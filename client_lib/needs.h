@@ -12,6 +12,7 @@ namespace wall::client {
 struct Needs {
     glstate::CategoryMask categories = glstate::kSentCategories;
     std::uint32_t settled = 0;  ///< current attributes that need not be sent, a bit for each Attribute
+    static_assert(kAttributes <= 32);
 
     bool waits(Attribute a) const { return settled >> static_cast<unsigned>(a) & 1; }
     void settle(Attribute a) { settled |= 1u << static_cast<unsigned>(a); }
@@ -37,26 +38,13 @@ void unify_id(glstate::State& mirror, const glstate::State& state, glstate::Cate
 
 namespace detail {
 
-/// The remembered attribute that value i of element E is, or kCount.
-template <class E>
-constexpr Attribute attribute_of_element(unsigned i) {
-    namespace el = glstate::el;
-    if (E::id == el::color::id) return Attribute::color;
-    if (E::id == el::normal::id) return Attribute::normal;
-    if (E::id == el::texcoord::id && i == 0) return Attribute::texcoord0;
-    if (E::id == el::secondary_color::id) return Attribute::secondary_color;
-    if (E::id == el::fog_coord::id) return Attribute::fog_coord;
-    if (E::id == el::edge_flag::id) return Attribute::edge_flag;
-    return Attribute::kCount;
-}
-
 template <class Sink, class... E>
 bool diff_attributes(glstate::ElementList<E...>, glstate::State& mirror, const glstate::State& state,
                      const Needs& needs, Sink& sink) {
     bool equal = true;
     const auto one = [&]<class Element>(unsigned i) {
         if (glstate::same(Element::ref(mirror, i), Element::ref(const_cast<glstate::State&>(state), i))) return;
-        if (needs.waits(attribute_of_element<Element>(i))) {
+        if (needs.waits(glstate::attribute_of_element<Element>(i))) {
             equal = false;
             return;
         }

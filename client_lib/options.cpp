@@ -8,7 +8,7 @@ namespace wall::client {
 namespace {
 
 bool flag(const char* name) {
-    const char* value = std::getenv(name);
+    const char* value = secure_getenv(name);
     return value && std::strcmp(value, "1") == 0;
 }
 

@@ -40,18 +40,19 @@ void Packer::make_room() {
 
 void Packer::begin(std::uint32_t mode) {
     if (tight()) make_room();
+    if (primitives_.size() == primitives_.capacity()) primitives_.reserve(2 * primitives_.size() + kSlack);
     inside_ = true;
     open_ = Primitive{};
     open_.first = mark();
     open_.mode = mode;
-    open_.before = places();
     box = geom::Box{};
     glapi::pack::Begin(*this, mode);
     update_limit();
 }
 
+// There is room for it: whoever packed before left some, and begin() made place for the primitive. So an end cannot
+// fail for want of memory, and the program and this are always of one mind about what is inside.
 void Packer::end() {
-    if (tight()) make_room();
     inside_ = false;
     glapi::pack::End(*this);
     if (box.empty()) {  // no vertex: nothing to draw, but its attributes count
@@ -60,10 +61,18 @@ void Packer::end() {
     }
     open_.last = mark();
     open_.box = box;
-    open_.after = places();
     block_box_.add(box);
     primitives_.push_back(open_);
     update_limit();
+}
+
+std::byte* Packer::append_attribute(Attribute attribute, glapi::Op op, std::size_t bytes) {
+    if (tight()) make_room();
+    std::byte* at = append(static_cast<std::uint8_t>(op), bytes);
+    last[place_of(attribute)] = at;
+    last_op[place_of(attribute)] = op;
+    update_limit();
+    return at;
 }
 
 std::byte* Packer::append_rare(glapi::Op op, std::size_t bytes) {
@@ -73,16 +82,6 @@ std::byte* Packer::append_rare(glapi::Op op, std::size_t bytes) {
     std::byte* at = append(static_cast<std::uint8_t>(op), bytes);
     update_limit();
     return at;
-}
-
-AttributePlaces Packer::places() const {
-    AttributePlaces places;
-    for (std::size_t i = 0; i < kAttributes; ++i) {
-        if (!last[i]) continue;
-        places.offset[i] = static_cast<std::uint32_t>(last[i] - operands().data());
-        places.op[i] = last_op[i];
-    }
-    return places;
 }
 
 void Packer::reset() {

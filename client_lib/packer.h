@@ -13,32 +13,20 @@
 #include "common/geom/box.h"
 #include "common/wire/pack_buffer.h"
 #include "gen/glapi/wire.gen.h"
+#include "gen/glstate/attributes.gen.h"
 
 namespace wall::client {
 
-/// Attributes whose last packed place is remembered per primitive, so that primitives can be taken apart.
-enum class Attribute : std::uint8_t { color, normal, texcoord0, secondary_color, fog_coord, edge_flag, kCount };
-inline constexpr std::size_t kAttributes = static_cast<std::size_t>(Attribute::kCount);
-
-/// Where the latest operand of each attribute stands in the packer's operands; kNone: not set in this block.
-struct AttributePlaces {
-    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-    std::array<std::uint32_t, kAttributes> offset;
-    std::array<glapi::Op, kAttributes> op;
-    AttributePlaces() {
-        offset.fill(kNone);
-        op.fill(glapi::Op::End);
-    }
-};
+using glstate::Attribute;
+using glstate::kAttributes;
+using glstate::place_of;
 
 /// One glBegin .. glEnd.
 struct Primitive {
     wire::PackMark first, last;  ///< Begin's opcode; behind End's
     std::uint32_t mode = 0;      ///< GL_POINTS ...
-    bool divisible = true;       ///< holds only vertices and tracked attributes, so that it may be cut between nodes
+    bool divisible = true;       ///< holds only vertices and attributes, so that it may be cut between nodes
     geom::Box box;               ///< object space
-    AttributePlaces before;      ///< attributes as they are at Begin
-    AttributePlaces after;       ///< and at End
 };
 
 class Packer : public wire::PackBuffer {
@@ -52,7 +40,8 @@ public:
     /// An entry point takes its slow path once `next_operand` has reached this; null closes the packer.
     const std::byte* limit = nullptr;
     geom::Box box;  ///< of the open primitive
-    std::array<const std::byte*, kAttributes> last{};
+    std::array<const std::byte*, kAttributes>
+        last{};  ///< the latest operands of each attribute; null: not in this block
     std::array<glapi::Op, kAttributes> last_op{};
 
     // ---- the rest ----
@@ -62,7 +51,9 @@ public:
     bool inside() const { return inside_; }
     std::uint32_t mode() const { return open_.mode; }
 
-    /// Appends a command that is not a plain vertex or tracked attribute: what surrounds it stays in one piece.
+    /// Appends an attribute's command; the caller fills in its operands.
+    std::byte* append_attribute(Attribute attribute, glapi::Op op, std::size_t bytes);
+    /// Appends a command that is no plain vertex and no attribute: what surrounds it stays in one piece.
     std::byte* append_rare(glapi::Op op, std::size_t bytes);
     /// Geometry of unknown extent was packed (evaluators).
     void mark_unbounded() { box.make_unbounded(); }
@@ -71,7 +62,6 @@ public:
     bool has_rare() const { return rare_; }
     const std::vector<Primitive>& primitives() const { return primitives_; }
     const geom::Box& block_box() const { return block_box_; }
-    AttributePlaces places() const;
 
     /// More room, called by slow paths; keeps the remembered places.
     void make_room();

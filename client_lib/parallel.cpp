@@ -33,7 +33,7 @@ Result<Parallel> parse_parallel(std::string_view text) {
 
 const std::optional<Parallel>& parallel() {
     static const auto* read = [] {  // never destroyed: threads may outlive static destructors
-        const char* value = std::getenv("WALLGL_PARALLEL");
+        const char* value = secure_getenv("WALLGL_PARALLEL");
         const auto parsed = parse_parallel(value ? value : "");
         return new std::optional<Parallel>(parsed ? std::optional(*parsed) : std::nullopt);
     }();

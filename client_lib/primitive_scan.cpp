@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "client_lib/block_walk.h"
-#include "client_lib/session.h"
 #include "common/glapi/gl_types.h"
 
 namespace wall::client {
@@ -24,29 +22,41 @@ std::optional<Topology> topology_of(std::uint32_t mode) {
     }
 }
 
-std::vector<PackedVertex> scan_vertices(const Packer& packer, const Primitive& primitive,
-                                        const Projection& projection) {
-    std::vector<PackedVertex> vertices;
-    BlockWalk walk(packer, primitive.first, primitive.last, primitive.before);
+void VertexScan::scan(const Packer& packer, const Primitive& primitive, const AttributePlaces& before,
+                      const Projection& projection) {
+    packer_ = &packer;
+    leads_.clear();
+    windows_.clear();
+    snapshots_.clear();
+    BlockWalk walk(packer, primitive.first, primitive.last, before);
     walk.next();  // Begin
-    wire::PackMark lead = walk.position();
-    AttributePlaces before = walk.places();
+    const auto note_lead = [&] {
+        if (leads_.size() % kSnapshotEvery == 0) snapshots_.push_back(walk.places());
+        leads_.push_back({static_cast<std::uint32_t>(walk.position().commands),
+                          static_cast<std::uint32_t>(walk.position().operand_bytes)});
+    };
+    note_lead();
     while (walk.next()) {
         if (!walk.is_vertex()) continue;
         const auto v = walk.vertex();
-        vertices.push_back({lead, walk.position(), before, walk.places(), project(projection, v[0], v[1], v[2], v[3])});
-        lead = walk.position();
-        before = walk.places();
+        windows_.push_back(project(projection, v[0], v[1], v[2], v[3]));
+        note_lead();
     }
-    return vertices;
 }
 
-std::optional<PixelRect> window_rect(const Topology& topology, const std::vector<PackedVertex>& vertices,
-                                     std::size_t first, const Projection& projection) {
+AttributePlaces VertexScan::attributes(std::size_t v) const {
+    const std::size_t snapshot = v / kSnapshotEvery;
+    BlockWalk walk(*packer_, lead(snapshot * kSnapshotEvery), lead(v), snapshots_[snapshot]);
+    while (walk.next()) continue;
+    return walk.places();
+}
+
+std::optional<PixelRect> window_rect(const Topology& topology, const VertexScan& vertices, std::size_t first,
+                                     const Projection& projection) {
     std::array<WindowVertex, kMostVertices> corners;
     std::size_t count = 0;
-    if (topology.fan) corners[count++] = vertices[0].window;
-    for (std::size_t i = first; i < first + topology.size; ++i) corners[count++] = vertices[i].window;
+    if (topology.fan) corners[count++] = vertices.window(0);
+    for (std::size_t i = first; i < first + topology.size; ++i) corners[count++] = vertices.window(i);
     return hull_rect(projection, {corners.data(), count});
 }
 

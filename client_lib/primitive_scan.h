@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "client_lib/block_walk.h"
 #include "client_lib/packer.h"
 #include "client_lib/router.h"
 
@@ -24,17 +25,34 @@ struct Topology {
 /// Nothing for loops and polygons: their edges depend on all vertices, so they stay whole.
 std::optional<Topology> topology_of(std::uint32_t mode);
 
-struct PackedVertex {
-    wire::PackMark lead, end;  ///< its attributes begin at lead; its own command ends at end
-    AttributePlaces before;    ///< attributes in effect at lead
-    AttributePlaces at;        ///< in effect at the vertex itself
-    WindowVertex window;
+/// The vertices of one primitive. It keeps its memory from one primitive to the next.
+class VertexScan {
+public:
+    /// `before`: the attributes as they are at glBegin. The packer stays as it is while the vertices are looked at.
+    void scan(const Packer& packer, const Primitive& primitive, const AttributePlaces& before,
+              const Projection& projection);
+
+    std::size_t size() const { return windows_.size(); }
+    const WindowVertex& window(std::size_t v) const { return windows_[v]; }
+    /// Where vertex v's attributes begin, or what is behind the last vertex.
+    wire::PackMark lead(std::size_t v) const { return {leads_[v].commands, leads_[v].operand_bytes}; }
+    /// The attributes there. Those that vertex v has itself are at lead v + 1.
+    AttributePlaces attributes(std::size_t v) const;
+
+private:
+    struct Lead {
+        std::uint32_t commands, operand_bytes;
+    };
+    static constexpr std::size_t kSnapshotEvery = 8;  ///< vertices
+
+    const Packer* packer_ = nullptr;
+    std::vector<Lead> leads_;  ///< one more than vertices
+    std::vector<WindowVertex> windows_;
+    std::vector<AttributePlaces> snapshots_;  ///< at every kSnapshotEvery-th lead
 };
 
-std::vector<PackedVertex> scan_vertices(const Packer& packer, const Primitive& primitive, const Projection& projection);
-
 /// Where the point, line, triangle or quad that starts at vertex `first` may be drawn; nothing if that is unknown.
-std::optional<PixelRect> window_rect(const Topology& topology, const std::vector<PackedVertex>& vertices,
-                                     std::size_t first, const Projection& projection);
+std::optional<PixelRect> window_rect(const Topology& topology, const VertexScan& vertices, std::size_t first,
+                                     const Projection& projection);
 
 }  // namespace wall::client

@@ -3,11 +3,15 @@
 
 #include <errno.h>
 #include <pthread.h>
+#include <semaphore.h>
+#include <time.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <memory>
+
+#include "client_lib/guard.h"
 
 namespace wall::client {
 namespace {
@@ -18,12 +22,36 @@ std::atomic<bool> forked{false};
 std::atomic<bool> watching{false};
 std::array<std::atomic<void (*)()>, kMaxActions> actions{};
 std::atomic<std::size_t> action_count{0};
+std::atomic<int> limit_ms_of_all{0};
+sem_t actions_done;
+
+void* run_actions(void*) {
+    for (auto i = std::min(action_count.load(), kMaxActions); i-- > 0;)
+        if (auto* action = actions[i].load()) action();
+    sem_post(&actions_done);
+    return nullptr;
+}
+
+void wait_for_actions(int limit_ms) {
+    timespec until{};
+    clock_gettime(CLOCK_REALTIME, &until);
+    const long long nanoseconds = until.tv_nsec + limit_ms * 1'000'000LL;
+    until.tv_sec += static_cast<time_t>(nanoseconds / 1'000'000'000);
+    until.tv_nsec = static_cast<long>(nanoseconds % 1'000'000'000);
+    while (sem_timedwait(&actions_done, &until) != 0 && errno == EINTR) continue;
+}
 
 /// Runs at exit(): the library is linked with -z nodelete, so dlclose() does not bring it forward.
 [[gnu::destructor]] void process_ends() {
-    if (forked) return;
-    for (auto i = std::min(action_count.load(), kMaxActions); i-- > 0;)
-        if (auto* action = actions[i].load()) action();
+    if (forked || action_count == 0) return;
+    sem_init(&actions_done, 0, 0);
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
+    const SignalsBlocked blocked;
+    if (pthread_t thread; pthread_create(&thread, &attributes, run_actions, nullptr) == 0)
+        wait_for_actions(limit_ms_of_all);
+    pthread_attr_destroy(&attributes);
 }
 
 }  // namespace
@@ -42,7 +70,8 @@ void watch_forks() {
 
 bool in_forked_child() { return forked.load(std::memory_order_relaxed); }
 
-void at_process_end(void (*action)()) {
+void at_process_end(void (*action)(), int limit_ms) {
+    limit_ms_of_all += limit_ms;
     const auto i = action_count.fetch_add(1);
     if (i < kMaxActions) actions[i] = action;
 }
@@ -60,7 +89,11 @@ pthread_key_t thread_key() {
         pthread_key_t made{};
         pthread_key_create(&made, [](void* data) {
             const std::unique_ptr<ThreadActions> mine(static_cast<ThreadActions*>(data));
-            while (mine->count > 0) mine->actions[--mine->count]();
+            try {
+                while (mine->count > 0) mine->actions[--mine->count]();
+            } catch (...) {
+                caught_exception("the end of a thread");
+            }
         });
         return made;
     }();

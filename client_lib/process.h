@@ -5,6 +5,7 @@
 
 #include <signal.h>
 
+#include <cstddef>
 #include <string>
 
 namespace wall::client {
@@ -25,8 +26,10 @@ void watch_forks();
 /// True in a child made by fork() without exec: none of our threads exist there, sockets belong to the parent.
 bool in_forked_child();
 
-/// `action` runs when the process ends normally (not in a forked child), the last one registered first.
-void at_process_end(void (*action)());
+/// `action` runs when the process ends normally (not in a forked child), the last one registered first. It runs in a
+/// thread of its own, which exit() waits for, but not longer than all actions' `limit_ms` together: exit() may be
+/// called in a signal handler that interrupted this very library, and what it held is never let go of then.
+void at_process_end(void (*action)(), int limit_ms);
 
 /// `action` runs in the calling thread when it ends, but not at exit(): programs still draw in their own exit handlers,
 /// after the thread_local destructors. Once per thread and action.

@@ -126,11 +126,20 @@ WindowVertex project(const Projection& p, float x, float y, float z, float w) {
     return to_window(p, transform(p.clip_from_object, _mm_set1_ps(x), _mm_set1_ps(y), _mm_set1_ps(z), _mm_set1_ps(w)));
 }
 
-TargetSet targets_of(const SurfaceLayout& layout, const std::optional<PixelRect>& rect) {
-    TargetSet set;
-    for (std::size_t i = 0; i < layout.targets.size(); ++i)
-        if (!rect || rect->overlaps(layout.targets[i].area)) set.set(i);
-    return set;
+void targets_of(std::span<const Target> targets, const std::optional<PixelRect>& rect, NodeMasks& out) {
+    out.clear();
+    for (const Target& target : targets) {
+        if (rect && !rect->overlaps(target.area)) continue;
+        auto mask = std::find_if(out.rbegin(), out.rend(), [&](const NodeMask& m) { return m.node == target.node; });
+        NodeMask& of_node = mask != out.rend() ? *mask : out.emplace_back(NodeMask{target.node, 0});
+        of_node.slots |= std::uint64_t{1} << target.slot;
+    }
+}
+
+NodeMasks targets_of(const SurfaceLayout& layout, const std::optional<PixelRect>& rect) {
+    NodeMasks out;
+    targets_of(layout.targets, rect, out);
+    return out;
 }
 
 }  // namespace wall::client

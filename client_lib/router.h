@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <bitset>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -21,9 +20,6 @@ struct PixelRect {
     float x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     bool overlaps(const PixelRect& o) const { return x0 < o.x1 && o.x0 < x1 && y0 < o.y1 && o.y0 < y1; }
 };
-
-inline constexpr std::size_t kMaxTargets = 512;
-using TargetSet = std::bitset<kMaxTargets>;
 
 /// A tile (or the offscreen layer) that shows a part of a surface.
 struct Target {
@@ -66,6 +62,16 @@ WindowVertex project(const Projection& projection, float x, float y, float z, fl
 /// Where the convex hull of some vertices can be drawn, what clipping leaves of it; nothing if that is unknown.
 std::optional<PixelRect> hull_rect(const Projection& projection, std::span<const WindowVertex> vertices);
 
-TargetSet targets_of(const SurfaceLayout& layout, const std::optional<PixelRect>& rect);
+/// Some tiles of one node.
+struct NodeMask {
+    std::uint32_t node;
+    std::uint64_t slots;  ///< a bit each
+};
+using NodeMasks = std::vector<NodeMask>;
+
+/// The tiles that a rectangle touches; nothing: all. Each node once.
+NodeMasks targets_of(const SurfaceLayout& layout, const std::optional<PixelRect>& rect);
+/// The same into a vector that is used again and again, so that no memory is asked for.
+void targets_of(std::span<const Target> targets, const std::optional<PixelRect>& rect, NodeMasks& out);
 
 }  // namespace wall::client

@@ -22,8 +22,9 @@ namespace wall::client {
 namespace {
 
 constexpr auto kRetryPause =
-    std::chrono::seconds(10);   // a program that asks for every frame must not wait for every frame
-constexpr int kFinishMs = 500;  // what is queued when the program ends
+    std::chrono::seconds(10);       // a program that asks for every frame must not wait for every frame
+constexpr int kFinishMs = 500;      // what is queued when the program ends
+constexpr int kEndMarginMs = 1500;  // for the rest of the end
 constexpr std::chrono::seconds kPlacementTimeout{2};
 constexpr int kReplyTimeoutMs = 10000;  // a readback behind a long frame of a software renderer
 constexpr std::uint32_t kDiffSample =
@@ -50,17 +51,6 @@ Target make_target(const SurfaceLayout& layout, const TileInfo& tile, const geom
 }
 
 }  // namespace
-
-std::vector<NodeMask> by_node(const TargetSet& set, const SurfaceLayout& layout) {
-    std::vector<NodeMask> masks;
-    for (std::size_t i = set._Find_first(); i < layout.targets.size(); i = set._Find_next(i)) {
-        const Target& target = layout.targets[i];
-        auto mask = std::find_if(masks.begin(), masks.end(), [&](const NodeMask& m) { return m.node == target.node; });
-        if (mask == masks.end()) mask = masks.insert(mask, NodeMask{target.node, 0});
-        mask->slots |= std::uint64_t{1} << target.slot;
-    }
-    return masks;
-}
 
 std::uint32_t next_object_id() {
     static std::atomic<std::uint32_t> last{parallel() ? wire::kMaxSharedSurfaces : 0};
@@ -108,13 +98,16 @@ std::shared_ptr<Session> Session::get() {
         return nullptr;
     }
     only.session.reset(new Session(std::move(*control)));
-    at_process_end([] {
-        if (const auto session = get_if_open()) session->finish();
-    });
+    at_process_end(
+        [] {
+            if (const auto session = get_if_open()) session->finish();
+        },
+        parallel() ? kLeaveLimitMs + kEndMarginMs : kFinishMs + kEndMarginMs);
     return only.session;
 }
 
-Session::Session(std::unique_ptr<ControlLink> control) : control_(std::move(control)) {
+Session::Session(std::unique_ptr<ControlLink> control)
+    : control_(std::move(control)), sort_scratch_(std::make_unique<SortScratch>()) {
     if (group_) control_->on_end([this](const std::string& why) { transport_.give_up_all(why); });
     std::lock_guard lock(mutex_);
     adopt(control_->welcome());
@@ -201,8 +194,7 @@ void Session::apply_layout(Surface& surface, const Placement& placement) {
     layout.rect = placement.rect;
     for (const TileInfo& tile : tiles_) {
         const geom::Rect part = geom::intersect(tile.rect, layout.rect);
-        if (part.empty() || layout.targets.size() == kMaxTargets) continue;
-        layout.targets.push_back(make_target(layout, tile, part));
+        if (!part.empty()) layout.targets.push_back(make_target(layout, tile, part));
     }
 }
 
@@ -325,8 +317,15 @@ wire::PackBuffer& Session::prepare(Node& node, Context& context, const Needs& ne
 }
 
 void Session::submit_block(Context& context) {
-    std::lock_guard lock(mutex_);
-    BlockSender(*this, context).run();
+    packing([&] { BlockSender(*this, context, *sort_scratch_).run(); });
+}
+
+void Session::distrust_nodes() {
+    for (auto& node : nodes_) {
+        if (!node->alive()) continue;
+        node->stream->give_up("out of memory");  // short enough to need none
+        node->batch.clear();
+    }
 }
 
 void Session::swap(Context* context, Surface& surface) {
@@ -354,10 +353,8 @@ void Session::swap(Context* context, Surface& surface) {
 /// All that show the surface; in a parallel program all there are, because its members keep step on each.
 std::vector<std::uint32_t> Session::swap_nodes(const Surface& surface) const {
     std::vector<std::uint32_t> out;
-    TargetSet all;
-    all.set();
     if (!common(surface))
-        for (const auto& [index, slots] : by_node(all, surface.layout)) out.push_back(index);
+        for (const auto& [index, slots] : targets_of(surface.layout, std::nullopt)) out.push_back(index);
     else
         for (const auto& node : nodes_) out.push_back(node->index);
     return out;
@@ -377,9 +374,7 @@ void Session::wait_for_nodes(Surface& surface, bool whole_frames) {
     bool all_slow = true;
     {
         std::lock_guard lock(mutex_);
-        TargetSet all;
-        all.set();
-        for (const auto& [index, slots] : by_node(all, surface.layout)) {
+        for (const auto& [index, slots] : targets_of(surface.layout, std::nullopt)) {
             Node& node = *nodes_[index];
             if (!node.alive()) continue;
             const auto left = node.left_out.find(surface.id);

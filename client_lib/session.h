@@ -31,6 +31,7 @@
 namespace wall::client {
 
 class Context;
+struct SortScratch;  // block_sender.h
 
 /// Ids of contexts, surfaces and objects on the wire: unique in the process, never 0.
 std::uint32_t next_object_id();
@@ -168,6 +169,8 @@ public:
 
 private:
     friend class BlockSender;
+    /// For what is queued when a member of a parallel program ends: the others wait for it.
+    static constexpr int kLeaveLimitMs = 2000;
     explicit Session(std::unique_ptr<ControlLink> control);
     void adopt(const Welcome& welcome);
     void apply_layout(Surface& surface, const Placement& placement);
@@ -186,6 +189,19 @@ private:
     int reply_timeout_ms() const;
     void wait_for_nodes(Surface& surface, bool whole_frames);
     std::optional<std::vector<std::byte>> wait_reply(Node& node, std::uint32_t request);
+    /// Runs `body` with the mutex held. Where it throws, batches and mirrors may be half made: the nodes' streams fail
+    /// then, so that every node begins again at time zero.
+    template <class Body>
+    decltype(auto) packing(Body&& body) {
+        std::lock_guard lock(mutex_);
+        try {
+            return std::forward<Body>(body)();
+        } catch (...) {
+            distrust_nodes();
+            throw;
+        }
+    }
+    void distrust_nodes();
     void count_frame();
     void count_round_trip(const char* function);
 
@@ -208,15 +224,9 @@ private:
     std::uint32_t id_ = 0;
     std::vector<TileInfo> tiles_;
     std::uint32_t last_request_ = 0;
+    const std::unique_ptr<SortScratch> sort_scratch_;
     IdealTraffic ideal_;          ///< unused without WALLGL_IDEAL
     std::uint32_t prepared_ = 0;  ///< counts towards the next sample of the diff time
 };
-
-/// Tile slots of one node as a mask, from a set of targets.
-struct NodeMask {
-    std::uint32_t node;
-    std::uint64_t slots;
-};
-std::vector<NodeMask> by_node(const TargetSet& set, const SurfaceLayout& layout);
 
 }  // namespace wall::client

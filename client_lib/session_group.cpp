@@ -12,8 +12,7 @@
 namespace wall::client {
 namespace {
 
-constexpr int kLookMs = 20;          // at one node, while none has drawn a frame
-constexpr int kLeaveLimitMs = 2000;  // for what is queued when the program ends: the others wait for it
+constexpr int kLookMs = 20;  // at one node, while none has drawn a frame
 
 }  // namespace
 

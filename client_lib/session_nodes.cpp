@@ -2,32 +2,12 @@
 // A session's connections to its nodes: made, made again, and tried again beside the program.
 #include "client_lib/log.h"
 #include "client_lib/session.h"
-#include "gen/glapi/wire.gen.h"
 
 namespace wall::client {
 namespace {
 
 constexpr int kConnectTimeoutMs = 2000;
 constexpr auto kConnectPause = std::chrono::seconds(1);  // between two attempts
-
-/// DataHello of control.proto, written by hand: four fields do not need a library.
-std::string encode_hello(std::uint32_t session, const std::string& ticket, std::uint32_t rank) {
-    const auto varint = [](std::string& to, std::uint64_t value) {
-        for (; value >= 0x80; value >>= 7) to.push_back(static_cast<char>(value | 0x80));
-        to.push_back(static_cast<char>(value));
-    };
-    std::string out;
-    out.push_back(0x08);
-    varint(out, glapi::kStreamVersion);
-    out.push_back(0x10);
-    varint(out, session);
-    out.push_back(0x1a);
-    varint(out, ticket.size());
-    out += ticket;
-    out.push_back(0x20);
-    varint(out, rank);
-    return out;
-}
 
 }  // namespace
 
@@ -56,9 +36,9 @@ void Session::connect(Node& node) {
     node.slow = node.asks_unanswered = false;
     node.attempt.reset();
     if (node.info.up)
-        adopt_stream(node,
-                     NodeStream::open(node.info.address, encode_hello(id_, node.info.ticket, group_ ? group_->rank : 0),
-                                      kConnectTimeoutMs));
+        adopt_stream(node, NodeStream::open(node.info.address,
+                                            encode_data_hello(id_, node.info.ticket, group_ ? group_->rank : 0),
+                                            kConnectTimeoutMs));
 }
 
 void Session::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream) {
@@ -86,7 +66,7 @@ void Session::try_again(Node& node) {
         if (node.stream) redraw();
     } else if (std::chrono::steady_clock::now() >= node.next_attempt) {
         node.attempt =
-            ConnectAttempt::start(node.info.address, encode_hello(id_, node.info.ticket, 0), kConnectTimeoutMs);
+            ConnectAttempt::start(node.info.address, encode_data_hello(id_, node.info.ticket, 0), kConnectTimeoutMs);
     }
 }
 

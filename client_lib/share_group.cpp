@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/share_group.h"
 
+#include "client_lib/buffer_binding.h"
 #include "client_lib/context.h"
 #include "client_lib/maps.h"
 #include "client_lib/session.h"
@@ -121,7 +122,8 @@ std::size_t ShareGroup::bring_up_to_date(Node& node, Context& context, wire::Pac
     return sent + buffer.bytes() - start;
 }
 
-GLuint object_name(ShareGroup& share, glstate::ValueKind kind, std::uint32_t id) {
+GLuint object_name(Context& c, glstate::ValueKind kind, std::uint32_t id) {
+    ShareGroup& share = c.share();
     std::lock_guard lock(share.mutex);
     const auto name_in = [id](const auto& objects) {
         const auto found = objects.find(id);
@@ -129,7 +131,7 @@ GLuint object_name(ShareGroup& share, glstate::ValueKind kind, std::uint32_t id)
     };
     switch (kind) {
         case glstate::ValueKind::name_texture: return name_in(share.textures_by_id);
-        case glstate::ValueKind::name_buffer: return name_in(share.buffers_by_id);
+        case glstate::ValueKind::name_buffer: return name_in(c.buffers->by_id);
         case glstate::ValueKind::name_program: {
             const auto found = share.program_names.find(id);
             return found == share.program_names.end() ? 0 : found->second;

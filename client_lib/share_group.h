@@ -74,12 +74,14 @@ struct ShareGroup {
     NameTable<Buffer> buffers;
     NameTable<GlslObject> glsl_objects;  ///< shaders and programs
 
-    /// By id: what state elements name. Kept as long as the name or any binding lives.
+    /// By id: what state elements name. Kept as long as the name or any binding lives. (Buffers are kept by the
+    /// contexts that name them: buffer_binding.h.)
     std::unordered_map<std::uint32_t, std::shared_ptr<Texture>> textures_by_id;
-    std::unordered_map<std::uint32_t, std::shared_ptr<Buffer>> buffers_by_id;
     std::unordered_map<std::uint32_t, GLuint> program_names;  ///< by id
     /// Name 0 of each target, made when it first gets content; until then a binding of it is id 0.
     std::map<GLenum, std::shared_ptr<Texture>> default_textures;
+
+    std::atomic<std::uint64_t> buffer_deletions{0};  ///< so far
 
     /// Stamp of the latest change of any object, so that a look at one number tells that there is nothing to send.
     std::atomic<std::uint64_t> last_change{0};
@@ -90,6 +92,6 @@ struct ShareGroup {
 };
 
 /// The application's name of the object that a state element names by its id (glGet of a binding); 0: none.
-GLuint object_name(ShareGroup& share, glstate::ValueKind kind, std::uint32_t id);
+GLuint object_name(Context& c, glstate::ValueKind kind, std::uint32_t id);
 
 }  // namespace wall::client

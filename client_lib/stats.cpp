@@ -15,6 +15,8 @@ namespace {
 constexpr std::array<const char*, static_cast<std::size_t>(NodeCounter::kCount)> kNames{
     "state_bytes", "object_bytes", "geometry_bytes", "blocks", "batches"};
 
+constexpr int kWriteLimitMs = 500;  // at the end of the process
+
 std::string quoted(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
@@ -56,7 +58,7 @@ bool write_file(const std::string& path, const std::string& text) {
 }
 
 std::string environment_path() {
-    const char* path = getenv("WALLGL_STATS");
+    const char* path = secure_getenv("WALLGL_STATS");
     return path ? path : "";
 }
 
@@ -194,7 +196,7 @@ void Stats::write() {
 Stats& stats() {
     static Stats& only = []() -> Stats& {
         auto* made = new Stats;
-        at_process_end([] { stats().write(); });
+        at_process_end([] { stats().write(); }, kWriteLimitMs);
         return *made;
     }();
     return only;

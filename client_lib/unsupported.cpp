@@ -2,6 +2,7 @@
 #include "client_lib/unsupported.h"
 
 #include "client_lib/context.h"
+#include "client_lib/entry_guard.h"
 #include "client_lib/log.h"
 #include "client_lib/stats.h"
 #include "gen/client_lib/api.gen.h"
@@ -11,7 +12,11 @@ namespace wall::client {
 void report_unsupported(std::size_t index) {
     const char* name = kUnsupportedNames[index];
     if (tls_context) tls_context->error(GL_INVALID_OPERATION);
-    if (stats().count_unsupported(name)) log(LogLevel::warn, "unsupported function=%s", name);
+    try {
+        if (stats().count_unsupported(name)) log(LogLevel::warn, "unsupported function=%s", name);
+    } catch (...) {
+        entry_failed(name);
+    }
 }
 
 }  // namespace wall::client

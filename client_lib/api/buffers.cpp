@@ -2,7 +2,6 @@
 // Buffer objects (OpenGL 2.1, 2.9), kept here whole: mapping gives the shadow itself, and reading back asks nobody.
 #include <algorithm>
 #include <cstring>
-#include <new>
 
 #include "client_lib/buffer_binding.h"
 #include "client_lib/share_group.h"
@@ -11,22 +10,22 @@ namespace wall::client::api {
 namespace {
 
 /// The buffer bound to a target, or null and the error.
-std::shared_ptr<Buffer> bound_buffer(Context& c, GLenum target) {
+Buffer* bound_buffer(Context& c, GLenum target) {
     const std::uint32_t* id = buffer_binding(c, target);
     if (!id) {
         c.error(GL_INVALID_ENUM);
         return nullptr;
     }
-    auto buffer = buffer_of(c, *id);
+    Buffer* buffer = buffer_of(c, *id);
     if (!buffer) c.error(GL_INVALID_OPERATION);
     return buffer;
 }
 
-/// The same if it holds `size` bytes from `offset` on and is not mapped.
-std::shared_ptr<Buffer> buffer_with(Context& c, GLenum target, GLintptr offset, GLsizeiptr size) {
-    auto buffer = bound_buffer(c, target);
+/// The same if it holds `size` bytes from `offset` on and is not mapped. The share group's mutex is held.
+Buffer* buffer_with(Context& c, GLenum target, GLintptr offset, GLsizeiptr size) {
+    Buffer* buffer = bound_buffer(c, target);
     if (!buffer) return nullptr;
-    const auto have = static_cast<GLsizeiptr>(buffer->content.size());
+    const auto have = static_cast<GLsizeiptr>(buffer->size());
     if (offset < 0 || size < 0 || offset > have || size > have - offset) c.error(GL_INVALID_VALUE);
     else if (buffer->mapped) c.error(GL_INVALID_OPERATION);
     else return buffer;
@@ -61,8 +60,10 @@ void DeleteBuffers(Context& c, GLsizei count, const GLuint* names) {
     for (GLsizei i = 0; i < count; ++i) {
         const auto buffer = names[i] == 0 ? nullptr : c.share().buffers.erase(names[i]);
         if (!buffer) continue;
+        buffer->deleted = true;
         unbind(c, buffer->id);
-        c.share().buffers_by_id.erase(buffer->id);
+        c.buffers->by_id.erase(buffer->id);
+        c.share().buffer_deletions.fetch_add(1, std::memory_order_release);
     }
 }
 
@@ -74,50 +75,51 @@ GLboolean IsBuffer(Context& c, GLuint name) {
 void BindBuffer(Context& c, GLenum target, GLuint name) {
     std::uint32_t* binding = buffer_binding(c, target);
     if (!binding) return c.error(GL_INVALID_ENUM);
-    if (name == 0) {
-        *binding = 0;
-        return;
-    }
+    *binding = 0;
+    if (c.buffers->holds_deleted || buffers_were_deleted(c)) let_go_of_deleted_buffers(c);
+    if (name == 0) return;
     ShareGroup& share = c.share();
     std::lock_guard lock(share.mutex);
     auto buffer = share.buffers.find(name);
     if (!buffer) {
         buffer = std::make_shared<Buffer>(next_object_id(), name);
         share.buffers.put(name, buffer);
-        share.buffers_by_id[buffer->id] = buffer;
     }
     *binding = buffer->id;
+    c.buffers->by_id.try_emplace(buffer->id, std::move(buffer));
 }
 
 void BufferData(Context& c, GLenum target, GLsizeiptr size, const void* data, GLenum usage) {
     if (size < 0) return c.error(GL_INVALID_VALUE);
     if (!is_usage(usage)) return c.error(GL_INVALID_ENUM);
-    const auto buffer = bound_buffer(c, target);
+    Buffer* buffer = bound_buffer(c, target);
     if (!buffer) return;
+    c.buffers->transfer = {};
     std::lock_guard lock(c.share().mutex);
-    try {
-        const auto* first = static_cast<const std::byte*>(data);
-        if (data) buffer->content.assign(first, first + size);
-        else buffer->content.resize(static_cast<std::size_t>(size));
-    } catch (const std::exception&) {
-        return c.error(GL_OUT_OF_MEMORY);
-    }
+    buffer->leave_all_to_readers();
+    auto& bytes = buffer->memory->bytes;
+    const auto* first = static_cast<const std::byte*>(data);
+    if (data) bytes.assign(first, first + size);
+    else bytes.resize(static_cast<std::size_t>(size));
     buffer->usage = usage;
     buffer->mapped = false;
     buffer->stamp = next_stamp();
 }
 
 void BufferSubData(Context& c, GLenum target, GLintptr offset, GLsizeiptr size, const void* data) {
-    const auto buffer = buffer_with(c, target, offset, size);
-    if (!buffer || size == 0) return;
+    c.buffers->transfer = {};
     std::lock_guard lock(c.share().mutex);
-    std::memcpy(buffer->content.data() + offset, data, static_cast<std::size_t>(size));
+    Buffer* buffer = buffer_with(c, target, offset, size);
+    if (!buffer || size == 0) return;
+    buffer->leave_to_readers();
+    std::memcpy(buffer->data() + offset, data, static_cast<std::size_t>(size));
     buffer->stamp = next_stamp();
 }
 
 void GetBufferSubData(Context& c, GLenum target, GLintptr offset, GLsizeiptr size, void* data) {
-    const auto buffer = buffer_with(c, target, offset, size);
-    if (buffer && size != 0) std::memcpy(data, buffer->content.data() + offset, static_cast<std::size_t>(size));
+    std::lock_guard lock(c.share().mutex);
+    Buffer* buffer = buffer_with(c, target, offset, size);
+    if (buffer && size != 0) std::memcpy(data, buffer->data() + offset, static_cast<std::size_t>(size));
 }
 
 void* MapBuffer(Context& c, GLenum target, GLenum access) {
@@ -125,20 +127,22 @@ void* MapBuffer(Context& c, GLenum target, GLenum access) {
         c.error(GL_INVALID_ENUM);
         return nullptr;
     }
-    const auto buffer = buffer_with(c, target, 0, 0);
+    c.buffers->transfer = {};
+    std::lock_guard lock(c.share().mutex);
+    Buffer* buffer = buffer_with(c, target, 0, 0);
     if (!buffer) return nullptr;
-    if (buffer->content.empty()) {
+    if (buffer->size() == 0) {
         c.error(GL_OUT_OF_MEMORY);
         return nullptr;
     }
-    std::lock_guard lock(c.share().mutex);
+    if (access != GL_READ_ONLY) buffer->leave_to_readers();
     buffer->mapped = true;
     buffer->access = access;
-    return buffer->content.data();
+    return buffer->data();
 }
 
 GLboolean UnmapBuffer(Context& c, GLenum target) {
-    const auto buffer = bound_buffer(c, target);
+    Buffer* buffer = bound_buffer(c, target);
     if (!buffer) return GL_FALSE;
     std::lock_guard lock(c.share().mutex);
     if (!buffer->mapped) {
@@ -151,12 +155,11 @@ GLboolean UnmapBuffer(Context& c, GLenum target) {
 }
 
 void GetBufferParameteriv(Context& c, GLenum target, GLenum pname, GLint* params) {
-    const auto buffer = bound_buffer(c, target);
+    std::lock_guard lock(c.share().mutex);
+    const Buffer* buffer = bound_buffer(c, target);
     if (!buffer) return;
     switch (pname) {
-        case GL_BUFFER_SIZE:
-            *params = static_cast<GLint>(std::min<std::size_t>(buffer->content.size(), 0x7fffffff));
-            break;
+        case GL_BUFFER_SIZE: *params = static_cast<GLint>(std::min<std::size_t>(buffer->size(), 0x7fffffff)); break;
         case GL_BUFFER_USAGE: *params = static_cast<GLint>(buffer->usage); break;
         case GL_BUFFER_ACCESS: *params = static_cast<GLint>(buffer->access); break;
         case GL_BUFFER_MAPPED: *params = buffer->mapped; break;
@@ -166,7 +169,8 @@ void GetBufferParameteriv(Context& c, GLenum target, GLenum pname, GLint* params
 
 void GetBufferPointerv(Context& c, GLenum target, GLenum pname, void** params) {
     if (pname != GL_BUFFER_MAP_POINTER) return c.error(GL_INVALID_ENUM);
-    if (const auto buffer = bound_buffer(c, target)) *params = buffer->mapped ? buffer->content.data() : nullptr;
+    std::lock_guard lock(c.share().mutex);
+    if (Buffer* buffer = bound_buffer(c, target)) *params = buffer->mapped ? buffer->data() : nullptr;
 }
 
 }  // namespace wall::client::api

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "client_lib/context.h"
+#include "client_lib/entry_guard.h"
 #include "client_lib/program_use.h"
 
 namespace wall::client {
@@ -56,8 +57,13 @@ Packer* open_packer() {
 /// The slow way of an entry point: whatever the context's mode makes of the call. Kept out of line, so that the fast
 /// way needs no stack frame.
 template <class Function, class... Args>
-[[gnu::noinline, gnu::cold]] void through_table(Function GlTable::*entry, Args... args) {
-    if (tls_context) (tls_context->table->*entry)(*tls_context, args...);
+[[gnu::noinline, gnu::cold]] void through_table(const char* name, Function GlTable::*entry, Args... args) {
+    if (!tls_context) return;
+    try {
+        (tls_context->table->*entry)(*tls_context, args...);
+    } catch (...) {
+        entry_failed(name);
+    }
 }
 
 void add_vertex(Packer& packer, float x, float y, float z) {
@@ -95,42 +101,42 @@ void pack_color4ub(Packer& packer, GLubyte r, GLubyte g, GLubyte b, GLubyte a) {
 void GLAPIENTRY gl_entry_Vertex2f(GLfloat x, GLfloat y) {
     if (Packer* p = open_packer()) [[likely]]
         return pack_vertex2(*p, x, y);
-    through_table(&GlTable::Vertex2f, x, y);
+    through_table("glVertex2f", &GlTable::Vertex2f, x, y);
 }
 void GLAPIENTRY gl_entry_Vertex3f(GLfloat x, GLfloat y, GLfloat z) {
     if (Packer* p = open_packer()) [[likely]]
         return pack_vertex3(*p, x, y, z);
-    through_table(&GlTable::Vertex3f, x, y, z);
+    through_table("glVertex3f", &GlTable::Vertex3f, x, y, z);
 }
 void GLAPIENTRY gl_entry_Vertex4f(GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
     if (Packer* p = open_packer()) [[likely]]
         return pack_vertex4(*p, x, y, z, w);
-    through_table(&GlTable::Vertex4f, x, y, z, w);
+    through_table("glVertex4f", &GlTable::Vertex4f, x, y, z, w);
 }
 void GLAPIENTRY gl_entry_Normal3f(GLfloat x, GLfloat y, GLfloat z) {
     if (Packer* p = open_packer()) [[likely]]
         return put_attribute(*p, Attribute::normal, Op::Normal3f, x, y, z);
-    through_table(&GlTable::Normal3f, x, y, z);
+    through_table("glNormal3f", &GlTable::Normal3f, x, y, z);
 }
 void GLAPIENTRY gl_entry_Color3f(GLfloat r, GLfloat g, GLfloat b) {
     if (Packer* p = open_packer()) [[likely]]
         return put_attribute(*p, Attribute::color, Op::Color3f, r, g, b);
-    through_table(&GlTable::Color3f, r, g, b);
+    through_table("glColor3f", &GlTable::Color3f, r, g, b);
 }
 void GLAPIENTRY gl_entry_Color4f(GLfloat r, GLfloat g, GLfloat b, GLfloat a) {
     if (Packer* p = open_packer()) [[likely]]
         return put_attribute(*p, Attribute::color, Op::Color4f, r, g, b, a);
-    through_table(&GlTable::Color4f, r, g, b, a);
+    through_table("glColor4f", &GlTable::Color4f, r, g, b, a);
 }
 void GLAPIENTRY gl_entry_Color4ub(GLubyte r, GLubyte g, GLubyte b, GLubyte a) {
     if (Packer* p = open_packer()) [[likely]]
         return pack_color4ub(*p, r, g, b, a);
-    through_table(&GlTable::Color4ub, r, g, b, a);
+    through_table("glColor4ub", &GlTable::Color4ub, r, g, b, a);
 }
 void GLAPIENTRY gl_entry_TexCoord2f(GLfloat s, GLfloat t) {
     if (Packer* p = open_packer()) [[likely]]
-        return put_attribute(*p, Attribute::texcoord0, Op::TexCoord2f, s, t);
-    through_table(&GlTable::TexCoord2f, s, t);
+        return put_attribute(*p, Attribute::texcoord, Op::TexCoord2f, s, t);
+    through_table("glTexCoord2f", &GlTable::TexCoord2f, s, t);
 }
 
 void GLAPIENTRY gl_entry_Vertex2fv(const GLfloat* v) { gl_entry_Vertex2f(v[0], v[1]); }
@@ -173,15 +179,13 @@ void Color4ub(Context& c, GLubyte r, GLubyte g, GLubyte b, GLubyte a) { pack_col
 void SecondaryColor3f(Context& c, GLfloat r, GLfloat g, GLfloat b) {
     put_attribute(room(c), Attribute::secondary_color, Op::SecondaryColor3f, r, g, b);
 }
-void TexCoord1f(Context& c, GLfloat s) { put_attribute(room(c), Attribute::texcoord0, Op::TexCoord1f, s); }
-void TexCoord2f(Context& c, GLfloat s, GLfloat t) {
-    put_attribute(room(c), Attribute::texcoord0, Op::TexCoord2f, s, t);
-}
+void TexCoord1f(Context& c, GLfloat s) { put_attribute(room(c), Attribute::texcoord, Op::TexCoord1f, s); }
+void TexCoord2f(Context& c, GLfloat s, GLfloat t) { put_attribute(room(c), Attribute::texcoord, Op::TexCoord2f, s, t); }
 void TexCoord3f(Context& c, GLfloat s, GLfloat t, GLfloat r) {
-    put_attribute(room(c), Attribute::texcoord0, Op::TexCoord3f, s, t, r);
+    put_attribute(room(c), Attribute::texcoord, Op::TexCoord3f, s, t, r);
 }
 void TexCoord4f(Context& c, GLfloat s, GLfloat t, GLfloat r, GLfloat q) {
-    put_attribute(room(c), Attribute::texcoord0, Op::TexCoord4f, s, t, r, q);
+    put_attribute(room(c), Attribute::texcoord, Op::TexCoord4f, s, t, r, q);
 }
 void FogCoordf(Context& c, GLfloat coord) { put_attribute(room(c), Attribute::fog_coord, Op::FogCoordf, coord); }
 void EdgeFlag(Context& c, GLboolean flag) {
@@ -195,7 +199,7 @@ void MultiTexCoord4f(Context& c, GLenum unit, GLfloat s, GLfloat t, GLfloat r, G
     if (unit < GL_TEXTURE0 || unit >= GL_TEXTURE0 + kTextureUnits) return c.error(GL_INVALID_ENUM);
     if (unit == GL_TEXTURE0) return TexCoord4f(c, s, t, r, q);
     const std::uint32_t index = unit - GL_TEXTURE0;
-    std::byte* at = c.packer.append_rare(Op::MultiTexCoord4f, 20);
+    std::byte* at = c.packer.append_attribute(Attribute::texcoord + index, Op::MultiTexCoord4f, 20);
     std::memcpy(at, &index, sizeof index);
     const float values[4] = {s, t, r, q};
     std::memcpy(at + 4, values, sizeof values);
@@ -204,13 +208,13 @@ void MultiTexCoord4f(Context& c, GLenum unit, GLfloat s, GLfloat t, GLfloat r, G
 void VertexAttrib4f(Context& c, GLuint index, GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
     if (index >= kVertexAttributes) return c.error(GL_INVALID_VALUE);
     if (index == 0 && c.packer.inside()) return Vertex4f(c, x, y, z, w);
-    std::byte* at = c.packer.append_rare(Op::VertexAttrib4f, 20);
+    std::byte* at = c.packer.append_attribute(Attribute::vertex_attrib + index, Op::VertexAttrib4f, 20);
     std::memcpy(at, &index, sizeof index);
     const float values[4] = {x, y, z, w};
     std::memcpy(at + 4, values, sizeof values);
 }
 
-void Indexf(Context& c, GLfloat index) { std::memcpy(c.packer.append_rare(Op::Indexf, 4), &index, 4); }
+void Indexf(Context& c, GLfloat index) { put_attribute(room(c), Attribute::color_index, Op::Indexf, index); }
 
 void Rectf(Context& c, GLfloat x1, GLfloat y1, GLfloat x2, GLfloat y2) {
     if (!may_draw(c)) return;

@@ -19,9 +19,12 @@ std::shared_ptr<DisplayList> find_list(Context& c, GLuint name) {
 void call_list(Context& c, GLuint name) {
     const auto list = find_list(c, name);
     if (!list || c.lists->depth >= kListNestingLimit) return;
-    ++c.lists->depth;
+    struct Deeper {
+        unsigned& depth;
+        explicit Deeper(unsigned& d) : depth(d) { ++depth; }
+        ~Deeper() { --depth; }
+    } const deeper(c.lists->depth);
     execute_list(c, *list);
-    --c.lists->depth;
 }
 
 template <class T>

@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: MIT
-// No exception leaves the library: what a C function does runs inside guarded(), which answers `fallback` instead.
+// What a C function of a window system does runs inside guarded(), which answers `fallback` where it throws (guard.h).
 #pragma once
 
-#include <exception>
 #include <utility>
 
-#include "client_lib/log.h"
+#include "client_lib/guard.h"
 
 namespace wall::client::vendor {
 
 template <class R, class F>
-R guarded(const char* function, R fallback, F&& body) noexcept {
+R guarded(const char* function, R fallback, F&& body) {
     try {
         return std::forward<F>(body)();
-    } catch (const std::exception& e) {
-        log(LogLevel::error, "exception function=%s what=%s", function, e.what());
+    } catch (...) {
+        caught_exception(function);
         return fallback;
     }
 }
 
 template <class F>
-void guarded(const char* function, F&& body) noexcept {
+void guarded(const char* function, F&& body) {
     guarded(function, 0, [&] {
         body();
         return 0;

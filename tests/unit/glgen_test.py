@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The generator: what its models promise, and that a mistake in the data is refused with its place."""
 
+import functools
 import os
 import pathlib
 import sys
@@ -10,7 +11,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/glgen"))
 
-from glgen import commands, registry, state, wire  # noqa: E402
+from glgen import attributes, commands, registry, state, wire  # noqa: E402
 
 REGISTRY = pathlib.Path(os.environ.get("WALLGL_GL_XML", "/usr/share/khronos-api/gl.xml"))
 PROTO = ROOT / "proto/gl"
@@ -76,6 +77,52 @@ class Commands(unittest.TestCase):
         self.assertIn("no command glBegins in gl.xml", self.refused("\nBegin = ", "\nBegins = "))
         self.assertIn("Vertex9f is not implemented", self.refused("convert Vertex2f", "convert Vertex9f"))
         self.assertIn("unknown words", self.refused('Begin = "hand"', 'Begin = "hand often"'))
+
+
+class Places(unittest.TestCase):
+    """A mistake is refused with the file and the line where it stands."""
+
+    def refused(self, name, old, new, load):
+        text = (PROTO / name).read_text()
+        self.assertIn(old, text)
+        line = text[:text.index(old)].count("\n") + 1 + (old.startswith("\n"))
+        with tempfile.NamedTemporaryFile("w", suffix=".toml") as f:
+            f.write(text.replace(old, new, 1))
+            f.flush()
+            with self.assertRaises(AssertionError) as caught:
+                load(f.name)
+            self.assertTrue(str(caught.exception).startswith(f"{f.name}:{line}: "), caught.exception)
+        return str(caught.exception)
+
+    def test_wire(self):
+        self.assertIn("unknown type f16", self.refused("wire.toml", '"f32 u"', '"f16 u"', wire.load))
+
+    def test_state(self):
+        refused = functools.partial(self.refused, "state.toml", load=state.load)
+        self.assertIn("unknown key", refused("\nfog_coord = {", "\nfog_coord = { colour = 1,"))
+        self.assertIn("no `vec5`", refused('\nnormal = { type = "vec3"', '\nnormal = { type = "vec5"'))
+
+    def test_commands(self):
+        gl, model = registry.load(REGISTRY, PROTO / "extensions.xml"), state.load(PROTO / "state.toml")
+        refused = functools.partial(self.refused, "commands.toml", load=lambda f: commands.load(f, gl, model))
+        self.assertIn("unknown words", refused('Begin = "hand"', 'Begin = "hand often"'))
+        self.assertIn("Vertex9f is not", refused('Vertex2i = "convert Vertex2f"', 'Vertex2i = "convert Vertex9f"'))
+
+    def test_attributes(self):
+        ops, model = wire.load(PROTO / "wire.toml"), state.load(PROTO / "state.toml")
+        refused = functools.partial(self.refused, "attributes.toml", load=lambda f: attributes.load(f, ops, model))
+        self.assertIn("no element of [current]", refused("\nnormal =", "\nnormals ="))
+        self.assertIn("Clear: no command of [geometry]", refused('"Normal3f"', '"Clear"'))
+        self.assertIn("a command with an index", refused('"VertexAttrib4f"', '"TexCoord4f"'))
+
+    def test_every_attribute_has_a_line(self):
+        ops, model = wire.load(PROTO / "wire.toml"), state.load(PROTO / "state.toml")
+        text = (PROTO / "attributes.toml").read_text()
+        with tempfile.NamedTemporaryFile("w", suffix=".toml") as f:
+            f.write(text.replace('normal = "Normal3f"\n', ""))
+            f.flush()
+            with self.assertRaisesRegex(AssertionError, "no line for normal"):
+                attributes.load(f.name, ops, model)
 
 
 class Files(unittest.TestCase):

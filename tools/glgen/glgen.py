@@ -16,8 +16,9 @@ from dataclasses import dataclass
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from glgen import commands, emit_client, emit_docs, emit_functions, emit_samples, emit_setters, emit_state, emit_wire  # noqa: E402
-from glgen import registry, state, wire  # noqa: E402
+from glgen import attributes, commands, registry, state, wire  # noqa: E402
+from glgen import emit_attributes, emit_client, emit_docs, emit_functions, emit_samples  # noqa: E402
+from glgen import emit_setters, emit_state, emit_wire  # noqa: E402
 
 DRIVER_EXTRA = ["glFramebufferParameteriMESA", "glGetFramebufferParameterivMESA"]
 
@@ -27,13 +28,16 @@ class Model:
     gl: registry.Registry
     ops: list
     state: state.StateModel
+    attributes: list
     api: commands.Commands
 
 
 def load(registry_path, proto):
     gl = registry.load(registry_path, proto / "extensions.xml")
     elements = state.load(proto / "state.toml")
-    return Model(gl, wire.load(proto / "wire.toml"), elements, commands.load(proto / "commands.toml", gl, elements))
+    ops = wire.load(proto / "wire.toml")
+    return Model(gl, ops, elements, attributes.load(proto / "attributes.toml", ops, elements),
+                 commands.load(proto / "commands.toml", gl, elements))
 
 
 def generate(m):
@@ -44,11 +48,12 @@ def generate(m):
         "glapi/null_handler.gen.h": emit_wire.null_handler_header(m.ops),
         "glapi/gl_functions.gen.h": emit_functions.functions_header(m.gl, DRIVER_EXTRA),
         "glstate/state.gen.h": emit_state.state_header(m.state),
+        "glstate/attributes.gen.h": emit_attributes.attributes_header(m.attributes),
         "glstate/tables.gen.h": emit_state.tables_header(m.state),
         "glstate/state_tables.gen.cpp": emit_state.tables_source(m.state, m.gl),
         "glstate/driver_emit.gen.h": emit_state.driver_header(m.state, m.gl),
         "glstate/samples.gen.h": emit_samples.samples_header(m.state),
-        "client_lib/api.gen.h": emit_client.api_header(m.api, m.state),
+        "client_lib/api.gen.h": emit_client.api_header(m.api, m.state, m.attributes),
         "client_lib/entries.gen.cpp": emit_client.entries_source(m.api, m.gl),
         "client_lib/tables.gen.cpp": emit_client.tables_source(m.api),
         "client_lib/state_api.gen.cpp": emit_setters.setters_source(m.api, m.state, m.gl),
@@ -71,11 +76,11 @@ def main():
     args = parser.parse_args()
     try:
         model = load(args.registry, args.proto)
+        texts = generate(model) if args.out else {}
     except AssertionError as wrong:
         sys.exit(f"glgen: {wrong}")
-    if args.out:
-        for name, text in generate(model).items():
-            write_if_changed(args.out / name, text)
+    for name, text in texts.items():
+        write_if_changed(args.out / name, text)
     if args.coverage:
         text = emit_docs.coverage(model.api, model.state, model.ops)
         if args.check and (not args.coverage.exists() or args.coverage.read_text() != text):

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "client_lib/log.h"
 #include "client_lib/process.h"
 #include "client_lib/stats.h"
 #include "client_lib/vendor/config_matrix.h"
@@ -358,8 +359,10 @@ EGLBoolean swap(EGLDisplay handle, EGLSurface surface_handle) {
 }
 
 EGLBoolean copy_buffers(EGLDisplay, EGLSurface, EGLNativePixmapType) {
-    if (stats().count_unsupported("eglCopyBuffers")) log(LogLevel::warn, "unsupported function=eglCopyBuffers");
-    return refuse(EGL_BAD_NATIVE_PIXMAP);
+    return guarded("eglCopyBuffers", EGLBoolean{EGL_FALSE}, [] {
+        if (stats().count_unsupported("eglCopyBuffers")) log(LogLevel::warn, "unsupported function=eglCopyBuffers");
+        return refuse(EGL_BAD_NATIVE_PIXMAP);
+    });
 }
 
 EGLBoolean swap_interval(EGLDisplay handle, EGLint interval) {

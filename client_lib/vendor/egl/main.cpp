@@ -30,8 +30,8 @@ void* get_proc_address(const char* name) {
 /// Installed beside the system's own manifests the library is offered to every EGL program: it is for those on the
 /// wall.
 bool meant_for_us() {
-    const char* manifests = std::getenv("__EGL_VENDOR_LIBRARY_FILENAMES");
-    const char* glx_vendor = std::getenv("__GLX_VENDOR_LIBRARY_NAME");
+    const char* manifests = secure_getenv("__EGL_VENDOR_LIBRARY_FILENAMES");
+    const char* glx_vendor = secure_getenv("__GLX_VENDOR_LIBRARY_NAME");
     return (manifests && *manifests) || (glx_vendor && std::strcmp(glx_vendor, "wallgl") == 0);
 }
 

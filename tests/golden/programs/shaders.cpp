@@ -272,6 +272,42 @@ SCENE(glsl_in_lists, 2) {
     say_error("glsl_in_lists");
 }
 
+// A shader that looks at no matrix draws where its vertices say, whatever made the list of them; and the other way
+// round.
+SCENE(glsl_list_elsewhere, 2) {
+    clear();
+    static GLuint program;
+    const auto corner = [](float x, float y) {
+        glBegin(GL_QUADS);
+        glVertex2f(x, y), glVertex2f(x + 0.4f, y), glVertex2f(x + 0.4f, y + 0.5f), glVertex2f(x, y + 0.5f);
+        glEnd();
+    };
+    if (frame == 0) {
+        program = program_of("void main() { gl_Position = gl_Vertex; gl_FrontColor = gl_Color; }",
+                             "void main() { gl_FragColor = gl_Color; }");
+        glNewList(1, GL_COMPILE);
+        corner(-0.9f, 0.3f);
+        corner(0.5f, -0.9f);
+        glEndList();
+        glUseProgram(program);
+        glNewList(2, GL_COMPILE);
+        corner(0.4f, 0.4f);
+        glEndList();
+        glUseProgram(0);
+    }
+    glTranslatef(frame == 0 ? 5.0f : -1.2f, 0, 0);
+    glColor3f(0.2f, 0.9f, 0.4f);
+    glUseProgram(program);
+    glCallList(1);
+    glUseProgram(0);
+    glLoadIdentity();
+    glTranslatef(frame == 0 ? -1.2f : 0.1f, frame == 0 ? -1.2f : 0, 0);
+    glColor3f(0.9f, 0.5f, 0.1f);
+    glCallList(2);
+    glLoadIdentity();
+    say_error("glsl_list_elsewhere");
+}
+
 // ARB_shader_objects, and images that come compressed.
 SCENE(compressed_texture, 2) {
     clear(0.1f, 0, 0.1f);

@@ -14,6 +14,7 @@
 #include "client_lib/node_stream.h"
 #include "client_lib/stats.h"
 #include "common/wire/limits.h"
+#include "gen/glapi/wire.gen.h"
 #include "proto/control.pb.h"
 
 namespace wall::client {
@@ -195,8 +196,10 @@ TEST(ControlMessages, SurfacesAreWhatProtobufReads) {
     ASSERT_TRUE(envelope.ParseFromString(encode_surface_close(9)));
     EXPECT_EQ(envelope.surface_close().surface(), 9u);
     proto::DataHello data;
-    ASSERT_TRUE(data.ParseFromString(encode_data_hello(7, std::string_view("\0x", 2))));
+    ASSERT_TRUE(data.ParseFromString(encode_data_hello(7, std::string_view("\0x", 2), 3)));
+    EXPECT_EQ(data.version(), glapi::kStreamVersion);  // which nodes ask for (tileserver/io/data_stream.cpp)
     EXPECT_EQ(data.session(), 7u);
+    EXPECT_EQ(data.rank(), 3u);
     EXPECT_EQ(data.ticket(), std::string("\0x", 2));
 }
 

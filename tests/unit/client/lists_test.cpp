@@ -29,7 +29,7 @@ TEST_F(ListTest, ConsecutiveGeometryIsOneRun) {
     ASSERT_EQ(list(1).items.size(), 1u);
     const ListRun& run = *list(1).items[0].run;
     EXPECT_EQ(run.content.commands(), 2u + 2 * 8);
-    EXPECT_EQ(run.effects.size(), 2u);
+    EXPECT_EQ(run.in_context.attributes.size(), 2u);
     EXPECT_TRUE(c.packer.empty());
     EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
 }

@@ -5,6 +5,7 @@
 
 #include "client_lib/context.h"
 #include "client_lib/primitive_scan.h"
+#include "client_lib/share_group.h"
 
 namespace wall::client {
 
@@ -59,9 +60,10 @@ TEST_F(PackerTest, GrowsBeyondItsFirstRoomWithoutLosingAnything) {
     }
     packer.end();
     const auto& primitive = packer.primitives().at(0);
-    const auto vertices = scan_vertices(packer, primitive, Projection{});
+    VertexScan vertices;
+    vertices.scan(packer, primitive, {}, Projection{});
     ASSERT_EQ(vertices.size(), static_cast<std::size_t>(kMany));
-    const auto color = primitive.after.offset[static_cast<std::size_t>(Attribute::color)];
+    const auto color = vertices.attributes(vertices.size()).offset[place_of(Attribute::color)];
     float last;
     std::memcpy(&last, packer.operand_at(color), sizeof last);
     EXPECT_EQ(last, static_cast<float>(kMany - 1));
@@ -83,27 +85,79 @@ TEST_F(PackerTest, APrimitiveWithoutVerticesIsNoGeometryButKeepsItsAttributes) {
 }
 
 TEST(PrimitiveScan, KnowsTheAttributesOfEachVertex) {
+    constexpr int kVertices = 30;  // of which the third, sixth ... have another colour
     Packer packer;
     tls_packer = &packer;
     gl_entry_Color3f(0.5f, 0, 0);
     packer.begin(GL_TRIANGLES);
-    for (int i = 0; i < 3; ++i) {
-        if (i == 1) gl_entry_Color3f(1, 0, 0);
+    for (int i = 0; i < kVertices; ++i) {
+        if (i % 3 == 2) gl_entry_Color3f(static_cast<float>(i), 0, 0);
         gl_entry_Vertex3f(static_cast<float>(i), 0, 0);
     }
     packer.end();
     tls_packer = nullptr;
-    const auto vertices = scan_vertices(packer, packer.primitives()[0], Projection{});
-    ASSERT_EQ(vertices.size(), 3u);
-    const auto red_at = [&](const AttributePlaces& places) {
+    VertexScan vertices;
+    BlockWalk walk(packer, {}, packer.mark(), {});
+    walk.go_to(packer.primitives()[0].first);
+    vertices.scan(packer, packer.primitives()[0], walk.places(), Projection{});
+    ASSERT_EQ(vertices.size(), std::size_t{kVertices});
+    const auto red_at = [&](std::size_t v) {
         float red;
-        std::memcpy(&red, packer.operand_at(places.offset[static_cast<std::size_t>(Attribute::color)]), sizeof red);
+        std::memcpy(&red, packer.operand_at(vertices.attributes(v).offset[place_of(Attribute::color)]), sizeof red);
         return red;
     };
-    EXPECT_EQ(red_at(vertices[0].at), 0.5f);
-    EXPECT_EQ(red_at(vertices[1].before), 0.5f);
-    EXPECT_EQ(red_at(vertices[1].at), 1.0f);
-    EXPECT_EQ(red_at(vertices[2].before), 1.0f);
+    EXPECT_EQ(red_at(0), 0.5f);
+    EXPECT_EQ(red_at(2), 0.5f);
+    for (int i = 3; i <= kVertices; ++i)
+        EXPECT_EQ(red_at(static_cast<std::size_t>(i)), static_cast<float>(i / 3 * 3 - 1));
+}
+
+TEST(PrimitiveScan, TextureUnitsAndGenericAttributesAreRememberedLikeAllOthers) {
+    Context c(std::make_shared<ShareGroup>(), ContextOptions{});
+    const GlTable& gl = *c.table;
+    gl.MultiTexCoord4f(c, GL_TEXTURE3, 1, 2, 3, 4);
+    gl.Begin(c, GL_TRIANGLES);
+    for (int i = 0; i < 3; ++i) {
+        gl.VertexAttrib4f(c, 5, static_cast<float>(i), 0, 0, 1);
+        gl.Indexf(c, 7);
+        gl.Vertex2f(c, 0, 0);
+    }
+    gl.End(c);
+    EXPECT_FALSE(c.packer.has_rare());
+    EXPECT_TRUE(c.packer.primitives()[0].divisible);
+    VertexScan vertices;
+    BlockWalk walk(c.packer, {}, c.packer.mark(), {});
+    walk.go_to(c.packer.primitives()[0].first);
+    vertices.scan(c.packer, c.packer.primitives()[0], walk.places(), Projection{});
+    const auto places = vertices.attributes(3);
+    EXPECT_EQ(places.op[place_of(Attribute::texcoord + 3)], glapi::Op::MultiTexCoord4f);
+    EXPECT_EQ(places.op[place_of(Attribute::color_index)], glapi::Op::Indexf);
+    float x;
+    std::memcpy(&x, c.packer.operand_at(places.offset[place_of(Attribute::vertex_attrib + 5)]) + 4, sizeof x);
+    EXPECT_EQ(x, 2);
+    EXPECT_EQ(places.offset[place_of(Attribute::vertex_attrib + 4)], AttributePlaces::kNone);
+    c.packer.reset();
+}
+
+TEST(Attributes, EveryValueCanBeWrittenAndSetAgain) {
+    glstate::State given;
+    for (std::size_t i = 0; i < given.current.texcoord.size(); ++i) given.current.texcoord[i] = {1, 2, 3, float(i)};
+    for (std::size_t i = 0; i < given.current.vertex_attrib.size(); ++i)
+        given.current.vertex_attrib[i] = {4, 5, 6, float(i)};
+    given.current.color = {0.1f, 0.2f, 0.3f, 0.4f};
+    given.current.normal = {7, 8, 9};
+    given.current.secondary_color = {0.5f, 0.6f, 0.7f, 1};
+    given.current.fog_coord = 10;
+    given.current.edge_flag = 0;
+    given.current.color_index = 11;
+    glstate::State made;
+    for (unsigned i = 0; i < kAttributes; ++i) {
+        std::array<std::byte, glstate::kMostAttributeBytes> operand{};
+        const auto op = glstate::write_attribute(given, Attribute{} + i, operand.data());
+        EXPECT_EQ(place_of(glstate::attribute_set_by(op, operand.data())), i);
+        glstate::apply_attribute(made, op, operand.data());
+    }
+    EXPECT_TRUE(glstate::same(given.current, made.current));
 }
 
 }  // namespace

@@ -212,8 +212,8 @@ TEST_F(BufferTest, HoldsWhatItWasGiven) {
     EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
     gl().BufferData(c, GL_ARRAY_BUFFER, 4, "abcd", GL_FLOAT);
     EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
-    EXPECT_EQ(buffer_content(c, c.state.local.array_buffer, 2).size(), 2u);
-    EXPECT_TRUE(buffer_content(c, c.state.local.array_buffer, 5).empty());
+    EXPECT_EQ(buffer_content(c, c.state.local.array_buffer, 2).bytes().size(), 2u);
+    EXPECT_TRUE(buffer_content(c, c.state.local.array_buffer, 5).bytes().empty());
 }
 
 TEST_F(BufferTest, MappedMemoryIsTheContent) {

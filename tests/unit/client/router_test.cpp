@@ -103,5 +103,19 @@ TEST(Projection, MapsClipSpaceToTheViewport) {
     EXPECT_EQ(rect->y1, 76);
 }
 
+TEST(Targets, AWallMayHaveAnyNumberOfThem) {
+    SurfaceLayout layout;
+    constexpr std::uint32_t kNodes = 90, kTiles = 30;
+    for (std::uint32_t tile = 0; tile < kTiles; ++tile)
+        for (std::uint32_t node = 0; node < kNodes; ++node)
+            layout.targets.push_back({node, tile, {float(node), float(tile), float(node) + 1, float(tile) + 1}, {}});
+    const NodeMasks all = targets_of(layout, std::nullopt);
+    ASSERT_EQ(all.size(), kNodes);
+    for (const auto& [node, slots] : all) EXPECT_EQ(slots, (std::uint64_t{1} << kTiles) - 1);
+    const NodeMasks last = targets_of(layout, PixelRect{88.5f, 28.5f, 90, 30});
+    ASSERT_EQ(last.size(), 2u);
+    for (const auto& [node, slots] : last) EXPECT_EQ(slots, std::uint64_t{3} << 28);
+}
+
 }  // namespace
 }  // namespace wall::client

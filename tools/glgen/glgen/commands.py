@@ -2,8 +2,9 @@
 """Every GL command with its class and how it is done (proto/gl/commands.toml over gl.xml)."""
 
 import re
-import tomllib
 from dataclasses import dataclass
+
+from . import data
 
 CLASSES = ("primitive", "state", "object", "query", "special")
 LISTED = {"primitive": True, "state": True, "special": True, "object": False, "query": False}
@@ -20,6 +21,7 @@ class Implementation:
     args: tuple = ()        # as: its arguments
     flags: frozenset = frozenset()
     explicit: bool = True   # has a line
+    place: str = "commands.toml"    # of that line
 
     @property
     def name(self):
@@ -71,7 +73,7 @@ class Commands:
                 form = name[len(family):] or "plain"
                 if form in self.families[family]["types"].split():
                     return family, form
-        raise ValueError(f"commands.toml: {name}: no family in state.toml has this form")
+        raise AssertionError(f"{name}: no family in state.toml has this form")
 
 
 _LINE = re.compile(r"^(?P<way>\w+)(?: (?P<target>[A-Z]\w*)(?:\((?P<args>[^)]*)\))?)?(?P<flags>(?: [a-z]+)*)$")
@@ -79,27 +81,29 @@ _LINE = re.compile(r"^(?P<way>\w+)(?: (?P<target>[A-Z]\w*)(?:\((?P<args>[^)]*)\)
 
 def _parse(command, cls, line):
     m = _LINE.match(line)
-    assert m and m["way"] in WAYS, f"commands.toml: {command.short}: {line!r}"
+    assert m and m["way"] in WAYS, repr(line)
     flags = frozenset(m["flags"].split())
-    assert flags <= FLAGS, f"commands.toml: {command.short}: unknown words {flags - FLAGS}"
+    assert flags <= FLAGS, f"unknown words {flags - FLAGS}"
     args = tuple(a.strip() for a in m["args"].split(",")) if m["args"] else ()
     return Implementation(command, cls, m["way"], m["target"] or "", args, flags)
 
 
 def load(path, registry, model):
-    with open(path, "rb") as f:
-        data = tomllib.load(f)
+    file = data.load(path)
     lines = {}
-    for cls, entries in data.items():
-        assert cls in CLASSES, f"commands.toml: no class {cls}"
+    for cls, entries in file.sections.items():
+        if cls not in CLASSES:
+            file.refuse(f"no class {cls}", cls)
         for name, line in entries.items():
-            full = "gl" + name
-            assert full in registry.commands, f"commands.toml: no command {full} in gl.xml or extensions.xml"
-            assert full not in lines, f"commands.toml: {name} twice"
-            lines[full] = _parse(registry.commands[full], cls, line)
+            with file.line(cls, name):
+                full = "gl" + name
+                assert full in registry.commands, f"no command {full} in gl.xml or extensions.xml"
+                assert full not in lines, "twice"
+                lines[full] = _parse(registry.commands[full], cls, line)
+                lines[full].place = file.place(cls, name)
     everything = {}
     for name, command in registry.commands.items():
-        everything[name] = lines.get(name) or _inherited(name, registry, lines) or _by_rule(command)
+        everything[name] = lines.get(name) or _inherited(name, registry, lines) or _by_rule(command, path)
     commands = Commands(everything, model.families)
     _check(commands, registry)
     return commands
@@ -115,8 +119,8 @@ def _inherited(name, registry, lines):
     return next((lines[a] for a in _aliases(name, registry) if a in lines), None)
 
 
-def _by_rule(command):
-    assert not command.gl and not command.es, f"commands.toml: {command.short} of the OpenGL core has no class"
+def _by_rule(command, path):
+    assert not command.gl and not command.es, f"{path}: {command.short} of the OpenGL core has no class"
     cls = "query" if re.match(r"(Get|Is)[A-Z]", command.short) else "object"
     return Implementation(command, cls, "later", explicit=False)
 
@@ -125,6 +129,6 @@ def _check(commands, registry):
     slots = {i.name for i in commands.canonical}
     for i in commands.all.values():
         if i.target:
-            assert i.target in slots, f"commands.toml: {i.name}: {i.target} is not implemented itself"
+            assert i.target in slots, f"{i.place}: {i.name}: {i.target} is not implemented itself"
         if i.name in slots and i.in_list:
-            assert i.command.returns == "void", f"commands.toml: {i.name}: a listed command returns nothing"
+            assert i.command.returns == "void", f"{i.place}: {i.name}: a listed command returns nothing"

@@ -25,10 +25,11 @@ def _pointer(i):
     return f"{i.command.returns} (*{i.name})(Context&{params})"
 
 
-def api_header(commands, model):
+def api_header(commands, model, attributes):
     canonical = commands.canonical
     out = [header("gl.xml, proto/gl/commands.toml, proto/gl/state.toml", API_NOTES, []),
-           '#include <cstddef>\n#include <cstdint>\n#include <span>\n\n#include "common/glapi/gl_types.h"\n\n'
+           '#include <cstddef>\n#include <cstdint>\n#include <span>\n\n'
+           '#include "common/glapi/gl_types.h"\n#include "gen/glapi/wire.gen.h"\n\n'
            "namespace wall::client {\n\nclass Context;\n\nnamespace api {\n\n"]
     for i in canonical:
         note = " // by hand" if i.way == "hand" else ""
@@ -55,6 +56,11 @@ def api_header(commands, model):
                + "".join(f"    {i.name},\n" for i in canonical) + "};\n"
                f"inline constexpr std::size_t kCommandCount = {len(canonical)};\n"
                "extern const char* const kCommandNames[kCommandCount];\n\n"
+               "/// The recorded commands that set vertex attributes, and what they are in the stream.\n"
+               "struct RecordedAttribute {\n    CommandId command;\n    glapi::Op op;\n};\n"
+               "inline constexpr RecordedAttribute kRecordedAttributes[] = {\n"
+               + "".join(f"    {{CommandId::{c.op.name}, glapi::Op::{c.op.name}}},\n"
+                         for a in attributes for c in a.commands) + "};\n\n"
                "/// Executes a recorded command, as between glBegin and glEnd if the context is there.\n"
                "void replay_command(Context& c, std::uint16_t command, std::span<const std::byte> payload);\n\n")
     out.append("/// An entry point by name.\nstruct ProcEntry {\n    const char* name;\n    void (*entry)();\n};\n"
@@ -128,7 +134,7 @@ def _array_length(i, p, commands):
     if p.len and p.len.startswith("COMPSIZE"):
         family, _ = commands.family_of(i.name)
         return f"param_components(ParamFamily::{family}, pname)"
-    assert p.len, f"{i.name}: {p.name} has no length in gl.xml: word `record`"
+    assert p.len, f"{i.place}: {i.name}: {p.name} has no length in gl.xml: word `record`"
     return p.len
 
 
@@ -157,7 +163,8 @@ def _replay(i):
 
 def entries_source(commands, registry):
     out = [header("gl.xml and proto/gl/commands.toml", "The functions that applications call, and their names.", [], pragma=False),
-           '#include "client_lib/context.h"\n#include "client_lib/current.h"\n#include "client_lib/param_commands.h"\n'
+           '#include "client_lib/context.h"\n#include "client_lib/current.h"\n#include "client_lib/entry_guard.h"\n'
+           '#include "client_lib/param_commands.h"\n'
            '#include "client_lib/unsupported.h"\n#include "common/glapi/convert.h"\n#include "gen/client_lib/api.gen.h"\n\n'
            "namespace wall::client {\nnamespace {\n\nusing glapi::to_fraction;\n\n"]
     for i in commands.unique:
@@ -180,13 +187,25 @@ def entries_source(commands, registry):
 
 
 def _entry(i, commands, registry):
+    """Nothing that is thrown leaves it. What another entry point by hand does goes straight there."""
     returns = i.command.returns
+    head = f"{returns} GLAPIENTRY gl_entry_{i.name}({i.command.declaration}) {{\n"
+    if i.way in ("convert", "as") and "hot" in commands.all["gl" + i.target].flags:
+        return f"{head}    gl_entry_{i.target}({', '.join(_target_args(i, registry))});\n}}\n"
     none = "return;" if returns == "void" else "return {};"
-    lines = [f"{returns} GLAPIENTRY gl_entry_{i.name}({i.command.declaration}) {{\n",
-             f"    Context* c = tls_context;\n    if (!c) {none}\n"]
-    lines += [f"    {line}\n" for line in _entry_body(i, commands, registry)]
-    lines.append("}\n")
+    lines = [head, f"    Context* c = tls_context;\n    if (!c) {none}\n    try {{\n"]
+    lines += [f"        {line}\n" for line in _entry_body(i, commands, registry)]
+    lines.append(f'    }} catch (...) {{\n        entry_failed("gl{i.name}");\n')
+    lines += [] if returns == "void" else [f"        {none}\n"]
+    lines.append("    }\n}\n")
     return "".join(lines)
+
+
+def _target_args(i, registry):
+    target = registry.commands["gl" + i.target]
+    if i.way == "as":
+        return [_converted(p.type, a, False) for p, a in zip(target.params, i.args)]
+    return _convert_args(i, target)
 
 
 def _call(i, name, args):
@@ -197,11 +216,8 @@ def _call(i, name, args):
 def _entry_body(i, commands, registry):
     if commands.has_slot(i):
         return [_call(i, i.name, [p.name for p in i.command.params])]
-    if i.way == "as":
-        target = registry.commands["gl" + i.target]
-        return [_call(i, i.target, [_converted(p.type, a, False) for p, a in zip(target.params, i.args)])]
-    if i.way == "convert":
-        return [_call(i, i.target, _convert_args(i, registry.commands["gl" + i.target]))]
+    if i.way in ("as", "convert"):
+        return [_call(i, i.target, _target_args(i, registry))]
     return _param_entry(i, commands)
 
 
@@ -216,7 +232,7 @@ def _convert_args(i, target):
     given = []
     for p in i.command.params:
         if p.pointer:
-            assert p.len and p.len.isdigit(), f"{i.name}: {p.name}: length unknown"
+            assert p.len and p.len.isdigit(), f"{i.place}: {i.name}: {p.name}: length unknown"
             given += [(f"{p.name}[{k}]", p.value_type) for k in range(int(p.len))]
         else:
             given.append((p.name, p.type))

@@ -252,7 +252,7 @@ def _emit_command(e, command, lead):
         first, lead = "GL_TEXTURE0 + i", ""
     wanted = command.params[1:] if first else command.params
     args = [_cast(p.type, a) for p, a in zip(wanted, args)]
-    assert len(args) == len(wanted), f"state.toml: {e.name}: {command.name} takes {len(wanted)} values"
+    assert len(args) == len(wanted), f"{e.place}: {e.name}: {command.name} takes {len(wanted)} values"
     return f"gl.{command.short}({', '.join(([first] if first else []) + args)});", lead
 
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Context state (proto/gl/state.toml) as values: categories of elements. The file's head explains the keys."""
 
-import tomllib
 from dataclasses import dataclass, field
+
+from . import data
 
 UNITS = 8
 
@@ -57,6 +58,7 @@ class Element:
     groups: tuple
     client_groups: tuple
     keys: dict = field(repr=False, default_factory=dict)    # the line itself
+    place: str = field(repr=False, default="state.toml")    # of that line
 
     @property
     def plain(self):
@@ -173,7 +175,7 @@ def _fields(text):
     for part in text.split(","):
         type_, name = part.split()
         size = TYPES[type_][3]
-        assert offset % (8 if type_ in ("u64", "double") else 4) == 0, f"state.toml: {text}: padding"
+        assert offset % (8 if type_ in ("u64", "double") else 4) == 0, f"{text}: padding"
         fields.append(Field(type_, name, offset))
         offset += size
     return tuple(fields)
@@ -205,7 +207,7 @@ def _initializer(fields, plain, value, index):
         if not isinstance(value, list):
             return f"filled<{TYPES[fields[0].type][0]}>({_literal(component, value)})"
         return "{" + ", ".join(_literal(component, v) for v in value) + "}"
-    assert len(value) == len(fields), f"state.toml: {value}: one default per field"
+    assert len(value) == len(fields), f"{value}: one default per field"
     return "{" + ", ".join(_literal(f.type, v) for f, v in zip(fields, value)) + "}"
 
 
@@ -215,14 +217,14 @@ def _camel(name):
 
 def _element(name, category, keys, next_id, structs, shared):
     unknown = set(keys) - _KEYS
-    assert not unknown, f"state.toml: {name}: unknown key {unknown}"
+    assert not unknown, f"unknown key {unknown}"
     if "type" in keys:
         fields = (Field(keys["type"], "", 0),)
         cpp = TYPES[keys["type"]][0]
     else:
         fields = _fields(shared[keys["value"]] if "value" in keys else keys["fields"])
         cpp = keys.get("value") or _camel(name)
-        assert structs.setdefault(cpp, fields) == fields
+        assert structs.setdefault(cpp, fields) == fields, f"another {cpp} than before"
     count = keys.get("count", 1)
     special = {int(k): v for k, v in keys.get("defaults", {}).items()}
     defaults = [_initializer(fields, "type" in keys, special.get(i, keys["default"]), i) for i in range(count)]
@@ -239,27 +241,29 @@ def _named_lists(elements):
 
 
 def load(path):
-    with open(path, "rb") as f:
-        data = tomllib.load(f)
-    valid, families, shared = data.pop("valid"), data.pop("family"), data.pop("value")
-    categories, structs, next_id = [], {}, 1
-    for name, lines in data.items():
+    file = data.load(path)
+    sections = dict(file.sections)
+    valid, families, shared = sections.pop("valid"), sections.pop("family"), sections.pop("value")
+    categories, structs, names, next_id = [], {}, set(), 1
+    for name, lines in sections.items():
         attributes = {k: v for k, v in lines.items() if k.startswith("_")}
         elements = []
         for element_name, keys in lines.items():
             if element_name.startswith("_"):
                 continue
-            e = _element(element_name, attributes, keys, next_id, structs, shared)
-            e.category = name
-            if e.param:
-                assert e.family in families, f"state.toml: {element_name}: no family {e.family}"
+            with file.line(name, element_name):
+                e = _element(element_name, attributes, keys, next_id, structs, shared)
+                e.category, e.place = name, file.place(name, element_name)
+                assert not e.param or e.family in families, f"no family {e.family}"
+                assert element_name not in names, "an element's name twice"
+            names.add(element_name)
             elements.append(e)
             next_id += e.count
         categories.append(Category(name, attributes.get("_note", ""), elements))
     model = StateModel(categories, valid, families, structs)
-    assert categories[-1].name == "local", "state.toml: local must be the last category (its elements have no wire ids)"
-    names = [e.name for e in model.elements]
-    assert len(names) == len(set(names)), "state.toml: an element's name twice"
+    if categories[-1].name != "local":
+        file.refuse("local must be the last category (its elements have no wire ids)", categories[-1].name)
     unused = set(valid) - _named_lists(model.elements)
-    assert not unused, f"state.toml: no element names the list {', '.join(sorted(unused))} of [valid]"
+    if unused:
+        file.refuse("no element names this list of [valid]", sorted(unused)[0])
     return model

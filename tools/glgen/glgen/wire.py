@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The data stream's commands (proto/gl/wire.toml) as values."""
 
-import tomllib
 from dataclasses import dataclass
+
+from . import data
 
 CPP = {"u32": "std::uint32_t", "i32": "std::int32_t", "f32": "float", "f64": "double", "enum": "std::uint32_t"}
 SIZE = {"u32": 4, "i32": 4, "f32": 4, "f64": 8, "enum": 4}
@@ -30,13 +31,13 @@ class Op:
 
 
 def load(path):
-    with open(path, "rb") as f:
-        groups = tomllib.load(f)
+    file = data.load(path)
     ops = []
-    for group, commands in groups.items():
+    for group, commands in file.sections.items():
         for name, signature in commands.items():
-            ops.append(_op(len(ops), name, group, signature))
-    assert len(ops) <= 256, "wire.toml: opcodes are one byte"
+            with file.line(group, name):
+                ops.append(_op(len(ops), name, group, signature))
+                assert len(ops) <= 256, "opcodes are one byte"
     return ops
 
 
@@ -48,5 +49,5 @@ def _op(code, name, group, signature):
     if operands and operands[-1].type == "bytes":
         bytes_name = operands.pop().name
     for o in operands:
-        assert o.type in CPP, f"wire.toml: {name}: unknown type {o.type}"
+        assert o.type in CPP, f"unknown type {o.type}"
     return Op(code, name, group, tuple(operands), bytes_name, False)
