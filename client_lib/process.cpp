@@ -51,6 +51,7 @@ void wait_for_actions(int limit_ms) {
     const SignalsBlocked blocked;
     if (pthread_t thread; pthread_create(&thread, &attributes, run_actions, nullptr) == 0)
         wait_for_actions(limit_ms_of_all);
+    else run_actions(nullptr);
     pthread_attr_destroy(&attributes);
 }
 
