@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "common/wire/operand_reader.h"
+#include "common/wire/padding.h"
 
 namespace wall::glapi {
 namespace {
@@ -17,7 +18,7 @@ public:
     void put(const std::string& text) {
         put(static_cast<std::uint32_t>(text.size()));
         append(text.data(), text.size());
-        out.resize((out.size() + 3) & ~std::size_t{3});
+        out.resize(wire::padded4(out.size()));
     }
     void put(const std::vector<std::uint32_t>& words) {
         put(static_cast<std::uint32_t>(words.size()));

@@ -15,6 +15,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "common/wire/padding.h"
+
 namespace wall::glapi {
 
 /// An array argument of a recorded command.
@@ -40,7 +42,7 @@ public:
     }
     /// Appends a command with `bytes` of payload (zeroed, rounded up to 4), to be filled by the caller at once.
     std::byte* append(std::uint16_t command, std::size_t bytes) {
-        const std::size_t words = (bytes + 3) / 4, start = stream_.size(), head = words < kMany ? 4 : 8;
+        const std::size_t words = wire::padded4(bytes) / 4, start = stream_.size(), head = words < kMany ? 4 : 8;
         stream_.resize(start + head + words * 4);
         const std::uint16_t header[2] = {command, static_cast<std::uint16_t>(words < kMany ? words : kMany)};
         std::memcpy(stream_.data() + start, header, sizeof header);
@@ -64,7 +66,7 @@ private:
     }
     template <class T>
     static std::size_t size_of(const RecordedArray<T>& a) {
-        return 4 + (a.count * sizeof(T) + 3) / 4 * 4;
+        return 4 + wire::padded4(a.count * sizeof(T));
     }
     template <class T>
     static std::byte* put(std::byte* at, const T& value) {
@@ -123,7 +125,7 @@ public:
     const T* array() {
         const auto count = get<std::uint32_t>();
         const std::byte* from = at_;
-        at_ += (count * sizeof(T) + 3) / 4 * 4;
+        at_ += wire::padded4(count * sizeof(T));
         if constexpr (alignof(T) > 4) {
             std::memcpy(aligned_, from, std::min(sizeof aligned_, count * sizeof(T)));
             return reinterpret_cast<const T*>(aligned_);

@@ -9,6 +9,7 @@
 #include "common/base/result.h"
 #include "common/wire/frame.h"
 #include "common/wire/limits.h"
+#include "common/wire/padding.h"
 
 namespace wall::wire {
 
@@ -17,8 +18,6 @@ struct BatchView {
     std::span<const std::byte> opcodes;  ///< last first
     std::span<const std::byte> operands;
 };
-
-inline std::size_t padded4(std::size_t bytes) { return (bytes + 3) & ~std::size_t{3}; }
 
 /// Refuses a payload whose size is not exactly what its header says.
 inline Result<BatchView> split_batch(std::span<const std::byte> payload) {

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <span>
 
+#include "common/wire/padding.h"
+
 namespace wall::wire {
 
 static_assert(std::endian::native == std::endian::little, "the stream is read in place");
@@ -47,7 +49,7 @@ public:
     /// A bytes operand: u32 count, content, padding to 4.
     std::span<const std::byte> bytes() {
         const std::size_t count = get<std::uint32_t>();
-        return raw((count + 3) & ~std::size_t{3}).first(ok_ ? count : 0);
+        return raw(padded4(count)).first(ok_ ? count : 0);
     }
     void fail() {
         ok_ = false;

@@ -3,17 +3,16 @@
 
 #include <algorithm>
 
+#include "common/wire/padding.h"
+
 namespace wall::wire {
-namespace {
-constexpr std::size_t align4(std::size_t n) { return (n + 3) & ~std::size_t{3}; }
-}  // namespace
 
 PackBuffer::PackBuffer(std::size_t operand_bytes) { grow(operand_bytes / 4, operand_bytes); }
 
 void PackBuffer::grow(std::size_t opcodes, std::size_t operand_bytes) {
     const std::size_t used_opcodes = commands(), used_operands = this->operand_bytes();
-    const std::size_t room_opcodes = align4(std::max(used_opcodes * 2, used_opcodes + opcodes));
-    const std::size_t room_operands = align4(std::max(used_operands * 2, used_operands + operand_bytes));
+    const std::size_t room_opcodes = padded4(std::max(used_opcodes * 2, used_opcodes + opcodes));
+    const std::size_t room_operands = padded4(std::max(used_operands * 2, used_operands + operand_bytes));
     auto memory = std::make_unique_for_overwrite<std::byte[]>(room_opcodes + room_operands);
     std::byte* middle = memory.get() + room_opcodes;
     if (memory_) std::memcpy(middle - used_opcodes, opcodes_, used_opcodes + used_operands);

@@ -30,7 +30,8 @@ def stream_version(ops, elements):
 
 def wire_header(ops, elements):
     out = [header("proto/gl/wire.toml", WIRE_NOTES,
-                  ["<array>", "<cstddef>", "<cstdint>", "<cstring>", "<span>", "", '"common/wire/pack_buffer.h"']).replace("#include \n", "\n")]
+                  ["<array>", "<cstddef>", "<cstdint>", "<cstring>", "<span>", "", '"common/wire/pack_buffer.h"',
+                   '"common/wire/padding.h"']).replace("#include \n", "\n")]
     out.append("\nnamespace wall::glapi {\n\nenum class Op : std::uint8_t {\n")
     out += [f"    {op.name} = {op.code},\n" for op in ops]
     out.append("};\n\n")
@@ -67,12 +68,11 @@ template <class T>
 void put(std::byte* at, T value) {
     std::memcpy(at, &value, sizeof value);
 }
-inline std::size_t padded(std::size_t bytes) { return (bytes + 3) & ~std::size_t{3}; }
 /// A bytes operand: count, content, zeros up to a multiple of 4.
 inline void put_bytes(std::byte* at, std::span<const std::byte> content) {
     put(at, static_cast<std::uint32_t>(content.size()));
     if (content.empty()) return;
-    put(at + padded(content.size()), std::uint32_t{0});  // the last word; overwritten but for the padding
+    put(at + wire::padded4(content.size()), std::uint32_t{0});  // the last word; overwritten but for the padding
     std::memcpy(at + 4, content.data(), content.size());
 }
 }  // namespace detail
@@ -86,7 +86,7 @@ def _packer(op):
         params += f", std::span<const std::byte> {op.bytes_name}"
     size = str(op.fixed_bytes)
     if op.bytes_name:
-        size += f" + detail::padded({op.bytes_name}.size())"
+        size += f" + wire::padded4({op.bytes_name}.size())"
     uses = op.operands or op.bytes_name
     lines = [f"inline void {op.name}(wire::PackBuffer& to{params}) {{\n"]
     call = f"to.append(static_cast<std::uint8_t>(Op::{op.name}), {size})"
