@@ -146,7 +146,7 @@ void TileStreams::deliver(const std::shared_ptr<Stream>& stream, Made made) {
     if (still == streams_.end() || still->second != stream) return;
     if (!made.head.error().empty()) return fail(id, made.head.error());
     stream->cost += made.cost;
-    send_parts_(frame_parts(std::move(made.head), std::move(made.packet), std::move(made.hold)));
+    send_(id, frame_parts(std::move(made.head), std::move(made.packet), std::move(made.hold)));
 }
 
 void TileStreams::fill_stats(proto::NodeStats& out) const {
@@ -162,10 +162,10 @@ void TileStreams::fill_stats(proto::NodeStats& out) const {
 
 void TileStreams::fail(std::uint32_t stream, const std::string& why) {
     streams_.erase(stream);
-    proto::Envelope envelope;
-    envelope.mutable_stream_frame()->set_stream(stream);
-    envelope.mutable_stream_frame()->set_error(why);
-    send_(envelope);
+    proto::StreamFrame end;
+    end.set_stream(stream);
+    end.set_error(why);
+    send_(stream, frame_parts(std::move(end), {}, nullptr));
 }
 
 }  // namespace wall::tileserver
