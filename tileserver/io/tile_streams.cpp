@@ -126,9 +126,9 @@ void TileStreams::picture(Picture picture) {
 }
 
 /// On the pool's thread.
-TileStreams::Made TileStreams::make(Stream& stream, std::uint32_t id, bool key, const Picture& picture) {
+TileStreams::Made TileStreams::make(Stream& stream, std::uint32_t number, bool key, const Picture& picture) {
     Made made;
-    made.head.set_stream(id);
+    made.head.set_stream(number);
     made.head.set_time_us(now_us());
     made.head.set_width(picture.width);
     made.head.set_height(picture.height);

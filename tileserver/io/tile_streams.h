@@ -37,7 +37,7 @@ public:
 private:
     struct Stream;
     struct Made;
-    static Made make(Stream& stream, std::uint32_t id, bool key, const Picture& picture);
+    static Made make(Stream& stream, std::uint32_t number, bool key, const Picture& picture);
     void deliver(const std::shared_ptr<Stream>& stream, Made made);
     void fail(std::uint32_t stream, const std::string& why);
 
