@@ -298,9 +298,9 @@ asio::awaitable<void> ControlServer::serve_operator(Connection connection, proto
 }
 
 /// In parts, each when the one before is gone: an answer may be as large as a picture of the wall.
-asio::awaitable<void> ControlServer::send_answer(Connection connection, std::uint32_t request, Outcome<Answer> answer) {
+asio::awaitable<void> ControlServer::send_answer(Connection connection, std::uint32_t number, Outcome<Answer> answer) {
     proto::OperatorReply reply;
-    reply.set_request(request);
+    reply.set_request(number);
     reply.set_ok(answer.has_value());
     if (!answer) {
         reply.set_error(answer.error().message);

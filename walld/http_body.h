@@ -3,13 +3,11 @@
 // people asked for is in memory once.
 #pragma once
 
-#include <boost/asio/buffer.hpp>
 #include <boost/beast/http/message.hpp>
-#include <boost/optional.hpp>
+#include <boost/beast/http/string_body.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <utility>
 
 namespace wall::walld {
 
@@ -23,21 +21,11 @@ struct HttpBody {
 
     static std::uint64_t size(const value_type& body) { return body.bytes().size(); }
 
-    /// Beast's BodyWriter: all of it at once.
-    class writer {
-    public:
-        using const_buffers_type = boost::asio::const_buffer;
-
+    /// As of a text: all of it at once.
+    struct writer : boost::beast::http::string_body::writer {
         template <bool is_request, class Fields>
-        writer(const boost::beast::http::header<is_request, Fields>&, const value_type& body) : body_(body) {}
-        void init(boost::system::error_code& error) { error = {}; }
-        boost::optional<std::pair<const_buffers_type, bool>> get(boost::system::error_code& error) {
-            error = {};
-            return {{boost::asio::buffer(body_.bytes()), false}};
-        }
-
-    private:
-        const value_type& body_;
+        writer(const boost::beast::http::header<is_request, Fields>& header, const value_type& body)
+            : boost::beast::http::string_body::writer(header, body.bytes()) {}
     };
 };
 

@@ -70,9 +70,9 @@ NodeServer::NodeServer(asio::any_io_executor executor, net::Address walld, std::
       name_(std::move(name)),
       retry_(executor),
       parts_(executor),
-      tile_streams_(
-          executor, [this](const proto::Envelope& envelope) { to_walld(envelope); },
-          [this](Parts parts) { parts_.send(std::move(parts)); }) {}
+      tile_streams_(executor, [this](std::uint32_t stream, Parts parts) {
+          parts_.send({PartsOf::Kind::stream, stream}, std::move(parts));
+      }) {}
 
 NodeServer::~NodeServer() = default;
 
@@ -275,8 +275,9 @@ void NodeServer::ended(StreamId id, std::string reason) {
 
 void NodeServer::picture(Picture picture) {
     post([this, picture = std::move(picture)]() mutable {
+        const auto id = picture.request.id;
         if (picture.request.stream) tile_streams_.picture(std::move(picture));
-        else parts_.send(snapshot_parts(std::move(picture)));
+        else parts_.send({PartsOf::Kind::snapshot, id}, snapshot_parts(std::move(picture)));
     });
 }
 

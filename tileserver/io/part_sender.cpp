@@ -69,21 +69,24 @@ void PartSender::use(std::shared_ptr<net::ControlConnection> link) {
     line_ = link ? std::make_shared<Line>(Line{std::move(link), {}, false}) : nullptr;
 }
 
-void PartSender::send(Parts parts) {
+void PartSender::send(const PartsOf& of, Parts parts) {
     if (!line_) return;
-    line_->waiting.push_back(std::move(parts));
+    auto at = std::ranges::find(line_->waiting, of, &Waiting::of);
+    if (at == line_->waiting.end()) at = line_->waiting.insert(at, Waiting{of, {}});
+    at->parts.push_back(std::move(parts));
     if (!std::exchange(line_->running, true)) asio::co_spawn(executor_, run(line_), asio::detached);
 }
 
 asio::awaitable<void> PartSender::run(std::shared_ptr<Line> line) {
     while (!line->waiting.empty()) {
-        auto parts = std::move(line->waiting.front());
+        auto turn = std::move(line->waiting.front());
         line->waiting.pop_front();
-        const auto part = parts();
+        const auto part = turn.parts.front()();
+        if (!part) turn.parts.pop_front();
+        if (!turn.parts.empty()) line->waiting.push_back(std::move(turn));
         if (!part) continue;
         const auto link = line->link;
         link->send(*part);
-        line->waiting.push_back(std::move(parts));
         co_await link->drained();
         if (!link->is_open()) line->waiting.clear();
     }

@@ -22,9 +22,16 @@ namespace asio = boost::asio;
 /// Gives the parts in order; nothing after the last.
 using Parts = std::function<std::optional<proto::Envelope>()>;
 
+/// What parts belong to. Those of one follow each other, however many pictures of it wait.
+struct PartsOf {
+    enum class Kind { snapshot, stream } kind;
+    std::uint32_t number;  ///< of the request, or of the stream
+    bool operator==(const PartsOf&) const = default;
+};
+
 /// A tile's picture as Snapshot messages.
 Parts snapshot_parts(Picture picture);
-/// A stream's frame; `head` is what its first message says. `keep` lives until the last part is gone.
+/// A stream's frame, or its end; `head` is what its first message says. `keep` lives until the last part is gone.
 Parts frame_parts(proto::StreamFrame head, std::vector<std::byte> packet, std::shared_ptr<const void> keep);
 
 class PartSender {
@@ -33,12 +40,16 @@ public:
 
     /// From now on to this link (null: to nobody). What waited for the one before is dropped.
     void use(std::shared_ptr<net::ControlConnection> link);
-    void send(Parts parts);
+    void send(const PartsOf& of, Parts parts);
 
 private:
+    struct Waiting {
+        PartsOf of;
+        std::deque<Parts> parts;
+    };
     struct Line {
         std::shared_ptr<net::ControlConnection> link;
-        std::deque<Parts> waiting;
+        std::deque<Waiting> waiting;  // whose turn it is first
         bool running = false;
     };
     static asio::awaitable<void> run(std::shared_ptr<Line> line);

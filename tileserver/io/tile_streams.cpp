@@ -126,9 +126,9 @@ void TileStreams::picture(Picture picture) {
 }
 
 /// On the pool's thread.
-TileStreams::Made TileStreams::make(Stream& stream, std::uint32_t id, bool key, const Picture& picture) {
+TileStreams::Made TileStreams::make(Stream& stream, std::uint32_t number, bool key, const Picture& picture) {
     Made made;
-    made.head.set_stream(id);
+    made.head.set_stream(number);
     made.head.set_time_us(now_us());
     made.head.set_width(picture.width);
     made.head.set_height(picture.height);
@@ -146,7 +146,7 @@ void TileStreams::deliver(const std::shared_ptr<Stream>& stream, Made made) {
     if (still == streams_.end() || still->second != stream) return;
     if (!made.head.error().empty()) return fail(id, made.head.error());
     stream->cost += made.cost;
-    send_parts_(frame_parts(std::move(made.head), std::move(made.packet), std::move(made.hold)));
+    send_(id, frame_parts(std::move(made.head), std::move(made.packet), std::move(made.hold)));
 }
 
 void TileStreams::fill_stats(proto::NodeStats& out) const {
@@ -162,10 +162,10 @@ void TileStreams::fill_stats(proto::NodeStats& out) const {
 
 void TileStreams::fail(std::uint32_t stream, const std::string& why) {
     streams_.erase(stream);
-    proto::Envelope envelope;
-    envelope.mutable_stream_frame()->set_stream(stream);
-    envelope.mutable_stream_frame()->set_error(why);
-    send_(envelope);
+    proto::StreamFrame end;
+    end.set_stream(stream);
+    end.set_error(why);
+    send_(stream, frame_parts(std::move(end), {}, nullptr));
 }
 
 }  // namespace wall::tileserver

@@ -19,10 +19,9 @@ namespace asio = boost::asio;
 
 class TileStreams {
 public:
-    /// `send` and `send_parts`: to walld; called on the executor.
-    TileStreams(asio::any_io_executor executor, std::function<void(const proto::Envelope&)> send,
-                std::function<void(Parts)> send_parts)
-        : executor_(std::move(executor)), send_(std::move(send)), send_parts_(std::move(send_parts)) {}
+    /// `send`: what is of a stream, to walld; called on the executor.
+    TileStreams(asio::any_io_executor executor, std::function<void(std::uint32_t stream, Parts)> send)
+        : executor_(std::move(executor)), send_(std::move(send)) {}
     /// Waits for the pictures that are being encoded.
     ~TileStreams() { pool_.join(); }
 
@@ -38,13 +37,12 @@ public:
 private:
     struct Stream;
     struct Made;
-    static Made make(Stream& stream, std::uint32_t id, bool key, const Picture& picture);
+    static Made make(Stream& stream, std::uint32_t number, bool key, const Picture& picture);
     void deliver(const std::shared_ptr<Stream>& stream, Made made);
     void fail(std::uint32_t stream, const std::string& why);
 
     asio::any_io_executor executor_;
-    std::function<void(const proto::Envelope&)> send_;
-    std::function<void(Parts)> send_parts_;
+    std::function<void(std::uint32_t stream, Parts)> send_;
     std::map<std::uint32_t, std::shared_ptr<Stream>> streams_;
     asio::thread_pool pool_{1};
 };

@@ -127,6 +127,7 @@ protected:
         }
         EXPECT_TRUE(over);
     }
+    static PartsOf snapshot(std::uint32_t request) { return {PartsOf::Kind::snapshot, request}; }
     static proto::Envelope rendered(std::uint32_t frame) {
         proto::Envelope out;
         out.mutable_rendered()->set_frame(frame);
@@ -139,7 +140,7 @@ protected:
 };
 
 TEST_F(PartSenderTest, AFramesReportDoesNotWaitBehindPictures) {
-    for (std::uint32_t i = 0; i < 50; ++i) sender_.send(snapshot_parts(picture(2048, 2048, i)));
+    for (std::uint32_t i = 0; i < 50; ++i) sender_.send(snapshot(i), snapshot_parts(picture(2048, 2048, i)));
     go_on();
     link_->send(rendered(1));
     std::size_t before = 0;
@@ -149,17 +150,34 @@ TEST_F(PartSenderTest, AFramesReportDoesNotWaitBehindPictures) {
 }
 
 TEST_F(PartSenderTest, PicturesTakeTurns) {
-    sender_.send(snapshot_parts(picture(4096, 4096, 1)));
-    sender_.send(snapshot_parts(picture(16, 16, 2)));
+    sender_.send(snapshot(1), snapshot_parts(picture(4096, 4096, 1)));
+    sender_.send(snapshot(2), snapshot_parts(picture(16, 16, 2)));
     std::size_t before = 0;
     read([&](const auto& message) { return message.snapshot().request() == 2 || (++before, false); });
     EXPECT_LE(before, 2u);
 }
 
+TEST_F(PartSenderTest, FramesOfAStreamFollowEachOther) {
+    // A viewer that comes in the middle of a frame makes its node take another one at once.
+    for (std::uint64_t time = 1; time <= 2; ++time) {
+        proto::StreamFrame head;
+        head.set_stream(7);
+        head.set_time_us(time);
+        sender_.send({PartsOf::Kind::stream, 7}, frame_parts(head, std::vector<std::byte>(5 << 20), nullptr));
+    }
+    sender_.send({PartsOf::Kind::stream, 8}, frame_parts({}, std::vector<std::byte>(5 << 20), nullptr));
+    std::vector<std::uint64_t> offsets;
+    read([&](const auto& message) {
+        if (message.stream_frame().stream() == 7) offsets.push_back(message.stream_frame().offset() >> 20);
+        return offsets.size() == 10;
+    });
+    EXPECT_EQ(offsets, (std::vector<std::uint64_t>{0, 1, 2, 3, 4, 0, 1, 2, 3, 4}));
+}
+
 TEST_F(PartSenderTest, WhatWaitedForALostLinkIsDropped) {
     const auto budget = std::make_shared<int>(1);
     const std::weak_ptr<int> held = budget;
-    sender_.send(frame_parts({}, std::vector<std::byte>(100 << 20), budget));
+    sender_.send({PartsOf::Kind::stream, 1}, frame_parts({}, std::vector<std::byte>(100 << 20), budget));
     go_on();
     EXPECT_GT(held.use_count(), 1);
     link_->close();
@@ -167,7 +185,7 @@ TEST_F(PartSenderTest, WhatWaitedForALostLinkIsDropped) {
     io_.restart();
     io_.run_for(100ms);
     EXPECT_EQ(held.use_count(), 1);
-    sender_.send(snapshot_parts(picture(16, 16, 1)));  // to nobody
+    sender_.send(snapshot(1), snapshot_parts(picture(16, 16, 1)));  // to nobody
 }
 
 }  // namespace
