@@ -86,7 +86,7 @@ asio::awaitable<Result<void>> DataStream::greet() {
     if (hello.rank() >= std::max(1u, admission->membership.members))
         co_return wall::fail("session " + std::to_string(hello.session()) + " has no rank " +
                              std::to_string(hello.rank()));
-    reader_.set_limit(wire::kMaxFramePayload);
+    reader_.set_limits(wire::kMaxFramePayload, wire::kMaxBatchPayload);
     const auto on_room = [weak = weak_from_this(), executor = socket_.get_executor()] {
         asio::post(executor, [weak] {
             if (const auto self = weak.lock()) {
