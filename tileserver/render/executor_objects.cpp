@@ -46,7 +46,7 @@ Texture* Executor::bind_for_upload(std::uint32_t name, GLenum target) {
     if (texture->content.use_count() > 1) {
         if (!session_.adopt(*texture, texture->content->copy())) refuse("more texture memory than a session may have");
     } else if (const auto key = std::exchange(texture->content->key, {})) {
-        node_.textures.forget(*key);
+        node_.textures.forget(*key, *texture->content);
     }
     if (texture->promise)
         node_.textures.heard(texture->promise->key, session_.asker(), std::chrono::steady_clock::now());
