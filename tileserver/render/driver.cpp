@@ -62,6 +62,15 @@ unsigned Driver::drain_errors() {
     return count;
 }
 
+const char* Driver::reset() const {
+    switch (gl_.GetGraphicsResetStatus != nullptr ? gl_.GetGraphicsResetStatus() : GLenum{GL_NO_ERROR}) {
+        case GL_NO_ERROR: return nullptr;
+        case GL_GUILTY_CONTEXT_RESET: return "what was drawn here made the GPU hang";
+        case GL_INNOCENT_CONTEXT_RESET: return "another program made the GPU hang";
+        default: return "the GPU was reset";
+    }
+}
+
 bool Driver::fragments_change(const glstate::State& from, const glstate::State& to) {
     for (std::size_t category = 0; category < glstate::kCategoryCount; ++category)
         if ((kSynced >> category & 1) != 0 && from.ids[category] != to.ids[category]) return true;

@@ -107,6 +107,8 @@ public:
 
     /// Takes all of the driver's errors; how many there were.
     unsigned drain_errors();
+    /// Why the context is lost; null: it is not. After a reset nothing that it had is left.
+    const char* reset() const;
 
     template <class E>
     void set(unsigned i, const typename E::type& value) {
