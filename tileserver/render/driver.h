@@ -127,8 +127,6 @@ private:
     void emit(Gl& gl, glstate::el::light_position, unsigned i, const glstate::Vec4& v);
     void emit(Gl& gl, glstate::el::light_spot_direction, unsigned i, const glstate::Vec3& v);
     void emit(Gl& gl, glstate::el::tex_gen_eye_plane, unsigned i, const glstate::Vec4& v);
-    template <class Call>
-    void with_identity_modelview(Call&& call);
     void apply_viewport(const WindowValues& values, bool scaled);
 
     void stop_tracking(const glstate::State& state);
