@@ -8,6 +8,7 @@
 #include "client_lib/buffer_binding.h"
 #include "client_lib/guard.h"
 #include "client_lib/lists.h"
+#include "client_lib/log.h"
 #include "client_lib/maps.h"
 #include "client_lib/material.h"
 #include "client_lib/occlusion.h"
@@ -84,6 +85,10 @@ void Context::begin_primitive(GLenum mode) {
 void Context::end_primitive() {
     packer.end();
     if (table == &tables::inside_begin) table = &tables::immediate;
+    if (packer.take_overflow()) {
+        complain_once("one glBegin .. glEnd or draw is larger than can be carried to a node; it was left out", "block");
+        error(GL_OUT_OF_MEMORY);
+    }
     if (packer.bytes() > kBlockBytes && !packer.closed()) flush_block();
 }
 

@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <sys/uio.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -132,24 +133,36 @@ void NodeStream::send(std::uint32_t context, wire::PackBuffer batch) {
     const std::size_t padding = (4 - batch.commands() % 4) % 4;
     const wire::BatchHeader header{context, static_cast<std::uint32_t>(batch.commands()),
                                    static_cast<std::uint32_t>(batch.operand_bytes())};
-    const std::size_t payload = sizeof header + padding + batch.bytes();
     Outgoing out;
-    const auto frame = wire::encode_frame_header({static_cast<std::uint32_t>(payload), wire::FrameKind::batch});
-    std::memcpy(out.head.data(), frame.data(), frame.size());
-    std::memcpy(out.head.data() + frame.size(), &header, sizeof header);
-    out.head_bytes = frame.size() + sizeof header + padding;
+    out.lead = {};
+    std::memcpy(out.lead.data(), &header, sizeof header);
+    out.lead_bytes = sizeof header + padding;
     out.body = std::move(batch);
+    const std::size_t payload = out.payload_bytes();
+    if (payload > wire::kMaxBatchPayload) return give_up("a batch is larger than one may be");  // checked before
+    out.begin_part(0);
 
     std::unique_lock lock(mutex_);
     const auto room = [&] { return failed() || queued_bytes_ < kMaxQueuedBytes; };
-    wait(lock, stalls_ ? kStallLimitMs : kNoLimit, room);
-    if (!room()) {
+    while (!room()) {
+        const auto before = bytes_sent();
+        wait(lock, stalls_ ? kStallLimitMs : kNoLimit, room);
+        if (room() || bytes_sent() != before) continue;
         lock.unlock();
         give_up("node takes no more data");
         return;
     }
     queued_bytes_ += payload;
     queue_.push_back(std::move(out));
+}
+
+void NodeStream::Outgoing::begin_part(std::size_t start) {
+    part_start = start;
+    part_bytes = std::min(payload_bytes() - start, wire::kPartBytes);
+    const bool last = start + part_bytes == payload_bytes();
+    frame = wire::encode_frame_header(
+        {static_cast<std::uint32_t>(part_bytes), last ? wire::FrameKind::batch : wire::FrameKind::part});
+    sent = 0;
 }
 
 std::optional<std::vector<std::byte>> NodeStream::wait_reply(std::uint32_t request, int timeout_ms) {
@@ -190,19 +203,29 @@ bool NodeStream::wants_write() {
     return !queue_.empty() && !failed();
 }
 
-// Head and body go out in one system call; opcodes and operands are one run of memory.
+// All of a frame goes out in one system call; opcodes and operands are one run of memory.
 bool NodeStream::write_some(Outgoing& out) {
-    const std::size_t total = out.head_bytes + out.body.bytes();
-    while (out.sent < total) {
-        std::array<iovec, 2> parts;
-        int count = 0;
-        if (out.sent < out.head_bytes) parts[count++] = {out.head.data() + out.sent, out.head_bytes - out.sent};
-        const std::size_t skip = out.sent > out.head_bytes ? out.sent - out.head_bytes : 0;
-        const auto* body = out.body.opcodes().data() + skip;
-        parts[count++] = {const_cast<std::byte*>(body), out.body.bytes() - skip};
+    for (;;) {
+        std::array<iovec, 3> pieces;
+        std::size_t count = 0;
+        const auto add = [&](const std::byte* from, std::size_t bytes) {
+            if (bytes != 0) pieces[count++] = {const_cast<std::byte*>(from), bytes};
+        };
+        const std::size_t head = std::min(out.sent, out.frame.size());
+        add(out.frame.data() + head, out.frame.size() - head);
+        const std::size_t at = out.part_start + (out.sent - head), end = out.part_start + out.part_bytes;
+        const std::size_t lead = std::min(at, out.lead_bytes), lead_end = std::min(end, out.lead_bytes);
+        add(out.lead.data() + lead, lead_end - lead);
+        const std::size_t body = std::max(at, out.lead_bytes), body_end = std::max(end, out.lead_bytes);
+        add(out.body.opcodes().data() + (body - out.lead_bytes), body_end - body);
+        if (count == 0) {
+            if (end == out.payload_bytes()) return true;
+            out.begin_part(end);
+            continue;
+        }
         msghdr message{};
-        message.msg_iov = parts.data();
-        message.msg_iovlen = static_cast<std::size_t>(count);
+        message.msg_iov = pieces.data();
+        message.msg_iovlen = count;
         const ssize_t n = ::sendmsg(fd_.get(), &message, MSG_NOSIGNAL | MSG_DONTWAIT);
         if (n < 0) {
             if (errno == EINTR) continue;
@@ -211,7 +234,6 @@ bool NodeStream::write_some(Outgoing& out) {
         }
         out.sent += static_cast<std::size_t>(n);
     }
-    return true;
 }
 
 void NodeStream::on_writable() {
@@ -222,7 +244,7 @@ void NodeStream::on_writable() {
             if (queue_.empty()) return;
             front = &queue_.front();  // only this thread removes, and deque keeps references on push_back
         }
-        const std::size_t total = front->head_bytes - wire::kFrameHeaderBytes + front->body.bytes();
+        const std::size_t total = front->payload_bytes();
         if (!write_some(*front)) return;
         std::lock_guard lock(mutex_);
         if (queue_.empty()) return;  // failed meanwhile

@@ -30,8 +30,9 @@ public:
 
     static constexpr int kNoLimit = -1;  ///< as timeout_ms
 
-    /// Queues a batch. Blocks while more than kMaxQueuedBytes wait (the node is slower than the program), but never
-    /// longer than `kStallLimitMs`: then the stream counts as failed. Application threads.
+    /// Queues a batch of at most wire::kMaxBatchPayload. Blocks while more than kMaxQueuedBytes wait (the node is
+    /// slower than the program), but never longer than `kStallLimitMs` without a byte that goes out: then the stream
+    /// counts as failed. Application threads.
     void send(std::uint32_t context, wire::PackBuffer batch);
 
     /// No stall fails the stream: the node may hold it for others' sake. Before the first send().
@@ -57,11 +58,16 @@ public:
 
 private:
     explicit NodeStream(UniqueFd fd) : fd_(std::move(fd)) {}
+    /// A batch on its way, in as many frames as it takes.
     struct Outgoing {
-        std::array<std::byte, 24> head;  // frame header, batch header, padding in front of the opcodes
-        std::size_t head_bytes = 0;
-        std::size_t sent = 0;
+        std::array<std::byte, 16> lead;  ///< batch header, padding in front of the opcodes
+        std::size_t lead_bytes = 0;
         wire::PackBuffer body;
+        std::array<std::byte, wire::kFrameHeaderBytes> frame;  ///< of the part that is being sent
+        std::size_t part_start = 0, part_bytes = 0;            ///< of the payload
+        std::size_t sent = 0;                                  ///< of the part, its frame header included
+        std::size_t payload_bytes() const { return lead_bytes + body.bytes(); }
+        void begin_part(std::size_t start);
     };
     void handle_frame(wire::FrameKind kind, std::vector<std::byte> payload);
     bool write_some(Outgoing& out);

@@ -31,11 +31,27 @@ void Packer::update_limit() {
 
 void Packer::make_room() {
     if (!tight()) return update_limit();  // closed, or the estimate was too careful
+    if (inside_ && bytes() > most_bytes_) {
+        overflown_ = true;
+        rewind({open_.first.commands + 1, open_.first.operand_bytes + sizeof open_.mode});  // behind its Begin
+        return update_limit();
+    }
     const std::byte* old = operands().data();
     grow(commands() + kSlack, operand_bytes() + 4 * kSlack);
     for (auto& place : last)
         if (place) place = operands().data() + (place - old);
     update_limit();
+}
+
+/// Forgets what was packed since then, and the attributes among it.
+void Packer::rewind(const wire::PackMark& to) {
+    opcodes_ = middle_ - to.commands;
+    operands_ = middle_ + to.operand_bytes;
+    for (std::size_t i = 0; i < kAttributes; ++i) {
+        const std::uint32_t before = open_.before.offset[i];
+        last[i] = before == AttributePlaces::kNone ? nullptr : middle_ + before;
+        last_op[i] = open_.before.op[i];
+    }
 }
 
 void Packer::begin(std::uint32_t mode) {
@@ -55,6 +71,11 @@ void Packer::begin(std::uint32_t mode) {
 void Packer::end() {
     inside_ = false;
     glapi::pack::End(*this);
+    if (overflown_ || bytes() > most_bytes_) {
+        overflown_ = true;
+        rewind(open_.first);
+        return update_limit();
+    }
     if (box.empty()) {  // no vertex: nothing to draw, but its attributes count
         update_limit();
         return;

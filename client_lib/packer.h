@@ -8,9 +8,11 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "common/geom/box.h"
+#include "common/wire/limits.h"
 #include "common/wire/pack_buffer.h"
 #include "gen/glapi/wire.gen.h"
 #include "gen/glstate/attributes.gen.h"
@@ -58,6 +60,11 @@ public:
     /// Geometry of unknown extent was packed (evaluators).
     void mark_unbounded() { box.make_unbounded(); }
 
+    /// A primitive made the block larger than can be carried to a node, and was dropped.
+    bool take_overflow() { return std::exchange(overflown_, false); }
+    /// The most bytes of a block; at first wire::kMaxBlockBytes.
+    void set_most_bytes(std::size_t bytes) { most_bytes_ = bytes; }
+
     bool has_geometry() const { return !primitives_.empty(); }
     bool has_rare() const { return rare_; }
     const std::vector<Primitive>& primitives() const { return primitives_; }
@@ -78,6 +85,7 @@ private:
     void update_limit();
     std::size_t usable_bytes() const;
     bool tight() const;
+    void rewind(const wire::PackMark& to);
 
     std::vector<Primitive> primitives_;
     Primitive open_;
@@ -85,6 +93,8 @@ private:
     bool inside_ = false;
     bool rare_ = false;
     bool closed_ = false;
+    bool overflown_ = false;
+    std::size_t most_bytes_ = wire::kMaxBlockBytes;
 };
 
 }  // namespace wall::client

@@ -8,6 +8,9 @@
 namespace wall::client {
 namespace {
 
+/// Of one answer; more is asked for in several, all at once.
+constexpr std::size_t kMostAnswerBytes = std::size_t{64} << 20;
+
 PixelBox common_part(const PixelBox& a, const geom::Rect& b) {
     const geom::Rect both = geom::intersect({a.x, a.y, a.width, a.height}, b);
     return {both.x, both.y, both.width, both.height};
@@ -54,8 +57,12 @@ std::vector<std::byte> gather_pixels(Context& c, const PixelBox& box, GLenum for
     for (const Target& target : surface->layout.targets) {
         const PixelBox part = common_part(box, target.pixels);
         if (part.empty()) continue;
-        targets.push_back(target);
-        parts.push_back(part);
+        const std::size_t row = std::max<std::size_t>(1, glapi::row_bytes(*layout, part.width));
+        const auto rows = static_cast<std::int32_t>(std::max<std::size_t>(1, kMostAnswerBytes / row));
+        for (std::int32_t y = 0; y < part.height; y += rows) {
+            targets.push_back(target);
+            parts.push_back({part.x, part.y + y, part.width, std::min(rows, part.height - y)});
+        }
     }
     const auto answers =
         c.session().ask_all(c, targets, function, [&](wire::PackBuffer& buffer, std::uint32_t request, std::size_t i) {

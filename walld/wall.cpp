@@ -82,7 +82,7 @@ void Wall::node_faults(NodeIndex node, const proto::SessionFault& report) {
     auto* session = find(id);
     if (!session) return;
     session->fault = nodes_[node].config->name + ": " + report.reason();
-    if (!session->group) return;
+    if (!session->group && !report.ends()) return;
     out_.end_session(id, session->fault);
     close_session(id);
 }

@@ -12,6 +12,7 @@
 #include "client_lib/pixel_store.h"
 #include "client_lib/readback.h"
 #include "client_lib/share_group.h"
+#include "common/wire/limits.h"
 
 namespace wall::client::api {
 namespace {
@@ -172,7 +173,8 @@ void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
         return feed_back(
             c, [](wire::PackBuffer& b) { glapi::pack::DrawPixels(b, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, kOnePixel); });
     if (width == 0 || height == 0) return;
-    if (!glapi::image_bytes(format, type, width, height, 1)) return c.error(GL_OUT_OF_MEMORY);
+    const auto bytes = glapi::image_bytes(format, type, width, height, 1);
+    if (!bytes || *bytes > wire::kMaxBlockBytes) return c.error(GL_OUT_OF_MEMORY);
     const void* from = image_source(c, {{width, height}, format, type}, pixels);
     if (!from) return;
     const auto tight = glapi::unpack_image(unpack_store(c.state), {width, height}, format, type, from);

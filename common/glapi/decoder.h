@@ -11,12 +11,14 @@
 //   `bytes` of
 //      commands it takes in the batch,
 //     `void begin_tile(unsigned slot)`, `void end_block()`.
-// A member that cannot go on calls `refuse("why")`.
+// A member that cannot go on calls `refuse("why")`. A handler that hides Handler::should_pause() can stop between two
+// commands, also in the middle of a block; BatchRun and DrawingRun then go on where they stood.
 #pragma once
 
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -26,9 +28,18 @@
 
 namespace wall::glapi {
 
+/// What a handler answers when it is asked, now and then, whether others should have their turn.
+enum class Pause : std::uint8_t {
+    go_on,
+    closely,  ///< no, but ask again after a few commands: the others wait for little
+    soon,     ///< yes, but what it is in the middle of cannot be cut here: ask again after the next command
+    now,
+};
+
 /// The refusal of a handler: sticky, the first reason stays.
 class Handler {
 public:
+    static constexpr Pause should_pause() { return Pause::go_on; }
     void refuse(std::string reason) {
         if (!refused_) reason_ = std::move(reason);
         refused_ = true;
@@ -64,64 +75,153 @@ tl::unexpected<Error> refusal(std::size_t op, const H& h) {
     return fail(name + ": " + (h.refused() ? h.reason() : std::string("bad operands")));
 }
 
-/// Commands of groups geometry and draw only, consuming the operands exactly. `nested`: within a run, so no RunCall.
-template <class H>
-Result<void> run_drawing(OpcodeWalk ops, wire::OperandReader operands, H& h, bool nested) {
-    using Table = DecodeTable<H>;
-    while (ops.remaining() != 0) {
-        const std::size_t op = ops.take();
-        if (op >= kOpCount || !inside_block(kOpGroups[op]))
-            return fail("a block may not hold " + std::string(op < kOpCount ? kOpNames[op] : "an unknown opcode"));
-        if (nested && static_cast<Op>(op) == Op::RunCall) return fail("a run may not call a run");
-        if (!Table::rows[op].run(h, operands)) return refusal(op, h);
+/// Says when a handler is asked whether it should pause: geometry is too quick to look at a clock behind each of it.
+class PauseWatch {
+public:
+    /// After a command of that group. True: stop here.
+    template <class H>
+    bool after(OpGroup group, H& h) {
+        const bool quick = group == OpGroup::geometry || group == OpGroup::stream;
+        return after(quick ? 1 : kLook, h);
     }
-    if (operands.remaining() != 0) return fail("operands left over");
-    return {};
-}
+    template <class H>
+    bool after_block(H& h) {
+        return after(kBlock, h);
+    }
 
-template <class H>
-Result<void> run_block(OpcodeWalk& ops, wire::OperandReader& operands, H& h) {
-    const std::uint64_t low = operands.get<std::uint32_t>(), high = operands.get<std::uint32_t>();
-    const std::size_t commands = operands.get<std::uint32_t>(), bytes = operands.get<std::uint32_t>();
-    const auto content = operands.raw(bytes);
-    if (!operands.ok() || ops.remaining() < commands) return fail("Block: reaches over the batch's end");
-    const OpcodeWalk body(std::span(ops.next - commands, commands));
-    ops.next -= commands;
-    std::uint64_t tiles = h.begin_block(low | high << 32, kBlockBytes + commands + bytes) & (low | high << 32);
-    for (; tiles != 0 && !h.refused(); tiles &= tiles - 1) {
-        h.begin_tile(static_cast<unsigned>(std::countr_zero(tiles)));
-        if (auto done = run_drawing(body, wire::OperandReader(content), h, false); !done) return done;
+private:
+    static constexpr int kLook = 512, kClose = 16, kBlock = 64;  // in quick commands
+    template <class H>
+    bool after(int weight, H& h) {
+        left_ -= weight;
+        if (left_ > 0) [[likely]]
+            return false;
+        const Pause wanted = h.should_pause();
+        left_ = wanted == Pause::soon ? 1 : wanted == Pause::closely ? kClose : kLook;
+        return wanted == Pause::now;
     }
-    h.end_block();
-    if (h.refused()) return refusal(static_cast<std::size_t>(Op::Block), h);
-    return {};
-}
+    int left_ = kLook;
+};
 
 }  // namespace detail
 
-/// Runs a batch (wire::split_batch gives the two spans).
+/// Commands of groups geometry and draw only, which consume their operands exactly: those of a block, or the content of
+/// a run (RunDefine; `nested`, so that it may call no run). The bytes must stay as long as it lives.
+class DrawingRun {
+public:
+    DrawingRun(std::span<const std::byte> opcodes_last_first, std::span<const std::byte> operands, bool nested)
+        : ops_(opcodes_last_first), operands_(operands), nested_(nested) {}
+
+    /// True: at its end. False: the handler wanted a pause; call it again.
+    template <class H>
+    Result<bool> run(H& h) {
+        while (ops_.remaining() != 0) {
+            const std::size_t op = ops_.take();
+            if (op >= kOpCount || !detail::inside_block(kOpGroups[op]))
+                return fail("a block may not hold " + std::string(op < kOpCount ? kOpNames[op] : "an unknown opcode"));
+            if (nested_ && static_cast<Op>(op) == Op::RunCall) return fail("a run may not call a run");
+            if (!DecodeTable<H>::rows[op].run(h, operands_)) return detail::refusal(op, h);
+            if (watch_.after(kOpGroups[op], h)) return false;
+        }
+        if (operands_.remaining() != 0) return fail("operands left over");
+        return true;
+    }
+
+private:
+    detail::OpcodeWalk ops_;
+    wire::OperandReader operands_;
+    bool nested_;
+    detail::PauseWatch watch_;
+};
+
+/// A batch that is being executed (wire::split_batch gives the two spans, which must stay as long as it lives).
+class BatchRun {
+public:
+    BatchRun(std::span<const std::byte> opcodes_last_first, std::span<const std::byte> operands)
+        : ops_(opcodes_last_first), operands_(operands) {}
+
+    /// True: at its end. False: the handler wanted a pause; call it again.
+    template <class H>
+    Result<bool> run(H& h) {
+        for (;;) {
+            if (in_block_) {
+                if (auto done = go_on_with_block(h); !done || !*done) return done;
+                if (watch_.after_block(h)) return false;
+            }
+            if (ops_.remaining() == 0) break;
+            const std::size_t op = ops_.take();
+            if (op >= kOpCount) return fail("unknown opcode " + std::to_string(op));
+            if (detail::inside_block(kOpGroups[op])) return fail(std::string(kOpNames[op]) + ": outside a block");
+            if (static_cast<Op>(op) == Op::Block) {
+                if (auto begun = begin_block(h); !begun) return tl::unexpected(begun.error());
+                continue;
+            }
+            if (!DecodeTable<H>::rows[op].run(h, operands_)) return detail::refusal(op, h);
+            if (watch_.after(kOpGroups[op], h)) return false;
+        }
+        if (operands_.remaining() != 0) return fail("operands left over");
+        return true;
+    }
+
+private:
+    template <class H>
+    Result<void> begin_block(H& h) {
+        const std::uint64_t low = operands_.get<std::uint32_t>(), high = operands_.get<std::uint32_t>();
+        const std::size_t commands = operands_.get<std::uint32_t>(), bytes = operands_.get<std::uint32_t>();
+        content_ = operands_.raw(bytes);
+        if (!operands_.ok() || ops_.remaining() < commands) return fail("Block: reaches over the batch's end");
+        body_ = std::span(ops_.next - commands, commands);
+        ops_.next -= commands;
+        tiles_ = h.begin_block(low | high << 32, detail::kBlockBytes + commands + bytes) & (low | high << 32);
+        in_block_ = true;
+        return {};
+    }
+    template <class H>
+    Result<bool> go_on_with_block(H& h) {
+        for (; tiles_ != 0 && !h.refused(); tiles_ &= tiles_ - 1) {
+            if (!tile_) {
+                h.begin_tile(static_cast<unsigned>(std::countr_zero(tiles_)));
+                tile_.emplace(body_, content_, false);
+            }
+            if (auto done = tile_->run(h); !done || !*done) return done;
+            tile_.reset();
+        }
+        in_block_ = false;
+        h.end_block();
+        if (h.refused()) return detail::refusal(static_cast<std::size_t>(Op::Block), h);
+        return true;
+    }
+
+    detail::OpcodeWalk ops_;
+    wire::OperandReader operands_;
+    detail::PauseWatch watch_;
+    // Of the block that is being executed.
+    bool in_block_ = false;
+    std::span<const std::byte> body_, content_;
+    std::uint64_t tiles_ = 0;         ///< that are left, with the one that is drawn in
+    std::optional<DrawingRun> tile_;  ///< what is left to be drawn in it
+};
+
+/// Runs a batch to its end.
 template <class H>
 Result<void> decode(std::span<const std::byte> opcodes_last_first, std::span<const std::byte> operands, H& h) {
-    detail::OpcodeWalk ops(opcodes_last_first);
-    wire::OperandReader in(operands);
-    while (ops.remaining() != 0) {
-        const std::size_t op = ops.take();
-        if (op >= kOpCount) return fail("unknown opcode " + std::to_string(op));
-        if (detail::inside_block(kOpGroups[op])) return fail(std::string(kOpNames[op]) + ": outside a block");
-        if (static_cast<Op>(op) == Op::Block) {
-            if (auto done = detail::run_block(ops, in, h); !done) return done;
-        } else if (!DecodeTable<H>::rows[op].run(h, in)) {
-            return detail::refusal(op, h);
-        }
+    BatchRun batch(opcodes_last_first, operands);
+    for (;;) {
+        const auto done = batch.run(h);
+        if (!done) return tl::unexpected(done.error());
+        if (*done) return {};
     }
-    if (in.remaining() != 0) return fail("operands left over");
-    return {};
 }
 
-/// Runs the content of a run (RunDefine): drawing commands, within the block that calls it.
+/// Runs the content of a run (RunDefine) to its end.
 template <class H>
 Result<void> decode_run(std::span<const std::byte> opcodes_last_first, std::span<const std::byte> operands, H& h) {
-    return detail::run_drawing(detail::OpcodeWalk(opcodes_last_first), wire::OperandReader(operands), h, true);
+    DrawingRun content(opcodes_last_first, operands, true);
+    for (;;) {
+        const auto done = content.run(h);
+        if (!done) return tl::unexpected(done.error());
+        if (*done) return {};
+    }
 }
 
 }  // namespace wall::glapi

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A batch frame's payload taken apart and put together (frame.h has the grammar). Pure.
+// A batch's payload taken apart and put together (frame.h has the grammar). Pure.
 #pragma once
 
 #include <cstring>
@@ -24,8 +24,8 @@ inline Result<BatchView> split_batch(std::span<const std::byte> payload) {
     BatchHeader header;
     if (payload.size() < sizeof header) return fail("batch: shorter than its header");
     std::memcpy(&header, payload.data(), sizeof header);
-    if (header.opcode_bytes > kMaxFramePayload || header.operand_bytes > kMaxFramePayload)
-        return fail("batch: larger than a frame may be");
+    if (header.opcode_bytes > kMaxBatchPayload || header.operand_bytes > kMaxBatchPayload)
+        return fail("batch: larger than one may be");
     if (header.operand_bytes % 4 != 0) return fail("batch: operands are not a multiple of 4 bytes");
     const std::size_t room = padded4(header.opcode_bytes);
     if (payload.size() != sizeof header + room + header.operand_bytes)

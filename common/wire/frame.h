@@ -5,6 +5,9 @@
 //   frame   := payload_bytes:u32  kind:u8  zero:u8[3]  payload          (little endian; kMaxFramePayload bounds it)
 //   payload := kind-specific, see FrameKind
 //
+// A batch that is larger than a frame should be comes in several: its payload is that of all `part` frames before the
+// `batch` frame, and of that. No other frame stands between them; kMaxBatchPayload bounds them together.
+//
 // The first frame of a client is `hello`; a node answers `welcome` or `error` and closes. (docs/stream-format.md)
 #pragma once
 
@@ -19,6 +22,7 @@ enum class FrameKind : std::uint8_t {
     // client -> node
     hello = 1,  ///< Protobuf DataHello
     batch = 2,  ///< BatchHeader, opcodes, operands (pack_buffer.h)
+    part = 3,   ///< of a batch's payload; the next frame goes on with it
     // node -> client
     welcome = 16,    ///< empty
     reply = 17,      ///< request:u32, then the answer's bytes
@@ -32,6 +36,7 @@ struct FrameHeader {
 };
 
 inline constexpr std::size_t kFrameHeaderBytes = 8;
+inline constexpr std::size_t kPartBytes = std::size_t{64} << 20;  ///< that a sender takes for each `part` frame
 
 inline std::array<std::byte, kFrameHeaderBytes> encode_frame_header(FrameHeader h) {
     std::array<std::byte, kFrameHeaderBytes> out{};

@@ -13,6 +13,8 @@ namespace {
 using namespace wall;
 using namespace wall::tileserver;
 
+constexpr int kOthersTurns = 4;
+
 struct Ignore final : SessionOutput {
     void reply(std::uint32_t, std::vector<std::byte> bytes) override { answer = std::move(bytes); }
     void frame_rendered(SurfaceId, std::uint32_t) override {}
@@ -76,6 +78,16 @@ void check_others(RenderNode& node) {
     WALL_ASSERT(std::equal(green.begin(), green.end(), output.answer.begin(), output.answer.end()));
 }
 
+/// Leaves the batch wherever it can be left, and lets another session draw then.
+void run_in_slices(RenderNode& node, Executor& executor, std::span<const std::byte> payload) {
+    if (!executor.start_batch(payload)) return;
+    for (int slices = 0;; ++slices) {
+        const auto done = executor.run_slice(Executor::Clock::time_point::min());
+        if (!done || *done) return;
+        if (slices < kOthersTurns) check_others(node);
+    }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -86,6 +98,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         Executor executor(*node->node, session, output);
         open_surface(executor);
         (void)executor.run_batch(fuzz::batch_of(data, size, 1));
+    }
+    {
+        Ignore output;
+        Session session(*node->driver, SessionId(1));
+        Executor executor(*node->node, session, output);
+        open_surface(executor);
+        const auto batch = fuzz::batch_of(data, size, 1);
+        run_in_slices(*node->node, executor, batch);
     }
     {
         Ignore output;

@@ -2,6 +2,7 @@
 // The packed stream: packers and the bounds-checked decoder. Every proper prefix of a valid batch is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <tuple>
 #include <vector>
 
@@ -77,6 +78,48 @@ TEST(PackedStream, DecodesWhatWasPacked) {
     EXPECT_EQ(h.vertex, (std::vector<float>{1, 2, 3}));
     EXPECT_EQ(h.color, 0x01020304u);
     EXPECT_EQ(h.image, std::vector<std::byte>(std::begin(kPixels), std::end(kPixels)));
+}
+
+/// Wants a pause whenever it is asked.
+struct PausingHandler : TestHandler {
+    glapi::Pause wanted = glapi::Pause::now;
+    glapi::Pause should_pause() { return wanted; }
+};
+
+TEST(PackedStream, APausedBatchGoesOnWhereItStood) {
+    wire::PackBuffer batch, body;
+    for (int i = 0; i < 3000; ++i) glapi::pack::Vertex3f(body, static_cast<float>(i), 0, 0);
+    pack_sample(batch);
+    glapi::pack::Block(batch, 5, 0, static_cast<std::uint32_t>(body.commands()),
+                       static_cast<std::uint32_t>(body.operand_bytes()));
+    batch.append(body, {}, body.mark());
+    pack_sample(batch);
+    TestHandler at_once;
+    ASSERT_TRUE(decode(batch, at_once));
+
+    PausingHandler paused;
+    glapi::BatchRun run(batch.opcodes(), batch.operands());
+    int slices = 1;
+    std::size_t longest = 0;
+    for (;; ++slices) {
+        const std::size_t before = paused.commands;
+        const auto done = run.run(paused);
+        ASSERT_TRUE(done) << done.error().message;
+        longest = std::max(longest, paused.commands - before);
+        if (*done) break;
+    }
+    EXPECT_GT(slices, 10);
+    EXPECT_LE(longest, 1200u);
+    EXPECT_EQ(paused.commands, at_once.commands);
+    EXPECT_EQ(paused.tiles, at_once.tiles);
+    EXPECT_EQ(paused.blocks, at_once.blocks);
+    EXPECT_EQ(paused.vertex, at_once.vertex);
+
+    PausingHandler later;
+    later.wanted = glapi::Pause::soon;
+    glapi::BatchRun uncut(batch.opcodes(), batch.operands());
+    const auto done = uncut.run(later);
+    EXPECT_TRUE(done && *done) << "it could not be cut";
 }
 
 TEST(PackedStream, EveryProperPrefixIsRefused) {

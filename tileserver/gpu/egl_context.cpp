@@ -18,6 +18,16 @@ constexpr std::array kContextAttributes = {
     EGL_NONE,
 };
 
+/// With a notice when the GPU is reset (Driver::reset()); not every driver gives one.
+constexpr auto kResetAttributes = [] {
+    std::array<EGLint, kContextAttributes.size() + 2> wanted{};
+    std::ranges::copy(kContextAttributes, wanted.begin());
+    wanted[kContextAttributes.size() - 1] = EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY;
+    wanted[kContextAttributes.size()] = EGL_LOSE_CONTEXT_ON_RESET;
+    wanted.back() = EGL_NONE;
+    return wanted;
+}();
+
 }  // namespace
 
 std::string egl_error(const char* call) {
@@ -37,7 +47,11 @@ bool has_word(const char* list, std::string_view word) {
 
 EGLContext create_egl_context(EGLDisplay display) {
     if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) return EGL_NO_CONTEXT;
-    return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kContextAttributes.data());
+    for (const EGLint* attributes : {kResetAttributes.data(), kContextAttributes.data()}) {
+        const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+        if (context != EGL_NO_CONTEXT) return context;
+    }
+    return EGL_NO_CONTEXT;
 }
 
 }  // namespace wall::tileserver

@@ -15,7 +15,8 @@ namespace wall::tileserver {
 std::string egl_error(const char* call);
 /// Whether an extension is in a list as eglQueryString() gives it; null is an empty list.
 bool has_word(const char* list, std::string_view word);
-/// OpenGL 4.5 compatibility, for surfaces of any config and for none. EGL_NO_CONTEXT: not to be had.
+/// OpenGL 4.5 compatibility, for surfaces of any config and for none, and robust where the driver offers that.
+/// EGL_NO_CONTEXT: not to be had.
 EGLContext create_egl_context(EGLDisplay display);
 
 }  // namespace wall::tileserver

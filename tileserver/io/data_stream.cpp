@@ -83,10 +83,14 @@ asio::awaitable<Result<void>> DataStream::greet() {
     session_ = SessionId(hello.session());
     const auto admission = co_await find_admission(session_, hello.ticket());
     if (!admission) co_return wall::fail("no valid ticket for session " + std::to_string(hello.session()));
+    if (const auto wait = host_.shut_out(session_))
+        co_return wall::fail("session " + std::to_string(hello.session()) +
+                             " kept this node for itself; it is not let in for another " +
+                             std::to_string(wait->count()) + " s");
     if (hello.rank() >= std::max(1u, admission->membership.members))
         co_return wall::fail("session " + std::to_string(hello.session()) + " has no rank " +
                              std::to_string(hello.rank()));
-    reader_.set_limit(wire::kMaxFramePayload);
+    reader_.set_limits(wire::kMaxFramePayload, wire::kMaxBatchPayload);
     const auto on_room = [weak = weak_from_this(), executor = socket_.get_executor()] {
         asio::post(executor, [weak] {
             if (const auto self = weak.lock()) {

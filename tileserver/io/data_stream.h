@@ -8,6 +8,7 @@
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -37,6 +38,8 @@ public:
     virtual ~StreamHost() = default;
     /// Nothing: not known (yet).
     virtual const Admission* admission(SessionId session) const = 0;
+    /// For how much longer the session may not come, if it may not.
+    virtual std::optional<std::chrono::seconds> shut_out(SessionId session) const = 0;
     virtual RenderThread& render() = 0;
     virtual void stream_bytes(std::size_t bytes) = 0;
     virtual void stream_closed(StreamId stream) = 0;

@@ -8,9 +8,9 @@
 namespace wall::tileserver {
 
 std::span<std::byte> FrameReader::prepare() {
-    direct_ = in_payload_ && read_ == filled_ && header_.payload_bytes - have_ >= kBuffer;
+    direct_ = in_payload_ && read_ == filled_ && end_ - have_ >= kBuffer;
     if (direct_) {
-        payload_.resize(std::min<std::size_t>(header_.payload_bytes, std::max(payload_.size(), have_ + kGrowth)));
+        payload_.resize(std::min(end_, std::max(payload_.size(), have_ + kGrowth)));
         return std::span(payload_).subspan(have_);
     }
     std::memmove(buffer_.data(), buffer_.data() + read_, filled_ - read_);
@@ -23,12 +23,20 @@ void FrameReader::commit(std::size_t bytes) { (direct_ ? have_ : filled_) += byt
 Result<void> FrameReader::begin_frame() {
     header_ = wire::decode_frame_header(buffer_.data() + read_);
     read_ += wire::kFrameHeaderBytes;
-    if (header_.payload_bytes > limit_)
-        return fail("frame of " + std::to_string(header_.payload_bytes) + " bytes, at most " + std::to_string(limit_) +
+    if (header_.payload_bytes > frame_limit_)
+        return fail("frame of " + std::to_string(header_.payload_bytes) + " bytes, at most " +
+                    std::to_string(frame_limit_) + " are allowed");
+    if (!in_parts_) {
+        have_ = 0;
+        payload_.clear();
+    } else if (header_.kind != wire::FrameKind::part && header_.kind != wire::FrameKind::batch) {
+        return fail("another frame within the parts of a batch");
+    }
+    end_ = have_ + header_.payload_bytes;
+    if (end_ > batch_limit_)
+        return fail("batch of " + std::to_string(end_) + " bytes or more, at most " + std::to_string(batch_limit_) +
                     " are allowed");
     in_payload_ = true;
-    have_ = 0;
-    payload_.clear();
     return {};
 }
 
@@ -41,18 +49,25 @@ void FrameReader::take(std::size_t bytes) {
 
 Result<std::optional<Frame>> FrameReader::next() {
     if (failure_) return tl::unexpected(*failure_);
-    if (!in_payload_) {
-        if (filled_ - read_ < wire::kFrameHeaderBytes) return std::optional<Frame>();
-        if (auto begun = begin_frame(); !begun) {
-            failure_ = begun.error();
-            return tl::unexpected(*failure_);
+    auto frame = advance();
+    if (!frame) failure_ = frame.error();
+    return frame;
+}
+
+Result<std::optional<Frame>> FrameReader::advance() {
+    for (;;) {
+        if (!in_payload_) {
+            if (filled_ - read_ < wire::kFrameHeaderBytes) return std::optional<Frame>();
+            if (auto begun = begin_frame(); !begun) return tl::unexpected(begun.error());
         }
+        take(std::min(filled_ - read_, end_ - have_));
+        if (have_ < end_) return std::optional<Frame>();
+        in_payload_ = false;
+        in_parts_ = header_.kind == wire::FrameKind::part;
+        if (in_parts_) continue;
+        payload_.resize(end_);
+        return std::optional<Frame>(Frame{header_.kind, std::exchange(payload_, {})});
     }
-    take(std::min<std::size_t>(filled_ - read_, header_.payload_bytes - have_));
-    if (have_ < header_.payload_bytes) return std::optional<Frame>();
-    in_payload_ = false;
-    payload_.resize(header_.payload_bytes);
-    return std::optional<Frame>(Frame{header_.kind, std::exchange(payload_, {})});
 }
 
 }  // namespace wall::tileserver

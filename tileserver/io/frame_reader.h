@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Takes the bytes of a data stream apart into frames (common/wire/frame.h). Bytes may be foreign and come in any
-// portions; a failure is final. Pure; one thread.
+// Takes the bytes of a data stream apart into frames (common/wire/frame.h), and puts batches that come in parts
+// together. Bytes may be foreign and come in any portions; a failure is final. Pure; one thread.
 #pragma once
 
 #include <cstddef>
@@ -21,30 +21,35 @@ struct Frame {
 
 class FrameReader {
 public:
-    /// `limit`: the most payload bytes that a frame may have for now.
-    explicit FrameReader(std::uint32_t limit) : limit_(limit) {}
-    void set_limit(std::uint32_t limit) { limit_ = limit; }
+    /// `limit`: the most payload bytes that a frame may have for now, and all parts of a batch together.
+    explicit FrameReader(std::uint32_t limit) { set_limits(limit, limit); }
+    void set_limits(std::uint32_t frame, std::uint32_t batch) {
+        frame_limit_ = frame;
+        batch_limit_ = batch;
+    }
 
     /// Where the next bytes go; say with commit() how many came.
     std::span<std::byte> prepare();
     void commit(std::size_t bytes);
-    /// The next whole frame, nothing if it has not all come yet, or why the stream is bad.
+    /// The next whole frame, nothing if it has not all come yet, or why the stream is bad. A batch in parts is one
+    /// frame.
     Result<std::optional<Frame>> next();
 
 private:
     static constexpr std::size_t kBuffer = 64 << 10;  // bytes
     static constexpr std::size_t kGrowth = 4 << 20;   // bytes; memory follows what has really come
 
+    Result<std::optional<Frame>> advance();
     Result<void> begin_frame();
     void take(std::size_t bytes);
 
-    std::uint32_t limit_;
+    std::uint32_t frame_limit_ = 0, batch_limit_ = 0;
     std::vector<std::byte> buffer_ = std::vector<std::byte>(kBuffer);
     std::size_t read_ = 0, filled_ = 0;  // in buffer_
-    bool in_payload_ = false, direct_ = false;
+    bool in_payload_ = false, direct_ = false, in_parts_ = false;
     wire::FrameHeader header_;
     std::vector<std::byte> payload_;
-    std::size_t have_ = 0;  // bytes of payload_ that have come
+    std::size_t have_ = 0, end_ = 0;  // bytes of payload_ that have come, and that will have at the frame's end
     std::optional<Error> failure_;
 };
 

@@ -69,6 +69,7 @@ NodeServer::NodeServer(asio::any_io_executor executor, net::Address walld, std::
       walld_(std::move(walld)),
       name_(std::move(name)),
       retry_(executor),
+      turn_timer_(executor),
       parts_(executor),
       tile_streams_(executor, [this](std::uint32_t stream, Parts parts) {
           parts_.send({PartsOf::Kind::stream, stream}, std::move(parts));
@@ -91,12 +92,14 @@ Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor execu
 void NodeServer::start() {
     asio::co_spawn(executor_, accept_clients(), asio::detached);
     asio::co_spawn(executor_, keep_link(), asio::detached);
+    asio::co_spawn(executor_, watch_turns(), asio::detached);
 }
 
 void NodeServer::stop() {
     stopping_ = true;
     listener_->close();
     retry_.cancel();
+    turn_timer_.cancel();
     if (link_) link_->close();
     for (const auto& [id, stream] : std::map(streams_)) stream->close();
 }
@@ -131,9 +134,33 @@ const Admission* NodeServer::admission(SessionId session) const {
 
 void NodeServer::end_session(SessionId session) {
     admissions_.erase(session);
+    shut_out_.forget(session);
     render_->remove_session(session);
     for (const auto& [id, stream] : std::map(streams_))
         if (stream->session() == session) stream->close();
+}
+
+// ---- turns ----
+
+/// While the driver does not come back nobody draws here, and after some time the watchdog ends the process. Who was
+/// drawing is known only now, so it is said now.
+asio::awaitable<void> NodeServer::watch_turns() {
+    while (!stopping_) {
+        turn_timer_.expires_after(longest_turn_ / 20);
+        co_await turn_timer_.async_wait(kWaitable);
+        const auto turn = render_->running_turn();
+        if (turn && turn->stream != blamed_ && std::chrono::steady_clock::now() - turn->since > longest_turn_)
+            blame(*turn);
+    }
+}
+
+void NodeServer::blame(const RunningTurn& turn) {
+    blamed_ = turn.stream;
+    shut_out_.blame(turn.session, ShutOut::Clock::now());
+    fault(turn.stream, turn.session,
+          "one call of the driver took longer than " + std::to_string(longest_turn_.count()) +
+              " ms; nobody else could draw",
+          true);
 }
 
 // ---- walld ----
@@ -257,14 +284,18 @@ void NodeServer::rendered(SessionId session, SurfaceId surface, std::uint32_t fr
 }
 
 void NodeServer::failed(StreamId id, SessionId session, std::string reason) {
-    post([this, id, session, reason = std::move(reason)] {
-        log::warn("session_fault stream={} session={} reason={}", id.value, session.value, log::quoted(reason));
-        if (DataStream* to = stream(id)) to->fail(reason);
-        proto::Envelope envelope;
-        envelope.mutable_session_fault()->set_session(session.value);
-        envelope.mutable_session_fault()->set_reason(reason);
-        to_walld(envelope);
-    });
+    post([this, id, session, reason = std::move(reason)] { fault(id, session, reason, false); });
+}
+
+void NodeServer::fault(StreamId id, SessionId session, const std::string& reason, bool ends) {
+    log::warn("session_fault stream={} session={} reason={}", id.value, session.value, log::quoted(reason));
+    if (DataStream* to = stream(id)) to->fail(reason);
+    proto::Envelope envelope;
+    auto& fault = *envelope.mutable_session_fault();
+    fault.set_session(session.value);
+    fault.set_reason(reason);
+    fault.set_ends(ends);
+    to_walld(envelope);
 }
 
 void NodeServer::ended(StreamId id, std::string reason) {

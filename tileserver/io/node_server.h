@@ -16,6 +16,7 @@
 #include "common/net/control_connection.h"
 #include "tileserver/io/data_stream.h"
 #include "tileserver/io/part_sender.h"
+#include "tileserver/io/shut_out.h"
 #include "tileserver/io/tile_streams.h"
 #include "tileserver/render/render_thread.h"
 
@@ -36,6 +37,9 @@ public:
     const net::Address& address() const { return listener_->address(); }
     /// When the render thread last said something; it does about once a second.
     std::chrono::steady_clock::time_point last_sign_of_life() const { return last_stats_; }
+    /// How long one turn of a stream may take, that is, one call of the driver; then its session is ended. Before
+    /// start().
+    void set_longest_turn(std::chrono::milliseconds limit) { longest_turn_ = limit; }
     /// Why the node cannot go on; none: it can.
     const std::optional<std::string>& failure() const { return failure_; }
 
@@ -44,6 +48,9 @@ private:
 
     // StreamHost
     const Admission* admission(SessionId session) const override;
+    std::optional<std::chrono::seconds> shut_out(SessionId session) const override {
+        return shut_out_.wait(session, ShutOut::Clock::now());
+    }
     RenderThread& render() override { return *render_; }
     void stream_bytes(std::size_t bytes) override { bytes_received_ += bytes; }
     void stream_closed(StreamId stream) override { streams_.erase(stream); }
@@ -60,6 +67,10 @@ private:
 
     asio::awaitable<void> accept_clients();
     asio::awaitable<void> keep_link();
+    asio::awaitable<void> watch_turns();
+    void blame(const RunningTurn& turn);
+    /// `ends`: the session shall go, not only the stream.
+    void fault(StreamId stream, SessionId session, const std::string& reason, bool ends);
     asio::awaitable<void> use_link(std::shared_ptr<net::ControlConnection> link);
     proto::Envelope hello() const;
     void handle(const proto::Envelope& envelope);
@@ -75,7 +86,10 @@ private:
     std::string name_;
     std::optional<net::Listener> listener_;
     std::shared_ptr<net::ControlConnection> link_;  // null: walld is away
-    asio::steady_timer retry_;
+    asio::steady_timer retry_, turn_timer_;
+    std::chrono::milliseconds longest_turn_{10'000};
+    std::optional<StreamId> blamed_;  // the stream whose turn took too long last
+    ShutOut shut_out_;
     bool stopping_ = false, said_unreachable_ = false;
     std::unordered_map<SessionId, Admission> admissions_;
     std::map<StreamId, std::shared_ptr<DataStream>> streams_;

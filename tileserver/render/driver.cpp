@@ -32,6 +32,55 @@ bool has_extension(const Gl& gl, std::string_view wanted) {
     return false;
 }
 
+// Lights, clip planes and eye planes are kept in eye coordinates, but the driver transforms them by its modelview when
+// it is told. While this lives, that is none: for all of a difference, since for each value apart it would be four
+// calls around one.
+class IdentityModelview {
+public:
+    IdentityModelview(const Gl& gl, bool needed) : gl_(gl), needed_(needed) {
+        if (!needed_) return;
+        gl_.MatrixMode(GL_MODELVIEW);
+        gl_.PushMatrix();
+        gl_.LoadIdentity();
+    }
+    ~IdentityModelview() {
+        if (!needed_) return;
+        gl_.MatrixMode(GL_MODELVIEW);
+        gl_.PopMatrix();
+    }
+    IdentityModelview(const IdentityModelview&) = delete;
+
+private:
+    const Gl& gl_;
+    const bool needed_;
+};
+
+/// Categories that hold such values.
+constexpr glstate::CategoryMask kEyeCategories = glstate::mask_of(glstate::el::clip_plane::category) |
+                                                 glstate::mask_of(glstate::el::light_position::category) |
+                                                 glstate::mask_of(glstate::el::light_spot_direction::category) |
+                                                 glstate::mask_of(glstate::el::tex_gen_eye_plane::category);
+
+/// diff of a category whose elements have a value for each texture unit, unit by unit: element by element the driver
+/// would be told another active unit before nearly each value.
+template <glstate::Category C, class... E>
+void diff_by_unit(glstate::ElementList<E...>, glstate::State& from, glstate::State& to, Driver& driver) {
+    constexpr auto kId = static_cast<std::size_t>(C);
+    if (from.ids[kId] == to.ids[kId]) return;
+    const std::array different = {std::memcmp(&E::ref(std::as_const(from), 0), &E::ref(std::as_const(to), 0),
+                                              sizeof(typename E::type) * E::count) != 0 ...};
+    bool any = false;
+    for (unsigned i = 0; i < std::max({E::count...}); ++i) {
+        std::size_t element = 0;
+        ((any |= different[element++] && i < E::count && glstate::detail::diff_value<E>(from, to, i, driver)), ...);
+    }
+    (any ? from : to).ids[kId] = (any ? to : from).ids[kId];
+}
+template <glstate::Category C>
+void diff_by_unit(glstate::State& from, glstate::State& to, Driver& driver) {
+    diff_by_unit<C>(typename glstate::CategoryElements<C>::list{}, from, to, driver);
+}
+
 }  // namespace
 
 GLenum gl_target(TextureTarget target) { return kGlTargets[static_cast<std::size_t>(target)]; }
@@ -48,10 +97,13 @@ Driver::Driver(const Gl& gl) : gl_(gl), flip_y_(has_extension(gl, "GL_MESA_frame
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);  // images travel with tight rows
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
     // Whatever the driver started with, it now holds what the mirror says.
-    glstate::for_each_element([&]<class E>() {
-        if constexpr (((kSynced | kCurrentMask) >> static_cast<unsigned>(E::category) & 1) != 0)
-            for (unsigned i = 0; i < E::count; ++i) set<E>(i, E::ref(defaults_, i));
-    });
+    {
+        const IdentityModelview identity(gl_, true);
+        glstate::for_each_element([&]<class E>() {
+            if constexpr (((kSynced | kCurrentMask) >> static_cast<unsigned>(E::category) & 1) != 0)
+                for (unsigned i = 0; i < E::count; ++i) set<E>(i, E::ref(defaults_, i));
+        });
+    }
     gl_.Disable(GL_SCISSOR_TEST);
     drain_errors();
 }
@@ -60,6 +112,15 @@ unsigned Driver::drain_errors() {
     unsigned count = 0;
     while (count < 64 && gl_.GetError() != GL_NO_ERROR) ++count;
     return count;
+}
+
+const char* Driver::reset() const {
+    switch (gl_.GetGraphicsResetStatus != nullptr ? gl_.GetGraphicsResetStatus() : GLenum{GL_NO_ERROR}) {
+        case GL_NO_ERROR: return nullptr;
+        case GL_GUILTY_CONTEXT_RESET: return "what was drawn here made the GPU hang";
+        case GL_INNOCENT_CONTEXT_RESET: return "another program made the GPU hang";
+        default: return "the GPU was reset";
+    }
 }
 
 bool Driver::fragments_change(const glstate::State& from, const glstate::State& to) {
@@ -84,7 +145,12 @@ void Driver::sync_values(glstate::State& state) {
         bitmap_held_ = false;
     }
     stop_tracking(state);
-    glstate::diff_and_unify<kSynced>(mirror, state, *this);
+    {
+        const IdentityModelview identity(gl_, !glstate::same_ids<kEyeCategories>(mirror, state));
+        diff_by_unit<glstate::Category::texture_units>(mirror, state, *this);
+        diff_by_unit<glstate::Category::texture_gen>(mirror, state, *this);
+        glstate::diff_and_unify<kSynced>(mirror, state, *this);
+    }
     if (std::exchange(modelview_changed_, false))
         modelview_has_origin_ = glstate::load_modelview(gl_, mirror, modelview_has_origin_);
 }
@@ -93,16 +159,7 @@ void Driver::sync_pixel_transfer(const glstate::State& state) {
     glstate::diff_category<glstate::Category::pixel_transfer>(mirror, state, *this);
 }
 
-// ---- what the driver transforms when it is told ----
-
-template <class Call>
-void Driver::with_identity_modelview(Call&& call) {
-    gl_.MatrixMode(GL_MODELVIEW);
-    gl_.PushMatrix();
-    gl_.LoadIdentity();
-    call();
-    gl_.PopMatrix();
-}
+// ---- matrices, and what is transformed by them (IdentityModelview) ----
 
 // Four elements make up one matrix; it is loaded when all of them are known.
 void Driver::emit(Gl&, glstate::el::modelview, unsigned, const glstate::Mat4&) { modelview_changed_ = true; }
@@ -124,17 +181,17 @@ void Driver::emit(Gl& gl, glstate::el::texture_matrix, unsigned i, const glstate
 }
 void Driver::emit(Gl& gl, glstate::el::clip_plane, unsigned i, const glstate::Vec4& v) {
     const std::array<GLdouble, 4> plane = {v[0], v[1], v[2], v[3]};
-    with_identity_modelview([&] { gl.ClipPlane(GL_CLIP_PLANE0 + i, plane.data()); });
+    gl.ClipPlane(GL_CLIP_PLANE0 + i, plane.data());
 }
 void Driver::emit(Gl& gl, glstate::el::light_position, unsigned i, const glstate::Vec4& v) {
-    with_identity_modelview([&] { gl.Lightfv(GL_LIGHT0 + i, GL_POSITION, v.data()); });
+    gl.Lightfv(GL_LIGHT0 + i, GL_POSITION, v.data());
 }
 void Driver::emit(Gl& gl, glstate::el::light_spot_direction, unsigned i, const glstate::Vec3& v) {
-    with_identity_modelview([&] { gl.Lightfv(GL_LIGHT0 + i, GL_SPOT_DIRECTION, v.data()); });
+    gl.Lightfv(GL_LIGHT0 + i, GL_SPOT_DIRECTION, v.data());
 }
 void Driver::emit(Gl& gl, glstate::el::tex_gen_eye_plane, unsigned i, const glstate::Vec4& v) {
     unit(gl, i / 4);
-    with_identity_modelview([&] { gl.TexGenfv(GL_S + i % 4, GL_EYE_PLANE, v.data()); });
+    gl.TexGenfv(GL_S + i % 4, GL_EYE_PLANE, v.data());
 }
 
 // ---- textures ----

@@ -107,6 +107,8 @@ public:
 
     /// Takes all of the driver's errors; how many there were.
     unsigned drain_errors();
+    /// Why the context is lost; null: it is not. After a reset nothing that it had is left.
+    const char* reset() const;
 
     template <class E>
     void set(unsigned i, const typename E::type& value) {
@@ -125,8 +127,6 @@ private:
     void emit(Gl& gl, glstate::el::light_position, unsigned i, const glstate::Vec4& v);
     void emit(Gl& gl, glstate::el::light_spot_direction, unsigned i, const glstate::Vec3& v);
     void emit(Gl& gl, glstate::el::tex_gen_eye_plane, unsigned i, const glstate::Vec4& v);
-    template <class Call>
-    void with_identity_modelview(Call&& call);
     void apply_viewport(const WindowValues& values, bool scaled);
 
     void stop_tracking(const glstate::State& state);

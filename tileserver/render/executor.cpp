@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "common/glstate/elements.h"
-#include "common/wire/batch.h"
-#include "tileserver/render/limits.h"
 #include "tileserver/render/soft_switch.h"
 
 namespace wall::tileserver {
@@ -17,32 +15,11 @@ constexpr std::size_t kOpcodeAndWord = 1 + sizeof(std::uint32_t);  // of a state
 }  // namespace
 
 Executor::Executor(RenderNode& node, Session& session, SessionOutput& output)
-    : node_(node), session_(session), output_(output), gl_(node.driver.gl()) {}
+    : node_(node), session_(session), output_(output), gl_(node.driver.gl()), modes_(gl_) {}
 
 Executor::~Executor() {
-    end_render_mode();
     node_.textures.leave(session_.asker());
     node_.runs.leave(session_.asker());
-}
-
-Result<void> Executor::run_batch(std::span<const std::byte> payload) {
-    const auto batch = wire::split_batch(payload);
-    if (!batch) return tl::unexpected(batch.error());
-    if (holds_early(batch->opcodes)) return fail("a command that may hold the stream is not the last one of its batch");
-    context_id_ = ContextId(batch->context);
-    context_ = &session_.context(context_id_);
-    if (session_.context_count() > kMaxContexts) return fail("too many contexts");
-    surfaces_known_ = false;
-    Work& work = session_.work;
-    const auto bytes_before = work.state_bytes + work.geometry_bytes;
-    auto done = glapi::decode(batch->opcodes, batch->operands, *this);
-    if (in_block_) end_block();  // the batch was refused within a block
-    work.commands += batch->opcodes.size();
-    const auto bytes = batch->opcodes.size() + batch->operands.size(),
-               known = work.state_bytes + work.geometry_bytes - bytes_before;
-    work.object_bytes += bytes - std::min(bytes, known);
-    work.gl_errors += node_.driver.drain_errors();
-    return done;
 }
 
 std::uint32_t Executor::state_bytes(std::uint32_t id) const { return glstate::element_bytes(id); }
@@ -73,11 +50,7 @@ void Executor::StateRecall(std::uint32_t word) {
 std::uint64_t Executor::begin_block(std::uint64_t tiles, std::size_t bytes) {
     session_.work.geometry_bytes += bytes;
     if (std::exchange(node_.current, context_) != context_) ++session_.work.context_switches;
-    if (!surfaces_known_) {
-        draw_surface_ = session_.surface(context_->draw);
-        read_surface_ = session_.surface(context_->read);
-        surfaces_known_ = true;
-    }
+    if (!surfaces_known_) look_up_surfaces();
     in_block_ = true;
     std::uint64_t present = 0;
     for (std::uint64_t rest = tiles; rest != 0 && draw_surface_ != nullptr; rest &= rest - 1) {
@@ -91,11 +64,14 @@ std::uint64_t Executor::begin_block(std::uint64_t tiles, std::size_t bytes) {
 void Executor::begin_tile(unsigned slot) {
     if (tile_open_) finish_tile();
     tile_open_ = true;
+    tile_slot_ = slot;
     trail_.clear();
     raster_ = glstate::el::raster_position::ref(context_->state);
     layer_ = draw_surface_ != nullptr ? draw_surface_->layer(slot) : nullptr;
     draws_ = layer_ != nullptr && layer_->complete();
-    if (draws_ && !switch_to(node_, session_, *context_, *layer_)) refuse("too many queries");
+    if (!draws_) return;
+    if (!switch_to(node_, session_, *context_, *layer_)) refuse("too many queries");
+    modes_.enter();
 }
 
 void Executor::finish_tile() {

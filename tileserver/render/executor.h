@@ -5,14 +5,20 @@
 //
 // Within a block the driver's current attributes run ahead of the soft context: `trail_` notes what the commands leave
 // behind. Each tile of the block starts from the soft context's values; the soft context takes the trail at the end.
+//
+// A batch is executed in slices, so that no stream keeps the driver for as long as it likes (executor_slices.cpp).
 #pragma once
 
 #include <bit>
+#include <chrono>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "common/glapi/decoder.h"
+#include "tileserver/render/render_modes.h"
 #include "tileserver/render/render_node.h"
 #include "tileserver/render/session.h"
 #include "tileserver/render/session_output.h"
@@ -24,15 +30,21 @@ public:
     Executor(RenderNode& node, Session& session, SessionOutput& output);
     ~Executor();
 
-    /// Runs one batch frame's payload.
+    using Clock = std::chrono::steady_clock;
+
+    /// Begins one batch frame's payload, which must stay until it has been executed; nothing of it runs yet.
+    Result<void> start_batch(std::span<const std::byte> payload);
+    /// Executes what is left of it until about `until`. True: all of it is done. Behind it the driver is in the
+    /// middle of nothing, and others may draw.
+    Result<bool> run_slice(Clock::time_point until);
+    /// Both, to the end.
     Result<void> run_batch(std::span<const std::byte> payload);
-    /// The driver is in feedback or selection mode for this session: no other may draw.
-    bool exclusive() const { return render_mode_ != GL_RENDER; }
     void present(SurfaceId surface, std::uint32_t frame);
     /// False: the session waits for content that another one is sending; nothing of it may run.
     Result<bool> settle_question();
 
     // ---- the decoder's interface ----
+    glapi::Pause should_pause();
     std::uint32_t state_bytes(std::uint32_t id) const;
     bool State(std::uint32_t id, std::span<const std::byte> value);
     void StateSmall(std::uint32_t word);
@@ -45,6 +57,7 @@ public:
     void Begin(GLenum mode) {
         if (in_begin_) return refuse("inside Begin and End");
         in_begin_ = true;
+        begin_ = {mode, vertices_, true};
         if (draws_) gl_.Begin(mode);
     }
     void End() {
@@ -53,12 +66,15 @@ public:
         if (draws_) gl_.End();
     }
     void Vertex2f(float x, float y) {
+        ++vertices_;
         if (draws_) gl_.Vertex2f(x, y);
     }
     void Vertex3f(float x, float y, float z) {
+        ++vertices_;
         if (draws_) gl_.Vertex3f(x, y, z);
     }
     void Vertex4f(float x, float y, float z, float w) {
+        ++vertices_;
         if (draws_) gl_.Vertex4f(x, y, z, w);
     }
     void Normal3f(float x, float y, float z) {
@@ -118,19 +134,24 @@ public:
     void VertexAttrib4f(std::uint32_t index, float x, float y, float z, float w) {
         if (index >= glstate::el::vertex_attrib::count) return refuse("no such attribute");
         if (index != 0) trail_.vertex_attrib(index, x, y, z, w);
+        else begin_.countable = false;
         if (draws_) gl_.VertexAttrib4f(index, x, y, z, w);
     }
     void Material(GLenum face, GLenum pname, float p0, float p1, float p2, float p3);
     void EvalCoord1f(float u) {
+        begin_.countable = false;
         if (draws_) gl_.EvalCoord1f(u);
     }
     void EvalCoord2f(float u, float v) {
+        begin_.countable = false;
         if (draws_) gl_.EvalCoord2f(u, v);
     }
     void EvalPoint1(std::int32_t i) {
+        begin_.countable = false;
         if (draws_) gl_.EvalPoint1(i);
     }
     void EvalPoint2(std::int32_t i, std::int32_t j) {
+        begin_.countable = false;
         if (draws_) gl_.EvalPoint2(i, j);
     }
 
@@ -215,7 +236,20 @@ public:
     void PixelMap(GLenum map, std::span<const std::byte> values);
 
 private:
-    std::shared_ptr<const Run> compile_run(std::span<const std::byte> opcodes, std::span<const std::byte> operands);
+    // ---- slices ----
+    Result<bool> go_on();
+    void finish_batch();
+    void pause();
+    void resume();
+    void look_up_surfaces();
+    bool out_of_time() const { return Clock::now() >= until_; }
+    /// Between two commands the open glBegin, if there is one, can be ended and begun anew without a difference.
+    bool divisible() const;
+
+    void go_on_compiling();
+    void compile_part();
+    void finish_run();
+    void go_on_with_run();
     bool keep_run(std::uint32_t id, std::shared_ptr<const Run> run);
     void finish_tile();
     bool outside_begin();
@@ -235,16 +269,25 @@ private:
     Texture* bind_for_upload(std::uint32_t name, GLenum target);
     bool check_image(GLenum format, GLenum type, std::int32_t width, std::int32_t height, std::int32_t depth,
                      std::span<const std::byte> pixels);
+    /// `define` calls the driver for an image of the bound texture; what the driver then has is noted.
+    template <class Define>
+    void define_image(Texture& texture, GLenum target, std::int32_t level, const TextureContent::ImageFormat& format,
+                      Define&& define);
     template <class Draw>
     void at_raster_position(Draw&& draw);
-    void end_render_mode();
 
     RenderNode& node_;
     Session& session_;
     SessionOutput& output_;
     const Gl& gl_;
 
-    SoftContext* context_ = nullptr;  // of the batch
+    // Of the batch.
+    std::optional<glapi::BatchRun> batch_;
+    std::size_t batch_commands_ = 0, batch_bytes_ = 0;
+    std::uint64_t counted_before_ = 0;  // bytes of state and geometry
+    Clock::time_point until_;           // of the slice
+    bool paused_ = false, closely_ = false;
+    SoftContext* context_ = nullptr;
     ContextId context_id_;
     Surface *draw_surface_ = nullptr, *read_surface_ = nullptr;  // of the batch's context
     bool surfaces_known_ = false;
@@ -252,8 +295,16 @@ private:
     // Within a block.
     bool draws_ = false;  // false: only the effects on the soft context count
     bool in_begin_ = false;
+    /// The last Begin.
+    struct {
+        GLenum mode = 0;
+        std::uint64_t vertices = 0;  ///< `vertices_` there
+        bool countable = true;       ///< every vertex since then is counted
+    } begin_;
+    std::uint64_t vertices_ = 0;  // so far
     bool in_block_ = false;
     bool tile_open_ = false;
+    unsigned tile_slot_ = 0;
     Layer* layer_ = nullptr;
     AttributeTrail trail_;
     glstate::Vec4 raster_{};  // position as the block's bitmaps move it
@@ -268,9 +319,22 @@ private:
     std::optional<Question> question_;
     std::optional<std::pair<std::uint32_t, glapi::ContentKey>> promised_run_;
 
-    GLenum render_mode_ = GL_RENDER;
-    std::vector<GLfloat> feedback_;
-    std::vector<GLuint> selection_;
+    /// A run that is being defined.
+    struct Compiling {
+        std::uint32_t id = 0;
+        std::optional<glapi::ContentKey> promised;
+        std::shared_ptr<Run> run;
+        glapi::DrawingRun content;
+        std::uint64_t list_start = 0;  ///< `vertices_` where the list began
+    };
+    std::optional<Compiling> compiling_;
+    /// A run that is being called.
+    struct {
+        std::shared_ptr<const Run> run;
+        std::size_t next = 0;  ///< of its parts
+    } call_;
+
+    RenderModes modes_;
 };
 
 }  // namespace wall::tileserver

@@ -134,29 +134,19 @@ void Executor::Bitmap(std::int32_t width, std::int32_t height, float xorig, floa
     raster_[1] += ymove;
 }
 
-// ---- runs ----
-
-void Executor::RunCall(std::uint32_t id) {
-    if (!outside_begin()) return;
-    const auto at = session_.runs.find(id);
-    if (at == session_.runs.end()) return refuse("run " + std::to_string(id) + " is not defined");
-    if (draws_) gl_.CallList(at->second->list);
-    trail_.append(at->second->trail);
-}
-
 // ---- selection and feedback ----
 
 void Executor::InitNames() {
-    if (outside_begin() && draws_) gl_.InitNames();
+    if (outside_begin() && draws_) modes_.init_names();
 }
 void Executor::LoadName(std::uint32_t name) {
-    if (outside_begin() && draws_) gl_.LoadName(name);
+    if (outside_begin() && draws_) modes_.load_name(name);
 }
 void Executor::PushName(std::uint32_t name) {
-    if (outside_begin() && draws_) gl_.PushName(name);
+    if (outside_begin() && draws_) modes_.push_name(name);
 }
 void Executor::PopName() {
-    if (outside_begin() && draws_) gl_.PopName();
+    if (outside_begin() && draws_) modes_.pop_name();
 }
 void Executor::PassThrough(float token) {
     if (outside_begin() && draws_) gl_.PassThrough(token);

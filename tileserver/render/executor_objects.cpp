@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Textures, runs, evaluator and pixel maps. Render thread.
+// Textures, evaluator and pixel maps. Render thread.
 #include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "common/glapi/image.h"
 #include "common/glapi/s3tc.h"
-#include "common/wire/batch.h"
 #include "tileserver/render/executor.h"
 #include "tileserver/render/limits.h"
 
@@ -46,12 +45,23 @@ Texture* Executor::bind_for_upload(std::uint32_t name, GLenum target) {
     if (texture->content.use_count() > 1) {
         if (!session_.adopt(*texture, texture->content->copy())) refuse("more texture memory than a session may have");
     } else if (const auto key = std::exchange(texture->content->key, {})) {
-        node_.textures.forget(*key);
+        node_.textures.forget(*key, *texture->content);
     }
     if (texture->promise)
         node_.textures.heard(texture->promise->key, session_.asker(), std::chrono::steady_clock::now());
     node_.driver.bind_texture_to_edit(kind, texture->content->name());
     return texture;
+}
+
+/// A driver refuses formats and sizes that no rule here knows of; the image is then the one of before.
+template <class Define>
+void Executor::define_image(Texture& texture, GLenum target, std::int32_t level,
+                            const TextureContent::ImageFormat& format, Define&& define) {
+    session_.work.gl_errors += node_.driver.drain_errors();
+    define();
+    const unsigned errors = node_.driver.drain_errors();
+    session_.work.gl_errors += errors;
+    session_.account(texture, target, level, errors == 0 ? &format : nullptr);
 }
 
 void Executor::TexImage(std::uint32_t name, GLenum target, std::int32_t level, GLenum internal_format,
@@ -66,13 +76,16 @@ void Executor::TexImage(std::uint32_t name, GLenum target, std::int32_t level, G
     if (texture == nullptr) return;
     const auto estimate = std::uint64_t{4} * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) *
                           static_cast<std::uint64_t>(depth);
-    const TextureContent::Image image{internal_format, format, type, estimate};
-    if (!session_.account(*texture, target, level, image)) return refuse("more texture memory than a session may have");
+    if (!session_.affords(*texture, target, level, estimate))
+        return refuse("more texture memory than a session may have");
     if (auto* hash = texture->hash())
         hash->TexImage(target, level, internal_format, width, height, depth, border, format, type, pixels);
     node_.driver.neutral_pixel_transfer();
-    upload_image(gl_, texture->content->target(), target, level, image, {width, height, depth},
-                 pixels.empty() ? nullptr : pixels.data(), border);
+    const TextureContent::ImageFormat as{internal_format, format, type, false};
+    define_image(*texture, target, level, as, [&] {
+        upload_image(gl_, texture->content->target(), target, level, as, {width, height, depth},
+                     pixels.empty() ? nullptr : pixels.data(), border);
+    });
 }
 
 void Executor::TexSubImage(std::uint32_t name, GLenum target, std::int32_t level, std::int32_t x, std::int32_t y,
@@ -103,11 +116,13 @@ void Executor::TexCompressed(std::uint32_t name, GLenum target, std::int32_t lev
     if (texture == nullptr) return;
     const TextureTarget kind = texture->content->target();
     if (kind != TextureTarget::t2d && kind != TextureTarget::cube_map) return refuse("no such target");
-    if (!session_.account(*texture, target, level, {internal_format, 0, 0, blocks.size()}))
+    if (!session_.affords(*texture, target, level, blocks.size()))
         return refuse("more texture memory than a session may have");
     if (auto* hash = texture->hash()) hash->TexCompressed(target, level, internal_format, width, height, blocks);
-    gl_.CompressedTexImage2D(target, level, internal_format, width, height, 0, static_cast<GLsizei>(blocks.size()),
-                             blocks.data());
+    define_image(*texture, target, level, {internal_format, 0, 0, true}, [&] {
+        gl_.CompressedTexImage2D(target, level, internal_format, width, height, 0, static_cast<GLsizei>(blocks.size()),
+                                 blocks.data());
+    });
 }
 
 void Executor::Compress(std::uint32_t request, GLenum internal_format, std::int32_t width, std::int32_t height,
@@ -137,64 +152,6 @@ void Executor::TexParameter(std::uint32_t name, GLenum target, GLenum pname, flo
 }
 
 void Executor::TexDelete(std::uint32_t name) { session_.delete_texture(ClientName(name)); }
-
-// ---- runs ----
-
-void Executor::RunDefine(std::uint32_t id, std::uint32_t commands, std::uint32_t operand_bytes,
-                         std::span<const std::byte> content) {
-    const std::size_t room = wire::padded4(commands);
-    if (operand_bytes > wire::kMaxFramePayload || commands > wire::kMaxFramePayload ||
-        content.size() != room + operand_bytes)
-        return refuse("content does not fit its sizes");
-    const auto opcodes = content.subspan(room - commands, commands);
-    for (const std::byte op : opcodes)
-        if (std::to_integer<std::size_t>(op) >= glapi::kOpCount ||
-            glapi::kOpGroups[std::to_integer<std::size_t>(op)] != glapi::OpGroup::geometry)
-            return refuse("a run holds geometry only");
-    auto run = compile_run(opcodes, content.subspan(room));
-    if (const auto promised = std::exchange(promised_run_, {}); promised && promised->first == id) {
-        glapi::ContentHash hash;
-        hash.RunDefine(commands, operand_bytes, content);
-        if (hash.finish() != promised->second) return refuse("content is not what its name says");
-        run = node_.runs.store(promised->second, std::move(run));
-    }
-    keep_run(id, std::move(run));
-}
-
-std::shared_ptr<const Run> Executor::compile_run(std::span<const std::byte> opcodes,
-                                                 std::span<const std::byte> operands) {
-    auto run = std::make_shared<Run>(gl_);
-    run->bytes = wire::padded4(opcodes.size()) + operands.size();
-    gl_.NewList(run->list, GL_COMPILE);
-    trail_.clear();
-    draws_ = true;  // into the list
-    const auto done = glapi::decode_run(opcodes, operands, *this);
-    draws_ = false;
-    if (std::exchange(in_begin_, false)) {
-        gl_.End();
-        refuse("a run ends between Begin and End");
-    }
-    gl_.EndList();
-    run->trail = trail_;
-    trail_.clear();
-    if (!done && !refused()) refuse("run: " + done.error().message);
-    return run;
-}
-
-bool Executor::keep_run(std::uint32_t id, std::shared_ptr<const Run> run) {
-    RunDelete(id);
-    session_.run_bytes += run->bytes;
-    session_.runs[id] = std::move(run);
-    if (session_.run_bytes > kMaxRunBytes) refuse("more runs than a session may have");
-    return !refused();
-}
-
-void Executor::RunDelete(std::uint32_t id) {
-    const auto at = session_.runs.find(id);
-    if (at == session_.runs.end()) return;
-    session_.run_bytes -= at->second->bytes;
-    session_.runs.erase(at);
-}
 
 // ---- maps ----
 

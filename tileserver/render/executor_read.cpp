@@ -31,13 +31,6 @@ std::unique_ptr<Layer> window_copy(Driver& driver, const Layer& layer, const Sur
     return copy;
 }
 
-std::size_t selection_entries(const std::vector<GLuint>& buffer, GLint hits) {
-    if (hits < 0) return buffer.size();
-    std::size_t used = 0;
-    for (GLint hit = 0; hit < hits && used < buffer.size(); ++hit) used += 3 + buffer[used];
-    return std::min(used, buffer.size());
-}
-
 }  // namespace
 
 void Executor::ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_t x, std::int32_t y, std::int32_t width,
@@ -77,30 +70,7 @@ void Executor::RenderMode(std::uint32_t request, GLenum mode, GLenum feedback_ty
     if (mode == GL_FEEDBACK && (feedback_type < GL_2D || feedback_type > GL_4D_COLOR_TEXTURE))
         return refuse("no such feedback type");
     if (buffer_entries > kMaxFeedbackEntries) return refuse("buffer is too large");
-    const GLenum ended = std::exchange(render_mode_, mode);
-    const std::int32_t result = ended == GL_RENDER ? 0 : gl_.RenderMode(GL_RENDER);
-    std::span<const std::byte> content;
-    if (ended == GL_SELECT) content = std::as_bytes(std::span(selection_).first(selection_entries(selection_, result)));
-    if (ended == GL_FEEDBACK)
-        content = std::as_bytes(std::span(feedback_).first(
-            result < 0 ? feedback_.size() : std::min<std::size_t>(static_cast<std::size_t>(result), feedback_.size())));
-    std::vector<std::byte> answer(sizeof result + content.size());
-    std::memcpy(answer.data(), &result, sizeof result);
-    if (!content.empty()) std::memcpy(answer.data() + sizeof result, content.data(), content.size());
-    if (mode == GL_SELECT) {
-        selection_.assign(std::max(buffer_entries, 1u), 0);
-        gl_.SelectBuffer(static_cast<GLsizei>(buffer_entries), selection_.data());
-    }
-    if (mode == GL_FEEDBACK) {
-        feedback_.assign(std::max(buffer_entries, 1u), 0);
-        gl_.FeedbackBuffer(static_cast<GLsizei>(buffer_entries), feedback_type, feedback_.data());
-    }
-    if (mode != GL_RENDER) gl_.RenderMode(mode);
-    output_.reply(request, std::move(answer));
-}
-
-void Executor::end_render_mode() {
-    if (std::exchange(render_mode_, GLenum{GL_RENDER}) != GL_RENDER) gl_.RenderMode(GL_RENDER);
+    output_.reply(request, modes_.change(mode, feedback_type, buffer_entries));
 }
 
 }  // namespace wall::tileserver

@@ -13,8 +13,12 @@ inline constexpr std::size_t kMaxTextures = 1 << 16;
 inline constexpr std::uint64_t kMaxTextureBytes = 4ull << 30;  ///< bytes, by estimate, of all textures
 inline constexpr std::int32_t kMaxTextureExtent = 16384 + 2;   ///< texels, with borders
 inline constexpr std::int32_t kMaxTextureLevel = 16;
-inline constexpr std::uint64_t kMaxRunBytes = 2ull << 30;               ///< bytes of packed display lists
+inline constexpr std::uint64_t kMaxRunBytes = 2ull << 30;  ///< bytes of packed display lists
+inline constexpr std::size_t kMaxRuns = 1 << 20;
 inline constexpr std::int64_t kMaxLayerPixels = std::int64_t{1} << 28;  ///< pixels of all layers; 16 bytes each
 inline constexpr std::uint32_t kMaxFeedbackEntries = 16u << 20;         ///< of a feedback or selection buffer
+
+/// Vertices of one list of the driver: llvmpipe draws so many small triangles in some ms, and others may draw then.
+inline constexpr std::uint64_t kRunPartVertices = 1 << 14;
 
 }  // namespace wall::tileserver

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "common/wire/batch.h"
-#include "tileserver/gpu/backend.h"
 #include "tileserver/render/executor.h"
+#include "tileserver/render/pace.h"
 #include "tileserver/render/tile_watches.h"
 
 namespace wall::tileserver {
@@ -21,8 +21,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-/// A session may keep the driver in selection or feedback mode for so long without drawing.
-constexpr auto kExclusiveLimit = 2s;
+/// A stream that had a turn so short a time ago may want the next one soon.
+constexpr auto kActive = 100ms;
 constexpr auto kStatsInterval = 1s;
 constexpr auto kReadbackPoll = 1ms;
 constexpr auto kLongestNap = 100ms;  // also until an X server's event is seen
@@ -42,11 +42,10 @@ bool needs_shown_frame(const std::vector<std::byte>& payload) {
 class RenderThread::Loop {
 public:
     /// `windows`: that the tiles are shown in; null: none.
-    Loop(const Gl& gl, NodeEvents& events, TileWindows* windows)
-        : events_(events),
-          driver_(gl),
-          node_(driver_),
-          compositor_(node_, [this](const StackEntry& e) { return find(e); }) {
+    Loop(const Gl& gl, NodeEvents& events, TurnBoard& board, TileWindows* windows)
+        : events_(events), board_(board), driver_(gl), node_(driver_), compositor_(node_, [this](const StackEntry& e) {
+              return find(e);
+          }) {
         node_.present_at_once = true;
         if (windows != nullptr)
             output_.emplace(node_, compositor_, *windows, [this](const ScaledTile& tile) { events_.scaled(tile); });
@@ -80,20 +79,36 @@ public:
         }
         /// The others of its parallel program must come first.
         bool held() const { return group_ && group_->sync.waits(session_.rank()); }
-        /// True: a batch was executed. `now` is the time, before and after.
-        bool run_one(Clock::time_point& now) {
-            if (failed_ || held() || !settled()) return false;
-            const std::vector<std::byte>* next = queue_->front();
-            if (next == nullptr || (needs_shown_frame(*next) && frame_waits())) return false;
-            const auto batch = queue_->pop();
-            Work& work = session_.work;
+        /// True: a batch was executed, or some of it. `now` is the time, before and after. `contended`: others want
+        /// turns, too.
+        bool run_turn(Clock::time_point& now, bool contended) {
+            if (failed_ || (contended && !pace_.may_run(now)) || !next_batch()) return false;
             const auto start = now;
-            const auto render_before = work.render;
-            if (const auto done = executor_.run_batch(batch); !done) fail(done.error().message);
-            if (group_) loop_.settle(*this);
+            const auto render_before = session_.work.render;
+            loop_.board_.begin({id_, session_.id(), start});
+            const auto done = executor_.run_slice(start + pace_.budget(contended));
+            if (!done) fail(done.error().message);
+            if (!done || *done) {
+                batch_.reset();
+                if (group_) loop_.settle(*this);
+            }
             last_run_ = now = Clock::now();
+            Work& work = session_.work;
             work.decode += now - start - (work.render - render_before);
+            if (pace_.spend(now - start, contended)) {
+                loop_.driver_.gl().Finish();
+                const auto before = std::exchange(now, Clock::now());
+                pace_.finished(now - before, now);
+                work.render += now - before;
+                last_run_ = now;
+            }
+            loop_.board_.end();
             return true;
+        }
+        bool active(Clock::time_point now) const { return !failed_ && (batch_ || now - last_run_ < kActive); }
+        /// How long it has to wait for its next turn at least.
+        Clock::duration delay(Clock::time_point now) const {
+            return failed_ ? Clock::duration::zero() : pace_.not_before() - now;
         }
         void fail(std::string reason) {
             failed_ = true;
@@ -108,16 +123,24 @@ public:
         /// Its connection is closed.
         void close() { closed_ = true; }
         /// Nothing of it is left to be executed.
-        bool over() const { return failed_ || (closed_ && (!group_ || queue_->front() == nullptr)); }
+        bool over() const { return failed_ || (closed_ && (!group_ || (!batch_ && queue_->front() == nullptr))); }
         bool failed() const { return failed_; }
         const std::shared_ptr<ParallelGroup>& group() const { return group_; }
-        bool exclusive() const { return !failed_ && executor_.exclusive(); }
-        Clock::time_point last_run() const { return last_run_; }
         SessionStats stats() const { return {session_.id(), session_.rank(), session_.work, queue_->bytes()}; }
         Session& session() { return session_; }
         Executor& executor() { return executor_; }
 
     private:
+        /// True: there is one to go on with.
+        bool next_batch() {
+            if (batch_) return true;
+            if (held() || !settled()) return false;
+            const std::vector<std::byte>* next = queue_->front();
+            if (next == nullptr || (needs_shown_frame(*next) && frame_waits())) return false;
+            batch_ = queue_->pop();
+            if (auto started = executor_.start_batch(*batch_); !started) fail(started.error().message);
+            return !failed_;
+        }
         bool settled() {
             const auto settled = executor_.settle_question();
             if (!settled) fail(settled.error().message);
@@ -128,9 +151,11 @@ public:
         StreamId id_;
         std::shared_ptr<BatchQueue> queue_;
         std::shared_ptr<ParallelGroup> group_;
+        std::optional<std::vector<std::byte>> batch_;  // that is being executed
         Session session_;
         Executor executor_;
-        Clock::time_point last_run_ = Clock::now();
+        Pace pace_;
+        Clock::time_point last_run_{};
         bool failed_ = false, closed_ = false;
     };
 
@@ -144,11 +169,11 @@ public:
     /// True: there may be more to do at once.
     bool round() {
         bool worked = false;
-        Stream* only = exclusive();
         auto now = Clock::now();
-        for (auto& [id, stream] : streams_)
-            if (only == nullptr || only == stream.get()) worked |= stream->run_one(now);
+        const auto active = std::ranges::count_if(streams_, [now](const auto& e) { return e.second->active(now); });
+        for (auto& [id, stream] : streams_) worked |= stream->run_turn(now, active > (stream->active(now) ? 1 : 0));
         worked |= remove_ended();
+        check_driver();
         show();
         request_pictures();
         for (Picture& picture : compositor_.collect(false)) events_.picture(std::move(picture));
@@ -204,7 +229,9 @@ public:
         if (compositor_.busy() || compositor_.full()) return kReadbackPoll;
         const auto now = Clock::now();
         if (!asked_.empty()) return {};
-        const auto due = std::min<Clock::duration>(kLongestNap, watches_.next_due(node_.damage, now));
+        auto due = std::min<Clock::duration>(kLongestNap, watches_.next_due(node_.damage, now));
+        for (const auto& [id, stream] : streams_)
+            if (const auto delay = stream->delay(now); delay > Clock::duration::zero()) due = std::min(due, delay);
         return output_ ? std::min(due, output_->next_due(now)) : due;
     }
     /// A tile's picture, once.
@@ -213,6 +240,7 @@ public:
     bool lost() const { return lost_; }
 
     NodeEvents& events_;
+    TurnBoard& board_;
     Driver driver_;
     RenderNode node_;
     Compositor compositor_;
@@ -241,13 +269,13 @@ private:
         lost_ = true;
         events_.output_lost(std::move(shown.error().message));
     }
-    Stream* exclusive() {
-        for (auto& [id, stream] : streams_) {
-            if (!stream->exclusive()) continue;
-            if (Clock::now() - stream->last_run() < kExclusiveLimit) return stream.get();
-            stream->fail("selection or feedback mode was left open for too long");
-        }
-        return nullptr;
+    /// After a reset all that the driver had is gone, and its calls do nothing. Clients can send all of it again, to
+    /// the process that is started in this one's place.
+    void check_driver() {
+        const char* reset = driver_.reset();
+        if (reset == nullptr || lost_) return;
+        lost_ = true;
+        events_.output_lost(std::string("the driver has reset its context: ") + reset);
     }
     void report() {
         if (Clock::now() < next_stats_) return;
@@ -264,12 +292,19 @@ private:
 
 Result<std::unique_ptr<RenderThread>> RenderThread::start(std::string backend, NodeEvents& events,
                                                           WindowRequest windows) {
+    const auto open = [backend, windows = std::move(windows)] {
+        return windows.windows.empty() ? open_backend(backend) : open_window_backend(windows);
+    };
+    return start(open, std::move(backend), events);
+}
+
+Result<std::unique_ptr<RenderThread>> RenderThread::start(OpenBackend open, std::string name, NodeEvents& events) {
     std::unique_ptr<RenderThread> thread(new RenderThread(events));
     std::promise<Result<Started>> promise;
     auto future = promise.get_future();
-    thread->thread_ = std::thread(
-        [&promise, self = thread.get(), backend = std::move(backend), windows = std::move(windows)]() mutable {
-            self->run(std::move(backend), std::move(windows),
+    thread->thread_ =
+        std::thread([&promise, self = thread.get(), open = std::move(open), name = std::move(name)]() mutable {
+            self->run(open, std::move(name),
                       [&promise](Result<Started> started) { promise.set_value(std::move(started)); });
         });
     auto started = future.get();
@@ -287,14 +322,14 @@ RenderThread::~RenderThread() {
     if (thread_.joinable()) thread_.join();
 }
 
-void RenderThread::run(std::string backend_name, WindowRequest windows, std::function<void(Result<Started>)> started) {
-    auto backend = windows.windows.empty() ? open_backend(backend_name) : open_window_backend(windows);
+void RenderThread::run(const OpenBackend& open, std::string name, const std::function<void(Result<Started>)>& started) {
+    auto backend = open();
     if (!backend) return started(tl::unexpected(backend.error()));
     if (auto current = (*backend)->make_current(); !current) return started(tl::unexpected(current.error()));
     Gl gl;
     gl.load([&](const char* name) { return (*backend)->get_proc_address(name); });
-    Loop loop(gl, events_, (*backend)->windows());
-    started(Started{query_caps(gl), backend_name});
+    Loop loop(gl, events_, board_, (*backend)->windows());
+    started(Started{query_caps(gl), std::move(name)});
     serve(loop);
 }
 

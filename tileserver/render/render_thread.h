@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The thread that owns all GL of a GPU. Other threads post to it and give it batches; it tells what happened through
-// NodeEvents. Streams take turns, one batch each; a stream whose finished frame has not been shown yet waits before its
-// next frame's end, while the others go on.
+// NodeEvents. Streams take turns of a batch or some milliseconds of one (Pace); a stream whose finished frame has not
+// been shown yet waits before its next frame's end, while the others go on.
 #pragma once
 
 #include <chrono>
@@ -16,16 +16,16 @@
 
 #include "common/base/ids.h"
 #include "common/base/result.h"
+#include "tileserver/gpu/backend.h"
 #include "tileserver/gpu/caps.h"
 #include "tileserver/render/batch_queue.h"
 #include "tileserver/render/compositor.h"
 #include "tileserver/render/parallel_group.h"
+#include "tileserver/render/running_turn.h"
 #include "tileserver/render/window_output.h"
 #include "tileserver/render/work.h"
 
 namespace wall::tileserver {
-
-using StreamId = Id<struct StreamTag>;  ///< of one data connection, unique in the process
 
 /// Of one stream that is open.
 struct SessionStats {
@@ -57,7 +57,7 @@ public:
     virtual void stats(const RenderStats& stats) = 0;  ///< about once a second
     /// Once for each tile that its window does not show pixel for pixel.
     virtual void scaled(const ScaledTile& tile) = 0;
-    /// Windows cannot be shown any more; nothing is drawn from then on.
+    /// The windows are gone, or the driver's context: nothing is drawn from then on.
     virtual void output_lost(std::string reason) = 0;
 };
 
@@ -67,15 +67,21 @@ public:
         GlCaps caps;
         std::string backend;
     };
+    using OpenBackend = std::function<Result<std::unique_ptr<GlBackend>>()>;
     /// Makes the driver's context in the new thread, and opens the windows, if there are any; an error if there is
     /// none.
     static Result<std::unique_ptr<RenderThread>> start(std::string backend, NodeEvents& events,
                                                        WindowRequest windows = {});
     ~RenderThread();
 
+    /// The same on a driver that `open` gives, in the new thread.
+    static Result<std::unique_ptr<RenderThread>> start(OpenBackend open, std::string name, NodeEvents& events);
+
     const Started& started() const { return started_; }
 
     // ---- any thread ----
+    /// Nothing: no stream is being executed just now.
+    std::optional<RunningTurn> running_turn() const { return board_.now(); }
     /// `rank`: of a parallel program's member.
     void add_stream(StreamId stream, SessionId session, std::shared_ptr<BatchQueue> queue,
                     const Membership& membership = {}, Rank rank = 0);
@@ -100,12 +106,13 @@ public:
 private:
     class Loop;
     explicit RenderThread(NodeEvents& events) : events_(events) {}
-    void run(std::string backend, WindowRequest windows, std::function<void(Result<Started>)> started);
+    void run(const OpenBackend& open, std::string name, const std::function<void(Result<Started>)>& started);
     void serve(Loop& loop);
     void post(std::function<void(Loop&)> task);
 
     NodeEvents& events_;
     Started started_;
+    TurnBoard board_;
     std::mutex mutex_;  // guards the next three
     std::condition_variable wake_;
     std::vector<std::function<void(Loop&)>> tasks_;

@@ -57,11 +57,15 @@ bool Session::adopt(Texture& texture, std::shared_ptr<TextureContent> content) {
     return texture_bytes_ <= kMaxTextureBytes;
 }
 
-bool Session::account(Texture& texture, GLenum image_target, std::int32_t level, const TextureContent::Image& image) {
+bool Session::affords(const Texture& texture, GLenum image_target, std::int32_t level, std::uint64_t bytes) const {
+    return texture_bytes_ - texture.content->image_bytes(image_target, level) + bytes <= kMaxTextureBytes;
+}
+
+void Session::account(Texture& texture, GLenum image_target, std::int32_t level,
+                      const TextureContent::ImageFormat* format) {
     texture_bytes_ -= texture.content->bytes();
-    texture.content->note_image(image_target, level, image);
+    texture.content->note_image(image_target, level, format);
     texture_bytes_ += texture.content->bytes();
-    return texture_bytes_ <= kMaxTextureBytes;
 }
 
 }  // namespace wall::tileserver

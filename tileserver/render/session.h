@@ -52,14 +52,23 @@ struct Texture {
     glapi::ContentHash* hash() { return promise && promise->hash ? &*promise->hash : nullptr; }
 };
 
-/// Geometry that is called by name: a display list of the driver. Mesa cuts quads and strips in a list into other
-/// triangles than outside, so only its own lists give the pixels that the application's list would give.
+/// Geometry that is called by name: display lists of the driver. Mesa cuts quads and strips in a list into other
+/// triangles than outside, so only its own lists give the pixels that the application's list would give. A large run is
+/// several lists, called one after the other.
 struct Run {
-    explicit Run(const Gl& gl) : list(gl.GenLists(1)), gl_(gl) {}
-    ~Run() { gl_.DeleteLists(list, 1); }
+    struct Part {
+        GLuint list = 0;
+        AttributeTrail trail;  ///< what it leaves behind
+    };
+    explicit Run(const Gl& gl) : gl_(gl) {}
+    ~Run() {
+        for (const Part& part : parts) gl_.DeleteLists(part.list, 1);
+    }
     Run(const Run&) = delete;
-    const GLuint list;
-    AttributeTrail trail;  ///< what it leaves behind
+    /// Of a new, last part.
+    GLuint add_list() { return parts.emplace_back(Part{gl_.GenLists(1), {}}).list; }
+
+    std::vector<Part> parts;
     std::size_t bytes = 0;
 
 private:
@@ -105,8 +114,10 @@ public:
     /// The texture is that content from now on, which other sessions may hold, too. False: more memory than a session
     /// may have.
     bool adopt(Texture& texture, std::shared_ptr<TextureContent> content);
-    /// Notes the size of one image; false if that is more than a session may have.
-    bool account(Texture& texture, GLenum image_target, std::int32_t level, const TextureContent::Image& image);
+    /// Whether the session may have `bytes` for that image, instead of what it has for it now.
+    bool affords(const Texture& texture, GLenum image_target, std::int32_t level, std::uint64_t bytes) const;
+    /// Notes what the driver has of one image after a definition (TextureContent::note_image).
+    void account(Texture& texture, GLenum image_target, std::int32_t level, const TextureContent::ImageFormat* format);
     std::uint64_t texture_bytes() const { return texture_bytes_; }
 
     Programs programs;

@@ -15,10 +15,46 @@ TextureContent::~TextureContent() {
     driver_.gl().DeleteTextures(1, &name_);
 }
 
-void TextureContent::note_image(GLenum image_target, std::int32_t level, const Image& image) {
-    Image& known = images_[{image_target, level}];
-    bytes_ += image.bytes - known.bytes;
-    known = image;
+namespace {
+
+/// Of an image of the bound texture, as the driver has it; all 0: it has none.
+struct DriverImage {
+    ImageExtent extent;
+    GLint compressed_bytes = 0;  ///< 0: it is not compressed
+};
+
+DriverImage driver_image(const Gl& gl, GLenum image_target, GLint level) {
+    DriverImage image;
+    gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_WIDTH, &image.extent.width);
+    gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_HEIGHT, &image.extent.height);
+    gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_DEPTH, &image.extent.depth);
+    GLint compressed = 0;
+    gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_COMPRESSED, &compressed);
+    if (compressed != 0)
+        gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_COMPRESSED_IMAGE_SIZE, &image.compressed_bytes);
+    return image;
+}
+
+std::uint64_t estimate(const DriverImage& image) {
+    if (image.compressed_bytes != 0) return static_cast<std::uint64_t>(image.compressed_bytes);
+    return std::uint64_t{4} * static_cast<std::uint64_t>(image.extent.width) *
+           static_cast<std::uint64_t>(image.extent.height) * static_cast<std::uint64_t>(image.extent.depth);
+}
+
+}  // namespace
+
+void TextureContent::note_image(GLenum image_target, std::int32_t level, const ImageFormat* format) {
+    const auto known = images_.find({image_target, level});
+    if (format == nullptr && known == images_.end()) return;
+    const Image now{format != nullptr ? *format : known->second.format,
+                    estimate(driver_image(driver_.gl(), image_target, level))};
+    bytes_ += now.bytes - (known == images_.end() ? 0 : known->second.bytes);
+    images_[{image_target, level}] = now;
+}
+
+std::uint64_t TextureContent::image_bytes(GLenum image_target, std::int32_t level) const {
+    const auto known = images_.find({image_target, level});
+    return known == images_.end() ? 0 : known->second.bytes;
 }
 
 // Through the processor's memory, image by image, in the format of the definition: glCopyImageSubData would refuse
@@ -35,47 +71,45 @@ std::shared_ptr<TextureContent> TextureContent::copy() const {
     const auto base = parameters_.find(GL_TEXTURE_BASE_LEVEL);
     const auto base_level = base == parameters_.end() ? 0 : static_cast<std::int32_t>(base->second[0]);
     for (const auto& [where, image] : images_)
-        if (where.second == base_level) copy_image(where.first, where.second, image, *made);
+        if (where.second == base_level) copy_image(where.first, where.second, image.format, *made);
     if (generated_) gl.GenerateMipmap(gl_target(target_));
     for (const auto& [where, image] : images_)
-        if (where.second != base_level) copy_image(where.first, where.second, image, *made);
+        if (where.second != base_level) copy_image(where.first, where.second, image.format, *made);
     return made;
 }
 
-void TextureContent::copy_image(GLenum image_target, std::int32_t level, const Image& image,
+// All sizes are the driver's: it writes as much as it has.
+void TextureContent::copy_image(GLenum image_target, std::int32_t level, const ImageFormat& format,
                                 const TextureContent& to) const {
     const Gl& gl = driver_.gl();
     driver_.bind_texture_to_edit(target_, name_);
-    ImageExtent extent;
-    gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_WIDTH, &extent.width);
-    gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_HEIGHT, &extent.height);
-    gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_DEPTH, &extent.depth);
-    const bool compressed = image.format == 0;
+    const auto [extent, compressed_bytes] = driver_image(gl, image_target, level);
     const std::uint64_t bytes =
-        compressed
-            ? image.bytes
-            : glapi::image_bytes(image.format, image.type, extent.width, extent.height, extent.depth).value_or(0);
+        format.compressed
+            ? static_cast<std::uint64_t>(compressed_bytes)
+            : glapi::image_bytes(format.format, format.type, extent.width, extent.height, extent.depth).value_or(0);
+    if (bytes == 0) return;
     std::vector<std::byte> pixels(bytes);
-    const auto size = static_cast<GLsizei>(bytes);
-    if (bytes != 0 && compressed) gl.GetCompressedTexImage(image_target, level, pixels.data());
-    if (bytes != 0 && !compressed) gl.GetTexImage(image_target, level, image.format, image.type, pixels.data());
+    if (format.compressed) gl.GetCompressedTexImage(image_target, level, pixels.data());
+    else gl.GetTexImage(image_target, level, format.format, format.type, pixels.data());
     driver_.bind_texture_to_edit(target_, to.name_);
-    if (compressed)
-        gl.CompressedTexImage2D(image_target, level, image.internal_format, extent.width, extent.height, 0, size,
-                                pixels.data());
-    else upload_image(gl, target_, image_target, level, image, extent, pixels.data());
+    if (format.compressed)
+        gl.CompressedTexImage2D(image_target, level, format.internal_format, extent.width, extent.height, 0,
+                                static_cast<GLsizei>(bytes), pixels.data());
+    else upload_image(gl, target_, image_target, level, format, extent, pixels.data());
 }
 
 void upload_image(const Gl& gl, TextureTarget target, GLenum image_target, GLint level,
-                  const TextureContent::Image& image, const ImageExtent& extent, const void* pixels, GLint border) {
-    const auto internal = static_cast<GLint>(image.internal_format);
+                  const TextureContent::ImageFormat& format, const ImageExtent& extent, const void* pixels,
+                  GLint border) {
+    const auto internal = static_cast<GLint>(format.internal_format);
     if (is_1d(target))
-        gl.TexImage1D(image_target, level, internal, extent.width, border, image.format, image.type, pixels);
+        gl.TexImage1D(image_target, level, internal, extent.width, border, format.format, format.type, pixels);
     else if (is_3d(target))
-        gl.TexImage3D(image_target, level, internal, extent.width, extent.height, extent.depth, border, image.format,
-                      image.type, pixels);
+        gl.TexImage3D(image_target, level, internal, extent.width, extent.height, extent.depth, border, format.format,
+                      format.type, pixels);
     else
-        gl.TexImage2D(image_target, level, internal, extent.width, extent.height, border, image.format, image.type,
+        gl.TexImage2D(image_target, level, internal, extent.width, extent.height, border, format.format, format.type,
                       pixels);
 }
 

@@ -25,13 +25,16 @@ public:
     TextureTarget target() const { return target_; }
     std::uint64_t bytes() const { return bytes_; }  ///< of all images, by estimate
 
-    /// An image that was defined: of an image target (a cube map's face) and a level.
-    struct Image {
-        GLenum internal_format = 0, format = 0,
-               type = 0;          ///< as the command had them; the driver's choice of storage depends on all
-        std::uint64_t bytes = 0;  ///< estimate
+    /// As the command had it that defined an image; the driver's choice of storage depends on all of it.
+    struct ImageFormat {
+        GLenum internal_format = 0, format = 0, type = 0;
+        bool compressed = false;  ///< blocks of `internal_format`
     };
-    void note_image(GLenum image_target, std::int32_t level, const Image& image);
+    /// Notes what the driver has of an image (of an image target, such as a cube map's face, and a level) after a
+    /// definition, with the texture bound to be edited. `format`: of the definition; null: the driver refused it.
+    void note_image(GLenum image_target, std::int32_t level, const ImageFormat* format);
+    /// Of one image, by estimate.
+    std::uint64_t image_bytes(GLenum image_target, std::int32_t level) const;
     void note_parameter(GLenum pname, const std::array<float, 4>& value) {
         parameters_[pname] = value;
         generated_ |= pname == GL_GENERATE_MIPMAP && value[0] != 0;
@@ -43,7 +46,11 @@ public:
     std::optional<glapi::ContentKey> key;  ///< its name in the node's store
 
 private:
-    void copy_image(GLenum image_target, std::int32_t level, const Image& image, const TextureContent& to) const;
+    struct Image {
+        ImageFormat format;
+        std::uint64_t bytes = 0;  ///< estimate
+    };
+    void copy_image(GLenum image_target, std::int32_t level, const ImageFormat& format, const TextureContent& to) const;
 
     Driver& driver_;
     const TextureTarget target_;
@@ -59,6 +66,7 @@ struct ImageExtent {
 };
 /// Defines an image of the bound texture. `pixels`: null for no content.
 void upload_image(const Gl& gl, TextureTarget target, GLenum image_target, GLint level,
-                  const TextureContent::Image& image, const ImageExtent& extent, const void* pixels, GLint border = 0);
+                  const TextureContent::ImageFormat& format, const ImageExtent& extent, const void* pixels,
+                  GLint border = 0);
 
 }  // namespace wall::tileserver

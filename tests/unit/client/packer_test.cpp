@@ -49,6 +49,33 @@ TEST_F(PackerTest, KeepsTheBoxOfEachPrimitive) {
     EXPECT_EQ(hi[2], 3);
 }
 
+TEST_F(PackerTest, APrimitiveThatCannotBeCarriedIsDroppedAlone) {
+    packer.set_most_bytes(1 << 20);
+    const auto points = [&](int count) {
+        packer.begin(GL_POINTS);
+        gl_entry_Color3f(static_cast<float>(count), 0, 0);
+        for (int i = 0; i < count; ++i) {
+            if (packer.next_operand() >= packer.limit) packer.make_room();
+            gl_entry_Vertex3f(static_cast<float>(i), 0, 0);
+        }
+        packer.end();
+    };
+    points(10);
+    const auto mark = packer.mark();
+    const auto places = packer.places();
+    EXPECT_FALSE(packer.take_overflow());
+    points(1'000'000);
+    EXPECT_TRUE(packer.take_overflow());
+    EXPECT_FALSE(packer.take_overflow()) << "it is said once";
+    EXPECT_EQ(packer.mark().commands, mark.commands);
+    EXPECT_EQ(packer.mark().operand_bytes, mark.operand_bytes);
+    EXPECT_EQ(packer.places().offset, places.offset) << "the colour of before";
+    points(10);
+    EXPECT_FALSE(packer.take_overflow());
+    EXPECT_EQ(packer.primitives().size(), 2u);
+    EXPECT_LT(packer.bytes(), 1000u);
+}
+
 TEST_F(PackerTest, GrowsBeyondItsFirstRoomWithoutLosingAnything) {
     packer.begin(GL_POINTS);
     constexpr int kMany = 100000;

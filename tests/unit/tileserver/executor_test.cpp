@@ -3,8 +3,10 @@
 #include "tileserver/render/executor.h"
 
 #include <gmock/gmock.h>
+
 #include <cmath>
 #include <cstring>
+#include <random>
 
 #include "tests/unit/tileserver/test_node.h"
 
@@ -382,6 +384,231 @@ TEST_F(ExecutorTest, FeedbackAnswersWhatWasDrawn) {
     std::array<float, 6> values{};
     std::memcpy(values.data(), session.replies[2].data() + 4, sizeof values);
     EXPECT_EQ(values, (std::array<float, 6>{GL_POINT_TOKEN, 80, 60, GL_POINT_TOKEN, 120, 30}));
+}
+
+/// What a program may do in selection mode.
+struct Pick {
+    enum class What { init, load, push, pop, triangle, outside } what;
+    GLuint value = 0;  // a name, or which triangle
+};
+
+std::vector<Pick> random_picks(std::uint32_t seed, int count) {
+    std::mt19937 random(seed);
+    std::vector<Pick> picks;
+    for (int i = 0; i < count; ++i) {
+        const auto kind =
+            static_cast<Pick::What>(std::min<std::uint32_t>(static_cast<std::uint32_t>(random()) % 12, 5));
+        picks.push_back({random() % 3 == 0   ? kind
+                         : random() % 4 == 0 ? Pick::What::outside
+                                             : Pick::What::triangle,
+                         static_cast<GLuint>(random() % 4)});
+        if (random() % 3 == 0) picks.push_back({kind, static_cast<GLuint>(random() % 4)});
+    }
+    return picks;
+}
+
+float depth_of(GLuint value) { return 0.2f * static_cast<float>(value) - 0.5f; }
+
+/// Pushes and pops too many are among them: nothing happens then.
+void pick(const Gl& gl, const Pick& p) {
+    switch (p.what) {
+        case Pick::What::init: return gl.InitNames();
+        case Pick::What::load: return gl.LoadName(p.value);
+        case Pick::What::push: return gl.PushName(p.value);
+        case Pick::What::pop: return gl.PopName();
+        default: break;
+    }
+    const float z = depth_of(p.value), at = p.what == Pick::What::outside ? 5.0f : 0.0f;
+    gl.Begin(GL_TRIANGLES);
+    gl.Vertex3f(at - 0.5f, -0.5f, z);
+    gl.Vertex3f(at + 0.5f, -0.5f, z + 0.1f);
+    gl.Vertex3f(at, 0.5f, z);
+    gl.End();
+}
+void pack_pick(wire::PackBuffer& b, const Pick& p) {
+    switch (p.what) {
+        case Pick::What::init: return pack::InitNames(b);
+        case Pick::What::load: return pack::LoadName(b, p.value);
+        case Pick::What::push: return pack::PushName(b, p.value);
+        case Pick::What::pop: return pack::PopName(b);
+        default: break;
+    }
+    const float z = depth_of(p.value), at = p.what == Pick::What::outside ? 5.0f : 0.0f;
+    pack::Begin(b, GL_TRIANGLES);
+    pack::Vertex3f(b, at - 0.5f, -0.5f, z);
+    pack::Vertex3f(b, at + 0.5f, -0.5f, z + 0.1f);
+    pack::Vertex3f(b, at, 0.5f, z);
+    pack::End(b);
+}
+
+// Selection is a mode of the driver's one context: it is left between two turns, and the hits of all parts are put
+// together. The program must see one selection.
+TEST_F(ExecutorTest, SelectionGoesOnBetweenOthersTurns) {
+    for (const std::uint32_t entries : {4000u, 13u, 0u}) {
+        int too_many = 0;
+        for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+            const auto picks = random_picks(seed, 90);
+            std::vector<GLuint> expected(std::max(entries, 1u));
+            GLint hits = 0;
+            if (entries != 0)
+                reference([&](const Gl& gl) {
+                    gl.SelectBuffer(static_cast<GLsizei>(entries), expected.data());
+                    gl.RenderMode(GL_SELECT);
+                    for (const Pick& p : picks) pick(gl, p);
+                    hits = gl.RenderMode(GL_RENDER);
+                });
+            TestSession session(*node_.node, 1), other(*node_.node, 2);
+            session.open_surface(kWidth, kHeight, kWindow);
+            other.open_surface(kWidth, kHeight, kWindow);
+            Batch begin, end, clear;
+            pack::RenderMode(begin.buffer(), 1, GL_SELECT, 0, entries);
+            pack::RenderMode(end.buffer(), 2, GL_RENDER, 0, 0);
+            clear.block(1, [](auto& b) { pack::Clear(b, kColorDepth); });
+            session.expect_run(begin);
+            for (const Pick& p : picks) {
+                Batch batch;
+                batch.block(std::uint64_t{1} << wire::kOffscreenSlot, [&](auto& b) { pack_pick(b, p); });
+                session.expect_run(batch);
+                GLint mode = 0;
+                node_.driver->gl().GetIntegerv(GL_RENDER_MODE, &mode);
+                ASSERT_EQ(mode, GL_RENDER) << "others can draw";
+                other.expect_run(clear);
+            }
+            session.expect_run(end);
+            GLint found = 0;
+            const auto& answer = session.replies[2];
+            ASSERT_GE(answer.size(), sizeof found);
+            std::memcpy(&found, answer.data(), sizeof found);
+            if (entries == 0) {
+                EXPECT_EQ(found, -1);
+                EXPECT_EQ(answer.size(), sizeof found);
+                continue;
+            }
+            EXPECT_EQ(found, hits) << "seed " << seed << ", " << entries << " entries";
+            too_many += found < 0 ? 1 : 0;
+            std::vector<GLuint> content((answer.size() - sizeof found) / sizeof(GLuint));
+            std::memcpy(content.data(), answer.data() + sizeof found, content.size() * sizeof(GLuint));
+            ASSERT_LE(content.size(), expected.size());
+            EXPECT_EQ(content, std::vector<GLuint>(expected.begin(),
+                                                   expected.begin() + static_cast<std::ptrdiff_t>(content.size())))
+                << "seed " << seed;
+        }
+        EXPECT_EQ(too_many > 0, entries == 13);
+    }
+}
+
+TEST_F(ExecutorTest, MoreNamesThanTheDriverIsGivenAtOnce) {
+    TestSession session(*node_.node, 1);
+    session.open_surface(kWidth, kHeight, kWindow);
+    constexpr GLuint kMany = 5000;
+    Batch batch;
+    pack::RenderMode(batch.buffer(), 1, GL_SELECT, 0, 4 * kMany);
+    batch.block(std::uint64_t{1} << wire::kOffscreenSlot, [](auto& b) {
+        pack::PushName(b, 0);
+        for (GLuint i = 0; i < kMany; ++i) {
+            pack::LoadName(b, i);
+            pack_pick(b, {Pick::What::triangle, 1});
+        }
+    });
+    pack::RenderMode(batch.buffer(), 2, GL_RENDER, 0, 0);
+    session.expect_run(batch);
+    std::vector<GLuint> answer(session.replies[2].size() / sizeof(GLuint));
+    std::memcpy(answer.data(), session.replies[2].data(), answer.size() * sizeof(GLuint));
+    ASSERT_EQ(answer.size(), 1 + std::size_t{4} * kMany);
+    EXPECT_EQ(answer[0], kMany);
+    for (GLuint i = 0; i < kMany; ++i) ASSERT_EQ(answer[1 + std::size_t{4} * i + 3], i);
+}
+
+TEST_F(ExecutorTest, FeedbackGoesOnBetweenOthersTurns) {
+    for (const std::uint32_t entries : {12u, 9u, 2u, 0u}) {
+        TestSession session(*node_.node, 1), other(*node_.node, 2);
+        session.open_surface(kWidth, kHeight, kWindow);
+        other.open_surface(kWidth, kHeight, kWindow);
+        Batch begin, point, clear, end;
+        pack::RenderMode(begin.buffer(), 1, GL_FEEDBACK, GL_2D, entries);
+        point.block(std::uint64_t{1} << wire::kOffscreenSlot, [](auto& b) {
+            pack::Begin(b, GL_POINTS);
+            pack::Vertex2f(b, 0, 0);
+            pack::End(b);
+        });
+        clear.block(1, [](auto& b) { pack::Clear(b, kColorDepth); });
+        pack::RenderMode(end.buffer(), 2, GL_RENDER, 0, 0);
+        session.expect_run(begin);
+        for (int i = 0; i < 4; ++i) {
+            session.expect_run(point);
+            other.expect_run(clear);
+        }
+        session.expect_run(end);
+        std::int32_t result = 0;
+        const auto& answer = session.replies[2];
+        std::memcpy(&result, answer.data(), sizeof result);
+        EXPECT_EQ(result, entries == 12 ? 12 : -1);
+        ASSERT_EQ(answer.size(), sizeof result + entries * sizeof(float));
+        std::vector<float> values(entries);
+        std::memcpy(values.data(), answer.data() + sizeof result, entries * sizeof(float));
+        const std::array<float, 3> token = {GL_POINT_TOKEN, kWidth / 2, kHeight / 2};
+        for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i], token[i % 3]) << entries << ' ' << i;
+    }
+}
+
+// ---- images that the driver refuses ----
+
+class RefusedImageTest : public ExecutorTest {
+protected:
+    static constexpr int kSize = 256;
+    static std::vector<std::byte> blocks(int size) {
+        std::vector<std::byte> bytes(static_cast<std::size_t>(size / 4) * static_cast<std::size_t>(size / 4) * 16);
+        for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i * 7 >> 3);
+        return bytes;
+    }
+    /// A texture with a compressed image, and then `refused`; the blocks of a copy that the driver makes of it.
+    template <class Refused>
+    std::vector<std::byte> copied_after(Refused&& refused) {
+        TestSession session(*node_.node, 1);
+        session.open_surface(kWidth, kHeight, kWindow);
+        Batch batch;
+        pack::TexCompressed(batch.buffer(), 1, GL_TEXTURE_2D, 0, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, kSize, kSize,
+                            blocks(kSize));
+        session.expect_run(batch);
+        const auto bytes_before = session.session.texture_bytes();
+        EXPECT_EQ(bytes_before, blocks(kSize).size());
+        Batch bad;
+        refused(bad.buffer());
+        session.expect_run(bad);
+        EXPECT_GT(session.session.work.gl_errors, 0u) << "the driver has refused it";
+        EXPECT_EQ(session.session.texture_bytes(), bytes_before);
+        const Texture* texture = session.session.texture(ClientName(1), TextureTarget::t2d);
+        const auto shared = texture->content;  // held by another one, so that a change needs a copy
+        Batch change;
+        pack::TexParameter(change.buffer(), 1, GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST, 0, 0, 0);
+        session.expect_run(change);
+        EXPECT_NE(texture->content, shared);
+        std::vector<std::byte> copied(blocks(kSize).size());
+        node_.driver->gl().GetCompressedTextureImage(texture->content->name(), 0, static_cast<GLsizei>(copied.size()),
+                                                     copied.data());
+        return copied;
+    }
+};
+
+TEST_F(RefusedImageTest, OfNoFormat) {
+    EXPECT_EQ(copied_after([](auto& b) { pack::TexImage(b, 1, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, 0, 0, {}); }),
+              blocks(kSize));
+}
+
+TEST_F(RefusedImageTest, LargerThanTheDriverAllows) {
+    EXPECT_EQ(copied_after([](auto& b) {
+                  constexpr int kTooWide = 16384 + 2;
+                  const std::vector<std::byte> row(static_cast<std::size_t>(kTooWide + 3) / 4 * 16);
+                  pack::TexCompressed(b, 1, GL_TEXTURE_2D, 0, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, kTooWide, 1, row);
+              }),
+              blocks(kSize));
+}
+
+TEST_F(RefusedImageTest, OfAFormatThatDoesNotGoWithTheImage) {
+    EXPECT_EQ(copied_after([](auto& b) {
+                  pack::TexImage(b, 1, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_DEPTH_COMPONENT, GL_FLOAT, {});
+              }),
+              blocks(kSize));
 }
 
 TEST_F(ExecutorTest, SwapKeepsTheFrameUntilItIsPresented) {

@@ -47,6 +47,51 @@ TEST_P(FrameReaderPortions, GivesEveryFrameWhole) {
 
 INSTANTIATE_TEST_SUITE_P(Portions, FrameReaderPortions, ::testing::Values(1000, 65'536, 3'000'000, 100'000'000));
 
+TEST_P(FrameReaderPortions, PutsABatchInPartsTogether) {
+    std::vector<std::byte> bytes;
+    const auto add = [&](wire::FrameKind kind, std::size_t size, int fill) {
+        const auto one = frame(kind, size, fill);
+        bytes.insert(bytes.end(), one.begin(), one.end());
+    };
+    add(wire::FrameKind::part, 3'000'001, 1);
+    add(wire::FrameKind::part, 0, 0);
+    add(wire::FrameKind::part, 70'000, 2);
+    add(wire::FrameKind::batch, 5, 3);
+    add(wire::FrameKind::batch, 9, 4);
+    FrameReader reader(4 << 20);
+    const auto frames = feed(reader, bytes, GetParam());
+    ASSERT_EQ(frames.size(), 2u);
+    std::vector<std::byte> whole(3'000'001, std::byte{1});
+    whole.insert(whole.end(), 70'000, std::byte{2});
+    whole.insert(whole.end(), 5, std::byte{3});
+    EXPECT_EQ(frames[0].kind, wire::FrameKind::batch);
+    EXPECT_EQ(frames[0].payload, whole);
+    EXPECT_EQ(frames[1].payload, std::vector<std::byte>(9, std::byte{4}));
+}
+
+TEST(FrameReader, PartsTogetherHaveALimit) {
+    FrameReader reader(1);
+    reader.set_limits(1000, 2500);
+    std::vector<std::byte> bytes;
+    for (int i = 0; i < 3; ++i) {
+        const auto one = frame(wire::FrameKind::part, 1000, i);
+        bytes.insert(bytes.end(), one.begin(), one.end());
+    }
+    EXPECT_TRUE(feed(reader, bytes, 100).empty());
+    const auto refused = reader.next();
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("at most 2500"), std::string::npos) << refused.error().message;
+}
+
+TEST(FrameReader, NothingElseStandsWithinABatch) {
+    FrameReader reader(1000);
+    auto bytes = frame(wire::FrameKind::part, 10, 0);
+    const auto other = frame(wire::FrameKind::hello, 10, 0);
+    bytes.insert(bytes.end(), other.begin(), other.end());
+    EXPECT_TRUE(feed(reader, bytes, 7).empty());
+    EXPECT_FALSE(reader.next());
+}
+
 TEST(FrameReader, RefusesMoreThanTheLimit) {
     FrameReader reader(100);
     EXPECT_TRUE(feed(reader, frame(wire::FrameKind::hello, 101, 0), 8).empty());

@@ -15,6 +15,8 @@
 #include <future>
 #include <thread>
 
+#include "client_lib/node_stream.h"
+#include "client_lib/transport.h"
 #include "common/net/sockets.h"
 #include "common/wire/batch.h"
 #include "common/wire/limits.h"
@@ -143,6 +145,7 @@ protected:
         auto server = NodeServer::open(io_.get_executor(), config_, config_.nodes.front());
         ASSERT_TRUE(server) << server.error().message;
         server_ = std::move(*server);
+        server_->set_longest_turn(longest_turn_);
         server_->start();
         thread_ = std::thread([this] { io_.run(); });
         introduce();
@@ -213,6 +216,7 @@ protected:
         walld_->send(present);
     }
 
+    std::chrono::milliseconds longest_turn_ = 60s;
     std::string folder_;
     config::WallConfig config_;
     std::optional<FakeWalld> walld_;
@@ -252,6 +256,7 @@ TEST_F(NodeServerTest, ABadStreamEndsAloneAndWithAReason) {
     const auto fault = walld_->wait_for(proto::Envelope::kSessionFault).session_fault();
     EXPECT_EQ(fault.session(), 2u);
     EXPECT_THAT(fault.reason(), ::testing::HasSubstr("Swap"));
+    EXPECT_FALSE(fault.ends());
     good.batch(one_frame({0, 1, 0, 0}, 1));
     good.expect(wire::FrameKind::swap_done);
     present(1, 1);
@@ -312,6 +317,95 @@ TEST_F(NodeServerTest, GoesOnWithoutWalldAndFindsItAgain) {
     stack_session(1);
     present(1, 1);
     EXPECT_EQ(shown(), (std::vector{0, 0, 255}));
+}
+
+/// From the client library's end: more than a frame holds.
+TEST_F(NodeServerTest, ABatchLargerThanAFrameArrives) {
+    stack_session(1);
+    proto::DataHello hello;
+    hello.set_version(glapi::kStreamVersion);
+    hello.set_session(1);
+    hello.set_ticket("secret1");
+    auto stream = client::NodeStream::open(node_address().text(), hello.SerializeAsString(), 10'000);
+    ASSERT_TRUE(stream) << stream.error().message;
+    client::Transport transport;
+    transport.add(*stream);
+    constexpr std::size_t kNormals = 24 << 20;
+    wire::PackBuffer buffer = one_frame({0, 0, 0, 0}, 1), body;
+    for (std::size_t i = 0; i < kNormals; ++i) pack::Normal3f(body, 0, 0, 1);
+    pack::Color4f(body, 0, 1, 0, 1);
+    pack::Begin(body, GL_QUADS);
+    for (const auto& [x, y] : {std::pair{-1.f, -1.f}, {1.f, -1.f}, {1.f, 1.f}, {-1.f, 1.f}}) pack::Vertex2f(body, x, y);
+    pack::End(body);
+    ASSERT_GT(body.bytes(), std::size_t{wire::kMaxFramePayload});
+    const glstate::Viewport viewport{0, 0, 64, 48};
+    glapi::pack_state(buffer, glstate::el::viewport::id, &viewport, sizeof viewport);
+    pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()),
+                static_cast<std::uint32_t>(body.operand_bytes()));
+    buffer.append(body, {}, body.mark());
+    pack::Swap(buffer, 1, 2);
+    (*stream)->send(1, std::move(buffer));
+    transport.wake();
+    EXPECT_TRUE((*stream)->wait_swap(1, 1, 60'000)) << (*stream)->failure();
+    present(1, 1);
+    EXPECT_TRUE((*stream)->wait_swap(1, 2, 60'000)) << (*stream)->failure();
+    present(1, 2);
+    EXPECT_EQ(shown(), (std::vector{0, 255, 0}));
+}
+
+class StuckDriverTest : public NodeServerTest {
+protected:
+    StuckDriverTest() { longest_turn_ = 500ms; }
+    /// One call of the driver that takes seconds.
+    static wire::PackBuffer long_call() {
+        wire::PackBuffer buffer = one_frame({0, 0, 0, 0}, 1), body;
+        const std::array<float, 4 * 3> corners = {-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0};
+        pack::Map2(buffer, GL_MAP2_VERTEX_3, 0, 1, 2, 0, 1, 2, std::as_bytes(std::span(corners)));
+        const glstate::Flag on = 1;
+        glapi::pack_state(buffer, glstate::el::map2_vertex_3::id, &on, sizeof on);
+        pack::EvalMesh2(body, GL_FILL, 0, 2000, 0, 2000);
+        pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()),
+                    static_cast<std::uint32_t>(body.operand_bytes()));
+        buffer.append(body, {}, body.mark());
+        return buffer;
+    }
+};
+
+TEST_F(StuckDriverTest, TheSessionIsEndedAndShutOut) {
+    Client good(node_address()), bad(node_address());
+    good.hello(1, "secret1");
+    bad.hello(2, "secret2");
+    good.expect(wire::FrameKind::welcome);
+    bad.expect(wire::FrameKind::welcome);
+    bad.batch(long_call());
+    bad.expect(wire::FrameKind::swap_done);
+    EXPECT_THAT(bad.expect_error(), ::testing::HasSubstr("longer than 500 ms"));
+    const auto fault = walld_->wait_for(proto::Envelope::kSessionFault).session_fault();
+    EXPECT_EQ(fault.session(), 2u);
+    EXPECT_TRUE(fault.ends());
+    Client again(node_address());
+    again.hello(2, "secret2");
+    EXPECT_THAT(again.expect_error(), ::testing::HasSubstr("not let in"));
+    stack_session(1);
+    good.batch(one_frame({0, 1, 0, 0}, 1));
+    good.expect(wire::FrameKind::swap_done);
+    present(1, 1);
+    EXPECT_EQ(shown(), (std::vector{0, 255, 0})) << "the others go on when the driver has come back";
+}
+
+TEST(ShutOutTest, LongerEachTime) {
+    ShutOut shut_out;
+    const ShutOut::Clock::time_point start{};
+    const SessionId session(3);
+    EXPECT_FALSE(shut_out.wait(session, start));
+    shut_out.blame(session, start);
+    EXPECT_EQ(shut_out.wait(session, start), 10s);
+    EXPECT_FALSE(shut_out.wait(SessionId(4), start));
+    EXPECT_FALSE(shut_out.wait(session, start + 10s));
+    shut_out.blame(session, start + 10s);
+    EXPECT_EQ(shut_out.wait(session, start + 11s), 19s);
+    shut_out.forget(session);
+    EXPECT_FALSE(shut_out.wait(session, start + 11s));
 }
 
 TEST_F(NodeServerTest, AnEndedSessionIsGone) {

@@ -44,7 +44,8 @@ std::vector<std::byte> run_content(const wire::PackBuffer& body) {
 /// A random program: batches that only a correct client would send.
 class Script {
 public:
-    explicit Script(std::uint32_t seed, int batches) : random_(seed) {
+    /// `large`: with geometry that takes several slices.
+    explicit Script(std::uint32_t seed, int batches, bool large = false) : random_(seed), large_(large) {
         for (std::uint32_t context = 1; context <= kContexts; ++context) {
             Batch first(context);
             pack::Bind(first.buffer(), 1, 1);
@@ -91,6 +92,7 @@ private:
         const std::uint32_t name = random_.name();
         wire::PackBuffer body;
         triangle(body);
+        if (large_ && random_.below(3) == 0) many_triangles(body, 2 * kRunPartVertices / 3);
         pack::RunDefine(b, name, static_cast<std::uint32_t>(body.commands()),
                         static_cast<std::uint32_t>(body.operand_bytes()), run_content(body));
         runs_.insert(name);
@@ -148,6 +150,7 @@ private:
     }
     void draw(wire::PackBuffer& b) {
         triangle(b);
+        if (large_) many_triangles(b, 400);
         if (!runs_.empty())
             pack::RunCall(b, *std::next(runs_.begin(), random_.below(static_cast<std::uint32_t>(runs_.size()))));
         if (random_.below(4) == 0) pack::EvalMesh1(b, GL_LINE, 0, 8);
@@ -166,6 +169,18 @@ private:
         }
         pack::End(b);
     }
+    /// In one glBegin; small ones.
+    void many_triangles(wire::PackBuffer& b, std::uint64_t count) {
+        pack::Begin(b, random_.below(3) == 0 ? GL_TRIANGLE_STRIP : GL_TRIANGLES);
+        for (std::uint64_t i = 0; i < count; ++i) {
+            const float x = random_.place(), y = random_.place();
+            if (random_.below(4) == 0) pack::Color3f(b, random_.unit(), random_.unit(), random_.unit());
+            pack::Vertex3f(b, x, y, random_.place());
+            pack::Vertex3f(b, x + 0.1f, y, 0);
+            pack::Vertex3f(b, x, y + 0.1f, 0);
+        }
+        pack::End(b);
+    }
     /// Counted, asked for under a new number each time, and now and then deleted.
     void count_samples(Batch& batch) {
         const std::uint32_t query = random_.name();
@@ -177,6 +192,7 @@ private:
     }
 
     Random random_;
+    bool large_;
     std::vector<std::vector<std::byte>> batches_;
     std::set<std::uint32_t> runs_, programs_;
     std::uint32_t last_request_ = 1000;
@@ -261,6 +277,49 @@ TEST_F(ObjectsTest, SessionsInTurnsDrawAsEachAlone) {
     EXPECT_GT(driver_objects()["textures"], before.at("textures"));
     sessions.clear();
     EXPECT_EQ(driver_objects(), before) << "after all in turns";
+}
+
+/// As SessionsInTurnsDrawAsEachAlone, but a turn ends wherever a batch can be left, on one driver context.
+TEST_F(ObjectsTest, SessionsInSlicesDrawAsEachAlone) {
+    constexpr std::uint32_t kSessions = 8;
+    std::vector<Script> scripts;
+    std::vector<Outcome> expected;
+    for (std::uint32_t i = 0; i < kSessions; ++i) {
+        scripts.emplace_back(300 + i, 8, true);
+        expected.push_back(alone(scripts.back()));
+    }
+    struct Turns {
+        std::unique_ptr<TestSession> session;
+        std::size_t next = 0;
+        bool in_batch = false;
+    };
+    std::vector<Turns> sessions;
+    for (std::uint32_t i = 0; i < kSessions; ++i) sessions.push_back({open(i + 1)});
+    Random random(11);
+    std::size_t slices = 0, batches = 0;
+    std::vector<std::uint32_t> left(kSessions);
+    for (std::uint32_t i = 0; i < kSessions; ++i) left[i] = i;
+    while (!left.empty()) {
+        const auto place = left.begin() + random.below(static_cast<std::uint32_t>(left.size()));
+        Turns& turns = sessions[*place];
+        const auto& all = scripts[*place].batches();
+        if (!turns.in_batch) {
+            ASSERT_TRUE(turns.session->executor.start_batch(all[turns.next]));
+        }
+        const auto done = turns.session->executor.run_slice(Executor::Clock::time_point::min());
+        ASSERT_TRUE(done) << done.error().message;
+        turns.in_batch = !*done;
+        ++slices;
+        if (!*done) continue;
+        ++batches;
+        if (++turns.next == all.size()) left.erase(place);
+    }
+    EXPECT_GT(slices, 4 * batches);
+    for (std::uint32_t i = 0; i < kSessions; ++i) {
+        const Outcome drawn = outcome(*sessions[i].session);
+        EXPECT_EQ(count_different(expected[i].pixels, drawn.pixels), 0u) << "session " << i;
+        EXPECT_EQ(expected[i].replies, drawn.replies) << "session " << i;
+    }
 }
 
 TEST_F(ObjectsTest, ScriptsAreOfAllKinds) {

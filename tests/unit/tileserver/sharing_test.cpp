@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 
 glapi::ContentKey key_of(int n) {
     glapi::ContentKey key{};
-    key[0] = static_cast<std::byte>(n);
+    std::memcpy(key.data(), &n, sizeof n);
     return key;
 }
 
@@ -78,8 +78,41 @@ TEST(ContentStoreTest, WhoComesSecondUsesWhatIsThere) {
     Store store;
     const auto first = store.store(key_of(1), std::make_shared<int>(1));
     EXPECT_EQ(store.store(key_of(1), std::make_shared<int>(2)), first);
-    store.forget(key_of(1));
+    store.forget(key_of(1), int{});
+    EXPECT_EQ(store.ask(key_of(1), kA, {}).have, first) << "it was another's";
+    store.forget(key_of(1), *first);
     EXPECT_TRUE(store.ask(key_of(1), kA, {}).send);
+}
+
+TEST(ContentStoreTest, APromiseDoesNotLastForEver) {
+    Store store;
+    const Store::Clock::time_point start{};
+    EXPECT_TRUE(store.ask(key_of(1), kA, start).send);
+    auto now = start;
+    for (; now < start + Store::kWholePromiseLimit; now += 500ms) {
+        EXPECT_FALSE(store.ask(key_of(1), kB, now).send);
+        store.heard(key_of(1), kA, now);
+    }
+    EXPECT_TRUE(store.ask(key_of(1), kB, now).send) << "it sends a little now and then, and never ends";
+    EXPECT_FALSE(store.ask(key_of(1), kC, now).send);
+}
+
+TEST(ContentStoreTest, ANodeKnowsALimitedNumberOfNames) {
+    constexpr int kMost = 100;
+    Store store(kMost);
+    std::vector<std::shared_ptr<int>> held;
+    for (int i = 0; i < kMost - 1; ++i) held.push_back(store.store(key_of(i), std::make_shared<int>(i)));
+    EXPECT_TRUE(store.ask(key_of(200), kA, {}).send) << "the last name is promised";
+    const auto beyond = std::make_shared<int>(7);
+    EXPECT_TRUE(store.ask(key_of(201), kB, {}).send);
+    EXPECT_TRUE(store.ask(key_of(201), kC, {}).send) << "it is not promised, so nobody waits for it";
+    EXPECT_EQ(store.store(key_of(201), beyond), beyond);
+    EXPECT_EQ(store.size(), static_cast<std::size_t>(kMost));
+    EXPECT_EQ(store.ask(key_of(3), kB, {}).have, held[3]) << "what is known is shared as before";
+    EXPECT_FALSE(store.ask(key_of(200), kB, {}).send) << "and waited for";
+    held.clear();
+    for (int i = 0; i < 2000; ++i) (void)store.ask(key_of(201), kC, {});
+    EXPECT_FALSE(store.ask(key_of(201), kB, {}).send) << "room again";
 }
 
 // ---- sessions on a driver ----

@@ -650,6 +650,20 @@ TEST_F(AParallelProgram, EndsWithANodesFault) {
     EXPECT_EQ(out_.ended[id], "left: Bad: bad");
 }
 
+TEST_F(TheWall, EndsAProgramThatKeptANodeForItself) {
+    const auto node = join("left");
+    const auto id = open();
+    proto::SessionFault fault;
+    fault.set_session(id.value);
+    fault.set_reason("bad");
+    wall_.node_faults(node, fault);
+    EXPECT_TRUE(out_.ended.empty()) << "one stream is over, the program goes on";
+    fault.set_ends(true);
+    wall_.node_faults(node, fault);
+    EXPECT_EQ(out_.ended[id], "left: bad");
+    EXPECT_TRUE(wall_.sessions().empty());
+}
+
 TEST(Target, IsASessionOrOneOfItsSurfaces) {
     EXPECT_EQ(Target::parse("3")->session, SessionId(3));
     EXPECT_EQ(Target::parse("3.4")->surface, SurfaceId(4));

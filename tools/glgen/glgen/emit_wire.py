@@ -21,9 +21,13 @@ common/glapi/decoder.h for what H must offer and for the loop around it.
 """
 
 
+FRAMING = 2  # of common/wire/frame.h and batch.h; 2: a batch may come in parts
+
+
 def stream_version(ops, elements):
-    """A number that changes with every command and state element of the stream: its CRC-32."""
-    lines = [f"{op.code} {op.name} {op.group} {op.operands} {op.bytes_name} {op.is_state}" for op in ops]
+    """A number that changes with the framing and with every command and state element of the stream: its CRC-32."""
+    lines = [f"framing {FRAMING}"]
+    lines += [f"{op.code} {op.name} {op.group} {op.operands} {op.bytes_name} {op.is_state}" for op in ops]
     lines += [f"{e.id} {e.name} {e.count} {e.fields} {e.defaults}" for e in elements]
     return zlib.crc32("\n".join(lines).encode())
 

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: MIT
+// Several streams on the render thread: none keeps the driver from the others, whatever it sends.
+#include "tileserver/render/render_thread.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "common/wire/batch.h"
+#include "gen/glapi/wire.gen.h"
+#include "gen/glstate/state.gen.h"
+#include "tileserver/render/pace.h"
+
+namespace wall::tileserver {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+namespace pack = glapi::pack;
+
+// ---- the pace ----
+
+/// That has been measured often enough, with a driver that does at once what it is told.
+Pace known_pace() {
+    Pace pace;
+    for (int i = 0; i < 8; ++i) {
+        pace.spend(1s, true);
+        pace.finished(0ms, {});
+    }
+    return pace;
+}
+
+TEST(PaceTest, ABudgetIsThePartOfATurnThatCommandsTake) {
+    Pace pace = known_pace();
+    const Clock::time_point now{};
+    EXPECT_EQ(pace.budget(true), Pace::kTurn);
+    EXPECT_FALSE(pace.spend(Pace::kTurn / 2, true)) << "there is some left";
+    EXPECT_TRUE(pace.spend(Pace::kTurn / 2, true));
+    pace.finished(3 * Pace::kTurn, now);  // the driver took three times as long
+    EXPECT_EQ(pace.budget(true), Pace::kTurn / 4);
+    EXPECT_TRUE(pace.spend(Pace::kTurn / 4, true));
+    pace.finished(0ms, now);
+    EXPECT_EQ(pace.budget(true), Pace::kTurn);
+}
+
+TEST(PaceTest, BudgetsBeginSmallAndGrowByStepsWhereNothingIsBehindThem) {
+    Pace pace;
+    EXPECT_EQ(pace.budget(true), Pace::kFirst);
+    EXPECT_EQ(pace.budget(false), Pace::kFirst);
+    EXPECT_TRUE(pace.spend(Pace::kFirst, false));
+    pace.finished(0ms, {});
+    EXPECT_EQ(pace.budget(false), Pace::kStep * Pace::kFirst);
+}
+
+TEST(PaceTest, AloneItWaitsForTheDriverLessOften) {
+    Pace pace = known_pace();
+    EXPECT_FALSE(pace.spend(Pace::kAlone / 2, false));
+    EXPECT_TRUE(pace.spend(Pace::kAlone / 2, false));
+    pace.finished(99 * Pace::kAlone, {});
+    EXPECT_EQ(pace.budget(false), Pace::kAlone / 100) << "much is behind little";
+    EXPECT_TRUE(pace.spend(Pace::kAlone / 100, false));
+}
+
+TEST(PaceTest, ALongTurnIsMadeUpFor) {
+    Pace pace;
+    const Clock::time_point now{1h};
+    EXPECT_TRUE(pace.may_run(now));
+    EXPECT_TRUE(pace.spend(300ms, true));
+    pace.finished(0ms, now);
+    EXPECT_FALSE(pace.may_run(now + 290ms));
+    EXPECT_TRUE(pace.may_run(now + 295ms));
+}
+
+// ---- streams ----
+
+class Events final : public NodeEvents {
+public:
+    void reply(StreamId stream, std::uint32_t request, std::vector<std::byte> answer) override {
+        note([&] { replies_[{stream.value, request}] = std::move(answer); });
+    }
+    void drawn(StreamId stream, SurfaceId, std::uint32_t frame) override {
+        note([&] { drawn_[stream.value] = frame; });
+    }
+    void rendered(SessionId, SurfaceId, std::uint32_t) override {}
+    void failed(StreamId, SessionId, std::string reason) override {
+        note([&] { failure_ = std::move(reason); });
+    }
+    void ended(StreamId, std::string reason) override {
+        note([&] { failure_ = std::move(reason); });
+    }
+    void picture(Picture) override {}
+    void stats(const RenderStats&) override {
+        note([&] { ++stats_; });
+    }
+    void scaled(const ScaledTile&) override {}
+    void output_lost(std::string reason) override {
+        note([&] { lost_ = std::move(reason); });
+    }
+
+    /// Waits until `done(*this)`, with what it reads guarded; false: not in time.
+    template <class Done>
+    bool wait(Done&& done, Clock::duration limit = 60s) {
+        std::unique_lock lock(mutex_);
+        return changed_.wait_for(lock, limit, [&] { return done(*this); });
+    }
+    std::map<std::uint32_t, std::uint32_t> drawn_;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::byte>> replies_;
+    std::string failure_, lost_;
+    int stats_ = 0;
+
+private:
+    template <class Change>
+    void note(Change&& change) {
+        {
+            const std::lock_guard lock(mutex_);
+            change();
+        }
+        changed_.notify_all();
+    }
+    std::mutex mutex_;
+    std::condition_variable changed_;
+};
+
+constexpr int kSize = 256;
+
+template <class Draw>
+void block(wire::PackBuffer& buffer, std::uint64_t tiles, Draw&& draw) {
+    wire::PackBuffer body;
+    draw(body);
+    pack::Block(buffer, static_cast<std::uint32_t>(tiles), static_cast<std::uint32_t>(tiles >> 32),
+                static_cast<std::uint32_t>(body.commands()), static_cast<std::uint32_t>(body.operand_bytes()));
+    buffer.append(body, {}, body.mark());
+}
+
+class RenderThreadTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        auto thread = RenderThread::start("egl", events_);
+        if (!thread) GTEST_SKIP() << thread.error().message;
+        thread_ = std::move(*thread);
+        thread_->set_tiles({{0, {0, 0, kSize, kSize}}}, 0);
+    }
+    std::shared_ptr<BatchQueue> open(std::uint32_t id) {
+        auto queue = std::make_shared<BatchQueue>([] {});
+        thread_->add_stream(StreamId(id), SessionId(id), queue);
+        wire::PackBuffer buffer;
+        pack::SurfaceCreate(buffer, 1, 1, 0, 24, 8, 0, 0);
+        pack::SurfacePlace(buffer, 1, 1, kSize, kSize, 0, 0, kSize, kSize, 0);
+        pack::Bind(buffer, 1, 1);
+        const glstate::Viewport viewport{0, 0, kSize, kSize};
+        glapi::pack_state(buffer, glstate::el::viewport::id, &viewport, sizeof viewport);
+        push(queue, buffer);
+        return queue;
+    }
+    void push(const std::shared_ptr<BatchQueue>& queue, const wire::PackBuffer& buffer) {
+        std::vector<std::byte> payload;
+        wire::append_batch(payload, {1, buffer.opcodes(), buffer.operands()});
+        queue->push(std::move(payload));
+        thread_->wake();
+    }
+    /// A program that draws a little for each frame, and starts one when the last is drawn: frames a second.
+    double frames_a_second(std::uint32_t id, Clock::duration time) {
+        const auto queue = open(id);
+        const auto start = Clock::now();
+        std::uint32_t frame = 0;
+        while (Clock::now() - start < time) {
+            wire::PackBuffer buffer;
+            block(buffer, 1, [](auto& b) {
+                pack::Clear(b, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+                pack::Begin(b, GL_TRIANGLES);
+                for (int i = 0; i < 300; ++i)
+                    pack::Vertex3f(b, static_cast<float>(i % 7) / 7, 0.1f * static_cast<float>(i % 3), 0);
+                pack::End(b);
+            });
+            pack::Swap(buffer, 1, ++frame);
+            push(queue, buffer);
+            if (!events_.wait([&](Events& e) { return e.drawn_[id] == frame; })) break;
+        }
+        return frame / std::chrono::duration<double>(Clock::now() - start).count();
+    }
+
+    Events events_;  // outlives the thread
+    std::unique_ptr<RenderThread> thread_;
+};
+
+/// A list of small triangles.
+void define_run(wire::PackBuffer& buffer, std::uint32_t run, int triangles, GLenum mode = GL_TRIANGLES) {
+    wire::PackBuffer body;
+    pack::Begin(body, mode);
+    for (int i = 0; i < triangles; ++i) {
+        const float x = static_cast<float>(i % 1000) / 500 - 1, y = static_cast<float>(i / 1000 % 1000) / 500 - 1;
+        pack::Vertex3f(body, x, y, 0);
+        pack::Vertex3f(body, x + 0.01f, y, 0);
+        pack::Vertex3f(body, x, y + 0.01f, 0);
+    }
+    pack::End(body);
+    std::vector<std::byte> content(wire::padded4(body.commands()) - body.commands());
+    content.insert(content.end(), body.opcodes().begin(), body.opcodes().end());
+    content.insert(content.end(), body.operands().begin(), body.operands().end());
+    pack::RunDefine(buffer, run, static_cast<std::uint32_t>(body.commands()),
+                    static_cast<std::uint32_t>(body.operand_bytes()), content);
+}
+
+/// Frames a second beside a program that would take minutes for one; hundreds were measured on a busy machine.
+constexpr double kDecent = 10;
+
+TEST_F(RenderThreadTest, ABatchOfMinutesKeepsNobodyAway) {
+    const auto heavy = open(1);
+    wire::PackBuffer buffer;
+    define_run(buffer, 7, 1'000'000);
+    block(buffer, 1, [](auto& b) {
+        for (int i = 0; i < 5000; ++i) pack::RunCall(b, 7);
+    });
+    push(heavy, buffer);
+    std::this_thread::sleep_for(500ms);
+    int stats_before = 0;
+    events_.wait([&](Events& e) { return stats_before = e.stats_, true; });
+    const double rate = frames_a_second(2, 4s);
+    RecordProperty("frames_a_second", std::to_string(rate));
+    std::printf("beside a list of a million triangles called 5000 times: %.1f frames a second\n", rate);
+    EXPECT_GT(rate, kDecent);
+    EXPECT_TRUE(events_.wait([&](Events& e) { return e.stats_ >= stats_before + 2; })) << "the watchdog is fed";
+    EXPECT_EQ(events_.failure_, "");
+}
+
+/// Little to tell the driver, much for it to do: it gathers triangles and fills them later.
+TEST_F(RenderThreadTest, ABatchOfLargeTrianglesKeepsNobodyAway) {
+    const auto heavy = open(1);
+    wire::PackBuffer buffer;
+    const glstate::Flag on = 1;
+    glapi::pack_state(buffer, glstate::el::blend_enabled::id, &on, sizeof on);
+    block(buffer, 1, [](auto& b) {
+        for (int i = 0; i < 400'000; ++i) {
+            pack::Begin(b, GL_TRIANGLES);
+            pack::Vertex2f(b, -1, -1);
+            pack::Vertex2f(b, 3, -1);
+            pack::Vertex2f(b, -1, 3);
+            pack::End(b);
+        }
+    });
+    push(heavy, buffer);
+    std::this_thread::sleep_for(500ms);
+    const double rate = frames_a_second(2, 4s);
+    std::printf("beside 400,000 triangles over the whole window: %.1f frames a second\n", rate);
+    EXPECT_GT(rate, kDecent);
+    EXPECT_EQ(events_.failure_, "");
+}
+
+TEST_F(RenderThreadTest, SelectionKeepsNobodyAway) {
+    const auto picking = open(1);
+    wire::PackBuffer buffer;
+    pack::RenderMode(buffer, 1, GL_SELECT, 0, 1000);
+    block(buffer, std::uint64_t{1} << wire::kOffscreenSlot, [](auto& b) {
+        pack::PushName(b, 5);
+        for (int i = 0; i < 200'000; ++i) {
+            pack::Begin(b, GL_TRIANGLES);
+            for (int corner = 0; corner < 30; ++corner)
+                pack::Vertex2f(b, static_cast<float>(corner % 2), static_cast<float>(corner % 3));
+            pack::End(b);
+        }
+    });
+    push(picking, buffer);
+    const double while_it_draws = frames_a_second(2, 3s);
+    std::printf("beside a program in selection mode: %.1f frames a second\n", while_it_draws);
+    EXPECT_GT(while_it_draws, kDecent);
+    wire::PackBuffer end;
+    pack::RenderMode(end, 2, GL_RENDER, 0, 0);
+    push(picking, end);
+    ASSERT_TRUE(events_.wait([](Events& e) { return e.replies_.contains({1, 2}); })) << events_.failure_;
+    std::vector<GLuint> answer(events_.replies_[{1, 2}].size() / sizeof(GLuint));
+    std::memcpy(answer.data(), events_.replies_[{1, 2}].data(), answer.size() * sizeof(GLuint));
+    ASSERT_EQ(answer.size(), 5u) << "one hit, in however many parts";
+    EXPECT_EQ(answer[0], 1u);
+    EXPECT_EQ(answer[1], 1u);
+    EXPECT_EQ(answer[4], 5u);
+}
+
+TEST_F(RenderThreadTest, ASelectionLeftOpenKeepsNobodyAway) {
+    const auto picking = open(1);
+    wire::PackBuffer buffer;
+    pack::RenderMode(buffer, 1, GL_SELECT, 0, 1000);
+    push(picking, buffer);
+    ASSERT_TRUE(events_.wait([](Events& e) { return e.replies_.contains({1, 1}); }));
+    const auto start = Clock::now();
+    frames_a_second(2, 1ms);
+    EXPECT_LT(Clock::now() - start, 2s);
+    EXPECT_EQ(events_.failure_, "");
+}
+
+// ---- a driver that is reset ----
+
+std::atomic<GLenum> reset_status = GL_NO_ERROR;
+GLenum GLAPIENTRY said_status() { return reset_status; }
+
+class ResettableBackend final : public GlBackend {
+public:
+    explicit ResettableBackend(std::unique_ptr<GlBackend> real) : real_(std::move(real)) {}
+    Result<void> make_current() override { return real_->make_current(); }
+    void* get_proc_address(const char* name) const override {
+        if (std::string_view(name) == "glGetGraphicsResetStatus") return reinterpret_cast<void*>(&said_status);
+        return real_->get_proc_address(name);
+    }
+    std::string_view name() const override { return real_->name(); }
+
+private:
+    std::unique_ptr<GlBackend> real_;
+};
+
+TEST(DriverReset, EndsTheNodeWithAReason) {
+    Events events;
+    reset_status = GL_NO_ERROR;
+    const auto open = []() -> Result<std::unique_ptr<GlBackend>> {
+        auto real = open_egl_backend();
+        if (!real) return tl::unexpected(real.error());
+        return std::make_unique<ResettableBackend>(std::move(*real));
+    };
+    auto thread = RenderThread::start(open, "egl", events);
+    if (!thread) GTEST_SKIP() << thread.error().message;
+    ASSERT_TRUE(events.wait([](Events& e) { return e.stats_ > 0; }));
+    EXPECT_EQ(events.lost_, "");
+    reset_status = GL_GUILTY_CONTEXT_RESET;
+    EXPECT_TRUE(events.wait([](Events& e) { return !e.lost_.empty(); }));
+    EXPECT_THAT(events.lost_, ::testing::HasSubstr("reset"));
+}
+
+}  // namespace
+}  // namespace wall::tileserver
