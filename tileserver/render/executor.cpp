@@ -6,6 +6,7 @@
 
 #include "common/glstate/elements.h"
 #include "common/wire/batch.h"
+#include "common/wire/limits.h"
 #include "tileserver/render/limits.h"
 #include "tileserver/render/soft_switch.h"
 
@@ -95,7 +96,10 @@ void Executor::begin_tile(unsigned slot) {
     raster_ = glstate::el::raster_position::ref(context_->state);
     layer_ = draw_surface_ != nullptr ? draw_surface_->layer(slot) : nullptr;
     draws_ = layer_ != nullptr && layer_->complete();
-    if (draws_ && !switch_to(node_, session_, *context_, *layer_)) refuse("too many queries");
+    if (!draws_) return;
+    // The samples of a window that lies partly off the wall are those of its tiles.
+    const bool counts = slot != wire::kOffscreenSlot || !draw_surface_->on_tiles();
+    if (!switch_to(node_, session_, *context_, *layer_, counts)) refuse("too many queries");
 }
 
 void Executor::finish_tile() {
