@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""A connection between a program and a node that breaks while both live: the program opens it again, and the node's tile
-is right again. The test stands between them, where the node listens."""
+"""A connection between a program and a node that breaks while both live: the program opens it again, and the node's
+tile is right again. The test stands between them, where the node listens."""
 import contextlib
 import socket
 import sys

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""What a program reads back is what it drew, wherever its window lies: beyond the wall, across its edge, over pixels behind
-bezels, on a node that is gone. The scenes of the golden tests, held against plain Mesa."""
+"""What a program reads back is what it drew, wherever its window lies: beyond the wall, across its edge, over pixels
+behind bezels, on a node that is gone. The scenes of the golden tests, held against plain Mesa."""
 import subprocess
 import sys
 import tempfile
@@ -21,11 +21,11 @@ TILE = (200, 150)
 ACROSS = (-150, -90, *WINDOW)
 AROUND = (-100, -75, *WINDOW)  # larger than the wall
 # Of every way to draw, and to go on from the frame before. Each with its frames.
-SCENES = {"primitive_modes": 3, "draw_pixels": 5, "bitmaps": 4, "copy_pixels": 4, "depth_and_stencil_pixels": 3, "clears": 4,
-          "depth": 8, "stencil": 6, "accumulation": 4, "draw_buffers": 4, "front_buffer": 4, "single_buffered": 4,
-          "kept_back_buffer": 5, "through_egl": 3, "lighting": 5, "texture_updates": 4, "copy_texture": 3, "list_state": 4,
-          "list_images": 3, "vertex_arrays": 5, "evaluators": 5, "glsl_values": 2, "glsl_in_lists": 2, "occlusion": 2,
-          "queries": 2, "selection": 2, "feedback": 2}
+SCENES = {"primitive_modes": 3, "draw_pixels": 5, "bitmaps": 4, "copy_pixels": 4, "depth_and_stencil_pixels": 3,
+          "clears": 4, "depth": 8, "stencil": 6, "accumulation": 4, "draw_buffers": 4, "front_buffer": 4,
+          "single_buffered": 4, "kept_back_buffer": 5, "through_egl": 3, "lighting": 5, "texture_updates": 4,
+          "copy_texture": 3, "list_state": 4, "list_images": 3, "vertex_arrays": 5, "evaluators": 5, "glsl_values": 2,
+          "glsl_in_lists": 2, "occlusion": 2, "queries": 2, "selection": 2, "feedback": 2}
 # Read for the first time after so many frames that were not.
 LATE = {"depth": 8, "lighting": 90, "texture_updates": 7, "glsl_values": 70, "kept_back_buffer": 20, "list_state": 9,
         "single_buffered": 12}
@@ -45,7 +45,7 @@ class WallWithBezels(Wall):
 
 
 def wall_beside() -> Wall:
-    """Two tiles so far apart that the window lies between them; no program may ask for a place outside of the canvas."""
+    """Two tiles so far apart that the window lies between them. (No program may ask for a place off the canvas.)"""
     return WallWithBezels(tiles=(2, 1), tile_size=TILE, gap=WINDOW[0] + 20)
 
 
@@ -63,9 +63,11 @@ class OffTheWall(unittest.TestCase):
         """The frames that were read, and what queries answered."""
         raw = self.folder / "frames.raw"
         raw.unlink(missing_ok=True)
-        line = [str(build_folder() / "tests" / "golden_scenes"), scene, f"--frames={frames}", f"--read-from={read_from}", f"--raw={raw}"]
+        line = [str(build_folder() / "tests" / "golden_scenes"), scene, f"--frames={frames}",
+                f"--read-from={read_from}", f"--raw={raw}"]
         if wall:
-            done = subprocess.run(wall.wallrun(*line, rect=rect), env=self.x.environment(), capture_output=True, timeout=60)
+            line = wall.wallrun(*line, rect=rect)
+            done = subprocess.run(line, env=self.x.environment(), capture_output=True, timeout=60)
         else:
             plain = self.x.environment(LIBGL_ALWAYS_SOFTWARE="1", MESA_EXTENSION_OVERRIDE="-GL_EXT_framebuffer_sRGB")
             plain.pop("__GLX_VENDOR_LIBRARY_NAME", None)
@@ -80,7 +82,8 @@ class OffTheWall(unittest.TestCase):
             self.references[what] = self.play(*what)
         return self.references[what]
 
-    def hold_against_mesa(self, scene: str, frames: int, read_from: int, wall: Wall, rect: tuple, right, text=True) -> None:
+    def hold_against_mesa(self, scene: str, frames: int, read_from: int, wall: Wall, rect: tuple, right,
+                          text: bool = True) -> None:
         expected, said = self.reference(scene, frames, read_from)
         given, told = self.play(scene, frames, read_from, wall, rect)
         self.assertEqual(len(given), len(expected))
@@ -125,7 +128,10 @@ class OffTheWall(unittest.TestCase):
         with Wall(tiles=(2, 1), tile_size=TILE) as wall:
             wall.daemons["node-1-0"].kill()
             wall.daemons["node-1-0"].wait()
-            wall._until(lambda: [node["up"] for node in wall.nodes()] == [True, False], "the killed node is up", "walld")
+            end = time.monotonic() + 10
+            while [node["up"] for node in wall.nodes()] != [True, False]:
+                self.assertLess(time.monotonic(), end, "the killed node is up")
+                time.sleep(0.05)
             self.hold_against_mesa("lighting", 5, 0, wall, (0, 0, *WINDOW), compare.match)
 
     def test_moved_there_while_it_draws(self) -> None:
@@ -134,7 +140,8 @@ class OffTheWall(unittest.TestCase):
             expected, _ = self.reference("lighting", 5, 0)
             raw = self.folder / "moved.raw"
             app = wall.run(program, "lighting", "--frames=5", "--pause", f"--raw={raw}", rect=(0, 0, *WINDOW),
-                           env=self.x.environment(), stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                           env=self.x.environment(), stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                           stderr=subprocess.DEVNULL)
             session = wall.wait_session(app)
             for frame, (x, y) in enumerate([(-150, -90), (WINDOW[0] + 10, 0), (100, 0), (0, 0), (0, 0)]):
                 while not raw.exists() or raw.stat().st_size < (frame + 1) * WINDOW[0] * WINDOW[1] * 4:
