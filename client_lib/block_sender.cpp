@@ -25,15 +25,28 @@ constexpr std::int64_t kGapVertices = 2;
 
 void BlockSender::run() {
     if (context_.draw_surface()) layout_ = &context_.draw_layout();
-    if (!packer_.has_geometry() || !layout_ || layout_->targets.empty()) return fold({});
+    if (!packer_.has_geometry() || !layout_) return fold({});
+    const bool hidden = context_.draw_surface()->hidden != nullptr;
+    if (layout_->targets.empty() && !hidden) return fold({});
     const auto box = options().broadcast ? std::nullopt : project(context_.projection(), packer_.block_box());
+    if (hidden) kept_ = session_.begin_keeping(context_, box);
     if (options().count_ideal) session_.ideal_.count(context_, *layout_);
     needs_ = needs_of_block(context_.state, packer_);
+    if (kept_) keep();
     NodeMasks& nodes = scratch_.touched;
     targets_of(layout_->targets, box, nodes);
     const bool single = packer_.primitives().size() == 1 && !may_be_divided(packer_.primitives()[0]);
     if (nodes.size() <= 1 || packer_.has_rare() || options().broadcast || single) send_whole(nodes);
     else send_apart();
+}
+
+void BlockSender::keep() {
+    constexpr std::uint64_t kSlots = std::uint64_t{1} << wire::kOffscreenSlot;
+    auto& buffer = session_.prepare_kept(context_, needs_);
+    glapi::pack::Block(buffer, static_cast<std::uint32_t>(kSlots), static_cast<std::uint32_t>(kSlots >> 32),
+                       static_cast<std::uint32_t>(packer_.commands()),
+                       static_cast<std::uint32_t>(packer_.operand_bytes()));
+    buffer.append(packer_, {}, packer_.mark());
 }
 
 void BlockSender::send_whole(const NodeMasks& nodes) {
@@ -229,15 +242,17 @@ void BlockSender::copy(Share& share, wire::PackMark first, wire::PackMark last) 
 // The block's last attributes become the context's current ones, and those of every node that ran all of it.
 void BlockSender::fold(const std::vector<Node*>& whole) {
     context_.fold_attributes();
-    for (Node* node : whole) {
+    const auto follow = [&](Node* node) {
         auto& mirror = node->mirrors[context_.id].state;
         for (std::size_t i = 0; i < kAttributes; ++i)
             if (packer_.last[i]) glstate::apply_attribute(mirror, packer_.last_op[i], packer_.last[i]);
         unify_id(mirror, context_.state, Category::current);
-        if (!context_.folded_material()) continue;
+        if (!context_.folded_material()) return;
         mirror.material = context_.state.material;
         unify_id(mirror, context_.state, Category::material);
-    }
+    };
+    for (Node* node : whole) follow(node);
+    if (kept_) follow(kept_);
 }
 
 }  // namespace wall::client

@@ -45,6 +45,7 @@ public:
 
 private:
     using Share = NodeShare;
+    void keep();
     void send_whole(const NodeMasks& nodes);
     void send_apart();
     void send_primitive(const Primitive& primitive, BlockWalk& walk);
@@ -69,6 +70,8 @@ private:
     Packer& packer_;
     SortScratch& scratch_;
     const SurfaceLayout* layout_ = nullptr;
+    Node* kept_ =
+        nullptr;  ///< follows the block's copy for the part of the window that no tile shows; null: there is none
     Needs needs_;
 };
 

@@ -17,6 +17,7 @@
 #include "client_lib/session.h"
 #include "common/glapi/recorder.h"
 #include "common/glstate/diff.h"
+#include "common/wire/limits.h"
 #include "gen/client_lib/api.gen.h"
 
 namespace wall::client {
@@ -114,6 +115,11 @@ public:
     };
     std::vector<PendingMaterial> pending_materials;
 
+    /// Before an object that was drawn with changes or goes: by its id.
+    void before_change(std::uint32_t id) {
+        if (session_) session_->before_object_changes(id);
+    }
+
     /// glBegin and glEnd after their checks.
     void begin_primitive(GLenum mode);
     void end_primitive();
@@ -165,13 +171,8 @@ void Session::draw(Context& context, const std::optional<PixelRect>& box, const 
                    Pack&& pack, After&& after) {
     packing([&] {
         if (!context.draw_surface()) return;
-        const SurfaceLayout& layout = context.draw_layout();
-        for (const auto& [index, slots] : targets_of(layout, box)) {
-            Node& node = *nodes_[index];
-            if (!node.takes(context.draw_surface()->id)) continue;
-            wire::PackBuffer& buffer = prepare(node, context, needs);
-            before(node, buffer);
-            const std::size_t operands = buffer.operand_bytes(), bytes = buffer.bytes();
+        const auto pack_block = [&](wire::PackBuffer& buffer, std::uint64_t slots) {
+            const std::size_t operands = buffer.operand_bytes();
             glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32), 0,
                                0);
             const auto start = buffer.mark();
@@ -180,6 +181,21 @@ void Session::draw(Context& context, const std::optional<PixelRect>& box, const 
             const std::uint32_t counts[2] = {static_cast<std::uint32_t>(end.commands - start.commands),
                                              static_cast<std::uint32_t>(end.operand_bytes - start.operand_bytes)};
             std::memcpy(buffer.operand_at(operands + 8), counts, sizeof counts);
+        };
+        if (Node* kept = context.draw_surface()->hidden ? begin_keeping(context, box) : nullptr) {
+            Node& node = *nodes_[kept->index];
+            before(node, batch(node, context.id));
+            pack_block(prepare_kept(context, needs), std::uint64_t{1} << wire::kOffscreenSlot);
+            after(*kept);
+        }
+        const SurfaceLayout& layout = context.draw_layout();
+        for (const auto& [index, slots] : targets_of(layout, box)) {
+            Node& node = *nodes_[index];
+            if (!node.takes(context.draw_surface()->id)) continue;
+            wire::PackBuffer& buffer = prepare(node, context, needs);
+            before(node, buffer);
+            const std::size_t bytes = buffer.bytes();
+            pack_block(buffer, slots);
             count_geometry(node, buffer.bytes() - bytes);
             after(node);
         }
@@ -211,16 +227,18 @@ void Session::synchronize(Context& context, bool at_once, Note&& note, Pack&& pa
 template <class Pack>
 std::optional<std::vector<std::byte>> Session::ask(Context& context, Node& node, const char* function, Pack&& pack) {
     context.flush_block();
+    std::shared_ptr<NodeStream> stream;  // the node may get another one meanwhile
     const std::uint32_t request = packing([&]() -> std::uint32_t {
         if (!node.answers() || !context.draw_surface()) return 0;
         const std::uint32_t next = ++last_request_;
         pack(prepare(node, context), next);
         count_round_trip(function);
         send(node);
+        stream = node.stream;
         return next;
     });
     if (request == 0) return std::nullopt;
-    return wait_reply(node, request);
+    return stream->wait_reply(request, reply_timeout_ms());
 }
 
 template <class Pack>
@@ -228,19 +246,19 @@ std::vector<std::optional<std::vector<std::byte>>> Session::ask_all(Context& con
                                                                     const std::vector<Target>& targets,
                                                                     const char* function, Pack&& pack) {
     context.flush_block();
-    std::vector<std::pair<Node*, std::uint32_t>> asked;
+    std::vector<std::pair<std::shared_ptr<NodeStream>, std::uint32_t>> asked;  // null: cannot be asked
     packing([&] {
         for (const Target& target : targets) {
             Node& node = node_of(target);
-            asked.emplace_back(node.answers() && context.draw_surface() ? &node : nullptr, ++last_request_);
+            asked.emplace_back(node.answers() && context.draw_surface() ? node.stream : nullptr, ++last_request_);
             if (asked.back().first) pack(prepare(node, context), asked.back().second, asked.size() - 1);
         }
-        for (const auto& [node, request] : asked)
-            if (node) send(*node);
+        for (const Target& target : targets) send(node_of(target));
         if (!targets.empty()) count_round_trip(function);
     });
     std::vector<std::optional<std::vector<std::byte>>> answers;
-    for (const auto& [node, request] : asked) answers.push_back(node ? wait_reply(*node, request) : std::nullopt);
+    for (const auto& [stream, request] : asked)
+        answers.push_back(stream ? stream->wait_reply(request, reply_timeout_ms()) : std::nullopt);
     return answers;
 }
 

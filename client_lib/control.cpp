@@ -268,6 +268,13 @@ void ControlLink::ask_to_redraw(std::uint32_t id) {
     wake();
 }
 
+void ControlLink::ask_all_to_redraw() {
+    if (in_forked_child()) return;
+    std::lock_guard lock(mutex_);
+    for (const auto& [id, surface] : surfaces_) wishes_.redraw.insert(id);
+    wake();
+}
+
 ControlLink::Events ControlLink::take_events() {
     if (!has_events_.load(std::memory_order_relaxed)) return {};
     std::lock_guard lock(mutex_);

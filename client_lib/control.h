@@ -56,6 +56,8 @@ public:
 
     /// Asks the program, soon, to draw the window again: what is on the wall was drawn for another layout.
     void ask_to_redraw(std::uint32_t id);
+    /// The same for all open windows. Any thread.
+    void ask_all_to_redraw();
 
     struct Events {
         std::vector<Placement> placements;  ///< in order of arrival

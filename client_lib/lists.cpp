@@ -118,7 +118,10 @@ void call_run(Context& c, const ListRun& run) {
         c, box, needs_of_run(c, run),
         [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session(), node, buffer, run); },
         [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
-        [&](Node& node) { reached.push_back(&node); });
+        [&](Node& node) {
+            node.object_stamps.emplace(run.id, 1);  // kept commands call it, too
+            reached.push_back(&node);
+        });
     apply_effects(c.state, run, run.in_context);
     follow(c, reached, run);
 }
@@ -217,6 +220,7 @@ void execute_list(Context& c, const DisplayList& list) {
 void forget_dead_runs(Context& c) {
     const auto dead = DeadRuns::get().take();
     if (dead.empty()) return;
+    for (const std::uint32_t id : dead) c.before_change(id);
     c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node& node) {
         for (const std::uint32_t id : dead)
             if (node.object_stamps.erase(id)) glapi::pack::RunDelete(buffer, id);

@@ -229,7 +229,10 @@ bool NodeStream::write_some(Outgoing& out) {
         const ssize_t n = ::sendmsg(fd_.get(), &message, MSG_NOSIGNAL | MSG_DONTWAIT);
         if (n < 0) {
             if (errno == EINTR) continue;
-            if (errno != EAGAIN) give_up(std::string("cannot send: ") + std::strerror(errno));
+            if (errno == EAGAIN) return false;
+            const std::string why = std::string("cannot send: ") + std::strerror(errno);
+            on_readable();  // the node may have said why it closed the stream
+            give_up(why);
             return false;
         }
         out.sent += static_cast<std::size_t>(n);
@@ -282,9 +285,11 @@ void NodeStream::on_readable() {
 }
 
 void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> payload) {
-    if (kind == wire::FrameKind::error)
+    if (kind == wire::FrameKind::error) {
+        ended_by_node_.store(!failed(), std::memory_order_release);
         return give_up("node ended the session: " +
                        std::string(reinterpret_cast<const char*>(payload.data()), payload.size()));
+    }
     std::lock_guard lock(mutex_);
     std::uint32_t words[2];
     if (kind == wire::FrameKind::reply && payload.size() >= 4) {

@@ -48,6 +48,8 @@ public:
 
     bool failed() const { return failed_.load(std::memory_order_acquire); }
     std::string failure() const;
+    /// The node has said why it ends the stream: opened again, it would come to the same.
+    bool ended_by_node() const { return ended_by_node_.load(std::memory_order_acquire); }
 
     // ---- transport thread ----
     int fd() const { return fd_.get(); }
@@ -77,7 +79,7 @@ private:
 
     UniqueFd fd_;
     bool stalls_ = true;
-    std::atomic<bool> failed_{false};
+    std::atomic<bool> failed_{false}, ended_by_node_{false};
 
     mutable std::mutex mutex_;  // guards what follows
     std::condition_variable changed_;

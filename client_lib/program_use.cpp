@@ -47,6 +47,7 @@ void settle_link(Context& c, Program& program) {
     }
     if (!definition) return;
     const auto bytes = encode(*definition);
+    c.before_change(program.id);
     const auto answer = ask_one_node(c, "glLinkProgram", [&](wire::PackBuffer& buffer, std::uint32_t request) {
         glapi::pack::ProgramLink(buffer, request, program.id, bytes);
     });
@@ -80,6 +81,7 @@ namespace {
 
 /// Frees the name; the nodes are told of a program.
 void destroy(Context& c, const std::shared_ptr<GlslObject>& object) {
+    c.before_change(object->id);
     std::vector<std::shared_ptr<Shader>> shaders;
     {
         std::lock_guard lock(c.share().mutex);

@@ -52,6 +52,8 @@ std::vector<std::byte> gather_pixels(Context& c, const PixelBox& box, GLenum for
     const Surface* surface = c.read_surface();
     const auto layout = glapi::pixel_layout(format, type);
     if (!surface || pixels.empty() || !layout) return pixels;
+    c.flush_block();
+    c.session().look_at_hidden(*c.read_surface(), {box.x, box.y, box.width, box.height});
     std::vector<Target> targets;
     std::vector<PixelBox> parts;
     for (const Target& target : surface->layout.targets) {

@@ -10,6 +10,7 @@
 
 #include "client_lib/block_sender.h"
 #include "client_lib/context.h"
+#include "client_lib/hidden_part.h"
 #include "client_lib/log.h"
 #include "client_lib/options.h"
 #include "client_lib/pacing.h"
@@ -17,14 +18,17 @@
 #include "client_lib/share_group.h"
 #include "common/glstate/pack_sink.h"
 #include "common/wire/limits.h"
+#include "common/wire/whole_window.h"
 
 namespace wall::client {
 namespace {
 
 constexpr auto kRetryPause =
-    std::chrono::seconds(10);       // a program that asks for every frame must not wait for every frame
-constexpr int kFinishMs = 500;      // what is queued when the program ends
-constexpr int kEndMarginMs = 1500;  // for the rest of the end
+    std::chrono::seconds(10);  // a program that asks for every frame must not wait for every frame
+constexpr std::chrono::milliseconds kStartLimit{2500};  // for all nodes together; each attempt has a limit of its own
+constexpr std::chrono::milliseconds kTakeUpLimit{100};  // a node that is there answers sooner; others come later
+constexpr int kFinishMs = 500;                          // what is queued when the program ends
+constexpr int kEndMarginMs = 1500;                      // for the rest of the end
 constexpr std::chrono::seconds kPlacementTimeout{2};
 constexpr int kReplyTimeoutMs = 10000;  // a readback behind a long frame of a software renderer
 constexpr std::uint32_t kDiffSample =
@@ -32,7 +36,8 @@ constexpr std::uint32_t kDiffSample =
 constexpr std::size_t kBatchBytes =
     256 << 10;  // sent when it reaches this: large enough to be cheap, small enough to overlap
 
-/// The part of the surface's window that shows in `part` of the canvas.
+}  // namespace
+
 Target make_target(const SurfaceLayout& layout, const TileInfo& tile, const geom::Rect& part) {
     const float sx = static_cast<float>(layout.width) / static_cast<float>(layout.rect.width);
     const float sy = static_cast<float>(layout.height) / static_cast<float>(layout.rect.height);
@@ -49,8 +54,6 @@ Target make_target(const SurfaceLayout& layout, const TileInfo& tile, const geom
                      static_cast<int>(std::ceil(target.area.y1)) - y0};
     return target;
 }
-
-}  // namespace
 
 std::uint32_t next_object_id() {
     static std::atomic<std::uint32_t> last{parallel() ? wire::kMaxSharedSurfaces : 0};
@@ -109,8 +112,9 @@ std::shared_ptr<Session> Session::get() {
 Session::Session(std::unique_ptr<ControlLink> control)
     : control_(std::move(control)), sort_scratch_(std::make_unique<SortScratch>()) {
     if (group_) control_->on_end([this](const std::string& why) { transport_.give_up_all(why); });
-    std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
     adopt(control_->welcome());
+    wait_for_attempts(lock, kStartLimit);
 }
 
 // The first welcome, or that of a walld that came back: another session, with other tickets.
@@ -196,11 +200,23 @@ void Session::apply_layout(Surface& surface, const Placement& placement) {
         const geom::Rect part = geom::intersect(tile.rect, layout.rect);
         if (!part.empty()) layout.targets.push_back(make_target(layout, tile, part));
     }
+    lay_hidden_part(surface);
+}
+
+/// Pbuffers whose node is gone go to another one, and so do those that had none; so do the hidden parts of windows.
+void Session::place_off_wall() {
+    lay_hidden_parts();
+    for (auto& [id, surface] : surfaces_) {
+        const auto& targets = surface->layout.targets;
+        if (surface->layout.offscreen && (targets.empty() || !node_of(targets.front()).alive()))
+            apply_layout(*surface, {});
+    }
 }
 
 void Session::begin_frame(Surface& surface) {
-    std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
     take_events();
+    wait_for_attempts(lock, kTakeUpLimit);
     if (common(surface)) {
         report_window(surface);
         return adopt_agreed(surface);
@@ -240,11 +256,9 @@ void Session::take_events() {
         if (group_ && info.up) continue;  // comes with a placement
         Node& node = node_slot(info);
         connect(node);
-        for (auto& [id, surface] : surfaces_)
-            if (surface->layout.offscreen) apply_layout(*surface, {});
-        if (info.up) redraw();
+        place_off_wall();
     }
-    for (const auto& node : nodes_) try_again(*node);
+    for (const auto& node : nodes_) keep_connected(*node);
     for (const Placement& placement : events.placements) {
         const auto found = surfaces_.find(placement.surface);
         if (found == surfaces_.end()) continue;
@@ -270,6 +284,12 @@ void Session::send(Node& node) {
     node.batch.clear();
 }
 
+/// What a node is told of the layer of the whole window.
+static std::uint32_t whole_window_of(const Node& node, const Surface& surface) {
+    if (surface.layout.offscreen) return wire::kOnlyWholeWindow;
+    return surface.hidden && surface.hidden->target.node == node.index ? wire::kAlsoWholeWindow : wire::kTilesOnly;
+}
+
 void Session::describe_surface(Node& node, Surface& surface) {
     const SurfaceLayout& layout = surface.layout;
     const auto known = node.surfaces.find(surface.id);
@@ -282,7 +302,7 @@ void Session::describe_surface(Node& node, Surface& surface) {
     }
     glapi::pack::SurfacePlace(node.batch, surface.id, layout.version, layout.width, layout.height, layout.rect.x,
                               layout.rect.y, static_cast<std::uint32_t>(layout.rect.width),
-                              static_cast<std::uint32_t>(layout.rect.height), layout.offscreen);
+                              static_cast<std::uint32_t>(layout.rect.height), whole_window_of(node, surface));
     node.surfaces[surface.id] = layout.version;
 }
 
@@ -326,6 +346,8 @@ void Session::distrust_nodes() {
         node->stream->give_up("out of memory");  // short enough to need none
         node->batch.clear();
     }
+    for (auto& [id, surface] : surfaces_)
+        if (surface->hidden) surface->hidden->forget();
 }
 
 void Session::swap(Context* context, Surface& surface) {
@@ -334,6 +356,7 @@ void Session::swap(Context* context, Surface& surface) {
     {
         std::lock_guard lock(mutex_);
         whole_frames = std::exchange(surface.cleared, false);
+        finish_hidden_frame(surface);
         ++surface.frame;
         surface.drawn = false;
         for (const std::uint32_t index : swap_nodes(surface)) {
@@ -344,6 +367,7 @@ void Session::swap(Context* context, Surface& surface) {
             glapi::pack::Swap(buffer, surface.id, surface.frame);
             send(node);
         }
+        note_hidden_frame(surface, whole_frames);
         count_frame();
     }
     if (common(surface)) wait_for_group(surface);
@@ -428,10 +452,6 @@ void Session::flush(Context* context, bool wait) {
     for (auto& [stream, request] : pending) stream->wait_reply(request, reply_timeout_ms());
 }
 
-std::optional<std::vector<std::byte>> Session::wait_reply(Node& node, std::uint32_t request) {
-    return node.stream->wait_reply(request, reply_timeout_ms());
-}
-
 /// A member of a parallel program may have to wait for the others, however long they take.
 int Session::reply_timeout_ms() const { return group_ ? NodeStream::kNoLimit : kReplyTimeoutMs; }
 
@@ -450,6 +470,7 @@ void Session::count_round_trip(const char* function) { stats().count_round_trip(
 
 void Session::destroy_context(std::uint32_t context) {
     std::lock_guard lock(mutex_);
+    before_context_goes(context);
     for (auto& node : nodes_) {
         if (!node->alive() || node->mirrors.erase(context) == 0) continue;
         glapi::pack::ContextDestroy(batch(*node, context), context);
@@ -457,6 +478,7 @@ void Session::destroy_context(std::uint32_t context) {
     }
 }
 
+Surface::Surface(std::uint32_t own_id, SurfaceOptions own_options) : id(own_id), options(std::move(own_options)) {}
 Surface::~Surface() = default;
 
 }  // namespace wall::client

@@ -21,6 +21,7 @@
 #include "client_lib/needs.h"
 #include "client_lib/node_stream.h"
 #include "client_lib/parallel.h"
+#include "client_lib/reopening.h"
 #include "client_lib/router.h"
 #include "client_lib/stats.h"
 #include "client_lib/sync_objects.h"
@@ -31,6 +32,8 @@
 namespace wall::client {
 
 class Context;
+class KeptFrame;
+struct HiddenPart;   // hidden_part.h
 struct SortScratch;  // block_sender.h
 
 /// Ids of contexts, surfaces and objects on the wire: unique in the process, never 0.
@@ -60,8 +63,8 @@ struct Node {
         left_out;                             ///< surfaces whose frames it does not get now: the last one it got
     bool asks_unanswered = false;             ///< a question about content took too long: it gets no more
     bool slow = false;                        ///< missed a frame's limit; not waited for until it answers again
-    std::shared_ptr<ConnectAttempt> attempt;  ///< one that is being made since the first failed
-    std::chrono::steady_clock::time_point next_attempt;
+    std::shared_ptr<ConnectAttempt> attempt;  ///< one that is being made
+    Reopening reopening;
 
     wire::PackBuffer batch;           ///< being packed
     std::uint32_t batch_context = 0;  ///< whose
@@ -75,16 +78,18 @@ struct Node {
 
 class Surface {
 public:
-    Surface(std::uint32_t own_id, SurfaceOptions own_options) : id(own_id), options(std::move(own_options)) {}
+    Surface(std::uint32_t own_id, SurfaceOptions own_options);
     ~Surface();
     const std::uint32_t id;
     const SurfaceOptions options;
     SurfaceLayout layout;
-    std::uint32_t frame = 0;        ///< of the last swap
-    bool opened = false;            ///< walld knows it
-    bool drawn = false;             ///< something was drawn since the last swap
-    std::optional<Placement> next;  ///< from walld, for a frame that begins
-    bool cleared = false;           ///< all of its back buffer, since the last swap
+    std::uint32_t frame = 0;             ///< of the last swap
+    bool opened = false;                 ///< walld knows it
+    bool drawn = false;                  ///< something was drawn since the last swap
+    std::optional<Placement> next;       ///< from walld, for a frame that begins
+    bool cleared = false;                ///< all of its back buffer, since the last swap
+    bool depth_images = false;           ///< depth or stencil was drawn as an image
+    std::unique_ptr<HiddenPart> hidden;  ///< what no tile shows; null: nothing
     // In a parallel program.
     std::deque<Placement> coming;  ///< for frames that have not begun, in order
     Extent window;                 ///< of this process's own window, as walld was told
@@ -143,7 +148,24 @@ public:
     void synchronize(Context& context, bool at_once, Note&& note, Pack&& pack);
     void destroy_context(std::uint32_t context);
 
+    // ---- the part of a window that no tile shows (session_hidden.cpp) ----
+    /// Before pixels of a rectangle of the window are asked for (window pixels, origin bottom left).
+    void look_at_hidden(Surface& surface, const geom::Rect& box);
+    /// Before the samples of a query are.
+    void count_hidden_samples();
+    /// Before glAccum: its buffer goes on from frame to frame.
+    void accumulate_hidden(Surface& surface);
+    /// Before a clear, with glClear's mask.
+    void clear_hidden(Context& context, std::uint32_t mask);
+    /// Before a texture, program or run that has been drawn with changes or goes.
+    void before_object_changes(std::uint32_t id);
+
     // ---- with the mutex held ----
+    /// What follows a block that is kept; null: it is not (and `context`'s layout may have changed). The draw surface
+    /// has a hidden part.
+    Node* begin_keeping(Context& context, const std::optional<PixelRect>& box);
+    /// The same as prepare(), after begin_keeping().
+    wire::PackBuffer& prepare_kept(Context& context, const Needs& needs);
     std::mutex& mutex() { return mutex_; }
     std::vector<std::unique_ptr<Node>>& nodes() { return nodes_; }
     /// The node's batch, set to this context (earlier commands of another one are sent first).
@@ -179,8 +201,16 @@ private:
     void adopt_placement(Surface& surface);
     void follow_window(Surface& surface);
     void connect(Node& node);
+    void attempt(Node& node);
+    /// Until what connect() has begun since the last call has come to something, at most `limit`; the lock is not held
+    /// meanwhile.
+    void wait_for_attempts(std::unique_lock<std::mutex>& lock, std::chrono::milliseconds limit);
+    void take_attempt(Node& node);
     void adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream);
-    void try_again(Node& node);
+    void lose(Node& node);
+    void forget(Node& node);
+    void keep_connected(Node& node);
+    void place_off_wall();
     void redraw();
     void describe_surface(Node& node, Surface& surface);
     Node& node_at(std::uint32_t index);
@@ -188,7 +218,6 @@ private:
     std::vector<std::uint32_t> swap_nodes(const Surface& surface) const;
     int reply_timeout_ms() const;
     void wait_for_nodes(Surface& surface, bool whole_frames);
-    std::optional<std::vector<std::byte>> wait_reply(Node& node, std::uint32_t request);
     /// Runs `body` with the mutex held. Where it throws, batches and mirrors may be half made: the nodes' streams fail
     /// then, so that every node begins again at time zero.
     template <class Body>
@@ -202,6 +231,15 @@ private:
         }
     }
     void distrust_nodes();
+    void lay_hidden_part(Surface& surface);
+    void lay_hidden_parts();
+    std::optional<std::uint32_t> node_for_hidden(const Surface& surface, std::optional<std::uint32_t> before);
+    void finish_hidden_frame(Surface& surface);
+    void note_hidden_frame(Surface& surface, bool whole);
+    void rest_hidden(Surface& surface);
+    void show_hidden(Surface& surface);
+    void send_kept(Node& node, Surface& surface, KeptFrame& frame);
+    void before_context_goes(std::uint32_t context);
     void count_frame();
     void count_round_trip(const char* function);
 
@@ -217,8 +255,11 @@ private:
     const std::optional<Parallel>& group_ = parallel();
     SyncObjects sync_{group_ ? group_->members : 1};
     std::unique_ptr<ControlLink> control_;
-    Transport transport_;
+    Transport transport_{[this] {
+        if (!group_) control_->ask_all_to_redraw();  // the program's next frame opens the stream again
+    }};
     std::mutex mutex_;
+    bool attempts_begun_ = false;  ///< by connect(), since wait_for_attempts()
     std::vector<std::unique_ptr<Node>> nodes_;
     std::unordered_map<std::uint32_t, Surface*> surfaces_;
     std::uint32_t id_ = 0;
@@ -228,5 +269,8 @@ private:
     IdealTraffic ideal_;          ///< unused without WALLGL_IDEAL
     std::uint32_t prepared_ = 0;  ///< counts towards the next sample of the diff time
 };
+
+/// The part of the surface's window that shows in `part` of the canvas.
+Target make_target(const SurfaceLayout& layout, const TileInfo& tile, const geom::Rect& part);
 
 }  // namespace wall::client

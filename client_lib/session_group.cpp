@@ -47,7 +47,12 @@ void Session::adopt_agreed(Surface& surface) {
 void Session::use_node(const NodeInfo& info) {
     const bool known = info.node < nodes_.size() && nodes_[info.node]->alive() &&
                        nodes_[info.node]->info.incarnation == info.incarnation;
-    if (!known) connect(node_slot(info));
+    if (known) return;
+    Node& node = node_slot(info);
+    connect(node);
+    if (!node.attempt) return;
+    node.attempt->wait_until(std::chrono::steady_clock::time_point::max());
+    take_attempt(node);
 }
 
 /// The window is as large as rank 0 has it.

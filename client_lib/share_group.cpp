@@ -68,50 +68,68 @@ void adopt_default(glstate::State& state, const Texture& texture) {
     }
 }
 
+/// Equal ones: nothing that drawing with the context needs has changed.
+std::array<std::uint64_t, 5> object_stamps_of(const Context& context, std::uint64_t last_change) {
+    using glstate::Category;
+    const auto& ids = context.state.ids;
+    return {ids[static_cast<std::size_t>(Category::texture_units)], ids[static_cast<std::size_t>(Category::textures)],
+            last_change, context.maps->stamp, ids[static_cast<std::size_t>(Category::objects)]};
+}
+
+/// Packs textures for a node that lacks them. `sent` counts what is no longer in the buffer, `start` is where the rest
+/// begins.
+struct ObjectSender {
+    Session& session;
+    Node& node;
+    wire::PackBuffer& buffer;
+    std::size_t& start;
+    std::size_t& sent;
+
+    void send(const Texture& texture) {
+        auto& known = node.object_stamps[texture.id];
+        if (known == texture.stamp) return;
+        const std::uint64_t before = std::exchange(known, texture.stamp);
+        const std::function<void()> limit = [this] {  // a node at time zero may need more than a frame holds
+            if (buffer.bytes() >= kObjectBatchBytes) send_off();
+        };
+        const bool worth_asking = before == 0 && (texture.global || content_bytes(texture) >= kLeastShared);
+        if (!worth_asking || !may_be_asked(node)) return pack_texture(texture, before, buffer, limit);
+        const bool held = node_holds(session, node, [&](wire::PackBuffer& batch, std::uint32_t request) {
+            glapi::pack::ShareTexture(batch, request, texture.id, texture.target, texture.global ? 1 : 0,
+                                      content_key(texture));
+            sent += batch.bytes() - start;
+            start = 0;  // it goes out
+        });
+        if (held) return;
+        pack_texture(texture, 0, buffer, limit);
+        glapi::pack::TexShared(buffer, texture.id);
+        send_off();  // others may be waiting for it
+    }
+
+private:
+    void send_off() {
+        sent += buffer.bytes() - start;
+        session.send(node);
+        start = buffer.bytes();
+    }
+};
+
 }  // namespace
 
 ShareGroup::ShareGroup() = default;
 ShareGroup::~ShareGroup() = default;
 
 std::size_t ShareGroup::bring_up_to_date(Node& node, Context& context, wire::PackBuffer& buffer) {
-    using glstate::Category;
-    const std::array<std::uint64_t, 5> now = {context.state.ids[static_cast<std::size_t>(Category::texture_units)],
-                                              context.state.ids[static_cast<std::size_t>(Category::textures)],
-                                              last_change.load(std::memory_order_acquire), context.maps->stamp,
-                                              context.state.ids[static_cast<std::size_t>(Category::objects)]};
+    const auto now = object_stamps_of(context, last_change.load(std::memory_order_acquire));
     Mirror& mirror = node.mirrors[context.id];
     if (mirror.objects == now) return 0;
     std::size_t start = buffer.bytes(), sent = 0;
-    const std::function<void()> limit = [&] {  // a node at time zero may need more than a frame holds
-        if (buffer.bytes() < kObjectBatchBytes) return;
-        sent += buffer.bytes() - start;
-        context.session().send(node);
-        start = buffer.bytes();
-    };
     context.maps->bring_up_to_date(node, buffer);
     std::lock_guard lock(mutex);
     for (const auto& [target, texture] : default_textures) adopt_default(context.state, *texture);
+    ObjectSender sender{context.session(), node, buffer, start, sent};
     const auto bring_texture = [&](std::uint32_t id) {
-        if (id == 0) return;
-        const auto found = textures_by_id.find(id);
-        if (found == textures_by_id.end()) return;
-        const Texture& texture = *found->second;
-        auto& known = node.object_stamps[id];
-        if (known == texture.stamp) return;
-        const std::uint64_t before = std::exchange(known, texture.stamp);
-        const bool worth_asking = before == 0 && (texture.global || content_bytes(texture) >= kLeastShared);
-        if (!worth_asking || !may_be_asked(node)) return pack_texture(texture, before, buffer, limit);
-        const bool held = node_holds(context.session(), node, [&](wire::PackBuffer& batch, std::uint32_t request) {
-            glapi::pack::ShareTexture(batch, request, id, texture.target, texture.global ? 1 : 0, content_key(texture));
-            sent += batch.bytes() - start;
-            start = 0;  // it goes out
-        });
-        if (held) return;
-        pack_texture(texture, 0, buffer, limit);
-        glapi::pack::TexShared(buffer, id);
-        sent += buffer.bytes() - start;
-        context.session().send(node);  // others may be waiting for it
-        start = buffer.bytes();
+        if (const auto found = textures_by_id.find(id); found != textures_by_id.end()) sender.send(*found->second);
     };
     for_each_used(context.state, bring_texture);
     if (context.program) {
@@ -120,6 +138,44 @@ std::size_t ShareGroup::bring_up_to_date(Node& node, Context& context, wire::Pac
     }
     mirror.objects = now;
     return sent + buffer.bytes() - start;
+}
+
+void ShareGroup::note_used(Node& follower, Mirror& mirror, Context& context, wire::PackBuffer& buffer) {
+    const auto now = object_stamps_of(context, last_change.load(std::memory_order_acquire));
+    if (mirror.objects == now) return;
+    std::lock_guard lock(mutex);
+    for (const auto& [target, texture] : default_textures) adopt_default(context.state, *texture);
+    const auto note = [&](std::uint32_t id) {
+        if (const auto found = textures_by_id.find(id); found != textures_by_id.end())
+            follower.object_stamps[id] = found->second->stamp;
+    };
+    for_each_used(context.state, note);
+    if (context.program) {
+        const Program& program = *context.program;
+        auto& known = follower.object_stamps[program.id];
+        if (known == 0) pack_all_uniforms(program, buffer);
+        else pack_program(program, known, buffer);
+        known = program.executable->last_change;
+        for_each_sampled(context, note);
+    }
+    mirror.objects = now;
+}
+
+void ShareGroup::bring(Session& session, Node& node, const std::unordered_map<std::uint32_t, std::uint64_t>& used,
+                       wire::PackBuffer& buffer) {
+    std::lock_guard lock(mutex);
+    std::size_t start = buffer.bytes(), sent = 0;
+    ObjectSender sender{session, node, buffer, start, sent};
+    for (const auto& [id, stamp] : used) {
+        if (const auto texture = textures_by_id.find(id); texture != textures_by_id.end()) {
+            sender.send(*texture->second);
+        } else if (const auto name = program_names.find(id); name != program_names.end()) {
+            const auto& program = static_cast<const Program&>(*glsl_objects.find(name->second));
+            bring_program_up_to_date(program, node, buffer);
+            node.object_stamps[id] = program.executable->stamp;  // other values of uniforms follow
+        }
+    }
+    session.count_objects(node, sent + buffer.bytes() - start);
 }
 
 GLuint object_name(Context& c, glstate::ValueKind kind, std::uint32_t id) {

@@ -23,6 +23,8 @@
 namespace wall::client {
 
 class Context;
+class Session;
+struct Mirror;
 struct Node;
 struct DisplayList;  // lists.h
 
@@ -89,6 +91,14 @@ struct ShareGroup {
     /// Packs what drawing with this context needs and the node lacks. The session's mutex is held.
     /// Returns the bytes; full batches among them have been sent.
     std::size_t bring_up_to_date(Node& node, Context& context, wire::PackBuffer& buffer);
+
+    /// For a block that is kept: notes by id what drawing with this context uses in `follower.object_stamps`, and packs
+    /// the uniforms of its program as they are now. The session's mutex is held.
+    void note_used(Node& follower, Mirror& mirror, Context& context, wire::PackBuffer& buffer);
+    /// Packs of the noted objects what the node lacks. None of them has changed since. The uniforms of programs travel
+    /// with the blocks. The session's mutex is held.
+    void bring(Session& session, Node& node, const std::unordered_map<std::uint32_t, std::uint64_t>& used,
+               wire::PackBuffer& buffer);
 };
 
 /// The application's name of the object that a state element names by its id (glGet of a binding); 0: none.

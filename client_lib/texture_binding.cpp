@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/texture_binding.h"
 
+#include <algorithm>
+
 namespace wall::client {
 namespace {
 
@@ -57,6 +59,7 @@ std::shared_ptr<Texture> texture_to_change(Context& c, GLenum image_target) {
     const GLenum target = object_target(image_target);
     if (auto texture = bound_texture(c, target)) {
         if (texture->is_default()) adopt_default(c, target, texture->id);
+        c.before_change(texture->id);
         return texture;
     }
     std::shared_ptr<Texture> texture;
@@ -93,6 +96,11 @@ void restore_texture_parameters(Context& c, const std::vector<SavedTexture>& sav
                                 GL_TEXTURE_COMPARE_MODE, GL_TEXTURE_COMPARE_FUNC, GL_DEPTH_TEXTURE_MODE};
     if (saved.empty()) return;
     c.flush_block();
+    const auto differs = [&](const TexParameters& a, const TexParameters& b) {
+        return std::ranges::any_of(kSent, [&](GLenum p) { return parameter_value(a, p) != parameter_value(b, p); });
+    };
+    for (const auto& [texture, parameters] : saved)
+        if (differs(texture->parameters, parameters)) c.before_change(texture->id);
     std::lock_guard lock(c.share().mutex);
     for (const auto& [texture, parameters] : saved) {
         const TexParameters now = std::exchange(texture->parameters, parameters);

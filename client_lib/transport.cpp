@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "client_lib/process.h"
 
 namespace wall::client {
-Transport::Transport() : wake_fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+Transport::Transport(std::function<void()> on_failure)
+    : on_failure_(std::move(on_failure)), wake_fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
     SignalsBlocked blocked;
     thread_ = std::thread([this] { run(); });
 }
@@ -60,11 +62,13 @@ void Transport::run() {
     std::vector<std::shared_ptr<NodeStream>> streams;
     std::vector<pollfd> fds;
     while (!stop_) {
+        bool some_failed = false;
         {
             std::lock_guard lock(mutex_);
-            std::erase_if(streams_, [](const auto& s) { return s->failed(); });
+            some_failed = std::erase_if(streams_, [](const auto& s) { return s->failed(); }) > 0;
             streams = streams_;
         }
+        if (some_failed) on_failure_();
         fds.assign(1, pollfd{wake_fd_.get(), POLLIN, 0});
         for (auto& stream : streams)
             fds.push_back({stream->fd(), static_cast<short>(POLLIN | (stream->wants_write() ? POLLOUT : 0)), 0});

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -15,7 +16,9 @@ namespace wall::client {
 
 class Transport {
 public:
-    Transport();
+    /// `on_failure` is called in the transport's thread after a stream has failed; it must not wait for anybody who
+    /// waits for a stream.
+    explicit Transport(std::function<void()> on_failure);
     ~Transport();
 
     void add(std::shared_ptr<NodeStream> stream);
@@ -30,6 +33,7 @@ public:
 private:
     void run();
 
+    const std::function<void()> on_failure_;
     UniqueFd wake_fd_;
     std::atomic<bool> stop_{false};
     std::atomic<bool> wake_pending_{false};

@@ -47,6 +47,8 @@ bool buffers_exist(const Context& c, GLenum format) {
 
 void draw_tight(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type,
                 std::span<const std::byte> pixels) {
+    const bool color = format != GL_DEPTH_COMPONENT && format != GL_STENCIL_INDEX && format != GL_DEPTH_STENCIL;
+    if (!color && c.draw_surface()) c.draw_surface()->depth_images = true;
     c.draw(drawn_rect(c, static_cast<float>(width), static_cast<float>(height)),
            [&](wire::PackBuffer& buffer) { glapi::pack::DrawPixels(buffer, width, height, format, type, pixels); });
 }

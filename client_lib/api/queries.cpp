@@ -28,6 +28,8 @@ std::vector<Node*> live_nodes(Session& session) {
 
 std::uint64_t samples_of(Context& c, OcclusionQuery& query) {
     if (query.answered || query.id == 0) return query.samples;
+    c.flush_block();
+    c.session().count_hidden_samples();
     for (Node* node : live_nodes(c.session())) {
         const auto answer =
             c.session().ask(c, *node, "glGetQueryObject", [&](wire::PackBuffer& buffer, std::uint32_t request) {

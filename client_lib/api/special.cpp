@@ -26,6 +26,8 @@ void Clear(Context& c, GLbitfield mask) {
         GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT | GL_ACCUM_BUFFER_BIT;
     if (mask & ~kKnown) return c.error(GL_INVALID_VALUE);
     if (mask == 0 || c.state.local.render_mode != GL_RENDER) return;
+    c.flush_block();
+    if (c.draw_surface()) c.session().clear_hidden(c, mask);
     c.draw(clear_box(c), needs_of_clear(), [&](wire::PackBuffer& buffer) { glapi::pack::Clear(buffer, mask); });
     if (c.draw_surface() && clears_all(c, mask)) c.draw_surface()->cleared = true;
 }
@@ -33,6 +35,8 @@ void Clear(Context& c, GLbitfield mask) {
 void Accum(Context& c, GLenum op, GLfloat value) {
     if (op < GL_ACCUM || op > GL_ADD) return c.error(GL_INVALID_ENUM);
     if (!c.draw_surface() || c.draw_surface()->options.format.accum_bits == 0) return c.error(GL_INVALID_OPERATION);
+    c.flush_block();
+    c.session().accumulate_hidden(*c.draw_surface());
     c.draw(clear_box(c), needs_of_clear(), [&](wire::PackBuffer& buffer) { glapi::pack::Accum(buffer, op, value); });
 }
 

@@ -43,6 +43,7 @@ void forget(Context& c, const std::shared_ptr<Texture>& texture) {
     }
     // Another context of the group may still have it bound; then it lives on without a name.
     if (texture->bound_by.size() > 1 || (!texture->bound_by.empty() && texture->bound_by[0] != c.id)) return;
+    c.before_change(texture->id);
     {
         std::lock_guard lock(c.share().mutex);
         c.share().textures_by_id.erase(texture->id);

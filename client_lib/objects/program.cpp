@@ -138,6 +138,21 @@ glapi::ProgramDefinition Program::definition() const {
     return out;
 }
 
+namespace {
+
+void pack_uniform(const Program& program, const Uniform& uniform, wire::PackBuffer& buffer) {
+    glapi::pack::Uniform(buffer, program.id, static_cast<std::uint32_t>(uniform.location), uniform.type->type,
+                         static_cast<std::uint32_t>(uniform.size),
+                         std::as_bytes(program.executable->words_of(uniform)));
+}
+
+}  // namespace
+
+void pack_all_uniforms(const Program& program, wire::PackBuffer& buffer) {
+    for (const Uniform& uniform : program.executable->uniforms)
+        if (uniform.location >= 0) pack_uniform(program, uniform, buffer);
+}
+
 void pack_program(const Program& program, std::uint64_t known, wire::PackBuffer& buffer) {
     const Executable& executable = *program.executable;
     if (known < executable.stamp) {
@@ -145,9 +160,7 @@ void pack_program(const Program& program, std::uint64_t known, wire::PackBuffer&
         known = executable.stamp;
     }
     for (const Uniform& uniform : executable.uniforms) {
-        if (uniform.stamp <= known) continue;
-        glapi::pack::Uniform(buffer, program.id, static_cast<std::uint32_t>(uniform.location), uniform.type->type,
-                             static_cast<std::uint32_t>(uniform.size), std::as_bytes(executable.words_of(uniform)));
+        if (uniform.stamp > known) pack_uniform(program, uniform, buffer);
     }
 }
 

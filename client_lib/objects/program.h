@@ -118,5 +118,7 @@ struct Program : GlslObject {
 
 /// Packs everything that changed since `known` (0: the node has nothing).
 void pack_program(const Program& program, std::uint64_t known, wire::PackBuffer& buffer);
+/// Packs the values of all uniforms, whoever has them already.
+void pack_all_uniforms(const Program& program, wire::PackBuffer& buffer);
 
 }  // namespace wall::client

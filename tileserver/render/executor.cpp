@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/glstate/elements.h"
+#include "common/wire/batch.h"
 #include "tileserver/render/soft_switch.h"
 
 namespace wall::tileserver {
@@ -70,7 +71,9 @@ void Executor::begin_tile(unsigned slot) {
     layer_ = draw_surface_ != nullptr ? draw_surface_->layer(slot) : nullptr;
     draws_ = layer_ != nullptr && layer_->complete();
     if (!draws_) return;
-    if (!switch_to(node_, session_, *context_, *layer_)) refuse("too many queries");
+    // The samples of a window that lies partly off the wall are those of its tiles.
+    const bool counts = slot != wire::kOffscreenSlot || !draw_surface_->on_tiles();
+    if (!switch_to(node_, session_, *context_, *layer_, counts)) refuse("too many queries");
     modes_.enter();
 }
 

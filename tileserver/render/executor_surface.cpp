@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Surfaces, contexts and frames. Render thread.
-#include "common/wire/limits.h"
+#include "common/wire/whole_window.h"
 #include "tileserver/render/executor.h"
 #include "tileserver/render/limits.h"
 
@@ -42,8 +42,14 @@ void Executor::SurfacePlace(std::uint32_t id, std::uint32_t layout_version, std:
     constexpr std::int32_t kFarthest = 1 << 24;  // canvas pixels
     if (x < -kFarthest || x > kFarthest || y < -kFarthest || y > kFarthest) return refuse("far off any canvas");
     if (window_width == 0 || window_height == 0) return refuse("an empty window");
+    if (offscreen > wire::kAlsoWholeWindow) return refuse("no such kind of place");
     const geom::Rect rect{x, y, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
-    const tileserver::SurfacePlace place{layout_version, window_width, window_height, rect, offscreen != 0};
+    const tileserver::SurfacePlace place{layout_version,
+                                         window_width,
+                                         window_height,
+                                         rect,
+                                         offscreen == wire::kOnlyWholeWindow,
+                                         offscreen == wire::kAlsoWholeWindow};
     if (session_.shares(SurfaceId(id)) && surface->where().window_width != 0) {
         if (surface->where() == place) return;
         if (layout_version <= surface->where().layout_version)
@@ -82,6 +88,13 @@ void Executor::Swap(std::uint32_t id, std::uint32_t frame) {
         return say_to_group([=](GroupSync& sync, Rank rank) { return sync.swap(rank, SurfaceId(id), frame); });
     finish_frame(node_, session_.work, *surface, frame, surface->on_tiles());
     output_.frame_rendered(SurfaceId(id), frame);
+}
+
+void Executor::SwapOffscreen(std::uint32_t id) {
+    Surface* surface = known_surface(id);
+    if (surface == nullptr) return;
+    surface->swap_offscreen();
+    node_.driver.forget_layer();
 }
 
 void Executor::present(SurfaceId id, std::uint32_t frame) {

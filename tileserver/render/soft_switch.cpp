@@ -38,7 +38,7 @@ void look_up_textures(Session& session, SoftContext& context) {
 
 }  // namespace
 
-bool switch_to(RenderNode& node, Session& session, SoftContext& context, Layer& layer) {
+bool switch_to(RenderNode& node, Session& session, SoftContext& context, Layer& layer, bool counts) {
     node.driver.sync(context.state);
     if (context.textures.state_id != textures_id(context) || context.textures.version != session.texture_version())
         look_up_textures(session, context);
@@ -48,7 +48,7 @@ bool switch_to(RenderNode& node, Session& session, SoftContext& context, Layer& 
     session.programs.use(ClientName(glstate::el::current_program::ref(context.state)), layer.geometry());
     node.driver.sync_current(context.state);
     const ClientName query(glstate::el::occlusion_query::ref(context.state));
-    return !query || session.queries.begin(query, layer.geometry().scale_x() * layer.geometry().scale_y());
+    return !query || !counts || session.queries.begin(query, layer.geometry().scale_x() * layer.geometry().scale_y());
 }
 
 }  // namespace wall::tileserver

@@ -9,7 +9,8 @@
 
 namespace wall::tileserver {
 
-/// False: the session has too many occlusion queries.
-[[nodiscard]] bool switch_to(RenderNode& node, Session& session, SoftContext& context, Layer& layer);
+/// `counts`: an occlusion query of the context counts what is drawn on the layer. False: the session has too many of
+/// them.
+[[nodiscard]] bool switch_to(RenderNode& node, Session& session, SoftContext& context, Layer& layer, bool counts);
 
 }  // namespace wall::tileserver

@@ -32,8 +32,9 @@ void Surface::forget_older() {
 }
 
 bool Surface::place(const SurfacePlace& place, const std::vector<Tile>& tiles) {
+    const bool same_size = place.window_width == place_.window_width && place.window_height == place_.window_height;
     place_ = place;
-    layers_[wire::kOffscreenSlot].reset();
+    if (!place.whole_window || !same_size) layers_[wire::kOffscreenSlot].reset();
     std::bitset<wire::kMaxTilesPerNode> wanted;
     bool affordable = true;
     for (const Tile& tile : tiles) {
@@ -45,7 +46,7 @@ bool Surface::place(const SurfacePlace& place, const std::vector<Tile>& tiles) {
         if (now == nullptr || !(now->geometry() == geometry)) replace(tile.slot, make_layer(geometry, now));
         affordable = affordable && layers_[tile.slot] != nullptr;
     }
-    for (std::uint32_t slot = 0; slot < layers_.size(); ++slot)
+    for (std::uint32_t slot = 0; slot < wire::kOffscreenSlot; ++slot)
         if (!wanted[slot] && layers_[slot]) replace(slot, nullptr);
     return affordable;
 }
@@ -71,6 +72,13 @@ void Surface::finish_frame(std::uint32_t frame) {
     for (auto& layer : layers_)
         if (layer) layer->finish_frame();
     waiting_ = frame;
+}
+
+void Surface::swap_offscreen() {
+    Layer* layer = layers_[wire::kOffscreenSlot].get();
+    if (layer == nullptr) return;
+    layer->finish_frame();
+    layer->show_frame();
 }
 
 void Surface::show_frame() {

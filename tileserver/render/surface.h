@@ -31,8 +31,9 @@ struct SurfaceFormat {
 struct SurfacePlace {
     std::uint32_t layout_version = 0;
     std::uint32_t window_width = 0, window_height = 0;
-    geom::Rect rect;  ///< canvas pixels that the whole window covers
-    bool offscreen = false;
+    geom::Rect rect;            ///< canvas pixels that the whole window covers
+    bool offscreen = false;     ///< on no tile
+    bool whole_window = false;  ///< the layer of the whole window stays, if there is one
     bool operator==(const SurfacePlace&) const = default;
 };
 
@@ -60,6 +61,8 @@ public:
     /// A frame has been drawn and waits to be shown.
     void finish_frame(std::uint32_t frame);
     void show_frame();
+    /// A frame has been drawn in the layer of the whole window alone, for nobody to be shown.
+    void swap_offscreen();
     std::optional<std::uint32_t> waiting_frame() const { return waiting_; }
 
 private:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// golden_scenes NAME [--frames=N] [--pause] [--raw=FILE]   draws a scene and writes each frame to standard output as
-// PNM,
-//   just before it is shown; lines of results go to standard error behind "= ". --pause waits for a line on standard
-//   input after each frame. --raw also appends each frame as RGBA bytes, bottom row first, to FILE.
+// golden_scenes NAME [--frames=N] [--pause] [--raw=FILE] [--read-from=N]
+//   draws a scene and writes each frame to standard output as PNM, just before it is shown; lines of results go to
+//   standard error behind "= ". --pause waits for a line on standard input after each frame. --raw also appends each
+//   frame as RGBA bytes, bottom row first, to FILE. --read-from: frames before that one are not read.
 // golden_scenes --list                                     prints NAME FRAMES swaps|flushes of each scene.
 #include <algorithm>
 #include <cstdarg>
@@ -38,6 +38,7 @@ namespace {
 struct Options {
     std::string scene, raw;
     std::optional<int> frames;
+    int read_from = 0;
     bool pause = false, list = false;
 };
 
@@ -48,6 +49,7 @@ Options parse(int argc, char** argv) {
         if (argument == "--list") options.list = true;
         else if (argument == "--pause") options.pause = true;
         else if (argument.starts_with("--frames=")) options.frames = std::stoi(argument.substr(9));
+        else if (argument.starts_with("--read-from=")) options.read_from = std::stoi(argument.substr(12));
         else if (argument.starts_with("--raw=")) options.raw = argument.substr(6);
         else options.scene = argument;
     }
@@ -102,9 +104,11 @@ void run(const Scene& scene, const Options& options) {
         restart_random();
         scene.draw(frame, size);
         say_error("end of frame");
-        const auto pixels = read_frame(scene, size);
-        if (!options.raw.empty()) append(options.raw, pixels);
-        write_pnm(pixels, size);
+        if (frame >= options.read_from) {
+            const auto pixels = read_frame(scene, size);
+            if (!options.raw.empty()) append(options.raw, pixels);
+            write_pnm(pixels, size);
+        }
         if (swaps(scene)) window->swap();
         glFinish();
         if (options.pause && std::getchar() == EOF) return;

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <random>
 
+#include "common/wire/whole_window.h"
 #include "tests/unit/tileserver/test_node.h"
 
 namespace wall::tileserver::test {
@@ -609,6 +610,53 @@ TEST_F(RefusedImageTest, OfAFormatThatDoesNotGoWithTheImage) {
                   pack::TexImage(b, 1, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_DEPTH_COMPONENT, GL_FLOAT, {});
               }),
               blocks(kSize));
+}
+
+/// Fills the layer of the whole window, at a place mostly off the tiles.
+void draw_off_the_wall(TestSession& session, const glstate::Vec4& color) {
+    Batch batch;
+    batch.set<el::clear_color>(color);
+    batch.block(std::uint64_t{1} << wire::kOffscreenSlot, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT); });
+    session.expect_run(batch);
+}
+
+void place(TestSession& session, std::int32_t x, std::uint32_t layers) {
+    Batch batch;
+    pack::SurfacePlace(batch.buffer(), 1, 2, kWidth, kHeight, x, 0, kWidth, kHeight, layers);
+    session.expect_run(batch);
+}
+
+TEST_F(ExecutorTest, TheLayerOfTheWholeWindowStaysWhenTheWindowMovesOffTheWall) {
+    TestSession session(*node_.node, 1);
+    session.open_surface(kWidth, kHeight, kWindow);
+    place(session, -kWidth / 2, wire::kAlsoWholeWindow);
+    draw_off_the_wall(session, {1, 0, 0, 1});
+    const auto drawn = session.read(wire::kOffscreenSlot, {0, 0, 1, 1});
+    place(session, -10 * kWidth, wire::kAlsoWholeWindow);
+    EXPECT_EQ(session.read(wire::kOffscreenSlot, {0, 0, 1, 1}), drawn);
+    EXPECT_EQ(drawn[0], 255);
+    place(session, 0, wire::kTilesOnly);
+    EXPECT_EQ(session.read(wire::kOffscreenSlot, {0, 0, 1, 1})[0], 0) << "on the wall it is not needed";
+    Batch wrong;
+    pack::SurfacePlace(wrong.buffer(), 1, 3, kWidth, kHeight, 0, 0, kWidth, kHeight, wire::kAlsoWholeWindow + 1);
+    EXPECT_FALSE(session.run(wrong));
+}
+
+TEST_F(ExecutorTest, AFrameOffTheWallGoesToTheFrontBufferAlone) {
+    TestSession session(*node_.node, 1);
+    session.open_surface(kWidth, kHeight, kWindow);
+    place(session, -kWidth / 2, wire::kAlsoWholeWindow);
+    draw_off_the_wall(session, {1, 0, 0, 1});
+    Batch swap;
+    pack::SwapOffscreen(swap.buffer(), 1);
+    session.expect_run(swap);
+    EXPECT_TRUE(session.frames.empty()) << "nobody waits for it";
+    EXPECT_FALSE(session.session.surface(SurfaceId(1))->waiting_frame());
+    draw_off_the_wall(session, {0, 1, 0, 1});
+    session.expect_run(Batch().set<el::read_buffer>(GL_FRONT));
+    EXPECT_EQ(session.read(wire::kOffscreenSlot, {0, 0, 1, 1})[0], 255);
+    session.expect_run(Batch().set<el::read_buffer>(GL_BACK));
+    EXPECT_EQ(session.read(wire::kOffscreenSlot, {0, 0, 1, 1})[0], 0);
 }
 
 TEST_F(ExecutorTest, SwapKeepsTheFrameUntilItIsPresented) {

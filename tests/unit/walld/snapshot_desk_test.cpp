@@ -8,6 +8,7 @@
 #include <boost/asio/io_context.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/config/load_config.h"
 #include "common/wire/limits.h"
 #include "tests/support/small_wall.h"
 
