@@ -80,6 +80,7 @@ private:
     UniqueFd fd_;
     bool stalls_ = true;
     std::atomic<bool> failed_{false}, ended_by_node_{false};
+    std::atomic<std::uint64_t> bytes_sent_{0};
 
     mutable std::mutex mutex_;  // guards what follows
     std::condition_variable changed_;

@@ -71,10 +71,12 @@ void Executor::begin_tile(unsigned slot) {
     layer_ = draw_surface_ != nullptr ? draw_surface_->layer(slot) : nullptr;
     draws_ = layer_ != nullptr && layer_->complete();
     if (!draws_) return;
-    // The samples of a window that lies partly off the wall are those of its tiles.
-    const bool counts = slot != wire::kOffscreenSlot || !draw_surface_->on_tiles();
-    if (!switch_to(node_, session_, *context_, *layer_, counts)) refuse("too many queries");
+    if (!switch_to(node_, session_, *context_, *layer_, counts_samples(slot))) refuse("too many queries");
     modes_.enter();
+}
+
+bool Executor::counts_samples(unsigned slot) const {
+    return slot != wire::kOffscreenSlot || !draw_surface_->on_tiles();
 }
 
 void Executor::finish_tile() {

@@ -253,6 +253,8 @@ private:
     void go_on_with_run();
     bool keep_run(std::uint32_t id, std::shared_ptr<const Run> run);
     void finish_tile();
+    /// Whether occlusion queries count what is drawn there: of a window partly off the wall, its tiles' samples.
+    bool counts_samples(unsigned slot) const;
     bool outside_begin();
     Surface* known_surface(std::uint32_t id);
     bool holds_early(std::span<const std::byte> opcodes) const;

@@ -114,7 +114,7 @@ void Executor::resume() {
     if (!draws_) return;
     const glstate::State before_block = context_->state;
     trail_.fold_into(context_->state);
-    if (!switch_to(node_, session_, *context_, *layer_)) refuse("too many queries");
+    if (!switch_to(node_, session_, *context_, *layer_, counts_samples(tile_slot_))) refuse("too many queries");
     context_->state = before_block;
     modes_.enter();
     if (in_begin_) gl_.Begin(begin_.mode);

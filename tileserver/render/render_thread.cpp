@@ -327,7 +327,7 @@ void RenderThread::run(const OpenBackend& open, std::string name, const std::fun
     if (!backend) return started(tl::unexpected(backend.error()));
     if (auto current = (*backend)->make_current(); !current) return started(tl::unexpected(current.error()));
     Gl gl;
-    gl.load([&](const char* name) { return (*backend)->get_proc_address(name); });
+    gl.load([&](const char* function) { return (*backend)->get_proc_address(function); });
     Loop loop(gl, events_, board_, (*backend)->windows());
     started(Started{query_caps(gl), std::move(name)});
     serve(loop);
