@@ -116,8 +116,8 @@ public:
     std::vector<PendingMaterial> pending_materials;
 
     /// Before an object that was drawn with changes or goes: by its id.
-    void before_change(std::uint32_t id) {
-        if (session_) session_->before_object_changes(id);
+    void before_change(std::uint32_t changing_id) {
+        if (session_) session_->before_object_changes(changing_id);
     }
 
     /// glBegin and glEnd after their checks.

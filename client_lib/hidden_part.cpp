@@ -23,8 +23,8 @@ void KeptFrame::turn_to(Context& context) {
 void KeptFrame::seal() {
     if (!follower.batch.empty()) {
         sealed_bytes_ += follower.batch.bytes();
-        stretches.push_back(
-            {follower.batch_context, std::exchange(follower.batch, empty_buffer()), std::exchange(matrices, {})});
+        stretches.push_back({ContextId(follower.batch_context), std::exchange(follower.batch, empty_buffer()),
+                             std::exchange(matrices, {})});
     }
     follower.batch_context = 0;
 }

@@ -15,6 +15,7 @@
 #include "client_lib/router.h"
 #include "client_lib/session.h"
 #include "client_lib/share_group.h"
+#include "common/base/ids.h"
 #include "gen/glstate/state.gen.h"
 
 namespace wall::client {
@@ -37,7 +38,7 @@ public:
 
     /// Commands of one context in a row.
     struct Stretch {
-        std::uint32_t context = 0;
+        ContextId context;
         wire::PackBuffer commands;
         std::vector<Matrix> matrices;
     };

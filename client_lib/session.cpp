@@ -470,7 +470,7 @@ void Session::count_round_trip(const char* function) { stats().count_round_trip(
 
 void Session::destroy_context(std::uint32_t context) {
     std::lock_guard lock(mutex_);
-    before_context_goes(context);
+    before_context_goes(ContextId(context));
     for (auto& node : nodes_) {
         if (!node->alive() || node->mirrors.erase(context) == 0) continue;
         glapi::pack::ContextDestroy(batch(*node, context), context);

@@ -26,6 +26,7 @@
 #include "client_lib/stats.h"
 #include "client_lib/sync_objects.h"
 #include "client_lib/transport.h"
+#include "common/base/ids.h"
 #include "common/glstate/value_history.h"
 #include "gen/glstate/state.gen.h"
 
@@ -158,7 +159,7 @@ public:
     /// Before a clear, with glClear's mask.
     void clear_hidden(Context& context, std::uint32_t mask);
     /// Before a texture, program or run that has been drawn with changes or goes.
-    void before_object_changes(std::uint32_t id);
+    void before_object_changes(std::uint32_t object);
 
     // ---- with the mutex held ----
     /// What follows a block that is kept; null: it is not (and `context`'s layout may have changed). The draw surface
@@ -239,7 +240,7 @@ private:
     void rest_hidden(Surface& surface);
     void show_hidden(Surface& surface);
     void send_kept(Node& node, Surface& surface, KeptFrame& frame);
-    void before_context_goes(std::uint32_t context);
+    void before_context_goes(ContextId context);
     void count_frame();
     void count_round_trip(const char* function);
 

@@ -193,21 +193,21 @@ void Session::send_kept(Node& node, Surface& surface, KeptFrame& frame) {
     for (const auto& [context, start] : frame.starts)
         start.share->bring(*this, node, frame.follower.object_stamps, node.batch);
     for (KeptFrame::Stretch& stretch : frame.stretches) {
-        wire::PackBuffer& buffer = batch(node, stretch.context);
-        Mirror& mirror = node.mirrors[stretch.context];
+        wire::PackBuffer& buffer = batch(node, stretch.context.value);
+        Mirror& mirror = node.mirrors[stretch.context.value];
         if (mirror.draw_surface != surface.id) {
             mirror.draw_surface = surface.id;
             if (mirror.read_surface == 0) mirror.read_surface = surface.id;
             glapi::pack::Bind(buffer, mirror.draw_surface, mirror.read_surface);
         }
-        if (const auto start = frame.starts.extract(stretch.context)) {
+        if (const auto start = frame.starts.extract(stretch.context.value)) {
             glstate::PackSink sink{buffer, mirror.history};
             glstate::diff(glstate::kSentCategories, mirror.state, start.mapped().state, sink);
         }
         buffer.append(stretch.commands, {}, stretch.commands.mark());
         for (const auto& [element, operand] : stretch.matrices)
             mirror.history.add(element, stretch.commands.operand_at(operand));
-        mirror.state = frame.follower.mirrors[stretch.context].state;
+        mirror.state = frame.follower.mirrors[stretch.context.value].state;
     }
     for (auto& [id, mirror] : node.mirrors) mirror.objects = {};  // programs hold the frame's uniform values
 }
@@ -239,10 +239,10 @@ void Session::accumulate_hidden(Surface& surface) {
     });
 }
 
-void Session::before_object_changes(std::uint32_t id) {
+void Session::before_object_changes(std::uint32_t object) {
     packing([&] {
-        const auto uses = [&](const KeptFrame& frame) { return frame.follower.object_stamps.contains(id); };
-        for (auto& [surface_id, surface] : surfaces_) {
+        const auto uses = [&](const KeptFrame& frame) { return frame.follower.object_stamps.contains(object); };
+        for (auto& [id, surface] : surfaces_) {
             HiddenPart* part = surface->hidden.get();
             if (!part || part->drawn) continue;
             const bool in_finished = std::ranges::any_of(part->finished, uses);
@@ -255,11 +255,11 @@ void Session::before_object_changes(std::uint32_t id) {
     });
 }
 
-void Session::before_context_goes(std::uint32_t context) {
+void Session::before_context_goes(ContextId context) {
     for (auto& [id, surface] : surfaces_) {
         HiddenPart* part = surface->hidden.get();
         if (!part || part->drawn) continue;
-        const auto drew = [&](const KeptFrame& frame) { return frame.starts.contains(context); };
+        const auto drew = [&](const KeptFrame& frame) { return frame.starts.contains(context.value); };
         if (drew(part->now) || std::ranges::any_of(part->finished, drew)) show_hidden(*surface);
     }
 }

@@ -182,7 +182,7 @@ public:
     void SurfacePlace(std::uint32_t surface, std::uint32_t layout_version, std::uint32_t window_width,
                       std::uint32_t window_height, std::int32_t x, std::int32_t y, std::uint32_t width,
                       std::uint32_t height, std::uint32_t offscreen);
-    void SwapOffscreen(std::uint32_t id);
+    void SwapOffscreen(std::uint32_t window);
     void SurfaceDestroy(std::uint32_t surface);
     void Bind(std::uint32_t draw_surface, std::uint32_t read_surface);
     void ContextDestroy(std::uint32_t context);

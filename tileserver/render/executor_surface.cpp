@@ -90,8 +90,8 @@ void Executor::Swap(std::uint32_t id, std::uint32_t frame) {
     output_.frame_rendered(SurfaceId(id), frame);
 }
 
-void Executor::SwapOffscreen(std::uint32_t id) {
-    Surface* surface = known_surface(id);
+void Executor::SwapOffscreen(std::uint32_t window) {
+    Surface* surface = known_surface(window);
     if (surface == nullptr) return;
     surface->swap_offscreen();
     node_.driver.forget_layer();
