@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""The frame codecs beside FFmpeg's, on frames of real programs: grabs them once (bench/codec_frames.py), then runs codec_bench.
+"""The frame codecs beside FFmpeg's, on frames of real programs: grabs them once (bench/codec_frames.py), then runs
+codec_bench.
 
 codec.py [--rounds N] [--json FILE]      exit code 1 if a bar of docs/codecs.md is missed
 """

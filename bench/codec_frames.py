@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Frames for the codec benchmark: real programs on plain Mesa under Xvfb, and a desktop of terminals, grabbed at 1920x1080.
+"""Frames for the codec benchmark: real programs on plain Mesa under Xvfb, and a desktop of terminals, grabbed at
+1920x1080.
 
 codec_frames.py FOLDER      writes FOLDER/SCENE.bgra, each 5 frames of 1920x1080 BGRA in a row; scenes that exist stay
 """
@@ -26,7 +27,8 @@ def hack(name: str, *arguments: str) -> list[list[str]]:
 
 
 def terminal(place: str, font: list[str], colours: tuple[str, str], command: str) -> list[str]:
-    return ["xterm", "-b", "4", *font, "-bg", colours[0], "-fg", colours[1], "-geometry", place, "-e", "sh", "-c", command]
+    return ["xterm", "-b", "4", *font, "-bg", colours[0], "-fg", colours[1], "-geometry", place, "-e", "sh", "-c",
+            command]
 
 
 SMOOTH, BITMAP = ["-fa", "DejaVu Sans Mono", "-fs", "10"], ["-fn", "fixed"]
@@ -39,7 +41,8 @@ SCENES: dict[str, list[list[str]]] = {
     "superquadrics": hack("superquadrics"),
     "text": [
         terminal("110x60+0+0", SMOOTH, ("white", "black"), f"cat '{REPOSITORY}/docs/architecture.md'; sleep 60"),
-        terminal("110x60-0+0", SMOOTH, ("#101820", "#d0d0d0"), f"ls -lR --color=always '{REPOSITORY}/common'; sleep 60"),
+        terminal("110x60-0+0", SMOOTH, ("#101820", "#d0d0d0"),
+                 f"ls -lR --color=always '{REPOSITORY}/common'; sleep 60"),
         terminal("120x20+300-0", BITMAP, ("#fdf6e3", "#586e75"),
                  f"while read line; do echo \"$line\"; sleep 0.1; done < '{REPOSITORY}/HACKING.md'; sleep 60"),
     ],
@@ -52,7 +55,8 @@ def grab(scene: str, target: Path) -> None:
                     for command in SCENES[scene]]
         time.sleep(4)
         unfinished = target.with_suffix(".part")
-        subprocess.run(["ffmpeg", "-v", "error", "-y", "-f", "x11grab", "-draw_mouse", "0", "-framerate", "5", "-video_size",
+        subprocess.run(["ffmpeg", "-v", "error", "-y", "-f", "x11grab", "-draw_mouse", "0", "-framerate", "5",
+                        "-video_size",
                         f"{SIZE[0]}x{SIZE[1]}", "-i", x.display, "-frames:v", str(FRAMES), "-pix_fmt", "bgra", "-f",
                         "rawvideo", str(unfinished)], check=True, timeout=120)
         for program in programs:

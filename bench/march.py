@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""A parallel program (examples/march) on 2x2 tiles: triangles a second from 1, 2 and 4 processes, beside one process on plain
-Mesa. The triangles are computed and sent by the processes, and drawn by the tiles' nodes.
+"""A parallel program (examples/march) on 2x2 tiles: triangles a second from 1, 2 and 4 processes, beside one process on
+plain Mesa. The triangles are computed and sent by the processes, and drawn by the tiles' nodes.
 
-march.py [--frames N] [--cells N] [--json FILE]      exit code 1 if the last pictures of the runs on the wall are not the same
+march.py [--frames N] [--cells N] [--json FILE]      exit code 1 if the last pictures of the runs on the wall are not
+the same
 """
 from __future__ import annotations
 
@@ -28,7 +29,8 @@ def run(command: list[str], environment: dict[str, str], picture: Path) -> dict:
     """What all processes say together, and a sum of the last picture."""
     done = subprocess.run(command, env=environment, check=True, capture_output=True, text=True, timeout=600)
     said = [tuple(map(float, found)) for found in re.findall(r"([\d.]+) frames/s, ([\d.]+) triangles/s", done.stdout)]
-    return {"frames_per_second": min(frames for frames, _ in said), "triangles_per_second": sum(triangles for _, triangles in said),
+    return {"frames_per_second": min(frames for frames, _ in said),
+            "triangles_per_second": sum(triangles for _, triangles in said),
             "picture": hashlib.sha256(picture.read_bytes()).hexdigest()}
 
 
@@ -40,9 +42,11 @@ def main() -> int:
     options = arguments.parse_args()
     results: dict[str, dict] = {}
     size = (TILES[0] * TILE[0], TILES[1] * TILE[1])
-    with XServer() as x, Wall(tiles=TILES, tile_size=TILE, name="march", swap_timeout_ms=10000) as wall, tempfile.TemporaryDirectory() as folder:
+    with XServer() as x, Wall(tiles=TILES, tile_size=TILE, name="march",
+                              swap_timeout_ms=10000) as wall, tempfile.TemporaryDirectory() as folder:
         picture = Path(folder) / "last.ppm"
-        program = [str(build_folder() / "examples" / "march"), "--size", f"{size[0]}x{size[1]}", "--cells", str(options.cells),
+        program = [str(build_folder() / "examples" / "march"), "--size", f"{size[0]}x{size[1]}", "--cells",
+                   str(options.cells),
                    "--frames", str(options.frames), "--picture", str(picture)]
         results["Mesa"] = run(program, x.environment(), picture)
         for ranks in RANKS:
@@ -50,7 +54,8 @@ def main() -> int:
             line[1:1] = ["--parallel", str(ranks)]
             results[f"{ranks} on the wall"] = run(line, x.environment(), picture)
     for where, figures in results.items():
-        print(f"{where:14} {figures['triangles_per_second']:12,.0f} triangles/s {figures['frames_per_second']:8.2f} frames/s", flush=True)
+        print(f"{where:14} {figures['triangles_per_second']:12,.0f} triangles/s {figures['frames_per_second']:8.2f} "
+              f"frames/s", flush=True)
     if options.json:
         options.json.write_text(json.dumps(results, indent=1) + "\n")
     same = len({results[f"{ranks} on the wall"]["picture"] for ranks in RANKS}) == 1

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""A mesh of 35,156 small triangles in immediate mode (bench/mesh.cpp): bytes a frame on one tile and on 2x2, and frames a
-second there and on plain Mesa.
+"""A mesh of 35,156 small triangles in immediate mode (bench/mesh.cpp): bytes a frame on one tile and on 2x2, and frames
+a second there and on plain Mesa.
 
 mesh.py [--frames N] [--json FILE]      exit code 1 if 2x2 tiles cost more than 1.15 times the bytes of one
 """
@@ -31,7 +31,8 @@ def run(command: list[str], environment: dict[str, str]) -> float:
 
 def on_wall(tiles: tuple[int, int], program: list[str], x: XServer) -> dict:
     size = (SIZE[0] // tiles[0], SIZE[1] // tiles[1])
-    with Wall(tiles=tiles, tile_size=size, name="mesh", swap_timeout_ms=10000) as wall, tempfile.TemporaryDirectory() as folder:
+    with Wall(tiles=tiles, tile_size=size, name="mesh",
+              swap_timeout_ms=10000) as wall, tempfile.TemporaryDirectory() as folder:
         stats = Path(folder) / "stats.json"
         rate = run(wall.wallrun(*program), x.environment(WALLGL_STATS=str(stats)))
         counted = json.loads(stats.read_text())
@@ -53,7 +54,8 @@ def main() -> int:
             for tiles in ((1, 1), (2, 2)):
                 results[kind][f"{tiles[0]}x{tiles[1]}"] = on_wall(tiles, program, x)
             for where, figures in results[kind].items():
-                print(f"{kind:10} {where:5} {figures['frames_per_second']:8.1f} frames/s {figures.get('bytes_per_frame', 0):12,.0f} bytes a frame", flush=True)
+                print(f"{kind:10} {where:5} {figures['frames_per_second']:8.1f} frames/s "
+                      f"{figures.get('bytes_per_frame', 0):12,.0f} bytes a frame", flush=True)
     if options.json:
         options.json.write_text(json.dumps(results, indent=1) + "\n")
     growth = max(result["2x2"]["bytes_per_frame"] / result["1x1"]["bytes_per_frame"] for result in results.values())

@@ -37,7 +37,8 @@ def main() -> int:
     arguments.add_argument("filter", nargs="?", default=".*")
     options = arguments.parse_args()
     folder = build_folder() / "bench"
-    program = [str(folder / "pack_bench"), "--benchmark_format=json", "--benchmark_min_time=0.1", f"--benchmark_filter={options.filter}"]
+    program = [str(folder / "pack_bench"), "--benchmark_format=json", "--benchmark_min_time=0.1",
+               f"--benchmark_filter={options.filter}"]
     best: dict[str, dict[str, float]] = {vendor: {} for vendor in VENDORS}
     with XServer() as x, Wall(tiles=(1, 1), tile_size=(256, 256), name="pack") as wall:
         library_path = f"{folder / 'bare'}:{os.environ.get('LD_LIBRARY_PATH', '')}"

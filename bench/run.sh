@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Runs the benchmarks of build/release and prints their tables.
-# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, switch, pack, mesh, march, traffic, share, streams, codec)
+# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, switch,
+#                                         pack, mesh, march, traffic, share, streams, codec)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -26,7 +27,8 @@ run() {
   "$@" || { worst=1; printf '%s: below its bar\n' "$name"; }
 }
 
-run state "$build/bench/state_bench" --benchmark_out="$results/state.json" --benchmark_out_format=json --benchmark_color=false
+run state "$build/bench/state_bench" --benchmark_out="$results/state.json" --benchmark_out_format=json \
+  --benchmark_color=false
 run switch bench/switch.py --json "$results/switch.json"
 run pack bench/pack.py --json "$results/pack.json"
 run mesh bench/mesh.py --json "$results/mesh.json"
@@ -41,8 +43,10 @@ if [[ -n "$json" ]]; then
 import json, pathlib, platform, subprocess, sys
 results, target = map(pathlib.Path, sys.argv[1:])
 commit = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True).stdout.strip()
-cpu = next((line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine())
-report = {"commit": commit, "machine": cpu, "benchmarks": {file.stem: json.loads(file.read_text()) for file in sorted(results.glob("*.json"))}}
+cpu = next((line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")),
+           platform.machine())
+benchmarks = {file.stem: json.loads(file.read_text()) for file in sorted(results.glob("*.json"))}
+report = {"commit": commit, "machine": cpu, "benchmarks": benchmarks}
 target.write_text(json.dumps(report, indent=1) + "\n")
 PYTHON
 fi

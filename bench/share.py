@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Eight programs with the same 64 MiB of textures (bench/many_textures.cpp), started at once, on 2x1 tiles: what the nodes' memory
-and the bytes sent grow from one program to eight; beside them eight programs with different textures, and eight processes of one parallel
-program that share theirs by name (GL_WALLGL_global_texture).
+"""Eight programs with the same 64 MiB of textures (bench/many_textures.cpp), started at once, on 2x1 tiles: what the
+nodes' memory and the bytes sent grow from one program to eight; beside them eight programs with different textures, and
+eight processes of one parallel program that share theirs by name (GL_WALLGL_global_texture).
 
 share.py [--programs N] [--json FILE]      exit code 1 if either grows 1.1 times or more
 """
@@ -23,7 +23,8 @@ from xserver import XServer  # noqa: E402
 
 BAR = 1.1
 WINDOW = 128
-ONE, SAME, GLOBAL, DIFFERENT = "one program", "{}, the same textures", "{} processes of one, global textures", "{}, different textures"
+ONE, SAME = "one program", "{}, the same textures"
+GLOBAL, DIFFERENT = "{} processes of one, global textures", "{}, different textures"
 
 
 def resident(pid: int) -> int:
@@ -33,7 +34,8 @@ def resident(pid: int) -> int:
 
 def measure(count: int, kind: str, x: XServer) -> dict:
     """`count` programs at once, each over the border between the two tiles, on a fresh wall."""
-    with Wall(tiles=(2, 1), tile_size=(512, 512), name="share", swap_timeout_ms=10000) as wall, tempfile.TemporaryDirectory() as folder:
+    with Wall(tiles=(2, 1), tile_size=(512, 512), name="share",
+              swap_timeout_ms=10000) as wall, tempfile.TemporaryDirectory() as folder:
         nodes = [wall.daemons[name] for name in wall.node_names]
         before = sum(resident(node.pid) for node in nodes)
         start = time.monotonic()
@@ -41,9 +43,12 @@ def measure(count: int, kind: str, x: XServer) -> dict:
         for i in range(count):
             files.append(Path(folder) / f"{i}.json")
             group = {"WALLGL_PARALLEL": f"share:{i}:{count}"} if kind == GLOBAL else {}
-            apps.append(wall.run(build_folder() / "bench" / "many_textures", "--seed", i if kind == DIFFERENT else 0, "--window", WINDOW,
-                                 "--global", int(kind == GLOBAL), rect=(512 - WINDOW // 2, (i * 61) % (512 - WINDOW), WINDOW, WINDOW),
-                                 env=x.environment(WALLGL_STATS=str(files[-1]), **group), stdout=subprocess.PIPE, text=True))
+            apps.append(wall.run(build_folder() / "bench" / "many_textures", "--seed", i if kind == DIFFERENT else 0,
+                                 "--window", WINDOW,
+                                 "--global", int(kind == GLOBAL),
+                                 rect=(512 - WINDOW // 2, (i * 61) % (512 - WINDOW), WINDOW, WINDOW),
+                                 env=x.environment(WALLGL_STATS=str(files[-1]), **group), stdout=subprocess.PIPE,
+                                 text=True))
         for app in apps:
             if app.stdout.readline().strip() != "drawn":
                 raise RuntimeError("a program ended early")
@@ -68,7 +73,8 @@ def main() -> int:
             one = results[ONE]
             growth = {kind: results[name][kind] / one[kind] for kind in ("memory_bytes", "sent_bytes")}
             results[name]["growth"] = growth
-            print(f"{name:42} memory of both nodes {results[name]['memory_bytes'] / 2**20:7.1f} MiB ({growth['memory_bytes']:.3f})   "
+            print(f"{name:42} memory of both nodes {results[name]['memory_bytes'] / 2**20:7.1f} MiB "
+                  f"({growth['memory_bytes']:.3f})   "
                   f"sent {results[name]['sent_bytes'] / 2**20:7.1f} MiB ({growth['sent_bytes']:.3f})   "
                   f"first frames after {results[name]['seconds']:.1f} s", flush=True)
     if options.json:

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""What watching costs the programs: frames a second on 2x2 tiles of 1920x1080 while nobody watches, and while one viewer gets all
-four tiles losslessly at full size and 10 frames a second. Both take turns.
+"""What watching costs the programs: frames a second on 2x2 tiles of 1920x1080 while nobody watches, and while one
+viewer gets all four tiles losslessly at full size and 10 frames a second. Both take turns.
 
 stream_cost.py [--rounds N] [--seconds S] [--codec NAME] [--json FILE]
 exit code 1 if the program that leaves the processors time loses 5 % or more; the others are shown, too
@@ -88,7 +88,8 @@ def measure(program: list[str], options: argparse.Namespace, x: XServer) -> dict
     return {"alone_per_second": median(r for r, _ in alone), "watched_per_second": median(r for r, _ in watched),
             "ratio": median(w / a for (a, _), (w, _) in zip(alone, watched)),
             "processors_alone": median(u for _, u in alone), "processors_watched": median(u for _, u in watched),
-            "stream_frames_per_tile_and_second": median(f for f, _ in streams), "stream_bytes_per_second": median(b for _, b in streams)}
+            "stream_frames_per_tile_and_second": median(f for f, _ in streams),
+            "stream_bytes_per_second": median(b for _, b in streams)}
 
 
 def main() -> int:
@@ -104,9 +105,12 @@ def main() -> int:
     with XServer() as x:
         for name, program in programs.items():
             result = results[name] = measure(program, options, x)
-            print(f"{name:20} {result['alone_per_second']:7.2f} frames/s alone, {result['watched_per_second']:7.2f} watched ({result['ratio']:.3f}); "
-                  f"processors used {result['processors_alone']:.0%} and {result['processors_watched']:.0%}; viewer gets "
-                  f"{result['stream_frames_per_tile_and_second']:.1f} frames/s a tile, {result['stream_bytes_per_second'] / 1e6:.1f} MB/s", flush=True)
+            print(f"{name:20} {result['alone_per_second']:7.2f} frames/s alone, {result['watched_per_second']:7.2f} "
+                  f"watched ({result['ratio']:.3f}); "
+                  f"processors used {result['processors_alone']:.0%} and {result['processors_watched']:.0%}; viewer "
+                  f"gets "
+                  f"{result['stream_frames_per_tile_and_second']:.1f} frames/s a tile, "
+                  f"{result['stream_bytes_per_second'] / 1e6:.1f} MB/s", flush=True)
     if options.json:
         options.json.write_text(json.dumps(results, indent=1) + "\n")
     ratio = next(iter(results.values()))["ratio"]

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""What a program sends to walls of 1x1 to 8x4 tiles, a frame: state, objects and geometry, bucketed, ideal (each primitive
-goes to just the tiles that its own box touches, counted by the library in the same run) and broadcast. `matrices` is how
-often, in that ideal, a node would need other matrices: where a program moves every object, its state cannot grow less than
-this. The program is recorded first, so that every wall gets the same frames.
+"""What a program sends to walls of 1x1 to 8x4 tiles, a frame: state, objects and geometry, bucketed, ideal (each
+primitive goes to just the tiles that its own box touches, counted by the library in the same run) and broadcast.
+`matrices` is how often, in that ideal, a node would need other matrices: where a program moves every object, its state
+cannot grow less than this. The program is recorded first, so that every wall gets the same frames.
 
 traffic.py [--seconds N] [--recording NAME] [--tiles CxR]... [--json FILE] [-- PROGRAM ARGS...]
     without a program: xscreensaver's atlantis without the gradient behind the fish, which the papers' did not have
@@ -48,7 +48,8 @@ class Clip(Recording):
 
 def record(command: list[str], seconds: float, folder: Path, x: XServer) -> Clip:
     clip = Clip(Path(command[0]).name, "egl", command, 0, "", folder / "clip.trace")
-    process = subprocess.Popen(["apitrace", "trace", f"--api={clip.api}", "-o", clip.path, *command], env=x.environment(),
+    process = subprocess.Popen(["apitrace", "trace", f"--api={clip.api}", "-o", clip.path, *command],
+                               env=x.environment(),
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
     time.sleep(seconds)
     signal_group(process, signal.SIGINT)
@@ -61,7 +62,8 @@ def replay(recording: Recording, wall: Wall, x: XServer, **environment: str) -> 
     with tempfile.TemporaryDirectory() as folder:
         stats = Path(folder) / "stats.json"
         command = [word for word in recording.argv() if word not in ("-s", "-")]
-        subprocess.run(wall.wallrun(*command, fullscreen=True), check=True, timeout=600, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        subprocess.run(wall.wallrun(*command, fullscreen=True), check=True, timeout=600, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL,
                        env=x.environment(WALLGL_STATS=str(stats), **recording.environment(), **environment))
         return json.loads(stats.read_text())
 
@@ -103,11 +105,13 @@ def judge(rows: dict[str, dict]) -> bool:
     if "1x1" in rows and "5x5" in rows:
         growth = rows["5x5"]["bucketed"]["state"] / max(1, rows["1x1"]["bucketed"]["state"])
         least = rows["5x5"]["matrices"] / max(1e-9, rows["1x1"]["matrices"])
-        print(f"state, 1x1 to 5x5: {growth:.2f} times, at most {STATE_GROWTH} wanted; matrices must grow {least:.2f} times in these frames")
+        print(f"state, 1x1 to 5x5: {growth:.2f} times, at most {STATE_GROWTH} wanted; matrices must grow {least:.2f} "
+              f"times in these frames")
         good = growth <= STATE_GROWTH
     worst = max(row["over_ideal"] for row in rows.values())
     counted = all(row["ideal_all_geometry"] for row in rows.values())
-    print(f"geometry: at most {worst:.3f} times the ideal, at most {OVER_IDEAL} wanted" if counted else "geometry: no ideal was counted")
+    print(f"geometry: at most {worst:.3f} times the ideal, at most {OVER_IDEAL} wanted"
+          if counted else "geometry: no ideal was counted")
     return good and counted and worst <= OVER_IDEAL
 
 
@@ -126,7 +130,8 @@ def main() -> int:
         else:
             recording = record(options.program or ATLANTIS, options.seconds, Path(folder), x)
         print(f"{' '.join(recording.command)}: bytes a frame to all nodes together")
-        print(f"{'tiles':>6}{'state':>12}{'growth':>7}{'matrices':>9}{'growth':>7}{'broadcast':>12}{'objects':>12}{'geometry':>14}{'over ideal':>12}{'broadcast':>14}{'frames':>8}")
+        print(f"{'tiles':>6}{'state':>12}{'growth':>7}{'matrices':>9}{'growth':>7}{'broadcast':>12}{'objects':>12}"
+              f"{'geometry':>14}{'over ideal':>12}{'broadcast':>14}{'frames':>8}")
         for tiles in options.tiles or LAYOUTS:
             rows[tiles] = measure(recording, tiles, x)
             print_row(rows[tiles], next(iter(rows.values())))

@@ -33,7 +33,8 @@ export const loadLayout = name => ask('POST', `${layout(name)}/load`);
 export const deleteLayout = name => ask('DELETE', layout(name));
 
 /** The address of the picture of a tile, or of the wall. */
-export const snapshotUrl = tile => `${kBase}snapshot.png${tile === undefined ? '' : `?tile=${encodeURIComponent(tile)}`}`;
+export const snapshotUrl = tile =>
+    `${kBase}snapshot.png${tile === undefined ? '' : `?tile=${encodeURIComponent(tile)}`}`;
 
 /** The picture of the wall now, as ImageBitmap. */
 export async function getSnapshot() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How long to wait before the next try: twice as long each time, a little at random so that a room full of pages does not
-// come back at once.
+// How long to wait before the next try: twice as long each time, a little at random so that a room full of pages does
+// not come back at once.
 
 export class Backoff {
   #first; #most; #next;

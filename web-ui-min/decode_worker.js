@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Worker: turns the packets of a stream's parts into pictures, away from the page's thread. It is told a part's size and
-// header, then gets packets one at a time, each answered by {part, bitmap} or {part, error}.
+// Worker: turns the packets of a stream's parts into pictures, away from the page's thread. It is told a part's size
+// and header, then gets packets one at a time, each answered by {part, bitmap} or {part, error}.
 
 import { HuffyuvDecoder } from './huffyuv.js';
 

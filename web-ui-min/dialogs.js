@@ -12,7 +12,8 @@ export function ask(question) {
   get('confirm-yes').onclick = () => dialog.close('yes');
   get('confirm-no').onclick = () => dialog.close();
   dialog.showModal();
-  return new Promise(resolve => dialog.addEventListener('close', () => resolve(dialog.returnValue === 'yes'), { once: true }));
+  return new Promise(resolve => dialog.addEventListener('close', () => resolve(dialog.returnValue === 'yes'),
+      { once: true }));
 }
 
 export function showTilePicture(name) {

@@ -29,11 +29,12 @@ export function keyed(parent, items, keyOf, create, update) {
 }
 
 /**
- * Table rows: `columns` are functions from an item to text, or to {text, state, title}. The first cell heads the row; with
- * `onHead` it is a button.
+ * Table rows: `columns` are functions from an item to text, or to {text, state, title}. The first cell heads the row;
+ * with `onHead` it is a button.
  */
 export function rows(body, items, keyOf, columns, onHead) {
-  const head = item => make('th', { scope: 'row' }, ...onHead ? [make('button', { type: 'button', onclick: () => onHead(keyOf(item)) })] : []);
+  const head = item => make('th', { scope: 'row' }, ...onHead
+      ? [make('button', { type: 'button', onclick: () => onHead(keyOf(item)) })] : []);
   const create = item => make('tr', {}, head(item), ...columns.slice(1).map(() => make('td')));
   keyed(body, items, keyOf, create, (row, item) => columns.forEach((column, i) => {
     const value = column(item), cell = row.cells[i];

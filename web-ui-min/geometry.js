@@ -20,12 +20,16 @@ export function moved([x, y, width, height], dx, dy, canvas) {
 
 /** By its lower right corner. */
 export function resized([x, y, width, height], dx, dy, canvas) {
-  return [x, y, clamp(Math.round(width + dx), kLeast, 2 * canvas.width), clamp(Math.round(height + dy), kLeast, 2 * canvas.height)];
+  return [x, y, clamp(Math.round(width + dx), kLeast, 2 * canvas.width),
+      clamp(Math.round(height + dy), kLeast, 2 * canvas.height)];
 }
 
-/** Where a canvas rectangle lies in whole pixels of a picture of that size, as walld says of streams; neighbours neither
- * overlap nor gape. */
+/**
+ * Where a canvas rectangle lies in whole pixels of a picture of that size, as walld says of streams; neighbours
+ * neither overlap nor gape.
+ */
 export function scaledRect([x, y, width, height], canvas, picture) {
-  const across = edge => Math.round(edge * picture.width / canvas.width), down = edge => Math.round(edge * picture.height / canvas.height);
+  const across = edge => Math.round(edge * picture.width / canvas.width);
+  const down = edge => Math.round(edge * picture.height / canvas.height);
   return [across(x), down(y), across(x + width) - across(x), down(y + height) - down(y)];
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Decoder of codec `huffyuv` (docs/codecs.md): RGB24 and RGB32 with and without decorrelation, left and gradient
-// prediction, progressive and interlaced, tables per stream. Every packet is a key frame. Trusts nothing: what cannot be
-// throws HuffyuvError. Pure; runs in the decode worker and under Node.
+// prediction, progressive and interlaced, tables per stream. Every packet is a key frame. Trusts nothing: what cannot
+// be throws HuffyuvError. Pure; runs in the decode worker and under Node.
 
 const kMaxExtent = 32768, kMaxPixels = 1 << 26;  // pixels
 const kSymbols = 256, kMaxLength = 31;           // bits
@@ -81,10 +81,12 @@ class SymbolTable {
 }
 
 function readHeader(header, height) {
-  check(header.length >= kFixedBytes && header[3] === 0, `a header of ${header.length} bytes; expected that of HuffYUV 2.x`);
+  check(header.length >= kFixedBytes && header[3] === 0,
+      `a header of ${header.length} bytes; expected that of HuffYUV 2.x`);
   const [method, bits, flags] = header;
   const predictor = method & ~kDecorrelate;
-  check(predictor === kLeft || predictor === kGradient, `method ${method}; expected left or gradient prediction of RGB`);
+  check(predictor === kLeft || predictor === kGradient,
+      `method ${method}; expected left or gradient prediction of RGB`);
   check(bits === 24 || bits === 32, `${bits} bits a pixel; expected 24 or 32`);
   check((flags & kPerFrameTables) === 0, 'tables per frame (ffvhuff) are not HuffYUV');
   const interlacing = flags & kInterlaceMask;
@@ -118,14 +120,15 @@ export class HuffyuvDecoder {
 
   /** `header`: Uint8Array, as the stream's first message has it. */
   constructor(header, width, height) {
-    check(Number.isInteger(width) && Number.isInteger(height) && width > 0 && height > 0 && width <= kMaxExtent && height <= kMaxExtent && width * height <= kMaxPixels,
-      `a picture of ${width}x${height}`);
+    check(Number.isInteger(width) && Number.isInteger(height) && width > 0 && height > 0 && width <= kMaxExtent &&
+        height <= kMaxExtent && width * height <= kMaxPixels, `a picture of ${width}x${height}`);
     this.#width = width;
     this.#height = height;
     this.#stream = readHeader(header, height);
     this.#opaque = this.#stream.alpha ? 0 : kOpaque;
     const [blue, green, red] = this.#stream.tables;
-    this.#order = [...(this.#stream.decorrelated ? [green, blue] : [blue, green]), red, ...(this.#stream.alpha ? [red] : [])];
+    this.#order = [...(this.#stream.decorrelated ? [green, blue] : [blue, green]), red,
+        ...(this.#stream.alpha ? [red] : [])];
     this.#fillPixelTable();
     this.#words = new Int32Array(0);
   }
@@ -152,7 +155,8 @@ export class HuffyuvDecoder {
   /** The packet as words, with room to read a row past its end, where it is noticed. Gives its bits. */
   #load(packet) {
     const count = packet.length >> 2;
-    check(count <= (this.#width * this.#height + 4) * kMostPixelWords, `a packet of ${packet.length} bytes; the picture has not as many`);
+    check(count <= (this.#width * this.#height + 4) * kMostPixelWords,
+        `a packet of ${packet.length} bytes; the picture has not as many`);
     const room = count + (this.#width + 1) * kMostPixelWords + 2;
     if (this.#words.length < room) this.#words = new Int32Array(room);
     const view = new DataView(packet.buffer, packet.byteOffset, packet.length);

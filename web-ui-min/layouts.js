@@ -23,7 +23,8 @@ export class Layouts {
       setText(get('no-layouts'), error.message);
       return [];
     });
-    keyed(get('layouts'), names, name => name, name => this.#makeRow(name), row => row.querySelectorAll('button').forEach(button => { button.disabled = !may; }));
+    keyed(get('layouts'), names, name => name, name => this.#makeRow(name),
+        row => row.querySelectorAll('button').forEach(button => { button.disabled = !may; }));
   }
 
   #save() {
@@ -37,7 +38,8 @@ export class Layouts {
       return element;
     };
     const row = make('li', {}, make('span'),
-      button('Load', () => api.loadLayout(name), ({ placed, waiting }) => `Layout ${name}: ${placed} windows placed, ${waiting} places wait for theirs`),
+      button('Load', () => api.loadLayout(name), ({ placed, waiting }) =>
+          `Layout ${name}: ${placed} windows placed, ${waiting} places wait for theirs`),
       button('Delete', () => api.deleteLayout(name), () => `Layout ${name} is deleted`));
     setText(row.firstChild, name);
     return row;

@@ -37,7 +37,8 @@ const view = new WallView({
     const tile = tiles.find(({ rect }) => contains(rect, point));
     if (tile) showTilePicture(tile.name);
   },
-  refused: window => showProblem(new Error(`You may not change ${window.label}: your role is ${who?.role ?? 'not known'}`)),
+  refused: window =>
+      showProblem(new Error(`You may not change ${window.label}: your role is ${who?.role ?? 'not known'}`)),
 });
 const livePicture = new LivePicture(picture, isLive => {
   live = isLive;
@@ -104,7 +105,8 @@ function announceChanges(before, now) {
   const sessions = list => new Map(list.map(session => [session.id, session.name || session.program]));
   const old = sessions(before.sessions), current = sessions(now.sessions);
   const said = [
-    ...now.tiles.filter(tile => wasUp.get(tile.name) !== tile.up).map(tile => `Tile ${tile.name} is ${tile.up ? 'back' : 'away'}.`),
+    ...now.tiles.filter(tile => wasUp.get(tile.name) !== tile.up)
+        .map(tile => `Tile ${tile.name} is ${tile.up ? 'back' : 'away'}.`),
     ...[...current].filter(([id]) => !old.has(id)).map(([, name]) => `${name} has come.`),
     ...[...old].filter(([id]) => !current.has(id)).map(([, name]) => `${name} has ended.`),
   ];
@@ -120,11 +122,13 @@ async function refresh() {
 }
 
 function show() {
-  windows = windowsOf(status).map(window => ({ ...window, rect: mover.rectOf(window), mayChange: mayChange(who, window.session) }));
+  windows = windowsOf(status).map(window => ({ ...window, rect: mover.rectOf(window),
+      mayChange: mayChange(who, window.session) }));
   if (!windows.some(({ id }) => id === selected)) selected = undefined;
   tiles = status.tiles.map(tile => ({
     ...tile, state: tileState(tile, windows, rates), skew: tileSkew(tile, windows),
-    age: tile.up && livePicture.taken.has(tile.name) ? Math.max(0, Date.now() - livePicture.taken.get(tile.name)) : undefined }));
+    age: tile.up && livePicture.taken.has(tile.name)
+        ? Math.max(0, Date.now() - livePicture.taken.get(tile.name)) : undefined }));
   setText(get('name'), status.wall.name);
   document.title = `${status.wall.name}: WallGL`;
   picture.setTiles(status.wall, tiles.map(({ name, rect, state }) => ({ name, rect, away: state === 'away' })));

@@ -9,7 +9,8 @@ const kLateAfter = 2500;   // ms without a frame of a node that others have gone
 
 /** All windows with what belongs to their session, in the order of their numbers, however they lie. */
 export function windowsOf(status) {
-  const windows = status.sessions.flatMap(session => session.surfaces.map(surface => ({ ...surface, session, label: session.name || surface.title || session.program })));
+  const windows = status.sessions.flatMap(session => session.surfaces.map(surface =>
+      ({ ...surface, session, label: session.name || surface.title || session.program })));
   return windows.sort((a, b) => a.id.localeCompare(b.id, 'en', { numeric: true }));
 }
 
@@ -58,7 +59,8 @@ export class Rates {
 /** Bytes a second that a program sends to all nodes, in all and by kind; undefined where walld does not say. */
 export function trafficOf({ traffic }) {
   if (!traffic) return undefined;
-  const { state_bytes_per_second: state, object_bytes_per_second: object, geometry_bytes_per_second: geometry, frame_bytes: frame } = traffic;
+  const { state_bytes_per_second: state, object_bytes_per_second: object, geometry_bytes_per_second: geometry,
+      frame_bytes: frame } = traffic;
   return { state, object, geometry, frame, all: state + object + geometry };
 }
 
@@ -74,6 +76,7 @@ export function tileState(tile, windows, rates) {
 
 /** The greatest skew in ms of the windows on a tile; undefined without one that has shown frames together. */
 export function tileSkew(tile, windows) {
-  const skews = windowsOn(tile, windows).filter(window => window.skew?.presented.frames > 0).map(window => window.skew.presented.last_ms);
+  const skews = windowsOn(tile, windows).filter(window => window.skew?.presented.frames > 0)
+      .map(window => window.skew.presented.last_ms);
   return skews.length ? Math.max(...skews) : undefined;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The wall's live picture, tile by tile: a WebSocket (docs/streams.md) that connects again by itself, and the worker that
-// decodes. While a packet of a part is being decoded only the newest of those that come is kept: every packet of
+// The wall's live picture, tile by tile: a WebSocket (docs/streams.md) that connects again by itself, and the worker
+// that decodes. While a packet of a part is being decoded only the newest of those that come is kept: every packet of
 // `huffyuv` is whole by itself.
 
 import { Backoff } from './backoff.js';

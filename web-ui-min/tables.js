@@ -6,7 +6,8 @@ import { placeText } from './geometry.js';
 import { trafficOf } from './model.js';
 
 const kMissing = '–';
-const number = (value, unit = '') => value === undefined ? kMissing : `${value < 10 ? value.toFixed(1) : value.toFixed(0)}${unit}`;
+const number = (value, unit = '') =>
+    value === undefined ? kMissing : `${value < 10 ? value.toFixed(1) : value.toFixed(0)}${unit}`;
 
 function bytes(perSecond) {
   if (perSecond === undefined) return kMissing;
@@ -16,7 +17,8 @@ function bytes(perSecond) {
 function traffic(session) {
   const sent = trafficOf(session);
   if (!sent) return kMissing;
-  return { text: bytes(sent.all), title: `state ${bytes(sent.state)}, objects ${bytes(sent.object)}, geometry ${bytes(sent.geometry)}; ${Math.round(sent.frame)} bytes a frame` };
+  const parts = `state ${bytes(sent.state)}, objects ${bytes(sent.object)}, geometry ${bytes(sent.geometry)}`;
+  return { text: bytes(sent.all), title: `${parts}; ${Math.round(sent.frame)} bytes a frame` };
 }
 
 function age(ms) {
@@ -25,7 +27,8 @@ function age(ms) {
 }
 
 function windowState({ session, moving, swap_timeouts: timeouts }) {
-  const parts = [session.fault && `fault: ${session.fault}`, session.held && 'held', moving && 'moving', timeouts > 0 && `frames that did not wait for a slow node: ${timeouts}`];
+  const parts = [session.fault && `fault: ${session.fault}`, session.held && 'held', moving && 'moving',
+      timeouts > 0 && `frames that did not wait for a slow node: ${timeouts}`];
   return parts.filter(Boolean).join(', ') || 'runs';
 }
 

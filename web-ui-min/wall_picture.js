@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The canvas: the wall to scale, bezels included, each tile with its newest picture. Draws once a display frame at most,
-// and only when something has changed.
+// The canvas: the wall to scale, bezels included, each tile with its newest picture. Draws once a display frame at
+// most, and only when something has changed.
 
 import { scaledRect } from './geometry.js';
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What lies over the wall's picture: tiles with their state, and windows that are selected, moved and resized with mouse,
-// touch and keyboard. Each is an element of the document, so that screen readers and the Tab key find it.
+// What lies over the wall's picture: tiles with their state, and windows that are selected, moved and resized with
+// mouse, touch and keyboard. Each is an element of the document, so that screen readers and the Tab key find it.
 
 import { get, keyed, make, setText } from './dom.js';
 import { moved, placeText, resized } from './geometry.js';
@@ -13,7 +13,10 @@ export class WallView {
   #on; #wall;
   #windows = new Map();  // by id, as update() said
 
-  /** `on`: select(id or undefined), place(id, rect), key(name, id), openTile(name), openTileAt([x, y]), refused(window). */
+  /**
+   * `on`: select(id or undefined), place(id, rect), key(name, id), openTile(name), openTileAt([x, y]),
+   * refused(window).
+   */
   constructor(on) {
     this.#on = on;
     get('picture').addEventListener('click', event => this.#clickPicture(event));
@@ -23,8 +26,10 @@ export class WallView {
   update(wall, tiles, windows, selected) {
     this.#wall = wall;
     this.#windows = new Map(windows.map(window => [window.id, window]));
-    keyed(get('tiles'), tiles, tile => tile.name, tile => this.#makeTile(tile), (element, tile) => this.#updateTile(element, tile));
-    keyed(get('windows'), windows, window => window.id, window => this.#makeWindow(window), (element, window) => this.#updateWindow(element, window, window.id === selected));
+    keyed(get('tiles'), tiles, tile => tile.name, tile => this.#makeTile(tile),
+        (element, tile) => this.#updateTile(element, tile));
+    keyed(get('windows'), windows, window => window.id, window => this.#makeWindow(window),
+        (element, window) => this.#updateWindow(element, window, window.id === selected));
   }
 
   #putAt(element, [x, y, width, height]) {
@@ -37,7 +42,8 @@ export class WallView {
   // ---- tiles ----
 
   #makeTile({ name }) {
-    return make('div', { className: 'tile' }, make('button', { type: 'button', onclick: () => this.#on.openTile(name) }));
+    return make('div', { className: 'tile' },
+        make('button', { type: 'button', onclick: () => this.#on.openTile(name) }));
   }
   #updateTile(element, { name, rect, state }) {
     this.#putAt(element, rect);
@@ -60,7 +66,8 @@ export class WallView {
   #makeWindow({ id }) {
     const handle = make('span', { className: 'handle' });
     handle.setAttribute('aria-hidden', 'true');
-    const element = make('button', { type: 'button', className: 'window' }, make('span', { className: 'title' }), handle);
+    const element = make('button', { type: 'button', className: 'window' }, make('span', { className: 'title' }),
+        handle);
     element.setAttribute('aria-describedby', 'help');
     element.setAttribute('aria-keyshortcuts', 'ArrowUp ArrowDown ArrowLeft ArrowRight PageUp PageDown Delete Escape');
     element.addEventListener('focus', () => this.#on.select(id));
@@ -74,7 +81,8 @@ export class WallView {
     element.style.zIndex = window.z;
     element.classList.toggle('movable', window.mayChange);
     element.setAttribute('aria-pressed', selected);
-    element.setAttribute('aria-label', `Window ${window.label}, ${placeText(window.rect)}${window.mayChange ? '' : ', of somebody else'}`);
+    element.setAttribute('aria-label',
+        `Window ${window.label}, ${placeText(window.rect)}${window.mayChange ? '' : ', of somebody else'}`);
     setText(element.firstChild, window.label);
   }
 

@@ -58,7 +58,8 @@ class Reading(unittest.TestCase):
         self.assertEqual((result.status, result.subtests, result.output), ("fail", {"a": "pass", "b": "fail"}, "Probe"))
 
     def test_reason_of_a_skip(self):
-        self.assertEqual(Result("skip", output="x\npiglit: info: Failed to create any GL context\n\n").reason, "Failed to create any GL context")
+        self.assertEqual(Result("skip", output="x\npiglit: info: Failed to create any GL context\n\n").reason,
+                         "Failed to create any GL context")
         self.assertEqual(Result("skip").reason, "it does not say")
 
 
@@ -69,7 +70,8 @@ class Worse(unittest.TestCase):
         self.assertEqual(set(place), set(RANKS))
         for given in RANKS:
             for reference in RANKS:
-                self.assertEqual(bool(worse(Result(given), Result(reference))), place[given] > place[reference], (given, reference))
+                self.assertEqual(bool(worse(Result(given), Result(reference))), place[given] > place[reference],
+                                 (given, reference))
 
     def test_subtests_of_a_test_that_fails_on_both(self):
         reference = Result("fail", {"a": "pass", "b": "fail", "c": "skip"})
@@ -98,11 +100,13 @@ class Judged(unittest.TestCase):
         return judgement.verdicts, judgement.good
 
     def test_good(self):
-        self.assertEqual(self.verdicts(outcome("a", "pass"), outcome("b", "skip"), outcome("c", "fail", "fail"), outcome("d", "fail", "crash")),
+        self.assertEqual(self.verdicts(outcome("a", "pass"), outcome("b", "skip"), outcome("c", "fail", "fail"),
+                                       outcome("d", "fail", "crash")),
                          ({"a": "pass", "b": "skip", "c": "as Mesa", "d": "as Mesa"}, True))
 
     def test_failed(self):
-        self.assertEqual(self.verdicts(outcome("a", "pass"), outcome("b", "fail", "pass")), ({"a": "pass", "b": "FAILED"}, False))
+        self.assertEqual(self.verdicts(outcome("a", "pass"), outcome("b", "fail", "pass")),
+                         ({"a": "pass", "b": "FAILED"}, False))
 
     def test_nothing_ran(self):
         self.assertFalse(judge([], {}, ["a"]).good)
@@ -123,7 +127,8 @@ class Judged(unittest.TestCase):
         self.assertFalse(judge([outcome("a", "pass")], {"z": "fail"}, ["a"]).good)
 
     def test_table(self):
-        judgement = judge([outcome("a", "pass"), outcome("b", "skip"), Outcome("c", "other", Result("pass"))], {}, "abc")
+        judgement = judge([outcome("a", "pass"), outcome("b", "skip"), Outcome("c", "other", Result("pass"))], {},
+                          "abc")
         self.assertEqual([(group, counts.total(), counts["pass"]) for group, counts in judgement.table()],
                          [("group", 2, 1), ("other", 1, 1), ("all", 3, 2)])
 
@@ -136,16 +141,19 @@ class Suite(unittest.TestCase):
 
     def test_groups(self):
         for name, group in {
-            "spec@!opengl 1.1@draw-pixels": "OpenGL 1.1", "spec@!opengl 2.1@pbo": "OpenGL 2.1", "spec@!opengl 3.0@clearbuffer": "",
-            "spec@!opengl es 2.0@minmax": "", "spec@glsl-1.20@x@y": "GLSL 1.20", "spec@glsl-1.30@x": "", "spec@arb_shadow@x": "extensions",
-            "spec@ext_texture3d@x": "extensions", "spec@ext_texture@x": "", "glx@glx-dlist": "GLX", "glx@glx_arb_create_context@x": "GLX",
-            "spec@egl 1.4@x": "EGL", "spec@egl_khr_fence_sync@x": "EGL", "shaders@glsl-fs": "shaders", "fast_color_clear@x": "",
+            "spec@!opengl 1.1@draw-pixels": "OpenGL 1.1", "spec@!opengl 2.1@pbo": "OpenGL 2.1",
+            "spec@!opengl 3.0@clearbuffer": "", "spec@!opengl es 2.0@minmax": "", "spec@glsl-1.20@x@y": "GLSL 1.20",
+            "spec@glsl-1.30@x": "", "spec@arb_shadow@x": "extensions", "spec@ext_texture3d@x": "extensions",
+            "spec@ext_texture@x": "", "glx@glx-dlist": "GLX", "glx@glx_arb_create_context@x": "GLX",
+            "spec@egl 1.4@x": "EGL", "spec@egl_khr_fence_sync@x": "EGL", "shaders@glsl-fs": "shaders",
+            "fast_color_clear@x": "",
         }.items():
             self.assertEqual(group_of(name, OFFER), group, name)
 
     def test_list(self):
         text = "spec@!opengl 1.1@a b ::: ../lib/piglit/bin/draw 'GL_A b' -auto -fbo\nnoise\n"
-        self.assertEqual(read_list(text, "opengl", Path("/p")), [Test("spec@!opengl 1.1@a b", ("/p/bin/draw", "GL_A b", "-auto"), "opengl")])
+        self.assertEqual(read_list(text, "opengl", Path("/p")),
+                         [Test("spec@!opengl 1.1@a b", ("/p/bin/draw", "GL_A b", "-auto"), "opengl")])
 
     def test_left_out_needs_a_reason(self):
         with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
@@ -163,8 +171,10 @@ class Lists(unittest.TestCase):
             return load(Path(file.name))
 
     def test_walls(self):
-        listed = self.load('[[expected]]\ntests = ["a", "b"]\nwalls = ["2x2 of 8x8"]\nreason = "so"\n[[expected]]\ntests = ["c"]\nstatus = "crash"\nreason = "it is"\n')
-        self.assertEqual({name: each.status for name, each in on_wall(listed, "2x2 of 8x8").items()}, {"a": "fail", "b": "fail", "c": "crash"})
+        listed = self.load('[[expected]]\ntests = ["a", "b"]\nwalls = ["2x2 of 8x8"]\nreason = "so"\n[[expected]]\n'
+                           'tests = ["c"]\nstatus = "crash"\nreason = "it is"\n')
+        self.assertEqual({name: each.status for name, each in on_wall(listed, "2x2 of 8x8").items()},
+                         {"a": "fail", "b": "fail", "c": "crash"})
         self.assertEqual(list(on_wall(listed, "2x2 of 9x9")), ["c"])
 
     def test_mistakes(self):
@@ -208,20 +218,25 @@ class Playing(unittest.TestCase):
                 return ["/bin/sh", "-c", f"sleep {test.name}; echo {test.name}"]
 
         tests = [Test(name, (), "opengl") for name in ("0.2", "0", "0.1")]
-        self.assertEqual([result.output for _, result in play_all(Named(dict(os.environ), 20.0), tests, 3)], ["0.2", "0", "0.1"])
+        self.assertEqual([result.output for _, result in play_all(Named(dict(os.environ), 20.0), tests, 3)],
+                         ["0.2", "0", "0.1"])
 
 
 class Reported(unittest.TestCase):
     def test_text(self):
-        outcomes = [outcome("good", "pass"), Outcome("bad", "group", Result("fail", output="Probe at 1,1"), Result("pass")),
-                    Outcome("alike", "group", Result("fail"), Result("fail")), Outcome("none", "group", Result("skip", output="requires X"))]
+        outcomes = [outcome("good", "pass"),
+                    Outcome("bad", "group", Result("fail", output="Probe at 1,1"), Result("pass")),
+                    Outcome("alike", "group", Result("fail"), Result("fail")),
+                    Outcome("none", "group", Result("skip", output="requires X"))]
         judgement = judge(outcomes, {"good": "fail", "gone": "fail"}, ["good", "bad"])
         run = report.Run("1x1 of 8x8", 3.0, {"too slow": 2}, ["walld ended with 1"])
         with tempfile.TemporaryDirectory() as folder:
             told = report.write(Path(folder), run, judgement, {})
             self.assertTrue((Path(folder) / "report.json").exists())
-        for line in ("FAILED bad: fail, on Mesa pass", "    Probe at 1,1", "STALE good: no worse", "STALE gone: there is no such test",
-                     "as Mesa alike", "skipped 1: requires X", "left out 2: too slow", "FAILED wall: walld ended with 1"):
+        for line in ("FAILED bad: fail, on Mesa pass", "    Probe at 1,1", "STALE good: no worse",
+                     "STALE gone: there is no such test",
+                     "as Mesa alike", "skipped 1: requires X", "left out 2: too slow",
+                     "FAILED wall: walld ended with 1"):
             self.assertIn(line, told)
         self.assertFalse(run.good(judgement))
 

@@ -25,7 +25,8 @@ def load(path: Path) -> list[Expected]:
             raise ValueError(f"{path}: the entry of {names[0]} gives no reason")
         status = entry.get("status", "fail")
         if RANKS.get(status, 0) == 0:
-            raise ValueError(f"{path}: {names[0]}: status is '{status}', expected one of {', '.join(s for s, rank in RANKS.items() if rank)}")
+            raise ValueError(f"{path}: {names[0]}: status is '{status}', expected one of "
+                             f"{', '.join(s for s, rank in RANKS.items() if rank)}")
         listed += [Expected(name, status, frozenset(entry.get("walls", [])), entry["reason"]) for name in names]
     return listed
 

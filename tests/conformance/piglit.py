@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Runs piglit's tests on a wall. What does not pass there is run on plain Mesa as well: worse than Mesa is a failure."""
+"""Runs piglit's tests on a wall. What does not pass there is run on plain Mesa as well: worse than Mesa is a
+failure."""
 from __future__ import annotations
 
 import argparse
@@ -25,8 +26,8 @@ from xserver import XServer  # noqa: E402
 
 PROGRESS = 10.0  # seconds between two lines of progress
 HELP = """\
-Selected are the tests about what the wall offers: its OpenGL and GLSL versions and extensions, GLX and EGL. They draw into
-windows. A test that is skipped asks for something that is not offered: that is no failure.
+Selected are the tests about what the wall offers: its OpenGL and GLSL versions and extensions, GLX and EGL. They draw
+into windows. A test that is skipped asks for something that is not offered: that is no failure.
 
     piglit.py                                   everything, on one tile
     piglit.py --tiles 4x3 --tile-size 144x150   on twelve tiles so small that windows cross their borders
@@ -34,7 +35,8 @@ windows. A test that is skipped asks for something that is not offered: that is 
     piglit.py --filter 'pbo$' --list            which these are, and how each is started by hand
 
 report.txt in the report folder has a table by group, why tests were skipped, and the last lines of each that failed;
-report.json has everything. Known differences are in expectations.toml, with their reasons. docs/conformance.md tells more.
+report.json has everything. Known differences are in expectations.toml, with their reasons. docs/conformance.md tells
+more.
 """
 
 
@@ -46,16 +48,22 @@ def pair(text: str) -> tuple[int, int]:
 
 
 def read_arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, epilog=HELP, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--tiles", type=pair, default=(1, 1), metavar="CxR", help="columns and rows of the wall, a node each; default 1x1")
-    parser.add_argument("--tile-size", type=pair, default=(1280, 1024), metavar="WxH", help="pixels of a tile; default 1280x1024")
-    parser.add_argument("--filter", type=re.compile, default=re.compile(""), metavar="REGEX", help="only tests whose name has this")
-    parser.add_argument("--profile", action="append", choices=PROFILES, help="only tests of this profile; may be given again; "
+    parser = argparse.ArgumentParser(description=__doc__, epilog=HELP,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--tiles", type=pair, default=(1, 1), metavar="CxR",
+                        help="columns and rows of the wall, a node each; default 1x1")
+    parser.add_argument("--tile-size", type=pair, default=(1280, 1024), metavar="WxH",
+                        help="pixels of a tile; default 1280x1024")
+    parser.add_argument("--filter", type=re.compile, default=re.compile(""), metavar="REGEX",
+                        help="only tests whose name has this")
+    parser.add_argument("--profile", action="append", choices=PROFILES,
+                        help="only tests of this profile; may be given again; "
                         "opengl are programs, shader are scripts that draw, glslparser only compile")
     parser.add_argument("--all", action="store_true", help="also what selection.toml leaves out")
     parser.add_argument("--list", action="store_true", help="only print the tests")
     parser.add_argument("-j", "--jobs", type=int, default=2, help="tests at a time; default 2")
-    parser.add_argument("--timeout", type=float, default=60.0, metavar="S", help="seconds until a test is ended; default 60")
+    parser.add_argument("--timeout", type=float, default=60.0, metavar="S",
+                        help="seconds until a test is ended; default 60")
     parser.add_argument("--report", type=Path, default=Path("test-output/conformance"), help="folder for the report")
     return parser.parse_args()
 
@@ -73,7 +81,8 @@ class Selection:
         self.left_out: collections.Counter[str] = collections.Counter()
         self.tests: list[Test] = []
         for test in sorted(tests, key=lambda test: PROFILES.index(test.profile)):
-            if not group_of(test.name, offer) or not options.filter.search(test.name) or test.profile not in (options.profile or PROFILES):
+            if (not group_of(test.name, offer) or not options.filter.search(test.name)
+                    or test.profile not in (options.profile or PROFILES)):
                 continue
             reason = next((each.reason for each in left_out if each.pattern.search(test.name)), "")
             if reason:
@@ -95,7 +104,8 @@ class Progress:
             print(f"{self._done} of {self._total} tests, {now - self._start:.0f} s", flush=True)
 
 
-def play(wall: WallPlayer, mesa: MesaPlayer, selection: Selection, expected: Collection[str], jobs: int) -> Iterator[Outcome]:
+def play(wall: WallPlayer, mesa: MesaPlayer, selection: Selection, expected: Collection[str],
+         jobs: int) -> Iterator[Outcome]:
     """Ends early once a daemon of the wall is in trouble."""
     progress = Progress(len(selection.tests))
     for test, given in play_all(wall, selection.tests, jobs):
@@ -114,7 +124,8 @@ def run(options: argparse.Namespace) -> bool:
     tests = all_tests()
     name = "{}x{} of {}x{}".format(*options.tiles, *options.tile_size)
     expected = on_wall(load(HERE / "expectations.toml"), name)
-    with XServer() as x, Wall(tiles=options.tiles, tile_size=options.tile_size, name="conformance", swap_timeout_ms=10000,
+    with XServer() as x, Wall(tiles=options.tiles, tile_size=options.tile_size, name="conformance",
+                              swap_timeout_ms=10000,
                               environment={"LP_NUM_THREADS": "0"}, die_with_parent=True) as wall:
         player = WallPlayer(x, wall, options.timeout)
         selection = Selection(tests, offer_of(player), options)

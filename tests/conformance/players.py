@@ -34,7 +34,8 @@ class Player:
     def play(self, test: Test) -> Result:
         """A test in a session of its own; one that hangs ends with all that it has started."""
         start = time.monotonic()
-        process = subprocess.Popen(self.command(test), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        process = subprocess.Popen(self.command(test), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT,
                                    env=self._environment, cwd=HOME, start_new_session=True, text=True, errors="replace")
         try:
             output, _ = process.communicate(timeout=self._timeout)
@@ -48,11 +49,12 @@ class Player:
 
 
 class MesaPlayer(Player):
-    """The X server's own OpenGL, Mesa's llvmpipe: the golden tests' reference, with as many threads as a node here. Without its
-    sRGB extension it offers OpenGL 2.1, as a wall does."""
+    """The X server's own OpenGL, Mesa's llvmpipe: the golden tests' reference, with as many threads as a node here.
+    Without its sRGB extension it offers OpenGL 2.1, as a wall does."""
 
     def __init__(self, x: XServer, timeout: float):
-        environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", LP_NUM_THREADS="0", MESA_EXTENSION_OVERRIDE="-GL_EXT_framebuffer_sRGB")
+        environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", LP_NUM_THREADS="0",
+                                    MESA_EXTENSION_OVERRIDE="-GL_EXT_framebuffer_sRGB")
         for name in ("__GLX_VENDOR_LIBRARY_NAME", "__EGL_VENDOR_LIBRARY_FILENAMES"):
             environment.pop(name, None)
         super().__init__(environment, timeout)

@@ -30,7 +30,8 @@ class Result:
     @property
     def reason(self) -> str:
         """Of a test that was skipped."""
-        return (self.last_lines(1) or ["it does not say"])[0].strip().removeprefix("piglit: ").removeprefix("info: ").removeprefix("error: ")
+        said = (self.last_lines(1) or ["it does not say"])[0].strip()
+        return said.removeprefix("piglit: ").removeprefix("info: ").removeprefix("error: ")
 
 
 def read_messages(output: str) -> tuple[dict, dict[str, str], str]:
@@ -62,8 +63,8 @@ def read_result(output: str, exit_code: int | None, seconds: float = 0.0) -> Res
 
 
 def worse(given: Result, reference: Result) -> str:
-    """Why `given` is worse than `reference`, or nothing. A test that was skipped asks for what is not offered; of one that
-    passed, the subtests are its own affair. Otherwise a subtest may not be worse either, nor missing."""
+    """Why `given` is worse than `reference`, or nothing. A test that was skipped asks for what is not offered; of one
+    that passed, the subtests are its own affair. Otherwise a subtest may not be worse either, nor missing."""
     if given.good:
         return ""
     if RANKS[given.status] > RANKS[reference.status]:
@@ -127,6 +128,8 @@ def verdict(outcome: Outcome, expected_status: str | None) -> str:
 
 
 def judge(outcomes: Iterable[Outcome], expected: dict[str, str], known: Iterable[str]) -> Judgement:
-    """`expected`: the status of tests that are known to be worse on this wall. `known`: the names of all tests there are."""
+    """`expected`: the status of tests that are known to be worse on this wall. `known`: the names of all tests there
+    are."""
     listed = list(outcomes)
-    return Judgement({each.name: verdict(each, expected.get(each.name)) for each in listed}, listed, sorted(set(expected) - set(known)))
+    return Judgement({each.name: verdict(each, expected.get(each.name)) for each in listed}, listed,
+                     sorted(set(expected) - set(known)))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The list of what is known to be wrong (expectations.toml): it may neither miss a failure nor hold one that is gone."""
+"""The list of what is known to be wrong (expectations.toml): it may neither miss a failure nor hold one that is
+gone."""
 from __future__ import annotations
 
 import dataclasses
@@ -37,7 +38,8 @@ def load(path: Path) -> dict[Check, str]:
         if not entry.get("reason", "").strip():
             raise ValueError(f"{path}: the entry of {entry['subject']} gives no reason")
         if entry["view"] not in VIEWS:
-            raise ValueError(f"{path}: {entry['subject']}: view is '{entry['view']}', expected one of {', '.join(VIEWS)}")
+            raise ValueError(f"{path}: {entry['subject']}: view is '{entry['view']}', expected one of "
+                             f"{', '.join(VIEWS)}")
         for tiles in entry["tiles"]:
             for frame in entry.get("frames", [-1]):
                 expected[Check(entry["subject"], tiles, entry["view"], frame)] = entry["reason"]

@@ -86,7 +86,8 @@ class Comparison:
         bad = {name: count for name, count in waited.items()
                if name.startswith(LOCAL_ANSWERS) and not name.startswith(REMOTE_ANSWERS)}
         missing = self._tiles != "mesa" and "round_trips" not in self._given.stats
-        return Outcome(self._check("round_trips"), not bad and not missing, "no statistics" if missing else f"{bad or waited}")
+        return Outcome(self._check("round_trips"), not bad and not missing,
+                       "no statistics" if missing else f"{bad or waited}")
 
     def _picture(self, view: str, number: int, references: list, picture, right=compare.same) -> Outcome:
         check, reference = self._check(view, number), frame_of(references, number)
@@ -146,7 +147,8 @@ def play_all(subjects: list[Subject], options: argparse.Namespace) -> Iterator[O
             outcomes = list(Comparison(subject, tiles, plain, in_parts, stage.play(subject), options.report).outcomes())
             wrong = sum(not outcome.good for outcome in outcomes)
             waits = next(outcome.detail for outcome in outcomes if outcome.check.view == "round_trips")
-            print(f"{subject.kind} {subject.name}: {len(outcomes) - wrong} of {len(outcomes)} right, round trips {waits}, "
+            print(f"{subject.kind} {subject.name}: {len(outcomes) - wrong} of {len(outcomes)} right, round trips "
+                  f"{waits}, "
                   f"{time.monotonic() - start:.1f} s", flush=True)
             yield from outcomes
 
@@ -161,7 +163,8 @@ def main() -> int:
     arguments.add_argument("--tiles", default="mesa")
     arguments.add_argument("--backend", default="egl", choices=["egl", "osmesa"])
     arguments.add_argument("--only", action="append", default=[], help="recording or scene; may be given again")
-    arguments.add_argument("--report", type=Path, default=Path("test-output/golden"), help="folder for pictures of failures")
+    arguments.add_argument("--report", type=Path, default=Path("test-output/golden"),
+                           help="folder for pictures of failures")
     arguments.add_argument("--references", type=Path, help="folder of frames on Mesa; written with --tiles mesa")
     options = arguments.parse_args()
     subjects = [*load_recordings(), *load_scenes(build_folder() / "tests" / "golden_scenes")]

@@ -149,7 +149,8 @@ class Judged(unittest.TestCase):
 
     def test_list(self):
         with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
-            file.write('[[expected]]\nsubject = "a"\ntiles = ["1x1", "2x2"]\nview = "read"\nframes = [2]\nreason = "why"\n')
+            file.write('[[expected]]\nsubject = "a"\ntiles = ["1x1", "2x2"]\nview = "read"\nframes = [2]\n'
+                       'reason = "why"\n')
             file.flush()
             self.assertEqual(load(Path(file.name)), {self.known: "why", Check("a", "2x2", "read", 2): "why"})
             file.write('[[expected]]\nsubject = "b"\ntiles = ["1x1"]\nview = "read"\nframes = [2]\nreason = " "\n')
@@ -168,7 +169,8 @@ class Subjects(unittest.TestCase):
 
     def test_frames_of_a_stream(self):
         picture = np.arange(24, dtype=np.uint8).reshape(2, 4, 3)
-        stream = io.BytesIO(b"a message\nP6\n# comment\n4 2\n255\n" + picture.tobytes() + b"P6\n4 2\n255\n" + picture.tobytes()[:-1])
+        stream = io.BytesIO(b"a message\nP6\n# comment\n4 2\n255\n" + picture.tobytes() + b"P6\n4 2\n255\n"
+                            + picture.tobytes()[:-1])
         self.assertTrue((read_frame(stream) == picture).all())
         self.assertIsNone(read_frame(stream))  # cut off
 

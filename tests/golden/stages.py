@@ -110,7 +110,8 @@ class References:
     def keep(self, subject: Subject, given: Performance) -> None:
         if self._folder:
             told = json.dumps({"text": given.text, "exit_code": given.exit_code, "frames": len(given.read)})
-            np.savez(self._folder / f"{subject.name}.npz", told=np.array(told), **{f"f{i}": each for i, each in enumerate(given.read)})
+            np.savez(self._folder / f"{subject.name}.npz", told=np.array(told),
+                     **{f"f{i}": each for i, each in enumerate(given.read)})
 
     def find(self, subject: Subject) -> Performance | None:
         path = self._folder / f"{subject.name}.npz" if self._folder else None
@@ -118,7 +119,8 @@ class References:
             return None
         with np.load(path) as kept:
             told = json.loads(str(kept["told"]))
-            return Performance(read=[kept[f"f{i}"] for i in range(told["frames"])], text=told["text"], exit_code=told["exit_code"])
+            return Performance(read=[kept[f"f{i}"] for i in range(told["frames"])], text=told["text"],
+                               exit_code=told["exit_code"])
 
 
 def parts_of(window: Rect, tiles: tuple[int, int], tile_size: tuple[int, int]) -> list[Rect]:
@@ -133,8 +135,8 @@ def parts_of(window: Rect, tiles: tuple[int, int], tile_size: tuple[int, int]) -
 
 
 class WallStage:
-    """A wall of `tiles`, just large enough for the subjects' window. On one tile the window fills it; on several it lies
-    where tile borders cut it at odd places."""
+    """A wall of `tiles`, just large enough for the subjects' window. On one tile the window fills it; on several it
+    lies where tile borders cut it at odd places."""
 
     SLACK = {(1, 1): (0, 0), (2, 2): (12, 10), (3, 2): (20, 14)}  # pixels of the wall beside the window
 
@@ -210,7 +212,8 @@ class _Session:
             time.sleep(0.25)
         while self.surface()["frame"] < frame:
             if time.monotonic() > end:
-                raise WallError(f"not shown within {SHOWN_LIMIT:.0f} seconds (last is {self.surface()['frame']} of {frame})")
+                raise WallError(f"not shown within {SHOWN_LIMIT:.0f} seconds (last is {self.surface()['frame']} of "
+                                f"{frame})")
             time.sleep(0.01)
 
 

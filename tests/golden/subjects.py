@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What is drawn in the golden tests: recorded programs (recordings.toml) and the scenes of our own (programs/). Both can
-be run anywhere OpenGL is, and give their frames as glReadPixels returned them."""
+"""What is drawn in the golden tests: recorded programs (recordings.toml) and the scenes of our own (programs/). Both
+can be run anywhere OpenGL is, and give their frames as glReadPixels returned them."""
 from __future__ import annotations
 
 import contextlib

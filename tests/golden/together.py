@@ -26,9 +26,12 @@ from wall import Wall, build_folder  # noqa: E402
 from xserver import XServer  # noqa: E402
 
 TILES, TILE_SIZE = (3, 2), (310, 290)
-# Name, frame that stays on the wall, left top corner. Nothing lies at a tile's border; the last two reach over the wall's edge.
-CAST = [("glxgears", 2, (30, 20)), ("glmark2_build", 1, (250, 60)), ("atlantis", 3, (470, 15)), ("boing", 2, (120, 190)),
-        ("menger", 3, (330, 230)), ("dangerball", 2, (505, 265)), ("morph3d", 3, (-60, 250)), ("solarwinds", 4, (600, 140))]
+# Name, frame that stays on the wall, left top corner. Nothing lies at a tile's border; the last two reach over the
+# wall's edge.
+CAST = [("glxgears", 2, (30, 20)), ("glmark2_build", 1, (250, 60)), ("atlantis", 3, (470, 15)),
+        ("boing", 2, (120, 190)),
+        ("menger", 3, (330, 230)), ("dangerball", 2, (505, 265)), ("morph3d", 3, (-60, 250)),
+        ("solarwinds", 4, (600, 140))]
 SEED = 8  # of the order in which they are raised
 SHOWN_LIMIT = 30.0  # seconds until the wall shows every frame
 
@@ -112,7 +115,8 @@ def on_mesa(recordings: dict[str, Recording]) -> dict[str, np.ndarray]:
     return pictures
 
 
-def expected_pictures(order: list[str], alone: dict[str, np.ndarray], mesa: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def expected_pictures(order: list[str], alone: dict[str, np.ndarray],
+                      mesa: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """The wall from each program alone on it, and from plain Mesa; `order` is bottom first."""
     corners = {name: corner for name, _, corner in CAST}
     shape = next(iter(alone.values())).shape
@@ -127,7 +131,8 @@ def expected_pictures(order: list[str], alone: dict[str, np.ndarray], mesa: dict
 
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    arguments.add_argument("--report", type=Path, default=Path("test-output/together"), help="folder for pictures of failures")
+    arguments.add_argument("--report", type=Path, default=Path("test-output/together"),
+                           help="folder for pictures of failures")
     options = arguments.parse_args()
     recordings = {recording.name: recording for recording in load_recordings()}
     with XServer() as x, Wall(tiles=TILES, tile_size=TILE_SIZE, swap_timeout_ms=10000, name="together") as wall:

@@ -73,7 +73,8 @@ class Browser:
         end = time.monotonic() + limit
         while not self.get(expression):
             if time.monotonic() > end:
-                raise BrowserError(f"{limit:.0f} seconds are over: {expression}; the page says: {self.get('document.body.innerText')}")
+                raise BrowserError(f"{limit:.0f} seconds are over: {expression}; the page says: "
+                                   f"{self.get('document.body.innerText')}")
             time.sleep(0.05)
 
     def screenshot(self, path: Path) -> None:

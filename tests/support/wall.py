@@ -46,14 +46,16 @@ def _quoted(text: object) -> str:
 
 class Wall:
     """`tiles` are columns and rows, `tile_size` is in pixels. `environment` goes to the daemons, `die_with_parent` ends
-    them with the *thread* that starts the wall. `options` and `people` are lines for wall.toml. `windows` is an X display on which
-    the tiles are windows, beside each other as on the wall. `one_node` puts all tiles on one tileserver. `client_build` is
-    where wallrun and the vendor library come from, if not from `build` (a sanitizer's library does not load into a
-    foreign program)."""
+    them with the *thread* that starts the wall. `options` and `people` are lines for wall.toml. `windows` is an X
+    display on which the tiles are windows, beside each other as on the wall. `one_node` puts all tiles on one
+    tileserver. `client_build` is where wallrun and the vendor library come from, if not from `build` (a sanitizer's
+    library does not load into a foreign program)."""
 
-    def __init__(self, tiles: tuple[int, int] = (2, 2), tile_size: tuple[int, int] = (512, 384), backend: str = "egl", *,
-                 http: str = "127.0.0.1:0", swap_timeout_ms: int = 250, one_node: bool = False, name: str = "test", options: str = "", people: str = "", windows: str = "",
-                 build: Path | None = None, client_build: Path | None = None, environment: dict[str, str] | None = None, die_with_parent: bool = False):
+    def __init__(self, tiles: tuple[int, int] = (2, 2), tile_size: tuple[int, int] = (512, 384), backend: str = "egl",
+                 *, http: str = "127.0.0.1:0", swap_timeout_ms: int = 250, one_node: bool = False, name: str = "test",
+                 options: str = "", people: str = "", windows: str = "", build: Path | None = None,
+                 client_build: Path | None = None, environment: dict[str, str] | None = None,
+                 die_with_parent: bool = False):
         self.tiles, self.tile_size, self.backend = tiles, tile_size, backend
         self.http, self.swap_timeout_ms, self.one_node, self.name = http, swap_timeout_ms, one_node, name
         self.options, self.people, self.windows = options, people, windows
@@ -109,7 +111,8 @@ class Wall:
                 f"listen = {_quoted(f'unix:{self.folder}/{name}.sock')}\n" + "".join(map(self._tile, tiles)))
 
     def _description(self) -> str:
-        nodes = [(self.node_names[0], self.tile_names)] if self.one_node else [(n, [n[len("node-"):]]) for n in self.node_names]
+        nodes = [(self.node_names[0], self.tile_names)] if self.one_node else [(n, [n[len("node-"):]])
+                                                                               for n in self.node_names]
         return (f"[wall]\nname = {_quoted(self.name)}\nswap_timeout_ms = {self.swap_timeout_ms}\n"
                 f"state_directory = {_quoted(self.folder / 'state')}\n{self.options}\n"
                 f"[people]\n{self.people}\n"
@@ -127,7 +130,8 @@ class Wall:
     def start_walld(self) -> None:
         """Until it answers. Its HTTP port may be another one than before."""
         (self.folder / "ready").unlink(missing_ok=True)
-        self._start_daemon("walld", "walld", "--config", self.folder / "wall.toml", "--ready-file", self.folder / "ready")
+        self._start_daemon("walld", "walld", "--config", self.folder / "wall.toml", "--ready-file",
+                           self.folder / "ready")
         self._until(lambda: (self.folder / "ready").exists(), "walld does not get ready", "walld")
         self.url = json.loads((self.folder / "ready").read_text())["http"]
 
@@ -149,7 +153,8 @@ class Wall:
 
     def _start_daemon(self, name: str, program: str, *arguments: object) -> subprocess.Popen:
         if not (self.bin / program).exists():
-            raise WallError(f"{self.bin / program} is missing: build it first (cmake --preset release && cmake --build --preset release)")
+            raise WallError(f"{self.bin / program} is missing: build it first (cmake --preset release && cmake --build "
+                            f"--preset release)")
         with open(self.folder / f"{name}.log", "ab") as log:
             self.daemons[name] = subprocess.Popen(
                 [self.bin / program, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=log, stderr=log,
@@ -162,7 +167,8 @@ class Wall:
             ended = [name for name in needed if self.daemons[name].poll() is not None]
             if ended or time.monotonic() > end:
                 logs = "\n".join(f"--- {name}:\n{self.log(name)}" for name in ended or needed)
-                raise WallError(f"{what}: {', '.join(ended) + ' ended' if ended else f'{limit:.0f} seconds are over'}\n{logs}")
+                raise WallError(f"{what}: {', '.join(ended) + ' ended' if ended else f'{limit:.0f} seconds are over'}\n"
+                                f"{logs}")
             time.sleep(0.02)
 
     def log(self, name: str) -> str:
@@ -195,10 +201,12 @@ class Wall:
         line += ["--hold"] if hold else []
         return [str(word) for word in (*line, "--", *command)]
 
-    def run(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False, name: str = "",
+    def run(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False,
+            name: str = "",
             hold: bool = False, env: dict[str, str] | None = None, **popen) -> subprocess.Popen:
         """Starts a program on the wall. Its process id is that of the session (wallrun becomes the program)."""
-        return self.run_line(self.wallrun(*command, rect=rect, fullscreen=fullscreen, name=name, hold=hold), env=env, **popen)
+        return self.run_line(self.wallrun(*command, rect=rect, fullscreen=fullscreen, name=name, hold=hold), env=env,
+                             **popen)
 
     def run_line(self, line: list[str], *, env: dict[str, str] | None = None, **popen) -> subprocess.Popen:
         """The same with a command line of wallrun()."""
@@ -217,7 +225,8 @@ class Wall:
             raise WallError(f"wallctl {' '.join(map(str, arguments))}: {done.stderr.strip()}")
         return json.loads(done.stdout) if done.stdout.strip() else None
 
-    def rest(self, method: str, path: str, body: object = None, *, headers: dict[str, str] | None = None) -> tuple[int, object]:
+    def rest(self, method: str, path: str, body: object = None, *,
+             headers: dict[str, str] | None = None) -> tuple[int, object]:
         """A request to the HTTP API; gives the status and the JSON (or text) of the answer."""
         data = None if method == "GET" else json.dumps({} if body is None else body).encode()
         request = urllib.request.Request(self.url.rstrip("/") + path, data=data, method=method,

@@ -24,12 +24,14 @@ class Registry(unittest.TestCase):
 
     def test_signatures(self):
         c = self.gl.commands["glLoadMatrixd"]
-        self.assertEqual((c.returns, c.params[0].type, c.params[0].len, c.gl), ("void", "const GLdouble *", "16", "1.0"))
+        self.assertEqual((c.returns, c.params[0].type, c.params[0].len, c.gl),
+                         ("void", "const GLdouble *", "16", "1.0"))
         self.assertEqual(self.gl.commands["glGetString"].returns, "const GLubyte *")
 
     def test_commands_of_our_own(self):
         c = self.gl.commands["glBarrierCreateCR"]
-        self.assertEqual((c.declaration, c.extensions, c.gl), ("GLuint name, GLuint count", ["GL_CR_synchronization"], None))
+        self.assertEqual((c.declaration, c.extensions, c.gl),
+                         ("GLuint name, GLuint count", ["GL_CR_synchronization"], None))
 
     def test_aliases(self):
         self.assertEqual(self.gl.canonical("glActiveTextureARB"), "glActiveTexture")
@@ -53,8 +55,8 @@ class Commands(unittest.TestCase):
 
     def test_commands_in_use_by_programs_up_to_1_4(self):
         for name in ("glActiveTextureARB", "glClientActiveTexture", "glBlendFuncSeparateEXT", "glPointParameterfARB",
-                     "glPointParameterfvARB", "glDrawRangeElements", "glTexImage3D", "glBlendEquation", "glMultiDrawArrays",
-                     "glWindowPos2i", "glSecondaryColor3ub", "glFogCoordf"):
+                     "glPointParameterfvARB", "glDrawRangeElements", "glTexImage3D", "glBlendEquation",
+                     "glMultiDrawArrays", "glWindowPos2i", "glSecondaryColor3ub", "glFogCoordf"):
             self.assertFalse(self.commands.all[name].later, name)
 
     def test_state_setters_exist_as_commands(self):

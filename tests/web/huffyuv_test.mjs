@@ -13,7 +13,8 @@ const folder = mkdtempSync(join(tmpdir(), 'wallgl-huffyuv-'));
 process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
 
 function ffmpeg(...options) {
-  execFileSync('ffmpeg', ['-hide_banner', '-loglevel', 'error', '-y', ...options.map(String)], { stdio: ['ignore', 'inherit', 'inherit'] });
+  execFileSync('ffmpeg', ['-hide_banner', '-loglevel', 'error', '-y', ...options.map(String)],
+      { stdio: ['ignore', 'inherit', 'inherit'] });
 }
 
 /** Extradata and packets of a small AVI file. */
@@ -36,7 +37,8 @@ function readAvi(file) {
 function fromFfmpeg({ size, pred, pixels, flags = [] }) {
   const avi = join(folder, `${size}-${pred}-${pixels}${flags.join('')}.avi`);
   const noise = pixels === 'bgra' ? 'noise=c0s=30:c3s=20:allf=t' : 'noise=c0s=12:allf=t';
-  ffmpeg('-f', 'lavfi', '-i', `testsrc=size=${size}:rate=5`, '-frames:v', 3, '-vf', `format=${pixels === 'bgra' ? 'gbrap' : 'gbrp'},${noise},format=${pixels}`,
+  ffmpeg('-f', 'lavfi', '-i', `testsrc=size=${size}:rate=5`, '-frames:v', 3, '-vf',
+      `format=${pixels === 'bgra' ? 'gbrap' : 'gbrp'},${noise},format=${pixels}`,
     '-c:v', 'huffyuv', '-pred', pred, '-pix_fmt', pixels, ...flags, avi);
   ffmpeg('-i', avi, '-f', 'rawvideo', '-pix_fmt', 'rgba', `${avi}.raw`);
   return { ...readAvi(avi), raw: readFileSync(`${avi}.raw`) };
@@ -48,23 +50,27 @@ function assertSamePictures({ header, packets, raw }, width, height) {
   packets.forEach((packet, i) => {
     const picture = decoder.decode(packet);
     const wanted = raw.subarray(i * picture.length, (i + 1) * picture.length);
-    assert.ok(Buffer.from(picture.buffer).equals(wanted), `frame ${i} differs at byte ${picture.findIndex((byte, at) => byte !== wanted[at])}`);
+    assert.ok(Buffer.from(picture.buffer).equals(wanted),
+        `frame ${i} differs at byte ${picture.findIndex((byte, at) => byte !== wanted[at])}`);
   });
 }
 
 for (const pixels of ['rgb24', 'bgra']) {
   for (const pred of ['left', 'plane']) {
     for (const size of ['320x240', '57x33', '16x1', '1x16']) {
-      test(`FFmpeg's ${pixels}, ${pred}, ${size}`, () => assertSamePictures(fromFfmpeg({ size, pred, pixels }), ...size.split('x').map(Number)));
+      test(`FFmpeg's ${pixels}, ${pred}, ${size}`, () =>
+          assertSamePictures(fromFfmpeg({ size, pred, pixels }), ...size.split('x').map(Number)));
     }
-    test(`FFmpeg's ${pixels}, ${pred}, interlaced`, () => assertSamePictures(fromFfmpeg({ size: '64x48', pred, pixels, flags: ['-flags', '+ilme'] }), 64, 48));
+    test(`FFmpeg's ${pixels}, ${pred}, interlaced`, () =>
+        assertSamePictures(fromFfmpeg({ size: '64x48', pred, pixels, flags: ['-flags', '+ilme'] }), 64, 48));
   }
 }
 
 // ---- streams made here: what FFmpeg does not write, and what must be refused ----
 
 const flat = [8, 255, 1 << 5 | 8];  // 256 codes of 8 bits: a run of 255 and one of 1
-const headerOf = ({ method = 0, bits = 24, interlacing = 0x20, tables = [flat, flat, flat] } = {}) => Uint8Array.from([method, bits, interlacing, 0, ...tables.flat()]);
+const headerOf = ({ method = 0, bits = 24, interlacing = 0x20, tables = [flat, flat, flat] } = {}) =>
+    Uint8Array.from([method, bits, interlacing, 0, ...tables.flat()]);
 
 /** The bytes of the bit string, highest bit of a 32-bit little-endian word first. */
 function packetOf(bytes) {
@@ -106,7 +112,9 @@ test('headers that cannot be are refused', () => {
     'a run of nothing': headerOf({ tables: [[8, 0], flat, flat] }),
     'a run beyond the table': headerOf({ tables: [[8, 255, 2 << 5 | 8], flat, flat] }),
   };
-  for (const [what, header] of Object.entries(bad)) assert.throws(() => new HuffyuvDecoder(header, 8, 8), HuffyuvError, what);
+  for (const [what, header] of Object.entries(bad)) {
+    assert.throws(() => new HuffyuvDecoder(header, 8, 8), HuffyuvError, what);
+  }
 });
 
 test('sizes that cannot be are refused', () => {
@@ -118,7 +126,9 @@ test('sizes that cannot be are refused', () => {
 test('every proper prefix of a packet is refused', () => {
   const { header, packets: [packet] } = fromFfmpeg({ size: '57x33', pred: 'plane', pixels: 'rgb24' });
   const decoder = new HuffyuvDecoder(header, 57, 33);
-  for (let length = 0; length < packet.length; ++length) assert.throws(() => decoder.decode(packet.subarray(0, length)), HuffyuvError, `${length} bytes`);
+  for (let length = 0; length < packet.length; ++length) {
+    assert.throws(() => decoder.decode(packet.subarray(0, length)), HuffyuvError, `${length} bytes`);
+  }
   decoder.decode(packet);
 });
 
@@ -133,7 +143,8 @@ test('damaged packets and headers give a picture or an error, soon', () => {
   const damaged = bytes => bytes.map(byte => random(50) === 0 ? byte ^ 1 << random(8) : byte);
   for (let round = 0; round < 300; ++round) {
     try {
-      assert.equal(new HuffyuvDecoder(round % 2 ? damaged(header) : header, 57, 33).decode(damaged(packet)).length, 57 * 33 * 4);
+      assert.equal(new HuffyuvDecoder(round % 2 ? damaged(header) : header, 57, 33).decode(damaged(packet)).length,
+          57 * 33 * 4);
     } catch (error) {
       assert.ok(error instanceof HuffyuvError, error.stack);
     }

@@ -48,12 +48,15 @@ test('operators change all windows, users their own, viewers none', () => {
 });
 
 test('windows keep their order when they are raised', () => {
-  const session = (id, ...surfaces) => ({ id, program: 'p', name: '', surfaces: surfaces.map(surface => ({ id: `${id}.${surface}`, title: '' })) });
-  assert.deepEqual(windowsOf({ sessions: [session(10, 3), session(2, 30, 4)] }).map(({ id }) => id), ['2.4', '2.30', '10.3']);
+  const session = (id, ...surfaces) => ({ id, program: 'p', name: '',
+      surfaces: surfaces.map(surface => ({ id: `${id}.${surface}`, title: '' })) });
+  assert.deepEqual(windowsOf({ sessions: [session(10, 3), session(2, 30, 4)] }).map(({ id }) => id),
+      ['2.4', '2.30', '10.3']);
 });
 
 test("a program's traffic is the sum of its kinds", () => {
-  const traffic = { frames: 3, state_bytes_per_second: 10, object_bytes_per_second: 20, geometry_bytes_per_second: 300, frame_bytes: 33 };
+  const traffic = { frames: 3, state_bytes_per_second: 10, object_bytes_per_second: 20, geometry_bytes_per_second: 300,
+      frame_bytes: 33 };
   assert.deepEqual(trafficOf({ traffic }), { state: 10, object: 20, geometry: 300, frame: 33, all: 330 });
   assert.equal(trafficOf({}), undefined, 'an older walld');
 });
@@ -63,7 +66,8 @@ test("a program's traffic is the sum of its kinds", () => {
 const tile = { name: 'A', node: 'left', rect: [0, 0, 320, 240], up: true };
 const statusOf = (frame, nodeFrames) => ({
   nodes: [{ name: 'left', up: true, frames: nodeFrames, bytes_received: 1000 * nodeFrames }], tiles: [tile],
-  sessions: [{ id: 1, program: 'gears', name: '', surfaces: [{ id: '1.1', title: '', rect: [300, 200, 50, 50], frame, skew: { presented: { frames: frame, last_ms: 2 } } }] }] });
+  sessions: [{ id: 1, program: 'gears', name: '', surfaces: [{ id: '1.1', title: '', rect: [300, 200, 50, 50], frame,
+      skew: { presented: { frames: frame, last_ms: 2 } } }] }] });
 
 /** One status a second. */
 function after(...frames) {
@@ -97,7 +101,8 @@ test('a tile is late when its window goes on and its node does not', () => {
   assert.equal(tileState(tile, windows, after([1, 7], [1, 7], [1, 7], [1, 7])), 'up', 'nothing moves');
   assert.equal(tileState(tile, windows, after([1, 7], [2, 7])), 'up', 'too early to tell');
   assert.equal(tileState({ ...tile, up: false }, windows, after([1, 7])), 'away');
-  assert.equal(tileState({ ...tile, rect: [400, 0, 320, 240] }, windows, after([1, 7], [2, 7], [3, 7], [4, 7])), 'up', 'the window is elsewhere');
+  assert.equal(tileState({ ...tile, rect: [400, 0, 320, 240] }, windows, after([1, 7], [2, 7], [3, 7], [4, 7])), 'up',
+      'the window is elsewhere');
 });
 
 test("a tile's skew is the greatest of its windows", () => {

@@ -52,7 +52,8 @@ class Page(unittest.TestCase):
 
     def open(self, **options) -> None:
         self.browser.open(self.wall.url, **options)
-        self.browser.until("document.querySelectorAll('.window').length === 2 && document.querySelectorAll('.tile').length === 4")
+        self.browser.until("document.querySelectorAll('.window').length === 2 && "
+                           "document.querySelectorAll('.tile').length === 4")
 
     def until(self, done, what: str) -> None:
         end = time.monotonic() + SOON
@@ -93,7 +94,8 @@ class Page(unittest.TestCase):
         at = ", ".join(f"Math.round({side} * {scale})" for side in rect)
         return f"document.getElementById('picture').getContext('2d').getImageData({at}).data"
 
-    def path(self, session: int, dx: int, dy: int, grip: tuple[float, float] = (0.5, 0.5)) -> tuple[float, float, float, float]:
+    def path(self, session: int, dx: int, dy: int,
+             grip: tuple[float, float] = (0.5, 0.5)) -> tuple[float, float, float, float]:
         """Where a drag by canvas pixels begins and ends on the page; `grip`: the point of the window (0 to 1)."""
         box = self.browser.get(f"{self.window(session)}.getBoundingClientRect().toJSON()")
         scale = self.browser.get("document.getElementById('wall').clientWidth") / 640
@@ -108,7 +110,8 @@ class Page(unittest.TestCase):
         self.browser.call("mouse.up")
 
     def touch(self, kind: str, *points: tuple[float, float]) -> None:
-        self.browser.call("devtools", "Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y} for x, y in points]})
+        self.browser.call("devtools", "Input.dispatchTouchEvent",
+                          {"type": kind, "touchPoints": [{"x": x, "y": y} for x, y in points]})
 
     def press(self, session: int, *keys: str) -> None:
         self.browser.get(f"{self.window(session)}.focus()")
@@ -127,10 +130,12 @@ class Page(unittest.TestCase):
     def test_a_window_is_dragged_to_another_tile(self) -> None:
         self.open()
         self.drag(self.small, 240, 260)
-        self.until(lambda: near(self.surface(self.small)["shown_rect"], [440, 260, 160, 120]), "the window is where it was dropped")
+        self.until(lambda: near(self.surface(self.small)["shown_rect"], [440, 260, 160, 120]),
+                   "the window is where it was dropped")
         x, y, width, height = self.rect(self.small)
         box = self.lit_box([0, 180, 640, 300])
-        self.assertTrue(x <= box[0] and y <= box[1] and box[0] + box[2] <= x + width and box[1] + box[3] <= y + height, (box, (x, y, width, height)))
+        self.assertTrue(x <= box[0] and y <= box[1] and box[0] + box[2] <= x + width and box[1] + box[3] <= y + height,
+                        (box, (x, y, width, height)))
         self.assertGreater(box[2], width / 2)
         self.assertEqual(self.lit_box([200, 0, 440, 180])[2:], [0, 0], "nothing is left where it was")
 
@@ -179,7 +184,8 @@ class Page(unittest.TestCase):
         self.open(extraHTTPHeaders={"Authorization": f"Bearer {SECRET}"})
         self.browser.until("document.getElementById('who').textContent === 'lobby, viewer'")
         self.drag(self.small, 100, 100)
-        self.assertTrue(self.browser.get("document.getElementById('raise').disabled && document.getElementById('close').disabled"))
+        self.assertTrue(self.browser.get("document.getElementById('raise').disabled && "
+                                         "document.getElementById('close').disabled"))
         self.press(self.small, "ArrowRight", "Delete")
         self.browser.until("!document.getElementById('problem').hidden")
         self.assertFalse(self.browser.get("document.getElementById('confirm').open"))
@@ -200,11 +206,15 @@ class Page(unittest.TestCase):
         self.open()
         self.browser.call("click", ".tile[data-key='0-1'] button")
         image = "document.getElementById('tile-image')"
-        self.browser.until(f"document.getElementById('tile-picture').open && {image}.naturalWidth === {TILE[0]} && {image}.naturalHeight === {TILE[1]}")
+        self.browser.until(f"document.getElementById('tile-picture').open && {image}.naturalWidth === {TILE[0]} && "
+                           f"{image}.naturalHeight === {TILE[1]}")
         self.browser.call("keyboard.press", "Escape")
         self.browser.until("!document.getElementById('tile-picture').open")
-        self.browser.call("mouse.click", *self.browser.get("(({x, y, width, height}) => [x + width * 0.75, y + height * 0.75])(document.getElementById('picture').getBoundingClientRect())"))
-        self.browser.until("document.getElementById('tile-picture').open && document.getElementById('tile-name').textContent === 'Tile 1-1'")
+        place = self.browser.get("(({x, y, width, height}) => [x + width * 0.75, y + height * 0.75])"
+                                 "(document.getElementById('picture').getBoundingClientRect())")
+        self.browser.call("mouse.click", *place)
+        self.browser.until("document.getElementById('tile-picture').open && "
+                           "document.getElementById('tile-name').textContent === 'Tile 1-1'")
 
     def test_a_finger_drags_a_window(self) -> None:
         self.open(**PHONE)
@@ -218,13 +228,17 @@ class Page(unittest.TestCase):
     def test_a_phone_in_the_dark(self) -> None:
         self.open(**PHONE, colorScheme="dark", reducedMotion="reduce")
         self.assertEqual(self.browser.get("document.documentElement.scrollWidth"), 360)
-        self.assertEqual(self.browser.get("document.getElementById('picture').width"), self.browser.get("Math.min(640, 2 * document.getElementById('wall').clientWidth)"))
-        self.assertTrue(self.browser.get("getComputedStyle(document.body).backgroundColor.match(/\\d+/g).every(part => part < 50)"))
+        self.assertEqual(self.browser.get("document.getElementById('picture').width"),
+                         self.browser.get("Math.min(640, 2 * document.getElementById('wall').clientWidth)"))
+        self.assertTrue(self.browser.get("getComputedStyle(document.body).backgroundColor.match(/\\d+/g).every(part => "
+                                         "part < 50)"))
 
     def test_everything_that_can_be_used_has_a_name(self) -> None:
         self.open()
-        unnamed = ("[...document.querySelectorAll('button, a, input, [role=group], [role=toolbar], canvas')].filter(element => "
-                   "!(element.getAttribute('aria-label') || element.textContent.trim() || element.labels?.length)).map(element => element.outerHTML)")
+        unnamed = ("[...document.querySelectorAll('button, a, input, [role=group], [role=toolbar], "
+                   "canvas')].filter(element => "
+                   "!(element.getAttribute('aria-label') || element.textContent.trim() || "
+                   "element.labels?.length)).map(element => element.outerHTML)")
         self.assertEqual(self.browser.get(unnamed), [])
 
     def test_every_file_comes_with_its_type_and_a_strict_policy(self) -> None:

@@ -48,7 +48,8 @@ const kParts = {
 const kHeader = { stream: 0, part: 0, header: 'AQID' };
 
 function start() {
-  const on = Object.fromEntries(['frame', 'ended', 'state', 'problem'].map(name => [name, (...values) => log.push([name, ...values])]));
+  const on = Object.fromEntries(['frame', 'ended', 'state', 'problem'].map(name =>
+      [name, (...values) => log.push([name, ...values])]));
   return new WallStream('ws://wall/api/v1/stream', on);
 }
 
@@ -64,7 +65,8 @@ function started() {
 
 beforeEach(() => {
   [sockets, workers, timers, log] = [[], [], [], []];
-  Object.assign(globalThis, { WebSocket: FakeSocket, Worker: FakeWorker, setTimeout: (run, wait) => timers.push({ run, wait }) });
+  Object.assign(globalThis, { WebSocket: FakeSocket, Worker: FakeWorker,
+      setTimeout: (run, wait) => timers.push({ run, wait }) });
 });
 
 test('what was asked for before the connection is open is asked for then', () => {
@@ -128,7 +130,8 @@ test('ends and errors are said', () => {
   sockets[0].text({ stream: 0, part: 0, ended: 'node left is away' });
   sockets[0].text({ error: "watch[1].tile: there is no tile 'B'" });
   sockets[0].text({ ...kParts, codec: 'zstd' });
-  assert.deepEqual(log.slice(0, 2), [['ended', 'A', 'node left is away'], ['problem', "watch[1].tile: there is no tile 'B'"]]);
+  assert.deepEqual(log.slice(0, 2), [['ended', 'A', 'node left is away'],
+      ['problem', "watch[1].tile: there is no tile 'B'"]]);
   assert.match(log[2][1], /zstd/);
 });
 

@@ -24,7 +24,8 @@ class Installed(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory(prefix="wallgl-install-")
         done = output("cmake", "--install", BUILD, env=dict(os.environ, DESTDIR=cls.folder.name))
         assert done.returncode == 0, done.stdout + done.stderr
-        cls.files = {path.relative_to(cls.folder.name) for path in Path(cls.folder.name).rglob("*") if not path.is_dir()}
+        cls.files = {path.relative_to(cls.folder.name)
+                     for path in Path(cls.folder.name).rglob("*") if not path.is_dir()}
 
     @classmethod
     def tearDownClass(cls) -> None:
@@ -36,16 +37,19 @@ class Installed(unittest.TestCase):
         return found[0]
 
     def test_everything_is_in_its_place(self) -> None:
-        for ending in ("bin/walld", "bin/tileserver", "bin/wallrun", "bin/wallctl", "bin/wallview", "libGLX_wallgl.so.0", "libEGL_wallgl.so.0",
-                       "lib/systemd/system/walld.service", "lib/systemd/system/tileserver@.service", "lib/sysusers.d/wallgl.conf",
-                       "lib/tmpfiles.d/wallgl.conf", "egl_vendor.d/50_wallgl.json",
-                       "share/wallgl/grafana/wallgl.json", "share/wallgl/prometheus/wallgl.rules.yml", "share/wallgl/prometheus/prometheus.example.yml"):
+        for ending in ("bin/walld", "bin/tileserver", "bin/wallrun", "bin/wallctl", "bin/wallview",
+                       "libGLX_wallgl.so.0", "libEGL_wallgl.so.0",
+                       "lib/systemd/system/walld.service", "lib/systemd/system/tileserver@.service",
+                       "lib/sysusers.d/wallgl.conf", "lib/tmpfiles.d/wallgl.conf", "egl_vendor.d/50_wallgl.json",
+                       "share/wallgl/grafana/wallgl.json", "share/wallgl/prometheus/wallgl.rules.yml",
+                       "share/wallgl/prometheus/prometheus.example.yml"):
             self.find(ending)
 
     def test_systemd_accepts_the_units(self) -> None:
         # An instance of the template, with the programs where this installation has them.
         with tempfile.TemporaryDirectory() as folder:
-            for name, instance in (("walld.service", "walld.service"), ("tileserver@.service", "tileserver@left.service")):
+            for name, instance in (("walld.service", "walld.service"),
+                                   ("tileserver@.service", "tileserver@left.service")):
                 text = self.find(name).read_text()
                 for program in ("walld", "tileserver"):
                     text = re.sub(rf"(?m)^ExecStart=\S*/{program} ", f"ExecStart={self.find(f'bin/{program}')} ", text)
@@ -64,23 +68,27 @@ class Installed(unittest.TestCase):
                 self.assertLess(int(memory[0]), 100)
 
     def test_systemd_accepts_a_kiosk(self) -> None:
-        # The X server's unit and what a node with windows adds to its own. There is no X server with a screen here: any program stands for it.
+        # The X server's unit and what a node with windows adds to its own. There is no X server with a screen here: any
+        # program stands for it.
         with tempfile.TemporaryDirectory() as folder:
             node, addition = Path(folder) / "tileserver@left.service", Path(folder) / "tileserver@left.service.d"
-            node.write_text(re.sub(r"(?m)^ExecStart=\S*/tileserver ", f"ExecStart={self.find('bin/tileserver')} ", self.find("tileserver@.service").read_text()))
+            node.write_text(re.sub(r"(?m)^ExecStart=\S*/tileserver ", f"ExecStart={self.find('bin/tileserver')} ",
+                                   self.find("tileserver@.service").read_text()))
             addition.mkdir()
             (addition / "window.conf").write_text(self.find("kiosk/tileserver-window.conf").read_text())
             x = Path(folder) / "wallgl-x.service"
             x.write_text(self.find("kiosk/wallgl-x.service").read_text().replace("/usr/bin/Xorg", "/bin/true"))
             for unit in (node, x):
-                verified = output("systemd-analyze", "verify", "--man=no", unit, env=dict(os.environ, SYSTEMD_UNIT_PATH=f"{folder}:"))
+                verified = output("systemd-analyze", "verify", "--man=no", unit,
+                                  env=dict(os.environ, SYSTEMD_UNIT_PATH=f"{folder}:"))
                 self.assertEqual((verified.returncode, verified.stderr.strip()), (0, ""))
 
     def test_sysusers_and_tmpfiles_are_understood(self) -> None:
         users = output("systemd-sysusers", "--dry-run", self.find("lib/sysusers.d/wallgl.conf"))
         if "unrecognized option" not in users.stderr:
             self.assertEqual(users.returncode, 0, users.stderr)
-        self.assertRegex(self.find("lib/tmpfiles.d/wallgl.conf").read_text(), r"(?m)^d /run/wallgl 0755 wallgl wallgl -$")
+        self.assertRegex(self.find("lib/tmpfiles.d/wallgl.conf").read_text(),
+                         r"(?m)^d /run/wallgl 0755 wallgl wallgl -$")
 
 
 class Examples(unittest.TestCase):

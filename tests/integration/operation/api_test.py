@@ -28,7 +28,8 @@ SOON = 5.0  # seconds
 
 
 def check(answer: object, schema: str) -> None:
-    jsonschema.Draft202012Validator({**API["components"]["schemas"][schema], "components": API["components"]}).validate(answer)
+    jsonschema.Draft202012Validator({**API["components"]["schemas"][schema],
+                                     "components": API["components"]}).validate(answer)
 
 
 def walld_log_lines(wall: Wall, word: str) -> list[str]:
@@ -62,7 +63,8 @@ class Api(unittest.TestCase):
 
     def without_traffic(self) -> list[dict]:
         """All sessions, but for what goes on by itself."""
-        return [{key: value for key, value in session.items() if key != "traffic"} for session in self.get("/api/v1/sessions")]
+        return [{key: value for key, value in session.items() if key != "traffic"}
+                for session in self.get("/api/v1/sessions")]
 
     def refused(self, status: int, code: str, method: str, path: str, body: object = None, **options) -> str:
         got, answer = self.wall.rest(method, path, body, **options)
@@ -98,7 +100,8 @@ class Api(unittest.TestCase):
         for verb, schema in (("nodes", "Node"), ("tiles", "Tile"), ("sessions", "Session"), ("streams", "Stream")):
             for answer in self.wall.ctl(verb):
                 check(answer, schema)
-        done = subprocess.run([self.wall.bin / "wallctl", "--walld", self.wall.address, "--json", "raise", "999"], capture_output=True, text=True)
+        done = subprocess.run([self.wall.bin / "wallctl", "--walld", self.wall.address, "--json", "raise", "999"],
+                              capture_output=True, text=True)
         self.assertEqual(done.returncode, 1)
         check(yaml.safe_load(done.stdout), "Error")
 
@@ -106,17 +109,22 @@ class Api(unittest.TestCase):
         for path, methods in API["paths"].items():
             for method in sorted(set(methods) - {"parameters"}):
                 with self.subTest(f"{method} {path}"):
-                    status, answer = self.wall.rest(method.upper(), path.replace("{id}", "999").replace("{name}", "nothing"), {"rect": [0, 0, 10, 10]})
+                    status, answer = self.wall.rest(method.upper(),
+                                                    path.replace("{id}", "999").replace("{name}", "nothing"),
+                                                    {"rect": [0, 0, 10, 10]})
                     self.assertNotIn(status, (405, 415, 500))
-                    self.assertTrue({str(status), "default"} & set(methods[method]["responses"]), f"{status} is not described")
+                    self.assertTrue({str(status), "default"} & set(methods[method]["responses"]),
+                                    f"{status} is not described")
                     if status == 404:
                         self.assertNotEqual(answer["error"]["message"], "not found")
         self.wall.rest("DELETE", "/api/v1/layouts/nothing", {})
 
     def test_every_route_is_described(self) -> None:
         routes = set(re.findall(r'\{"([A-Z]+)", "(/[^"]*)"', (ROOT / "walld" / "rest.cpp").read_text()))
-        routes |= {("GET", path) for path in re.findall(r'k\w+Path = "(/[^"]*)"', (ROOT / "walld" / "rest.h").read_text())}
-        described = {(method.upper(), re.sub(r"\{\w+\}", "*", path)) for path, methods in API["paths"].items() for method in set(methods) - {"parameters"}}
+        routes |= {("GET", path) for path in re.findall(r'k\w+Path = "(/[^"]*)"',
+                                                        (ROOT / "walld" / "rest.h").read_text())}
+        described = {(method.upper(), re.sub(r"\{\w+\}", "*", path)) for path,
+                     methods in API["paths"].items() for method in set(methods) - {"parameters"}}
         self.assertIn(("GET", "/metrics"), routes)
         self.assertIn(("DELETE", "/api/v1/layouts/*"), routes)
         self.assertEqual(routes, described)
@@ -134,8 +142,10 @@ class Api(unittest.TestCase):
 
     def test_windows_are_moved_and_closed(self) -> None:
         here = f"/api/v1/sessions/{self.session}"
-        for method, path, body in (("PUT", "/placement", {"rect": [100, 10, 120, 90]}), ("POST", "/raise", None), ("POST", "/lower", None),
-                                   ("POST", "/hold", {"on": True}), ("POST", "/step", {"frames": 2}), ("POST", "/hold", {"on": False})):
+        for method, path, body in (("PUT", "/placement", {"rect": [100, 10, 120, 90]}), ("POST", "/raise", None),
+                                   ("POST", "/lower", None),
+                                   ("POST", "/hold", {"on": True}), ("POST", "/step", {"frames": 2}),
+                                   ("POST", "/hold", {"on": False})):
             self.assertEqual(self.wall.rest(method, here + path, body), (200, {}), path)
         self.assertEqual(self.get(here)["surfaces"][0]["rect"], [100, 10, 120, 90])
         for method, path, schema in (("PUT", "", "Saved"), ("GET", "", "Layout"), ("POST", "/load", "Loaded")):
@@ -152,7 +162,8 @@ class Api(unittest.TestCase):
     def test_wrong_use_is_refused_and_changes_nothing(self) -> None:
         before = self.without_traffic()
         here = f"/api/v1/sessions/{self.session}"
-        self.assertIn("off the canvas", self.refused(400, "invalid", "PUT", here + "/placement", {"rect": [320, 0, 10, 10]}))
+        self.assertIn("off the canvas", self.refused(400, "invalid", "PUT", here + "/placement",
+                                                     {"rect": [320, 0, 10, 10]}))
         self.refused(400, "invalid", "PUT", here + "/placement", {"rect": [0, 0, 0, 10]})
         self.refused(400, "invalid", "PUT", here + "/placement", {"rect": [0, 0, 10]})
         self.refused(400, "invalid", "PUT", here + "/placement", {})
@@ -199,15 +210,19 @@ class People(unittest.TestCase):
         self.addCleanup(self.app.kill)
 
     def start(self, user: str, **environment: str) -> subprocess.Popen:
-        return subprocess.Popen(self.wall.wallrun(STILL, "--close", "red"), env=self.x.environment(**environment), user=user, group="nogroup", extra_groups=[],
+        return subprocess.Popen(self.wall.wallrun(STILL, "--close", "red"), env=self.x.environment(**environment),
+                                user=user, group="nogroup", extra_groups=[],
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
     def ctl(self, user: str, *arguments: object) -> subprocess.CompletedProcess:
-        return subprocess.run([self.wall.bin / "wallctl", "--walld", self.wall.address, *map(str, arguments)], user=user, group="nogroup", extra_groups=[], capture_output=True, text=True)
+        return subprocess.run([self.wall.bin / "wallctl", "--walld", self.wall.address, *map(str, arguments)],
+                              user=user, group="nogroup", extra_groups=[], capture_output=True, text=True)
 
     def curl(self, user: str, method: str, path: str, *more: str) -> int:
-        done = subprocess.run(["curl", "-s", "-o", "/dev/null", "-w", "%{http_code}", "-X", method, "-H", "Content-Type: application/json", *more,
-                               self.wall.url.rstrip("/") + path], user=user, group="nogroup", extra_groups=[], capture_output=True, text=True)
+        done = subprocess.run(["curl", "-s", "-o", "/dev/null", "-w", "%{http_code}", "-X", method, "-H",
+                               "Content-Type: application/json", *more,
+                               self.wall.url.rstrip("/") + path], user=user, group="nogroup", extra_groups=[],
+                              capture_output=True, text=True)
         return int(done.stdout)
 
     def test_a_session_belongs_to_the_user_who_started_it(self) -> None:
@@ -229,7 +244,8 @@ class People(unittest.TestCase):
 
     def test_each_role_may_what_it_may(self) -> None:
         place = ("place", self.session, 10, 10, 50, 50)
-        for user, role, may in (("nobody", "user", True), ("games", "user", False), ("man", "viewer", False), ("daemon", "operator", True)):
+        for user, role, may in (("nobody", "user", True), ("games", "user", False), ("man", "viewer", False),
+                                ("daemon", "operator", True)):
             with self.subTest(user):
                 self.assertEqual(self.ctl(user, "whoami").stdout, f"{user}, role {role}\n")
                 done = self.ctl(user, *place)
@@ -257,11 +273,13 @@ class People(unittest.TestCase):
         node = self.wall.daemons["node-0-0"]
         node.kill()
         node.wait()
-        other = subprocess.Popen([self.wall.bin / "tileserver", "--config", self.wall.folder / "wall.toml", "--node", "node-0-0"], user="games", group="nogroup",
+        other = subprocess.Popen([self.wall.bin / "tileserver", "--config", self.wall.folder / "wall.toml", "--node",
+                                  "node-0-0"], user="games", group="nogroup",
                                  extra_groups=[], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             end = time.monotonic() + 20
-            while not any("games may not run a node" in line for line in walld_log_lines(self.wall, "node_refused")) and other.poll() is None:
+            while not any("games may not run a node" in line
+                          for line in walld_log_lines(self.wall, "node_refused")) and other.poll() is None:
                 self.assertLess(time.monotonic(), end)
                 time.sleep(0.05)
             self.assertFalse(self.wall.nodes()[0]["up"])
@@ -273,9 +291,12 @@ class People(unittest.TestCase):
 
     def test_a_token_stands_for_its_name(self) -> None:
         bearer = ("-H", f"Authorization: Bearer {self.SECRET}")
-        self.assertEqual(self.curl("mail", "POST", f"/api/v1/sessions/{self.session}/raise", *bearer), 403, "a user's token, another's session")
+        self.assertEqual(self.curl("mail", "POST", f"/api/v1/sessions/{self.session}/raise", *bearer), 403,
+                         "a user's token, another's session")
         self.assertEqual(self.curl("daemon", "GET", "/api/v1/whoami", "-H", "Authorization: Bearer wrong"), 401)
-        own = subprocess.Popen(self.wall.wallrun(STILL, "--close", "red"), env=self.x.environment(WALLGL_TOKEN_FILE=str(self.token_file)), stdout=subprocess.DEVNULL)
+        own = subprocess.Popen(self.wall.wallrun(STILL, "--close", "red"),
+                               env=self.x.environment(WALLGL_TOKEN_FILE=str(self.token_file)),
+                               stdout=subprocess.DEVNULL)
         self.addCleanup(own.wait)
         self.addCleanup(own.kill)
         session = self.wall.wait_session(own)
@@ -290,8 +311,10 @@ class People(unittest.TestCase):
         self.ctl("games", "close", self.session)
         self.curl("daemon", "POST", f"/api/v1/sessions/{self.session}/lower")
         lines = walld_log_lines(self.wall, "audit")
-        for wanted in (rf'who="nobody" role=user via=control what=place target="{self.session}" arguments=\{{.*"rect":\[1,2,30,40\]\}} result=ok$',
-                       rf'who="games" role=user via=control what=close target="{self.session}" .* result=forbidden reason="games may not close .*"$',
+        for wanted in (rf'who="nobody" role=user via=control what=place target="{self.session}" '
+                       rf'arguments=\{{.*"rect":\[1,2,30,40\]\}} result=ok$',
+                       rf'who="games" role=user via=control what=close target="{self.session}" .* result=forbidden '
+                       rf'reason="games may not close .*"$',
                        rf'who="daemon" role=operator via=http what=lower target="{self.session}" .* result=ok$'):
             self.assertTrue(any(re.search(wanted, line) for line in lines), wanted)
 

@@ -29,10 +29,12 @@ class Demo(unittest.TestCase):
         self.folder = tempfile.TemporaryDirectory(prefix="wallgl-demo-test-")
         self.addCleanup(self.folder.cleanup)
         # The wall's own folder goes below this one, so that its processes can be told from others'.
-        self.environment = {**{k: v for k, v in os.environ.items() if k != "DISPLAY"}, "TMPDIR": self.folder.name, "WALLGL_BUILD": str(build_folder())}
+        self.environment = {**{k: v for k, v in os.environ.items() if k != "DISPLAY"}, "TMPDIR": self.folder.name,
+                            "WALLGL_BUILD": str(build_folder())}
 
     def demo(self, *arguments: object, limit: float = 90) -> subprocess.CompletedProcess:
-        done = subprocess.run([*DEMO, "--http", "0", *map(str, arguments)], env=self.environment, capture_output=True, text=True, timeout=limit)
+        done = subprocess.run([*DEMO, "--http", "0", *map(str, arguments)], env=self.environment, capture_output=True,
+                              text=True, timeout=limit)
         self.assertEqual(processes_of(self.folder.name), [], "nothing is left behind")
         self.assertEqual([p.name for p in Path(self.folder.name).iterdir() if p.name.startswith("wallgl-")], [])
         return done
@@ -67,22 +69,27 @@ class Demo(unittest.TestCase):
     def test_tiles_as_windows_of_a_desktop(self) -> None:
         with XServer((640, 480)) as desktop:
             self.environment["DISPLAY"] = desktop.display
-            running = subprocess.Popen([*DEMO, "--http", "0", "--windows", "--tiles", "2x1", "--tile-size", "160x240", "--seconds", "6", "--", "glxgears", "-geometry", "320x240"],
-                                       env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            running = subprocess.Popen([*DEMO, "--http", "0", "--windows", "--tiles", "2x1", "--tile-size", "160x240",
+                                        "--seconds", "6", "--", "glxgears", "-geometry", "320x240"],
+                                       env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                       text=True)
             seen = []
             while running.poll() is None:
-                seen.append(subprocess.run(["xwininfo", "-root", "-tree"], env=desktop.environment(), capture_output=True, text=True).stdout)
+                seen.append(subprocess.run(["xwininfo", "-root", "-tree"], env=desktop.environment(),
+                                           capture_output=True, text=True).stdout)
                 time.sleep(0.2)
             self.assertEqual(running.returncode, 0, running.stdout.read())
             running.stdout.close()
-        self.assertTrue(any("160x240+0+0" in tree and "160x240+160+0" in tree and "glxgears" not in tree for tree in seen), seen[-3:])
+        self.assertTrue(any("160x240+0+0" in tree and "160x240+160+0" in tree and "glxgears" not in tree
+                            for tree in seen), seen[-3:])
 
     def test_without_seconds_it_ends_with_the_worst_exit_code(self) -> None:
         done = self.demo("--tiles", "1x1", "--", "sh", "-c", "exit 3", "--and", "true")
         self.assertEqual(done.returncode, 3, done.stderr)
 
     def test_ctrl_c_ends_it(self) -> None:
-        running = subprocess.Popen([*DEMO, "--http", "0", "--tiles", "2x1", "--tile-size", "320x240"], env=self.environment,
+        running = subprocess.Popen([*DEMO, "--http", "0", "--tiles", "2x1", "--tile-size", "320x240"],
+                                   env=self.environment,
                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         page = ""
         for line in running.stdout:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Programs come and go, orderly and not: what the daemons took for them they give back, down to the objects of the nodes'
-drivers."""
+"""Programs come and go, orderly and not: what the daemons took for them they give back, down to the objects of the
+nodes' drivers."""
 import os
 import random
 import signal
@@ -45,13 +45,16 @@ class Leaks(unittest.TestCase):
     def commands(self) -> list[list[str]]:
         size = f"{WINDOW[0]}x{WINDOW[1]}"
         tests = build_folder() / "tests"
-        listed = subprocess.run([tests / "golden_scenes", "--list"], check=True, capture_output=True, text=True).stdout.split("\n")
+        listed = subprocess.run([tests / "golden_scenes", "--list"], check=True, capture_output=True,
+                                text=True).stdout.split("\n")
         scenes = [line.split()[0] for line in listed if line and line.split()[2] == "swaps"]
-        return [["glxgears", "-geometry", size], [tests / "frame_clock", "--size", size], [tests / "frame_clock", "--size", size, "--egl"],
+        return [["glxgears", "-geometry", size], [tests / "frame_clock", "--size", size],
+                [tests / "frame_clock", "--size", size, "--egl"],
                 *([tests / "golden_scenes", scene, "--frames=1000"] for scene in self.random.sample(scenes, 6))]
 
     def start(self, command: list) -> subprocess.Popen:
-        return self.wall.run(*command, rect=(0, 0, *WINDOW), env=self.x.environment(vblank_mode="0"), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        return self.wall.run(*command, rect=(0, 0, *WINDOW), env=self.x.environment(vblank_mode="0"),
+                             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def end(self, app: subprocess.Popen) -> None:
         """As a user, an operator or an accident ends it."""
@@ -107,7 +110,8 @@ class Leaks(unittest.TestCase):
         self.run_programs(RUNS)
         after = self.used()
         for name in before:
-            print(f"{name}: {before[name][0]} -> {after[name][0]} descriptors, {before[name][1] >> 20} -> {after[name][1] >> 20} MiB", flush=True)
+            print(f"{name}: {before[name][0]} -> {after[name][0]} descriptors, {before[name][1] >> 20} -> "
+                  f"{after[name][1] >> 20} MiB", flush=True)
         for name, (files, bytes_used) in before.items():
             self.assertEqual(after[name][0], files, f"descriptors of {name}")
             self.assertLess(after[name][1] - bytes_used, GROWTH, f"memory of {name}")

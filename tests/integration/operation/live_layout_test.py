@@ -34,7 +34,8 @@ def resize_x_window(display: str, title: str, width: int, height: int) -> None:
     x.XDefaultRootWindow.restype = ctypes.c_ulong
     connection = ctypes.c_void_p(x.XOpenDisplay(display.encode()))
     root, parent, windows, count = ctypes.c_ulong(), ctypes.c_ulong(), ctypes.POINTER(ctypes.c_ulong)(), ctypes.c_uint()
-    x.XQueryTree(connection, ctypes.c_ulong(x.XDefaultRootWindow(connection)), ctypes.byref(root), ctypes.byref(parent), ctypes.byref(windows), ctypes.byref(count))
+    x.XQueryTree(connection, ctypes.c_ulong(x.XDefaultRootWindow(connection)), ctypes.byref(root), ctypes.byref(parent),
+                 ctypes.byref(windows), ctypes.byref(count))
     for window in windows[:count.value]:
         found = ctypes.c_char_p()
         if x.XFetchName(connection, ctypes.c_ulong(window), ctypes.byref(found)) and found.value == title.encode():
@@ -149,7 +150,8 @@ class LiveLayout(unittest.TestCase):
         def move() -> None:
             dice = random.Random(3)
             while not stop.is_set():
-                self.wall.ctl("place", session, dice.randrange(400 - WINDOW[0]), dice.randrange(300 - WINDOW[1]), *WINDOW)
+                self.wall.ctl("place", session, dice.randrange(400 - WINDOW[0]), dice.randrange(300 - WINDOW[1]),
+                              *WINDOW)
 
         mover = threading.Thread(target=move)
         mover.start()
@@ -268,8 +270,11 @@ class LiveLayout(unittest.TestCase):
     def test_a_place_that_cannot_be_changes_nothing(self) -> None:
         _, session = self.still("red")
         before = self.wall.sessions()
-        for wrong, says in (((session, 400, 0, 10, 10), "off the canvas"), ((session, 0, 0, 0, 10), "needs a width"), ((session, 0, 0, 10, -1), "needs a width"),
-                            ((999, 0, 0, 10, 10), "there is no session 999"), ((f"{session}.99", 0, 0, 10, 10), "has no window 99"), (("x", 0, 0, 10, 10), "is no session")):
+        for wrong, says in (((session, 400, 0, 10, 10), "off the canvas"), ((session, 0, 0, 0, 10), "needs a width"),
+                            ((session, 0, 0, 10, -1), "needs a width"),
+                            ((999, 0, 0, 10, 10), "there is no session 999"),
+                            ((f"{session}.99", 0, 0, 10, 10), "has no window 99"),
+                            (("x", 0, 0, 10, 10), "is no session")):
             with self.assertRaisesRegex(WallError, says):
                 self.wall.ctl("place", wrong[0], "--", *wrong[1:])
         self.assertEqual(self.wall.sessions(), before)
@@ -301,7 +306,9 @@ class LiveLayout(unittest.TestCase):
         skew = self.surfaces(session)[0]["skew"]
         self.assertGreater(skew["rendered"]["frames"], 10)
         self.assertGreater(skew["rendered"]["most_ms"], skew["rendered"]["mean_ms"])
-        self.assertIn(f'wallgl_surface_rendered_skew_seconds_count{{session="{session}",surface="{self.surfaces(session)[0]["id"]}"}}', self.wall.rest("GET", "/metrics")[1])
+        surface = self.surfaces(session)[0]["id"]
+        self.assertIn(f'wallgl_surface_rendered_skew_seconds_count{{session="{session}",surface="{surface}"}}',
+                      self.wall.rest("GET", "/metrics")[1])
 
 
 if __name__ == "__main__":

@@ -41,7 +41,8 @@ class OnAWall(unittest.TestCase):
             time.sleep(0.02)
 
     def gears(self, geometry: str = "400x300", **options) -> tuple[subprocess.Popen, int]:
-        app = self.wall.run("glxgears", "-geometry", geometry, env=self.x.environment(), stdout=subprocess.DEVNULL, **options)
+        app = self.wall.run("glxgears", "-geometry", geometry, env=self.x.environment(), stdout=subprocess.DEVNULL,
+                            **options)
         session = self.wall.wait_session(app)
         self.wall.wait(session, 2)
         return app, session
@@ -100,7 +101,8 @@ class OnAWall(unittest.TestCase):
         self.assertFalse((alone[:150, :200] == whole[:150, :200]).all(), "without the window above it")
 
     def test_a_held_program_shows_exactly_the_frames_stepped(self) -> None:
-        app = self.wall.run("glxgears", "-geometry", "400x300", env=self.x.environment(), hold=True, stdout=subprocess.DEVNULL)
+        app = self.wall.run("glxgears", "-geometry", "400x300", env=self.x.environment(), hold=True,
+                            stdout=subprocess.DEVNULL)
         session = self.wall.wait_session(app)
         time.sleep(0.5)
         self.assertEqual(self.surface(session)["frame"], 0)
@@ -151,7 +153,8 @@ class OnAWall(unittest.TestCase):
         self.assertLess(int(abs(numpy.diff(columns.astype(int))).max()), 40, "the red gear goes over the seam")
 
     def test_doctor_finds_a_healthy_wall(self) -> None:
-        done = subprocess.run([BIN / "wallctl", "--walld", self.wall.address, "doctor"], env=self.x.environment(), capture_output=True, text=True)
+        done = subprocess.run([BIN / "wallctl", "--walld", self.wall.address, "doctor"], env=self.x.environment(),
+                              capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertNotIn("WRONG", done.stdout)
 
@@ -168,9 +171,11 @@ class WithoutAWall(unittest.TestCase):
     def test_a_program_fails_normally_and_soon(self) -> None:
         lib = build_folder() / "lib"
         with XServer() as x:
-            environment = x.environment(WALLGL_WALLD=self.ADDRESS, LD_LIBRARY_PATH=str(lib), __GLX_VENDOR_LIBRARY_NAME="wallgl")
+            environment = x.environment(WALLGL_WALLD=self.ADDRESS, LD_LIBRARY_PATH=str(lib),
+                                        __GLX_VENDOR_LIBRARY_NAME="wallgl")
             begin = time.monotonic()
-            done = subprocess.run(["timeout", "-s", "KILL", "10", "glxinfo", "-B"], env=environment, capture_output=True, text=True)
+            done = subprocess.run(["timeout", "-s", "KILL", "10", "glxinfo", "-B"], env=environment,
+                                  capture_output=True, text=True)
         self.assertLess(time.monotonic() - begin, UNREACHABLE_LIMIT)
         self.assertGreaterEqual(done.returncode, 0, "no crash")
         ours = [line for line in done.stderr.splitlines() if self.ADDRESS in line]
@@ -204,7 +209,8 @@ class WithoutAWall(unittest.TestCase):
             file.write("[wall]\nname = 3\n")
             file.flush()
             for program in (["walld"], ["tileserver", "--node", "x"]):
-                done = subprocess.run([BIN / program[0], "--config", file.name, *program[1:]], capture_output=True, text=True)
+                done = subprocess.run([BIN / program[0], "--config", file.name, *program[1:]], capture_output=True,
+                                      text=True)
                 self.assertNotEqual(done.returncode, 0)
                 self.assertIn(f"{file.name}:2: 'name': expected a string", done.stderr)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Parallel programs: several processes that draw into one window (docs/parallel-programs.md). examples/march is one whose
-picture does not depend on how many processes draw it; turns.cpp one whose picture depends on their order."""
+"""Parallel programs: several processes that draw into one window (docs/parallel-programs.md). examples/march is one
+whose picture does not depend on how many processes draw it; turns.cpp one whose picture depends on their order."""
 import os
 import re
 import shutil
@@ -53,9 +53,11 @@ class Parallel(unittest.TestCase):
 
     # ---- programs ----
 
-    def start(self, program: str, *arguments: object, ranks: int, rect=(0, 0, *SIZE), hold: bool = False, log: str = "") -> subprocess.Popen:
+    def start(self, program: str, *arguments: object, ranks: int, rect=(0, 0, *SIZE), hold: bool = False,
+              log: str = "") -> subprocess.Popen:
         folder = "examples" if program == "march" else "tests"
-        line = self.wall.wallrun(build_folder() / folder / program, "--size", f"{SIZE[0]}x{SIZE[1]}", *arguments, rect=rect, hold=hold)
+        line = self.wall.wallrun(build_folder() / folder / program, "--size", f"{SIZE[0]}x{SIZE[1]}", *arguments,
+                                 rect=rect, hold=hold)
         line[1:1] = ["--parallel", str(ranks)] if ranks else []
         environment = self.x.environment(**({"WALLGL_LOG": f"error:{log}"} if log else {}))
         return self.wall.run_line(line, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -141,7 +143,8 @@ class Parallel(unittest.TestCase):
         session = self.session()
         self.members()
         self.wall.wait(session, 10)
-        for place in ((0, 0, 200, 150), (200, 150, 200, 150), (100, 75, 200, 150), (0, 0, *SIZE), (-100, -100, 300, 200), (0, 0, *SIZE)):
+        for place in ((0, 0, 200, 150), (200, 150, 200, 150), (100, 75, 200, 150), (0, 0, *SIZE),
+                      (-100, -100, 300, 200), (0, 0, *SIZE)):
             self.wall.ctl("place", session, *place)
             until(lambda: self.wall.sessions()[0]["surfaces"][0]["rect"] == list(place), "the window is there")
             shown = self.frame()
@@ -244,13 +247,15 @@ class Parallel(unittest.TestCase):
             wall.wait(wall.wait_session(), 5)
             wall.restart_walld(pause=2)
             until(lambda: "session_ended" in log.read_text(), "the processes notice")
-            lost, ended = (min(float(line.split()[1]) for line in log.read_text().splitlines() if word in line) for word in ("walld_lost", "session_ended"))
+            lost, ended = (min(float(line.split()[1]) for line in log.read_text().splitlines() if word in line)
+                           for word in ("walld_lost", "session_ended"))
             self.assertGreater(ended - lost, 1.5, "not before there is another walld")
             self.assertIsNone(app.poll(), "the programs themselves are not ended")
             self.assertEqual(wall.sessions(), [])
 
     def test_wrong_programs_end_with_a_reason(self) -> None:
-        for kind, reason in (("counts", "barrier 9 was created with count"), ("deadlock", "no process of the parallel program can go on")):
+        for kind, reason in (("counts", "barrier 9 was created with count"),
+                             ("deadlock", "no process of the parallel program can go on")):
             with self.subTest(kind):
                 log = self.folder / f"{kind}.log"
                 app = self.start("turns", "--misuse", kind, ranks=2, log=str(log))
@@ -271,7 +276,8 @@ class Parallel(unittest.TestCase):
     def by_hand(self, group: str, rank: int, ranks: int, *more: object) -> subprocess.Popen:
         line = self.wall.wallrun(build_folder() / "examples" / "march", "--cells", "16", *more)
         line[1:1] = ["--parallel-group", group]
-        return self.wall.run_line(line, env=self.x.environment(OMPI_COMM_WORLD_RANK=str(rank), OMPI_COMM_WORLD_SIZE=str(ranks)),
+        return self.wall.run_line(line, env=self.x.environment(OMPI_COMM_WORLD_RANK=str(rank),
+                                                               OMPI_COMM_WORLD_SIZE=str(ranks)),
                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def test_an_mpi_launchers_variables_say_the_rank(self) -> None:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A node that stands still (SIGSTOP) for seconds: the programs and the other nodes go on as before, and when it goes on it
-is right again at once. Frames tell their number by their colour (frame_clock.cpp)."""
+"""A node that stands still (SIGSTOP) for seconds: the programs and the other nodes go on as before, and when it goes on
+it is right again at once. Frames tell their number by their colour (frame_clock.cpp)."""
 import signal
 import sys
 import time
@@ -16,8 +16,10 @@ from xserver import XServer  # noqa: E402
 
 TILE = (200, 150)
 STOP = 10.0  # seconds; many times the swap limit, and enough to fill every queue of the busy program
-BESIDE = 4.0  # seconds before, and again after, in which the usual frame rates are taken: a machine gets faster and slower by itself
-TAKEN_UP = 8.0  # seconds after SIGCONT until a program that started meanwhile is on it: an attempt that ends, a pause, another
+# seconds before, and again after, in which the usual frame rates are taken: a machine gets faster and slower by itself
+BESIDE = 4.0
+# seconds after SIGCONT until a program that started meanwhile is on it: an attempt that ends, a pause, another
+TAKEN_UP = 8.0
 CATCH_UP = 2.0  # seconds after SIGCONT until every tile is right
 STANDING = 6.0  # seconds from the program's start on; it asks a node for 2, and again after 1
 KEPT = 0.9  # of the usual frame rate
@@ -25,8 +27,8 @@ ATTEMPTS = 3  # what else the machine does may slow a program for some seconds; 
 
 
 class StoppedNode(unittest.TestCase):
-    # Each over at least two tiles of the node-0-0 side or beside it: name -> rectangle and how it draws. `busy` draws as
-    # fast as it can, far more than sockets and queues hold; `paced` builds each frame on the one before.
+    # Each over at least two tiles of the node-0-0 side or beside it: name -> rectangle and how it draws. `busy` draws
+    # as fast as it can, far more than sockets and queues hold; `paced` builds each frame on the one before.
     PROGRAMS = {
         "busy": ((0, 0, 400, 100), ["--vertices", "20000"]),
         "paced": ((0, 100, 400, 100), ["--fps", "20", "--egl", "--incremental"]),
@@ -40,7 +42,8 @@ class StoppedNode(unittest.TestCase):
         cls.session = {}
         for name, (rect, options) in cls.PROGRAMS.items():
             program = build_folder() / "tests" / "frame_clock"
-            app = cls.wall.run(program, "--size", f"{rect[2]}x{rect[3]}", *options, rect=rect, name=name, env=cls.x.environment())
+            app = cls.wall.run(program, "--size", f"{rect[2]}x{rect[3]}", *options, rect=rect, name=name,
+                               env=cls.x.environment())
             cls.session[name] = cls.wall.wait_session(app)
         for session in cls.session.values():
             cls.wall.wait(session, 10)
@@ -79,7 +82,8 @@ class StoppedNode(unittest.TestCase):
             shown = self.frames()
             picture = cv2.imdecode(numpy.frombuffer(self.wall.screenshot(), numpy.uint8), cv2.IMREAD_COLOR)
             for name in self.PROGRAMS:
-                self.assertEqual(self.numbers(picture, name), {shown[name] & 0xffff}, f"{name} shows another frame on some tile")
+                self.assertEqual(self.numbers(picture, name), {shown[name] & 0xffff},
+                                 f"{name} shows another frame on some tile")
         finally:
             for session in self.session.values():
                 self.wall.hold(session, on=False)
@@ -112,7 +116,8 @@ class StoppedAtTheStart(unittest.TestCase):
             node = wall.daemons["node-1-0"]
             node.send_signal(signal.SIGSTOP)
             try:
-                app = wall.run(build_folder() / "tests" / "frame_clock", "--size", "400x150", "--fps", "20", rect=(0, 0, 400, 150), env=x.environment())
+                app = wall.run(build_folder() / "tests" / "frame_clock", "--size", "400x150", "--fps", "20",
+                               rect=(0, 0, 400, 150), env=x.environment())
                 wall.wait_session(app)
                 time.sleep(STANDING)
                 drawn = wall.sessions()[0]["surfaces"][0]["frame"]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""200 random moves, changes of size and order, starts and ends of programs in a row. After each, the wall shows exactly what it
-should: every window in its one colour at its place, those above over those below, background elsewhere."""
+"""200 random moves, changes of size and order, starts and ends of programs in a row. After each, the wall shows exactly
+what it should: every window in its one colour at its place, those above over those below, background elsewhere."""
 import os
 import random
 import signal
@@ -50,7 +50,8 @@ class Storm(unittest.TestCase):
         colour, rect = self.dice.choice(list(COLOURS)), self.rect()
         rect[:2] = [max(0, rect[0]), max(0, rect[1])]
         single = self.dice.random() < 0.3
-        app = self.wall.run(STILL, *(["--single"] if single else []), colour, rect=tuple(rect), env=self.x.environment(), stdout=subprocess.DEVNULL)
+        app = self.wall.run(STILL, *(["--single"] if single else []), colour, rect=tuple(rect),
+                            env=self.x.environment(), stdout=subprocess.DEVNULL)
         self.windows.append(Window(app, self.wall.wait_session(app), colour, rect))
 
     def place(self) -> None:
@@ -103,19 +104,23 @@ class Storm(unittest.TestCase):
         while not (picture := self.picture()).shape == expected.shape or (picture != expected).any():
             if time.monotonic() > end:
                 wrong = numpy.argwhere((picture != expected).any(axis=2))
-                self.fail(f"seed {SEED}: {len(wrong)} pixels are wrong, from {wrong.min(axis=0)} to {wrong.max(axis=0)} (y, x) after\n"
+                self.fail(f"seed {SEED}: {len(wrong)} pixels are wrong, from {wrong.min(axis=0)} to "
+                          f"{wrong.max(axis=0)} (y, x) after\n"
                           + "\n".join(self.said[-6:]) + f"\n{self.wall.sessions()}\n{self.wall.log('walld')[-1500:]}")
             time.sleep(0.02)
         self.assertEqual(sorted(s["id"] for s in self.wall.sessions()), sorted(w.session for w in self.windows))
 
     def test_the_wall_shows_what_it_should_after_each(self) -> None:
         for number in range(ACTIONS):
-            actions = [self.place] * 8 + [self.raise_one] * 2 + [self.lower_one] * 2 + [self.end] if self.windows else [self.start]
+            actions = [self.start]
+            if self.windows:
+                actions = [self.place] * 8 + [self.raise_one] * 2 + [self.lower_one] * 2 + [self.end]
             if len(self.windows) < MOST:
                 actions += [self.start]
             action = self.start if len(self.windows) < 2 else self.dice.choice(actions)
             action()
-            self.said.append(f"{number}: {action.__name__}: " + ", ".join(f"{w.session} {w.colour} {w.rect}" for w in self.windows))
+            self.said.append(f"{number}: {action.__name__}: "
+                             + ", ".join(f"{w.session} {w.colour} {w.rect}" for w in self.windows))
             self.check()
 
 

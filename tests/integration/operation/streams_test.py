@@ -42,7 +42,8 @@ class Streams(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
         cls.x = cls.enterClassContext(XServer())
-        cls.wall = cls.enterClassContext(Wall(tiles=(2, 1), tile_size=TILE, swap_timeout_ms=10000, options='background = "#204060"'))
+        cls.wall = cls.enterClassContext(Wall(tiles=(2, 1), tile_size=TILE, swap_timeout_ms=10000,
+                                              options='background = "#204060"'))
         cls.app = cls.wall.run("glxgears", "-geometry", "400x150", env=cls.x.environment(), stdout=subprocess.DEVNULL)
         cls.session = cls.wall.wait_session(cls.app)
         cls.wall.wait(cls.session, 2)
@@ -162,7 +163,8 @@ class Streams(unittest.TestCase):
         self.settle()
         shot = self.wall_picture()
         viewer = self.open()
-        for entry, (x, y, width, height) in (({"wall": True}, (131, 17, 150, 90)), ({"tile": self.wall.tile_names[1]}, (3, 5, 101, 77))):
+        for entry, (x, y, width, height) in (({"wall": True}, (131, 17, 150, 90)),
+                                             ({"tile": self.wall.tile_names[1]}, (3, 5, 101, 77))):
             viewer.watch({**entry, "region": [x, y, width, height], "codec": "raw"})
             left = x if "wall" in entry else x + TILE[0]
             picture = self.picture(viewer)
@@ -208,7 +210,8 @@ class Streams(unittest.TestCase):
 
     def test_nobody_slow_costs_memory_or_holds_others(self) -> None:
         def memory() -> int:
-            return int(Path(f"/proc/{self.wall.daemons['walld'].pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+            pages = Path(f"/proc/{self.wall.daemons['walld'].pid}/statm").read_text().split()[1]
+            return int(pages) * os.sysconf("SC_PAGE_SIZE")
 
         watched = [{"tile": name, "codec": "raw", "fps": 60} for name in self.wall.tile_names]
         reading = self.open()
@@ -229,7 +232,8 @@ class Streams(unittest.TestCase):
     def frames_of(self, avi: Path) -> numpy.ndarray:
         """RGB, as FFmpeg decodes them."""
         width, height = self.wall.size
-        raw = subprocess.run(["ffmpeg", "-v", "error", "-i", avi, "-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
+        raw = subprocess.run(["ffmpeg", "-v", "error", "-i", avi, "-fps_mode", "passthrough", "-f", "rawvideo",
+                              "-pix_fmt", "rgb24", "-"],
                              check=True, capture_output=True).stdout
         return numpy.frombuffer(raw, numpy.uint8).reshape(-1, height, width, 3)
 
@@ -243,7 +247,8 @@ class Streams(unittest.TestCase):
         shots = [self.wall_picture()]
         with tempfile.TemporaryDirectory() as folder:
             avi = Path(folder) / "wall.avi"
-            recording = subprocess.Popen([self.wall.bin / "wallctl", "--walld", self.wall.address, "--json", "record", avi, "--seconds", "3", "--fps", "10"],
+            recording = subprocess.Popen([self.wall.bin / "wallctl", "--walld", self.wall.address, "--json", "record",
+                                          avi, "--seconds", "3", "--fps", "10"],
                                          stdout=subprocess.PIPE, text=True)
             for _ in range(4):
                 time.sleep(0.6)
@@ -277,7 +282,8 @@ class Streams(unittest.TestCase):
     def test_a_recording_that_is_interrupted_is_a_whole_file(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             avi = Path(folder) / "wall.avi"
-            recording = subprocess.Popen([self.wall.bin / "wallctl", "--walld", self.wall.address, "record", avi, "--seconds", "600"], stderr=subprocess.PIPE, text=True)
+            recording = subprocess.Popen([self.wall.bin / "wallctl", "--walld", self.wall.address, "record", avi,
+                                          "--seconds", "600"], stderr=subprocess.PIPE, text=True)
             while not avi.exists() or avi.stat().st_size < 20000:
                 self.assertIsNone(recording.poll())
                 time.sleep(0.05)
@@ -311,7 +317,8 @@ class RecordingOfTwoPrograms(unittest.TestCase):
         x = cls.enterClassContext(XServer())
         cls.wall = cls.enterClassContext(Wall(tiles=(2, 2), tile_size=(160, 120), swap_timeout_ms=10000))
         cls.sessions = []
-        for program, rect in ((["glxgears"], (10, 10, 200, 200)), ([HACKS / "atlantis", "--window"], (120, 60, 190, 170))):
+        for program, rect in ((["glxgears"], (10, 10, 200, 200)),
+                              ([HACKS / "atlantis", "--window"], (120, 60, 190, 170))):
             app = cls.wall.run(*program, rect=rect, env=x.environment(), stdout=subprocess.DEVNULL)
             cls.addClassCleanup(app.wait)
             cls.addClassCleanup(app.kill)
@@ -321,7 +328,8 @@ class RecordingOfTwoPrograms(unittest.TestCase):
 
     def start(self, avi: Path) -> subprocess.Popen:
         """A recording whose first frame is in the file."""
-        recording = subprocess.Popen([self.wall.bin / "wallctl", "--walld", self.wall.address, "--json", "record", avi, "--seconds", str(self.SECONDS), "--fps", str(self.FPS)],
+        recording = subprocess.Popen([self.wall.bin / "wallctl", "--walld", self.wall.address, "--json", "record", avi,
+                                      "--seconds", str(self.SECONDS), "--fps", str(self.FPS)],
                                      stdout=subprocess.PIPE, text=True)
         while not avi.exists():
             self.assertIsNone(recording.poll())
@@ -331,11 +339,13 @@ class RecordingOfTwoPrograms(unittest.TestCase):
     def frames_of(self, avi: Path, recording: subprocess.Popen) -> numpy.ndarray:
         """As FFmpeg decodes them, which finds nothing wrong with the file."""
         said = json.loads(recording.communicate(timeout=30)[0])
-        stream = json.loads(subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_streams", "-of", "json", avi], check=True, capture_output=True).stdout)["streams"][0]
+        stream = json.loads(subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_streams", "-of", "json",
+                                            avi], check=True, capture_output=True).stdout)["streams"][0]
         self.assertEqual((stream["codec_name"], stream["width"], stream["height"]), ("huffyuv", *self.wall.size))
         self.assertEqual((said["frames"], int(stream["nb_read_frames"])), (self.SECONDS * self.FPS,) * 2)
         self.assertAlmostEqual(float(stream["duration"]), self.SECONDS, places=3)
-        decoded = subprocess.run(["ffmpeg", "-v", "error", "-i", avi, "-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"], check=True, capture_output=True)
+        decoded = subprocess.run(["ffmpeg", "-v", "error", "-i", avi, "-fps_mode", "passthrough", "-f", "rawvideo",
+                                  "-pix_fmt", "rgb24", "-"], check=True, capture_output=True)
         self.assertEqual(decoded.stderr, b"")
         width, height = self.wall.size
         return numpy.frombuffer(decoded.stdout, numpy.uint8).reshape(-1, height, width, 3)

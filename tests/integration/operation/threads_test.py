@@ -14,8 +14,10 @@ from xserver import XServer  # noqa: E402
 
 class Threads(unittest.TestCase):
     def test_no_race_is_reported(self) -> None:
-        environment = {"TSAN_OPTIONS": f"exitcode=66 suppressions={ROOT}/tests/support/tsan.supp", "LP_NUM_THREADS": "0"}
-        with XServer() as x, Wall(tiles=(2, 1), tile_size=(128, 96), environment=environment, client_build=ROOT / "build" / "release") as wall:
+        environment = {"TSAN_OPTIONS": f"exitcode=66 suppressions={ROOT}/tests/support/tsan.supp",
+                       "LP_NUM_THREADS": "0"}
+        with XServer() as x, Wall(tiles=(2, 1), tile_size=(128, 96), environment=environment,
+                                  client_build=ROOT / "build" / "release") as wall:
             apps = [wall.run("glxgears", "-geometry", "120x90", env=x.environment()) for _ in range(2)]
             sessions = [wall.wait_session(app) for app in apps]
             for session in sessions:

@@ -33,7 +33,8 @@ class OnADesktop(unittest.TestCase):
     def view(self, *options: object, **popen) -> subprocess.Popen:
         where = () if "--http" in options else ("--walld", self.wall.address)
         return subprocess.Popen([str(word) for word in (self.wall.bin / "wallview", *where, *options)],
-                                env=self.x.environment(SDL_RENDER_DRIVER="software"), stderr=subprocess.PIPE, text=True, **popen)
+                                env=self.x.environment(SDL_RENDER_DRIVER="software"), stderr=subprocess.PIPE, text=True,
+                                **popen)
 
     def picture(self, *options: object) -> numpy.ndarray:
         """What it saves after one picture."""
@@ -56,7 +57,9 @@ class OnADesktop(unittest.TestCase):
 
     def desktop(self) -> numpy.ndarray:
         width, height = self.x.size
-        raw = subprocess.run(["ffmpeg", "-v", "error", "-f", "x11grab", "-draw_mouse", "0", "-video_size", f"{width}x{height}", "-i", self.x.display, "-frames:v", "1", "-f", "rawvideo", "-pix_fmt", "bgr24", "-"],
+        raw = subprocess.run(["ffmpeg", "-v", "error", "-f", "x11grab", "-draw_mouse", "0", "-video_size",
+                              f"{width}x{height}", "-i", self.x.display, "-frames:v", "1", "-f", "rawvideo", "-pix_fmt",
+                              "bgr24", "-"],
                              check=True, capture_output=True).stdout
         return numpy.frombuffer(raw, numpy.uint8).reshape(height, width, 3)
 
@@ -90,7 +93,8 @@ class WallView(OnADesktop):
         tile = self.wall.tile_names[1]
         self.assertTrue((self.picture(*WHOLE, "--tile", tile) == shot[:, TILE[0]:]).all())
         self.assertTrue((self.picture(*WHOLE, "--region", "120,30,160,100") == shot[30:130, 120:280]).all())
-        self.assertTrue((self.picture(*WHOLE, "--tile", tile, "--region", "10,20,30,40") == shot[20:60, TILE[0] + 10:TILE[0] + 40]).all())
+        self.assertTrue((self.picture(*WHOLE, "--tile", tile, "--region",
+                                      "10,20,30,40") == shot[20:60, TILE[0] + 10:TILE[0] + 40]).all())
         self.assertTrue((self.picture(*WHOLE, "--session", self.session) == self.shot(session=self.session)).all())
 
     def test_a_smaller_window_gets_a_smaller_picture(self) -> None:
@@ -109,11 +113,14 @@ class WallView(OnADesktop):
         self.addCleanup(viewer.communicate)
         self.addCleanup(viewer.kill)
         # 400x150 pixels of the wall on 1280x1024 ones of the screen
-        self.until(lambda: self.desktop()[512, [2, 1277]].tolist() == [[0x60, 0x40, 0x20]] * 2, "the background is seen at both edges")
+        self.until(lambda: self.desktop()[512, [2, 1277]].tolist() == [[0x60, 0x40, 0x20]] * 2,
+                   "the background is seen at both edges")
 
     def test_what_cannot_be_seen_is_said(self) -> None:
-        for options, what in ((("--tile", "nowhere"), "there is no tile 'nowhere'"), (("--session", 999), "there is no session 999"), (("--codec", "mp3"), "codec"),
-                              (("--http", "http://127.0.0.1:1"), "cannot be reached"), (("--http", "ftp://x"), "expected http://HOST")):
+        for options, what in ((("--tile", "nowhere"), "there is no tile 'nowhere'"),
+                              (("--session", 999), "there is no session 999"), (("--codec", "mp3"), "codec"),
+                              (("--http", "http://127.0.0.1:1"), "cannot be reached"),
+                              (("--http", "ftp://x"), "expected http://HOST")):
             viewer = self.view(*options, "--frames", 1)
             said = viewer.communicate(timeout=SOON)[1]
             self.assertEqual(viewer.returncode, 1)

@@ -27,7 +27,8 @@ class OfAWall(unittest.TestCase):
     wall: Wall
 
     def watch(self, *options: object, **popen) -> subprocess.Popen:
-        return subprocess.Popen([str(word) for word in (self.wall.bin / "wallctl", "--walld", self.wall.address, "watch", *options)], **popen)
+        return subprocess.Popen([str(word) for word in (self.wall.bin / "wallctl", "--walld", self.wall.address,
+                                                        "watch", *options)], **popen)
 
 
 class Watch(OfAWall):
@@ -90,7 +91,8 @@ class Watch(OfAWall):
         os.close(controller)
 
     def test_a_walld_that_never_was_is_an_error(self) -> None:
-        done = subprocess.run([self.wall.bin / "wallctl", "--walld", "unix:/nowhere", "watch"], capture_output=True, text=True, timeout=SOON)
+        done = subprocess.run([self.wall.bin / "wallctl", "--walld", "unix:/nowhere", "watch"], capture_output=True,
+                              text=True, timeout=SOON)
         self.assertEqual(done.returncode, 1)
         self.assertIn("cannot be reached", done.stderr)
 

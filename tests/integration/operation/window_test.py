@@ -28,13 +28,16 @@ class Screen(XServer):
 
     def picture(self, pointer: bool = False) -> numpy.ndarray:
         width, height = self.size
-        raw = subprocess.run(["ffmpeg", "-v", "error", "-f", "x11grab", "-draw_mouse", str(int(pointer)), "-video_size", f"{width}x{height}", "-i", self.display,
-                              "-frames:v", "1", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"], check=True, capture_output=True).stdout
+        raw = subprocess.run(["ffmpeg", "-v", "error", "-f", "x11grab", "-draw_mouse", str(int(pointer)), "-video_size",
+                              f"{width}x{height}", "-i", self.display,
+                              "-frames:v", "1", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"], check=True,
+                             capture_output=True).stdout
         return numpy.frombuffer(raw, numpy.uint8).reshape(height, width, 3)
 
     def windows(self) -> dict[str, str]:
         """The id of each tile's window by the tile's name."""
-        tree = subprocess.run(["xwininfo", "-root", "-tree"], env=self.environment(), check=True, capture_output=True, text=True).stdout
+        tree = subprocess.run(["xwininfo", "-root", "-tree"], env=self.environment(), check=True, capture_output=True,
+                              text=True).stdout
         return {name: window for window, name in re.findall(r'(0x[0-9a-f]+) "WallGL tile (.+?)"', tree)}
 
     def ask(self, request: str, window: str) -> None:
@@ -48,7 +51,8 @@ class OnAScreen(unittest.TestCase):
         self.programs = self.enterContext(XServer())
 
     def wall(self, **options) -> Wall:
-        return self.enterContext(Wall(**{"tiles": (2, 2), "tile_size": TILE, "options": OPTIONS, "windows": self.screen.display, **options}))
+        return self.enterContext(Wall(**{"tiles": (2, 2), "tile_size": TILE, "options": OPTIONS,
+                                         "windows": self.screen.display, **options}))
 
     def run_clock(self, wall: Wall, rect: tuple[int, int, int, int]) -> int:
         """A program that ends each frame in another colour; its session."""
@@ -136,13 +140,15 @@ class Windows(OnAScreen):
         wall.hold(session, False)
         wall.wait(session, wall.sessions()[0]["surfaces"][0]["frame"] + 5)
         wall.hold(session)
-        self.until(lambda: self.seen(wall) and self.screen.picture()[20:TILE[1], 50:TILE[0], 0].max() > 100, "the same on the new window")
+        self.until(lambda: self.seen(wall) and self.screen.picture()[20:TILE[1], 50:TILE[0], 0].max() > 100,
+                   "the same on the new window")
 
     def test_a_watched_tile_too(self) -> None:
         wall = self.wall(one_node=True)
         session = self.gears(wall)
         film = wall.folder / "film.avi"
-        recording = subprocess.Popen([wall.bin / "wallctl", "--walld", wall.address, "record", film, "--seconds", "2"], stdout=subprocess.DEVNULL)
+        recording = subprocess.Popen([wall.bin / "wallctl", "--walld", wall.address, "record", film, "--seconds", "2"],
+                                     stdout=subprocess.DEVNULL)
         while recording.poll() is None:
             wall.step(session)
         self.assertEqual(recording.returncode, 0)
@@ -153,7 +159,8 @@ class Windows(OnAScreen):
         wall = self.wall()
         self.gears(wall)
         self.until(lambda: self.seen(wall), "a program")
-        cover = subprocess.Popen(["xterm", "-geometry", "40x10+100+50"], env=self.screen.environment(), stderr=subprocess.DEVNULL)
+        cover = subprocess.Popen(["xterm", "-geometry", "40x10+100+50"], env=self.screen.environment(),
+                                 stderr=subprocess.DEVNULL)
         self.until(lambda: not self.seen(wall), "a window over the tiles")
         cover.terminate()
         cover.wait()
@@ -192,7 +199,8 @@ class Windows(OnAScreen):
 
     def test_the_pointer_is_not_seen(self) -> None:
         self.wall(tiles=(3, 3))
-        self.until(lambda: (self.screen.picture(pointer=True)[:450, :600] == BACKGROUND).all(), "no pointer, which X puts in the middle")
+        self.until(lambda: (self.screen.picture(pointer=True)[:450, :600] == BACKGROUND).all(),
+                   "no pointer, which X puts in the middle")
 
     def test_a_close_button_does_nothing(self) -> None:
         wall = self.wall(tiles=(1, 1))
@@ -205,9 +213,12 @@ class Windows(OnAScreen):
 
     def test_what_window_managers_are_told(self) -> None:
         self.wall(tiles=(1, 1))
-        told = subprocess.run(["xprop", "-id", self.screen.windows()["0-0"]], env=self.screen.environment(), check=True, capture_output=True, text=True).stdout
-        for line in ("_MOTIF_WM_HINTS(_MOTIF_WM_HINTS) = 0x2, 0x0, 0x0, 0x0, 0x0", 'WM_CLASS(STRING) = "tileserver", "WallGL"', "user specified location: 0, 0",
-                     "program specified minimum size: 200 by 150", "WM_DELETE_WINDOW", "Client accepts input or input focus: False"):
+        told = subprocess.run(["xprop", "-id", self.screen.windows()["0-0"]], env=self.screen.environment(), check=True,
+                              capture_output=True, text=True).stdout
+        for line in ("_MOTIF_WM_HINTS(_MOTIF_WM_HINTS) = 0x2, 0x0, 0x0, 0x0, 0x0",
+                     'WM_CLASS(STRING) = "tileserver", "WallGL"', "user specified location: 0, 0",
+                     "program specified minimum size: 200 by 150", "WM_DELETE_WINDOW",
+                     "Client accepts input or input focus: False"):
             self.assertIn(line, told)
         self.assertNotIn("FULLSCREEN", told)
 
@@ -222,10 +233,11 @@ d, window = ctypes.c_void_p(x.XOpenDisplay(None)), ctypes.c_ulong(int(sys.argv[1
 # A window manager's close button: the message WM_DELETE_WINDOW.
 CLOSE = """
 class Message(ctypes.Structure):
-    _fields_ = [("type", ctypes.c_int), ("serial", ctypes.c_ulong), ("sent", ctypes.c_int), ("display", ctypes.c_void_p), ("window", ctypes.c_ulong),
-                ("message_type", ctypes.c_ulong), ("format", ctypes.c_int), ("data", ctypes.c_long * 5), ("room", ctypes.c_char * 96)]
-message = Message(33, 0, 1, d, window, x.XInternAtom(d, b"WM_PROTOCOLS", 0), 32, (ctypes.c_long * 5)(x.XInternAtom(d, b"WM_DELETE_WINDOW", 0)))
-assert x.XSendEvent(d, window, 0, ctypes.c_long(0), ctypes.byref(message))
+    _fields_ = [("type", ctypes.c_int), ("serial", ctypes.c_ulong), ("sent", ctypes.c_int),
+                ("display", ctypes.c_void_p), ("window", ctypes.c_ulong), ("message_type", ctypes.c_ulong),
+                ("format", ctypes.c_int), ("data", ctypes.c_long * 5), ("room", ctypes.c_char * 96)]
+message = Message(33, 0, 1, d, window, x.XInternAtom(d, b"WM_PROTOCOLS", 0), 32, (ctypes.c_long * 5)(x.XInternAtom(d,
+b"WM_DELETE_WINDOW", 0))) assert x.XSendEvent(d, window, 0, ctypes.c_long(0), ctypes.byref(message))
 x.XSync(d, 0)
 """
 RESIZE = """
@@ -254,7 +266,8 @@ def with_monitors(*lines: str):
 class Monitors(OnAScreen):
     def described(self, *lines: str, **options) -> Wall:
         """Tiles in a row with these lines of wall.toml, on the screen that DISPLAY names."""
-        return self.enterContext(with_monitors(*lines)(tiles=(len(lines), 1), tile_size=TILE, options=OPTIONS, environment=self.screen.environment(), **options))
+        return self.enterContext(with_monitors(*lines)(tiles=(len(lines), 1), tile_size=TILE, options=OPTIONS,
+                                                       environment=self.screen.environment(), **options))
 
     def set_monitor(self, name: str, geometry: str) -> None:
         subprocess.run(["xrandr", "--setmonitor", name, geometry, "none"], env=self.screen.environment(), check=True)
@@ -271,7 +284,8 @@ class Monitors(OnAScreen):
                 wanted[40:190, x:x + 200] = tile_picture(wall, tile)
             return bool((self.screen.picture() == wanted).all())
         self.until(seen, "each tile on its monitor")
-        told = subprocess.run(["xprop", "-id", self.screen.windows()["0-0"]], env=self.screen.environment(), check=True, capture_output=True, text=True).stdout
+        told = subprocess.run(["xprop", "-id", self.screen.windows()["0-0"]], env=self.screen.environment(), check=True,
+                              capture_output=True, text=True).stdout
         self.assertIn("_NET_WM_STATE(ATOM) = _NET_WM_STATE_FULLSCREEN", told)
         self.assertNotIn("tile_scaled", wall.log("node-0-0"))
 
@@ -289,7 +303,8 @@ class Monitors(OnAScreen):
         self.assertIn('tile_scaled tile="0-0" size=200x150 window=640x480', said)
 
     def test_a_monitor_that_is_not_there(self) -> None:
-        self.fails('monitor = "DP-7"', f'tile \'0-0\': the X display "{self.screen.display}" has no monitor "DP-7": it has "screen" (640x480+0+0)')
+        self.fails('monitor = "DP-7"', f'tile \'0-0\': the X display "{self.screen.display}" has no monitor "DP-7": it '
+                                       f'has "screen" (640x480+0+0)')
 
     def test_a_display_that_is_not_there(self) -> None:
         self.fails('display = ":987"', 'the X display ":987" cannot be opened: is an X server running there')
@@ -300,8 +315,11 @@ class Monitors(OnAScreen):
     def fails(self, line: str, said: str, **environment: str) -> None:
         with tempfile.TemporaryDirectory(prefix="wallgl-") as folder:
             description = Path(folder) / "wall.toml"
-            description.write_text(f'[[node]]\nname = "n"\nlisten = "unix:{folder}/n.sock"\n[[node.tile]]\nname = "0-0"\nrect = [0, 0, 200, 150]\noutput = "window"\n{line}\n')
-            done = subprocess.run([build_folder() / "bin" / "tileserver", "--config", description, "--node", "n"], env=self.screen.environment(**environment), capture_output=True, text=True, timeout=SOON)
+            description.write_text(f'[[node]]\nname = "n"\nlisten = "unix:{folder}/n.sock"\n[[node.tile]]\n'
+                                   f'name = "0-0"\nrect = [0, 0, 200, 150]\noutput = "window"\n{line}\n')
+            done = subprocess.run([build_folder() / "bin" / "tileserver", "--config", description, "--node", "n"],
+                                  env=self.screen.environment(**environment), capture_output=True, text=True,
+                                  timeout=SOON)
         self.assertEqual(done.returncode, 1)
         self.assertIn(said, done.stderr)
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)

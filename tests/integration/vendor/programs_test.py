@@ -39,7 +39,8 @@ class Library(unittest.TestCase):
 
     def test_only_the_entry_points_are_exported(self):
         for library in self.libraries():
-            symbols = subprocess.run(["nm", "-D", "--defined-only", library], capture_output=True, text=True, check=True)
+            symbols = subprocess.run(["nm", "-D", "--defined-only", library], capture_output=True, text=True,
+                                     check=True)
             self.assertEqual({line.split()[-1] for line in symbols.stdout.splitlines()}, {"__glx_Main", "__egl_Main"})
 
     def test_needs_nothing_that_a_program_may_lack_or_clash_with(self):
@@ -127,7 +128,8 @@ class Programs(unittest.TestCase):
                 "pid = os.fork()\n"
                 "if pid == 0: sys.exit(7)\n"
                 "print(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))\n")
-        output = subprocess.run([sys.executable, "-c", code], env=self.environment, capture_output=True, text=True, timeout=20)
+        output = subprocess.run([sys.executable, "-c", code], env=self.environment, capture_output=True, text=True,
+                                timeout=20)
         self.assertEqual(output.stdout.strip(), "7", output.stderr)
 
 

@@ -6,8 +6,8 @@ from .text import header
 
 API_NOTES = """
 The implemented commands: api::NAME does one in its usual mode; GlTable has a place for each, and the three tables are a
-context's modes. Written by hand in client_lib: api::NAME of the commands marked `by hand`; compile::NAME and replay::NAME
-of those marked `record`; hand::NAME, setters of single parameters; gl_entry_NAME of those marked `hot`.
+context's modes. Written by hand in client_lib: api::NAME of the commands marked `by hand`; compile::NAME and
+replay::NAME of those marked `record`; hand::NAME, setters of single parameters; gl_entry_NAME of those marked `hot`.
 """
 
 
@@ -34,14 +34,17 @@ def api_header(commands, model, attributes):
     for i in canonical:
         note = " // by hand" if i.way == "hand" else ""
         out.append(_declaration(i) + ";" + note + "\n")
-    out.append("\n}  // namespace api\n\n/// Setters of single parameters and words, for what is more than storing a value.\nnamespace hand {\n\n")
+    out.append("\n}  // namespace api\n\n/// Setters of single parameters and words, for what is more than storing a "
+               "value.\nnamespace hand {\n\n")
     for e in model.elements:
         if e.hand and e.param:
             out.append(f"void set_{e.name}(Context&, unsigned i, const double* v);\n")
-    out.append("\n}  // namespace hand\n\n/// Putting a command into the display list being compiled (and executing it, if asked for).\nnamespace compile {\n\n")
+    out.append("\n}  // namespace hand\n\n/// Putting a command into the display list being compiled (and executing "
+               "it, if asked for).\nnamespace compile {\n\n")
     recorded = [i for i in canonical if "record" in i.flags]
     out += [_declaration(i) + ";\n" for i in recorded]
-    out.append("\n}  // namespace compile\n\n/// Executing it from there: the payload is what compile::NAME appended.\nnamespace replay {\n\n")
+    out.append("\n}  // namespace compile\n\n/// Executing it from there: the payload is what compile::NAME appended.\n"
+               "namespace replay {\n\n")
     out += [f"void {i.name}(Context&, std::span<const std::byte> payload);\n" for i in recorded]
     out.append("\n}  // namespace replay\n\nstruct GlTable {\n")
     out += [f"    {_pointer(i)};\n" for i in canonical]
@@ -50,7 +53,8 @@ def api_header(commands, model, attributes):
                "extern const GlTable inside_begin;  ///< between glBegin and glEnd: most are errors\n"
                "extern const GlTable compile;       ///< into the context's list()\n"
                "}  // namespace tables\n\n"
-               "/// What the context does with a command at once, while a list may be compiled as well: `inside_begin` or `immediate`.\n"
+               "/// What the context does with a command at once, while a list may be compiled as well: `inside_begin` "
+               "or `immediate`.\n"
                "const GlTable& execution_table(const Context& c);\n\n")
     out.append("/// A recorded command's number (common/glapi/recorder.h).\nenum class CommandId : std::uint16_t {\n"
                + "".join(f"    {i.name},\n" for i in canonical) + "};\n"
@@ -88,8 +92,10 @@ def _hot(commands):
 
 def tables_source(commands):
     canonical = commands.canonical
-    out = [header("gl.xml and proto/gl/commands.toml", "The modes of a context as tables, display list recording and replay.", [], pragma=False),
-           '#include "client_lib/context.h"\n#include "client_lib/param_commands.h"\n#include "common/glapi/recorder.h"\n'
+    out = [header("gl.xml and proto/gl/commands.toml",
+                  "The modes of a context as tables, display list recording and replay.", [], pragma=False),
+           '#include "client_lib/context.h"\n#include "client_lib/param_commands.h"\n'
+           '#include "common/glapi/recorder.h"\n'
            '#include "gen/client_lib/api.gen.h"\n\nnamespace wall::client {\n\nnamespace {\n\n'
            "using glapi::recorded_array;\n\n"
            "/// A command that no list holds, while one is compiled: done at once.\n"
@@ -99,29 +105,36 @@ def tables_source(commands):
            "/// A command that is an error between glBegin and glEnd.\n"
            "template <class Function>\nstruct RefusedInside;\n"
            "template <class R, class... A>\nstruct RefusedInside<R (*)(Context&, A...)> {\n"
-           "    static R call(Context& c, A...) {\n        c.error(GL_INVALID_OPERATION);\n        return R();\n    }\n};\n\n"
+           "    static R call(Context& c, A...) {\n        c.error(GL_INVALID_OPERATION);\n        return R();\n    }\n"
+           "};\n\n"
            "}  // namespace\n\nnamespace {\n\n"]
     automatic = [i for i in canonical if i.in_list and "record" not in i.flags]
     for i in automatic:
         out.append(_compile(i, commands))
     for i in automatic:
         out.append(_replay(i))
-    out.append("struct ReplayRow {\n    void (*run)(Context&, std::span<const std::byte>);  ///< null: not in lists\n};\n\n"
+    out.append("struct ReplayRow {\n    void (*run)(Context&, std::span<const std::byte>);  ///< null: not in lists\n"
+               "};\n\n"
                "const ReplayRow kReplayRows[kCommandCount] = {\n")
     for i in canonical:
         run = "nullptr" if not i.in_list else f"&replay::{i.name}" if "record" in i.flags else f"&replay_{i.name}"
         out.append(f"    {{{run}}},  // {i.name}\n")
     out.append("};\n\n}  // namespace\n\n"
-               "const GlTable& execution_table(const Context& c) { return c.packer.inside() ? tables::inside_begin : tables::immediate; }\n\n"
+               "const GlTable& execution_table(const Context& c) { return c.packer.inside() ? tables::inside_begin : "
+               "tables::immediate; }\n\n"
                "void replay_command(Context& c, std::uint16_t command, std::span<const std::byte> payload) {\n"
-               "    if (command < kCommandCount && kReplayRows[command].run) kReplayRows[command].run(c, payload);\n}\n\n"
-               "const char* const kCommandNames[kCommandCount] = {\n" + "".join(f'    "gl{i.name}",\n' for i in canonical) + "};\n\n"
+               "    if (command < kCommandCount && kReplayRows[command].run) kReplayRows[command].run(c, payload);\n}\n"
+               "\n"
+               "const char* const kCommandNames[kCommandCount] = {\n"
+               + "".join(f'    "gl{i.name}",\n' for i in canonical) + "};\n\n"
                "namespace tables {\n\n")
     out.append(_table("immediate", canonical, lambda i: f"&api::{i.name}"))
     out.append(_table("inside_begin", canonical,
-                      lambda i: f"&api::{i.name}" if "inside" in i.flags else f"&RefusedInside<decltype(GlTable::{i.name})>::call"))
+                      lambda i: f"&api::{i.name}"
+                      if "inside" in i.flags else f"&RefusedInside<decltype(GlTable::{i.name})>::call"))
     out.append(_table("compile", canonical,
-                      lambda i: f"&Direct<&GlTable::{i.name}, decltype(GlTable::{i.name})>::call" if not i.in_list else f"&compile::{i.name}" if "record" in i.flags else f"&compile_{i.name}"))
+                      lambda i: f"&Direct<&GlTable::{i.name}, decltype(GlTable::{i.name})>::call"
+                      if not i.in_list else f"&compile::{i.name}" if "record" in i.flags else f"&compile_{i.name}"))
     out.append("}  // namespace tables\n}  // namespace wall::client\n")
     return "".join(out)
 
@@ -172,16 +185,20 @@ def entries_source(commands, registry):
             out.append(_entry(i, commands, registry))
     unsupported = _unsupported(commands)
     out.append("/// Any signature: the calling convention lets a callee ignore its arguments.\n"
-               "template <std::size_t kIndex>\nstd::uintptr_t GLAPIENTRY unsupported() {\n    report_unsupported(kIndex);\n    return 0;\n}\n\n"
-               "template <class F>\nProcEntry proc(const char* name, F* entry) {\n    return {name, reinterpret_cast<void (*)()>(entry)};\n}\n\n")
+               "template <std::size_t kIndex>\nstd::uintptr_t GLAPIENTRY unsupported() {\n"
+               "    report_unsupported(kIndex);\n    return 0;\n}\n\n"
+               "template <class F>\nProcEntry proc(const char* name, F* entry) {\n"
+               "    return {name, reinterpret_cast<void (*)()>(entry)};\n}\n\n")
     index = {i.name: n for n, i in enumerate(unsupported)}
     names = sorted(commands.all)
     out.append(f"const ProcEntry kProcTable[] = {{\n")
     for name in names:
         i = commands.all[name]
-        out.append(f'    proc("{name}", &unsupported<{index[i.name]}>),\n' if i.later else f'    proc("{name}", &gl_entry_{i.name}),\n')
+        out.append(f'    proc("{name}", &unsupported<{index[i.name]}>),\n'
+                   if i.later else f'    proc("{name}", &gl_entry_{i.name}),\n')
     out.append("};\n\n}  // namespace\n\nconst std::span<const ProcEntry> kProcs = kProcTable;\n\n"
-               "const char* const kUnsupportedNames[kUnsupportedCount] = {\n" + "".join(f'    "gl{i.name}",\n' for i in unsupported) + "};\n\n"
+               "const char* const kUnsupportedNames[kUnsupportedCount] = {\n"
+               + "".join(f'    "gl{i.name}",\n' for i in unsupported) + "};\n\n"
                "}  // namespace wall::client\n")
     return "".join(out)
 
@@ -260,9 +277,12 @@ def _param_entry(i, commands):
     if keys["form"] == "i":
         return [f"{table}({args}, rounded_param({value}));"]
     if form.endswith("v"):
-        return ["GLfloat v[4] = {};", f"convert_params(ParamFamily::{family}, {pname}, {value}, v);", f"{table}({args}, v);"]
+        return ["GLfloat v[4] = {};", f"convert_params(ParamFamily::{family}, {pname}, {value}, v);",
+                f"{table}({args}, v);"]
     if form == "i" and keys.get("fractions"):
         return [f"const GLint given[4] = {{{value}}};", "GLfloat v[4] = {};",
                 f"convert_params(ParamFamily::{family}, {pname}, given, v);", f"{table}({args}, v);"]
-    refusal = [f"if (refuses_one_value(*c, ParamFamily::{family}, {pname})) return c->error(GL_INVALID_ENUM);"] if keys.get("strict") else []
+    refusal = []
+    if keys.get("strict"):
+        refusal = [f"if (refuses_one_value(*c, ParamFamily::{family}, {pname})) return c->error(GL_INVALID_ENUM);"]
     return [f"const GLfloat v[4] = {{static_cast<GLfloat>({value})}};", *refusal, f"{table}({args}, v);"]

@@ -16,7 +16,8 @@ prefix. Usage:
 def functions_header(registry, extra):
     names = sorted(n for n, c in registry.commands.items() if c.gl) + sorted(extra)
     commands = [registry.commands[n] for n in names]
-    out = [header("gl.xml", NOTES, ["<array>", "<cstddef>", "<cstring>", "", '"common/glapi/gl_types.h"']).replace("#include \n", "\n")]
+    out = [header("gl.xml", NOTES, ["<array>", "<cstddef>", "<cstring>", "",
+                                    '"common/glapi/gl_types.h"']).replace("#include \n", "\n")]
     out.append("\nnamespace wall::glapi {\n\nstruct GlFunctions {\n")
     for c in commands:
         out.append(f"    {c.returns} (GLAPIENTRY* {c.short})({c.types}) = nullptr;\n")

@@ -5,7 +5,8 @@ from .state import TYPES
 from .text import header
 
 NOTES = """
-Samples<E>::values: three allowed values of every element that has a type to choose from, none of them special. For tests.
+Samples<E>::values: three allowed values of every element that has a type to choose from, none of them special. For
+tests.
 """
 
 
@@ -14,7 +15,8 @@ def samples_header(model):
            '#include "gen/glstate/state.gen.h"\n\nnamespace wall::glstate {\n\ntemplate <class E>\nstruct Samples;\n']
     for e in model.elements:
         values = ", ".join(_value(e, n, model) for n in range(3))
-        out.append(f"template <>\nstruct Samples<el::{e.name}> {{\n    static constexpr {e.cpp} values[] = {{{values}}};\n}};\n")
+        out.append(f"template <>\nstruct Samples<el::{e.name}> {{\n"
+                   f"    static constexpr {e.cpp} values[] = {{{values}}};\n}};\n")
     out.append("\n}  // namespace wall::glstate\n")
     return "".join(out)
 

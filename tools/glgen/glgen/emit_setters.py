@@ -7,9 +7,12 @@ from .text import header
 
 
 def setters_source(commands, model, registry):
-    out = [header("proto/gl/state.toml and proto/gl/commands.toml", "Commands that set one element of the state, or read parameters.", [], pragma=False),
-           '#include <array>\n\n#include "client_lib/context.h"\n#include "client_lib/param_commands.h"\n#include "gen/client_lib/api.gen.h"\n\n'
-           "namespace wall::client {\n\nnamespace el = glstate::el;\nusing namespace glstate;  // value types\n\nnamespace {\n\n"]
+    out = [header("proto/gl/state.toml and proto/gl/commands.toml",
+                  "Commands that set one element of the state, or read parameters.", [], pragma=False),
+           '#include <array>\n\n#include "client_lib/context.h"\n#include "client_lib/param_commands.h"\n'
+           '#include "gen/client_lib/api.gen.h"\n\n'
+           "namespace wall::client {\n\nnamespace el = glstate::el;\nusing namespace glstate;  // value types\n\n"
+           "namespace {\n\n"]
     body = _body(commands, model, registry)
     for name, words in model.valid.items():
         if f"kValid_{name})" in body:
@@ -25,7 +28,8 @@ def _body(commands, model, registry):
             out.append(_param_setter(e, model))
     out.append(_param_rows(model, registry))
     out.append(_cap_rows(model, registry))
-    out.append("}  // namespace\n\nconst std::span<const ParamRow> kParamRows = kParamTable;\nconst std::span<const CapRow> kCapRows = kCapTable;\n\n"
+    out.append("}  // namespace\n\nconst std::span<const ParamRow> kParamRows = kParamTable;\n"
+               "const std::span<const CapRow> kCapRows = kCapTable;\n\n"
                "namespace api {\n\n")
     by_set = {e.set: e for e in model.elements if e.set}
     for i in commands.canonical:
@@ -56,7 +60,8 @@ def _checks(e, f, expression):
         if limit is not None and not isinstance(limit, dict):
             other = e.keys.get("or")
             exempt = f" && {expression} != {_literal(f.type, other)}" if other is not None else ""
-            lines.append(f"if ({expression} {operator} {_literal(f.type, limit)}{exempt}) return c.error(GL_INVALID_VALUE);")
+            lines.append(f"if ({expression} {operator} {_literal(f.type, limit)}{exempt}) return "
+                         f"c.error(GL_INVALID_VALUE);")
     return lines
 
 
@@ -73,7 +78,8 @@ def _component(f, expression, given):
     wanted = TYPES[f.type][0] if f.components == 1 else "float"
     if f.type == "flag":
         return f"to_flag({expression})"
-    plain = {"std::int32_t": ("GLint", "GLsizei"), "std::uint32_t": ("GLuint",), "GLenum": ("GLenum",), "float": ("GLfloat",),
+    plain = {"std::int32_t": ("GLint", "GLsizei"), "std::uint32_t": ("GLuint",), "GLenum": ("GLenum",),
+             "float": ("GLfloat",),
              "double": ("GLdouble",)}[wanted]
     return expression if given in plain else f"static_cast<{wanted}>({expression})"
 
@@ -100,7 +106,8 @@ def _setter(i, e):
     face = i.command.params[0].name
     if e.index == "face":
         lines.insert(0, f"if (!is_face({face})) return c.error(GL_INVALID_ENUM);")
-        lines += [f"for (unsigned i = 0; i < 2; ++i)", f"    if (names_face({face}, i)) c.set<el::{e.name}>(i, {value});"]
+        lines += [f"for (unsigned i = 0; i < 2; ++i)",
+                  f"    if (names_face({face}, i)) c.set<el::{e.name}>(i, {value});"]
     else:
         lines.append(f"c.set<el::{e.name}>({index}, {value});")
     declared = ", ".join(["Context& c"] + [f"{p.type} {p.name}" for p in i.command.params])
@@ -114,7 +121,8 @@ def _param_setter(e, model):
     if f.components > 1:
         lines.append(f"c.set<el::{e.name}>(i, vector<{TYPES[f.type][0]}>(v));")
     else:
-        get = {"enum": "to_enum(v[0])", "flag": "to_flag(v[0])", "i32": "to_int(v[0])", "u32": "to_int(v[0])", "float": "static_cast<float>(v[0])"}[component]
+        get = {"enum": "to_enum(v[0])", "flag": "to_flag(v[0])", "i32": "to_int(v[0])", "u32": "to_int(v[0])",
+               "float": "static_cast<float>(v[0])"}[component]
         lines.append(f"const {TYPES[f.type][0]} value = {get};")
         if e.valid and model.valid[e.valid][0].isdigit():
             given = "v[0]" if component == "flag" else "value"
@@ -124,7 +132,8 @@ def _param_setter(e, model):
         else:
             lines += _checks(e, f, "value")
         lines.append(f"c.set<el::{e.name}>(i, {_clamped(e, f, 'value')});")
-    return f"void set_{e.name}(Context& c, unsigned i, const double* v) {{\n" + "".join(f"    {line}\n" for line in lines) + "}\n"
+    head = f"void set_{e.name}(Context& c, unsigned i, const double* v) {{\n"
+    return head + "".join(f"    {line}\n" for line in lines) + "}\n"
 
 
 def _without_valid(e):
@@ -145,7 +154,8 @@ def _param_rows(model, registry):
     for family, keys in model.families.items():
         for pname, shape in keys.get("shape", {}).items():
             parts = shape.split()
-            rows.append((family, "0", "kAnyParam" if pname == "*" else pname, int(parts[0]), "true" if "norm" in parts else "false", "nullptr"))
+            rows.append((family, "0", "kAnyParam" if pname == "*" else pname, int(parts[0]),
+                         "true" if "norm" in parts else "false", "nullptr"))
     rows.sort(key=lambda r: (r[0], r[2] == "kAnyParam"))
     out = f"\nconst std::array<ParamRow, {len(rows)}> kParamTable = {{{{\n"
     for family, target, pname, n, norm, setter in rows:
@@ -168,7 +178,8 @@ def _param_command(i, commands):
     if i.cls == "query":
         family, _ = commands.family_of(i.name[3:])
         lead = names[0] if len(names) == 3 else "0"
-        return f"void {i.name}({declared}) {{\n    get_params(c, ParamFamily::{family}, {lead}, {names[-2]}, {names[-1]});\n}}\n"
+        return (f"void {i.name}({declared}) {{\n"
+                f"    get_params(c, ParamFamily::{family}, {lead}, {names[-2]}, {names[-1]});\n}}\n")
     family, form = commands.family_of(i.name)
     lead = names[0] if len(names) == 3 else "0"
     value = names[-1]

@@ -17,8 +17,8 @@ A category's value id names its whole content: equal ids mean equal values. Elem
 """
 
 EMIT_NOTES = """
-Tells a driver one element's value: DriverEmit<Gl>{}.emit(gl, el::fog_density{}, 0, 0.5f) calls gl.Fogf(GL_FOG_DENSITY, 0.5f).
-Elements of CustomElements have no overload here: derive, `using DriverEmit<Gl>::emit;`, and add them.
+Tells a driver one element's value: DriverEmit<Gl>{}.emit(gl, el::fog_density{}, 0, 0.5f) calls gl.Fogf(GL_FOG_DENSITY,
+0.5f). Elements of CustomElements have no overload here: derive, `using DriverEmit<Gl>::emit;`, and add them.
 Gl is glapi::GlFunctions or anything with members of the same names.
 """
 
@@ -34,9 +34,11 @@ def state_header(model):
     names = [c.name for c in model.categories]
     out.append("enum class Category : std::uint8_t {\n" + "".join(f"    {n},\n" for n in names) + "    kCount\n};\n")
     out.append(f"inline constexpr std::size_t kCategoryCount = {len(names)};\n")
-    out.append("inline constexpr std::array<const char*, kCategoryCount> kCategoryNames = {\n" + "".join(f'    "{n}",\n' for n in names) + "};\n")
+    out.append("inline constexpr std::array<const char*, kCategoryCount> kCategoryNames = {\n"
+               + "".join(f'    "{n}",\n' for n in names) + "};\n")
     last_sent = model.categories[-2].elements[-1]
-    out.append(f"inline constexpr std::uint32_t kLastSentId = {last_sent.id + last_sent.count - 1};  ///< ids 1 to this travel; those of `local` do not\n")
+    out.append(f"inline constexpr std::uint32_t kLastSentId = {last_sent.id + last_sent.count - 1};  ///< ids 1 to "
+               f"this travel; those of `local` do not\n")
     out.append(f"inline constexpr std::uint32_t kLastId = {model.last_id};\n\n")
     for struct, fields in model.structs.items():
         out.append(f"struct {struct} {{\n" + "".join(f"    {TYPES[f.type][0]} {f.name};\n" for f in fields)
@@ -44,8 +46,10 @@ def state_header(model):
         size = sum(TYPES[f.type][3] for f in fields)
         out.append(f"static_assert(sizeof({struct}) == {size} && std::is_trivially_copyable_v<{struct}>);\n\n")
     out += [_category_struct(c) for c in model.categories]
-    out.append("/// Standard layout; copied and compared by category. Never holds pointers of its own.\nstruct State {\n"
-               "    std::array<std::uint64_t, kCategoryCount> ids = filled<std::array<std::uint64_t, kCategoryCount>>(1);  ///< value ids; 1: defaults\n")
+    out.append("/// Standard layout; copied and compared by category. Never holds pointers of its own.\n"
+               "struct State {\n"
+               "    std::array<std::uint64_t, kCategoryCount> ids = filled<std::array<std::uint64_t, "
+               "kCategoryCount>>(1);  ///< value ids; 1: defaults\n")
     out += [f"    {c.struct} {c.name};\n" for c in model.categories]
     out.append("};\nstatic_assert(std::is_standard_layout_v<State>);\n\nnamespace el {\n\n")
     out += [_tag(e, c) for c in model.categories for e in c.elements]
@@ -64,7 +68,8 @@ def _category_struct(c):
         if e.count == 1:
             out.append(f"    {e.cpp} {e.name} = {e.defaults[0]};\n")
         elif len(set(e.defaults)) == 1:
-            out.append(f"    std::array<{e.cpp}, {e.count}> {e.name} = filled<std::array<{e.cpp}, {e.count}>>({e.cpp}{_braced(e.defaults[0])});\n")
+            out.append(f"    std::array<{e.cpp}, {e.count}> {e.name} = filled<std::array<{e.cpp}, "
+                       f"{e.count}>>({e.cpp}{_braced(e.defaults[0])});\n")
         else:
             values = ", ".join(e.cpp + _braced(d) for d in e.defaults)
             out.append(f"    std::array<{e.cpp}, {e.count}> {e.name} = {{{values}}};\n")
@@ -86,18 +91,22 @@ def _tag(e, c):
             f"    static constexpr GLbitfield groups = {_mask(e.groups, GROUP_BITS)};\n"
             f"    static constexpr GLbitfield client_groups = {_mask(e.client_groups, CLIENT_GROUP_BITS)};\n"
             f"    static type& ref(State& s, unsigned {i or ''}{' = 0' if i else ' = 0'}) {{ return {at}; }}\n"
-            f"    static const type& ref(const State& s, unsigned {i or ''}{' = 0' if i else ' = 0'}) {{ return {at}; }}\n}};\n")
+            f"    static const type& ref(const State& s, unsigned {i or ''}{' = 0' if i else ' = 0'}) "
+            f"{{ return {at}; }}\n}};\n")
 
 
 # ---- tables ----
 
 def tables_source(model, registry):
-    out = [header("proto/gl/state.toml", "Tables over the state's elements: common/glstate/elements.h, queries.h.", [], pragma=False),
-           '#include "common/glstate/elements.h"\n#include "common/glstate/queries.h"\n\n#include <cstddef>\n\nnamespace wall::glstate {\n\n']
+    out = [header("proto/gl/state.toml", "Tables over the state's elements: common/glstate/elements.h, queries.h.", [],
+                  pragma=False),
+           '#include "common/glstate/elements.h"\n#include "common/glstate/queries.h"\n\n#include <cstddef>\n\n'
+           'namespace wall::glstate {\n\n']
     elements = model.elements
     out.append(f"const std::array<ElementInfo, kElementCount> kElements = {{{{\n")
     for e in elements:
-        out.append(f'    {{"{e.name}", Category::{e.category}, {e.id}, {e.count}, {e.bytes}, offsetof(State, {e.category}.{e.name}), '
+        out.append(f'    {{"{e.name}", Category::{e.category}, {e.id}, {e.count}, {e.bytes}, '
+                   f"offsetof(State, {e.category}.{e.name}), "
                    f"{_mask(e.groups, GROUP_BITS)}, {_mask(e.client_groups, CLIENT_GROUP_BITS)}}},\n")
     out.append("}};\n\nconst std::array<std::uint16_t, kLastId + 1> kElementOfId = {\n    0,  // no element\n")
     for n, e in enumerate(elements):
@@ -130,7 +139,8 @@ def _getters(model, registry):
     rows = []
     for e in model.elements:
         for word, first, f, components in e.getters:
-            rows.append((registry.enums[word], f"    {{{word}, ValueKind::{value_kind(e, f)}, {components}, el::{e.name}::id + {first}, "
+            rows.append((registry.enums[word],
+                         f"    {{{word}, ValueKind::{value_kind(e, f)}, {components}, el::{e.name}::id + {first}, "
                          f"{f.offset}, IndexRule::{_rule(e)}, {e.unit_stride}}},\n"))
     rows.sort()
     assert len({r[0] for r in rows}) == len(rows), "state.toml: two elements answer the same glGet word"
@@ -142,7 +152,8 @@ def _caps(model, registry):
     rows = []
     for e in model.elements:
         for word, first in e.caps:
-            rows.append((registry.enums[word], f"    {{{word}, el::{e.name}::id + {first}, IndexRule::{_rule(e)}, {e.unit_stride}}},\n"))
+            rows.append((registry.enums[word],
+                         f"    {{{word}, el::{e.name}::id + {first}, IndexRule::{_rule(e)}, {e.unit_stride}}},\n"))
     rows.sort()
     return f"const std::array<CapEntry, {len(rows)}> kCapTable = {{{{\n" + "".join(r[1] for r in rows) + "}};\n" \
         "const std::span<const CapEntry> kCapEntries = kCapTable;\n\n"
@@ -153,8 +164,8 @@ def _params(model):
     for e in model.elements:
         if e.param:
             f = e.fields[0]
-            rows.append(f"    {{ParamFamily::{e.family}, {e.param_target or '0'}, {e.pname}, ValueKind::{value_kind(e, f)}, "
-                        f"{f.components}, el::{e.name}::id}},\n")
+            rows.append(f"    {{ParamFamily::{e.family}, {e.param_target or '0'}, {e.pname}, "
+                        f"ValueKind::{value_kind(e, f)}, {f.components}, el::{e.name}::id}},\n")
     return f"const std::array<ParamEntry, {len(rows)}> kParamTable = {{{{\n" + "".join(rows) + "}};\n" \
         "const std::span<const ParamEntry> kParamEntries = kParamTable;\n\n"
 
@@ -162,14 +173,18 @@ def _params(model):
 def tables_header(model):
     families = sorted(model.families)
     names = sorted({e.name_of for e in model.elements if e.name_of} | {"buffer"})
-    out = [header("proto/gl/state.toml", "Sizes and closed sets that the tables of elements.h and queries.h are declared with.", []),
+    out = [header("proto/gl/state.toml",
+                  "Sizes and closed sets that the tables of elements.h and queries.h are declared with.", []),
            "#include <cstddef>\n#include <cstdint>\n\nnamespace wall::glstate {\n\n"]
     out.append(f"inline constexpr std::size_t kElementCount = {len(model.elements)};\n\n")
-    out.append("/// Commands that set a parameter by its name.\nenum class ParamFamily : std::uint8_t { " + ", ".join(families) + " };\n\n")
-    kinds = ["flag", "enumerant", "integer", "unsigned_integer", "real", "normalized", "real64", "normalized64", "pointer"]
+    out.append("/// Commands that set a parameter by its name.\nenum class ParamFamily : std::uint8_t { "
+               + ", ".join(families) + " };\n\n")
+    kinds = ["flag", "enumerant", "integer", "unsigned_integer", "real", "normalized", "real64", "normalized64",
+             "pointer"]
     out.append("/// What a component is, which decides how glGet* converts it.\nenum class ValueKind : std::uint8_t {\n"
                + "".join(f"    {k},\n" for k in kinds)
-               + "".join(f"    name_{n},  ///< a session's name of an object: the application has its own\n" for n in names) + "};\n\n"
+               + "".join(f"    name_{n},  ///< a session's name of an object: the application has its own\n"
+                         for n in names) + "};\n\n"
                "}  // namespace wall::glstate\n")
     return "".join(out)
 
@@ -181,7 +196,8 @@ def driver_header(model, registry):
            '#include "gen/glstate/state.gen.h"\n\nnamespace wall::glstate {\n\n'
            "template <class Gl>\nstruct DriverEmit {\n"
            "    unsigned active_unit = 0;  ///< the driver's\n\n"
-           "    void unit(Gl& gl, unsigned i) {\n        if (active_unit != i) gl.ActiveTexture(GL_TEXTURE0 + (active_unit = i));\n    }\n"
+           "    void unit(Gl& gl, unsigned i) {\n"
+           "        if (active_unit != i) gl.ActiveTexture(GL_TEXTURE0 + (active_unit = i));\n    }\n"
            "    static GLenum face(unsigned i) { return i == 0 ? GL_FRONT : GL_BACK; }\n\n"]
     custom = []
     for e in model.elements:

@@ -107,7 +107,8 @@ def _packer(op):
 
 def decode_header(ops):
     out = [header("proto/gl/wire.toml", DECODE_NOTES,
-                  ["<cstdint>", "<span>", "", '"common/wire/operand_reader.h"', '"gen/glapi/wire.gen.h"']).replace("#include \n", "\n")]
+                  ["<cstdint>", "<span>", "", '"common/wire/operand_reader.h"',
+                   '"gen/glapi/wire.gen.h"']).replace("#include \n", "\n")]
     out.append("""
 namespace wall::glapi {
 
@@ -167,8 +168,8 @@ def _decoder(op):
 
 
 NULL_NOTES = """
-A handler that takes every command and does nothing: the base of handlers that look at a few (tests, benchmarks, fuzzers).
-A derived class declares members of the same name over these.
+A handler that takes every command and does nothing: the base of handlers that look at a few (tests, benchmarks,
+fuzzers). A derived class declares members of the same name over these.
 """
 
 
@@ -176,8 +177,10 @@ def null_handler_header(ops):
     out = [header("proto/gl/wire.toml", NULL_NOTES, []),
            '#include <cstdint>\n#include <span>\n\n#include "common/glapi/decoder.h"\n\nnamespace wall::glapi {\n\n'
            "struct NullHandler : Handler {\n"
-           "    std::uint64_t begin_block(std::uint64_t tiles, std::size_t) { return tiles; }\n    void begin_tile(unsigned) {}\n    void end_block() {}\n"
-           "    std::uint32_t state_bytes(std::uint32_t) { return 4; }\n    bool State(std::uint32_t, std::span<const std::byte>) { return true; }\n"]
+           "    std::uint64_t begin_block(std::uint64_t tiles, std::size_t) { return tiles; }\n"
+           "    void begin_tile(unsigned) {}\n    void end_block() {}\n"
+           "    std::uint32_t state_bytes(std::uint32_t) { return 4; }\n"
+           "    bool State(std::uint32_t, std::span<const std::byte>) { return true; }\n"]
     for op in ops:
         if op.is_state or op.name == "Block":
             continue

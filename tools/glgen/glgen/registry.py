@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The Khronos registry (gl.xml), and what is added to it, as values: every command with its signature, first version and alias."""
+"""The Khronos registry (gl.xml), and what is added to it, as values: every command with its signature, first version
+and alias."""
 
 import re
 import xml.etree.ElementTree as ET

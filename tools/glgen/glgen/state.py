@@ -25,10 +25,11 @@ TYPES = {
 
 GROUP_BITS = {
     "current": "GL_CURRENT_BIT", "point": "GL_POINT_BIT", "line": "GL_LINE_BIT", "polygon": "GL_POLYGON_BIT",
-    "polygon_stipple": "GL_POLYGON_STIPPLE_BIT", "pixel": "GL_PIXEL_MODE_BIT", "lighting": "GL_LIGHTING_BIT", "fog": "GL_FOG_BIT",
-    "depth_buffer": "GL_DEPTH_BUFFER_BIT", "accum_buffer": "GL_ACCUM_BUFFER_BIT", "stencil_buffer": "GL_STENCIL_BUFFER_BIT",
-    "viewport": "GL_VIEWPORT_BIT", "transform": "GL_TRANSFORM_BIT", "enable": "GL_ENABLE_BIT", "color_buffer": "GL_COLOR_BUFFER_BIT",
-    "hint": "GL_HINT_BIT", "eval": "GL_EVAL_BIT", "list": "GL_LIST_BIT", "texture": "GL_TEXTURE_BIT", "scissor": "GL_SCISSOR_BIT",
+    "polygon_stipple": "GL_POLYGON_STIPPLE_BIT", "pixel": "GL_PIXEL_MODE_BIT", "lighting": "GL_LIGHTING_BIT",
+    "fog": "GL_FOG_BIT", "depth_buffer": "GL_DEPTH_BUFFER_BIT", "accum_buffer": "GL_ACCUM_BUFFER_BIT",
+    "stencil_buffer": "GL_STENCIL_BUFFER_BIT", "viewport": "GL_VIEWPORT_BIT", "transform": "GL_TRANSFORM_BIT",
+    "enable": "GL_ENABLE_BIT", "color_buffer": "GL_COLOR_BUFFER_BIT", "hint": "GL_HINT_BIT", "eval": "GL_EVAL_BIT",
+    "list": "GL_LIST_BIT", "texture": "GL_TEXTURE_BIT", "scissor": "GL_SCISSOR_BIT",
     "multisample": "GL_MULTISAMPLE_BIT",
 }
 CLIENT_GROUP_BITS = {"pixel_store": "GL_CLIENT_PIXEL_STORE_BIT", "vertex_array": "GL_CLIENT_VERTEX_ARRAY_BIT"}
@@ -69,7 +70,8 @@ class Element:
         last = self.fields[-1]
         return last.offset + TYPES[last.type][3]
 
-    def __getattr__(self, key):     # cap, get, set, param, emit, hand, norm, valid, min, max, above, below, clamp, name...
+    # cap, get, set, param, emit, hand, norm, valid, min, max, above, below, clamp, name...
+    def __getattr__(self, key):
         if key in _OPTIONAL:
             return self.keys.get(key)
         raise AttributeError(key)
@@ -138,8 +140,10 @@ class Element:
         return self.emit == "custom"
 
 
-_OPTIONAL = {"cap", "get", "set", "param", "emit", "hand", "norm", "valid", "min", "max", "above", "below", "clamp", "args", "or", "invalid"}
-_KEYS = _OPTIONAL | {"name", "type", "fields", "value", "default", "defaults", "count", "index", "groups", "client_groups"}
+_OPTIONAL = {"cap", "get", "set", "param", "emit", "hand", "norm", "valid", "min", "max", "above", "below", "clamp",
+             "args", "or", "invalid"}
+_KEYS = _OPTIONAL | {"name", "type", "fields", "value", "default", "defaults", "count", "index", "groups",
+                     "client_groups"}
 
 
 @dataclass
