@@ -236,6 +236,7 @@ bool NodeStream::write_some(Outgoing& out) {
             return false;
         }
         out.sent += static_cast<std::size_t>(n);
+        bytes_sent_.fetch_add(static_cast<std::uint64_t>(n), std::memory_order_relaxed);
     }
 }
 
