@@ -5,9 +5,15 @@
 #include <array>
 #include <cstring>
 
-#include "client_lib/packer.h"
+#include "common/wire/pack_buffer.h"
+#include "gen/glapi/wire.gen.h"
+#include "gen/glstate/attributes.gen.h"
 
 namespace wall::client {
+
+using glstate::Attribute;
+using glstate::kAttributes;
+using glstate::place_of;
 
 /// Operands of a geometry command; all of them have a fixed size.
 inline std::size_t operand_bytes_of(glapi::Op op) { return glapi::kOpFixedBytes[static_cast<std::size_t>(op)]; }

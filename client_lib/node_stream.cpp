@@ -145,9 +145,9 @@ void NodeStream::send(std::uint32_t context, wire::PackBuffer batch) {
     std::unique_lock lock(mutex_);
     const auto room = [&] { return failed() || queued_bytes_ < kMaxQueuedBytes; };
     while (!room()) {
-        const std::uint64_t before = bytes_sent_;
+        const std::uint64_t before = bytes_sent();
         wait(lock, stalls_ ? kStallLimitMs : kNoLimit, room);
-        if (room() || bytes_sent_ != before) continue;
+        if (room() || bytes_sent() != before) continue;
         lock.unlock();
         give_up("node takes no more data");
         return;
@@ -236,7 +236,7 @@ bool NodeStream::write_some(Outgoing& out) {
             return false;
         }
         out.sent += static_cast<std::size_t>(n);
-        bytes_sent_ += static_cast<std::uint64_t>(n);
+        bytes_sent_.fetch_add(static_cast<std::uint64_t>(n), std::memory_order_relaxed);
     }
 }
 

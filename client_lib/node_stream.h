@@ -50,6 +50,7 @@ public:
     std::string failure() const;
     /// The node has said why it ends the stream: opened again, it would come to the same.
     bool ended_by_node() const { return ended_by_node_.load(std::memory_order_acquire); }
+    std::uint64_t bytes_sent() const { return bytes_sent_.load(std::memory_order_relaxed); }
 
     // ---- transport thread ----
     int fd() const { return fd_.get(); }

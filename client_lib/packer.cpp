@@ -45,15 +45,15 @@ void Packer::make_room() {
     update_limit();
 }
 
-/// Forgets what was packed since then, and the attributes among it.
+/// Forgets what was packed since then; the attributes are those of before.
 void Packer::rewind(const wire::PackMark& to) {
     opcodes_ = middle_ - to.commands;
     operands_ = middle_ + to.operand_bytes;
     BlockWalk walk(*this, {}, to, {});
     walk.go_to(to);
     for (std::size_t i = 0; i < kAttributes; ++i) {
-        const std::uint32_t place = walk.places().offset[i];
-        last[i] = place == AttributePlaces::kNone ? nullptr : operands().data() + place;
+        const std::uint32_t offset = walk.places().offset[i];
+        last[i] = offset == AttributePlaces::kNone ? nullptr : middle_ + offset;
         last_op[i] = walk.places().op[i];
     }
 }

@@ -322,14 +322,15 @@ RenderThread::~RenderThread() {
     if (thread_.joinable()) thread_.join();
 }
 
-void RenderThread::run(const OpenBackend& open, std::string name, const std::function<void(Result<Started>)>& started) {
+void RenderThread::run(const OpenBackend& open, std::string backend_name,
+                       const std::function<void(Result<Started>)>& started) {
     auto backend = open();
     if (!backend) return started(tl::unexpected(backend.error()));
     if (auto current = (*backend)->make_current(); !current) return started(tl::unexpected(current.error()));
     Gl gl;
     gl.load([&](const char* function) { return (*backend)->get_proc_address(function); });
     Loop loop(gl, events_, board_, (*backend)->windows());
-    started(Started{query_caps(gl), std::move(name)});
+    started(Started{query_caps(gl), std::move(backend_name)});
     serve(loop);
 }
 

@@ -106,7 +106,7 @@ public:
 private:
     class Loop;
     explicit RenderThread(NodeEvents& events) : events_(events) {}
-    void run(const OpenBackend& open, std::string name, const std::function<void(Result<Started>)>& started);
+    void run(const OpenBackend& open, std::string backend_name, const std::function<void(Result<Started>)>& started);
     void serve(Loop& loop);
     void post(std::function<void(Loop&)> task);
 

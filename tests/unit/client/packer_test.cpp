@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "client_lib/context.h"
 #include "client_lib/primitive_scan.h"
 #include "client_lib/share_group.h"
@@ -62,14 +64,17 @@ TEST_F(PackerTest, APrimitiveThatCannotBeCarriedIsDroppedAlone) {
     };
     points(10);
     const auto mark = packer.mark();
-    const auto places = packer.places();
     EXPECT_FALSE(packer.take_overflow());
     points(1'000'000);
     EXPECT_TRUE(packer.take_overflow());
     EXPECT_FALSE(packer.take_overflow()) << "it is said once";
     EXPECT_EQ(packer.mark().commands, mark.commands);
     EXPECT_EQ(packer.mark().operand_bytes, mark.operand_bytes);
-    EXPECT_EQ(packer.places().offset, places.offset) << "the colour of before";
+    const std::byte* color = packer.last[place_of(Attribute::color)];
+    ASSERT_NE(color, nullptr);
+    float red = 0;
+    std::memcpy(&red, color, sizeof red);
+    EXPECT_EQ(red, 10) << "the colour of before";
     points(10);
     EXPECT_FALSE(packer.take_overflow());
     EXPECT_EQ(packer.primitives().size(), 2u);
