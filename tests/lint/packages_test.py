@@ -59,7 +59,8 @@ class AFreshMachine(unittest.TestCase):
 
 class TheCheckItself(unittest.TestCase):
     STATUS = "\n".join(["app\t\t\tlibapp (>= 1), mail-server | postfix\t", "libapp\t\t\t\tbase-files",
-                        "base-files\tbase\t\t\t", "exim\t\tmail-server\t\t", "postfix\t\tmail-server\t\t", "other\t\t\tlibapp\t"])
+                        "base-files\tbase\t\t\t", "exim\t\tmail-server\t\t", "postfix\t\tmail-server\t\t",
+                        "other\t\t\tlibapp\t"])
 
     def test_follows_what_a_package_pulls_in(self) -> None:
         self.assertEqual(Installed(self.STATUS).closure(["app"]), {"app", "libapp", "base-files", "exim", "postfix"})
@@ -79,7 +80,8 @@ class TheCheckItself(unittest.TestCase):
                          {"ls", "-l", "play", "glretrace"})
 
     def test_finds_programs_in_shell(self) -> None:
-        text = 'A=1 ls -l | sort -n\n# awk\nif grep x; then exec tar x; fi\n"${root[@]}" env B=2 apt-get update && cat x\n'
+        text = ('A=1 ls -l | sort -n\n# awk\nif grep x; then exec tar x; fi\n'
+                '"${root[@]}" env B=2 apt-get update && cat x\n')
         found = started_by_shell(text)
         self.assertLessEqual({"ls", "sort", "grep", "tar", "cat", "apt-get"}, found)
         self.assertNotIn("awk", found)

@@ -23,7 +23,8 @@ STILL = build_folder() / "tests" / "still_windows"
 API = yaml.safe_load((ROOT / "docs" / "openapi.yaml").read_text())
 ASKED_FOR, CAP = 10_000, 5
 VERSION = int(re.search(r"kProtocolVersion =\s+(\d+)", (ROOT / "common" / "wire" / "limits.h").read_text())[1])
-CLIENT_HELLO = b"\x04\x00\x00\x00\x0a\x02\x08" + bytes([VERSION])  # its length, and an Envelope with ClientHello{version}
+# Its length, and an Envelope with ClientHello{version}.
+CLIENT_HELLO = b"\x04\x00\x00\x00\x0a\x02\x08" + bytes([VERSION])
 SOON = 5.0  # seconds
 
 

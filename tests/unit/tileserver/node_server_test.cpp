@@ -328,7 +328,7 @@ TEST_F(NodeServerTest, ABatchLargerThanAFrameArrives) {
     hello.set_ticket("secret1");
     auto stream = client::NodeStream::open(node_address().text(), hello.SerializeAsString(), 10'000);
     ASSERT_TRUE(stream) << stream.error().message;
-    client::Transport transport;
+    client::Transport transport([] {});
     transport.add(*stream);
     constexpr std::size_t kNormals = 24 << 20;
     wire::PackBuffer buffer = one_frame({0, 0, 0, 0}, 1), body;

@@ -175,10 +175,12 @@ def _replay(i):
 # ---- entry points ----
 
 def entries_source(commands, registry):
-    out = [header("gl.xml and proto/gl/commands.toml", "The functions that applications call, and their names.", [], pragma=False),
-           '#include "client_lib/context.h"\n#include "client_lib/current.h"\n#include "client_lib/entry_guard.h"\n'
-           '#include "client_lib/param_commands.h"\n'
-           '#include "client_lib/unsupported.h"\n#include "common/glapi/convert.h"\n#include "gen/client_lib/api.gen.h"\n\n'
+    out = [header("gl.xml and proto/gl/commands.toml", "The functions that applications call, and their names.", [],
+                  pragma=False),
+           '#include "client_lib/context.h"\n#include "client_lib/current.h"\n'
+           '#include "client_lib/entry_guard.h"\n#include "client_lib/param_commands.h"\n'
+           '#include "client_lib/unsupported.h"\n#include "common/glapi/convert.h"\n'
+           '#include "gen/client_lib/api.gen.h"\n\n'
            "namespace wall::client {\nnamespace {\n\nusing glapi::to_fraction;\n\n"]
     for i in commands.unique:
         if not i.later and "hot" not in i.flags:
