@@ -268,6 +268,6 @@ def load(path):
     if categories[-1].name != "local":
         file.refuse("local must be the last category (its elements have no wire ids)", categories[-1].name)
     unused = set(valid) - _named_lists(model.elements)
-    if unused:
-        file.refuse("no element names this list of [valid]", sorted(unused)[0])
+    for name in sorted(unused):
+        file.refuse(f"no element names the list {name}", "valid", name)
     return model
