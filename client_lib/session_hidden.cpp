@@ -15,8 +15,6 @@
 namespace wall::client {
 namespace {
 
-constexpr std::uint64_t kWholeWindow = std::uint64_t{1} << wire::kOffscreenSlot;
-
 /// Changed values in full: a kept command cannot refer to what the node will remember when it is sent.
 struct KeptSink {
     KeptFrame& frame;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/io/data_stream.h"
 
+#include <sys/socket.h>
+
 #include <algorithm>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
@@ -9,6 +11,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
+#include <cerrno>
 #include <chrono>
 
 #include "common/log/log.h"
@@ -26,6 +29,13 @@ constexpr std::uint32_t kMaxHello = 4 << 10;  // bytes
 constexpr auto kGreetingLimit = 5s;           // for the hello to come
 constexpr auto kTicketLimit = 3s;             // walld's ticket may come later than the client
 constexpr auto kTicketPoll = 10ms;
+
+/// The other end has closed the socket, and nothing that it sent before is left.
+bool is_gone(int socket) {
+    char byte;
+    const ssize_t peeked = ::recv(socket, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+    return peeked == 0 || (peeked < 0 && errno != EAGAIN && errno != EINTR);
+}
 
 /// Takes the same time wherever they differ.
 bool equal_secret(const std::string& a, const std::string& b) {
@@ -111,7 +121,8 @@ asio::awaitable<std::optional<Admission>> DataStream::find_admission(SessionId s
     for (;;) {
         if (const Admission* known = host_.admission(session))
             co_return session&& equal_secret(known->ticket, given) ? std::optional(*known) : std::nullopt;
-        if (std::chrono::steady_clock::now() > until || closing_) co_return std::nullopt;
+        if (std::chrono::steady_clock::now() > until || closing_ || is_gone(socket_.native_handle()))
+            co_return std::nullopt;
         timer_.expires_after(kTicketPoll);
         co_await timer_.async_wait(kWaitable);
     }

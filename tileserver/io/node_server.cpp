@@ -146,19 +146,18 @@ void NodeServer::end_session(SessionId session) {
 /// drawing is known only now, so it is said now.
 asio::awaitable<void> NodeServer::watch_turns() {
     while (!stopping_) {
-        turn_timer_.expires_after(longest_turn_ / 20);
+        turn_timer_.expires_after(turn_watch_.interval());
         co_await turn_timer_.async_wait(kWaitable);
         const auto turn = render_->running_turn();
-        if (turn && turn->stream != blamed_ && std::chrono::steady_clock::now() - turn->since > longest_turn_)
-            blame(*turn);
+        if (turn_watch_.overdue(turn, TurnWatch::Clock::now())) blame(*turn);
     }
 }
 
 void NodeServer::blame(const RunningTurn& turn) {
-    blamed_ = turn.stream;
     shut_out_.blame(turn.session, ShutOut::Clock::now());
     fault(turn.stream, turn.session,
-          "one call of the driver took longer than " + std::to_string(longest_turn_.count()) +
+          "one call of the driver took longer than " +
+              std::to_string(std::chrono::round<std::chrono::milliseconds>(turn_watch_.longest()).count()) +
               " ms; nobody else could draw",
           true);
 }

@@ -19,6 +19,7 @@
 #include "tileserver/io/shut_out.h"
 #include "tileserver/io/tile_streams.h"
 #include "tileserver/render/render_thread.h"
+#include "tileserver/render/turn_watch.h"
 
 namespace wall::tileserver {
 
@@ -39,7 +40,7 @@ public:
     std::chrono::steady_clock::time_point last_sign_of_life() const { return last_stats_; }
     /// How long one turn of a stream may take, that is, one call of the driver; then its session is ended. Before
     /// start().
-    void set_longest_turn(std::chrono::milliseconds limit) { longest_turn_ = limit; }
+    void set_longest_turn(std::chrono::milliseconds limit) { turn_watch_ = TurnWatch(limit); }
     /// Why the node cannot go on; none: it can.
     const std::optional<std::string>& failure() const { return failure_; }
 
@@ -87,8 +88,7 @@ private:
     std::optional<net::Listener> listener_;
     std::shared_ptr<net::ControlConnection> link_;  // null: walld is away
     asio::steady_timer retry_, turn_timer_;
-    std::chrono::milliseconds longest_turn_{10'000};
-    std::optional<StreamId> blamed_;  // the stream whose turn took too long last
+    TurnWatch turn_watch_{std::chrono::seconds(10)};
     ShutOut shut_out_;
     bool stopping_ = false, said_unreachable_ = false;
     std::unordered_map<SessionId, Admission> admissions_;

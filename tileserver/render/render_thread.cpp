@@ -234,8 +234,12 @@ public:
             if (const auto delay = stream->delay(now); delay > Clock::duration::zero()) due = std::min(due, delay);
         return output_ ? std::min(due, output_->next_due(now)) : due;
     }
-    /// A tile's picture, once.
-    void ask(const PictureRequest& request) { asked_.push_back(request); }
+    /// A tile's picture, once: of this moment, before the frames that walld presents later, since the nodes' pictures
+    /// are put together and must not cut a moving window apart. Only where too many are on their way, it comes later.
+    void ask(const PictureRequest& request) {
+        if (asked_.empty() && !compositor_.full()) compositor_.request(request);
+        else asked_.push_back(request);
+    }
     /// Without the windows that it was to draw in.
     bool lost() const { return lost_; }
 
