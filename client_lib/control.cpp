@@ -17,6 +17,7 @@
 #include "client_lib/process.h"
 #include "client_lib/stats.h"
 #include "common/base/address.h"
+#include "common/base/trusted_server.h"
 #include "common/wire/limits.h"
 
 namespace wall::client {
@@ -30,6 +31,7 @@ constexpr milliseconds kLifeSign{500};   // a walld that keeps a connection open
 constexpr milliseconds kTick{1000};      // statistics are written and told, a lost link is tried again
 constexpr std::size_t kLengthBytes = 4;  // in front of every envelope, little endian
 constexpr std::size_t kReadChunk = 16 << 10;
+constexpr std::size_t kMaxOffered = 64;  // placements of a surface that does not draw; only the newest ones matter
 
 int remaining_ms(Clock::time_point deadline) {
     const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now()).count();
@@ -111,6 +113,9 @@ Result<Opened> greet(const Hello& hello, const std::string& address, millisecond
     if (!fd)
         return fail("the wall is not there: " + fd.error().message +
                     " (is walld running? WALLGL_WALLD names its address)");
+    if (auto trusted = check_server(fd->get(), wall_user_from_environment()); !trusted)
+        return fail("walld at " + address + " is not walld: " + trusted.error().message +
+                    " (WALLGL_WALLD_USER names walld's user)");
     Opened opened{std::move(*fd), {}, {}};
     std::string bytes;
     append_framed(bytes, encode(hello));
@@ -184,7 +189,9 @@ ControlLink::ControlLink(UniqueFd fd, Hello hello, std::string address, Welcome 
       welcome_(std::move(welcome)),
       wake_fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       fd_(std::move(fd)),
-      inbox_(std::move(rest)) {
+      inbox_(std::move(rest)),
+      session_(welcome_.session) {
+    for (const auto& node : welcome_.nodes) tickets_[node.node] = node.ticket;
     SignalsBlocked blocked;
     thread_ = std::thread([this] { run(); });
 }
@@ -213,7 +220,15 @@ void ControlLink::surface_open(std::uint32_t id, std::uint32_t width, std::uint3
                                WindowMessages messages) {
     if (in_forked_child()) return;
     std::lock_guard lock(mutex_);
-    surfaces_[id] = {width, height, title, std::move(messages), 1, 0};
+    surfaces_[id] = OpenSurface{.width = width,
+                                .height = height,
+                                .title = title,
+                                .messages = std::move(messages),
+                                .awaited = 1,
+                                .offered = {},
+                                .drawn = {},
+                                .wanted = {},
+                                .note = {}};
     queue(encode_surface_open(id, width, height, title));
     wake();
 }
@@ -243,9 +258,16 @@ bool ControlLink::surface_adopted(std::uint32_t id, std::uint32_t layout_version
                                   milliseconds timeout) {
     if (in_forked_child()) return false;
     std::unique_lock lock(mutex_);
+    auto& surface = surfaces_[id];
+    if (const auto found = surface.offered.find(layout_version); found != surface.offered.end()) {
+        surface.drawn = found->second;
+        surface.offered.erase(surface.offered.begin(), std::next(found));
+    }
     queue(encode_surface_adopted(id, layout_version, frame));
     wake();
-    return changed_.wait_for(lock, timeout, [&] { return !up_ || surfaces_[id].noted == layout_version; }) && up_;
+    const auto noted = [&] { return surfaces_[id].noted == layout_version; };
+    changed_.wait_for(lock, timeout, [&] { return !answers() || noted(); });
+    return up_ && noted();
 }
 
 void ControlLink::leave() {
@@ -253,7 +275,7 @@ void ControlLink::leave() {
     std::unique_lock lock(mutex_);
     queue(encode_member_leaves(hello_.group->rank));
     wake();
-    changed_.wait_for(lock, kLeaveLimit, [&] { return !up_ || outbox_.empty(); });
+    changed_.wait_for(lock, kLeaveLimit, [&] { return !answers() || outbox_.empty(); });
 }
 
 void ControlLink::on_end(std::function<void(const std::string&)> action) {
@@ -285,7 +307,7 @@ ControlLink::Events ControlLink::take_events() {
 std::optional<Placement> ControlLink::wait_placement(std::uint32_t surface, milliseconds timeout) {
     if (in_forked_child()) return std::nullopt;
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, timeout, [&] { return !up_ || placements_.contains(surface); });
+    changed_.wait_for(lock, timeout, [&] { return !answers() || placements_.contains(surface); });
     const auto found = placements_.find(surface);
     if (found == placements_.end()) return std::nullopt;
     return found->second;
@@ -328,6 +350,7 @@ void ControlLink::serve() {
         if (Clock::now() >= next_tick) {
             stats().write();
             tell_traffic();
+            watch_walld();
             next_tick = Clock::now() + kTick;
         }
     }
@@ -380,10 +403,13 @@ bool ControlLink::handle(FromWalld message) {
         return false;
     }
     std::lock_guard lock(mutex_);
+    heard_ = true;
+    if (std::exchange(silent_, false)) log(LogLevel::info, "walld_answers");
     if (auto* placement = std::get_if<Placement>(&message)) {
         arrived(*placement);
     } else if (auto* node = std::get_if<NodeInfo>(&message)) {
         log(LogLevel::info, "node_%s node=%u address=%s", node->up ? "up" : "down", node->node, node->address.c_str());
+        if (node->up) tickets_[node->node] = node->ticket;
         // What it shows of programs that do not draw by themselves is lost with its process.
         for (const auto& [id, surface] : surfaces_)
             if (node->up) wishes_.redraw.insert(id);
@@ -391,6 +417,12 @@ bool ControlLink::handle(FromWalld message) {
     } else if (auto* noted = std::get_if<AdoptionNoted>(&message)) {
         if (const auto found = surfaces_.find(noted->surface); found != surfaces_.end())
             found->second.noted = noted->layout_version;
+    } else if (auto* note = std::get_if<SurfaceNote>(&message)) {
+        if (const auto found = surfaces_.find(note->surface.value); found != surfaces_.end())
+            found->second.note = std::move(note->note);
+        return true;  // nobody waits for that
+    } else if (std::holds_alternative<std::monostate>(message)) {
+        return true;
     } else if (auto* close = std::get_if<CloseRequest>(&message)) {
         log(LogLevel::info, "close_requested surface=%u reason=%s", close->surface, close->reason.c_str());
         wishes_.close.insert(close->surface);
@@ -410,9 +442,27 @@ void ControlLink::arrived(const Placement& placement) {
     const auto found = surfaces_.find(placement.surface);
     if (found == surfaces_.end()) return;
     placements_[placement.surface] = placement;
+    auto& surface = found->second;
+    surface.wanted = placement.rect;
+    if (!surface.drawn) surface.drawn = placement.rect;  // the first one needs no adoption
+    surface.offered[placement.layout_version] = placement.rect;
+    if (surface.offered.size() > kMaxOffered) surface.offered.erase(surface.offered.begin());
     // A program that draws only when asked would never come to adopt it.
     if (found->second.awaited > 0) --found->second.awaited;
     else wishes_.redraw.insert(placement.surface);
+}
+
+/// A walld that hangs costs no more than one that is gone: once it has not answered, nobody waits for it.
+void ControlLink::watch_walld() {
+    std::lock_guard lock(mutex_);
+    if (std::exchange(heard_, false)) {
+        asked_ = false;
+    } else if (!std::exchange(asked_, true)) {
+        queue(encode_ping());
+    } else if (!std::exchange(silent_, true)) {
+        log(LogLevel::warn, "walld_silent address=%s", address_.c_str());
+        changed_.notify_all();
+    }
 }
 
 void ControlLink::tell_windows() {
@@ -458,7 +508,7 @@ void ControlLink::on_lost(const std::string& why) {
     {
         std::lock_guard lock(mutex_);
         outbox_.clear();
-        up_ = false;
+        up_ = heard_ = asked_ = silent_ = false;
         events_.lost = true;
         has_events_ = true;
         changed_.notify_all();
@@ -477,13 +527,22 @@ void ControlLink::end_group(const std::string& why) {
 /// as walld is away.
 void ControlLink::end_if_walld_is_new() {
     const auto fd = connect_to(address_, static_cast<int>(kOpenLimit.count()));
-    if (!fd) return;
+    if (!fd || !check_server(fd->get(), wall_user_from_environment())) return;
     pollfd closed{fd->get(), POLLIN, 0};  // one that is just dying closes what it has not accepted
     if (::poll(&closed, 1, static_cast<int>(kLifeSign.count())) != 0) return;
     refused_ = true;
     const std::string why = "walld was started anew: so must the parallel program be";
     log(LogLevel::error, "session_ended why=%s", why.c_str());
     end_group(why);
+}
+
+/// With what a walld that was started again cannot know.
+Hello ControlLink::hello_again() {
+    Hello hello = hello_;
+    std::lock_guard lock(mutex_);
+    hello.resume = {session_, tickets_, 0};
+    for (const auto& [id, surface] : surfaces_) hello.resume->windows += surface.restore().has_value();
+    return hello;
 }
 
 bool ControlLink::reconnect() {
@@ -493,7 +552,7 @@ bool ControlLink::reconnect() {
         end_if_walld_is_new();
         return false;
     }
-    auto opened = greet(hello_, address_, kOpenLimit);
+    auto opened = greet(hello_again(), address_, kOpenLimit);
     if (!opened) {
         log(LogLevel::debug, "walld_unreachable why=%s", opened.error().message.c_str());
         return false;
@@ -506,11 +565,15 @@ bool ControlLink::reconnect() {
         up_ = true;
         events_ = {};
         events_.lost = true;
+        session_ = SessionId(opened->welcome.session);
+        tickets_.clear();
+        for (const auto& node : opened->welcome.nodes) tickets_[node.node] = node.ticket;
         events_.reconnected = std::move(opened->welcome);
         placements_.clear();
         for (auto& [id, surface] : surfaces_) {
             surface.awaited = 0;  // nobody waits for these answers: the program has to draw again
-            queue(encode_surface_open(id, surface.width, surface.height, surface.title));
+            queue(encode_surface_open(id, surface.width, surface.height, surface.title, surface.restore()));
+            surface.offered.clear();  // the new walld counts its versions from 1
         }
         has_events_ = true;
     }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The link to walld. Opened by an application thread; from then on one background thread moves the messages, and leaves
-// what walld says in a mailbox. Functions never block unless they say so. When walld goes away drawing goes on with
-// the old layout; the link is made again in the background, which is a new session (Events::reconnected).
+// what walld says in a mailbox. Functions never block unless they say so, and then not for a walld that is silent. When
+// walld goes away drawing goes on with the old layout; the link is made again in the background, and walld is told what
+// there was (Events::reconnected).
 #pragma once
 
 #include <atomic>
@@ -62,9 +63,9 @@ public:
     struct Events {
         std::vector<Placement> placements;  ///< in order of arrival
         std::vector<NodeInfo> node_changes;
-        bool lost = false;  ///< the link broke; it is being made again
-        std::optional<Welcome>
-            reconnected;  ///< a new session: other id, other tickets. Open surfaces were announced again
+        bool lost = false;                   ///< the link broke; it is being made again
+        std::optional<Welcome> reconnected;  ///< the session goes on, or is a new one: what it has of nodes with other
+                                             ///< tickets is gone. Open surfaces were announced again
     };
     /// What came since the last call. One atomic read when nothing did.
     Events take_events();
@@ -78,8 +79,15 @@ private:
         std::uint32_t width = 0, height = 0;
         std::string title;
         WindowMessages messages;
-        unsigned awaited = 0;     ///< placements that answer us; another one is a move
-        std::uint32_t noted = 0;  ///< layout version that walld knows to be adopted
+        unsigned awaited = 0;                         ///< placements that answer us; another one is a move
+        std::uint32_t noted = 0;                      ///< layout version that walld knows to be adopted
+        std::map<std::uint32_t, geom::Rect> offered;  ///< by layout version: placements that may still be adopted
+        std::optional<geom::Rect> drawn, wanted;      ///< nothing: walld has placed it nowhere yet
+        std::string note;                             ///< walld's, of this surface
+
+        std::optional<Restore> restore() const {
+            return drawn ? std::optional(Restore{*drawn, *wanted, note}) : std::nullopt;
+        }
     };
     /// What the windows are to be told.
     struct Wishes {
@@ -99,6 +107,9 @@ private:
     bool take_messages();
     bool handle(FromWalld message);
     void arrived(const Placement& placement);
+    void watch_walld();
+    bool answers() const { return up_ && !silent_; }
+    Hello hello_again();
     void tell_windows();
     void tell_traffic();
     void on_lost(const std::string& why);
@@ -122,6 +133,11 @@ private:
     std::string outbox_;
     Events events_;
     bool up_ = true;
+    bool heard_ = false;   // since the last tick
+    bool asked_ = false;   // for a sign of life
+    bool silent_ = false;  // none has come: nobody waits for walld until it says something
+    SessionId session_;
+    std::map<std::uint32_t, std::string> tickets_;  // by node
     std::function<void(const std::string&)> end_;
     std::map<std::uint32_t, OpenSurface> surfaces_;
     Wishes wishes_;

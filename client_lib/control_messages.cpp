@@ -18,7 +18,7 @@ namespace envelope {
 constexpr protozero::pbf_tag_type client_hello = 1, surface_open = 2, surface_resize = 3, surface_close = 4,
                                   surface_adopted = 5, close_refused = 6, client_stats = 7, placement_noted = 8,
                                   member_leaves = 9, client_welcome = 10, refused = 11, placement = 12, node_up = 13,
-                                  node_down = 14, close_request = 15, adoption_noted = 16;
+                                  node_down = 14, close_request = 15, adoption_noted = 16, ping = 50, surface_note = 52;
 }
 
 void put_string(pbf_writer& out, protozero::pbf_tag_type tag, std::string_view text) {
@@ -31,6 +31,24 @@ void put_rect(pbf_writer& parent, protozero::pbf_tag_type tag, const geom::Rect&
     out.add_sint32(2, rect.y);
     out.add_uint32(3, static_cast<std::uint32_t>(rect.width));
     out.add_uint32(4, static_cast<std::uint32_t>(rect.height));
+}
+
+void put_resume(pbf_writer& parent, protozero::pbf_tag_type tag, const Resume& resume) {
+    pbf_writer out(parent, tag);
+    out.add_uint32(1, resume.session.value);
+    for (const auto& [node, ticket] : resume.tickets) {
+        pbf_writer row(out, 2);
+        row.add_uint32(1, node);
+        row.add_bytes(2, ticket.data(), ticket.size());
+    }
+    out.add_uint32(3, resume.windows);
+}
+
+void put_restore(pbf_writer& parent, protozero::pbf_tag_type tag, const Restore& restore) {
+    pbf_writer out(parent, tag);
+    put_rect(out, 1, restore.drawn);
+    put_rect(out, 2, restore.wanted);
+    out.add_bytes(3, restore.note.data(), restore.note.size());
 }
 
 template <class Fill>
@@ -207,6 +225,18 @@ AdoptionNoted read_noted(pbf_reader in) {
     return noted;
 }
 
+SurfaceNote read_note(pbf_reader in) {
+    SurfaceNote note;
+    while (in.next()) {
+        switch (in.tag()) {
+            case 1: note.surface = SurfaceId(read_u32(in)); break;
+            case 2: note.note = read_string(in); break;
+            default: in.skip();
+        }
+    }
+    return note;
+}
+
 FromWalld read_envelope(pbf_reader in) {
     FromWalld message;
     while (in.next()) {
@@ -218,6 +248,7 @@ FromWalld read_envelope(pbf_reader in) {
             case envelope::node_down: message = read_node(read_message(in), false); break;
             case envelope::close_request: message = read_close(read_message(in)); break;
             case envelope::adoption_noted: message = read_noted(read_message(in)); break;
+            case envelope::surface_note: message = read_note(read_message(in)); break;
             default: in.skip();
         }
     }
@@ -236,6 +267,7 @@ std::string encode(const Hello& hello) {
         if (hello.fullscreen) out.add_bool(6, true);
         if (hello.hold) out.add_bool(7, true);
         put_string(out, 8, hello.token);
+        if (hello.resume) put_resume(out, 10, *hello.resume);
         if (!hello.group) return;
         pbf_writer group(out, 9);
         put_string(group, 1, hello.group->group);
@@ -244,13 +276,21 @@ std::string encode(const Hello& hello) {
     });
 }
 
-std::string encode_surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, std::string_view title) {
+std::string encode_surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, std::string_view title,
+                                const std::optional<Restore>& restore) {
     return in_envelope(envelope::surface_open, [&](pbf_writer& out) {
         out.add_uint32(1, id);
         out.add_uint32(2, width);
         out.add_uint32(3, height);
         put_string(out, 4, title);
+        if (restore) put_restore(out, 5, *restore);
     });
+}
+
+std::string encode_ping() {
+    std::string bytes;
+    pbf_writer(bytes).add_message(envelope::ping, "", 0);
+    return bytes;
 }
 
 std::string encode_surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,10 +14,18 @@
 
 #include "client_lib/parallel.h"
 #include "client_lib/traffic.h"
+#include "common/base/ids.h"
 #include "common/base/result.h"
 #include "common/geom/rect.h"
 
 namespace wall::client {
+
+/// A session that the program had with a walld that is gone. Its streams to the nodes may still be open.
+struct Resume {
+    SessionId session;
+    std::map<std::uint32_t, std::string> tickets;  ///< by node
+    std::uint32_t windows = 0;                     ///< that will be announced with a Restore
+};
 
 /// What a program says of itself when it comes to the wall.
 struct Hello {
@@ -28,6 +37,7 @@ struct Hello {
     bool hold = false;               ///< WALLGL_HOLD
     std::string token;               ///< from WALLGL_TOKEN_FILE: who owns the session, if not the Unix user
     std::optional<Parallel> group;   ///< from WALLGL_PARALLEL
+    std::optional<Resume> resume;    ///< it was on the wall before
     std::string invalid;             ///< what is wrong in the environment; ControlLink::open fails with it
 
     /// Of this process, from its name and the environment.
@@ -85,17 +95,33 @@ struct AdoptionNoted {
     std::uint32_t layout_version = 0;
 };
 
+/// walld's own, for the walld that comes after it: kept with the surface, and not looked at.
+struct SurfaceNote {
+    SurfaceId surface;
+    std::string note;
+};
+
+/// Where a surface is that an earlier walld knew.
+struct Restore {
+    geom::Rect drawn, wanted;  ///< canvas: of the frames that come now, and of the newest placement
+    std::string note;
+};
+
 struct CloseRequest {
     std::uint32_t surface = 0;
     std::string reason;
 };
 
 /// A message from walld; nothing for one that this version does not know.
-using FromWalld = std::variant<std::monostate, Welcome, Refused, Placement, NodeInfo, CloseRequest, AdoptionNoted>;
+using FromWalld =
+    std::variant<std::monostate, Welcome, Refused, Placement, NodeInfo, CloseRequest, AdoptionNoted, SurfaceNote>;
 
 // One encoded Envelope each, without the length in front.
 std::string encode(const Hello& hello);
-std::string encode_surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, std::string_view title);
+std::string encode_surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, std::string_view title,
+                                const std::optional<Restore>& restore = {});
+/// Asks walld for a sign of life.
+std::string encode_ping();
 std::string encode_surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height);
 std::string encode_surface_close(std::uint32_t id);
 std::string encode_surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame);

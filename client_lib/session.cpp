@@ -117,12 +117,23 @@ Session::Session(std::unique_ptr<ControlLink> control)
     wait_for_attempts(lock, kStartLimit);
 }
 
-// The first welcome, or that of a walld that came back: another session, with other tickets.
+// The first welcome, or that of a walld that came back. A node that has the session under the ticket that it has given
+// before goes on with its stream; what the others have of it is gone.
 void Session::adopt(const Welcome& welcome) {
+    const bool goes_on = id_ == welcome.session;
+    bool anew = false;
     id_ = welcome.session;
     tiles_ = welcome.tiles;
     for (const TileInfo& tile : tiles_) node_at(tile.node);  // also those that are not up
-    for (const NodeInfo& info : welcome.nodes) connect(node_slot(info));
+    for (const NodeInfo& info : welcome.nodes) {
+        Node& node = node_at(info.node);
+        const bool same = goes_on && node.alive() && node.info.ticket == info.ticket;
+        node.info = info;
+        if (same) continue;
+        connect(node);
+        anew = true;
+    }
+    if (anew) redraw();
 }
 
 Session::~Session() { finish(); }

@@ -5,8 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <boost/asio/as_tuple.hpp>
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -14,6 +12,7 @@
 #include <iostream>
 
 #include "common/config/load_config.h"
+#include "common/daemon/keep_running.h"
 #include "common/log/log.h"
 #include "common/net/sockets.h"
 #include "tileserver/gpu/memory.h"
@@ -30,21 +29,24 @@ constexpr std::chrono::seconds kRenderStall{30};  // a render thread that says n
 constexpr int kExitUsage = 2;
 
 /// Tells systemd that both threads are alive, as often as it wants to hear it.
-asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const NodeServer& server) {
+asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const NodeServer& server, const bool& stopping) {
     std::uint64_t limit = 0;  // microseconds
-    if (sd_watchdog_enabled(0, &limit) <= 0) co_return;
-    boost::system::error_code error;
-    while (!error) {
-        if (Clock::now() - server.last_sign_of_life() < kRenderStall) sd_notify(0, "WATCHDOG=1");
-        timer.expires_after(std::chrono::microseconds(limit / 2));
-        std::tie(error) = co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+    const bool wanted = sd_watchdog_enabled(0, &limit) > 0;
+    while (!stopping) {
+        if (wanted && Clock::now() - server.last_sign_of_life() < kRenderStall) sd_notify(0, "WATCHDOG=1");
+        timer.expires_after(wanted ? std::chrono::microseconds(limit / 2) : std::chrono::hours(1));
+        co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
     }
 }
 
 Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node) {
     asio::io_context io(1);
-    auto server = NodeServer::open(io.get_executor(), wall, node);
-    if (!server) return tl::unexpected(server.error());
+    auto server = Result<std::unique_ptr<NodeServer>>(nullptr);
+    const auto open = [&]() -> Result<void> {
+        server = NodeServer::open(io.get_executor(), wall, node);
+        return server ? Result<void>() : tl::unexpected(server.error());
+    };
+    if (auto opened = net::listen_patiently(open); !opened) return opened;
     asio::steady_timer watchdog(io);
     bool stopping = false;
     asio::signal_set signals(io, SIGINT, SIGTERM);
@@ -54,13 +56,15 @@ Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node)
         sd_notify(0, "STOPPING=1");
         stopping = true;
     });
-    asio::co_spawn(io, feed_watchdog(watchdog, **server), asio::detached);
+    net::keep_running(io.get_executor(), {"watchdog", [&] { return feed_watchdog(watchdog, **server, stopping); },
+                                          [&] { return stopping; }});
     (*server)->start();
     sd_notify(0, ("READY=1\nSTATUS=node " + node.name).c_str());
     log::info("ready node={} backend={} listen={}", log::quoted(node.name), log::plain(config::name_of(node.backend)),
               log::quoted((*server)->address().text()));
     while (!stopping && !(*server)->failure()) io.run_one();
     const auto failure = (*server)->failure();
+    stopping = true;
     (*server)->stop();
     signals.cancel();
     watchdog.cancel();

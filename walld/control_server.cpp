@@ -10,6 +10,7 @@
 #include <boost/asio/use_awaitable.hpp>
 
 #include "common/base/assert.h"
+#include "common/daemon/keep_running.h"
 #include "common/json/parse_json.h"
 #include "common/log/log.h"
 #include "walld/messages.h"
@@ -21,11 +22,20 @@ namespace {
 constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
 constexpr const char* kWatchVerb = "watch";  // the one verb with many answers
 constexpr std::chrono::seconds kLookAtConnection{1};
+constexpr const char* kNotKnownYet = "somebody whose name is being looked up";
 
 std::string random_bytes(std::size_t count) {
     std::string out(count, '\0');
     WALL_ASSERT(::getrandom(out.data(), count, 0) == static_cast<ssize_t>(count));
     return out;
+}
+
+bool answer_ping(net::ControlConnection& connection, const proto::Envelope& message) {
+    if (!message.has_ping()) return false;
+    proto::Envelope pong;
+    pong.mutable_pong();
+    connection.send(pong);
+    return true;
 }
 
 }  // namespace
@@ -35,6 +45,7 @@ ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig 
     : executor_(executor),
       changed_(executor),
       identities_(std::move(identities)),
+      who_(executor, [this](std::uint32_t user) { return identities_.of(user); }),
       wall_(std::move(config), *this, random_bytes),
       snapshots_(executor, wall_, *this),
       streams_(executor, wall_, *this),
@@ -47,16 +58,24 @@ ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig 
       process_timer_(executor) {}
 
 Result<void> ControlServer::listen() {
+    listeners_.clear();  // of an attempt before, which one of the addresses has ended
     for (const auto& address : wall_.config().control_listen) {
         auto listener = net::Listener::open(executor_, address);
         if (!listener) return tl::unexpected(listener.error());
         listeners_.push_back(std::make_unique<net::Listener>(std::move(*listener)));
         log::info("control_listening address={}", log::quoted(listeners_.back()->address().text()));
     }
-    for (auto& listener : listeners_) spawn(executor_, "accept", accept(*listener));
-    spawn(executor_, "deadlines", run_deadlines());
-    spawn(executor_, "processes", watch_processes());
+    for (auto& listener : listeners_)
+        net::keep_accepting(
+            executor_, *listener, [this](net::StreamSocket socket) { take(std::move(socket)); },
+            [this] { return stopping_; });
+    keep("deadlines", &ControlServer::run_deadlines);
+    keep("peers", &ControlServer::watch_peers);
     return {};
+}
+
+void ControlServer::keep(const char* name, asio::awaitable<void> (ControlServer::*work)()) {
+    net::keep_running(executor_, {name, [this, work] { return (this->*work)(); }, [this] { return stopping_; }});
 }
 
 void ControlServer::stop() {
@@ -77,7 +96,7 @@ std::vector<net::Address> ControlServer::addresses() const {
 }
 
 void ControlServer::to_node(NodeIndex node, const proto::Envelope& message) {
-    if (const auto found = nodes_.find(node); found != nodes_.end()) found->second->send(message);
+    if (const auto found = nodes_.find(node); found != nodes_.end()) found->second.connection->send(message);
 }
 
 void ControlServer::to_client(SessionId session, const proto::Envelope& message) {
@@ -96,17 +115,10 @@ void ControlServer::end_session(SessionId session, const std::string& reason) {
 
 // ---- connections ----
 
-asio::awaitable<void> ControlServer::accept(net::Listener& listener) {
-    while (!stopping_) {
-        auto socket = co_await listener.accept();
-        if (!socket) {
-            if (!stopping_) log::error("accept_failed error={}", log::quoted(socket.error().message));
-            co_return;
-        }
-        auto connection = std::make_shared<net::ControlConnection>(std::move(*socket));
-        all_[connection.get()] = connection;
-        spawn(executor_, "connection", serve(std::move(connection)));
-    }
+void ControlServer::take(net::StreamSocket socket) {
+    auto connection = std::make_shared<net::ControlConnection>(std::move(socket));
+    all_[connection.get()] = connection;
+    spawn(executor_, "connection", serve(std::move(connection)));
 }
 
 void ControlServer::refuse(const Connection& connection, const std::string& reason) {
@@ -115,14 +127,19 @@ void ControlServer::refuse(const Connection& connection, const std::string& reas
 }
 
 asio::awaitable<void> ControlServer::serve(Connection connection) {
-    auto who = identities_.of(connection->peer());
-    auto place = peers_.take(who.text());
-    if (who.role == Role::none) {
-        log::warn("peer_refused user={}", log::quoted(who.text()));
-        refuse(connection, who.text() + " may not use this wall: add them to [people] in wall.toml");
-    } else if (!place) {
+    auto place = peers_.take(kNotKnownYet);
+    Person who;
+    if (place) {
+        who = co_await who_.at(connection->ends());
+        place->leave();
+        place = peers_.take(who.text());
+    }
+    if (!place) {
         log::warn("peer_refused reason={}", log::quoted(place.error().message));
         refuse(connection, place.error().message);
+    } else if (who.role == Role::none) {
+        log::warn("peer_refused user={}", log::quoted(who.text()));
+        refuse(connection, who.text() + " may not use this wall: add them to [people] in wall.toml");
     } else if (auto first = co_await first_message(connection)) {
         if (first->has_node_hello()) co_await serve_node(connection, first->node_hello(), who);
         else if (first->has_client_hello())
@@ -154,36 +171,54 @@ asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::No
         log::warn("node_refused node={} reason={}", log::quoted(hello.name()), log::quoted(permitted.error().message));
         co_return refuse(connection, permitted.error().message);
     }
-    const auto known = std::ranges::find(wall_.nodes(), hello.name(), [](const Node& n) { return n.config->name; });
-    const auto expected = static_cast<NodeIndex>(known - wall_.nodes().begin());
-    // Set before it joins, because joining sends; one that is refused must not replace the one that is here.
-    const bool first = known != wall_.nodes().end() && !known->up;
-    if (first) nodes_[expected] = connection;
-    const auto joined = wall_.node_joins(hello, Clock::now());
+    const auto joined = admit_node(connection, hello, who);
     if (!joined) {
-        if (first) nodes_.erase(expected);
         log::warn("node_refused node={} reason={}", log::quoted(hello.name()), log::quoted(joined.error().message));
         refuse(connection, joined.error().message);
         co_return;
     }
     log::info("node_up node={} incarnation={} address={} backend={} renderer={}", log::quoted(hello.name()),
-              known->incarnation, log::quoted(hello.address()), log::quoted(hello.backend()),
+              wall_.nodes()[*joined].incarnation, log::quoted(hello.address()), log::quoted(hello.backend()),
               log::quoted(hello.caps().renderer()));
     streams_.node_joined(*joined);
     something_changed();
-    std::string reason;
-    while (reason.empty()) {
+    for (;;) {
         auto message = co_await connection->receive();
+        if (!serves(*joined, connection)) co_return;  // another process is the node now, or it was silent for too long
+        if (message) nodes_[*joined].silent_checks = 0;
+        if (message && answer_ping(*connection, *message)) continue;
         const auto result = message ? node_says(*joined, *message) : Result<void>(tl::unexpected(message.error()));
-        if (!result) reason = result.error().message;
+        if (!result) co_return drop_node(*joined, result.error().message);
         something_changed();
     }
-    nodes_.erase(*joined);
-    connection->close();
-    wall_.node_leaves(*joined, Clock::now());
-    snapshots_.node_left(*joined);
-    streams_.node_left(*joined);
-    log::info("node_down node={} reason={}", log::quoted(hello.name()), log::quoted(reason));
+}
+
+/// A process that was started later takes the place of one whose link may be dead, but for one of another user.
+Result<NodeIndex> ControlServer::admit_node(const Connection& connection, const proto::NodeHello& hello,
+                                            const Person& who) {
+    const auto index = wall_.check_node(hello);
+    if (!index) return index;
+    if (const auto before = nodes_.find(*index); before != nodes_.end()) {
+        if (!before->second.who.same_as(who))
+            return fail("node '" + hello.name() + "' is already here, as a process of " + before->second.who.text());
+        refuse(before->second.connection, "process " + std::to_string(hello.pid()) + " is this node now");
+        drop_node(*index, "process " + std::to_string(hello.pid()) + " has come in its place");
+    }
+    nodes_[*index] = {connection, who};  // before it joins, because joining sends
+    return wall_.node_joins(hello, Clock::now());
+}
+
+bool ControlServer::serves(NodeIndex node, const Connection& connection) const {
+    const auto found = nodes_.find(node);
+    return found != nodes_.end() && found->second.connection == connection;
+}
+
+void ControlServer::drop_node(NodeIndex node, const std::string& reason) {
+    nodes_.extract(node).mapped().connection->close_after_sending();
+    wall_.node_leaves(node, Clock::now());
+    snapshots_.node_left(node);
+    streams_.node_left(node);
+    log::info("node_down node={} reason={}", log::quoted(wall_.nodes()[node].config->name), log::quoted(reason));
     something_changed();
 }
 
@@ -253,6 +288,7 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
     std::string reason;
     while (reason.empty()) {
         auto message = co_await connection->receive();
+        if (message && answer_ping(*connection, *message)) continue;
         const auto result = message ? client_says({id, rank}, *message) : Result<void>(tl::unexpected(message.error()));
         if (!result) reason = result.error().message;
         if (message && !result) refuse(connection, reason);
@@ -400,7 +436,7 @@ asio::awaitable<void> ControlServer::run_deadlines() {
     }
 }
 
-asio::awaitable<void> ControlServer::watch_processes() {
+asio::awaitable<void> ControlServer::watch_peers() {
     while (!stopping_) {
         process_timer_.expires_after(kPidCheck);
         co_await process_timer_.async_wait(kTuple);
@@ -410,6 +446,17 @@ asio::awaitable<void> ControlServer::watch_processes() {
             log::info("session_orphaned session={} pid={}", id.first.value, pid);
             connection->close();
         }
+        watch_nodes();
+    }
+}
+
+void ControlServer::watch_nodes() {
+    std::vector<NodeIndex> silent;
+    for (auto& [node, link] : nodes_)
+        if (++link.silent_checks > kSilentChecks) silent.push_back(node);
+    for (const auto node : silent) {
+        nodes_[node].connection->close();  // nobody reads there any more
+        drop_node(node, "it has said nothing for " + std::to_string(kSilentChecks * kPidCheck.count()) + " s");
     }
 }
 

@@ -16,6 +16,7 @@
 #include "walld/snapshot_desk.h"
 #include "walld/stream_hub.h"
 #include "walld/wall.h"
+#include "walld/who_is_there.h"
 
 namespace wall::walld {
 
@@ -23,8 +24,11 @@ class ControlServer : public Outbox {
 public:
     static constexpr std::chrono::seconds kHelloLimit{5};  ///< a peer that has not said what it is by then is cut off
     static constexpr std::chrono::seconds kNodeLimit{4};   ///< how long a program waits for nodes while the wall starts
-    static constexpr std::chrono::seconds kPidCheck{
-        1};  ///< a killed program whose connection lives on in a child is noticed
+    /// A killed program whose connection lives on in a child is noticed, and a node that has fallen silent.
+    static constexpr std::chrono::seconds kPidCheck{1};
+    /// A node says something many times a second; one that has not for so many checks is away. They are counted, so
+    /// that a walld that stood still itself has missed nothing.
+    static constexpr unsigned kSilentChecks = 15;
 
     /// `state`: where layouts are kept; empty: nowhere.
     ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities,
@@ -37,6 +41,7 @@ public:
 
     const Wall& wall() const { return wall_; }
     const Identities& identities() const { return identities_; }
+    WhoIsThere& who_is_there() { return who_; }
     OperatorDesk& operators() { return operators_; }
     StreamHub& streams() { return streams_; }
     std::vector<net::Address> addresses() const;
@@ -49,9 +54,18 @@ public:
 private:
     using Connection = std::shared_ptr<net::ControlConnection>;
 
-    asio::awaitable<void> accept(net::Listener& listener);
+    struct NodeLink {
+        Connection connection;
+        Person who;
+        unsigned silent_checks = 0;  ///< since its last message
+    };
+    void keep(const char* name, asio::awaitable<void> (ControlServer::*work)());
+    void take(net::StreamSocket socket);
     asio::awaitable<void> serve(Connection connection);
     asio::awaitable<void> serve_node(Connection connection, proto::NodeHello hello, const Person& who);
+    Result<NodeIndex> admit_node(const Connection& connection, const proto::NodeHello& hello, const Person& who);
+    void drop_node(NodeIndex node, const std::string& reason);
+    bool serves(NodeIndex node, const Connection& connection) const;
     asio::awaitable<void> serve_client(Connection connection, proto::ClientHello hello, Person who, Quota::Place place);
     asio::awaitable<void> serve_operator(Connection connection, proto::Envelope first, Person who);
     asio::awaitable<void> answer_operator(Connection connection, proto::OperatorRequest request, Person who,
@@ -61,7 +75,8 @@ private:
     asio::awaitable<void> send_parts(Connection connection, net::ReplyParts parts);
     Clock::time_point next_deadline() const;
     asio::awaitable<void> run_deadlines();
-    asio::awaitable<void> watch_processes();
+    asio::awaitable<void> watch_peers();
+    void watch_nodes();
     asio::awaitable<Result<proto::Envelope>> first_message(Connection connection);
     asio::awaitable<void> wait_for_nodes();
 
@@ -77,12 +92,13 @@ private:
     Changed changed_;
     Quota peers_{kPeerConnections}, requests_{kRequests};
     Identities identities_;
+    WhoIsThere who_;
     Wall wall_;
     SnapshotDesk snapshots_;
     StreamHub streams_;
     OperatorDesk operators_;
     std::vector<std::unique_ptr<net::Listener>> listeners_;
-    std::map<NodeIndex, Connection> nodes_;
+    std::map<NodeIndex, NodeLink> nodes_;
     std::map<ClientId, Connection> clients_;
     std::map<net::ControlConnection*, std::weak_ptr<net::ControlConnection>> all_;
     asio::steady_timer deadline_timer_;

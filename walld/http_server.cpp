@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/daemon/keep_running.h"
 #include "common/log/log.h"
-#include "common/net/sockets.h"
 #include "gen/walld/page.gen.h"
 #include "walld/rest.h"
 #include "walld/status.h"
@@ -28,6 +28,7 @@ constexpr const char* kJson = "application/json";
 constexpr const char* kVia = "http";
 constexpr const char* kRetryAfter = "1";  // seconds
 constexpr unsigned kVersion = 11;         // HTTP/1.1
+constexpr const char* kNotKnownYet = "somebody whose name is being looked up";
 
 /// The page uses nothing but its own files, and is no part of another page.
 constexpr const char* kPolicy = "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -55,6 +56,7 @@ http::response<HttpBody> refusal(unsigned version, int status, const Refusal& wh
 
 /// What a connection gets that is one too many: its socket is fresh, and has room for so few bytes.
 void turn_away(asio::ip::tcp::socket& socket, const Refusal& why) {
+    log::warn("http_full reason={}", log::quoted(why.message));
     auto answer = refusal(kVersion, http_status(why.kind), why);
     answer.keep_alive(false);
     answer.prepare_payload();
@@ -119,52 +121,59 @@ std::string query_value(std::string_view query, std::string_view key) {
 }  // namespace
 
 Result<void> HttpServer::listen(const net::Address& address) {
-    auto fd = net::listen_on(address);
-    if (!fd) return tl::unexpected(fd.error());
-    const auto to = net::resolve(address);
-    if (!to) return tl::unexpected(to.error());
-    boost::system::error_code error;
-    acceptor_.assign(to->family() == AF_INET6 ? asio::ip::tcp::v6() : asio::ip::tcp::v4(), fd->get(), error);
-    if (error) return fail(address.text() + ": " + error.message());
-    address_ = net::bound_address(fd->release(), address);
-    log::info("http_listening url={}", log::quoted("http://" + address_.text() + "/"));
-    spawn(acceptor_.get_executor(), "http_accept", accept());
+    auto listener = net::Listener::open(executor_, address);
+    if (!listener) return tl::unexpected(listener.error());
+    listener_.emplace(std::move(*listener));
+    log::info("http_listening url={}", log::quoted("http://" + listener_->address().text() + "/"));
+    net::keep_accepting(
+        executor_, *listener_, [this](net::StreamSocket socket) { take(std::move(socket)); },
+        [this] { return stopping_; });
     return {};
 }
 
 void HttpServer::stop() {
+    stopping_ = true;
+    if (listener_) listener_->close();
     boost::system::error_code ignored;
-    acceptor_.close(ignored);
     for (auto& [key, connection] : std::exchange(open_, {})) {
         if (const auto open = connection.lock()) open->socket.close(ignored);
     }
 }
 
-asio::awaitable<void> HttpServer::accept() {
-    while (acceptor_.is_open()) {
-        auto [error, accepted] = co_await acceptor_.async_accept(kTuple);
-        if (error) {
-            asio::steady_timer pause(acceptor_.get_executor(), std::chrono::milliseconds(100));
-            co_await pause.async_wait(kTuple);
-            continue;
-        }
-        auto peer = net::peer_of(accepted.native_handle());
-        auto place = connections_.take(peer ? "user " + std::to_string(peer->user) : "somebody unknown");
-        if (!place) {
-            log::warn("http_full reason={}", log::quoted(place.error().message));
-            turn_away(accepted, place.error());
-            continue;
-        }
-        auto connection = std::make_shared<Connection>(std::move(accepted), peer, std::move(*place));
-        open_[connection.get()] = connection;
-        spawn(acceptor_.get_executor(), "http", serve(std::move(connection)));
+void HttpServer::take(net::StreamSocket accepted) {
+    boost::system::error_code ignored;
+    const auto protocol = accepted.local_endpoint(ignored).protocol();
+    Socket socket(executor_);
+    socket.assign(protocol.family() == AF_INET6 ? asio::ip::tcp::v6() : asio::ip::tcp::v4(), accepted.release(),
+                  ignored);
+    auto place = connections_.take(kNotKnownYet);
+    if (!place) return turn_away(socket, place.error());
+    auto connection = std::make_shared<Connection>(std::move(socket), std::move(*place), Person{});
+    open_[connection.get()] = connection;
+    spawn(executor_, "http", serve(std::move(connection)));
+}
+
+/// Whose connection it is may take its time to find out.
+asio::awaitable<void> HttpServer::serve(std::shared_ptr<Connection> connection) {
+    connection->caller = co_await who_.at(ends_of(connection->socket.native_handle()));
+    connection->place.leave();
+    auto place = connections_.take(connection->caller.text());
+    if (place) {
+        connection->place = std::move(*place);
+        co_await answer_all(connection);
+    } else {
+        turn_away(connection->socket, place.error());
     }
+    open_.erase(connection.get());
+    boost::system::error_code ignored;
+    connection->socket.shutdown(Socket::shutdown_both, ignored);
+    connection->socket.close(ignored);
 }
 
 // GCC 12 inlines Asio's allocation of this coroutine's frame, but not its release, and takes them for a mismatch.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
-asio::awaitable<void> HttpServer::serve(std::shared_ptr<Connection> connection) {
+asio::awaitable<void> HttpServer::answer_all(std::shared_ptr<Connection> connection) {
     Socket& socket = connection->socket;
     // Requests that come while one is answered wait in the kernel, but for what the last reading brought of them.
     boost::beast::flat_buffer buffer(kMaxHeader + kMaxBody);
@@ -186,26 +195,22 @@ asio::awaitable<void> HttpServer::serve(std::shared_ptr<Connection> connection) 
         idle.cancel();                     // a program that is asked to close may take its time
         std::optional<Response> response;  // none: there was a viewer, and all is said
         if (path_of(parser.get()) == kStreamPath) response = co_await serve_stream(connection, parser.get());
-        else response = co_await answer(parser.get(), connection->peer);
+        else response = co_await answer(parser.get(), connection->caller);
         if (!response) break;
         response->keep_alive(parser.get().keep_alive());
         response->prepare_payload();
         if (parser.get().method() == http::verb::head) response->body() = {};
         limit();
         auto [write_error, written] = co_await http::async_write(socket, *response, kTuple);
-        go_on = !write_error && response->keep_alive() && acceptor_.is_open();
+        go_on = !write_error && response->keep_alive() && !stopping_;
     }
-    open_.erase(connection.get());
-    boost::system::error_code ignored;
-    socket.shutdown(Socket::shutdown_both, ignored);
-    socket.close(ignored);
 }
 #pragma GCC diagnostic pop
 
 /// Until the viewer has gone; an answer for one who may not watch.
 asio::awaitable<std::optional<HttpServer::Response>> HttpServer::serve_stream(std::shared_ptr<Connection> connection,
                                                                               const Request& request) {
-    const auto who = viewer(request, connection->peer);
+    const auto who = viewer(request, connection->caller);
     if (!who) co_return who.error();
     auto place = streams_.add_viewer(*who);
     if (!place) co_return refusal(request.version(), http_status(place.error().kind), place.error());
@@ -214,10 +219,9 @@ asio::awaitable<std::optional<HttpServer::Response>> HttpServer::serve_stream(st
     co_return std::nullopt;
 }
 
-asio::awaitable<std::optional<HttpServer::Response>> HttpServer::answer(const Request& request,
-                                                                        const std::optional<net::Peer>& peer) {
+asio::awaitable<std::optional<HttpServer::Response>> HttpServer::answer(const Request& request, const Person& caller) {
     if (auto page = local_page(request)) co_return std::move(*page);
-    auto asked = read(request, peer);
+    auto asked = read(request, caller);
     if (!asked) co_return std::move(asked.error());
     auto answer = co_await desk_.carry_out(std::move(*asked));
     if (!answer) co_return refusal(request.version(), http_status(answer.error().kind), answer.error());
@@ -243,15 +247,14 @@ std::optional<HttpServer::Response> HttpServer::local_page(const Request& reques
 }
 
 /// Who wants to watch, or the answer for one who may not.
-Expected<Person, HttpServer::Response> HttpServer::viewer(const Request& request,
-                                                          const std::optional<net::Peer>& peer) const {
+Expected<Person, HttpServer::Response> HttpServer::viewer(const Request& request, const Person& caller) const {
     const auto version = request.version();
     const auto no = [](Response answer) { return tl::unexpected<Response>(std::move(answer)); };
     if (!host_ok(view(request[http::field::host]))) return no(*local_page(request));
     if (!boost::beast::websocket::is_upgrade(request))
         return no(
             reply(version, http::status::upgrade_required, "text/plain", "expected a WebSocket (docs/streams.md)\n"));
-    auto who = identities_.over_http(peer, view(request[http::field::authorization]));
+    auto who = identities_.over_http(caller, view(request[http::field::authorization]));
     if (!who) return no(refusal(version, 401, who.error()));
     if (const auto permitted = may(*who, Need::look, "watch the wall", nullptr); !permitted)
         return no(refusal(version, http_status(permitted.error().kind), permitted.error()));
@@ -262,12 +265,11 @@ Expected<Person, HttpServer::Response> HttpServer::viewer(const Request& request
 }
 
 /// What is asked of the desk, or the answer if nothing is.
-Expected<Asked, HttpServer::Response> HttpServer::read(const Request& request,
-                                                       const std::optional<net::Peer>& peer) const {
+Expected<Asked, HttpServer::Response> HttpServer::read(const Request& request, const Person& caller) const {
     const auto no = [&](int status, const Refusal& why) {
         return tl::unexpected<Response>(refusal(request.version(), status, why));
     };
-    auto who = identities_.over_http(peer, view(request[http::field::authorization]));
+    auto who = identities_.over_http(caller, view(request[http::field::authorization]));
     if (!who) return no(401, who.error());
     const auto path = path_of(request);
     if (reads(request) && path == kMetricsPath) {

@@ -8,7 +8,7 @@
 #include <map>
 #include <memory>
 
-#include "common/net/address.h"
+#include "common/net/control_connection.h"
 #include "walld/changed.h"
 #include "walld/http_body.h"
 #include "walld/identity.h"
@@ -17,6 +17,7 @@
 #include "walld/quota.h"
 #include "walld/stream_hub.h"
 #include "walld/wall.h"
+#include "walld/who_is_there.h"
 
 namespace wall::walld {
 
@@ -24,11 +25,12 @@ class HttpServer {
 public:
     static constexpr std::chrono::seconds kIdleLimit{30};
 
-    HttpServer(asio::any_io_executor executor, const Wall& wall, const Identities& identities, OperatorDesk& desk,
-               StreamHub& streams, const WallMetrics& metrics)
-        : acceptor_(executor),
+    HttpServer(asio::any_io_executor executor, const Wall& wall, const Identities& identities, WhoIsThere& who,
+               OperatorDesk& desk, StreamHub& streams, const WallMetrics& metrics)
+        : executor_(std::move(executor)),
           wall_(wall),
           identities_(identities),
+          who_(who),
           desk_(desk),
           streams_(streams),
           metrics_(metrics) {}
@@ -36,7 +38,7 @@ public:
     Result<void> listen(const net::Address& address);
     void stop();
     /// The address listened on, with the port that the kernel chose.
-    const net::Address& address() const { return address_; }
+    const net::Address& address() const { return listener_->address(); }
 
 private:
     using Request = boost::beast::http::request<boost::beast::http::string_body>;
@@ -44,26 +46,29 @@ private:
     using Socket = asio::ip::tcp::socket;
     struct Connection {
         Socket socket;
-        std::optional<net::Peer> peer;
         Quota::Place place;
+        Person caller;  ///< known once it is served
     };
 
-    asio::awaitable<void> accept();
+    void take(net::StreamSocket accepted);
     asio::awaitable<void> serve(std::shared_ptr<Connection> connection);
+    asio::awaitable<void> answer_all(std::shared_ptr<Connection> connection);
     asio::awaitable<std::optional<Response>> serve_stream(std::shared_ptr<Connection> connection,
                                                           const Request& request);
-    asio::awaitable<std::optional<Response>> answer(const Request& request, const std::optional<net::Peer>& peer);
+    asio::awaitable<std::optional<Response>> answer(const Request& request, const Person& caller);
     std::optional<Response> local_page(const Request& request) const;
-    Expected<Person, Response> viewer(const Request& request, const std::optional<net::Peer>& peer) const;
-    Expected<Asked, Response> read(const Request& request, const std::optional<net::Peer>& peer) const;
+    Expected<Person, Response> viewer(const Request& request, const Person& caller) const;
+    Expected<Asked, Response> read(const Request& request, const Person& caller) const;
 
-    asio::ip::tcp::acceptor acceptor_;
+    asio::any_io_executor executor_;
+    std::optional<net::Listener> listener_;
+    bool stopping_ = false;
     const Wall& wall_;
     const Identities& identities_;
+    WhoIsThere& who_;
     OperatorDesk& desk_;
     StreamHub& streams_;
     const WallMetrics& metrics_;
-    net::Address address_;
     Quota connections_{kHttpConnections};
     std::map<Connection*, std::weak_ptr<Connection>> open_;
 };

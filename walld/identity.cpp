@@ -15,6 +15,7 @@ namespace wall::walld {
 namespace {
 
 constexpr std::size_t kMinSecret = 16, kMaxSecret = 1024;  // bytes
+constexpr std::size_t kMaxEntry = 64 << 10;                // bytes of one user's entry
 constexpr std::string_view kBearer = "Bearer ";
 
 Result<std::string> read_secret(const config::TokenConfig& token) {
@@ -64,15 +65,17 @@ Result<Identities> Identities::open(const config::PeopleConfig& people) {
     return out;
 }
 
-Person Identities::of(const std::optional<net::Peer>& peer) const {
-    if (!peer) return {};
-    Person out{Person::Kind::unix_user, "uid " + std::to_string(peer->user), peer->user, Role::none};
+Person Identities::of(std::uint32_t user) const {
+    Person out{Person::Kind::unix_user, "uid " + std::to_string(user), user, Role::none};
     std::vector<std::uint32_t> groups;
-    if (const passwd* user = ::getpwuid(peer->user)) {
-        out.name = user->pw_name;
-        groups = groups_of(*user);
+    passwd entry{};
+    passwd* found = nullptr;
+    std::vector<char> texts(kMaxEntry);
+    if (::getpwuid_r(user, &entry, texts.data(), texts.size(), &found) == 0 && found) {
+        out.name = found->pw_name;
+        groups = groups_of(*found);
     }
-    out.role = peer->user == ::geteuid() ? Role::operator_ : config::role_of(people_, peer->user, groups);
+    out.role = user == ::geteuid() ? Role::operator_ : config::role_of(people_, user, groups);
     return out;
 }
 
@@ -84,11 +87,11 @@ Outcome<Person> Identities::with_token(Person base, std::string_view token) cons
     return refuse(RefusalKind::forbidden, "this wall does not know that token");
 }
 
-Outcome<Person> Identities::over_http(const std::optional<net::Peer>& peer, std::string_view authorization) const {
+Outcome<Person> Identities::over_http(const Person& base, std::string_view authorization) const {
     if (!authorization.empty() && (!authorization.starts_with(kBearer) || authorization.size() == kBearer.size()))
         return refuse(RefusalKind::forbidden, "expected 'Authorization: Bearer TOKEN'");
     const auto token = authorization.empty() ? authorization : authorization.substr(kBearer.size());
-    return with_token(of(peer), token).map([&](Person person) {
+    return with_token(base, token).map([&](Person person) {
         person.role = std::max(person.role, people_.http_role);
         return person;
     });

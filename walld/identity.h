@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Who is at the other end: the kernel says which user a local socket belongs to, a token says it for everybody else.
-// Asks the machine for names and groups. One thread.
+// Asks the machine for names and groups. One thread, but for what says otherwise.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "common/base/result.h"
-#include "common/net/sockets.h"
 #include "walld/person.h"
 
 namespace wall::walld {
@@ -19,11 +18,12 @@ public:
     /// Reads the tokens' files; each must hold a secret that others cannot read.
     static Result<Identities> open(const config::PeopleConfig& people);
 
-    Person of(const std::optional<net::Peer>& peer) const;
+    /// Asks the name service, which may take its time. Any thread.
+    Person of(std::uint32_t user) const;
     /// The person that `token` stands for; `base` if there is none (empty).
     Outcome<Person> with_token(Person base, std::string_view token) const;
     /// Over HTTP everybody has at least the role that the configuration gives.
-    Outcome<Person> over_http(const std::optional<net::Peer>& peer, std::string_view authorization) const;
+    Outcome<Person> over_http(const Person& base, std::string_view authorization) const;
 
 private:
     struct Token {

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/load_config.h"
+#include "common/daemon/keep_running.h"
 #include "common/log/log.h"
 #include "common/net/sockets.h"
 #include "walld/control_server.h"
@@ -44,13 +45,13 @@ void write_ready_file(const std::string& path, const ControlServer& control, con
         log::error("ready_file_failed path={}", log::quoted(path));
 }
 
-asio::awaitable<void> feed_watchdog(asio::steady_timer& timer) {
+/// systemd hears that the thread is alive as often as it wants to.
+asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const bool& stopping) {
     const auto interval = watchdog_interval();
-    boost::system::error_code error;
-    while (interval && !error) {
-        notify_alive();
-        timer.expires_after(*interval);
-        std::tie(error) = co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+    while (!stopping) {
+        if (interval) notify_alive();
+        timer.expires_after(interval.value_or(std::chrono::hours(1)));
+        co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
     }
 }
 
@@ -68,21 +69,23 @@ Result<void> run(config::WallConfig config, const Options& options) {
     if (!identities) return tl::unexpected(identities.error());
     ControlServer control(io.get_executor(), std::move(config), std::move(*identities), state);
     const WallMetrics metrics(control.wall(), control.streams(), WALLGL_VERSION);
-    HttpServer http(io.get_executor(), control.wall(), control.identities(), control.operators(), control.streams(),
-                    metrics);
-    if (auto listening = control.listen(); !listening) return listening;
-    if (http_listen) {
-        if (auto listening = http.listen(*http_listen); !listening) return listening;
-    }
+    HttpServer http(io.get_executor(), control.wall(), control.identities(), control.who_is_there(),
+                    control.operators(), control.streams(), metrics);
+    const auto listen_http = [&] { return http_listen ? http.listen(*http_listen) : Result<void>(); };
+    if (auto listening = net::listen_patiently([&] { return control.listen(); }); !listening) return listening;
+    if (auto listening = net::listen_patiently(listen_http); !listening) return listening;
     if (!options.ready_file.empty()) write_ready_file(options.ready_file, control, http, http_listen.has_value());
 
     asio::steady_timer watchdog(io);
     asio::signal_set signals(io, SIGINT, SIGTERM);
-    spawn(io.get_executor(), "watchdog", feed_watchdog(watchdog));
+    bool stopping = false;
+    net::keep_running(io.get_executor(),
+                      {"watchdog", [&] { return feed_watchdog(watchdog, stopping); }, [&] { return stopping; }});
     signals.async_wait([&](const boost::system::error_code& error, int signal) {
         if (error) return;
         log::info("stopping signal={}", signal);
         notify_stopping();
+        stopping = true;
         http.stop();
         control.stop();
         watchdog.cancel();

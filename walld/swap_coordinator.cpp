@@ -51,6 +51,18 @@ Presents SwapCoordinator::rendered(std::uint32_t node, std::uint32_t frame, Cloc
     return out;
 }
 
+Presents SwapCoordinator::resume(std::uint32_t node, std::uint32_t frame, std::uint32_t shown, Clock::time_point now) {
+    const auto found = members_.find(node);
+    if (found == members_.end()) return {};
+    presented_ = std::max(presented_, shown);
+    if (held_) allowed_ = std::max(allowed_, presented_);
+    auto& member = found->second;
+    member.told = std::max(member.told, shown);
+    member.rendered = std::max(member.rendered, frame);
+    if (member.rendered >= presented_) member.waited = true;
+    return advance(now);
+}
+
 Presents SwapCoordinator::tick(Clock::time_point now) {
     if (!deadline_ || now < *deadline_) return {};
     deadline_.reset();

@@ -48,6 +48,8 @@ public:
     Presents lose(std::uint32_t node, Clock::time_point now);
     /// A node has rendered `frame` (and all before it). Reports of other nodes are ignored.
     Presents rendered(std::uint32_t node, std::uint32_t frame, Clock::time_point now);
+    /// A node that was not told what to show, or was told by somebody else, shows `shown` and has rendered `frame`.
+    Presents resume(std::uint32_t node, std::uint32_t frame, std::uint32_t shown, Clock::time_point now);
     Presents tick(Clock::time_point now);
 
     /// Nothing beyond this frame is presented until it is called again.

@@ -16,6 +16,18 @@ namespace {
 constexpr std::size_t kMaxSurfaces = 256;  // of a session
 constexpr std::size_t kMaxText = 256;      // bytes of a program's name or a window's title that are kept
 
+/// The same process, perhaps on another link.
+bool same_process(const proto::NodeHello& a, const proto::NodeHello& b) {
+    return a.pid() == b.pid() && a.started_us() == b.started_us();
+}
+
+/// The node has the session from an earlier link, under that ticket.
+bool has_ticket(const proto::NodeHello& hello, SessionId id, const std::string& ticket) {
+    return std::ranges::any_of(hello.sessions(), [&](const proto::Ticket& known) {
+        return known.session() == id.value && known.ticket() == ticket;
+    });
+}
+
 bool extent_ok(std::uint32_t width, std::uint32_t height) {
     return width > 0 && height > 0 && width <= wire::kMaxSurfaceExtent && height <= wire::kMaxSurfaceExtent;
 }
@@ -31,25 +43,35 @@ Wall::Wall(config::WallConfig config, Outbox& out, RandomBytes random)
 
 // ---- nodes ----
 
-Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_point now) {
+Result<NodeIndex> Wall::check_node(const proto::NodeHello& hello) const {
     const auto found = std::ranges::find(nodes_, hello.name(), [](const Node& n) { return n.config->name; });
     if (hello.version() != wire::kProtocolVersion)
         return fail("this walld speaks protocol version " + std::to_string(wire::kProtocolVersion) + ", the node " +
                     std::to_string(hello.version()));
     if (found == nodes_.end()) return fail("node '" + hello.name() + "' is not in wall.toml");
-    if (found->up)
+    if (found->up && !same_process(found->hello, hello) && hello.started_us() <= found->hello.started_us())
         return fail("node '" + hello.name() + "' is already here, as process " + std::to_string(found->hello.pid()));
-    const auto index = static_cast<NodeIndex>(found - nodes_.begin());
-    const bool same_process = found->incarnation > 0 && found->hello.pid() == hello.pid();
-    if (!same_process) {
-        ++found->incarnation;
-        found->stats.Clear();
+    return static_cast<NodeIndex>(found - nodes_.begin());
+}
+
+Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_point now) {
+    const auto good = check_node(hello);
+    if (!good) return good;
+    const auto index = *good;
+    auto& node = nodes_[index];
+    if (node.up) node_leaves(index, now);
+    const bool same = node.incarnation > 0 && same_process(node.hello, hello);
+    if (!same) {
+        ++node.incarnation;
+        node.stats.Clear();
     }
-    found->up = true;
-    found->hello = hello;
+    node.up = true;
+    node.hello = hello;
     welcome_node(index);
+    hear_wall_note(index, hello.wall_note());
+    hear_of_sessions(index, hello, now);
     for (auto& [id, session] : sessions_) {
-        if (!same_process) session.tickets.erase(index);
+        if (!same && !has_ticket(hello, id, session.tickets[index])) session.tickets.erase(index);
         hand_out_ticket(id, session, index);
         out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(index, session.tickets[index])));
     }
@@ -72,8 +94,13 @@ void Wall::node_leaves(NodeIndex node, Clock::time_point now) {
 
 void Wall::node_rendered(NodeIndex node, const proto::Rendered& report, Clock::time_point now) {
     const SurfaceKey key{SessionId(report.session()), SurfaceId(report.surface())};
-    if (auto* surface = find(key.surface, key.session))
-        present(key, surface->swap.rendered(node, report.frame(), now), now);
+    auto* surface = find(key.surface, key.session);
+    if (!surface) return;
+    auto& swap = surface->swap;
+    present(key,
+            report.has_shown() ? swap.resume(node, report.frame(), report.shown(), now)
+                               : swap.rendered(node, report.frame(), now),
+            now);
 }
 
 void Wall::node_faults(NodeIndex node, const proto::SessionFault& report) {
@@ -145,8 +172,10 @@ SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Cloc
                              const std::function<void(SessionId)>& before_welcome) {
     if (const auto* known = group_of(hello)) return join_session(known->first, hello, before_welcome);
     WALL_ASSERT(any_node_up());
-    const SessionId id(++last_session_);
+    const auto back = resumable(hello);
+    const SessionId id = back ? *back : next_session();
     auto& session = sessions_[id];
+    if (back) resume_session(id, session, hello.resume());
     session.pid = hello.pid();
     session.program = hello.program().substr(0, kMaxText);
     session.name = hello.name().substr(0, kMaxText);
@@ -168,6 +197,13 @@ SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Cloc
     }
     welcome_client(id, session, hello.group().rank());
     return id;
+}
+
+/// One that neither a program nor a node knows as another session's.
+SessionId Wall::next_session() {
+    do ++last_session_.value;
+    while (!last_session_ || sessions_.contains(last_session_) || returning_.contains(last_session_));
+    return last_session_;
 }
 
 void Wall::hand_out_ticket(SessionId id, Session& session, NodeIndex node) {
@@ -212,6 +248,7 @@ void Wall::welcome_client(SessionId id, const Session& session, Rank rank) {
 
 void Wall::close_session(SessionId id) {
     if (sessions_.erase(id) == 0) return;
+    if (!returns_over_) ended_.insert(id);
     std::erase_if(stacking_, [&](const SurfaceKey& key) { return key.session == id; });
     proto::SessionEnd end;
     end.set_session(id.value);
@@ -233,24 +270,33 @@ Result<void> Wall::open_surface(SessionId id, const proto::SurfaceOpen& message,
         return {};
     }
     if (session->surfaces.size() >= kMaxSurfaces) return fail("more than " + std::to_string(kMaxSurfaces) + " windows");
-    Surface surface{.width = message.width(),
-                    .height = message.height(),
-                    .title = message.title().substr(0, kMaxText),
-                    .place = PlacementTrack(),
-                    .agreed = {},
-                    .swap = SwapCoordinator(config_.swap_timeout, session->held)};
+    if (message.has_restore() && !session->group && restore_surface(key, message, now)) return {};
+    auto& surface = add_surface(key, message);
     surface.place = PlacementTrack(first_rect(*session, surface, windows_placed_++));
-    auto& kept = session->surfaces.emplace(key.surface, std::move(surface)).first->second;
+    surface.order = order_at(now);
     stack(key);
-    present(key, kept.swap.set_nodes(nodes_of(*session, kept.place.drawn()), now), now);
+    present(key, surface.swap.set_nodes(nodes_of(*session, surface.place.drawn()), now), now);
     if (session->group) {
         agree(key, now);
         open_for_member(key, message, rank, now);
     } else {
-        send_placement(key, kept);
+        send_placement(key, surface);
     }
     send_stacking();
     return {};
+}
+
+/// Not placed yet.
+Surface& Wall::add_surface(const SurfaceKey& key, const proto::SurfaceOpen& message) {
+    auto& session = *find(key.session);
+    Surface surface{.width = message.width(),
+                    .height = message.height(),
+                    .title = message.title().substr(0, kMaxText),
+                    .place = PlacementTrack(),
+                    .note = {},
+                    .agreed = {},
+                    .swap = SwapCoordinator(config_.swap_timeout, session.held)};
+    return session.surfaces.emplace(key.surface, std::move(surface)).first->second;
 }
 
 /// The session's wanted rectangle goes to one window at a time; every other one gets its place in the layout that was
@@ -265,6 +311,7 @@ geom::Rect Wall::first_rect(Session& session, Surface& surface, std::uint32_t nu
     if (const auto free = take_place(free_places_, {session.name, session.program, surface.title})) {
         surface.scaled = free->scaled;
         surface.layout_z = free->z;
+        waiting_places_changed();
         return free->scaled ? free->rect
                             : geom::Rect{free->rect.x, free->rect.y, static_cast<std::int32_t>(surface.width),
                                          static_cast<std::int32_t>(surface.height)};
@@ -342,12 +389,15 @@ std::optional<Clock::time_point> Wall::next_deadline() const {
         if (session.group && !session.group->all_came()) consider(session.opened + kMembersLimit);
         for (const auto& [surface_id, surface] : session.surfaces) consider(surface.swap.deadline());
     }
+    const bool waits = std::ranges::any_of(sessions_, [](const auto& entry) { return entry.second.awaited > 0; });
+    if (waits || !returning_.empty()) consider(return_until_);
     return out;
 }
 
 void Wall::tick(Clock::time_point now) {
     for_each_surface([&](const SurfaceKey& key, Surface& surface) { present(key, surface.swap.tick(now), now); });
     end_overdue_groups(now);
+    end_waiting_for_sessions(now);
 }
 
 // ---- inside ----
@@ -371,6 +421,7 @@ const Surface* Wall::find(const SurfaceKey& key) const {
 void Wall::want(const SurfaceKey& key, const geom::Rect& rect, Clock::time_point now) {
     auto& surface = *find(key.surface, key.session);
     surface.place.want(rect);
+    tell_note(key);
     if (find(key.session)->group) agree(key, now);
     else send_placement(key, surface);
 }
@@ -424,11 +475,16 @@ proto::Envelope Wall::stacking_message(NodeIndex node) const {
         auto* entry = stacking.add_entries();
         entry->set_session(key.session.value);
         entry->set_surface(key.surface.value);
+        entry->set_held(find(key)->swap.held());
     }
+    for (const auto& [id, session] : returning_) stacking.add_returning(id.value);
+    for (const auto& [id, session] : sessions_)
+        if (session.awaited > 0) stacking.add_returning(id.value);
     return make(&proto::Envelope::mutable_stacking, stacking);
 }
 
 void Wall::send_stacking() {
+    number_stacking();
     for (NodeIndex i = 0; i < nodes_.size(); ++i) {
         if (nodes_[i].up) out_.to_node(i, stacking_message(i));
     }

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,8 @@ struct Surface {
     bool scaled = false;                  ///< the rectangle was given; else it follows the window's size
     bool wanted_rect = false;             ///< it is the session's WALLGL_RECT window
     bool cannot_close = false;            ///< its program has no way to be asked
+    std::uint64_t order = 0;              ///< in the stacking: what has a higher one lies above
+    std::string note;                     ///< what its program keeps of it for the next walld
     std::optional<std::size_t> layout_z;  ///< its place in the stacking of the layout that placed it
     AgreedPlacements agreed;              ///< of a parallel program
     SwapCoordinator swap;
@@ -82,7 +85,8 @@ struct Session {
     Person owner;
     std::optional<geom::Rect> rect;  ///< asked for; fullscreen: the canvas
     bool held = false;
-    std::string fault;  ///< what a node said against its stream
+    std::string fault;          ///< what a node said against its stream
+    std::uint32_t awaited = 0;  ///< windows that it still has to announce, of a session that goes on
     std::map<NodeIndex, std::string> tickets;
     std::map<SurfaceId, Surface> surfaces;
     SessionTraffic traffic;
@@ -100,9 +104,16 @@ struct Counters {
     std::uint64_t sessions = 0, presents = 0, faults = 0;
 };
 
+/// Of an earlier walld, by what the nodes tell of it.
+struct ReturningSession {
+    std::map<NodeIndex, std::string> tickets;
+};
+
 class Wall {
 public:
     static constexpr std::size_t kTicketBytes = 16;
+    /// From the first node on: programs of an earlier walld that have not come by then have lost their session.
+    static constexpr std::chrono::seconds kReturnLimit{10};
     static constexpr std::chrono::seconds kMembersLimit{60};  ///< for all processes of a parallel program to come
     using RandomBytes = std::function<std::string(std::size_t)>;
 
@@ -112,6 +123,9 @@ public:
     Wall& operator=(const Wall&) = delete;
 
     // ---- nodes ----
+    /// Why this process cannot be one of the wall's nodes now, if so. One that is up gives way to itself on another
+    /// link, and to a process that was started later.
+    Result<NodeIndex> check_node(const proto::NodeHello& hello) const;
     Result<NodeIndex> node_joins(const proto::NodeHello& hello, Clock::time_point now);
     void node_leaves(NodeIndex node, Clock::time_point now);
     void node_rendered(NodeIndex node, const proto::Rendered& report, Clock::time_point now);
@@ -177,12 +191,27 @@ public:
 private:
     Session* find(SessionId id);
     Surface* find(SurfaceId surface, SessionId session);
+    Surface& add_surface(const SurfaceKey& key, const proto::SurfaceOpen& message);
     proto::NodeUp node_up_message(NodeIndex node, const std::string& ticket) const;
     void welcome_node(NodeIndex node);
     void welcome_client(SessionId id, const Session& session, Rank rank);
     void hand_out_ticket(SessionId id, Session& session, NodeIndex node);
     std::set<NodeIndex> nodes_under(const geom::Rect& rect) const;
     geom::Rect first_rect(Session& session, Surface& surface, std::uint32_t number);
+    SessionId next_session();
+    // of a walld that was started again (wall_return.cpp)
+    std::optional<SessionId> resumable(const proto::ClientHello& hello) const;
+    void resume_session(SessionId id, Session& session, const proto::Resume& resume);
+    static std::uint64_t order_at(Clock::time_point now);
+    bool restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& message, Clock::time_point now);
+    void hear_of_sessions(NodeIndex node, const proto::NodeHello& hello, Clock::time_point now);
+    void end_waiting_for_sessions(Clock::time_point now);
+    void hear_wall_note(NodeIndex node, const proto::WallNote& note);
+    void waiting_places_changed();
+    proto::Envelope wall_note() const;
+    void number_stacking();
+    void tell_note(const SurfaceKey& key);
+    void ask_for_frames(SessionId session);
     WindowName name_of(const SurfaceKey& key) const;
     void stack(const SurfaceKey& key);
     void want(const SurfaceKey& key, const geom::Rect& rect, Clock::time_point now);
@@ -210,9 +239,15 @@ private:
     std::vector<Node> nodes_;
     std::map<SessionId, Session> sessions_;
     std::vector<SurfaceKey> stacking_;
-    std::uint32_t last_session_ = 0;
+    SessionId last_session_;
     std::uint32_t windows_placed_ = 0;      ///< of cascades
     std::vector<LayoutEntry> free_places_;  ///< of the layout loaded last
+    std::uint64_t places_version_ = 0;      ///< of free_places_
+    bool layout_loaded_ = false;            ///< since walld was started
+    std::map<SessionId, ReturningSession> returning_;
+    std::optional<Clock::time_point> return_until_;  ///< none: no node has come yet
+    bool returns_over_ = false;                      ///< nobody is waited for any more
+    std::set<SessionId> ended_;                      ///< until then: sessions that nodes may still have
     Counters counters_;
 };
 

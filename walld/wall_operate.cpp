@@ -113,6 +113,7 @@ Outcome<void> Wall::hold(const Target& target, bool on, Clock::time_point now) {
         auto& swap = find(key.surface, key.session)->swap;
         present(key, on ? swap.hold(now) : swap.release(now), now);
     }
+    send_stacking();  // with what is held
     return {};
 }
 
@@ -167,6 +168,8 @@ std::size_t Wall::load_layout(const Layout& layout, Clock::time_point now) {
         std::erase(stacking_, key);
         stacking_.push_back(key);
     }
+    layout_loaded_ = true;
+    waiting_places_changed();
     send_stacking();
     return placed.size();
 }

@@ -33,7 +33,8 @@ std::uint32_t read_background(TreeReader& read, const toml::table& wall) {
 
 void read_control(TreeReader& read, const toml::table& root, WallConfig& out) {
     const auto& control = read.section(root, "control");
-    read.only(control, "[control]", {"listen", "users"});
+    read.only(control, "[control]", {"listen", "users", "daemon_user"});
+    out.daemon_user = read.text(control, "daemon_user", out.daemon_user);
     if (const auto* listen = control.get("listen")) {
         const auto* array = listen->as_array();
         if (!array || array->empty())

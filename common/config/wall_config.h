@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/base/trusted_server.h"
 #include "common/config/people.h"
 #include "common/geom/rect.h"
 #include "common/net/address.h"
@@ -46,6 +47,7 @@ struct WallConfig {
     std::string name;
     std::uint32_t background = 0;              ///< 0xRRGGBB behind all windows
     std::vector<net::Address> control_listen;  ///< walld's; nodes connect to the first
+    std::string daemon_user = kWallUser;       ///< walld's, for the nodes: a name or number, "*" for anybody
     PeopleConfig people;                       ///< who may do what
     std::optional<net::Address> http_listen;   ///< none: no HTTP
     std::chrono::milliseconds swap_timeout{250};

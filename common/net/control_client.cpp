@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "common/base/trusted_server.h"
 #include "common/net/sockets.h"
 
 namespace wall::net {
@@ -15,6 +16,9 @@ namespace wall::net {
 Result<ControlClient> ControlClient::connect(const Address& address, std::chrono::milliseconds timeout) {
     auto fd = connect_to(address, timeout);
     if (!fd) return tl::unexpected(fd.error());
+    if (const auto trusted = check_server(fd->get(), wall_user_from_environment()); !trusted)
+        return fail(address.text() + ": this is not walld: " + trusted.error().message +
+                    " (WALLGL_WALLD_USER names walld's user)");
     return ControlClient(std::move(*fd));
 }
 

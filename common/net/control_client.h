@@ -15,6 +15,7 @@ namespace wall::net {
 
 class ControlClient {
 public:
+    /// To a process of the user WALLGL_WALLD_USER, of root or of our own user; nothing is said to any other.
     static Result<ControlClient> connect(const Address& address, std::chrono::milliseconds timeout);
 
     Result<void> send(const proto::Envelope& envelope);

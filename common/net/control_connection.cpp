@@ -12,11 +12,21 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 
+#include "common/base/trusted_server.h"
+
 namespace wall::net {
 namespace {
 
 constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
 constexpr auto kAcceptRetry = std::chrono::milliseconds(100);  // while descriptors are short
+
+/// The listener itself is well.
+bool passes(const boost::system::error_code& error) {
+    namespace errc = boost::system::errc;
+    return error == errc::too_many_files_open || error == errc::too_many_files_open_in_system ||
+           error == errc::connection_aborted || error == errc::no_buffer_space || error == errc::not_enough_memory ||
+           error == errc::protocol_error || error == errc::interrupted;
+}
 
 asio::generic::stream_protocol protocol_of(const Address& address, int family) {
     return {family, address.is_unix() ? 0 : IPPROTO_TCP};
@@ -25,15 +35,28 @@ asio::generic::stream_protocol protocol_of(const Address& address, int family) {
 }  // namespace
 
 Result<Listener> Listener::open(asio::any_io_executor executor, const Address& address) {
-    auto fd = listen_on(address);
+    Listener listener(Acceptor(executor), address);
+    if (auto listening = listener.listen(); !listening) return tl::unexpected(listening.error());
+    return listener;
+}
+
+Result<void> Listener::listen() {
+    auto fd = listen_on(address_);
     if (!fd) return tl::unexpected(fd.error());
-    auto to = resolve(address);
+    auto to = resolve(address_);
     if (!to) return tl::unexpected(to.error());
-    Acceptor acceptor(executor);
     boost::system::error_code error;
-    acceptor.assign(protocol_of(address, to->family()), fd->get(), error);
-    if (error) return fail(address.text() + ": " + error.message());
-    return Listener(std::move(acceptor), bound_address(fd->release(), address));
+    acceptor_.assign(protocol_of(address_, to->family()), fd->get(), error);
+    if (error) return fail(address_.text() + ": " + error.message());
+    address_ = bound_address(fd->release(), address_);
+    return {};
+}
+
+Result<void> Listener::reopen() {
+    boost::system::error_code ignored;
+    acceptor_.close(
+        ignored);  // a Unix socket's file may be another one's by now: listen() removes it only if it is stale
+    return listen();
 }
 
 Listener::~Listener() {
@@ -50,10 +73,7 @@ asio::awaitable<Result<StreamSocket>> Listener::accept() {
     for (;;) {
         auto [error, socket] = co_await acceptor_.async_accept(kTuple);
         if (!error) co_return std::move(socket);
-        if (error != boost::system::errc::too_many_files_open && error != boost::system::errc::connection_aborted &&
-            error != boost::system::errc::too_many_files_open_in_system) {
-            co_return fail(address_.text() + ": " + error.message());
-        }
+        if (!passes(error)) co_return fail(address_.text() + ": " + error.message());
         asio::steady_timer pause(acceptor_.get_executor(), kAcceptRetry);
         co_await pause.async_wait(kTuple);
     }
@@ -61,10 +81,11 @@ asio::awaitable<Result<StreamSocket>> Listener::accept() {
 
 ControlConnection::ControlConnection(StreamSocket socket)
     : socket_(std::move(socket)),
-      peer_(peer_of(socket_.native_handle())),
+      ends_(ends_of(socket_.native_handle())),
       drained_(socket_.get_executor(), asio::steady_timer::time_point::max()) {}
 
-asio::awaitable<Result<std::shared_ptr<ControlConnection>>> ControlConnection::connect(Address address) {
+asio::awaitable<Result<std::shared_ptr<ControlConnection>>> ControlConnection::connect(Address address,
+                                                                                       std::string server) {
     auto to = resolve(address);
     if (!to) co_return tl::unexpected(to.error());
     StreamSocket socket(co_await asio::this_coro::executor);
@@ -72,6 +93,8 @@ asio::awaitable<Result<std::shared_ptr<ControlConnection>>> ControlConnection::c
                                                             protocol_of(address, to->family()).protocol());
     auto [error] = co_await socket.async_connect(endpoint, kTuple);
     if (error) co_return fail(address.text() + ": cannot connect: " + error.message());
+    if (const auto trusted = check_server(socket.native_handle(), server); !trusted)
+        co_return fail(address.text() + ": this is not walld: " + trusted.error().message);
     co_return std::make_shared<ControlConnection>(std::move(socket));
 }
 

@@ -33,14 +33,18 @@ public:
     Listener& operator=(Listener&&) = delete;
     ~Listener();
 
-    /// The next connection. An error ends the listener (closed, or out of descriptors for long).
+    /// The next connection; waits while descriptors are short. After an error (closed, or broken) no further one comes
+    /// until it is opened again.
     asio::awaitable<Result<StreamSocket>> accept();
     void close();
+    /// Listens anew on the same address, whatever has become of the socket.
+    Result<void> reopen();
     const Address& address() const { return address_; }  ///< with the port that the kernel chose
 
 private:
     using Acceptor = asio::basic_socket_acceptor<asio::generic::stream_protocol>;
     Listener(Acceptor acceptor, Address address) : acceptor_(std::move(acceptor)), address_(std::move(address)) {}
+    Result<void> listen();
     Acceptor acceptor_;
     Address address_;
 };
@@ -51,7 +55,8 @@ public:
     static constexpr std::size_t kMaxQueued = std::size_t{256} << 20;  // bytes
 
     explicit ControlConnection(StreamSocket socket);
-    static asio::awaitable<Result<std::shared_ptr<ControlConnection>>> connect(Address address);
+    /// `server`: the user whose process must be there, if it is not root's or our own (check_server).
+    static asio::awaitable<Result<std::shared_ptr<ControlConnection>>> connect(Address address, std::string server);
 
     /// The next message. The error says "closed" for an orderly end, else what was wrong; the socket is closed then.
     asio::awaitable<Result<proto::Envelope>> receive();
@@ -66,14 +71,17 @@ public:
     void close_after_sending();
 
     bool is_open() const { return socket_.is_open() && !closing_; }
-    const std::optional<Peer>& peer() const { return peer_; }
+    /// For peer_of().
+    const std::optional<SocketEnds>& ends() const { return ends_; }
+    /// What is known at once: of a Unix socket's peer.
+    std::optional<Peer> peer() const { return ends_ ? ends_->credentials : std::nullopt; }
 
 private:
     asio::awaitable<void> write_queue();
     void give_up(Error why);
 
     StreamSocket socket_;
-    std::optional<Peer> peer_;
+    std::optional<SocketEnds> ends_;
     Unframer unframer_;
     std::deque<std::string> queue_;
     std::size_t queued_bytes_ = 0;

@@ -10,12 +10,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 
 namespace wall::net {
 namespace {
@@ -43,45 +39,6 @@ void remove_stale(const Address& address, const SocketAddress& to) {
     if (::connect(probe.get(), to.get(), to.length) != 0 && errno == ECONNREFUSED) ::unlink(address.path.c_str());
 }
 
-/// `address:port` as /proc/net/tcp writes it: the words of the address in hexadecimal as they lie in memory.
-std::string proc_text(const sockaddr_storage& address) {
-    const bool v6 = address.ss_family == AF_INET6;
-    const auto* in4 = reinterpret_cast<const sockaddr_in*>(&address);
-    const auto* in6 = reinterpret_cast<const sockaddr_in6*>(&address);
-    std::array<std::uint32_t, 4> words{};
-    std::memcpy(words.data(), v6 ? static_cast<const void*>(&in6->sin6_addr) : &in4->sin_addr, v6 ? 16 : 4);
-    std::string out;
-    char text[16];
-    for (int i = 0; i < (v6 ? 4 : 1); ++i)
-        out.append(text, static_cast<std::size_t>(std::snprintf(text, sizeof text, "%08X", words[i])));
-    out.append(text, static_cast<std::size_t>(std::snprintf(text, sizeof text, ":%04X", ntohs(in4->sin_port))));
-    return out;
-}
-
-/// The kernel's table of TCP sockets names each one's owner; the peer's own socket is in it if it is on this machine.
-std::optional<Peer> owner_of_tcp_peer(int fd) {
-    sockaddr_storage here{}, there{};
-    socklen_t size = sizeof here;
-    if (::getsockname(fd, reinterpret_cast<sockaddr*>(&here), &size) != 0) return std::nullopt;
-    size = sizeof there;
-    if (::getpeername(fd, reinterpret_cast<sockaddr*>(&there), &size) != 0) return std::nullopt;
-    std::ifstream table(there.ss_family == AF_INET6 ? "/proc/net/tcp6" : "/proc/net/tcp");
-    const std::string local = proc_text(there), remote = proc_text(here);
-    std::string line;
-    while (std::getline(table, line)) {
-        std::istringstream fields(line);
-        std::string row, from, to, skipped;
-        uid_t user = 0;
-        std::uint64_t inode = 0;
-        fields >> row >> from >> to;
-        if (from != local || to != remote) continue;
-        for (int i = 0; i < 4; ++i) fields >> skipped;  // st, queues, timer, retransmits
-        // A socket that its process has closed already is in the table as root's, without an inode.
-        if (fields >> user >> skipped >> inode && inode != 0) return Peer{user, 0};
-    }
-    return std::nullopt;
-}
-
 }  // namespace
 
 Result<UniqueFd> listen_on(const Address& address) {
@@ -97,6 +54,8 @@ Result<UniqueFd> listen_on(const Address& address) {
     if (::listen(fd->get(), kBacklog) != 0) return system_error(address, "cannot listen", errno);
     return fd;
 }
+
+bool is_address_taken(const Error& error) { return error.message.ends_with(std::strerror(EADDRINUSE)); }
 
 Result<UniqueFd> connect_to(const Address& address, std::chrono::milliseconds timeout) {
     auto to = resolve(address);
@@ -133,17 +92,6 @@ Address bound_address(int fd, const Address& asked) {
     // sin_port and sin6_port lie at the same place.
     out.port = ntohs(reinterpret_cast<const sockaddr_in*>(&got.storage)->sin_port);
     return out;
-}
-
-std::optional<Peer> peer_of(int fd) {
-    sockaddr_storage name{};
-    socklen_t size = sizeof name;
-    if (::getsockname(fd, reinterpret_cast<sockaddr*>(&name), &size) != 0) return std::nullopt;
-    if (name.ss_family != AF_UNIX) return owner_of_tcp_peer(fd);
-    ucred credentials{};
-    size = sizeof credentials;
-    if (::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &credentials, &size) != 0) return std::nullopt;
-    return Peer{credentials.uid, credentials.pid};
 }
 
 }  // namespace wall::net

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "common/base/result.h"
+#include "common/base/socket_peer.h"
 #include "common/base/unique_fd.h"
 #include "common/net/address.h"
 
@@ -16,6 +17,8 @@ namespace wall::net {
 /// A listening socket, which other machines cannot reach: such an address is refused. A stale Unix socket file is
 /// replaced; one that somebody listens on is an error.
 Result<UniqueFd> listen_on(const Address& address);
+/// What listen_on() says of an address that another process has.
+bool is_address_taken(const Error& error);
 /// A connected, blocking socket.
 Result<UniqueFd> connect_to(const Address& address, std::chrono::milliseconds timeout);
 /// A daemon may open as many files as its hard limit says: each peer takes one.
@@ -23,12 +26,7 @@ void use_all_descriptors();
 /// The address that a listening socket has got (port 0 resolved).
 Address bound_address(int fd, const Address& asked);
 
-/// The process at the other end of a connection.
-struct Peer {
-    uid_t user = 0;
-    pid_t process = 0;  ///< 0: not known
-};
-/// What the kernel says about a Unix peer, or about the owner of a TCP socket of this machine; nothing for any other.
-std::optional<Peer> peer_of(int fd);
+using wall::Peer;
+using wall::peer_of;
 
 }  // namespace wall::net

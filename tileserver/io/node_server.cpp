@@ -3,12 +3,14 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <cstring>
+#include <exception>
 
 #include "common/log/log.h"
 #include "common/wire/limits.h"
@@ -47,6 +49,11 @@ std::array<std::byte, 8> words(std::uint32_t first, std::uint32_t second) {
     return bytes;
 }
 
+std::uint64_t microseconds_since_1970() {
+    const auto since = std::chrono::system_clock::now().time_since_epoch();
+    return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(since).count());
+}
+
 /// The node's tiles that are windows; the configuration has them on one display.
 WindowRequest window_request(const config::WallConfig& wall, const config::NodeConfig& node) {
     WindowRequest request{{}, wall.background, {}};
@@ -64,12 +71,16 @@ WindowRequest window_request(const config::WallConfig& wall, const config::NodeC
 
 }  // namespace
 
-NodeServer::NodeServer(asio::any_io_executor executor, net::Address walld, std::string name)
+NodeServer::NodeServer(asio::any_io_executor executor, const config::WallConfig& wall, std::string name)
     : executor_(executor),
-      walld_(std::move(walld)),
+      walld_(wall.control_listen.front()),
+      walld_user_(wall.daemon_user),
       name_(std::move(name)),
       retry_(executor),
       turn_timer_(executor),
+      watch_timer_(executor),
+      watch_(wall.swap_timeout),
+      started_us_(microseconds_since_1970()),
       parts_(executor),
       tile_streams_(executor, [this](std::uint32_t stream, Parts parts) {
           parts_.send({PartsOf::Kind::stream, stream}, std::move(parts));
@@ -79,7 +90,7 @@ NodeServer::~NodeServer() = default;
 
 Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor executor, const config::WallConfig& wall,
                                                      const config::NodeConfig& node) {
-    std::unique_ptr<NodeServer> server(new NodeServer(executor, wall.control_listen.front(), node.name));
+    std::unique_ptr<NodeServer> server(new NodeServer(executor, wall, node.name));
     auto listener = net::Listener::open(executor, node.listen);
     if (!listener) return tl::unexpected(listener.error());
     server->listener_.emplace(std::move(*listener));
@@ -90,9 +101,16 @@ Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor execu
 }
 
 void NodeServer::start() {
-    asio::co_spawn(executor_, accept_clients(), asio::detached);
-    asio::co_spawn(executor_, keep_link(), asio::detached);
-    asio::co_spawn(executor_, watch_turns(), asio::detached);
+    const auto stopping = [this] { return stopping_; };
+    net::keep_accepting(
+        executor_, *listener_, [this](net::StreamSocket socket) { take_client(std::move(socket)); }, stopping);
+    keep("link", &NodeServer::keep_link);
+    keep("walld", &NodeServer::watch_walld);
+    keep("turns", &NodeServer::watch_turns);
+}
+
+void NodeServer::keep(const char* name, asio::awaitable<void> (NodeServer::*work)()) {
+    net::keep_running(executor_, {name, [this, work] { return (this->*work)(); }, [this] { return stopping_; }});
 }
 
 void NodeServer::stop() {
@@ -100,6 +118,7 @@ void NodeServer::stop() {
     listener_->close();
     retry_.cancel();
     turn_timer_.cancel();
+    watch_timer_.cancel();
     if (link_) link_->close();
     for (const auto& [id, stream] : std::map(streams_)) stream->close();
 }
@@ -113,18 +132,17 @@ DataStream* NodeServer::stream(StreamId id) {
 
 // ---- clients ----
 
-asio::awaitable<void> NodeServer::accept_clients() {
-    for (;;) {
-        auto socket = co_await listener_->accept();
-        if (!socket) {
-            if (!stopping_) log::error("listener_failed error={}", log::quoted(socket.error().message));
-            co_return;
-        }
-        const StreamId id(++last_stream_);
-        const auto stream = std::make_shared<DataStream>(static_cast<StreamHost&>(*this), id, std::move(*socket));
-        streams_.emplace(id, stream);
-        asio::co_spawn(executor_, stream->run(), asio::detached);
-    }
+void NodeServer::take_client(net::StreamSocket socket) {
+    const StreamId id(++last_stream_);
+    const auto stream = std::make_shared<DataStream>(static_cast<StreamHost&>(*this), id, std::move(socket));
+    streams_.emplace(id, stream);
+    asio::co_spawn(executor_, stream->run(), [this, id](std::exception_ptr failure) {
+        if (!failure) return;
+        log::error("stream_failed stream={}", id.value);  // out of memory
+        if (DataStream* broken = this->stream(id)) broken->close();
+        render_->remove_stream(id);
+        streams_.erase(id);
+    });
 }
 
 const Admission* NodeServer::admission(SessionId session) const {
@@ -166,16 +184,17 @@ void NodeServer::blame(const RunningTurn& turn) {
 
 asio::awaitable<void> NodeServer::keep_link() {
     while (!stopping_) {
-        auto link = co_await net::ControlConnection::connect(walld_);
+        auto link = co_await net::ControlConnection::connect(walld_, walld_user_);
         if (link) {
             said_unreachable_ = false;
-            link_ = *link;
-            parts_.use(*link);
-            co_await use_link(*link);
-            link_.reset();
-            parts_.use(nullptr);
-            tile_streams_.stop_all(*render_);
-            render_->set_coordinated(false);
+            std::exception_ptr failure;
+            try {
+                co_await use_link(*link);
+            } catch (...) {
+                failure = std::current_exception();
+            }
+            drop_link();
+            if (failure) std::rethrow_exception(failure);
         } else if (!std::exchange(said_unreachable_, true)) {
             log::warn("walld_unreachable address={} error={}", log::quoted(walld_.text()),
                       log::quoted(link.error().message));
@@ -186,7 +205,18 @@ asio::awaitable<void> NodeServer::keep_link() {
     }
 }
 
+void NodeServer::drop_link() {
+    std::exchange(link_, nullptr)->close();
+    parts_.use(nullptr);
+    welcomed_ = false;
+    tile_streams_.stop_all(*render_);
+    render_->set_coordinated(false);
+}
+
 asio::awaitable<void> NodeServer::use_link(std::shared_ptr<net::ControlConnection> link) {
+    link_ = link;
+    parts_.use(link);
+    watch_.linked();
     link->send(hello());
     for (;;) {
         const auto envelope = co_await link->receive();
@@ -194,8 +224,41 @@ asio::awaitable<void> NodeServer::use_link(std::shared_ptr<net::ControlConnectio
             if (!stopping_) log::warn("walld_lost reason={}", log::quoted(envelope.error().message));
             co_return;
         }
+        if (watch_.heard()) walld_answers();
         handle(*envelope);
     }
+}
+
+/// Frames are shown on the nodes' own account for as long as walld says nothing, as they are while it is away.
+asio::awaitable<void> NodeServer::watch_walld() {
+    while (!stopping_) {
+        watch_timer_.expires_after(watch_.interval());
+        co_await watch_timer_.async_wait(kWaitable);
+        if (!link_) continue;
+        switch (watch_.tick()) {
+            case WalldWatch::Need::nothing: break;
+            case WalldWatch::Need::ask: {
+                proto::Envelope ping;
+                ping.mutable_ping();
+                link_->send(ping);
+                break;
+            }
+            case WalldWatch::Need::show_frames:
+                if (!welcomed_) break;
+                log::warn("walld_silent");
+                render_->set_coordinated(false);
+                break;
+            case WalldWatch::Need::new_link: link_->close(); break;
+        }
+    }
+}
+
+/// walld does not know what was drawn and shown meanwhile.
+void NodeServer::walld_answers() {
+    if (!welcomed_) return;
+    log::info("walld_answers");
+    render_->set_coordinated(true);
+    render_->report_frames({});
 }
 
 proto::Envelope NodeServer::hello() const {
@@ -206,7 +269,14 @@ proto::Envelope NodeServer::hello() const {
     hello.set_address(listener_->address().text());
     hello.set_backend(render_->started().backend);
     hello.set_pid(static_cast<std::uint32_t>(::getpid()));
+    hello.set_started_us(started_us_);
     fill_caps(render_->started().caps, *hello.mutable_caps());
+    for (const auto& [session, admission] : admissions_) {
+        auto& known = *hello.add_sessions();
+        known.set_session(session.value);
+        known.set_ticket(admission.ticket);
+    }
+    *hello.mutable_wall_note() = wall_note_;
     return envelope;
 }
 
@@ -219,12 +289,10 @@ void NodeServer::handle(const proto::Envelope& envelope) {
         case Case::kPresent:
             return render_->present(SessionId(envelope.present().session()), SurfaceId(envelope.present().surface()),
                                     envelope.present().frame());
-        case Case::kStacking: {
-            std::vector<StackEntry> entries;
-            for (const auto& entry : envelope.stacking().entries())
-                entries.push_back({SessionId(entry.session()), SurfaceId(entry.surface())});
-            return render_->set_stacking(std::move(entries));
-        }
+        case Case::kStacking: return set_stacking(envelope.stacking());
+        case Case::kPong: return;
+        case Case::kWallNote: wall_note_ = envelope.wall_note(); return;
+        case Case::kFramesRequest: return render_->report_frames(SessionId(envelope.frames_request().session()));
         case Case::kSnapshotRequest: {
             const auto& request = envelope.snapshot_request();
             return render_->request_picture({request.request(), false, request.slot(), SessionId(request.session())});
@@ -237,7 +305,29 @@ void NodeServer::handle(const proto::Envelope& envelope) {
     }
 }
 
+void NodeServer::set_stacking(const proto::Stacking& stacking) {
+    std::vector<Stacked> now;
+    for (const auto& entry : stacking.entries())
+        now.push_back({{SessionId(entry.session()), SurfaceId(entry.surface())}, entry.held()});
+    std::erase_if(stacking_, [&](const Stacked& old) {
+        return std::ranges::count(stacking.returning(), old.window.session.value) == 0 ||
+               std::ranges::count(now, old.window, &Stacked::window) > 0;
+    });
+    stacking_.insert(stacking_.end(), now.begin(), now.end());
+    std::vector<StackEntry> entries, held;
+    for (const auto& [window, is_held] : stacking_) {
+        entries.push_back(window);
+        if (is_held) held.push_back(window);
+    }
+    std::vector<SessionId> returning;
+    for (const auto session : stacking.returning()) returning.emplace_back(session);
+    render_->set_stacking(std::move(entries), std::move(held), returning);
+}
+
 void NodeServer::admit(const proto::Ticket& ticket) {
+    const auto known = admissions_.find(SessionId(ticket.session()));
+    // A number that another walld has given to another program.
+    if (known != admissions_.end() && known->second.ticket != ticket.ticket()) end_session(SessionId(ticket.session()));
     const auto members = std::min(ticket.members(), wire::kMaxMembers);
     admissions_[SessionId(ticket.session())] = {ticket.ticket(),
                                                 {members, {ticket.left().begin(), ticket.left().end()}}};
@@ -249,6 +339,7 @@ void NodeServer::welcome(const proto::NodeWelcome& welcome) {
     log::info("walld_welcome node={} tiles={}", welcome.node(), tiles.size());
     render_->set_tiles(std::move(tiles), welcome.background());
     render_->set_coordinated(true);
+    welcomed_ = true;
 }
 
 void NodeServer::to_walld(const proto::Envelope& envelope) {
@@ -273,11 +364,24 @@ void NodeServer::drawn(StreamId id, SurfaceId surface, std::uint32_t frame) {
 
 void NodeServer::rendered(SessionId session, SurfaceId surface, std::uint32_t frame) {
     post([=, this] {
+        if (watch_.silent()) return;  // it is told where we are when it answers
         proto::Envelope envelope;
         auto& rendered = *envelope.mutable_rendered();
         rendered.set_session(session.value);
         rendered.set_surface(surface.value);
         rendered.set_frame(frame);
+        to_walld(envelope);
+    });
+}
+
+void NodeServer::frames(SessionId session, SurfaceId surface, std::uint32_t drawn, std::uint32_t shown) {
+    post([=, this] {
+        proto::Envelope envelope;
+        auto& rendered = *envelope.mutable_rendered();
+        rendered.set_session(session.value);
+        rendered.set_surface(surface.value);
+        rendered.set_frame(drawn);
+        rendered.set_shown(shown);
         to_walld(envelope);
     });
 }

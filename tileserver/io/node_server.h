@@ -13,11 +13,13 @@
 #include <unordered_map>
 
 #include "common/config/wall_config.h"
+#include "common/daemon/keep_running.h"
 #include "common/net/control_connection.h"
 #include "tileserver/io/data_stream.h"
 #include "tileserver/io/part_sender.h"
 #include "tileserver/io/shut_out.h"
 #include "tileserver/io/tile_streams.h"
+#include "tileserver/io/walld_watch.h"
 #include "tileserver/render/render_thread.h"
 #include "tileserver/render/turn_watch.h"
 
@@ -45,7 +47,7 @@ public:
     const std::optional<std::string>& failure() const { return failure_; }
 
 private:
-    NodeServer(asio::any_io_executor executor, net::Address walld, std::string name);
+    NodeServer(asio::any_io_executor executor, const config::WallConfig& wall, std::string name);
 
     // StreamHost
     const Admission* admission(SessionId session) const override;
@@ -59,6 +61,7 @@ private:
     void reply(StreamId stream, std::uint32_t request, std::vector<std::byte> answer) override;
     void drawn(StreamId stream, SurfaceId surface, std::uint32_t frame) override;
     void rendered(SessionId session, SurfaceId surface, std::uint32_t frame) override;
+    void frames(SessionId session, SurfaceId surface, std::uint32_t drawn, std::uint32_t shown) override;
     void failed(StreamId stream, SessionId session, std::string reason) override;
     void ended(StreamId stream, std::string reason) override;
     void picture(Picture picture) override;
@@ -66,15 +69,20 @@ private:
     void scaled(const ScaledTile& tile) override;
     void output_lost(std::string reason) override;
 
-    asio::awaitable<void> accept_clients();
+    void keep(const char* name, asio::awaitable<void> (NodeServer::*work)());
+    void take_client(net::StreamSocket socket);
     asio::awaitable<void> keep_link();
     asio::awaitable<void> watch_turns();
     void blame(const RunningTurn& turn);
     /// `ends`: the session shall go, not only the stream.
     void fault(StreamId stream, SessionId session, const std::string& reason, bool ends);
+    asio::awaitable<void> watch_walld();
     asio::awaitable<void> use_link(std::shared_ptr<net::ControlConnection> link);
+    void drop_link();
     proto::Envelope hello() const;
     void handle(const proto::Envelope& envelope);
+    void set_stacking(const proto::Stacking& stacking);
+    void walld_answers();
     void welcome(const proto::NodeWelcome& welcome);
     void admit(const proto::Ticket& ticket);
     void end_session(SessionId session);
@@ -84,6 +92,7 @@ private:
 
     asio::any_io_executor executor_;
     net::Address walld_;
+    std::string walld_user_;
     std::string name_;
     std::optional<net::Listener> listener_;
     std::shared_ptr<net::ControlConnection> link_;  // null: walld is away
@@ -91,6 +100,16 @@ private:
     TurnWatch turn_watch_{std::chrono::seconds(10)};
     ShutOut shut_out_;
     bool stopping_ = false, said_unreachable_ = false;
+    asio::steady_timer watch_timer_;
+    WalldWatch watch_;
+    bool welcomed_ = false;  // by the walld of this link
+    std::uint64_t started_us_;
+    struct Stacked {
+        StackEntry window;
+        bool held = false;
+    };
+    std::vector<Stacked> stacking_;  // bottom first
+    proto::WallNote wall_note_;      // kept for the walld that comes after this one
     std::unordered_map<SessionId, Admission> admissions_;
     std::map<StreamId, std::shared_ptr<DataStream>> streams_;
     std::uint32_t last_stream_ = 0;

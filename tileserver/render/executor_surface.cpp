@@ -86,7 +86,8 @@ void Executor::Swap(std::uint32_t id, std::uint32_t frame) {
     if (surface == nullptr) return;
     if (session_.shares(SurfaceId(id)))
         return say_to_group([=](GroupSync& sync, Rank rank) { return sync.swap(rank, SurfaceId(id), frame); });
-    finish_frame(node_, session_.work, *surface, frame, surface->on_tiles());
+    const bool at_once = !surface->on_tiles() || node_.shows_at_once(session_.id(), SurfaceId(id));
+    finish_frame(node_, session_.work, *surface, frame, at_once);
     output_.frame_rendered(SurfaceId(id), frame);
 }
 

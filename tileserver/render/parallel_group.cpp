@@ -24,11 +24,12 @@ void ParallelGroup::close_surface(Rank rank, SurfaceId id) {
     surfaces_.erase(id);
 }
 
-std::vector<FinishedFrame> ParallelGroup::finish_frames(RenderNode& node, Work& work) {
+std::vector<FinishedFrame> ParallelGroup::finish_frames(RenderNode& node, Work& work, SessionId session) {
     auto finished = sync.take_finished();
     for (const auto& [id, frame] : finished)
         if (Surface* shared = surface(id))
-            finish_frame(node, work, *shared, frame, true);  // also where it is on no tile: all nodes keep step
+            // Also where it is on no tile: all nodes keep step.
+            finish_frame(node, work, *shared, frame, node.shows_at_once(session, id));
     return finished;
 }
 

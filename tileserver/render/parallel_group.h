@@ -40,8 +40,8 @@ public:
     Surface* open_surface(Rank rank, SurfaceId id, const SurfaceFormat& format);
     void close_surface(Rank rank, SurfaceId id);
     /// All frames that the members have ended since the last call become the surfaces' waiting frames. `work`: of who
-    /// ended them.
-    std::vector<FinishedFrame> finish_frames(RenderNode& node, Work& work);
+    /// ended them; `session`: the group's.
+    std::vector<FinishedFrame> finish_frames(RenderNode& node, Work& work, SessionId session = {});
 
 private:
     Driver& driver_;

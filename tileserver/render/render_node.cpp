@@ -3,8 +3,8 @@
 
 namespace wall::tileserver {
 
-void finish_frame(RenderNode& node, Work& work, Surface& surface, std::uint32_t frame, bool coordinated) {
-    const bool overtaken = surface.waiting_frame().has_value(), at_once = node.present_at_once || !coordinated;
+void finish_frame(RenderNode& node, Work& work, Surface& surface, std::uint32_t frame, bool at_once) {
+    const bool overtaken = surface.waiting_frame().has_value();
     {
         const Timed timed(work.render);
         if (overtaken) surface.show_frame();

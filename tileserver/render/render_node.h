@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "tileserver/render/content_store.h"
@@ -24,15 +26,21 @@ struct RenderNode {
     ContentStore<TextureContent> textures;  ///< that sessions may share
     ContentStore<const Run> runs;
     std::vector<Tile> tiles;
-    std::uint64_t damage = 1;              ///< grows when a tile's picture may have changed
-    bool present_at_once = false;          ///< nobody coordinates: show frames when they are done
-    const SoftContext* current = nullptr;  ///< whose state the driver holds; only compared, it may be gone
-    Work ended;                            ///< of sessions that are gone
+    std::uint64_t damage = 1;      ///< grows when a tile's picture may have changed
+    bool present_at_once = false;  ///< nobody coordinates: show frames when they are done, but for held ones
+    std::set<std::pair<SessionId, SurfaceId>> held;  ///< windows whose frames are shown only when somebody says so
+    std::set<SessionId> returning;                   ///< whoever coordinates does not know them yet
+    const SoftContext* current = nullptr;            ///< whose state the driver holds; only compared, it may be gone
+    Work ended;                                      ///< of sessions that are gone
 
     explicit RenderNode(Driver& d) : driver(d) {}
+    /// The window's frame is shown when it is done, because nobody will say when.
+    bool shows_at_once(SessionId session, SurfaceId surface) const {
+        return (present_at_once || returning.contains(session)) && !held.contains({session, surface});
+    }
 };
 
-/// The surface's back buffers are its next picture. It waits to be presented, if somebody will say so (`coordinated`).
-void finish_frame(RenderNode& node, Work& work, Surface& surface, std::uint32_t frame, bool coordinated);
+/// The surface's back buffers are its next picture, which is shown `at_once` or waits to be presented.
+void finish_frame(RenderNode& node, Work& work, Surface& surface, std::uint32_t frame, bool at_once);
 
 }  // namespace wall::tileserver

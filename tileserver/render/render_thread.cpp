@@ -194,7 +194,8 @@ public:
     }
     /// What a parallel program's stream has set free.
     void settle(Stream& stream) {
-        for (const auto& [surface, frame] : stream.group()->finish_frames(node_, stream.session().work)) {
+        for (const auto& [surface, frame] :
+             stream.group()->finish_frames(node_, stream.session().work, stream.session().id())) {
             for (auto& [id, member] : streams_)
                 if (member->group() == stream.group() && !member->failed()) events_.drawn(id, surface, frame);
             events_.rendered(stream.session().id(), surface, frame);
@@ -223,6 +224,26 @@ public:
             at = streams_.erase(at);
         }
         return removed;
+    }
+    /// Frames that wait for a word that will not come.
+    void show_uncoordinated() {
+        for (auto& [id, stream] : streams_) {
+            const auto session = stream->session().id();
+            stream->session().for_each_surface([&](SurfaceId surface_id, Surface& surface) {
+                if (surface.waiting_frame() && node_.shows_at_once(session, surface_id))
+                    stream->executor().present(surface_id, *surface.waiting_frame());
+            });
+        }
+    }
+    void report_frames(SessionId session) {
+        for (const auto& [id, stream] : streams_) {
+            const auto its = stream->session().id();
+            if (stream->failed() || (session && its != session)) continue;
+            stream->session().for_each_surface([&](SurfaceId surface, const Surface& s) {
+                const auto drawn = s.waiting_frame().value_or(s.shown_frame());
+                if (drawn > 0) events_.frames(its, surface, drawn, s.shown_frame());
+            });
+        }
     }
     /// How long it may sleep when there is nothing to do.
     Clock::duration nap() const {
@@ -392,8 +413,15 @@ void RenderThread::set_tiles(std::vector<Tile> tiles, std::uint32_t background) 
             });
     });
 }
-void RenderThread::set_stacking(std::vector<StackEntry> bottom_first) {
-    post([entries = std::move(bottom_first)](Loop& loop) { loop.compositor_.set_stacking(entries); });
+void RenderThread::set_stacking(std::vector<StackEntry> bottom_first, std::vector<StackEntry> held,
+                                const std::vector<SessionId>& returning) {
+    post([=, entries = std::move(bottom_first), held = std::move(held)](Loop& loop) {
+        loop.compositor_.set_stacking(entries);
+        loop.node_.held.clear();
+        for (const auto& entry : held) loop.node_.held.emplace(entry.session, entry.surface);
+        loop.node_.returning = {returning.begin(), returning.end()};
+        loop.show_uncoordinated();
+    });
 }
 void RenderThread::present(SessionId session, SurfaceId surface, std::uint32_t frame) {
     post([=](Loop& loop) {
@@ -404,12 +432,11 @@ void RenderThread::present(SessionId session, SurfaceId surface, std::uint32_t f
 void RenderThread::set_coordinated(bool coordinated) {
     post([=](Loop& loop) {
         loop.node_.present_at_once = !coordinated;
-        if (coordinated) return;
-        for (auto& [id, stream] : loop.streams_)
-            stream->session().for_each_surface([&](SurfaceId surface_id, Surface& surface) {
-                if (surface.waiting_frame()) stream->executor().present(surface_id, *surface.waiting_frame());
-            });
+        loop.show_uncoordinated();
     });
+}
+void RenderThread::report_frames(SessionId session) {
+    post([=](Loop& loop) { loop.report_frames(session); });
 }
 void RenderThread::request_picture(const PictureRequest& request) {
     post([=](Loop& loop) { loop.ask(request); });

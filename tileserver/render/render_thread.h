@@ -49,6 +49,8 @@ public:
     virtual void drawn(StreamId stream, SurfaceId surface, std::uint32_t frame) = 0;
     /// For walld; in a parallel program once for all its streams.
     virtual void rendered(SessionId session, SurfaceId surface, std::uint32_t frame) = 0;
+    /// For walld: a window has drawn up to frame `drawn` and shows `shown`. The answer to report_frames().
+    virtual void frames(SessionId session, SurfaceId surface, std::uint32_t drawn, std::uint32_t shown) = 0;
     /// The stream's content was bad; its session is gone from this node.
     virtual void failed(StreamId stream, SessionId session, std::string reason) = 0;
     /// Nothing was wrong with the stream itself, but it cannot go on.
@@ -91,10 +93,15 @@ public:
     /// All streams of the session go at once, whatever is left in them.
     void remove_session(SessionId session);
     void set_tiles(std::vector<Tile> tiles, std::uint32_t background);
-    void set_stacking(std::vector<StackEntry> bottom_first);
+    /// Of `held` ones no frame is shown before present(), whether or not somebody coordinates. For sessions that are
+    /// `returning` nobody will say present() yet.
+    void set_stacking(std::vector<StackEntry> bottom_first, std::vector<StackEntry> held = {},
+                      const std::vector<SessionId>& returning = {});
     void present(SessionId session, SurfaceId surface, std::uint32_t frame);
     /// Whether somebody will say present(); if not, frames show when they are done.
     void set_coordinated(bool coordinated);
+    /// Says where the windows of a session are; without one, those of all.
+    void report_frames(SessionId session);
     void request_picture(const PictureRequest& request);
     /// Pictures of a tile whenever it has changed and somebody is ready for one (TileWatch).
     void watch(const PictureRequest& request, std::chrono::microseconds interval);

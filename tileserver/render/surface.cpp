@@ -85,6 +85,7 @@ void Surface::show_frame() {
     shown_once_ = true;
     for (auto& layer : layers_)
         if (layer) layer->show_frame();
+    shown_ = waiting_.value_or(shown_);
     waiting_.reset();
     forget_older();
 }

@@ -64,6 +64,8 @@ public:
     /// A frame has been drawn in the layer of the whole window alone, for nobody to be shown.
     void swap_offscreen();
     std::optional<std::uint32_t> waiting_frame() const { return waiting_; }
+    /// The last one on show; 0: none.
+    std::uint32_t shown_frame() const { return shown_; }
 
 private:
     using Layers = std::array<std::unique_ptr<Layer>, wire::kMaxTilesPerNode>;
@@ -80,6 +82,7 @@ private:
     SurfacePlace place_;
     Layers layers_;  ///< that are drawn on
     std::optional<std::uint32_t> waiting_;
+    std::uint32_t shown_ = 0;
     bool shown_once_ = false;
 
     // Of a move that is not shown yet.

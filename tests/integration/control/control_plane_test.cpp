@@ -159,6 +159,47 @@ TEST_F(ControlPlane, ANodeThatRestartsIsToldToTheProgram) {
     EXPECT_EQ(ticket->ticket().ticket(), up->node_up().ticket());
 }
 
+TEST_F(ControlPlane, ANodeThatWasStartedAgainTakesThePlaceOfItsDeadLink) {
+    join_both();
+    auto program = connect();
+    program.open();
+    auto again = connect();  // while `left_` is still there, as far as walld can see
+    again.join("left", 2, 1000);
+    EXPECT_EQ(left_.hear(proto::Envelope::kRefused)->refused().reason(), "process 2 is this node now");
+    EXPECT_TRUE(left_.closed());
+    ASSERT_TRUE(program.hear(proto::Envelope::kNodeDown));
+    EXPECT_EQ(program.hear(proto::Envelope::kNodeUp)->node_up().incarnation(), 2u);
+    EXPECT_TRUE(again.hear(proto::Envelope::kTicket));
+    auto older = connect();
+    proto::Envelope hello;
+    hello.mutable_node_hello()->set_version(wire::kProtocolVersion);
+    hello.mutable_node_hello()->set_name("left");
+    hello.mutable_node_hello()->set_pid(3);
+    older.say(hello);
+    EXPECT_THAT(older.hear(proto::Envelope::kRefused)->refused().reason(), HasSubstr("already here, as process 2"));
+    EXPECT_EQ(wallctl("nodes").exit_code, 0);
+    EXPECT_THAT(wallctl("--json nodes").text, HasSubstr("\"pid\": 2"));
+}
+
+TEST_F(ControlPlane, ANodeThatSaysNothingIsAway) {
+    join_both();
+    auto program = connect();
+    program.open();
+    for (int second = 0; second < 20; ++second) {
+        proto::Envelope ping;
+        ping.mutable_ping();
+        left_.say(ping);
+        ASSERT_TRUE(left_.hear(proto::Envelope::kPong));
+        if (program.hear(proto::Envelope::kNodeDown, seconds(1))) break;
+        ASSERT_LT(second, 19) << "its link may be dead";
+    }
+    EXPECT_TRUE(right_.closed());
+    EXPECT_THAT(wallctl("nodes").text, HasSubstr("left"));
+    right_ = connect();
+    right_.join("right");
+    EXPECT_TRUE(program.hear(proto::Envelope::kNodeUp));
+}
+
 TEST_F(ControlPlane, WithoutNodesAProgramIsRefusedInTime) {
     auto program = connect();
     proto::Envelope hello;

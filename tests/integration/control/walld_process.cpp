@@ -134,12 +134,13 @@ bool Peer::closed(std::chrono::milliseconds limit) {
     }
 }
 
-proto::NodeWelcome Peer::join(const std::string& node, std::uint32_t pid) {
+proto::NodeWelcome Peer::join(const std::string& node, std::uint32_t pid, std::uint64_t started_us) {
     proto::Envelope message;
     auto& hello = *message.mutable_node_hello();
     hello.set_version(wire::kProtocolVersion);
     hello.set_name(node);
     hello.set_pid(pid);
+    hello.set_started_us(started_us);
     hello.set_address("unix:/tmp/no-node-" + node);
     say(message);
     const auto answer = hear(proto::Envelope::kNodeWelcome);

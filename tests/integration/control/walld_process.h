@@ -65,7 +65,7 @@ public:
     std::optional<proto::Envelope> hear(proto::Envelope::MessageCase kind, std::chrono::milliseconds limit = kSoon);
     bool closed(std::chrono::milliseconds limit = kSoon);
 
-    proto::NodeWelcome join(const std::string& node, std::uint32_t pid = 1);
+    proto::NodeWelcome join(const std::string& node, std::uint32_t pid = 1, std::uint64_t started_us = 0);
     proto::ClientWelcome open(const proto::ClientHello& hello = {});
     proto::Placement open_surface(std::uint32_t surface, std::uint32_t width, std::uint32_t height);
     void rendered(std::uint32_t session, std::uint32_t surface, std::uint32_t frame);

@@ -6,6 +6,7 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -99,7 +100,7 @@ public:
     /// The next message; what the program tells by the clock is passed over.
     proto::Envelope receive() {
         for (;;)
-            if (auto envelope = receive_any(); !envelope.has_client_stats()) return envelope;
+            if (auto envelope = receive_any(); !envelope.has_client_stats() && !envelope.has_ping()) return envelope;
     }
     proto::Envelope receive_any() {
         std::uint32_t size = 0;
@@ -201,6 +202,34 @@ TEST(ControlMessages, SurfacesAreWhatProtobufReads) {
     EXPECT_EQ(data.session(), 7u);
     EXPECT_EQ(data.rank(), 3u);
     EXPECT_EQ(data.ticket(), std::string("\0x", 2));
+}
+
+TEST(ControlMessages, WhatAnEarlierWalldKnewIsWhatProtobufReads) {
+    auto hello = some_hello();
+    hello.resume = {SessionId(7), {{0, "a"}, {3, std::string("\0\xff", 2)}}, 2};
+    proto::Envelope envelope;
+    ASSERT_TRUE(envelope.ParseFromString(encode(hello)));
+    const auto& resume = envelope.client_hello().resume();
+    EXPECT_EQ(resume.session(), 7u);
+    EXPECT_EQ(resume.windows(), 2u);
+    ASSERT_EQ(resume.tickets_size(), 2);
+    EXPECT_EQ(resume.tickets(1).node(), 3u);
+    EXPECT_EQ(resume.tickets(1).ticket(), std::string("\0\xff", 2));
+    const Restore restore{{-5, 1, 30, 40}, {5, 6, 70, 80}, std::string("n\0te", 4)};
+    ASSERT_TRUE(envelope.ParseFromString(encode_surface_open(3, 300, 200, "gears", restore)));
+    const auto& read = envelope.surface_open();
+    EXPECT_EQ(read.title(), "gears");
+    EXPECT_EQ(read.restore().drawn().x(), -5);
+    EXPECT_EQ(read.restore().wanted().height(), 80u);
+    EXPECT_EQ(read.restore().note(), std::string("n\0te", 4));
+    ASSERT_TRUE(envelope.ParseFromString(encode_ping()));
+    EXPECT_TRUE(envelope.has_ping());
+    envelope.mutable_surface_note()->set_surface(4);
+    envelope.mutable_surface_note()->set_note("kept");
+    const auto message = decode_from_walld(envelope.SerializeAsString());
+    ASSERT_TRUE(message);
+    EXPECT_EQ(std::get<SurfaceNote>(*message).surface, SurfaceId(4));
+    EXPECT_EQ(std::get<SurfaceNote>(*message).note, "kept");
 }
 
 TEST(ControlMessages, TrafficIsWhatProtobufReads) {
@@ -432,6 +461,97 @@ TEST(ControlLink, ComesBackAfterWalldWasAway) {
     const auto events = collect(*linked.link, [](auto& e) { return e.reconnected.has_value(); });
     ASSERT_TRUE(events.reconnected);
     EXPECT_EQ(events.reconnected->session, 7u);
+}
+
+TEST(ControlLink, TellsTheNextWalldWhatThereWas) {
+    Linked linked;
+    linked.link->surface_open(1, 300, 200, "gears");
+    linked.walld.receive();
+    auto first = placement_of(1, 1), second = placement_of(1, 2), third = placement_of(1, 3);
+    second.mutable_placement()->mutable_rect()->set_x(20);
+    third.mutable_placement()->mutable_rect()->set_x(30);
+    proto::Envelope up, note;
+    up.mutable_node_up()->set_node(1);
+    up.mutable_node_up()->set_ticket("newer");
+    note.mutable_surface_note()->set_surface(1);
+    note.mutable_surface_note()->set_note("note");
+    linked.walld.send(framed(first) + framed(second) + framed(third) + framed(up) + framed(note));
+    collect(*linked.link, [](auto& e) { return e.placements.size() == 3 && !e.node_changes.empty(); });
+    linked.link->surface_adopted(1, 2, 9, 1ms);  // the third one has come since the program looked
+    EXPECT_EQ(linked.walld.receive().surface_adopted().layout_version(), 2u);
+    linked.link->surface_open(2, 10, 10, "placed nowhere yet");
+    linked.walld.receive();
+    std::this_thread::sleep_for(50ms);  // the note is behind all that, and nobody waits for it
+    linked.walld.hang_up();
+
+    const auto hello = linked.walld.welcome();
+    EXPECT_EQ(hello.resume().session(), 7u);
+    EXPECT_EQ(hello.resume().windows(), 1u);
+    ASSERT_EQ(hello.resume().tickets_size(), 2);
+    EXPECT_EQ(hello.resume().tickets(0).ticket(), std::string("\0\xff ticket", 9));
+    EXPECT_EQ(hello.resume().tickets(1).ticket(), "newer");
+    const auto known = linked.walld.receive().surface_open();
+    EXPECT_EQ(known.surface(), 1u);
+    EXPECT_EQ(known.restore().drawn().x(), 20);
+    EXPECT_EQ(known.restore().wanted().x(), 30);
+    EXPECT_EQ(known.restore().note(), "note");
+    EXPECT_FALSE(linked.walld.receive().surface_open().has_restore());
+}
+
+TEST(ControlLink, NobodyWaitsForASilentWalldTwice) {
+    Linked linked;
+    linked.link->surface_open(1, 300, 200, "");
+    linked.walld.receive();
+    EXPECT_FALSE(linked.link->wait_placement(1, 10s)) << "it has asked for a sign of life meanwhile, in vain";
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_FALSE(linked.link->surface_adopted(1, 1, 1, 10s));
+    EXPECT_FALSE(linked.link->wait_placement(1, 10s));
+    EXPECT_LT(std::chrono::steady_clock::now() - start, 1s);
+    linked.walld.send(placement_of(1, 4));
+    collect(*linked.link, [](auto& e) { return !e.placements.empty(); });
+    EXPECT_EQ(linked.link->wait_placement(1, 10s)->layout_version, 4u);
+    std::thread later([&] {
+        std::this_thread::sleep_for(200ms);
+        proto::Envelope noted;
+        noted.mutable_adoption_noted()->set_surface(1);
+        noted.mutable_adoption_noted()->set_layout_version(4);
+        linked.walld.send(noted);
+    });
+    EXPECT_TRUE(linked.link->surface_adopted(1, 4, 2, 10s)) << "it answers again, and is waited for";
+    later.join();
+}
+
+TEST(ControlLink, SaysNothingToAnotherUsersProcess) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can be somebody else";
+    FakeWalld walld;
+    int told[2];
+    ASSERT_EQ(::pipe(told), 0);
+    const pid_t stranger = ::fork();
+    if (stranger == 0) {  // it has taken walld's address, and says how many bytes it hears
+        if (::setresuid(54321, 54321, 54321) != 0) ::_exit(1);
+        const UniqueFd listener(::socket(AF_INET, SOCK_STREAM, 0));
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        ::bind(listener.get(), reinterpret_cast<sockaddr*>(&address), sizeof address);
+        ::listen(listener.get(), 8);
+        socklen_t size = sizeof address;
+        ::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size);
+        int said = ntohs(address.sin_port);
+        [[maybe_unused]] auto n = ::write(told[1], &said, sizeof said);
+        char byte;
+        said = static_cast<int>(::read(::accept(listener.get(), nullptr, nullptr), &byte, 1));
+        n = ::write(told[1], &said, sizeof said);
+        ::_exit(0);
+    }
+    int port = 0, bytes = -1;
+    ASSERT_EQ(::read(told[0], &port, sizeof port), static_cast<ssize_t>(sizeof port));
+    const auto link = ControlLink::open(some_hello(), "127.0.0.1:" + std::to_string(port), 2s);
+    ASSERT_FALSE(link);
+    EXPECT_THAT(link.error().message, HasSubstr("is not walld: it is a process of user 54321"));
+    ASSERT_EQ(::read(told[0], &bytes, sizeof bytes), static_cast<ssize_t>(sizeof bytes));
+    EXPECT_EQ(bytes, 0) << "not even the hello, with its token";
+    ::waitpid(stranger, nullptr, 0);
 }
 
 TEST(ControlLink, LosingWalldEndsWaiting) {

@@ -28,7 +28,7 @@ private:
 asio::awaitable<void> echo_once(Listener& listener, std::optional<Peer>& peer) {
     auto socket = co_await listener.accept();
     const auto connection = std::make_shared<ControlConnection>(std::move(*socket));
-    peer = connection->peer();
+    peer = peer_of(*connection->ends());
     for (;;) {
         auto message = co_await connection->receive();
         if (!message) break;
@@ -39,7 +39,7 @@ asio::awaitable<void> echo_once(Listener& listener, std::optional<Peer>& peer) {
 }
 
 asio::awaitable<void> ask(Address address, std::uint32_t count, std::uint32_t& answered, std::string& end) {
-    auto connected = co_await ControlConnection::connect(address);
+    auto connected = co_await ControlConnection::connect(address, "wallgl");
     const auto connection = *connected;
     for (std::uint32_t i = 1; i <= count; ++i) {
         proto::Envelope message;

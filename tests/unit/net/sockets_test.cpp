@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "common/net/sockets.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
+
+#include <filesystem>
+
+#include "common/base/trusted_server.h"
 
 namespace wall::net {
 namespace {
@@ -54,6 +61,95 @@ TEST(Listening, IsForThisMachineOnlyWhoeverAsks) {
     for (const char* text : {"127.0.0.1:0", "127.9.9.9:0", "localhost:0", "[::1]:0"})
         EXPECT_TRUE(listen_on(*Address::parse(text))) << text;
 }
+
+TEST_F(TcpPeer, ThatListensIsKnownBeforeItAccepts) {
+    const auto mine = connect();
+    const auto waiting = server_of(mine.get());
+    ASSERT_TRUE(waiting);
+    EXPECT_EQ(waiting->user, ::geteuid());
+    const auto accepted = accept();
+    const auto server = server_of(mine.get());
+    ASSERT_TRUE(server);
+    EXPECT_EQ(server->user, ::geteuid());
+}
+
+TEST_F(TcpPeer, IsFoundAmongManySockets) {
+    std::vector<UniqueFd> others;
+    for (int i = 0; i < 50; ++i) {
+        others.push_back(connect());
+        others.push_back(accept());
+    }
+    const auto mine = connect();
+    const auto accepted = accept();
+    EXPECT_TRUE(peer_of(accepted.get()));
+}
+
+constexpr uid_t kStranger = 54321;
+
+/// A process of another user that has taken an address. It accepts if it is told to.
+class AStrangersServer {
+public:
+    AStrangersServer(const Address& address, bool accepts) {
+        int told[2];
+        EXPECT_EQ(::pipe(told), 0);
+        process_ = ::fork();
+        if (process_ == 0) {
+            if (::setresuid(kStranger, kStranger, kStranger) != 0) ::_exit(1);
+            auto listener = listen_on(address);
+            const std::uint16_t port = listener ? bound_address(listener->get(), address).port : 0;
+            [[maybe_unused]] const auto n = ::write(told[1], &port, sizeof port);
+            for (;;) {
+                if (accepts && ::accept(listener->get(), nullptr, nullptr) >= 0) continue;
+                ::usleep(1000);
+            }
+        }
+        address_ = address;
+        EXPECT_EQ(::read(told[0], &address_.port, sizeof address_.port), static_cast<ssize_t>(sizeof address_.port));
+        ::close(told[0]);
+        ::close(told[1]);
+    }
+    ~AStrangersServer() {
+        ::kill(process_, SIGKILL);
+        ::waitpid(process_, nullptr, 0);
+    }
+    AStrangersServer(const AStrangersServer&) = delete;
+    const Address& address() const { return address_; }
+
+private:
+    pid_t process_ = -1;
+    Address address_;
+};
+
+class TrustedServer : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (::geteuid() != 0) GTEST_SKIP() << "only root can be somebody else";
+        std::string path = "/tmp/wallgl-stranger-XXXXXX";
+        folder_ = ::mkdtemp(path.data());
+        ASSERT_EQ(::chown(folder_.c_str(), kStranger, kStranger), 0);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+    std::string folder_;
+};
+
+TEST_F(TrustedServer, IsNoneOfAnotherUser) {
+    for (const bool accepts : {false, true}) {
+        for (const Address& address : {Address{.path = {}, .host = "127.0.0.1", .port = 0},
+                                       Address{.path = folder_ + (accepts ? "/a" : "/b"), .host = {}, .port = 0}}) {
+            const AStrangersServer stranger(address, accepts);
+            const auto fd = connect_to(stranger.address(), seconds(5));
+            ASSERT_TRUE(fd) << fd.error().message;
+            if (accepts) ::usleep(100'000);
+            const auto trusted = check_server(fd->get(), "wallgl");
+            ASSERT_FALSE(trusted) << stranger.address().text();
+            EXPECT_THAT(trusted.error().message, ::testing::HasSubstr("a process of user 54321"));
+            EXPECT_TRUE(check_server(fd->get(), std::to_string(kStranger))) << "unless that is walld's user";
+            EXPECT_TRUE(check_server(fd->get(), "*"));
+        }
+    }
+}
+
+TEST_F(TcpPeer, OfOurOwnUserIsTrusted) { EXPECT_TRUE(check_server(connect().get(), "nobody-of-that-name")); }
 
 }  // namespace
 }  // namespace wall::net

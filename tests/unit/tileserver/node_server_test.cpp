@@ -156,11 +156,12 @@ protected:
         server_.reset();
         std::filesystem::remove_all(folder_);
     }
-    /// The node finds walld and learns of its tile and of sessions 1 and 2.
-    void introduce() {
+    /// The node finds walld and learns of its tile and of sessions 1 and 2. Gives its hello.
+    proto::NodeHello introduce() {
         walld_->accept();
         const auto hello = walld_->wait_for(proto::Envelope::kNodeHello).node_hello();
         EXPECT_EQ(hello.name(), "n");
+        EXPECT_GT(hello.started_us(), 0u);
         EXPECT_GT(hello.caps().limits_size(), 50);
         proto::Envelope welcome;
         auto& tile = *welcome.mutable_node_welcome()->add_tiles();
@@ -175,6 +176,7 @@ protected:
             ticket.mutable_ticket()->set_ticket("secret" + std::to_string(session));
             walld_->send(ticket);
         }
+        return hello;
     }
     const net::Address& node_address() const { return config_.nodes.front().listen; }
     /// A surface over the whole tile, one frame all in `color`.
@@ -201,12 +203,28 @@ protected:
         return {static_cast<unsigned char>(snapshot.rgb()[0]), static_cast<unsigned char>(snapshot.rgb()[1]),
                 static_cast<unsigned char>(snapshot.rgb()[2])};
     }
-    void stack_session(std::uint32_t session) {
+    void stack_session(std::uint32_t session, bool held = false) {
         proto::Envelope stacking;
         auto& entry = *stacking.mutable_stacking()->add_entries();
         entry.set_session(session);
         entry.set_surface(1);
+        entry.set_held(held);
         walld_->send(stacking);
+    }
+    /// What walld does as long as it lives; for `time`.
+    void answer_pings(std::chrono::milliseconds time) {
+        for (const auto end = std::chrono::steady_clock::now() + time; std::chrono::steady_clock::now() < end;) {
+            walld_->wait_for(proto::Envelope::kPing);
+            proto::Envelope pong;
+            pong.mutable_pong();
+            walld_->send(pong);
+        }
+    }
+    /// Until the tile's first pixel is that one.
+    void expect_shown(const std::vector<int>& pixel) {
+        auto now = shown();
+        for (int tries = 0; tries < 100 && now != pixel; ++tries, now = shown()) std::this_thread::sleep_for(20ms);
+        EXPECT_EQ(now, pixel);
     }
     void present(std::uint32_t session, std::uint32_t frame) {
         proto::Envelope present;
@@ -406,6 +424,123 @@ TEST(ShutOutTest, LongerEachTime) {
     EXPECT_EQ(shut_out.wait(session, start + 11s), 19s);
     shut_out.forget(session);
     EXPECT_FALSE(shut_out.wait(session, start + 11s));
+}
+
+TEST_F(NodeServerTest, ShowsFramesByItselfWhileWalldIsSilent) {
+    Client client(node_address());
+    client.hello(1, "secret1");
+    client.expect(wire::FrameKind::welcome);
+    stack_session(1);
+    EXPECT_EQ(shown(), (std::vector{0x10, 0x20, 0x30}));
+    const auto begin = std::chrono::steady_clock::now();
+    constexpr std::uint32_t kFrames = 20;
+    for (std::uint32_t frame = 1; frame <= kFrames; ++frame) {  // each one waits until the one before is shown
+        client.batch(one_frame({0, 1, 0, 0}, frame));
+        client.expect(wire::FrameKind::swap_done);
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, (kFrames / 2) * config_.swap_timeout)
+        << "the limit is paid once";
+    // A sign of life: it is told where the node is, and says again when a frame is shown.
+    proto::Envelope pong;
+    pong.mutable_pong();
+    walld_->send(pong);
+    proto::Rendered rendered;
+    do rendered = walld_->wait_for(proto::Envelope::kRendered).rendered();
+    while (!rendered.has_shown());
+    EXPECT_EQ(rendered.session(), 1u);
+    EXPECT_GE(rendered.shown() + 1, kFrames);
+    EXPECT_EQ(rendered.frame(), kFrames);
+}
+
+TEST_F(NodeServerTest, WaitsForAWalldThatAnswers) {
+    Client client(node_address());
+    client.hello(1, "secret1");
+    client.expect(wire::FrameKind::welcome);
+    stack_session(1);
+    client.batch(one_frame({1, 0, 0, 0}, 1));
+    client.expect(wire::FrameKind::swap_done);
+    answer_pings(4 * config_.swap_timeout);
+    EXPECT_EQ(shown(), (std::vector{0, 0, 0})) << "walld lives, and has not said that it is to be shown";
+    present(1, 1);
+    EXPECT_EQ(shown(), (std::vector{255, 0, 0}));
+}
+
+TEST_F(NodeServerTest, HoldsWhatIsHeldWithoutWalldToo) {
+    Client client(node_address());
+    client.hello(1, "secret1");
+    client.expect(wire::FrameKind::welcome);
+    stack_session(1, true);
+    client.batch(one_frame({1, 0, 0, 0}, 1));
+    client.expect(wire::FrameKind::swap_done);
+    std::this_thread::sleep_for(4 * config_.swap_timeout);
+    EXPECT_EQ(shown(), (std::vector{0, 0, 0}));
+    walld_->drop();
+    introduce();
+    EXPECT_EQ(shown(), (std::vector{0, 0, 0}));
+    stack_session(1, true);
+    proto::Envelope request;
+    request.mutable_frames_request()->set_session(1);
+    walld_->send(request);
+    proto::Rendered rendered;
+    do rendered = walld_->wait_for(proto::Envelope::kRendered).rendered();
+    while (!rendered.has_shown());
+    EXPECT_EQ(rendered.frame(), 1u);
+    EXPECT_EQ(rendered.shown(), 0u);
+    present(1, 1);
+    expect_shown({255, 0, 0});
+}
+
+TEST_F(NodeServerTest, TellsTheNextWalldWhatItHas) {
+    Client client(node_address());
+    client.hello(1, "secret1");
+    client.expect(wire::FrameKind::welcome);
+    stack_session(1);
+    client.batch(one_frame({0, 0, 1, 0}, 1));
+    client.expect(wire::FrameKind::swap_done);
+    present(1, 1);
+    expect_shown({0, 0, 255});
+    proto::Envelope note;
+    note.mutable_wall_note()->set_version(5);
+    note.mutable_wall_note()->add_waiting()->set_program("gears");
+    walld_->send(note);
+    EXPECT_EQ(shown(), (std::vector{0, 0, 255}));
+    walld_->drop();
+    const auto hello = introduce();
+    EXPECT_EQ(hello.sessions_size(), 2);
+    for (const auto& known : hello.sessions()) EXPECT_EQ(known.ticket(), "secret" + std::to_string(known.session()));
+    EXPECT_EQ(hello.wall_note().version(), 5u);
+    EXPECT_EQ(hello.wall_note().waiting(0).program(), "gears");
+    // A walld that waits for the session leaves in sight what it has.
+    proto::Envelope stacking;
+    stacking.mutable_stacking()->add_returning(1);
+    walld_->send(stacking);
+    EXPECT_EQ(shown(), (std::vector{0, 0, 255}));
+    stacking.mutable_stacking()->clear_returning();
+    walld_->send(stacking);
+    EXPECT_EQ(shown(), (std::vector{0x10, 0x20, 0x30}));
+}
+
+TEST_F(NodeServerTest, ANumberWithAnotherTicketIsAnotherSession) {
+    Client before(node_address());
+    before.hello(1, "secret1");
+    before.expect(wire::FrameKind::welcome);
+    stack_session(1);
+    before.batch(one_frame({1, 0, 0, 0}, 1));
+    before.expect(wire::FrameKind::swap_done);
+    present(1, 1);
+    expect_shown({255, 0, 0});
+    proto::Envelope ticket;
+    ticket.mutable_ticket()->set_session(1);
+    ticket.mutable_ticket()->set_ticket("another");
+    walld_->send(ticket);
+    EXPECT_FALSE(before.next()) << "its stream has ended";
+    expect_shown({0x10, 0x20, 0x30});
+    Client after(node_address());
+    after.hello(1, "another");
+    after.expect(wire::FrameKind::welcome);
+    Client late(node_address());
+    late.hello(1, "secret1");
+    EXPECT_THAT(late.expect_error(), ::testing::HasSubstr("ticket"));
 }
 
 TEST_F(NodeServerTest, AnEndedSessionIsGone) {

@@ -88,6 +88,7 @@ public:
         note([&] { drawn_[stream.value] = frame; });
     }
     void rendered(SessionId, SurfaceId, std::uint32_t) override {}
+    void frames(SessionId, SurfaceId, std::uint32_t, std::uint32_t) override {}
     void failed(StreamId, SessionId, std::string reason) override {
         note([&] { failure_ = std::move(reason); });
     }

@@ -17,15 +17,15 @@ using ::testing::HasSubstr;
 constexpr const char* kSecret = "0123456789abcdef";
 constexpr std::uint32_t kStranger = 54321;
 
-class WhoIsThere : public ::testing::Test {
+class ThePeople : public ::testing::Test {
 protected:
-    WhoIsThere() {
+    ThePeople() {
         std::ofstream(file_) << kSecret << '\n';
         ::chmod(file_.c_str(), 0600);
         people_.tokens.push_back({"kiosk", file_, Role::user});
         people_.operators.users = {77};
     }
-    ~WhoIsThere() override { std::filesystem::remove_all(folder_); }
+    ~ThePeople() override { std::filesystem::remove_all(folder_); }
     static std::string make_folder() {
         std::string path = "/tmp/wallgl-identity-XXXXXX";
         return ::mkdtemp(path.data());
@@ -35,39 +35,38 @@ protected:
     config::PeopleConfig people_;
 };
 
-TEST_F(WhoIsThere, AUserOfThisMachineHasANameAndARole) {
+TEST_F(ThePeople, AUserOfThisMachineHasANameAndARole) {
     const auto who = *Identities::open(people_);
-    EXPECT_EQ(who.of(net::Peer{0, 1}).name, "root");
-    EXPECT_EQ(who.of(net::Peer{::geteuid(), 1}).role, Role::operator_);
-    EXPECT_EQ(who.of(net::Peer{77, 1}).role, Role::operator_);
-    EXPECT_EQ(who.of(net::Peer{kStranger, 1}).role, Role::none);
-    EXPECT_EQ(who.of(net::Peer{kStranger, 1}).name, "uid 54321");
-    EXPECT_EQ(who.of(std::nullopt).kind, Person::Kind::unknown);
+    EXPECT_EQ(who.of(0).name, "root");
+    EXPECT_EQ(who.of(::geteuid()).role, Role::operator_);
+    EXPECT_EQ(who.of(77).role, Role::operator_);
+    EXPECT_EQ(who.of(kStranger).role, Role::none);
+    EXPECT_EQ(who.of(kStranger).name, "uid 54321");
 }
 
-TEST_F(WhoIsThere, ATokenStandsForSomebodyElse) {
+TEST_F(ThePeople, ATokenStandsForSomebodyElse) {
     const auto who = *Identities::open(people_);
-    const auto kiosk = who.with_token(who.of(std::nullopt), kSecret);
+    const auto kiosk = who.with_token({}, kSecret);
     ASSERT_TRUE(kiosk);
     EXPECT_EQ(kiosk->text(), "token kiosk");
     EXPECT_EQ(kiosk->role, Role::user);
-    EXPECT_EQ(who.with_token(who.of(net::Peer{0, 1}), "")->name, "root");
+    EXPECT_EQ(who.with_token(who.of(0), "")->name, "root");
     for (const char* wrong : {"0", "0123456789abcdeF", "0123456789abcdef0"})
         EXPECT_FALSE(who.with_token({}, wrong)) << wrong;
 }
 
-TEST_F(WhoIsThere, OverHttpEverybodyIsAtLeastAViewer) {
+TEST_F(ThePeople, OverHttpEverybodyIsAtLeastAViewer) {
     auto who = *Identities::open(people_);
-    EXPECT_EQ(who.over_http(std::nullopt, "")->role, Role::viewer);
-    EXPECT_EQ(who.over_http(net::Peer{77, 0}, "")->role, Role::operator_);
-    EXPECT_EQ(who.over_http(std::nullopt, std::string("Bearer ") + kSecret)->role, Role::user);
+    EXPECT_EQ(who.over_http({}, "")->role, Role::viewer);
+    EXPECT_EQ(who.over_http(who.of(77), "")->role, Role::operator_);
+    EXPECT_EQ(who.over_http({}, std::string("Bearer ") + kSecret)->role, Role::user);
     for (const char* wrong : {"Bearer", "Bearer ", "Bearer x", "Basic eDp5", kSecret})
-        EXPECT_FALSE(who.over_http(net::Peer{77, 0}, wrong)) << wrong;
+        EXPECT_FALSE(who.over_http(who.of(77), wrong)) << wrong;
     people_.http_role = Role::none;
-    EXPECT_EQ(Identities::open(people_)->over_http(std::nullopt, "")->role, Role::none);
+    EXPECT_EQ(Identities::open(people_)->over_http({}, "")->role, Role::none);
 }
 
-TEST_F(WhoIsThere, ATokensFileMustBeASecret) {
+TEST_F(ThePeople, ATokensFileMustBeASecret) {
     const auto why = [&] { return Identities::open(people_).error().message; };
     ::chmod(file_.c_str(), 0640);
     EXPECT_THAT(why(), HasSubstr("token 'kiosk': " + file_ + ": expected a file that only its owner can read"));

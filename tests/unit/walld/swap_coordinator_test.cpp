@@ -233,5 +233,37 @@ TEST_F(Swap, NeverPresentsWhatANodeDoesNotHave) {
     }
 }
 
+TEST(Resume, BeginsWhereTheNodesAre) {
+    const Clock::time_point now{};
+    SwapCoordinator swap(std::chrono::milliseconds(250), false);
+    swap.set_nodes({0, 1}, now);
+    EXPECT_TRUE(swap.resume(0, 7, 7, now).empty());
+    EXPECT_EQ(swap.presented(), 7u);
+    EXPECT_TRUE(swap.resume(1, 8, 7, now).empty());
+    EXPECT_EQ(swap.rendered(0, 8, now), (Presents{{0, 8}, {1, 8}}));
+}
+
+TEST(Resume, KeepsAHeldFrame) {
+    const Clock::time_point now{};
+    SwapCoordinator swap(std::chrono::milliseconds(250), true);
+    swap.set_nodes({0}, now);
+    EXPECT_TRUE(swap.resume(0, 8, 7, now).empty());
+    EXPECT_EQ(swap.presented(), 7u);
+    EXPECT_FALSE(swap.deadline());
+    EXPECT_EQ(swap.step(1, now), (Presents{{0, 8}}));
+}
+
+TEST(Resume, TakesInWhatANodeHasShownByItself) {
+    Clock::time_point now{};
+    SwapCoordinator swap(std::chrono::milliseconds(250), false);
+    swap.set_nodes({0, 1}, now);
+    swap.rendered(0, 1, now);
+    swap.rendered(1, 1, now);
+    swap.resume(0, 100, 99, now);
+    swap.resume(1, 102, 101, now);
+    EXPECT_EQ(swap.presented(), 101u);
+    EXPECT_EQ(swap.rendered(0, 102, now), (Presents{{0, 102}, {1, 102}})) << "both are in step again";
+}
+
 }  // namespace
 }  // namespace wall::walld

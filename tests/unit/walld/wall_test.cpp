@@ -97,6 +97,25 @@ TEST_F(TheWall, RefusesNodesItDoesNotKnowOrHasAlready) {
     EXPECT_FALSE(wall_.node_joins(hello, now_));
 }
 
+TEST_F(TheWall, AProcessThatWasStartedLaterTakesTheNodesPlace) {
+    const auto left = join("left", 1);
+    const auto id = open();
+    proto::NodeHello hello;
+    hello.set_version(wire::kProtocolVersion);
+    hello.set_name("left");
+    hello.set_pid(2);
+    hello.set_started_us(1000);
+    ASSERT_TRUE(wall_.node_joins(hello, now_)) << "the link of the one before may be dead";
+    EXPECT_EQ(last_to_client(id).node_up().incarnation(), 2u);
+    EXPECT_EQ(wall_.node_joins(hello, now_), left) << "the same one on another link";
+    EXPECT_EQ(last_to_client(id).node_up().incarnation(), 2u);
+    hello.set_pid(3);
+    hello.set_started_us(999);
+    EXPECT_FALSE(wall_.node_joins(hello, now_));
+    hello.set_pid(2);
+    EXPECT_FALSE(wall_.node_joins(hello, now_)) << "the number of a process may be given again";
+}
+
 TEST_F(TheWall, ANodeThatComesBackHasTheSameIndexAndAHigherIncarnation) {
     const auto left = join("left", 1);
     const auto id = open();
