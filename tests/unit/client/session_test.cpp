@@ -146,6 +146,8 @@ private:
         } else if (message.has_surface_adopted()) {
             envelope.mutable_adoption_noted()->set_surface(message.surface_adopted().surface());
             envelope.mutable_adoption_noted()->set_layout_version(message.surface_adopted().layout_version());
+        } else if (message.has_ping()) {
+            envelope.mutable_pong();
         } else {
             return;
         }
