@@ -236,8 +236,9 @@ class Message(ctypes.Structure):
     _fields_ = [("type", ctypes.c_int), ("serial", ctypes.c_ulong), ("sent", ctypes.c_int),
                 ("display", ctypes.c_void_p), ("window", ctypes.c_ulong), ("message_type", ctypes.c_ulong),
                 ("format", ctypes.c_int), ("data", ctypes.c_long * 5), ("room", ctypes.c_char * 96)]
-message = Message(33, 0, 1, d, window, x.XInternAtom(d, b"WM_PROTOCOLS", 0), 32, (ctypes.c_long * 5)(x.XInternAtom(d,
-b"WM_DELETE_WINDOW", 0))) assert x.XSendEvent(d, window, 0, ctypes.c_long(0), ctypes.byref(message))
+data = (ctypes.c_long * 5)(x.XInternAtom(d, b"WM_DELETE_WINDOW", 0))
+message = Message(33, 0, 1, d, window, x.XInternAtom(d, b"WM_PROTOCOLS", 0), 32, data)
+assert x.XSendEvent(d, window, 0, ctypes.c_long(0), ctypes.byref(message))
 x.XSync(d, 0)
 """
 RESIZE = """
