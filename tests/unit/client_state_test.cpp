@@ -31,7 +31,7 @@ public:
         arrays_.assign(sizeof...(A), std::vector<double>(16));
         text_ = name;
         const auto args = [this]<std::size_t... I>(std::index_sequence<I...>) {
-            return std::tuple<A...>{make<A>(I)...};
+            return std::tuple<A...>{this->template make<A>(I)...};
         }
         (std::index_sequence_for<A...>{});
         const auto* proc =
