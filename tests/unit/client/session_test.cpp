@@ -33,7 +33,6 @@ using wire::FrameKind;
 
 constexpr auto kPatience = 10s;
 constexpr std::uint32_t kSilentNodes = 4;
-constexpr std::uint32_t kNode = kSilentNodes;  // the one that answers; the silent ones come before it
 
 bool readable(int fd, std::chrono::milliseconds limit) {
     pollfd wait{fd, POLLIN, 0};

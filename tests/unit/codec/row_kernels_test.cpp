@@ -80,7 +80,10 @@ TEST_P(RowKernelsTest, CountsEqualThePlainOnes) {
     for (std::size_t count = 0; count <= 64; ++count) {
         for (const std::uint32_t mask : {0xffffffffu, 0x00ffffffu}) {
             std::vector<std::uint32_t> residuals(64);
-            for (auto& r : residuals) r = random() % 3 == 0 ? static_cast<std::uint32_t>(random()) : random() % 2 << 31;
+            for (auto& r : residuals) {
+                const auto bits = static_cast<std::uint32_t>(random());
+                r = random() % 3 == 0 ? bits : bits & 1u << 31;
+            }
             EXPECT_EQ(kernels.nonzero(residuals.data(), count, mask), plain.nonzero(residuals.data(), count, mask));
             EXPECT_EQ(kernels.cost(residuals.data(), count, mask), plain.cost(residuals.data(), count, mask));
         }
