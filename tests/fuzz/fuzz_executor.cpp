@@ -82,7 +82,7 @@ void check_others(RenderNode& node) {
 void run_in_slices(RenderNode& node, Executor& executor, std::span<const std::byte> payload) {
     if (!executor.start_batch(payload)) return;
     for (int slices = 0;; ++slices) {
-        const auto done = executor.run_slice(Executor::Clock::time_point::min());
+        const auto done = executor.run_slice(Executor::Clock::time_point{});
         if (!done || *done) return;
         if (slices < kOthersTurns) check_others(node);
     }
