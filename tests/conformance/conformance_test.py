@@ -15,7 +15,7 @@ import players  # noqa: E402
 import report  # noqa: E402
 from expectations import load, on_wall  # noqa: E402
 from players import Player, play_all  # noqa: E402
-from results import RANKS, Outcome, Result, judge, read_result, worse  # noqa: E402
+from results import RANKS, Expected, Outcome, Result, judge, read_result, worse  # noqa: E402
 from suite import Offer, SuiteError, Test, group_of, load_left_out, read_list, read_offer  # noqa: E402
 
 GLINFO = """GL_RENDERER = WallGL (llvmpipe)
@@ -94,6 +94,10 @@ def outcome(name, given, reference=None):
     return Outcome(name, "group", Result(given), Result(reference) if reference else None)
 
 
+def expect(name, status="fail", sometimes=False):
+    return {name: Expected(name, status, frozenset(), "so it is", sometimes)}
+
+
 class Judged(unittest.TestCase):
     def verdicts(self, *outcomes, expected=None, known=("a", "b", "c", "d")):
         judgement = judge(outcomes, expected or {}, known)
@@ -112,19 +116,26 @@ class Judged(unittest.TestCase):
         self.assertFalse(judge([], {}, ["a"]).good)
 
     def test_expected(self):
-        self.assertEqual(self.verdicts(outcome("a", "fail", "pass"), expected={"a": "fail"}), ({"a": "expected"}, True))
-        self.assertEqual(self.verdicts(outcome("a", "warn", "pass"), expected={"a": "fail"}), ({"a": "expected"}, True))
+        self.assertEqual(self.verdicts(outcome("a", "fail", "pass"), expected=expect("a")), ({"a": "expected"}, True))
+        self.assertEqual(self.verdicts(outcome("a", "warn", "pass"), expected=expect("a")), ({"a": "expected"}, True))
 
     def test_worse_than_expected(self):
-        self.assertEqual(self.verdicts(outcome("a", "crash", "pass"), expected={"a": "fail"}), ({"a": "FAILED"}, False))
+        self.assertEqual(self.verdicts(outcome("a", "crash", "pass"), expected=expect("a")), ({"a": "FAILED"}, False))
 
     def test_stale(self):
-        self.assertEqual(self.verdicts(outcome("a", "pass"), expected={"a": "fail"}), ({"a": "STALE"}, False))
-        self.assertEqual(self.verdicts(outcome("a", "fail", "fail"), expected={"a": "fail"}), ({"a": "STALE"}, False))
-        self.assertEqual(self.verdicts(outcome("b", "pass"), expected={"a": "fail"}), ({"b": "pass"}, True))  # not run
+        self.assertEqual(self.verdicts(outcome("a", "pass"), expected=expect("a")), ({"a": "STALE"}, False))
+        self.assertEqual(self.verdicts(outcome("a", "fail", "fail"), expected=expect("a")), ({"a": "STALE"}, False))
+        self.assertEqual(self.verdicts(outcome("b", "pass"), expected=expect("a")), ({"b": "pass"}, True))  # not run
+
+    def test_what_chance_decides(self):
+        crash = expect("a", "crash", sometimes=True)
+        self.assertEqual(self.verdicts(outcome("a", "pass"), expected=crash), ({"a": "pass"}, True))
+        self.assertEqual(self.verdicts(outcome("a", "crash", "pass"), expected=crash), ({"a": "expected"}, True))
+        self.assertEqual(self.verdicts(outcome("a", "crash", "pass"), expected=expect("a", sometimes=True)),
+                         ({"a": "FAILED"}, False))
 
     def test_stranger(self):
-        self.assertFalse(judge([outcome("a", "pass")], {"z": "fail"}, ["a"]).good)
+        self.assertFalse(judge([outcome("a", "pass")], expect("z"), ["a"]).good)
 
     def test_table(self):
         judgement = judge([outcome("a", "pass"), outcome("b", "skip"), Outcome("c", "other", Result("pass"))], {},
@@ -228,7 +239,7 @@ class Reported(unittest.TestCase):
                     Outcome("bad", "group", Result("fail", output="Probe at 1,1"), Result("pass")),
                     Outcome("alike", "group", Result("fail"), Result("fail")),
                     Outcome("none", "group", Result("skip", output="requires X"))]
-        judgement = judge(outcomes, {"good": "fail", "gone": "fail"}, ["good", "bad"])
+        judgement = judge(outcomes, expect("good") | expect("gone"), ["good", "bad"])
         run = report.Run("1x1 of 8x8", 3.0, {"too slow": 2}, ["walld ended with 1"])
         with tempfile.TemporaryDirectory() as folder:
             told = report.write(Path(folder), run, judgement, {})

@@ -2,19 +2,10 @@
 """The list of tests that are known to be worse on a wall than on Mesa (expectations.toml)."""
 from __future__ import annotations
 
-import dataclasses
 import tomllib
 from pathlib import Path
 
-from results import RANKS
-
-
-@dataclasses.dataclass(frozen=True)
-class Expected:
-    test: str
-    status: str  # no worse than that
-    walls: frozenset[str]  # as "4x3 of 144x150"; empty: every wall
-    reason: str
+from results import RANKS, Expected
 
 
 def load(path: Path) -> list[Expected]:
@@ -27,7 +18,8 @@ def load(path: Path) -> list[Expected]:
         if RANKS.get(status, 0) == 0:
             raise ValueError(f"{path}: {names[0]}: status is '{status}', expected one of "
                              f"{', '.join(s for s, rank in RANKS.items() if rank)}")
-        listed += [Expected(name, status, frozenset(entry.get("walls", [])), entry["reason"]) for name in names]
+        listed += [Expected(name, status, frozenset(entry.get("walls", [])), entry["reason"],
+                            entry.get("sometimes", False)) for name in names]
     return listed
 
 

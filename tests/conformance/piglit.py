@@ -135,7 +135,7 @@ def run(options: argparse.Namespace) -> bool:
         start = time.monotonic()
         outcomes = list(play(player, MesaPlayer(x, options.timeout), selection, expected, options.jobs))
         described = report.Run(name, time.monotonic() - start, dict(selection.left_out), player.aftermath())
-    judgement = judge(outcomes, {name: each.status for name, each in expected.items()}, [test.name for test in tests])
+    judgement = judge(outcomes, expected, [test.name for test in tests])
     print(report.write(options.report, described, judgement, expected), end="")
     return described.good(judgement)
 

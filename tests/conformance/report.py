@@ -6,8 +6,7 @@ import dataclasses
 import json
 from pathlib import Path
 
-from expectations import Expected
-from results import VERDICTS, Judgement, Outcome
+from results import VERDICTS, Expected, Judgement, Outcome
 
 SHOWN_LINES = 12  # of a failed test's output
 SHOWN_SKIPS = 20  # reasons
