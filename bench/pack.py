@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"
 from wall import Wall, build_folder  # noqa: E402
 from xserver import XServer  # noqa: E402
 
-BAR = 0.85  # of the bare packer with a box
+BAR = 0.94  # of the bare packer with a box
 BARRED = "Vertex3f"
 VENDORS = {"bare": "bare packer", "box": "bare packer with box", "wallgl": "WallGL"}
 

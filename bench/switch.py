@@ -21,7 +21,7 @@ from wall import build_folder  # noqa: E402
 
 IDENTICAL_BAR = 100e6  # switches a second
 VARYING_BAR = 5e6  # switches and triangles a second, null driver
-KEPT_BAR = 0.9  # of the rate of the same drawing in one context
+KEPT_BAR = 0.95  # of the rate of the same drawing in one context
 THREADS = {"llvmpipe in one thread": "0", "llvmpipe with rasteriser threads": ""}  # LP_NUM_THREADS
 
 
