@@ -113,7 +113,7 @@ private:
     Ignore output_;  // before what uses it
 
 public:
-    Session session;
+    SessionReplica session;
     Executor executor;
 };
 

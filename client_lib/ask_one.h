@@ -19,7 +19,7 @@ struct NodeAnswer {
 /// the question, `function` is for the count of round trips.
 template <class Pack>
 std::optional<NodeAnswer> ask_one_node(Context& c, const char* function, Pack&& pack) {
-    Session& session = c.session();
+    ClientSession& session = c.session();
     std::vector<Node*> nodes;
     {
         std::lock_guard lock(session.mutex());

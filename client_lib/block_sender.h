@@ -37,7 +37,7 @@ struct SortScratch {
 
 class BlockSender {
 public:
-    BlockSender(Session& session, Context& context, SortScratch& scratch)
+    BlockSender(ClientSession& session, Context& context, SortScratch& scratch)
         : session_(session), context_(context), packer_(context.packer), scratch_(scratch) {}
 
     /// Sends the block and leaves `context.state` and all mirrors as they are after it.
@@ -65,7 +65,7 @@ private:
 
     void fold(const std::vector<Node*>& whole);
 
-    Session& session_;
+    ClientSession& session_;
     Context& context_;
     Packer& packer_;
     SortScratch& scratch_;

@@ -44,7 +44,7 @@ Context::~Context() {
     }
 }
 
-void Context::bind_surfaces(std::shared_ptr<Surface> draw, std::shared_ptr<Surface> read) {
+void Context::bind_surfaces(std::shared_ptr<ClientSurface> draw, std::shared_ptr<ClientSurface> read) {
     draw_ = std::move(draw);
     read_ = std::move(read);
     if (!used_ && draw_) first_use();
@@ -92,16 +92,16 @@ void Context::end_primitive() {
     if (packer.bytes() > kBlockBytes && !packer.closed()) flush_block();
 }
 
-void Context::settle_modelview() {
+void Context::determine_modelview_form() {
     if (!(modelview_stack.form & form::kUnknown)) return;
     FormedMatrix top{state.matrix.modelview, modelview_stack.form, modelview_stack.origin};
-    settle(top);
+    determine_form(top);
     modelview_stack.form = top.form;
     modelview_stack.origin = top.origin;
 }
 
 void Context::submit_block() {
-    if (packer.has_geometry()) settle_modelview();
+    if (packer.has_geometry()) determine_modelview_form();
     if (packer.inside())
         return;  // only commands that are legal inside come here then, and they change nothing that is drawn with
     try {

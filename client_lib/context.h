@@ -89,11 +89,11 @@ public:
         session_->draw(*this, box, needs, std::forward<Pack>(pack));
     }
 
-    Session& session() { return *session_; }
+    ClientSession& session() { return *session_; }
     ShareGroup& share() const { return *share_; }
     const std::shared_ptr<ShareGroup>& share_pointer() const { return share_; }
-    Surface* draw_surface() const { return draw_.get(); }
-    Surface* read_surface() const { return read_.get(); }
+    ClientSurface* draw_surface() const { return draw_.get(); }
+    ClientSurface* read_surface() const { return read_.get(); }
     unsigned active_texture() const { return state.local.active_texture - GL_TEXTURE0; }
 
     // ---- parts by subject, each with its own header ----
@@ -125,7 +125,7 @@ public:
     void end_primitive();
 
     /// A driver looks at the modelview matrix when it draws.
-    void settle_modelview();
+    void determine_modelview_form();
 
     /// Moves the packed block's last attributes and materials into `state` (BlockSender).
     void fold_attributes();
@@ -134,8 +134,8 @@ public:
     const SurfaceLayout& draw_layout() const;
 
     /// Before its first use; the connection is made no earlier.
-    void attach(std::shared_ptr<Session> session) { session_ = std::move(session); }
-    void bind_surfaces(std::shared_ptr<Surface> draw, std::shared_ptr<Surface> read);
+    void attach(std::shared_ptr<ClientSession> session) { session_ = std::move(session); }
+    void bind_surfaces(std::shared_ptr<ClientSurface> draw, std::shared_ptr<ClientSurface> read);
     const Projection& projection();
 
     std::atomic<bool> in_use{false};  ///< current in some thread
@@ -149,9 +149,9 @@ private:
     void forget_block();
     void first_use();
 
-    std::shared_ptr<Session> session_;
+    std::shared_ptr<ClientSession> session_;
     std::shared_ptr<ShareGroup> share_;
-    std::shared_ptr<Surface> draw_, read_;
+    std::shared_ptr<ClientSurface> draw_, read_;
     GLenum error_ = GL_NO_ERROR;
     bool used_ = false;
     bool lost_ = false;
@@ -161,14 +161,14 @@ private:
 };
 
 template <class Pack>
-void Session::draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Pack&& pack) {
+void ClientSession::draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Pack&& pack) {
     draw(
         context, box, needs, [](Node&, wire::PackBuffer&) {}, std::forward<Pack>(pack), [](Node&) {});
 }
 
 template <class Before, class Pack, class After>
-void Session::draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Before&& before,
-                   Pack&& pack, After&& after) {
+void ClientSession::draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Before&& before,
+                         Pack&& pack, After&& after) {
     packing([&] {
         if (!context.draw_surface()) return;
         const auto pack_block = [&](wire::PackBuffer& buffer, std::uint64_t slots) {
@@ -203,7 +203,7 @@ void Session::draw(Context& context, const std::optional<PixelRect>& box, const 
 }
 
 template <class Pack>
-void Session::on_every_node(Context& context, Pack&& pack) {
+void ClientSession::on_every_node(Context& context, Pack&& pack) {
     packing([&] {
         for (auto& node : nodes_)
             if (node->alive()) pack(batch(*node, context.id), *node);
@@ -211,7 +211,7 @@ void Session::on_every_node(Context& context, Pack&& pack) {
 }
 
 template <class Note, class Pack>
-void Session::synchronize(Context& context, bool at_once, Note&& note, Pack&& pack) {
+void ClientSession::synchronize(Context& context, bool at_once, Note&& note, Pack&& pack) {
     context.flush_block();
     packing([&] {
         if (const GLenum error = note(sync_); error != GL_NO_ERROR) return context.error(error);
@@ -225,7 +225,8 @@ void Session::synchronize(Context& context, bool at_once, Note&& note, Pack&& pa
 }
 
 template <class Pack>
-std::optional<std::vector<std::byte>> Session::ask(Context& context, Node& node, const char* function, Pack&& pack) {
+std::optional<std::vector<std::byte>> ClientSession::ask(Context& context, Node& node, const char* function,
+                                                         Pack&& pack) {
     context.flush_block();
     std::shared_ptr<NodeStream> stream;  // the node may get another one meanwhile
     const std::uint32_t request = packing([&]() -> std::uint32_t {
@@ -242,9 +243,9 @@ std::optional<std::vector<std::byte>> Session::ask(Context& context, Node& node,
 }
 
 template <class Pack>
-std::vector<std::optional<std::vector<std::byte>>> Session::ask_all(Context& context,
-                                                                    const std::vector<Target>& targets,
-                                                                    const char* function, Pack&& pack) {
+std::vector<std::optional<std::vector<std::byte>>> ClientSession::ask_all(Context& context,
+                                                                          const std::vector<Target>& targets,
+                                                                          const char* function, Pack&& pack) {
     context.flush_block();
     std::vector<std::pair<std::shared_ptr<NodeStream>, std::uint32_t>> asked;  // null: cannot be asked
     packing([&] {

@@ -7,7 +7,7 @@ namespace wall::client {
 
 void copy_context(Context& from, Context& to, std::uint32_t mask) {
     from.flush_block();  // current attributes are in `state` after it
-    glstate::settle_color_material(from.state);
+    glstate::adopt_current_color(from.state);
     glstate::for_each_in_group(mask, [&]<class E>(unsigned i) { to.set<E>(i, E::ref(std::as_const(from.state), i)); });
 }
 

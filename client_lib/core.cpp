@@ -28,7 +28,7 @@ Packer* closed_packer() {
 /// in their own exit handlers.
 struct Current {
     std::shared_ptr<Context> context;
-    std::shared_ptr<Surface> draw, read;
+    std::shared_ptr<ClientSurface> draw, read;
 };
 constinit thread_local Current* current = nullptr;
 
@@ -49,17 +49,17 @@ void go_dark() {
     tls_packer = closed_packer();
 }
 
-std::shared_ptr<Surface> create_surface(SurfaceOptions options) {
+std::shared_ptr<ClientSurface> create_surface(SurfaceOptions options) {
     auto id = options.visible ? next_window_id() : next_object_id();
     if (id == 0) {
         complain_once("wallgl: a parallel program has too many windows; more are not shown on the wall", "windows");
         options.visible = false;
         id = next_object_id();
     }
-    return std::shared_ptr<Surface>(new Surface(id, std::move(options)), [](Surface* surface) {
+    return std::shared_ptr<ClientSurface>(new ClientSurface(id, std::move(options)), [](ClientSurface* surface) {
         try {
             if (surface->opened)
-                if (auto session = Session::get_if_open()) session->close_surface(*surface);
+                if (auto session = ClientSession::get_if_open()) session->close_surface(*surface);
         } catch (...) {
             caught_exception("the end of a surface");
         }
@@ -73,7 +73,8 @@ std::shared_ptr<Context> create_context(const ContextOptions& options) {
                                      options);
 }
 
-bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface> draw, std::shared_ptr<Surface> read) {
+bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurface> draw,
+                  std::shared_ptr<ClientSurface> read) {
     if (!context) {
         release();
         return true;
@@ -85,7 +86,7 @@ bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface> dra
     } else {
         context->flush_block();
     }
-    const auto session = Session::get();
+    const auto session = ClientSession::get();
     if (!session) {
         context->in_use = false;
         release();
@@ -112,14 +113,14 @@ bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface> dra
 
 Context* current_context() { return tls_context; }
 
-void swap_buffers(Surface& surface) {
-    const auto session = Session::get_if_open();
+void swap_buffers(ClientSurface& surface) {
+    const auto session = ClientSession::get_if_open();
     if (!session || !surface.opened) return;
     session->swap(tls_context, surface);
     session->begin_frame(surface);
 }
 
-Extent surface_size(const Surface& surface) {
+Extent surface_size(const ClientSurface& surface) {
     if (surface.opened) return {surface.layout.width, surface.layout.height};
     return surface.options.size;
 }

@@ -14,7 +14,7 @@
 namespace wall::client {
 
 class Context;
-class Surface;
+class ClientSurface;
 
 struct Extent {
     std::uint32_t width = 0, height = 0;  // pixels
@@ -48,13 +48,14 @@ struct ContextOptions {
 
 /// The connection to the wall is made here, at a process's first make_current, never before: children of the
 /// application inherit its environment. An error's text names the address tried and the remedy.
-std::shared_ptr<Surface> create_surface(SurfaceOptions options);
+std::shared_ptr<ClientSurface> create_surface(SurfaceOptions options);
 /// Null if the version or profile is not offered.
 std::shared_ptr<Context> create_context(const ContextOptions& options);
 
 /// Makes `context` the calling thread's own with these surfaces (all null: releases). False if the wall cannot be
 /// reached (one clear line went to stderr) or another thread holds the context.
-bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface> draw, std::shared_ptr<Surface> read);
+bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurface> draw,
+                  std::shared_ptr<ClientSurface> read);
 Context* current_context();
 
 /// glXCopyContext: copies what glPushAttrib(mask) would save. `to` must not be current in any thread, `from` not in
@@ -63,8 +64,8 @@ void copy_context(Context& from, Context& to, std::uint32_t mask);
 
 /// Ends a frame of `surface`: everything drawn so far becomes its next picture on the wall. Blocks only when the wall
 /// is more than two frames behind.
-void swap_buffers(Surface& surface);
-Extent surface_size(const Surface& surface);
+void swap_buffers(ClientSurface& surface);
+Extent surface_size(const ClientSurface& surface);
 
 /// Everything queued is sent (glXWaitGL, eglWaitClient); `wait` also waits until it is drawn.
 void flush_current(bool wait);

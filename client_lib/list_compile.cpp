@@ -221,12 +221,12 @@ void find_effects(ListRun& run) {
 }
 
 /// Attributes that the run sets itself before anything could see their old values.
-std::uint32_t settled_by(const wire::PackBuffer& content) {
+std::uint32_t spared_by(const wire::PackBuffer& content) {
     Needs needs;
     BlockWalk walk(content, {}, content.mark(), {});
     while (walk.next() && !makes_vertex(walk.op()))
-        if (walk.sets_attribute()) needs.settle(walk.attribute());
-    return needs.settled;
+        if (walk.sets_attribute()) needs.spare(walk.attribute());
+    return needs.spared;
 }
 
 /// Replays recorded geometry into a packer of its own.
@@ -274,7 +274,7 @@ private:
         run->box = scratch_.block_box();
         run->array_draws = std::move(context_.lists->array_draws);
         find_effects(*run);
-        run->settled = settled_by(run->content);
+        run->spared = spared_by(run->content);
         return run;
     }
 

@@ -58,7 +58,7 @@ std::vector<std::byte> encoded(const wire::PackBuffer& content) {
     return bytes;
 }
 
-void define_once(Session& session, Node& node, wire::PackBuffer& buffer, const ListRun& run) {
+void define_once(ClientSession& session, Node& node, wire::PackBuffer& buffer, const ListRun& run) {
     if (!node.object_stamps.emplace(run.id, 1).second) return;
     const auto content = encoded(run.content);
     const auto commands = static_cast<std::uint32_t>(run.content.commands()),
@@ -101,13 +101,13 @@ void follow(Context& c, const std::vector<Node*>& nodes, const ListRun& run) {
 Needs needs_of_run(const Context& c, const ListRun& run) {
     if (!run.in_driver.materials.empty()) return {};
     Needs needs = needs_of_geometry(c.state);
-    needs.settled |= run.settled;
+    needs.spared |= run.spared;
     return needs;
 }
 
 void call_run(Context& c, const ListRun& run) {
     c.flush_block();
-    c.settle_modelview();
+    c.determine_modelview_form();
     if (!c.draw_surface() || !may_draw(c)) return apply_effects(c.state, run, run.in_context);
     forget_dead_runs(c);
     // A program's shader puts the vertices anywhere.

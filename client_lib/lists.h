@@ -40,7 +40,7 @@ struct ListRun {
     };
     Effects in_driver;                     ///< the driver of a node that ran it holds these
     Effects in_context;                    ///< the program may see these (list_compile.cpp has the difference)
-    std::uint32_t settled = 0;             ///< attributes that it sets before its first vertex, as in Needs::settled
+    std::uint32_t spared = 0;              ///< attributes that it sets before its first vertex, as in Needs::spared
     std::vector<std::size_t> array_draws;  ///< commands of `content`, each the Begin of what was drawn from arrays
 
 private:

@@ -342,14 +342,14 @@ void ortho(FormedMatrix& matrix, float left, float right, float bottom, float to
     remember(matrix, glstate::StepKind::none);
 }
 
-void settle(FormedMatrix& matrix) {
+void determine_form(FormedMatrix& matrix) {
     if (!(matrix.form & form::kUnknown)) return;
     matrix.form = form_of(matrix.m);
     remember(matrix, glstate::StepKind::none);
 }
 
 Mat4 inverse(FormedMatrix& matrix) {
-    settle(matrix);
+    determine_form(matrix);
     return inverse_by_form(matrix.m, matrix.form);
 }
 

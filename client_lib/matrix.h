@@ -50,9 +50,9 @@ void scale(FormedMatrix& matrix, float x, float y, float z);
 void frustum(FormedMatrix& matrix, float left, float right, float bottom, float top, float near, float far);
 void ortho(FormedMatrix& matrix, float left, float right, float bottom, float top, float near, float far);
 
-/// Settles an unknown form, as drawing and glPushMatrix do.
-void settle(FormedMatrix& matrix);
-/// Settles the form; a singular matrix gives the identity.
+/// Determines an unknown form, as drawing and glPushMatrix do.
+void determine_form(FormedMatrix& matrix);
+/// Determines the form; a singular matrix gives the identity.
 Mat4 inverse(FormedMatrix& matrix);
 Mat4 transposed(const Mat4& matrix);
 

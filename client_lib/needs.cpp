@@ -44,7 +44,7 @@ Needs needs_of_geometry(const glstate::State& state) {
     needs.categories &= ~kNotForGeometry;
     if (!state.lighting.lighting_enabled) needs.categories &= ~kLit;
     if (!reads_normals(state)) {
-        needs.settle(Attribute::normal);
+        needs.spare(Attribute::normal);
         needs.categories &= ~mask_of(Category::modelview_origin);
     }
     return needs;
@@ -57,7 +57,7 @@ Needs needs_of_block(const glstate::State& state, const Packer& packer) {
     while (walk.next() && !walk.is_vertex()) {
     }
     for (std::size_t i = 0; i < kAttributes; ++i)
-        if (walk.places().offset[i] != AttributePlaces::kNone) needs.settle(static_cast<Attribute>(i));
+        if (walk.places().offset[i] != AttributePlaces::kNone) needs.spare(static_cast<Attribute>(i));
     return needs;
 }
 

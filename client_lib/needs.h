@@ -11,11 +11,11 @@ namespace wall::client {
 
 struct Needs {
     glstate::CategoryMask categories = glstate::kSentCategories;
-    std::uint32_t settled = 0;  ///< current attributes that need not be sent, a bit for each Attribute
+    std::uint32_t spared = 0;  ///< current attributes that need not be sent, a bit for each Attribute
     static_assert(kAttributes <= 32);
 
-    bool waits(Attribute a) const { return settled >> static_cast<unsigned>(a) & 1; }
-    void settle(Attribute a) { settled |= 1u << static_cast<unsigned>(a); }
+    bool waits(Attribute a) const { return spared >> static_cast<unsigned>(a) & 1; }
+    void spare(Attribute a) { spared |= 1u << static_cast<unsigned>(a); }
 };
 
 /// glClear, glAccum.

@@ -57,9 +57,9 @@ void set_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, const T*
 }
 
 /// Material parameters that follow the current colour get it.
-void settle_materials(Context& c) {
+void adopt_current_color(Context& c) {
     c.flush_block();
-    glstate::settle_color_material(c.state);
+    glstate::adopt_current_color(c.state);
 }
 
 /// Mesa rounds what glGetIntegerv and glGetMaterialiv answer, but cuts off here.
@@ -74,7 +74,7 @@ void get_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, T* value
     const auto index = index_of(c, family, lead);
     const auto* entry = glstate::find_param(family, target_of(family, lead), pname);
     if (!index || !entry) return c.error(GL_INVALID_ENUM);
-    if (family == ParamFamily::Material) settle_materials(c);
+    if (family == ParamFamily::Material) adopt_current_color(c);
     if constexpr (std::is_same_v<T, GLint>)
         if (entry->kind == glstate::ValueKind::real && family != ParamFamily::Material)
             return get_truncated(c, entry->id + *index, entry->components, values);

@@ -23,7 +23,7 @@ void take_link_result(Program& program, glapi::ProgramDefinition definition, gla
 
 }  // namespace
 
-void settle_compile(Context& c, Shader& shader) {
+void learn_compile_result(Context& c, Shader& shader) {
     std::string source;
     {
         std::lock_guard lock(c.share().mutex);
@@ -39,7 +39,7 @@ void settle_compile(Context& c, Shader& shader) {
     shader.log = result ? std::move(result->log) : kNoAnswer;
 }
 
-void settle_link(Context& c, Program& program) {
+void learn_link_result(Context& c, Program& program) {
     std::optional<glapi::ProgramDefinition> definition;
     {
         std::lock_guard lock(c.share().mutex);

@@ -13,8 +13,8 @@
 namespace wall::client {
 
 /// Asks a node, if nobody has yet, how the last glCompileShader or glLinkProgram went.
-void settle_compile(Context& c, Shader& shader);
-void settle_link(Context& c, Program& program);
+void learn_compile_result(Context& c, Shader& shader);
+void learn_link_result(Context& c, Program& program);
 
 /// The context draws with it from now on; null: with none.
 void use_program(Context& c, std::shared_ptr<Program> program);

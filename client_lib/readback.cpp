@@ -40,7 +40,7 @@ private:
 }  // namespace
 
 PixelBox clip_to_window(const Context& c, const PixelBox& box) {
-    const Surface* surface = c.read_surface();
+    const ClientSurface* surface = c.read_surface();
     if (!surface) return {};
     return common_part(box, {0, 0, static_cast<std::int32_t>(surface->layout.width),
                              static_cast<std::int32_t>(surface->layout.height)});
@@ -49,7 +49,7 @@ PixelBox clip_to_window(const Context& c, const PixelBox& box) {
 std::vector<std::byte> gather_pixels(Context& c, const PixelBox& box, GLenum format, GLenum type,
                                      const char* function) {
     std::vector<std::byte> pixels(glapi::image_bytes(format, type, box.width, box.height, 1).value_or(0));
-    const Surface* surface = c.read_surface();
+    const ClientSurface* surface = c.read_surface();
     const auto layout = glapi::pixel_layout(format, type);
     if (!surface || pixels.empty() || !layout) return pixels;
     c.flush_block();

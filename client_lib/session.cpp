@@ -72,7 +72,7 @@ namespace {
 /// Never destroyed: the application may still draw while it exits.
 struct OnlySession {
     std::mutex mutex;
-    std::shared_ptr<Session> session;  ///< stays when the last context goes: SDL makes a probe context first
+    std::shared_ptr<ClientSession> session;  ///< stays when the last context goes: SDL makes a probe context first
     std::optional<std::chrono::steady_clock::time_point> failed_at;
     static OnlySession& get() {
         static auto* only = new OnlySession();
@@ -82,13 +82,13 @@ struct OnlySession {
 
 }  // namespace
 
-std::shared_ptr<Session> Session::get_if_open() {
+std::shared_ptr<ClientSession> ClientSession::get_if_open() {
     if (in_forked_child()) return nullptr;
     std::lock_guard lock(OnlySession::get().mutex);
     return OnlySession::get().session;
 }
 
-std::shared_ptr<Session> Session::get() {
+std::shared_ptr<ClientSession> ClientSession::get() {
     if (in_forked_child()) return nullptr;
     auto& only = OnlySession::get();
     std::lock_guard lock(only.mutex);
@@ -100,7 +100,7 @@ std::shared_ptr<Session> Session::get() {
         only.failed_at = std::chrono::steady_clock::now();
         return nullptr;
     }
-    only.session.reset(new Session(std::move(*control)));
+    only.session.reset(new ClientSession(std::move(*control)));
     at_process_end(
         [] {
             if (const auto session = get_if_open()) session->finish();
@@ -109,7 +109,7 @@ std::shared_ptr<Session> Session::get() {
     return only.session;
 }
 
-Session::Session(std::unique_ptr<ControlLink> control)
+ClientSession::ClientSession(std::unique_ptr<ControlLink> control)
     : control_(std::move(control)), sort_scratch_(std::make_unique<SortScratch>()) {
     if (group_) control_->on_end([this](const std::string& why) { transport_.give_up_all(why); });
     std::unique_lock lock(mutex_);
@@ -119,7 +119,7 @@ Session::Session(std::unique_ptr<ControlLink> control)
 
 // The first welcome, or that of a walld that came back. A node that has the session under the ticket that it has given
 // before goes on with its stream; what the others have of it is gone.
-void Session::adopt(const Welcome& welcome) {
+void ClientSession::adopt(const Welcome& welcome) {
     const bool goes_on = id_ == welcome.session;
     bool anew = false;
     id_ = welcome.session;
@@ -136,9 +136,9 @@ void Session::adopt(const Welcome& welcome) {
     if (anew) redraw();
 }
 
-Session::~Session() { finish(); }
+ClientSession::~ClientSession() { finish(); }
 
-void Session::finish() {
+void ClientSession::finish() {
     if (group_) return leave_group();
     {
         std::lock_guard lock(mutex_);
@@ -150,12 +150,12 @@ void Session::finish() {
 
 // A new stream is a node at time zero: whatever it needs is sent when it needs it.
 /// Programs that draw only when asked are asked.
-void Session::redraw() {
+void ClientSession::redraw() {
     for (const auto& [id, surface] : surfaces_)
         if (!surface->layout.offscreen && surface->frame > 0) control_->ask_to_redraw(id);
 }
 
-void Session::open_surface(Surface& surface) {
+void ClientSession::open_surface(ClientSurface& surface) {
     std::unique_lock lock(mutex_);
     if (surface.opened) return;
     surface.opened = true;
@@ -177,7 +177,7 @@ void Session::open_surface(Surface& surface) {
     }
 }
 
-void Session::close_surface(Surface& surface) {
+void ClientSession::close_surface(ClientSurface& surface) {
     std::lock_guard lock(mutex_);
     if (!surface.opened) return;
     surface.opened = false;
@@ -191,7 +191,7 @@ void Session::close_surface(Surface& surface) {
     }
 }
 
-void Session::apply_layout(Surface& surface, const Placement& placement) {
+void ClientSession::apply_layout(ClientSurface& surface, const Placement& placement) {
     SurfaceLayout& layout = surface.layout;
     layout.targets.clear();
     ++layout.version;
@@ -215,7 +215,7 @@ void Session::apply_layout(Surface& surface, const Placement& placement) {
 }
 
 /// Pbuffers whose node is gone go to another one, and so do those that had none; so do the hidden parts of windows.
-void Session::place_off_wall() {
+void ClientSession::place_off_wall() {
     lay_hidden_parts();
     for (auto& [id, surface] : surfaces_) {
         const auto& targets = surface->layout.targets;
@@ -224,7 +224,7 @@ void Session::place_off_wall() {
     }
 }
 
-void Session::begin_frame(Surface& surface) {
+void ClientSession::begin_frame(ClientSurface& surface) {
     std::unique_lock lock(mutex_);
     take_events();
     wait_for_attempts(lock, kTakeUpLimit);
@@ -237,7 +237,7 @@ void Session::begin_frame(Surface& surface) {
     follow_window(surface);
 }
 
-void Session::follow_window(Surface& surface) {
+void ClientSession::follow_window(ClientSurface& surface) {
     const auto size = surface.options.query_size ? surface.options.query_size() : std::nullopt;
     if (!size || !size->width || !size->height ||
         (size->width == surface.layout.width && size->height == surface.layout.height))
@@ -251,7 +251,7 @@ void Session::follow_window(Surface& surface) {
 }
 
 // Only between two frames, so that none mixes two layouts. What the last frame shows was drawn for the old one.
-void Session::adopt_placement(Surface& surface) {
+void ClientSession::adopt_placement(ClientSurface& surface) {
     if (!surface.next || in_frame(surface)) return;
     const Placement placement = *std::exchange(surface.next, std::nullopt);
     const bool moved = placement.rect != surface.layout.rect;
@@ -260,7 +260,7 @@ void Session::adopt_placement(Surface& surface) {
     if (moved && (surface.frame > 0 || !surface.options.format.double_buffered)) control_->ask_to_redraw(surface.id);
 }
 
-void Session::take_events() {
+void ClientSession::take_events() {
     auto events = control_->take_events();
     if (events.reconnected) adopt(*events.reconnected);
     for (const NodeInfo& info : events.node_changes) {
@@ -279,13 +279,13 @@ void Session::take_events() {
     for (auto& [id, surface] : surfaces_) adopt_placement(*surface);
 }
 
-wire::PackBuffer& Session::batch(Node& node, std::uint32_t context) {
+wire::PackBuffer& ClientSession::batch(Node& node, std::uint32_t context) {
     if (node.batch_context != context || node.batch.bytes() > kBatchBytes) send(node);
     node.batch_context = context;
     return node.batch;
 }
 
-void Session::send(Node& node) {
+void ClientSession::send(Node& node) {
     if (node.batch.empty()) return;
     if (node.alive()) {
         stats().add_node(node.index, NodeCounter::batches, 1);
@@ -296,12 +296,12 @@ void Session::send(Node& node) {
 }
 
 /// What a node is told of the layer of the whole window.
-static std::uint32_t whole_window_of(const Node& node, const Surface& surface) {
+static std::uint32_t whole_window_of(const Node& node, const ClientSurface& surface) {
     if (surface.layout.offscreen) return wire::kOnlyWholeWindow;
     return surface.hidden && surface.hidden->target.node == node.index ? wire::kAlsoWholeWindow : wire::kTilesOnly;
 }
 
-void Session::describe_surface(Node& node, Surface& surface) {
+void ClientSession::describe_surface(Node& node, ClientSurface& surface) {
     const SurfaceLayout& layout = surface.layout;
     const auto known = node.surfaces.find(surface.id);
     if (known == node.surfaces.end()) {
@@ -317,12 +317,12 @@ void Session::describe_surface(Node& node, Surface& surface) {
     node.surfaces[surface.id] = layout.version;
 }
 
-wire::PackBuffer& Session::prepare(Node& node, Context& context, const Needs& needs) {
+wire::PackBuffer& ClientSession::prepare(Node& node, Context& context, const Needs& needs) {
     wire::PackBuffer& buffer = batch(node, context.id);
     Mirror& mirror = node.mirrors[context.id];
     const std::size_t start = buffer.bytes();
-    Surface& draw = *context.draw_surface();
-    Surface& read = *context.read_surface();
+    ClientSurface& draw = *context.draw_surface();
+    ClientSurface& read = *context.read_surface();
     draw.drawn = true;
     describe_surface(node, draw);
     if (&read != &draw) describe_surface(node, read);
@@ -347,11 +347,11 @@ wire::PackBuffer& Session::prepare(Node& node, Context& context, const Needs& ne
     return buffer;
 }
 
-void Session::submit_block(Context& context) {
+void ClientSession::submit_block(Context& context) {
     packing([&] { BlockSender(*this, context, *sort_scratch_).run(); });
 }
 
-void Session::distrust_nodes() {
+void ClientSession::distrust_nodes() {
     for (auto& node : nodes_) {
         if (!node->alive()) continue;
         node->stream->give_up("out of memory");  // short enough to need none
@@ -361,7 +361,7 @@ void Session::distrust_nodes() {
         if (surface->hidden) surface->hidden->forget();
 }
 
-void Session::swap(Context* context, Surface& surface) {
+void ClientSession::swap(Context* context, ClientSurface& surface) {
     if (context) context->flush_block();
     bool whole_frames = false;
     {
@@ -386,7 +386,7 @@ void Session::swap(Context* context, Surface& surface) {
 }
 
 /// All that show the surface; in a parallel program all there are, because its members keep step on each.
-std::vector<std::uint32_t> Session::swap_nodes(const Surface& surface) const {
+std::vector<std::uint32_t> ClientSession::swap_nodes(const ClientSurface& surface) const {
     std::vector<std::uint32_t> out;
     if (!common(surface))
         for (const auto& [index, slots] : targets_of(surface.layout, std::nullopt)) out.push_back(index);
@@ -397,7 +397,7 @@ std::vector<std::uint32_t> Session::swap_nodes(const Surface& surface) const {
 
 // A node that is slow for once (a long frame of all nodes alike) is waited for; one that has stopped is left out. If
 // all are late, the wall holds the frames or has stopped as a whole: then the program goes at the limit's pace.
-void Session::wait_for_nodes(Surface& surface, bool whole_frames) {
+void ClientSession::wait_for_nodes(ClientSurface& surface, bool whole_frames) {
     if (surface.frame < kFramesInFlight) return;
     struct Waited {
         Node& node;
@@ -441,7 +441,7 @@ void Session::wait_for_nodes(Surface& surface, bool whole_frames) {
     }
 }
 
-void Session::flush(Context* context, bool wait) {
+void ClientSession::flush(Context* context, bool wait) {
     if (context) context->flush_block();
     std::vector<std::pair<std::shared_ptr<NodeStream>, std::uint32_t>> pending;
     {
@@ -456,7 +456,7 @@ void Session::flush(Context* context, bool wait) {
         }
         if (!pending.empty()) count_round_trip("glFinish");
         // Without a back buffer there is no other end of a frame.
-        if (const Surface* surface = context ? context->draw_surface() : nullptr;
+        if (const ClientSurface* surface = context ? context->draw_surface() : nullptr;
             surface && !surface->options.format.double_buffered)
             take_events();
     }
@@ -464,22 +464,22 @@ void Session::flush(Context* context, bool wait) {
 }
 
 /// A member of a parallel program may have to wait for the others, however long they take.
-int Session::reply_timeout_ms() const { return group_ ? NodeStream::kNoLimit : kReplyTimeoutMs; }
+int ClientSession::reply_timeout_ms() const { return group_ ? NodeStream::kNoLimit : kReplyTimeoutMs; }
 
-void Session::count_geometry(Node& node, std::size_t bytes) {
+void ClientSession::count_geometry(Node& node, std::size_t bytes) {
     stats().add_node(node.index, NodeCounter::geometry_bytes, bytes);
 }
-void Session::count_block(Node& node) { stats().add_node(node.index, NodeCounter::blocks, 1); }
-void Session::count_objects(Node& node, std::size_t bytes) {
+void ClientSession::count_block(Node& node) { stats().add_node(node.index, NodeCounter::blocks, 1); }
+void ClientSession::count_objects(Node& node, std::size_t bytes) {
     if (bytes) stats().add_node(node.index, NodeCounter::object_bytes, bytes);
 }
-void Session::count_state(Node& node, std::size_t bytes) {
+void ClientSession::count_state(Node& node, std::size_t bytes) {
     if (bytes) stats().add_node(node.index, NodeCounter::state_bytes, bytes);
 }
-void Session::count_frame() { stats().end_frame(); }
-void Session::count_round_trip(const char* function) { stats().count_round_trip(function); }
+void ClientSession::count_frame() { stats().end_frame(); }
+void ClientSession::count_round_trip(const char* function) { stats().count_round_trip(function); }
 
-void Session::destroy_context(std::uint32_t context) {
+void ClientSession::destroy_context(std::uint32_t context) {
     std::lock_guard lock(mutex_);
     before_context_goes(ContextId(context));
     for (auto& node : nodes_) {
@@ -489,7 +489,8 @@ void Session::destroy_context(std::uint32_t context) {
     }
 }
 
-Surface::Surface(std::uint32_t own_id, SurfaceOptions own_options) : id(own_id), options(std::move(own_options)) {}
-Surface::~Surface() = default;
+ClientSurface::ClientSurface(std::uint32_t own_id, SurfaceOptions own_options)
+    : id(own_id), options(std::move(own_options)) {}
+ClientSurface::~ClientSurface() = default;
 
 }  // namespace wall::client

@@ -77,10 +77,10 @@ struct Node {
     bool answers() const { return alive() && left_out.empty(); }
 };
 
-class Surface {
+class ClientSurface {
 public:
-    Surface(std::uint32_t own_id, SurfaceOptions own_options);
-    ~Surface();
+    ClientSurface(std::uint32_t own_id, SurfaceOptions own_options);
+    ~ClientSurface();
     const std::uint32_t id;
     const SurfaceOptions options;
     SurfaceLayout layout;
@@ -96,25 +96,25 @@ public:
     Extent window;                 ///< of this process's own window, as walld was told
 };
 
-class Session {
+class ClientSession {
 public:
     /// The process's session; made at the first call. Null if the wall cannot be reached (said once on stderr).
-    static std::shared_ptr<Session> get();
+    static std::shared_ptr<ClientSession> get();
     /// Sends what is packed, and waits a moment until it is on its way. At the end of the process.
     void finish();
     /// The same, but never makes one: null if no context holds it.
-    static std::shared_ptr<Session> get_if_open();
-    ~Session();
+    static std::shared_ptr<ClientSession> get_if_open();
+    ~ClientSession();
 
     const Caps& caps() const { return control_->welcome().caps; }
 
-    void open_surface(Surface& surface);
-    void close_surface(Surface& surface);
+    void open_surface(ClientSurface& surface);
+    void close_surface(ClientSurface& surface);
     /// Adopts what changed since the last frame: placements, nodes that came or went, the window's size. Called where
     /// a frame begins, so that culling and drawing of one frame agree on one layout.
-    void begin_frame(Surface& surface);
+    void begin_frame(ClientSurface& surface);
     /// Ends a frame on every node that shows the surface.
-    void swap(Context* context, Surface& surface);
+    void swap(Context* context, ClientSurface& surface);
 
     /// Sends the block that the context's packer holds to the nodes that it touches.
     void submit_block(Context& context);
@@ -151,11 +151,11 @@ public:
 
     // ---- the part of a window that no tile shows (session_hidden.cpp) ----
     /// Before pixels of a rectangle of the window are asked for (window pixels, origin bottom left).
-    void look_at_hidden(Surface& surface, const geom::Rect& box);
+    void look_at_hidden(ClientSurface& surface, const geom::Rect& box);
     /// Before the samples of a query are.
     void count_hidden_samples();
     /// Before glAccum: its buffer goes on from frame to frame.
-    void accumulate_hidden(Surface& surface);
+    void accumulate_hidden(ClientSurface& surface);
     /// Before a clear, with glClear's mask.
     void clear_hidden(Context& context, std::uint32_t mask);
     /// Before a texture, program or run that has been drawn with changes or goes.
@@ -194,13 +194,13 @@ private:
     friend class BlockSender;
     /// For what is queued when a member of a parallel program ends: the others wait for it.
     static constexpr int kLeaveLimitMs = 2000;
-    explicit Session(std::unique_ptr<ControlLink> control);
+    explicit ClientSession(std::unique_ptr<ControlLink> control);
     void adopt(const Welcome& welcome);
-    void apply_layout(Surface& surface, const Placement& placement);
+    void apply_layout(ClientSurface& surface, const Placement& placement);
     void take_events();
-    bool in_frame(const Surface& surface) const { return surface.drawn && surface.frame > 0; }
-    void adopt_placement(Surface& surface);
-    void follow_window(Surface& surface);
+    bool in_frame(const ClientSurface& surface) const { return surface.drawn && surface.frame > 0; }
+    void adopt_placement(ClientSurface& surface);
+    void follow_window(ClientSurface& surface);
     void connect(Node& node);
     void attempt(Node& node);
     /// Until what connect() has begun since the last call has come to something, at most `limit`; the lock is not held
@@ -213,12 +213,12 @@ private:
     void keep_connected(Node& node);
     void place_off_wall();
     void redraw();
-    void describe_surface(Node& node, Surface& surface);
+    void describe_surface(Node& node, ClientSurface& surface);
     Node& node_at(std::uint32_t index);
     Node& node_slot(const NodeInfo& info);
-    std::vector<std::uint32_t> swap_nodes(const Surface& surface) const;
+    std::vector<std::uint32_t> swap_nodes(const ClientSurface& surface) const;
     int reply_timeout_ms() const;
-    void wait_for_nodes(Surface& surface, bool whole_frames);
+    void wait_for_nodes(ClientSurface& surface, bool whole_frames);
     /// Runs `body` with the mutex held. Where it throws, batches and mirrors may be half made: the nodes' streams fail
     /// then, so that every node begins again at time zero.
     template <class Body>
@@ -232,26 +232,26 @@ private:
         }
     }
     void distrust_nodes();
-    void lay_hidden_part(Surface& surface);
+    void lay_hidden_part(ClientSurface& surface);
     void lay_hidden_parts();
-    std::optional<std::uint32_t> node_for_hidden(const Surface& surface, std::optional<std::uint32_t> before);
-    void finish_hidden_frame(Surface& surface);
-    void note_hidden_frame(Surface& surface, bool whole);
-    void rest_hidden(Surface& surface);
-    void show_hidden(Surface& surface);
-    void send_kept(Node& node, Surface& surface, KeptFrame& frame);
+    std::optional<std::uint32_t> node_for_hidden(const ClientSurface& surface, std::optional<std::uint32_t> before);
+    void finish_hidden_frame(ClientSurface& surface);
+    void note_hidden_frame(ClientSurface& surface, bool whole);
+    void rest_hidden(ClientSurface& surface);
+    void show_hidden(ClientSurface& surface);
+    void send_kept(Node& node, ClientSurface& surface, KeptFrame& frame);
     void before_context_goes(ContextId context);
     void count_frame();
     void count_round_trip(const char* function);
 
     // ---- of a parallel program (session_group.cpp) ----
     void introduce(Node& node);
-    void adopt_agreed(Surface& surface);
+    void adopt_agreed(ClientSurface& surface);
     void use_node(const NodeInfo& info);
-    void report_window(Surface& surface);
-    void wait_for_group(Surface& surface);
+    void report_window(ClientSurface& surface);
+    void wait_for_group(ClientSurface& surface);
     void leave_group();
-    bool common(const Surface& surface) const { return group_ && surface.options.visible; }
+    bool common(const ClientSurface& surface) const { return group_ && surface.options.visible; }
 
     const std::optional<Parallel>& group_ = parallel();
     SyncObjects sync_{group_ ? group_->members : 1};
@@ -262,7 +262,7 @@ private:
     std::mutex mutex_;
     bool attempts_begun_ = false;  ///< by connect(), since wait_for_attempts()
     std::vector<std::unique_ptr<Node>> nodes_;
-    std::unordered_map<std::uint32_t, Surface*> surfaces_;
+    std::unordered_map<std::uint32_t, ClientSurface*> surfaces_;
     std::uint32_t id_ = 0;
     std::vector<TileInfo> tiles_;
     std::uint32_t last_request_ = 0;

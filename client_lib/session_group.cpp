@@ -17,7 +17,7 @@ constexpr int kLookMs = 20;  // at one node, while none has drawn a frame
 }  // namespace
 
 /// What the members have agreed on so far, then the wait until all have come.
-void Session::introduce(Node& node) {
+void ClientSession::introduce(Node& node) {
     wire::PackBuffer& buffer = batch(node, 0);
     for (const auto& [name, count] : sync_.barriers()) glapi::pack::BarrierCreate(buffer, name, count);
     for (const auto& [name, semaphore] : sync_.semaphores())
@@ -26,7 +26,7 @@ void Session::introduce(Node& node) {
     send(node);
 }
 
-void Session::adopt_agreed(Surface& surface) {
+void ClientSession::adopt_agreed(ClientSurface& surface) {
     auto& coming = surface.coming;
     while (!coming.empty() && coming.front().from_frame <= surface.frame + 1) {
         const Placement placement = std::move(coming.front());
@@ -44,7 +44,7 @@ void Session::adopt_agreed(Surface& surface) {
 }
 
 /// A node that is connected stays as it is: the others have it like that, too.
-void Session::use_node(const NodeInfo& info) {
+void ClientSession::use_node(const NodeInfo& info) {
     const bool known = info.node < nodes_.size() && nodes_[info.node]->alive() &&
                        nodes_[info.node]->info.incarnation == info.incarnation;
     if (known) return;
@@ -56,7 +56,7 @@ void Session::use_node(const NodeInfo& info) {
 }
 
 /// The window is as large as rank 0 has it.
-void Session::report_window(Surface& surface) {
+void ClientSession::report_window(ClientSurface& surface) {
     const auto size = surface.options.query_size ? surface.options.query_size() : std::nullopt;
     if (group_->rank != 0 || !size || !size->width || !size->height ||
         (size->width == surface.window.width && size->height == surface.window.height))
@@ -67,7 +67,7 @@ void Session::report_window(Surface& surface) {
 
 // As long as no node has drawn the frame, a member of the group may be late: however long that takes, it is waited for.
 // A node that is late with what others have drawn is not; what is queued for it has a limit.
-void Session::wait_for_group(Surface& surface) {
+void ClientSession::wait_for_group(ClientSurface& surface) {
     if (surface.frame < kFramesInFlight) return;
     const std::uint32_t frame = surface.frame - (kFramesInFlight - 1);
     std::vector<std::pair<Node*, std::shared_ptr<NodeStream>>> waited;
@@ -104,7 +104,7 @@ void Session::wait_for_group(Surface& surface) {
 }
 
 /// The others go on without this process from here on.
-void Session::leave_group() {
+void ClientSession::leave_group() {
     {
         std::lock_guard lock(mutex_);
         for (auto& node : nodes_) {

@@ -33,7 +33,7 @@ struct KeptSink {
 };
 
 /// Whether commands of the context go past a swap, or need what is not kept with them.
-bool cannot_be_kept(const Context& c, const Surface& surface) {
+bool cannot_be_kept(const Context& c, const ClientSurface& surface) {
     const GLenum buffer = c.state.window.draw_buffer;
     const bool front = buffer != GL_BACK && buffer != GL_BACK_LEFT && buffer != GL_NONE;
     return (surface.options.format.double_buffered && front) || c.maps->stamp != 0;
@@ -41,7 +41,7 @@ bool cannot_be_kept(const Context& c, const Surface& surface) {
 
 /// A clear of all of the buffers that count, whatever was in them.
 bool clears_whole(const Context& c, const HiddenPart& part, GLbitfield mask) {
-    const Surface& surface = *c.draw_surface();
+    const ClientSurface& surface = *c.draw_surface();
     const SurfaceFormat& format = surface.options.format;
     const auto& s = c.state;
     const GLenum buffer = s.window.draw_buffer;
@@ -58,7 +58,7 @@ bool clears_whole(const Context& c, const HiddenPart& part, GLbitfield mask) {
 
 // ---- which part, and where ----
 
-void Session::lay_hidden_part(Surface& surface) {
+void ClientSession::lay_hidden_part(ClientSurface& surface) {
     SurfaceLayout& layout = surface.layout;
     std::erase_if(layout.targets, [](const Target& t) { return t.slot == wire::kOffscreenSlot; });
     std::vector<geom::Rect> shown;
@@ -84,7 +84,8 @@ void Session::lay_hidden_part(Surface& surface) {
 }
 
 /// The same as before if it is still there; else one that shows the window, because it has the window's objects.
-std::optional<std::uint32_t> Session::node_for_hidden(const Surface& surface, std::optional<std::uint32_t> before) {
+std::optional<std::uint32_t> ClientSession::node_for_hidden(const ClientSurface& surface,
+                                                            std::optional<std::uint32_t> before) {
     if (before && nodes_[*before]->alive()) return before;
     for (const Target& target : surface.layout.targets)
         if (node_of(target).alive()) return target.node;
@@ -94,15 +95,15 @@ std::optional<std::uint32_t> Session::node_for_hidden(const Surface& surface, st
 }
 
 /// A node came or went. What it held of a window, or what was kept for it, is gone.
-void Session::lay_hidden_parts() {
+void ClientSession::lay_hidden_parts() {
     for (auto& [id, surface] : surfaces_)
         if (!surface->layout.offscreen) lay_hidden_part(*surface);
 }
 
 // ---- keeping ----
 
-Node* Session::begin_keeping(Context& context, const std::optional<PixelRect>& box) {
-    Surface& surface = *context.draw_surface();
+Node* ClientSession::begin_keeping(Context& context, const std::optional<PixelRect>& box) {
+    ClientSurface& surface = *context.draw_surface();
     HiddenPart& part = *surface.hidden;
     const auto& tests = context.state.depth_stencil;
     part.depth_matters = part.depth_matters || tests.depth_test || surface.depth_images;
@@ -118,7 +119,7 @@ Node* Session::begin_keeping(Context& context, const std::optional<PixelRect>& b
     return &part.now.follower;
 }
 
-wire::PackBuffer& Session::prepare_kept(Context& context, const Needs& needs) {
+wire::PackBuffer& ClientSession::prepare_kept(Context& context, const Needs& needs) {
     KeptFrame& frame = context.draw_surface()->hidden->now;
     Node& follower = frame.follower;
     Mirror& mirror = *frame.mirror;
@@ -136,9 +137,9 @@ wire::PackBuffer& Session::prepare_kept(Context& context, const Needs& needs) {
     return follower.batch;
 }
 
-void Session::clear_hidden(Context& context, std::uint32_t mask) {
+void ClientSession::clear_hidden(Context& context, std::uint32_t mask) {
     packing([&] {
-        Surface* surface = context.draw_surface();
+        ClientSurface* surface = context.draw_surface();
         if (!surface || !surface->hidden || !clears_whole(context, *surface->hidden, mask)) return;
         HiddenPart& part = *surface->hidden;
         const bool ends_frame = !surface->options.format.double_buffered;  // there is no other end
@@ -149,7 +150,7 @@ void Session::clear_hidden(Context& context, std::uint32_t mask) {
 }
 
 /// Before the swap is packed.
-void Session::finish_hidden_frame(Surface& surface) {
+void ClientSession::finish_hidden_frame(ClientSurface& surface) {
     HiddenPart* part = surface.hidden.get();
     if (!part || part->drawn) return;
     part->finish();
@@ -158,19 +159,19 @@ void Session::finish_hidden_frame(Surface& surface) {
 }
 
 /// After it.
-void Session::note_hidden_frame(Surface& surface, bool whole) {
+void ClientSession::note_hidden_frame(ClientSurface& surface, bool whole) {
     HiddenPart* part = surface.hidden.get();
     if (part && part->drawn && ++part->quiet >= kQuietFrames && whole) rest_hidden(surface);
 }
 
-void Session::rest_hidden(Surface& surface) {
+void ClientSession::rest_hidden(ClientSurface& surface) {
     surface.hidden->drawn = false;
     std::erase_if(surface.layout.targets, [](const Target& t) { return t.slot == wire::kOffscreenSlot; });
 }
 
 // ---- showing ----
 
-void Session::show_hidden(Surface& surface) {
+void ClientSession::show_hidden(ClientSurface& surface) {
     HiddenPart& part = *surface.hidden;
     part.drawn = true;
     part.quiet = 0;
@@ -186,7 +187,7 @@ void Session::show_hidden(Surface& surface) {
     part.forget();
 }
 
-void Session::send_kept(Node& node, Surface& surface, KeptFrame& frame) {
+void ClientSession::send_kept(Node& node, ClientSurface& surface, KeptFrame& frame) {
     describe_surface(node, surface);
     for (const auto& [context, start] : frame.starts)
         start.share->bring(*this, node, frame.follower.object_stamps, node.batch);
@@ -210,7 +211,7 @@ void Session::send_kept(Node& node, Surface& surface, KeptFrame& frame) {
     for (auto& [id, mirror] : node.mirrors) mirror.objects = {};  // programs hold the frame's uniform values
 }
 
-void Session::look_at_hidden(Surface& surface, const geom::Rect& box) {
+void ClientSession::look_at_hidden(ClientSurface& surface, const geom::Rect& box) {
     packing([&] {
         if (!surface.hidden || geom::intersect(box, surface.hidden->target.pixels).empty()) return;
         surface.hidden->quiet = 0;
@@ -218,7 +219,7 @@ void Session::look_at_hidden(Surface& surface, const geom::Rect& box) {
     });
 }
 
-void Session::count_hidden_samples() {
+void ClientSession::count_hidden_samples() {
     packing([&] {
         for (auto& [id, surface] : surfaces_) {
             if (!surface->hidden || !surface->hidden->everything) continue;
@@ -228,7 +229,7 @@ void Session::count_hidden_samples() {
     });
 }
 
-void Session::accumulate_hidden(Surface& surface) {
+void ClientSession::accumulate_hidden(ClientSurface& surface) {
     packing([&] {
         if (!surface.hidden) return;
         surface.hidden->accum_matters = true;
@@ -237,7 +238,7 @@ void Session::accumulate_hidden(Surface& surface) {
     });
 }
 
-void Session::before_object_changes(std::uint32_t object) {
+void ClientSession::before_object_changes(std::uint32_t object) {
     packing([&] {
         const auto uses = [&](const KeptFrame& frame) { return frame.follower.object_stamps.contains(object); };
         for (auto& [id, surface] : surfaces_) {
@@ -253,7 +254,7 @@ void Session::before_object_changes(std::uint32_t object) {
     });
 }
 
-void Session::before_context_goes(ContextId context) {
+void ClientSession::before_context_goes(ContextId context) {
     for (auto& [id, surface] : surfaces_) {
         HiddenPart* part = surface->hidden.get();
         if (!part || part->drawn) continue;

@@ -12,7 +12,7 @@ constexpr int kConnectTimeoutMs = 2000;
 
 }  // namespace
 
-Node& Session::node_at(std::uint32_t index) {
+Node& ClientSession::node_at(std::uint32_t index) {
     while (nodes_.size() <= index) {
         nodes_.push_back(std::make_unique<Node>());
         nodes_.back()->index = static_cast<std::uint32_t>(nodes_.size() - 1);
@@ -20,14 +20,14 @@ Node& Session::node_at(std::uint32_t index) {
     return *nodes_[index];
 }
 
-Node& Session::node_slot(const NodeInfo& info) {
+Node& ClientSession::node_slot(const NodeInfo& info) {
     Node& node = node_at(info.node);
     node.info = info;
     return node;
 }
 
 /// A node at time zero: whatever it needs is sent when it needs it.
-void Session::forget(Node& node) {
+void ClientSession::forget(Node& node) {
     if (node.stream) transport_.remove(node.stream.get());
     node.stream.reset();
     node.mirrors.clear();
@@ -40,7 +40,7 @@ void Session::forget(Node& node) {
 }
 
 // The node, as walld names it now, is another one than before.
-void Session::connect(Node& node) {
+void ClientSession::connect(Node& node) {
     forget(node);
     node.reopening = {};
     if (!node.info.up) return;
@@ -48,7 +48,7 @@ void Session::connect(Node& node) {
     attempts_begun_ = true;
 }
 
-void Session::attempt(Node& node) {
+void ClientSession::attempt(Node& node) {
     const auto hello = encode_data_hello(id_, node.info.ticket, group_ ? group_->rank : 0);
     const auto tell = [] {
         if (const auto session = get_if_open()) session->control_->ask_all_to_redraw();
@@ -57,7 +57,7 @@ void Session::attempt(Node& node) {
     if (!node.attempt) adopt_stream(node, NodeStream::open(node.info.address, hello, kConnectTimeoutMs));
 }
 
-void Session::wait_for_attempts(std::unique_lock<std::mutex>& lock, std::chrono::milliseconds limit) {
+void ClientSession::wait_for_attempts(std::unique_lock<std::mutex>& lock, std::chrono::milliseconds limit) {
     if (!std::exchange(attempts_begun_, false)) return;
     std::vector<std::shared_ptr<ConnectAttempt>> attempts;
     for (const auto& node : nodes_)
@@ -69,7 +69,7 @@ void Session::wait_for_attempts(std::unique_lock<std::mutex>& lock, std::chrono:
     for (const auto& node : nodes_) take_attempt(*node);
 }
 
-void Session::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream) {
+void ClientSession::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream) {
     const auto now = std::chrono::steady_clock::now();
     if (!stream) {
         log_warning("event=node_refused node=" + std::to_string(node.index) + " reason=\"" + stream.error().message +
@@ -84,7 +84,7 @@ void Session::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> strea
     place_off_wall();
 }
 
-void Session::take_attempt(Node& node) {
+void ClientSession::take_attempt(Node& node) {
     if (!node.attempt) return;
     auto outcome = node.attempt->take();
     if (!outcome) return;
@@ -94,7 +94,7 @@ void Session::take_attempt(Node& node) {
 }
 
 // The stream has failed, whatever the node does. What it held of this process is gone with it.
-void Session::lose(Node& node) {
+void ClientSession::lose(Node& node) {
     const std::string why = node.stream->failure();
     const bool ended = node.stream->ended_by_node();
     node.reopening.lost(std::chrono::steady_clock::now(), ended);
@@ -108,7 +108,7 @@ void Session::lose(Node& node) {
 
 // A node that is there, but did not answer when it was asked, or whose stream has failed since. (The members of a
 // parallel program take a node up together.)
-void Session::keep_connected(Node& node) {
+void ClientSession::keep_connected(Node& node) {
     if (group_) return;
     if (node.stream && node.stream->failed()) lose(node);
     take_attempt(node);

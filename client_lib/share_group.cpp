@@ -79,7 +79,7 @@ std::array<std::uint64_t, 5> object_stamps_of(const Context& context, std::uint6
 /// Packs textures for a node that lacks them. `sent` counts what is no longer in the buffer, `start` is where the rest
 /// begins.
 struct ObjectSender {
-    Session& session;
+    ClientSession& session;
     Node& node;
     wire::PackBuffer& buffer;
     std::size_t& start;
@@ -161,7 +161,7 @@ void ShareGroup::note_used(Node& follower, Mirror& mirror, Context& context, wir
     mirror.objects = now;
 }
 
-void ShareGroup::bring(Session& session, Node& node, const std::unordered_map<std::uint32_t, std::uint64_t>& used,
+void ShareGroup::bring(ClientSession& session, Node& node, const std::unordered_map<std::uint32_t, std::uint64_t>& used,
                        wire::PackBuffer& buffer) {
     std::lock_guard lock(mutex);
     std::size_t start = buffer.bytes(), sent = 0;

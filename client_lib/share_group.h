@@ -23,7 +23,7 @@
 namespace wall::client {
 
 class Context;
-class Session;
+class ClientSession;
 struct Mirror;
 struct Node;
 struct DisplayList;  // lists.h
@@ -97,7 +97,7 @@ struct ShareGroup {
     void note_used(Node& follower, Mirror& mirror, Context& context, wire::PackBuffer& buffer);
     /// Packs of the noted objects what the node lacks. None of them has changed since. The uniforms of programs travel
     /// with the blocks. The session's mutex is held.
-    void bring(Session& session, Node& node, const std::unordered_map<std::uint32_t, std::uint64_t>& used,
+    void bring(ClientSession& session, Node& node, const std::unordered_map<std::uint32_t, std::uint64_t>& used,
                wire::PackBuffer& buffer);
 };
 

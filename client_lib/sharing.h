@@ -23,7 +23,7 @@ inline bool may_be_asked(const Node& node) { return node.answers() && !node.slow
 /// `pack(buffer, request)` packs the question into the node's batch. True: the node holds the content. False: send it;
 /// the node then keeps it for others, too, whether its answer was that or came too late.
 template <class Pack>
-bool node_holds(Session& session, Node& node, Pack&& pack) {
+bool node_holds(ClientSession& session, Node& node, Pack&& pack) {
     const auto answer = session.ask_now(node, "global share", kOfferLimitMs, std::forward<Pack>(pack));
     node.asks_unanswered = !answer || answer->empty();
     return !node.asks_unanswered && answer->front() != std::byte{0};

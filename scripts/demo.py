@@ -19,7 +19,7 @@ from xserver import XServer  # noqa: E402
 
 DEFAULT_HTTP = 7780
 FIRST_FRAME_LIMIT = 20.0  # seconds for the programs to show something
-SETTLE = 3.0  # seconds after the first frame until a screenshot without --seconds
+PICTURE_AFTER = 3.0  # seconds after the first frame until a screenshot without --seconds
 POLL = 0.1  # seconds
 EXIT_NOT_STARTED = 2
 
@@ -67,7 +67,7 @@ def parse(words: list[str]) -> tuple[argparse.Namespace, list[list[str]]]:
     parser.add_argument("--seconds", type=float, metavar="N", help="end this long after the programs show something")
     parser.add_argument("--screenshot", metavar="FILE",
                         help="write the wall's picture as PNG: before the end with --seconds, "
-                        f"else {SETTLE:.0f} seconds after the first frame and at Ctrl-C")
+                        f"else {PICTURE_AFTER:.0f} seconds after the first frame and at Ctrl-C")
     parser.add_argument("--http", type=int, metavar="PORT",
                         help=f"port of the status page ({DEFAULT_HTTP}, or a free one)")
     options = parser.parse_args(ours)
@@ -143,7 +143,7 @@ def exit_code(app: subprocess.Popen) -> int:
 def run(wall: Wall, apps: list[subprocess.Popen], options: argparse.Namespace) -> int:
     wait_first_frames(wall, apps)
     if options.seconds is None:
-        wait_end(apps, SETTLE if options.screenshot else 0)
+        wait_end(apps, PICTURE_AFTER if options.screenshot else 0)
         screenshot(wall, options.screenshot)
         try:
             wait_end(apps, None)

@@ -17,9 +17,9 @@
 #include "common/daemon/keep_running.h"
 #include "common/log/log.h"
 #include "common/net/sockets.h"
-#include "walld/control_server.h"
-#include "walld/http_server.h"
-#include "walld/service_manager.h"
+#include "walld/control/control_server.h"
+#include "walld/control/service_manager.h"
+#include "walld/http/http_server.h"
 
 namespace {
 

@@ -7,11 +7,11 @@ import { WallStream } from './stream.js';
 
 const kRate = 10, kCalmRate = 1;  // frames a second; calm where the reader wants less motion
 const kSnapshotEvery = 1500;      // ms
-const kSettle = 200;              // ms that a new size must last before it is asked for
+const kSizeStands = 200;              // ms that a new size must last before it is asked for
 
 export class LivePicture {
   #picture; #stream; #live = false; #paused = false; #asked;
-  #settling;
+  #sizing;
   #calm = matchMedia('(prefers-reduced-motion: reduce)');
   taken = new Map();  // by tile: when its picture was taken, ms since 1970
 
@@ -44,10 +44,10 @@ export class LivePicture {
   }
   get #resting() { return this.#paused || document.hidden; }
 
-  /** Asks for what the picture wants now, once its size has settled. */
+  /** Asks for what the picture wants now, once its size stands. */
   refresh() {
-    clearTimeout(this.#settling);
-    this.#settling = setTimeout(() => this.#ask(), kSettle);
+    clearTimeout(this.#sizing);
+    this.#sizing = setTimeout(() => this.#ask(), kSizeStands);
   }
   #ask() {
     const fps = this.#calm.matches ? kCalmRate : kRate;

@@ -15,9 +15,9 @@ namespace wall::client {
 
 class Context {};
 
-class Surface {
+class ClientSurface {
 public:
-    explicit Surface(SurfaceOptions o) : options(std::move(o)) {}
+    explicit ClientSurface(SurfaceOptions o) : options(std::move(o)) {}
     const SurfaceOptions options;
 };
 
@@ -99,18 +99,18 @@ ProcAddress address(Function function) {
 
 }  // namespace
 
-std::shared_ptr<Surface> create_surface(SurfaceOptions options) {
-    return std::make_shared<Surface>(std::move(options));
+std::shared_ptr<ClientSurface> create_surface(SurfaceOptions options) {
+    return std::make_shared<ClientSurface>(std::move(options));
 }
 std::shared_ptr<Context> create_context(const ContextOptions&) { return std::make_shared<Context>(); }
-bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface>, std::shared_ptr<Surface>) {
+bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurface>, std::shared_ptr<ClientSurface>) {
     start_anew();
     tls_context = std::move(context);
     return true;
 }
 Context* current_context() { return tls_context.get(); }
-void swap_buffers(Surface&) {}
-Extent surface_size(const Surface& surface) { return surface.options.size; }
+void swap_buffers(ClientSurface&) {}
+Extent surface_size(const ClientSurface& surface) { return surface.options.size; }
 void flush_current(bool) {}
 void copy_context(Context&, Context&, std::uint32_t) {}
 

@@ -10,7 +10,7 @@ void PushAttrib(Context& c, GLbitfield mask) {
     auto& stack = c.attributes->server;
     if (stack.size() >= kAttributeStackLimit) return c.error(GL_STACK_OVERFLOW);
     if (mask & (GL_CURRENT_BIT | GL_LIGHTING_BIT)) c.flush_block();  // current attributes are in `state` after it
-    glstate::settle_color_material(c.state);
+    glstate::adopt_current_color(c.state);
     stack.push_back(std::make_unique<SavedAttributes>(SavedAttributes{mask, c.state, {}}));
     if (mask & GL_TEXTURE_BIT) stack.back()->textures = bound_texture_parameters(c);
 }

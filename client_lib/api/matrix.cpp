@@ -77,7 +77,7 @@ void MatrixMode(Context& c, GLenum mode) {
 void PushMatrix(Context& c) {
     change_top(c, [&](MatrixStack& stack, FormedMatrix& top) {
         if (stack.below.size() + 1 >= stack.limit) return c.error(GL_STACK_OVERFLOW);
-        settle(top);
+        determine_form(top);
         stack.below.push_back(top);
     });
 }

@@ -147,9 +147,11 @@ int named_buffers(GLenum word) {
     }
 }
 
-int existing_buffers(const Surface* surface) { return !surface || surface->options.format.double_buffered ? 3 : 1; }
+int existing_buffers(const ClientSurface* surface) {
+    return !surface || surface->options.format.double_buffered ? 3 : 1;
+}
 
-GLenum buffer_error(GLenum word, const Surface* surface) {
+GLenum buffer_error(GLenum word, const ClientSurface* surface) {
     const int named = named_buffers(word);
     if (named < 0) return GL_INVALID_ENUM;
     return named == 0 || (named & existing_buffers(surface)) ? GL_NO_ERROR : GL_INVALID_OPERATION;

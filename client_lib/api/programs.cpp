@@ -29,10 +29,10 @@ std::shared_ptr<Program> program_of(Context& c, GLuint name) {
     return object_of<Program>(c, name, GlslObject::Kind::program);
 }
 
-/// The program after linking has been settled.
-std::shared_ptr<Program> settled_program(Context& c, GLuint name) {
+/// The program, once it is known how its linking went.
+std::shared_ptr<Program> linked_program(Context& c, GLuint name) {
     auto program = program_of(c, name);
-    if (program) settle_link(c, *program);
+    if (program) learn_link_result(c, *program);
     return program;
 }
 
@@ -131,7 +131,7 @@ void CompileShader(Context& c, GLuint name) {
 void GetShaderiv(Context& c, GLuint name, GLenum pname, GLint* params) {
     const auto shader = shader_of(c, name);
     if (!shader) return;
-    if (pname == GL_COMPILE_STATUS || pname == GL_INFO_LOG_LENGTH) settle_compile(c, *shader);
+    if (pname == GL_COMPILE_STATUS || pname == GL_INFO_LOG_LENGTH) learn_compile_result(c, *shader);
     std::lock_guard lock(c.share().mutex);
     switch (pname) {
         case GL_SHADER_TYPE: *params = static_cast<GLint>(shader->type); break;
@@ -146,7 +146,7 @@ void GetShaderiv(Context& c, GLuint name, GLenum pname, GLint* params) {
 void GetShaderInfoLog(Context& c, GLuint name, GLsizei room, GLsizei* length, GLchar* out) {
     const auto shader = shader_of(c, name);
     if (!shader) return;
-    settle_compile(c, *shader);
+    learn_compile_result(c, *shader);
     std::lock_guard lock(c.share().mutex);
     give_text(c, shader->log, room, length, out);
 }
@@ -214,11 +214,11 @@ void LinkProgram(Context& c, GLuint name) {
         program->validated = false;
         in_use = program->users != 0;
     }
-    if (in_use) settle_link(c, *program);
+    if (in_use) learn_link_result(c, *program);
 }
 
 void ValidateProgram(Context& c, GLuint name) {
-    const auto program = settled_program(c, name);
+    const auto program = linked_program(c, name);
     if (!program) return;
     std::lock_guard lock(c.share().mutex);
     program->validated = program->linked && !program->executable->samplers_conflict();
@@ -226,7 +226,7 @@ void ValidateProgram(Context& c, GLuint name) {
 
 void UseProgram(Context& c, GLuint name) {
     if (name == 0) return use_program(c, nullptr);
-    const auto program = settled_program(c, name);
+    const auto program = linked_program(c, name);
     if (!program) return;
     if (!program->linked) return c.error(GL_INVALID_OPERATION);
     use_program(c, program);
@@ -235,7 +235,7 @@ void UseProgram(Context& c, GLuint name) {
 void GetProgramiv(Context& c, GLuint name, GLenum pname, GLint* params) {
     const auto program = program_of(c, name);
     if (!program) return;
-    if (pname != GL_DELETE_STATUS && pname != GL_ATTACHED_SHADERS) settle_link(c, *program);
+    if (pname != GL_DELETE_STATUS && pname != GL_ATTACHED_SHADERS) learn_link_result(c, *program);
     std::lock_guard lock(c.share().mutex);
     switch (pname) {
         case GL_DELETE_STATUS: *params = program->deleted; break;
@@ -252,7 +252,7 @@ void GetProgramiv(Context& c, GLuint name, GLenum pname, GLint* params) {
 }
 
 void GetProgramInfoLog(Context& c, GLuint name, GLsizei room, GLsizei* length, GLchar* out) {
-    const auto program = settled_program(c, name);
+    const auto program = linked_program(c, name);
     if (!program) return;
     std::lock_guard lock(c.share().mutex);
     give_text(c, program->log, room, length, out);
@@ -271,7 +271,7 @@ void GetAttachedShaders(Context& c, GLuint name, GLsizei room, GLsizei* count, G
 // ---- what is active in a program ----
 
 GLint GetUniformLocation(Context& c, GLuint name, const GLchar* uniform) {
-    const auto program = settled_program(c, name);
+    const auto program = linked_program(c, name);
     if (!program) return -1;
     std::lock_guard lock(c.share().mutex);
     if (program->linked && uniform) return program->executable->location_of(uniform);
@@ -280,7 +280,7 @@ GLint GetUniformLocation(Context& c, GLuint name, const GLchar* uniform) {
 }
 
 GLint GetAttribLocation(Context& c, GLuint name, const GLchar* attribute) {
-    const auto program = settled_program(c, name);
+    const auto program = linked_program(c, name);
     if (!program) return -1;
     std::lock_guard lock(c.share().mutex);
     if (program->linked && attribute) return program->executable->attribute_location_of(attribute);
@@ -290,7 +290,7 @@ GLint GetAttribLocation(Context& c, GLuint name, const GLchar* attribute) {
 
 void GetActiveUniform(Context& c, GLuint name, GLuint index, GLsizei room, GLsizei* length, GLint* size, GLenum* type,
                       GLchar* out) {
-    const auto program = settled_program(c, name);
+    const auto program = linked_program(c, name);
     if (!program) return;
     std::lock_guard lock(c.share().mutex);
     const Executable* executable = active(*program);
@@ -303,7 +303,7 @@ void GetActiveUniform(Context& c, GLuint name, GLuint index, GLsizei room, GLsiz
 
 void GetActiveAttrib(Context& c, GLuint name, GLuint index, GLsizei room, GLsizei* length, GLint* size, GLenum* type,
                      GLchar* out) {
-    const auto program = settled_program(c, name);
+    const auto program = linked_program(c, name);
     if (!program) return;
     std::lock_guard lock(c.share().mutex);
     const Executable* executable = active(*program);

@@ -18,7 +18,7 @@ void forget(Context& c, const OcclusionQuery& query) {
     c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node&) { glapi::pack::QueryDelete(buffer, query.id); });
 }
 
-std::vector<Node*> live_nodes(Session& session) {
+std::vector<Node*> live_nodes(ClientSession& session) {
     std::lock_guard lock(session.mutex());
     std::vector<Node*> nodes;
     for (const auto& node : session.nodes())

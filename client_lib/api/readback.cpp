@@ -11,7 +11,7 @@ namespace wall::client::api {
 namespace {
 
 bool source_exists(const Context& c, GLenum format) {
-    const Surface* surface = c.read_surface();
+    const ClientSurface* surface = c.read_surface();
     if (!surface) return false;
     const SurfaceFormat& f = surface->options.format;
     switch (format) {

@@ -12,7 +12,7 @@ namespace wall::client::api {
 namespace {
 
 /// One layer of the window's size on `node`.
-SurfaceLayout single_layer(const Surface& surface, std::uint32_t node) {
+SurfaceLayout single_layer(const ClientSurface& surface, std::uint32_t node) {
     SurfaceLayout layout = surface.layout;
     const auto width = static_cast<int>(layout.width), height = static_cast<int>(layout.height);
     layout.offscreen = true;
@@ -23,7 +23,7 @@ SurfaceLayout single_layer(const Surface& surface, std::uint32_t node) {
     return layout;
 }
 
-Node* first_alive(Session& session) {
+Node* first_alive(ClientSession& session) {
     std::lock_guard lock(session.mutex());
     for (auto& node : session.nodes())
         if (node->answers()) return node.get();

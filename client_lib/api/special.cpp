@@ -46,7 +46,7 @@ void Flush(Context& c) { c.session().flush(&c, false); }
 // sends (116 of 146 screensaver hacks call it in every frame). What a single-buffered program has drawn is on show
 // when glFinish returns.
 void Finish(Context& c) {
-    const Surface* surface = c.draw_surface();
+    const ClientSurface* surface = c.draw_surface();
     c.session().flush(&c, surface && !surface->options.format.double_buffered);
 }
 

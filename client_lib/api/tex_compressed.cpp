@@ -104,7 +104,7 @@ GLint blocks_format(GLint internal_format) {
     return format && s3tc_block_bytes(format->answer) != 0 ? format->answer : 0;
 }
 
-void settle_blocks(Context& c, GLenum target, GLint number) {
+void compress_as_driver(Context& c, GLenum target, GLint number) {
     const auto texture = bound_texture(c, target);
     api::Image image{target, number, 0, 0, 0, 0};
     TexelData data;
@@ -183,7 +183,7 @@ void CompressedTexSubImage2D(Context& c, GLenum target, GLint number, GLint x, G
         return c.error(GL_INVALID_ENUM);
     if (number < 0 || number >= level_count(c, target) || bytes < 0) return c.error(GL_INVALID_VALUE);
     const Image part{target, number, static_cast<GLint>(format), width, height, bytes};
-    settle_blocks(c, target, number);
+    compress_as_driver(c, target, number);
     const auto texture = bound_texture(c, target);
     const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
     if (const GLenum error = level ? sub_image_error(*level, part, x, y) : GLenum{GL_INVALID_OPERATION})
@@ -203,7 +203,7 @@ void GetCompressedTexImage(Context& c, GLenum target, GLint number, void* pixels
     if (is_proxy(target) || object_target(target) == 0 || target == GL_TEXTURE_CUBE_MAP)
         return c.error(GL_INVALID_ENUM);
     if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE);
-    settle_blocks(c, target, number);
+    compress_as_driver(c, target, number);
     const auto texture = bound_texture(c, target);
     const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
     if (!level || !level->compressed) return c.error(GL_INVALID_OPERATION);

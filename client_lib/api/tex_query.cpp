@@ -226,7 +226,7 @@ void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum 
     if (format == GL_COLOR_INDEX || format == GL_STENCIL_INDEX) return c.error(GL_INVALID_ENUM);
     const auto texture = bound_texture(c, target);
     if (!texture) return;
-    settle_blocks(c, target, number);
+    compress_as_driver(c, target, number);
     std::vector<std::byte> tight;
     glapi::ImageSize size;
     {

@@ -131,7 +131,7 @@ void get(Context& c, GLuint name, GLint location, Out* out) {
     if (!object) return c.error(GL_INVALID_VALUE);
     if (object->kind != GlslObject::Kind::program) return c.error(GL_INVALID_OPERATION);
     auto& program = static_cast<Program&>(*object);
-    settle_link(c, program);
+    learn_link_result(c, program);
     std::lock_guard lock(c.share().mutex);
     const UniformPlace* place = program.linked ? program.executable->place_of(location) : nullptr;
     if (!place) return c.error(GL_INVALID_OPERATION);

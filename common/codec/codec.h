@@ -30,7 +30,7 @@ public:
     /// what was written. Fails when the frame does not fit the stream; then nothing was written.
     virtual Result<PacketKind> encode(const FrameView& frame, PacketKind want, std::vector<std::byte>& out) = 0;
 
-    /// What the decoder needs before the first packet; may be empty. Settled by the first encode(), constant from then
+    /// What the decoder needs before the first packet; may be empty. Chosen by the first encode(), constant from then
     /// on.
     virtual std::span<const std::byte> stream_header() const { return {}; }
 };

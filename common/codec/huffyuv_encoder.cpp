@@ -134,7 +134,7 @@ public:
 
     Result<PacketKind> encode(const FrameView& frame, PacketKind, std::vector<std::byte>& out) override {
         if (auto good = codec::check(frame, format_); !good) return tl::unexpected(good.error());
-        if (!pixel_coder_) settle(frame);
+        if (!pixel_coder_) choose_format(frame);
         if (format_.layout == PixelLayout::yuy2) encode_yuy2(frame, bands_[0].words);
         else for_each_index(parallel_, bands_.size(), [&](std::size_t i) { encode_band(frame, i); });
         for (std::size_t i = 1; i < bands_.size(); ++i) bands_[0].words.append(bands_[i].words);
@@ -151,7 +151,7 @@ private:
     };
     static constexpr std::uint32_t kBands = 16;
 
-    void settle(const FrameView& frame) {
+    void choose_format(const FrameView& frame) {
         stream_ = suit(frame, format_.alpha, options_);
         extradata_ = write_extradata(stream_);
         pixel_coder_.emplace(stream_, format_.layout);
@@ -195,7 +195,7 @@ private:
     Stream stream_;
     std::vector<std::byte> extradata_;
     std::vector<Band> bands_;
-    std::optional<PixelCoder> pixel_coder_;  ///< once the stream is settled
+    std::optional<PixelCoder> pixel_coder_;  ///< once the format is chosen
 };
 
 }  // namespace

@@ -312,7 +312,7 @@ public:
         }
         const std::size_t at = out.size();
         out.push_back(std::byte{key ? kKey : std::uint8_t{0}});
-        if (settle_tables(key, out)) out[at] |= std::byte{kTables};
+        if (write_tables_if_better(key, out)) out[at] |= std::byte{kTables};
         for_each_index(parallel_, slices_.size(),
                        [&](std::size_t i) { write_slice(in, static_cast<std::uint32_t>(i), tables_, slices_[i]); });
         for (const Slice& slice : slices_) put_number(slice.bytes_used, out);
@@ -324,7 +324,7 @@ public:
 
 private:
     /// Writes new tables unless those of the packets before are good enough; true if it did.
-    bool settle_tables(bool key, std::vector<std::byte>& out) {
+    bool write_tables_if_better(bool key, std::vector<std::byte>& out) {
         Counts counts;
         for (const Slice& slice : slices_) counts.add(slice.counts);
         if (counts.empty()) return false;

@@ -63,6 +63,16 @@ asio::awaitable<void> accept_all(Listener& listener, std::function<void(StreamSo
 
 }  // namespace
 
+void spawn(const asio::any_io_executor& executor, const char* name, asio::awaitable<void> work) {
+    asio::co_spawn(executor, std::move(work), [name](std::exception_ptr failure) {
+        try {
+            if (failure) std::rethrow_exception(failure);
+        } catch (const std::exception& error) {
+            log::error("task_failed task={} error={}", log::plain(name), log::quoted(error.what()));
+        }
+    });
+}
+
 void keep_running(const asio::any_io_executor& executor, LastingTask task) {
     asio::co_spawn(executor, run_for_ever(std::move(task)), [](std::exception_ptr failure) {
         if (failure) std::rethrow_exception(failure);

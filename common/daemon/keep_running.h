@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a daemon does for as long as it lives: coroutines that no error ends. One executor, one thread.
+// What a daemon does in the background: coroutines whose errors are logged, and those that must not end at all. One
+// executor, one thread.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
@@ -11,6 +12,9 @@
 #include "common/net/control_connection.h"
 
 namespace wall::net {
+
+/// Runs `work` in the background; what it throws is logged and ends only itself.
+void spawn(const asio::any_io_executor& executor, const char* name, asio::awaitable<void> work);
 
 /// A piece of work that is never over while the daemon lives.
 struct LastingTask {

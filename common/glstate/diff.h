@@ -56,21 +56,21 @@ bool follows_color(const State& s, [[maybe_unused]] unsigned i) {
 }
 
 /// The tracked material parameters become the current colour.
-inline void settle_color_material(State& s) {
-    const auto settle = [&s]<class E>(E) {
+inline void adopt_current_color(State& s) {
+    const auto adopt = [&s]<class E>(E) {
         for (unsigned face = 0; face < 2; ++face)
             if (follows_color<E>(s, face)) E::ref(s, face) = s.current.color;
     };
-    settle(el::material_ambient{});
-    settle(el::material_diffuse{});
-    settle(el::material_specular{});
-    settle(el::material_emission{});
+    adopt(el::material_ambient{});
+    adopt(el::material_diffuse{});
+    adopt(el::material_specular{});
+    adopt(el::material_emission{});
 }
 
 /// Stores a value without a new value id; the caller owes one.
 template <class E>
 void store(State& s, unsigned i, const typename E::type& v) {
-    if constexpr (E::id == el::color_material::id || E::id == el::color_material_enabled::id) settle_color_material(s);
+    if constexpr (E::id == el::color_material::id || E::id == el::color_material_enabled::id) adopt_current_color(s);
     E::ref(s, i) = v;
 }
 

@@ -16,7 +16,7 @@ from suite import HOME, Test
 from wall import Wall
 from xserver import XServer
 
-SETTLE_LIMIT = 10.0  # seconds until a wall must have forgotten programs that have ended
+FORGET_LIMIT = 10.0  # seconds until a wall must have forgotten programs that have ended
 MOST_MEMORY = 6 << 10  # MiB that a daemon may use; a leak must not take the machine along
 MOST_OUTPUT = 20_000  # characters kept of one test
 
@@ -82,7 +82,7 @@ class WallPlayer(Player):
         """What is wrong with the wall after the tests: a daemon in trouble, a session that nobody has any more."""
         if trouble := self.trouble():
             return trouble
-        end = time.monotonic() + SETTLE_LIMIT
+        end = time.monotonic() + FORGET_LIMIT
         while (left := self._wall.sessions()) and time.monotonic() < end:
             time.sleep(0.1)
         return [f"session {session['id']} of process {session['pid']} is left" for session in left] + \

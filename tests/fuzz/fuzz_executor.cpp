@@ -58,7 +58,7 @@ void open_surface(Executor& executor) {
 /// The one pixel in the middle of a green quad, drawn by a session of its own.
 void check_others(RenderNode& node) {
     Ignore output;
-    Session session(node.driver, SessionId(2));
+    SessionReplica session(node.driver, SessionId(2));
     Executor executor(node, session, output);
     open_surface(executor);
     wire::PackBuffer body, buffer;
@@ -94,14 +94,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static Node* node = new Node;
     {
         Ignore output;
-        Session session(*node->driver, SessionId(1));
+        SessionReplica session(*node->driver, SessionId(1));
         Executor executor(*node->node, session, output);
         open_surface(executor);
         (void)executor.run_batch(fuzz::batch_of(data, size, 1));
     }
     {
         Ignore output;
-        Session session(*node->driver, SessionId(1));
+        SessionReplica session(*node->driver, SessionId(1));
         Executor executor(*node->node, session, output);
         open_surface(executor);
         const auto batch = fuzz::batch_of(data, size, 1);
@@ -110,7 +110,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     {
         Ignore output;
         ParallelGroup group(*node->driver, {2, {}});
-        Session member(*node->driver, SessionId(1), &group, 0), other(*node->driver, SessionId(1), &group, 1);
+        SessionReplica member(*node->driver, SessionId(1), &group, 0), other(*node->driver, SessionId(1), &group, 1);
         Executor executor(*node->node, member, output), others(*node->node, other, output);
         WALL_ASSERT(group.sync.join(0) && group.sync.join(1));
         open_surface(executor);

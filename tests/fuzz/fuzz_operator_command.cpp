@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "common/json/parse_json.h"
-#include "walld/arguments.h"
-#include "walld/audit.h"
+#include "walld/control/arguments.h"
+#include "walld/control/audit.h"
 
 namespace {
 

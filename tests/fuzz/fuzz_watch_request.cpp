@@ -2,7 +2,7 @@
 // What a viewer asks for is refused with a sentence, or becomes parts that lie in its picture and in their tiles.
 #include "common/config/load_config.h"
 #include "tests/support/small_wall.h"
-#include "walld/stream_scope.h"
+#include "walld/streams/stream_scope.h"
 
 namespace {
 

@@ -178,7 +178,7 @@ class WallStage:
     def _look(self, session: "_Session", subject: Subject, number: int, given: Performance) -> None:
         """The composed wall, cut to the window, once it shows the frame."""
         try:
-            session.wait_shown(number + 1 if subject.swaps else 0, play_settles=not subject.swaps)
+            session.wait_shown(number + 1 if subject.swaps else 0, wait_a_moment=not subject.swaps)
             x, y, width, height = session.rect()
             if (width, height) != WINDOW:
                 given.problems.append(f"frame {number}: the window covers {width}x{height} of the wall")
@@ -205,10 +205,10 @@ class _Session:
     def rect(self) -> list[int]:
         return self.surface()["rect"]
 
-    def wait_shown(self, frame: int, play_settles: bool) -> None:
+    def wait_shown(self, frame: int, wait_a_moment: bool) -> None:
         """Until the wall says that it shows `frame`. What is drawn to the front has no number: given a moment."""
         end = time.monotonic() + SHOWN_LIMIT
-        if play_settles:
+        if wait_a_moment:
             time.sleep(0.25)
         while self.surface()["frame"] < frame:
             if time.monotonic() > end:

@@ -109,7 +109,7 @@ class Checker(unittest.TestCase):
 
     def test_generated_headers_count_as_their_folder(self):
         layers = ["common/glapi", "walld"]
-        self.assertEqual([layer_of(p, layers) for p in ("gen/glapi/wire.gen.h", "gen/walld/page.gen.h", "vector")],
+        self.assertEqual([layer_of(p, layers) for p in ("gen/glapi/wire.gen.h", "gen/walld/http/page.gen.h", "vector")],
                          ["common/glapi", "walld", None])
 
     def test_circles(self):

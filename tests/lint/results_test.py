@@ -8,7 +8,7 @@ import unittest
 import project
 
 HEAD = """
-#include "walld/refusal.h"
+#include "walld/wall/refusal.h"
 wall::Result<int> number();
 wall::Result<void> nothing();
 wall::walld::Outcome<int> outcome();

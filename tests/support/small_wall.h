@@ -3,7 +3,7 @@
 // programs.
 #pragma once
 
-#include "walld/wall.h"
+#include "walld/wall/wall.h"
 
 namespace wall::walld {
 

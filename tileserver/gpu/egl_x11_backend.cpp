@@ -88,7 +88,7 @@ Result<void> EglX11Backend::open(const WindowRequest& request) {
     if (!windows) return tl::unexpected(windows.error());
     windows_ = std::move(*windows);
     x_->suspend_screen_saver();
-    return x_->settle("to suspend its screen saver");
+    return x_->check_requests("to suspend its screen saver");
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ Result<void> TileWindow::create(const geom::Rect& place, const WindowLook& look)
                             CWBackPixel | CWBorderPixel | CWColormap | CWCursor | CWEventMask, &attributes);
     tell_window_manager(place);
     XMapRaised(display, window_);
-    return display_.settle("the window of tile '" + spec_.tile + "'");
+    return display_.check_requests("the window of tile '" + spec_.tile + "'");
 }
 
 /// ICCCM, EWMH and Motif hints, before the window is mapped. Without a window manager nobody reads them.

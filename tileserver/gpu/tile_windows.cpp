@@ -39,7 +39,7 @@ Result<void> TileWindows::add(const WindowSpec& spec, const WindowLook& look) {
 }
 
 Result<void> TileWindows::failed(std::size_t i, const char* call) const {
-    if (display_.lost()) return display_.settle("");
+    if (display_.lost()) return display_.check_requests("");
     return fail("tile '" + windows_[i].window->spec().tile + "': " + egl_error(call));
 }
 
@@ -50,7 +50,7 @@ Result<void> TileWindows::take_events() {
         for (const Entry& entry : windows_)
             if (entry.window->id() == event.xany.window) entry.window->take(event);
     }
-    if (display_.lost()) return display_.settle("");
+    if (display_.lost()) return display_.check_requests("");
     for (const Entry& entry : windows_)
         if (entry.window->gone()) return fail("the window of tile '" + entry.window->spec().tile + "' was destroyed");
     return {};

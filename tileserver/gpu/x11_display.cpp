@@ -17,8 +17,8 @@ namespace {
 constexpr double kUsualRate = 60;  // Hz
 
 // Xlib has one handler of errors a process and calls it in the thread that reads them. Its own would end the process.
-// What is refused while windows are made is looked at by settle(); later there are only the driver's own requests,
-// which it sends without waiting.
+// What is refused while windows are made is looked at by check_requests(); later there are only the driver's own
+// requests, which it sends without waiting.
 thread_local int refused_code = 0;
 int note_error(Display*, XErrorEvent* error) {
     refused_code = error->error_code;
@@ -122,7 +122,7 @@ void X11Display::suspend_screen_saver() const {
     if (std::pair(major, minor) >= std::pair(1, 1)) XScreenSaverSuspend(display_, True);
 }
 
-Result<void> X11Display::settle(const std::string& what) const {
+Result<void> X11Display::check_requests(const std::string& what) const {
     XSync(display_, False);
     if (lost_) return fail(gone());
     if (const int code = std::exchange(refused_code, 0); code != 0) {

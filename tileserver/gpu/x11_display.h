@@ -33,7 +33,7 @@ public:
     /// No blanking and no power saving as long as the connection lives, where the server can do that.
     void suspend_screen_saver() const;
     /// Waits until the server has done everything; what it refused since the last call is an error.
-    Result<void> settle(const std::string& what) const;
+    Result<void> check_requests(const std::string& what) const;
     /// The server has gone away. Calls of Xlib do nothing from then on.
     bool lost() const { return lost_; }
 

@@ -86,7 +86,7 @@ void Compositor::compose(TileTarget& target, std::uint32_t slot, const StackEntr
     for (const StackEntry& entry : stacking_) {
         if (only.session && entry.session != only.session) continue;
         if (only.surface && entry.surface != only.surface) continue;
-        const Surface* surface = find_(entry);
+        const SurfaceReplica* surface = find_(entry);
         const Layer* layer = surface != nullptr ? surface->shown_layer(slot) : nullptr;
         if (layer != nullptr) draw_layer(target, *layer);
     }

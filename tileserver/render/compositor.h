@@ -51,7 +51,7 @@ struct TilePicture {
 
 class Compositor {
 public:
-    using FindSurface = std::function<const Surface*(const StackEntry&)>;  ///< null: no such surface (yet)
+    using FindSurface = std::function<const SurfaceReplica*(const StackEntry&)>;  ///< null: no such surface (yet)
 
     Compositor(RenderNode& node, FindSurface find) : node_(node), gl_(node.driver.gl()), find_(std::move(find)) {}
     ~Compositor();

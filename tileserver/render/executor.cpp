@@ -15,7 +15,7 @@ constexpr std::size_t kOpcodeAndWord = 1 + sizeof(std::uint32_t);  // of a state
 
 }  // namespace
 
-Executor::Executor(RenderNode& node, Session& session, SessionOutput& output)
+Executor::Executor(RenderNode& node, SessionReplica& session, SessionOutput& output)
     : node_(node), session_(session), output_(output), gl_(node.driver.gl()), modes_(gl_) {}
 
 Executor::~Executor() {

@@ -28,7 +28,7 @@ namespace wall::tileserver {
 
 class Executor : public glapi::Handler {
 public:
-    Executor(RenderNode& node, Session& session, SessionOutput& output);
+    Executor(RenderNode& node, SessionReplica& session, SessionOutput& output);
     ~Executor();
 
     using Clock = std::chrono::steady_clock;
@@ -42,7 +42,7 @@ public:
     Result<void> run_batch(std::span<const std::byte> payload);
     void present(SurfaceId surface, std::uint32_t frame);
     /// False: the session waits for content that another one is sending; nothing of it may run.
-    Result<bool> settle_question();
+    Result<bool> pursue_question();
 
     // ---- the decoder's interface ----
     glapi::Pause should_pause();
@@ -257,7 +257,7 @@ private:
     /// Whether occlusion queries count what is drawn there: of a window partly off the wall, its tiles' samples.
     bool counts_samples(unsigned slot) const;
     bool outside_begin();
-    Surface* known_surface(std::uint32_t id);
+    SurfaceReplica* known_surface(std::uint32_t id);
     bool holds_early(std::span<const std::byte> opcodes) const;
     /// `say(GroupSync&, Rank)` gives a Result; its error refuses the stream.
     template <class Say>
@@ -281,7 +281,7 @@ private:
     void at_raster_position(Draw&& draw);
 
     RenderNode& node_;
-    Session& session_;
+    SessionReplica& session_;
     SessionOutput& output_;
     const Gl& gl_;
 
@@ -293,7 +293,7 @@ private:
     bool paused_ = false, closely_ = false;
     SoftContext* context_ = nullptr;
     ContextId context_id_;
-    Surface *draw_surface_ = nullptr, *read_surface_ = nullptr;  // of the batch's context
+    SurfaceReplica *draw_surface_ = nullptr, *read_surface_ = nullptr;  // of the batch's context
     bool surfaces_known_ = false;
 
     // Within a block.

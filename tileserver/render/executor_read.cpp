@@ -43,7 +43,7 @@ void Executor::ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_
     if (!bytes || *bytes > wire::kMaxFramePayload - 8) return refuse("no such format or type, or too large");
     std::vector<std::byte> answer(*bytes);
     const Timed timed(session_.work.render);
-    Surface* surface = session_.surface(context_->read);
+    SurfaceReplica* surface = session_.surface(context_->read);
     Layer* layer = surface != nullptr ? surface->layer(slot) : nullptr;
     if (layer != nullptr && layer->complete() && !answer.empty()) {
         Driver& driver = node_.driver;

@@ -23,10 +23,10 @@ void Executor::ShareRun(std::uint32_t request, std::uint32_t run, std::span<cons
     ask(request, run, 0, false, key);
 }
 
-Result<bool> Executor::settle_question() {
-    const bool settled = !question_ || answer_question();
+Result<bool> Executor::pursue_question() {
+    const bool answered = !question_ || answer_question();
     if (refused()) return fail(reason());
-    return settled;
+    return answered;
 }
 
 void Executor::ask(std::uint32_t request, std::uint32_t object, GLenum target, bool own_name,

@@ -6,8 +6,8 @@
 
 namespace wall::tileserver {
 
-Surface* Executor::known_surface(std::uint32_t id) {
-    Surface* surface = session_.surface(SurfaceId(id));
+SurfaceReplica* Executor::known_surface(std::uint32_t id) {
+    SurfaceReplica* surface = session_.surface(SurfaceId(id));
     if (surface == nullptr) refuse("surface " + std::to_string(id) + " does not exist");
     return surface;
 }
@@ -34,7 +34,7 @@ void Executor::SurfaceCreate(std::uint32_t surface, std::uint32_t double_buffere
 void Executor::SurfacePlace(std::uint32_t id, std::uint32_t layout_version, std::uint32_t window_width,
                             std::uint32_t window_height, std::int32_t x, std::int32_t y, std::uint32_t width,
                             std::uint32_t height, std::uint32_t offscreen) {
-    Surface* surface = known_surface(id);
+    SurfaceReplica* surface = known_surface(id);
     if (surface == nullptr) return;
     constexpr std::uint32_t kMost = wire::kMaxSurfaceExtent;
     if (window_width > kMost || window_height > kMost || width > kMost || height > kMost)
@@ -82,7 +82,7 @@ void Executor::ContextDestroy(std::uint32_t context) {
 }
 
 void Executor::Swap(std::uint32_t id, std::uint32_t frame) {
-    Surface* surface = known_surface(id);
+    SurfaceReplica* surface = known_surface(id);
     if (surface == nullptr) return;
     if (session_.shares(SurfaceId(id)))
         return say_to_group([=](GroupSync& sync, Rank rank) { return sync.swap(rank, SurfaceId(id), frame); });
@@ -92,14 +92,14 @@ void Executor::Swap(std::uint32_t id, std::uint32_t frame) {
 }
 
 void Executor::SwapOffscreen(std::uint32_t window) {
-    Surface* surface = known_surface(window);
+    SurfaceReplica* surface = known_surface(window);
     if (surface == nullptr) return;
     surface->swap_offscreen();
     node_.driver.forget_layer();
 }
 
 void Executor::present(SurfaceId id, std::uint32_t frame) {
-    Surface* surface = session_.surface(id);
+    SurfaceReplica* surface = session_.surface(id);
     if (surface == nullptr || !surface->waiting_frame() ||
         static_cast<std::int32_t>(frame - *surface->waiting_frame()) < 0)
         return;

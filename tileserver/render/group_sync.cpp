@@ -73,11 +73,11 @@ std::uint32_t GroupSync::possible(const std::set<Rank>& without) const {
 Result<void> GroupSync::join(Rank rank) {
     if (members_[rank].state != State::absent) return fail(rank_text(rank) + " is here already");
     hold(rank, Reason::join, 0);
-    settle_join();
+    release_joined();
     return {};
 }
 
-void GroupSync::settle_join() {
+void GroupSync::release_joined() {
     if (std::ranges::any_of(members_, [](const Member& m) { return m.state == State::absent; })) return;
     for (Rank rank = 0; rank < size(); ++rank)
         if (waits(rank) && members_[rank].reason == Reason::join) release(rank);
@@ -86,9 +86,9 @@ void GroupSync::settle_join() {
 Result<void> GroupSync::leave(Rank rank) {
     if (left(rank) || waits(rank)) return fail(rank_text(rank) + " cannot leave");
     members_[rank].state = State::left;
-    settle_join();
-    for (auto& [name, barrier] : barriers_) settle(barrier);
-    for (auto& [surface, frames] : surfaces_) settle(surface, frames);
+    release_joined();
+    for (auto& [name, barrier] : barriers_) release_ready(barrier);
+    for (auto& [surface, frames] : surfaces_) release_ready(surface, frames);
     return {};
 }
 
@@ -108,7 +108,7 @@ Result<void> GroupSync::barrier_destroy(Rank rank, std::uint32_t name) {
     const auto at = barriers_.find(name);
     if (at == barriers_.end()) return unknown("barrier", name);
     at->second.destroyed.insert(rank);
-    settle(at->second);
+    release_ready(at->second);
     if (possible(at->second.destroyed) == 0) barriers_.erase(at);
     return {};
 }
@@ -119,11 +119,11 @@ Result<void> GroupSync::barrier_exec(Rank rank, std::uint32_t name) {
     if (at == barriers_.end() || at->second.destroyed.contains(rank)) return unknown("barrier", name);
     hold(rank, Reason::barrier, name);
     at->second.inside.insert(rank);
-    settle(at->second);
+    release_ready(at->second);
     return {};
 }
 
-void GroupSync::settle(Barrier& barrier) {
+void GroupSync::release_ready(Barrier& barrier) {
     if (barrier.inside.empty() || barrier.inside.size() < std::min(barrier.count, possible(barrier.destroyed))) return;
     for (const Rank rank : std::exchange(barrier.inside, {})) release(rank);
 }
@@ -139,7 +139,7 @@ Result<void> GroupSync::semaphore_create(Rank rank, std::uint32_t name, std::uin
     if (semaphore.count != count) return other_count("semaphore", name, semaphore.count, rank, count);
     semaphore.destroyed.erase(rank);
     semaphore.value = std::clamp(semaphore.value + moved, -kMaxValue, kMaxValue);
-    settle(semaphore);
+    release_ready(semaphore);
     return {};
 }
 
@@ -157,7 +157,7 @@ Result<void> GroupSync::semaphore_p(Rank rank, std::uint32_t name) {
     if (at == semaphores_.end() || at->second.destroyed.contains(rank)) return unknown("semaphore", name);
     hold(rank, Reason::semaphore, name);
     at->second.queue.push_back(rank);
-    settle(at->second);
+    release_ready(at->second);
     return {};
 }
 
@@ -167,11 +167,11 @@ Result<void> GroupSync::semaphore_v(Rank rank, std::uint32_t name) {
     if (at == semaphores_.end() || at->second.destroyed.contains(rank)) return unknown("semaphore", name);
     if (at->second.value >= kMaxValue) return fail("semaphore " + std::to_string(name) + " is too large");
     ++at->second.value;
-    settle(at->second);
+    release_ready(at->second);
     return {};
 }
 
-void GroupSync::settle(Semaphore& semaphore) {
+void GroupSync::release_ready(Semaphore& semaphore) {
     for (; semaphore.value > 0 && !semaphore.queue.empty(); --semaphore.value) {
         release(semaphore.queue.front());
         semaphore.queue.pop_front();
@@ -186,7 +186,7 @@ bool GroupSync::surface_close(Rank rank, SurfaceId surface) {
     const auto at = surfaces_.find(surface);
     if (at == surfaces_.end()) return false;
     at->second.closed.insert(rank);
-    settle(surface, at->second);
+    release_ready(surface, at->second);
     const bool last = possible(at->second.closed) == 0;
     if (last) surfaces_.erase(at);
     return last;
@@ -202,12 +202,12 @@ Result<void> GroupSync::swap(Rank rank, SurfaceId surface, std::uint32_t frame) 
         return fail(rank_text(rank) + " ends frame " + std::to_string(frame) + " after frame " + std::to_string(last));
     last = frame;
     hold(rank, Reason::swap, surface.value, frame);
-    settle(surface, at->second);
+    release_ready(surface, at->second);
     return {};
 }
 
 /// A member's later frame stands for those before: a node may come to the members at different ones.
-void GroupSync::settle(SurfaceId surface, Frames& frames) {
+void GroupSync::release_ready(SurfaceId surface, Frames& frames) {
     std::optional<std::uint32_t> least;
     for (Rank rank = 0; rank < size(); ++rank) {
         if (members_[rank].state == State::left || frames.closed.contains(rank)) continue;

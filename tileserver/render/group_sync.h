@@ -99,10 +99,10 @@ private:
     void release(Rank rank) { members_[rank].state = State::running; }
     /// Members that have neither left nor are in `without`.
     std::uint32_t possible(const std::set<Rank>& without) const;
-    void settle_join();
-    void settle(Barrier& barrier);
-    void settle(Semaphore& semaphore);
-    void settle(SurfaceId surface, Frames& frames);
+    void release_joined();
+    void release_ready(Barrier& barrier);
+    void release_ready(Semaphore& semaphore);
+    void release_ready(SurfaceId surface, Frames& frames);
     std::string waiting_text(Rank rank) const;
 
     std::vector<Member> members_;

@@ -5,14 +5,14 @@
 
 namespace wall::tileserver {
 
-Surface* ParallelGroup::surface(SurfaceId id) {
+SurfaceReplica* ParallelGroup::surface(SurfaceId id) {
     const auto at = surfaces_.find(id);
     return at == surfaces_.end() ? nullptr : at->second.get();
 }
 
-Surface* ParallelGroup::open_surface(Rank rank, SurfaceId id, const SurfaceFormat& format) {
+SurfaceReplica* ParallelGroup::open_surface(Rank rank, SurfaceId id, const SurfaceFormat& format) {
     auto& surface = surfaces_[id];
-    if (!surface) surface = std::make_unique<Surface>(driver_.gl(), driver_.flip_y(), format, pixels_);
+    if (!surface) surface = std::make_unique<SurfaceReplica>(driver_.gl(), driver_.flip_y(), format, pixels_);
     if (!(surface->format() == format)) return nullptr;
     sync.surface_open(rank, id);
     return surface.get();
@@ -27,7 +27,7 @@ void ParallelGroup::close_surface(Rank rank, SurfaceId id) {
 std::vector<FinishedFrame> ParallelGroup::finish_frames(RenderNode& node, Work& work, SessionId session) {
     auto finished = sync.take_finished();
     for (const auto& [id, frame] : finished)
-        if (Surface* shared = surface(id))
+        if (SurfaceReplica* shared = surface(id))
             // Also where it is on no tile: all nodes keep step.
             finish_frame(node, work, *shared, frame, node.shows_at_once(session, id));
     return finished;

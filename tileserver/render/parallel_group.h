@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the members of a parallel program share on this node: the windows (their layers, with depth and stencil), and
-// the order between their streams. Contexts and objects are each member's own (Session). Lives as long as the first to
-// the last of the members' streams. Render thread.
+// the order between their streams. Contexts and objects are each member's own (SessionReplica). Lives as long as the
+// first to the last of the members' streams. Render thread.
 #pragma once
 
 #include <map>
@@ -34,10 +34,10 @@ public:
 
     static bool shares(SurfaceId id) { return id.value != 0 && id.value <= wire::kMaxSharedSurfaces; }
 
-    Surface* surface(SurfaceId id);
-    const std::map<SurfaceId, std::unique_ptr<Surface>>& surfaces() const { return surfaces_; }
+    SurfaceReplica* surface(SurfaceId id);
+    const std::map<SurfaceId, std::unique_ptr<SurfaceReplica>>& surfaces() const { return surfaces_; }
     /// The first member makes it. Null: it has another format.
-    Surface* open_surface(Rank rank, SurfaceId id, const SurfaceFormat& format);
+    SurfaceReplica* open_surface(Rank rank, SurfaceId id, const SurfaceFormat& format);
     void close_surface(Rank rank, SurfaceId id);
     /// All frames that the members have ended since the last call become the surfaces' waiting frames. `work`: of who
     /// ended them; `session`: the group's.
@@ -46,7 +46,7 @@ public:
 private:
     Driver& driver_;
     PixelBudget pixels_{kMaxLayerPixels};  // before the surfaces, which use it to the end
-    std::map<SurfaceId, std::unique_ptr<Surface>> surfaces_;
+    std::map<SurfaceId, std::unique_ptr<SurfaceReplica>> surfaces_;
 };
 
 }  // namespace wall::tileserver

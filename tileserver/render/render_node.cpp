@@ -3,7 +3,7 @@
 
 namespace wall::tileserver {
 
-void finish_frame(RenderNode& node, Work& work, Surface& surface, std::uint32_t frame, bool at_once) {
+void finish_frame(RenderNode& node, Work& work, SurfaceReplica& surface, std::uint32_t frame, bool at_once) {
     const bool overtaken = surface.waiting_frame().has_value();
     {
         const Timed timed(work.render);

@@ -41,6 +41,6 @@ struct RenderNode {
 };
 
 /// The surface's back buffers are its next picture, which is shown `at_once` or waits to be presented.
-void finish_frame(RenderNode& node, Work& work, Surface& surface, std::uint32_t frame, bool at_once);
+void finish_frame(RenderNode& node, Work& work, SurfaceReplica& surface, std::uint32_t frame, bool at_once);
 
 }  // namespace wall::tileserver

@@ -74,7 +74,7 @@ public:
         bool frame_waits() const {
             bool waits = false;
             session_.for_each_surface(
-                [&](SurfaceId, const Surface& surface) { waits = waits || surface.waiting_frame(); });
+                [&](SurfaceId, const SurfaceReplica& surface) { waits = waits || surface.waiting_frame(); });
             return waits;
         }
         /// The others of its parallel program must come first.
@@ -90,7 +90,7 @@ public:
             if (!done) fail(done.error().message);
             if (!done || *done) {
                 batch_.reset();
-                if (group_) loop_.settle(*this);
+                if (group_) loop_.pass_on_group_frames(*this);
             }
             last_run_ = now = Clock::now();
             Work& work = session_.work;
@@ -127,24 +127,24 @@ public:
         bool failed() const { return failed_; }
         const std::shared_ptr<ParallelGroup>& group() const { return group_; }
         SessionStats stats() const { return {session_.id(), session_.rank(), session_.work, queue_->bytes()}; }
-        Session& session() { return session_; }
+        SessionReplica& session() { return session_; }
         Executor& executor() { return executor_; }
 
     private:
         /// True: there is one to go on with.
         bool next_batch() {
             if (batch_) return true;
-            if (held() || !settled()) return false;
+            if (held() || !question_answered()) return false;
             const std::vector<std::byte>* next = queue_->front();
             if (next == nullptr || (needs_shown_frame(*next) && frame_waits())) return false;
             batch_ = queue_->pop();
             if (auto started = executor_.start_batch(*batch_); !started) fail(started.error().message);
             return !failed_;
         }
-        bool settled() {
-            const auto settled = executor_.settle_question();
-            if (!settled) fail(settled.error().message);
-            return settled && *settled;
+        bool question_answered() {
+            const auto answered = executor_.pursue_question();
+            if (!answered) fail(answered.error().message);
+            return answered && *answered;
         }
 
         Loop& loop_;
@@ -152,17 +152,17 @@ public:
         std::shared_ptr<BatchQueue> queue_;
         std::shared_ptr<ParallelGroup> group_;
         std::optional<std::vector<std::byte>> batch_;  // that is being executed
-        Session session_;
+        SessionReplica session_;
         Executor executor_;
         Pace pace_;
         Clock::time_point last_run_{};
         bool failed_ = false, closed_ = false;
     };
 
-    const Surface* find(const StackEntry& entry) {
+    const SurfaceReplica* find(const StackEntry& entry) {
         for (auto& [id, stream] : streams_)
             if (stream->session().id() == entry.session)
-                if (const Surface* surface = stream->session().surface(entry.surface)) return surface;
+                if (const SurfaceReplica* surface = stream->session().surface(entry.surface)) return surface;
         return nullptr;
     }
 
@@ -193,7 +193,7 @@ public:
             std::erase_if(streams_, [session](const auto& entry) { return entry.second->session().id() == session; });
     }
     /// What a parallel program's stream has set free.
-    void settle(Stream& stream) {
+    void pass_on_group_frames(Stream& stream) {
         for (const auto& [surface, frame] :
              stream.group()->finish_frames(node_, stream.session().work, stream.session().id())) {
             for (auto& [id, member] : streams_)
@@ -229,7 +229,7 @@ public:
     void show_uncoordinated() {
         for (auto& [id, stream] : streams_) {
             const auto session = stream->session().id();
-            stream->session().for_each_surface([&](SurfaceId surface_id, Surface& surface) {
+            stream->session().for_each_surface([&](SurfaceId surface_id, SurfaceReplica& surface) {
                 if (surface.waiting_frame() && node_.shows_at_once(session, surface_id))
                     stream->executor().present(surface_id, *surface.waiting_frame());
             });
@@ -239,7 +239,7 @@ public:
         for (const auto& [id, stream] : streams_) {
             const auto its = stream->session().id();
             if (stream->failed() || (session && its != session)) continue;
-            stream->session().for_each_surface([&](SurfaceId surface, const Surface& s) {
+            stream->session().for_each_surface([&](SurfaceId surface, const SurfaceReplica& s) {
                 const auto drawn = s.waiting_frame().value_or(s.shown_frame());
                 if (drawn > 0) events_.frames(its, surface, drawn, s.shown_frame());
             });
@@ -408,7 +408,7 @@ void RenderThread::set_tiles(std::vector<Tile> tiles, std::uint32_t background) 
         loop.compositor_.set_background(background);
         loop.driver_.disable_scissor();
         for (auto& [id, stream] : loop.streams_)
-            stream->session().for_each_surface([&](SurfaceId, Surface& surface) {
+            stream->session().for_each_surface([&](SurfaceId, SurfaceReplica& surface) {
                 if (surface.where().window_width != 0) surface.place(SurfacePlace(surface.where()), tiles);
             });
     });

@@ -28,7 +28,8 @@ namespace wall::tileserver {
 
 /// A soft context's texture bindings in the driver's names, and what they were looked up from.
 struct BoundTextures {
-    std::uint64_t state_id = 0, version = 0;  ///< value id of the category `textures`, Session::texture_version()
+    std::uint64_t state_id = 0,
+                  version = 0;  ///< value id of the category `textures`, SessionReplica::texture_version()
     TextureBindings bindings;
 };
 
@@ -75,13 +76,13 @@ private:
     const Gl& gl_;
 };
 
-class Session {
+class SessionReplica {
 public:
     /// `group`: of a parallel program, of which this is the member `rank`; outlives the session.
-    Session(Driver& driver, SessionId id, ParallelGroup* group = nullptr, Rank rank = 0)
+    SessionReplica(Driver& driver, SessionId id, ParallelGroup* group = nullptr, Rank rank = 0)
         : programs(driver), queries(driver.gl()), driver_(driver), id_(id), group_(group), rank_(rank) {}
-    ~Session() { driver_.forget_layer(); }
-    Session(const Session&) = delete;
+    ~SessionReplica() { driver_.forget_layer(); }
+    SessionReplica(const SessionReplica&) = delete;
 
     SessionId id() const { return id_; }
     ContentAsker asker() const { return ContentAsker(std::uint64_t{id_.value} << 32 | rank_); }
@@ -92,7 +93,7 @@ public:
     std::size_t context_count() const { return contexts_.size(); }
 
     /// Of its own or, in a parallel program, of all members.
-    Surface* surface(SurfaceId id);
+    SurfaceReplica* surface(SurfaceId id);
     bool shares(SurfaceId id) const { return group_ != nullptr && ParallelGroup::shares(id); }
     template <class Visit>
     void for_each_surface(Visit&& visit) const {
@@ -101,7 +102,7 @@ public:
         for (const auto& [id, surface] : group_->surfaces()) visit(id, *surface);
     }
     /// Null if the session has too many, or if the other members have made it in another format.
-    Surface* create_surface(SurfaceId id, const SurfaceFormat& format);
+    SurfaceReplica* create_surface(SurfaceId id, const SurfaceFormat& format);
     void destroy_surface(SurfaceId id);
 
     /// The texture of a name; name 0 is the default texture of its target. Null if there is none.
@@ -134,7 +135,7 @@ private:
     Rank rank_;
     std::unordered_map<ContextId, SoftContext> contexts_;
     PixelBudget pixels_{kMaxLayerPixels};  // before the surfaces, which use it to the end
-    std::unordered_map<SurfaceId, std::unique_ptr<Surface>> surfaces_;
+    std::unordered_map<SurfaceId, std::unique_ptr<SurfaceReplica>> surfaces_;
     std::unordered_map<std::uint64_t, Texture> textures_;
     std::uint64_t texture_version_ = 1, texture_bytes_ = 0;
 };

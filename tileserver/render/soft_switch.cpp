@@ -19,7 +19,7 @@ std::uint64_t textures_id(const SoftContext& context) {
     return context.state.ids[static_cast<std::size_t>(glstate::Category::textures)];
 }
 
-void look_up_textures(Session& session, SoftContext& context) {
+void look_up_textures(SessionReplica& session, SoftContext& context) {
     BoundTextures& bound = context.textures;
     const auto names = names_by_target(context.state);
     TextureNames found{};
@@ -38,7 +38,7 @@ void look_up_textures(Session& session, SoftContext& context) {
 
 }  // namespace
 
-bool switch_to(RenderNode& node, Session& session, SoftContext& context, Layer& layer, bool counts) {
+bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, Layer& layer, bool counts) {
     node.driver.sync(context.state);
     if (context.textures.state_id != textures_id(context) || context.textures.version != session.texture_version())
         look_up_textures(session, context);

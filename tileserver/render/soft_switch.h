@@ -11,6 +11,7 @@ namespace wall::tileserver {
 
 /// `counts`: an occlusion query of the context counts what is drawn on the layer. False: the session has too many of
 /// them.
-[[nodiscard]] bool switch_to(RenderNode& node, Session& session, SoftContext& context, Layer& layer, bool counts);
+[[nodiscard]] bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, Layer& layer,
+                             bool counts);
 
 }  // namespace wall::tileserver

@@ -6,7 +6,7 @@
 
 namespace wall::tileserver {
 
-std::unique_ptr<Layer> Surface::make_layer(const LayerGeometry& geometry, const Layer* older) {
+std::unique_ptr<Layer> SurfaceReplica::make_layer(const LayerGeometry& geometry, const Layer* older) {
     const auto pixels = std::int64_t{geometry.area.width} * geometry.area.height;
     if (pixels > budget_.left) forget_older();
     if (pixels > budget_.left) return nullptr;
@@ -18,7 +18,7 @@ std::unique_ptr<Layer> Surface::make_layer(const LayerGeometry& geometry, const 
 
 /// The layer that was there stays in sight. Without a back buffer, and before the first frame, there is nothing to
 /// keep.
-void Surface::replace(std::uint32_t slot, std::unique_ptr<Layer> layer) {
+void SurfaceReplica::replace(std::uint32_t slot, std::unique_ptr<Layer> layer) {
     if (format_.layer.double_buffered && shown_once_) {
         if (!replaced_[slot]) older_[slot] = std::move(layers_[slot]);
         replaced_.set(slot);
@@ -26,12 +26,12 @@ void Surface::replace(std::uint32_t slot, std::unique_ptr<Layer> layer) {
     layers_[slot] = std::move(layer);
 }
 
-void Surface::forget_older() {
+void SurfaceReplica::forget_older() {
     for (auto& layer : older_) layer.reset();
     replaced_.reset();
 }
 
-bool Surface::place(const SurfacePlace& place, const std::vector<Tile>& tiles) {
+bool SurfaceReplica::place(const SurfacePlace& place, const std::vector<Tile>& tiles) {
     const bool same_size = place.window_width == place_.window_width && place.window_height == place_.window_height;
     place_ = place;
     if (!place.whole_window || !same_size) layers_[wire::kOffscreenSlot].reset();
@@ -51,9 +51,11 @@ bool Surface::place(const SurfacePlace& place, const std::vector<Tile>& tiles) {
     return affordable;
 }
 
-const Layer* Surface::shown_layer(std::uint32_t slot) const { return (replaced_[slot] ? older_ : layers_)[slot].get(); }
+const Layer* SurfaceReplica::shown_layer(std::uint32_t slot) const {
+    return (replaced_[slot] ? older_ : layers_)[slot].get();
+}
 
-Layer* Surface::layer(std::uint32_t slot) {
+Layer* SurfaceReplica::layer(std::uint32_t slot) {
     auto& layer = layers_[slot];
     if (!layer && slot == wire::kOffscreenSlot && place_.window_width != 0 && place_.window_height != 0) {
         const geom::Rect window{0, 0, static_cast<std::int32_t>(place_.window_width),
@@ -63,25 +65,25 @@ Layer* Surface::layer(std::uint32_t slot) {
     return layer.get();
 }
 
-bool Surface::on_tiles() const {
+bool SurfaceReplica::on_tiles() const {
     return std::any_of(layers_.begin(), layers_.begin() + wire::kOffscreenSlot,
                        [](const auto& layer) { return layer != nullptr; });
 }
 
-void Surface::finish_frame(std::uint32_t frame) {
+void SurfaceReplica::finish_frame(std::uint32_t frame) {
     for (auto& layer : layers_)
         if (layer) layer->finish_frame();
     waiting_ = frame;
 }
 
-void Surface::swap_offscreen() {
+void SurfaceReplica::swap_offscreen() {
     Layer* layer = layers_[wire::kOffscreenSlot].get();
     if (layer == nullptr) return;
     layer->finish_frame();
     layer->show_frame();
 }
 
-void Surface::show_frame() {
+void SurfaceReplica::show_frame() {
     shown_once_ = true;
     for (auto& layer : layers_)
         if (layer) layer->show_frame();

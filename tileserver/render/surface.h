@@ -37,9 +37,9 @@ struct SurfacePlace {
     bool operator==(const SurfacePlace&) const = default;
 };
 
-class Surface {
+class SurfaceReplica {
 public:
-    Surface(const Gl& gl, bool flip_y, const SurfaceFormat& format, PixelBudget& budget)
+    SurfaceReplica(const Gl& gl, bool flip_y, const SurfaceFormat& format, PixelBudget& budget)
         : gl_(gl), flip_y_(flip_y), format_(format), budget_(budget) {}
 
     /// Makes the layers anew where they differ; what stays in sight keeps its pixels. What the wall shows stays as it

@@ -15,8 +15,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kLook = 100;                         // ms without an event
-constexpr std::chrono::milliseconds kSettle{300};  // that a new size must last before it is asked for
+constexpr int kLook = 100;                             // ms without an event
+constexpr std::chrono::milliseconds kSizeStands{300};  // that a new size must last before it is asked for
 
 /// SDL's video, as long as this lives.
 struct Video {
@@ -54,7 +54,7 @@ public:
             SDL_Event event;
             bool due = SDL_WaitEventTimeout(&event, kLook) != 0;
             for (; due; due = SDL_PollEvent(&event) != 0) handle(event);
-            settle();
+            watch_new_size();
             if (auto shown = show(); !shown) return shown;
         }
         return options_.save.empty() ? Result<void>() : save(options_.save);
@@ -79,8 +79,8 @@ private:
         if (event == SDL_WINDOWEVENT_SIZE_CHANGED) resized_ = Clock::now();
         draw_ = true;
     }
-    void settle() {
-        if (!resized_ || Clock::now() - *resized_ < kSettle) return;
+    void watch_new_size() {
+        if (!resized_ || Clock::now() - *resized_ < kSizeStands) return;
         resized_.reset();
         asked_ = window_.size();
         live_.watch(entry_for(options_.what, asked_));

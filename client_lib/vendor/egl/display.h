@@ -35,7 +35,7 @@ struct EglSurface {
     const Config* config = nullptr;
     std::uint32_t native = 0;  ///< X id of a window or pixmap
     std::shared_ptr<vendor::XConnection> connection;
-    std::shared_ptr<Surface> core;
+    std::shared_ptr<ClientSurface> core;
     Extent size;  ///< pbuffer, pixmap
     bool single_buffered = false;
     EGLint swap_behavior = EGL_BUFFER_DESTROYED;

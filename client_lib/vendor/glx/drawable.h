@@ -24,7 +24,7 @@ struct Drawable {
     const Config* config = nullptr;
     Display* display = nullptr;  ///< valid while the connection is open
     std::shared_ptr<vendor::XConnection> connection;
-    std::shared_ptr<Surface> surface;
+    std::shared_ptr<ClientSurface> surface;
     Extent size;  ///< pbuffer, pixmap
     bool preserved_contents = true;
     bool made_by_glx = false;  ///< glXCreateWindow and the like, not a bare X window

@@ -12,7 +12,7 @@
 #include "common/net/sockets.h"
 #include "common/wire/limits.h"
 #include "tests/integration/control/walld_process.h"
-#include "walld/quota.h"
+#include "walld/wall/quota.h"
 
 namespace wall::test {
 namespace {

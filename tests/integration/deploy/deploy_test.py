@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 BUILD, WALLD = Path(sys.argv.pop(1)), Path(sys.argv.pop(1))
-MOST_CONNECTIONS = 10_000 + 2048 + 1024 + 256  # max_sessions in wall.toml, walld/quota.h, and what is open besides
+MOST_CONNECTIONS = 10_000 + 2048 + 1024 + 256  # max_sessions in wall.toml, walld/wall/quota.h, and what is open besides
 EXAMPLES = Path(__file__).resolve().parents[3] / "deploy" / "examples"
 
 

@@ -94,7 +94,7 @@ class LiveLayout(unittest.TestCase):
         picture = self.picture()
         return int(((picture[..., channel] == 255) & (picture.sum(axis=2) == 255)).sum())
 
-    def settled(self, session: int) -> bool:
+    def has_arrived(self, session: int) -> bool:
         return not any(s["moving"] for s in self.surfaces(session))
 
     # ---- moves ----
@@ -107,7 +107,7 @@ class LiveLayout(unittest.TestCase):
             x, y = dice.randrange(400 - WINDOW[0]), dice.randrange(300 - WINDOW[1])
             self.wall.ctl("place", session, x, y, *WINDOW)
             end = time.monotonic() + SOON
-            while not self.settled(session):
+            while not self.has_arrived(session):
                 self.assertEqual(self.pixels("red"), whole, "neither a hole nor a part of it twice")
                 self.assertLess(time.monotonic(), end, "it is drawn at its new place")
             self.assertTrue((self.picture()[y:y + WINDOW[1], x:x + WINDOW[0]] == (255, 0, 0)).all())

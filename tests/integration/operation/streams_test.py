@@ -93,7 +93,7 @@ class Streams(unittest.TestCase):
             self.wall.screenshot(file.name, tile=tile)
             return load_png(file.name)
 
-    def settle(self) -> None:
+    def let_frames_end(self) -> None:
         """No frame is on its way any more, however busy the machine is."""
         self.wall.hold(self.session)
         shown = None
@@ -101,7 +101,7 @@ class Streams(unittest.TestCase):
             time.sleep(0.3)
 
     def test_a_frame_is_the_tiles_picture(self) -> None:
-        self.settle()
+        self.let_frames_end()
         viewer = self.open()
         names = self.wall.tile_names
         viewer.watch(*({"tile": name, "codec": "raw"} for name in names))
@@ -118,7 +118,7 @@ class Streams(unittest.TestCase):
             self.assertGreater(got[i].max(), 50, "gears are to be seen")
 
     def test_an_unchanged_picture_is_sent_once(self) -> None:
-        self.settle()
+        self.let_frames_end()
         viewer = self.open()
         viewer.watch({"tile": self.wall.tile_names[0]})
         self.frame(viewer)
@@ -150,7 +150,7 @@ class Streams(unittest.TestCase):
         self.assertEqual(viewer.message(), {"error": 'expected {"watch": [...]}'})
 
     def test_the_wall_is_one_picture_of_all_tiles(self) -> None:
-        self.settle()
+        self.let_frames_end()
         viewer = self.open()
         viewer.watch({"wall": True, "codec": "raw"})
         parts = self.parts(viewer)
@@ -160,7 +160,7 @@ class Streams(unittest.TestCase):
         self.assertTrue((self.picture(viewer, parts) == self.wall_picture()).all())
 
     def test_a_region_is_that_part_of_the_screenshot(self) -> None:
-        self.settle()
+        self.let_frames_end()
         shot = self.wall_picture()
         viewer = self.open()
         for entry, (x, y, width, height) in (({"wall": True}, (131, 17, 150, 90)),
@@ -171,7 +171,7 @@ class Streams(unittest.TestCase):
             self.assertTrue((picture == shot[y:y + height, left:left + width]).all(), entry)
 
     def test_a_smaller_wall_looks_like_the_wall(self) -> None:
-        self.settle()
+        self.let_frames_end()
         viewer = self.open()
         viewer.watch({"wall": True, "codec": "raw", "width": 133, "height": 133, "fit": True})
         picture = self.picture(viewer).astype(int)
@@ -180,7 +180,7 @@ class Streams(unittest.TestCase):
         self.assertLess(numpy.abs(picture - shot).mean(), 6)
 
     def test_a_window_is_followed(self) -> None:
-        self.settle()
+        self.let_frames_end()
         self.place([0, 0, 400, 150])
         viewer = self.open()
         viewer.watch({"session": self.session, "codec": "raw", "fps": 30})
@@ -243,7 +243,7 @@ class Streams(unittest.TestCase):
             return load_png(file.name)[:, :, :3]
 
     def test_a_recording_shows_what_screenshots_show(self) -> None:
-        self.settle()
+        self.let_frames_end()
         shots = [self.wall_picture()]
         with tempfile.TemporaryDirectory() as folder:
             avi = Path(folder) / "wall.avi"
@@ -264,7 +264,7 @@ class Streams(unittest.TestCase):
         self.assertEqual(places, sorted(set(places)), "in their order")
 
     def test_a_recording_has_the_background_where_a_node_is_away(self) -> None:
-        self.settle()
+        self.let_frames_end()
         node = self.wall.node_names[1]
         self.wall.daemons[node].kill()
         self.wall.daemons[node].wait()

@@ -18,15 +18,15 @@ public:
     std::atomic<bool> in_use{false};
 };
 
-class Surface {
+class ClientSurface {
 public:
-    explicit Surface(SurfaceOptions o) : options(std::move(o)), id(++last) {
+    explicit ClientSurface(SurfaceOptions o) : options(std::move(o)), id(++last) {
         log(LogLevel::info,
             "fake_surface_made id=%d visible=%d size=%ux%u double=%d alpha=%d depth=%d stencil=%d title=%s", id,
             options.visible, options.size.width, options.size.height, options.format.double_buffered,
             options.format.alpha_bits, options.format.depth_bits, options.format.stencil_bits, options.title.c_str());
     }
-    ~Surface() { log(LogLevel::info, "fake_surface_gone id=%d", id); }
+    ~ClientSurface() { log(LogLevel::info, "fake_surface_gone id=%d", id); }
     Extent now() const { return options.query_size ? options.query_size().value_or(options.size) : options.size; }
 
     const SurfaceOptions options;
@@ -68,8 +68,8 @@ void gen_names(GLsizei n, GLuint* names) {
 
 }  // namespace
 
-std::shared_ptr<Surface> create_surface(SurfaceOptions options) {
-    return std::make_shared<Surface>(std::move(options));
+std::shared_ptr<ClientSurface> create_surface(SurfaceOptions options) {
+    return std::make_shared<ClientSurface>(std::move(options));
 }
 
 std::shared_ptr<Context> create_context(const ContextOptions& options) {
@@ -81,7 +81,8 @@ std::shared_ptr<Context> create_context(const ContextOptions& options) {
     return context;
 }
 
-bool make_current(std::shared_ptr<Context> context, std::shared_ptr<Surface> draw, std::shared_ptr<Surface>) {
+bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurface> draw,
+                  std::shared_ptr<ClientSurface>) {
     if (std::getenv("WALLGL_FAKE_REFUSE")) {
         complain_once("no wall at unix:/nowhere");
         return !context;
@@ -98,13 +99,13 @@ void copy_context(Context&, Context&, std::uint32_t mask) { log(LogLevel::info, 
 
 Context* current_context() { return current.get(); }
 
-void swap_buffers(Surface& surface) {
+void swap_buffers(ClientSurface& surface) {
     const auto size = surface.now();
     log(LogLevel::info, "fake_swap surface=%d frame=%d size=%ux%u", surface.id, ++surface.frame, size.width,
         size.height);
 }
 
-Extent surface_size(const Surface& surface) { return surface.now(); }
+Extent surface_size(const ClientSurface& surface) { return surface.now(); }
 void flush_current(bool) {}
 
 ProcAddress gl_proc_address(const char* name) {

@@ -149,10 +149,10 @@ TEST_F(ListRunTest, EveryPartOfArraysWithARestartIsMarked) {
 
 TEST_F(ListRunTest, AttributesBeforeTheFirstVertexNeedNotBeBroughtUpToDate) {
     const auto& list = compile([&] { arrays(); });
-    const std::uint32_t settled = list.items[0].run->settled;
-    EXPECT_TRUE(settled >> static_cast<unsigned>(Attribute::color) & 1);
-    EXPECT_TRUE(settled >> static_cast<unsigned>(Attribute::normal) & 1);
-    EXPECT_FALSE(settled >> static_cast<unsigned>(Attribute::texcoord) & 1);
+    const std::uint32_t spared = list.items[0].run->spared;
+    EXPECT_TRUE(spared >> static_cast<unsigned>(Attribute::color) & 1);
+    EXPECT_TRUE(spared >> static_cast<unsigned>(Attribute::normal) & 1);
+    EXPECT_FALSE(spared >> static_cast<unsigned>(Attribute::texcoord) & 1);
 }
 
 TEST_F(ListRunTest, TheBoxIsTheSameWhetherAProgramIsUsedOrNot) {

@@ -206,7 +206,7 @@ protected:
     static inline std::unique_ptr<FakeNode> node;
     static inline std::unique_ptr<FakeWalld> walld;
     static inline std::shared_ptr<Context> context;
-    static inline std::shared_ptr<Surface> surface;
+    static inline std::shared_ptr<ClientSurface> surface;
 };
 
 TEST_F(ASession, StartsInOneLimitHoweverManyNodesAreSilent) {

@@ -185,7 +185,7 @@ protected:
         return said(session);
     }
     static Said said(TestSession& session) {
-        EXPECT_TRUE(session.executor.settle_question());
+        EXPECT_TRUE(session.executor.pursue_question());
         const auto answer = session.replies.find(5);
         if (answer == session.replies.end()) return Said::nothing;
         return answer->second == std::vector{std::byte{1}} ? Said::have : Said::send;

@@ -70,7 +70,7 @@ public:
 
     std::map<std::uint32_t, std::vector<std::byte>> replies;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> frames;
-    Session session;
+    SessionReplica session;
     Executor executor;
 };
 

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "walld/wall/parallel_group.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace wall::walld {
+namespace {
+
+using ::testing::HasSubstr;
+
+proto::Group member(std::uint32_t rank, std::uint32_t members, const std::string& name = "g") {
+    proto::Group out;
+    out.set_name(name);
+    out.set_rank(rank);
+    out.set_members(members);
+    return out;
+}
+
+proto::Placement version(std::uint32_t number, std::uint32_t from_frame) {
+    proto::Placement out;
+    out.set_layout_version(number);
+    out.set_from_frame(from_frame);
+    return out;
+}
+
+TEST(ParallelGroup, TakesEachRankOnce) {
+    ParallelGroup group("g", 3);
+    group.joins(1, 100);
+    EXPECT_TRUE(group.admits(member(0, 3)));
+    EXPECT_THAT(group.admits(member(1, 3)).error().message,
+                HasSubstr("rank 1 (process 100) of parallel program 'g' is here already"));
+    EXPECT_THAT(group.admits(member(0, 2)).error().message, HasSubstr("has 3 processes, not 2"));
+    EXPECT_TRUE(group.leaves(1));
+    EXPECT_FALSE(group.leaves(1));
+    EXPECT_THAT(group.admits(member(1, 3)).error().message, HasSubstr("has ended already"));
+    for (const auto& wrong :
+         {member(0, 0), member(3, 3), member(0, 65), member(0, 1, ""), member(0, 1, std::string(300, 'x'))})
+        EXPECT_FALSE(ParallelGroup::check(wrong));
+}
+
+TEST(ParallelGroup, EndsWhenAllHaveLeft) {
+    ParallelGroup group("g", 2);
+    group.joins(0, 1);
+    group.leaves(0);
+    EXPECT_FALSE(group.all_left()) << "one has not come yet";
+    group.joins(1, 2);
+    EXPECT_TRUE(group.all_came());
+    group.leaves(1);
+    EXPECT_TRUE(group.all_left());
+}
+
+class Agreed : public ::testing::Test {
+protected:
+    void SetUp() override {
+        for (const Rank rank : {0u, 1u}) {
+            group_.joins(rank, 100 + rank);
+            placements_.opened(rank);
+        }
+        placements_.add(version(1, 0));
+    }
+    void note(std::uint32_t number) {
+        for (const Rank rank : {0u, 1u}) placements_.noted(rank, number);
+    }
+    ParallelGroup group_{"g", 2};
+    AgreedPlacements placements_;
+};
+
+TEST_F(Agreed, NoFrameBringsAVersionThatSomebodyDoesNotKnow) {
+    EXPECT_EQ(placements_.limit(group_), UINT32_MAX) << "the first one holds from the start";
+    note(1);
+    placements_.add(version(2, 15));
+    EXPECT_EQ(placements_.limit(group_), 11u);
+    placements_.noted(1, 2);
+    EXPECT_EQ(placements_.limit(group_), 11u);
+    placements_.noted(0, 2);
+    EXPECT_EQ(placements_.limit(group_), UINT32_MAX);
+}
+
+TEST_F(Agreed, WhoHasLeftOrClosedTheWindowNeedNotKnow) {
+    placements_.add(version(2, 15));
+    placements_.noted(0, 2);
+    placements_.closed(1);
+    EXPECT_EQ(placements_.limit(group_), UINT32_MAX);
+    placements_.add(version(3, 20));
+    EXPECT_EQ(placements_.limit(group_), 16u);
+    group_.leaves(0);
+    EXPECT_EQ(placements_.limit(group_), UINT32_MAX);
+}
+
+TEST_F(Agreed, WhatIsReceivedBeforeTheWindowIsOpenDoesNotCount) {
+    AgreedPlacements late;
+    late.opened(0);
+    late.add(version(1, 0));
+    late.add(version(2, 5));
+    late.noted(0, 2);
+    late.noted(1, 2);
+    EXPECT_EQ(late.limit(group_), 1u);
+    late.opened(1);
+    late.noted(1, 2);
+    EXPECT_EQ(late.limit(group_), UINT32_MAX);
+}
+
+TEST_F(Agreed, VersionsArePastWhenTheNextOneHolds) {
+    placements_.add(version(2, 15));
+    placements_.add(version(3, 15));
+    placements_.presented(14);
+    EXPECT_EQ(placements_.versions().size(), 3u);
+    placements_.presented(15);
+    ASSERT_EQ(placements_.versions().size(), 1u);
+    EXPECT_EQ(placements_.versions().begin()->first, 3u);
+}
+
+}  // namespace
+}  // namespace wall::walld

@@ -1,0 +1,463 @@
+// SPDX-License-Identifier: MIT
+#include "walld/control/control_server.h"
+
+#include <signal.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/use_awaitable.hpp>
+
+#include "common/base/assert.h"
+#include "common/daemon/keep_running.h"
+#include "common/json/parse_json.h"
+#include "common/log/log.h"
+#include "walld/wall/messages.h"
+#include "walld/wall/status.h"
+
+namespace wall::walld {
+namespace {
+
+constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
+constexpr const char* kWatchVerb = "watch";  // the one verb with many answers
+constexpr std::chrono::seconds kLookAtConnection{1};
+constexpr const char* kNotKnownYet = "somebody whose name is being looked up";
+
+std::string random_bytes(std::size_t count) {
+    std::string out(count, '\0');
+    WALL_ASSERT(::getrandom(out.data(), count, 0) == static_cast<ssize_t>(count));
+    return out;
+}
+
+bool answer_ping(net::ControlConnection& connection, const proto::Envelope& message) {
+    if (!message.has_ping()) return false;
+    proto::Envelope pong;
+    pong.mutable_pong();
+    connection.send(pong);
+    return true;
+}
+
+}  // namespace
+
+ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities,
+                             const std::string& state)
+    : executor_(executor),
+      changed_(executor),
+      identities_(std::move(identities)),
+      who_(executor, [this](std::uint32_t user) { return identities_.of(user); }),
+      wall_(std::move(config), *this, random_bytes),
+      snapshots_(executor, wall_, *this),
+      streams_(executor, wall_, *this),
+      operators_(wall_, snapshots_, streams_, LayoutStore(state), changed_,
+                 [this](SessionId id) {
+                     end_session(id, "closed by an operator");
+                     wall_.close_session(id);
+                 }),
+      deadline_timer_(executor),
+      process_timer_(executor) {}
+
+Result<void> ControlServer::listen() {
+    listeners_.clear();  // of an attempt before, which one of the addresses has ended
+    for (const auto& address : wall_.config().control_listen) {
+        auto listener = net::Listener::open(executor_, address);
+        if (!listener) return tl::unexpected(listener.error());
+        listeners_.push_back(std::make_unique<net::Listener>(std::move(*listener)));
+        log::info("control_listening address={}", log::quoted(listeners_.back()->address().text()));
+    }
+    for (auto& listener : listeners_)
+        net::keep_accepting(
+            executor_, *listener, [this](net::StreamSocket socket) { take(std::move(socket)); },
+            [this] { return stopping_; });
+    keep("deadlines", &ControlServer::run_deadlines);
+    keep("peers", &ControlServer::watch_peers);
+    return {};
+}
+
+void ControlServer::keep(const char* name, asio::awaitable<void> (ControlServer::*work)()) {
+    net::keep_running(executor_, {name, [this, work] { return (this->*work)(); }, [this] { return stopping_; }});
+}
+
+void ControlServer::stop() {
+    stopping_ = true;
+    for (auto& listener : listeners_) listener->close();
+    for (auto& [key, connection] : std::exchange(all_, {})) {
+        if (const auto open = connection.lock()) open->close();
+    }
+    deadline_timer_.cancel();
+    process_timer_.cancel();
+    changed_.notify();
+}
+
+std::vector<net::Address> ControlServer::addresses() const {
+    std::vector<net::Address> out;
+    for (const auto& listener : listeners_) out.push_back(listener->address());
+    return out;
+}
+
+void ControlServer::to_node(NodeIndex node, const proto::Envelope& message) {
+    if (const auto found = nodes_.find(node); found != nodes_.end()) found->second.connection->send(message);
+}
+
+void ControlServer::to_client(SessionId session, const proto::Envelope& message) {
+    for (const auto& [client, connection] : clients_)
+        if (client.first == session) connection->send(message);
+}
+
+void ControlServer::to_member(SessionId session, Rank rank, const proto::Envelope& message) {
+    if (const auto found = clients_.find({session, rank}); found != clients_.end()) found->second->send(message);
+}
+
+void ControlServer::end_session(SessionId session, const std::string& reason) {
+    for (const auto& [client, connection] : clients_)
+        if (client.first == session) refuse(connection, reason);
+}
+
+// ---- connections ----
+
+void ControlServer::take(net::StreamSocket socket) {
+    auto connection = std::make_shared<net::ControlConnection>(std::move(socket));
+    all_[connection.get()] = connection;
+    net::spawn(executor_, "connection", serve(std::move(connection)));
+}
+
+void ControlServer::refuse(const Connection& connection, const std::string& reason) {
+    connection->send(refused(reason));
+    connection->close_after_sending();
+}
+
+asio::awaitable<void> ControlServer::serve(Connection connection) {
+    auto place = peers_.take(kNotKnownYet);
+    Person who;
+    if (place) {
+        who = co_await who_.at(connection->ends());
+        place->leave();
+        place = peers_.take(who.text());
+    }
+    if (!place) {
+        log::warn("peer_refused reason={}", log::quoted(place.error().message));
+        refuse(connection, place.error().message);
+    } else if (who.role == Role::none) {
+        log::warn("peer_refused user={}", log::quoted(who.text()));
+        refuse(connection, who.text() + " may not use this wall: add them to [people] in wall.toml");
+    } else if (auto first = co_await first_message(connection)) {
+        if (first->has_node_hello()) co_await serve_node(connection, first->node_hello(), who);
+        else if (first->has_client_hello())
+            co_await serve_client(connection, first->client_hello(), std::move(who), std::move(*place));
+        else if (first->has_operator_request()) co_await serve_operator(connection, std::move(*first), std::move(who));
+        else refuse(connection, "expected a hello of a node or a client, or an operator's request");
+    }
+    all_.erase(connection.get());
+    connection->close_after_sending();
+}
+
+asio::awaitable<Result<proto::Envelope>> ControlServer::first_message(Connection connection) {
+    auto limit = std::make_shared<asio::steady_timer>(executor_, kHelloLimit);
+    limit->async_wait([connection, limit](const boost::system::error_code& error) {
+        if (!error) connection->close();
+    });
+    auto message = co_await connection->receive();
+    limit->cancel();
+    if (!message && message.error().message != "closed")
+        log::warn("peer_bad error={}", log::quoted(message.error().message));
+    co_return message;
+}
+
+// ---- nodes ----
+
+asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::NodeHello hello, const Person& who) {
+    // Nodes get every session's tickets and pixels.
+    if (const auto permitted = may(who, Need::operate, "run a node", nullptr); !permitted) {
+        log::warn("node_refused node={} reason={}", log::quoted(hello.name()), log::quoted(permitted.error().message));
+        co_return refuse(connection, permitted.error().message);
+    }
+    const auto joined = admit_node(connection, hello, who);
+    if (!joined) {
+        log::warn("node_refused node={} reason={}", log::quoted(hello.name()), log::quoted(joined.error().message));
+        refuse(connection, joined.error().message);
+        co_return;
+    }
+    log::info("node_up node={} incarnation={} address={} backend={} renderer={}", log::quoted(hello.name()),
+              wall_.nodes()[*joined].incarnation, log::quoted(hello.address()), log::quoted(hello.backend()),
+              log::quoted(hello.caps().renderer()));
+    streams_.node_joined(*joined);
+    something_changed();
+    for (;;) {
+        auto message = co_await connection->receive();
+        if (!serves(*joined, connection)) co_return;  // another process is the node now, or it was silent for too long
+        if (message) nodes_[*joined].silent_checks = 0;
+        if (message && answer_ping(*connection, *message)) continue;
+        const auto result = message ? node_says(*joined, *message) : Result<void>(tl::unexpected(message.error()));
+        if (!result) co_return drop_node(*joined, result.error().message);
+        something_changed();
+    }
+}
+
+/// A process that was started later takes the place of one whose link may be dead, but for one of another user.
+Result<NodeIndex> ControlServer::admit_node(const Connection& connection, const proto::NodeHello& hello,
+                                            const Person& who) {
+    const auto index = wall_.check_node(hello);
+    if (!index) return index;
+    if (const auto before = nodes_.find(*index); before != nodes_.end()) {
+        if (!before->second.who.same_as(who))
+            return fail("node '" + hello.name() + "' is already here, as a process of " + before->second.who.text());
+        refuse(before->second.connection, "process " + std::to_string(hello.pid()) + " is this node now");
+        drop_node(*index, "process " + std::to_string(hello.pid()) + " has come in its place");
+    }
+    nodes_[*index] = {connection, who};  // before it joins, because joining sends
+    return wall_.node_joins(hello, Clock::now());
+}
+
+bool ControlServer::serves(NodeIndex node, const Connection& connection) const {
+    const auto found = nodes_.find(node);
+    return found != nodes_.end() && found->second.connection == connection;
+}
+
+void ControlServer::drop_node(NodeIndex node, const std::string& reason) {
+    nodes_.extract(node).mapped().connection->close_after_sending();
+    wall_.node_leaves(node, Clock::now());
+    snapshots_.node_left(node);
+    streams_.node_left(node);
+    log::info("node_down node={} reason={}", log::quoted(wall_.nodes()[node].config->name), log::quoted(reason));
+    something_changed();
+}
+
+Result<void> ControlServer::node_says(NodeIndex node, proto::Envelope& message) {
+    if (message.has_rendered()) {
+        wall_.node_rendered(node, message.rendered(), Clock::now());
+    } else if (message.has_snapshot()) {
+        snapshots_.arrived(node, *message.mutable_snapshot());
+    } else if (message.has_stream_frame()) {
+        streams_.arrived(node, *message.mutable_stream_frame());
+    } else if (message.has_node_stats()) {
+        wall_.node_reports(node, message.node_stats());
+    } else if (message.has_session_fault()) {
+        wall_.node_faults(node, message.session_fault());
+        log::warn("session_fault session={} node={} reason={}", message.session_fault().session(),
+                  log::quoted(wall_.nodes()[node].config->name), log::quoted(message.session_fault().reason()));
+    } else {
+        return fail("a node may not send that message");
+    }
+    return {};
+}
+
+// ---- clients ----
+
+/// While the wall starts, until all nodes are there; later until one is.
+asio::awaitable<void> ControlServer::wait_for_nodes() {
+    const auto until = Clock::now() + kNodeLimit;
+    const auto ready = [&] {
+        const bool all = std::ranges::all_of(wall_.nodes(), &Node::up);
+        return all || (wall_.any_node_up() && Clock::now() > started_ + kNodeLimit);
+    };
+    while (!ready() && Clock::now() < until && !stopping_) co_await changed_.wait(until);
+}
+
+/// Whose program it is, and whether it may come now.
+Outcome<void> ControlServer::welcome(const proto::ClientHello& hello, Person& who) const {
+    auto owner = identities_.with_token(who, hello.token());
+    if (!owner) return tl::unexpected(owner.error());
+    who = std::move(*owner);
+    if (who.role < Role::user)
+        return walld::refuse(RefusalKind::forbidden,
+                             who.text() +
+                                 " may not put programs on this wall: that needs the role user, and theirs is " +
+                                 config::name_of(who.role));
+    if (auto good = wall_.check(hello); !good) return good;
+    return wall_.check_member(hello, who);
+}
+
+/// Programs on the wall have a limit of their own (max_sessions), so `place` is given back when this is one.
+asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::ClientHello hello, Person who,
+                                                  Quota::Place place) {
+    if (const auto good = welcome(hello, who); !good) co_return refuse(connection, good.error().message);
+    co_await wait_for_nodes();
+    if (!wall_.any_node_up())
+        co_return refuse(connection, "no node of the wall is up: is a tileserver running? (wallctl nodes)");
+    for (const auto& still : {wall_.check(hello), wall_.check_member(hello, who)})
+        if (!still) co_return refuse(connection, still.error().message);
+    const Rank rank = hello.group().rank();
+    const auto id = wall_.open_session(hello, who, Clock::now(), [&](SessionId session) {
+        clients_[{session, rank}] = connection;
+    });
+    place.leave();
+    log::info("session_open session={} owner={} pid={} program={} name={} group={} rank={}", id.value,
+              log::quoted(who.text()), hello.pid(), log::quoted(hello.program()), log::quoted(hello.name()),
+              log::quoted(hello.group().name()), rank);
+    something_changed();
+    std::string reason;
+    while (reason.empty()) {
+        auto message = co_await connection->receive();
+        if (message && answer_ping(*connection, *message)) continue;
+        const auto result = message ? client_says({id, rank}, *message) : Result<void>(tl::unexpected(message.error()));
+        if (!result) reason = result.error().message;
+        if (message && !result) refuse(connection, reason);
+        something_changed();
+    }
+    clients_.erase({id, rank});
+    const auto became = wall_.member_gone(id, rank);
+    log::info("session_end session={} rank={} reason={} became={}", id.value, rank, log::quoted(reason),
+              log::quoted(became));
+    something_changed();
+}
+
+Result<void> ControlServer::client_says(const ClientId& client, const proto::Envelope& message) {
+    const auto& [session, rank] = client;
+    if (message.has_surface_open()) return wall_.open_surface(session, message.surface_open(), Clock::now(), rank);
+    if (message.has_surface_resize()) wall_.resize_surface(session, message.surface_resize(), Clock::now(), rank);
+    else if (message.has_surface_adopted()) wall_.adopt_placement(session, message.surface_adopted(), Clock::now());
+    else if (message.has_client_stats()) wall_.client_reports(session, rank, message.client_stats(), Clock::now());
+    else if (message.has_close_refused()) wall_.cannot_close(session, SurfaceId(message.close_refused().surface()));
+    else if (message.has_surface_close())
+        wall_.close_surface(session, SurfaceId(message.surface_close().surface()), rank);
+    else if (message.has_placement_noted())
+        wall_.placement_noted(session, rank, message.placement_noted(), Clock::now());
+    else if (message.has_member_leaves()) wall_.member_leaves(session, rank, Clock::now());
+    else return fail("a client may not send that message");
+    return {};
+}
+
+// ---- operators ----
+
+asio::awaitable<void> ControlServer::serve_operator(Connection connection, proto::Envelope first, Person who) {
+    Result<proto::Envelope> message(std::move(first));
+    while (message && message->has_operator_request()) {
+        auto& request = *message->mutable_operator_request();
+        if (auto place = requests_.take(who.text()); place) {
+            net::spawn(executor_, "operator", answer_operator(connection, std::move(request), who, std::move(*place)));
+        } else {
+            Outcome<Answer> no = tl::unexpected(place.error());
+            co_await send_answer(connection, request.request(), std::move(no));
+        }
+        message = co_await connection->receive();
+    }
+}
+
+/// In parts, each when the one before is gone: an answer may be as large as a picture of the wall.
+asio::awaitable<void> ControlServer::send_answer(Connection connection, std::uint32_t number, Outcome<Answer> answer) {
+    proto::OperatorReply reply;
+    reply.set_request(number);
+    reply.set_ok(answer.has_value());
+    if (!answer) {
+        reply.set_error(answer.error().message);
+        reply.set_code(name_of(answer.error().kind));
+    }
+    const auto json = answer ? dump(answer->json) : std::string();
+    const auto blob = answer ? answer->blob : nullptr;
+    const std::string_view bytes = blob ? std::string_view(*blob) : std::string_view();
+    net::ReplyParts parts(std::move(reply), json, bytes, {});
+    co_await send_parts(connection, std::move(parts));
+}
+
+asio::awaitable<void> ControlServer::send_parts(Connection connection, net::ReplyParts parts) {
+    for (auto part = parts.next(); part && connection->is_open(); part = parts.next()) {
+        const bool last = !part->more();
+        connection->send(make(&proto::Envelope::mutable_operator_reply, *part));
+        if (!last) co_await connection->drained();
+    }
+}
+
+asio::awaitable<void> ControlServer::answer_operator(Connection connection, proto::OperatorRequest request, Person who,
+                                                     Quota::Place place) {
+    auto person = identities_.with_token(std::move(who), request.token());
+    Outcome<Answer> answer;
+    if (!person) {
+        answer = tl::unexpected(person.error());
+    } else if (request.verb() == kWatchVerb) {
+        const auto permitted = may(*person, Need::look, "watch the wall", nullptr);
+        place.leave();  // what is watched has limits of its own
+        if (permitted) co_return co_await serve_watch(connection, std::move(request), std::move(*person));
+        answer = tl::unexpected(permitted.error());
+    } else {
+        Result<nlohmann::json> arguments = nlohmann::json::object();
+        if (!request.json().empty()) arguments = parse_json(request.json(), kRequestJson);
+        if (arguments) {
+            Asked asked{request.verb(), std::move(*arguments), std::move(*person), "control"};
+            answer = co_await operators_.carry_out(std::move(asked));
+        } else {
+            answer = walld::refuse(RefusalKind::invalid, "arguments: " + arguments.error().message);
+        }
+    }
+    co_await send_answer(connection, request.request(), std::move(answer));
+    something_changed();
+}
+
+/// Replies for as long as the connection lasts: what a WebSocket viewer gets, texts as JSON, frames as blobs.
+asio::awaitable<void> ControlServer::serve_watch(Connection connection, proto::OperatorRequest request, Person who) {
+    const auto viewer = streams_.add_viewer(who);
+    if (!viewer) {
+        Outcome<Answer> no = tl::unexpected(viewer.error());
+        co_return co_await send_answer(connection, request.request(), std::move(no));
+    }
+    const auto requests = WatchRequest::parse(request.json());
+    const auto done = requests ? streams_.watch(**viewer, *requests) : Result<void>(tl::unexpected(requests.error()));
+    if (!done) {
+        Outcome<Answer> no = walld::refuse(RefusalKind::invalid, done.error().message);
+        co_await send_answer(connection, request.request(), std::move(no));
+    }
+    proto::OperatorReply reply;
+    reply.set_request(request.request());
+    reply.set_ok(true);
+    while (done && connection->is_open() && !stopping_) {
+        const auto message = streams_.next(**viewer);
+        if (!message) {
+            co_await (*viewer)->news().wait(Clock::now() + kLookAtConnection);
+            continue;
+        }
+        const std::string_view head(message->head), nothing;
+        const std::string_view packet = message->packet ? std::string_view(*message->packet) : nothing;
+        net::ReplyParts parts(reply, message->binary ? nothing : head, message->binary ? head : nothing, packet);
+        co_await send_parts(connection, std::move(parts));
+        co_await connection->drained();
+    }
+    streams_.remove_viewer(**viewer);
+}
+
+// ---- time ----
+
+void ControlServer::something_changed() {
+    changed_.notify();
+    streams_.tick(Clock::now());
+    if (const auto next = next_deadline(); next < deadline_timer_.expiry()) deadline_timer_.expires_at(next);
+}
+
+Clock::time_point ControlServer::next_deadline() const {
+    const auto never = Clock::time_point::max();
+    return std::min(wall_.next_deadline().value_or(never), streams_.next_deadline().value_or(never));
+}
+
+asio::awaitable<void> ControlServer::run_deadlines() {
+    while (!stopping_) {
+        deadline_timer_.expires_at(next_deadline());
+        co_await deadline_timer_.async_wait(kTuple);
+        wall_.tick(Clock::now());
+        streams_.tick(Clock::now());
+        changed_.notify();
+    }
+}
+
+asio::awaitable<void> ControlServer::watch_peers() {
+    while (!stopping_) {
+        process_timer_.expires_after(kPidCheck);
+        co_await process_timer_.async_wait(kTuple);
+        for (const auto& [id, connection] : clients_) {
+            const auto pid = connection->peer() ? connection->peer()->process : 0;
+            if (pid <= 0 || ::kill(pid, 0) == 0 || errno != ESRCH) continue;
+            log::info("session_orphaned session={} pid={}", id.first.value, pid);
+            connection->close();
+        }
+        watch_nodes();
+    }
+}
+
+void ControlServer::watch_nodes() {
+    std::vector<NodeIndex> silent;
+    for (auto& [node, link] : nodes_)
+        if (++link.silent_checks > kSilentChecks) silent.push_back(node);
+    for (const auto node : silent) {
+        nodes_[node].connection->close();  // nobody reads there any more
+        drop_node(node, "it has said nothing for " + std::to_string(kSilentChecks * kPidCheck.count()) + " s");
+    }
+}
+
+}  // namespace wall::walld

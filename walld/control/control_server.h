@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// The shell around the wall: control connections of nodes, clients and operators. What a peer is, its first message
+// says. One thread; a coroutine a connection.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "common/daemon/changed.h"
+#include "common/net/control_connection.h"
+#include "common/net/reply_parts.h"
+#include "walld/control/identity.h"
+#include "walld/control/operator_desk.h"
+#include "walld/control/who_is_there.h"
+#include "walld/streams/snapshot_desk.h"
+#include "walld/streams/stream_hub.h"
+#include "walld/wall/quota.h"
+#include "walld/wall/wall.h"
+
+namespace wall::walld {
+
+namespace asio = boost::asio;
+
+class ControlServer : public Outbox {
+public:
+    static constexpr std::chrono::seconds kHelloLimit{5};  ///< a peer that has not said what it is by then is cut off
+    static constexpr std::chrono::seconds kNodeLimit{4};   ///< how long a program waits for nodes while the wall starts
+    /// A killed program whose connection lives on in a child is noticed, and a node that has fallen silent.
+    static constexpr std::chrono::seconds kPidCheck{1};
+    /// A node says something many times a second; one that has not for so many checks is away. They are counted, so
+    /// that a walld that stood still itself has missed nothing.
+    static constexpr unsigned kSilentChecks = 15;
+
+    /// `state`: where layouts are kept; empty: nowhere.
+    ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities,
+                  const std::string& state);
+
+    /// Starts to listen everywhere that the configuration says.
+    Result<void> listen();
+    /// Closes everything.
+    void stop();
+
+    const Wall& wall() const { return wall_; }
+    const Identities& identities() const { return identities_; }
+    WhoIsThere& who_is_there() { return who_; }
+    OperatorDesk& operators() { return operators_; }
+    StreamHub& streams() { return streams_; }
+    std::vector<net::Address> addresses() const;
+
+    void to_node(NodeIndex node, const proto::Envelope& message) override;
+    void to_client(SessionId session, const proto::Envelope& message) override;
+    void to_member(SessionId session, Rank rank, const proto::Envelope& message) override;
+    void end_session(SessionId session, const std::string& reason) override;
+
+private:
+    using Connection = std::shared_ptr<net::ControlConnection>;
+
+    struct NodeLink {
+        Connection connection;
+        Person who;
+        unsigned silent_checks = 0;  ///< since its last message
+    };
+    void keep(const char* name, asio::awaitable<void> (ControlServer::*work)());
+    void take(net::StreamSocket socket);
+    asio::awaitable<void> serve(Connection connection);
+    asio::awaitable<void> serve_node(Connection connection, proto::NodeHello hello, const Person& who);
+    Result<NodeIndex> admit_node(const Connection& connection, const proto::NodeHello& hello, const Person& who);
+    void drop_node(NodeIndex node, const std::string& reason);
+    bool serves(NodeIndex node, const Connection& connection) const;
+    asio::awaitable<void> serve_client(Connection connection, proto::ClientHello hello, Person who, Quota::Place place);
+    asio::awaitable<void> serve_operator(Connection connection, proto::Envelope first, Person who);
+    asio::awaitable<void> answer_operator(Connection connection, proto::OperatorRequest request, Person who,
+                                          Quota::Place place);
+    asio::awaitable<void> serve_watch(Connection connection, proto::OperatorRequest request, Person who);
+    asio::awaitable<void> send_answer(Connection connection, std::uint32_t number, Outcome<Answer> answer);
+    asio::awaitable<void> send_parts(Connection connection, net::ReplyParts parts);
+    Clock::time_point next_deadline() const;
+    asio::awaitable<void> run_deadlines();
+    asio::awaitable<void> watch_peers();
+    void watch_nodes();
+    asio::awaitable<Result<proto::Envelope>> first_message(Connection connection);
+    asio::awaitable<void> wait_for_nodes();
+
+    Outcome<void> welcome(const proto::ClientHello& hello, Person& who) const;
+    Result<void> node_says(NodeIndex node, proto::Envelope& message);
+    using ClientId = std::pair<SessionId, Rank>;  // rank 0 without a parallel program
+
+    Result<void> client_says(const ClientId& client, const proto::Envelope& message);
+    void refuse(const Connection& connection, const std::string& reason);
+    void something_changed();
+
+    asio::any_io_executor executor_;
+    net::Changed changed_;
+    Quota peers_{kPeerConnections}, requests_{kRequests};
+    Identities identities_;
+    WhoIsThere who_;
+    Wall wall_;
+    SnapshotDesk snapshots_;
+    StreamHub streams_;
+    OperatorDesk operators_;
+    std::vector<std::unique_ptr<net::Listener>> listeners_;
+    std::map<NodeIndex, NodeLink> nodes_;
+    std::map<ClientId, Connection> clients_;
+    std::map<net::ControlConnection*, std::weak_ptr<net::ControlConnection>> all_;
+    asio::steady_timer deadline_timer_;
+    asio::steady_timer process_timer_;
+    Clock::time_point started_ = Clock::now();
+    bool stopping_ = false;
+};
+
+}  // namespace wall::walld

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+#include "walld/control/operator_desk.h"
+
+#include <algorithm>
+#include <boost/asio/this_coro.hpp>
+
+#include "common/log/log.h"
+#include "walld/control/arguments.h"
+#include "walld/control/audit.h"
+#include "walld/streams/stream_status.h"
+#include "walld/wall/status.h"
+
+namespace wall::walld {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::int64_t kMaxWait = 600'000;  // ms
+
+Outcome<Target> target_of(const Asked& asked) {
+    return text_of(asked.arguments, "id").and_then([](const std::string& text) { return Target::parse(text); });
+}
+Outcome<std::string> name_of(const Asked& asked) { return text_of(asked.arguments, "name"); }
+
+Answer done() { return {}; }
+
+}  // namespace
+
+const OperatorDesk::Row OperatorDesk::kVerbs[] = {
+    {"status", Need::look, &OperatorDesk::status},
+    {"nodes", Need::look, &OperatorDesk::nodes},
+    {"tiles", Need::look, &OperatorDesk::tiles},
+    {"sessions", Need::look, &OperatorDesk::sessions},
+    {"session", Need::look, &OperatorDesk::session},
+    {"streams", Need::look, &OperatorDesk::streams},
+    {"whoami", Need::look, &OperatorDesk::whoami},
+    {"wait", Need::look, &OperatorDesk::wait},
+    {"screenshot", Need::look, &OperatorDesk::screenshot},
+    {"layouts", Need::look, &OperatorDesk::layouts},
+    {"layout", Need::look, &OperatorDesk::layout},
+    {"place", Need::own, &OperatorDesk::place},
+    {"raise", Need::own, &OperatorDesk::raise},
+    {"lower", Need::own, &OperatorDesk::lower},
+    {"close", Need::own, &OperatorDesk::close},
+    {"hold", Need::own, &OperatorDesk::hold},
+    {"step", Need::own, &OperatorDesk::step},
+    {"save_layout", Need::operate, &OperatorDesk::save_layout},
+    {"load_layout", Need::operate, &OperatorDesk::load_layout},
+    {"delete_layout", Need::operate, &OperatorDesk::delete_layout},
+};
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::carry_out(Asked asked) {
+    const auto row = row_of(asked);
+    if (!row) co_return tl::unexpected(row.error());
+    // An `if`, because GCC 12 destroys the temporaries of `?:` around a co_await twice.
+    Outcome<Answer> answer;
+    if (const auto permitted = allowed(**row, asked); permitted) answer = co_await (this->*(*row)->run)(asked);
+    else answer = tl::unexpected(permitted.error());
+    if ((*row)->need != Need::look)
+        log::info("{}", log::plain(audit_line(
+                            {asked.who, asked.via, asked.verb, asked.arguments, answer ? nullptr : &answer.error()})));
+    changed_.notify();
+    co_return answer;
+}
+
+Outcome<const OperatorDesk::Row*> OperatorDesk::row_of(const Asked& asked) const {
+    if (!asked.arguments.is_object()) return refuse(RefusalKind::invalid, "arguments: expected a JSON object");
+    const auto found = std::ranges::find_if(kVerbs, [&](const Row& row) { return asked.verb == row.name; });
+    if (found == std::end(kVerbs)) return refuse(RefusalKind::invalid, "unknown verb '" + asked.verb + "'");
+    return &*found;
+}
+
+/// Whether something exists is no secret: everybody who may ask for it sees all sessions.
+Outcome<void> OperatorDesk::allowed(const Row& row, const Asked& asked) const {
+    if (row.need != Need::own) return may(asked.who, row.need, asked.verb, nullptr);
+    const auto target = target_of(asked);
+    if (!target) return tl::unexpected(target.error());
+    const auto found = wall_.sessions().find(target->session);
+    const auto* owner = found == wall_.sessions().end() ? nullptr : &found->second.owner;
+    const auto what = asked.verb + " session " + std::to_string(target->session.value);
+    if (owner || asked.who.role < Role::user) return may(asked.who, row.need, what, owner);
+    return refuse(RefusalKind::not_found, "there is no session " + std::to_string(target->session.value));
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::status(const Asked&) {
+    auto status = status_json(wall_, Clock::now());
+    status["streams"] = streams_json(wall_, streams_.views());
+    co_return Answer{std::move(status), {}};
+}
+asio::awaitable<Outcome<Answer>> OperatorDesk::streams(const Asked&) {
+    co_return Answer{streams_json(wall_, streams_.views()), {}};
+}
+asio::awaitable<Outcome<Answer>> OperatorDesk::nodes(const Asked&) { co_return Answer{nodes_json(wall_), {}}; }
+asio::awaitable<Outcome<Answer>> OperatorDesk::tiles(const Asked&) {
+    co_return Answer{tiles_json(wall_, Clock::now()), {}};
+}
+asio::awaitable<Outcome<Answer>> OperatorDesk::sessions(const Asked&) { co_return Answer{sessions_json(wall_), {}}; }
+asio::awaitable<Outcome<Answer>> OperatorDesk::whoami(const Asked& asked) {
+    co_return Answer{person_json(asked.who), {}};
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::session(const Asked& asked) {
+    co_return target_of(asked).and_then([&](const Target& target) {
+        return wall_.surfaces_of(target).map([&](const auto&) {
+            return Answer{session_json(wall_, target.session), {}};
+        });
+    });
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::place(const Asked& asked) {
+    const auto rect = rect_of(asked.arguments, "rect");
+    if (!rect) co_return tl::unexpected(rect.error());
+    co_return target_of(asked)
+        .and_then([&](const Target& target) { return wall_.place_surface(target, *rect, Clock::now()); })
+        .map(done);
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::raise(const Asked& asked) {
+    co_return target_of(asked).and_then([&](const Target& target) { return wall_.raise(target); }).map(done);
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::lower(const Asked& asked) {
+    co_return target_of(asked).and_then([&](const Target& target) { return wall_.lower(target); }).map(done);
+}
+
+/// Asks the program, as a window manager would; one that does not obey in time, or cannot be asked, is cut off. A
+/// window that is one of several is only asked for.
+asio::awaitable<Outcome<Answer>> OperatorDesk::close(const Asked& asked) {
+    const auto target = target_of(asked);
+    const auto keys = target.and_then([&](const Target& t) { return wall_.ask_to_close(t); });
+    if (!keys) co_return tl::unexpected(keys.error());
+    const auto open = [&](const SurfaceKey& key) { return wall_.find(key) != nullptr; };
+    const auto obeyed = [&] {
+        return target->surface ? std::ranges::none_of(*keys, open) : !wall_.sessions().contains(target->session);
+    };
+    const auto deaf = [&] {
+        return std::ranges::all_of(*keys,
+                                   [&](const SurfaceKey& key) { return open(key) && wall_.find(key)->cannot_close; });
+    };
+    const auto until = Clock::now() + wall_.config().close_timeout;
+    while (!obeyed() && !deaf() && Clock::now() < until) co_await changed_.wait(until);
+    if (obeyed()) co_return Answer{{{"closed", "by the program"}}, {}};
+    if (target->surface && wall_.sessions().at(target->session).surfaces.size() > 1) {
+        co_return refuse(RefusalKind::conflict,
+                         "the program keeps this window open; close the session to take all of it from the wall");
+    }
+    end_session_(target->session);
+    co_return Answer{{{"closed", "by walld"}}, {}};
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::hold(const Asked& asked) {
+    const auto on = flag_of(asked.arguments, "on", true);
+    if (!on) co_return tl::unexpected(on.error());
+    co_return target_of(asked)
+        .and_then([&](const Target& target) { return wall_.hold(target, *on, Clock::now()); })
+        .map(done);
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::step(const Asked& asked) {
+    const auto frames = number_of(asked.arguments, "frames", 1, 1, INT32_MAX);
+    if (!frames) co_return tl::unexpected(frames.error());
+    co_return target_of(asked)
+        .and_then(
+            [&](const Target& target) { return wall_.step(target, static_cast<std::uint32_t>(*frames), Clock::now()); })
+        .map(done);
+}
+
+/// Answers when the frame is shown on all tiles. The session may still be about to open its window.
+asio::awaitable<Outcome<Answer>> OperatorDesk::wait(const Asked& asked) {
+    const auto target = target_of(asked);
+    if (!target) co_return tl::unexpected(target.error());
+    const auto frame = number_of(asked.arguments, "frame", 1, 1, INT32_MAX);
+    if (!frame) co_return tl::unexpected(frame.error());
+    const auto limit = number_of(asked.arguments, "timeout_ms", 10'000, 0, kMaxWait);
+    if (!limit) co_return tl::unexpected(limit.error());
+    const auto until = Clock::now() + std::chrono::milliseconds(*limit);
+    for (;;) {
+        const auto key = wall_.resolve(*target);
+        if (!wall_.sessions().contains(target->session)) co_return tl::unexpected(key.error());
+        const auto* surface = key ? wall_.find(*key) : nullptr;
+        if (surface && surface->swap.shown(static_cast<std::uint32_t>(*frame)))
+            co_return Answer{{{"frame", surface->swap.presented()}}, {}};
+        if (Clock::now() >= until) {
+            co_return refuse(RefusalKind::unavailable, "frame " + std::to_string(*frame) + " was not shown within " +
+                                                           std::to_string(*limit) + " ms; the last one is " +
+                                                           std::to_string(surface ? surface->swap.presented() : 0));
+        }
+        co_await changed_.wait(until);
+    }
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::screenshot(const Asked& asked) {
+    const auto tile = text_of(asked.arguments, "tile"), id = text_of(asked.arguments, "id");
+    if (!tile) co_return tl::unexpected(tile.error());
+    if (!id) co_return tl::unexpected(id.error());
+    SnapshotQuery query{.tile = *tile, .target = {}};  // a name of its own: GCC 12 destroys such a temporary twice
+    if (!id->empty()) {
+        const auto target = Target::parse(*id);
+        if (!target) co_return tl::unexpected(target.error());
+        query.target = *target;
+    }
+    auto png = co_await snapshots_.take(std::move(query));
+    if (!png) co_return tl::unexpected(png.error());
+    co_return Answer{{{"bytes", (*png)->size()}}, std::move(*png)};
+}
+
+// ---- layouts ----
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::layouts(const Asked&) {
+    co_return layouts_.list().map([](const std::vector<std::string>& names) { return Answer{names, {}}; });
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::layout(const Asked& asked) {
+    co_return name_of(asked)
+        .and_then([&](const std::string& name) { return layouts_.load(name); })
+        .map([](const Layout& layout) {
+            return Answer{layout_json(layout), {}};
+        });
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::save_layout(const Asked& asked) {
+    const auto layout = wall_.current_layout();
+    co_return name_of(asked).and_then([&](const std::string& name) { return layouts_.save(name, layout); }).map([&] {
+        return Answer{{{"windows", layout.windows.size()}}, {}};
+    });
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::load_layout(const Asked& asked) {
+    co_return name_of(asked)
+        .and_then([&](const std::string& name) { return layouts_.load(name); })
+        .map([&](const Layout& layout) {
+            const auto placed = wall_.load_layout(layout, Clock::now());
+            return Answer{{{"placed", placed}, {"waiting", layout.windows.size() - placed}}, {}};
+        });
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::delete_layout(const Asked& asked) {
+    co_return name_of(asked).and_then([&](const std::string& name) { return layouts_.remove(name); }).map(done);
+}
+
+}  // namespace wall::walld

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "walld/streams/stream_session.h"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include "common/daemon/keep_running.h"
+
+namespace wall::walld {
+namespace {
+
+namespace websocket = boost::beast::websocket;
+constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
+constexpr std::size_t kMaxMessage = 64 << 10;  // bytes, from a viewer
+constexpr int kSendBuffer = 256 << 10;         // bytes in the kernel: what is there is old before a slow viewer gets it
+constexpr std::chrono::seconds kHandshakeLimit{10}, kIdleLimit{30};
+constexpr std::chrono::hours kLongAgo{24};
+
+struct Connection {
+    Connection(std::shared_ptr<asio::ip::tcp::socket> from, StreamHub& the_hub, std::shared_ptr<StreamHub::Viewer> who)
+        : socket(std::move(from)), stream(*socket), hub(the_hub), viewer(std::move(who)) {}
+    ~Connection() { hub.remove_viewer(*viewer); }
+    Connection(const Connection&) = delete;
+
+    std::shared_ptr<asio::ip::tcp::socket> socket;
+    websocket::stream<asio::ip::tcp::socket&> stream;
+    StreamHub& hub;
+    std::shared_ptr<StreamHub::Viewer> viewer;
+    bool open = true;
+
+    void close() {
+        open = false;
+        boost::system::error_code ignored;
+        socket->close(ignored);
+        viewer->news().notify();
+    }
+};
+
+asio::awaitable<void> send_all(std::shared_ptr<Connection> connection) {
+    while (connection->open) {
+        const auto message = connection->hub.next(*connection->viewer);
+        if (!message) {
+            co_await connection->viewer->news().wait(net::Changed::Clock::now() + kLongAgo);
+            continue;
+        }
+        static const std::string nothing;
+        const std::string& packet = message->packet ? *message->packet : nothing;
+        const std::array<asio::const_buffer, 2> buffers{asio::buffer(message->head), asio::buffer(packet)};
+        connection->stream.binary(message->binary);
+        const auto [error, sent] = co_await connection->stream.async_write(buffers, kTuple);
+        if (error) connection->close();
+    }
+}
+
+}  // namespace
+
+asio::awaitable<void> serve_viewer(std::shared_ptr<asio::ip::tcp::socket> socket,
+                                   boost::beast::http::request<boost::beast::http::string_body> request, StreamHub& hub,
+                                   std::shared_ptr<StreamHub::Viewer> viewer) {
+    boost::system::error_code ignored;
+    socket->set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
+    socket->set_option(asio::ip::tcp::no_delay(true), ignored);
+    const auto connection = std::make_shared<Connection>(std::move(socket), hub, std::move(viewer));
+    auto& stream = connection->stream;
+    stream.set_option(websocket::stream_base::timeout{kHandshakeLimit, kIdleLimit, true});
+    stream.read_message_max(kMaxMessage);
+    const auto [refused] = co_await stream.async_accept(request, kTuple);
+    if (refused) co_return;
+    net::spawn(stream.get_executor(), "viewer", send_all(connection));
+    boost::beast::flat_buffer buffer;
+    while (connection->open) {
+        const auto [error, bytes] = co_await stream.async_read(buffer, kTuple);
+        if (error) break;
+        const auto text = buffer.data();
+        const auto requests = WatchRequest::parse({static_cast<const char*>(text.data()), text.size()});
+        const auto done =
+            requests ? hub.watch(*connection->viewer, *requests) : Result<void>(tl::unexpected(requests.error()));
+        if (!done) connection->viewer->tell_error(done.error().message);
+        buffer.clear();
+    }
+    connection->close();
+}
+
+}  // namespace wall::walld

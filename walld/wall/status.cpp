@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include "walld/wall/status.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace wall::walld {
+namespace {
+
+using nlohmann::json;
+
+json rect_json(const geom::Rect& rect) { return {rect.x, rect.y, rect.width, rect.height}; }
+
+std::string color_text(std::uint32_t rgb) { return fmt::format("#{:06x}", rgb); }
+
+json spread_json(const Spread& spread) {
+    const auto ms = [](Spread::Milliseconds value) { return std::round(value.count() * 1000) / 1000; };
+    return {{"frames", spread.frames()},
+            {"last_ms", ms(spread.last())},
+            {"mean_ms", ms(spread.mean())},
+            {"most_ms", ms(spread.most())}};
+}
+
+json surface_json(const Wall& wall, const SurfaceKey& key) {
+    const auto& surface = *wall.find(key);
+    const auto& stacking = wall.stacking();
+    return {{"id", fmt::format("{}.{}", key.session.value, key.surface.value)},
+            {"title", surface.title},
+            {"width", surface.width},
+            {"height", surface.height},
+            {"rect", rect_json(surface.place.wanted())},
+            {"shown_rect", rect_json(surface.place.shown())},
+            {"moving", surface.place.moving()},
+            {"scaled", surface.scaled},
+            {"z", std::ranges::find(stacking, key) - stacking.begin()},
+            {"frame", surface.swap.presented()},
+            {"held", surface.swap.held()},
+            {"swap_timeouts", surface.swap.timeouts()},
+            {"frame_interval_ms", std::round(surface.swap.frame_interval().count() * 1000) / 1000},
+            {"skew",
+             {{"rendered", spread_json(surface.swap.rendered_spread())},
+              {"presented", spread_json(surface.swap.presented_spread())}}}};
+}
+
+json objects_json(const proto::DriverObjects& o) {
+    return {{"textures", o.textures()},           {"buffers", o.buffers()}, {"lists", o.lists()},
+            {"programs", o.programs()},           {"shaders", o.shaders()}, {"framebuffers", o.framebuffers()},
+            {"renderbuffers", o.renderbuffers()}, {"queries", o.queries()}};
+}
+
+json node_json(const Node& node) {
+    return {{"name", node.config->name},
+            {"up", node.up},
+            {"backend", node.up ? node.hello.backend() : config::name_of(node.config->backend)},
+            {"address", node.up ? node.hello.address() : node.config->listen.text()},
+            {"pid", node.hello.pid()},
+            {"incarnation", node.incarnation},
+            {"renderer", node.hello.caps().renderer()},
+            {"version", node.hello.caps().version()},
+            {"tiles", node.config->tiles.size()},
+            {"frames", node.stats.frames()},
+            {"bytes_received", node.stats.bytes_received()},
+            {"commands", node.stats.commands()},
+            {"gl_errors", node.stats.gl_errors()},
+            {"objects", objects_json(node.stats.objects())}};
+}
+
+json traffic_json(const SessionTraffic& traffic) {
+    const auto& sent = traffic.sent();
+    const auto& rates = traffic.rates();
+    return {{"frames", traffic.frames()},
+            {"round_trips", traffic.round_trips()},
+            {"diff_seconds", traffic.diff_seconds()},
+            {"state_bytes", sent.state},
+            {"object_bytes", sent.object},
+            {"geometry_bytes", sent.geometry},
+            {"state_bytes_per_second", std::round(rates.state)},
+            {"object_bytes_per_second", std::round(rates.object)},
+            {"geometry_bytes_per_second", std::round(rates.geometry)},
+            {"frame_bytes", std::round(rates.frame_bytes)}};
+}
+
+}  // namespace
+
+json nodes_json(const Wall& wall) {
+    auto out = json::array();
+    for (const auto& node : wall.nodes()) out.push_back(node_json(node));
+    return out;
+}
+
+json tiles_json(const Wall& wall, Clock::time_point now) {
+    auto out = json::array();
+    for (NodeIndex i = 0; i < wall.nodes().size(); ++i) {
+        const auto& node = wall.nodes()[i];
+        for (std::uint32_t slot = 0; slot < node.tiles.size(); ++slot) {
+            const auto& tile = node.config->tiles[slot];
+            const auto& shown = node.tiles[slot];
+            const auto age =
+                shown.last ? json(std::chrono::duration_cast<std::chrono::milliseconds>(now - *shown.last).count())
+                           : json(nullptr);
+            out.push_back({{"name", tile.name},
+                           {"node", node.config->name},
+                           {"slot", slot},
+                           {"rect", rect_json(tile.rect)},
+                           {"output", config::output_name(tile)},
+                           {"up", node.up},
+                           {"frames", shown.frames},
+                           {"age_ms", age},
+                           {"lag_frames", wall.tile_lag(i, slot)}});
+        }
+    }
+    return out;
+}
+
+/// Of a parallel program.
+json group_json(const ParallelGroup& group) {
+    auto members = json::array();
+    for (const auto& [rank, member] : group.members())
+        members.push_back({{"rank", rank}, {"pid", member.pid}, {"left", member.left}});
+    return {{"name", group.name()}, {"size", group.size()}, {"members", std::move(members)}};
+}
+
+json session_json(const Wall& wall, SessionId id) {
+    const auto& session = wall.sessions().at(id);
+    auto surfaces = json::array();
+    for (const auto& key : wall.stacking()) {
+        if (key.session == id) surfaces.push_back(surface_json(wall, key));
+    }
+    json out{{"id", id.value},
+             {"pid", session.pid},
+             {"program", session.program},
+             {"name", session.name},
+             {"owner", person_json(session.owner)},
+             {"held", session.held},
+             {"fault", session.fault},
+             {"traffic", traffic_json(session.traffic)},
+             {"surfaces", std::move(surfaces)}};
+    if (session.group) out["group"] = group_json(*session.group);
+    return out;
+}
+
+json sessions_json(const Wall& wall) {
+    auto out = json::array();
+    for (const auto& [id, session] : wall.sessions()) out.push_back(session_json(wall, id));
+    return out;
+}
+
+json person_json(const Person& person) {
+    constexpr const char* kKinds[] = {"user", "token", "unknown"};
+    return {
+        {"kind", kKinds[static_cast<int>(person.kind)]}, {"name", person.name}, {"role", config::name_of(person.role)}};
+}
+
+json status_json(const Wall& wall, Clock::time_point now) {
+    const auto canvas = wall.config().canvas();
+    return {{"wall",
+             {{"name", wall.config().name},
+              {"width", canvas.width},
+              {"height", canvas.height},
+              {"background", color_text(wall.config().background)},
+              {"max_sessions", wall.config().max_sessions}}},
+            {"nodes", nodes_json(wall)},
+            {"tiles", tiles_json(wall, now)},
+            {"sessions", sessions_json(wall)}};
+}
+
+std::string dump(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
+
+}  // namespace wall::walld

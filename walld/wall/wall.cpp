@@ -1,0 +1,506 @@
+// SPDX-License-Identifier: MIT
+#include "walld/wall/wall.h"
+
+#include <algorithm>
+#include <set>
+
+#include "common/base/assert.h"
+#include "common/wire/limits.h"
+#include "walld/wall/caps.h"
+#include "walld/wall/messages.h"
+#include "walld/wall/placement.h"
+
+namespace wall::walld {
+namespace {
+
+constexpr std::size_t kMaxSurfaces = 256;  // of a session
+constexpr std::size_t kMaxText = 256;      // bytes of a program's name or a window's title that are kept
+
+/// The same process, perhaps on another link.
+bool same_process(const proto::NodeHello& a, const proto::NodeHello& b) {
+    return a.pid() == b.pid() && a.started_us() == b.started_us();
+}
+
+/// The node has the session from an earlier link, under that ticket.
+bool has_ticket(const proto::NodeHello& hello, SessionId id, const std::string& ticket) {
+    return std::ranges::any_of(hello.sessions(), [&](const proto::Ticket& known) {
+        return known.session() == id.value && known.ticket() == ticket;
+    });
+}
+
+bool extent_ok(std::uint32_t width, std::uint32_t height) {
+    return width > 0 && height > 0 && width <= wire::kMaxSurfaceExtent && height <= wire::kMaxSurfaceExtent;
+}
+
+}  // namespace
+
+Wall::Wall(config::WallConfig config, Outbox& out, RandomBytes random)
+    : config_(std::move(config)), out_(out), random_(std::move(random)) {
+    for (const auto& node : config_.nodes)
+        nodes_.push_back(
+            {.config = &node, .hello = {}, .stats = {}, .tiles = std::vector<TileShown>(node.tiles.size())});
+}
+
+// ---- nodes ----
+
+Result<NodeIndex> Wall::check_node(const proto::NodeHello& hello) const {
+    const auto found = std::ranges::find(nodes_, hello.name(), [](const Node& n) { return n.config->name; });
+    if (hello.version() != wire::kProtocolVersion)
+        return fail("this walld speaks protocol version " + std::to_string(wire::kProtocolVersion) + ", the node " +
+                    std::to_string(hello.version()));
+    if (found == nodes_.end()) return fail("node '" + hello.name() + "' is not in wall.toml");
+    if (found->up && !same_process(found->hello, hello) && hello.started_us() <= found->hello.started_us())
+        return fail("node '" + hello.name() + "' is already here, as process " + std::to_string(found->hello.pid()));
+    return static_cast<NodeIndex>(found - nodes_.begin());
+}
+
+Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_point now) {
+    const auto good = check_node(hello);
+    if (!good) return good;
+    const auto index = *good;
+    auto& node = nodes_[index];
+    if (node.up) node_leaves(index, now);
+    const bool same = node.incarnation > 0 && same_process(node.hello, hello);
+    if (!same) {
+        ++node.incarnation;
+        node.stats.Clear();
+    }
+    node.up = true;
+    node.hello = hello;
+    welcome_node(index);
+    hear_wall_note(index, hello.wall_note());
+    hear_of_sessions(index, hello, now);
+    for (auto& [id, session] : sessions_) {
+        if (!same && !has_ticket(hello, id, session.tickets[index])) session.tickets.erase(index);
+        hand_out_ticket(id, session, index);
+        out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(index, session.tickets[index])));
+    }
+    out_.to_node(index, stacking_message(index));
+    for_each_surface([&](const SurfaceKey& key, SurfaceEntry& surface) {
+        const auto& session = *find(key.session);
+        present(key, surface.swap.set_nodes(nodes_of(session, surface.place.drawn()), now), now);
+        if (session.group) want(key, surface.place.wanted(), now);  // the members come to the node at the same frame
+    });
+    return index;
+}
+
+void Wall::node_leaves(NodeIndex node, Clock::time_point now) {
+    nodes_[node].up = false;
+    proto::NodeDown down;
+    down.set_node(node);
+    for (const auto& [id, session] : sessions_) out_.to_client(id, make(&proto::Envelope::mutable_node_down, down));
+    for_each_surface(
+        [&](const SurfaceKey& key, SurfaceEntry& surface) { present(key, surface.swap.lose(node, now), now); });
+}
+
+void Wall::node_rendered(NodeIndex node, const proto::Rendered& report, Clock::time_point now) {
+    const SurfaceKey key{SessionId(report.session()), SurfaceId(report.surface())};
+    auto* surface = find(key.surface, key.session);
+    if (!surface) return;
+    auto& swap = surface->swap;
+    present(key,
+            report.has_shown() ? swap.resume(node, report.frame(), report.shown(), now)
+                               : swap.rendered(node, report.frame(), now),
+            now);
+}
+
+void Wall::node_faults(NodeIndex node, const proto::SessionFault& report) {
+    ++counters_.faults;
+    const SessionId id(report.session());
+    auto* session = find(id);
+    if (!session) return;
+    session->fault = nodes_[node].config->name + ": " + report.reason();
+    if (!session->group && !report.ends()) return;
+    out_.end_session(id, session->fault);
+    close_session(id);
+}
+
+void Wall::welcome_node(NodeIndex node) {
+    proto::NodeWelcome welcome;
+    welcome.set_node(node);
+    welcome.set_background(config_.background);
+    for (std::uint32_t slot = 0; const auto& tile : nodes_[node].config->tiles) {
+        auto* entry = welcome.add_tiles();
+        entry->set_slot(slot++);
+        entry->set_name(tile.name);
+        *entry->mutable_rect() = to_proto(tile.rect);
+    }
+    out_.to_node(node, make(&proto::Envelope::mutable_node_welcome, welcome));
+}
+
+proto::NodeUp Wall::node_up_message(NodeIndex node, const std::string& ticket) const {
+    proto::NodeUp up;
+    up.set_node(node);
+    up.set_address(nodes_[node].hello.address());
+    up.set_ticket(ticket);
+    up.set_incarnation(nodes_[node].incarnation);
+    return up;
+}
+
+std::set<NodeIndex> Wall::nodes_under(const geom::Rect& rect) const {
+    std::set<NodeIndex> out;
+    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+        const bool shows = std::ranges::any_of(nodes_[i].config->tiles,
+                                               [&](const auto& tile) { return geom::overlaps(tile.rect, rect); });
+        if (nodes_[i].up && shows) out.insert(i);
+    }
+    return out;
+}
+
+// ---- clients ----
+
+bool Wall::any_node_up() const { return std::ranges::any_of(nodes_, &Node::up); }
+
+Outcome<void> Wall::check(const proto::ClientHello& hello) const {
+    if (hello.version() != wire::kProtocolVersion) {
+        return walld::refuse(RefusalKind::invalid,
+                             "walld speaks protocol version " + std::to_string(wire::kProtocolVersion) +
+                                 ", the program's WallGL library " + std::to_string(hello.version()));
+    }
+    if (sessions_.size() >= config_.max_sessions && !group_of(hello)) {
+        return walld::refuse(RefusalKind::unavailable,
+                             "the wall is full: " + std::to_string(config_.max_sessions) +
+                                 " programs are on it ('max_sessions' in [wall] of wall.toml)");
+    }
+    if (hello.has_rect()) {
+        if (auto possible = check_place(config_.canvas(), from_proto(hello.rect())); !possible)
+            return tl::unexpected(possible.error());
+    }
+    return {};
+}
+
+SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Clock::time_point now,
+                             const std::function<void(SessionId)>& before_welcome) {
+    if (const auto* known = group_of(hello)) return join_session(known->first, hello, before_welcome);
+    WALL_ASSERT(any_node_up());
+    const auto back = resumable(hello);
+    const SessionId id = back ? *back : next_session();
+    auto& session = sessions_[id];
+    if (back) resume_session(id, session, hello.resume());
+    session.pid = hello.pid();
+    session.program = hello.program().substr(0, kMaxText);
+    session.name = hello.name().substr(0, kMaxText);
+    session.owner = std::move(owner);
+    session.held = hello.hold();
+    if (hello.has_rect()) session.rect = from_proto(hello.rect());
+    if (hello.fullscreen()) session.rect = config_.canvas();
+    session.opened = now;
+    if (hello.has_group()) {
+        session.group.emplace(hello.group().name(), hello.group().members());
+        session.group->joins(hello.group().rank(), hello.pid());
+    }
+    ++counters_.sessions;
+    before_welcome(id);
+    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+        if (!nodes_[i].up) continue;
+        hand_out_ticket(id, session, i);
+        session.group_nodes[i] = nodes_[i].incarnation;
+    }
+    welcome_client(id, session, hello.group().rank());
+    return id;
+}
+
+/// One that neither a program nor a node knows as another session's.
+SessionId Wall::next_session() {
+    do ++last_session_.value;
+    while (!last_session_ || sessions_.contains(last_session_) || returning_.contains(last_session_));
+    return last_session_;
+}
+
+void Wall::hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node) {
+    auto& ticket = session.tickets[node];
+    if (ticket.empty()) ticket = random_(kTicketBytes);
+    proto::Ticket message;
+    message.set_session(id.value);
+    message.set_ticket(ticket);
+    if (session.group) {
+        message.set_members(session.group->size());
+        for (const Rank rank : session.group->left()) message.add_left(rank);
+    }
+    out_.to_node(node, make(&proto::Envelope::mutable_ticket, message));
+}
+
+void Wall::welcome_client(SessionId id, const SessionEntry& session, Rank rank) {
+    proto::ClientWelcome welcome;
+    const auto canvas = config_.canvas();
+    welcome.set_session(id.value);
+    welcome.set_canvas_width(static_cast<std::uint32_t>(canvas.width));
+    welcome.set_canvas_height(static_cast<std::uint32_t>(canvas.height));
+    std::vector<const proto::GlCaps*> caps;
+    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+        for (std::uint32_t slot = 0; const auto& tile : nodes_[i].config->tiles) {
+            auto* entry = welcome.add_tiles();
+            entry->set_node(i);
+            entry->set_slot(slot++);
+            entry->set_name(tile.name);
+            *entry->mutable_rect() = to_proto(tile.rect);
+        }
+        if (!nodes_[i].up) continue;
+        const auto at_first = session.group_nodes.find(i);
+        const bool same_for_all =
+            !session.group || (at_first != session.group_nodes.end() && at_first->second == nodes_[i].incarnation);
+        if (same_for_all) *welcome.add_nodes() = node_up_message(i, session.tickets.at(i));
+        caps.push_back(&nodes_[i].hello.caps());
+    }
+    *welcome.mutable_caps() = common_caps(caps);
+    welcome.set_swap_timeout_ms(static_cast<std::uint32_t>(config_.swap_timeout / std::chrono::milliseconds(1)));
+    out_.to_member(id, rank, make(&proto::Envelope::mutable_client_welcome, welcome));
+}
+
+void Wall::close_session(SessionId id) {
+    if (sessions_.erase(id) == 0) return;
+    if (!returns_over_) ended_.insert(id);
+    std::erase_if(stacking_, [&](const SurfaceKey& key) { return key.session == id; });
+    proto::SessionEnd end;
+    end.set_session(id.value);
+    to_all_nodes(make(&proto::Envelope::mutable_session_end, end));
+    send_stacking();
+}
+
+Result<void> Wall::open_surface(SessionId id, const proto::SurfaceOpen& message, Clock::time_point now, Rank rank) {
+    auto* session = find(id);
+    const SurfaceKey key{id, SurfaceId(message.surface())};
+    const bool known = session && session->surfaces.contains(key.surface);
+    if (!session || !key.surface || (known && !session->group))
+        return fail("surface " + std::to_string(message.surface()) + " cannot be opened: expected a new number");
+    if (!extent_ok(message.width(), message.height()))
+        return fail("surface of " + std::to_string(message.width()) + "x" + std::to_string(message.height()) +
+                    " pixels: expected 1 to " + std::to_string(wire::kMaxSurfaceExtent) + " a side");
+    if (known) {
+        open_for_member(key, message, rank, now);
+        return {};
+    }
+    if (session->surfaces.size() >= kMaxSurfaces) return fail("more than " + std::to_string(kMaxSurfaces) + " windows");
+    if (message.has_restore() && !session->group && restore_surface(key, message, now)) return {};
+    auto& surface = add_surface(key, message);
+    surface.place = PlacementTrack(first_rect(*session, surface, windows_placed_++));
+    surface.order = order_at(now);
+    stack(key);
+    present(key, surface.swap.set_nodes(nodes_of(*session, surface.place.drawn()), now), now);
+    if (session->group) {
+        agree(key, now);
+        open_for_member(key, message, rank, now);
+    } else {
+        send_placement(key, surface);
+    }
+    send_stacking();
+    return {};
+}
+
+/// Not placed yet.
+SurfaceEntry& Wall::add_surface(const SurfaceKey& key, const proto::SurfaceOpen& message) {
+    auto& session = *find(key.session);
+    SurfaceEntry surface{.width = message.width(),
+                         .height = message.height(),
+                         .title = message.title().substr(0, kMaxText),
+                         .place = PlacementTrack(),
+                         .note = {},
+                         .agreed = {},
+                         .swap = SwapCoordinator(config_.swap_timeout, session.held)};
+    return session.surfaces.emplace(key.surface, std::move(surface)).first->second;
+}
+
+/// The session's wanted rectangle goes to one window at a time; every other one gets its place in the layout that was
+/// loaded, or one where there is room.
+geom::Rect Wall::first_rect(SessionEntry& session, SurfaceEntry& surface, std::uint32_t number) {
+    const bool given =
+        std::ranges::any_of(session.surfaces, [](const auto& entry) { return entry.second.wanted_rect; });
+    if (session.rect && !given) {
+        surface.scaled = surface.wanted_rect = true;
+        return *session.rect;
+    }
+    if (const auto free = take_place(free_places_, {session.name, session.program, surface.title})) {
+        surface.scaled = free->scaled;
+        surface.layout_z = free->z;
+        waiting_places_changed();
+        return free->scaled ? free->rect
+                            : geom::Rect{free->rect.x, free->rect.y, static_cast<std::int32_t>(surface.width),
+                                         static_cast<std::int32_t>(surface.height)};
+    }
+    std::vector<geom::Rect> taken;
+    for (const auto& key : stacking_) taken.push_back(find(key)->place.wanted());
+    return place(config_.canvas(), taken, static_cast<std::int32_t>(surface.width),
+                 static_cast<std::int32_t>(surface.height), number);
+}
+
+/// On top, but below what lies above it in the layout that has placed it.
+void Wall::stack(const SurfaceKey& key) {
+    const auto z = find(key)->layout_z;
+    const auto above = [&](const SurfaceKey& other) { return z && find(other)->layout_z.value_or(0) > *z; };
+    stacking_.insert(std::ranges::find_if(stacking_, above), key);
+}
+
+void Wall::resize_surface(SessionId id, const proto::SurfaceResize& message, Clock::time_point now, Rank rank) {
+    const SurfaceKey key{id, SurfaceId(message.surface())};
+    auto* surface = find(key.surface, id);
+    if (!surface || rank != 0 || !extent_ok(message.width(), message.height())) return;
+    surface->width = message.width();
+    surface->height = message.height();
+    auto rect = surface->place.wanted();
+    if (!surface->scaled) {
+        rect.width = static_cast<std::int32_t>(message.width());
+        rect.height = static_cast<std::int32_t>(message.height());
+    }
+    want(key, rect, now);
+}
+
+void Wall::adopt_placement(SessionId id, const proto::SurfaceAdopted& message, Clock::time_point now) {
+    const SurfaceKey key{id, SurfaceId(message.surface())};
+    auto* surface = find(key.surface, id);
+    if (!surface) return;
+    proto::AdoptionNoted noted;
+    noted.set_surface(message.surface());
+    noted.set_layout_version(message.layout_version());
+    out_.to_client(id, make(&proto::Envelope::mutable_adoption_noted, noted));
+    if (!surface->place.adopt(message.layout_version(), message.frame())) return;
+    const auto nodes = nodes_under(surface->place.drawn());
+    const auto presents = surface->swap.move(nodes, message.frame(), now);
+    // Before the first frame there is nothing to keep in sight; a program without a back buffer never swaps. Where no
+    // node shows it, no frame will be presented.
+    const bool at_once = message.frame() <= 1 || nodes.empty();
+    if (at_once && surface->place.presented(message.frame())) send_stacking();
+    present(key, presents, now);
+}
+
+void Wall::cannot_close(SessionId id, SurfaceId surface) {
+    if (auto* found = find(surface, id)) found->cannot_close = true;
+}
+
+void Wall::client_reports(SessionId id, Rank rank, const proto::ClientStats& stats, Clock::time_point now) {
+    if (auto* session = find(id)) session->traffic.note(rank, stats, nodes_.size(), now);
+}
+
+void Wall::close_surface(SessionId id, SurfaceId surface, Rank rank) {
+    auto* session = find(id);
+    auto* found = find(surface, id);
+    if (!found || !closed_by_all(*session, *found, rank)) return;
+    session->surfaces.erase(surface);
+    std::erase(stacking_, SurfaceKey{id, surface});
+    send_stacking();
+}
+
+// ---- time ----
+
+std::optional<Clock::time_point> Wall::next_deadline() const {
+    std::optional<Clock::time_point> out;
+    const auto consider = [&](std::optional<Clock::time_point> deadline) {
+        if (deadline && (!out || *deadline < *out)) out = deadline;
+    };
+    for (const auto& [id, session] : sessions_) {
+        if (session.group && !session.group->all_came()) consider(session.opened + kMembersLimit);
+        for (const auto& [surface_id, surface] : session.surfaces) consider(surface.swap.deadline());
+    }
+    const bool waits = std::ranges::any_of(sessions_, [](const auto& entry) { return entry.second.awaited > 0; });
+    if (waits || !returning_.empty()) consider(return_until_);
+    return out;
+}
+
+void Wall::tick(Clock::time_point now) {
+    for_each_surface([&](const SurfaceKey& key, SurfaceEntry& surface) { present(key, surface.swap.tick(now), now); });
+    end_overdue_groups(now);
+    end_waiting_for_sessions(now);
+}
+
+// ---- inside ----
+
+SessionEntry* Wall::find(SessionId id) {
+    const auto found = sessions_.find(id);
+    return found == sessions_.end() ? nullptr : &found->second;
+}
+
+SurfaceEntry* Wall::find(SurfaceId surface, SessionId session) {
+    return const_cast<SurfaceEntry*>(find(SurfaceKey{session, surface}));
+}
+
+const SurfaceEntry* Wall::find(const SurfaceKey& key) const {
+    const auto session = sessions_.find(key.session);
+    if (session == sessions_.end()) return nullptr;
+    const auto found = session->second.surfaces.find(key.surface);
+    return found == session->second.surfaces.end() ? nullptr : &found->second;
+}
+
+void Wall::want(const SurfaceKey& key, const geom::Rect& rect, Clock::time_point now) {
+    auto& surface = *find(key.surface, key.session);
+    surface.place.want(rect);
+    tell_note(key);
+    if (find(key.session)->group) agree(key, now);
+    else send_placement(key, surface);
+}
+
+void Wall::present(const SurfaceKey& key, const Presents& presents, Clock::time_point now) {
+    // The nodes that it comes to stack it before they show its first frame there, those that it leaves take it away.
+    auto& surface = *find(key.surface, key.session);
+    if (surface.place.presented(surface.swap.presented())) send_stacking();
+    for (const auto& [node, frame] : presents) {
+        proto::Present message;
+        message.set_session(key.session.value);
+        message.set_surface(key.surface.value);
+        message.set_frame(frame);
+        out_.to_node(node, make(&proto::Envelope::mutable_present, message));
+        ++counters_.presents;
+        for (std::size_t slot = 0; slot < nodes_[node].tiles.size(); ++slot) {
+            if (!geom::overlaps(nodes_[node].config->tiles[slot].rect, surface.place.shown())) continue;
+            ++nodes_[node].tiles[slot].frames;
+            nodes_[node].tiles[slot].last = now;
+        }
+    }
+}
+
+std::uint32_t Wall::tile_lag(NodeIndex node, std::uint32_t slot) const {
+    std::uint32_t most = 0;
+    for (const auto& key : stacking_) {
+        const auto& surface = *find(key);
+        if (geom::overlaps(nodes_[node].config->tiles[slot].rect, surface.place.shown()))
+            most = std::max(most, surface.swap.behind(node));
+    }
+    return most;
+}
+
+proto::Placement Wall::placement_of(const SurfaceKey& key, const SurfaceEntry& surface) const {
+    proto::Placement placement;
+    placement.set_surface(key.surface.value);
+    placement.set_layout_version(surface.place.version());
+    *placement.mutable_rect() = to_proto(surface.place.wanted());
+    return placement;
+}
+
+void Wall::send_placement(const SurfaceKey& key, const SurfaceEntry& surface) {
+    out_.to_client(key.session, make(&proto::Envelope::mutable_placement, placement_of(key, surface)));
+}
+
+/// Only what lies on the node: it must not show a window that has moved away, of which it gets no further frame.
+proto::Envelope Wall::stacking_message(NodeIndex node) const {
+    proto::Stacking stacking;
+    for (const auto& key : stacking_) {
+        if (!nodes_under(find(key)->place.shown()).contains(node)) continue;
+        auto* entry = stacking.add_entries();
+        entry->set_session(key.session.value);
+        entry->set_surface(key.surface.value);
+        entry->set_held(find(key)->swap.held());
+    }
+    for (const auto& [id, session] : returning_) stacking.add_returning(id.value);
+    for (const auto& [id, session] : sessions_)
+        if (session.awaited > 0) stacking.add_returning(id.value);
+    return make(&proto::Envelope::mutable_stacking, stacking);
+}
+
+void Wall::send_stacking() {
+    number_stacking();
+    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+        if (nodes_[i].up) out_.to_node(i, stacking_message(i));
+    }
+}
+
+void Wall::to_all_nodes(const proto::Envelope& message) {
+    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+        if (nodes_[i].up) out_.to_node(i, message);
+    }
+}
+
+void Wall::for_each_surface(const std::function<void(const SurfaceKey&, SurfaceEntry&)>& visit) {
+    for (auto& [id, session] : sessions_) {
+        for (auto& [surface_id, surface] : session.surfaces) visit({id, surface_id}, surface);
+    }
+}
+
+}  // namespace wall::walld

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+// Everything walld knows: nodes, sessions, surfaces, their stacking. Pure: the daemon's shell tells it what came and
+// carries out what it says through an Outbox. Times are parameters. One thread.
+//
+//   node:    away -> up (hello) -> away (connection lost) -> up, incarnation + 1 if the process is another one
+//   session: open (hello, at least one node up) -> ended (connection lost, process gone, closed by an operator)
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/base/ids.h"
+#include "common/base/result.h"
+#include "common/config/wall_config.h"
+#include "proto/control.pb.h"
+#include "walld/wall/layout.h"
+#include "walld/wall/parallel_group.h"
+#include "walld/wall/person.h"
+#include "walld/wall/placement_track.h"
+#include "walld/wall/session_traffic.h"
+#include "walld/wall/swap_coordinator.h"
+
+namespace wall::walld {
+
+using NodeIndex = std::uint32_t;
+
+/// Where the wall's decisions go. Called from within the wall's functions; must not call back into it.
+class Outbox {
+public:
+    virtual ~Outbox() = default;
+    virtual void to_node(NodeIndex node, const proto::Envelope& message) = 0;
+    /// To all processes of the session.
+    virtual void to_client(SessionId session, const proto::Envelope& message) = 0;
+    /// To one process of a parallel program.
+    virtual void to_member(SessionId session, Rank rank, const proto::Envelope& message) = 0;
+    /// The session's processes are told why, and are cut off.
+    virtual void end_session(SessionId session, const std::string& reason) = 0;
+};
+
+/// A tile as walld knows it to be shown.
+struct TileShown {
+    std::uint64_t frames = 0;  ///< of its windows, since walld started
+    std::optional<Clock::time_point> last;
+};
+
+struct Node {
+    const config::NodeConfig* config = nullptr;
+    bool up = false;
+    std::uint32_t incarnation = 0;  ///< 0: never seen
+    proto::NodeHello hello;         ///< of the last connection
+    proto::NodeStats stats;         ///< the last that this process has told
+    std::vector<TileShown> tiles;   ///< by slot
+};
+
+struct SurfaceKey {
+    SessionId session;
+    SurfaceId surface;
+    auto operator<=>(const SurfaceKey&) const = default;
+};
+
+struct SurfaceEntry {
+    std::uint32_t width = 0, height = 0;  ///< the program's window
+    std::string title;
+    PlacementTrack place;                 ///< on the canvas
+    bool scaled = false;                  ///< the rectangle was given; else it follows the window's size
+    bool wanted_rect = false;             ///< it is the session's WALLGL_RECT window
+    bool cannot_close = false;            ///< its program has no way to be asked
+    std::uint64_t order = 0;              ///< in the stacking: what has a higher one lies above
+    std::string note;                     ///< what its program keeps of it for the next walld
+    std::optional<std::size_t> layout_z;  ///< its place in the stacking of the layout that placed it
+    AgreedPlacements agreed;              ///< of a parallel program
+    SwapCoordinator swap;
+};
+
+struct SessionEntry {
+    std::uint32_t pid = 0;  ///< of a parallel program's first member
+    std::string program, name;
+    std::optional<ParallelGroup> group;
+    std::map<NodeIndex, std::uint32_t> group_nodes;  ///< the members connect to at first: incarnations
+    Clock::time_point opened;
+    Person owner;
+    std::optional<geom::Rect> rect;  ///< asked for; fullscreen: the canvas
+    bool held = false;
+    std::string fault;          ///< what a node said against its stream
+    std::uint32_t awaited = 0;  ///< windows that it still has to announce, of a session that goes on
+    std::map<NodeIndex, std::string> tickets;
+    std::map<SurfaceId, SurfaceEntry> surfaces;
+    SessionTraffic traffic;
+};
+
+/// What an operator points at: a session, or one of its surfaces.
+struct Target {
+    SessionId session;
+    SurfaceId surface;  ///< none: the session's topmost
+    /// "3" or "3.1".
+    static Outcome<Target> parse(std::string_view text);
+};
+
+struct Counters {
+    std::uint64_t sessions = 0, presents = 0, faults = 0;
+};
+
+/// Of an earlier walld, by what the nodes tell of it.
+struct ReturningSession {
+    std::map<NodeIndex, std::string> tickets;
+};
+
+class Wall {
+public:
+    static constexpr std::size_t kTicketBytes = 16;
+    /// From the first node on: programs of an earlier walld that have not come by then have lost their session.
+    static constexpr std::chrono::seconds kReturnLimit{10};
+    static constexpr std::chrono::seconds kMembersLimit{60};  ///< for all processes of a parallel program to come
+    using RandomBytes = std::function<std::string(std::size_t)>;
+
+    Wall(config::WallConfig config, Outbox& out, RandomBytes random);
+
+    Wall(const Wall&) = delete;
+    Wall& operator=(const Wall&) = delete;
+
+    // ---- nodes ----
+    /// Why this process cannot be one of the wall's nodes now, if so. One that is up gives way to itself on another
+    /// link, and to a process that was started later.
+    Result<NodeIndex> check_node(const proto::NodeHello& hello) const;
+    Result<NodeIndex> node_joins(const proto::NodeHello& hello, Clock::time_point now);
+    void node_leaves(NodeIndex node, Clock::time_point now);
+    void node_rendered(NodeIndex node, const proto::Rendered& report, Clock::time_point now);
+    void node_faults(NodeIndex node, const proto::SessionFault& report);
+    void node_reports(NodeIndex node, const proto::NodeStats& stats) { nodes_[node].stats = stats; }
+
+    // ---- clients ----
+    bool any_node_up() const;
+    /// Why this program cannot be taken now, if so.
+    Outcome<void> check(const proto::ClientHello& hello) const;
+    /// Why it cannot be taken as this person's process of a parallel program, if so.
+    Outcome<void> check_member(const proto::ClientHello& hello, const Person& who) const;
+    /// Needs a node that is up and a hello that was checked. The welcome goes to the session's client; the id is known
+    /// before any message is sent. A parallel program's first member opens it, the others get the same one.
+    SessionId open_session(const proto::ClientHello& hello, Person owner, Clock::time_point now,
+                           const std::function<void(SessionId)>& before_welcome);
+    void close_session(SessionId id);
+    /// A process is gone. The session is closed with its last one, and with one that has not left its parallel program:
+    /// then the others are cut off. Gives what became of it, for the log.
+    std::string member_gone(SessionId id, Rank rank);
+    void member_leaves(SessionId id, Rank rank, Clock::time_point now);
+    Result<void> open_surface(SessionId id, const proto::SurfaceOpen& message, Clock::time_point now, Rank rank = 0);
+    /// Always answered with a Placement. In a parallel program rank 0 says how large a window is.
+    void resize_surface(SessionId id, const proto::SurfaceResize& message, Clock::time_point now, Rank rank = 0);
+    void close_surface(SessionId id, SurfaceId surface, Rank rank = 0);
+    void placement_noted(SessionId id, Rank rank, const proto::PlacementNoted& message, Clock::time_point now);
+
+    /// The program draws with a placement from a frame on.
+    void adopt_placement(SessionId id, const proto::SurfaceAdopted& message, Clock::time_point now);
+    void cannot_close(SessionId id, SurfaceId surface);
+    void client_reports(SessionId id, Rank rank, const proto::ClientStats& stats, Clock::time_point now);
+
+    // ---- operators (wall_operate.cpp) ----
+    Outcome<void> place_surface(const Target& target, const geom::Rect& rect, Clock::time_point now);
+    Outcome<void> raise(const Target& target);
+    Outcome<void> lower(const Target& target);
+    /// Gives the windows that were asked.
+    Outcome<std::vector<SurfaceKey>> ask_to_close(const Target& target);
+    Outcome<void> hold(const Target& target, bool on, Clock::time_point now);
+    Outcome<void> step(const Target& target, std::uint32_t frames, Clock::time_point now);
+    Outcome<SurfaceKey> resolve(const Target& target) const;
+    /// The one surface named, or all of the session (possibly none), bottom first.
+    Outcome<std::vector<SurfaceKey>> surfaces_of(const Target& target) const;
+    Layout current_layout() const;
+    /// Places and stacks the windows that match, at once; programs that start later get the places left over, until
+    /// another layout is loaded. Gives the number of windows placed.
+    std::size_t load_layout(const Layout& layout, Clock::time_point now);
+
+    // ---- time ----
+    std::optional<Clock::time_point> next_deadline() const;
+    void tick(Clock::time_point now);
+
+    // ---- views ----
+    const config::WallConfig& config() const { return config_; }
+    const std::vector<Node>& nodes() const { return nodes_; }
+    const std::map<SessionId, SessionEntry>& sessions() const { return sessions_; }
+    const std::vector<SurfaceKey>& stacking() const { return stacking_; }  ///< bottom first
+    const SurfaceEntry* find(const SurfaceKey& key) const;
+    const Counters& counters() const { return counters_; }
+    /// The most frames that a node is behind a window on this tile.
+    std::uint32_t tile_lag(NodeIndex node, std::uint32_t slot) const;
+
+private:
+    SessionEntry* find(SessionId id);
+    SurfaceEntry* find(SurfaceId surface, SessionId session);
+    SurfaceEntry& add_surface(const SurfaceKey& key, const proto::SurfaceOpen& message);
+    proto::NodeUp node_up_message(NodeIndex node, const std::string& ticket) const;
+    void welcome_node(NodeIndex node);
+    void welcome_client(SessionId id, const SessionEntry& session, Rank rank);
+    void hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node);
+    std::set<NodeIndex> nodes_under(const geom::Rect& rect) const;
+    geom::Rect first_rect(SessionEntry& session, SurfaceEntry& surface, std::uint32_t number);
+    SessionId next_session();
+    // of a walld that was started again (wall_return.cpp)
+    std::optional<SessionId> resumable(const proto::ClientHello& hello) const;
+    void resume_session(SessionId id, SessionEntry& session, const proto::Resume& resume);
+    static std::uint64_t order_at(Clock::time_point now);
+    bool restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& message, Clock::time_point now);
+    void hear_of_sessions(NodeIndex node, const proto::NodeHello& hello, Clock::time_point now);
+    void end_waiting_for_sessions(Clock::time_point now);
+    void hear_wall_note(NodeIndex node, const proto::WallNote& note);
+    void waiting_places_changed();
+    proto::Envelope wall_note() const;
+    void number_stacking();
+    void tell_note(const SurfaceKey& key);
+    void ask_for_frames(SessionId session);
+    WindowName name_of(const SurfaceKey& key) const;
+    void stack(const SurfaceKey& key);
+    void want(const SurfaceKey& key, const geom::Rect& rect, Clock::time_point now);
+    proto::Placement placement_of(const SurfaceKey& key, const SurfaceEntry& surface) const;
+    // of parallel programs (wall_group.cpp)
+    const std::pair<const SessionId, SessionEntry>* group_of(const proto::ClientHello& hello) const;
+    SessionId join_session(SessionId id, const proto::ClientHello& hello,
+                           const std::function<void(SessionId)>& before_welcome);
+    std::set<NodeIndex> nodes_of(const SessionEntry& session, const geom::Rect& rect) const;
+    void agree(const SurfaceKey& key, Clock::time_point now);
+    void open_for_member(const SurfaceKey& key, const proto::SurfaceOpen& message, Rank rank, Clock::time_point now);
+    void limit_frames(const SurfaceKey& key, Clock::time_point now);
+    static bool closed_by_all(SessionEntry& session, SurfaceEntry& surface, Rank rank);
+    void end_overdue_groups(Clock::time_point now);
+    void present(const SurfaceKey& key, const Presents& presents, Clock::time_point now);
+    void send_placement(const SurfaceKey& key, const SurfaceEntry& surface);
+    void send_stacking();
+    void to_all_nodes(const proto::Envelope& message);
+    proto::Envelope stacking_message(NodeIndex node) const;
+    void for_each_surface(const std::function<void(const SurfaceKey&, SurfaceEntry&)>& visit);
+
+    config::WallConfig config_;
+    Outbox& out_;
+    RandomBytes random_;
+    std::vector<Node> nodes_;
+    std::map<SessionId, SessionEntry> sessions_;
+    std::vector<SurfaceKey> stacking_;
+    SessionId last_session_;
+    std::uint32_t windows_placed_ = 0;      ///< of cascades
+    std::vector<LayoutEntry> free_places_;  ///< of the layout loaded last
+    std::uint64_t places_version_ = 0;      ///< of free_places_
+    bool layout_loaded_ = false;            ///< since walld was started
+    std::map<SessionId, ReturningSession> returning_;
+    std::optional<Clock::time_point> return_until_;  ///< none: no node has come yet
+    bool returns_over_ = false;                      ///< nobody is waited for any more
+    std::set<SessionId> ended_;                      ///< until then: sessions that nodes may still have
+    Counters counters_;
+};
+
+}  // namespace wall::walld

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+// What comes back when walld was started again. It writes nothing down: programs and nodes, which live on, tell it what
+// they know, and give back the notes that the walld before had left with them for what only it knew.
+//
+//   session  its program names it, with the nodes' tickets; the nodes name it, too. Their streams go on.
+//   window   its program says where it draws it and where it was wanted; the note has hold, order and the like
+//   frames   the nodes say what they have drawn and what they show
+//   layout   each node keeps the places that wait for programs
+//
+// The notes are worth no more than what the program could ask for anyway: its own windows' place, order and hold.
+#include <algorithm>
+
+#include "common/wire/limits.h"
+#include "walld/wall/messages.h"
+#include "walld/wall/wall.h"
+
+namespace wall::walld {
+namespace {
+
+constexpr std::size_t kMaxWaiting = 4096;  // places
+
+/// Takes as long for a wrong one that begins right as for any other.
+bool same_secret(std::string_view a, std::string_view b) {
+    if (a.size() != b.size()) return false;
+    unsigned difference = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+    return difference == 0;
+}
+
+/// The program has been told this ticket of a node that has come with it.
+bool knows_a_ticket(const proto::Resume& resume, const ReturningSession& session) {
+    return std::ranges::any_of(resume.tickets(), [&](const proto::Resume::NodeTicket& told) {
+        const auto of_node = session.tickets.find(told.node());
+        return of_node != session.tickets.end() && same_secret(of_node->second, told.ticket());
+    });
+}
+
+std::vector<LayoutEntry> places_of(const proto::WallNote& note, const geom::Rect& canvas) {
+    std::vector<LayoutEntry> out;
+    for (const auto& place : note.waiting()) {
+        const auto rect = from_proto(place.rect());
+        if (out.size() >= kMaxWaiting || !check_place(canvas, rect)) continue;
+        out.push_back({{place.name(), place.program(), place.title()}, rect, place.scaled(), place.z()});
+    }
+    return out;
+}
+
+}  // namespace
+
+// ---- sessions ----
+
+/// Sessions of a walld before this one wait for their programs. Others have ended while the node's link was broken.
+void Wall::hear_of_sessions(NodeIndex node, const proto::NodeHello& hello, Clock::time_point now) {
+    if (!return_until_) return_until_ = now + kReturnLimit;
+    end_waiting_for_sessions(now);
+    for (const auto& known : hello.sessions()) {
+        const SessionId id(known.session());
+        if (sessions_.contains(id)) continue;  // with another ticket, it ends by that
+        last_session_ = std::max(last_session_, id);
+        if (!returns_over_ && !ended_.contains(id)) {
+            returning_[id].tickets[node] = known.ticket();
+            continue;
+        }
+        proto::SessionEnd end;
+        end.set_session(id.value);
+        out_.to_node(node, make(&proto::Envelope::mutable_session_end, end));
+    }
+}
+
+std::optional<SessionId> Wall::resumable(const proto::ClientHello& hello) const {
+    if (!hello.has_resume() || hello.has_group()) return std::nullopt;
+    const auto found = returning_.find(SessionId(hello.resume().session()));
+    if (found == returning_.end() || !knows_a_ticket(hello.resume(), found->second)) return std::nullopt;
+    return found->first;
+}
+
+/// Tickets that program and node have in common stay, so that the streams do. A node that is away keeps the program's
+/// until it says its own.
+void Wall::resume_session(SessionId id, SessionEntry& session, const proto::Resume& resume) {
+    const auto returning = std::move(returning_.extract(id).mapped());
+    for (const auto& told : resume.tickets()) {
+        if (told.node() >= nodes_.size() || told.ticket().size() != kTicketBytes) continue;
+        const auto of_node = returning.tickets.find(told.node());
+        const bool known = of_node != returning.tickets.end() && same_secret(of_node->second, told.ticket());
+        if (known || !nodes_[told.node()].up) session.tickets[told.node()] = told.ticket();
+    }
+    session.awaited = resume.windows();
+}
+
+void Wall::end_waiting_for_sessions(Clock::time_point now) {
+    if (returns_over_ || !return_until_ || now < *return_until_) return;
+    returns_over_ = true;
+    ended_.clear();
+    for (const auto& [id, session] : std::exchange(returning_, {})) {
+        proto::SessionEnd end;
+        end.set_session(id.value);
+        for (const auto& [node, ticket] : session.tickets)
+            out_.to_node(node, make(&proto::Envelope::mutable_session_end, end));
+    }
+    for (auto& [id, session] : sessions_) session.awaited = 0;
+    send_stacking();
+}
+
+// ---- windows ----
+
+/// Later windows lie above, also above those that an earlier walld has seen: the clock runs as long as the machine.
+std::uint64_t Wall::order_at(Clock::time_point now) {
+    return static_cast<std::uint64_t>(
+        std::chrono::duration_cast<std::chrono::microseconds>(now.time_since_epoch()).count());
+}
+
+/// False: it was at no place that this wall has.
+bool Wall::restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& message, Clock::time_point now) {
+    auto& session = *find(key.session);
+    if (session.awaited > 0) --session.awaited;
+    const auto drawn = from_proto(message.restore().drawn());
+    proto::WindowRecord record;
+    if (!check_place(config_.canvas(), drawn) || !record.ParseFromString(message.restore().note())) return false;
+    session.held = record.session_held();
+    auto& surface = add_surface(key, message);
+    surface.place = PlacementTrack(drawn);
+    surface.scaled = record.scaled();
+    surface.wanted_rect = record.wanted_rect();
+    surface.order = std::min(record.order(), order_at(now));
+    if (record.has_layout_z()) surface.layout_z = record.layout_z();
+    surface.swap = SwapCoordinator(config_.swap_timeout, record.held());
+    const auto above = [&](const SurfaceKey& other) { return find(other)->order > surface.order; };
+    stacking_.insert(std::ranges::find_if(stacking_, above), key);
+    present(key, surface.swap.set_nodes(nodes_under(drawn), now), now);
+    auto wanted = from_proto(message.restore().wanted());
+    if (!check_place(config_.canvas(), wanted)) wanted = drawn;
+    if (!surface.scaled) {
+        wanted.width = static_cast<std::int32_t>(message.width());
+        wanted.height = static_cast<std::int32_t>(message.height());
+    }
+    if (wanted != drawn) want(key, wanted, now);
+    else send_placement(key, surface);
+    send_stacking();
+    ask_for_frames(key.session);
+    return true;
+}
+
+void Wall::ask_for_frames(SessionId session) {
+    proto::FramesRequest request;
+    request.set_session(session.value);
+    to_all_nodes(make(&proto::Envelope::mutable_frames_request, request));
+}
+
+/// Bottom first, from what was the order before: only what was moved gets another number.
+void Wall::number_stacking() {
+    std::uint64_t last = 0;
+    for (const auto& key : stacking_) {
+        auto& order = find(key.surface, key.session)->order;
+        if (order <= last) order = last + 1;
+        last = order;
+        tell_note(key);
+    }
+}
+
+/// A parallel program does not come back: its processes would have to begin anew at the same frame.
+void Wall::tell_note(const SurfaceKey& key) {
+    const auto& session = *find(key.session);
+    auto& surface = *find(key.surface, key.session);
+    if (session.group) return;
+    proto::WindowRecord record;
+    record.set_scaled(surface.scaled);
+    record.set_wanted_rect(surface.wanted_rect);
+    record.set_held(surface.swap.held());
+    record.set_session_held(session.held);
+    record.set_order(surface.order);
+    if (surface.layout_z) record.set_layout_z(*surface.layout_z);
+    auto text = record.SerializeAsString();
+    if (text == surface.note) return;
+    surface.note = std::move(text);
+    proto::SurfaceNote note;
+    note.set_surface(key.surface.value);
+    note.set_note(surface.note);
+    out_.to_client(key.session, make(&proto::Envelope::mutable_surface_note, note));
+}
+
+// ---- the layout that waits ----
+
+proto::Envelope Wall::wall_note() const {
+    proto::WallNote note;
+    note.set_version(places_version_);
+    for (const auto& entry : free_places_) {
+        auto& place = *note.add_waiting();
+        place.set_name(entry.window.name);
+        place.set_program(entry.window.program);
+        place.set_title(entry.window.title);
+        *place.mutable_rect() = to_proto(entry.rect);
+        place.set_scaled(entry.scaled);
+        place.set_z(entry.z);
+    }
+    return make(&proto::Envelope::mutable_wall_note, note);
+}
+
+void Wall::waiting_places_changed() {
+    ++places_version_;
+    to_all_nodes(wall_note());
+}
+
+/// The newest one counts, unless a layout was loaded since: then that one is the newest from now on.
+void Wall::hear_wall_note(NodeIndex node, const proto::WallNote& note) {
+    const auto ours = wall_note();
+    if (note.version() < places_version_) return out_.to_node(node, ours);
+    if (note.SerializeAsString() == ours.wall_note().SerializeAsString()) return;
+    if (layout_loaded_ || note.version() == places_version_) {
+        places_version_ = note.version() + 1;
+    } else {
+        places_version_ = note.version();
+        free_places_ = places_of(note, config_.canvas());
+    }
+    to_all_nodes(wall_note());
+}
+
+}  // namespace wall::walld
