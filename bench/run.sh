@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Runs the benchmarks of build/release and prints their tables.
 # bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, switch,
-#                                         pack, mesh, march, traffic, share, streams, codec)
+#                                         pack, mesh, march, off_wall, traffic, share, streams, codec)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -33,6 +33,7 @@ run switch bench/switch.py --json "$results/switch.json"
 run pack bench/pack.py --json "$results/pack.json"
 run mesh bench/mesh.py --json "$results/mesh.json"
 run march bench/march.py --json "$results/march.json"
+run off_wall bench/off_wall.py --json "$results/off_wall.json"
 run traffic bench/traffic.py --json "$results/traffic.json"
 run share bench/share.py --json "$results/share.json"
 run streams bench/stream_cost.py --json "$results/streams.json"

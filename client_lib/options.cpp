@@ -15,7 +15,7 @@ bool flag(const char* name) {
 }  // namespace
 
 const Options& options() {
-    static const Options read{flag("WALLGL_BROADCAST"), flag("WALLGL_IDEAL")};
+    static const Options read{flag("WALLGL_BROADCAST"), flag("WALLGL_IDEAL"), flag("WALLGL_SHOWN_ONLY")};
     return read;
 }
 

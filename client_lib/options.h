@@ -7,6 +7,7 @@ namespace wall::client {
 struct Options {
     bool broadcast = false;    ///< WALLGL_BROADCAST=1: everything goes to every node, for comparison
     bool count_ideal = false;  ///< WALLGL_IDEAL=1: also count what perfect sorting by primitive would send
+    bool shown_only = false;   ///< WALLGL_SHOWN_ONLY=1: what no tile shows is not kept, and reads back black
 };
 
 const Options& options();

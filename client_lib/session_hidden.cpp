@@ -7,6 +7,7 @@
 #include "client_lib/context.h"
 #include "client_lib/hidden_part.h"
 #include "client_lib/maps.h"
+#include "client_lib/options.h"
 #include "client_lib/select.h"
 #include "client_lib/share_group.h"
 #include "common/glstate/pack_sink.h"
@@ -67,7 +68,7 @@ void ClientSession::lay_hidden_part(ClientSurface& surface) {
     const geom::Rect around = uncovered(layout.rect, shown);
     const auto before = surface.hidden ? std::optional(surface.hidden->target.node) : std::nullopt;
     const auto node = node_for_hidden(surface, before);
-    if (around.empty() || !node || group_) {
+    if (around.empty() || !node || group_ || options().shown_only) {
         surface.hidden.reset();
         return;
     }
