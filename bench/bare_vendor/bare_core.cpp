@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "client_lib/core.h"
+#include "client_lib/context/core.h"
 
 namespace wall::client {
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <iterator>
 
-#include "client_lib/attribute_stack.h"
-#include "client_lib/buffer_binding.h"
-#include "client_lib/client_arrays.h"
-#include "client_lib/lists.h"
-#include "client_lib/select.h"
+#include "client_lib/context/attribute_stack.h"
+#include "client_lib/context/buffer_binding.h"
+#include "client_lib/context/client_arrays.h"
+#include "client_lib/context/lists.h"
+#include "client_lib/geometry/select.h"
 #include "common/glstate/diff.h"
 
 namespace wall::client::api {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // glPushAttrib and glPopAttrib.
-#include "client_lib/attribute_stack.h"
-#include "client_lib/context.h"
+#include "client_lib/context/attribute_stack.h"
+#include "client_lib/context/context.h"
 #include "common/glstate/diff.h"
 
 namespace wall::client::api {

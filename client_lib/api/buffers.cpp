@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "client_lib/buffer_binding.h"
-#include "client_lib/share_group.h"
+#include "client_lib/context/buffer_binding.h"
+#include "client_lib/context/share_group.h"
 
 namespace wall::client::api {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // glDrawBuffers for the default framebuffer, which has one fragment colour (GL_MAX_DRAW_BUFFERS is 1).
-#include "client_lib/context.h"
+#include "client_lib/context/context.h"
 
 namespace wall::client::api {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "client_lib/context.h"
-#include "client_lib/maps.h"
+#include "client_lib/context/context.h"
+#include "client_lib/context/maps.h"
 #include "client_lib/objects/texture.h"
 
 namespace wall::client::api {

@@ -4,9 +4,9 @@
 // (no context, list compilation) has a limit that sends them to it.
 #include <cstring>
 
-#include "client_lib/context.h"
-#include "client_lib/entry_guard.h"
-#include "client_lib/program_use.h"
+#include "client_lib/api/entry_guard.h"
+#include "client_lib/context/context.h"
+#include "client_lib/context/program_use.h"
 
 namespace wall::client {
 namespace {

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "client_lib/attribute_stack.h"
-#include "client_lib/context.h"
-#include "client_lib/limits.h"
-#include "client_lib/lists.h"
-#include "client_lib/maps.h"
-#include "client_lib/select.h"
-#include "client_lib/share_group.h"
-#include "client_lib/version.h"
+#include "client_lib/api/version.h"
+#include "client_lib/context/attribute_stack.h"
+#include "client_lib/context/context.h"
+#include "client_lib/context/limits.h"
+#include "client_lib/context/lists.h"
+#include "client_lib/context/maps.h"
+#include "client_lib/context/share_group.h"
+#include "client_lib/geometry/select.h"
 #include "common/glstate/elements.h"
 #include "common/glstate/queries.h"
 

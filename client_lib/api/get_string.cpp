@@ -3,8 +3,8 @@
 #include <map>
 #include <mutex>
 
-#include "client_lib/context.h"
-#include "client_lib/version.h"
+#include "client_lib/api/version.h"
+#include "client_lib/context/context.h"
 
 namespace wall::client::api {
 namespace {

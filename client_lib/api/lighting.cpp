@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Clip planes are given in object coordinates and kept in eye coordinates (OpenGL 1.2.1, 2.11). The matrix is the
 // modelview of the call.
-#include "client_lib/context.h"
-#include "client_lib/matrix.h"
+#include "client_lib/context/context.h"
+#include "client_lib/context/matrix.h"
 
 namespace wall::client {
 namespace {

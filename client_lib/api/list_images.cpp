@@ -3,11 +3,11 @@
 // with tight rows, and is given to the immediate function as such when the list is called (OpenGL 1.2.1, 5.4).
 #include <tuple>
 
-#include "client_lib/context.h"
-#include "client_lib/lists.h"
-#include "client_lib/maps.h"
+#include "client_lib/context/context.h"
+#include "client_lib/context/lists.h"
+#include "client_lib/context/maps.h"
+#include "client_lib/context/pixel_store.h"
 #include "client_lib/objects/texture.h"
-#include "client_lib/pixel_store.h"
 
 namespace wall::client {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Display list commands (OpenGL 1.2.1, 5.4).
-#include "client_lib/lists.h"
+#include "client_lib/context/lists.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "client_lib/param_commands.h"
-#include "client_lib/share_group.h"
+#include "client_lib/context/param_commands.h"
+#include "client_lib/context/share_group.h"
 
 namespace wall::client::api {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // glMaterial: state outside of glBegin .. glEnd, geometry inside (OpenGL 1.2.1, 2.13.2).
-#include "client_lib/material.h"
+#include "client_lib/context/material.h"
 
 #include <cstring>
 
-#include "client_lib/context.h"
-#include "client_lib/lists.h"
+#include "client_lib/context/context.h"
+#include "client_lib/context/lists.h"
 
 namespace wall::client::api {
 namespace {

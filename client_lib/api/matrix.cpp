@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The matrix stacks and the viewport (OpenGL 1.2.1, 2.10). Only the tops are state of the context; the rest is local.
-#include "client_lib/matrix.h"
+#include "client_lib/context/matrix.h"
 
 #include <algorithm>
 
-#include "client_lib/context.h"
-#include "client_lib/limits.h"
+#include "client_lib/context/context.h"
+#include "client_lib/context/limits.h"
 
 namespace wall::client::api {
 namespace {

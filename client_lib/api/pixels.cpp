@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstring>
 
-#include "client_lib/buffer_binding.h"
-#include "client_lib/context.h"
-#include "client_lib/maps.h"
+#include "client_lib/context/buffer_binding.h"
+#include "client_lib/context/context.h"
+#include "client_lib/context/maps.h"
+#include "client_lib/context/pixel_store.h"
+#include "client_lib/context/share_group.h"
+#include "client_lib/follow/readback.h"
 #include "client_lib/objects/texture.h"
-#include "client_lib/pixel_store.h"
-#include "client_lib/readback.h"
-#include "client_lib/share_group.h"
 #include "common/wire/limits.h"
 
 namespace wall::client::api {

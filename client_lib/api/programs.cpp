@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "client_lib/program_use.h"
+#include "client_lib/context/program_use.h"
 
 namespace wall::client::api {
 namespace {

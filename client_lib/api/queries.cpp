@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-#include "client_lib/occlusion.h"
+#include "client_lib/context/occlusion.h"
 
 namespace wall::client::api {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "client_lib/context.h"
-#include "client_lib/matrix.h"
+#include "client_lib/context/context.h"
+#include "client_lib/context/matrix.h"
 
 namespace wall::client::api {
 namespace {

@@ -2,10 +2,10 @@
 // glReadPixels: one of the few commands that must wait (OpenGL 1.2.1, 4.3.2).
 #include <algorithm>
 
-#include "client_lib/context.h"
-#include "client_lib/pixel_convert.h"
-#include "client_lib/pixel_store.h"
-#include "client_lib/readback.h"
+#include "client_lib/context/context.h"
+#include "client_lib/context/pixel_store.h"
+#include "client_lib/follow/readback.h"
+#include "client_lib/objects/pixel_convert.h"
 
 namespace wall::client::api {
 namespace {

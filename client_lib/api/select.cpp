@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Selection and feedback (OpenGL 1.2.1, 5.2 and 5.3).
-#include "client_lib/select.h"
+#include "client_lib/geometry/select.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "client_lib/context.h"
+#include "client_lib/context/context.h"
 #include "common/wire/limits.h"
 
 namespace wall::client::api {

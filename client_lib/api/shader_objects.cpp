@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // ARB_shader_objects where it is not OpenGL 2.0 under other names: its functions take shaders and programs alike.
-#include "client_lib/program_use.h"
+#include "client_lib/context/program_use.h"
 
 namespace wall::client::api {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Commands about the stream as a whole: clearing, accumulating, flushing, finishing.
-#include "client_lib/context.h"
+#include "client_lib/context/context.h"
 
 namespace wall::client::api {
 namespace {

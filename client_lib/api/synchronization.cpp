@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // GL_CR_synchronization: the order between the processes of a parallel program (docs/parallel-programs.md). The calls
 // are commands of the stream: none waits.
-#include "client_lib/context.h"
+#include "client_lib/context/context.h"
 
 namespace wall::client::api {
 namespace {

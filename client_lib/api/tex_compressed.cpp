@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cstring>
 
-#include "client_lib/ask_one.h"
-#include "client_lib/buffer_binding.h"
-#include "client_lib/maps.h"
-#include "client_lib/s3tc.h"
-#include "client_lib/texture_binding.h"
-#include "client_lib/texture_formats.h"
-#include "client_lib/texture_image.h"
+#include "client_lib/context/buffer_binding.h"
+#include "client_lib/context/maps.h"
+#include "client_lib/context/texture_binding.h"
+#include "client_lib/context/texture_image.h"
+#include "client_lib/follow/ask_one.h"
+#include "client_lib/objects/s3tc.h"
+#include "client_lib/objects/texture_formats.h"
 
 namespace wall::client::api {
 namespace {

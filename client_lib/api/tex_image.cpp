@@ -6,14 +6,14 @@
 #include <bit>
 #include <cstring>
 
-#include "client_lib/limits.h"
-#include "client_lib/maps.h"
-#include "client_lib/pixel_store.h"
-#include "client_lib/readback.h"
-#include "client_lib/s3tc.h"
-#include "client_lib/texture_binding.h"
-#include "client_lib/texture_formats.h"
-#include "client_lib/texture_image.h"
+#include "client_lib/context/limits.h"
+#include "client_lib/context/maps.h"
+#include "client_lib/context/pixel_store.h"
+#include "client_lib/context/texture_binding.h"
+#include "client_lib/context/texture_image.h"
+#include "client_lib/follow/readback.h"
+#include "client_lib/objects/s3tc.h"
+#include "client_lib/objects/texture_formats.h"
 
 namespace wall::client {
 namespace {

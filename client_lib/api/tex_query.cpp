@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "client_lib/maps.h"
-#include "client_lib/pixel_store.h"
-#include "client_lib/s3tc.h"
-#include "client_lib/texture_binding.h"
-#include "client_lib/texture_formats.h"
-#include "client_lib/texture_image.h"
+#include "client_lib/context/maps.h"
+#include "client_lib/context/pixel_store.h"
+#include "client_lib/context/texture_binding.h"
+#include "client_lib/context/texture_image.h"
+#include "client_lib/objects/s3tc.h"
+#include "client_lib/objects/texture_formats.h"
 
 namespace wall::client::api {
 namespace {

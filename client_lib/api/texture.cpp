@@ -5,11 +5,11 @@
 #include <cmath>
 #include <iterator>
 
-#include "client_lib/context.h"
-#include "client_lib/limits.h"
-#include "client_lib/param_commands.h"
-#include "client_lib/session.h"
-#include "client_lib/texture_binding.h"
+#include "client_lib/context/context.h"
+#include "client_lib/context/limits.h"
+#include "client_lib/context/param_commands.h"
+#include "client_lib/context/texture_binding.h"
+#include "client_lib/follow/session.h"
 
 namespace wall::client::api {
 namespace {

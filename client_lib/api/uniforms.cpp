@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "client_lib/param_commands.h"
-#include "client_lib/program_use.h"
+#include "client_lib/context/param_commands.h"
+#include "client_lib/context/program_use.h"
 
 namespace wall::client::api {
 namespace {

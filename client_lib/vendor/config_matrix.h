@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "client_lib/core.h"
+#include "client_lib/context/core.h"
 
 namespace wall::client::vendor {
 

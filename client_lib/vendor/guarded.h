@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "client_lib/guard.h"
+#include "client_lib/process/guard.h"
 
 namespace wall::client::vendor {
 

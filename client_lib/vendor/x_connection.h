@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-#include "client_lib/core.h"
+#include "client_lib/context/core.h"
 
 namespace wall::client::vendor {
 

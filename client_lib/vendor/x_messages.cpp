@@ -7,7 +7,7 @@
 #include <cstring>
 #include <memory>
 
-#include "client_lib/log.h"
+#include "client_lib/process/log.h"
 
 namespace wall::client::vendor {
 namespace {

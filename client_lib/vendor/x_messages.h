@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "client_lib/window_messages.h"
+#include "client_lib/link/window_messages.h"
 
 namespace wall::client::vendor {
 

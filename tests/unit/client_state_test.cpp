@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "client_lib/context.h"
-#include "client_lib/share_group.h"
+#include "client_lib/context/context.h"
+#include "client_lib/context/share_group.h"
 #include "common/glstate/elements.h"
 #include "common/glstate/queries.h"
 #include "tests/unit/mesa_context.h"

@@ -14,7 +14,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "client_lib/core.h"
+#include "client_lib/context/core.h"
 #include "client_lib/vendor/x_connection.h"
 
 namespace wall::client::egl {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "client_lib/log.h"
-#include "client_lib/process.h"
-#include "client_lib/stats.h"
+#include "client_lib/process/log.h"
+#include "client_lib/process/process.h"
+#include "client_lib/process/stats.h"
 #include "client_lib/vendor/config_matrix.h"
 #include "client_lib/vendor/egl/display.h"
 #include "client_lib/vendor/guarded.h"

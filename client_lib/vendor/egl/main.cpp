@@ -3,9 +3,9 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "client_lib/core.h"
-#include "client_lib/log.h"
-#include "client_lib/process.h"
+#include "client_lib/context/core.h"
+#include "client_lib/process/log.h"
+#include "client_lib/process/process.h"
 #include "client_lib/vendor/egl/functions.h"
 #include "client_lib/vendor/guarded.h"
 

@@ -11,7 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "client_lib/core.h"
+#include "client_lib/context/core.h"
 
 namespace wall::client::glx {
 

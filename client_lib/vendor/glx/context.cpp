@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "client_lib/process.h"
+#include "client_lib/process/process.h"
 
 namespace wall::client::glx {
 namespace {

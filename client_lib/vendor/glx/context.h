@@ -7,7 +7,7 @@
 
 #include <memory>
 
-#include "client_lib/core.h"
+#include "client_lib/context/core.h"
 #include "client_lib/vendor/glx/config.h"
 #include "client_lib/vendor/glx/drawable.h"
 

@@ -10,7 +10,7 @@
 #include <optional>
 #include <unordered_map>
 
-#include "client_lib/core.h"
+#include "client_lib/context/core.h"
 #include "client_lib/vendor/glx/config.h"
 #include "client_lib/vendor/x_connection.h"
 

@@ -5,7 +5,7 @@
 #undef min
 #undef max
 
-#include "client_lib/log.h"
+#include "client_lib/process/log.h"
 
 namespace wall::client::glx {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "client_lib/core.h"
+#include "client_lib/context/core.h"
 #include "client_lib/vendor/glx/functions.h"
 
 namespace wall::client::glx {

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "client_lib/core.h"
-#include "client_lib/log.h"
+#include "client_lib/context/core.h"
+#include "client_lib/process/log.h"
 
 namespace wall::client {
 

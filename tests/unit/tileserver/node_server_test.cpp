@@ -15,8 +15,8 @@
 #include <future>
 #include <thread>
 
-#include "client_lib/node_stream.h"
-#include "client_lib/transport.h"
+#include "client_lib/link/node_stream.h"
+#include "client_lib/link/transport.h"
 #include "common/net/sockets.h"
 #include "common/wire/batch.h"
 #include "common/wire/limits.h"

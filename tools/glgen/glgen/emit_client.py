@@ -94,7 +94,7 @@ def tables_source(commands):
     canonical = commands.canonical
     out = [header("gl.xml and proto/gl/commands.toml",
                   "The modes of a context as tables, display list recording and replay.", [], pragma=False),
-           '#include "client_lib/context.h"\n#include "client_lib/param_commands.h"\n'
+           '#include "client_lib/context/context.h"\n#include "client_lib/context/param_commands.h"\n'
            '#include "common/glapi/recorder.h"\n'
            '#include "gen/client_lib/api.gen.h"\n\nnamespace wall::client {\n\nnamespace {\n\n'
            "using glapi::recorded_array;\n\n"
@@ -177,9 +177,9 @@ def _replay(i):
 def entries_source(commands, registry):
     out = [header("gl.xml and proto/gl/commands.toml", "The functions that applications call, and their names.", [],
                   pragma=False),
-           '#include "client_lib/context.h"\n#include "client_lib/current.h"\n'
-           '#include "client_lib/entry_guard.h"\n#include "client_lib/param_commands.h"\n'
-           '#include "client_lib/unsupported.h"\n#include "common/glapi/convert.h"\n'
+           '#include "client_lib/context/context.h"\n#include "client_lib/context/current.h"\n'
+           '#include "client_lib/api/entry_guard.h"\n#include "client_lib/context/param_commands.h"\n'
+           '#include "client_lib/api/unsupported.h"\n#include "common/glapi/convert.h"\n'
            '#include "gen/client_lib/api.gen.h"\n\n'
            "namespace wall::client {\nnamespace {\n\nusing glapi::to_fraction;\n\n"]
     for i in commands.unique:

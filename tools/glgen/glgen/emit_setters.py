@@ -9,7 +9,8 @@ from .text import header
 def setters_source(commands, model, registry):
     out = [header("proto/gl/state.toml and proto/gl/commands.toml",
                   "Commands that set one element of the state, or read parameters.", [], pragma=False),
-           '#include <array>\n\n#include "client_lib/context.h"\n#include "client_lib/param_commands.h"\n'
+           '#include <array>\n\n#include "client_lib/context/context.h"\n'
+           '#include "client_lib/context/param_commands.h"\n'
            '#include "gen/client_lib/api.gen.h"\n\n'
            "namespace wall::client {\n\nnamespace el = glstate::el;\nusing namespace glstate;  // value types\n\n"
            "namespace {\n\n"]

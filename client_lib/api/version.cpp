@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/api/version.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <iterator>
+#include <sstream>
+
+#include "gen/client_lib/api.gen.h"
+
+namespace wall::client {
+namespace {
+
+constexpr const char* kWallVersion = "WallGL 0.1";
+
+bool implemented(const char* command) {
+    return std::none_of(std::begin(kUnsupportedNames), std::end(kUnsupportedNames),
+                        [&](const char* name) { return std::strcmp(name, command) == 0; });
+}
+
+/// A version and the command that came with it last.
+struct Step {
+    GlVersion version;
+    const char* command;
+};
+constexpr Step kSteps[] = {
+    {{1, 2, nullptr}, "glTexImage3D"}, {{1, 3, nullptr}, "glMultiTexCoord4f"}, {{1, 4, nullptr}, "glMultiDrawElements"},
+    {{1, 5, nullptr}, "glBindBuffer"}, {{2, 0, "1.10"}, "glUseProgram"},       {{2, 1, "1.20"}, "glUniformMatrix2x3fv"},
+};
+
+/// What no driver need have: it is between the programs and the nodes.
+constexpr const char* kOwnExtensions[] = {"GL_CR_synchronization", "GL_WALLGL_global_texture"};
+
+/// An extension and a command that it stands or falls with; null: words only.
+struct Extension {
+    const char* name;
+    const char* command;
+};
+constexpr Extension kExtensions[] = {
+    {"GL_ARB_depth_clamp", nullptr},
+    {"GL_ARB_depth_texture", nullptr},
+    {"GL_ARB_draw_buffers", "glDrawBuffers"},
+    {"GL_ARB_fragment_shader", "glUseProgram"},
+    {"GL_ARB_framebuffer_object", "glGenFramebuffers"},
+    {"GL_ARB_multisample", "glSampleCoverage"},
+    {"GL_ARB_multitexture", "glMultiTexCoord4f"},
+    {"GL_ARB_occlusion_query", "glBeginQuery"},
+    {"GL_ARB_pixel_buffer_object", "glBindBuffer"},
+    {"GL_ARB_point_parameters", nullptr},
+    {"GL_ARB_point_sprite", nullptr},
+    {"GL_ARB_provoking_vertex", "glProvokingVertex"},
+    {"GL_ARB_shader_objects", "glDeleteObjectARB"},
+    {"GL_ARB_shading_language_100", "glUseProgram"},
+    {"GL_ARB_shadow", nullptr},
+    {"GL_ARB_texture_border_clamp", nullptr},
+    {"GL_ARB_texture_compression", "glCompressedTexImage2D"},
+    {"GL_ARB_texture_cube_map", nullptr},
+    {"GL_ARB_texture_env_add", nullptr},
+    {"GL_ARB_texture_env_combine", nullptr},
+    {"GL_ARB_texture_env_crossbar", nullptr},
+    {"GL_ARB_texture_env_dot3", nullptr},
+    {"GL_ARB_texture_mirrored_repeat", nullptr},
+    {"GL_ARB_texture_non_power_of_two", nullptr},
+    {"GL_ARB_texture_rectangle", nullptr},
+    {"GL_ARB_transpose_matrix", nullptr},
+    {"GL_ARB_vertex_array_object", "glGenVertexArrays"},
+    {"GL_ARB_vertex_buffer_object", "glBindBuffer"},
+    {"GL_ARB_vertex_shader", "glUseProgram"},
+    {"GL_ARB_window_pos", nullptr},
+    {"GL_EXT_abgr", nullptr},
+    {"GL_EXT_bgra", nullptr},
+    {"GL_EXT_blend_color", nullptr},
+    {"GL_EXT_blend_equation_separate", nullptr},
+    {"GL_EXT_blend_func_separate", nullptr},
+    {"GL_EXT_blend_minmax", nullptr},
+    {"GL_EXT_blend_subtract", nullptr},
+    {"GL_EXT_copy_texture", nullptr},
+    {"GL_EXT_draw_range_elements", nullptr},
+    {"GL_EXT_fog_coord", nullptr},
+    {"GL_EXT_framebuffer_object", "glGenFramebuffers"},
+    {"GL_EXT_multi_draw_arrays", "glMultiDrawElements"},
+    {"GL_EXT_packed_pixels", nullptr},
+    {"GL_EXT_pixel_buffer_object", "glBindBuffer"},
+    {"GL_EXT_point_parameters", nullptr},
+    {"GL_EXT_polygon_offset", nullptr},
+    {"GL_EXT_rescale_normal", nullptr},
+    {"GL_EXT_secondary_color", nullptr},
+    {"GL_EXT_separate_specular_color", nullptr},
+    {"GL_EXT_stencil_wrap", nullptr},
+    {"GL_EXT_subtexture", nullptr},
+    {"GL_EXT_texture", nullptr},
+    {"GL_EXT_texture3D", "glTexImage3D"},
+    {"GL_EXT_texture_compression_s3tc", "glCompressedTexImage2D"},
+    {"GL_EXT_texture_cube_map", nullptr},
+    {"GL_EXT_texture_edge_clamp", nullptr},
+    {"GL_EXT_texture_env_add", nullptr},
+    {"GL_EXT_texture_env_combine", nullptr},
+    {"GL_EXT_texture_env_dot3", nullptr},
+    {"GL_EXT_texture_filter_anisotropic", nullptr},
+    {"GL_EXT_texture_lod_bias", nullptr},
+    {"GL_EXT_texture_object", nullptr},
+    {"GL_EXT_texture_rectangle", nullptr},
+    {"GL_EXT_vertex_array", nullptr},
+    {"GL_NV_blend_square", nullptr},
+    {"GL_NV_texgen_reflection", nullptr},
+    {"GL_NV_texture_rectangle", nullptr},
+    {"GL_SGIS_generate_mipmap", nullptr},
+    {"GL_SGIS_texture_edge_clamp", nullptr},
+    {"GL_SGIS_texture_lod", nullptr},
+};
+
+GlVersion node_version(const Caps& caps) {
+    GlVersion version;
+    if (std::sscanf(caps.version.c_str(), "%d.%d", &version.major, &version.minor) != 2) return {};
+    return version;
+}
+
+bool at_most(const GlVersion& a, const GlVersion& b) {
+    return a.major < b.major || (a.major == b.major && a.minor <= b.minor);
+}
+
+}  // namespace
+
+GlVersion offered_version(const Caps& caps) {
+    GlVersion offered;
+    const GlVersion node = node_version(caps);
+    for (const Step& step : kSteps) {
+        if (!implemented(step.command) || !at_most(step.version, node)) break;
+        offered = step.version;
+    }
+    return offered;
+}
+
+std::vector<std::string> offered_extensions(const Caps& caps) {
+    std::istringstream words(caps.extensions);
+    const std::vector<std::string> node{std::istream_iterator<std::string>(words), {}};
+    std::vector<std::string> offered(std::begin(kOwnExtensions), std::end(kOwnExtensions));
+    for (const Extension& extension : kExtensions)
+        if ((!extension.command || implemented(extension.command)) &&
+            std::find(node.begin(), node.end(), extension.name) != node.end())
+            offered.emplace_back(extension.name);
+    return offered;
+}
+
+std::string version_string(const Caps& caps) {
+    const GlVersion version = offered_version(caps);
+    return std::to_string(version.major) + "." + std::to_string(version.minor) + " " + kWallVersion;
+}
+
+}  // namespace wall::client

@@ -1,0 +1,442 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/context/client_arrays.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "client_lib/context/buffer_binding.h"
+#include "client_lib/context/lists.h"
+#include "client_lib/context/program_use.h"
+#include "client_lib/geometry/block_walk.h"
+
+namespace wall::client {
+namespace {
+
+using glapi::Op;
+
+// ---- loading ----
+
+template <class T>
+T load_one(const std::byte* at) {
+    T value;
+    std::memcpy(&value, at, sizeof value);
+    return value;
+}
+
+/// How a normalized integer becomes a float differs in the last bit between the ways into Mesa.
+enum class Conversion : std::uint8_t {
+    none,     ///< the number itself
+    fetch,    ///< llvmpipe's, of a draw from arrays
+    command,  ///< glColor's and glNormal's, which glArrayElement and display lists go through
+};
+
+template <class T, Conversion kConversion>
+float to_float(T value) {
+    constexpr auto kMax = static_cast<double>(std::numeric_limits<T>::max());
+    if constexpr (kConversion == Conversion::none || std::is_floating_point_v<T>) return static_cast<float>(value);
+    else if constexpr (std::is_same_v<T, GLubyte> && kConversion == Conversion::command)
+        return static_cast<float>(value) / 255.0f;
+    else if constexpr (std::is_unsigned_v<T> && sizeof(T) < 4)
+        return static_cast<float>(value) * static_cast<float>(1.0 / kMax);
+    else if constexpr (std::is_unsigned_v<T>) return static_cast<float>(value * (1.0 / kMax));
+    else if constexpr (kConversion == Conversion::command)
+        return (2.0f * static_cast<float>(value) + 1.0f) *
+               (1.0f / static_cast<float>(2.0 * kMax + (sizeof(T) < 4 ? 1.0 : 0.0)));
+    else return std::max(static_cast<float>(value) * static_cast<float>(1.0 / kMax), -1.0f);
+}
+
+using Load = void (*)(const std::byte*, GLint, float*);
+
+template <class T, Conversion kConversion>
+void load_values(const std::byte* from, GLint size, float* out) {
+    for (GLint i = 0; i < size; ++i)
+        out[i] = to_float<T, kConversion>(load_one<T>(from + static_cast<std::size_t>(i) * sizeof(T)));
+}
+
+template <class T>
+Load loader(Conversion conversion) {
+    switch (conversion) {
+        case Conversion::fetch: return &load_values<T, Conversion::fetch>;
+        case Conversion::command: return &load_values<T, Conversion::command>;
+        case Conversion::none: break;
+    }
+    return &load_values<T, Conversion::none>;
+}
+
+Load loader_of(GLenum type, Conversion conversion) {
+    switch (type) {
+        case GL_BYTE: return loader<GLbyte>(conversion);
+        case GL_UNSIGNED_BYTE: return loader<GLubyte>(conversion);
+        case GL_SHORT: return loader<GLshort>(conversion);
+        case GL_UNSIGNED_SHORT: return loader<GLushort>(conversion);
+        case GL_INT: return loader<GLint>(conversion);
+        case GL_UNSIGNED_INT: return loader<GLuint>(conversion);
+        case GL_DOUBLE: return loader<GLdouble>(Conversion::none);
+        default: return loader<GLfloat>(Conversion::none);
+    }
+}
+
+/// Whether the two conversions of a byte give the same float; then a colour of bytes may travel as such.
+constexpr std::array<bool, 256> kSameByte = [] {
+    std::array<bool, 256> same{};
+    for (int i = 0; i < 256; ++i)
+        same[static_cast<std::size_t>(i)] =
+            static_cast<float>(i) * static_cast<float>(1.0 / 255.0) == static_cast<float>(i) / 255.0f;
+    return same;
+}();
+
+bool same_bytes(const std::byte* at, std::size_t count) {
+    bool same = true;
+    for (std::size_t i = 0; i < count; ++i) same &= kSameByte[std::to_integer<std::size_t>(at[i])];
+    return same;
+}
+
+std::size_t bytes_of(GLenum type) {
+    switch (type) {
+        case GL_BYTE:
+        case GL_UNSIGNED_BYTE: return 1;
+        case GL_SHORT:
+        case GL_UNSIGNED_SHORT:
+        case GL_HALF_FLOAT: return 2;
+        case GL_DOUBLE: return 8;
+        default: return 4;
+    }
+}
+
+const std::byte* place(const ArraySource& source, GLuint element) {
+    static constexpr std::byte kNothing[32]{};
+    return element < source.count ? source.base + source.stride * element : kNothing;
+}
+
+// ---- straight into the packer ----
+
+/// An array whose elements are an operand as they stand.
+struct DirectArray {
+    const std::byte* base;
+    std::size_t stride;
+    Op op;
+    std::size_t bytes;
+    std::size_t slot;  ///< in Packer::last; kNoSlot: the vertex
+};
+constexpr std::size_t kNoSlot = kAttributes;
+
+struct DirectLayout {
+    std::array<DirectArray, 4> arrays;
+    std::size_t count = 0;
+};
+
+bool direct(const ArraySource& source, DirectArray& out) {
+    static constexpr Op kVertices[] = {Op::Vertex2f, Op::Vertex3f, Op::Vertex4f};
+    static constexpr Op kTexCoords[] = {Op::TexCoord1f, Op::TexCoord2f, Op::TexCoord3f, Op::TexCoord4f};
+    out = {source.base, source.stride, Op::Vertex3f, static_cast<std::size_t>(source.size) * 4, kNoSlot};
+    const bool floats = source.type == GL_FLOAT;
+    if (source.count != ArraySource::kNoLimit) return false;
+    switch (source.kind) {
+        case ArrayKind::vertex: out.op = kVertices[source.size - 2]; return floats && source.size <= 3;
+        case ArrayKind::normal: out.op = Op::Normal3f, out.slot = place_of(Attribute::normal); return floats;
+        case ArrayKind::texcoord:
+            out.op = kTexCoords[source.size - 1], out.slot = place_of(Attribute::texcoord);
+            return floats && source.index == 0;
+        case ArrayKind::color:
+            out.slot = place_of(Attribute::color);
+            out.op = !floats ? Op::Color4ub : source.size == 3 ? Op::Color3f : Op::Color4f;
+            if (!floats) out.bytes = 4;
+            return floats || (source.type == GL_UNSIGNED_BYTE && source.size == 4);
+        default: return false;
+    }
+}
+
+/// False if some array needs conversion or a rarer command.
+bool direct_layout(const ArraySet& arrays, DirectLayout& layout) {
+    for (const ArraySource& source : arrays.sources()) {
+        if (layout.count == layout.arrays.size() || !direct(source, layout.arrays[layout.count])) return false;
+        ++layout.count;
+    }
+    return true;
+}
+
+void copy_words(std::byte* to, const std::byte* from, std::size_t bytes) {
+    switch (bytes) {  // constant sizes: a move or two each
+        case 4: std::memcpy(to, from, 4); break;
+        case 8: std::memcpy(to, from, 8); break;
+        case 12: std::memcpy(to, from, 12); break;
+        default: std::memcpy(to, from, 16); break;
+    }
+}
+
+__m128 load_vertex(const std::byte* at, std::size_t bytes) {
+    const __m128 xy = _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(at)));  // any alignment
+    if (bytes == 8) return xy;
+    float z;
+    std::memcpy(&z, at + 8, sizeof z);
+    return _mm_movelh_ps(xy, _mm_set_ss(z));
+}
+
+/// Where the latest attributes went and as what.
+struct Placed {
+    std::array<const std::byte*, 4> at;
+    std::array<Op, 4> op;
+};
+
+/// A colour of four bytes, as the driver would fetch it.
+std::byte* pack_color(std::byte* operand, const std::byte* from, Op& op) {
+    if (same_bytes(from, 4)) {
+        op = Op::Color4ub;
+        std::memcpy(operand, from, 4);
+        return operand + 4;
+    }
+    op = Op::Color4f;
+    float v[4];
+    load_values<GLubyte, Conversion::fetch>(from, 4, v);
+    std::memcpy(operand, v, sizeof v);
+    return operand + sizeof v;
+}
+
+/// Packs elements as long as there is room in the packer; returns how many.
+template <class ElementAt>
+GLsizei pack_some(Packer& packer, const DirectLayout& layout, GLsizei first, GLsizei end, ElementAt&& element_at) {
+    std::byte *operand = packer.next_operand(), *opcode = packer.next_opcode();
+    const std::byte* const limit = packer.limit;
+    geom::Box box = packer.box;
+    Placed placed;
+    GLsizei i = first;
+    // A vertex takes at most 16 + 12 + 16 + 12 bytes: it fits into what the packer keeps beyond its limit.
+    for (; i < end && operand < limit; ++i) {
+        const std::size_t element = element_at(i);
+        for (std::size_t k = 0; k < layout.count; ++k) {
+            const DirectArray& array = layout.arrays[k];
+            const std::byte* from = array.base + array.stride * element;
+            placed.at[k] = operand;
+            placed.op[k] = array.op;
+            if (array.op == Op::Color4ub) {
+                operand = pack_color(operand, from, placed.op[k]);
+            } else {
+                copy_words(operand, from, array.bytes);
+                operand += array.bytes;
+            }
+            *--opcode = static_cast<std::byte>(placed.op[k]);
+            if (array.slot == kNoSlot) box.add(load_vertex(from, array.bytes));
+        }
+    }
+    packer.box = box;
+    packer.next_operand() = operand;
+    packer.next_opcode() = opcode;
+    for (std::size_t k = 0; i > first && k < layout.count; ++k) {  // the last vertex has the current attributes
+        if (layout.arrays[k].slot == kNoSlot) continue;
+        packer.last[layout.arrays[k].slot] = placed.at[k];
+        packer.last_op[layout.arrays[k].slot] = placed.op[k];
+    }
+    return i - first;
+}
+
+template <class ElementAt>
+void pack_direct(Packer& packer, const DirectLayout& layout, GLsizei count, ElementAt&& element_at) {
+    for (GLsizei done = 0; done < count;) {
+        done += pack_some(packer, layout, done, count, element_at);
+        if (done < count) packer.make_room();
+    }
+}
+
+void pack_direct(Packer& packer, const DirectLayout& layout, const ElementRange& elements) {
+    const auto indexed = [&](const auto* indices) {
+        pack_direct(packer, layout, elements.count,
+                    [indices](GLsizei i) { return static_cast<std::size_t>(indices[i]); });
+    };
+    switch (elements.type) {
+        case GL_UNSIGNED_BYTE: return indexed(static_cast<const GLubyte*>(elements.indices));
+        case GL_UNSIGNED_SHORT: return indexed(static_cast<const GLushort*>(elements.indices));
+        case GL_UNSIGNED_INT: return indexed(static_cast<const GLuint*>(elements.indices));
+        default:
+            pack_direct(packer, layout, elements.count, [first = elements.first](GLsizei i) {
+                return static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
+            });
+    }
+}
+
+// ---- current attributes ----
+
+/// OpenGL leaves the current attributes undefined after a draw from arrays; Mesa leaves them alone, and programs rely
+/// on it.
+class SavedCurrent {
+public:
+    SavedCurrent(Context& c, const ArraySet& arrays) : c_(c), arrays_(arrays) {
+        for (std::size_t i = 0; i < arrays.sources().size(); ++i)
+            if (const auto attribute = attribute_of(arrays.sources()[i])) save(*attribute, saved_[i]);
+    }
+    void restore() {
+        for (std::size_t i = 0; i < arrays_.sources().size(); ++i)
+            if (const auto attribute = attribute_of(arrays_.sources()[i])) restore(*attribute, saved_[i]);
+    }
+
+private:
+    /// The command that sets it again.
+    struct Saved {
+        Op op;
+        std::array<std::byte, glstate::kMostAttributeBytes> operand;
+    };
+    static std::optional<Attribute> attribute_of(const ArraySource& source) {
+        switch (source.kind) {
+            case ArrayKind::edge_flag: return Attribute::edge_flag;
+            case ArrayKind::index: return Attribute::color_index;
+            case ArrayKind::fog_coord: return Attribute::fog_coord;
+            case ArrayKind::secondary_color: return Attribute::secondary_color;
+            case ArrayKind::color: return Attribute::color;
+            case ArrayKind::normal: return Attribute::normal;
+            case ArrayKind::texcoord: return Attribute::texcoord + source.index;
+            case ArrayKind::attrib: return Attribute::vertex_attrib + source.index;
+            case ArrayKind::vertex: return std::nullopt;
+        }
+        return std::nullopt;
+    }
+    /// The packed command is newer than the state.
+    void save(Attribute attribute, Saved& out) const {
+        const std::size_t place = place_of(attribute);
+        if (c_.packer.last[place]) {
+            out.op = c_.packer.last_op[place];
+            std::memcpy(out.operand.data(), c_.packer.last[place], operand_bytes_of(out.op));
+        } else {
+            out.op = glstate::write_attribute(c_.state, attribute, out.operand.data());
+        }
+    }
+    void restore(Attribute attribute, const Saved& saved) {
+        const std::size_t bytes = operand_bytes_of(saved.op);
+        std::memcpy(c_.packer.append_attribute(attribute, saved.op, bytes), saved.operand.data(), bytes);
+    }
+
+    Context& c_;
+    const ArraySet& arrays_;
+    std::array<Saved, kMaxArrays> saved_;  // as many as there are sources
+};
+
+// ---- through the table ----
+
+void send(Context& c, const ArraySource& source, GLuint element) {
+    const std::byte* at = place(source, element);
+    if (source.kind == ArrayKind::color && source.type == GL_UNSIGNED_BYTE &&
+        (source.by_command || same_bytes(at, static_cast<std::size_t>(source.size)))) {
+        const auto byte = [&](GLint i) { return std::to_integer<GLubyte>(at[i]); };
+        return c.table->Color4ub(c, byte(0), byte(1), byte(2), source.size == 4 ? byte(3) : GLubyte{255});
+    }
+    float v[4] = {0, 0, 0, 1};
+    source.load(at, source.size, v);
+    switch (source.kind) {
+        case ArrayKind::edge_flag: return c.table->EdgeFlag(c, at[0] != std::byte{0});
+        case ArrayKind::index: return c.table->Indexf(c, v[0]);
+        case ArrayKind::fog_coord: return c.table->FogCoordf(c, v[0]);
+        case ArrayKind::secondary_color: return c.table->SecondaryColor3f(c, v[0], v[1], v[2]);
+        case ArrayKind::color:
+            if (source.size == 3) return c.table->Color3f(c, v[0], v[1], v[2]);
+            return c.table->Color4f(c, v[0], v[1], v[2], v[3]);
+        case ArrayKind::normal: return c.table->Normal3f(c, v[0], v[1], v[2]);
+        case ArrayKind::texcoord:
+            if (source.index != 0)
+                return c.table->MultiTexCoord4f(c, GL_TEXTURE0 + source.index, v[0], v[1], v[2], v[3]);
+            if (source.size == 2) return c.table->TexCoord2f(c, v[0], v[1]);
+            return c.table->TexCoord4f(c, v[0], v[1], v[2], v[3]);
+        case ArrayKind::attrib: return c.table->VertexAttrib4f(c, source.index, v[0], v[1], v[2], v[3]);
+        case ArrayKind::vertex:
+            if (source.size == 2) return c.table->Vertex2f(c, v[0], v[1]);
+            if (source.size == 3) return c.table->Vertex3f(c, v[0], v[1], v[2]);
+            return c.table->Vertex4f(c, v[0], v[1], v[2], v[3]);
+    }
+}
+
+/// Calls `each(element)` for every element, and `restart()` where the index says so.
+template <class Each, class Restart>
+void walk(Context& c, const ElementRange& elements, Each&& each, Restart&& restart) {
+    const bool restarts = elements.type != 0 && c.state.local.primitive_restart;
+    const GLuint restart_index = c.state.local.primitive_restart_index;
+    for (GLsizei i = 0; i < elements.count; ++i) {
+        const GLuint element = elements.at(i);
+        if (restarts && element == restart_index) restart();
+        else each(element);
+    }
+}
+
+}  // namespace
+
+ArraySet::ArraySet(Context& c, bool by_command) : by_command_(by_command) {
+    const auto& l = c.state.local;
+    add(c, ArrayKind::edge_flag, 0, l.edge_flag_array);
+    add(c, ArrayKind::index, 0, l.index_array);
+    add(c, ArrayKind::fog_coord, 0, l.fog_coord_array);
+    add(c, ArrayKind::secondary_color, 0, l.secondary_color_array);
+    add(c, ArrayKind::color, 0, l.color_array);
+    add(c, ArrayKind::normal, 0, l.normal_array);
+    for (unsigned unit = 0; unit < kTextureUnits; ++unit) add(c, ArrayKind::texcoord, unit, l.texcoord_array[unit]);
+    for (unsigned i = 1; i < kVertexAttributes; ++i) add(c, ArrayKind::attrib, i, l.attrib_array[i]);
+    add(c, ArrayKind::vertex, 0, l.attrib_array[0].enabled ? l.attrib_array[0] : l.vertex_array);
+}
+
+void ArraySet::add(Context& c, ArrayKind kind, unsigned index, const glstate::ClientArray& array) {
+    if (!array.enabled) return;
+    const std::size_t bytes = bytes_of(array.type) * static_cast<std::size_t>(array.size);
+    const std::size_t stride = array.stride ? static_cast<std::size_t>(array.stride) : bytes;
+    const auto* base = reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(array.pointer));
+    std::size_t count = ArraySource::kNoLimit;
+    if (array.buffer) {
+        readings_.push_back(buffer_content(c, array.buffer, static_cast<std::uintptr_t>(array.pointer)));
+        const auto content = readings_.back().bytes();
+        base = content.data();
+        count = content.size() < bytes ? 0 : (content.size() - bytes) / stride + 1;
+    } else if (!base) {
+        return;
+    }
+    const Conversion conversion = !array.normalized ? Conversion::none
+                                  : by_command_     ? Conversion::command
+                                                    : Conversion::fetch;
+    sources_[count_++] = {
+        kind, index, by_command_, base, stride, count, array.size, array.type, loader_of(array.type, conversion)};
+}
+
+void ArraySet::add_constant_vertex(Context& c) {
+    if (has_vertex()) return;
+    c.flush_block();  // the current attributes are in `state` after it
+    constant_vertex_ = c.state.current.vertex_attrib[0];
+    const auto* base = reinterpret_cast<const std::byte*>(constant_vertex_.data());
+    sources_[count_++] = {ArrayKind::vertex,
+                          0,
+                          by_command_,
+                          base,
+                          0,
+                          ArraySource::kNoLimit,
+                          4,
+                          GL_FLOAT,
+                          loader_of(GL_FLOAT, Conversion::none)};
+}
+
+void send_element(Context& c, const ArraySet& arrays, GLuint element) {
+    for (const ArraySource& source : arrays.sources()) send(c, source, element);
+}
+
+void draw_elements(Context& c, GLenum mode, const ElementRange& elements) {
+    const bool at_once = c.table == &tables::immediate;
+    ArraySet arrays(c, !at_once);
+    if (c.program) arrays.add_constant_vertex(c);
+    const bool draws = arrays.has_vertex() && elements.count > 0;
+    if (!at_once && !record_array_draw(c, draws)) return;
+    if (!draws) return;
+    if (!at_once) {
+        c.table->Begin(c, mode);
+        walk(
+            c, elements, [&](GLuint e) { send_element(c, arrays, e); },
+            [&] {
+                c.table->End(c);
+                if (record_array_draw(c, true)) c.table->Begin(c, mode);
+            });
+        return c.table->End(c);
+    }
+    if (c.program && !may_draw(c)) return;
+    SavedCurrent current(c, arrays);
+    c.begin_primitive(mode);
+    const auto restart = [&] { c.end_primitive(), c.begin_primitive(mode); };
+    const bool restarts = elements.type != 0 && c.state.local.primitive_restart;
+    if (DirectLayout layout; !restarts && direct_layout(arrays, layout)) pack_direct(c.packer, layout, elements);
+    else
+        walk(
+            c, elements, [&](GLuint e) { send_element(c, arrays, e); }, restart);
+    c.end_primitive();
+    current.restore();
+}
+
+}  // namespace wall::client

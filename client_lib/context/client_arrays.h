@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// Vertex arrays as immediate-mode geometry: only the vertices that a draw references are looked at (an application's
+// arrays may be wrong elsewhere), and what travels is Begin, attributes, vertices, End. The application's thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "client_lib/context/context.h"
+#include "client_lib/objects/buffer.h"
+
+namespace wall::client {
+
+enum class ArrayKind : std::uint8_t {
+    edge_flag,
+    index,
+    fog_coord,
+    secondary_color,
+    color,
+    normal,
+    texcoord,
+    attrib,
+    vertex
+};
+
+/// One enabled array, resolved to memory.
+struct ArraySource {
+    ArrayKind kind;
+    unsigned index;   ///< texture unit or attribute
+    bool by_command;  ///< converted as glColor and the like do
+    const std::byte* base;
+    std::size_t stride;
+    std::size_t count;  ///< elements that lie in the buffer object; kNoLimit for client memory
+    GLint size;
+    GLenum type;
+    void (*load)(const std::byte* from, GLint size, float* out);
+    static constexpr std::size_t kNoLimit = ~std::size_t{0};
+};
+inline constexpr std::size_t kMaxArrays = 7 + kTextureUnits + kVertexAttributes - 1;
+
+/// The enabled arrays in the order in which an element's attributes are sent: the vertex last.
+class ArraySet {
+public:
+    /// `by_command`: values are converted as by glColor and the like, not as by a draw.
+    ArraySet(Context& c, bool by_command);
+    std::span<const ArraySource> sources() const { return {sources_.data(), count_}; }
+    ArraySet(const ArraySet&) = delete;  // sources may point to constant_vertex_
+
+    /// A program may draw without an array of positions: all vertices have the current attribute 0 then.
+    void add_constant_vertex(Context& c);
+    bool has_vertex() const { return count_ != 0 && sources_[count_ - 1].kind == ArrayKind::vertex; }
+
+private:
+    void add(Context& c, ArrayKind kind, unsigned index, const glstate::ClientArray& array);
+    std::array<ArraySource, kMaxArrays> sources_;  // not initialized: draws may be small
+    std::size_t count_ = 0;
+    bool by_command_;
+    glstate::Vec4 constant_vertex_{};
+    std::vector<BufferReading> readings_;  ///< of the buffers that the sources lie in
+};
+
+/// Which elements a draw uses: `count` in a row from `first`, or the indices.
+struct ElementRange {
+    GLint first = 0;
+    GLsizei count = 0;
+    GLenum type = 0;  ///< of the indices; 0: none
+    const void* indices = nullptr;
+    GLuint at(GLsizei i) const {
+        switch (type) {
+            case GL_UNSIGNED_BYTE: return static_cast<const GLubyte*>(indices)[i];
+            case GL_UNSIGNED_SHORT: return static_cast<const GLushort*>(indices)[i];
+            case GL_UNSIGNED_INT: return static_cast<const GLuint*>(indices)[i];
+            default: return static_cast<GLuint>(first + i);
+        }
+    }
+};
+
+/// Sends one element through the context's table (glArrayElement).
+void send_element(Context& c, const ArraySet& arrays, GLuint element);
+
+/// Draws one primitive. While the context draws at once: straight into the packer where the layout is a usual one, and
+/// the current attributes are what they were before. While a list is compiled: through the table.
+void draw_elements(Context& c, GLenum mode, const ElementRange& elements);
+
+}  // namespace wall::client

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/context/core.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "client_lib/context/context.h"
+#include "client_lib/context/share_group.h"
+#include "client_lib/process/guard.h"
+#include "client_lib/process/log.h"
+#include "client_lib/process/process.h"
+
+namespace wall::client {
+namespace {
+
+/// A thread without a context packs into this: closed, so that every entry point looks for a context and finds none.
+Packer* closed_packer() {
+    static Packer* packer = [] {
+        auto* made = new Packer();  // never destroyed: threads may outlive static destructors
+        made->set_closed(true);
+        return made;
+    }();
+    return packer;
+}
+
+/// Keeps the thread's context and surfaces alive while they are current. Not destroyed at exit(): programs still draw
+/// in their own exit handlers.
+struct Current {
+    std::shared_ptr<Context> context;
+    std::shared_ptr<ClientSurface> draw, read;
+};
+constinit thread_local Current* current = nullptr;
+
+void release() {
+    const std::unique_ptr<Current> last(std::exchange(current, nullptr));
+    if (last) {
+        last->context->flush_block();
+        last->context->session().flush(nullptr, false);
+        last->context->in_use = false;
+    }
+    go_dark();
+}
+
+}  // namespace
+
+void go_dark() {
+    tls_context = nullptr;
+    tls_packer = closed_packer();
+}
+
+std::shared_ptr<ClientSurface> create_surface(SurfaceOptions options) {
+    auto id = options.visible ? next_window_id() : next_object_id();
+    if (id == 0) {
+        complain_once("wallgl: a parallel program has too many windows; more are not shown on the wall", "windows");
+        options.visible = false;
+        id = next_object_id();
+    }
+    return std::shared_ptr<ClientSurface>(new ClientSurface(id, std::move(options)), [](ClientSurface* surface) {
+        try {
+            if (surface->opened)
+                if (auto session = ClientSession::get_if_open()) session->close_surface(*surface);
+        } catch (...) {
+            caught_exception("the end of a surface");
+        }
+        delete surface;
+    });
+}
+
+std::shared_ptr<Context> create_context(const ContextOptions& options) {
+    if (options.core_profile || options.major > 2) return nullptr;
+    return std::make_shared<Context>(options.share ? options.share->share_pointer() : std::make_shared<ShareGroup>(),
+                                     options);
+}
+
+bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurface> draw,
+                  std::shared_ptr<ClientSurface> read) {
+    if (!context) {
+        release();
+        return true;
+    }
+    if (!current || context != current->context) {
+        if (context->in_use.exchange(true)) return false;
+        release();
+        context->in_use = true;
+    } else {
+        context->flush_block();
+    }
+    const auto session = ClientSession::get();
+    if (!session) {
+        context->in_use = false;
+        release();
+        return false;
+    }
+    context->attach(session);
+    if (draw) session->open_surface(*draw);
+    if (read && read != draw) session->open_surface(*read);
+    if (draw) session->begin_frame(*draw);
+    context->bind_surfaces(draw, read);
+    if (!current) {
+        current = new Current;
+        at_thread_end(release);
+    }
+    *current = {std::move(context), std::move(draw), std::move(read)};
+    if (current->context->lost()) {
+        go_dark();
+        return true;
+    }
+    tls_context = current->context.get();
+    tls_packer = &current->context->packer;
+    return true;
+}
+
+Context* current_context() { return tls_context; }
+
+void swap_buffers(ClientSurface& surface) {
+    const auto session = ClientSession::get_if_open();
+    if (!session || !surface.opened) return;
+    session->swap(tls_context, surface);
+    session->begin_frame(surface);
+}
+
+Extent surface_size(const ClientSurface& surface) {
+    if (surface.opened) return {surface.layout.width, surface.layout.height};
+    return surface.options.size;
+}
+
+void flush_current(bool wait) {
+    if (!tls_context) return;
+    tls_context->session().flush(tls_context, wait);
+}
+
+ProcAddress gl_proc_address(const char* name) {
+    const auto before = [](const ProcEntry& entry, const char* wanted) { return std::strcmp(entry.name, wanted) < 0; };
+    const auto found = std::lower_bound(kProcs.begin(), kProcs.end(), name, before);
+    return found != kProcs.end() && std::strcmp(found->name, name) == 0 ? found->entry : nullptr;
+}
+
+}  // namespace wall::client

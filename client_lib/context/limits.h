@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// What the wall's nodes can do, as numbers. Pure.
+#pragma once
+
+#include "client_lib/link/control_messages.h"
+#include "common/glapi/gl_types.h"
+
+namespace wall::client {
+
+/// Of one texture level: 1 GiB of 4-byte texels, which is llvmpipe's limit as well.
+inline constexpr std::size_t kMostTexels = std::size_t{1} << 28;
+
+/// Component `i` of the nodes' answer to glGet(name), or `otherwise`.
+inline double limit_of(const Caps& caps, GLenum name, double otherwise, std::size_t i = 0) {
+    const auto found = caps.limits.find(name);
+    return found == caps.limits.end() || found->second.size() <= i ? otherwise : found->second[i];
+}
+
+}  // namespace wall::client

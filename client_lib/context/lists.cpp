@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/context/lists.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <list>
+#include <mutex>
+#include <utility>
+
+#include "client_lib/context/material.h"
+#include "client_lib/context/program_use.h"
+#include "client_lib/follow/sharing.h"
+#include "client_lib/geometry/block_walk.h"
+#include "client_lib/process/options.h"
+#include "common/glstate/diff.h"
+#include "common/wire/batch.h"
+
+namespace wall::client {
+namespace {
+
+using glapi::Op;
+using glapi::Recorded;
+using glstate::Category;
+
+/// Ids of runs that are gone and that nodes may still hold. Any thread; never destroyed.
+class DeadRuns {
+public:
+    static DeadRuns& get() {
+        static auto* runs = new DeadRuns();
+        return *runs;
+    }
+    void add(std::list<std::uint32_t>& ids) {
+        std::lock_guard lock(mutex_);
+        ids_.splice(ids_.end(), ids);
+        any_.store(true, std::memory_order_release);
+    }
+    std::list<std::uint32_t> take() {
+        if (!any_.load(std::memory_order_acquire)) return {};
+        std::lock_guard lock(mutex_);
+        any_.store(false, std::memory_order_relaxed);
+        return std::exchange(ids_, {});
+    }
+
+private:
+    std::mutex mutex_;
+    std::list<std::uint32_t> ids_;
+    std::atomic<bool> any_{false};
+};
+
+// ---- drawing a run ----
+
+std::vector<std::byte> encoded(const wire::PackBuffer& content) {
+    const auto opcodes = content.opcodes(), operands = content.operands();
+    std::vector<std::byte> bytes(wire::padded4(opcodes.size()) - opcodes.size());
+    bytes.insert(bytes.end(), opcodes.begin(), opcodes.end());
+    bytes.insert(bytes.end(), operands.begin(), operands.end());
+    return bytes;
+}
+
+void define_once(ClientSession& session, Node& node, wire::PackBuffer& buffer, const ListRun& run) {
+    if (!node.object_stamps.emplace(run.id, 1).second) return;
+    const auto content = encoded(run.content);
+    const auto commands = static_cast<std::uint32_t>(run.content.commands()),
+               operand_bytes = static_cast<std::uint32_t>(run.content.operand_bytes());
+    if (content.size() >= kLeastShared && may_be_asked(node)) {
+        glapi::ContentHash hash;
+        hash.RunDefine(commands, operand_bytes, content);
+        const auto ask = [&](wire::PackBuffer& batch, std::uint32_t request) {
+            glapi::pack::ShareRun(batch, request, run.id, hash.finish());
+        };
+        if (node_holds(session, node, ask)) return;
+    }
+    const std::size_t before = buffer.bytes();
+    glapi::pack::RunDefine(buffer, run.id, commands, operand_bytes, content);
+    session.count_objects(node, buffer.bytes() - before);
+}
+
+void apply_effects(glstate::State& state, const ListRun& run, const ListRun::Effects& effects) {
+    const auto before = state.current;
+    for (const auto& effect : effects.attributes)
+        glstate::apply_attribute(state, effect.op, run.content.operand_at(effect.operand));
+    if (!glstate::same(before, state.current))
+        state.ids[static_cast<std::size_t>(Category::current)] = glstate::next_value_id();
+    for (const auto& m : effects.materials) assign_material(state, m.face, m.pname, m.value);
+}
+
+/// The nodes that ran it have its effects; the others get the difference when they next need it.
+void follow(Context& c, const std::vector<Node*>& nodes, const ListRun& run) {
+    std::lock_guard lock(c.session().mutex());
+    for (Node* node : nodes) {
+        const auto mirror = node->mirrors.find(c.id);
+        if (mirror == node->mirrors.end()) continue;
+        glstate::State& state = mirror->second.state;
+        apply_effects(state, run, run.in_driver);
+        unify_id(state, c.state, Category::current);
+        if (!run.in_driver.materials.empty()) unify_id(state, c.state, Category::material);
+    }
+}
+
+Needs needs_of_run(const Context& c, const ListRun& run) {
+    if (!run.in_driver.materials.empty()) return {};
+    Needs needs = needs_of_geometry(c.state);
+    needs.spared |= run.spared;
+    return needs;
+}
+
+void call_run(Context& c, const ListRun& run) {
+    c.flush_block();
+    c.determine_modelview_form();
+    if (!c.draw_surface() || !may_draw(c)) return apply_effects(c.state, run, run.in_context);
+    forget_dead_runs(c);
+    // A program's shader puts the vertices anywhere.
+    const bool bounded = !options().broadcast && !c.program;
+    const auto box = bounded ? project(c.projection(), run.box) : std::nullopt;
+    std::vector<Node*> reached;
+    c.session().draw(
+        c, box, needs_of_run(c, run),
+        [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session(), node, buffer, run); },
+        [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
+        [&](Node& node) {
+            node.object_stamps.emplace(run.id, 1);  // kept commands call it, too
+            reached.push_back(&node);
+        });
+    apply_effects(c.state, run, run.in_context);
+    follow(c, reached, run);
+}
+
+// ---- a run within glBegin .. glEnd: unpacked again ----
+
+template <std::size_t N>
+std::array<float, N> floats(const std::byte* at) {
+    std::array<float, N> values;
+    std::memcpy(values.data(), at, sizeof values);
+    return values;
+}
+
+std::uint32_t word(const std::byte* at) {
+    std::uint32_t value;
+    std::memcpy(&value, at, sizeof value);
+    return value;
+}
+
+/// Calls function(c, f0, f1, ...) with N floats.
+template <auto kFunction, std::size_t N>
+void play_floats(Context& c, const std::byte* at) {
+    std::apply([&](auto... f) { kFunction(c, f...); }, floats<N>(at));
+}
+
+void play_vertex_attrib(Context& c, const std::byte* at) {
+    const auto f = floats<4>(at + 4);
+    api::VertexAttrib4f(c, word(at), f[0], f[1], f[2], f[3]);
+}
+
+/// What is more than an attribute: glVertexAttrib may be a vertex.
+struct Player {
+    Op op;
+    void (*play)(Context&, const std::byte*);
+};
+constexpr Player kPlayers[] = {
+    {Op::Begin, [](Context& c, const std::byte* at) { api::Begin(c, word(at)); }},
+    {Op::End, [](Context& c, const std::byte*) { api::End(c); }},
+    {Op::Vertex2f, play_floats<api::Vertex2f, 2>},
+    {Op::Vertex3f, play_floats<api::Vertex3f, 3>},
+    {Op::Vertex4f, play_floats<api::Vertex4f, 4>},
+    {Op::VertexAttrib4f, play_vertex_attrib},
+    {Op::Material,
+     [](Context& c, const std::byte* at) { api::Materialfv(c, word(at), word(at + 4), floats<4>(at + 8).data()); }},
+    {Op::EvalCoord1f, play_floats<api::EvalCoord1f, 1>},
+    {Op::EvalCoord2f, play_floats<api::EvalCoord2f, 2>},
+    {Op::EvalPoint1, [](Context& c, const std::byte* at) { api::EvalPoint1(c, static_cast<GLint>(word(at))); }},
+    {Op::EvalPoint2,
+     [](Context& c, const std::byte* at) {
+         api::EvalPoint2(c, static_cast<GLint>(word(at)), static_cast<GLint>(word(at + 4)));
+     }},
+};
+
+/// An attribute as it stands in the run.
+void play_attribute(Context& c, const BlockWalk& walk) {
+    const std::size_t bytes = operand_bytes_of(walk.op());
+    std::memcpy(c.packer.append_attribute(walk.attribute(), walk.op(), bytes), walk.operand(), bytes);
+}
+
+// What was drawn from arrays is one command each, and an error here; a glBegin is an error by itself.
+void unpack_run(Context& c, const ListRun& run) {
+    BlockWalk walk(run.content, {}, run.content.mark(), {});
+    bool refused = false;
+    while (walk.next()) {
+        if (std::binary_search(run.array_draws.begin(), run.array_draws.end(), walk.position().commands - 1)) {
+            c.error(GL_INVALID_OPERATION);
+            refused = true;
+        }
+        if (refused) {
+            refused = walk.op() != Op::End;
+            continue;
+        }
+        const auto player =
+            std::find_if(std::begin(kPlayers), std::end(kPlayers), [&](const Player& p) { return p.op == walk.op(); });
+        if (player != std::end(kPlayers)) player->play(c, walk.operand());
+        else if (walk.sets_attribute()) play_attribute(c, walk);
+    }
+}
+
+void replay_commands(Context& c, std::span<const std::byte> recorded) {
+    glapi::for_each_record(recorded, [&](const Recorded& r) { return replay_command(c, r.command, r.payload), true; });
+}
+
+}  // namespace
+
+glapi::ListRecorder& Context::list() { return lists->recorder; }
+
+void execute_list(Context& c, const DisplayList& list) {
+    for (const ListItem& item : list.items) {
+        if (!item.run) replay_commands(c, item.replay);
+        else if (c.packer.inside()) unpack_run(c, *item.run);
+        else call_run(c, *item.run);
+    }
+}
+
+void forget_dead_runs(Context& c) {
+    const auto dead = DeadRuns::get().take();
+    if (dead.empty()) return;
+    for (const std::uint32_t id : dead) c.before_change(id);
+    c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node& node) {
+        for (const std::uint32_t id : dead)
+            if (node.object_stamps.erase(id)) glapi::pack::RunDelete(buffer, id);
+    });
+}
+
+// What its end needs is made now.
+ListRun::ListRun() : id(next_object_id()), obituary_{id} { DeadRuns::get(); }
+ListRun::~ListRun() { DeadRuns::get().add(obituary_); }
+
+}  // namespace wall::client

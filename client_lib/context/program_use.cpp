@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/context/program_use.h"
+
+#include <utility>
+
+#include "client_lib/follow/ask_one.h"
+#include "client_lib/process/log.h"
+
+namespace wall::client {
+namespace {
+
+constexpr const char* kNoAnswer = "no node of the wall answered\n";
+
+void take_link_result(Program& program, glapi::ProgramDefinition definition, glapi::ProgramReflection reflection) {
+    program.log = std::move(reflection.log);
+    program.linked = reflection.linked;
+    if (!reflection.linked) return;
+    auto executable = Executable::make(std::move(definition), std::move(reflection));
+    program.linked = executable != nullptr;
+    if (executable) program.executable = std::move(executable);
+    else program.log = "the program has a uniform of a type that is not supported\n";
+}
+
+}  // namespace
+
+void learn_compile_result(Context& c, Shader& shader) {
+    std::string source;
+    {
+        std::lock_guard lock(c.share().mutex);
+        if (shader.state != Shader::State::unknown) return;
+        source = shader.compiled_source;
+    }
+    const auto answer = ask_one_node(c, "glCompileShader", [&](wire::PackBuffer& buffer, std::uint32_t request) {
+        glapi::pack::ShaderCompile(buffer, request, shader.type, std::as_bytes(std::span(source)));
+    });
+    auto result = answer ? glapi::decode_compile_result(answer->bytes) : std::nullopt;
+    std::lock_guard lock(c.share().mutex);
+    shader.state = result && result->compiled ? Shader::State::compiled : Shader::State::failed;
+    shader.log = result ? std::move(result->log) : kNoAnswer;
+}
+
+void learn_link_result(Context& c, Program& program) {
+    std::optional<glapi::ProgramDefinition> definition;
+    {
+        std::lock_guard lock(c.share().mutex);
+        definition = std::exchange(program.to_link, std::nullopt);
+    }
+    if (!definition) return;
+    const auto bytes = encode(*definition);
+    c.before_change(program.id);
+    const auto answer = ask_one_node(c, "glLinkProgram", [&](wire::PackBuffer& buffer, std::uint32_t request) {
+        glapi::pack::ProgramLink(buffer, request, program.id, bytes);
+    });
+    auto reflection = answer ? glapi::decode_reflection(answer->bytes) : std::nullopt;
+    std::scoped_lock lock(c.session().mutex(), c.share().mutex);
+    if (!reflection) reflection.emplace().log = kNoAnswer;
+    take_link_result(program, std::move(*definition), std::move(*reflection));
+    if (program.linked) answer->node->object_stamps[program.id] = program.executable->stamp;
+    c.share().last_change = next_stamp();
+}
+
+void use_program(Context& c, std::shared_ptr<Program> program) {
+    c.flush_block();
+    {
+        std::lock_guard lock(c.share().mutex);
+        if (program) ++program->users;
+    }
+    c.set<glstate::el::current_program>(0, program ? program->id : 0);
+    if (const auto before = std::exchange(c.program, std::move(program))) drop_user(c, before);
+}
+
+bool may_draw(Context& c) {
+    if (!c.program) return true;
+    std::lock_guard lock(c.share().mutex);
+    if (!c.program->executable->samplers_conflict()) return true;
+    c.error(GL_INVALID_OPERATION);
+    return false;
+}
+
+namespace {
+
+/// Frees the name; the nodes are told of a program.
+void destroy(Context& c, const std::shared_ptr<GlslObject>& object) {
+    c.before_change(object->id);
+    std::vector<std::shared_ptr<Shader>> shaders;
+    {
+        std::lock_guard lock(c.share().mutex);
+        c.share().glsl_objects.erase(object->name);
+        if (object->kind == GlslObject::Kind::shader) return;
+        c.share().program_names.erase(object->id);
+        shaders = std::exchange(static_cast<Program&>(*object).shaders, {});
+    }
+    for (const auto& shader : shaders) drop_user(c, shader);
+    c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node& node) {
+        if (node.object_stamps.erase(object->id) != 0) glapi::pack::ProgramDelete(buffer, object->id);
+    });
+}
+
+}  // namespace
+
+void drop_user(Context& c, const std::shared_ptr<GlslObject>& object) {
+    bool last = false;
+    {
+        std::lock_guard lock(c.share().mutex);
+        last = --object->users == 0 && object->deleted;
+    }
+    if (last) destroy(c, object);
+}
+
+void delete_object(Context& c, const std::shared_ptr<GlslObject>& object) {
+    {
+        std::lock_guard lock(c.share().mutex);
+        if (std::exchange(object->deleted, true) || object->users != 0) return;
+    }
+    destroy(c, object);
+}
+
+}  // namespace wall::client

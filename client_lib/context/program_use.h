@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Compiling, linking and using programs, for the API functions. Application threads; none of these may be called with
+// the share group's mutex held.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "client_lib/context/context.h"
+#include "client_lib/context/share_group.h"
+#include "client_lib/objects/program.h"
+
+namespace wall::client {
+
+/// Asks a node, if nobody has yet, how the last glCompileShader or glLinkProgram went.
+void learn_compile_result(Context& c, Shader& shader);
+void learn_link_result(Context& c, Program& program);
+
+/// The context draws with it from now on; null: with none.
+void use_program(Context& c, std::shared_ptr<Program> program);
+
+/// False, and an error, if the context's program cannot draw as its samplers are set.
+bool may_draw(Context& c);
+
+/// One user less; the object goes if it was to be deleted and nothing else uses it.
+void drop_user(Context& c, const std::shared_ptr<GlslObject>& object);
+/// glDeleteShader, glDeleteProgram.
+void delete_object(Context& c, const std::shared_ptr<GlslObject>& object);
+
+}  // namespace wall::client

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/context/texture_binding.h"
+
+#include <algorithm>
+
+namespace wall::client {
+namespace {
+
+namespace el = glstate::el;
+
+/// Calls `use` with the element that holds a target's binding.
+template <class Use>
+auto with_element(GLenum target, Use&& use) {
+    switch (target) {
+        case GL_TEXTURE_1D: return use(el::texture_binding_1d{});
+        case GL_TEXTURE_3D: return use(el::texture_binding_3d{});
+        case GL_TEXTURE_CUBE_MAP: return use(el::texture_binding_cube_map{});
+        case GL_TEXTURE_RECTANGLE: return use(el::texture_binding_rectangle{});
+        default: return use(el::texture_binding_2d{});
+    }
+}
+
+// A default texture that has come into being gets an id in this context's bindings of name 0.
+void adopt_default(Context& c, GLenum target, std::uint32_t id) {
+    for (unsigned unit = 0; unit < kTextureUnits; ++unit)
+        if (bound_id(c, unit, target) == 0) set_bound_id(c, unit, target, id);
+}
+
+}  // namespace
+
+std::uint32_t bound_id(const Context& c, unsigned unit, GLenum target) {
+    return with_element(target, [&](auto element) { return decltype(element)::ref(c.state, unit); });
+}
+
+void set_bound_id(Context& c, unsigned unit, GLenum target, std::uint32_t id) {
+    with_element(target, [&](auto element) { c.set<decltype(element)>(unit, id); });
+}
+
+std::shared_ptr<Texture> bound_texture(Context& c, GLenum image_target) {
+    const GLenum target = object_target(image_target);
+    const std::uint32_t id = bound_id(c, c.active_texture(), target);
+    std::lock_guard lock(c.share().mutex);
+    if (id == 0) {
+        const auto found = c.share().default_textures.find(target);
+        return found == c.share().default_textures.end() ? nullptr : found->second;
+    }
+    const auto found = c.share().textures_by_id.find(id);
+    return found == c.share().textures_by_id.end() ? nullptr : found->second;
+}
+
+std::shared_ptr<Texture> make_texture(ShareGroup& share, GLuint name, GLenum target) {
+    auto texture = std::make_shared<Texture>(next_object_id(), name, target);
+    share.textures_by_id[texture->id] = texture;
+    return texture;
+}
+
+std::shared_ptr<Texture> texture_to_change(Context& c, GLenum image_target) {
+    c.flush_block();
+    const GLenum target = object_target(image_target);
+    if (auto texture = bound_texture(c, target)) {
+        if (texture->is_default()) adopt_default(c, target, texture->id);
+        c.before_change(texture->id);
+        return texture;
+    }
+    std::shared_ptr<Texture> texture;
+    {
+        std::lock_guard lock(c.share().mutex);
+        texture = make_texture(c.share(), 0, target);
+        c.share().default_textures[target] = texture;
+    }
+    adopt_default(c, target, texture->id);
+    return texture;
+}
+
+void touch(ShareGroup& share, Texture& texture) {
+    share.last_change.store(texture.stamp = next_stamp(), std::memory_order_release);
+}
+
+std::vector<SavedTexture> bound_texture_parameters(Context& c) {
+    std::vector<SavedTexture> saved;
+    std::lock_guard lock(c.share().mutex);
+    for (unsigned unit = 0; unit < kTextureUnits; ++unit)
+        for (const GLenum target :
+             {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE}) {
+            const auto found = c.share().textures_by_id.find(bound_id(c, unit, target));
+            if (found != c.share().textures_by_id.end()) saved.push_back({found->second, found->second->parameters});
+        }
+    return saved;
+}
+
+void restore_texture_parameters(Context& c, const std::vector<SavedTexture>& saved) {
+    constexpr GLenum kSent[] = {GL_TEXTURE_BORDER_COLOR, GL_TEXTURE_MIN_FILTER,   GL_TEXTURE_MAG_FILTER,
+                                GL_TEXTURE_WRAP_S,       GL_TEXTURE_WRAP_T,       GL_TEXTURE_WRAP_R,
+                                GL_TEXTURE_MIN_LOD,      GL_TEXTURE_MAX_LOD,      GL_TEXTURE_LOD_BIAS,
+                                GL_TEXTURE_BASE_LEVEL,   GL_TEXTURE_MAX_LEVEL,    GL_TEXTURE_MAX_ANISOTROPY_EXT,
+                                GL_TEXTURE_COMPARE_MODE, GL_TEXTURE_COMPARE_FUNC, GL_DEPTH_TEXTURE_MODE};
+    if (saved.empty()) return;
+    c.flush_block();
+    const auto differs = [&](const TexParameters& a, const TexParameters& b) {
+        return std::ranges::any_of(kSent, [&](GLenum p) { return parameter_value(a, p) != parameter_value(b, p); });
+    };
+    for (const auto& [texture, parameters] : saved)
+        if (differs(texture->parameters, parameters)) c.before_change(texture->id);
+    std::lock_guard lock(c.share().mutex);
+    for (const auto& [texture, parameters] : saved) {
+        const TexParameters now = std::exchange(texture->parameters, parameters);
+        for (const GLenum pname : kSent) {
+            if (parameter_value(now, pname) == parameter_value(parameters, pname)) continue;
+            texture->parameter_changed(pname);
+            touch(c.share(), *texture);
+        }
+    }
+}
+
+}  // namespace wall::client

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Which texture object a context's texture unit has at a target, and changing it. The application's thread.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "client_lib/context/context.h"
+#include "client_lib/context/share_group.h"
+
+namespace wall::client {
+
+/// Id at a target of a unit: 0 is the default texture without content. The target has been checked.
+std::uint32_t bound_id(const Context& c, unsigned unit, GLenum target);
+void set_bound_id(Context& c, unsigned unit, GLenum target, std::uint32_t id);
+
+/// The object that the active unit has at a target (of a texture, face or proxy) for reading: null means the default
+/// texture without content.
+std::shared_ptr<Texture> bound_texture(Context& c, GLenum target);
+/// The same for changing: what was drawn so far is sent off first, and a default texture comes into being.
+std::shared_ptr<Texture> texture_to_change(Context& c, GLenum target);
+/// A new object of the share group. Its mutex is held.
+std::shared_ptr<Texture> make_texture(ShareGroup& share, GLuint name, GLenum target);
+/// To be called after every change of a texture.
+void touch(ShareGroup& share, Texture& texture);
+
+/// Parameters of the textures that a context has bound, which glPushAttrib(GL_TEXTURE_BIT) saves too.
+struct SavedTexture {
+    std::shared_ptr<Texture> texture;
+    TexParameters parameters;
+};
+std::vector<SavedTexture> bound_texture_parameters(Context& c);
+void restore_texture_parameters(Context& c, const std::vector<SavedTexture>& saved);
+
+}  // namespace wall::client

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// The calls that define a texture's images, as values (api/tex_image.cpp). The application's thread.
+#pragma once
+
+#include <vector>
+
+#include "client_lib/context/context.h"
+#include "client_lib/objects/texture.h"
+#include "common/glapi/image.h"
+
+namespace wall::client {
+
+/// Parameters of glTexImage, glTexSubImage and the copying ones.
+struct ImageCall {
+    unsigned dimensions = 2;
+    GLenum target = 0;
+    GLint level = 0;
+    GLint internal_format = 0, border = 0;  ///< of glTexImage
+    GLint x = 0, y = 0, z = 0;              ///< of glTexSubImage
+    GLsizei width = 0, height = 1, depth = 1;
+    GLenum format = 0, type = 0;
+    const void* pixels = nullptr;
+    glapi::PixelStore store;
+};
+
+/// Tight pixels in client memory.
+struct TexelData {
+    GLenum format = 0, type = 0;
+    std::vector<std::byte> bytes;
+};
+
+/// GL_GENERATE_MIPMAP: after a change of a level, with the share group's mutex held.
+void generate_if_asked(Texture& texture, GLint level);
+
+/// How many levels a texture of this target may have.
+GLint level_count(Context& c, GLenum target);
+
+/// glTexImage and glTexSubImage with their checks.
+void define_image(Context& c, ImageCall call);
+void define_sub_image(Context& c, ImageCall call);
+GLenum sub_image_error(Context& c, const ImageCall& call);
+
+/// The same after the checks, with pixels as they are to be stored.
+void store_level(Context& c, const ImageCall& call, TexelData data);
+void change_level(Context& c, const ImageCall& call, TexelData data);
+
+// ---- S3TC (api/tex_compressed.cpp) ----
+
+/// What an image of this internal format is compressed to; 0: to nothing that is known here.
+GLint blocks_format(GLint internal_format);
+/// A level that came as pixels and that the nodes compress becomes what a node's driver makes of it: from now on it is
+/// kept and sent as blocks. Nothing happens to any other, or if no node answers.
+void compress_as_driver(Context& c, GLenum target, GLint level);
+/// change_level() of such a level: the new pixels are compressed by a node. False: no node answers.
+bool change_blocks(Context& c, const ImageCall& call, const TexelData& data);
+
+}  // namespace wall::client

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/follow/block_sender.h"
+
+#include <algorithm>
+#include <array>
+
+#include "client_lib/process/options.h"
+
+namespace wall::client {
+namespace {
+
+using glstate::Category;
+
+template <Category kCategory>
+std::uint64_t& value_id(glstate::State& state) {
+    return state.ids[static_cast<std::size_t>(kCategory)];
+}
+
+/// A primitive smaller than this costs less sent whole to one node more than taken apart.
+constexpr std::size_t kSmallPrimitiveBytes = 192;
+/// Vertices between two runs of one strip that cost no more than ending it and starting anew.
+constexpr std::int64_t kGapVertices = 2;
+
+}  // namespace
+
+void BlockSender::run() {
+    if (context_.draw_surface()) layout_ = &context_.draw_layout();
+    if (!packer_.has_geometry() || !layout_) return fold({});
+    const bool hidden = context_.draw_surface()->hidden != nullptr;
+    if (layout_->targets.empty() && !hidden) return fold({});
+    const auto box = options().broadcast ? std::nullopt : project(context_.projection(), packer_.block_box());
+    if (hidden) kept_ = session_.begin_keeping(context_, box);
+    if (options().count_ideal) session_.ideal_.count(context_, *layout_);
+    needs_ = needs_of_block(context_.state, packer_);
+    if (kept_) keep();
+    NodeMasks& nodes = scratch_.touched;
+    targets_of(layout_->targets, box, nodes);
+    const bool single = packer_.primitives().size() == 1 && !may_be_divided(packer_.primitives()[0]);
+    if (nodes.size() <= 1 || packer_.has_rare() || options().broadcast || single) send_whole(nodes);
+    else send_apart();
+}
+
+void BlockSender::keep() {
+    constexpr std::uint64_t kSlots = std::uint64_t{1} << wire::kOffscreenSlot;
+    auto& buffer = session_.prepare_kept(context_, needs_);
+    glapi::pack::Block(buffer, static_cast<std::uint32_t>(kSlots), static_cast<std::uint32_t>(kSlots >> 32),
+                       static_cast<std::uint32_t>(packer_.commands()),
+                       static_cast<std::uint32_t>(packer_.operand_bytes()));
+    buffer.append(packer_, {}, packer_.mark());
+}
+
+void BlockSender::send_whole(const NodeMasks& nodes) {
+    std::vector<Node*> reached;
+    for (const auto& [index, slots] : nodes) {
+        Node& node = *session_.nodes()[index];
+        if (!node.takes(context_.draw_surface()->id)) continue;
+        auto& buffer = session_.prepare(node, context_, needs_);
+        const std::size_t before = buffer.bytes();
+        glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32),
+                           static_cast<std::uint32_t>(packer_.commands()),
+                           static_cast<std::uint32_t>(packer_.operand_bytes()));
+        buffer.append(packer_, {}, packer_.mark());
+        session_.count_geometry(node, buffer.bytes() - before);
+        session_.count_block(node);
+        reached.push_back(&node);
+    }
+    fold(reached);
+}
+
+void BlockSender::send_apart() {
+    scratch_.shares.assign(session_.nodes().size(), Share{});
+    BlockWalk walk(packer_, {}, packer_.mark(), {});
+    for (const Primitive& primitive : packer_.primitives()) {
+        const auto rect = project(context_.projection(), primitive.box);
+        targets_of(layout_->targets, rect, scratch_.touched);
+        if (scratch_.touched.empty()) continue;
+        walk.go_to(primitive.first);
+        if (scratch_.touched.size() > 1 && may_be_divided(primitive)) divide(primitive, walk.places(), rect);
+        else send_primitive(primitive, walk);
+    }
+    for (Share& share : scratch_.shares) close_block(share);
+
+    // Nodes that got a part hold the attributes of their own last piece; the next diff brings the rest.
+    for (Share& share : scratch_.shares) {
+        if (!share.buffer) continue;
+        auto& mirror = share.node->mirrors[context_.id].state;
+        bool changed = false;
+        for (std::size_t i = 0; i < kAttributes; ++i) {
+            if (share.sent.offset[i] == AttributePlaces::kNone) continue;
+            glstate::apply_attribute(mirror, share.sent.op[i], packer_.operand_at(share.sent.offset[i]));
+            changed = true;
+        }
+        if (changed) value_id<Category::current>(mirror) = glstate::next_value_id();
+    }
+    fold({});
+}
+
+/// `walk` goes over the primitive.
+void BlockSender::send_primitive(const Primitive& primitive, BlockWalk& walk) {
+    for (const auto& [index, slots] : scratch_.touched) {
+        Share& share = share_of(index);
+        if (!share.buffer) continue;
+        open_block(share, slots);
+        pack_attributes(share, walk.places());
+        copy(share, primitive.first, primitive.last);
+    }
+    walk.go_to(primitive.last);
+    for (const auto& [index, slots] : scratch_.touched)
+        if (Share& share = scratch_.shares[index]; share.buffer) share.sent = walk.places();
+}
+
+bool BlockSender::may_be_divided(const Primitive& primitive) const {
+    if (!primitive.divisible || !topology_of(primitive.mode)) return false;
+    if (primitive.last.operand_bytes - primitive.first.operand_bytes < kSmallPrimitiveBytes) return false;
+    if (primitive.box.unbounded()) return false;
+    return !context_.state.line_point.line_stipple_enabled;  // its counter runs along the primitive
+}
+
+/// `rect`: what the primitive touches.
+void BlockSender::divide(const Primitive& primitive, const AttributePlaces& before,
+                         const std::optional<PixelRect>& rect) {
+    const Topology topology = *topology_of(primitive.mode);
+    const Projection& projection = context_.projection();
+    VertexScan& vertices = scratch_.vertices;
+    vertices.scan(packer_, primitive, before, projection);
+    scratch_.candidates.clear();
+    for (const Target& target : layout_->targets)
+        if (!rect || rect->overlaps(target.area)) scratch_.candidates.push_back(target);
+    for (std::size_t v = topology.fan ? 1 : 0; v + topology.size <= vertices.size(); v += topology.step) {
+        targets_of(scratch_.candidates, window_rect(topology, vertices, v, projection), scratch_.touched_part);
+        const auto first = static_cast<std::int64_t>(v / topology.alignment * topology.alignment),
+                   last = static_cast<std::int64_t>(v + topology.size - 1);
+        for (const auto& [index, slots] : scratch_.touched_part)
+            if (Share& share = share_of(index); share.buffer) add_to_run(share, primitive, first, last, slots);
+    }
+    for (Share& share : scratch_.shares)
+        if (share.run_first >= 0) finish_run(share, primitive);
+}
+
+/// Vertices `first` to `last` make something that the tiles of `mask` need.
+void BlockSender::add_to_run(Share& share, const Primitive& primitive, std::int64_t first, std::int64_t last,
+                             std::uint64_t mask) {
+    const std::int64_t gap = topology_of(primitive.mode)->independent ? 0 : kGapVertices;
+    if (share.run_first >= 0 && (first > share.run_last + 1 + gap || share.run_mask != mask))
+        finish_run(share, primitive);
+    if (share.run_first < 0) share.run_first = first, share.run_mask = mask;
+    share.run_last = last;
+}
+
+// A run becomes a primitive of its own, with the attributes that its first vertex sees.
+void BlockSender::finish_run(Share& share, const Primitive& primitive) {
+    const VertexScan& vertices = scratch_.vertices;
+    const auto first = static_cast<std::size_t>(share.run_first), behind = static_cast<std::size_t>(share.run_last + 1);
+    open_block(share, share.run_mask);
+    if (primitive.mode == GL_TRIANGLE_FAN) {
+        pack_attributes(share, vertices.attributes(0));
+        begin_part(share, primitive);
+        copy(share, vertices.lead(0), vertices.lead(1));
+        share.sent = vertices.attributes(1);
+        pack_attributes(share, vertices.attributes(first));
+    } else {
+        pack_attributes(share, vertices.attributes(first));
+        begin_part(share, primitive);
+    }
+    copy(share, vertices.lead(first), vertices.lead(behind));
+    share.sent = vertices.attributes(behind);
+    glapi::pack::End(*share.buffer);
+    session_.count_geometry(*share.node, 1);
+    share.run_first = share.run_last = -1;
+}
+
+void BlockSender::begin_part(Share& share, const Primitive& primitive) {
+    const std::size_t before = share.buffer->bytes();
+    glapi::pack::Begin(*share.buffer, primitive.mode);
+    session_.count_geometry(*share.node, share.buffer->bytes() - before);
+}
+
+BlockSender::Share& BlockSender::share_of(std::uint32_t index) {
+    Share& share = scratch_.shares[index];
+    if (!share.node) {
+        share.node = session_.nodes()[index].get();
+        if (share.node->takes(context_.draw_surface()->id))
+            share.buffer = &session_.prepare(*share.node, context_, needs_);
+    }
+    return share;
+}
+
+void BlockSender::open_block(Share& share, std::uint64_t mask) {
+    if (share.mask == mask) return;
+    close_block(share);
+    share.block_operands = share.buffer->operand_bytes();
+    const std::size_t before = share.buffer->bytes();
+    glapi::pack::Block(*share.buffer, static_cast<std::uint32_t>(mask), static_cast<std::uint32_t>(mask >> 32), 0, 0);
+    session_.count_geometry(*share.node, share.buffer->bytes() - before);
+    session_.count_block(*share.node);
+    share.block_start = share.buffer->mark();
+    share.mask = mask;
+}
+
+void BlockSender::close_block(Share& share) {
+    if (share.mask == 0) return;
+    const auto end = share.buffer->mark();
+    const std::uint32_t counts[2] = {static_cast<std::uint32_t>(end.commands - share.block_start.commands),
+                                     static_cast<std::uint32_t>(end.operand_bytes - share.block_start.operand_bytes)};
+    std::memcpy(share.buffer->operand_at(share.block_operands + 8), counts, sizeof counts);
+    share.mask = 0;
+}
+
+void BlockSender::pack_attributes(Share& share, const AttributePlaces& wanted) {
+    if (wanted.offset == share.sent.offset) return;
+    for (std::size_t i = 0; i < kAttributes; ++i) {
+        if (wanted.offset[i] == share.sent.offset[i]) continue;
+        if (wanted.offset[i] == AttributePlaces::kNone) {
+            restore_attribute(share, static_cast<Attribute>(i));
+            continue;
+        }
+        const std::size_t bytes = operand_bytes_of(wanted.op[i]);
+        std::memcpy(share.buffer->append(static_cast<std::uint8_t>(wanted.op[i]), bytes),
+                    packer_.operand_at(wanted.offset[i]), bytes);
+        session_.count_geometry(*share.node, bytes + 1);
+        share.sent.offset[i] = wanted.offset[i];
+        share.sent.op[i] = wanted.op[i];
+    }
+}
+
+// A fan's hub, repeated for a later run, sees the attributes of before the block.
+void BlockSender::restore_attribute(Share& share, Attribute attribute) {
+    std::array<std::byte, glstate::kMostAttributeBytes> operand;
+    const glapi::Op op = glstate::write_attribute(context_.state, attribute, operand.data());
+    const std::size_t bytes = operand_bytes_of(op);
+    std::memcpy(share.buffer->append(static_cast<std::uint8_t>(op), bytes), operand.data(), bytes);
+    glstate::apply_attribute(share.node->mirrors[context_.id].state, op, operand.data());
+    session_.count_geometry(*share.node, bytes + 1);
+    share.sent.offset[place_of(attribute)] = AttributePlaces::kNone;
+}
+
+void BlockSender::copy(Share& share, wire::PackMark first, wire::PackMark last) {
+    share.buffer->append(packer_, first, last);
+    session_.count_geometry(*share.node, last.commands - first.commands + last.operand_bytes - first.operand_bytes);
+}
+
+// The block's last attributes become the context's current ones, and those of every node that ran all of it.
+void BlockSender::fold(const std::vector<Node*>& whole) {
+    context_.fold_attributes();
+    const auto follow = [&](Node* node) {
+        auto& mirror = node->mirrors[context_.id].state;
+        for (std::size_t i = 0; i < kAttributes; ++i)
+            if (packer_.last[i]) glstate::apply_attribute(mirror, packer_.last_op[i], packer_.last[i]);
+        unify_id(mirror, context_.state, Category::current);
+        if (!context_.folded_material()) return;
+        mirror.material = context_.state.material;
+        unify_id(mirror, context_.state, Category::material);
+    };
+    for (Node* node : whole) follow(node);
+    if (kept_) follow(kept_);
+}
+
+}  // namespace wall::client

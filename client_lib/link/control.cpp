@@ -1,0 +1,583 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/link/control.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "client_lib/link/node_stream.h"
+#include "client_lib/process/log.h"
+#include "client_lib/process/process.h"
+#include "client_lib/process/stats.h"
+#include "common/base/address.h"
+#include "common/base/trusted_server.h"
+#include "common/wire/limits.h"
+
+namespace wall::client {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kLeaveLimit{1000};
+constexpr milliseconds kLifeSign{500};   // a walld that keeps a connection open for so long is there
+constexpr milliseconds kTick{1000};      // statistics are written and told, a lost link is tried again
+constexpr std::size_t kLengthBytes = 4;  // in front of every envelope, little endian
+constexpr std::size_t kReadChunk = 16 << 10;
+constexpr std::size_t kMaxOffered = 64;  // placements of a surface that does not draw; only the newest ones matter
+
+int remaining_ms(Clock::time_point deadline) {
+    const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now()).count();
+    return left > 0 ? static_cast<int>(left) : 0;
+}
+
+void append_framed(std::string& out, const std::string& envelope) {
+    const auto size = static_cast<std::uint32_t>(envelope.size());
+    for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<char>(size >> shift & 0xff));
+    out += envelope;
+}
+
+std::uint32_t framed_size(const std::string& in) {
+    std::uint32_t size = 0;
+    for (std::size_t i = 0; i < kLengthBytes; ++i) size |= std::uint32_t{static_cast<unsigned char>(in[i])} << 8 * i;
+    return size;
+}
+
+/// The first whole message is cut off `inbox`; nothing if it is not complete yet.
+Result<std::optional<FromWalld>> cut_message(std::string& inbox) {
+    if (inbox.size() < kLengthBytes) return std::nullopt;
+    const auto size = framed_size(inbox);
+    if (size > wire::kMaxControlMessage) return fail("oversized message from walld");
+    if (inbox.size() - kLengthBytes < size) return std::nullopt;
+    auto message = decode_from_walld(std::string_view(inbox).substr(kLengthBytes, size));
+    inbox.erase(0, kLengthBytes + size);
+    if (!message) return tl::unexpected(message.error());
+    return std::optional<FromWalld>(std::move(*message));
+}
+
+Result<void> send_all(int fd, const std::string& bytes, Clock::time_point deadline) {
+    std::size_t sent = 0;
+    while (sent < bytes.size()) {
+        const ssize_t n = ::send(fd, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (n > 0) {
+            sent += static_cast<std::size_t>(n);
+            continue;
+        }
+        if (errno == EINTR) continue;
+        pollfd p{fd, POLLOUT, 0};
+        if (errno != EAGAIN) return fail(strerror(errno));
+        if (::poll(&p, 1, remaining_ms(deadline)) == 0) return fail("no answer in time");
+    }
+    return {};
+}
+
+/// Appends what can be read. False at the end of the stream.
+Result<bool> receive_some(int fd, std::string& inbox) {
+    char chunk[kReadChunk];
+    const ssize_t n = ::recv(fd, chunk, sizeof chunk, MSG_DONTWAIT);
+    if (n > 0) inbox.append(chunk, static_cast<std::size_t>(n));
+    if (n == 0) return false;
+    if (n < 0 && errno != EAGAIN && errno != EINTR) return fail(strerror(errno));
+    return true;
+}
+
+Result<FromWalld> receive_message(int fd, std::string& inbox, Clock::time_point deadline) {
+    for (;;) {
+        auto message = cut_message(inbox);
+        if (!message) return tl::unexpected(message.error());
+        if (*message) return std::move(**message);
+        pollfd p{fd, POLLIN, 0};
+        if (::poll(&p, 1, remaining_ms(deadline)) == 0) return fail("no answer in time");
+        const auto more = receive_some(fd, inbox);
+        if (!more) return tl::unexpected(more.error());
+        if (!*more) return fail("closed the connection");
+    }
+}
+
+struct Opened {
+    UniqueFd fd;
+    Welcome welcome;
+    std::string rest;  ///< bytes that came after the welcome
+};
+
+Result<Opened> greet(const Hello& hello, const std::string& address, milliseconds limit) {
+    const auto deadline = Clock::now() + limit;
+    auto fd = connect_to(address, static_cast<int>(limit.count()));
+    if (!fd)
+        return fail("the wall is not there: " + fd.error().message +
+                    " (is walld running? WALLGL_WALLD names its address)");
+    if (auto trusted = check_server(fd->get(), wall_user_from_environment()); !trusted)
+        return fail("walld at " + address + " is not walld: " + trusted.error().message +
+                    " (WALLGL_WALLD_USER names walld's user)");
+    Opened opened{std::move(*fd), {}, {}};
+    std::string bytes;
+    append_framed(bytes, encode(hello));
+    if (auto sent = send_all(opened.fd.get(), bytes, deadline); !sent)
+        return fail("walld at " + address + ": " + sent.error().message);
+    auto answer = receive_message(opened.fd.get(), opened.rest, deadline);
+    if (!answer) return fail("walld at " + address + ": " + answer.error().message);
+    if (const auto* refused = std::get_if<Refused>(&*answer))
+        return fail("walld at " + address + " refused: " + refused->reason);
+    auto* welcome = std::get_if<Welcome>(&*answer);
+    if (!welcome) return fail("walld at " + address + " does not speak this protocol");
+    opened.welcome = std::move(*welcome);
+    return opened;
+}
+
+std::string environment(const char* name) {
+    const char* value = secure_getenv(name);
+    return value ? value : "";
+}
+
+/// The first line of the file; nothing without one.
+void read_token(const std::string& path, Hello& hello) {
+    if (path.empty()) return;
+    std::ifstream file(path);
+    if (!std::getline(file, hello.token) || hello.token.empty())
+        hello.invalid = "WALLGL_TOKEN_FILE: expected a file with a token, got '" + path + "'";
+}
+
+}  // namespace
+
+std::string walld_address() {
+    const auto given = environment("WALLGL_WALLD");
+    return given.empty() ? kDefaultWalld : given;
+}
+
+Hello Hello::from_environment() {
+    Hello hello;
+    hello.pid = static_cast<std::uint32_t>(getpid());
+    hello.program = program_name();
+    hello.name = environment("WALLGL_NAME");
+    read_token(environment("WALLGL_TOKEN_FILE"), hello);
+    hello.group = parallel();
+    if (const auto text = environment("WALLGL_PARALLEL"); !text.empty() && !hello.group)
+        hello.invalid = parse_parallel(text).error().message;
+    const auto hold = environment("WALLGL_HOLD");
+    hello.hold = !hold.empty() && hold != "0";
+    const auto rect = environment("WALLGL_RECT");
+    if (rect.empty()) return hello;
+    hello.fullscreen = rect == "fullscreen";
+    if (hello.fullscreen) return hello;
+    geom::Rect r;
+    char extra;
+    if (sscanf(rect.c_str(), "%d,%d,%d,%d%c", &r.x, &r.y, &r.width, &r.height, &extra) != 4 || r.empty())
+        hello.invalid = "WALLGL_RECT: expected X,Y,W,H or fullscreen, got '" + rect + "'";
+    else hello.rect = r;
+    return hello;
+}
+
+Result<std::unique_ptr<ControlLink>> ControlLink::open(const Hello& hello, const std::string& address,
+                                                       milliseconds limit) {
+    if (!hello.invalid.empty()) return fail(hello.invalid);
+    auto opened = greet(hello, address, limit);
+    if (!opened) return tl::unexpected(opened.error());
+    return std::unique_ptr<ControlLink>(
+        new ControlLink(std::move(opened->fd), hello, address, std::move(opened->welcome), std::move(opened->rest)));
+}
+
+ControlLink::ControlLink(UniqueFd fd, Hello hello, std::string address, Welcome welcome, std::string rest)
+    : hello_(std::move(hello)),
+      address_(std::move(address)),
+      welcome_(std::move(welcome)),
+      wake_fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+      fd_(std::move(fd)),
+      inbox_(std::move(rest)),
+      session_(welcome_.session) {
+    for (const auto& node : welcome_.nodes) tickets_[node.node] = node.ticket;
+    SignalsBlocked blocked;
+    thread_ = std::thread([this] { run(); });
+}
+
+ControlLink::~ControlLink() {
+    if (in_forked_child()) {
+        thread_.detach();  // it does not exist here
+        return;
+    }
+    stop_ = true;
+    wake();
+    thread_.join();
+}
+
+void ControlLink::wake() {
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const auto n = ::write(wake_fd_.get(), &one, sizeof one);
+}
+
+// With the mutex held.
+void ControlLink::queue(const std::string& envelope) {
+    if (up_) append_framed(outbox_, envelope);
+}
+
+void ControlLink::surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title,
+                               WindowMessages messages) {
+    if (in_forked_child()) return;
+    std::lock_guard lock(mutex_);
+    surfaces_[id] = OpenSurface{.width = width,
+                                .height = height,
+                                .title = title,
+                                .messages = std::move(messages),
+                                .awaited = 1,
+                                .offered = {},
+                                .drawn = {},
+                                .wanted = {},
+                                .note = {}};
+    queue(encode_surface_open(id, width, height, title));
+    wake();
+}
+
+void ControlLink::surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height) {
+    if (in_forked_child()) return;
+    std::lock_guard lock(mutex_);
+    auto& surface = surfaces_[id];
+    surface.width = width;
+    surface.height = height;
+    ++surface.awaited;
+    placements_.erase(id);
+    queue(encode_surface_resize(id, width, height));
+    wake();
+}
+
+void ControlLink::surface_close(std::uint32_t id) {
+    if (in_forked_child()) return;
+    std::lock_guard lock(mutex_);
+    surfaces_.erase(id);
+    placements_.erase(id);
+    queue(encode_surface_close(id));
+    wake();
+}
+
+bool ControlLink::surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame,
+                                  milliseconds timeout) {
+    if (in_forked_child()) return false;
+    std::unique_lock lock(mutex_);
+    auto& surface = surfaces_[id];
+    if (const auto found = surface.offered.find(layout_version); found != surface.offered.end()) {
+        surface.drawn = found->second;
+        surface.offered.erase(surface.offered.begin(), std::next(found));
+    }
+    queue(encode_surface_adopted(id, layout_version, frame));
+    wake();
+    const auto noted = [&] { return surfaces_[id].noted == layout_version; };
+    changed_.wait_for(lock, timeout, [&] { return !answers() || noted(); });
+    return up_ && noted();
+}
+
+void ControlLink::leave() {
+    if (in_forked_child() || !hello_.group) return;
+    std::unique_lock lock(mutex_);
+    queue(encode_member_leaves(hello_.group->rank));
+    wake();
+    changed_.wait_for(lock, kLeaveLimit, [&] { return !answers() || outbox_.empty(); });
+}
+
+void ControlLink::on_end(std::function<void(const std::string&)> action) {
+    std::lock_guard lock(mutex_);
+    end_ = std::move(action);
+}
+
+void ControlLink::ask_to_redraw(std::uint32_t id) {
+    if (in_forked_child()) return;
+    std::lock_guard lock(mutex_);
+    wishes_.redraw.insert(id);
+    wake();
+}
+
+void ControlLink::ask_all_to_redraw() {
+    if (in_forked_child()) return;
+    std::lock_guard lock(mutex_);
+    for (const auto& [id, surface] : surfaces_) wishes_.redraw.insert(id);
+    wake();
+}
+
+ControlLink::Events ControlLink::take_events() {
+    if (!has_events_.load(std::memory_order_relaxed)) return {};
+    std::lock_guard lock(mutex_);
+    has_events_ = false;
+    return std::exchange(events_, {});
+}
+
+std::optional<Placement> ControlLink::wait_placement(std::uint32_t surface, milliseconds timeout) {
+    if (in_forked_child()) return std::nullopt;
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, timeout, [&] { return !answers() || placements_.contains(surface); });
+    const auto found = placements_.find(surface);
+    if (found == placements_.end()) return std::nullopt;
+    return found->second;
+}
+
+void ControlLink::run() {
+    try {
+        take_messages();
+        while (!stop_) {
+            serve();
+            while (!stop_ && !reconnect()) {
+                pollfd p{wake_fd_.get(), POLLIN, 0};
+                ::poll(&p, 1, static_cast<int>(kTick.count()));
+                std::uint64_t count;
+                [[maybe_unused]] const auto n = ::read(wake_fd_.get(), &count, sizeof count);
+                stats().write();
+            }
+        }
+    } catch (const std::exception& e) {  // out of memory: drawing goes on, the wall's changes do not arrive
+        log(LogLevel::error, "control_thread_ended why=%s", e.what());
+    }
+}
+
+/// Moves messages until the link breaks or must stop.
+void ControlLink::serve() {
+    auto next_tick = Clock::now() + kTick;
+    for (tell_windows(); write_some() && !stop_; tell_windows()) {
+        bool more_to_write;
+        {
+            std::lock_guard lock(mutex_);
+            more_to_write = !outbox_.empty();
+        }
+        pollfd fds[2] = {{wake_fd_.get(), POLLIN, 0},
+                         {fd_.get(), static_cast<short>(POLLIN | (more_to_write ? POLLOUT : 0)), 0}};
+        ::poll(fds, 2, remaining_ms(next_tick));
+        std::uint64_t count;
+        if (fds[0].revents) [[maybe_unused]]
+            const auto n = ::read(wake_fd_.get(), &count, sizeof count);
+        if (fds[1].revents && !read_some()) return;
+        if (Clock::now() >= next_tick) {
+            stats().write();
+            tell_traffic();
+            watch_walld();
+            next_tick = Clock::now() + kTick;
+        }
+    }
+}
+
+bool ControlLink::read_some() {
+    const auto more = receive_some(fd_.get(), inbox_);
+    if (!more || !*more) {
+        on_lost(more ? "walld closed the connection" : more.error().message);
+        return false;
+    }
+    return take_messages();
+}
+
+bool ControlLink::take_messages() {
+    for (;;) {
+        auto message = cut_message(inbox_);
+        if (!message) {
+            on_lost(message.error().message);
+            return false;
+        }
+        if (!*message) return true;
+        if (!handle(std::move(**message))) return false;
+    }
+}
+
+bool ControlLink::write_some() {
+    std::string why;
+    {
+        std::lock_guard lock(mutex_);
+        while (!outbox_.empty()) {
+            const ssize_t n = ::send(fd_.get(), outbox_.data(), outbox_.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+            if (n > 0) {
+                outbox_.erase(0, static_cast<std::size_t>(n));
+            } else if (errno != EINTR) {
+                if (errno != EAGAIN) why = strerror(errno);
+                break;
+            }
+        }
+        if (outbox_.empty()) changed_.notify_all();
+    }
+    if (!why.empty()) on_lost(why);
+    return why.empty();
+}
+
+bool ControlLink::handle(FromWalld message) {
+    if (const auto* refused = std::get_if<Refused>(&message)) {
+        refused_ = true;
+        on_lost(refused->reason);
+        return false;
+    }
+    std::lock_guard lock(mutex_);
+    heard_ = true;
+    if (std::exchange(silent_, false)) log(LogLevel::info, "walld_answers");
+    if (auto* placement = std::get_if<Placement>(&message)) {
+        arrived(*placement);
+    } else if (auto* node = std::get_if<NodeInfo>(&message)) {
+        log(LogLevel::info, "node_%s node=%u address=%s", node->up ? "up" : "down", node->node, node->address.c_str());
+        if (node->up) tickets_[node->node] = node->ticket;
+        // What it shows of programs that do not draw by themselves is lost with its process.
+        for (const auto& [id, surface] : surfaces_)
+            if (node->up) wishes_.redraw.insert(id);
+        events_.node_changes.push_back(std::move(*node));
+    } else if (auto* noted = std::get_if<AdoptionNoted>(&message)) {
+        if (const auto found = surfaces_.find(noted->surface); found != surfaces_.end())
+            found->second.noted = noted->layout_version;
+    } else if (auto* note = std::get_if<SurfaceNote>(&message)) {
+        if (const auto found = surfaces_.find(note->surface.value); found != surfaces_.end())
+            found->second.note = std::move(note->note);
+        return true;  // nobody waits for that
+    } else if (std::holds_alternative<std::monostate>(message)) {
+        return true;
+    } else if (auto* close = std::get_if<CloseRequest>(&message)) {
+        log(LogLevel::info, "close_requested surface=%u reason=%s", close->surface, close->reason.c_str());
+        wishes_.close.insert(close->surface);
+    }
+    has_events_ = true;
+    changed_.notify_all();
+    return true;
+}
+
+// With the mutex held.
+void ControlLink::arrived(const Placement& placement) {
+    events_.placements.push_back(placement);
+    if (hello_.group) {
+        queue(encode_placement_noted(placement.surface, placement.layout_version));
+        wake();
+    }
+    const auto found = surfaces_.find(placement.surface);
+    if (found == surfaces_.end()) return;
+    placements_[placement.surface] = placement;
+    auto& surface = found->second;
+    surface.wanted = placement.rect;
+    if (!surface.drawn) surface.drawn = placement.rect;  // the first one needs no adoption
+    surface.offered[placement.layout_version] = placement.rect;
+    if (surface.offered.size() > kMaxOffered) surface.offered.erase(surface.offered.begin());
+    // A program that draws only when asked would never come to adopt it.
+    if (found->second.awaited > 0) --found->second.awaited;
+    else wishes_.redraw.insert(placement.surface);
+}
+
+/// A walld that hangs costs no more than one that is gone: once it has not answered, nobody waits for it.
+void ControlLink::watch_walld() {
+    std::lock_guard lock(mutex_);
+    if (std::exchange(heard_, false)) {
+        asked_ = false;
+    } else if (!std::exchange(asked_, true)) {
+        queue(encode_ping());
+    } else if (!std::exchange(silent_, true)) {
+        log(LogLevel::warn, "walld_silent address=%s", address_.c_str());
+        changed_.notify_all();
+    }
+}
+
+void ControlLink::tell_windows() {
+    std::vector<std::pair<std::uint32_t, std::function<bool()>>> close;
+    std::vector<std::function<void()>> redraw;
+    {
+        std::lock_guard lock(mutex_);
+        if (wishes_.empty()) return;
+        for (const auto id : wishes_.close)
+            if (const auto found = surfaces_.find(id); found != surfaces_.end())
+                close.emplace_back(id, found->second.messages.close);
+        for (const auto id : wishes_.redraw)
+            if (const auto found = surfaces_.find(id); found != surfaces_.end() && found->second.messages.redraw)
+                redraw.push_back(found->second.messages.redraw);
+        wishes_ = {};
+    }
+    for (const auto& [id, ask] : close) {
+        const bool asked = ask && ask();
+        std::lock_guard lock(mutex_);
+        if (!asked) {
+            queue(encode_close_refused(id));
+            continue;
+        }
+        // Only a call of the program notices that the window is gone; if the others stand still, they make one now.
+        for (const auto& [other, surface] : surfaces_)
+            if (other != id) wishes_.redraw.insert(other);
+        wake();
+    }
+    for (const auto& ask : redraw) ask();
+}
+
+void ControlLink::tell_traffic() {
+    const Traffic traffic = stats().traffic();
+    if (traffic.nodes.empty()) return;  // nothing was sent to anybody yet
+    std::lock_guard lock(mutex_);
+    if (outbox_.empty()) queue(encode(traffic));  // walld does not read now: the next second's figures will do
+}
+
+void ControlLink::on_lost(const std::string& why) {
+    log(LogLevel::error, "walld_lost address=%s why=%s", address_.c_str(), why.c_str());
+    fd_.reset();
+    inbox_.clear();
+    {
+        std::lock_guard lock(mutex_);
+        outbox_.clear();
+        up_ = heard_ = asked_ = silent_ = false;
+        events_.lost = true;
+        has_events_ = true;
+        changed_.notify_all();
+    }
+    if (refused_) end_group(why);
+}
+
+void ControlLink::end_group(const std::string& why) {
+    std::unique_lock lock(mutex_);
+    const auto end = hello_.group ? end_ : nullptr;
+    lock.unlock();
+    if (end) end(why);
+}
+
+/// A parallel program cannot come again: its processes would have to begin anew at the same frame. It draws on as long
+/// as walld is away.
+void ControlLink::end_if_walld_is_new() {
+    const auto fd = connect_to(address_, static_cast<int>(kOpenLimit.count()));
+    if (!fd || !check_server(fd->get(), wall_user_from_environment())) return;
+    pollfd closed{fd->get(), POLLIN, 0};  // one that is just dying closes what it has not accepted
+    if (::poll(&closed, 1, static_cast<int>(kLifeSign.count())) != 0) return;
+    refused_ = true;
+    const std::string why = "walld was started anew: so must the parallel program be";
+    log(LogLevel::error, "session_ended why=%s", why.c_str());
+    end_group(why);
+}
+
+/// With what a walld that was started again cannot know.
+Hello ControlLink::hello_again() {
+    Hello hello = hello_;
+    std::lock_guard lock(mutex_);
+    hello.resume = {session_, tickets_, 0};
+    for (const auto& [id, surface] : surfaces_) hello.resume->windows += surface.restore().has_value();
+    return hello;
+}
+
+bool ControlLink::reconnect() {
+    if (fd_) return true;
+    if (refused_) return false;
+    if (hello_.group) {
+        end_if_walld_is_new();
+        return false;
+    }
+    auto opened = greet(hello_again(), address_, kOpenLimit);
+    if (!opened) {
+        log(LogLevel::debug, "walld_unreachable why=%s", opened.error().message.c_str());
+        return false;
+    }
+    log(LogLevel::info, "walld_reconnected session=%u", opened->welcome.session);
+    fd_ = std::move(opened->fd);
+    inbox_ = std::move(opened->rest);
+    {
+        std::lock_guard lock(mutex_);
+        up_ = true;
+        events_ = {};
+        events_.lost = true;
+        session_ = SessionId(opened->welcome.session);
+        tickets_.clear();
+        for (const auto& node : opened->welcome.nodes) tickets_[node.node] = node.ticket;
+        events_.reconnected = std::move(opened->welcome);
+        placements_.clear();
+        for (auto& [id, surface] : surfaces_) {
+            surface.awaited = 0;  // nobody waits for these answers: the program has to draw again
+            queue(encode_surface_open(id, surface.width, surface.height, surface.title, surface.restore()));
+            surface.offered.clear();  // the new walld counts its versions from 1
+        }
+        has_events_ = true;
+    }
+    return take_messages();
+}
+
+}  // namespace wall::client

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// The link to walld. Opened by an application thread; from then on one background thread moves the messages, and leaves
+// what walld says in a mailbox. Functions never block unless they say so, and then not for a walld that is silent. When
+// walld goes away drawing goes on with the old layout; the link is made again in the background, and walld is told what
+// there was (Events::reconnected).
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "client_lib/link/control_messages.h"
+#include "client_lib/link/window_messages.h"
+#include "common/base/result.h"
+#include "common/base/unique_fd.h"
+
+namespace wall::client {
+
+/// WALLGL_WALLD, or the default.
+std::string walld_address();
+
+class ControlLink {
+public:
+    static constexpr std::chrono::milliseconds kOpenLimit{5000};  ///< connect, hello and welcome together
+
+    /// Blocks, at most `limit`. The error names the address.
+    static Result<std::unique_ptr<ControlLink>> open(const Hello& hello, const std::string& address = walld_address(),
+                                                     std::chrono::milliseconds limit = kOpenLimit);
+    ~ControlLink();
+
+    /// As it was when the link was opened; later changes are Events.
+    const Welcome& welcome() const { return welcome_; }
+
+    /// `messages`: how walld's wishes reach the window.
+    void surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title,
+                      WindowMessages messages = {});
+    void surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height);
+    void surface_close(std::uint32_t id);
+    /// The placement of that version holds from `frame` on. Waits until walld knows; false when the time is over or the
+    /// link breaks.
+    bool surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame,
+                         std::chrono::milliseconds timeout);
+    /// In a parallel program: this process ends in order. Waits a moment until that is said.
+    void leave();
+    /// Called by the background thread when a parallel program's session is over; before any other thread uses the
+    /// link.
+    void on_end(std::function<void(const std::string& why)> action);
+
+    /// Asks the program, soon, to draw the window again: what is on the wall was drawn for another layout.
+    void ask_to_redraw(std::uint32_t id);
+    /// The same for all open windows. Any thread.
+    void ask_all_to_redraw();
+
+    struct Events {
+        std::vector<Placement> placements;  ///< in order of arrival
+        std::vector<NodeInfo> node_changes;
+        bool lost = false;                   ///< the link broke; it is being made again
+        std::optional<Welcome> reconnected;  ///< the session goes on, or is a new one: what it has of nodes with other
+                                             ///< tickets is gone. Open surfaces were announced again
+    };
+    /// What came since the last call. One atomic read when nothing did.
+    Events take_events();
+
+    /// The surface's newest placement since it was opened or last resized (walld answers both with one); waits for it.
+    /// Nothing when the time is over or the link breaks. Does not take events: it is also in the next take_events().
+    std::optional<Placement> wait_placement(std::uint32_t surface, std::chrono::milliseconds timeout);
+
+private:
+    struct OpenSurface {
+        std::uint32_t width = 0, height = 0;
+        std::string title;
+        WindowMessages messages;
+        unsigned awaited = 0;                         ///< placements that answer us; another one is a move
+        std::uint32_t noted = 0;                      ///< layout version that walld knows to be adopted
+        std::map<std::uint32_t, geom::Rect> offered;  ///< by layout version: placements that may still be adopted
+        std::optional<geom::Rect> drawn, wanted;      ///< nothing: walld has placed it nowhere yet
+        std::string note;                             ///< walld's, of this surface
+
+        std::optional<Restore> restore() const {
+            return drawn ? std::optional(Restore{*drawn, *wanted, note}) : std::nullopt;
+        }
+    };
+    /// What the windows are to be told.
+    struct Wishes {
+        std::set<std::uint32_t> close, redraw;
+        bool empty() const { return close.empty() && redraw.empty(); }
+    };
+
+    ControlLink(UniqueFd fd, Hello hello, std::string address, Welcome welcome, std::string rest);
+    void queue(const std::string& envelope);
+    void wake();
+
+    // ---- background thread ----
+    void run();
+    void serve();
+    bool read_some();
+    bool write_some();
+    bool take_messages();
+    bool handle(FromWalld message);
+    void arrived(const Placement& placement);
+    void watch_walld();
+    bool answers() const { return up_ && !silent_; }
+    Hello hello_again();
+    void tell_windows();
+    void tell_traffic();
+    void on_lost(const std::string& why);
+    bool reconnect();
+    void end_if_walld_is_new();
+    void end_group(const std::string& why);
+
+    const Hello hello_;
+    const std::string address_;
+    const Welcome welcome_;
+    UniqueFd wake_fd_;
+    std::atomic<bool> stop_{false};
+    std::atomic<bool> has_events_{false};
+
+    UniqueFd fd_;           // background thread
+    std::string inbox_;     // background thread: bytes of unfinished messages
+    bool refused_ = false;  // background thread: walld has ended the session (an operator did); no second one
+
+    std::mutex mutex_;  // guards what follows
+    std::condition_variable changed_;
+    std::string outbox_;
+    Events events_;
+    bool up_ = true;
+    bool heard_ = false;   // since the last tick
+    bool asked_ = false;   // for a sign of life
+    bool silent_ = false;  // none has come: nobody waits for walld until it says something
+    SessionId session_;
+    std::map<std::uint32_t, std::string> tickets_;  // by node
+    std::function<void(const std::string&)> end_;
+    std::map<std::uint32_t, OpenSurface> surfaces_;
+    Wishes wishes_;
+    std::map<std::uint32_t, Placement> placements_;  ///< newest of each since it was opened or resized
+
+    std::thread thread_;
+};
+
+}  // namespace wall::client

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// The client's part of proto/control.proto as plain structs, written and read with protozero (header only:
+// libprotobuf's symbols would clash with the application's). Pure; any thread.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <variant>
+#include <vector>
+
+#include "client_lib/link/parallel.h"
+#include "client_lib/process/traffic.h"
+#include "common/base/ids.h"
+#include "common/base/result.h"
+#include "common/geom/rect.h"
+
+namespace wall::client {
+
+/// A session that the program had with a walld that is gone. Its streams to the nodes may still be open.
+struct Resume {
+    SessionId session;
+    std::map<std::uint32_t, std::string> tickets;  ///< by node
+    std::uint32_t windows = 0;                     ///< that will be announced with a Restore
+};
+
+/// What a program says of itself when it comes to the wall.
+struct Hello {
+    std::uint32_t pid = 0;
+    std::string program;             ///< the program's name, for people
+    std::string name;                ///< WALLGL_NAME
+    std::optional<geom::Rect> rect;  ///< WALLGL_RECT; nothing: where there is room, 1:1
+    bool fullscreen = false;         ///< WALLGL_RECT=fullscreen
+    bool hold = false;               ///< WALLGL_HOLD
+    std::string token;               ///< from WALLGL_TOKEN_FILE: who owns the session, if not the Unix user
+    std::optional<Parallel> group;   ///< from WALLGL_PARALLEL
+    std::optional<Resume> resume;    ///< it was on the wall before
+    std::string invalid;             ///< what is wrong in the environment; ControlLink::open fails with it
+
+    /// Of this process, from its name and the environment.
+    static Hello from_environment();
+};
+
+/// What all nodes of the wall can do: glGetString and glGet values.
+struct Caps {
+    std::string vendor, renderer, version, shading_language_version;
+    std::string extensions;                                         ///< separated by blanks
+    std::unordered_map<std::uint32_t, std::vector<double>> limits;  ///< by GL enum
+};
+
+struct NodeInfo {
+    std::uint32_t node = 0;         ///< the same as long as walld runs
+    std::string address;            ///< unix:PATH or HOST:PORT
+    std::string ticket;             ///< bytes, for DataHello
+    std::uint32_t incarnation = 0;  ///< grows when the node's process is a new one
+    bool up = true;                 ///< false: only `node` means anything
+};
+
+struct TileInfo {
+    std::uint32_t node = 0, slot = 0;
+    geom::Rect rect;  ///< canvas
+    std::string name;
+};
+
+struct Welcome {
+    std::uint32_t session = 0;
+    std::uint32_t canvas_width = 0, canvas_height = 0;
+    std::vector<TileInfo> tiles;
+    std::vector<NodeInfo> nodes;
+    Caps caps;
+    std::uint32_t swap_timeout_ms = 250;
+};
+
+struct Refused {
+    std::string reason;
+};
+
+/// The surface's whole content covers `rect` of the canvas.
+struct Placement {
+    std::uint32_t surface = 0;
+    std::uint32_t layout_version = 0;
+    geom::Rect rect;
+    // To a parallel program.
+    std::uint32_t from_frame = 0;         ///< it holds from this frame on
+    std::uint32_t width = 0, height = 0;  ///< of the window, in every member
+    std::vector<NodeInfo> nodes;          ///< of the session
+};
+
+/// walld knows from which frame on a placement holds.
+struct AdoptionNoted {
+    std::uint32_t surface = 0;
+    std::uint32_t layout_version = 0;
+};
+
+/// walld's own, for the walld that comes after it: kept with the surface, and not looked at.
+struct SurfaceNote {
+    SurfaceId surface;
+    std::string note;
+};
+
+/// Where a surface is that an earlier walld knew.
+struct Restore {
+    geom::Rect drawn, wanted;  ///< canvas: of the frames that come now, and of the newest placement
+    std::string note;
+};
+
+struct CloseRequest {
+    std::uint32_t surface = 0;
+    std::string reason;
+};
+
+/// A message from walld; nothing for one that this version does not know.
+using FromWalld =
+    std::variant<std::monostate, Welcome, Refused, Placement, NodeInfo, CloseRequest, AdoptionNoted, SurfaceNote>;
+
+// One encoded Envelope each, without the length in front.
+std::string encode(const Hello& hello);
+std::string encode_surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, std::string_view title,
+                                const std::optional<Restore>& restore = {});
+/// Asks walld for a sign of life.
+std::string encode_ping();
+std::string encode_surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height);
+std::string encode_surface_close(std::uint32_t id);
+std::string encode_surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame);
+std::string encode_close_refused(std::uint32_t id);
+std::string encode(const Traffic& traffic);
+std::string encode_placement_noted(std::uint32_t id, std::uint32_t layout_version);
+std::string encode_member_leaves(std::uint32_t rank);
+
+Result<FromWalld> decode_from_walld(std::string_view envelope);
+
+/// The first message on a data stream, for NodeStream::open.
+std::string encode_data_hello(std::uint32_t session, std::string_view ticket, std::uint32_t rank);
+
+}  // namespace wall::client

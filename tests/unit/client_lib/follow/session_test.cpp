@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: MIT
+// A program's connections to its nodes, with a walld and nodes that the test plays. A process has one session, so the
+// tests are one story in order.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <thread>
+
+#include "client_lib/context/core.h"
+#include "client_lib/link/reopening.h"
+#include "common/base/unique_fd.h"
+#include "common/glapi/gl_types.h"
+#include "common/wire/batch.h"
+#include "common/wire/frame.h"
+#include "gen/glapi/wire.gen.h"
+#include "proto/control.pb.h"
+
+namespace wall::client {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using wire::FrameKind;
+
+constexpr auto kPatience = 10s;
+constexpr std::uint32_t kSilentNodes = 4;
+
+bool readable(int fd, std::chrono::milliseconds limit) {
+    pollfd wait{fd, POLLIN, 0};
+    return ::poll(&wait, 1, static_cast<int>(limit.count())) > 0;
+}
+
+/// A socket that listens at a path of its own.
+class Listener {
+public:
+    explicit Listener(const std::string& name)
+        : path_(std::filesystem::temp_directory_path() / ("wallgl_" + name + std::to_string(getpid()))) {
+        std::filesystem::remove(path_);
+        fd_ = UniqueFd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        path_.string().copy(address.sun_path, sizeof address.sun_path - 1);
+        EXPECT_EQ(::bind(fd_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+        EXPECT_EQ(::listen(fd_.get(), 8), 0);
+    }
+    ~Listener() { std::filesystem::remove(path_); }
+    std::string address() const { return "unix:" + path_.string(); }
+    /// Nothing if nobody comes in time.
+    UniqueFd accept(std::chrono::milliseconds limit = kPatience) {
+        return UniqueFd(readable(fd_.get(), limit) ? ::accept(fd_.get(), nullptr, nullptr) : -1);
+    }
+
+private:
+    std::filesystem::path path_;
+    UniqueFd fd_;
+};
+
+/// A node that the test plays.
+struct FakeNode {
+    struct Frame {
+        FrameKind kind{};
+        std::vector<std::byte> payload;
+    };
+    explicit FakeNode(const std::string& name) : listener(name) {}
+
+    /// A client comes and is welcomed, while `meanwhile` is called again and again.
+    template <class Call>
+    bool welcome(Call&& meanwhile, std::chrono::milliseconds limit = kPatience) {
+        for (const auto end = Clock::now() + limit; !stream && Clock::now() < end; meanwhile())
+            stream = listener.accept(20ms);
+        if (!stream || receive().kind != FrameKind::hello) return false;
+        send(FrameKind::welcome, "");
+        return true;
+    }
+    void send(FrameKind kind, const std::string& text) {
+        const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(text.size()), kind});
+        EXPECT_EQ(::send(stream.get(), header.data(), header.size(), MSG_NOSIGNAL),
+                  static_cast<ssize_t>(header.size()));
+        EXPECT_EQ(::send(stream.get(), text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size()));
+    }
+    Frame receive() {
+        std::array<std::byte, wire::kFrameHeaderBytes> head;
+        if (!readable(stream.get(), kPatience) ||
+            ::recv(stream.get(), head.data(), head.size(), MSG_WAITALL) != static_cast<ssize_t>(head.size()))
+            return {};
+        const auto header = wire::decode_frame_header(head.data());
+        Frame frame{header.kind, std::vector<std::byte>(header.payload_bytes)};
+        if (header.payload_bytes != 0) ::recv(stream.get(), frame.payload.data(), frame.payload.size(), MSG_WAITALL);
+        return frame;
+    }
+    /// Whether the next batch has such a command.
+    bool receives(glapi::Op op) {
+        const Frame frame = receive();
+        if (frame.kind != FrameKind::batch) return false;
+        const auto batch = wire::split_batch(frame.payload);
+        return batch && std::ranges::count(batch->opcodes, static_cast<std::byte>(op)) > 0;
+    }
+
+    Listener listener;
+    UniqueFd stream;
+};
+
+/// walld: answers one client until it hangs up.
+class FakeWalld {
+public:
+    explicit FakeWalld(const std::vector<std::string>& nodes) : nodes_(nodes), listener_("session_walld") {}
+    ~FakeWalld() {
+        stop_ = true;
+        thread_.join();
+    }
+    std::string address() const { return listener_.address(); }
+
+private:
+    void serve() {
+        const UniqueFd link = listener_.accept();
+        while (!stop_) {
+            std::uint32_t size = 0;
+            if (!readable(link.get(), 50ms)) continue;
+            if (::recv(link.get(), &size, sizeof size, MSG_WAITALL) != sizeof size) return;
+            std::string bytes(size, '\0');
+            ::recv(link.get(), bytes.data(), size, MSG_WAITALL);
+            proto::Envelope envelope;
+            if (envelope.ParseFromString(bytes)) answer(link.get(), envelope);
+        }
+    }
+    void answer(int fd, const proto::Envelope& message) {
+        proto::Envelope envelope;
+        if (message.has_client_hello()) {
+            welcome(*envelope.mutable_client_welcome());
+        } else if (message.has_surface_open()) {
+            auto& placement = *envelope.mutable_placement();
+            placement.set_surface(message.surface_open().surface());
+            placement.set_layout_version(1);
+            placement.mutable_rect()->set_width(100);
+            placement.mutable_rect()->set_height(100);
+        } else if (message.has_surface_adopted()) {
+            envelope.mutable_adoption_noted()->set_surface(message.surface_adopted().surface());
+            envelope.mutable_adoption_noted()->set_layout_version(message.surface_adopted().layout_version());
+        } else if (message.has_ping()) {
+            envelope.mutable_pong();
+        } else {
+            return;
+        }
+        const auto bytes = envelope.SerializeAsString();
+        const auto size = static_cast<std::uint32_t>(bytes.size());
+        ::send(fd, &size, sizeof size, MSG_NOSIGNAL);
+        ::send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    }
+    void welcome(proto::ClientWelcome& welcome) const {
+        welcome.set_session(1);
+        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+            auto* tile = welcome.add_tiles();
+            tile->set_node(i);
+            tile->mutable_rect()->set_width(100);
+            tile->mutable_rect()->set_height(100);
+            auto* node = welcome.add_nodes();
+            node->set_node(i);
+            node->set_address(nodes_[i]);
+            node->set_ticket("ticket");
+        }
+    }
+
+    const std::vector<std::string> nodes_;
+    Listener listener_;
+    std::atomic<bool> stop_{false};
+    std::thread thread_{[this] { serve(); }};
+};
+
+class ASession : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        std::vector<std::string> addresses;
+        for (std::uint32_t i = 0; i < kSilentNodes; ++i) {
+            silent.push_back(std::make_unique<Listener>("session_silent" + std::to_string(i) + "_"));
+            addresses.push_back(silent.back()->address());
+        }
+        node = std::make_unique<FakeNode>("session_node");
+        addresses.push_back(node->listener.address());
+        walld = std::make_unique<FakeWalld>(addresses);
+        ::setenv("WALLGL_WALLD", walld->address().c_str(), 1);
+    }
+    static void TearDownTestSuite() {
+        make_current(nullptr, nullptr, nullptr);
+        context.reset();
+        surface.reset();
+        walld.reset();
+        silent.clear();
+        node.reset();
+    }
+    /// Without a back buffer a frame ends with glFlush.
+    static void draw() {
+        reinterpret_cast<void (*)(GLbitfield)>(gl_proc_address("glClear"))(GL_COLOR_BUFFER_BIT);
+        flush_current(false);
+    }
+
+    static inline std::vector<std::unique_ptr<Listener>> silent;
+    static inline std::unique_ptr<FakeNode> node;
+    static inline std::unique_ptr<FakeWalld> walld;
+    static inline std::shared_ptr<Context> context;
+    static inline std::shared_ptr<ClientSurface> surface;
+};
+
+TEST_F(ASession, StartsInOneLimitHoweverManyNodesAreSilent) {
+    SurfaceOptions options;
+    options.format.double_buffered = false;
+    options.size = {100, 100};
+    surface = create_surface(options);
+    context = create_context({});
+    std::thread node_side([] { EXPECT_TRUE(node->welcome([] {})); });
+    const auto start = Clock::now();
+    ASSERT_TRUE(make_current(context, surface, surface));
+    const auto took = Clock::now() - start;
+    node_side.join();
+    EXPECT_LT(took, 4s) << "each silent node is waited for up to 2 s";
+    draw();
+    EXPECT_TRUE(node->receives(glapi::Op::SurfaceCreate)) << "the node that answers is drawn on";
+}
+
+TEST_F(ASession, OpensABrokenStreamAgainAndTellsTheNodeEverything) {
+    for (int time = 0; time < 2; ++time) {
+        node->stream.reset();
+        ASSERT_TRUE(node->welcome(draw)) << "time " << time;
+        for (const auto end = Clock::now() + kPatience; !readable(node->stream.get(), 20ms) && Clock::now() < end;)
+            draw();
+        EXPECT_TRUE(node->receives(glapi::Op::SurfaceCreate)) << "time " << time << ": the node holds nothing";
+    }
+}
+
+TEST_F(ASession, LeavesANodeAloneThatEndsItAgainAndAgain) {
+    testing::internal::CaptureStderr();
+    unsigned opened = 1;
+    for (;; ++opened) {
+        node->send(FrameKind::error, "no such thing");
+        node->stream.reset();
+        if (opened > Reopening::kMostEndings || !node->welcome(draw, 8s)) break;
+    }
+    EXPECT_EQ(opened, Reopening::kMostEndings);
+    draw();
+    EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("no such thing"));
+}
+
+// ---- the policy alone ----
+
+TEST(Reopening, TriesABrokenStreamAtOnceAndThenEverMoreRarely) {
+    Reopening reopening;
+    Reopening::Time now{};
+    reopening.opened(now);
+    reopening.lost(now += 5s, false);
+    EXPECT_TRUE(reopening.due(now));
+    for (const auto pause : {1s, 2s, 4s, 8s, 16s, 30s, 30s, 30s}) {
+        reopening.not_opened(now);
+        EXPECT_FALSE(reopening.due(now + pause - 1ms)) << pause.count();
+        EXPECT_TRUE(reopening.due(now += pause)) << pause.count();
+    }
+    EXPECT_FALSE(reopening.given_up());
+    reopening.opened(now);
+    reopening.lost(now += Reopening::kProven, false);
+    EXPECT_TRUE(reopening.due(now)) << "it had lasted";
+}
+
+TEST(Reopening, LeavesANodeAloneThatEndsTheStreamForACause) {
+    Reopening reopening;
+    Reopening::Time now{};
+    for (unsigned i = 0; i < Reopening::kMostEndings; ++i) {
+        EXPECT_FALSE(reopening.given_up());
+        reopening.opened(now);
+        reopening.lost(now += 1s, true);
+        EXPECT_FALSE(reopening.due(now)) << "never at once";
+        now += Reopening::kLongestPause;
+    }
+    EXPECT_TRUE(reopening.given_up());
+    EXPECT_FALSE(reopening.due(now + 1h));
+}
+
+TEST(Reopening, EndingsFarApartAreNoReasonToGiveUp) {
+    Reopening reopening;
+    Reopening::Time now{};
+    for (unsigned i = 0; i < 10 * Reopening::kMostEndings; ++i) {
+        reopening.opened(now);
+        reopening.lost(now += Reopening::kProven, true);
+        EXPECT_FALSE(reopening.given_up());
+    }
+}
+
+}  // namespace
+}  // namespace wall::client

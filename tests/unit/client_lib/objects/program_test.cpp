@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// Programs and buffers as the client keeps them: what needs no node.
+#include "client_lib/objects/program.h"
+
+#include <cstring>
+
+#include "client_lib/context/buffer_binding.h"
+#include "tests/unit/client_lib/context_fixture.h"
+
+namespace wall::client {
+namespace {
+
+// ---- what linking told ----
+
+glapi::ProgramReflection reflection() {
+    glapi::ProgramReflection r;
+    r.linked = true;
+    r.uniforms = {{GL_FLOAT_MAT4, 1, true, false, "gl_ModelViewMatrix", {}},
+                  {GL_FLOAT_VEC3, 1, false, false, "color", {0, 0, 0}},
+                  {GL_FLOAT, 3, false, true, "weights", {1, 2, 3}},
+                  {GL_SAMPLER_2D, 2, false, true, "images", {0, 0}}};
+    r.attributes = {{GL_FLOAT_VEC4, 1, 5, "place"}};
+    return r;
+}
+
+TEST(ExecutableTest, LocationsAreDense) {
+    const auto e = Executable::make({}, reflection());
+    ASSERT_TRUE(e);
+    EXPECT_EQ(e->location_of("color"), 0);
+    EXPECT_EQ(e->location_of("weights"), 1);
+    EXPECT_EQ(e->location_of("weights[0]"), 1);
+    EXPECT_EQ(e->location_of("weights[2]"), 3);
+    EXPECT_EQ(e->location_of("images[1]"), 5);
+    for (const char* none : {"weights[3]", "color[0]", "weights[", "weights[]", "weights[01]", "weights[-1]", "other",
+                             "", "]", "gl_ModelViewMatrix"})
+        EXPECT_EQ(e->location_of(none), -1) << none;
+    EXPECT_EQ(e->attribute_location_of("place"), 5);
+    EXPECT_EQ(e->attribute_location_of("places"), -1);
+    EXPECT_EQ(e->place_of(6), nullptr);
+    EXPECT_EQ(e->place_of(-1), nullptr);
+}
+
+TEST(ExecutableTest, OtherNodesGetTheFirstOnesChoices) {
+    glapi::ProgramDefinition definition;
+    definition.attributes = {{2, "place"}, {4, "unused"}};
+    const auto e = Executable::make(definition, reflection());
+    const auto sent = glapi::decode_definition(e->definition);
+    ASSERT_TRUE(sent);
+    ASSERT_EQ(sent->uniforms.size(), 3u);
+    EXPECT_EQ(sent->uniforms[1].name, "weights");
+    EXPECT_EQ(sent->uniforms[1].size, 3u);
+    ASSERT_EQ(sent->attributes.size(), 2u);
+    EXPECT_EQ(sent->attributes[1].name, "place");
+    EXPECT_EQ(sent->attributes[1].index, 5u);
+}
+
+TEST(ExecutableTest, StampsTellWhatANodeLacks) {
+    Program program(1, 1);
+    program.executable = Executable::make({}, reflection());
+    Executable& e = *program.executable;
+    wire::PackBuffer first;
+    pack_program(program, 0, first);
+    EXPECT_EQ(first.commands(), 1u);  // the definition; no uniform was set
+    const std::uint64_t known = e.last_change;
+    const std::uint32_t word = 7;
+    EXPECT_FALSE(e.holds(e.uniforms[2], 1, std::span(&word, 1)));
+    e.store(e.uniforms[2], 1, std::span(&word, 1));
+    EXPECT_TRUE(e.holds(e.uniforms[2], 1, std::span(&word, 1)));
+    wire::PackBuffer change, all;
+    pack_program(program, known, change);
+    EXPECT_EQ(change.commands(), 1u);
+    pack_program(program, 0, all);
+    EXPECT_EQ(all.commands(), 2u);
+    pack_program(program, e.last_change, change);
+    EXPECT_EQ(change.commands(), 1u);
+}
+
+TEST(ExecutableTest, RefusesAnAnswerThatContradictsItself) {
+    auto bad = reflection();
+    bad.uniforms[1].initial.pop_back();
+    EXPECT_FALSE(Executable::make({}, std::move(bad)));
+    bad = reflection();
+    bad.uniforms[2].size = 0;
+    EXPECT_FALSE(Executable::make({}, std::move(bad)));
+    bad = reflection();
+    bad.uniforms[1].type = 0x1234;
+    EXPECT_FALSE(Executable::make({}, std::move(bad)));
+}
+
+// ---- the API ----
+
+class ProgramTest : public ContextTest {
+protected:
+    /// A program that is linked and used, as if a node had answered.
+    Program& use() {
+        name_ = gl().CreateProgram(c);
+        const auto program = std::static_pointer_cast<Program>(share->glsl_objects.find(name_));
+        program->executable = Executable::make({}, reflection());
+        program->linked = true;
+        gl().UseProgram(c, name_);
+        return *program;
+    }
+    GLuint name_ = 0;
+};
+
+TEST_F(ProgramTest, NamesAreShared) {
+    const GLuint shader = gl().CreateShader(c, GL_VERTEX_SHADER), program = gl().CreateProgram(c);
+    EXPECT_NE(shader, program);
+    EXPECT_TRUE(gl().IsShader(c, shader));
+    EXPECT_FALSE(gl().IsProgram(c, shader));
+    gl().AttachShader(c, shader, shader);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().AttachShader(c, 99, shader);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+    EXPECT_EQ(gl().CreateShader(c, GL_FLOAT), 0u);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
+}
+
+TEST_F(ProgramTest, AnAttachedShaderOutlivesItsDeletion) {
+    const GLuint shader = gl().CreateShader(c, GL_VERTEX_SHADER), program = gl().CreateProgram(c);
+    gl().AttachShader(c, program, shader);
+    gl().AttachShader(c, program, shader);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().DeleteShader(c, shader);
+    GLint deleted = 0;
+    gl().GetShaderiv(c, shader, GL_DELETE_STATUS, &deleted);
+    EXPECT_EQ(deleted, GL_TRUE);
+    gl().DetachShader(c, program, shader);
+    EXPECT_FALSE(gl().IsShader(c, shader));
+}
+
+TEST_F(ProgramTest, SourceIsKeptAsGiven) {
+    const GLuint shader = gl().CreateShader(c, GL_VERTEX_SHADER);
+    const GLchar* parts[] = {"abc", "defgh"};
+    const GLint lengths[] = {-1, 2};
+    gl().ShaderSource(c, shader, 2, parts, lengths);
+    GLchar out[8];
+    GLsizei length = 0;
+    gl().GetShaderSource(c, shader, sizeof out, &length, out);
+    EXPECT_STREQ(out, "abcde");
+    EXPECT_EQ(length, 5);
+    gl().GetShaderSource(c, shader, 3, &length, out);
+    EXPECT_STREQ(out, "ab");
+}
+
+TEST_F(ProgramTest, UniformsKeepTheirTypes) {
+    Program& program = use();
+    EXPECT_EQ(c.state.objects.current_program, program.id);
+    gl().Uniform3f(c, 0, 1, 2, 3);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    GLfloat got[3] = {};
+    gl().GetUniformfv(c, name_, 0, got);
+    EXPECT_EQ(got[2], 3);
+    gl().Uniform2f(c, 0, 1, 2);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().Uniform3i(c, 0, 1, 2, 3);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().Uniform1i(c, 4, 9999);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+    gl().Uniform1f(c, 77, 0);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().Uniform1f(c, -1, 0);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    const GLfloat many[4] = {9, 8, 7, 6};
+    gl().Uniform1fv(c, 2, 4, many);  // reaches over the end: cut
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().GetUniformfv(c, name_, 3, got);
+    EXPECT_EQ(got[0], 8);
+    gl().GetUniformfv(c, name_, 1, got);
+    GLint initial = 0;
+    std::memcpy(&initial, got, sizeof initial);
+    EXPECT_EQ(initial, 1);
+}
+
+TEST_F(ProgramTest, AnEqualValueIsNoChange) {
+    Program& program = use();
+    gl().Uniform3f(c, 0, 1, 2, 3);
+    const auto stamp = program.executable->last_change;
+    gl().Uniform3f(c, 0, 1, 2, 3);
+    EXPECT_EQ(program.executable->last_change, stamp);
+    gl().Uniform3f(c, 0, 1, 2, 4);
+    EXPECT_GT(program.executable->last_change, stamp);
+}
+
+TEST_F(ProgramTest, AProgramDrawsEverywhere) {
+    use();
+    gl().Begin(c, GL_POINTS);
+    gl().Vertex2f(c, 0, 0);
+    gl().End(c);
+    EXPECT_TRUE(c.packer.block_box().unbounded());
+    c.packer.reset();
+}
+
+// ---- buffers ----
+
+using BufferTest = ContextTest;
+
+TEST_F(BufferTest, HoldsWhatItWasGiven) {
+    GLuint name = 0;
+    gl().GenBuffers(c, 1, &name);
+    EXPECT_FALSE(gl().IsBuffer(c, name));
+    gl().BufferData(c, GL_ARRAY_BUFFER, 4, "abcd", GL_STATIC_DRAW);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().BindBuffer(c, GL_ARRAY_BUFFER, name);
+    EXPECT_TRUE(gl().IsBuffer(c, name));
+    gl().BufferData(c, GL_ARRAY_BUFFER, 4, "abcd", GL_STATIC_DRAW);
+    gl().BufferSubData(c, GL_ARRAY_BUFFER, 1, 2, "XY");
+    char got[4];
+    gl().GetBufferSubData(c, GL_ARRAY_BUFFER, 0, 4, got);
+    EXPECT_EQ(std::memcmp(got, "aXYd", 4), 0);
+    gl().BufferSubData(c, GL_ARRAY_BUFFER, 3, 2, "XY");
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+    gl().BufferData(c, GL_ARRAY_BUFFER, 4, "abcd", GL_FLOAT);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
+    EXPECT_EQ(buffer_content(c, c.state.local.array_buffer, 2).bytes().size(), 2u);
+    EXPECT_TRUE(buffer_content(c, c.state.local.array_buffer, 5).bytes().empty());
+}
+
+TEST_F(BufferTest, MappedMemoryIsTheContent) {
+    GLuint name = 0;
+    gl().GenBuffers(c, 1, &name);
+    gl().BindBuffer(c, GL_ARRAY_BUFFER, name);
+    gl().BufferData(c, GL_ARRAY_BUFFER, 4, nullptr, GL_DYNAMIC_DRAW);
+    auto* memory = static_cast<char*>(gl().MapBuffer(c, GL_ARRAY_BUFFER, GL_WRITE_ONLY));
+    ASSERT_TRUE(memory);
+    std::memcpy(memory, "wxyz", 4);
+    EXPECT_EQ(gl().MapBuffer(c, GL_ARRAY_BUFFER, GL_WRITE_ONLY), nullptr);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    EXPECT_TRUE(gl().UnmapBuffer(c, GL_ARRAY_BUFFER));
+    char got[4];
+    gl().GetBufferSubData(c, GL_ARRAY_BUFFER, 0, 4, got);
+    EXPECT_EQ(std::memcmp(got, "wxyz", 4), 0);
+    EXPECT_FALSE(gl().UnmapBuffer(c, GL_ARRAY_BUFFER));
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+}
+
+TEST_F(BufferTest, DeletingUnbinds) {
+    GLuint name = 0;
+    gl().GenBuffers(c, 1, &name);
+    gl().BindBuffer(c, GL_ELEMENT_ARRAY_BUFFER, name);
+    gl().DeleteBuffers(c, 1, &name);
+    EXPECT_EQ(c.state.local.element_array_buffer, 0u);
+    EXPECT_FALSE(gl().IsBuffer(c, name));
+}
+
+}  // namespace
+}  // namespace wall::client
