@@ -54,7 +54,7 @@ public:
 enum class To { null, llvmpipe };
 
 struct Ignore final : SessionOutput {
-    void reply(std::uint32_t, std::vector<std::byte>) override {}
+    void reply(RequestId, std::vector<std::byte>) override {}
     void frame_rendered(SurfaceId, std::uint32_t) override {}
 };
 
@@ -91,19 +91,19 @@ public:
     Client(Node& node, std::uint32_t id)
         : session(node.node().driver, SessionId(id)), executor(node.node(), session, output_) {
         wire::PackBuffer buffer;
-        pack::SurfaceCreate(buffer, 1, 1, 8, 24, 8, 0, 0);
-        pack::SurfacePlace(buffer, 1, 1, kSize, kSize, 0, 0, kSize, kSize, 0);
+        pack::SurfaceCreate(buffer, SurfaceId(1), 1, 8, 24, 8, 0, 0);
+        pack::SurfacePlace(buffer, SurfaceId(1), 1, kSize, kSize, 0, 0, kSize, kSize, 0);
         run(1, buffer);
         for (const std::uint32_t context : {1u, 2u}) {
             wire::PackBuffer bind;
-            pack::Bind(bind, 1, 1);
+            pack::Bind(bind, SurfaceId(1), SurfaceId(1));
             run(context, bind);
             glstate::assign<el::viewport>(this->context(context).state, 0, {0, 0, kSize, kSize});
         }
     }
     void run(std::uint32_t context, const wire::PackBuffer& buffer) {
         std::vector<std::byte> payload;
-        wire::append_batch(payload, {context, buffer.opcodes(), buffer.operands()});
+        wire::append_batch(payload, {ContextId(context), buffer.opcodes(), buffer.operands()});
         WALL_ASSERT(executor.run_batch(payload));
     }
     SoftContext& context(std::uint32_t id) { return session.context(ContextId(id)); }
@@ -342,7 +342,7 @@ void Varying_Batches(benchmark::State& run, To to) {
         pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()),
                     static_cast<std::uint32_t>(body.operand_bytes()));
         buffer.append(body, {}, body.mark());
-        wire::append_batch(payloads[i], {1, buffer.opcodes(), buffer.operands()});
+        wire::append_batch(payloads[i], {ContextId(1), buffer.opcodes(), buffer.operands()});
     }
     time_turns(run, node.gl(),
                [&](std::size_t i) { benchmark::DoNotOptimize(clients[i]->executor.run_batch(payloads[i])); });

@@ -123,7 +123,7 @@ void draw_indices(Context& c, GLenum mode, GLsizei count, GLenum type, const voi
     elements.type = type;
     elements.indices = indices;
     BufferReading reading;
-    if (const std::uint32_t buffer = c.state.local.element_array_buffer) {
+    if (const ClientName buffer(c.state.local.element_array_buffer); buffer) {
         reading = buffer_content(c, buffer, reinterpret_cast<std::uintptr_t>(indices));
         const auto content = reading.bytes();
         const std::size_t bytes = type == GL_UNSIGNED_BYTE ? 1 : type == GL_UNSIGNED_SHORT ? 2 : 4;

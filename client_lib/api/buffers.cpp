@@ -11,12 +11,12 @@ namespace {
 
 /// The buffer bound to a target, or null and the error.
 Buffer* bound_buffer(Context& c, GLenum target) {
-    const std::uint32_t* id = buffer_binding(c, target);
-    if (!id) {
+    const std::uint32_t* binding = buffer_binding(c, target);
+    if (!binding) {
         c.error(GL_INVALID_ENUM);
         return nullptr;
     }
-    Buffer* buffer = buffer_of(c, *id);
+    Buffer* buffer = buffer_of(c, ClientName(*binding));
     if (!buffer) c.error(GL_INVALID_OPERATION);
     return buffer;
 }
@@ -39,9 +39,9 @@ bool is_usage(GLenum usage) {
 static_assert((GL_STREAM_DRAW & 3) == 0 && (GL_STATIC_DRAW & 3) == 0 && (GL_DYNAMIC_DRAW & 3) == 0);
 
 /// A deleted buffer leaves the bindings of the context that deletes it (OpenGL 2.1, 2.9).
-void unbind(Context& c, std::uint32_t id) {
+void unbind(Context& c, ClientName id) {
     for (const GLenum target : {GL_ARRAY_BUFFER, GL_ELEMENT_ARRAY_BUFFER, GL_PIXEL_PACK_BUFFER, GL_PIXEL_UNPACK_BUFFER})
-        if (std::uint32_t& bound = *buffer_binding(c, target); bound == id) bound = 0;
+        if (std::uint32_t& bound = *buffer_binding(c, target); bound == id.value) bound = 0;
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ void BindBuffer(Context& c, GLenum target, GLuint name) {
         buffer = std::make_shared<Buffer>(next_object_id(), name);
         share.buffers.put(name, buffer);
     }
-    *binding = buffer->id;
+    *binding = buffer->id.value;
     c.buffers->by_id.try_emplace(buffer->id, std::move(buffer));
 }
 

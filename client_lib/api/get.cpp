@@ -177,7 +177,7 @@ void get_element(Context& c, const glstate::GetEntry& entry, Out* out) {
     if (entry.kind > glstate::ValueKind::pointer) {
         GLint object = 0;
         glstate::read_components(c.state, id, entry.offset, glstate::ValueKind::unsigned_integer, 1, &object);
-        *out = converted<Out>(object_name(c, entry.kind, static_cast<std::uint32_t>(object)));
+        *out = converted<Out>(object_name(c, entry.kind, ClientName(static_cast<std::uint32_t>(object))));
         return;
     }
     glstate::read_components(c.state, id, entry.offset, entry.kind, entry.components, out);

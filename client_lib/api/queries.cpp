@@ -14,7 +14,7 @@ namespace el = glstate::el;
 constexpr GLint kCounterBits = 64;
 
 void forget(Context& c, const OcclusionQuery& query) {
-    if (query.id == 0) return;
+    if (!query.id) return;
     c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node&) { glapi::pack::QueryDelete(buffer, query.id); });
 }
 
@@ -27,14 +27,13 @@ std::vector<Node*> live_nodes(ClientSession& session) {
 }
 
 std::uint64_t samples_of(Context& c, OcclusionQuery& query) {
-    if (query.answered || query.id == 0) return query.samples;
+    if (query.answered || !query.id) return query.samples;
     c.flush_block();
     c.session().count_hidden_samples();
     for (Node* node : live_nodes(c.session())) {
-        const auto answer =
-            c.session().ask(c, *node, "glGetQueryObject", [&](wire::PackBuffer& buffer, std::uint32_t request) {
-                glapi::pack::QueryResult(buffer, request, query.id);
-            });
+        const auto answer = c.session().ask(
+            c, *node, "glGetQueryObject",
+            [&](wire::PackBuffer& buffer, RequestId request) { glapi::pack::QueryResult(buffer, request, query.id); });
         std::uint64_t samples = 0;
         if (answer && answer->size() == sizeof samples) std::memcpy(&samples, answer->data(), sizeof samples);
         query.samples += samples;
@@ -85,7 +84,7 @@ void BeginQuery(Context& c, GLenum target, GLuint name) {
     forget(c, *query);
     *query = {name, next_object_id()};
     queries.current = query;
-    c.set<el::occlusion_query>(0, query->id);
+    c.set<el::occlusion_query>(0, query->id.value);
 }
 
 void EndQuery(Context& c, GLenum target) {

@@ -12,7 +12,7 @@ namespace wall::client::api {
 namespace {
 
 /// One layer of the window's size on `node`.
-SurfaceLayout single_layer(const ClientSurface& surface, std::uint32_t node) {
+SurfaceLayout single_layer(const ClientSurface& surface, NodeIndex node) {
     SurfaceLayout layout = surface.layout;
     const auto width = static_cast<int>(layout.width), height = static_cast<int>(layout.height);
     layout.offscreen = true;
@@ -41,7 +41,7 @@ std::vector<std::byte> switch_mode(Context& c, Node& node, GLenum mode) {
     const SelectState& s = *c.select;
     const GLsizei entries = mode == GL_SELECT ? s.select_entries : s.feedback_entries;
     const auto count = static_cast<std::uint32_t>(mode == GL_RENDER ? 0 : entries);
-    auto answer = c.session().ask(c, node, "glRenderMode", [&](wire::PackBuffer& buffer, std::uint32_t request) {
+    auto answer = c.session().ask(c, node, "glRenderMode", [&](wire::PackBuffer& buffer, RequestId request) {
         glapi::pack::RenderMode(buffer, request, mode, s.feedback_type, count);
     });
     return std::move(answer).value_or(std::vector<std::byte>{});

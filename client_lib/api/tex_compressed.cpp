@@ -84,7 +84,7 @@ std::optional<std::vector<std::byte>> compressed(Context& c, const Image& image,
         const GLsizei height = std::min(most, image.height - y);
         const auto pixels =
             std::span(data.bytes).subspan(static_cast<std::size_t>(y) * row, static_cast<std::size_t>(height) * row);
-        const auto answer = ask_one_node(c, function, [&](wire::PackBuffer& buffer, std::uint32_t request) {
+        const auto answer = ask_one_node(c, function, [&](wire::PackBuffer& buffer, RequestId request) {
             glapi::pack::Compress(buffer, request, static_cast<GLenum>(image.format), image.width, height, data.format,
                                   data.type, pixels);
         });

@@ -113,9 +113,10 @@ void get_parameter(Context& c, GLenum target, GLenum pname, Out* out) {
     const unsigned count = parameter_size(pname);
     if (count == 0) return c.error(GL_INVALID_ENUM);
     const auto texture = bound_texture(c, target);
-    const auto value = pname == GL_TEXTURE_RESIDENT
-                           ? std::array<float, 4>{1}
-                           : parameter_value(texture ? texture->parameters : Texture(0, 0, target).parameters, pname);
+    const auto value =
+        pname == GL_TEXTURE_RESIDENT
+            ? std::array<float, 4>{1}
+            : parameter_value(texture ? texture->parameters : Texture(ClientName(), 0, target).parameters, pname);
     constexpr bool kInteger = std::is_same_v<Out, GLint>;
     const bool fraction = pname == GL_TEXTURE_BORDER_COLOR || pname == GL_TEXTURE_PRIORITY;
     for (unsigned i = 0; i < count; ++i) {

@@ -26,15 +26,15 @@ constexpr std::pair<GLenum, GLenum> kGlobalTargets[] = {
     {0x0001'D001, GL_TEXTURE_1D}, {0x0001'D002, GL_TEXTURE_2D}, {0x0001'D003, GL_TEXTURE_3D}};
 
 // A binding of a default texture that has content is its id, in every context that binds name 0.
-std::uint32_t default_id(ShareGroup& share, GLenum target) {
+ClientName default_id(ShareGroup& share, GLenum target) {
     const auto found = share.default_textures.find(target);
-    return found == share.default_textures.end() ? 0 : found->second->id;
+    return found == share.default_textures.end() ? ClientName() : found->second->id;
 }
 
 void forget(Context& c, const std::shared_ptr<Texture>& texture) {
     for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
         if (bound_id(c, unit, texture->target) != texture->id) continue;
-        std::uint32_t id;
+        ClientName id;
         {
             std::lock_guard lock(c.share().mutex);
             id = default_id(c.share(), texture->target);
@@ -154,7 +154,7 @@ void BindTexture(Context& c, GLenum target, GLuint name) {
     const bool global = named != std::end(kGlobalTargets);
     if (global) target = named->second;
     if (!is_target(target)) return c.error(GL_INVALID_ENUM);
-    std::uint32_t id;
+    ClientName id;
     {
         std::lock_guard lock(c.share().mutex);
         if (name == 0) {
@@ -198,7 +198,7 @@ void PrioritizeTextures(Context& c, GLsizei n, const GLuint* names, const GLfloa
 void TexParameterfv(Context& c, GLenum target, GLenum pname, const GLfloat* params) {
     if (!is_target(target)) return c.error(GL_INVALID_ENUM);
     const auto current = bound_texture(c, target);
-    const TexParameters before = current ? current->parameters : Texture(0, 0, target).parameters;
+    const TexParameters before = current ? current->parameters : Texture(ClientName(), 0, target).parameters;
     const Change change = changed(before, target, pname, params);
     if (change.error != GL_NO_ERROR) return c.error(change.error);
     if (parameter_value(before, pname) == parameter_value(change.value, pname)) return;

@@ -29,7 +29,7 @@ void get(Context& c, GLuint index, GLenum pname, Out* params) {
         case GL_VERTEX_ATTRIB_ARRAY_TYPE: *params = static_cast<Out>(array.type); break;
         case GL_VERTEX_ATTRIB_ARRAY_NORMALIZED: *params = static_cast<Out>(array.normalized); break;
         case GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING:
-            *params = static_cast<Out>(object_name(c, glstate::ValueKind::name_buffer, array.buffer));
+            *params = static_cast<Out>(object_name(c, glstate::ValueKind::name_buffer, ClientName(array.buffer)));
             break;
         case GL_CURRENT_VERTEX_ATTRIB:
             if (index == 0) return c.error(GL_INVALID_OPERATION);

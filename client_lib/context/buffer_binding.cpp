@@ -22,25 +22,27 @@ std::uint32_t* buffer_binding(Context& c, GLenum target) {
     }
 }
 
-Buffer* buffer_of(Context& c, std::uint32_t id) {
+Buffer* buffer_of(Context& c, ClientName id) {
     const auto found = c.buffers->by_id.find(id);
     return found == c.buffers->by_id.end() ? nullptr : found->second.get();
 }
 
 namespace {
 
-bool names_buffer(const glstate::State& state, std::uint32_t id) {
+bool names_buffer(const glstate::State& state, ClientName id) {
     const auto& local = state.local;
-    bool named = local.array_buffer == id || local.element_array_buffer == id || local.pixel_pack_buffer == id ||
-                 local.pixel_unpack_buffer == id;
+    bool named = false;
+    for (const std::uint32_t bound :
+         {local.array_buffer, local.element_array_buffer, local.pixel_pack_buffer, local.pixel_unpack_buffer})
+        named = named || bound == id.value;
     glstate::for_each_element([&]<class E>() {
         if constexpr (std::is_same_v<typename E::type, glstate::ClientArray>)
-            for (unsigned i = 0; i < E::count; ++i) named = named || E::ref(state, i).buffer == id;
+            for (unsigned i = 0; i < E::count; ++i) named = named || E::ref(state, i).buffer == id.value;
     });
     return named;
 }
 
-bool names_buffer(const Context& c, std::uint32_t id) {
+bool names_buffer(const Context& c, ClientName id) {
     const auto& saved = c.attributes->client;
     return names_buffer(c.state, id) ||
            std::any_of(saved.begin(), saved.end(), [&](const auto& s) { return names_buffer(s->state, id); });
@@ -65,7 +67,7 @@ void let_go_of_deleted_buffers(Context& c) {
     });
 }
 
-BufferReading buffer_content(Context& c, std::uint32_t id, std::uintptr_t offset) {
+BufferReading buffer_content(Context& c, ClientName id, std::uintptr_t offset) {
     if (buffers_were_deleted(c)) let_go_of_deleted_buffers(c);
     const Buffer* buffer = buffer_of(c, id);
     if (!buffer) return {};
@@ -76,7 +78,7 @@ BufferReading buffer_content(Context& c, std::uint32_t id, std::uintptr_t offset
 namespace {
 
 /// Null with an error if the bytes are not within the buffer, or the application has it mapped.
-std::byte* bytes_within(Context& c, std::uint32_t id, const void* pointer, std::size_t bytes, bool to_write) {
+std::byte* bytes_within(Context& c, ClientName id, const void* pointer, std::size_t bytes, bool to_write) {
     Buffer* buffer = buffer_of(c, id);
     const auto offset = reinterpret_cast<std::uintptr_t>(pointer);
     c.buffers->transfer = {};
@@ -93,13 +95,13 @@ std::byte* bytes_within(Context& c, std::uint32_t id, const void* pointer, std::
 }  // namespace
 
 const void* unpack_source(Context& c, const void* pointer, std::size_t bytes) {
-    const std::uint32_t id = c.state.local.pixel_unpack_buffer;
-    return id == 0 ? pointer : bytes_within(c, id, pointer, bytes, false);
+    const ClientName id(c.state.local.pixel_unpack_buffer);
+    return !id ? pointer : bytes_within(c, id, pointer, bytes, false);
 }
 
 void* pack_target(Context& c, void* pointer, std::size_t bytes) {
-    const std::uint32_t id = c.state.local.pixel_pack_buffer;
-    return id == 0 ? pointer : bytes_within(c, id, pointer, bytes, true);
+    const ClientName id(c.state.local.pixel_pack_buffer);
+    return !id ? pointer : bytes_within(c, id, pointer, bytes, true);
 }
 
 }  // namespace wall::client

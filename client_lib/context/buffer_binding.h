@@ -15,7 +15,7 @@ namespace wall::client {
 
 /// The buffers that a context's bindings and arrays may name, by id. Used by the context's thread.
 struct BufferUse {
-    std::unordered_map<std::uint32_t, std::shared_ptr<Buffer>> by_id;
+    std::unordered_map<ClientName, std::shared_ptr<Buffer>> by_id;
     std::uint64_t deletions = 0;  ///< ShareGroup::buffer_deletions when deleted ones were last let go
     bool holds_deleted = false;   ///< some were still named then
     BufferReading transfer;       ///< what the latest pixel command reads or writes
@@ -25,7 +25,7 @@ struct BufferUse {
 std::uint32_t* buffer_binding(Context& c, GLenum target);
 
 /// The buffer of an id; null: none, or this context deleted it.
-Buffer* buffer_of(Context& c, std::uint32_t id);
+Buffer* buffer_of(Context& c, ClientName id);
 
 /// Lets go of buffers that others deleted and that this context does not name any more.
 void let_go_of_deleted_buffers(Context& c);
@@ -34,7 +34,7 @@ bool buffers_were_deleted(const Context& c);
 
 /// The content that a pointer given while `buffer` was bound stands for, from its offset on. Empty: the buffer is gone,
 /// or the offset lies behind its end.
-BufferReading buffer_content(Context& c, std::uint32_t buffer, std::uintptr_t offset);
+BufferReading buffer_content(Context& c, ClientName buffer, std::uintptr_t offset);
 
 /// The source of an image command (GL_PIXEL_UNPACK_BUFFER) of `bytes` bytes; null with an error if it reaches over the
 /// buffer's end. Without a buffer, `pointer` itself. It stays until the next of these two.

@@ -375,7 +375,7 @@ void ArraySet::add(Context& c, ArrayKind kind, unsigned index, const glstate::Cl
     const auto* base = reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(array.pointer));
     std::size_t count = ArraySource::kNoLimit;
     if (array.buffer) {
-        readings_.push_back(buffer_content(c, array.buffer, static_cast<std::uintptr_t>(array.pointer)));
+        readings_.push_back(buffer_content(c, ClientName(array.buffer), static_cast<std::uintptr_t>(array.pointer)));
         const auto content = readings_.back().bytes();
         base = content.data();
         count = content.size() < bytes ? 0 : (content.size() - bytes) / stride + 1;

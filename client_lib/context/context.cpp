@@ -22,7 +22,7 @@ constinit thread_local Context* tls_context = nullptr;
 constinit thread_local Packer* tls_packer = nullptr;
 
 Context::Context(std::shared_ptr<ShareGroup> share, const ContextOptions&)
-    : id(next_object_id()),
+    : id(next_context_id()),
       table(&tables::immediate),
       lists(std::make_unique<ListState>()),
       attributes(std::make_unique<AttributeStacks>()),

@@ -50,7 +50,7 @@ public:
     ~Context();
     Context(const Context&) = delete;
 
-    const std::uint32_t id;
+    const ContextId id;
     glstate::State state;
     const GlTable* table = nullptr;
     Packer packer;
@@ -116,7 +116,7 @@ public:
     std::vector<PendingMaterial> pending_materials;
 
     /// Before an object that was drawn with changes or goes: by its id.
-    void before_change(std::uint32_t changing_id) {
+    void before_change(ClientName changing_id) {
         if (session_) session_->before_object_changes(changing_id);
     }
 
@@ -183,14 +183,14 @@ void ClientSession::draw(Context& context, const std::optional<PixelRect>& box, 
             std::memcpy(buffer.operand_at(operands + 8), counts, sizeof counts);
         };
         if (Node* kept = context.draw_surface()->hidden ? begin_keeping(context, box) : nullptr) {
-            Node& node = *nodes_[kept->index];
+            Node& node = node_of(kept->index);
             before(node, batch(node, context.id));
             pack_block(prepare_kept(context, needs), std::uint64_t{1} << wire::kOffscreenSlot);
             after(*kept);
         }
         const SurfaceLayout& layout = context.draw_layout();
         for (const auto& [index, slots] : targets_of(layout, box)) {
-            Node& node = *nodes_[index];
+            Node& node = node_of(index);
             if (!node.takes(context.draw_surface()->id)) continue;
             wire::PackBuffer& buffer = prepare(node, context, needs);
             before(node, buffer);
@@ -229,16 +229,16 @@ std::optional<std::vector<std::byte>> ClientSession::ask(Context& context, Node&
                                                          Pack&& pack) {
     context.flush_block();
     std::shared_ptr<NodeStream> stream;  // the node may get another one meanwhile
-    const std::uint32_t request = packing([&]() -> std::uint32_t {
-        if (!node.answers() || !context.draw_surface()) return 0;
-        const std::uint32_t next = ++last_request_;
+    const RequestId request = packing([&] {
+        if (!node.answers() || !context.draw_surface()) return RequestId();
+        const RequestId next = next_request();
         pack(prepare(node, context), next);
         count_round_trip(function);
         send(node);
         stream = node.stream;
         return next;
     });
-    if (request == 0) return std::nullopt;
+    if (!request) return std::nullopt;
     return stream->wait_reply(request, reply_timeout_ms());
 }
 
@@ -247,11 +247,11 @@ std::vector<std::optional<std::vector<std::byte>>> ClientSession::ask_all(Contex
                                                                           const std::vector<Target>& targets,
                                                                           const char* function, Pack&& pack) {
     context.flush_block();
-    std::vector<std::pair<std::shared_ptr<NodeStream>, std::uint32_t>> asked;  // null: cannot be asked
+    std::vector<std::pair<std::shared_ptr<NodeStream>, RequestId>> asked;  // null: cannot be asked
     packing([&] {
         for (const Target& target : targets) {
             Node& node = node_of(target);
-            asked.emplace_back(node.answers() && context.draw_surface() ? node.stream : nullptr, ++last_request_);
+            asked.emplace_back(node.answers() && context.draw_surface() ? node.stream : nullptr, next_request());
             if (asked.back().first) pack(prepare(node, context), asked.back().second, asked.size() - 1);
         }
         for (const Target& target : targets) send(node_of(target));

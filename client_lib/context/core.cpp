@@ -50,11 +50,11 @@ void go_dark() {
 }
 
 std::shared_ptr<ClientSurface> create_surface(SurfaceOptions options) {
-    auto id = options.visible ? next_window_id() : next_object_id();
-    if (id == 0) {
+    auto id = options.visible ? next_window_id() : next_surface_id();
+    if (!id) {
         complain_once("wallgl: a parallel program has too many windows; more are not shown on the wall", "windows");
         options.visible = false;
-        id = next_object_id();
+        id = next_surface_id();
     }
     return std::shared_ptr<ClientSurface>(new ClientSurface(id, std::move(options)), [](ClientSurface* surface) {
         try {

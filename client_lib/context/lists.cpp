@@ -30,12 +30,12 @@ public:
         static auto* runs = new DeadRuns();
         return *runs;
     }
-    void add(std::list<std::uint32_t>& ids) {
+    void add(std::list<ClientName>& ids) {
         std::lock_guard lock(mutex_);
         ids_.splice(ids_.end(), ids);
         any_.store(true, std::memory_order_release);
     }
-    std::list<std::uint32_t> take() {
+    std::list<ClientName> take() {
         if (!any_.load(std::memory_order_acquire)) return {};
         std::lock_guard lock(mutex_);
         any_.store(false, std::memory_order_relaxed);
@@ -44,7 +44,7 @@ public:
 
 private:
     std::mutex mutex_;
-    std::list<std::uint32_t> ids_;
+    std::list<ClientName> ids_;
     std::atomic<bool> any_{false};
 };
 
@@ -66,7 +66,7 @@ void define_once(ClientSession& session, Node& node, wire::PackBuffer& buffer, c
     if (content.size() >= kLeastShared && may_be_asked(node)) {
         glapi::ContentHash hash;
         hash.RunDefine(commands, operand_bytes, content);
-        const auto ask = [&](wire::PackBuffer& batch, std::uint32_t request) {
+        const auto ask = [&](wire::PackBuffer& batch, RequestId request) {
             glapi::pack::ShareRun(batch, request, run.id, hash.finish());
         };
         if (node_holds(session, node, ask)) return;
@@ -220,9 +220,9 @@ void execute_list(Context& c, const DisplayList& list) {
 void forget_dead_runs(Context& c) {
     const auto dead = DeadRuns::get().take();
     if (dead.empty()) return;
-    for (const std::uint32_t id : dead) c.before_change(id);
+    for (const ClientName id : dead) c.before_change(id);
     c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node& node) {
-        for (const std::uint32_t id : dead)
+        for (const ClientName id : dead)
             if (node.object_stamps.erase(id)) glapi::pack::RunDelete(buffer, id);
     });
 }

@@ -25,7 +25,7 @@ struct ListRun {
     ListRun();
     ~ListRun();
     ListRun(const ListRun&) = delete;
-    const std::uint32_t id;  ///< on the wire and in Node::object_stamps
+    const ClientName id;  ///< on the wire and in Node::object_stamps
     wire::PackBuffer content;
     geom::Box box;  ///< object space
     /// What a current attribute is afterwards: a command in `content`.
@@ -44,7 +44,7 @@ struct ListRun {
     std::vector<std::size_t> array_draws;  ///< commands of `content`, each the Begin of what was drawn from arrays
 
 private:
-    std::list<std::uint32_t> obituary_;  ///< its id, for DeadRuns: a destructor must not ask for memory
+    std::list<ClientName> obituary_;  ///< its id, for DeadRuns: a destructor must not ask for memory
 };
 
 /// A run, or commands to be replayed.

@@ -21,7 +21,7 @@ constexpr std::array<std::array<float, 4>, kEvaluatorMaps> kFirstPoint = {{
     {0, 0, 0, 1},
 }};
 
-bool needs(Node& node, std::uint32_t id, std::uint64_t stamp) {
+bool needs(Node& node, ClientName id, std::uint64_t stamp) {
     if (stamp == 0) return false;
     auto& known = node.object_stamps[id];
     if (known == stamp) return false;

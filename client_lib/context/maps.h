@@ -11,6 +11,7 @@
 
 #include "client_lib/objects/pixel_convert.h"
 #include "client_lib/objects/texture.h"
+#include "common/base/ids.h"
 #include "common/wire/pack_buffer.h"
 
 namespace wall::client {
@@ -22,7 +23,7 @@ inline constexpr GLint kMaxEvaluatorOrder = 30;
 inline constexpr GLsizei kMaxPixelMapTable = 256;
 
 struct EvaluatorMap {
-    std::uint32_t id = 0;
+    ClientName id;
     std::uint64_t stamp = 0;  ///< 0: as at the start
     GLint u_order = 1, v_order = 1;
     float u1 = 0, u2 = 1, v1 = 0, v2 = 1;
@@ -33,7 +34,7 @@ struct ContextMaps {
     ContextMaps();
     std::array<EvaluatorMap, kEvaluatorMaps> map1, map2;
     PixelMapTables pixel;
-    std::array<std::uint32_t, PixelMapTables::kMaps> pixel_ids;
+    std::array<ClientName, PixelMapTables::kMaps> pixel_ids;
     std::array<std::uint64_t, PixelMapTables::kMaps> pixel_stamps{};
     std::uint64_t stamp = 0;  ///< of the latest change
 

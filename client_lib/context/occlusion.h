@@ -12,7 +12,7 @@ namespace wall::client {
 
 struct OcclusionQuery {
     GLuint name = 0;
-    std::uint32_t id = 0;  ///< on the wire; another one for each glBeginQuery
+    ClientName id;  ///< on the wire; another one for each glBeginQuery
     bool answered = false;
     std::uint64_t samples = 0;
 };

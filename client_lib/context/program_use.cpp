@@ -30,7 +30,7 @@ void learn_compile_result(Context& c, Shader& shader) {
         if (shader.state != Shader::State::unknown) return;
         source = shader.compiled_source;
     }
-    const auto answer = ask_one_node(c, "glCompileShader", [&](wire::PackBuffer& buffer, std::uint32_t request) {
+    const auto answer = ask_one_node(c, "glCompileShader", [&](wire::PackBuffer& buffer, RequestId request) {
         glapi::pack::ShaderCompile(buffer, request, shader.type, std::as_bytes(std::span(source)));
     });
     auto result = answer ? glapi::decode_compile_result(answer->bytes) : std::nullopt;
@@ -48,7 +48,7 @@ void learn_link_result(Context& c, Program& program) {
     if (!definition) return;
     const auto bytes = encode(*definition);
     c.before_change(program.id);
-    const auto answer = ask_one_node(c, "glLinkProgram", [&](wire::PackBuffer& buffer, std::uint32_t request) {
+    const auto answer = ask_one_node(c, "glLinkProgram", [&](wire::PackBuffer& buffer, RequestId request) {
         glapi::pack::ProgramLink(buffer, request, program.id, bytes);
     });
     auto reflection = answer ? glapi::decode_reflection(answer->bytes) : std::nullopt;
@@ -65,7 +65,7 @@ void use_program(Context& c, std::shared_ptr<Program> program) {
         std::lock_guard lock(c.share().mutex);
         if (program) ++program->users;
     }
-    c.set<glstate::el::current_program>(0, program ? program->id : 0);
+    c.set<glstate::el::current_program>(0, program ? program->id.value : 0);
     if (const auto before = std::exchange(c.program, std::move(program))) drop_user(c, before);
 }
 

@@ -18,11 +18,11 @@ void for_each_used(const glstate::State& state, Use&& use) {
     const auto& enabled = state.texture_units;
     const auto& bound = state.textures;
     for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
-        if (enabled.texture_1d_enabled[unit]) use(bound.texture_binding_1d[unit]);
-        if (enabled.texture_2d_enabled[unit]) use(bound.texture_binding_2d[unit]);
-        if (enabled.texture_3d_enabled[unit]) use(bound.texture_binding_3d[unit]);
-        if (enabled.texture_cube_map_enabled[unit]) use(bound.texture_binding_cube_map[unit]);
-        if (enabled.texture_rectangle_enabled[unit]) use(bound.texture_binding_rectangle[unit]);
+        if (enabled.texture_1d_enabled[unit]) use(ClientName(bound.texture_binding_1d[unit]));
+        if (enabled.texture_2d_enabled[unit]) use(ClientName(bound.texture_binding_2d[unit]));
+        if (enabled.texture_3d_enabled[unit]) use(ClientName(bound.texture_binding_3d[unit]));
+        if (enabled.texture_cube_map_enabled[unit]) use(ClientName(bound.texture_binding_cube_map[unit]));
+        if (enabled.texture_rectangle_enabled[unit]) use(ClientName(bound.texture_binding_rectangle[unit]));
     }
 }
 
@@ -33,11 +33,11 @@ void for_each_sampled(const Context& context, Use&& use) {
     context.program->executable->for_each_sampler([&](std::uint32_t unit, GLenum target) {
         if (unit >= kTextureUnits) return;
         switch (target) {
-            case GL_TEXTURE_1D: return use(bound.texture_binding_1d[unit]);
-            case GL_TEXTURE_2D: return use(bound.texture_binding_2d[unit]);
-            case GL_TEXTURE_3D: return use(bound.texture_binding_3d[unit]);
-            case GL_TEXTURE_CUBE_MAP: return use(bound.texture_binding_cube_map[unit]);
-            default: return use(bound.texture_binding_rectangle[unit]);
+            case GL_TEXTURE_1D: return use(ClientName(bound.texture_binding_1d[unit]));
+            case GL_TEXTURE_2D: return use(ClientName(bound.texture_binding_2d[unit]));
+            case GL_TEXTURE_3D: return use(ClientName(bound.texture_binding_3d[unit]));
+            case GL_TEXTURE_CUBE_MAP: return use(ClientName(bound.texture_binding_cube_map[unit]));
+            default: return use(ClientName(bound.texture_binding_rectangle[unit]));
         }
     });
 }
@@ -50,9 +50,9 @@ void bring_program_up_to_date(const Program& program, Node& node, wire::PackBuff
 }
 
 template <class E>
-void adopt_default(glstate::State& state, std::uint32_t id) {
+void adopt_default(glstate::State& state, ClientName id) {
     for (unsigned unit = 0; unit < E::count; ++unit)
-        if (E::ref(state, unit) == 0) glstate::assign<E>(state, unit, id);
+        if (E::ref(state, unit) == 0) glstate::assign<E>(state, unit, id.value);
 }
 
 /// Name 0 of a target stands for the default texture that has got content since it was bound: through another context
@@ -94,7 +94,7 @@ struct ObjectSender {
         };
         const bool worth_asking = before == 0 && (texture.global || content_bytes(texture) >= kLeastShared);
         if (!worth_asking || !may_be_asked(node)) return pack_texture(texture, before, buffer, limit);
-        const bool held = node_holds(session, node, [&](wire::PackBuffer& batch, std::uint32_t request) {
+        const bool held = node_holds(session, node, [&](wire::PackBuffer& batch, RequestId request) {
             glapi::pack::ShareTexture(batch, request, texture.id, texture.target, texture.global ? 1 : 0,
                                       content_key(texture));
             sent += batch.bytes() - start;
@@ -128,7 +128,7 @@ std::size_t ShareGroup::bring_up_to_date(Node& node, Context& context, wire::Pac
     std::lock_guard lock(mutex);
     for (const auto& [target, texture] : default_textures) adopt_default(context.state, *texture);
     ObjectSender sender{context.session(), node, buffer, start, sent};
-    const auto bring_texture = [&](std::uint32_t id) {
+    const auto bring_texture = [&](ClientName id) {
         if (const auto found = textures_by_id.find(id); found != textures_by_id.end()) sender.send(*found->second);
     };
     for_each_used(context.state, bring_texture);
@@ -145,7 +145,7 @@ void ShareGroup::note_used(Node& follower, Mirror& mirror, Context& context, wir
     if (mirror.objects == now) return;
     std::lock_guard lock(mutex);
     for (const auto& [target, texture] : default_textures) adopt_default(context.state, *texture);
-    const auto note = [&](std::uint32_t id) {
+    const auto note = [&](ClientName id) {
         if (const auto found = textures_by_id.find(id); found != textures_by_id.end())
             follower.object_stamps[id] = found->second->stamp;
     };
@@ -161,7 +161,7 @@ void ShareGroup::note_used(Node& follower, Mirror& mirror, Context& context, wir
     mirror.objects = now;
 }
 
-void ShareGroup::bring(ClientSession& session, Node& node, const std::unordered_map<std::uint32_t, std::uint64_t>& used,
+void ShareGroup::bring(ClientSession& session, Node& node, const std::unordered_map<ClientName, std::uint64_t>& used,
                        wire::PackBuffer& buffer) {
     std::lock_guard lock(mutex);
     std::size_t start = buffer.bytes(), sent = 0;
@@ -178,7 +178,7 @@ void ShareGroup::bring(ClientSession& session, Node& node, const std::unordered_
     session.count_objects(node, sent + buffer.bytes() - start);
 }
 
-GLuint object_name(Context& c, glstate::ValueKind kind, std::uint32_t id) {
+GLuint object_name(Context& c, glstate::ValueKind kind, ClientName id) {
     ShareGroup& share = c.share();
     std::lock_guard lock(share.mutex);
     const auto name_in = [id](const auto& objects) {

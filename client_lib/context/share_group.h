@@ -78,8 +78,8 @@ struct ShareGroup {
 
     /// By id: what state elements name. Kept as long as the name or any binding lives. (Buffers are kept by the
     /// contexts that name them: buffer_binding.h.)
-    std::unordered_map<std::uint32_t, std::shared_ptr<Texture>> textures_by_id;
-    std::unordered_map<std::uint32_t, GLuint> program_names;  ///< by id
+    std::unordered_map<ClientName, std::shared_ptr<Texture>> textures_by_id;
+    std::unordered_map<ClientName, GLuint> program_names;  ///< by id
     /// Name 0 of each target, made when it first gets content; until then a binding of it is id 0.
     std::map<GLenum, std::shared_ptr<Texture>> default_textures;
 
@@ -97,11 +97,11 @@ struct ShareGroup {
     void note_used(Node& follower, Mirror& mirror, Context& context, wire::PackBuffer& buffer);
     /// Packs of the noted objects what the node lacks. None of them has changed since. The uniforms of programs travel
     /// with the blocks. The session's mutex is held.
-    void bring(ClientSession& session, Node& node, const std::unordered_map<std::uint32_t, std::uint64_t>& used,
+    void bring(ClientSession& session, Node& node, const std::unordered_map<ClientName, std::uint64_t>& used,
                wire::PackBuffer& buffer);
 };
 
 /// The application's name of the object that a state element names by its id (glGet of a binding); 0: none.
-GLuint object_name(Context& c, glstate::ValueKind kind, std::uint32_t id);
+GLuint object_name(Context& c, glstate::ValueKind kind, ClientName id);
 
 }  // namespace wall::client

@@ -21,26 +21,26 @@ auto with_element(GLenum target, Use&& use) {
 }
 
 // A default texture that has come into being gets an id in this context's bindings of name 0.
-void adopt_default(Context& c, GLenum target, std::uint32_t id) {
+void adopt_default(Context& c, GLenum target, ClientName id) {
     for (unsigned unit = 0; unit < kTextureUnits; ++unit)
-        if (bound_id(c, unit, target) == 0) set_bound_id(c, unit, target, id);
+        if (!bound_id(c, unit, target)) set_bound_id(c, unit, target, id);
 }
 
 }  // namespace
 
-std::uint32_t bound_id(const Context& c, unsigned unit, GLenum target) {
-    return with_element(target, [&](auto element) { return decltype(element)::ref(c.state, unit); });
+ClientName bound_id(const Context& c, unsigned unit, GLenum target) {
+    return ClientName(with_element(target, [&](auto element) { return decltype(element)::ref(c.state, unit); }));
 }
 
-void set_bound_id(Context& c, unsigned unit, GLenum target, std::uint32_t id) {
-    with_element(target, [&](auto element) { c.set<decltype(element)>(unit, id); });
+void set_bound_id(Context& c, unsigned unit, GLenum target, ClientName id) {
+    with_element(target, [&](auto element) { c.set<decltype(element)>(unit, id.value); });
 }
 
 std::shared_ptr<Texture> bound_texture(Context& c, GLenum image_target) {
     const GLenum target = object_target(image_target);
-    const std::uint32_t id = bound_id(c, c.active_texture(), target);
+    const ClientName id = bound_id(c, c.active_texture(), target);
     std::lock_guard lock(c.share().mutex);
-    if (id == 0) {
+    if (!id) {
         const auto found = c.share().default_textures.find(target);
         return found == c.share().default_textures.end() ? nullptr : found->second;
     }

@@ -11,8 +11,8 @@
 namespace wall::client {
 
 /// Id at a target of a unit: 0 is the default texture without content. The target has been checked.
-std::uint32_t bound_id(const Context& c, unsigned unit, GLenum target);
-void set_bound_id(Context& c, unsigned unit, GLenum target, std::uint32_t id);
+ClientName bound_id(const Context& c, unsigned unit, GLenum target);
+void set_bound_id(Context& c, unsigned unit, GLenum target, ClientName id);
 
 /// The object that the active unit has at a target (of a texture, face or proxy) for reading: null means the default
 /// texture without content.

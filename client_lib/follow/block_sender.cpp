@@ -52,7 +52,7 @@ void BlockSender::keep() {
 void BlockSender::send_whole(const NodeMasks& nodes) {
     std::vector<Node*> reached;
     for (const auto& [index, slots] : nodes) {
-        Node& node = *session_.nodes()[index];
+        Node& node = session_.node_of(index);
         if (!node.takes(context_.draw_surface()->id)) continue;
         auto& buffer = session_.prepare(node, context_, needs_);
         const std::size_t before = buffer.bytes();
@@ -106,7 +106,7 @@ void BlockSender::send_primitive(const Primitive& primitive, BlockWalk& walk) {
     }
     walk.go_to(primitive.last);
     for (const auto& [index, slots] : scratch_.touched)
-        if (Share& share = scratch_.shares[index]; share.buffer) share.sent = walk.places();
+        if (Share& share = scratch_.shares[index.value]; share.buffer) share.sent = walk.places();
 }
 
 bool BlockSender::may_be_divided(const Primitive& primitive) const {
@@ -175,10 +175,10 @@ void BlockSender::begin_part(Share& share, const Primitive& primitive) {
     session_.count_geometry(*share.node, share.buffer->bytes() - before);
 }
 
-BlockSender::Share& BlockSender::share_of(std::uint32_t index) {
-    Share& share = scratch_.shares[index];
+BlockSender::Share& BlockSender::share_of(NodeIndex index) {
+    Share& share = scratch_.shares[index.value];
     if (!share.node) {
-        share.node = session_.nodes()[index].get();
+        share.node = &session_.node_of(index);
         if (share.node->takes(context_.draw_surface()->id))
             share.buffer = &session_.prepare(*share.node, context_, needs_);
     }

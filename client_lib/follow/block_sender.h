@@ -55,7 +55,7 @@ private:
                     std::uint64_t mask);
     void finish_run(Share& share, const Primitive& primitive);
 
-    Share& share_of(std::uint32_t node);
+    Share& share_of(NodeIndex node);
     void open_block(Share& share, std::uint64_t mask);
     void close_block(Share& share);
     void pack_attributes(Share& share, const AttributePlaces& wanted);

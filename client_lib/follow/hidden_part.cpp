@@ -23,10 +23,10 @@ void KeptFrame::turn_to(Context& context) {
 void KeptFrame::seal() {
     if (!follower.batch.empty()) {
         sealed_bytes_ += follower.batch.bytes();
-        stretches.push_back({ContextId(follower.batch_context), std::exchange(follower.batch, empty_buffer()),
-                             std::exchange(matrices, {})});
+        stretches.push_back(
+            {follower.batch_context, std::exchange(follower.batch, empty_buffer()), std::exchange(matrices, {})});
     }
-    follower.batch_context = 0;
+    follower.batch_context = {};
 }
 
 wire::PackBuffer KeptFrame::empty_buffer() {
@@ -45,9 +45,9 @@ void KeptFrame::restart(bool from_nothing) {
     stretches.clear();
     matrices.clear();
     starts.clear();
-    started = 0;
+    started = {};
     follower.batch.clear();
-    follower.batch_context = 0;
+    follower.batch_context = {};
     follower.mirrors.clear();
     follower.object_stamps.clear();
     sealed_bytes_ = 0;

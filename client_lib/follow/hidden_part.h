@@ -61,9 +61,9 @@ public:
     Mirror* mirror = nullptr;      ///< the follower's, of the context that it is set to
     std::vector<Matrix> matrices;  ///< of that stretch
     std::vector<Stretch> stretches;
-    std::unordered_map<std::uint32_t, Start> starts;  ///< by context
-    std::uint32_t started = 0;                        ///< the last context that was looked for in `starts`
-    bool whole = false;                               ///< begins by clearing all that counts
+    std::unordered_map<ContextId, Start> starts;  ///< by context
+    ContextId started;                            ///< the last context that was looked for in `starts`
+    bool whole = false;                           ///< begins by clearing all that counts
 
 private:
     wire::PackBuffer empty_buffer();

@@ -28,7 +28,7 @@ public:
             touched_.push_back(targets_of(layout, window_rect(topology, vertices_, v, projection)));
     }
     /// Bytes that this node needs; 0: none of the triangles touches it.
-    std::size_t bytes_for(std::uint32_t node) const {
+    std::size_t bytes_for(NodeIndex node) const {
         std::vector<bool> needed(vertices_.size());
         std::size_t v = topology_.fan ? 1 : 0;
         for (const auto& nodes : touched_) {
@@ -54,7 +54,7 @@ private:
 
 IdealBlock ideal_block(const Packer& packer, const Projection& projection, const SurfaceLayout& layout) {
     IdealBlock block;
-    const auto add = [&](std::uint32_t node, std::size_t bytes) {
+    const auto add = [&](NodeIndex node, std::size_t bytes) {
         if (bytes == 0) return;
         block.bytes += bytes;
         block.nodes.insert(node);

@@ -18,8 +18,8 @@ class Context;
 
 /// One block's share.
 struct IdealBlock {
-    std::size_t bytes = 0;          ///< of geometry, over all nodes
-    std::set<std::uint32_t> nodes;  ///< that get something
+    std::size_t bytes = 0;      ///< of geometry, over all nodes
+    std::set<NodeIndex> nodes;  ///< that get something
 };
 IdealBlock ideal_block(const Packer& packer, const Projection& projection, const SurfaceLayout& layout);
 
@@ -30,8 +30,8 @@ public:
     void count(Context& context, const SurfaceLayout& layout);
 
 private:
-    std::pair<std::uint32_t, std::uint64_t> matrices_;  ///< context and value id of the latest block's
-    std::set<std::uint32_t> nodes_;                     ///< that have been counted for them
+    std::pair<ContextId, std::uint64_t> matrices_;  ///< context and value id of the latest block's
+    std::set<NodeIndex> nodes_;                     ///< that have been counted for them
 };
 
 }  // namespace wall::client

@@ -67,7 +67,7 @@ std::vector<std::byte> gather_pixels(Context& c, const PixelBox& box, GLenum for
         }
     }
     const auto answers =
-        c.session().ask_all(c, targets, function, [&](wire::PackBuffer& buffer, std::uint32_t request, std::size_t i) {
+        c.session().ask_all(c, targets, function, [&](wire::PackBuffer& buffer, RequestId request, std::size_t i) {
             const PixelBox& part = parts[i];
             glapi::pack::ReadPixels(buffer, request, targets[i].slot, part.x, part.y, part.width, part.height, format,
                                     type);

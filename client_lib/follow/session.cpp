@@ -55,16 +55,24 @@ Target make_target(const SurfaceLayout& layout, const TileInfo& tile, const geom
     return target;
 }
 
-std::uint32_t next_object_id() {
+namespace {
+
+std::uint32_t next_number() {
     static std::atomic<std::uint32_t> last{parallel() ? wire::kMaxSharedSurfaces : 0};
     return ++last;
 }
 
-std::uint32_t next_window_id() {
+}  // namespace
+
+ContextId next_context_id() { return ContextId(next_number()); }
+SurfaceId next_surface_id() { return SurfaceId(next_number()); }
+ClientName next_object_id() { return ClientName(next_number()); }
+
+SurfaceId next_window_id() {
     static std::atomic<std::uint32_t> last{0};
-    if (!parallel()) return next_object_id();
-    const auto id = ++last;
-    return id <= wire::kMaxSharedSurfaces ? id : 0;
+    if (!parallel()) return next_surface_id();
+    const auto number = ++last;
+    return SurfaceId(number <= wire::kMaxSharedSurfaces ? number : 0);
 }
 
 namespace {
@@ -279,7 +287,7 @@ void ClientSession::take_events() {
     for (auto& [id, surface] : surfaces_) adopt_placement(*surface);
 }
 
-wire::PackBuffer& ClientSession::batch(Node& node, std::uint32_t context) {
+wire::PackBuffer& ClientSession::batch(Node& node, ContextId context) {
     if (node.batch_context != context || node.batch.bytes() > kBatchBytes) send(node);
     node.batch_context = context;
     return node.batch;
@@ -370,8 +378,8 @@ void ClientSession::swap(Context* context, ClientSurface& surface) {
         finish_hidden_frame(surface);
         ++surface.frame;
         surface.drawn = false;
-        for (const std::uint32_t index : swap_nodes(surface)) {
-            Node& node = *nodes_[index];
+        for (const NodeIndex index : swap_nodes(surface)) {
+            Node& node = node_of(index);
             if (!node.takes(surface.id)) continue;
             auto& buffer = batch(node, context ? context->id : node.batch_context);
             describe_surface(node, surface);
@@ -386,8 +394,8 @@ void ClientSession::swap(Context* context, ClientSurface& surface) {
 }
 
 /// All that show the surface; in a parallel program all there are, because its members keep step on each.
-std::vector<std::uint32_t> ClientSession::swap_nodes(const ClientSurface& surface) const {
-    std::vector<std::uint32_t> out;
+std::vector<NodeIndex> ClientSession::swap_nodes(const ClientSurface& surface) const {
+    std::vector<NodeIndex> out;
     if (!common(surface))
         for (const auto& [index, slots] : targets_of(surface.layout, std::nullopt)) out.push_back(index);
     else
@@ -410,7 +418,7 @@ void ClientSession::wait_for_nodes(ClientSurface& surface, bool whole_frames) {
     {
         std::lock_guard lock(mutex_);
         for (const auto& [index, slots] : targets_of(surface.layout, std::nullopt)) {
-            Node& node = *nodes_[index];
+            Node& node = node_of(index);
             if (!node.alive()) continue;
             const auto left = node.left_out.find(surface.id);
             const bool left_out = left != node.left_out.end();
@@ -443,13 +451,13 @@ void ClientSession::wait_for_nodes(ClientSurface& surface, bool whole_frames) {
 
 void ClientSession::flush(Context* context, bool wait) {
     if (context) context->flush_block();
-    std::vector<std::pair<std::shared_ptr<NodeStream>, std::uint32_t>> pending;
+    std::vector<std::pair<std::shared_ptr<NodeStream>, RequestId>> pending;
     {
         std::lock_guard lock(mutex_);
         for (auto& node : nodes_) {
             if (!node->alive()) continue;
             if (wait && node->answers()) {
-                glapi::pack::Sync(batch(*node, node->batch_context), ++last_request_);
+                glapi::pack::Sync(batch(*node, node->batch_context), next_request());
                 pending.emplace_back(node->stream, last_request_);
             }
             send(*node);
@@ -479,9 +487,9 @@ void ClientSession::count_state(Node& node, std::size_t bytes) {
 void ClientSession::count_frame() { stats().end_frame(); }
 void ClientSession::count_round_trip(const char* function) { stats().count_round_trip(function); }
 
-void ClientSession::destroy_context(std::uint32_t context) {
+void ClientSession::destroy_context(ContextId context) {
     std::lock_guard lock(mutex_);
-    before_context_goes(ContextId(context));
+    before_context_goes(context);
     for (auto& node : nodes_) {
         if (!node->alive() || node->mirrors.erase(context) == 0) continue;
         glapi::pack::ContextDestroy(batch(*node, context), context);
@@ -489,7 +497,7 @@ void ClientSession::destroy_context(std::uint32_t context) {
     }
 }
 
-ClientSurface::ClientSurface(std::uint32_t own_id, SurfaceOptions own_options)
+ClientSurface::ClientSurface(SurfaceId own_id, SurfaceOptions own_options)
     : id(own_id), options(std::move(own_options)) {}
 ClientSurface::~ClientSurface() = default;
 

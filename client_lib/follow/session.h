@@ -37,51 +37,55 @@ class KeptFrame;
 struct HiddenPart;   // hidden_part.h
 struct SortScratch;  // block_sender.h
 
-/// Ids of contexts, surfaces and objects on the wire: unique in the process, never 0.
-std::uint32_t next_object_id();
+// Ids of contexts, surfaces and objects on the wire: all from one counter, unique in the process, never 0.
+ContextId next_context_id();
+SurfaceId next_surface_id();
+ClientName next_object_id();
 /// Of a window: in a parallel program the same in all members, which open their windows in the same order; 0: too many.
-std::uint32_t next_window_id();
+SurfaceId next_window_id();
+
+/// Logical times, by object.
+using ObjectStamps = std::unordered_map<ClientName, std::uint64_t>;
 
 /// What a node holds of one context.
 struct Mirror {
     glstate::State state;
     glstate::ValueHistory history;
-    std::uint32_t draw_surface = 0, read_surface = 0;
+    SurfaceId draw_surface, read_surface;
     std::array<std::uint64_t, 5> objects{};  ///< value ids and stamps as of ShareGroup::bring_up_to_date
 };
 
 /// One tileserver as this process sees it.
 struct Node {
-    std::uint32_t index = 0;
+    NodeIndex index;
     std::string name;
     NodeInfo info;
-    std::shared_ptr<NodeStream> stream;                 ///< null: not connected
-    std::unordered_map<std::uint32_t, Mirror> mirrors;  ///< by context
-    std::unordered_map<std::uint32_t, std::uint64_t>
-        object_stamps;  ///< by object: the stamp of what the node has; absent: nothing
-    std::unordered_map<std::uint32_t, std::uint32_t> surfaces;  ///< by surface: layout version it knows
-    std::unordered_map<std::uint32_t, std::uint32_t>
+    std::shared_ptr<NodeStream> stream;                     ///< null: not connected
+    std::unordered_map<ContextId, Mirror> mirrors;          ///< by context
+    ObjectStamps object_stamps;                             ///< of what the node has; absent: nothing
+    std::unordered_map<SurfaceId, std::uint32_t> surfaces;  ///< by surface: layout version it knows
+    std::unordered_map<SurfaceId, std::uint32_t>
         left_out;                             ///< surfaces whose frames it does not get now: the last one it got
     bool asks_unanswered = false;             ///< a question about content took too long: it gets no more
     bool slow = false;                        ///< missed a frame's limit; not waited for until it answers again
     std::shared_ptr<ConnectAttempt> attempt;  ///< one that is being made
     Reopening reopening;
 
-    wire::PackBuffer batch;           ///< being packed
-    std::uint32_t batch_context = 0;  ///< whose
+    wire::PackBuffer batch;   ///< being packed
+    ContextId batch_context;  ///< whose
 
     bool alive() const { return stream && !stream->failed(); }
     /// Whether drawing into the surface goes to it.
-    bool takes(std::uint32_t surface) const { return alive() && (left_out.empty() || !left_out.contains(surface)); }
+    bool takes(SurfaceId surface) const { return alive() && (left_out.empty() || !left_out.contains(surface)); }
     /// Whether it can be expected to answer soon.
     bool answers() const { return alive() && left_out.empty(); }
 };
 
 class ClientSurface {
 public:
-    ClientSurface(std::uint32_t own_id, SurfaceOptions own_options);
+    ClientSurface(SurfaceId own_id, SurfaceOptions own_options);
     ~ClientSurface();
-    const std::uint32_t id;
+    const SurfaceId id;
     const SurfaceOptions options;
     SurfaceLayout layout;
     std::uint32_t frame = 0;             ///< of the last swap
@@ -147,7 +151,7 @@ public:
     /// stream is held behind it.
     template <class Note, class Pack>
     void synchronize(Context& context, bool at_once, Note&& note, Pack&& pack);
-    void destroy_context(std::uint32_t context);
+    void destroy_context(ContextId context);
 
     // ---- the part of a window that no tile shows (session_hidden.cpp) ----
     /// Before pixels of a rectangle of the window are asked for (window pixels, origin bottom left).
@@ -159,7 +163,7 @@ public:
     /// Before a clear, with glClear's mask.
     void clear_hidden(Context& context, std::uint32_t mask);
     /// Before a texture, program or run that has been drawn with changes or goes.
-    void before_object_changes(std::uint32_t object);
+    void before_object_changes(ClientName object);
 
     // ---- with the mutex held ----
     /// What follows a block that is kept; null: it is not (and `context`'s layout may have changed). The draw surface
@@ -170,7 +174,7 @@ public:
     std::mutex& mutex() { return mutex_; }
     std::vector<std::unique_ptr<Node>>& nodes() { return nodes_; }
     /// The node's batch, set to this context (earlier commands of another one are sent first).
-    wire::PackBuffer& batch(Node& node, std::uint32_t context);
+    wire::PackBuffer& batch(Node& node, ContextId context);
     /// The node's batch after everything that drawing with this context needs: surfaces, objects, state.
     wire::PackBuffer& prepare(Node& node, Context& context, const Needs& needs = {});
     void send(Node& node);
@@ -178,13 +182,14 @@ public:
     /// mutex held.
     template <class Pack>
     std::optional<std::vector<std::byte>> ask_now(Node& node, const char* function, int limit_ms, Pack&& pack) {
-        const std::uint32_t request = ++last_request_;
+        const RequestId request = next_request();
         pack(node.batch, request);
         count_round_trip(function);
         send(node);
         return node.stream->wait_reply(request, limit_ms);
     }
-    Node& node_of(const Target& target) { return *nodes_[target.node]; }
+    Node& node_of(NodeIndex index) { return *nodes_[index.value]; }
+    Node& node_of(const Target& target) { return node_of(target.node); }
     void count_geometry(Node& node, std::size_t bytes);
     void count_block(Node& node);
     void count_objects(Node& node, std::size_t bytes);
@@ -214,9 +219,9 @@ private:
     void place_off_wall();
     void redraw();
     void describe_surface(Node& node, ClientSurface& surface);
-    Node& node_at(std::uint32_t index);
+    Node& node_at(NodeIndex index);
     Node& node_slot(const NodeInfo& info);
-    std::vector<std::uint32_t> swap_nodes(const ClientSurface& surface) const;
+    std::vector<NodeIndex> swap_nodes(const ClientSurface& surface) const;
     int reply_timeout_ms() const;
     void wait_for_nodes(ClientSurface& surface, bool whole_frames);
     /// Runs `body` with the mutex held. Where it throws, batches and mirrors may be half made: the nodes' streams fail
@@ -234,13 +239,14 @@ private:
     void distrust_nodes();
     void lay_hidden_part(ClientSurface& surface);
     void lay_hidden_parts();
-    std::optional<std::uint32_t> node_for_hidden(const ClientSurface& surface, std::optional<std::uint32_t> before);
+    std::optional<NodeIndex> node_for_hidden(const ClientSurface& surface, std::optional<NodeIndex> before);
     void finish_hidden_frame(ClientSurface& surface);
     void note_hidden_frame(ClientSurface& surface, bool whole);
     void rest_hidden(ClientSurface& surface);
     void show_hidden(ClientSurface& surface);
     void send_kept(Node& node, ClientSurface& surface, KeptFrame& frame);
     void before_context_goes(ContextId context);
+    RequestId next_request() { return last_request_ = RequestId(last_request_.value + 1); }
     void count_frame();
     void count_round_trip(const char* function);
 
@@ -262,10 +268,10 @@ private:
     std::mutex mutex_;
     bool attempts_begun_ = false;  ///< by connect(), since wait_for_attempts()
     std::vector<std::unique_ptr<Node>> nodes_;
-    std::unordered_map<std::uint32_t, ClientSurface*> surfaces_;
-    std::uint32_t id_ = 0;
+    std::unordered_map<SurfaceId, ClientSurface*> surfaces_;
+    SessionId id_;
     std::vector<TileInfo> tiles_;
-    std::uint32_t last_request_ = 0;
+    RequestId last_request_;
     const std::unique_ptr<SortScratch> sort_scratch_;
     IdealTraffic ideal_;          ///< unused without WALLGL_IDEAL
     std::uint32_t prepared_ = 0;  ///< counts towards the next sample of the diff time

@@ -18,7 +18,7 @@ constexpr int kLookMs = 20;  // at one node, while none has drawn a frame
 
 /// What the members have agreed on so far, then the wait until all have come.
 void ClientSession::introduce(Node& node) {
-    wire::PackBuffer& buffer = batch(node, 0);
+    wire::PackBuffer& buffer = batch(node, ContextId());
     for (const auto& [name, count] : sync_.barriers()) glapi::pack::BarrierCreate(buffer, name, count);
     for (const auto& [name, semaphore] : sync_.semaphores())
         glapi::pack::SemaphoreCreate(buffer, name, semaphore.count, semaphore.moved);
@@ -45,8 +45,8 @@ void ClientSession::adopt_agreed(ClientSurface& surface) {
 
 /// A node that is connected stays as it is: the others have it like that, too.
 void ClientSession::use_node(const NodeInfo& info) {
-    const bool known = info.node < nodes_.size() && nodes_[info.node]->alive() &&
-                       nodes_[info.node]->info.incarnation == info.incarnation;
+    const bool known = info.node.value < nodes_.size() && node_of(info.node).alive() &&
+                       node_of(info.node).info.incarnation == info.incarnation;
     if (known) return;
     Node& node = node_slot(info);
     connect(node);
@@ -97,8 +97,8 @@ void ClientSession::wait_for_group(ClientSurface& surface) {
         w.first->slow = !done;
         if (done || w.second->queued_bytes() <= kMaxLateBytes || w.first->stream != w.second) continue;
         w.second->give_up("too late with a parallel program's frames");
-        log_warning("event=node_given_up node=" + std::to_string(w.first->index) + " why=\"" + w.second->failure() +
-                    "\"");
+        log_warning("event=node_given_up node=" + std::to_string(w.first->index.value) + " why=\"" +
+                    w.second->failure() + "\"");
         w.first->stream.reset();
     }
 }

@@ -85,9 +85,8 @@ void ClientSession::lay_hidden_part(ClientSurface& surface) {
 }
 
 /// The same as before if it is still there; else one that shows the window, because it has the window's objects.
-std::optional<std::uint32_t> ClientSession::node_for_hidden(const ClientSurface& surface,
-                                                            std::optional<std::uint32_t> before) {
-    if (before && nodes_[*before]->alive()) return before;
+std::optional<NodeIndex> ClientSession::node_for_hidden(const ClientSurface& surface, std::optional<NodeIndex> before) {
+    if (before && node_of(*before).alive()) return before;
     for (const Target& target : surface.layout.targets)
         if (node_of(target).alive()) return target.node;
     for (const auto& node : nodes_)
@@ -193,21 +192,21 @@ void ClientSession::send_kept(Node& node, ClientSurface& surface, KeptFrame& fra
     for (const auto& [context, start] : frame.starts)
         start.share->bring(*this, node, frame.follower.object_stamps, node.batch);
     for (KeptFrame::Stretch& stretch : frame.stretches) {
-        wire::PackBuffer& buffer = batch(node, stretch.context.value);
-        Mirror& mirror = node.mirrors[stretch.context.value];
+        wire::PackBuffer& buffer = batch(node, stretch.context);
+        Mirror& mirror = node.mirrors[stretch.context];
         if (mirror.draw_surface != surface.id) {
             mirror.draw_surface = surface.id;
-            if (mirror.read_surface == 0) mirror.read_surface = surface.id;
+            if (!mirror.read_surface) mirror.read_surface = surface.id;
             glapi::pack::Bind(buffer, mirror.draw_surface, mirror.read_surface);
         }
-        if (const auto start = frame.starts.extract(stretch.context.value)) {
+        if (const auto start = frame.starts.extract(stretch.context)) {
             glstate::PackSink sink{buffer, mirror.history};
             glstate::diff(glstate::kSentCategories, mirror.state, start.mapped().state, sink);
         }
         buffer.append(stretch.commands, {}, stretch.commands.mark());
         for (const auto& [element, operand] : stretch.matrices)
             mirror.history.add(element, stretch.commands.operand_at(operand));
-        mirror.state = frame.follower.mirrors[stretch.context.value].state;
+        mirror.state = frame.follower.mirrors[stretch.context].state;
     }
     for (auto& [id, mirror] : node.mirrors) mirror.objects = {};  // programs hold the frame's uniform values
 }
@@ -239,7 +238,7 @@ void ClientSession::accumulate_hidden(ClientSurface& surface) {
     });
 }
 
-void ClientSession::before_object_changes(std::uint32_t object) {
+void ClientSession::before_object_changes(ClientName object) {
     packing([&] {
         const auto uses = [&](const KeptFrame& frame) { return frame.follower.object_stamps.contains(object); };
         for (auto& [id, surface] : surfaces_) {
@@ -259,7 +258,7 @@ void ClientSession::before_context_goes(ContextId context) {
     for (auto& [id, surface] : surfaces_) {
         HiddenPart* part = surface->hidden.get();
         if (!part || part->drawn) continue;
-        const auto drew = [&](const KeptFrame& frame) { return frame.starts.contains(context.value); };
+        const auto drew = [&](const KeptFrame& frame) { return frame.starts.contains(context); };
         if (drew(part->now) || std::ranges::any_of(part->finished, drew)) show_hidden(*surface);
     }
 }

@@ -12,12 +12,12 @@ constexpr int kConnectTimeoutMs = 2000;
 
 }  // namespace
 
-Node& ClientSession::node_at(std::uint32_t index) {
-    while (nodes_.size() <= index) {
+Node& ClientSession::node_at(NodeIndex index) {
+    while (nodes_.size() <= index.value) {
         nodes_.push_back(std::make_unique<Node>());
-        nodes_.back()->index = static_cast<std::uint32_t>(nodes_.size() - 1);
+        nodes_.back()->index = NodeIndex(static_cast<std::uint32_t>(nodes_.size() - 1));
     }
-    return *nodes_[index];
+    return node_of(index);
 }
 
 Node& ClientSession::node_slot(const NodeInfo& info) {
@@ -72,8 +72,8 @@ void ClientSession::wait_for_attempts(std::unique_lock<std::mutex>& lock, std::c
 void ClientSession::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream) {
     const auto now = std::chrono::steady_clock::now();
     if (!stream) {
-        log_warning("event=node_refused node=" + std::to_string(node.index) + " reason=\"" + stream.error().message +
-                    "\"");
+        log_warning("event=node_refused node=" + std::to_string(node.index.value) + " reason=\"" +
+                    stream.error().message + "\"");
         return node.reopening.not_opened(now);
     }
     node.reopening.opened(now);
@@ -98,7 +98,7 @@ void ClientSession::lose(Node& node) {
     const std::string why = node.stream->failure();
     const bool ended = node.stream->ended_by_node();
     node.reopening.lost(std::chrono::steady_clock::now(), ended);
-    log_warning("event=stream_lost node=" + std::to_string(node.index) + " why=\"" + why + "\"");
+    log_warning("event=stream_lost node=" + std::to_string(node.index.value) + " why=\"" + why + "\"");
     if (node.reopening.given_up())
         complain_once("a node of the wall has ended this program's drawing again and again and is left alone: " + why,
                       "node_given_up");

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "common/base/ids.h"
 #include "common/geom/box.h"
 #include "common/geom/rect.h"
 #include "gen/glstate/state.gen.h"
@@ -23,7 +24,7 @@ struct PixelRect {
 
 /// A tile (or the offscreen layer) that shows a part of a surface.
 struct Target {
-    std::uint32_t node = 0;
+    NodeIndex node;
     std::uint32_t slot = 0;
     PixelRect area;     ///< of the surface's window
     geom::Rect pixels;  ///< the same, whole pixels, rounded outwards
@@ -64,7 +65,7 @@ std::optional<PixelRect> hull_rect(const Projection& projection, std::span<const
 
 /// Some tiles of one node.
 struct NodeMask {
-    std::uint32_t node;
+    NodeIndex node;
     std::uint64_t slots;  ///< a bit each
 };
 using NodeMasks = std::vector<NodeMask>;

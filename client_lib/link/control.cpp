@@ -216,7 +216,7 @@ void ControlLink::queue(const std::string& envelope) {
     if (up_) append_framed(outbox_, envelope);
 }
 
-void ControlLink::surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title,
+void ControlLink::surface_open(SurfaceId id, std::uint32_t width, std::uint32_t height, const std::string& title,
                                WindowMessages messages) {
     if (in_forked_child()) return;
     std::lock_guard lock(mutex_);
@@ -233,7 +233,7 @@ void ControlLink::surface_open(std::uint32_t id, std::uint32_t width, std::uint3
     wake();
 }
 
-void ControlLink::surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height) {
+void ControlLink::surface_resize(SurfaceId id, std::uint32_t width, std::uint32_t height) {
     if (in_forked_child()) return;
     std::lock_guard lock(mutex_);
     auto& surface = surfaces_[id];
@@ -245,7 +245,7 @@ void ControlLink::surface_resize(std::uint32_t id, std::uint32_t width, std::uin
     wake();
 }
 
-void ControlLink::surface_close(std::uint32_t id) {
+void ControlLink::surface_close(SurfaceId id) {
     if (in_forked_child()) return;
     std::lock_guard lock(mutex_);
     surfaces_.erase(id);
@@ -254,7 +254,7 @@ void ControlLink::surface_close(std::uint32_t id) {
     wake();
 }
 
-bool ControlLink::surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame,
+bool ControlLink::surface_adopted(SurfaceId id, std::uint32_t layout_version, std::uint32_t frame,
                                   milliseconds timeout) {
     if (in_forked_child()) return false;
     std::unique_lock lock(mutex_);
@@ -283,7 +283,7 @@ void ControlLink::on_end(std::function<void(const std::string&)> action) {
     end_ = std::move(action);
 }
 
-void ControlLink::ask_to_redraw(std::uint32_t id) {
+void ControlLink::ask_to_redraw(SurfaceId id) {
     if (in_forked_child()) return;
     std::lock_guard lock(mutex_);
     wishes_.redraw.insert(id);
@@ -304,7 +304,7 @@ ControlLink::Events ControlLink::take_events() {
     return std::exchange(events_, {});
 }
 
-std::optional<Placement> ControlLink::wait_placement(std::uint32_t surface, milliseconds timeout) {
+std::optional<Placement> ControlLink::wait_placement(SurfaceId surface, milliseconds timeout) {
     if (in_forked_child()) return std::nullopt;
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, timeout, [&] { return !answers() || placements_.contains(surface); });
@@ -408,7 +408,8 @@ bool ControlLink::handle(FromWalld message) {
     if (auto* placement = std::get_if<Placement>(&message)) {
         arrived(*placement);
     } else if (auto* node = std::get_if<NodeInfo>(&message)) {
-        log(LogLevel::info, "node_%s node=%u address=%s", node->up ? "up" : "down", node->node, node->address.c_str());
+        log(LogLevel::info, "node_%s node=%u address=%s", node->up ? "up" : "down", node->node.value,
+            node->address.c_str());
         if (node->up) tickets_[node->node] = node->ticket;
         // What it shows of programs that do not draw by themselves is lost with its process.
         for (const auto& [id, surface] : surfaces_)
@@ -418,13 +419,13 @@ bool ControlLink::handle(FromWalld message) {
         if (const auto found = surfaces_.find(noted->surface); found != surfaces_.end())
             found->second.noted = noted->layout_version;
     } else if (auto* note = std::get_if<SurfaceNote>(&message)) {
-        if (const auto found = surfaces_.find(note->surface.value); found != surfaces_.end())
+        if (const auto found = surfaces_.find(note->surface); found != surfaces_.end())
             found->second.note = std::move(note->note);
         return true;  // nobody waits for that
     } else if (std::holds_alternative<std::monostate>(message)) {
         return true;
     } else if (auto* close = std::get_if<CloseRequest>(&message)) {
-        log(LogLevel::info, "close_requested surface=%u reason=%s", close->surface, close->reason.c_str());
+        log(LogLevel::info, "close_requested surface=%u reason=%s", close->surface.value, close->reason.c_str());
         wishes_.close.insert(close->surface);
     }
     has_events_ = true;
@@ -466,7 +467,7 @@ void ControlLink::watch_walld() {
 }
 
 void ControlLink::tell_windows() {
-    std::vector<std::pair<std::uint32_t, std::function<bool()>>> close;
+    std::vector<std::pair<SurfaceId, std::function<bool()>>> close;
     std::vector<std::function<void()>> redraw;
     {
         std::lock_guard lock(mutex_);
@@ -557,7 +558,7 @@ bool ControlLink::reconnect() {
         log(LogLevel::debug, "walld_unreachable why=%s", opened.error().message.c_str());
         return false;
     }
-    log(LogLevel::info, "walld_reconnected session=%u", opened->welcome.session);
+    log(LogLevel::info, "walld_reconnected session=%u", opened->welcome.session.value);
     fd_ = std::move(opened->fd);
     inbox_ = std::move(opened->rest);
     {
@@ -565,7 +566,7 @@ bool ControlLink::reconnect() {
         up_ = true;
         events_ = {};
         events_.lost = true;
-        session_ = SessionId(opened->welcome.session);
+        session_ = opened->welcome.session;
         tickets_.clear();
         for (const auto& node : opened->welcome.nodes) tickets_[node.node] = node.ticket;
         events_.reconnected = std::move(opened->welcome);

@@ -41,13 +41,13 @@ public:
     const Welcome& welcome() const { return welcome_; }
 
     /// `messages`: how walld's wishes reach the window.
-    void surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, const std::string& title,
+    void surface_open(SurfaceId id, std::uint32_t width, std::uint32_t height, const std::string& title,
                       WindowMessages messages = {});
-    void surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height);
-    void surface_close(std::uint32_t id);
+    void surface_resize(SurfaceId id, std::uint32_t width, std::uint32_t height);
+    void surface_close(SurfaceId id);
     /// The placement of that version holds from `frame` on. Waits until walld knows; false when the time is over or the
     /// link breaks.
-    bool surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame,
+    bool surface_adopted(SurfaceId id, std::uint32_t layout_version, std::uint32_t frame,
                          std::chrono::milliseconds timeout);
     /// In a parallel program: this process ends in order. Waits a moment until that is said.
     void leave();
@@ -56,7 +56,7 @@ public:
     void on_end(std::function<void(const std::string& why)> action);
 
     /// Asks the program, soon, to draw the window again: what is on the wall was drawn for another layout.
-    void ask_to_redraw(std::uint32_t id);
+    void ask_to_redraw(SurfaceId id);
     /// The same for all open windows. Any thread.
     void ask_all_to_redraw();
 
@@ -72,7 +72,7 @@ public:
 
     /// The surface's newest placement since it was opened or last resized (walld answers both with one); waits for it.
     /// Nothing when the time is over or the link breaks. Does not take events: it is also in the next take_events().
-    std::optional<Placement> wait_placement(std::uint32_t surface, std::chrono::milliseconds timeout);
+    std::optional<Placement> wait_placement(SurfaceId surface, std::chrono::milliseconds timeout);
 
 private:
     struct OpenSurface {
@@ -91,7 +91,7 @@ private:
     };
     /// What the windows are to be told.
     struct Wishes {
-        std::set<std::uint32_t> close, redraw;
+        std::set<SurfaceId> close, redraw;
         bool empty() const { return close.empty() && redraw.empty(); }
     };
 
@@ -137,11 +137,11 @@ private:
     bool asked_ = false;   // for a sign of life
     bool silent_ = false;  // none has come: nobody waits for walld until it says something
     SessionId session_;
-    std::map<std::uint32_t, std::string> tickets_;  // by node
+    std::map<NodeIndex, std::string> tickets_;
     std::function<void(const std::string&)> end_;
-    std::map<std::uint32_t, OpenSurface> surfaces_;
+    std::map<SurfaceId, OpenSurface> surfaces_;
     Wishes wishes_;
-    std::map<std::uint32_t, Placement> placements_;  ///< newest of each since it was opened or resized
+    std::map<SurfaceId, Placement> placements_;  ///< newest of each since it was opened or resized
 
     std::thread thread_;
 };

@@ -38,7 +38,7 @@ void put_resume(pbf_writer& parent, protozero::pbf_tag_type tag, const Resume& r
     out.add_uint32(1, resume.session.value);
     for (const auto& [node, ticket] : resume.tickets) {
         pbf_writer row(out, 2);
-        row.add_uint32(1, node);
+        row.add_uint32(1, node.value);
         row.add_bytes(2, ticket.data(), ticket.size());
     }
     out.add_uint32(3, resume.windows);
@@ -133,7 +133,7 @@ TileInfo read_tile(pbf_reader in) {
     TileInfo tile;
     while (in.next()) {
         switch (in.tag()) {
-            case 1: tile.node = read_u32(in); break;
+            case 1: tile.node = NodeIndex(read_u32(in)); break;
             case 2: tile.slot = read_u32(in); break;
             case 3: tile.rect = read_rect(read_message(in)); break;
             case 4: tile.name = read_string(in); break;
@@ -148,7 +148,7 @@ NodeInfo read_node(pbf_reader in, bool up) {
     node.up = up;
     while (in.next()) {
         switch (in.tag()) {
-            case 1: node.node = read_u32(in); break;
+            case 1: node.node = NodeIndex(read_u32(in)); break;
             case 2: node.address = read_string(in); break;
             case 3: node.ticket = read_string(in); break;
             case 4: node.incarnation = read_u32(in); break;
@@ -162,7 +162,7 @@ Welcome read_welcome(pbf_reader in) {
     Welcome welcome;
     while (in.next()) {
         switch (in.tag()) {
-            case 1: welcome.session = read_u32(in); break;
+            case 1: welcome.session = SessionId(read_u32(in)); break;
             case 2: welcome.canvas_width = read_u32(in); break;
             case 3: welcome.canvas_height = read_u32(in); break;
             case 4: welcome.tiles.push_back(read_tile(read_message(in))); break;
@@ -179,7 +179,7 @@ Placement read_placement(pbf_reader in) {
     Placement placement;
     while (in.next()) {
         switch (in.tag()) {
-            case 1: placement.surface = read_u32(in); break;
+            case 1: placement.surface = SurfaceId(read_u32(in)); break;
             case 2: placement.layout_version = read_u32(in); break;
             case 3: placement.rect = read_rect(read_message(in)); break;
             case 4: placement.from_frame = read_u32(in); break;
@@ -205,7 +205,7 @@ CloseRequest read_close(pbf_reader in) {
     CloseRequest close;
     while (in.next()) {
         switch (in.tag()) {
-            case 1: close.surface = read_u32(in); break;
+            case 1: close.surface = SurfaceId(read_u32(in)); break;
             case 2: close.reason = read_string(in); break;
             default: in.skip();
         }
@@ -217,7 +217,7 @@ AdoptionNoted read_noted(pbf_reader in) {
     AdoptionNoted noted;
     while (in.next()) {
         switch (in.tag()) {
-            case 1: noted.surface = read_u32(in); break;
+            case 1: noted.surface = SurfaceId(read_u32(in)); break;
             case 2: noted.layout_version = read_u32(in); break;
             default: in.skip();
         }
@@ -276,10 +276,10 @@ std::string encode(const Hello& hello) {
     });
 }
 
-std::string encode_surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, std::string_view title,
+std::string encode_surface_open(SurfaceId id, std::uint32_t width, std::uint32_t height, std::string_view title,
                                 const std::optional<Restore>& restore) {
     return in_envelope(envelope::surface_open, [&](pbf_writer& out) {
-        out.add_uint32(1, id);
+        out.add_uint32(1, id.value);
         out.add_uint32(2, width);
         out.add_uint32(3, height);
         put_string(out, 4, title);
@@ -293,28 +293,28 @@ std::string encode_ping() {
     return bytes;
 }
 
-std::string encode_surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height) {
+std::string encode_surface_resize(SurfaceId id, std::uint32_t width, std::uint32_t height) {
     return in_envelope(envelope::surface_resize, [&](pbf_writer& out) {
-        out.add_uint32(1, id);
+        out.add_uint32(1, id.value);
         out.add_uint32(2, width);
         out.add_uint32(3, height);
     });
 }
 
-std::string encode_surface_close(std::uint32_t id) {
-    return in_envelope(envelope::surface_close, [&](pbf_writer& out) { out.add_uint32(1, id); });
+std::string encode_surface_close(SurfaceId id) {
+    return in_envelope(envelope::surface_close, [&](pbf_writer& out) { out.add_uint32(1, id.value); });
 }
 
-std::string encode_surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame) {
+std::string encode_surface_adopted(SurfaceId id, std::uint32_t layout_version, std::uint32_t frame) {
     return in_envelope(envelope::surface_adopted, [&](pbf_writer& out) {
-        out.add_uint32(1, id);
+        out.add_uint32(1, id.value);
         out.add_uint32(2, layout_version);
         out.add_uint32(3, frame);
     });
 }
 
-std::string encode_close_refused(std::uint32_t id) {
-    return in_envelope(envelope::close_refused, [&](pbf_writer& out) { out.add_uint32(1, id); });
+std::string encode_close_refused(SurfaceId id) {
+    return in_envelope(envelope::close_refused, [&](pbf_writer& out) { out.add_uint32(1, id.value); });
 }
 
 std::string encode(const Traffic& traffic) {
@@ -324,7 +324,7 @@ std::string encode(const Traffic& traffic) {
         out.add_uint64(3, static_cast<std::uint64_t>(traffic.diff_time.count()));
         for (const auto& node : traffic.nodes) {
             pbf_writer row(out, 4);
-            row.add_uint32(1, node.node);
+            row.add_uint32(1, node.node.value);
             row.add_uint64(2, node.state_bytes);
             row.add_uint64(3, node.object_bytes);
             row.add_uint64(4, node.geometry_bytes);
@@ -332,9 +332,9 @@ std::string encode(const Traffic& traffic) {
     });
 }
 
-std::string encode_placement_noted(std::uint32_t id, std::uint32_t layout_version) {
+std::string encode_placement_noted(SurfaceId id, std::uint32_t layout_version) {
     return in_envelope(envelope::placement_noted, [&](pbf_writer& out) {
-        out.add_uint32(1, id);
+        out.add_uint32(1, id.value);
         out.add_uint32(2, layout_version);
     });
 }
@@ -344,11 +344,11 @@ std::string encode_member_leaves(std::uint32_t rank) {
                        [&](pbf_writer& out) { out.add_uint32(1, rank); });  // an empty message would not be written
 }
 
-std::string encode_data_hello(std::uint32_t session, std::string_view ticket, std::uint32_t rank) {
+std::string encode_data_hello(SessionId session, std::string_view ticket, std::uint32_t rank) {
     std::string bytes;
     pbf_writer out(bytes);
     out.add_uint32(1, glapi::kStreamVersion);
-    out.add_uint32(2, session);
+    out.add_uint32(2, session.value);
     out.add_bytes(3, ticket.data(), ticket.size());
     out.add_uint32(4, rank);
     return bytes;

@@ -23,8 +23,8 @@ namespace wall::client {
 /// A session that the program had with a walld that is gone. Its streams to the nodes may still be open.
 struct Resume {
     SessionId session;
-    std::map<std::uint32_t, std::string> tickets;  ///< by node
-    std::uint32_t windows = 0;                     ///< that will be announced with a Restore
+    std::map<NodeIndex, std::string> tickets;
+    std::uint32_t windows = 0;  ///< that will be announced with a Restore
 };
 
 /// What a program says of itself when it comes to the wall.
@@ -52,7 +52,7 @@ struct Caps {
 };
 
 struct NodeInfo {
-    std::uint32_t node = 0;         ///< the same as long as walld runs
+    NodeIndex node;                 ///< the same as long as walld runs
     std::string address;            ///< unix:PATH or HOST:PORT
     std::string ticket;             ///< bytes, for DataHello
     std::uint32_t incarnation = 0;  ///< grows when the node's process is a new one
@@ -60,13 +60,14 @@ struct NodeInfo {
 };
 
 struct TileInfo {
-    std::uint32_t node = 0, slot = 0;
+    NodeIndex node;
+    std::uint32_t slot = 0;
     geom::Rect rect;  ///< canvas
     std::string name;
 };
 
 struct Welcome {
-    std::uint32_t session = 0;
+    SessionId session;
     std::uint32_t canvas_width = 0, canvas_height = 0;
     std::vector<TileInfo> tiles;
     std::vector<NodeInfo> nodes;
@@ -80,7 +81,7 @@ struct Refused {
 
 /// The surface's whole content covers `rect` of the canvas.
 struct Placement {
-    std::uint32_t surface = 0;
+    SurfaceId surface;
     std::uint32_t layout_version = 0;
     geom::Rect rect;
     // To a parallel program.
@@ -91,7 +92,7 @@ struct Placement {
 
 /// walld knows from which frame on a placement holds.
 struct AdoptionNoted {
-    std::uint32_t surface = 0;
+    SurfaceId surface;
     std::uint32_t layout_version = 0;
 };
 
@@ -108,7 +109,7 @@ struct Restore {
 };
 
 struct CloseRequest {
-    std::uint32_t surface = 0;
+    SurfaceId surface;
     std::string reason;
 };
 
@@ -118,21 +119,21 @@ using FromWalld =
 
 // One encoded Envelope each, without the length in front.
 std::string encode(const Hello& hello);
-std::string encode_surface_open(std::uint32_t id, std::uint32_t width, std::uint32_t height, std::string_view title,
+std::string encode_surface_open(SurfaceId id, std::uint32_t width, std::uint32_t height, std::string_view title,
                                 const std::optional<Restore>& restore = {});
 /// Asks walld for a sign of life.
 std::string encode_ping();
-std::string encode_surface_resize(std::uint32_t id, std::uint32_t width, std::uint32_t height);
-std::string encode_surface_close(std::uint32_t id);
-std::string encode_surface_adopted(std::uint32_t id, std::uint32_t layout_version, std::uint32_t frame);
-std::string encode_close_refused(std::uint32_t id);
+std::string encode_surface_resize(SurfaceId id, std::uint32_t width, std::uint32_t height);
+std::string encode_surface_close(SurfaceId id);
+std::string encode_surface_adopted(SurfaceId id, std::uint32_t layout_version, std::uint32_t frame);
+std::string encode_close_refused(SurfaceId id);
 std::string encode(const Traffic& traffic);
-std::string encode_placement_noted(std::uint32_t id, std::uint32_t layout_version);
+std::string encode_placement_noted(SurfaceId id, std::uint32_t layout_version);
 std::string encode_member_leaves(std::uint32_t rank);
 
 Result<FromWalld> decode_from_walld(std::string_view envelope);
 
 /// The first message on a data stream, for NodeStream::open.
-std::string encode_data_hello(std::uint32_t session, std::string_view ticket, std::uint32_t rank);
+std::string encode_data_hello(SessionId session, std::string_view ticket, std::uint32_t rank);
 
 }  // namespace wall::client

@@ -128,7 +128,7 @@ void NodeStream::wait(std::unique_lock<std::mutex>& lock, int timeout_ms, Done&&
     else changed_.wait_for(lock, std::chrono::milliseconds(timeout_ms), done);
 }
 
-void NodeStream::send(std::uint32_t context, wire::PackBuffer batch) {
+void NodeStream::send(ContextId context, wire::PackBuffer batch) {
     if (batch.empty() || failed()) return;
     const std::size_t padding = (4 - batch.commands() % 4) % 4;
     const wire::BatchHeader header{context, static_cast<std::uint32_t>(batch.commands()),
@@ -165,7 +165,7 @@ void NodeStream::Outgoing::begin_part(std::size_t start) {
     sent = 0;
 }
 
-std::optional<std::vector<std::byte>> NodeStream::wait_reply(std::uint32_t request, int timeout_ms) {
+std::optional<std::vector<std::byte>> NodeStream::wait_reply(RequestId request, int timeout_ms) {
     std::unique_lock lock(mutex_);
     wait(lock, timeout_ms, [&] { return failed() || replies_.contains(request); });
     const auto found = replies_.find(request);
@@ -178,7 +178,7 @@ std::optional<std::vector<std::byte>> NodeStream::wait_reply(std::uint32_t reque
     return bytes;
 }
 
-bool NodeStream::wait_swap(std::uint32_t surface, std::uint32_t frame, int timeout_ms) {
+bool NodeStream::wait_swap(SurfaceId surface, std::uint32_t frame, int timeout_ms) {
     std::unique_lock lock(mutex_);
     const auto done = [&] {
         const auto found = swaps_.find(surface);
@@ -296,10 +296,10 @@ void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> paylo
     if (kind == wire::FrameKind::reply && payload.size() >= 4) {
         std::memcpy(words, payload.data(), 4);
         payload.erase(payload.begin(), payload.begin() + 4);
-        if (unwanted_.erase(words[0]) == 0) replies_[words[0]] = std::move(payload);
+        if (const RequestId request(words[0]); unwanted_.erase(request) == 0) replies_[request] = std::move(payload);
     } else if (kind == wire::FrameKind::swap_done && payload.size() == 8) {
         std::memcpy(words, payload.data(), 8);
-        swaps_[words[0]] = words[1];
+        swaps_[SurfaceId(words[0])] = words[1];
     }
     changed_.notify_all();
 }

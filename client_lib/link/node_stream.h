@@ -15,6 +15,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "common/base/ids.h"
 #include "common/base/result.h"
 #include "common/base/unique_fd.h"
 #include "common/wire/frame.h"
@@ -33,15 +34,15 @@ public:
     /// Queues a batch of at most wire::kMaxBatchPayload. Blocks while more than kMaxQueuedBytes wait (the node is
     /// slower than the program), but never longer than `kStallLimitMs` without a byte that goes out: then the stream
     /// counts as failed. Application threads.
-    void send(std::uint32_t context, wire::PackBuffer batch);
+    void send(ContextId context, wire::PackBuffer batch);
 
     /// No stall fails the stream: the node may hold it for others' sake. Before the first send().
     void never_stalls() { stalls_ = false; }
 
     /// The answer to `request`; nothing if the stream fails or the time is over. Application threads.
-    std::optional<std::vector<std::byte>> wait_reply(std::uint32_t request, int timeout_ms);
+    std::optional<std::vector<std::byte>> wait_reply(RequestId request, int timeout_ms);
     /// Waits until the node has drawn `frame` of `surface`; false if it did not in time. Application threads.
-    bool wait_swap(std::uint32_t surface, std::uint32_t frame, int timeout_ms);
+    bool wait_swap(SurfaceId surface, std::uint32_t frame, int timeout_ms);
 
     /// What waits to be written.
     std::size_t queued_bytes() const;
@@ -87,9 +88,9 @@ private:
     std::condition_variable changed_;
     std::deque<Outgoing> queue_;
     std::size_t queued_bytes_ = 0;
-    std::unordered_map<std::uint32_t, std::vector<std::byte>> replies_;
-    std::unordered_set<std::uint32_t> unwanted_;              ///< requests whose answers nobody waits for any more
-    std::unordered_map<std::uint32_t, std::uint32_t> swaps_;  // surface -> last frame drawn
+    std::unordered_map<RequestId, std::vector<std::byte>> replies_;
+    std::unordered_set<RequestId> unwanted_;              ///< requests whose answers nobody waits for any more
+    std::unordered_map<SurfaceId, std::uint32_t> swaps_;  // surface -> last frame drawn
     std::string failure_;
 
     std::vector<std::byte> inbox_;  // transport thread only

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/ids.h"
 #include "common/glapi/gl_types.h"
 
 namespace wall::client {
@@ -49,9 +50,9 @@ private:
 };
 
 struct Buffer {
-    Buffer(std::uint32_t own_id, GLuint own_name) : id(own_id), name(own_name) {}
-    const std::uint32_t id;  ///< in state elements and client arrays
-    const GLuint name;       ///< the application's
+    Buffer(ClientName own_id, GLuint own_name) : id(own_id), name(own_name) {}
+    const ClientName id;  ///< in state elements and client arrays
+    const GLuint name;    ///< the application's
 
     std::size_t size() const { return memory->bytes.size(); }
     std::byte* data() { return memory->bytes.data(); }

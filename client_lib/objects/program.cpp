@@ -156,7 +156,7 @@ void pack_all_uniforms(const Program& program, wire::PackBuffer& buffer) {
 void pack_program(const Program& program, std::uint64_t known, wire::PackBuffer& buffer) {
     const Executable& executable = *program.executable;
     if (known < executable.stamp) {
-        glapi::pack::ProgramLink(buffer, 0, program.id, executable.definition);
+        glapi::pack::ProgramLink(buffer, RequestId(), program.id, executable.definition);
         known = executable.stamp;
     }
     for (const Uniform& uniform : executable.uniforms) {

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/base/ids.h"
 #include "common/glapi/program_format.h"
 #include "common/wire/pack_buffer.h"
 
@@ -23,17 +24,17 @@ namespace wall::client {
 /// Shaders and programs share one space of names (OpenGL 2.1, 2.15.1).
 struct GlslObject {
     enum class Kind : std::uint8_t { shader, program };
-    GlslObject(Kind own_kind, std::uint32_t own_id, GLuint own_name) : kind(own_kind), id(own_id), name(own_name) {}
+    GlslObject(Kind own_kind, ClientName own_id, GLuint own_name) : kind(own_kind), id(own_id), name(own_name) {}
     virtual ~GlslObject() = default;
     const Kind kind;
-    const std::uint32_t id;  ///< on the wire, and in the state element current_program
-    const GLuint name;       ///< the application's
-    bool deleted = false;    ///< by glDelete*, while something still uses it
-    unsigned users = 0;      ///< programs that have the shader; contexts that draw with the program
+    const ClientName id;   ///< on the wire, and in the state element current_program
+    const GLuint name;     ///< the application's
+    bool deleted = false;  ///< by glDelete*, while something still uses it
+    unsigned users = 0;    ///< programs that have the shader; contexts that draw with the program
 };
 
 struct Shader : GlslObject {
-    Shader(std::uint32_t own_id, GLuint own_name, GLenum own_type)
+    Shader(ClientName own_id, GLuint own_name, GLenum own_type)
         : GlslObject(Kind::shader, own_id, own_name), type(own_type) {}
     const GLenum type;
     std::string source;
@@ -103,7 +104,7 @@ private:
 };
 
 struct Program : GlslObject {
-    Program(std::uint32_t own_id, GLuint own_name) : GlslObject(Kind::program, own_id, own_name) {}
+    Program(ClientName own_id, GLuint own_name) : GlslObject(Kind::program, own_id, own_name) {}
     std::vector<std::shared_ptr<Shader>> shaders;
     std::map<std::string, GLuint> attribute_bindings;
     std::optional<glapi::ProgramDefinition> to_link;  ///< glLinkProgram was called, nobody has asked yet how it went

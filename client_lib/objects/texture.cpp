@@ -151,7 +151,7 @@ void TextureDiff<Sink>::piece(unsigned face, GLint number, const TextureLevel& l
 
 /// Packs them for a node.
 struct TexturePacker {
-    std::uint32_t id;
+    ClientName id;
     wire::PackBuffer& buffer;
     const std::function<void()>& packed;
 
@@ -202,7 +202,7 @@ std::uint64_t next_stamp() {
     return last.fetch_add(1, std::memory_order_relaxed) + 1;
 }
 
-Texture::Texture(std::uint32_t own_id, GLuint own_name, GLenum own_target)
+Texture::Texture(ClientName own_id, GLuint own_name, GLenum own_target)
     : id(own_id), name(own_name), target(own_target), stamp(next_stamp()) {
     if (target != GL_TEXTURE_RECTANGLE) return;
     parameters.min_filter = GL_LINEAR;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/base/ids.h"
 #include "common/glapi/content_hash.h"
 #include "common/glapi/gl_types.h"
 #include "common/wire/pack_buffer.h"
@@ -62,8 +63,8 @@ struct TexParameters {
 };
 
 struct Texture {
-    Texture(std::uint32_t own_id, GLuint own_name, GLenum own_target);
-    const std::uint32_t id;
+    Texture(ClientName own_id, GLuint own_name, GLenum own_target);
+    const ClientName id;
     const GLuint name;
     const GLenum target;
 
@@ -71,7 +72,7 @@ struct Texture {
     TexParameters parameters;
     /// Stamp of the latest change of each parameter that differs from its default or once did.
     std::vector<std::pair<GLenum, std::uint64_t>> parameter_stamps;
-    std::vector<std::uint32_t> bound_by;  ///< contexts that ever bound it
+    std::vector<ContextId> bound_by;  ///< contexts that ever bound it
     bool global = false;  ///< the processes of the program mean the same by its name (GL_WALLGL_global_texture)
     std::uint64_t generated_stamp = 0;  ///< of the latest mipmap generation; 0: none
     std::array<std::vector<TextureLevel>, kCubeFaces> faces;

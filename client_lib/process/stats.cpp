@@ -78,8 +78,8 @@ Stats::NodeCounts& Stats::make_node(std::atomic<NodeCounts*>& slot) {
     return *expected;
 }
 
-std::uint64_t Stats::of_node(std::uint32_t node, NodeCounter counter) const {
-    const auto* counts = node < kMaxNodes ? nodes_[node].load(std::memory_order_acquire) : nullptr;
+std::uint64_t Stats::of_node(NodeIndex node, NodeCounter counter) const {
+    const auto* counts = node.value < kMaxNodes ? nodes_[node.value].load(std::memory_order_acquire) : nullptr;
     return counts ? counts->total[static_cast<std::size_t>(counter)].load(std::memory_order_relaxed) : 0;
 }
 
@@ -142,8 +142,9 @@ Traffic Stats::traffic() const {
     Traffic out{.diff_time = std::chrono::nanoseconds(diff_ns_.load(std::memory_order_relaxed))};
     for (std::uint32_t n = 0; n < kMaxNodes; ++n) {
         if (!nodes_[n].load(std::memory_order_acquire)) continue;
-        out.nodes.push_back({n, of_node(n, NodeCounter::state_bytes), of_node(n, NodeCounter::object_bytes),
-                             of_node(n, NodeCounter::geometry_bytes)});
+        const NodeIndex node(n);
+        out.nodes.push_back({node, of_node(node, NodeCounter::state_bytes), of_node(node, NodeCounter::object_bytes),
+                             of_node(node, NodeCounter::geometry_bytes)});
     }
     std::lock_guard lock(mutex_);
     out.frames = frames_;

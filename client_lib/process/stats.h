@@ -35,13 +35,13 @@ public:
     ~Stats();
     Stats(const Stats&) = delete;
 
-    void add_node(std::uint32_t node, NodeCounter counter, std::uint64_t n) {
-        auto& slot = nodes_[node < kMaxNodes ? node : kMaxNodes - 1];
+    void add_node(NodeIndex node, NodeCounter counter, std::uint64_t n) {
+        auto& slot = nodes_[node.value < kMaxNodes ? node.value : kMaxNodes - 1];
         auto* counts = slot.load(std::memory_order_acquire);
         if (!counts) counts = &make_node(slot);
         counts->total[static_cast<std::size_t>(counter)].fetch_add(n, std::memory_order_relaxed);
     }
-    std::uint64_t of_node(std::uint32_t node, NodeCounter counter) const;
+    std::uint64_t of_node(NodeIndex node, NodeCounter counter) const;
 
     /// A counter by name, for things that happen at most some thousand times a second; made at its first use.
     void add(std::string_view name, std::uint64_t n = 1);

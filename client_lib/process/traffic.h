@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/base/ids.h"
+
 namespace wall::client {
 
 /// Bytes of commands packed for one node.
 struct NodeTraffic {
-    std::uint32_t node = 0;
+    NodeIndex node;
     std::uint64_t state_bytes = 0, object_bytes = 0, geometry_bytes = 0;
 };
 

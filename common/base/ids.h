@@ -21,6 +21,9 @@ using SessionId = Id<struct SessionTag>;      ///< given by walld, unique while 
 using SurfaceId = Id<struct SurfaceTag>;      ///< given by the client, unique in its session; 0 = none
 using ContextId = Id<struct ContextTag>;      ///< given by the client, unique in its session; 0 = none
 using ClientName = Id<struct ClientNameTag>;  ///< an object of a session: unique over kinds, contexts and share groups
+using RequestId = Id<struct RequestTag>;      ///< of a question on a client's stream; 0: nobody waits for an answer
+using PictureId = Id<struct PictureTag>;  ///< given by walld: of one picture that a node is asked for, or of a stream
+using NodeIndex = Id<struct NodeTag>;     ///< in the order of walld's configuration, from 0
 using DriverName = Id<struct DriverNameTag>;  ///< the driver's own name of an object
 
 }  // namespace wall

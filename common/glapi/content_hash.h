@@ -11,6 +11,7 @@
 #include <memory>
 #include <span>
 
+#include "common/base/ids.h"
 #include "common/glapi/gl_types.h"
 #include "gen/glapi/wire.gen.h"
 
@@ -46,7 +47,7 @@ public:
     /// A name that a program gave, instead of pixels: GL_WALLGL_global_texture.
     void OwnName(std::uint32_t name) { add(Op::ShareTexture, {}, name); }
     /// A name of content that is known only in one session.
-    void InSession(std::uint32_t session, const ContentKey& key) { add(Op::ShareTexture, key, session); }
+    void InSession(SessionId session, const ContentKey& key) { add(Op::ShareTexture, key, session.value); }
     void RunDefine(std::uint32_t commands, std::uint32_t operand_bytes, std::span<const std::byte> content) {
         add(Op::RunDefine, content, commands, operand_bytes);
     }

@@ -14,7 +14,7 @@
 namespace wall::wire {
 
 struct BatchView {
-    std::uint32_t context = 0;
+    ContextId context;
     std::span<const std::byte> opcodes;  ///< last first
     std::span<const std::byte> operands;
 };

@@ -16,6 +16,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "common/base/ids.h"
+
 namespace wall::wire {
 
 enum class FrameKind : std::uint8_t {
@@ -56,7 +58,7 @@ inline FrameHeader decode_frame_header(const std::byte* bytes) {
 /// padded in front to a multiple of 4, then `operand_bytes` of operands in order. All commands run in context
 /// `context`.
 struct BatchHeader {
-    std::uint32_t context;
+    ContextId context;
     std::uint32_t opcode_bytes;
     std::uint32_t operand_bytes;
 };

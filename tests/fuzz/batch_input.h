@@ -12,7 +12,7 @@
 
 namespace wall::fuzz {
 
-inline std::vector<std::byte> batch_of(const std::uint8_t* data, std::size_t size, std::uint32_t context) {
+inline std::vector<std::byte> batch_of(const std::uint8_t* data, std::size_t size, ContextId context) {
     if (size < 2) return {};
     const std::size_t opcodes = std::min<std::size_t>(data[0] | data[1] << 8, size - 2);
     std::vector<std::byte> codes(opcodes);

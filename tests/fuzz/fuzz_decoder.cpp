@@ -15,6 +15,6 @@ void decode(std::span<const std::byte> payload) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     decode(std::as_bytes(std::span(data, size)));
-    decode(wall::fuzz::batch_of(data, size, 1));
+    decode(wall::fuzz::batch_of(data, size, wall::ContextId(1)));
     return 0;
 }

@@ -16,7 +16,7 @@ using namespace wall::tileserver;
 constexpr int kOthersTurns = 4;
 
 struct Ignore final : SessionOutput {
-    void reply(std::uint32_t, std::vector<std::byte> bytes) override { answer = std::move(bytes); }
+    void reply(RequestId, std::vector<std::byte> bytes) override { answer = std::move(bytes); }
     void frame_rendered(SurfaceId, std::uint32_t) override {}
     std::vector<std::byte> answer;
 };
@@ -40,16 +40,16 @@ struct Node {
 
 void run(Executor& executor, const wire::PackBuffer& buffer) {
     std::vector<std::byte> payload;
-    wire::append_batch(payload, {1, buffer.opcodes(), buffer.operands()});
+    wire::append_batch(payload, {ContextId(1), buffer.opcodes(), buffer.operands()});
     const auto done = executor.run_batch(payload);
     WALL_ASSERT(done);
 }
 
 void open_surface(Executor& executor) {
     wire::PackBuffer buffer;
-    glapi::pack::SurfaceCreate(buffer, 1, 1, 8, 24, 8, 16, 0);
-    glapi::pack::SurfacePlace(buffer, 1, 1, 64, 32, 0, 0, 64, 32, 0);
-    glapi::pack::Bind(buffer, 1, 1);
+    glapi::pack::SurfaceCreate(buffer, SurfaceId(1), 1, 8, 24, 8, 16, 0);
+    glapi::pack::SurfacePlace(buffer, SurfaceId(1), 1, 64, 32, 0, 0, 64, 32, 0);
+    glapi::pack::Bind(buffer, SurfaceId(1), SurfaceId(1));
     const glstate::Viewport viewport{0, 0, 64, 32};
     glapi::pack_state(buffer, glstate::el::viewport::id, &viewport, sizeof viewport);
     run(executor, buffer);
@@ -72,7 +72,7 @@ void check_others(RenderNode& node) {
     glapi::pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()),
                        static_cast<std::uint32_t>(body.operand_bytes()));
     buffer.append(body, {}, body.mark());
-    glapi::pack::ReadPixels(buffer, 1, 0, 16, 16, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    glapi::pack::ReadPixels(buffer, RequestId(1), 0, 16, 16, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
     run(executor, buffer);
     const std::array<std::byte, 4> green = {std::byte{0}, std::byte{255}, std::byte{0}, std::byte{255}};
     WALL_ASSERT(std::equal(green.begin(), green.end(), output.answer.begin(), output.answer.end()));
@@ -97,14 +97,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         SessionReplica session(*node->driver, SessionId(1));
         Executor executor(*node->node, session, output);
         open_surface(executor);
-        (void)executor.run_batch(fuzz::batch_of(data, size, 1));
+        (void)executor.run_batch(fuzz::batch_of(data, size, ContextId(1)));
     }
     {
         Ignore output;
         SessionReplica session(*node->driver, SessionId(1));
         Executor executor(*node->node, session, output);
         open_surface(executor);
-        const auto batch = fuzz::batch_of(data, size, 1);
+        const auto batch = fuzz::batch_of(data, size, ContextId(1));
         run_in_slices(*node->node, executor, batch);
     }
     {
@@ -115,7 +115,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         WALL_ASSERT(group.sync.join(0) && group.sync.join(1));
         open_surface(executor);
         open_surface(others);
-        const auto batch = fuzz::batch_of(data, size, 1);
+        const auto batch = fuzz::batch_of(data, size, ContextId(1));
         (void)executor.run_batch(batch);
         (void)others.run_batch(batch);
         wall::tileserver::Work work;

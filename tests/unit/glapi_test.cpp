@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "common/wire/batch.h"
@@ -17,6 +18,7 @@ struct TestHandler : glapi::NullHandler {
     std::vector<float> vertex;
     std::uint32_t color = 0;
     std::vector<std::byte> image;
+    SurfaceId swapped;
 
     std::uint32_t state_bytes(std::uint32_t id) { return id == 7 ? 4 : 0; }
     bool State(std::uint32_t, std::span<const std::byte> value) { return ++commands, value.size() == 4; }
@@ -35,7 +37,7 @@ struct TestHandler : glapi::NullHandler {
         const auto pixels = std::get<sizeof...(A) - 1>(std::tuple(a...));
         image.assign(pixels.begin(), pixels.end());
     }
-    void Swap(std::uint32_t, std::uint32_t) { ++commands; }
+    void Swap(SurfaceId surface, std::uint32_t) { ++commands, swapped = surface; }
 };
 
 constexpr std::byte kPixels[5] = {std::byte{1}, std::byte{2}, std::byte{3}, std::byte{4}, std::byte{5}};
@@ -44,7 +46,7 @@ constexpr std::byte kPixels[5] = {std::byte{1}, std::byte{2}, std::byte{3}, std:
 void pack_sample(wire::PackBuffer& to) {
     const float width = 2;
     glapi::pack_state(to, 7, &width, sizeof width);
-    glapi::pack::TexImage(to, 1, 2, 0, 4, 5, 1, 1, 0, 6, 7, kPixels);
+    glapi::pack::TexImage(to, ClientName(1), 2, 0, 4, 5, 1, 1, 0, 6, 7, kPixels);
     wire::PackBuffer body;
     glapi::pack::Begin(body, 4);
     glapi::pack::Color4ub(body, 0x01020304);
@@ -53,7 +55,7 @@ void pack_sample(wire::PackBuffer& to) {
     glapi::pack::Block(to, 5, 0, static_cast<std::uint32_t>(body.commands()),
                        static_cast<std::uint32_t>(body.operand_bytes()));
     to.append(body, {}, body.mark());
-    glapi::pack::Swap(to, 1, 2);
+    glapi::pack::Swap(to, SurfaceId(9), 2);
 }
 
 Result<void> decode(const wire::PackBuffer& batch, TestHandler& h) {
@@ -64,6 +66,26 @@ TEST(PackedStream, VertexCosts13Bytes) {
     wire::PackBuffer buffer;
     glapi::pack::Vertex3f(buffer, 1, 2, 3);
     EXPECT_EQ(buffer.bytes(), 13u);
+}
+
+/// A packer that takes these behind its buffer.
+template <auto kPack, class... Operands>
+constexpr bool takes = std::is_invocable_v<decltype(kPack), wire::PackBuffer&, Operands...>;
+
+TEST(PackedStream, AnIdIsNoNumberAndNoOtherId) {
+    using glapi::pack::Bind, glapi::pack::QueryResult, glapi::pack::Swap;
+    static_assert(takes<&Swap, SurfaceId, std::uint32_t>);
+    static_assert(!takes<&Swap, std::uint32_t, std::uint32_t>);
+    static_assert(!takes<&Swap, ContextId, std::uint32_t>);
+    static_assert(!takes<&Bind, SurfaceId, ContextId>);
+    static_assert(takes<&QueryResult, RequestId, ClientName> && !takes<&QueryResult, ClientName, RequestId>);
+    wire::PackBuffer buffer;
+    Bind(buffer, SurfaceId(0x01020304), SurfaceId(5));
+    const auto bytes = buffer.operands();
+    EXPECT_EQ(std::vector(bytes.begin(), bytes.end()),
+              (std::vector{std::byte{4}, std::byte{3}, std::byte{2}, std::byte{1}, std::byte{5}, std::byte{0},
+                           std::byte{0}, std::byte{0}}))
+        << "in the stream it is one, little endian";
 }
 
 TEST(PackedStream, DecodesWhatWasPacked) {
@@ -77,6 +99,7 @@ TEST(PackedStream, DecodesWhatWasPacked) {
     EXPECT_EQ(h.commands, 3u + 2 * 4);
     EXPECT_EQ(h.vertex, (std::vector<float>{1, 2, 3}));
     EXPECT_EQ(h.color, 0x01020304u);
+    EXPECT_EQ(h.swapped, SurfaceId(9));
     EXPECT_EQ(h.image, std::vector<std::byte>(std::begin(kPixels), std::end(kPixels)));
 }
 
@@ -126,7 +149,7 @@ TEST(PackedStream, EveryProperPrefixIsRefused) {
     wire::PackBuffer batch;
     pack_sample(batch);
     std::vector<std::byte> payload;
-    wire::append_batch(payload, {3, batch.opcodes(), batch.operands()});
+    wire::append_batch(payload, {ContextId(3), batch.opcodes(), batch.operands()});
     ASSERT_TRUE(wire::split_batch(payload));
     for (std::size_t n = 0; n < payload.size(); ++n) EXPECT_FALSE(wire::split_batch(std::span(payload).first(n))) << n;
     for (std::size_t n = 0; n < batch.operand_bytes(); ++n) {
@@ -148,11 +171,11 @@ TEST(PackedStream, RefusesMisplacedCommands) {
         return done ? std::string() : done.error().message;
     };
     EXPECT_EQ(refused([](auto& b) { glapi::pack::Begin(b, 4); }), "Begin: outside a block");
-    EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 1, 8), glapi::pack::Swap(b, 1, 1); }),
+    EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 1, 8), glapi::pack::Swap(b, SurfaceId(1), 1); }),
               "a block may not hold Swap");
     EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 1, 16), glapi::pack::Block(b, 1, 0, 0, 0); }),
               "a block may not hold Block");
-    EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 2, 0), glapi::pack::Swap(b, 1, 1); }),
+    EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 2, 0), glapi::pack::Swap(b, SurfaceId(1), 1); }),
               "Block: reaches over the batch's end");
     EXPECT_EQ(refused([](auto& b) { glapi::pack::Block(b, 1, 0, 1, 4), glapi::pack::Begin(b, 99); }),
               "Begin: no such mode");
@@ -165,7 +188,7 @@ TEST(PackedStream, ARunMayNotCallARun) {
     glapi::pack::Begin(run, 4);
     TestHandler h;
     EXPECT_TRUE(glapi::decode_run(run.opcodes(), run.operands(), h));
-    glapi::pack::RunCall(run, 1);
+    glapi::pack::RunCall(run, ClientName(1));
     EXPECT_FALSE(glapi::decode_run(run.opcodes(), run.operands(), h));
 }
 

@@ -4,6 +4,7 @@
 import functools
 import os
 import pathlib
+import re
 import sys
 import tempfile
 import unittest
@@ -11,7 +12,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/glgen"))
 
-from glgen import attributes, commands, registry, state, wire  # noqa: E402
+from glgen import attributes, commands, emit_wire, registry, state, wire  # noqa: E402
 
 REGISTRY = pathlib.Path(os.environ.get("WALLGL_GL_XML", "/usr/share/khronos-api/gl.xml"))
 PROTO = ROOT / "proto/gl"
@@ -98,6 +99,8 @@ class Places(unittest.TestCase):
 
     def test_wire(self):
         self.assertIn("unknown type f16", self.refused("wire.toml", '"f32 u"', '"f16 u"', wire.load))
+        self.assertIn("bytes come last", self.refused("wire.toml", '"enum map, bytes values"',
+                                                      '"bytes values, enum map"', wire.load))
 
     def test_state(self):
         refused = functools.partial(self.refused, "state.toml", load=state.load)
@@ -133,6 +136,20 @@ class Files(unittest.TestCase):
         self.assertEqual([op.code for op in ops], list(range(len(ops))))
         vertex = next(op for op in ops if op.name == "Vertex3f")
         self.assertEqual(vertex.fixed_bytes, 12)
+
+    def test_ids_are_numbers_to_the_stream(self):
+        text = (PROTO / "wire.toml").read_text()
+        plain = re.sub(r"\b(?:surface|context|request|object) (?=[a-z_]+[,\"])", "u32 ", text)
+        self.assertNotEqual(plain, text)
+        with tempfile.NamedTemporaryFile("w", suffix=".toml") as f:
+            f.write(plain)
+            f.flush()
+            numbers = wire.load(f.name)
+        ids, elements = wire.load(PROTO / "wire.toml"), state.load(PROTO / "state.toml").elements
+        self.assertEqual([op.fixed_bytes for op in ids], [op.fixed_bytes for op in numbers])
+        self.assertEqual(emit_wire.stream_version(ids, elements), emit_wire.stream_version(numbers, elements))
+        swap = next(op for op in ids if op.name == "Swap")
+        self.assertEqual([o.cpp for o in swap.operands], ["SurfaceId", "std::uint32_t"])
 
     def test_state_ids_are_dense(self):
         model = state.load(PROTO / "state.toml")

@@ -82,7 +82,7 @@ NodeServer::NodeServer(asio::any_io_executor executor, const config::WallConfig&
       watch_(wall.swap_timeout),
       started_us_(microseconds_since_1970()),
       parts_(executor),
-      tile_streams_(executor, [this](std::uint32_t stream, Parts parts) {
+      tile_streams_(executor, [this](PictureId stream, Parts parts) {
           parts_.send({PartsOf::Kind::stream, stream}, std::move(parts));
       }) {}
 
@@ -295,10 +295,11 @@ void NodeServer::handle(const proto::Envelope& envelope) {
         case Case::kFramesRequest: return render_->report_frames(SessionId(envelope.frames_request().session()));
         case Case::kSnapshotRequest: {
             const auto& request = envelope.snapshot_request();
-            return render_->request_picture({request.request(), false, request.slot(), SessionId(request.session())});
+            return render_->request_picture(
+                {PictureId(request.request()), false, request.slot(), SessionId(request.session())});
         }
         case Case::kStreamStart: return tile_streams_.start(*render_, envelope.stream_start());
-        case Case::kStreamStop: return tile_streams_.stop(*render_, envelope.stream_stop().stream());
+        case Case::kStreamStop: return tile_streams_.stop(*render_, PictureId(envelope.stream_stop().stream()));
         case Case::kStreamReady: return tile_streams_.ready(*render_, envelope.stream_ready());
         case Case::kRefused: log::error("walld_refused reason={}", log::quoted(envelope.refused().reason())); return;
         default: log::warn("walld_unexpected_message number={}", static_cast<int>(envelope.message_case()));
@@ -348,7 +349,7 @@ void NodeServer::to_walld(const proto::Envelope& envelope) {
 
 // ---- the render thread's reports ----
 
-void NodeServer::reply(StreamId id, std::uint32_t request, std::vector<std::byte> answer) {
+void NodeServer::reply(StreamId id, RequestId request, std::vector<std::byte> answer) {
     answer.insert(answer.begin(), 4, std::byte{});
     std::memcpy(answer.data(), &request, sizeof request);
     post([this, id, answer = std::move(answer)] {

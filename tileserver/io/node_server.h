@@ -58,7 +58,7 @@ private:
     void stream_bytes(std::size_t bytes) override { bytes_received_ += bytes; }
     void stream_closed(StreamId stream) override { streams_.erase(stream); }
     // NodeEvents: from the render thread
-    void reply(StreamId stream, std::uint32_t request, std::vector<std::byte> answer) override;
+    void reply(StreamId stream, RequestId request, std::vector<std::byte> answer) override;
     void drawn(StreamId stream, SurfaceId surface, std::uint32_t frame) override;
     void rendered(SessionId session, SurfaceId surface, std::uint32_t frame) override;
     void frames(SessionId session, SurfaceId surface, std::uint32_t drawn, std::uint32_t shown) override;

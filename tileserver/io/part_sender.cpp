@@ -33,7 +33,7 @@ Parts snapshot_parts(Picture picture) {
         const std::size_t count = std::min(kPartPixels, pixels - done);
         proto::Envelope envelope;
         auto& snapshot = *envelope.mutable_snapshot();
-        snapshot.set_request(picture.request.id);
+        snapshot.set_request(picture.request.id.value);
         snapshot.set_width(picture.width);
         snapshot.set_height(picture.height);
         snapshot.set_offset(done * kRgb);

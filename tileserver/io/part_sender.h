@@ -25,7 +25,7 @@ using Parts = std::function<std::optional<proto::Envelope>()>;
 /// What parts belong to. Those of one follow each other, however many pictures of it wait.
 struct PartsOf {
     enum class Kind { snapshot, stream } kind;
-    std::uint32_t number;  ///< of the request, or of the stream
+    PictureId id;
     bool operator==(const PartsOf&) const = default;
 };
 

@@ -82,20 +82,20 @@ struct TileStreams::Made {
 };
 
 void TileStreams::start(RenderThread& render, const proto::StreamStart& message) {
-    if (const auto known = codec::find_codec(message.codec()); !known)
-        return fail(message.stream(), known.error().message);
+    const PictureId id(message.stream());
+    if (const auto known = codec::find_codec(message.codec()); !known) return fail(id, known.error().message);
     auto stream = std::make_shared<Stream>();
     stream->codec = message.codec();
-    streams_[message.stream()] = std::move(stream);
+    streams_[id] = std::move(stream);
     const auto& crop = message.crop();
     const geom::Rect part{crop.x(), crop.y(), static_cast<std::int32_t>(crop.width()),
                           static_cast<std::int32_t>(crop.height())};
-    render.watch({message.stream(), true, message.slot(), SessionId(message.session()), SurfaceId(message.surface()),
-                  part, message.width(), message.height()},
+    render.watch({id, true, message.slot(), SessionId(message.session()), SurfaceId(message.surface()), part,
+                  message.width(), message.height()},
                  std::chrono::microseconds(message.interval_us()));
 }
 
-void TileStreams::stop(RenderThread& render, std::uint32_t stream) {
+void TileStreams::stop(RenderThread& render, PictureId stream) {
     render.unwatch(stream);
     streams_.erase(stream);
 }
@@ -106,14 +106,15 @@ void TileStreams::stop_all(RenderThread& render) {
 }
 
 void TileStreams::ready(RenderThread& render, const proto::StreamReady& message) {
-    const auto at = streams_.find(message.stream());
+    const PictureId id(message.stream());
+    const auto at = streams_.find(id);
     if (at == streams_.end()) return;
     at->second->key |= message.key();
-    render.ready(message.stream(), message.key());
+    render.ready(id, message.key());
 }
 
 void TileStreams::picture(Picture picture) {
-    const std::uint32_t id = picture.request.id;
+    const PictureId id = picture.request.id;
     const auto at = streams_.find(id);
     if (at == streams_.end()) return;
     if (!picture.error.empty()) return fail(id, picture.error);
@@ -126,9 +127,9 @@ void TileStreams::picture(Picture picture) {
 }
 
 /// On the pool's thread.
-TileStreams::Made TileStreams::make(Stream& stream, std::uint32_t number, bool key, const Picture& picture) {
+TileStreams::Made TileStreams::make(Stream& stream, PictureId id, bool key, const Picture& picture) {
     Made made;
-    made.head.set_stream(number);
+    made.head.set_stream(id.value);
     made.head.set_time_us(now_us());
     made.head.set_width(picture.width);
     made.head.set_height(picture.height);
@@ -141,7 +142,7 @@ TileStreams::Made TileStreams::make(Stream& stream, std::uint32_t number, bool k
 }
 
 void TileStreams::deliver(const std::shared_ptr<Stream>& stream, Made made) {
-    const auto id = made.head.stream();
+    const PictureId id(made.head.stream());
     const auto still = streams_.find(id);
     if (still == streams_.end() || still->second != stream) return;
     if (!made.head.error().empty()) return fail(id, made.head.error());
@@ -152,7 +153,7 @@ void TileStreams::deliver(const std::shared_ptr<Stream>& stream, Made made) {
 void TileStreams::fill_stats(proto::NodeStats& out) const {
     for (const auto& [id, stream] : streams_) {
         auto& row = *out.add_streams();
-        row.set_stream(id);
+        row.set_stream(id.value);
         row.set_frames(stream->cost.frames);
         row.set_raw_bytes(stream->cost.raw_bytes);
         row.set_packet_bytes(stream->cost.packet_bytes);
@@ -160,10 +161,10 @@ void TileStreams::fill_stats(proto::NodeStats& out) const {
     }
 }
 
-void TileStreams::fail(std::uint32_t stream, const std::string& why) {
+void TileStreams::fail(PictureId stream, const std::string& why) {
     streams_.erase(stream);
     proto::StreamFrame end;
-    end.set_stream(stream);
+    end.set_stream(stream.value);
     end.set_error(why);
     send_(stream, frame_parts(std::move(end), {}, nullptr));
 }

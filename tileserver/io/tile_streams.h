@@ -20,13 +20,13 @@ namespace asio = boost::asio;
 class TileStreams {
 public:
     /// `send`: what is of a stream, to walld; called on the executor.
-    TileStreams(asio::any_io_executor executor, std::function<void(std::uint32_t stream, Parts)> send)
+    TileStreams(asio::any_io_executor executor, std::function<void(PictureId stream, Parts)> send)
         : executor_(std::move(executor)), send_(std::move(send)) {}
     /// Waits for the pictures that are being encoded.
     ~TileStreams() { pool_.join(); }
 
     void start(RenderThread& render, const proto::StreamStart& message);
-    void stop(RenderThread& render, std::uint32_t stream);
+    void stop(RenderThread& render, PictureId stream);
     void stop_all(RenderThread& render);
     void ready(RenderThread& render, const proto::StreamReady& message);
     /// A picture of a stream. Any executor thread but the pool's.
@@ -37,13 +37,13 @@ public:
 private:
     struct Stream;
     struct Made;
-    static Made make(Stream& stream, std::uint32_t number, bool key, const Picture& picture);
+    static Made make(Stream& stream, PictureId id, bool key, const Picture& picture);
     void deliver(const std::shared_ptr<Stream>& stream, Made made);
-    void fail(std::uint32_t stream, const std::string& why);
+    void fail(PictureId stream, const std::string& why);
 
     asio::any_io_executor executor_;
-    std::function<void(std::uint32_t stream, Parts)> send_;
-    std::map<std::uint32_t, std::shared_ptr<Stream>> streams_;
+    std::function<void(PictureId stream, Parts)> send_;
+    std::map<PictureId, std::shared_ptr<Stream>> streams_;
     asio::thread_pool pool_{1};
 };
 

@@ -26,8 +26,8 @@ struct StackEntry {
 };
 
 struct PictureRequest {
-    std::uint32_t id = 0;  ///< of the request, or of the stream
-    bool stream = false;
+    PictureId id;
+    bool stream = false;  ///< one of many under that id
     std::uint32_t slot = 0;
     SessionId session;                    ///< only its layers; none: all
     SurfaceId surface;                    ///< only this one of the session; none: all

@@ -165,7 +165,7 @@ public:
                     std::span<const std::byte> pixels);
     void Bitmap(std::int32_t width, std::int32_t height, float xorig, float yorig, float xmove, float ymove,
                 std::span<const std::byte> bits);
-    void RunCall(std::uint32_t run);
+    void RunCall(ClientName run);
     void InitNames();
     void LoadName(std::uint32_t name);
     void PushName(std::uint32_t name);
@@ -176,18 +176,18 @@ public:
     void Block(std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t) {
         refuse("misplaced");
     }  // the decoder's own
-    void Sync(std::uint32_t request);
-    void SurfaceCreate(std::uint32_t surface, std::uint32_t double_buffered, std::uint32_t alpha_bits,
+    void Sync(RequestId request);
+    void SurfaceCreate(SurfaceId surface, std::uint32_t double_buffered, std::uint32_t alpha_bits,
                        std::uint32_t depth_bits, std::uint32_t stencil_bits, std::uint32_t accum_bits,
                        std::uint32_t samples);
-    void SurfacePlace(std::uint32_t surface, std::uint32_t layout_version, std::uint32_t window_width,
+    void SurfacePlace(SurfaceId surface, std::uint32_t layout_version, std::uint32_t window_width,
                       std::uint32_t window_height, std::int32_t x, std::int32_t y, std::uint32_t width,
                       std::uint32_t height, std::uint32_t offscreen);
-    void SwapOffscreen(std::uint32_t window);
-    void SurfaceDestroy(std::uint32_t surface);
-    void Bind(std::uint32_t draw_surface, std::uint32_t read_surface);
-    void ContextDestroy(std::uint32_t context);
-    void Swap(std::uint32_t surface, std::uint32_t frame);
+    void SwapOffscreen(SurfaceId window);
+    void SurfaceDestroy(SurfaceId surface);
+    void Bind(SurfaceId draw_surface, SurfaceId read_surface);
+    void ContextDestroy(ContextId context);
+    void Swap(SurfaceId surface, std::uint32_t frame);
 
     // ---- parallel programs (executor_sync.cpp) ----
     void Join();
@@ -201,37 +201,37 @@ public:
     void SemaphoreV(std::uint32_t semaphore);
 
     // ---- answers (executor_read.cpp) ----
-    void ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_t x, std::int32_t y, std::int32_t width,
+    void ReadPixels(RequestId request, std::uint32_t slot, std::int32_t x, std::int32_t y, std::int32_t width,
                     std::int32_t height, GLenum format, GLenum type);
-    void RenderMode(std::uint32_t request, GLenum mode, GLenum feedback_type, std::uint32_t buffer_entries);
+    void RenderMode(RequestId request, GLenum mode, GLenum feedback_type, std::uint32_t buffer_entries);
 
     // ---- objects (executor_objects.cpp) ----
-    void TexImage(std::uint32_t texture, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width,
+    void TexImage(ClientName texture, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width,
                   std::int32_t height, std::int32_t depth, std::int32_t border, GLenum format, GLenum type,
                   std::span<const std::byte> pixels);
-    void TexSubImage(std::uint32_t texture, GLenum target, std::int32_t level, std::int32_t x, std::int32_t y,
+    void TexSubImage(ClientName texture, GLenum target, std::int32_t level, std::int32_t x, std::int32_t y,
                      std::int32_t z, std::int32_t width, std::int32_t height, std::int32_t depth, GLenum format,
                      GLenum type, std::span<const std::byte> pixels);
-    void TexCompressed(std::uint32_t texture, GLenum target, std::int32_t level, GLenum internal_format,
+    void TexCompressed(ClientName texture, GLenum target, std::int32_t level, GLenum internal_format,
                        std::int32_t width, std::int32_t height, std::span<const std::byte> blocks);
-    void Compress(std::uint32_t request, GLenum internal_format, std::int32_t width, std::int32_t height, GLenum format,
+    void Compress(RequestId request, GLenum internal_format, std::int32_t width, std::int32_t height, GLenum format,
                   GLenum type, std::span<const std::byte> pixels);
-    void TexParameter(std::uint32_t texture, GLenum target, GLenum pname, float p0, float p1, float p2, float p3);
-    void TexDelete(std::uint32_t texture);
-    void ShareTexture(std::uint32_t request, std::uint32_t texture, GLenum target, std::uint32_t own_name,
+    void TexParameter(ClientName texture, GLenum target, GLenum pname, float p0, float p1, float p2, float p3);
+    void TexDelete(ClientName texture);
+    void ShareTexture(RequestId request, ClientName texture, GLenum target, std::uint32_t own_name,
                       std::span<const std::byte> key);
-    void TexShared(std::uint32_t texture);
-    void ShareRun(std::uint32_t request, std::uint32_t run, std::span<const std::byte> key);
-    void ShaderCompile(std::uint32_t request, GLenum type, std::span<const std::byte> source);
-    void ProgramLink(std::uint32_t request, std::uint32_t program, std::span<const std::byte> definition);
-    void ProgramDelete(std::uint32_t program);
-    void QueryResult(std::uint32_t request, std::uint32_t query);
-    void QueryDelete(std::uint32_t query);
-    void Uniform(std::uint32_t program, std::uint32_t location, GLenum type, std::uint32_t count,
+    void TexShared(ClientName texture);
+    void ShareRun(RequestId request, ClientName run, std::span<const std::byte> key);
+    void ShaderCompile(RequestId request, GLenum type, std::span<const std::byte> source);
+    void ProgramLink(RequestId request, ClientName program, std::span<const std::byte> definition);
+    void ProgramDelete(ClientName program);
+    void QueryResult(RequestId request, ClientName query);
+    void QueryDelete(ClientName query);
+    void Uniform(ClientName program, std::uint32_t location, GLenum type, std::uint32_t count,
                  std::span<const std::byte> values);
-    void RunDefine(std::uint32_t run, std::uint32_t commands, std::uint32_t operand_bytes,
+    void RunDefine(ClientName run, std::uint32_t commands, std::uint32_t operand_bytes,
                    std::span<const std::byte> content);
-    void RunDelete(std::uint32_t run);
+    void RunDelete(ClientName run);
     void Map1(GLenum target, float u1, float u2, std::int32_t order, std::span<const std::byte> points);
     void Map2(GLenum target, float u1, float u2, std::int32_t uorder, float v1, float v2, std::int32_t vorder,
               std::span<const std::byte> points);
@@ -252,12 +252,12 @@ private:
     void compile_part();
     void finish_run();
     void go_on_with_run();
-    bool keep_run(std::uint32_t id, std::shared_ptr<const Run> run);
+    bool keep_run(ClientName id, std::shared_ptr<const Run> run);
     void finish_tile();
     /// Whether occlusion queries count what is drawn there: of a window partly off the wall, its tiles' samples.
     bool counts_samples(unsigned slot) const;
     bool outside_begin();
-    SurfaceReplica* known_surface(std::uint32_t id);
+    SurfaceReplica* known_surface(SurfaceId id);
     bool holds_early(std::span<const std::byte> opcodes) const;
     /// `say(GroupSync&, Rank)` gives a Result; its error refuses the stream.
     template <class Say>
@@ -268,9 +268,9 @@ private:
     }
     /// Asks the node's store; false: not answered yet.
     bool answer_question();
-    void ask(std::uint32_t request, std::uint32_t object, GLenum target, bool own_name, std::span<const std::byte> key);
+    void ask(RequestId request, ClientName object, GLenum target, bool own_name, std::span<const std::byte> key);
     /// The texture to change: its own, bound for the driver's work on the object; null after a refusal.
-    Texture* bind_for_upload(std::uint32_t name, GLenum target);
+    Texture* bind_for_upload(ClientName name, GLenum target);
     bool check_image(GLenum format, GLenum type, std::int32_t width, std::int32_t height, std::int32_t depth,
                      std::span<const std::byte> pixels);
     /// `define` calls the driver for an image of the bound texture; what the driver then has is noted.
@@ -315,17 +315,18 @@ private:
 
     /// Does the node have this content? The client waits for the answer.
     struct Question {
-        std::uint32_t request = 0, object = 0;
+        RequestId request;
+        ClientName object;
         GLenum target = 0;  ///< of a texture; 0: it is a run
         bool own_name = false;
         glapi::ContentKey key;
     };
     std::optional<Question> question_;
-    std::optional<std::pair<std::uint32_t, glapi::ContentKey>> promised_run_;
+    std::optional<std::pair<ClientName, glapi::ContentKey>> promised_run_;
 
     /// A run that is being defined.
     struct Compiling {
-        std::uint32_t id = 0;
+        ClientName id;
         std::optional<glapi::ContentKey> promised;
         std::shared_ptr<Run> run;
         glapi::DrawingRun content;

@@ -31,15 +31,15 @@ bool Executor::check_image(GLenum format, GLenum type, std::int32_t width, std::
 
 // ---- textures ----
 
-Texture* Executor::bind_for_upload(std::uint32_t name, GLenum target) {
+Texture* Executor::bind_for_upload(ClientName name, GLenum target) {
     const TextureTarget kind = texture_target(target);
     if (kind == TextureTarget::kCount || kind == TextureTarget::buffer || kind == TextureTarget::t2d_multisample) {
         refuse("no such target");
         return nullptr;
     }
-    Texture* texture = session_.make_texture(ClientName(name), kind);
+    Texture* texture = session_.make_texture(name, kind);
     if (texture == nullptr) {
-        refuse("texture " + std::to_string(name) + " has another target, or there are too many");
+        refuse("texture " + std::to_string(name.value) + " has another target, or there are too many");
         return nullptr;
     }
     if (texture->content.use_count() > 1) {
@@ -64,9 +64,9 @@ void Executor::define_image(Texture& texture, GLenum target, std::int32_t level,
     session_.account(texture, target, level, errors == 0 ? &format : nullptr);
 }
 
-void Executor::TexImage(std::uint32_t name, GLenum target, std::int32_t level, GLenum internal_format,
-                        std::int32_t width, std::int32_t height, std::int32_t depth, std::int32_t border, GLenum format,
-                        GLenum type, std::span<const std::byte> pixels) {
+void Executor::TexImage(ClientName name, GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width,
+                        std::int32_t height, std::int32_t depth, std::int32_t border, GLenum format, GLenum type,
+                        std::span<const std::byte> pixels) {
     if (width < 0 || height < 0 || depth < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent ||
         depth > kMaxTextureExtent)
         return refuse("absurd size");
@@ -88,7 +88,7 @@ void Executor::TexImage(std::uint32_t name, GLenum target, std::int32_t level, G
     });
 }
 
-void Executor::TexSubImage(std::uint32_t name, GLenum target, std::int32_t level, std::int32_t x, std::int32_t y,
+void Executor::TexSubImage(ClientName name, GLenum target, std::int32_t level, std::int32_t x, std::int32_t y,
                            std::int32_t z, std::int32_t width, std::int32_t height, std::int32_t depth, GLenum format,
                            GLenum type, std::span<const std::byte> pixels) {
     if (level < 0 || level > kMaxTextureLevel) return refuse("no such level");
@@ -104,7 +104,7 @@ void Executor::TexSubImage(std::uint32_t name, GLenum target, std::int32_t level
     else gl_.TexSubImage2D(target, level, x, y, width, height, format, type, pixels.data());
 }
 
-void Executor::TexCompressed(std::uint32_t name, GLenum target, std::int32_t level, GLenum internal_format,
+void Executor::TexCompressed(ClientName name, GLenum target, std::int32_t level, GLenum internal_format,
                              std::int32_t width, std::int32_t height, std::span<const std::byte> blocks) {
     if (width < 0 || height < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent || level < 0 ||
         level > kMaxTextureLevel)
@@ -125,7 +125,7 @@ void Executor::TexCompressed(std::uint32_t name, GLenum target, std::int32_t lev
     });
 }
 
-void Executor::Compress(std::uint32_t request, GLenum internal_format, std::int32_t width, std::int32_t height,
+void Executor::Compress(RequestId request, GLenum internal_format, std::int32_t width, std::int32_t height,
                         GLenum format, GLenum type, std::span<const std::byte> pixels) {
     if (width < 1 || height < 1 || width > kMaxTextureExtent || height > kMaxTextureExtent)
         return refuse("absurd size");
@@ -142,7 +142,7 @@ void Executor::Compress(std::uint32_t request, GLenum internal_format, std::int3
     output_.reply(request, std::move(blocks));
 }
 
-void Executor::TexParameter(std::uint32_t name, GLenum target, GLenum pname, float p0, float p1, float p2, float p3) {
+void Executor::TexParameter(ClientName name, GLenum target, GLenum pname, float p0, float p1, float p2, float p3) {
     Texture* texture = bind_for_upload(name, target);
     if (texture == nullptr) return;
     const std::array<float, 4> values = {p0, p1, p2, p3};
@@ -151,7 +151,7 @@ void Executor::TexParameter(std::uint32_t name, GLenum target, GLenum pname, flo
     gl_.TexParameterfv(target, pname, values.data());
 }
 
-void Executor::TexDelete(std::uint32_t name) { session_.delete_texture(ClientName(name)); }
+void Executor::TexDelete(ClientName name) { session_.delete_texture(name); }
 
 // ---- maps ----
 

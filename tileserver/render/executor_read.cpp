@@ -33,7 +33,7 @@ std::unique_ptr<Layer> window_copy(Driver& driver, const Layer& layer, const Sur
 
 }  // namespace
 
-void Executor::ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_t x, std::int32_t y, std::int32_t width,
+void Executor::ReadPixels(RequestId request, std::uint32_t slot, std::int32_t x, std::int32_t y, std::int32_t width,
                           std::int32_t height, GLenum format, GLenum type) {
     constexpr std::int32_t kMost = wire::kMaxSurfaceExtent;
     if (slot >= wire::kMaxTilesPerNode || width < 0 || height < 0 || width > kMost || height > kMost)
@@ -65,7 +65,7 @@ void Executor::ReadPixels(std::uint32_t request, std::uint32_t slot, std::int32_
     output_.reply(request, std::move(answer));
 }
 
-void Executor::RenderMode(std::uint32_t request, GLenum mode, GLenum feedback_type, std::uint32_t buffer_entries) {
+void Executor::RenderMode(RequestId request, GLenum mode, GLenum feedback_type, std::uint32_t buffer_entries) {
     if (mode != GL_RENDER && mode != GL_SELECT && mode != GL_FEEDBACK) return refuse("no such mode");
     if (mode == GL_FEEDBACK && (feedback_type < GL_2D || feedback_type > GL_4D_COLOR_TEXTURE))
         return refuse("no such feedback type");

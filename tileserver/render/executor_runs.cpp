@@ -9,7 +9,7 @@
 
 namespace wall::tileserver {
 
-void Executor::RunDefine(std::uint32_t id, std::uint32_t commands, std::uint32_t operand_bytes,
+void Executor::RunDefine(ClientName id, std::uint32_t commands, std::uint32_t operand_bytes,
                          std::span<const std::byte> content) {
     const std::size_t room = wire::padded4(commands);
     if (content.size() != room + operand_bytes) return refuse("content does not fit its sizes");
@@ -65,7 +65,7 @@ void Executor::finish_run() {
     keep_run(id, promised ? node_.runs.store(*promised, run) : run);
 }
 
-bool Executor::keep_run(std::uint32_t id, std::shared_ptr<const Run> run) {
+bool Executor::keep_run(ClientName id, std::shared_ptr<const Run> run) {
     RunDelete(id);
     session_.run_bytes += run->bytes;
     session_.runs[id] = std::move(run);
@@ -74,17 +74,17 @@ bool Executor::keep_run(std::uint32_t id, std::shared_ptr<const Run> run) {
     return !refused();
 }
 
-void Executor::RunDelete(std::uint32_t id) {
+void Executor::RunDelete(ClientName id) {
     const auto at = session_.runs.find(id);
     if (at == session_.runs.end()) return;
     session_.run_bytes -= at->second->bytes;
     session_.runs.erase(at);
 }
 
-void Executor::RunCall(std::uint32_t id) {
+void Executor::RunCall(ClientName id) {
     if (!outside_begin()) return;
     const auto at = session_.runs.find(id);
-    if (at == session_.runs.end()) return refuse("run " + std::to_string(id) + " is not defined");
+    if (at == session_.runs.end()) return refuse("run " + std::to_string(id.value) + " is not defined");
     call_ = {at->second, 0};
     go_on_with_run();
 }

@@ -13,13 +13,13 @@ std::vector<std::byte> answer(bool have) { return {std::byte{have}}; }
 
 }  // namespace
 
-void Executor::ShareTexture(std::uint32_t request, std::uint32_t texture, GLenum target, std::uint32_t own_name,
+void Executor::ShareTexture(RequestId request, ClientName texture, GLenum target, std::uint32_t own_name,
                             std::span<const std::byte> key) {
     if (!bind_for_upload(texture, target)) return;
     ask(request, texture, target, own_name != 0, key);
 }
 
-void Executor::ShareRun(std::uint32_t request, std::uint32_t run, std::span<const std::byte> key) {
+void Executor::ShareRun(RequestId request, ClientName run, std::span<const std::byte> key) {
     ask(request, run, 0, false, key);
 }
 
@@ -29,15 +29,14 @@ Result<bool> Executor::pursue_question() {
     return answered;
 }
 
-void Executor::ask(std::uint32_t request, std::uint32_t object, GLenum target, bool own_name,
-                   std::span<const std::byte> key) {
+void Executor::ask(RequestId request, ClientName object, GLenum target, bool own_name, std::span<const std::byte> key) {
     if (question_) return refuse("asks before the last question is answered");
     if (key.size() != sizeof(glapi::ContentKey)) return refuse("a name of content has 32 bytes");
     question_ = Question{request, object, target, own_name, {}};
     std::copy(key.begin(), key.end(), question_->key.begin());
     if (own_name) {
         glapi::ContentHash hash;
-        hash.InSession(session_.id().value, question_->key);
+        hash.InSession(session_.id(), question_->key);
         question_->key = hash.finish();
     }
     answer_question();
@@ -48,7 +47,7 @@ bool Executor::answer_question() {
     const auto now = std::chrono::steady_clock::now();
     bool have = false;
     if (question.target != 0) {
-        Texture* texture = session_.make_texture(ClientName(question.object), texture_target(question.target));
+        Texture* texture = session_.make_texture(question.object, texture_target(question.target));
         auto found = node_.textures.ask(question.key, session_.asker(), now);
         have = found.have != nullptr;
         if (!have && !found.send) return false;
@@ -70,8 +69,8 @@ bool Executor::answer_question() {
     return true;
 }
 
-void Executor::TexShared(std::uint32_t name) {
-    Texture* texture = session_.texture(ClientName(name), TextureTarget::t2d);
+void Executor::TexShared(ClientName name) {
+    Texture* texture = session_.texture(name, TextureTarget::t2d);
     if (texture == nullptr || !texture->promise)
         return;  // the client did not wait for the answer, and that was: it is here
     auto promise = *std::exchange(texture->promise, {});

@@ -27,7 +27,7 @@ Result<void> Executor::start_batch(std::span<const std::byte> payload) {
     const auto batch = wire::split_batch(payload);
     if (!batch) return tl::unexpected(batch.error());
     if (holds_early(batch->opcodes)) return fail("a command that may hold the stream is not the last one of its batch");
-    context_id_ = ContextId(batch->context);
+    context_id_ = batch->context;
     context_ = &session_.context(context_id_);
     if (session_.context_count() > kMaxContexts) return fail("too many contexts");
     surfaces_known_ = false;

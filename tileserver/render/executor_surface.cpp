@@ -6,13 +6,13 @@
 
 namespace wall::tileserver {
 
-SurfaceReplica* Executor::known_surface(std::uint32_t id) {
-    SurfaceReplica* surface = session_.surface(SurfaceId(id));
-    if (surface == nullptr) refuse("surface " + std::to_string(id) + " does not exist");
+SurfaceReplica* Executor::known_surface(SurfaceId id) {
+    SurfaceReplica* surface = session_.surface(id);
+    if (surface == nullptr) refuse("surface " + std::to_string(id.value) + " does not exist");
     return surface;
 }
 
-void Executor::Sync(std::uint32_t request) {
+void Executor::Sync(RequestId request) {
     {
         const Timed timed(session_.work.render);
         gl_.Finish();
@@ -20,18 +20,18 @@ void Executor::Sync(std::uint32_t request) {
     output_.reply(request, {});
 }
 
-void Executor::SurfaceCreate(std::uint32_t surface, std::uint32_t double_buffered, std::uint32_t alpha_bits,
+void Executor::SurfaceCreate(SurfaceId surface, std::uint32_t double_buffered, std::uint32_t alpha_bits,
                              std::uint32_t depth_bits, std::uint32_t stencil_bits, std::uint32_t accum_bits,
                              std::uint32_t) {
-    if (surface == 0) return refuse("surface 0 is none");
+    if (!surface) return refuse("surface 0 is none");
     surfaces_known_ = false;
     const LayerFormat layer{double_buffered != 0, alpha_bits != 0, depth_bits != 0, stencil_bits != 0};
-    if (session_.create_surface(SurfaceId(surface), {layer, accum_bits != 0}) != nullptr) return;
-    refuse(session_.shares(SurfaceId(surface)) ? "the members of the parallel program have windows of different formats"
-                                               : "too many surfaces");
+    if (session_.create_surface(surface, {layer, accum_bits != 0}) != nullptr) return;
+    refuse(session_.shares(surface) ? "the members of the parallel program have windows of different formats"
+                                    : "too many surfaces");
 }
 
-void Executor::SurfacePlace(std::uint32_t id, std::uint32_t layout_version, std::uint32_t window_width,
+void Executor::SurfacePlace(SurfaceId id, std::uint32_t layout_version, std::uint32_t window_width,
                             std::uint32_t window_height, std::int32_t x, std::int32_t y, std::uint32_t width,
                             std::uint32_t height, std::uint32_t offscreen) {
     SurfaceReplica* surface = known_surface(id);
@@ -50,7 +50,7 @@ void Executor::SurfacePlace(std::uint32_t id, std::uint32_t layout_version, std:
                                          rect,
                                          offscreen == wire::kOnlyWholeWindow,
                                          offscreen == wire::kAlsoWholeWindow};
-    if (session_.shares(SurfaceId(id)) && surface->where().window_width != 0) {
+    if (session_.shares(id) && surface->where().window_width != 0) {
         if (surface->where() == place) return;
         if (layout_version <= surface->where().layout_version)
             return refuse("the members of the parallel program draw for different places");
@@ -61,37 +61,37 @@ void Executor::SurfacePlace(std::uint32_t id, std::uint32_t layout_version, std:
     if (!surface->place(place, node_.tiles)) refuse("more pixels than a session may have");
 }
 
-void Executor::SurfaceDestroy(std::uint32_t id) {
-    session_.destroy_surface(SurfaceId(id));
+void Executor::SurfaceDestroy(SurfaceId id) {
+    session_.destroy_surface(id);
     surfaces_known_ = false;
     ++node_.damage;
 }
 
-void Executor::Bind(std::uint32_t draw_surface, std::uint32_t read_surface) {
-    context_->draw = SurfaceId(draw_surface);
-    context_->read = SurfaceId(read_surface);
+void Executor::Bind(SurfaceId draw_surface, SurfaceId read_surface) {
+    context_->draw = draw_surface;
+    context_->read = read_surface;
     surfaces_known_ = false;
 }
 
-void Executor::ContextDestroy(std::uint32_t context) {
-    if (ContextId(context) == context_id_) {
+void Executor::ContextDestroy(ContextId context) {
+    if (context == context_id_) {
         session_.context(context_id_) = SoftContext{};  // the batch goes on in it; an empty one costs nothing
         return;
     }
-    session_.destroy_context(ContextId(context));
+    session_.destroy_context(context);
 }
 
-void Executor::Swap(std::uint32_t id, std::uint32_t frame) {
+void Executor::Swap(SurfaceId id, std::uint32_t frame) {
     SurfaceReplica* surface = known_surface(id);
     if (surface == nullptr) return;
-    if (session_.shares(SurfaceId(id)))
-        return say_to_group([=](GroupSync& sync, Rank rank) { return sync.swap(rank, SurfaceId(id), frame); });
-    const bool at_once = !surface->on_tiles() || node_.shows_at_once(session_.id(), SurfaceId(id));
+    if (session_.shares(id))
+        return say_to_group([=](GroupSync& sync, Rank rank) { return sync.swap(rank, id, frame); });
+    const bool at_once = !surface->on_tiles() || node_.shows_at_once(session_.id(), id);
     finish_frame(node_, session_.work, *surface, frame, at_once);
-    output_.frame_rendered(SurfaceId(id), frame);
+    output_.frame_rendered(id, frame);
 }
 
-void Executor::SwapOffscreen(std::uint32_t window) {
+void Executor::SwapOffscreen(SurfaceId window) {
     SurfaceReplica* surface = known_surface(window);
     if (surface == nullptr) return;
     surface->swap_offscreen();

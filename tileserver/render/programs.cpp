@@ -134,8 +134,7 @@ Result<std::vector<std::byte>> Programs::link(ClientName name, std::span<const s
     std::size_t locations = 0;
     for (const auto& uniform : definition->uniforms)
         if ((locations += uniform.size) > kMaxProgramLocations) return fail("too many uniforms");
-    if (!name || (programs_.size() >= kMaxPrograms && !programs_.contains(name.value)))
-        return fail("too many programs");
+    if (!name || (programs_.size() >= kMaxPrograms && !programs_.contains(name))) return fail("too many programs");
 
     const Built built = build(*definition);
     GLint linked = 0;
@@ -150,7 +149,7 @@ Result<std::vector<std::byte>> Programs::link(ClientName name, std::span<const s
     if (names.empty())
         for (const auto& uniform : reflection.uniforms)
             if (!uniform.built_in) names.push_back({uniform.size, uniform.name});
-    Program& program = programs_[name.value];
+    Program& program = programs_[name];
     release(program);
     program = {built.program,
                map_locations(built.program, names),
@@ -161,7 +160,7 @@ Result<std::vector<std::byte>> Programs::link(ClientName name, std::span<const s
 }
 
 void Programs::erase(ClientName name) {
-    const auto at = programs_.find(name.value);
+    const auto at = programs_.find(name);
     if (at == programs_.end()) return;
     release(at->second);
     programs_.erase(at);
@@ -260,7 +259,7 @@ void Programs::read_attributes(GLuint program, glapi::ProgramReflection& out) co
 
 Result<void> Programs::set_uniform(ClientName name, std::uint32_t location, GLenum type_name, std::uint32_t count,
                                    std::span<const std::byte> values) {
-    const auto at = programs_.find(name.value);
+    const auto at = programs_.find(name);
     if (at == programs_.end()) return fail("no such program");
     const auto* type = glapi::find_uniform_type(type_name);
     const Program& program = at->second;
@@ -278,7 +277,7 @@ Result<void> Programs::set_uniform(ClientName name, std::uint32_t location, GLen
 }
 
 void Programs::use_named(ClientName name, const LayerGeometry& layer) {
-    const auto at = programs_.find(name.value);
+    const auto at = programs_.find(name);
     if (at == programs_.end()) return driver_.use_program(0);
     Program& program = at->second;
     driver_.use_program(program.driver);

@@ -63,7 +63,7 @@ private:
 
     Driver& driver_;
     const Gl& gl_;
-    std::unordered_map<std::uint32_t, Program> programs_;
+    std::unordered_map<ClientName, Program> programs_;
 };
 
 }  // namespace wall::tileserver

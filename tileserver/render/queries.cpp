@@ -19,8 +19,8 @@ Queries::~Queries() {
 
 bool Queries::begin(ClientName name, double scale) {
     if (!name) return true;
-    if (queries_.size() >= kMaxQueries && !queries_.contains(name.value)) return false;
-    Query& query = queries_[name.value];
+    if (queries_.size() >= kMaxQueries && !queries_.contains(name)) return false;
+    Query& query = queries_[name];
     if (query.parts.size() >= kMaxParts) collect(query);
     Part part{0, scale};
     gl_.GenQueries(1, &part.driver);
@@ -45,14 +45,14 @@ void Queries::collect(Query& query) {
 }
 
 std::uint64_t Queries::result(ClientName name) {
-    const auto at = queries_.find(name.value);
+    const auto at = queries_.find(name);
     if (at == queries_.end()) return 0;
     collect(at->second);
     return static_cast<std::uint64_t>(std::llround(at->second.sum));
 }
 
 void Queries::erase(ClientName name) {
-    const auto at = queries_.find(name.value);
+    const auto at = queries_.find(name);
     if (at == queries_.end()) return;
     for (const Part& part : at->second.parts) gl_.DeleteQueries(1, &part.driver);
     queries_.erase(at);

@@ -41,7 +41,7 @@ private:
     void collect(Query& query);
 
     const Gl& gl_;
-    std::unordered_map<std::uint32_t, Query> queries_;
+    std::unordered_map<ClientName, Query> queries_;
     bool active_ = false;
 };
 

@@ -62,7 +62,7 @@ public:
               session_(loop.driver_, session, group_.get(), rank),
               executor_(loop.node_, session_, *this) {}
         ~Stream() override { loop_.node_.ended += session_.work; }
-        void reply(std::uint32_t request, std::vector<std::byte> answer) override {
+        void reply(RequestId request, std::vector<std::byte> answer) override {
             loop_.events_.reply(id_, request, std::move(answer));
         }
         void frame_rendered(SurfaceId surface, std::uint32_t frame) override {
@@ -444,10 +444,10 @@ void RenderThread::request_picture(const PictureRequest& request) {
 void RenderThread::watch(const PictureRequest& request, std::chrono::microseconds interval) {
     post([=](Loop& loop) { loop.watches_.add(request, interval); });
 }
-void RenderThread::unwatch(std::uint32_t stream) {
+void RenderThread::unwatch(PictureId stream) {
     post([=](Loop& loop) { loop.watches_.remove(stream); });
 }
-void RenderThread::ready(std::uint32_t stream, bool even_unchanged) {
+void RenderThread::ready(PictureId stream, bool even_unchanged) {
     post([=](Loop& loop) { loop.watches_.ready(stream, even_unchanged); });
 }
 

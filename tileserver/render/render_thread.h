@@ -44,7 +44,7 @@ struct RenderStats {
 class NodeEvents {
 public:
     virtual ~NodeEvents() = default;
-    virtual void reply(StreamId stream, std::uint32_t request, std::vector<std::byte> answer) = 0;
+    virtual void reply(StreamId stream, RequestId request, std::vector<std::byte> answer) = 0;
     /// For the stream's client: a frame of its is drawn.
     virtual void drawn(StreamId stream, SurfaceId surface, std::uint32_t frame) = 0;
     /// For walld; in a parallel program once for all its streams.
@@ -105,8 +105,8 @@ public:
     void request_picture(const PictureRequest& request);
     /// Pictures of a tile whenever it has changed and somebody is ready for one (TileWatch).
     void watch(const PictureRequest& request, std::chrono::microseconds interval);
-    void unwatch(std::uint32_t stream);
-    void ready(std::uint32_t stream, bool even_unchanged);
+    void unwatch(PictureId stream);
+    void ready(PictureId stream, bool even_unchanged);
     /// A queue has got a batch.
     void wake();
 

@@ -123,7 +123,7 @@ public:
 
     Programs programs;
     Queries queries;
-    std::unordered_map<std::uint32_t, std::shared_ptr<const Run>> runs;
+    std::unordered_map<ClientName, std::shared_ptr<const Run>> runs;
     std::uint64_t run_bytes = 0;
     Work work;
 

@@ -14,7 +14,7 @@ namespace wall::tileserver {
 class SessionOutput {
 public:
     virtual ~SessionOutput() = default;
-    virtual void reply(std::uint32_t request, std::vector<std::byte> answer) = 0;
+    virtual void reply(RequestId request, std::vector<std::byte> answer) = 0;
     /// All of this node's layers of the surface hold the frame; it waits to be shown.
     virtual void frame_rendered(SurfaceId surface, std::uint32_t frame) = 0;
 };

@@ -9,7 +9,7 @@ void TileWatches::add(const PictureRequest& request, std::chrono::microseconds i
     watches_[request.id] = {request, interval};
 }
 
-void TileWatches::ready(std::uint32_t stream, bool even_unchanged) {
+void TileWatches::ready(PictureId stream, bool even_unchanged) {
     const auto at = watches_.find(stream);
     if (at == watches_.end()) return;
     at->second.ready = true;

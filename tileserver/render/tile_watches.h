@@ -18,8 +18,8 @@ public:
 
     /// Ready at once. `request.id` names the stream; an earlier one of that name is replaced.
     void add(const PictureRequest& request, std::chrono::microseconds interval);
-    void remove(std::uint32_t stream) { watches_.erase(stream); }
-    void ready(std::uint32_t stream, bool even_unchanged);
+    void remove(PictureId stream) { watches_.erase(stream); }
+    void ready(PictureId stream, bool even_unchanged);
 
     /// The pictures to take now, at most `most`, those first that could have been taken first; each is taken to be on
     /// its way. `damage`: grows when any tile may have changed.
@@ -37,7 +37,7 @@ private:
 
         bool wants(std::uint64_t damage) const { return ready && (even_unchanged || shown != damage); }
     };
-    std::map<std::uint32_t, Watch> watches_;  // by stream
+    std::map<PictureId, Watch> watches_;  // by stream
 };
 
 }  // namespace wall::tileserver

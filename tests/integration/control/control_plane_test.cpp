@@ -45,10 +45,10 @@ TEST_F(ControlPlane, AFrameGoesAllTheWay) {
     ASSERT_TRUE(ticket);
     EXPECT_EQ(ticket->ticket().ticket(), welcome.nodes(0).ticket());
 
-    const auto placement = program.open_surface(1, 100, 40);
+    const auto placement = program.open_surface(SurfaceId(1), 100, 40);
     EXPECT_EQ(placement.rect().width(), 100u);
-    left_.rendered(welcome.session(), 1, 1);
-    right_.rendered(welcome.session(), 1, 1);
+    left_.rendered(SessionId(welcome.session()), SurfaceId(1), 1);
+    right_.rendered(SessionId(welcome.session()), SurfaceId(1), 1);
     for (auto* node : {&left_, &right_}) {
         const auto present = node->hear(proto::Envelope::kPresent);
         ASSERT_TRUE(present);
@@ -62,8 +62,8 @@ TEST_F(ControlPlane, ASlowNodeDoesNotHoldTheWall) {
     join_both();
     auto program = connect();
     const auto session = program.open().session();
-    program.open_surface(1, 100, 40);
-    left_.rendered(session, 1, 1);
+    program.open_surface(SurfaceId(1), 100, 40);
+    left_.rendered(SessionId(session), SurfaceId(1), 1);
     const auto begin = std::chrono::steady_clock::now();
     ASSERT_TRUE(left_.hear(proto::Envelope::kPresent));
     const auto waited = std::chrono::steady_clock::now() - begin;
@@ -77,8 +77,8 @@ TEST_F(ControlPlane, AHeldProgramIsStepped) {
     proto::ClientHello hello;
     hello.set_hold(true);
     const auto session = program.open(hello).session();
-    program.open_surface(1, 10, 10);
-    left_.rendered(session, 1, 1);
+    program.open_surface(SurfaceId(1), 10, 10);
+    left_.rendered(SessionId(session), SurfaceId(1), 1);
     EXPECT_FALSE(left_.hear(proto::Envelope::kPresent, milliseconds(400)));
     EXPECT_EQ(wallctl("step 1").exit_code, 0);
     EXPECT_TRUE(left_.hear(proto::Envelope::kPresent));
@@ -239,7 +239,7 @@ TEST_F(ControlPlane, AMessageOfTheWrongRoleEndsThatPeer) {
     join_both();
     auto program = connect();
     program.open();
-    program.rendered(1, 1, 1);
+    program.rendered(SessionId(1), SurfaceId(1), 1);
     EXPECT_TRUE(program.hear(proto::Envelope::kRefused));
     EXPECT_TRUE(program.closed());
     EXPECT_TRUE(left_.hear(proto::Envelope::kSessionEnd));
@@ -249,7 +249,7 @@ TEST_F(ControlPlane, CloseAsksThenCutsOff) {
     join_both();
     auto program = connect();
     program.open();
-    program.open_surface(1, 10, 10);
+    program.open_surface(SurfaceId(1), 10, 10);
     auto closing = std::async(std::launch::async, [&] { return wallctl("--json close 1"); });
     EXPECT_TRUE(program.hear(proto::Envelope::kCloseRequest));
     EXPECT_TRUE(program.closed());

@@ -158,9 +158,9 @@ proto::ClientWelcome Peer::open(const proto::ClientHello& hello) {
     return answer ? answer->client_welcome() : proto::ClientWelcome();
 }
 
-proto::Placement Peer::open_surface(std::uint32_t surface, std::uint32_t width, std::uint32_t height) {
+proto::Placement Peer::open_surface(SurfaceId surface, std::uint32_t width, std::uint32_t height) {
     proto::Envelope message;
-    message.mutable_surface_open()->set_surface(surface);
+    message.mutable_surface_open()->set_surface(surface.value);
     message.mutable_surface_open()->set_width(width);
     message.mutable_surface_open()->set_height(height);
     say(message);
@@ -169,10 +169,10 @@ proto::Placement Peer::open_surface(std::uint32_t surface, std::uint32_t width, 
     return answer ? answer->placement() : proto::Placement();
 }
 
-void Peer::rendered(std::uint32_t session, std::uint32_t surface, std::uint32_t frame) {
+void Peer::rendered(SessionId session, SurfaceId surface, std::uint32_t frame) {
     proto::Envelope message;
-    message.mutable_rendered()->set_session(session);
-    message.mutable_rendered()->set_surface(surface);
+    message.mutable_rendered()->set_session(session.value);
+    message.mutable_rendered()->set_surface(surface.value);
     message.mutable_rendered()->set_frame(frame);
     say(message);
 }

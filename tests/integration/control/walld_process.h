@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "common/base/ids.h"
 #include "common/net/control_client.h"
 
 namespace wall::test {
@@ -67,8 +68,8 @@ public:
 
     proto::NodeWelcome join(const std::string& node, std::uint32_t pid = 1, std::uint64_t started_us = 0);
     proto::ClientWelcome open(const proto::ClientHello& hello = {});
-    proto::Placement open_surface(std::uint32_t surface, std::uint32_t width, std::uint32_t height);
-    void rendered(std::uint32_t session, std::uint32_t surface, std::uint32_t frame);
+    proto::Placement open_surface(SurfaceId surface, std::uint32_t width, std::uint32_t height);
+    void rendered(SessionId session, SurfaceId surface, std::uint32_t frame);
 
 private:
     net::ControlClient client_;

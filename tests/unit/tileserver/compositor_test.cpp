@@ -57,14 +57,14 @@ TEST_F(TilePictures, AreComposedOnceForAllWhoWantThem) {
 TEST_F(TilePictures, OfATileThatIsNotThereAreNone) { EXPECT_FALSE(compositor->picture(kSlot + 1)); }
 
 TEST_F(TilePictures, ThatAreManyArriveAFewAtATime) {
-    for (std::uint32_t i = 0; i < 10; ++i) compositor->request({.id = i, .slot = kSlot});
-    std::size_t arrived = 0;
+    for (std::uint32_t i = 0; i < 10; ++i) compositor->request({.id = PictureId(i), .slot = kSlot});
+    std::uint32_t arrived = 0;
     for (const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
          arrived < 10 && std::chrono::steady_clock::now() < until;) {
         const auto pictures = compositor->collect(false);
         EXPECT_LE(pictures.size(), Compositor::kMostAtOnce);
         for (const auto& picture : pictures) {
-            EXPECT_EQ(picture.request.id, arrived++);
+            EXPECT_EQ(picture.request.id, PictureId(arrived++));
             EXPECT_TRUE(picture.hold) << "it counts until nobody has it any more";
         }
     }

@@ -67,7 +67,7 @@ void draw_fan(const Gl& gl, float size) {
 }
 
 TEST_F(ExecutorTest, GeometryIsTheSameAsPlainMesa) {
-    TestSession session(*node_.node, 1);
+    TestSession session(*node_.node, SessionId(1));
     session.open_surface(kWidth, kHeight, kWindow);
     Batch batch;
     batch.set<el::clear_color>({0.2f, 0.1f, 0.4f, 0})
@@ -91,7 +91,7 @@ TEST_F(ExecutorTest, GeometryIsTheSameAsPlainMesa) {
 }
 
 TEST_F(ExecutorTest, LightsAndPlanesAreTakenInEyeCoordinates) {
-    TestSession session(*node_.node, 1);
+    TestSession session(*node_.node, SessionId(1));
     session.open_surface(kWidth, kHeight, kWindow);
     const glstate::Mat4 modelview = {0.8f, 0.1f, 0, 0, -0.1f, 0.7f, 0.2f, 0, 0, 0.3f, 0.9f, 0, 0.1f, -0.1f, 0.2f, 1};
     Batch batch;
@@ -123,7 +123,7 @@ TEST_F(ExecutorTest, LightsAndPlanesAreTakenInEyeCoordinates) {
 }
 
 TEST_F(ExecutorTest, ImagesAtTheRasterPosition) {
-    TestSession session(*node_.node, 1);
+    TestSession session(*node_.node, SessionId(1));
     session.open_surface(kWidth, kHeight, kWindow);
     std::vector<std::byte> image(20 * 10 * 3), bits(3 * 13);
     for (std::size_t i = 0; i < image.size(); ++i) image[i] = static_cast<std::byte>(i * 11);
@@ -164,13 +164,14 @@ TEST_F(ExecutorTest, ImagesAtTheRasterPosition) {
 }
 
 TEST_F(ExecutorTest, TexturesAreRemapped) {
-    TestSession session(*node_.node, 1);
+    TestSession session(*node_.node, SessionId(1));
     session.open_surface(kWidth, kHeight, kWindow);
     std::vector<std::byte> image(16 * 16 * 4);
     for (std::size_t i = 0; i < image.size(); ++i) image[i] = static_cast<std::byte>(i * i >> 3);
     Batch batch;
-    pack::TexImage(batch.buffer(), 77, GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, image);
-    pack::TexParameter(batch.buffer(), 77, GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR, 0, 0, 0);
+    pack::TexImage(batch.buffer(), ClientName(77), GL_TEXTURE_2D, 0, GL_RGBA, 16, 16, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                   image);
+    pack::TexParameter(batch.buffer(), ClientName(77), GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR, 0, 0, 0);
     batch.set<el::texture_binding_2d>(77).set<el::texture_2d_enabled>(1);
     batch.block(1, [](auto& b) {
         pack::Clear(b, kColorDepth);
@@ -198,32 +199,35 @@ TEST_F(ExecutorTest, TexturesAreRemapped) {
 }
 
 TEST_F(ExecutorTest, ImagesAreCompressedAsTheDriverDoes) {
-    TestSession session(*node_.node, 1);
+    TestSession session(*node_.node, SessionId(1));
     session.open_surface(kWidth, kHeight, kWindow);
     const auto objects = *node_.driver->gl().objects;
     Batch batch;
     const std::vector<std::byte> white(5 * 3 * 4, std::byte{255});  // ends within its second block
-    pack::Compress(batch.buffer(), 7, GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 5, 3, GL_RGBA, GL_UNSIGNED_BYTE, white);
-    pack::Compress(batch.buffer(), 8, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, 5, 3, GL_RGBA, GL_UNSIGNED_BYTE, white);
+    pack::Compress(batch.buffer(), RequestId(7), GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 5, 3, GL_RGBA, GL_UNSIGNED_BYTE,
+                   white);
+    pack::Compress(batch.buffer(), RequestId(8), GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, 5, 3, GL_RGBA, GL_UNSIGNED_BYTE,
+                   white);
     session.expect_run(batch);
-    ASSERT_EQ(session.replies[7].size(), 2u * 8);
-    ASSERT_EQ(session.replies[8].size(), 2u * 16);
+    ASSERT_EQ(session.replies[RequestId(7)].size(), 2u * 8);
+    ASSERT_EQ(session.replies[RequestId(8)].size(), 2u * 16);
     std::uint16_t color = 0;
-    std::memcpy(&color, session.replies[7].data(), sizeof color);
+    std::memcpy(&color, session.replies[RequestId(7)].data(), sizeof color);
     EXPECT_EQ(color, 0xffff);
     EXPECT_EQ(node_.driver->gl().objects->textures, objects.textures);
 
     Batch wrong;
-    pack::Compress(wrong.buffer(), 9, GL_RGBA8, 5, 3, GL_RGBA, GL_UNSIGNED_BYTE, white);
+    pack::Compress(wrong.buffer(), RequestId(9), GL_RGBA8, 5, 3, GL_RGBA, GL_UNSIGNED_BYTE, white);
     EXPECT_FALSE(session.run(wrong));
     Batch small;
-    pack::Compress(small.buffer(), 9, GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 5, 4, GL_RGBA, GL_UNSIGNED_BYTE, white);
+    pack::Compress(small.buffer(), RequestId(9), GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 5, 4, GL_RGBA, GL_UNSIGNED_BYTE,
+                   white);
     EXPECT_FALSE(session.run(small));
 }
 
 TEST_F(ExecutorTest, BlockOnTwoTilesStartsEachFromTheSameAttributes) {
     node_.node->tiles = {{0, {0, 0, 80, kHeight}}, {1, {80, 0, 80, kHeight}}};
-    TestSession session(*node_.node, 1);
+    TestSession session(*node_.node, SessionId(1));
     session.open_surface(kWidth, kHeight, kWindow);
     Batch batch;
     batch.set<el::color>({1, 0, 0, 1});
@@ -249,7 +253,7 @@ TEST_F(ExecutorTest, BlockOnTwoTilesStartsEachFromTheSameAttributes) {
 }
 
 TEST_F(ExecutorTest, BlockWithoutALayerKeepsItsEffects) {
-    TestSession session(*node_.node, 1);
+    TestSession session(*node_.node, SessionId(1));
     Batch batch;
     batch.block(4, [](auto& b) { pack::Color3f(b, 0.25f, 0.5f, 0.75f); });
     session.expect_run(batch);
@@ -272,12 +276,12 @@ TEST_F(ExecutorTest, TwoSessionsInTurnsDrawAsEachAlone) {
     };
     std::array<Pixels, 2> alone;
     for (int who = 0; who < 2; ++who) {
-        TestSession session(*node_.node, 9);
+        TestSession session(*node_.node, SessionId(9));
         session.open_surface(kWidth, kHeight, kWindow);
         for (float size : {0.4f, 0.6f, 0.8f}) session.expect_run(frame_of(who, size));
         alone[static_cast<std::size_t>(who)] = session.read(0, kWindow);
     }
-    TestSession first(*node_.node, 1), second(*node_.node, 2);
+    TestSession first(*node_.node, SessionId(1)), second(*node_.node, SessionId(2));
     first.open_surface(kWidth, kHeight, kWindow);
     second.open_surface(kWidth, kHeight, kWindow);
     for (float size : {0.4f, 0.6f, 0.8f}) {
@@ -295,7 +299,7 @@ constexpr std::array<std::array<float, 4>, 3> kSquares = {
 // Mesa keeps a colour outside of glBegin to itself for a while; what it tracks may change meanwhile.
 TEST_F(ExecutorTest, ColorMaterialSurvivesASwitch) {
     const glstate::Vec4 black{0, 0, 0, 1}, white{1, 1, 1, 1}, green{0, 1, 0, 1};
-    TestSession session(*node_.node, 1), other(*node_.node, 2);
+    TestSession session(*node_.node, SessionId(1)), other(*node_.node, SessionId(2));
     session.open_surface(kWidth, kHeight, kWindow);
     other.open_surface(kWidth, kHeight, kWindow);
     const auto clear = [](auto& b) { pack::Clear(b, kColorDepth); };
@@ -325,8 +329,8 @@ TEST_F(ExecutorTest, ColorMaterialSurvivesASwitch) {
 }
 
 TEST_F(ExecutorTest, AccumulationBuffer) {
-    TestSession session(*node_.node, 1);
-    session.open_surface(kWidth, kHeight, kWindow, 1, true);
+    TestSession session(*node_.node, SessionId(1));
+    session.open_surface(kWidth, kHeight, kWindow, ContextId(1), true);
     Batch batch;
     batch.set<el::clear_accum>({0.1f, 0, 0.2f, 0}).set<el::color_mask>({1, 0, 1, 1});
     batch.block(1, [](auto& b) { pack::Clear(b, kColorDepth | GL_ACCUM_BUFFER_BIT); });
@@ -368,22 +372,22 @@ TEST_F(ExecutorTest, AccumulationBuffer) {
 }
 
 TEST_F(ExecutorTest, FeedbackAnswersWhatWasDrawn) {
-    TestSession session(*node_.node, 1);
+    TestSession session(*node_.node, SessionId(1));
     session.open_surface(kWidth, kHeight, kWindow);
     Batch batch;
-    pack::RenderMode(batch.buffer(), 1, GL_FEEDBACK, GL_2D, 100);
+    pack::RenderMode(batch.buffer(), RequestId(1), GL_FEEDBACK, GL_2D, 100);
     batch.block(std::uint64_t{1} << wire::kOffscreenSlot, [](auto& b) {
         pack::Begin(b, GL_POINTS);
         pack::Vertex2f(b, 0, 0);
         pack::Vertex2f(b, 0.5f, -0.5f);
         pack::End(b);
     });
-    pack::RenderMode(batch.buffer(), 2, GL_RENDER, 0, 0);
+    pack::RenderMode(batch.buffer(), RequestId(2), GL_RENDER, 0, 0);
     session.expect_run(batch);
-    ASSERT_EQ(session.replies[1].size(), 4u);
-    ASSERT_EQ(session.replies[2].size(), 4u + 6 * 4);
+    ASSERT_EQ(session.replies[RequestId(1)].size(), 4u);
+    ASSERT_EQ(session.replies[RequestId(2)].size(), 4u + 6 * 4);
     std::array<float, 6> values{};
-    std::memcpy(values.data(), session.replies[2].data() + 4, sizeof values);
+    std::memcpy(values.data(), session.replies[RequestId(2)].data() + 4, sizeof values);
     EXPECT_EQ(values, (std::array<float, 6>{GL_POINT_TOKEN, 80, 60, GL_POINT_TOKEN, 120, 30}));
 }
 
@@ -458,12 +462,12 @@ TEST_F(ExecutorTest, SelectionGoesOnBetweenOthersTurns) {
                     for (const Pick& p : picks) pick(gl, p);
                     hits = gl.RenderMode(GL_RENDER);
                 });
-            TestSession session(*node_.node, 1), other(*node_.node, 2);
+            TestSession session(*node_.node, SessionId(1)), other(*node_.node, SessionId(2));
             session.open_surface(kWidth, kHeight, kWindow);
             other.open_surface(kWidth, kHeight, kWindow);
             Batch begin, end, clear;
-            pack::RenderMode(begin.buffer(), 1, GL_SELECT, 0, entries);
-            pack::RenderMode(end.buffer(), 2, GL_RENDER, 0, 0);
+            pack::RenderMode(begin.buffer(), RequestId(1), GL_SELECT, 0, entries);
+            pack::RenderMode(end.buffer(), RequestId(2), GL_RENDER, 0, 0);
             clear.block(1, [](auto& b) { pack::Clear(b, kColorDepth); });
             session.expect_run(begin);
             for (const Pick& p : picks) {
@@ -477,7 +481,7 @@ TEST_F(ExecutorTest, SelectionGoesOnBetweenOthersTurns) {
             }
             session.expect_run(end);
             GLint found = 0;
-            const auto& answer = session.replies[2];
+            const auto& answer = session.replies[RequestId(2)];
             ASSERT_GE(answer.size(), sizeof found);
             std::memcpy(&found, answer.data(), sizeof found);
             if (entries == 0) {
@@ -499,11 +503,11 @@ TEST_F(ExecutorTest, SelectionGoesOnBetweenOthersTurns) {
 }
 
 TEST_F(ExecutorTest, MoreNamesThanTheDriverIsGivenAtOnce) {
-    TestSession session(*node_.node, 1);
+    TestSession session(*node_.node, SessionId(1));
     session.open_surface(kWidth, kHeight, kWindow);
     constexpr GLuint kMany = 5000;
     Batch batch;
-    pack::RenderMode(batch.buffer(), 1, GL_SELECT, 0, 4 * kMany);
+    pack::RenderMode(batch.buffer(), RequestId(1), GL_SELECT, 0, 4 * kMany);
     batch.block(std::uint64_t{1} << wire::kOffscreenSlot, [](auto& b) {
         pack::PushName(b, 0);
         for (GLuint i = 0; i < kMany; ++i) {
@@ -511,10 +515,10 @@ TEST_F(ExecutorTest, MoreNamesThanTheDriverIsGivenAtOnce) {
             pack_pick(b, {Pick::What::triangle, 1});
         }
     });
-    pack::RenderMode(batch.buffer(), 2, GL_RENDER, 0, 0);
+    pack::RenderMode(batch.buffer(), RequestId(2), GL_RENDER, 0, 0);
     session.expect_run(batch);
-    std::vector<GLuint> answer(session.replies[2].size() / sizeof(GLuint));
-    std::memcpy(answer.data(), session.replies[2].data(), answer.size() * sizeof(GLuint));
+    std::vector<GLuint> answer(session.replies[RequestId(2)].size() / sizeof(GLuint));
+    std::memcpy(answer.data(), session.replies[RequestId(2)].data(), answer.size() * sizeof(GLuint));
     ASSERT_EQ(answer.size(), 1 + std::size_t{4} * kMany);
     EXPECT_EQ(answer[0], kMany);
     for (GLuint i = 0; i < kMany; ++i) ASSERT_EQ(answer[1 + std::size_t{4} * i + 3], i);
@@ -522,18 +526,18 @@ TEST_F(ExecutorTest, MoreNamesThanTheDriverIsGivenAtOnce) {
 
 TEST_F(ExecutorTest, FeedbackGoesOnBetweenOthersTurns) {
     for (const std::uint32_t entries : {12u, 9u, 2u, 0u}) {
-        TestSession session(*node_.node, 1), other(*node_.node, 2);
+        TestSession session(*node_.node, SessionId(1)), other(*node_.node, SessionId(2));
         session.open_surface(kWidth, kHeight, kWindow);
         other.open_surface(kWidth, kHeight, kWindow);
         Batch begin, point, clear, end;
-        pack::RenderMode(begin.buffer(), 1, GL_FEEDBACK, GL_2D, entries);
+        pack::RenderMode(begin.buffer(), RequestId(1), GL_FEEDBACK, GL_2D, entries);
         point.block(std::uint64_t{1} << wire::kOffscreenSlot, [](auto& b) {
             pack::Begin(b, GL_POINTS);
             pack::Vertex2f(b, 0, 0);
             pack::End(b);
         });
         clear.block(1, [](auto& b) { pack::Clear(b, kColorDepth); });
-        pack::RenderMode(end.buffer(), 2, GL_RENDER, 0, 0);
+        pack::RenderMode(end.buffer(), RequestId(2), GL_RENDER, 0, 0);
         session.expect_run(begin);
         for (int i = 0; i < 4; ++i) {
             session.expect_run(point);
@@ -541,7 +545,7 @@ TEST_F(ExecutorTest, FeedbackGoesOnBetweenOthersTurns) {
         }
         session.expect_run(end);
         std::int32_t result = 0;
-        const auto& answer = session.replies[2];
+        const auto& answer = session.replies[RequestId(2)];
         std::memcpy(&result, answer.data(), sizeof result);
         EXPECT_EQ(result, entries == 12 ? 12 : -1);
         ASSERT_EQ(answer.size(), sizeof result + entries * sizeof(float));
@@ -565,11 +569,11 @@ protected:
     /// A texture with a compressed image, and then `refused`; the blocks of a copy that the driver makes of it.
     template <class Refused>
     std::vector<std::byte> copied_after(Refused&& refused) {
-        TestSession session(*node_.node, 1);
+        TestSession session(*node_.node, SessionId(1));
         session.open_surface(kWidth, kHeight, kWindow);
         Batch batch;
-        pack::TexCompressed(batch.buffer(), 1, GL_TEXTURE_2D, 0, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, kSize, kSize,
-                            blocks(kSize));
+        pack::TexCompressed(batch.buffer(), ClientName(1), GL_TEXTURE_2D, 0, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, kSize,
+                            kSize, blocks(kSize));
         session.expect_run(batch);
         const auto bytes_before = session.session.texture_bytes();
         EXPECT_EQ(bytes_before, blocks(kSize).size());
@@ -581,7 +585,7 @@ protected:
         const Texture* texture = session.session.texture(ClientName(1), TextureTarget::t2d);
         const auto shared = texture->content;  // held by another one, so that a change needs a copy
         Batch change;
-        pack::TexParameter(change.buffer(), 1, GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST, 0, 0, 0);
+        pack::TexParameter(change.buffer(), ClientName(1), GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST, 0, 0, 0);
         session.expect_run(change);
         EXPECT_NE(texture->content, shared);
         std::vector<std::byte> copied(blocks(kSize).size());
@@ -592,7 +596,8 @@ protected:
 };
 
 TEST_F(RefusedImageTest, OfNoFormat) {
-    EXPECT_EQ(copied_after([](auto& b) { pack::TexImage(b, 1, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, 0, 0, {}); }),
+    EXPECT_EQ(copied_after(
+                  [](auto& b) { pack::TexImage(b, ClientName(1), GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, 0, 0, {}); }),
               blocks(kSize));
 }
 
@@ -600,14 +605,16 @@ TEST_F(RefusedImageTest, LargerThanTheDriverAllows) {
     EXPECT_EQ(copied_after([](auto& b) {
                   constexpr int kTooWide = 16384 + 2;
                   const std::vector<std::byte> row(static_cast<std::size_t>(kTooWide + 3) / 4 * 16);
-                  pack::TexCompressed(b, 1, GL_TEXTURE_2D, 0, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, kTooWide, 1, row);
+                  pack::TexCompressed(b, ClientName(1), GL_TEXTURE_2D, 0, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, kTooWide, 1,
+                                      row);
               }),
               blocks(kSize));
 }
 
 TEST_F(RefusedImageTest, OfAFormatThatDoesNotGoWithTheImage) {
     EXPECT_EQ(copied_after([](auto& b) {
-                  pack::TexImage(b, 1, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_DEPTH_COMPONENT, GL_FLOAT, {});
+                  pack::TexImage(b, ClientName(1), GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                                 {});
               }),
               blocks(kSize));
 }
@@ -622,12 +629,12 @@ void draw_off_the_wall(TestSession& session, const glstate::Vec4& color) {
 
 void place(TestSession& session, std::int32_t x, std::uint32_t layers) {
     Batch batch;
-    pack::SurfacePlace(batch.buffer(), 1, 2, kWidth, kHeight, x, 0, kWidth, kHeight, layers);
+    pack::SurfacePlace(batch.buffer(), SurfaceId(1), 2, kWidth, kHeight, x, 0, kWidth, kHeight, layers);
     session.expect_run(batch);
 }
 
 TEST_F(ExecutorTest, TheLayerOfTheWholeWindowStaysWhenTheWindowMovesOffTheWall) {
-    TestSession session(*node_.node, 1);
+    TestSession session(*node_.node, SessionId(1));
     session.open_surface(kWidth, kHeight, kWindow);
     place(session, -kWidth / 2, wire::kAlsoWholeWindow);
     draw_off_the_wall(session, {1, 0, 0, 1});
@@ -638,17 +645,18 @@ TEST_F(ExecutorTest, TheLayerOfTheWholeWindowStaysWhenTheWindowMovesOffTheWall) 
     place(session, 0, wire::kTilesOnly);
     EXPECT_EQ(session.read(wire::kOffscreenSlot, {0, 0, 1, 1})[0], 0) << "on the wall it is not needed";
     Batch wrong;
-    pack::SurfacePlace(wrong.buffer(), 1, 3, kWidth, kHeight, 0, 0, kWidth, kHeight, wire::kAlsoWholeWindow + 1);
+    pack::SurfacePlace(wrong.buffer(), SurfaceId(1), 3, kWidth, kHeight, 0, 0, kWidth, kHeight,
+                       wire::kAlsoWholeWindow + 1);
     EXPECT_FALSE(session.run(wrong));
 }
 
 TEST_F(ExecutorTest, AFrameOffTheWallGoesToTheFrontBufferAlone) {
-    TestSession session(*node_.node, 1);
+    TestSession session(*node_.node, SessionId(1));
     session.open_surface(kWidth, kHeight, kWindow);
     place(session, -kWidth / 2, wire::kAlsoWholeWindow);
     draw_off_the_wall(session, {1, 0, 0, 1});
     Batch swap;
-    pack::SwapOffscreen(swap.buffer(), 1);
+    pack::SwapOffscreen(swap.buffer(), SurfaceId(1));
     session.expect_run(swap);
     EXPECT_TRUE(session.frames.empty()) << "nobody waits for it";
     EXPECT_FALSE(session.session.surface(SurfaceId(1))->waiting_frame());
@@ -660,10 +668,10 @@ TEST_F(ExecutorTest, AFrameOffTheWallGoesToTheFrontBufferAlone) {
 }
 
 TEST_F(ExecutorTest, SwapKeepsTheFrameUntilItIsPresented) {
-    TestSession session(*node_.node, 1);
+    TestSession session(*node_.node, SessionId(1));
     session.open_surface(kWidth, kHeight, kWindow);
     Batch batch;
-    pack::Swap(batch.buffer(), 1, 5);
+    pack::Swap(batch.buffer(), SurfaceId(1), 5);
     session.expect_run(batch);
     EXPECT_EQ(session.frames, (std::vector<std::pair<std::uint32_t, std::uint32_t>>{{1, 5}}));
     EXPECT_TRUE(session.session.surface(SurfaceId(1))->waiting_frame());
@@ -672,13 +680,13 @@ TEST_F(ExecutorTest, SwapKeepsTheFrameUntilItIsPresented) {
 }
 
 TEST_F(ExecutorTest, TheFrontBufferIsTheFrameThatEndedLast) {
-    TestSession session(*node_.node, 1);
+    TestSession session(*node_.node, SessionId(1));
     session.open_surface(kWidth, kHeight, kWindow);
     const auto frame = [&](const glstate::Vec4& color, std::uint32_t number) {
         Batch batch;
         batch.set<el::clear_color>(color).set<el::read_buffer>(GL_FRONT);
         batch.block(1, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT); });
-        pack::Swap(batch.buffer(), 1, number);
+        pack::Swap(batch.buffer(), SurfaceId(1), number);
         session.expect_run(batch);
         return session.read(0, {0, 0, 1, 1});
     };
@@ -691,7 +699,7 @@ TEST_F(ExecutorTest, TheFrontBufferIsTheFrameThatEndedLast) {
 }
 
 TEST_F(ExecutorTest, WorkIsCountedByWhatItIsFor) {
-    TestSession session(*node_.node, 1), other(*node_.node, 2);
+    TestSession session(*node_.node, SessionId(1)), other(*node_.node, SessionId(2));
     for (TestSession* each : {&session, &other}) each->open_surface(kWidth, kHeight, kWindow);
     const Work before = session.session.work;
     Batch batch;
@@ -700,9 +708,9 @@ TEST_F(ExecutorTest, WorkIsCountedByWhatItIsFor) {
     const std::size_t state = buffer.bytes();
     batch.block(1, [](auto& b) { pack::Clear(b, kColorDepth); });
     const std::size_t geometry = buffer.bytes() - state;
-    pack::TexImage(batch.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+    pack::TexImage(batch.buffer(), ClientName(1), GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
                    std::vector<std::byte>(4));
-    pack::Swap(batch.buffer(), 1, 1);
+    pack::Swap(batch.buffer(), SurfaceId(1), 1);
     for (TestSession* each : {&session, &other, &session}) each->expect_run(batch);
 
     const Work& work = session.session.work;
@@ -719,10 +727,10 @@ TEST_F(ExecutorTest, WorkIsCountedByWhatItIsFor) {
 TEST_F(ExecutorTest, ObjectsOfAnEndedSessionAreGivenBack) {
     const DriverObjects before = *node_.driver->gl().objects;
     {
-        TestSession session(*node_.node, 1);
+        TestSession session(*node_.node, SessionId(1));
         session.open_surface(kWidth, kHeight, kWindow);
         Batch batch;
-        pack::TexImage(batch.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+        pack::TexImage(batch.buffer(), ClientName(1), GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
                        std::vector<std::byte>(4));
         session.expect_run(batch);
         EXPECT_GT(node_.driver->gl().objects->textures, before.textures + 1) << "the layer's and the program's";
@@ -733,7 +741,7 @@ TEST_F(ExecutorTest, ObjectsOfAnEndedSessionAreGivenBack) {
 
 TEST_F(ExecutorTest, BadStreamsAreRefusedWithAReason) {
     const auto reason = [this](auto&& fill) {
-        TestSession session(*node_.node, 1);
+        TestSession session(*node_.node, SessionId(1));
         session.open_surface(kWidth, kHeight, kWindow);
         Batch batch;
         fill(batch);
@@ -748,15 +756,16 @@ TEST_F(ExecutorTest, BadStreamsAreRefusedWithAReason) {
                     b.block(1, [](auto& p) { pack::DrawPixels(p, 100, 100, GL_RGBA, GL_UNSIGNED_BYTE, {}); });
                 }),
                 ::testing::HasSubstr("DrawPixels"));
-    EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::RunCall(p, 3); }); }),
+    EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::RunCall(p, ClientName(3)); }); }),
                 ::testing::HasSubstr("not defined"));
-    EXPECT_THAT(reason([](Batch& b) { pack::Swap(b.buffer(), 8, 1); }), ::testing::HasSubstr("Swap"));
+    EXPECT_THAT(reason([](Batch& b) { pack::Swap(b.buffer(), SurfaceId(8), 1); }), ::testing::HasSubstr("Swap"));
     EXPECT_THAT(reason([](Batch& b) {
-                    pack::TexImage(b.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 1 << 30, 4, 1, 0, GL_RGBA, GL_FLOAT, {});
+                    pack::TexImage(b.buffer(), ClientName(1), GL_TEXTURE_2D, 0, GL_RGBA, 1 << 30, 4, 1, 0, GL_RGBA,
+                                   GL_FLOAT, {});
                 }),
                 ::testing::HasSubstr("TexImage"));
     // Another session goes on.
-    TestSession session(*node_.node, 2);
+    TestSession session(*node_.node, SessionId(2));
     session.open_surface(kWidth, kHeight, kWindow);
     Batch batch;
     batch.block(1, [](auto& b) { pack::Clear(b, kColorDepth); });
@@ -770,7 +779,7 @@ TEST_F(ExecutorTest, EveryProperPrefixIsRefused) {
     pack::PixelMap(batch.buffer(), GL_PIXEL_MAP_R_TO_R, std::vector<std::byte>(8));
     const auto payload = batch.payload();
     for (std::size_t size = 0; size < payload.size(); ++size) {
-        TestSession session(*node_.node, 1);
+        TestSession session(*node_.node, SessionId(1));
         EXPECT_FALSE(session.executor.run_batch(std::span(payload).first(size))) << size;
     }
 }

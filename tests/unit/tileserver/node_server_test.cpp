@@ -99,7 +99,7 @@ public:
     }
     void batch(const wire::PackBuffer& buffer) {
         std::vector<std::byte> payload;
-        wire::append_batch(payload, {1, buffer.opcodes(), buffer.operands()});
+        wire::append_batch(payload, {ContextId(1), buffer.opcodes(), buffer.operands()});
         send(wire::FrameKind::batch, payload);
     }
     /// The next frame; nothing at the connection's end.
@@ -182,15 +182,15 @@ protected:
     /// A surface over the whole tile, one frame all in `color`.
     static wire::PackBuffer one_frame(const glstate::Vec4& color, std::uint32_t frame) {
         wire::PackBuffer buffer, body;
-        pack::SurfaceCreate(buffer, 1, 1, 0, 24, 8, 0, 0);
-        pack::SurfacePlace(buffer, 1, 1, 64, 48, 0, 0, 64, 48, 0);
-        pack::Bind(buffer, 1, 1);
+        pack::SurfaceCreate(buffer, SurfaceId(1), 1, 0, 24, 8, 0, 0);
+        pack::SurfacePlace(buffer, SurfaceId(1), 1, 64, 48, 0, 0, 64, 48, 0);
+        pack::Bind(buffer, SurfaceId(1), SurfaceId(1));
         glapi::pack_state(buffer, glstate::el::clear_color::id, &color, sizeof color);
         pack::Clear(body, GL_COLOR_BUFFER_BIT);
         pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()),
                     static_cast<std::uint32_t>(body.operand_bytes()));
         buffer.append(body, {}, body.mark());
-        pack::Swap(buffer, 1, frame);
+        pack::Swap(buffer, SurfaceId(1), frame);
         return buffer;
     }
     /// The tile's first pixel as it is shown now.
@@ -268,7 +268,7 @@ TEST_F(NodeServerTest, ABadStreamEndsAloneAndWithAReason) {
     bad.expect(wire::FrameKind::welcome);
     stack_session(1);
     wire::PackBuffer nonsense;
-    pack::Swap(nonsense, 77, 1);
+    pack::Swap(nonsense, SurfaceId(77), 1);
     bad.batch(nonsense);
     EXPECT_THAT(bad.expect_error(), ::testing::HasSubstr("surface 77"));
     const auto fault = walld_->wait_for(proto::Envelope::kSessionFault).session_fault();
@@ -361,12 +361,12 @@ TEST_F(NodeServerTest, ABatchLargerThanAFrameArrives) {
     pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()),
                 static_cast<std::uint32_t>(body.operand_bytes()));
     buffer.append(body, {}, body.mark());
-    pack::Swap(buffer, 1, 2);
-    (*stream)->send(1, std::move(buffer));
+    pack::Swap(buffer, SurfaceId(1), 2);
+    (*stream)->send(ContextId(1), std::move(buffer));
     transport.wake();
-    EXPECT_TRUE((*stream)->wait_swap(1, 1, 60'000)) << (*stream)->failure();
+    EXPECT_TRUE((*stream)->wait_swap(SurfaceId(1), 1, 60'000)) << (*stream)->failure();
     present(1, 1);
-    EXPECT_TRUE((*stream)->wait_swap(1, 2, 60'000)) << (*stream)->failure();
+    EXPECT_TRUE((*stream)->wait_swap(SurfaceId(1), 2, 60'000)) << (*stream)->failure();
     present(1, 2);
     EXPECT_EQ(shown(), (std::vector{0, 255, 0}));
 }

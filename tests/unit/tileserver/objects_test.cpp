@@ -25,7 +25,8 @@ class Random {
 public:
     explicit Random(std::uint32_t seed) : engine_(seed) {}
     std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(engine_()) % n; }
-    std::uint32_t name() { return 1 + below(kNames); }
+    ClientName name() { return ClientName(1 + below(kNames)); }
+    ClientName name_or_none() { return ClientName(below(kNames + 1)); }
     float unit() { return static_cast<float>(below(1000)) / 1000.0f; }
     float place() { return unit() * 2 - 1; }
     glstate::Vec4 color() { return {unit(), unit(), unit(), 1}; }
@@ -47,14 +48,14 @@ public:
     /// `large`: with geometry that takes several slices.
     explicit Script(std::uint32_t seed, int batches, bool large = false) : random_(seed), large_(large) {
         for (std::uint32_t context = 1; context <= kContexts; ++context) {
-            Batch first(context);
-            pack::Bind(first.buffer(), 1, 1);
+            Batch first{ContextId(context)};
+            pack::Bind(first.buffer(), SurfaceId(1), SurfaceId(1));
             first.set<el::viewport>({0, 0, kWidth, kHeight}).set<el::clear_color>(random_.color());
             first.block(1, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT); });
             batches_.push_back(first.payload());
         }
         for (int i = 0; i < batches; ++i) {
-            Batch batch(1 + random_.below(kContexts));
+            Batch batch(ContextId(1 + random_.below(kContexts)));
             change_objects(batch);
             change_state(batch);
             batch.block(1, [this](auto& b) { draw(b); });
@@ -81,7 +82,7 @@ private:
         }
     }
     void define_texture(wire::PackBuffer& b) {
-        const std::uint32_t name = random_.below(kNames + 1);  // the default one as well
+        const ClientName name = random_.name_or_none();  // the default one as well
         std::vector<std::byte> image(8 * 8 * 4);
         for (auto& byte : image) byte = static_cast<std::byte>(random_.below(256));
         pack::TexImage(b, name, GL_TEXTURE_2D, 0, GL_RGBA, 8, 8, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, image);
@@ -89,7 +90,7 @@ private:
                            random_.below(2) == 0 ? GL_NEAREST : GL_LINEAR, 0, 0, 0);
     }
     void define_run(wire::PackBuffer& b) {
-        const std::uint32_t name = random_.name();
+        const ClientName name = random_.name();
         wire::PackBuffer body;
         triangle(body);
         if (large_ && random_.below(3) == 0) many_triangles(body, 2 * kRunPartVertices / 3);
@@ -98,13 +99,13 @@ private:
         runs_.insert(name);
     }
     void delete_run(wire::PackBuffer& b) {
-        const std::uint32_t name = random_.name();
+        const ClientName name = random_.name();
         pack::RunDelete(b, name);
         runs_.erase(name);
     }
     /// Few different sources, so that equal ones meet, too.
     void define_program(wire::PackBuffer& b) {
-        const std::uint32_t name = random_.name();
+        const ClientName name = random_.name();
         if (random_.below(4) == 0) {
             pack::ProgramDelete(b, name);
             programs_.erase(name);
@@ -116,15 +117,15 @@ private:
             "uniform vec4 tint; void main() { gl_FragColor = fract(gl_FragCoord.xyxy / 16.0) * tint; }"};
         const glapi::ProgramDefinition definition{
             {{GL_FRAGMENT_SHADER, true, kSources[random_.below(kSources.size())]}}, {}, {{1, "tint"}}};
-        pack::ProgramLink(b, 0, name, encode(definition));
+        pack::ProgramLink(b, RequestId(0), name, encode(definition));
         programs_.insert(name);
         tint(b, name);
     }
     void set_uniform(wire::PackBuffer& b) {
-        const std::uint32_t name = random_.name();
+        const ClientName name = random_.name();
         if (programs_.contains(name)) tint(b, name);
     }
-    void tint(wire::PackBuffer& b, std::uint32_t program) {
+    void tint(wire::PackBuffer& b, ClientName program) {
         const glstate::Vec4 color = random_.color();
         pack::Uniform(b, program, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(color)));
     }
@@ -145,8 +146,8 @@ private:
         batch.set<el::map_color>(random_.below(2))
             .set<el::map1_vertex_3>(random_.below(2))
             .set<el::depth_test>(random_.below(2));
-        const std::uint32_t program = random_.below(kNames + 1);
-        batch.set<el::current_program>(programs_.contains(program) ? program : 0);
+        const ClientName program = random_.name_or_none();
+        batch.set<el::current_program>(programs_.contains(program) ? program.value : 0);
     }
     void draw(wire::PackBuffer& b) {
         triangle(b);
@@ -183,24 +184,24 @@ private:
     }
     /// Counted, asked for under a new number each time, and now and then deleted.
     void count_samples(Batch& batch) {
-        const std::uint32_t query = random_.name();
-        batch.set<el::occlusion_query>(query);
+        const ClientName query = random_.name();
+        batch.set<el::occlusion_query>(query.value);
         batch.block(1, [this](auto& b) { triangle(b); });
         batch.set<el::occlusion_query>(0);
-        pack::QueryResult(batch.buffer(), ++last_request_, query);
+        pack::QueryResult(batch.buffer(), RequestId(++last_request_), query);
         if (random_.below(2) == 0) pack::QueryDelete(batch.buffer(), query);
     }
 
     Random random_;
     bool large_;
     std::vector<std::vector<std::byte>> batches_;
-    std::set<std::uint32_t> runs_, programs_;
+    std::set<ClientName> runs_, programs_;
     std::uint32_t last_request_ = 1000;
 };
 
 struct Outcome {
     Pixels pixels;
-    std::map<std::uint32_t, std::vector<std::byte>> replies;
+    std::map<RequestId, std::vector<std::byte>> replies;
 };
 
 class ObjectsTest : public ::testing::Test {
@@ -210,7 +211,7 @@ protected:
         node_.node->tiles = {{0, kWindow}};
     }
     std::unique_ptr<TestSession> open(std::uint32_t id) {
-        auto session = std::make_unique<TestSession>(*node_.node, id);
+        auto session = std::make_unique<TestSession>(*node_.node, SessionId(id));
         session->open_surface(kWidth, kHeight, kWindow);
         return session;
     }
@@ -220,7 +221,7 @@ protected:
     }
     static Outcome outcome(TestSession& session) {
         Outcome out{session.read(0, kWindow), session.replies};
-        out.replies.erase(99);  // the read itself
+        out.replies.erase(TestSession::kReadRequest);
         return out;
     }
     Outcome alone(const Script& script) {
@@ -341,15 +342,16 @@ TEST_F(ObjectsTest, NamesOfASessionReachNoOther) {
     const auto owner = open(1), other = open(2);
     Batch made;
     const std::vector<std::byte> white(8 * 8 * 4, std::byte{255});
-    pack::TexImage(made.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 8, 8, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, white);
+    pack::TexImage(made.buffer(), ClientName(1), GL_TEXTURE_2D, 0, GL_RGBA, 8, 8, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                   white);
     wire::PackBuffer body;
     pack::Begin(body, GL_POINTS);
     pack::End(body);
-    pack::RunDefine(made.buffer(), 1, static_cast<std::uint32_t>(body.commands()),
+    pack::RunDefine(made.buffer(), ClientName(1), static_cast<std::uint32_t>(body.commands()),
                     static_cast<std::uint32_t>(body.operand_bytes()), run_content(body));
     const glapi::ProgramDefinition definition{
         {{GL_FRAGMENT_SHADER, true, "uniform vec4 tint; void main() { gl_FragColor = tint; }"}}, {}, {}};
-    pack::ProgramLink(made.buffer(), 0, 1, encode(definition));
+    pack::ProgramLink(made.buffer(), RequestId(0), ClientName(1), encode(definition));
     owner->expect_run(made);
 
     EXPECT_EQ(other->session.texture(ClientName(1), TextureTarget::t2d), nullptr);
@@ -359,18 +361,18 @@ TEST_F(ObjectsTest, NamesOfASessionReachNoOther) {
         fill(batch);
         return !session->run(batch);
     };
-    EXPECT_TRUE(refused([](Batch& b) { b.block(1, [](auto& p) { pack::RunCall(p, 1); }); }))
+    EXPECT_TRUE(refused([](Batch& b) { b.block(1, [](auto& p) { pack::RunCall(p, ClientName(1)); }); }))
         << "a run of another session";
     const glstate::Vec4 red = {1, 0, 0, 1};
     EXPECT_TRUE(refused([&](Batch& b) {
-        pack::Uniform(b.buffer(), 1, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red)));
+        pack::Uniform(b.buffer(), ClientName(1), 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red)));
     })) << "a program of another session";
     // Drawing with and deleting another's names does nothing to them, nor does the driver's own number work as a name.
     const GLuint driver_name = owner->session.texture(ClientName(1), TextureTarget::t2d)->content->name();
-    for (const std::uint32_t name : {1u, static_cast<std::uint32_t>(driver_name)}) {
+    for (const ClientName name : {ClientName(1), ClientName(driver_name)}) {
         Batch batch;
         batch.set<el::texture_2d_enabled>(1)
-            .set<el::texture_binding_2d>(name)
+            .set<el::texture_binding_2d>(name.value)
             .set<el::color>({0, 0, 1, 1})
             .set<el::current_program>(1);
         batch.block(1, [](auto& p) {
@@ -384,13 +386,13 @@ TEST_F(ObjectsTest, NamesOfASessionReachNoOther) {
         pack::RunDelete(batch.buffer(), name);
         pack::ProgramDelete(batch.buffer(), name);
         other->expect_run(batch);
-        EXPECT_EQ(other->read(0, {5, 5, 1, 1}), (Pixels{0, 0, 255, 255})) << name;
+        EXPECT_EQ(other->read(0, {5, 5, 1, 1}), (Pixels{0, 0, 255, 255})) << name.value;
     }
     EXPECT_NE(owner->session.texture(ClientName(1), TextureTarget::t2d), nullptr);
     EXPECT_TRUE(node_.driver->gl().IsTexture(driver_name));
     Batch use;
-    use.block(1, [](auto& p) { pack::RunCall(p, 1); });
-    pack::Uniform(use.buffer(), 1, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red)));
+    use.block(1, [](auto& p) { pack::RunCall(p, ClientName(1)); });
+    pack::Uniform(use.buffer(), ClientName(1), 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red)));
     owner->expect_run(use);
 }
 

@@ -19,7 +19,7 @@ protected:
         if (!node_.usable()) GTEST_SKIP() << "no EGL driver";
         node_.node->tiles = {{0, kTile}};
         group_.emplace(*node_.driver, Membership{2, {}});
-        for (const Rank rank : {0u, 1u}) members_[rank].emplace(*node_.node, 1, &*group_, rank);
+        for (const Rank rank : {0u, 1u}) members_[rank].emplace(*node_.node, SessionId(1), &*group_, rank);
         for (auto& member : members_) member->expect_run(just([](auto& b) { pack::Join(b); }));
     }
     template <class Pack>
@@ -34,7 +34,7 @@ protected:
         return batch;
     }
     static Batch swap(std::uint32_t frame) {
-        return just([=](auto& b) { pack::Swap(b, 1, frame); });
+        return just([=](auto& b) { pack::Swap(b, SurfaceId(1), frame); });
     }
     std::string refusal(Rank rank, const Batch& batch) {
         const auto done = members_[rank]->run(batch);
@@ -76,19 +76,19 @@ TEST_F(TwoMembers, EndAFrameTogether) {
 
 TEST_F(TwoMembers, MustMeanTheSameWindow) {
     members_[0]->open_surface(32, 32, kTile);
-    EXPECT_THAT(refusal(1, just([](auto& b) { pack::SurfaceCreate(b, 1, 0, 0, 24, 8, 16, 0); })),
+    EXPECT_THAT(refusal(1, just([](auto& b) { pack::SurfaceCreate(b, SurfaceId(1), 0, 0, 24, 8, 16, 0); })),
                 HasSubstr("different formats"));
 }
 
 TEST_F(TwoMembers, MustMeanTheSamePlace) {
     open_both();
-    EXPECT_THAT(refusal(1, just([](auto& b) { pack::SurfacePlace(b, 1, 1, 32, 32, 5, 5, 32, 32, 0); })),
+    EXPECT_THAT(refusal(1, just([](auto& b) { pack::SurfacePlace(b, SurfaceId(1), 1, 32, 32, 5, 5, 32, 32, 0); })),
                 HasSubstr("different places"));
 }
 
 TEST_F(TwoMembers, AMemberMayCloseTheWindow) {
     open_both();
-    const auto close = just([](auto& b) { pack::SurfaceDestroy(b, 1); });
+    const auto close = just([](auto& b) { pack::SurfaceDestroy(b, SurfaceId(1)); });
     members_[0]->expect_run(close);
     ASSERT_NE(group_->surface(SurfaceId(1)), nullptr);
     members_[1]->expect_run(swap(1));
@@ -101,7 +101,7 @@ TEST_F(TwoMembers, NothingStandsBehindWhatMayHold) {
     open_both();
     for (const auto& hold : std::vector<std::function<void(wire::PackBuffer&)>>{
              [](auto& b) { pack::BarrierExec(b, 1); }, [](auto& b) { pack::SemaphoreP(b, 1); },
-             [](auto& b) { pack::Swap(b, 1, 1); }, [](auto& b) { pack::Leave(b); }}) {
+             [](auto& b) { pack::Swap(b, SurfaceId(1), 1); }, [](auto& b) { pack::Leave(b); }}) {
         Batch batch;
         hold(batch.buffer());
         pack::SemaphoreV(batch.buffer(), 1);
@@ -110,7 +110,7 @@ TEST_F(TwoMembers, NothingStandsBehindWhatMayHold) {
 }
 
 TEST_F(TwoMembers, OthersHaveNoBarriers) {
-    TestSession alone(*node_.node, 2);
+    TestSession alone(*node_.node, SessionId(2));
     const auto done = alone.run(just([](auto& b) { pack::BarrierCreate(b, 1, 1); }));
     ASSERT_FALSE(done);
     EXPECT_THAT(done.error().message, HasSubstr("not of a parallel program"));

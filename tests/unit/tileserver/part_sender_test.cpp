@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 
 Picture picture(std::uint32_t width, std::uint32_t height, std::uint32_t request) {
     Picture out;
-    out.request.id = request;
+    out.request.id = PictureId(request);
     out.width = width;
     out.height = height;
     out.rgba.resize(std::size_t{4} * width * height);
@@ -56,7 +56,7 @@ TEST(Parts, OfALargeTileFitIntoMessages) {
 
 TEST(Parts, OfAPictureThatIsNoneSayWhy) {
     Picture none;
-    none.request.id = 4;
+    none.request.id = PictureId(4);
     none.error = "no such tile";
     const auto parts = all(snapshot_parts(none));
     ASSERT_EQ(parts.size(), 1u);
@@ -127,7 +127,7 @@ protected:
         }
         EXPECT_TRUE(over);
     }
-    static PartsOf snapshot(std::uint32_t request) { return {PartsOf::Kind::snapshot, request}; }
+    static PartsOf snapshot(std::uint32_t request) { return {PartsOf::Kind::snapshot, PictureId(request)}; }
     static proto::Envelope rendered(std::uint32_t frame) {
         proto::Envelope out;
         out.mutable_rendered()->set_frame(frame);
@@ -163,9 +163,10 @@ TEST_F(PartSenderTest, FramesOfAStreamFollowEachOther) {
         proto::StreamFrame head;
         head.set_stream(7);
         head.set_time_us(time);
-        sender_.send({PartsOf::Kind::stream, 7}, frame_parts(head, std::vector<std::byte>(5 << 20), nullptr));
+        sender_.send({PartsOf::Kind::stream, PictureId(7)},
+                     frame_parts(head, std::vector<std::byte>(5 << 20), nullptr));
     }
-    sender_.send({PartsOf::Kind::stream, 8}, frame_parts({}, std::vector<std::byte>(5 << 20), nullptr));
+    sender_.send({PartsOf::Kind::stream, PictureId(8)}, frame_parts({}, std::vector<std::byte>(5 << 20), nullptr));
     std::vector<std::uint64_t> offsets;
     read([&](const auto& message) {
         if (message.stream_frame().stream() == 7) offsets.push_back(message.stream_frame().offset() >> 20);
@@ -177,7 +178,7 @@ TEST_F(PartSenderTest, FramesOfAStreamFollowEachOther) {
 TEST_F(PartSenderTest, WhatWaitedForALostLinkIsDropped) {
     const auto budget = std::make_shared<int>(1);
     const std::weak_ptr<int> held = budget;
-    sender_.send({PartsOf::Kind::stream, 1}, frame_parts({}, std::vector<std::byte>(100 << 20), budget));
+    sender_.send({PartsOf::Kind::stream, PictureId(1)}, frame_parts({}, std::vector<std::byte>(100 << 20), budget));
     go_on();
     EXPECT_GT(held.use_count(), 1);
     link_->close();

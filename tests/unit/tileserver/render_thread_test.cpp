@@ -81,8 +81,8 @@ TEST(PaceTest, ALongTurnIsMadeUpFor) {
 
 class Events final : public NodeEvents {
 public:
-    void reply(StreamId stream, std::uint32_t request, std::vector<std::byte> answer) override {
-        note([&] { replies_[{stream.value, request}] = std::move(answer); });
+    void reply(StreamId stream, RequestId request, std::vector<std::byte> answer) override {
+        note([&] { replies_[{stream, request}] = std::move(answer); });
     }
     void drawn(StreamId stream, SurfaceId, std::uint32_t frame) override {
         note([&] { drawn_[stream.value] = frame; });
@@ -111,7 +111,7 @@ public:
         return changed_.wait_for(lock, limit, [&] { return done(*this); });
     }
     std::map<std::uint32_t, std::uint32_t> drawn_;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::byte>> replies_;
+    std::map<std::pair<StreamId, RequestId>, std::vector<std::byte>> replies_;
     std::string failure_, lost_;
     int stats_ = 0;
 
@@ -151,9 +151,9 @@ protected:
         auto queue = std::make_shared<BatchQueue>([] {});
         thread_->add_stream(StreamId(id), SessionId(id), queue);
         wire::PackBuffer buffer;
-        pack::SurfaceCreate(buffer, 1, 1, 0, 24, 8, 0, 0);
-        pack::SurfacePlace(buffer, 1, 1, kSize, kSize, 0, 0, kSize, kSize, 0);
-        pack::Bind(buffer, 1, 1);
+        pack::SurfaceCreate(buffer, SurfaceId(1), 1, 0, 24, 8, 0, 0);
+        pack::SurfacePlace(buffer, SurfaceId(1), 1, kSize, kSize, 0, 0, kSize, kSize, 0);
+        pack::Bind(buffer, SurfaceId(1), SurfaceId(1));
         const glstate::Viewport viewport{0, 0, kSize, kSize};
         glapi::pack_state(buffer, glstate::el::viewport::id, &viewport, sizeof viewport);
         push(queue, buffer);
@@ -161,7 +161,7 @@ protected:
     }
     void push(const std::shared_ptr<BatchQueue>& queue, const wire::PackBuffer& buffer) {
         std::vector<std::byte> payload;
-        wire::append_batch(payload, {1, buffer.opcodes(), buffer.operands()});
+        wire::append_batch(payload, {ContextId(1), buffer.opcodes(), buffer.operands()});
         queue->push(std::move(payload));
         thread_->wake();
     }
@@ -179,7 +179,7 @@ protected:
                     pack::Vertex3f(b, static_cast<float>(i % 7) / 7, 0.1f * static_cast<float>(i % 3), 0);
                 pack::End(b);
             });
-            pack::Swap(buffer, 1, ++frame);
+            pack::Swap(buffer, SurfaceId(1), ++frame);
             push(queue, buffer);
             if (!events_.wait([&](Events& e) { return e.drawn_[id] == frame; })) break;
         }
@@ -204,7 +204,7 @@ void define_run(wire::PackBuffer& buffer, std::uint32_t run, int triangles, GLen
     std::vector<std::byte> content(wire::padded4(body.commands()) - body.commands());
     content.insert(content.end(), body.opcodes().begin(), body.opcodes().end());
     content.insert(content.end(), body.operands().begin(), body.operands().end());
-    pack::RunDefine(buffer, run, static_cast<std::uint32_t>(body.commands()),
+    pack::RunDefine(buffer, ClientName(run), static_cast<std::uint32_t>(body.commands()),
                     static_cast<std::uint32_t>(body.operand_bytes()), content);
 }
 
@@ -216,7 +216,7 @@ TEST_F(RenderThreadTest, ABatchOfMinutesKeepsNobodyAway) {
     wire::PackBuffer buffer;
     define_run(buffer, 7, 1'000'000);
     block(buffer, 1, [](auto& b) {
-        for (int i = 0; i < 5000; ++i) pack::RunCall(b, 7);
+        for (int i = 0; i < 5000; ++i) pack::RunCall(b, ClientName(7));
     });
     push(heavy, buffer);
     std::this_thread::sleep_for(500ms);
@@ -256,7 +256,7 @@ TEST_F(RenderThreadTest, ABatchOfLargeTrianglesKeepsNobodyAway) {
 TEST_F(RenderThreadTest, SelectionKeepsNobodyAway) {
     const auto picking = open(1);
     wire::PackBuffer buffer;
-    pack::RenderMode(buffer, 1, GL_SELECT, 0, 1000);
+    pack::RenderMode(buffer, RequestId(1), GL_SELECT, 0, 1000);
     block(buffer, std::uint64_t{1} << wire::kOffscreenSlot, [](auto& b) {
         pack::PushName(b, 5);
         for (int i = 0; i < 200'000; ++i) {
@@ -271,11 +271,13 @@ TEST_F(RenderThreadTest, SelectionKeepsNobodyAway) {
     std::printf("beside a program in selection mode: %.1f frames a second\n", while_it_draws);
     EXPECT_GT(while_it_draws, kDecent);
     wire::PackBuffer end;
-    pack::RenderMode(end, 2, GL_RENDER, 0, 0);
+    pack::RenderMode(end, RequestId(2), GL_RENDER, 0, 0);
     push(picking, end);
-    ASSERT_TRUE(events_.wait([](Events& e) { return e.replies_.contains({1, 2}); })) << events_.failure_;
-    std::vector<GLuint> answer(events_.replies_[{1, 2}].size() / sizeof(GLuint));
-    std::memcpy(answer.data(), events_.replies_[{1, 2}].data(), answer.size() * sizeof(GLuint));
+    ASSERT_TRUE(events_.wait([](Events& e) {
+        return e.replies_.contains({StreamId(1), RequestId(2)});
+    })) << events_.failure_;
+    std::vector<GLuint> answer(events_.replies_[{StreamId(1), RequestId(2)}].size() / sizeof(GLuint));
+    std::memcpy(answer.data(), events_.replies_[{StreamId(1), RequestId(2)}].data(), answer.size() * sizeof(GLuint));
     ASSERT_EQ(answer.size(), 5u) << "one hit, in however many parts";
     EXPECT_EQ(answer[0], 1u);
     EXPECT_EQ(answer[1], 1u);
@@ -285,9 +287,9 @@ TEST_F(RenderThreadTest, SelectionKeepsNobodyAway) {
 TEST_F(RenderThreadTest, ASelectionLeftOpenKeepsNobodyAway) {
     const auto picking = open(1);
     wire::PackBuffer buffer;
-    pack::RenderMode(buffer, 1, GL_SELECT, 0, 1000);
+    pack::RenderMode(buffer, RequestId(1), GL_SELECT, 0, 1000);
     push(picking, buffer);
-    ASSERT_TRUE(events_.wait([](Events& e) { return e.replies_.contains({1, 1}); }));
+    ASSERT_TRUE(events_.wait([](Events& e) { return e.replies_.contains({StreamId(1), RequestId(1)}); }));
     const auto start = Clock::now();
     frames_a_second(2, 1ms);
     EXPECT_LT(Clock::now() - start, 2s);

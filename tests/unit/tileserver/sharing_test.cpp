@@ -123,7 +123,7 @@ constexpr geom::Rect kWindow{0, 0, kWidth, kHeight};
 /// A texture as a client keeps it.
 class Content {
 public:
-    explicit Content(GLenum target = GL_TEXTURE_2D) : texture_(1, 1, target) {}
+    explicit Content(GLenum target = GL_TEXTURE_2D) : texture_(ClientName(1), 1, target) {}
     Content& level(GLint number, GLint internal_format, int size, GLenum format, GLenum type, std::uint32_t seed,
                    unsigned face = 0) {
         client::TextureLevel& level = texture_.level_at(face, number);
@@ -172,28 +172,29 @@ protected:
         node_.node->tiles = {{0, kWindow}};
     }
     std::unique_ptr<TestSession> open(std::uint32_t id) {
-        auto session = std::make_unique<TestSession>(*node_.node, id);
+        auto session = std::make_unique<TestSession>(*node_.node, SessionId(id));
         session->open_surface(kWidth, kHeight, kWindow);
         return session;
     }
     enum class Said { nothing, send, have };
     static Said ask(TestSession& session, const Content& content) {
         Batch batch;
-        session.replies.erase(5);
-        pack::ShareTexture(batch.buffer(), 5, 1, content.target(), content.is_global(), content.key());
+        session.replies.erase(RequestId(5));
+        pack::ShareTexture(batch.buffer(), RequestId(5), ClientName(1), content.target(), content.is_global(),
+                           content.key());
         session.expect_run(batch);
         return said(session);
     }
     static Said said(TestSession& session) {
         EXPECT_TRUE(session.executor.pursue_question());
-        const auto answer = session.replies.find(5);
+        const auto answer = session.replies.find(RequestId(5));
         if (answer == session.replies.end()) return Said::nothing;
         return answer->second == std::vector{std::byte{1}} ? Said::have : Said::send;
     }
     static void send(TestSession& session, const Content& content) {
         Batch batch;
         content.define(batch.buffer());
-        pack::TexShared(batch.buffer(), 1);
+        pack::TexShared(batch.buffer(), ClientName(1));
         session.expect_run(batch);
     }
     static void define(TestSession& session, const Content& content) {
@@ -266,7 +267,7 @@ TEST_F(SharingTest, OutlivesWhoSentIt) {
     EXPECT_EQ(count_different(picture(*b), alone(plain(1))), 0u);
     EXPECT_EQ(ask(*c, plain(1)), Said::have);
     Batch gone;
-    pack::TexDelete(gone.buffer(), 1);
+    pack::TexDelete(gone.buffer(), ClientName(1));
     b->expect_run(gone);
     EXPECT_EQ(count_different(picture(*c), alone(plain(1))), 0u);
     c->expect_run(gone);
@@ -323,8 +324,9 @@ TEST_F(SharingTest, AChangeIsOnlyOnesOwn) {
         EXPECT_EQ(count_different(before, alone(content)), 0u);
         // Another parameter, and back to what it was: the copy is all of the texture.
         Batch there, back;
-        pack::TexParameter(there.buffer(), 1, content.target(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE, 0, 0, 0);
-        pack::TexParameter(back.buffer(), 1, content.target(), GL_TEXTURE_WRAP_S, GL_REPEAT, 0, 0, 0);
+        pack::TexParameter(there.buffer(), ClientName(1), content.target(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE, 0, 0,
+                           0);
+        pack::TexParameter(back.buffer(), ClientName(1), content.target(), GL_TEXTURE_WRAP_S, GL_REPEAT, 0, 0, 0);
         b->expect_run(there);
         EXPECT_NE(driver_name(*a, target), driver_name(*b, target));
         EXPECT_EQ(driver_name(*a, target), driver_name(*c, target));
@@ -336,7 +338,8 @@ TEST_F(SharingTest, AChangeIsOnlyOnesOwn) {
         if (content.target() != GL_TEXTURE_2D) continue;
         Batch overwrite;
         const std::vector<std::byte> red(8 * 8 * 4, std::byte{0x7f});
-        pack::TexImage(overwrite.buffer(), 1, GL_TEXTURE_2D, 0, GL_RGBA, 8, 8, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, red);
+        pack::TexImage(overwrite.buffer(), ClientName(1), GL_TEXTURE_2D, 0, GL_RGBA, 8, 8, 1, 0, GL_RGBA,
+                       GL_UNSIGNED_BYTE, red);
         c->expect_run(overwrite);
         EXPECT_EQ(count_different(picture(*a), before), 0u) << "another one's new image";
     }
@@ -347,7 +350,7 @@ TEST_F(SharingTest, TheOnlyOneChangesItInPlace) {
     define(*a, plain(1));
     const GLuint name = driver_name(*a);
     Batch change;
-    pack::TexSubImage(change.buffer(), 1, GL_TEXTURE_2D, 0, 3, 3, 0, 1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE,
+    pack::TexSubImage(change.buffer(), ClientName(1), GL_TEXTURE_2D, 0, 3, 3, 0, 1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE,
                       std::array<std::byte, 4>{});
     a->expect_run(change);
     EXPECT_EQ(driver_name(*a), name);
@@ -385,7 +388,7 @@ TEST_F(SharingTest, ALieEndsOnlyTheLiar) {
     EXPECT_EQ(ask(*liar, plain(1)), Said::send);
     Batch other;
     plain(2).define(other.buffer());
-    pack::TexShared(other.buffer(), 1);
+    pack::TexShared(other.buffer(), ClientName(1));
     const auto done = liar->run(other);
     ASSERT_FALSE(done);
     EXPECT_NE(done.error().message.find("not what its name says"), std::string::npos) << done.error().message;
@@ -413,13 +416,14 @@ TEST_F(SharingTest, BadQuestionsAreRefused) {
     };
     const std::array<std::byte, 31> brief{};
     const std::array<std::byte, 32> whole{};
-    EXPECT_TRUE(refused([&](auto& b) { pack::ShareTexture(b, 1, 1, GL_TEXTURE_2D, 0, brief); }));
-    EXPECT_TRUE(refused([&](auto& b) { pack::ShareTexture(b, 1, 1, 0x1234, 0, whole); }));
+    EXPECT_TRUE(refused([&](auto& b) { pack::ShareTexture(b, RequestId(1), ClientName(1), GL_TEXTURE_2D, 0, brief); }));
+    EXPECT_TRUE(refused([&](auto& b) { pack::ShareTexture(b, RequestId(1), ClientName(1), 0x1234, 0, whole); }));
     const auto a = open(1);
     EXPECT_EQ(ask(*a, plain(1)), Said::send);
     EXPECT_TRUE(refused([&](auto& b) {
-        pack::ShareTexture(b, 1, 1, GL_TEXTURE_2D, 0, plain(1).key());  // waits for the other session
-        pack::ShareTexture(b, 2, 2, GL_TEXTURE_2D, 0, whole);
+        pack::ShareTexture(b, RequestId(1), ClientName(1), GL_TEXTURE_2D, 0,
+                           plain(1).key());  // waits for the other session
+        pack::ShareTexture(b, RequestId(2), ClientName(2), GL_TEXTURE_2D, 0, whole);
     }));
 }
 
@@ -441,22 +445,22 @@ TEST_F(SharingTest, RunsAreShared) {
     const auto key = hash.finish();
 
     Batch first;
-    pack::ShareRun(first.buffer(), 5, 8, key);
+    pack::ShareRun(first.buffer(), RequestId(5), ClientName(8), key);
     a->expect_run(first);
     EXPECT_EQ(said(*a), Said::send);
     Batch definition;
-    pack::RunDefine(definition.buffer(), 8, commands, bytes, content);
+    pack::RunDefine(definition.buffer(), ClientName(8), commands, bytes, content);
     a->expect_run(definition);
     Batch second;
-    pack::ShareRun(second.buffer(), 5, 3, key);
+    pack::ShareRun(second.buffer(), RequestId(5), ClientName(3), key);
     b->expect_run(second);
     EXPECT_EQ(said(*b), Said::have);
-    EXPECT_EQ(a->session.runs.at(8), b->session.runs.at(3));
+    EXPECT_EQ(a->session.runs.at(ClientName(8)), b->session.runs.at(ClientName(3)));
     Batch gone;
-    pack::RunDelete(gone.buffer(), 8);
+    pack::RunDelete(gone.buffer(), ClientName(8));
     a->expect_run(gone);
     Batch use;
-    use.block(1, [](auto& p) { pack::RunCall(p, 3); });
+    use.block(1, [](auto& p) { pack::RunCall(p, ClientName(3)); });
     b->expect_run(use);
     EXPECT_EQ(b->read(0, {5, 5, 1, 1}), (Pixels{0, 255, 0, 255}));
     EXPECT_EQ(a->session.run_bytes, 0u);
@@ -476,13 +480,13 @@ TEST_F(SharingTest, SessionsInTurnsDrawAsEachAlone) {
         Batch batch;
         if (act.what == Act::change) {
             const std::vector<std::byte> part(16, static_cast<std::byte>(act.seed * 40));
-            pack::TexSubImage(batch.buffer(), 1, GL_TEXTURE_2D, 0, static_cast<int>(act.seed % 12), 2, 0, 2, 2, 1,
-                              GL_RGBA, GL_UNSIGNED_BYTE, part);
+            pack::TexSubImage(batch.buffer(), ClientName(1), GL_TEXTURE_2D, 0, static_cast<int>(act.seed % 12), 2, 0, 2,
+                              2, 1, GL_RGBA, GL_UNSIGNED_BYTE, part);
         } else if (act.what == Act::recolor) {
-            pack::TexParameter(batch.buffer(), 1, GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER,
+            pack::TexParameter(batch.buffer(), ClientName(1), GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER,
                                act.seed % 2 != 0 ? GL_NEAREST : GL_LINEAR, 0, 0, 0);
         } else {
-            pack::TexDelete(batch.buffer(), 1);
+            pack::TexDelete(batch.buffer(), ClientName(1));
         }
         session.expect_run(batch);
     };

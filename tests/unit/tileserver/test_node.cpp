@@ -17,24 +17,25 @@ TestNode::TestNode(std::string_view backend) : backend_(open_backend(backend)) {
 
 TestNode::~TestNode() = default;
 
-void TestSession::open_surface(int window_width, int window_height, const geom::Rect& rect, std::uint32_t context,
+void TestSession::open_surface(int window_width, int window_height, const geom::Rect& rect, ContextId context,
                                bool alpha) {
     Batch batch(context);
-    pack::SurfaceCreate(batch.buffer(), 1, 1, alpha ? 8 : 0, 24, 8, 16, 0);
-    pack::SurfacePlace(batch.buffer(), 1, 1, static_cast<std::uint32_t>(window_width),
+    pack::SurfaceCreate(batch.buffer(), SurfaceId(1), 1, alpha ? 8 : 0, 24, 8, 16, 0);
+    pack::SurfacePlace(batch.buffer(), SurfaceId(1), 1, static_cast<std::uint32_t>(window_width),
                        static_cast<std::uint32_t>(window_height), rect.x, rect.y,
                        static_cast<std::uint32_t>(rect.width), static_cast<std::uint32_t>(rect.height), 0);
-    pack::Bind(batch.buffer(), 1, 1);
+    pack::Bind(batch.buffer(), SurfaceId(1), SurfaceId(1));
     batch.set<el::viewport>({0, 0, window_width, window_height});
     batch.set<el::scissor>({0, 0, window_width, window_height});
     expect_run(batch);
 }
 
-Pixels TestSession::read(std::uint32_t slot, const geom::Rect& part, std::uint32_t context) {
+Pixels TestSession::read(std::uint32_t slot, const geom::Rect& part, ContextId context) {
     Batch batch(context);
-    pack::ReadPixels(batch.buffer(), 99, slot, part.x, part.y, part.width, part.height, GL_RGBA, GL_UNSIGNED_BYTE);
+    pack::ReadPixels(batch.buffer(), kReadRequest, slot, part.x, part.y, part.width, part.height, GL_RGBA,
+                     GL_UNSIGNED_BYTE);
     expect_run(batch);
-    const auto& answer = replies[99];
+    const auto& answer = replies[kReadRequest];
     Pixels pixels(answer.size());
     std::memcpy(pixels.data(), answer.data(), answer.size());
     return pixels;

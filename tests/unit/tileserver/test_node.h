@@ -23,7 +23,7 @@ namespace pack = glapi::pack;
 /// Packed commands of one context; blocks() wraps drawing.
 class Batch {
 public:
-    explicit Batch(std::uint32_t context = 1) : context_(context) {}
+    explicit Batch(ContextId context = ContextId(1)) : context_(context) {}
     wire::PackBuffer& buffer() { return buffer_; }
     template <class E>
     Batch& set(const typename E::type& value, unsigned i = 0) {
@@ -46,15 +46,15 @@ public:
     }
 
 private:
-    std::uint32_t context_;
+    ContextId context_;
     wire::PackBuffer buffer_;
 };
 
 class TestSession : public SessionOutput {
 public:
-    TestSession(RenderNode& node, std::uint32_t id, ParallelGroup* group = nullptr, Rank rank = 0)
-        : session(node.driver, SessionId(id), group, rank), executor(node, session, *this) {}
-    void reply(std::uint32_t request, std::vector<std::byte> answer) override { replies[request] = std::move(answer); }
+    TestSession(RenderNode& node, SessionId id, ParallelGroup* group = nullptr, Rank rank = 0)
+        : session(node.driver, id, group, rank), executor(node, session, *this) {}
+    void reply(RequestId request, std::vector<std::byte> answer) override { replies[request] = std::move(answer); }
     void frame_rendered(SurfaceId surface, std::uint32_t frame) override { frames.push_back({surface.value, frame}); }
 
     Result<void> run(const Batch& batch) { return executor.run_batch(batch.payload()); }
@@ -63,12 +63,13 @@ public:
         EXPECT_TRUE(done) << done.error().message;
     }
     /// A double-buffered surface 1 of the given window at a place on the canvas, bound to context 1.
-    void open_surface(int window_width, int window_height, const geom::Rect& rect, std::uint32_t context = 1,
+    void open_surface(int window_width, int window_height, const geom::Rect& rect, ContextId context = ContextId(1),
                       bool alpha = false);
     /// RGBA of the back buffer on one tile, bottom row first, the part (x, y, width, height) of the window.
-    Pixels read(std::uint32_t slot, const geom::Rect& part, std::uint32_t context = 1);
+    Pixels read(std::uint32_t slot, const geom::Rect& part, ContextId context = ContextId(1));
 
-    std::map<std::uint32_t, std::vector<std::byte>> replies;
+    static constexpr RequestId kReadRequest{99};  ///< of read()
+    std::map<RequestId, std::vector<std::byte>> replies;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> frames;
     SessionReplica session;
     Executor executor;

@@ -10,6 +10,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr PictureId kStream(7);
+
 class TileWatchesTest : public ::testing::Test {
 protected:
     std::size_t due(std::uint64_t damage) { return watches_.due(damage, now_, 1000).size(); }
@@ -18,31 +20,31 @@ protected:
 };
 
 TEST_F(TileWatchesTest, TheFirstPictureComesAtOnceAndTheNextAfterReady) {
-    watches_.add({7, true}, 100ms);
+    watches_.add({kStream, true}, 100ms);
     const auto first = watches_.due(1, now_, 1000);
     ASSERT_EQ(first.size(), 1u);
-    EXPECT_EQ(first[0].id, 7u);
+    EXPECT_EQ(first[0].id, kStream);
     now_ += 1s;
     EXPECT_EQ(due(2), 0u) << "the first is still on its way";
-    watches_.ready(7, false);
+    watches_.ready(kStream, false);
     EXPECT_EQ(due(2), 1u);
 }
 
 TEST_F(TileWatchesTest, AnUnchangedTileIsNotReadUnlessAskedFor) {
-    watches_.add({7, true}, 100ms);
+    watches_.add({kStream, true}, 100ms);
     due(1);
     now_ += 1s;
-    watches_.ready(7, false);
+    watches_.ready(kStream, false);
     EXPECT_EQ(due(1), 0u);
     EXPECT_EQ(watches_.next_due(1, now_), TileWatches::Clock::duration::max());
-    watches_.ready(7, true);
+    watches_.ready(kStream, true);
     EXPECT_EQ(due(1), 1u);
 }
 
 TEST_F(TileWatchesTest, NotMoreOftenThanTheInterval) {
-    watches_.add({7, true}, 100ms);
+    watches_.add({kStream, true}, 100ms);
     due(1);
-    watches_.ready(7, false);
+    watches_.ready(kStream, false);
     now_ += 99ms;
     EXPECT_EQ(due(2), 0u);
     EXPECT_EQ(watches_.next_due(2, now_), 1ms);
@@ -51,15 +53,15 @@ TEST_F(TileWatchesTest, NotMoreOftenThanTheInterval) {
 }
 
 TEST_F(TileWatchesTest, ARemovedStreamIsForgotten) {
-    watches_.add({7, true}, 100ms);
-    watches_.remove(7);
-    watches_.ready(7, true);
+    watches_.add({kStream, true}, 100ms);
+    watches_.remove(kStream);
+    watches_.ready(kStream, true);
     EXPECT_EQ(due(1), 0u);
 }
 
 TEST_F(TileWatchesTest, ManyTakeTurnsAFewAtATime) {
-    for (std::uint32_t stream = 0; stream < 1024; ++stream) watches_.add({stream, true}, 100ms);
-    std::map<std::uint32_t, int> taken;
+    for (std::uint32_t stream = 0; stream < 1024; ++stream) watches_.add({PictureId(stream), true}, 100ms);
+    std::map<PictureId, int> taken;
     for (int round = 0; round < 1024; ++round, now_ += 1ms) {
         const auto due = watches_.due(static_cast<std::uint64_t>(round), now_, 4);
         EXPECT_LE(due.size(), 4u);
@@ -71,7 +73,7 @@ TEST_F(TileWatchesTest, ManyTakeTurnsAFewAtATime) {
         }
     }
     EXPECT_EQ(taken.size(), 1024u);
-    for (const auto& [stream, count] : taken) EXPECT_EQ(count, 4) << "none comes before its turn: " << stream;
+    for (const auto& [stream, count] : taken) EXPECT_EQ(count, 4) << "none comes before its turn: " << stream.value;
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 import zlib
 
 from .text import header
-from .wire import CPP, SIZE
+from .wire import SIZE
 
 WIRE_NOTES = """
 The opcodes of the data stream and a packer for each. Usage:
@@ -34,8 +34,8 @@ def stream_version(ops, elements):
 
 def wire_header(ops, elements):
     out = [header("proto/gl/wire.toml", WIRE_NOTES,
-                  ["<array>", "<cstddef>", "<cstdint>", "<cstring>", "<span>", "", '"common/wire/pack_buffer.h"',
-                   '"common/wire/padding.h"']).replace("#include \n", "\n")]
+                  ["<array>", "<cstddef>", "<cstdint>", "<cstring>", "<span>", "", '"common/base/ids.h"',
+                   '"common/wire/pack_buffer.h"', '"common/wire/padding.h"']).replace("#include \n", "\n")]
     out.append("\nnamespace wall::glapi {\n\nenum class Op : std::uint8_t {\n")
     out += [f"    {op.name} = {op.code},\n" for op in ops]
     out.append("};\n\n")
@@ -85,7 +85,7 @@ inline void put_bytes(std::byte* at, std::span<const std::byte> content) {
 
 
 def _packer(op):
-    params = "".join(f", {CPP[o.type]} {o.name}" for o in op.operands)
+    params = "".join(f", {o.cpp} {o.name}" for o in op.operands)
     if op.bytes_name:
         params += f", std::span<const std::byte> {op.bytes_name}"
     size = str(op.fixed_bytes)
@@ -156,7 +156,7 @@ def _decoder(op):
     offset = 0
     loads = []
     for o in op.operands:
-        loads.append(f"wire::load<{CPP[o.type]}>(at + {offset})")
+        loads.append(f"wire::load<{o.cpp}>(at + {offset})")
         offset += SIZE[o.type]
     if op.bytes_name:
         loads.append(op.bytes_name)
@@ -184,7 +184,7 @@ def null_handler_header(ops):
     for op in ops:
         if op.is_state or op.name == "Block":
             continue
-        params = [CPP[o.type] for o in op.operands] + (["std::span<const std::byte>"] if op.bytes_name else [])
+        params = [o.cpp for o in op.operands] + (["std::span<const std::byte>"] if op.bytes_name else [])
         out.append(f"    void {op.name}({', '.join(params)}) {{}}\n")
     out.append("};\n\n}  // namespace wall::glapi\n")
     return "".join(out)

@@ -1,18 +1,31 @@
 # SPDX-License-Identifier: MIT
 """The data stream's commands (proto/gl/wire.toml) as values."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from . import data
 
 CPP = {"u32": "std::uint32_t", "i32": "std::int32_t", "f32": "float", "f64": "double", "enum": "std::uint32_t"}
 SIZE = {"u32": 4, "i32": 4, "f32": 4, "f64": 8, "enum": 4}
+# Types of common/base/ids.h: a u32 in the stream.
+IDS = {"surface": "SurfaceId", "context": "ContextId", "request": "RequestId", "object": "ClientName"}
 
 
 @dataclass(frozen=True)
 class Operand:
-    type: str   # key of CPP, or "bytes"
+    type: str   # in the stream: key of CPP, or "bytes"
     name: str
+    id: str = field(default="", repr=False)     # what the number is called in C++, of IDS; it is nothing to the stream
+
+    @property
+    def cpp(self):
+        return self.id or CPP[self.type]
+
+    @staticmethod
+    def parse(text):
+        kind, name = text.split()
+        assert kind in CPP or kind in IDS or kind == "bytes", f"unknown type {kind}"
+        return Operand("u32", name, IDS[kind]) if kind in IDS else Operand(kind, name)
 
 
 @dataclass(frozen=True)
@@ -44,10 +57,9 @@ def load(path):
 def _op(code, name, group, signature):
     if signature == "value":
         return Op(code, name, group, (), "", True)
-    operands = [Operand(*part.split()) for part in signature.split(",") if part.strip()]
+    operands = [Operand.parse(part) for part in signature.split(",") if part.strip()]
     bytes_name = ""
     if operands and operands[-1].type == "bytes":
         bytes_name = operands.pop().name
-    for o in operands:
-        assert o.type in CPP, f"unknown type {o.type}"
+    assert all(o.type != "bytes" for o in operands), "bytes come last"
     return Op(code, name, group, tuple(operands), bytes_name, False)

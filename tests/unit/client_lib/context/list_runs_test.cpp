@@ -156,11 +156,11 @@ TEST_F(ListRunTest, AttributesBeforeTheFirstVertexNeedNotBeBroughtUpToDate) {
 }
 
 TEST_F(ListRunTest, TheBoxIsTheSameWhetherAProgramIsUsedOrNot) {
-    c.program = std::make_shared<Program>(1, 1);
+    c.program = std::make_shared<Program>(ClientName(1), 1);
     const auto& list = compile([&] { bare(); });
     ASSERT_TRUE(list.items[0].run);
     EXPECT_FALSE(list.items[0].run->box.unbounded());
-    EXPECT_EQ(c.program->id, 1u);
+    EXPECT_EQ(c.program->id, ClientName(1));
     c.program.reset();
 }
 

@@ -89,13 +89,13 @@ TEST_F(SharedBufferTest, ADeletedBufferGoesWithItsLastUse) {
 }
 
 TEST_F(SharedBufferTest, WhatIsReadStaysAsItIs) {
-    const BufferReading reading = buffer_content(c, c.state.local.array_buffer, 0);
+    const BufferReading reading = buffer_content(c, ClientName(c.state.local.array_buffer), 0);
     const GLfloat nines[] = {9, 9, 9, 9, 9, 9};
     gl().BufferSubData(c, GL_ARRAY_BUFFER, 0, sizeof nines, nines);
     EXPECT_EQ(std::memcmp(reading.bytes().data(), kPlaces, sizeof kPlaces), 0);
     gl().BufferData(c, GL_ARRAY_BUFFER, 4, nullptr, GL_STATIC_DRAW);
     EXPECT_EQ(std::memcmp(reading.bytes().data(), kPlaces, sizeof kPlaces), 0);
-    EXPECT_EQ(buffer_content(c, c.state.local.array_buffer, 0).bytes().size(), 4u);
+    EXPECT_EQ(buffer_content(c, ClientName(c.state.local.array_buffer), 0).bytes().size(), 4u);
 }
 
 TEST_F(SharedBufferTest, PixelCommandsHoldTheirMemoryUntilTheNextOne) {

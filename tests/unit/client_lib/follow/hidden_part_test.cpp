@@ -49,8 +49,8 @@ TEST_F(AKeptFrame, HasAStretchForEachTurnOfAContext) {
     frame.seal();
     ASSERT_EQ(frame.stretches.size(), 3u);
     EXPECT_EQ(frame.stretches[0].commands.commands(), 2u);
-    EXPECT_EQ(frame.stretches[1].context.value, other.id);
-    EXPECT_EQ(frame.stretches[2].context.value, c.id);
+    EXPECT_EQ(frame.stretches[1].context, other.id);
+    EXPECT_EQ(frame.stretches[2].context, c.id);
     EXPECT_EQ(frame.bytes(), 4 * 9u);
 }
 

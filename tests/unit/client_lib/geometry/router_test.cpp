@@ -108,7 +108,8 @@ TEST(Targets, AWallMayHaveAnyNumberOfThem) {
     constexpr std::uint32_t kNodes = 90, kTiles = 30;
     for (std::uint32_t tile = 0; tile < kTiles; ++tile)
         for (std::uint32_t node = 0; node < kNodes; ++node)
-            layout.targets.push_back({node, tile, {float(node), float(tile), float(node) + 1, float(tile) + 1}, {}});
+            layout.targets.push_back(
+                {NodeIndex(node), tile, {float(node), float(tile), float(node) + 1, float(tile) + 1}, {}});
     const NodeMasks all = targets_of(layout, std::nullopt);
     ASSERT_EQ(all.size(), kNodes);
     for (const auto& [node, slots] : all) EXPECT_EQ(slots, (std::uint64_t{1} << kTiles) - 1);

@@ -187,17 +187,17 @@ TEST(ControlMessages, HelloIsWhatProtobufReads) {
 
 TEST(ControlMessages, SurfacesAreWhatProtobufReads) {
     proto::Envelope envelope;
-    ASSERT_TRUE(envelope.ParseFromString(encode_surface_open(3, 300, 200, "gears")));
+    ASSERT_TRUE(envelope.ParseFromString(encode_surface_open(SurfaceId(3), 300, 200, "gears")));
     EXPECT_EQ(envelope.surface_open().surface(), 3u);
     EXPECT_EQ(envelope.surface_open().width(), 300u);
     EXPECT_EQ(envelope.surface_open().height(), 200u);
     EXPECT_EQ(envelope.surface_open().title(), "gears");
-    ASSERT_TRUE(envelope.ParseFromString(encode_surface_resize(3, 301, 201)));
+    ASSERT_TRUE(envelope.ParseFromString(encode_surface_resize(SurfaceId(3), 301, 201)));
     EXPECT_EQ(envelope.surface_resize().width(), 301u);
-    ASSERT_TRUE(envelope.ParseFromString(encode_surface_close(9)));
+    ASSERT_TRUE(envelope.ParseFromString(encode_surface_close(SurfaceId(9))));
     EXPECT_EQ(envelope.surface_close().surface(), 9u);
     proto::DataHello data;
-    ASSERT_TRUE(data.ParseFromString(encode_data_hello(7, std::string_view("\0x", 2), 3)));
+    ASSERT_TRUE(data.ParseFromString(encode_data_hello(SessionId(7), std::string_view("\0x", 2), 3)));
     EXPECT_EQ(data.version(), glapi::kStreamVersion);  // which nodes ask for (tileserver/io/data_stream.cpp)
     EXPECT_EQ(data.session(), 7u);
     EXPECT_EQ(data.rank(), 3u);
@@ -206,7 +206,7 @@ TEST(ControlMessages, SurfacesAreWhatProtobufReads) {
 
 TEST(ControlMessages, WhatAnEarlierWalldKnewIsWhatProtobufReads) {
     auto hello = some_hello();
-    hello.resume = {SessionId(7), {{0, "a"}, {3, std::string("\0\xff", 2)}}, 2};
+    hello.resume = {SessionId(7), {{NodeIndex(0), "a"}, {NodeIndex(3), std::string("\0\xff", 2)}}, 2};
     proto::Envelope envelope;
     ASSERT_TRUE(envelope.ParseFromString(encode(hello)));
     const auto& resume = envelope.client_hello().resume();
@@ -216,7 +216,7 @@ TEST(ControlMessages, WhatAnEarlierWalldKnewIsWhatProtobufReads) {
     EXPECT_EQ(resume.tickets(1).node(), 3u);
     EXPECT_EQ(resume.tickets(1).ticket(), std::string("\0\xff", 2));
     const Restore restore{{-5, 1, 30, 40}, {5, 6, 70, 80}, std::string("n\0te", 4)};
-    ASSERT_TRUE(envelope.ParseFromString(encode_surface_open(3, 300, 200, "gears", restore)));
+    ASSERT_TRUE(envelope.ParseFromString(encode_surface_open(SurfaceId(3), 300, 200, "gears", restore)));
     const auto& read = envelope.surface_open();
     EXPECT_EQ(read.title(), "gears");
     EXPECT_EQ(read.restore().drawn().x(), -5);
@@ -235,8 +235,8 @@ TEST(ControlMessages, WhatAnEarlierWalldKnewIsWhatProtobufReads) {
 TEST(ControlMessages, TrafficIsWhatProtobufReads) {
     constexpr std::uint64_t kMany = std::uint64_t{1} << 40;
     proto::Envelope envelope;
-    ASSERT_TRUE(envelope.ParseFromString(
-        encode(Traffic{600, 7, std::chrono::nanoseconds(kMany), {{0, 1, 2, 3}, {4, kMany, 0, 5}}})));
+    ASSERT_TRUE(envelope.ParseFromString(encode(
+        Traffic{600, 7, std::chrono::nanoseconds(kMany), {{NodeIndex(0), 1, 2, 3}, {NodeIndex(4), kMany, 0, 5}}})));
     const auto& read = envelope.client_stats();
     EXPECT_EQ(read.frames(), 600u);
     EXPECT_EQ(read.round_trips(), 7u);
@@ -252,11 +252,11 @@ TEST(ControlMessages, ReadsAWholeWelcome) {
     const auto message = decode_from_walld(full_welcome().SerializeAsString());
     ASSERT_TRUE(message);
     const auto& welcome = std::get<Welcome>(*message);
-    EXPECT_EQ(welcome.session, 7u);
+    EXPECT_EQ(welcome.session, SessionId(7));
     EXPECT_EQ(welcome.canvas_width, 2048u);
     EXPECT_EQ(welcome.canvas_height, 1536u);
     ASSERT_EQ(welcome.tiles.size(), 2u);
-    EXPECT_EQ(welcome.tiles[1].node, 1u);
+    EXPECT_EQ(welcome.tiles[1].node, NodeIndex(1));
     EXPECT_EQ(welcome.tiles[1].slot, 3u);
     EXPECT_EQ(welcome.tiles[1].rect, (geom::Rect{-5, 0, 1024, 768}));
     EXPECT_EQ(welcome.tiles[1].name, "left");
@@ -295,13 +295,13 @@ TEST(ControlLink, SaysHelloAndTakesTheWelcome) {
     Linked linked;
     ASSERT_TRUE(linked.link);
     EXPECT_EQ(linked.hello.program(), "glxgears");
-    EXPECT_EQ(linked.link->welcome().session, 7u);
+    EXPECT_EQ(linked.link->welcome().session, SessionId(7));
     EXPECT_EQ(linked.link->welcome().nodes.size(), 2u);
 }
 
 TEST(ControlLink, TellsEverySecondWhatWasSent) {
     Linked linked;
-    stats().add_node(3, NodeCounter::geometry_bytes, 1000);
+    stats().add_node(NodeIndex(3), NodeCounter::geometry_bytes, 1000);
     const auto told = linked.walld.receive_any().client_stats();
     ASSERT_EQ(told.nodes_size(), 1);
     EXPECT_EQ(told.nodes(0).node(), 3u);
@@ -310,7 +310,7 @@ TEST(ControlLink, TellsEverySecondWhatWasSent) {
 
 TEST(ControlLink, PlacementsAndNodesArrive) {
     Linked linked;
-    linked.link->surface_open(1, 300, 200, "gears");
+    linked.link->surface_open(SurfaceId(1), 300, 200, "gears");
     EXPECT_EQ(linked.walld.receive().surface_open().title(), "gears");
     proto::Envelope placement, up, down;
     placement.mutable_placement()->set_surface(1);
@@ -321,7 +321,7 @@ TEST(ControlLink, PlacementsAndNodesArrive) {
     down.mutable_node_down()->set_node(2);
     linked.walld.send(framed(placement) + framed(up) + framed(down));
 
-    const auto placed = linked.link->wait_placement(1, 2s);
+    const auto placed = linked.link->wait_placement(SurfaceId(1), 2s);
     ASSERT_TRUE(placed);
     EXPECT_EQ(placed->layout_version, 5u);
     const auto events = collect(*linked.link, [](auto& e) { return e.node_changes.size() > 1; });
@@ -331,7 +331,7 @@ TEST(ControlLink, PlacementsAndNodesArrive) {
     EXPECT_TRUE(events.node_changes[0].up);
     EXPECT_EQ(events.node_changes[0].address, "unix:/n");
     EXPECT_FALSE(events.node_changes[1].up);
-    EXPECT_EQ(events.node_changes[1].node, 2u);
+    EXPECT_EQ(events.node_changes[1].node, NodeIndex(2));
     EXPECT_FALSE(events.lost);
     EXPECT_TRUE(linked.link->take_events().placements.empty());
 }
@@ -371,17 +371,17 @@ proto::Envelope close_of(std::uint32_t surface) {
 TEST(ControlLink, AWindowIsToldToRedrawAfterAMoveAndNotAfterItsOwnRequests) {
     FakeWindow window;
     Linked linked;
-    linked.link->surface_open(1, 300, 200, "", window.messages());
-    linked.link->surface_resize(1, 400, 200);
+    linked.link->surface_open(SurfaceId(1), 300, 200, "", window.messages());
+    linked.link->surface_resize(SurfaceId(1), 400, 200);
     linked.walld.send(framed(placement_of(1, 1)) + framed(placement_of(1, 2)));
-    ASSERT_TRUE(linked.link->wait_placement(1, 2s));
+    ASSERT_TRUE(linked.link->wait_placement(SurfaceId(1), 2s));
     std::this_thread::sleep_for(50ms);
     EXPECT_EQ(window.redrawn, 0);
     linked.walld.send(placement_of(1, 3));
     EXPECT_TRUE(FakeWindow::reaches(window.redrawn, 1));
-    linked.link->ask_to_redraw(1);
+    linked.link->ask_to_redraw(SurfaceId(1));
     EXPECT_TRUE(FakeWindow::reaches(window.redrawn, 2));
-    linked.link->ask_to_redraw(7);
+    linked.link->ask_to_redraw(SurfaceId(7));
     linked.walld.send(placement_of(7, 1));
     std::this_thread::sleep_for(50ms);
     EXPECT_EQ(window.redrawn, 2) << "of other surfaces it hears nothing";
@@ -389,9 +389,9 @@ TEST(ControlLink, AWindowIsToldToRedrawAfterAMoveAndNotAfterItsOwnRequests) {
 
 TEST(ControlLink, AnAdoptionWaitsUntilWalldKnows) {
     Linked linked;
-    linked.link->surface_open(1, 300, 200, "");
+    linked.link->surface_open(SurfaceId(1), 300, 200, "");
     EXPECT_TRUE(linked.walld.receive().has_surface_open());
-    EXPECT_FALSE(linked.link->surface_adopted(1, 3, 12, 20ms));
+    EXPECT_FALSE(linked.link->surface_adopted(SurfaceId(1), 3, 12, 20ms));
     const auto said = linked.walld.receive().surface_adopted();
     EXPECT_EQ(said.surface(), 1u);
     EXPECT_EQ(said.layout_version(), 3u);
@@ -400,18 +400,18 @@ TEST(ControlLink, AnAdoptionWaitsUntilWalldKnows) {
     noted.mutable_adoption_noted()->set_surface(1);
     noted.mutable_adoption_noted()->set_layout_version(4);
     linked.walld.send(noted);
-    EXPECT_TRUE(linked.link->surface_adopted(1, 4, 12, 2s));
+    EXPECT_TRUE(linked.link->surface_adopted(SurfaceId(1), 4, 12, 2s));
     linked.walld.hang_up();
-    EXPECT_FALSE(linked.link->surface_adopted(1, 5, 13, 10s)) << "nobody will answer";
+    EXPECT_FALSE(linked.link->surface_adopted(SurfaceId(1), 5, 13, 10s)) << "nobody will answer";
 }
 
 TEST(ControlLink, AWindowIsAskedToCloseAndWalldHearsWhenItCannotBe) {
     FakeWindow window, stubborn;
     stubborn.has_close = false;
     Linked linked;
-    linked.link->surface_open(1, 300, 200, "", window.messages());
-    linked.link->surface_open(2, 300, 200, "", stubborn.messages());
-    linked.link->surface_open(3, 300, 200, "");
+    linked.link->surface_open(SurfaceId(1), 300, 200, "", window.messages());
+    linked.link->surface_open(SurfaceId(2), 300, 200, "", stubborn.messages());
+    linked.link->surface_open(SurfaceId(3), 300, 200, "");
     for (int i = 0; i < 3; ++i) EXPECT_TRUE(linked.walld.receive().has_surface_open());
     linked.walld.send(framed(close_of(1)) + framed(close_of(2)) + framed(close_of(3)) + framed(close_of(99)));
     EXPECT_EQ(linked.walld.receive().close_refused().surface(), 2u);
@@ -424,16 +424,16 @@ TEST(ControlLink, AResizeWaitsForItsOwnPlacement) {
     proto::Envelope placement;
     placement.mutable_placement()->set_surface(1);
     placement.mutable_placement()->set_layout_version(1);
-    linked.link->surface_open(1, 300, 200, "");
+    linked.link->surface_open(SurfaceId(1), 300, 200, "");
     linked.walld.receive();
     linked.walld.send(placement);
-    ASSERT_TRUE(linked.link->wait_placement(1, 2s));
-    linked.link->surface_resize(1, 400, 200);
+    ASSERT_TRUE(linked.link->wait_placement(SurfaceId(1), 2s));
+    linked.link->surface_resize(SurfaceId(1), 400, 200);
     EXPECT_EQ(linked.walld.receive().surface_resize().width(), 400u);
-    EXPECT_FALSE(linked.link->wait_placement(1, 20ms));
+    EXPECT_FALSE(linked.link->wait_placement(SurfaceId(1), 20ms));
     placement.mutable_placement()->set_layout_version(2);
     linked.walld.send(placement);
-    EXPECT_EQ(linked.link->wait_placement(1, 2s)->layout_version, 2u);
+    EXPECT_EQ(linked.link->wait_placement(SurfaceId(1), 2s)->layout_version, 2u);
 }
 
 TEST(ControlLink, ByteByByteIsTheSame) {
@@ -441,18 +441,18 @@ TEST(ControlLink, ByteByByteIsTheSame) {
     proto::Envelope placement;
     placement.mutable_placement()->set_surface(1);
     placement.mutable_placement()->set_layout_version(9);
-    linked.link->surface_open(1, 1, 1, "");
+    linked.link->surface_open(SurfaceId(1), 1, 1, "");
     linked.walld.receive();
     for (const char c : framed(placement)) {
         linked.walld.send(std::string(1, c));
         std::this_thread::sleep_for(1ms);
     }
-    EXPECT_EQ(linked.link->wait_placement(1, 2s)->layout_version, 9u);
+    EXPECT_EQ(linked.link->wait_placement(SurfaceId(1), 2s)->layout_version, 9u);
 }
 
 TEST(ControlLink, ComesBackAfterWalldWasAway) {
     Linked linked;
-    linked.link->surface_open(1, 300, 200, "gears");
+    linked.link->surface_open(SurfaceId(1), 300, 200, "gears");
     linked.walld.receive();
     linked.walld.hang_up();
     EXPECT_TRUE(collect(*linked.link, [](auto& e) { return e.lost; }).lost);
@@ -460,12 +460,12 @@ TEST(ControlLink, ComesBackAfterWalldWasAway) {
     EXPECT_EQ(linked.walld.receive().surface_open().title(), "gears");  // announced again
     const auto events = collect(*linked.link, [](auto& e) { return e.reconnected.has_value(); });
     ASSERT_TRUE(events.reconnected);
-    EXPECT_EQ(events.reconnected->session, 7u);
+    EXPECT_EQ(events.reconnected->session, SessionId(7));
 }
 
 TEST(ControlLink, TellsTheNextWalldWhatThereWas) {
     Linked linked;
-    linked.link->surface_open(1, 300, 200, "gears");
+    linked.link->surface_open(SurfaceId(1), 300, 200, "gears");
     linked.walld.receive();
     auto first = placement_of(1, 1), second = placement_of(1, 2), third = placement_of(1, 3);
     second.mutable_placement()->mutable_rect()->set_x(20);
@@ -477,9 +477,9 @@ TEST(ControlLink, TellsTheNextWalldWhatThereWas) {
     note.mutable_surface_note()->set_note("note");
     linked.walld.send(framed(first) + framed(second) + framed(third) + framed(up) + framed(note));
     collect(*linked.link, [](auto& e) { return e.placements.size() == 3 && !e.node_changes.empty(); });
-    linked.link->surface_adopted(1, 2, 9, 1ms);  // the third one has come since the program looked
+    linked.link->surface_adopted(SurfaceId(1), 2, 9, 1ms);  // the third one has come since the program looked
     EXPECT_EQ(linked.walld.receive().surface_adopted().layout_version(), 2u);
-    linked.link->surface_open(2, 10, 10, "placed nowhere yet");
+    linked.link->surface_open(SurfaceId(2), 10, 10, "placed nowhere yet");
     linked.walld.receive();
     std::this_thread::sleep_for(50ms);  // the note is behind all that, and nobody waits for it
     linked.walld.hang_up();
@@ -500,16 +500,17 @@ TEST(ControlLink, TellsTheNextWalldWhatThereWas) {
 
 TEST(ControlLink, NobodyWaitsForASilentWalldTwice) {
     Linked linked;
-    linked.link->surface_open(1, 300, 200, "");
+    linked.link->surface_open(SurfaceId(1), 300, 200, "");
     linked.walld.receive();
-    EXPECT_FALSE(linked.link->wait_placement(1, 10s)) << "it has asked for a sign of life meanwhile, in vain";
+    EXPECT_FALSE(linked.link->wait_placement(SurfaceId(1), 10s))
+        << "it has asked for a sign of life meanwhile, in vain";
     const auto start = std::chrono::steady_clock::now();
-    EXPECT_FALSE(linked.link->surface_adopted(1, 1, 1, 10s));
-    EXPECT_FALSE(linked.link->wait_placement(1, 10s));
+    EXPECT_FALSE(linked.link->surface_adopted(SurfaceId(1), 1, 1, 10s));
+    EXPECT_FALSE(linked.link->wait_placement(SurfaceId(1), 10s));
     EXPECT_LT(std::chrono::steady_clock::now() - start, 1s);
     linked.walld.send(placement_of(1, 4));
     collect(*linked.link, [](auto& e) { return !e.placements.empty(); });
-    EXPECT_EQ(linked.link->wait_placement(1, 10s)->layout_version, 4u);
+    EXPECT_EQ(linked.link->wait_placement(SurfaceId(1), 10s)->layout_version, 4u);
     std::thread later([&] {
         std::this_thread::sleep_for(200ms);
         proto::Envelope noted;
@@ -517,7 +518,7 @@ TEST(ControlLink, NobodyWaitsForASilentWalldTwice) {
         noted.mutable_adoption_noted()->set_layout_version(4);
         linked.walld.send(noted);
     });
-    EXPECT_TRUE(linked.link->surface_adopted(1, 4, 2, 10s)) << "it answers again, and is waited for";
+    EXPECT_TRUE(linked.link->surface_adopted(SurfaceId(1), 4, 2, 10s)) << "it answers again, and is waited for";
     later.join();
 }
 
@@ -562,7 +563,7 @@ TEST(ControlLink, LosingWalldEndsWaiting) {
         linked.walld.hang_up();
     });
     const auto start = std::chrono::steady_clock::now();
-    EXPECT_FALSE(linked.link->wait_placement(1, 10s));
+    EXPECT_FALSE(linked.link->wait_placement(SurfaceId(1), 10s));
     EXPECT_LT(std::chrono::steady_clock::now() - start, 5s);
     later.join();
 }

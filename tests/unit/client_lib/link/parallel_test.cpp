@@ -31,7 +31,7 @@ TEST(Parallel, IsSaidToWalld) {
     EXPECT_EQ(envelope.client_hello().group().name(), "g");
     EXPECT_EQ(envelope.client_hello().group().rank(), 3u);
     EXPECT_EQ(envelope.client_hello().group().members(), 4u);
-    ASSERT_TRUE(envelope.ParseFromString(encode_placement_noted(7, 9)));
+    ASSERT_TRUE(envelope.ParseFromString(encode_placement_noted(SurfaceId(7), 9)));
     EXPECT_EQ(envelope.placement_noted().surface(), 7u);
     EXPECT_EQ(envelope.placement_noted().layout_version(), 9u);
     ASSERT_TRUE(envelope.ParseFromString(encode_member_leaves(0)));
@@ -55,7 +55,7 @@ TEST(Parallel, APlacementComesWithItsFrameSizeAndNodes) {
     EXPECT_EQ(placement.height, 480u);
     ASSERT_EQ(placement.nodes.size(), 2u);
     EXPECT_EQ(placement.nodes[0].address, "unix:/a");
-    EXPECT_EQ(placement.nodes[1].node, 3u);
+    EXPECT_EQ(placement.nodes[1].node, NodeIndex(3));
 }
 
 TEST(SyncObjects, TellMisuse) {

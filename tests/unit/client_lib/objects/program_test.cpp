@@ -55,7 +55,7 @@ TEST(ExecutableTest, OtherNodesGetTheFirstOnesChoices) {
 }
 
 TEST(ExecutableTest, StampsTellWhatANodeLacks) {
-    Program program(1, 1);
+    Program program(ClientName(1), 1);
     program.executable = Executable::make({}, reflection());
     Executable& e = *program.executable;
     wire::PackBuffer first;
@@ -145,7 +145,7 @@ TEST_F(ProgramTest, SourceIsKeptAsGiven) {
 
 TEST_F(ProgramTest, UniformsKeepTheirTypes) {
     Program& program = use();
-    EXPECT_EQ(c.state.objects.current_program, program.id);
+    EXPECT_EQ(c.state.objects.current_program, program.id.value);
     gl().Uniform3f(c, 0, 1, 2, 3);
     EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
     GLfloat got[3] = {};
@@ -212,8 +212,8 @@ TEST_F(BufferTest, HoldsWhatItWasGiven) {
     EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
     gl().BufferData(c, GL_ARRAY_BUFFER, 4, "abcd", GL_FLOAT);
     EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
-    EXPECT_EQ(buffer_content(c, c.state.local.array_buffer, 2).bytes().size(), 2u);
-    EXPECT_TRUE(buffer_content(c, c.state.local.array_buffer, 5).bytes().empty());
+    EXPECT_EQ(buffer_content(c, ClientName(c.state.local.array_buffer), 2).bytes().size(), 2u);
+    EXPECT_TRUE(buffer_content(c, ClientName(c.state.local.array_buffer), 5).bytes().empty());
 }
 
 TEST_F(BufferTest, MappedMemoryIsTheContent) {

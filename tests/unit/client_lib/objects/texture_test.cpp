@@ -89,7 +89,7 @@ void define(Texture& texture, GLint number, std::int32_t size) {
 using Names = std::vector<std::string>;
 
 TEST(Texture, ANodeGetsOnlyWhatItLacks) {
-    Texture texture(1, 1, GL_TEXTURE_2D);
+    Texture texture(ClientName(1), 1, GL_TEXTURE_2D);
     EXPECT_EQ(sent(texture, 0), Names{"TexParameter"});  // so that the name exists
     define(texture, 0, 8);
     EXPECT_EQ(sent(texture, 0), Names{"TexImage"});
@@ -104,7 +104,7 @@ TEST(Texture, ANodeGetsOnlyWhatItLacks) {
 }
 
 TEST(Texture, AChangedRectangleIsCutOut) {
-    Texture texture(1, 1, GL_TEXTURE_2D);
+    Texture texture(ClientName(1), 1, GL_TEXTURE_2D);
     define(texture, 0, 8);
     TextureLevel& level = texture.level_at(0, 0);
     for (std::size_t i = 0; i < level.pixels.size(); ++i) level.pixels[i] = static_cast<std::byte>(i);
@@ -123,7 +123,7 @@ TEST(Texture, AChangedRectangleIsCutOut) {
 }
 
 TEST(Texture, ManyChangesAreMerged) {
-    Texture texture(1, 1, GL_TEXTURE_2D);
+    Texture texture(ClientName(1), 1, GL_TEXTURE_2D);
     define(texture, 0, 64);
     const auto known = texture.stamp;
     for (int i = 0; i < 60; ++i) texture.level_at(0, 0).note_change({i, i, 0, 1, 1, 1, next_stamp()});
@@ -133,7 +133,7 @@ TEST(Texture, ManyChangesAreMerged) {
 }
 
 TEST(Texture, LargeImagesTravelInPieces) {
-    Texture texture(1, 1, GL_TEXTURE_2D);
+    Texture texture(ClientName(1), 1, GL_TEXTURE_2D);
     define(texture, 0, 3000);
     wire::PackBuffer buffer;
     std::size_t largest = 0, commands = 0;
@@ -147,7 +147,7 @@ TEST(Texture, LargeImagesTravelInPieces) {
 }
 
 TEST(Texture, MipmapsAreMadeByTheNode) {
-    Texture texture(1, 1, GL_TEXTURE_2D);
+    Texture texture(ClientName(1), 1, GL_TEXTURE_2D);
     texture.parameters.generate_mipmap = true;
     define(texture, 0, 8);
     texture.mipmaps_generated();

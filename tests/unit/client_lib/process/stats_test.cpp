@@ -16,14 +16,14 @@ using testing::Not;
 
 TEST(Stats, CountsFramesOfEachNode) {
     Stats stats;
-    stats.add_node(0, NodeCounter::state_bytes, 3000);
-    stats.add_node(0, NodeCounter::geometry_bytes, 10);
+    stats.add_node(NodeIndex(0), NodeCounter::state_bytes, 3000);
+    stats.add_node(NodeIndex(0), NodeCounter::geometry_bytes, 10);
     stats.end_frame();
-    stats.add_node(0, NodeCounter::state_bytes, 40);
+    stats.add_node(NodeIndex(0), NodeCounter::state_bytes, 40);
     stats.end_frame();
-    stats.add_node(0, NodeCounter::state_bytes, 30);
+    stats.add_node(NodeIndex(0), NodeCounter::state_bytes, 30);
     stats.end_frame();
-    EXPECT_EQ(stats.of_node(0, NodeCounter::state_bytes), 3070u);
+    EXPECT_EQ(stats.of_node(NodeIndex(0), NodeCounter::state_bytes), 3070u);
     const auto json = stats.json();
     EXPECT_THAT(json, HasSubstr("\"frames\": 3"));
     EXPECT_THAT(json, HasSubstr("\"total\": {\"state_bytes\": 3070,"));
@@ -49,15 +49,15 @@ TEST(Stats, NamesWhatWasUnsupportedAndWaitedFor) {
 TEST(Stats, TrafficIsByNode) {
     Stats stats;
     EXPECT_TRUE(stats.traffic().nodes.empty());
-    stats.add_node(2, NodeCounter::state_bytes, 10);
-    stats.add_node(2, NodeCounter::geometry_bytes, 30);
+    stats.add_node(NodeIndex(2), NodeCounter::state_bytes, 10);
+    stats.add_node(NodeIndex(2), NodeCounter::geometry_bytes, 30);
     stats.add_diff_time(std::chrono::microseconds(5));
     stats.count_round_trip("glReadPixels");
     stats.count_round_trip("glFinish");
     stats.end_frame();
     const Traffic traffic = stats.traffic();
     ASSERT_EQ(traffic.nodes.size(), 1u);
-    EXPECT_EQ(traffic.nodes[0].node, 2u);
+    EXPECT_EQ(traffic.nodes[0].node, NodeIndex(2));
     EXPECT_EQ(traffic.nodes[0].state_bytes, 10u);
     EXPECT_EQ(traffic.nodes[0].object_bytes, 0u);
     EXPECT_EQ(traffic.nodes[0].geometry_bytes, 30u);
@@ -71,12 +71,12 @@ TEST(Stats, ThreadsLoseNothing) {
     std::vector<std::thread> threads;
     for (int t = 0; t < 4; ++t)
         threads.emplace_back([&] {
-            for (int i = 0; i < 10000; ++i) stats.add_node(5, NodeCounter::blocks, 1);
+            for (int i = 0; i < 10000; ++i) stats.add_node(NodeIndex(5), NodeCounter::blocks, 1);
         });
     for (auto& thread : threads) thread.join();
-    EXPECT_EQ(stats.of_node(5, NodeCounter::blocks), 40000u);
-    stats.add_node(100000, NodeCounter::blocks, 2);
-    EXPECT_EQ(stats.of_node(Stats::kMaxNodes - 1, NodeCounter::blocks), 2u);
+    EXPECT_EQ(stats.of_node(NodeIndex(5), NodeCounter::blocks), 40000u);
+    stats.add_node(NodeIndex(100000), NodeCounter::blocks, 2);
+    EXPECT_EQ(stats.of_node(NodeIndex(Stats::kMaxNodes - 1), NodeCounter::blocks), 2u);
 }
 
 TEST(Stats, WritesTheFileOnlyWhenAsked) {
