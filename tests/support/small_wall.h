@@ -19,6 +19,7 @@ name = "right"
 name = "r"
 rect = [640, 0, 640, 480]
 )";
+inline constexpr NodeIndex kLeft(0), kRight(1);
 
 class NoOutbox : public Outbox {
 public:

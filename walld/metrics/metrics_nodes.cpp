@@ -92,7 +92,7 @@ void add_objects(Families& out, const std::vector<Labelled<NodeRef>>& up) {
 void add_tiles(Families& out, const Observed& observed) {
     std::vector<Labelled<TileRef>> tiles, shown;
     const auto& nodes = observed.wall.nodes();
-    for (NodeIndex i = 0; i < nodes.size(); ++i) {
+    for (const NodeIndex i : nodes.ids()) {
         for (std::uint32_t slot = 0; slot < nodes[i].tiles.size(); ++slot) {
             const auto& tile = nodes[i].tiles[slot];
             const double age = tile.last ? std::chrono::duration<double>(observed.now - *tile.last).count() : 0;

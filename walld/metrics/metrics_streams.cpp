@@ -69,7 +69,7 @@ void add_stream_metrics(Families& out, const Observed& observed) {
                             {"fps", std::to_string(view.fps)},
                             {"session", session},
                             {"region", region}},
-                           {&view, &told_of(node, view.id)}});
+                           {&view, &told_of(node, view.id.value)}});
     }
     add_table(out, kStreams, streams);
 }

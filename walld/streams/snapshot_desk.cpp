@@ -83,7 +83,7 @@ Outcome<void> SnapshotDesk::ask_nodes(const std::shared_ptr<Job>& job) {
         job->picture.view = geom::intersect(job->picture.view, wall_.find(*key)->place.shown());
     }
     bool found = false;
-    for (NodeIndex node = 0; node < wall_.nodes().size(); ++node) {
+    for (const NodeIndex node : wall_.nodes().ids()) {
         for (std::uint32_t slot = 0; const auto& tile : wall_.nodes()[node].config->tiles) {
             const auto this_slot = slot++;
             if (!query.tile.empty() && tile.name != query.tile) continue;
@@ -100,17 +100,18 @@ Outcome<void> SnapshotDesk::ask_nodes(const std::shared_ptr<Job>& job) {
 }
 
 void SnapshotDesk::ask(const std::shared_ptr<Job>& job, NodeIndex node, std::uint32_t slot, SessionId session) {
+    last_id_ = PictureId(last_id_.value + 1);
     proto::SnapshotRequest request;
-    request.set_request(++last_request_);
+    request.set_request(last_id_.value);
     request.set_slot(slot);
     request.set_session(session.value);
-    pending_.emplace(last_request_, Pending{job, job->picture.tiles.size() - 1, node});
+    pending_.emplace(last_id_, Pending{job, job->picture.tiles.size() - 1, node});
     ++job->missing;
     out_.to_node(node, walld::make(&proto::Envelope::mutable_snapshot_request, request));
 }
 
 void SnapshotDesk::arrived(NodeIndex node, proto::Snapshot& snapshot) {
-    const auto found = pending_.find(snapshot.request());
+    const auto found = pending_.find(PictureId(snapshot.request()));
     if (found == pending_.end() || found->second.node != node) return;
     Job& job = *found->second.job;
     TilePicture& tile = job.picture.tiles[found->second.tile];
@@ -138,7 +139,7 @@ void SnapshotDesk::node_left(NodeIndex node) {
 }
 
 /// All of the tile is there, or nothing more of it will come.
-void SnapshotDesk::finish(std::map<std::uint32_t, Pending>::iterator pending) {
+void SnapshotDesk::finish(std::map<PictureId, Pending>::iterator pending) {
     const auto job = pending->second.job;
     pending_.erase(pending);
     --job->missing;

@@ -76,7 +76,7 @@ private:
     asio::awaitable<Outcome<Png>> picture_of(const std::shared_ptr<Job>& job);
     Outcome<void> ask_nodes(const std::shared_ptr<Job>& job);
     void ask(const std::shared_ptr<Job>& job, NodeIndex node, std::uint32_t slot, SessionId session);
-    void finish(std::map<std::uint32_t, Pending>::iterator pending);
+    void finish(std::map<PictureId, Pending>::iterator pending);
 
     asio::any_io_executor executor_;
     const Wall& wall_;
@@ -84,8 +84,8 @@ private:
     asio::thread_pool composing_{1};
     std::deque<std::shared_ptr<Job>> waiting_;
     std::size_t being_made_ = 0;
-    std::map<std::uint32_t, Pending> pending_;
-    std::uint32_t last_request_ = 0;
+    std::map<PictureId, Pending> pending_;
+    PictureId last_id_;
 };
 
 }  // namespace wall::walld

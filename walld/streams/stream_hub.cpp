@@ -55,7 +55,7 @@ StreamHub::Watch StreamHub::make_watch(const WatchRequest& request, const Stream
     Watch watch{.request = request, .scope = scope};
     for (const auto& [node, slot, crop, at] : parts_of(wall_, scope)) {
         const auto width = static_cast<std::uint32_t>(at.width), height = static_cast<std::uint32_t>(at.height);
-        watch.parts.push_back({.key = {node, slot, scope.session.value, scope.surface.value, crop.x, crop.y, crop.width,
+        watch.parts.push_back({.key = {node, slot, scope.session, scope.surface, crop.x, crop.y, crop.width,
                                        crop.height, request.codec, width, height, request.fps},
                                .at = at});
     }
@@ -143,7 +143,7 @@ void StreamHub::join(Viewer& viewer, std::uint32_t number) {
             ask_for_more(*at);  // an unchanged picture would never come by itself
             continue;
         }
-        at->second.id = ++last_id_;
+        at->second.id = last_id_ = PictureId(last_id_.value + 1);
         by_id_[at->second.id] = at;
         if (wall_.nodes()[key.node].up) start(key, at->second);
     }
@@ -158,7 +158,7 @@ void StreamHub::drop_unwatched(const std::vector<Key>& keys) {
             continue;
         }
         proto::StreamStop stop;
-        stop.set_stream(at->second.id);
+        stop.set_stream(at->second.id.value);
         out_.to_node(key.node, make(&proto::Envelope::mutable_stream_stop, stop));
         by_id_.erase(at->second.id);
         streams_.erase(at);
@@ -265,10 +265,10 @@ std::optional<ViewerMessage> StreamHub::next_of(Viewer& viewer, std::uint32_t nu
 
 void StreamHub::start(const Key& key, NodeStream& stream) {
     proto::StreamStart message;
-    message.set_stream(stream.id);
+    message.set_stream(stream.id.value);
     message.set_slot(key.slot);
-    message.set_session(key.session);
-    message.set_surface(key.surface);
+    message.set_session(key.session.value);
+    message.set_surface(key.surface.value);
     auto& crop = *message.mutable_crop();
     crop.set_x(key.x);
     crop.set_y(key.y);
@@ -296,13 +296,13 @@ void StreamHub::ask_for_more(Streams::value_type& entry) {
     if (!wanted || !wall_.nodes()[key.node].up || (stream.on_its_way && !want_key)) return;
     stream.on_its_way = true;
     proto::StreamReady ready;
-    ready.set_stream(stream.id);
+    ready.set_stream(stream.id.value);
     ready.set_key(want_key);
     out_.to_node(key.node, make(&proto::Envelope::mutable_stream_ready, ready));
 }
 
 void StreamHub::arrived(NodeIndex node, proto::StreamFrame& frame) {
-    const auto found = by_id_.find(frame.stream());
+    const auto found = by_id_.find(PictureId(frame.stream()));
     if (found == by_id_.end() || found->second->first.node != node) return;
     auto& stream = found->second->second;
     if (!frame.error().empty()) return end(stream, frame.error());
@@ -394,7 +394,7 @@ std::vector<StreamView> StreamHub::views() const {
         const auto& tile = wall_.nodes()[key.node].config->tiles[key.slot];
         const geom::Rect crop{key.x, key.y, key.crop_width, key.crop_height},
             whole{0, 0, tile.rect.width, tile.rect.height};
-        out.push_back({stream.id, key.node, tile.name, key.codec, SessionId(key.session), SurfaceId(key.surface),
+        out.push_back({stream.id, key.node, tile.name, key.codec, key.session, key.surface,
                        crop == whole ? geom::Rect{} : crop, key.width, key.height, key.fps, stream.watchers.size(),
                        stream.frames, stream.bytes, stream.dropped});
     }

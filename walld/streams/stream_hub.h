@@ -32,8 +32,8 @@ struct ViewerMessage {
 
 /// One stream of a node, as an operator sees it.
 struct StreamView {
-    std::uint32_t id = 0;  ///< in the node's messages
-    NodeIndex node = 0;
+    PictureId id;  ///< in the node's messages
+    NodeIndex node;
     std::string tile, codec;
     SessionId session;  ///< none: all
     SurfaceId surface;  ///< none: all of the session
@@ -82,7 +82,9 @@ public:
 private:
     struct Key {
         NodeIndex node;
-        std::uint32_t slot, session, surface;
+        std::uint32_t slot;
+        SessionId session;
+        SurfaceId surface;
         std::int32_t x, y, crop_width, crop_height;
         std::string codec;
         std::uint32_t width, height, fps;
@@ -102,7 +104,7 @@ private:
         auto operator<=>(const Place&) const = default;
     };
     struct NodeStream {
-        std::uint32_t id = 0;
+        PictureId id;
         std::optional<std::string> header;  ///< the codec's; none: no frame yet
         std::uint32_t sequence = 0;
         bool on_its_way = true;  ///< the node was asked for a frame that has not come
@@ -137,10 +139,10 @@ private:
     const Wall& wall_;
     Outbox& out_;
     Streams streams_;
-    std::map<std::uint32_t, Streams::iterator> by_id_;
+    std::map<PictureId, Streams::iterator> by_id_;
     Quota places_{kViewers};
     std::map<Viewer*, std::shared_ptr<Viewer>> viewers_;
-    std::uint32_t last_id_ = 0;
+    PictureId last_id_;
     std::optional<Clock::time_point> deadline_;
     Counters counters_;
 };

@@ -24,7 +24,7 @@ Result<geom::Rect> rect_of(const Wall& wall, const WatchRequest& request, Stream
         scope.surface = key->surface;
         return wall.find(*key)->place.shown();
     }
-    for (NodeIndex node = 0; node < wall.nodes().size(); ++node) {
+    for (const NodeIndex node : wall.nodes().ids()) {
         for (std::uint32_t slot = 0; const auto& tile : wall.nodes()[node].config->tiles) {
             scope.tile = {node, slot++};
             if (tile.name == request.tile) return region_of(tile.rect, request.region);
@@ -80,7 +80,7 @@ Result<StreamScope> scope_of(const Wall& wall, const WatchRequest& request) {
 
 std::vector<StreamPart> parts_of(const Wall& wall, const StreamScope& scope) {
     std::vector<StreamPart> out;
-    for (NodeIndex node = 0; node < wall.nodes().size(); ++node) {
+    for (const NodeIndex node : wall.nodes().ids()) {
         for (std::uint32_t slot = 0; const auto& tile : wall.nodes()[node].config->tiles) {
             const auto this_slot = slot++;
             if (scope.tile && *scope.tile != std::pair(node, this_slot)) continue;

@@ -22,7 +22,7 @@ struct StreamScope {
 
 /// A tile's part of the picture.
 struct StreamPart {
-    NodeIndex node = 0;
+    NodeIndex node;
     std::uint32_t slot = 0;
     geom::Rect crop;  ///< what it shows, in pixels of the tile
     geom::Rect at;    ///< where it lies in the picture

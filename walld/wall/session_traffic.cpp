@@ -27,7 +27,7 @@ void SessionTraffic::note(std::uint32_t rank, const proto::ClientStats& report, 
     for (const auto& row : report.nodes()) {
         if (row.node() >= nodes) continue;
         const SentBytes bytes{row.state_bytes(), row.object_bytes(), row.geometry_bytes()};
-        process.by_node[row.node()] = bytes;
+        process.by_node[NodeIndex(row.node())] = bytes;
         sent += bytes;
     }
     const SentBytes before = std::exchange(process.sent, sent);
@@ -44,8 +44,8 @@ void SessionTraffic::note(std::uint32_t rank, const proto::ClientStats& report, 
     process.diff_seconds = 1e-9 * static_cast<double>(report.diff_ns());
 }
 
-std::map<std::uint32_t, SentBytes> SessionTraffic::by_node() const {
-    std::map<std::uint32_t, SentBytes> out;
+std::map<NodeIndex, SentBytes> SessionTraffic::by_node() const {
+    std::map<NodeIndex, SentBytes> out;
     for (const auto& [rank, process] : processes_)
         for (const auto& [node, bytes] : process.by_node) out[node] += bytes;
     return out;

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "common/base/ids.h"
 #include "proto/control.pb.h"
 
 namespace wall::walld {
@@ -34,7 +35,7 @@ public:
     void note(std::uint32_t rank, const proto::ClientStats& report, std::size_t nodes, Clock::time_point now);
 
     // The sums over all processes, which count the same frames.
-    std::map<std::uint32_t, SentBytes> by_node() const;
+    std::map<NodeIndex, SentBytes> by_node() const;
     SentBytes sent() const;  ///< to all nodes
     std::uint64_t frames() const;
     std::uint64_t round_trips() const;
@@ -43,7 +44,7 @@ public:
 
 private:
     struct Process {
-        std::map<std::uint32_t, SentBytes> by_node;
+        std::map<NodeIndex, SentBytes> by_node;
         SentBytes sent;
         std::uint64_t frames = 0, round_trips = 0;
         double diff_seconds = 0;

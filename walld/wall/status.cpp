@@ -93,7 +93,7 @@ json nodes_json(const Wall& wall) {
 
 json tiles_json(const Wall& wall, Clock::time_point now) {
     auto out = json::array();
-    for (NodeIndex i = 0; i < wall.nodes().size(); ++i) {
+    for (const NodeIndex i : wall.nodes().ids()) {
         const auto& node = wall.nodes()[i];
         for (std::uint32_t slot = 0; slot < node.tiles.size(); ++slot) {
             const auto& tile = node.config->tiles[slot];

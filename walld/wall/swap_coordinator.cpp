@@ -11,13 +11,13 @@ constexpr double kMeanFrames = 16;
 
 }  // namespace
 
-Presents SwapCoordinator::set_nodes(const std::set<std::uint32_t>& nodes, Clock::time_point now) {
+Presents SwapCoordinator::set_nodes(const std::set<NodeIndex>& nodes, Clock::time_point now) {
     std::erase_if(members_, [&](const auto& m) { return !m.second.leaving() && !nodes.contains(m.first); });
     for (const auto node : nodes) members_.try_emplace(node, Member{.waited = presented_ == 0});
     return advance(now);
 }
 
-Presents SwapCoordinator::move(const std::set<std::uint32_t>& nodes, std::uint32_t frame, Clock::time_point now) {
+Presents SwapCoordinator::move(const std::set<NodeIndex>& nodes, std::uint32_t frame, Clock::time_point now) {
     const auto first = std::max(frame, presented_ + 1);
     for (auto& [node, member] : members_) {
         auto& stays = member.stays;
@@ -30,12 +30,12 @@ Presents SwapCoordinator::move(const std::set<std::uint32_t>& nodes, std::uint32
     return advance(now);
 }
 
-Presents SwapCoordinator::lose(std::uint32_t node, Clock::time_point now) {
+Presents SwapCoordinator::lose(NodeIndex node, Clock::time_point now) {
     members_.erase(node);
     return advance(now);
 }
 
-Presents SwapCoordinator::rendered(std::uint32_t node, std::uint32_t frame, Clock::time_point now) {
+Presents SwapCoordinator::rendered(NodeIndex node, std::uint32_t frame, Clock::time_point now) {
     const auto found = members_.find(node);
     if (found == members_.end() || frame <= found->second.rendered) return {};
     auto& member = found->second;
@@ -51,7 +51,7 @@ Presents SwapCoordinator::rendered(std::uint32_t node, std::uint32_t frame, Cloc
     return out;
 }
 
-Presents SwapCoordinator::resume(std::uint32_t node, std::uint32_t frame, std::uint32_t shown, Clock::time_point now) {
+Presents SwapCoordinator::resume(NodeIndex node, std::uint32_t frame, std::uint32_t shown, Clock::time_point now) {
     const auto found = members_.find(node);
     if (found == members_.end()) return {};
     presented_ = std::max(presented_, shown);
@@ -100,7 +100,7 @@ bool SwapCoordinator::shown(std::uint32_t frame) const {
                                [&](const auto& m) { return !m.second.takes_part(frame) || m.second.told >= frame; });
 }
 
-std::uint32_t SwapCoordinator::behind(std::uint32_t node) const {
+std::uint32_t SwapCoordinator::behind(NodeIndex node) const {
     const auto found = members_.find(node);
     if (found == members_.end()) return 0;
     const Stay& stay = found->second.stays.back();
@@ -150,8 +150,7 @@ void SwapCoordinator::count_frame(Clock::time_point now) {
     last_present_ = now;
 }
 
-void SwapCoordinator::tell(Presents& out, std::uint32_t node, Member& member, std::uint32_t frame,
-                           Clock::time_point now) {
+void SwapCoordinator::tell(Presents& out, NodeIndex node, Member& member, std::uint32_t frame, Clock::time_point now) {
     if (frame <= member.told) return;
     out.push_back({node, member.told = frame});
     presented_spread_.note(frame, group_of(frame), now);

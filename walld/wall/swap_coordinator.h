@@ -23,6 +23,7 @@
 #include <set>
 #include <vector>
 
+#include "common/base/ids.h"
 #include "walld/wall/spread.h"
 
 namespace wall::walld {
@@ -30,7 +31,7 @@ namespace wall::walld {
 using Clock = std::chrono::steady_clock;
 
 struct PresentTo {
-    std::uint32_t node = 0;
+    NodeIndex node;
     std::uint32_t frame = 0;
     bool operator==(const PresentTo&) const = default;
 };
@@ -41,15 +42,15 @@ public:
     SwapCoordinator(Clock::duration limit, bool held) : limit_(limit), held_(held) {}
 
     /// The live nodes that show the surface now; those that it is leaving stay until they have.
-    Presents set_nodes(const std::set<std::uint32_t>& nodes, Clock::time_point now);
+    Presents set_nodes(const std::set<NodeIndex>& nodes, Clock::time_point now);
     /// From `frame` on the surface lies on these nodes.
-    Presents move(const std::set<std::uint32_t>& nodes, std::uint32_t frame, Clock::time_point now);
+    Presents move(const std::set<NodeIndex>& nodes, std::uint32_t frame, Clock::time_point now);
     /// A node is dead.
-    Presents lose(std::uint32_t node, Clock::time_point now);
+    Presents lose(NodeIndex node, Clock::time_point now);
     /// A node has rendered `frame` (and all before it). Reports of other nodes are ignored.
-    Presents rendered(std::uint32_t node, std::uint32_t frame, Clock::time_point now);
+    Presents rendered(NodeIndex node, std::uint32_t frame, Clock::time_point now);
     /// A node that was not told what to show, or was told by somebody else, shows `shown` and has rendered `frame`.
-    Presents resume(std::uint32_t node, std::uint32_t frame, std::uint32_t shown, Clock::time_point now);
+    Presents resume(NodeIndex node, std::uint32_t frame, std::uint32_t shown, Clock::time_point now);
     Presents tick(Clock::time_point now);
 
     /// Nothing beyond this frame is presented until it is called again.
@@ -68,7 +69,7 @@ public:
     /// Nothing before the first frame.
     std::optional<Clock::time_point> last_present() const { return last_present_; }
     /// Presented frames that the node takes part in and was not told to show yet.
-    std::uint32_t behind(std::uint32_t node) const;
+    std::uint32_t behind(NodeIndex node) const;
     bool held() const { return held_; }
     std::uint64_t timeouts() const { return timeouts_; }
 
@@ -99,7 +100,7 @@ private:
     Presents advance(Clock::time_point now);
     void forget_past();
     void count_frame(Clock::time_point now);
-    void tell(Presents& out, std::uint32_t node, Member& member, std::uint32_t frame, Clock::time_point now);
+    void tell(Presents& out, NodeIndex node, Member& member, std::uint32_t frame, Clock::time_point now);
     std::size_t group_of(std::uint32_t frame) const;
     std::uint32_t agreed() const;
     bool someone_ahead() const;
@@ -107,7 +108,7 @@ private:
 
     Clock::duration limit_;                  ///< of time, for a late node
     std::uint32_t last_frame_ = UINT32_MAX;  ///< that may be presented
-    std::map<std::uint32_t, Member> members_;
+    std::map<NodeIndex, Member> members_;
     std::uint32_t presented_ = 0;
     std::optional<Clock::time_point> deadline_;
     bool held_;

@@ -51,7 +51,7 @@ Result<NodeIndex> Wall::check_node(const proto::NodeHello& hello) const {
     if (found == nodes_.end()) return fail("node '" + hello.name() + "' is not in wall.toml");
     if (found->up && !same_process(found->hello, hello) && hello.started_us() <= found->hello.started_us())
         return fail("node '" + hello.name() + "' is already here, as process " + std::to_string(found->hello.pid()));
-    return static_cast<NodeIndex>(found - nodes_.begin());
+    return NodeIndex(static_cast<std::uint32_t>(found - nodes_.begin()));
 }
 
 Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_point now) {
@@ -87,7 +87,7 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
 void Wall::node_leaves(NodeIndex node, Clock::time_point now) {
     nodes_[node].up = false;
     proto::NodeDown down;
-    down.set_node(node);
+    down.set_node(node.value);
     for (const auto& [id, session] : sessions_) out_.to_client(id, make(&proto::Envelope::mutable_node_down, down));
     for_each_surface(
         [&](const SurfaceKey& key, SurfaceEntry& surface) { present(key, surface.swap.lose(node, now), now); });
@@ -117,7 +117,7 @@ void Wall::node_faults(NodeIndex node, const proto::SessionFault& report) {
 
 void Wall::welcome_node(NodeIndex node) {
     proto::NodeWelcome welcome;
-    welcome.set_node(node);
+    welcome.set_node(node.value);
     welcome.set_background(config_.background);
     for (std::uint32_t slot = 0; const auto& tile : nodes_[node].config->tiles) {
         auto* entry = welcome.add_tiles();
@@ -130,7 +130,7 @@ void Wall::welcome_node(NodeIndex node) {
 
 proto::NodeUp Wall::node_up_message(NodeIndex node, const std::string& ticket) const {
     proto::NodeUp up;
-    up.set_node(node);
+    up.set_node(node.value);
     up.set_address(nodes_[node].hello.address());
     up.set_ticket(ticket);
     up.set_incarnation(nodes_[node].incarnation);
@@ -139,7 +139,7 @@ proto::NodeUp Wall::node_up_message(NodeIndex node, const std::string& ticket) c
 
 std::set<NodeIndex> Wall::nodes_under(const geom::Rect& rect) const {
     std::set<NodeIndex> out;
-    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+    for (const NodeIndex i : nodes_.ids()) {
         const bool shows = std::ranges::any_of(nodes_[i].config->tiles,
                                                [&](const auto& tile) { return geom::overlaps(tile.rect, rect); });
         if (nodes_[i].up && shows) out.insert(i);
@@ -191,7 +191,7 @@ SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Cloc
     }
     ++counters_.sessions;
     before_welcome(id);
-    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+    for (const NodeIndex i : nodes_.ids()) {
         if (!nodes_[i].up) continue;
         hand_out_ticket(id, session, i);
         session.group_nodes[i] = nodes_[i].incarnation;
@@ -227,10 +227,10 @@ void Wall::welcome_client(SessionId id, const SessionEntry& session, Rank rank) 
     welcome.set_canvas_width(static_cast<std::uint32_t>(canvas.width));
     welcome.set_canvas_height(static_cast<std::uint32_t>(canvas.height));
     std::vector<const proto::GlCaps*> caps;
-    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+    for (const NodeIndex i : nodes_.ids()) {
         for (std::uint32_t slot = 0; const auto& tile : nodes_[i].config->tiles) {
             auto* entry = welcome.add_tiles();
-            entry->set_node(i);
+            entry->set_node(i.value);
             entry->set_slot(slot++);
             entry->set_name(tile.name);
             *entry->mutable_rect() = to_proto(tile.rect);
@@ -486,13 +486,13 @@ proto::Envelope Wall::stacking_message(NodeIndex node) const {
 
 void Wall::send_stacking() {
     number_stacking();
-    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+    for (const NodeIndex i : nodes_.ids()) {
         if (nodes_[i].up) out_.to_node(i, stacking_message(i));
     }
 }
 
 void Wall::to_all_nodes(const proto::Envelope& message) {
-    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+    for (const NodeIndex i : nodes_.ids()) {
         if (nodes_[i].up) out_.to_node(i, message);
     }
 }

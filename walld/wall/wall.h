@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/id_vector.h"
 #include "common/base/ids.h"
 #include "common/base/result.h"
 #include "common/config/wall_config.h"
@@ -25,8 +26,6 @@
 #include "walld/wall/swap_coordinator.h"
 
 namespace wall::walld {
-
-using NodeIndex = std::uint32_t;
 
 /// Where the wall's decisions go. Called from within the wall's functions; must not call back into it.
 class Outbox {
@@ -180,7 +179,7 @@ public:
 
     // ---- views ----
     const config::WallConfig& config() const { return config_; }
-    const std::vector<Node>& nodes() const { return nodes_; }
+    const IdVector<NodeIndex, Node>& nodes() const { return nodes_; }
     const std::map<SessionId, SessionEntry>& sessions() const { return sessions_; }
     const std::vector<SurfaceKey>& stacking() const { return stacking_; }  ///< bottom first
     const SurfaceEntry* find(const SurfaceKey& key) const;
@@ -236,7 +235,7 @@ private:
     config::WallConfig config_;
     Outbox& out_;
     RandomBytes random_;
-    std::vector<Node> nodes_;
+    IdVector<NodeIndex, Node> nodes_;
     std::map<SessionId, SessionEntry> sessions_;
     std::vector<SurfaceKey> stacking_;
     SessionId last_session_;

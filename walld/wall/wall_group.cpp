@@ -69,7 +69,7 @@ void Wall::agree(const SurfaceKey& key, Clock::time_point now) {
     placement.set_from_frame(first ? 0 : surface.swap.presented() + AgreedPlacements::kLead);
     placement.set_width(surface.width);
     placement.set_height(surface.height);
-    for (NodeIndex i = 0; i < nodes_.size(); ++i) {
+    for (const NodeIndex i : nodes_.ids()) {
         if (nodes_[i].up) *placement.add_nodes() = node_up_message(i, session.tickets.at(i));
     }
     surface.agreed.presented(surface.swap.presented());

@@ -31,7 +31,7 @@ bool same_secret(std::string_view a, std::string_view b) {
 /// The program has been told this ticket of a node that has come with it.
 bool knows_a_ticket(const proto::Resume& resume, const ReturningSession& session) {
     return std::ranges::any_of(resume.tickets(), [&](const proto::Resume::NodeTicket& told) {
-        const auto of_node = session.tickets.find(told.node());
+        const auto of_node = session.tickets.find(NodeIndex(told.node()));
         return of_node != session.tickets.end() && same_secret(of_node->second, told.ticket());
     });
 }
@@ -80,10 +80,11 @@ std::optional<SessionId> Wall::resumable(const proto::ClientHello& hello) const 
 void Wall::resume_session(SessionId id, SessionEntry& session, const proto::Resume& resume) {
     const auto returning = std::move(returning_.extract(id).mapped());
     for (const auto& told : resume.tickets()) {
-        if (told.node() >= nodes_.size() || told.ticket().size() != kTicketBytes) continue;
-        const auto of_node = returning.tickets.find(told.node());
+        const NodeIndex node(told.node());
+        if (!nodes_.contains(node) || told.ticket().size() != kTicketBytes) continue;
+        const auto of_node = returning.tickets.find(node);
         const bool known = of_node != returning.tickets.end() && same_secret(of_node->second, told.ticket());
-        if (known || !nodes_[told.node()].up) session.tickets[told.node()] = told.ticket();
+        if (known || !nodes_[node].up) session.tickets[node] = told.ticket();
     }
     session.awaited = resume.windows();
 }

@@ -128,8 +128,8 @@ TEST_F(Metrics, TilesHaveAnAgeOnceTheyHaveShownSomething) {
     join("right");
     const auto id = open();
     EXPECT_THAT(text(), Not(HasSubstr("wallgl_tile_frame_age_seconds{")));
-    rendered(0, id, 1);
-    rendered(1, id, 1);
+    rendered(kLeft, id, 1);
+    rendered(kRight, id, 1);
     now_ += std::chrono::milliseconds(2500);
     EXPECT_THAT(text(), HasSubstr("wallgl_tile_frame_age_seconds{node=\"left\",tile=\"l\"} 2.5\n"));
     EXPECT_THAT(text(), HasSubstr("wallgl_surface_frame_age_seconds{session=\"1\",surface=\"1.1\"} 2.5\n"));
@@ -141,9 +141,9 @@ TEST_F(Metrics, SkewIsAHistogram) {
     join("left");
     join("right");
     const auto id = open();
-    rendered(0, id, 1);
+    rendered(kLeft, id, 1);
     now_ += std::chrono::milliseconds(3);
-    rendered(1, id, 1);
+    rendered(kRight, id, 1);
     const std::string name = "wallgl_surface_rendered_skew_seconds", labels = "{session=\"1\",surface=\"1.1\"";
     EXPECT_THAT(text(), HasSubstr("# TYPE " + name + " histogram\n"));
     EXPECT_THAT(text(), HasSubstr(name + "_count" + labels + "} 1\n"));
@@ -155,8 +155,8 @@ TEST_F(Metrics, SkewIsAHistogram) {
 
 TEST_F(Metrics, AStreamIsWhatWalldAndItsNodeKnowOfIt) {
     node_tells(join("left"), {});
-    streams_ = {{.id = 5,
-                 .node = 0,
+    streams_ = {{.id = PictureId(5),
+                 .node = kLeft,
                  .tile = "l",
                  .codec = "huffyuv",
                  .width = 64,

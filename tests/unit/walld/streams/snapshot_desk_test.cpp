@@ -172,7 +172,7 @@ TEST_F(SnapshotDeskTest, ANodeThatLeavesInTheMiddleIsLeftOut) {
     ASSERT_EQ(requests.size(), 2u);
     send(requests[0], '\x55', 0, 3);
     send(requests[1], '\x66');
-    desk_.node_left(0);
+    desk_.node_left(kLeft);
     wait_for(*taken);
     EXPECT_EQ(first_pixel(*taken), 0);
     send(requests[0], '\x55', 3);  // comes too late for anything

@@ -85,8 +85,8 @@ protected:
         rendered.set_session(id.value);
         rendered.set_surface(1);
         rendered.set_frame(version);
-        wall_.node_rendered(0, rendered, {});
-        wall_.node_rendered(1, rendered, {});
+        wall_.node_rendered(kLeft, rendered, {});
+        wall_.node_rendered(kRight, rendered, {});
         ASSERT_EQ(wall_.find({id, SurfaceId(1)})->place.shown().x, x);
     }
     std::vector<proto::Envelope> said(NodeIndex node) { return std::exchange(out_.nodes[node], {}); }
@@ -130,29 +130,29 @@ protected:
 
 TEST_F(StreamHubTest, AViewerGetsTheFormatAndThenFrames) {
     const auto one = viewer({tile("l")});
-    const auto id = started(0);
+    const auto id = started(kLeft);
     EXPECT_EQ(
         next(*one),
         R"({"background":"#000000","codec":"huffyuv","height":480,"layout":"rgba",)"
         R"("parts":[{"away":false,"rect":[0,0,640,480],"tile":"l"}],"shows":[0,0,640,480],"stream":0,"width":640})");
     EXPECT_EQ(next(*one), "");
-    frame(0, id, true, "first");
+    frame(kLeft, id, true, "first");
     EXPECT_EQ(next(*one), R"({"header":"","part":0,"stream":0})");
-    EXPECT_FALSE(asked(0, false)) << "nobody has taken the frame";
+    EXPECT_FALSE(asked(kLeft, false)) << "nobody has taken the frame";
     EXPECT_EQ(next(*one), "first");
-    EXPECT_TRUE(asked(0, false));
-    frame(0, id, false, "second");
+    EXPECT_TRUE(asked(kLeft, false));
+    frame(kLeft, id, false, "second");
     EXPECT_EQ(next(*one), "second");
     EXPECT_EQ(sequence_, 2u);
 }
 
 TEST_F(StreamHubTest, ViewersOfTheSameShareAStream) {
     const auto one = viewer({tile("l")});
-    const auto id = started(0);
+    const auto id = started(kLeft);
     const auto two = viewer({tile("l")});
     EXPECT_EQ(hub_.node_streams(), 1u);
-    EXPECT_TRUE(asked(0, true)) << "an unchanged picture would not come by itself";
-    frame(0, id, true, "k");
+    EXPECT_TRUE(asked(kLeft, true)) << "an unchanged picture would not come by itself";
+    frame(kLeft, id, true, "k");
     next(*one), next(*one), next(*two), next(*two);
     EXPECT_EQ(next(*one), "k");
     EXPECT_EQ(next(*two), "k");
@@ -160,14 +160,14 @@ TEST_F(StreamHubTest, ViewersOfTheSameShareAStream) {
     EXPECT_EQ(hub_.node_streams(), 1u);
     hub_.remove_viewer(*two);
     EXPECT_EQ(hub_.node_streams(), 0u);
-    EXPECT_TRUE(said(0).back().has_stream_stop());
+    EXPECT_TRUE(said(kLeft).back().has_stream_stop());
 }
 
 TEST_F(StreamHubTest, TheNewestWins) {
     const auto slow = viewer({tile("l")}), quick = viewer({tile("l")});
-    const auto id = started(0);
+    const auto id = started(kLeft);
     for (const std::string packet : {"1", "2", "3"}) {
-        frame(0, id, true, packet);
+        frame(kLeft, id, true, packet);
         while (!next(*quick).empty()) {
         }
     }
@@ -179,44 +179,44 @@ TEST_F(StreamHubTest, TheNewestWins) {
 
 TEST_F(StreamHubTest, AfterADroppedDifferenceComesAKeyFrame) {
     const auto slow = viewer({tile("l")}), quick = viewer({tile("l")});
-    const auto id = started(0);
-    frame(0, id, true, "key");
+    const auto id = started(kLeft);
+    frame(kLeft, id, true, "key");
     next(*quick), next(*quick), next(*quick);
-    said(0);
-    frame(0, id, false, "difference");
+    said(kLeft);
+    frame(kLeft, id, false, "difference");
     EXPECT_EQ(next(*quick), "difference");
-    EXPECT_TRUE(asked(0, false)) << "no key frame before the slow one has room for it";
+    EXPECT_TRUE(asked(kLeft, false)) << "no key frame before the slow one has room for it";
     next(*slow), next(*slow);
     EXPECT_EQ(next(*slow), "key");
-    EXPECT_TRUE(asked(0, true));
-    frame(0, id, false, "another");
+    EXPECT_TRUE(asked(kLeft, true));
+    frame(kLeft, id, false, "another");
     EXPECT_EQ(next(*slow), "");
-    frame(0, id, true, "new key");
+    frame(kLeft, id, true, "new key");
     EXPECT_EQ(next(*slow), "new key");
 }
 
 TEST_F(StreamHubTest, ANodeThatComesBackStartsAnew) {
     const auto one = viewer({tile("r"), tile("l")});
-    const auto id = started(1);
-    frame(1, id, true, "k");
+    const auto id = started(kRight);
+    frame(kRight, id, true, "k");
     next(*one), next(*one), next(*one), next(*one);
-    wall_.node_leaves(1, {});
-    hub_.node_left(1);
+    wall_.node_leaves(kRight, {});
+    hub_.node_left(kRight);
     EXPECT_EQ(next(*one), R"({"ended":"node right is away","part":0,"stream":0})");
-    said(1);
+    said(kRight);
     join("right");
-    EXPECT_EQ(started(1), id);
-    frame(1, id, true, "again");
+    EXPECT_EQ(started(kRight), id);
+    frame(kRight, id, true, "again");
     EXPECT_THAT(next(*one), HasSubstr("header"));
     EXPECT_EQ(next(*one), "again");
 }
 
 TEST_F(StreamHubTest, ANewListKeepsWhatIsInBoth) {
     const auto one = viewer({tile("l"), tile("r")});
-    started(0), started(1);
+    started(kLeft), started(kRight);
     ASSERT_TRUE(hub_.watch(*one, {tile("r")}));
-    EXPECT_TRUE(said(0).back().has_stream_stop());
-    for (const auto& message : said(1)) EXPECT_TRUE(message.has_stream_ready());
+    EXPECT_TRUE(said(kLeft).back().has_stream_stop());
+    for (const auto& message : said(kRight)) EXPECT_TRUE(message.has_stream_ready());
     EXPECT_EQ(hub_.node_streams(), 1u);
 }
 
@@ -232,33 +232,33 @@ TEST_F(StreamHubTest, AWrongListChangesNothing) {
 
 TEST_F(StreamHubTest, ForeignFramesAreIgnored) {
     const auto one = viewer({tile("l")});
-    const auto id = started(0);
-    frame(1, id, true, "not its own");
-    frame(0, id + 1, true, "not a stream");
-    frame(0, id, false, "a difference to nothing");
+    const auto id = started(kLeft);
+    frame(kRight, id, true, "not its own");
+    frame(kLeft, id + 1, true, "not a stream");
+    frame(kLeft, id, false, "a difference to nothing");
     next(*one);
     EXPECT_EQ(next(*one), "");
 }
 
 TEST_F(StreamHubTest, AFrameOfAnotherSizeEndsItsPart) {
     const auto one = viewer({tile("l")});
-    frame(0, started(0), true, "k", 64, 48);
+    frame(kLeft, started(kLeft), true, "k", 64, 48);
     next(*one);
     EXPECT_THAT(next(*one), HasSubstr("64x48 pixels came, not 640x480"));
 }
 
 TEST_F(StreamHubTest, AWallIsAPartForEachTile) {
     const auto one = viewer({{.wall = true, .width = 320, .height = 120}});
-    const auto left = said(0).at(0).stream_start();
+    const auto left = said(kLeft).at(0).stream_start();
     EXPECT_EQ(left.width(), 160u);
     EXPECT_EQ(left.crop().width(), 640u);
-    const auto right = started(1);
+    const auto right = started(kRight);
     EXPECT_THAT(next(*one), HasSubstr(R"({"away":false,"rect":[160,0,160,120],"tile":"r"}],"shows":[0,0,1280,480])"));
-    frame(1, right, true, "right", 160, 120);
+    frame(kRight, right, true, "right", 160, 120);
     EXPECT_EQ(next(*one), R"({"header":"","part":1,"stream":0})");
     EXPECT_EQ(next(*one), "right");
     EXPECT_EQ(part_, 1u);
-    frame(0, left.stream(), true, "left", 160, 120);
+    frame(kLeft, left.stream(), true, "left", 160, 120);
     next(*one);
     EXPECT_EQ(next(*one), "left");
     EXPECT_EQ(part_, 0u);
@@ -276,7 +276,7 @@ TEST_F(StreamHubTest, ViewersOfAWallAndOfATileShareTheTile) {
 TEST_F(StreamHubTest, AStreamFollowsItsWindowAtItsRate) {
     const auto id = window({0, 0, 100, 100});
     const auto one = viewer({{.session = id, .fps = 10}});
-    EXPECT_EQ(said(0).at(0).stream_start().surface(), 1u);
+    EXPECT_EQ(said(kLeft).at(0).stream_start().surface(), 1u);
     next(*one);
     const auto move = [&](std::uint32_t version, std::int32_t x) { move_window(id, version, x); };
     const Clock::time_point now{std::chrono::hours(1)};
@@ -385,7 +385,7 @@ rect = [0, 0, 16384, 16384]
 
 TEST_F(StreamHubTest, AFrameComesInParts) {
     const auto one = viewer({tile("l")});
-    const auto id = started(0);
+    const auto id = started(kLeft);
     next(*one);
     proto::StreamFrame first;
     first.set_stream(id);
@@ -395,7 +395,7 @@ TEST_F(StreamHubTest, AFrameComesInParts) {
     first.set_header("header");
     first.set_packet_bytes(10);
     first.set_packet("abcd");
-    hub_.arrived(0, first);
+    hub_.arrived(kLeft, first);
     EXPECT_EQ(next(*one), "") << "it is not whole";
     EXPECT_EQ(hub_.counters().frames, 0u);
     for (const auto& [offset, bytes] : {std::pair{4, "efgh"}, std::pair{8, "ij"}}) {
@@ -404,7 +404,7 @@ TEST_F(StreamHubTest, AFrameComesInParts) {
         more.set_packet_bytes(10);
         more.set_offset(static_cast<std::uint64_t>(offset));
         more.set_packet(bytes);
-        hub_.arrived(0, more);
+        hub_.arrived(kLeft, more);
     }
     EXPECT_THAT(next(*one), HasSubstr("\"header\""));
     EXPECT_THAT(next(*one), ::testing::EndsWith("abcdefghij"));
@@ -413,7 +413,7 @@ TEST_F(StreamHubTest, AFrameComesInParts) {
 
 TEST_F(StreamHubTest, PartsThatDoNotFitEndTheStreamAndNothingElse) {
     const auto one = viewer({tile("l")});
-    const auto id = started(0);
+    const auto id = started(kLeft);
     next(*one);
     const auto part = [&](std::uint64_t all, std::uint64_t offset, std::size_t bytes) {
         proto::StreamFrame frame;
@@ -424,7 +424,7 @@ TEST_F(StreamHubTest, PartsThatDoNotFitEndTheStreamAndNothingElse) {
         frame.set_packet_bytes(all);
         frame.set_offset(offset);
         frame.set_packet(std::string(bytes, 'x'));
-        hub_.arrived(0, frame);
+        hub_.arrived(kLeft, frame);
     };
     const std::vector<std::vector<std::array<std::uint64_t, 3>>> wrong{
         {{10, 4, 4}},                      // without a beginning

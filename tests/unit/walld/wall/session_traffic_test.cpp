@@ -63,7 +63,7 @@ TEST_F(Traffic, TheProcessesOfAParallelProgramAreAddedUp) {
     traffic_.note(0, report(20, {{200, 0, 1000}}), 1, at(1000));
     traffic_.note(1, report(19, {{100, 0, 3000}}), 1, at(500));
     EXPECT_EQ(traffic_.sent(), (SentBytes{300, 0, 4000}));
-    EXPECT_EQ(traffic_.by_node().at(0), (SentBytes{300, 0, 4000}));
+    EXPECT_EQ(traffic_.by_node().at(NodeIndex(0)), (SentBytes{300, 0, 4000}));
     EXPECT_EQ(traffic_.frames(), 20u) << "they draw the same frames";
     EXPECT_DOUBLE_EQ(traffic_.rates().geometry, 7000);
 }

@@ -11,6 +11,8 @@ using std::chrono::milliseconds;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
+constexpr NodeIndex kLeft(0), kRight(1), kThird(2), kStranger(9);
+
 class Swap : public ::testing::Test {
 protected:
     Clock::time_point at(int ms) const { return start_ + milliseconds(ms); }
@@ -19,66 +21,67 @@ protected:
 };
 
 TEST_F(Swap, PresentsWhenTheLastNodeHasRendered) {
-    swap_.set_nodes({0, 1}, at(0));
-    EXPECT_THAT(swap_.rendered(0, 1, at(1)), IsEmpty());
+    swap_.set_nodes({kLeft, kRight}, at(0));
+    EXPECT_THAT(swap_.rendered(kLeft, 1, at(1)), IsEmpty());
     EXPECT_FALSE(swap_.shown(1));
-    EXPECT_THAT(swap_.rendered(1, 1, at(2)), ElementsAre(PresentTo{0, 1}, PresentTo{1, 1}));
+    EXPECT_THAT(swap_.rendered(kRight, 1, at(2)), ElementsAre(PresentTo{kLeft, 1}, PresentTo{kRight, 1}));
     EXPECT_TRUE(swap_.shown(1));
     EXPECT_FALSE(swap_.deadline());
 }
 
 TEST_F(Swap, APipelinedNodeWaitsForTheOthers) {
-    swap_.set_nodes({0, 1}, at(0));
-    swap_.rendered(0, 1, at(1));
-    EXPECT_THAT(swap_.rendered(0, 2, at(2)), IsEmpty());
-    EXPECT_THAT(swap_.rendered(1, 1, at(3)), ElementsAre(PresentTo{0, 1}, PresentTo{1, 1}));
-    EXPECT_THAT(swap_.rendered(1, 2, at(4)), ElementsAre(PresentTo{0, 2}, PresentTo{1, 2}));
+    swap_.set_nodes({kLeft, kRight}, at(0));
+    swap_.rendered(kLeft, 1, at(1));
+    EXPECT_THAT(swap_.rendered(kLeft, 2, at(2)), IsEmpty());
+    EXPECT_THAT(swap_.rendered(kRight, 1, at(3)), ElementsAre(PresentTo{kLeft, 1}, PresentTo{kRight, 1}));
+    EXPECT_THAT(swap_.rendered(kRight, 2, at(4)), ElementsAre(PresentTo{kLeft, 2}, PresentTo{kRight, 2}));
 }
 
 TEST_F(Swap, ASlowNodeIsLeftOutAfterTheLimitAndNotWaitedForAgain) {
-    swap_.set_nodes({0, 1}, at(0));
-    swap_.rendered(0, 1, at(10));
+    swap_.set_nodes({kLeft, kRight}, at(0));
+    swap_.rendered(kLeft, 1, at(10));
     EXPECT_EQ(swap_.deadline(), at(260));
     EXPECT_THAT(swap_.tick(at(259)), IsEmpty());
-    EXPECT_THAT(swap_.tick(at(260)), ElementsAre(PresentTo{0, 1}));
+    EXPECT_THAT(swap_.tick(at(260)), ElementsAre(PresentTo{kLeft, 1}));
     EXPECT_EQ(swap_.timeouts(), 1u);
-    EXPECT_THAT(swap_.rendered(0, 2, at(270)), ElementsAre(PresentTo{0, 2}));
-    EXPECT_THAT(swap_.rendered(1, 1, at(280)), ElementsAre(PresentTo{1, 1})) << "it shows what it has";
-    EXPECT_THAT(swap_.rendered(0, 3, at(290)), ElementsAre(PresentTo{0, 3}));
+    EXPECT_THAT(swap_.rendered(kLeft, 2, at(270)), ElementsAre(PresentTo{kLeft, 2}));
+    EXPECT_THAT(swap_.rendered(kRight, 1, at(280)), ElementsAre(PresentTo{kRight, 1})) << "it shows what it has";
+    EXPECT_THAT(swap_.rendered(kLeft, 3, at(290)), ElementsAre(PresentTo{kLeft, 3}));
 }
 
 TEST_F(Swap, ASlowNodeThatCaughtUpIsWaitedForAgain) {
-    swap_.set_nodes({0, 1}, at(0));
-    swap_.rendered(0, 1, at(0));
+    swap_.set_nodes({kLeft, kRight}, at(0));
+    swap_.rendered(kLeft, 1, at(0));
     swap_.tick(at(250));
-    EXPECT_THAT(swap_.rendered(1, 1, at(260)), ElementsAre(PresentTo{1, 1}));
-    EXPECT_THAT(swap_.rendered(0, 2, at(270)), IsEmpty());
-    EXPECT_THAT(swap_.rendered(1, 2, at(280)), ElementsAre(PresentTo{0, 2}, PresentTo{1, 2}));
+    EXPECT_THAT(swap_.rendered(kRight, 1, at(260)), ElementsAre(PresentTo{kRight, 1}));
+    EXPECT_THAT(swap_.rendered(kLeft, 2, at(270)), IsEmpty());
+    EXPECT_THAT(swap_.rendered(kRight, 2, at(280)), ElementsAre(PresentTo{kLeft, 2}, PresentTo{kRight, 2}));
 }
 
 TEST_F(Swap, ADeadNodeDoesNotHoldTheOthers) {
-    swap_.set_nodes({0, 1}, at(0));
-    swap_.rendered(0, 1, at(1));
-    EXPECT_THAT(swap_.set_nodes({0}, at(2)), ElementsAre(PresentTo{0, 1}));
+    swap_.set_nodes({kLeft, kRight}, at(0));
+    swap_.rendered(kLeft, 1, at(1));
+    EXPECT_THAT(swap_.set_nodes({kLeft}, at(2)), ElementsAre(PresentTo{kLeft, 1}));
 }
 
 TEST_F(Swap, ANewNodeJoinsWithItsFirstCurrentFrame) {
-    swap_.set_nodes({0}, at(0));
-    swap_.rendered(0, 5, at(1));
-    swap_.set_nodes({0, 1}, at(2));
+    swap_.set_nodes({kLeft}, at(0));
+    swap_.rendered(kLeft, 5, at(1));
+    swap_.set_nodes({kLeft, kRight}, at(2));
     EXPECT_FALSE(swap_.shown(5)) << "it shows nothing yet";
-    EXPECT_THAT(swap_.rendered(0, 6, at(3)), ElementsAre(PresentTo{0, 6})) << "not waited for before it has drawn";
-    EXPECT_THAT(swap_.rendered(1, 6, at(4)), ElementsAre(PresentTo{1, 6}));
-    EXPECT_THAT(swap_.rendered(0, 7, at(5)), IsEmpty());
-    EXPECT_THAT(swap_.rendered(1, 7, at(6)), ElementsAre(PresentTo{0, 7}, PresentTo{1, 7}));
+    EXPECT_THAT(swap_.rendered(kLeft, 6, at(3)), ElementsAre(PresentTo{kLeft, 6}))
+        << "not waited for before it has drawn";
+    EXPECT_THAT(swap_.rendered(kRight, 6, at(4)), ElementsAre(PresentTo{kRight, 6}));
+    EXPECT_THAT(swap_.rendered(kLeft, 7, at(5)), IsEmpty());
+    EXPECT_THAT(swap_.rendered(kRight, 7, at(6)), ElementsAre(PresentTo{kLeft, 7}, PresentTo{kRight, 7}));
 }
 
 TEST_F(Swap, IgnoresStrangersAndOldReports) {
-    swap_.set_nodes({0}, at(0));
-    EXPECT_THAT(swap_.rendered(9, 1, at(1)), IsEmpty());
-    swap_.rendered(0, 3, at(2));
-    EXPECT_THAT(swap_.rendered(0, 3, at(3)), IsEmpty());
-    EXPECT_THAT(swap_.rendered(0, 2, at(3)), IsEmpty());
+    swap_.set_nodes({kLeft}, at(0));
+    EXPECT_THAT(swap_.rendered(kStranger, 1, at(1)), IsEmpty());
+    swap_.rendered(kLeft, 3, at(2));
+    EXPECT_THAT(swap_.rendered(kLeft, 3, at(3)), IsEmpty());
+    EXPECT_THAT(swap_.rendered(kLeft, 2, at(3)), IsEmpty());
     EXPECT_EQ(swap_.presented(), 3u);
 }
 
@@ -90,98 +93,98 @@ TEST_F(Swap, NothingIsShownWithoutNodes) {
 
 TEST_F(Swap, HeldFramesAreShownOneStepAtATime) {
     SwapCoordinator held(milliseconds(250), true);
-    held.set_nodes({0, 1}, at(0));
-    held.rendered(0, 1, at(1));
-    EXPECT_THAT(held.rendered(1, 1, at(2)), IsEmpty());
+    held.set_nodes({kLeft, kRight}, at(0));
+    held.rendered(kLeft, 1, at(1));
+    EXPECT_THAT(held.rendered(kRight, 1, at(2)), IsEmpty());
     EXPECT_FALSE(held.deadline()) << "no limit runs for a frame that may not be shown";
-    EXPECT_THAT(held.step(1, at(1000)), ElementsAre(PresentTo{0, 1}, PresentTo{1, 1}));
-    held.rendered(0, 2, at(1001));
-    EXPECT_THAT(held.rendered(1, 2, at(1002)), IsEmpty());
-    EXPECT_THAT(held.step(1, at(1003)), ElementsAre(PresentTo{0, 2}, PresentTo{1, 2}));
+    EXPECT_THAT(held.step(1, at(1000)), ElementsAre(PresentTo{kLeft, 1}, PresentTo{kRight, 1}));
+    held.rendered(kLeft, 2, at(1001));
+    EXPECT_THAT(held.rendered(kRight, 2, at(1002)), IsEmpty());
+    EXPECT_THAT(held.step(1, at(1003)), ElementsAre(PresentTo{kLeft, 2}, PresentTo{kRight, 2}));
 }
 
 TEST_F(Swap, AStepAheadOfTheFrameCounts) {
     SwapCoordinator held(milliseconds(250), true);
-    held.set_nodes({0}, at(0));
+    held.set_nodes({kLeft}, at(0));
     EXPECT_THAT(held.step(2, at(0)), IsEmpty());
-    EXPECT_THAT(held.rendered(0, 1, at(1)), ElementsAre(PresentTo{0, 1}));
-    EXPECT_THAT(held.rendered(0, 2, at(2)), ElementsAre(PresentTo{0, 2}));
-    EXPECT_THAT(held.rendered(0, 3, at(3)), IsEmpty());
-    EXPECT_THAT(held.release(at(4)), ElementsAre(PresentTo{0, 3}));
+    EXPECT_THAT(held.rendered(kLeft, 1, at(1)), ElementsAre(PresentTo{kLeft, 1}));
+    EXPECT_THAT(held.rendered(kLeft, 2, at(2)), ElementsAre(PresentTo{kLeft, 2}));
+    EXPECT_THAT(held.rendered(kLeft, 3, at(3)), IsEmpty());
+    EXPECT_THAT(held.release(at(4)), ElementsAre(PresentTo{kLeft, 3}));
 }
 
 TEST_F(Swap, HoldStopsWhereItIs) {
-    swap_.set_nodes({0}, at(0));
-    swap_.rendered(0, 4, at(0));
+    swap_.set_nodes({kLeft}, at(0));
+    swap_.rendered(kLeft, 4, at(0));
     swap_.hold(at(1));
-    EXPECT_THAT(swap_.rendered(0, 5, at(2)), IsEmpty());
-    EXPECT_THAT(swap_.step(1, at(3)), ElementsAre(PresentTo{0, 5}));
+    EXPECT_THAT(swap_.rendered(kLeft, 5, at(2)), IsEmpty());
+    EXPECT_THAT(swap_.step(1, at(3)), ElementsAre(PresentTo{kLeft, 5}));
 }
 
 TEST_F(Swap, AMoveChangesTheGroupAtAFrame) {
-    swap_.set_nodes({0}, at(0));
-    swap_.rendered(0, 1, at(1));
-    EXPECT_THAT(swap_.move({1}, 3, at(2)), IsEmpty());
-    EXPECT_THAT(swap_.rendered(1, 3, at(3)), IsEmpty()) << "frame 2 comes first";
+    swap_.set_nodes({kLeft}, at(0));
+    swap_.rendered(kLeft, 1, at(1));
+    EXPECT_THAT(swap_.move({kRight}, 3, at(2)), IsEmpty());
+    EXPECT_THAT(swap_.rendered(kRight, 3, at(3)), IsEmpty()) << "frame 2 comes first";
     EXPECT_FALSE(swap_.shown(2));
-    EXPECT_THAT(swap_.rendered(0, 2, at(4)), ElementsAre(PresentTo{0, 2}, PresentTo{1, 3}));
+    EXPECT_THAT(swap_.rendered(kLeft, 2, at(4)), ElementsAre(PresentTo{kLeft, 2}, PresentTo{kRight, 3}));
     EXPECT_EQ(swap_.presented(), 3u);
     EXPECT_TRUE(swap_.shown(3));
-    EXPECT_THAT(swap_.rendered(0, 3, at(5)), IsEmpty()) << "no longer one of them";
+    EXPECT_THAT(swap_.rendered(kLeft, 3, at(5)), IsEmpty()) << "no longer one of them";
 }
 
 TEST_F(Swap, ANodeThatIsLeftShowsItsLastFrameHoweverLate) {
-    swap_.set_nodes({0}, at(0));
-    swap_.rendered(0, 1, at(1));
-    swap_.move({1}, 3, at(2));
-    swap_.rendered(1, 3, at(3));
+    swap_.set_nodes({kLeft}, at(0));
+    swap_.rendered(kLeft, 1, at(1));
+    swap_.move({kRight}, 3, at(2));
+    swap_.rendered(kRight, 3, at(3));
     EXPECT_EQ(swap_.deadline(), at(253));
-    EXPECT_THAT(swap_.tick(at(253)), ElementsAre(PresentTo{1, 3}));
-    EXPECT_THAT(swap_.rendered(0, 2, at(300)), ElementsAre(PresentTo{0, 2})) << "it waits for that to go on";
+    EXPECT_THAT(swap_.tick(at(253)), ElementsAre(PresentTo{kRight, 3}));
+    EXPECT_THAT(swap_.rendered(kLeft, 2, at(300)), ElementsAre(PresentTo{kLeft, 2})) << "it waits for that to go on";
 }
 
 TEST_F(Swap, ADeadNewPlaceDoesNotHoldTheOthers) {
-    swap_.set_nodes({0}, at(0));
-    swap_.rendered(0, 1, at(1));
-    swap_.move({0, 1}, 2, at(2));
-    EXPECT_THAT(swap_.rendered(0, 2, at(3)), IsEmpty());
-    EXPECT_THAT(swap_.lose(1, at(4)), ElementsAre(PresentTo{0, 2}));
+    swap_.set_nodes({kLeft}, at(0));
+    swap_.rendered(kLeft, 1, at(1));
+    swap_.move({kLeft, kRight}, 2, at(2));
+    EXPECT_THAT(swap_.rendered(kLeft, 2, at(3)), IsEmpty());
+    EXPECT_THAT(swap_.lose(kRight, at(4)), ElementsAre(PresentTo{kLeft, 2}));
 }
 
 TEST_F(Swap, ThereAndBackAgain) {
-    swap_.set_nodes({0}, at(0));
-    swap_.rendered(0, 1, at(1));
-    swap_.move({1}, 2, at(2));
-    swap_.move({0}, 3, at(2));
-    EXPECT_THAT(swap_.rendered(0, 3, at(3)), IsEmpty());
-    EXPECT_THAT(swap_.rendered(1, 2, at(4)), ElementsAre(PresentTo{0, 3}, PresentTo{1, 2}));
+    swap_.set_nodes({kLeft}, at(0));
+    swap_.rendered(kLeft, 1, at(1));
+    swap_.move({kRight}, 2, at(2));
+    swap_.move({kLeft}, 3, at(2));
+    EXPECT_THAT(swap_.rendered(kLeft, 3, at(3)), IsEmpty());
+    EXPECT_THAT(swap_.rendered(kRight, 2, at(4)), ElementsAre(PresentTo{kLeft, 3}, PresentTo{kRight, 2}));
     EXPECT_TRUE(swap_.shown(3));
 }
 
 TEST_F(Swap, ANodeThatComesBackIsWaitedForOnBothStays) {
-    swap_.set_nodes({0, 1}, at(0));
-    swap_.move({1}, 2, at(1));
-    swap_.move({0, 1}, 3, at(1));
-    swap_.rendered(1, 3, at(2));
+    swap_.set_nodes({kLeft, kRight}, at(0));
+    swap_.move({kRight}, 2, at(1));
+    swap_.move({kLeft, kRight}, 3, at(1));
+    swap_.rendered(kRight, 3, at(2));
     EXPECT_EQ(swap_.presented(), 0u);
-    EXPECT_THAT(swap_.rendered(0, 1, at(3)), ElementsAre(PresentTo{0, 1}, PresentTo{1, 2}))
+    EXPECT_THAT(swap_.rendered(kLeft, 1, at(3)), ElementsAre(PresentTo{kLeft, 1}, PresentTo{kRight, 2}))
         << "frame 2 is not its business";
-    EXPECT_THAT(swap_.rendered(0, 3, at(4)), ElementsAre(PresentTo{0, 3}, PresentTo{1, 3}));
+    EXPECT_THAT(swap_.rendered(kLeft, 3, at(4)), ElementsAre(PresentTo{kLeft, 3}, PresentTo{kRight, 3}));
 }
 
 TEST_F(Swap, TwoMovesBeforeOneFrameLeaveNothingBehind) {
-    swap_.set_nodes({0}, at(0));
-    swap_.move({1}, 2, at(1));
-    swap_.move({2}, 2, at(1));
-    swap_.rendered(0, 1, at(2));
-    EXPECT_THAT(swap_.rendered(2, 2, at(3)), ElementsAre(PresentTo{2, 2}));
+    swap_.set_nodes({kLeft}, at(0));
+    swap_.move({kRight}, 2, at(1));
+    swap_.move({kThird}, 2, at(1));
+    swap_.rendered(kLeft, 1, at(2));
+    EXPECT_THAT(swap_.rendered(kThird, 2, at(3)), ElementsAre(PresentTo{kThird, 2}));
 }
 
 TEST_F(Swap, MeasuresHowFarTheNodesAreApart) {
-    swap_.set_nodes({0, 1}, at(0));
+    swap_.set_nodes({kLeft, kRight}, at(0));
     for (std::uint32_t frame = 1; frame <= 3; ++frame) {
-        swap_.rendered(0, frame, at(int(100 * frame)));
-        swap_.rendered(1, frame, at(int(100 * frame + 10 * frame)));
+        swap_.rendered(kLeft, frame, at(int(100 * frame)));
+        swap_.rendered(kRight, frame, at(int(100 * frame + 10 * frame)));
     }
     EXPECT_EQ(swap_.rendered_spread().frames(), 3u);
     EXPECT_DOUBLE_EQ(swap_.rendered_spread().last().count(), 30);
@@ -189,31 +192,31 @@ TEST_F(Swap, MeasuresHowFarTheNodesAreApart) {
     EXPECT_DOUBLE_EQ(swap_.rendered_spread().most().count(), 30);
     EXPECT_DOUBLE_EQ(swap_.presented_spread().most().count(), 0) << "told together";
     EXPECT_NEAR(swap_.frame_interval().count(), 110, 1);
-    swap_.rendered(0, 4, at(1000));
+    swap_.rendered(kLeft, 4, at(1000));
     swap_.tick(at(1250));
-    swap_.rendered(1, 4, at(1300));
+    swap_.rendered(kRight, 4, at(1300));
     EXPECT_DOUBLE_EQ(swap_.rendered_spread().last().count(), 300);
     EXPECT_DOUBLE_EQ(swap_.presented_spread().last().count(), 50) << "the late one";
 }
 
 TEST_F(Swap, NothingIsPresentedBeyondALimit) {
-    swap_.set_nodes({0}, at(0));
+    swap_.set_nodes({kLeft}, at(0));
     swap_.limit(2, at(0));
-    EXPECT_EQ(swap_.rendered(0, 2, at(1)), (Presents{{0, 2}}));
-    EXPECT_EQ(swap_.rendered(0, 3, at(2)), Presents{});
+    EXPECT_EQ(swap_.rendered(kLeft, 2, at(1)), (Presents{{kLeft, 2}}));
+    EXPECT_EQ(swap_.rendered(kLeft, 3, at(2)), Presents{});
     EXPECT_FALSE(swap_.deadline()) << "nobody is late";
-    EXPECT_EQ(swap_.limit(UINT32_MAX, at(3)), (Presents{{0, 3}}));
+    EXPECT_EQ(swap_.limit(UINT32_MAX, at(3)), (Presents{{kLeft, 3}}));
 }
 
 /// Whatever comes in whatever order: a node is never told a frame that it has not rendered, nor an older one.
 TEST_F(Swap, NeverPresentsWhatANodeDoesNotHave) {
     std::uint32_t seed = 1;
     const auto random = [&](std::uint32_t below) { return (seed = seed * 1664525u + 1013904223u) / 65536u % below; };
-    std::map<std::uint32_t, std::uint32_t> rendered, told;
-    std::set<std::uint32_t> present;
+    std::map<NodeIndex, std::uint32_t> rendered, told;
+    std::set<NodeIndex> present;
     for (int i = 0; i < 20000; ++i) {
         Presents out;
-        const std::uint32_t node = random(4);
+        const NodeIndex node(random(4));
         switch (random(8)) {
             case 0:
                 if (present.erase(node)) rendered.erase(node), told.erase(node);
@@ -236,33 +239,33 @@ TEST_F(Swap, NeverPresentsWhatANodeDoesNotHave) {
 TEST(Resume, BeginsWhereTheNodesAre) {
     const Clock::time_point now{};
     SwapCoordinator swap(std::chrono::milliseconds(250), false);
-    swap.set_nodes({0, 1}, now);
-    EXPECT_TRUE(swap.resume(0, 7, 7, now).empty());
+    swap.set_nodes({kLeft, kRight}, now);
+    EXPECT_TRUE(swap.resume(kLeft, 7, 7, now).empty());
     EXPECT_EQ(swap.presented(), 7u);
-    EXPECT_TRUE(swap.resume(1, 8, 7, now).empty());
-    EXPECT_EQ(swap.rendered(0, 8, now), (Presents{{0, 8}, {1, 8}}));
+    EXPECT_TRUE(swap.resume(kRight, 8, 7, now).empty());
+    EXPECT_EQ(swap.rendered(kLeft, 8, now), (Presents{{kLeft, 8}, {kRight, 8}}));
 }
 
 TEST(Resume, KeepsAHeldFrame) {
     const Clock::time_point now{};
     SwapCoordinator swap(std::chrono::milliseconds(250), true);
-    swap.set_nodes({0}, now);
-    EXPECT_TRUE(swap.resume(0, 8, 7, now).empty());
+    swap.set_nodes({kLeft}, now);
+    EXPECT_TRUE(swap.resume(kLeft, 8, 7, now).empty());
     EXPECT_EQ(swap.presented(), 7u);
     EXPECT_FALSE(swap.deadline());
-    EXPECT_EQ(swap.step(1, now), (Presents{{0, 8}}));
+    EXPECT_EQ(swap.step(1, now), (Presents{{kLeft, 8}}));
 }
 
 TEST(Resume, TakesInWhatANodeHasShownByItself) {
     Clock::time_point now{};
     SwapCoordinator swap(std::chrono::milliseconds(250), false);
-    swap.set_nodes({0, 1}, now);
-    swap.rendered(0, 1, now);
-    swap.rendered(1, 1, now);
-    swap.resume(0, 100, 99, now);
-    swap.resume(1, 102, 101, now);
+    swap.set_nodes({kLeft, kRight}, now);
+    swap.rendered(kLeft, 1, now);
+    swap.rendered(kRight, 1, now);
+    swap.resume(kLeft, 100, 99, now);
+    swap.resume(kRight, 102, 101, now);
     EXPECT_EQ(swap.presented(), 101u);
-    EXPECT_EQ(swap.rendered(0, 102, now), (Presents{{0, 102}, {1, 102}})) << "both are in step again";
+    EXPECT_EQ(swap.rendered(kLeft, 102, now), (Presents{{kLeft, 102}, {kRight, 102}})) << "both are in step again";
 }
 
 }  // namespace

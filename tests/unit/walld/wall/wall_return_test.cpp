@@ -53,7 +53,7 @@ protected:
         now_ += std::chrono::seconds(1);
     }
     NodeIndex join(const std::string& name, std::uint64_t started = 1) {
-        const NodeIndex node = name == "left" ? 0 : 1;
+        const NodeIndex node = name == "left" ? kLeft : kRight;
         proto::NodeHello hello;
         hello.set_version(wire::kProtocolVersion);
         hello.set_name(name);
@@ -133,7 +133,7 @@ TEST_F(AWallThatReturns, GoesOnWithASessionUnderItsNumberAndItsTickets) {
     join_both();
     EXPECT_EQ(come_back(id), id);
     EXPECT_EQ(out_.tickets, tickets) << "nobody has to open a stream again";
-    EXPECT_EQ(out_.welcomes[id].nodes(0).ticket(), tickets.at(0).at(id.value));
+    EXPECT_EQ(out_.welcomes[id].nodes(0).ticket(), tickets.at(kLeft).at(id.value));
 }
 
 TEST_F(AWallThatReturns, GivesNoNumberTwice) {
@@ -145,9 +145,9 @@ TEST_F(AWallThatReturns, GivesNoNumberTwice) {
     EXPECT_EQ(open().value, last.value + 1) << "the programs of the earlier ones may still come";
     EXPECT_EQ(come_back(last), last);
     // A node that comes with sessions of numbers that were given again meanwhile.
-    out_.tickets[0] = {{last.value + 1, "of somebody else"}, {77, "later"}};
+    out_.tickets[kLeft] = {{last.value + 1, "of somebody else"}, {77, "later"}};
     join("left");
-    EXPECT_NE(out_.tickets[0].at(last.value + 1), "of somebody else") << "it is told the new one's ticket";
+    EXPECT_NE(out_.tickets[kLeft].at(last.value + 1), "of somebody else") << "it is told the new one's ticket";
     EXPECT_EQ(open().value, 78u);
 }
 
@@ -169,12 +169,12 @@ TEST_F(AWallThatReturns, TakesANodeThatWasStartedMeanwhileWithANewTicket) {
     const auto id = open();
     const auto tickets = out_.tickets;
     begin();
-    out_.tickets[1].clear();
+    out_.tickets[kRight].clear();
     join("left");
     EXPECT_EQ(come_back(id), id);
     join("right", 2);
-    EXPECT_EQ(out_.tickets[0], tickets.at(0));
-    EXPECT_NE(out_.tickets[1].at(id.value), tickets.at(1).at(id.value));
+    EXPECT_EQ(out_.tickets[kLeft], tickets.at(kLeft));
+    EXPECT_NE(out_.tickets[kRight].at(id.value), tickets.at(kRight).at(id.value));
 }
 
 TEST_F(AWallThatReturns, HasTheWindowsWhereTheyWereInTheirOrder) {
@@ -224,18 +224,18 @@ TEST_F(AWallThatReturns, HoldsWhatWasHeldAtTheFrameThatIsShown) {
     const auto id = open();
     open_surface(id);
     ASSERT_TRUE(wall_->hold({id, {}}, true, now_));
-    EXPECT_TRUE(out_.stacking[0].entries(0).held()) << "the node goes on holding while walld is away";
+    EXPECT_TRUE(out_.stacking[kLeft].entries(0).held()) << "the node goes on holding while walld is away";
     const auto note = out_.notes[id];
     begin();
     join_both();
     come_back(id);
     bring_back(id, {0, 0, 100, 80}, note, id);
-    EXPECT_TRUE(out_.last[0].has_frames_request());
-    frames(0, id, 8, 7);
+    EXPECT_TRUE(out_.last[kLeft].has_frames_request());
+    frames(kLeft, id, 8, 7);
     EXPECT_TRUE(surface(id).swap.held());
     EXPECT_EQ(surface(id).swap.presented(), 7u);
     ASSERT_TRUE(wall_->step({id, {}}, 1, now_));
-    EXPECT_EQ(out_.last[0].present().frame(), 8u);
+    EXPECT_EQ(out_.last[kLeft].present().frame(), 8u);
     EXPECT_TRUE(wall_->sessions().at(id).held) << "so is what the program opens later";
 }
 
@@ -246,13 +246,13 @@ TEST_F(AWallThatReturns, LeavesInSightWhatHasNotComeYet) {
     const auto note = out_.notes[id];
     begin();
     join_both();
-    EXPECT_THAT(out_.stacking[0].returning(), ElementsAre(id.value));
+    EXPECT_THAT(out_.stacking[kLeft].returning(), ElementsAre(id.value));
     come_back(id);
     open_surface(open());
-    EXPECT_THAT(out_.stacking[0].returning(), ElementsAre(id.value)) << "its window is still to come";
+    EXPECT_THAT(out_.stacking[kLeft].returning(), ElementsAre(id.value)) << "its window is still to come";
     bring_back(id, {0, 0, 100, 80}, note, id);
-    EXPECT_EQ(out_.stacking[0].returning_size(), 0);
-    EXPECT_EQ(out_.stacking[0].entries_size(), 2);
+    EXPECT_EQ(out_.stacking[kLeft].returning_size(), 0);
+    EXPECT_EQ(out_.stacking[kLeft].entries_size(), 2);
 }
 
 TEST_F(AWallThatReturns, DoesNotWaitForEver) {
@@ -263,19 +263,19 @@ TEST_F(AWallThatReturns, DoesNotWaitForEver) {
     ASSERT_EQ(wall_->next_deadline(), now_ + Wall::kReturnLimit);
     wall_->tick(now_ + Wall::kReturnLimit);
     EXPECT_FALSE(wall_->next_deadline());
-    EXPECT_FALSE(out_.tickets[0].contains(id.value)) << "the nodes forget it";
+    EXPECT_FALSE(out_.tickets[kLeft].contains(id.value)) << "the nodes forget it";
     EXPECT_NE(come_back(id), id);
 }
 
 TEST_F(AWallThatReturns, EndsWhatHasEndedWhileANodeWasAway) {
     join_both();
     const auto id = open();
-    const auto tickets = out_.tickets[1];
-    wall_->node_leaves(1, now_);
+    const auto tickets = out_.tickets[kRight];
+    wall_->node_leaves(kRight, now_);
     wall_->close_session(id);
-    out_.tickets[1] = tickets;  // it was not told
+    out_.tickets[kRight] = tickets;  // it was not told
     join("right");
-    EXPECT_FALSE(out_.tickets[1].contains(id.value));
+    EXPECT_FALSE(out_.tickets[kRight].contains(id.value));
 }
 
 TEST_F(AWallThatReturns, StillHasTheLayoutThatWaits) {

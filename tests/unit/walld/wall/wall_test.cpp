@@ -77,8 +77,8 @@ protected:
 };
 
 TEST_F(TheWall, WelcomesANodeWithItsTiles) {
-    EXPECT_EQ(join("right"), 1u);
-    const auto& welcome = out_.nodes[1][0].node_welcome();
+    EXPECT_EQ(join("right"), kRight);
+    const auto& welcome = out_.nodes[kRight][0].node_welcome();
     EXPECT_EQ(welcome.node(), 1u);
     ASSERT_EQ(welcome.tiles_size(), 1);
     EXPECT_EQ(welcome.tiles(0).rect().x(), 640);
@@ -120,7 +120,7 @@ TEST_F(TheWall, ANodeThatComesBackHasTheSameIndexAndAHigherIncarnation) {
     const auto left = join("left", 1);
     const auto id = open();
     wall_.node_leaves(left, now_);
-    EXPECT_EQ(last_to_client(id).node_down().node(), left);
+    EXPECT_EQ(last_to_client(id).node_down().node(), left.value);
     EXPECT_EQ(join("left", 2), left);
     EXPECT_EQ(last_to_client(id).node_up().incarnation(), 2u);
     EXPECT_NE(last_to_client(id).node_up().ticket(), out_.clients[id][0].client_welcome().nodes(0).ticket());
@@ -144,8 +144,8 @@ TEST_F(TheWall, ATicketIsWithTheNodeAndTheClientAndDiffersByNode) {
     ASSERT_EQ(welcome.nodes_size(), 2);
     EXPECT_EQ(welcome.nodes(0).ticket().size(), Wall::kTicketBytes);
     EXPECT_NE(welcome.nodes(0).ticket(), welcome.nodes(1).ticket());
-    EXPECT_EQ(last_to_node(0).ticket().ticket(), welcome.nodes(0).ticket());
-    EXPECT_EQ(last_to_node(1).ticket().ticket(), welcome.nodes(1).ticket());
+    EXPECT_EQ(last_to_node(kLeft).ticket().ticket(), welcome.nodes(0).ticket());
+    EXPECT_EQ(last_to_node(kRight).ticket().ticket(), welcome.nodes(1).ticket());
 }
 
 TEST_F(TheWall, PlacesWindowsSideBySideOnTopOfEachOther) {
@@ -153,7 +153,7 @@ TEST_F(TheWall, PlacesWindowsSideBySideOnTopOfEachOther) {
     const auto id = open();
     EXPECT_EQ(open_surface(id, 1, 300, 300), (geom::Rect{0, 0, 300, 300}));
     EXPECT_EQ(open_surface(id, 2, 300, 300), (geom::Rect{300, 0, 300, 300}));
-    const auto& stacking = last_to_node(0).stacking();
+    const auto& stacking = last_to_node(kLeft).stacking();
     ASSERT_EQ(stacking.entries_size(), 2);
     EXPECT_EQ(stacking.entries(1).surface(), 2u);
 }
@@ -211,12 +211,12 @@ TEST_F(TheWall, ANodeShowsOnlyWhatLiesOnIt) {
     join("right");
     const auto id = open();
     open_surface(id, 1, 300, 300);
-    EXPECT_EQ(last_to_node(0).stacking().entries_size(), 1);
-    EXPECT_EQ(last_to_node(1).stacking().entries_size(), 0);
+    EXPECT_EQ(last_to_node(kLeft).stacking().entries_size(), 1);
+    EXPECT_EQ(last_to_node(kRight).stacking().entries_size(), 0);
     ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}, now_));
     adopt(id, 1);
-    EXPECT_EQ(last_to_node(0).stacking().entries_size(), 0) << "it has moved away";
-    EXPECT_EQ(last_to_node(1).stacking().entries_size(), 1);
+    EXPECT_EQ(last_to_node(kLeft).stacking().entries_size(), 0) << "it has moved away";
+    EXPECT_EQ(last_to_node(kRight).stacking().entries_size(), 1);
 }
 
 TEST_F(TheWall, AMovedWindowStaysInSightUntilItsFirstFrameAtTheNewPlaceIsPresented) {
@@ -224,7 +224,7 @@ TEST_F(TheWall, AMovedWindowStaysInSightUntilItsFirstFrameAtTheNewPlaceIsPresent
     join("right");
     const auto id = open();
     open_surface(id, 1, 300, 300);
-    rendered(0, id, 1);
+    rendered(kLeft, id, 1);
     ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}, now_));
     EXPECT_EQ(last_to_client(id).placement().rect().x(), 700);
     EXPECT_EQ(last_to_client(id).placement().layout_version(), 2u);
@@ -232,16 +232,16 @@ TEST_F(TheWall, AMovedWindowStaysInSightUntilItsFirstFrameAtTheNewPlaceIsPresent
     EXPECT_TRUE(place.moving());
     adopt(id, 3);
     EXPECT_EQ(last_to_client(id).adoption_noted().layout_version(), 2u);
-    rendered(0, id, 2);
-    EXPECT_EQ(last_to_node(0).present().frame(), 2u) << "a frame of the old layout is the old nodes' business";
+    rendered(kLeft, id, 2);
+    EXPECT_EQ(last_to_node(kLeft).present().frame(), 2u) << "a frame of the old layout is the old nodes' business";
     EXPECT_EQ(place.shown().x, 0);
     out_.nodes.clear();
-    rendered(1, id, 3);
-    ASSERT_EQ(out_.nodes[0].size(), 1u);
-    EXPECT_EQ(out_.nodes[0][0].stacking().entries_size(), 0);
-    ASSERT_EQ(out_.nodes[1].size(), 2u);
-    EXPECT_EQ(out_.nodes[1][0].stacking().entries_size(), 1) << "stacked before it is shown";
-    EXPECT_EQ(out_.nodes[1][1].present().frame(), 3u);
+    rendered(kRight, id, 3);
+    ASSERT_EQ(out_.nodes[kLeft].size(), 1u);
+    EXPECT_EQ(out_.nodes[kLeft][0].stacking().entries_size(), 0);
+    ASSERT_EQ(out_.nodes[kRight].size(), 2u);
+    EXPECT_EQ(out_.nodes[kRight][0].stacking().entries_size(), 1) << "stacked before it is shown";
+    EXPECT_EQ(out_.nodes[kRight][1].present().frame(), 3u);
     EXPECT_FALSE(place.moving());
 }
 
@@ -250,29 +250,29 @@ TEST_F(TheWall, TheFirstFrameAtANewPlaceWaitsForAllItsNodes) {
     join("right");
     const auto id = open();
     open_surface(id, 1, 300, 300);
-    rendered(0, id, 1);
+    rendered(kLeft, id, 1);
     ASSERT_TRUE(wall_.place_surface({id, {}}, {500, 0, 300, 300}, now_));
     adopt(id, 2);
     out_.nodes.clear();
-    rendered(0, id, 2);
-    EXPECT_TRUE(out_.nodes[0].empty()) << "the other half is not there yet";
-    rendered(1, id, 2);
-    EXPECT_EQ(last_to_node(0).present().frame(), 2u);
-    EXPECT_EQ(last_to_node(1).present().frame(), 2u);
+    rendered(kLeft, id, 2);
+    EXPECT_TRUE(out_.nodes[kLeft].empty()) << "the other half is not there yet";
+    rendered(kRight, id, 2);
+    EXPECT_EQ(last_to_node(kLeft).present().frame(), 2u);
+    EXPECT_EQ(last_to_node(kRight).present().frame(), 2u);
 }
 
 TEST_F(TheWall, AWindowThatMovesToWhereNoNodeIsDisappears) {
     join("left");
     const auto id = open();
     open_surface(id, 1, 300, 300);
-    rendered(0, id, 1);
+    rendered(kLeft, id, 1);
     ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}, now_));
     adopt(id, 2);
-    EXPECT_EQ(last_to_node(0).stacking().entries_size(), 0);
+    EXPECT_EQ(last_to_node(kLeft).stacking().entries_size(), 0);
     EXPECT_FALSE(wall_.find({id, SurfaceId(1)})->place.moving());
     join("right");
-    rendered(1, id, 5);
-    EXPECT_EQ(last_to_node(1).present().frame(), 5u) << "and comes back with its node";
+    rendered(kRight, id, 5);
+    EXPECT_EQ(last_to_node(kRight).present().frame(), 5u) << "and comes back with its node";
 }
 
 TEST_F(TheWall, ALayoutVersionThatWasNeverGivenIsNotAdopted) {
@@ -380,11 +380,11 @@ TEST_F(TheWall, PresentsWhatTheNodesUnderASurfaceHaveRendered) {
     join("right");
     const auto id = open();
     open_surface(id, 1, 800, 300);
-    rendered(0, id, 1);
-    EXPECT_FALSE(last_to_node(0).has_present());
-    rendered(1, id, 1);
-    EXPECT_EQ(last_to_node(0).present().frame(), 1u);
-    EXPECT_EQ(last_to_node(1).present().frame(), 1u);
+    rendered(kLeft, id, 1);
+    EXPECT_FALSE(last_to_node(kLeft).has_present());
+    rendered(kRight, id, 1);
+    EXPECT_EQ(last_to_node(kLeft).present().frame(), 1u);
+    EXPECT_EQ(last_to_node(kRight).present().frame(), 1u);
 }
 
 TEST_F(TheWall, ASurfaceOnOneTileWaitsForThatOneOnly) {
@@ -392,9 +392,9 @@ TEST_F(TheWall, ASurfaceOnOneTileWaitsForThatOneOnly) {
     join("right");
     const auto id = open();
     open_surface(id, 1, 300, 300);
-    rendered(0, id, 1);
-    EXPECT_EQ(last_to_node(0).present().frame(), 1u);
-    EXPECT_FALSE(last_to_node(1).has_present());
+    rendered(kLeft, id, 1);
+    EXPECT_EQ(last_to_node(kLeft).present().frame(), 1u);
+    EXPECT_FALSE(last_to_node(kRight).has_present());
 }
 
 TEST_F(TheWall, ADeadlinePassesTheFrameOn) {
@@ -402,10 +402,10 @@ TEST_F(TheWall, ADeadlinePassesTheFrameOn) {
     join("right");
     const auto id = open();
     open_surface(id, 1, 800, 300);
-    rendered(0, id, 1);
+    rendered(kLeft, id, 1);
     ASSERT_EQ(wall_.next_deadline(), now_ + wall_.config().swap_timeout);
     wall_.tick(now_ + wall_.config().swap_timeout);
-    EXPECT_EQ(last_to_node(0).present().frame(), 1u);
+    EXPECT_EQ(last_to_node(kLeft).present().frame(), 1u);
     EXPECT_FALSE(wall_.next_deadline());
 }
 
@@ -414,7 +414,7 @@ TEST_F(TheWall, AnEndedSessionIsTakenFromTheNodes) {
     const auto id = open();
     open_surface(id, 1, 300, 300);
     wall_.close_session(id);
-    auto& sent = out_.nodes[0];
+    auto& sent = out_.nodes[kLeft];
     EXPECT_EQ(sent[sent.size() - 2].session_end().session(), id.value);
     EXPECT_EQ(sent.back().stacking().entries_size(), 0);
     EXPECT_TRUE(wall_.sessions().empty());
@@ -426,9 +426,9 @@ TEST_F(TheWall, RaiseLowerAndHoldNeedARealSession) {
     open_surface(a, 1, 10, 10);
     open_surface(b, 1, 10, 10);
     ASSERT_TRUE(wall_.raise({a, {}}));
-    EXPECT_EQ(last_to_node(0).stacking().entries(1).session(), a.value);
+    EXPECT_EQ(last_to_node(kLeft).stacking().entries(1).session(), a.value);
     ASSERT_TRUE(wall_.lower({a, {}}));
-    EXPECT_EQ(last_to_node(0).stacking().entries(0).session(), a.value);
+    EXPECT_EQ(last_to_node(kLeft).stacking().entries(0).session(), a.value);
     const Target nobody{SessionId(99), {}}, no_window{a, SurfaceId(9)};
     for (const auto& wrong : {nobody, no_window}) {
         EXPECT_FALSE(wall_.raise(wrong));
@@ -445,10 +445,10 @@ TEST_F(TheWall, AHeldSessionStartsHeld) {
     hello.set_hold(true);
     const auto id = open(hello);
     open_surface(id, 1, 10, 10);
-    rendered(0, id, 1);
-    EXPECT_FALSE(last_to_node(0).has_present());
+    rendered(kLeft, id, 1);
+    EXPECT_FALSE(last_to_node(kLeft).has_present());
     ASSERT_TRUE(wall_.step({id, {}}, 1, now_));
-    EXPECT_EQ(last_to_node(0).present().frame(), 1u);
+    EXPECT_EQ(last_to_node(kLeft).present().frame(), 1u);
 }
 
 TEST_F(TheWall, SaysWhatThereIs) {
@@ -486,20 +486,20 @@ TEST_F(TheWall, KnowsWhatEachTileShows) {
     join("right");
     const auto id = open();
     open_surface(id, 1, 1280, 480);
-    EXPECT_FALSE(wall_.nodes()[0].tiles[0].last);
-    rendered(0, id, 1);
-    rendered(1, id, 1);
-    EXPECT_EQ(wall_.nodes()[1].tiles[0].last, now_);
-    rendered(0, id, 2);
+    EXPECT_FALSE(wall_.nodes()[kLeft].tiles[0].last);
+    rendered(kLeft, id, 1);
+    rendered(kRight, id, 1);
+    EXPECT_EQ(wall_.nodes()[kRight].tiles[0].last, now_);
+    rendered(kLeft, id, 2);
     now_ += std::chrono::seconds(1);
     wall_.tick(now_);
-    EXPECT_EQ(wall_.nodes()[0].tiles[0].frames, 2u);
-    EXPECT_EQ(wall_.nodes()[0].tiles[0].last, now_);
-    EXPECT_EQ(wall_.nodes()[1].tiles[0].frames, 1u) << "its node is late";
-    EXPECT_EQ(wall_.tile_lag(0, 0), 0u);
-    EXPECT_EQ(wall_.tile_lag(1, 0), 1u);
-    rendered(1, id, 2);
-    EXPECT_EQ(wall_.tile_lag(1, 0), 0u);
+    EXPECT_EQ(wall_.nodes()[kLeft].tiles[0].frames, 2u);
+    EXPECT_EQ(wall_.nodes()[kLeft].tiles[0].last, now_);
+    EXPECT_EQ(wall_.nodes()[kRight].tiles[0].frames, 1u) << "its node is late";
+    EXPECT_EQ(wall_.tile_lag(kLeft, 0), 0u);
+    EXPECT_EQ(wall_.tile_lag(kRight, 0), 1u);
+    rendered(kRight, id, 2);
+    EXPECT_EQ(wall_.tile_lag(kRight, 0), 0u);
 }
 
 // ---- parallel programs ----
@@ -575,13 +575,13 @@ TEST_F(AParallelProgram, MovesAtAFrameThatNoMemberHasBegun) {
     join("right", 101);
     const auto id = start();
     for (std::uint32_t frame = 1; frame <= 10; ++frame)
-        for (const NodeIndex node : {0u, 1u}) rendered(node, id, frame);
+        for (const NodeIndex node : {kLeft, kRight}) rendered(node, id, frame);
     EXPECT_EQ(presented(id), 10u) << "of both nodes, though the window lies on one";
     ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 200}, now_));
     EXPECT_EQ(out_.clients[id].back().placement().from_frame(), 15u);
     const auto version = out_.clients[id].back().placement().layout_version();
     const auto render = [&](std::uint32_t frame) {
-        for (const NodeIndex node : {0u, 1u}) rendered(node, id, frame);
+        for (const NodeIndex node : {kLeft, kRight}) rendered(node, id, frame);
     };
     render(11);
     render(12);
@@ -598,12 +598,12 @@ TEST_F(AParallelProgram, MovesAtAFrameThatNoMemberHasBegun) {
 TEST_F(AParallelProgram, ComesToANewNodeAtTheSameFrame) {
     join("left");
     const auto id = start();
-    rendered(0, id, 1);
+    rendered(kLeft, id, 1);
     join("right", 101);
     const auto& placement = out_.clients[id].back().placement();
     EXPECT_EQ(placement.from_frame(), 6u);
     EXPECT_EQ(placement.nodes_size(), 2);
-    EXPECT_EQ(out_.nodes[1][1].ticket().members(), 2u);
+    EXPECT_EQ(out_.nodes[kRight][1].ticket().members(), 2u);
 }
 
 TEST_F(AParallelProgram, HasTheSizeOfRank0sWindow) {
@@ -641,7 +641,7 @@ TEST_F(AParallelProgram, GoesOnWithoutAMemberThatLeaves) {
     wall_.member_gone(id, 1);
     EXPECT_EQ(wall_.sessions().size(), 1u);
     join("right", 101);
-    EXPECT_EQ(out_.nodes[1][1].ticket().left(0), 1u);
+    EXPECT_EQ(out_.nodes[kRight][1].ticket().left(0), 1u);
     wall_.close_surface(id, SurfaceId(1), 0);
     EXPECT_TRUE(wall_.stacking().empty());
     wall_.member_leaves(id, 0, now_);
@@ -665,7 +665,7 @@ TEST_F(AParallelProgram, EndsWithANodesFault) {
     proto::SessionFault fault;
     fault.set_session(id.value);
     fault.set_reason("Bad: bad");
-    wall_.node_faults(0, fault);
+    wall_.node_faults(kLeft, fault);
     EXPECT_EQ(out_.ended[id], "left: Bad: bad");
 }
 
