@@ -211,6 +211,14 @@ protected:
         entry.set_held(held);
         walld_->send(stacking);
     }
+    /// Session 1 comes with a window, which walld stacks, and draws it in that colour.
+    void draw_first_frame(Client& client, const glstate::Vec4& color, bool held = false) {
+        client.hello(1, "secret1");
+        client.expect(wire::FrameKind::welcome);
+        stack_session(1, held);
+        client.batch(one_frame(color, 1));
+        client.expect(wire::FrameKind::swap_done);
+    }
     /// What walld does as long as it lives; for `time`.
     void answer_pings(std::chrono::milliseconds time) {
         for (const auto end = std::chrono::steady_clock::now() + time; std::chrono::steady_clock::now() < end;) {
@@ -247,11 +255,7 @@ protected:
 TEST_F(NodeServerTest, ShowsAFrameWhenItIsPresented) {
     EXPECT_EQ(shown(), (std::vector{0x10, 0x20, 0x30}));
     Client client(node_address());
-    client.hello(1, "secret1");
-    client.expect(wire::FrameKind::welcome);
-    stack_session(1);
-    client.batch(one_frame({1, 0, 0, 0}, 1));
-    client.expect(wire::FrameKind::swap_done);
+    draw_first_frame(client, {1, 0, 0, 0});
     const auto rendered = walld_->wait_for(proto::Envelope::kRendered).rendered();
     EXPECT_EQ(rendered.session(), 1u);
     EXPECT_EQ(rendered.frame(), 1u);
@@ -454,11 +458,7 @@ TEST_F(NodeServerTest, ShowsFramesByItselfWhileWalldIsSilent) {
 
 TEST_F(NodeServerTest, WaitsForAWalldThatAnswers) {
     Client client(node_address());
-    client.hello(1, "secret1");
-    client.expect(wire::FrameKind::welcome);
-    stack_session(1);
-    client.batch(one_frame({1, 0, 0, 0}, 1));
-    client.expect(wire::FrameKind::swap_done);
+    draw_first_frame(client, {1, 0, 0, 0});
     answer_pings(4 * config_.swap_timeout);
     EXPECT_EQ(shown(), (std::vector{0, 0, 0})) << "walld lives, and has not said that it is to be shown";
     present(1, 1);
@@ -467,11 +467,7 @@ TEST_F(NodeServerTest, WaitsForAWalldThatAnswers) {
 
 TEST_F(NodeServerTest, HoldsWhatIsHeldWithoutWalldToo) {
     Client client(node_address());
-    client.hello(1, "secret1");
-    client.expect(wire::FrameKind::welcome);
-    stack_session(1, true);
-    client.batch(one_frame({1, 0, 0, 0}, 1));
-    client.expect(wire::FrameKind::swap_done);
+    draw_first_frame(client, {1, 0, 0, 0}, true);
     std::this_thread::sleep_for(4 * config_.swap_timeout);
     EXPECT_EQ(shown(), (std::vector{0, 0, 0}));
     walld_->drop();
@@ -492,11 +488,7 @@ TEST_F(NodeServerTest, HoldsWhatIsHeldWithoutWalldToo) {
 
 TEST_F(NodeServerTest, TellsTheNextWalldWhatItHas) {
     Client client(node_address());
-    client.hello(1, "secret1");
-    client.expect(wire::FrameKind::welcome);
-    stack_session(1);
-    client.batch(one_frame({0, 0, 1, 0}, 1));
-    client.expect(wire::FrameKind::swap_done);
+    draw_first_frame(client, {0, 0, 1, 0});
     present(1, 1);
     expect_shown({0, 0, 255});
     proto::Envelope note;
@@ -522,11 +514,7 @@ TEST_F(NodeServerTest, TellsTheNextWalldWhatItHas) {
 
 TEST_F(NodeServerTest, ANumberWithAnotherTicketIsAnotherSession) {
     Client before(node_address());
-    before.hello(1, "secret1");
-    before.expect(wire::FrameKind::welcome);
-    stack_session(1);
-    before.batch(one_frame({1, 0, 0, 0}, 1));
-    before.expect(wire::FrameKind::swap_done);
+    draw_first_frame(before, {1, 0, 0, 0});
     present(1, 1);
     expect_shown({255, 0, 0});
     proto::Envelope ticket;
@@ -545,11 +533,7 @@ TEST_F(NodeServerTest, ANumberWithAnotherTicketIsAnotherSession) {
 
 TEST_F(NodeServerTest, AnEndedSessionIsGone) {
     Client client(node_address());
-    client.hello(1, "secret1");
-    client.expect(wire::FrameKind::welcome);
-    stack_session(1);
-    client.batch(one_frame({1, 1, 1, 0}, 1));
-    client.expect(wire::FrameKind::swap_done);
+    draw_first_frame(client, {1, 1, 1, 0});
     proto::Envelope end;
     end.mutable_session_end()->set_session(1);
     walld_->send(end);

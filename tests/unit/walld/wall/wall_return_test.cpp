@@ -93,6 +93,14 @@ protected:
         message.set_height(height);
         ASSERT_TRUE(wall_->open_surface(id, message, now_));
     }
+    /// A program of that name comes with a window.
+    SessionId open_gears() {
+        proto::ClientHello hello;
+        hello.set_program("gears");
+        const auto id = open(hello);
+        open_surface(id);
+        return id;
+    }
     void bring_back(SessionId id, const geom::Rect& drawn, const std::string& note, SessionId as) {
         proto::SurfaceOpen message;
         message.set_surface(1);
@@ -284,17 +292,13 @@ TEST_F(AWallThatReturns, StillHasTheLayoutThatWaits) {
     wall_->load_layout(layout, now_);
     begin();
     join_both();
-    proto::ClientHello hello;
-    hello.set_program("gears");
-    const auto id = open(hello);
-    open_surface(id);
+    const auto id = open_gears();
     EXPECT_EQ(surface(id).place.wanted(), (geom::Rect{640, 10, 50, 40}));
     EXPECT_EQ(surface(id).layout_z, 3u);
 
     begin();
     join_both();
-    const auto second = open(hello);
-    open_surface(second);
+    const auto second = open_gears();
     EXPECT_NE(surface(second).place.wanted(), (geom::Rect{640, 10, 50, 40})) << "the place was taken once";
 }
 
@@ -306,10 +310,7 @@ TEST_F(AWallThatReturns, ALayoutLoadedSinceCountsMore) {
     join("left");
     begin();
     join_both();
-    proto::ClientHello hello;
-    hello.set_program("gears");
-    const auto id = open(hello);
-    open_surface(id);
+    const auto id = open_gears();
     EXPECT_EQ(surface(id).place.wanted(), (geom::Rect{0, 0, 100, 80}));
 }
 
