@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "client_lib/context/context.h"
-#include "client_lib/context/maps.h"
+#include "client_lib/objects/maps.h"
 #include "client_lib/objects/texture.h"
 
 namespace wall::client::api {

@@ -8,9 +8,9 @@
 #include "client_lib/context/context.h"
 #include "client_lib/context/limits.h"
 #include "client_lib/context/lists.h"
-#include "client_lib/context/maps.h"
 #include "client_lib/context/share_group.h"
 #include "client_lib/geometry/select.h"
+#include "client_lib/objects/maps.h"
 #include "common/glstate/elements.h"
 #include "common/glstate/queries.h"
 

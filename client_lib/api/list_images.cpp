@@ -5,8 +5,8 @@
 
 #include "client_lib/context/context.h"
 #include "client_lib/context/lists.h"
-#include "client_lib/context/maps.h"
 #include "client_lib/context/pixel_store.h"
+#include "client_lib/objects/maps.h"
 #include "client_lib/objects/texture.h"
 
 namespace wall::client {

@@ -7,10 +7,10 @@
 
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/context.h"
-#include "client_lib/context/maps.h"
 #include "client_lib/context/pixel_store.h"
 #include "client_lib/context/share_group.h"
 #include "client_lib/follow/readback.h"
+#include "client_lib/objects/maps.h"
 #include "client_lib/objects/texture.h"
 #include "common/wire/limits.h"
 
@@ -87,7 +87,7 @@ void set_pixel_map(Context& c, GLenum map, std::vector<float> values) {
     if (c.maps->pixel.tables[i] == values) return;
     c.flush_block();
     c.maps->pixel.tables[i] = std::move(values);
-    c.maps->stamp = c.maps->pixel_stamps[i] = next_stamp();
+    c.maps->stamp = c.maps->pixel_maps[i].stamp = next_stamp();
 }
 
 /// `scale` makes fractions of integers, for maps of colours.

@@ -43,7 +43,7 @@ GLuint create(Context& c, Args... args) {
     const GLuint name = share.glsl_objects.reserve(1);
     const auto object = std::make_shared<T>(next_object_id(), name, args...);
     share.glsl_objects.put(name, object);
-    if (object->kind == GlslObject::Kind::program) share.program_names[object->id] = name;
+    if (object->kind == GlslObject::Kind::program) share.by_id[object->id] = object;
     return name;
 }
 

@@ -6,10 +6,10 @@
 #include <cstring>
 
 #include "client_lib/context/buffer_binding.h"
-#include "client_lib/context/maps.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/texture_image.h"
 #include "client_lib/follow/ask_one.h"
+#include "client_lib/objects/maps.h"
 #include "client_lib/objects/s3tc.h"
 #include "client_lib/objects/texture_formats.h"
 

@@ -7,11 +7,11 @@
 #include <cstring>
 
 #include "client_lib/context/limits.h"
-#include "client_lib/context/maps.h"
 #include "client_lib/context/pixel_store.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/texture_image.h"
 #include "client_lib/follow/readback.h"
+#include "client_lib/objects/maps.h"
 #include "client_lib/objects/s3tc.h"
 #include "client_lib/objects/texture_formats.h"
 

@@ -46,11 +46,9 @@ void forget(Context& c, const std::shared_ptr<Texture>& texture) {
     c.before_change(texture->id);
     {
         std::lock_guard lock(c.share().mutex);
-        c.share().textures_by_id.erase(texture->id);
+        c.share().by_id.erase(texture->id);
     }
-    c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node& node) {
-        if (node.object_stamps.erase(texture->id) != 0) glapi::pack::TexDelete(buffer, texture->id);
-    });
+    c.session().delete_object(c, texture->id, glapi::pack::TexDelete);
 }
 
 bool valid_wrap(GLenum target, GLenum mode) {

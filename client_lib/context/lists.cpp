@@ -10,9 +10,10 @@
 
 #include "client_lib/context/material.h"
 #include "client_lib/context/program_use.h"
-#include "client_lib/follow/sharing.h"
+#include "client_lib/follow/object_sender.h"
 #include "client_lib/geometry/block_walk.h"
 #include "client_lib/process/options.h"
+#include "common/glapi/content_hash.h"
 #include "common/glstate/diff.h"
 #include "common/wire/batch.h"
 
@@ -50,30 +51,24 @@ private:
 
 // ---- drawing a run ----
 
-std::vector<std::byte> encoded(const wire::PackBuffer& content) {
+struct EncodedRun {
+    std::uint32_t commands, operand_bytes;
+    std::vector<std::byte> content;
+};
+
+EncodedRun encoded(const wire::PackBuffer& content) {
     const auto opcodes = content.opcodes(), operands = content.operands();
     std::vector<std::byte> bytes(wire::padded4(opcodes.size()) - opcodes.size());
     bytes.insert(bytes.end(), opcodes.begin(), opcodes.end());
     bytes.insert(bytes.end(), operands.begin(), operands.end());
-    return bytes;
+    return {static_cast<std::uint32_t>(content.commands()), static_cast<std::uint32_t>(content.operand_bytes()),
+            std::move(bytes)};
 }
 
 void define_once(ClientSession& session, Node& node, wire::PackBuffer& buffer, const ListRun& run) {
-    if (!node.object_stamps.emplace(run.id, 1).second) return;
-    const auto content = encoded(run.content);
-    const auto commands = static_cast<std::uint32_t>(run.content.commands()),
-               operand_bytes = static_cast<std::uint32_t>(run.content.operand_bytes());
-    if (content.size() >= kLeastShared && may_be_asked(node)) {
-        glapi::ContentHash hash;
-        hash.RunDefine(commands, operand_bytes, content);
-        const auto ask = [&](wire::PackBuffer& batch, RequestId request) {
-            glapi::pack::ShareRun(batch, request, run.id, hash.finish());
-        };
-        if (node_holds(session, node, ask)) return;
-    }
-    const std::size_t before = buffer.bytes();
-    glapi::pack::RunDefine(buffer, run.id, commands, operand_bytes, content);
-    session.count_objects(node, buffer.bytes() - before);
+    ObjectSender sender(session, node, buffer);
+    sender.send(run);
+    session.count_objects(node, sender.bytes());
 }
 
 void apply_effects(glstate::State& state, const ListRun& run, const ListRun::Effects& effects) {
@@ -119,7 +114,7 @@ void call_run(Context& c, const ListRun& run) {
         [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session(), node, buffer, run); },
         [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
         [&](Node& node) {
-            node.object_stamps.emplace(run.id, 1);  // kept commands call it, too
+            node.object_stamps[run.id] = run.latest();  // kept commands call it, too
             reached.push_back(&node);
         });
     apply_effects(c.state, run, run.in_context);
@@ -220,15 +215,27 @@ void execute_list(Context& c, const DisplayList& list) {
 void forget_dead_runs(Context& c) {
     const auto dead = DeadRuns::get().take();
     if (dead.empty()) return;
-    for (const ClientName id : dead) c.before_change(id);
-    c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node& node) {
-        for (const ClientName id : dead)
-            if (node.object_stamps.erase(id)) glapi::pack::RunDelete(buffer, id);
-    });
+    for (const ClientName id : dead) {
+        c.before_change(id);
+        c.session().delete_object(c, id, glapi::pack::RunDelete);
+    }
 }
 
 // What its end needs is made now.
-ListRun::ListRun() : id(next_object_id()), obituary_{id} { DeadRuns::get(); }
+void ListRun::pack_changes(std::uint64_t, wire::PackBuffer& buffer, const std::function<void()>& packed) const {
+    const auto run = encoded(content);
+    glapi::pack::RunDefine(buffer, id, run.commands, run.operand_bytes, run.content);
+    packed();
+}
+
+void ListRun::pack_question(wire::PackBuffer& buffer, RequestId request) const {
+    const auto run = encoded(content);
+    glapi::ContentHash hash;
+    hash.RunDefine(run.commands, run.operand_bytes, run.content);
+    glapi::pack::ShareRun(buffer, request, id, hash.finish());
+}
+
+ListRun::ListRun() : Object(next_object_id()), obituary_{id} { DeadRuns::get(); }
 ListRun::~ListRun() { DeadRuns::get().add(obituary_); }
 
 }  // namespace wall::client

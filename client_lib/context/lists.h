@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "client_lib/context/context.h"
+#include "client_lib/objects/object.h"
 #include "common/geom/box.h"
 #include "common/glapi/recorder.h"
 #include "common/wire/pack_buffer.h"
@@ -21,11 +22,17 @@ namespace wall::client {
 inline constexpr unsigned kListNestingLimit = 64;
 
 /// Whole primitives and the attributes and materials between them.
-struct ListRun {
+struct ListRun : Object {
     ListRun();
-    ~ListRun();
-    ListRun(const ListRun&) = delete;
-    const ClientName id;  ///< on the wire and in Node::object_stamps
+    ~ListRun() override;
+
+    // It is made once and never changes.
+    std::uint64_t latest() const override { return 1; }
+    void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
+                      const std::function<void()>& packed) const override;
+    bool worth_asking() const override { return content.bytes() >= kLeastShared; }
+    void pack_question(wire::PackBuffer& buffer, RequestId request) const override;
+
     wire::PackBuffer content;
     geom::Box box;  ///< object space
     /// What a current attribute is afterwards: a command in `content`.

@@ -87,13 +87,11 @@ void destroy(Context& c, const std::shared_ptr<GlslObject>& object) {
         std::lock_guard lock(c.share().mutex);
         c.share().glsl_objects.erase(object->name);
         if (object->kind == GlslObject::Kind::shader) return;
-        c.share().program_names.erase(object->id);
+        c.share().by_id.erase(object->id);
         shaders = std::exchange(static_cast<Program&>(*object).shaders, {});
     }
     for (const auto& shader : shaders) drop_user(c, shader);
-    c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node& node) {
-        if (node.object_stamps.erase(object->id) != 0) glapi::pack::ProgramDelete(buffer, object->id);
-    });
+    c.session().delete_object(c, object->id, glapi::pack::ProgramDelete);
 }
 
 }  // namespace

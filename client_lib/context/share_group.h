@@ -18,14 +18,10 @@
 #include "client_lib/objects/texture.h"
 #include "common/glapi/gl_types.h"
 #include "common/glstate/queries.h"
-#include "common/wire/pack_buffer.h"
 
 namespace wall::client {
 
 class Context;
-class ClientSession;
-struct Mirror;
-struct Node;
 struct DisplayList;  // lists.h
 
 /// The application's names of one kind. A name is free, reserved (null), or an object's. New names are given above all
@@ -76,10 +72,14 @@ struct ShareGroup {
     NameTable<Buffer> buffers;
     NameTable<GlslObject> glsl_objects;  ///< shaders and programs
 
-    /// By id: what state elements name. Kept as long as the name or any binding lives. (Buffers are kept by the
-    /// contexts that name them: buffer_binding.h.)
-    std::unordered_map<ClientName, std::shared_ptr<Texture>> textures_by_id;
-    std::unordered_map<ClientName, GLuint> program_names;  ///< by id
+    /// By id: textures and programs, as state elements name them. They are kept as long as their name or any binding
+    /// lives. (Buffers are kept by the contexts that name them: buffer_binding.h.)
+    std::unordered_map<ClientName, std::shared_ptr<Object>> by_id;
+    /// That a binding names; null: it is gone.
+    std::shared_ptr<Texture> texture_of(ClientName id) const {
+        const auto found = by_id.find(id);
+        return found == by_id.end() ? nullptr : std::static_pointer_cast<Texture>(found->second);
+    }
     /// Name 0 of each target, made when it first gets content; until then a binding of it is id 0.
     std::map<GLenum, std::shared_ptr<Texture>> default_textures;
 
@@ -87,18 +87,6 @@ struct ShareGroup {
 
     /// Stamp of the latest change of any object, so that a look at one number tells that there is nothing to send.
     std::atomic<std::uint64_t> last_change{0};
-
-    /// Packs what drawing with this context needs and the node lacks. The session's mutex is held.
-    /// Returns the bytes; full batches among them have been sent.
-    std::size_t bring_up_to_date(Node& node, Context& context, wire::PackBuffer& buffer);
-
-    /// For a block that is kept: notes by id what drawing with this context uses in `follower.object_stamps`, and packs
-    /// the uniforms of its program as they are now. The session's mutex is held.
-    void note_used(Node& follower, Mirror& mirror, Context& context, wire::PackBuffer& buffer);
-    /// Packs of the noted objects what the node lacks. None of them has changed since. The uniforms of programs travel
-    /// with the blocks. The session's mutex is held.
-    void bring(ClientSession& session, Node& node, const std::unordered_map<ClientName, std::uint64_t>& used,
-               wire::PackBuffer& buffer);
 };
 
 /// The application's name of the object that a state element names by its id (glGet of a binding); 0: none.

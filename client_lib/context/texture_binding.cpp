@@ -44,13 +44,12 @@ std::shared_ptr<Texture> bound_texture(Context& c, GLenum image_target) {
         const auto found = c.share().default_textures.find(target);
         return found == c.share().default_textures.end() ? nullptr : found->second;
     }
-    const auto found = c.share().textures_by_id.find(id);
-    return found == c.share().textures_by_id.end() ? nullptr : found->second;
+    return c.share().texture_of(id);
 }
 
 std::shared_ptr<Texture> make_texture(ShareGroup& share, GLuint name, GLenum target) {
     auto texture = std::make_shared<Texture>(next_object_id(), name, target);
-    share.textures_by_id[texture->id] = texture;
+    share.by_id[texture->id] = texture;
     return texture;
 }
 
@@ -82,8 +81,8 @@ std::vector<SavedTexture> bound_texture_parameters(Context& c) {
     for (unsigned unit = 0; unit < kTextureUnits; ++unit)
         for (const GLenum target :
              {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE}) {
-            const auto found = c.share().textures_by_id.find(bound_id(c, unit, target));
-            if (found != c.share().textures_by_id.end()) saved.push_back({found->second, found->second->parameters});
+            if (auto texture = c.share().texture_of(bound_id(c, unit, target)))
+                saved.push_back({texture, texture->parameters});
         }
     return saved;
 }

@@ -9,9 +9,9 @@
 #include <cstdlib>
 
 #include "client_lib/context/context.h"
-#include "client_lib/context/share_group.h"
 #include "client_lib/follow/block_sender.h"
 #include "client_lib/follow/hidden_part.h"
+#include "client_lib/follow/object_sender.h"
 #include "client_lib/link/pacing.h"
 #include "client_lib/process/log.h"
 #include "client_lib/process/options.h"
@@ -54,19 +54,6 @@ Target make_target(const SurfaceLayout& layout, const TileInfo& tile, const geom
                      static_cast<int>(std::ceil(target.area.y1)) - y0};
     return target;
 }
-
-namespace {
-
-std::uint32_t next_number() {
-    static std::atomic<std::uint32_t> last{parallel() ? wire::kMaxSharedSurfaces : 0};
-    return ++last;
-}
-
-}  // namespace
-
-ContextId next_context_id() { return ContextId(next_number()); }
-SurfaceId next_surface_id() { return SurfaceId(next_number()); }
-ClientName next_object_id() { return ClientName(next_number()); }
 
 SurfaceId next_window_id() {
     static std::atomic<std::uint32_t> last{0};
@@ -340,7 +327,7 @@ wire::PackBuffer& ClientSession::prepare(Node& node, Context& context, const Nee
         mirror.read_surface = read.id;
     }
     const std::size_t surface_bytes = buffer.bytes() - start;
-    const std::size_t object_bytes = context.share().bring_up_to_date(node, context, buffer);
+    const std::size_t object_bytes = bring_up_to_date(*this, node, context, buffer);
     const std::size_t state_start = buffer.bytes();
     const bool sampled = ++prepared_ % kDiffSample == 0;
     const auto diff_start = sampled ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
@@ -486,6 +473,12 @@ void ClientSession::count_state(Node& node, std::size_t bytes) {
 }
 void ClientSession::count_frame() { stats().end_frame(); }
 void ClientSession::count_round_trip(const char* function) { stats().count_round_trip(function); }
+
+void ClientSession::delete_object(Context& context, ClientName object, void (*pack)(wire::PackBuffer&, ClientName)) {
+    on_every_node(context, [&](wire::PackBuffer& buffer, Node& node) {
+        if (node.object_stamps.erase(object) != 0) pack(buffer, object);
+    });
+}
 
 void ClientSession::destroy_context(ContextId context) {
     std::lock_guard lock(mutex_);

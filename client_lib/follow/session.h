@@ -25,6 +25,7 @@
 #include "client_lib/link/parallel.h"
 #include "client_lib/link/reopening.h"
 #include "client_lib/link/transport.h"
+#include "client_lib/objects/object.h"
 #include "client_lib/process/stats.h"
 #include "common/base/ids.h"
 #include "common/glstate/value_history.h"
@@ -37,10 +38,6 @@ class KeptFrame;
 struct HiddenPart;   // hidden_part.h
 struct SortScratch;  // block_sender.h
 
-// Ids of contexts, surfaces and objects on the wire: all from one counter, unique in the process, never 0.
-ContextId next_context_id();
-SurfaceId next_surface_id();
-ClientName next_object_id();
 /// Of a window: in a parallel program the same in all members, which open their windows in the same order; 0: too many.
 SurfaceId next_window_id();
 
@@ -52,7 +49,7 @@ struct Mirror {
     glstate::State state;
     glstate::ValueHistory history;
     SurfaceId draw_surface, read_surface;
-    std::array<std::uint64_t, 5> objects{};  ///< value ids and stamps as of ShareGroup::bring_up_to_date
+    UseStamp used;  ///< as of when the node was last brought what drawing with the context needs
 };
 
 /// One tileserver as this process sees it.
@@ -132,6 +129,9 @@ public:
     /// Runs `pack(buffer, node)` outside of blocks on every node, with nothing brought up to date.
     template <class Pack>
     void on_every_node(Context& context, Pack&& pack);
+
+    /// Tells every node that holds an object that it is gone, by its kind's command.
+    void delete_object(Context& context, ClientName object, void (*pack)(wire::PackBuffer&, ClientName));
 
     /// Packs a command that wants an answer, `pack(buffer, request)`, behind everything that drawing with the context
     /// needs, sends it and waits. Nothing if the node is lost. `function`: for the count of round trips.

@@ -5,10 +5,11 @@
 #include <utility>
 
 #include "client_lib/context/context.h"
-#include "client_lib/context/maps.h"
 #include "client_lib/context/share_group.h"
 #include "client_lib/follow/hidden_part.h"
+#include "client_lib/follow/object_sender.h"
 #include "client_lib/geometry/select.h"
+#include "client_lib/objects/maps.h"
 #include "client_lib/process/options.h"
 #include "common/glstate/pack_sink.h"
 #include "common/wire/limits.h"
@@ -123,7 +124,7 @@ wire::PackBuffer& ClientSession::prepare_kept(Context& context, const Needs& nee
     KeptFrame& frame = context.draw_surface()->hidden->now;
     Node& follower = frame.follower;
     Mirror& mirror = *frame.mirror;
-    context.share().note_used(follower, mirror, context, follower.batch);
+    note_used(follower, mirror, context, follower.batch);
     if (follower.batch_context != frame.started && !frame.starts.contains(context.id)) {
         mirror.state = context.state;
         frame.starts.try_emplace(context.id, KeptFrame::Start{context.state, context.share_pointer()});
@@ -190,7 +191,7 @@ void ClientSession::show_hidden(ClientSurface& surface) {
 void ClientSession::send_kept(Node& node, ClientSurface& surface, KeptFrame& frame) {
     describe_surface(node, surface);
     for (const auto& [context, start] : frame.starts)
-        start.share->bring(*this, node, frame.follower.object_stamps, node.batch);
+        bring_noted(*this, node, *start.share, frame.follower.object_stamps, node.batch);
     for (KeptFrame::Stretch& stretch : frame.stretches) {
         wire::PackBuffer& buffer = batch(node, stretch.context);
         Mirror& mirror = node.mirrors[stretch.context];
@@ -208,7 +209,7 @@ void ClientSession::send_kept(Node& node, ClientSurface& surface, KeptFrame& fra
             mirror.history.add(element, stretch.commands.operand_at(operand));
         mirror.state = frame.follower.mirrors[stretch.context].state;
     }
-    for (auto& [id, mirror] : node.mirrors) mirror.objects = {};  // programs hold the frame's uniform values
+    for (auto& [id, mirror] : node.mirrors) mirror.used = {};  // programs hold the frame's uniform values
 }
 
 void ClientSession::look_at_hidden(ClientSurface& surface, const geom::Rect& box) {

@@ -148,20 +148,20 @@ void pack_uniform(const Program& program, const Uniform& uniform, wire::PackBuff
 
 }  // namespace
 
-void pack_all_uniforms(const Program& program, wire::PackBuffer& buffer) {
-    for (const Uniform& uniform : program.executable->uniforms)
-        if (uniform.location >= 0) pack_uniform(program, uniform, buffer);
+void Program::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed) const {
+    if (known < executable->stamp) {
+        glapi::pack::ProgramLink(buffer, RequestId(), id, executable->definition);
+        packed();
+        known = executable->stamp;
+    }
+    for (const Uniform& uniform : executable->uniforms)
+        if (uniform.stamp > known) pack_uniform(*this, uniform, buffer);
 }
 
-void pack_program(const Program& program, std::uint64_t known, wire::PackBuffer& buffer) {
-    const Executable& executable = *program.executable;
-    if (known < executable.stamp) {
-        glapi::pack::ProgramLink(buffer, RequestId(), program.id, executable.definition);
-        known = executable.stamp;
-    }
-    for (const Uniform& uniform : executable.uniforms) {
-        if (uniform.stamp > known) pack_uniform(program, uniform, buffer);
-    }
+void Program::pack_values(std::uint64_t known, wire::PackBuffer& buffer) const {
+    if (known != 0) return pack_changes(known, buffer, no_limit);
+    for (const Uniform& uniform : executable->uniforms)
+        if (uniform.location >= 0) pack_uniform(*this, uniform, buffer);
 }
 
 }  // namespace wall::client

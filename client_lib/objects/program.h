@@ -15,20 +15,17 @@
 #include <string_view>
 #include <vector>
 
-#include "common/base/ids.h"
+#include "client_lib/objects/object.h"
 #include "common/glapi/program_format.h"
 #include "common/wire/pack_buffer.h"
 
 namespace wall::client {
 
 /// Shaders and programs share one space of names (OpenGL 2.1, 2.15.1).
-struct GlslObject {
+struct GlslObject : Object {
     enum class Kind : std::uint8_t { shader, program };
-    GlslObject(Kind own_kind, ClientName own_id, GLuint own_name) : kind(own_kind), id(own_id), name(own_name) {}
-    virtual ~GlslObject() = default;
+    GlslObject(Kind own_kind, ClientName own_id, GLuint own_name) : Object(own_id, own_name), kind(own_kind) {}
     const Kind kind;
-    const ClientName id;   ///< on the wire, and in the state element current_program
-    const GLuint name;     ///< the application's
     bool deleted = false;  ///< by glDelete*, while something still uses it
     unsigned users = 0;    ///< programs that have the shader; contexts that draw with the program
 };
@@ -36,6 +33,9 @@ struct GlslObject {
 struct Shader : GlslObject {
     Shader(ClientName own_id, GLuint own_name, GLenum own_type)
         : GlslObject(Kind::shader, own_id, own_name), type(own_type) {}
+    // No node holds it for itself: a program that is linked brings its shaders along.
+    std::uint64_t latest() const override { return 0; }
+    void pack_changes(std::uint64_t, wire::PackBuffer&, const std::function<void()>&) const override {}
     const GLenum type;
     std::string source;
     enum class State : std::uint8_t { not_compiled, unknown, compiled, failed };
@@ -115,11 +115,12 @@ struct Program : GlslObject {
     std::unique_ptr<Executable> executable;
 
     glapi::ProgramDefinition definition() const;
-};
 
-/// Packs everything that changed since `known` (0: the node has nothing).
-void pack_program(const Program& program, std::uint64_t known, wire::PackBuffer& buffer);
-/// Packs the values of all uniforms, whoever has them already.
-void pack_all_uniforms(const Program& program, wire::PackBuffer& buffer);
+    std::uint64_t latest() const override { return executable ? executable->last_change : 0; }
+    void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
+                      const std::function<void()>& packed) const override;
+    std::uint64_t defined() const override { return executable ? executable->stamp : 0; }
+    void pack_values(std::uint64_t known, wire::PackBuffer& buffer) const override;
+};
 
 }  // namespace wall::client

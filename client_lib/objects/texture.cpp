@@ -2,7 +2,6 @@
 #include "client_lib/objects/texture.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 
 #include "common/glapi/image.h"
@@ -197,13 +196,8 @@ struct NameAndShape {
 
 }  // namespace
 
-std::uint64_t next_stamp() {
-    static std::atomic<std::uint64_t> last{0};
-    return last.fetch_add(1, std::memory_order_relaxed) + 1;
-}
-
 Texture::Texture(ClientName own_id, GLuint own_name, GLenum own_target)
-    : id(own_id), name(own_name), target(own_target), stamp(next_stamp()) {
+    : Object(own_id, own_name), target(own_target), stamp(next_stamp()) {
     if (target != GL_TEXTURE_RECTANGLE) return;
     parameters.min_filter = GL_LINEAR;
     parameters.wrap_s = parameters.wrap_t = parameters.wrap_r = GL_CLAMP_TO_EDGE;
@@ -295,14 +289,24 @@ std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname) {
     }
 }
 
-void pack_texture(const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer,
-                  const std::function<void()>& packed) {
-    TexturePacker packer{texture.id, buffer, packed};
-    TextureDiff(texture, packer).run(known);
+void Texture::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed) const {
+    TexturePacker packer{id, buffer, packed};
+    TextureDiff(*this, packer).run(known);
+}
+
+bool Texture::worth_asking() const { return global || content_bytes(*this) >= kLeastShared; }
+
+void Texture::pack_question(wire::PackBuffer& buffer, RequestId request) const {
+    glapi::pack::ShareTexture(buffer, request, id, target, global ? 1 : 0, content_key(*this));
+}
+
+bool Texture::pack_shared(wire::PackBuffer& buffer) const {
+    glapi::pack::TexShared(buffer, id);
+    return true;
 }
 
 const glapi::ContentKey& content_key(const Texture& texture) {
-    auto& [stamp, key] = texture.content_key;
+    auto& [stamp, key] = texture.key_cache;
     if (stamp == texture.stamp) return key;
     glapi::ContentHash hash;
     if (texture.global) {

@@ -11,15 +11,11 @@
 #include <optional>
 #include <vector>
 
-#include "common/base/ids.h"
+#include "client_lib/objects/object.h"
 #include "common/glapi/content_hash.h"
 #include "common/glapi/gl_types.h"
-#include "common/wire/pack_buffer.h"
 
 namespace wall::client {
-
-/// A logical time, unique in the process, growing.
-std::uint64_t next_stamp();
 
 struct TexBox {
     std::int32_t x = 0, y = 0, z = 0, width = 0, height = 0, depth = 0;
@@ -62,11 +58,16 @@ struct TexParameters {
     bool generate_mipmap = false;
 };
 
-struct Texture {
+struct Texture : Object {
     Texture(ClientName own_id, GLuint own_name, GLenum own_target);
-    const ClientName id;
-    const GLuint name;
     const GLenum target;
+
+    std::uint64_t latest() const override { return stamp; }
+    void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
+                      const std::function<void()>& packed) const override;
+    bool worth_asking() const override;
+    void pack_question(wire::PackBuffer& buffer, RequestId request) const override;
+    bool pack_shared(wire::PackBuffer& buffer) const override;
 
     std::uint64_t stamp = 0;  ///< of the latest change
     TexParameters parameters;
@@ -77,7 +78,7 @@ struct Texture {
     std::uint64_t generated_stamp = 0;  ///< of the latest mipmap generation; 0: none
     std::array<std::vector<TextureLevel>, kCubeFaces> faces;
     /// As of a stamp: see content_key().
-    mutable std::pair<std::uint64_t, glapi::ContentKey> content_key{};
+    mutable std::pair<std::uint64_t, glapi::ContentKey> key_cache{};
 
     bool is_default() const { return name == 0; }
     unsigned face_count() const { return target == GL_TEXTURE_CUBE_MAP ? kCubeFaces : 1; }
@@ -94,13 +95,8 @@ std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname);
 /// Images larger than this travel in several pieces.
 inline constexpr std::size_t kLargestImageCommand = std::size_t{16} << 20;
 
-/// Packs everything that changed since `known` (0: the node has nothing). `packed` is called after every command, so
-/// that the caller may send the buffer before it grows too large for a frame.
-void pack_texture(
-    const Texture& texture, std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed = [] {});
-
-/// The name of what pack_texture(texture, 0, ...) would say, but for the texture's id. Of a global one: the program's
-/// name stands for the pixels, and nobody looks at them (A6.2: the same name and parameters are the same
+/// The name of what pack_changes() would say to a node that has nothing, but for the texture's id. Of a global one: the
+/// program's name stands for the pixels, and nobody looks at them (A6.2: the same name and parameters are the same
 /// texture).
 const glapi::ContentKey& content_key(const Texture& texture);
 /// Of all pixels.

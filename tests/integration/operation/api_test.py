@@ -121,9 +121,9 @@ class Api(unittest.TestCase):
         self.wall.rest("DELETE", "/api/v1/layouts/nothing", {})
 
     def test_every_route_is_described(self) -> None:
-        routes = set(re.findall(r'\{"([A-Z]+)", "(/[^"]*)"', (ROOT / "walld" / "rest.cpp").read_text()))
+        routes = set(re.findall(r'\{"([A-Z]+)", "(/[^"]*)"', (ROOT / "walld" / "http" / "rest.cpp").read_text()))
         routes |= {("GET", path) for path in re.findall(r'k\w+Path = "(/[^"]*)"',
-                                                        (ROOT / "walld" / "rest.h").read_text())}
+                                                        (ROOT / "walld" / "http" / "rest.h").read_text())}
         described = {(method.upper(), re.sub(r"\{\w+\}", "*", path)) for path,
                      methods in API["paths"].items() for method in set(methods) - {"parameters"}}
         self.assertIn(("GET", "/metrics"), routes)

@@ -123,14 +123,15 @@ constexpr geom::Rect kWindow{0, 0, kWidth, kHeight};
 /// A texture as a client keeps it.
 class Content {
 public:
-    explicit Content(GLenum target = GL_TEXTURE_2D) : texture_(ClientName(1), 1, target) {}
+    explicit Content(GLenum target = GL_TEXTURE_2D)
+        : texture_(std::make_shared<client::Texture>(ClientName(1), 1, target)) {}
     Content& level(GLint number, GLint internal_format, int size, GLenum format, GLenum type, std::uint32_t seed,
                    unsigned face = 0) {
-        client::TextureLevel& level = texture_.level_at(face, number);
+        client::TextureLevel& level = texture_->level_at(face, number);
         const bool compressed = format == 0;
         level.internal_format = internal_format;
         level.width = level.height = size;
-        level.depth = texture_.target == GL_TEXTURE_3D ? size : 1;
+        level.depth = texture_->target == GL_TEXTURE_3D ? size : 1;
         level.format = level.data_format = format;
         level.type = level.data_type = type;
         level.compressed = compressed;
@@ -140,29 +141,29 @@ public:
         level.pixels.resize(bytes);
         std::mt19937 random(seed);
         for (auto& byte : level.pixels) byte = static_cast<std::byte>(random() & (type == GL_FLOAT ? 0x3f : 0xff));
-        level.stamp = texture_.stamp = client::next_stamp();
+        level.stamp = texture_->stamp = client::next_stamp();
         return *this;
     }
     Content& parameter(GLenum filter) {
-        texture_.parameters.min_filter = filter;
-        texture_.parameter_changed(GL_TEXTURE_MIN_FILTER);
+        texture_->parameters.min_filter = filter;
+        texture_->parameter_changed(GL_TEXTURE_MIN_FILTER);
         return *this;
     }
     Content& mipmaps() {
-        texture_.mipmaps_generated();
+        texture_->mipmaps_generated();
         return *this;
     }
     Content& global() {
-        texture_.global = true;
+        texture_->global = true;
         return *this;
     }
-    GLenum target() const { return texture_.target; }
-    std::uint32_t is_global() const { return texture_.global; }
-    glapi::ContentKey key() const { return client::content_key(texture_); }
-    void define(wire::PackBuffer& buffer) const { client::pack_texture(texture_, 0, buffer); }
+    GLenum target() const { return texture_->target; }
+    std::uint32_t is_global() const { return texture_->global; }
+    glapi::ContentKey key() const { return client::content_key(*texture_); }
+    void define(wire::PackBuffer& buffer) const { texture_->pack_changes(0, buffer, client::no_limit); }
 
 private:
-    client::Texture texture_;  // number 1 on the wire
+    std::shared_ptr<client::Texture> texture_;  // number 1 on the wire
 };
 
 class SharingTest : public ::testing::Test {

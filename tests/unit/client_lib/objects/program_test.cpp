@@ -59,7 +59,7 @@ TEST(ExecutableTest, StampsTellWhatANodeLacks) {
     program.executable = Executable::make({}, reflection());
     Executable& e = *program.executable;
     wire::PackBuffer first;
-    pack_program(program, 0, first);
+    program.pack_changes(0, first, no_limit);
     EXPECT_EQ(first.commands(), 1u);  // the definition; no uniform was set
     const std::uint64_t known = e.last_change;
     const std::uint32_t word = 7;
@@ -67,11 +67,11 @@ TEST(ExecutableTest, StampsTellWhatANodeLacks) {
     e.store(e.uniforms[2], 1, std::span(&word, 1));
     EXPECT_TRUE(e.holds(e.uniforms[2], 1, std::span(&word, 1)));
     wire::PackBuffer change, all;
-    pack_program(program, known, change);
+    program.pack_changes(known, change, no_limit);
     EXPECT_EQ(change.commands(), 1u);
-    pack_program(program, 0, all);
+    program.pack_changes(0, all, no_limit);
     EXPECT_EQ(all.commands(), 2u);
-    pack_program(program, e.last_change, change);
+    program.pack_changes(e.last_change, change, no_limit);
     EXPECT_EQ(change.commands(), 1u);
 }
 

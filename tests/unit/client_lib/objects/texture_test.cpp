@@ -69,7 +69,7 @@ std::vector<std::string> commands(const wire::PackBuffer& buffer) {
 
 std::vector<std::string> sent(const Texture& texture, std::uint64_t known) {
     wire::PackBuffer buffer;
-    pack_texture(texture, known, buffer);
+    texture.pack_changes(known, buffer, no_limit);
     return commands(buffer);
 }
 
@@ -111,7 +111,7 @@ TEST(Texture, AChangedRectangleIsCutOut) {
     const auto known = texture.stamp;
     level.note_change({2, 3, 0, 1, 2, 1, next_stamp()});
     wire::PackBuffer buffer;
-    pack_texture(texture, known, buffer);
+    texture.pack_changes(known, buffer, no_limit);
     const auto operands = buffer.operands();
     ASSERT_GE(operands.size(), 8u);
     const std::vector<std::byte> tail(operands.end() - 8, operands.end());
@@ -137,7 +137,7 @@ TEST(Texture, LargeImagesTravelInPieces) {
     define(texture, 0, 3000);
     wire::PackBuffer buffer;
     std::size_t largest = 0, commands = 0;
-    pack_texture(texture, 0, buffer, [&] {
+    texture.pack_changes(0, buffer, [&] {
         largest = std::max(largest, buffer.bytes());
         ++commands;
         buffer.clear();

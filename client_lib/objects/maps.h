@@ -11,32 +11,45 @@
 
 #include "client_lib/objects/pixel_convert.h"
 #include "client_lib/objects/texture.h"
-#include "common/base/ids.h"
 #include "common/wire/pack_buffer.h"
 
 namespace wall::client {
-
-struct Node;
 
 inline constexpr unsigned kEvaluatorMaps = 9;  ///< GL_MAP1_COLOR_4 to GL_MAP1_VERTEX_4
 inline constexpr GLint kMaxEvaluatorOrder = 30;
 inline constexpr GLsizei kMaxPixelMapTable = 256;
 
-struct EvaluatorMap {
-    ClientName id;
+struct EvaluatorMap : Object {
+    EvaluatorMap() : Object(next_object_id()) {}
+    std::uint64_t latest() const override { return stamp; }
+    void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
+                      const std::function<void()>& packed) const override;
+
+    GLenum target = 0;        ///< from GL_MAP1_COLOR_4 or GL_MAP2_COLOR_4 on
     std::uint64_t stamp = 0;  ///< 0: as at the start
     GLint u_order = 1, v_order = 1;
     float u1 = 0, u2 = 1, v1 = 0, v2 = 1;
     std::vector<float> points;
 };
 
+/// One of the tables of pixel transfer.
+struct PixelMap : Object {
+    PixelMap() : Object(next_object_id()) {}
+    std::uint64_t latest() const override { return stamp; }
+    void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
+                      const std::function<void()>& packed) const override;
+
+    GLenum map = 0;  ///< from GL_PIXEL_MAP_I_TO_I on
+    const std::vector<float>* values = nullptr;
+    std::uint64_t stamp = 0;  ///< 0: as at the start
+};
+
 struct ContextMaps {
     ContextMaps();
     std::array<EvaluatorMap, kEvaluatorMaps> map1, map2;
     PixelMapTables pixel;
-    std::array<ClientName, PixelMapTables::kMaps> pixel_ids;
-    std::array<std::uint64_t, PixelMapTables::kMaps> pixel_stamps{};
-    std::uint64_t stamp = 0;  ///< of the latest change
+    std::array<PixelMap, PixelMapTables::kMaps> pixel_maps;  ///< of the tables of `pixel`
+    std::uint64_t stamp = 0;                                 ///< of the latest change
 
     /// What glTexImage of a proxy target would make, by target and level; never sent.
     std::map<std::pair<GLenum, GLint>, TextureLevel> proxies;
@@ -49,8 +62,13 @@ struct ContextMaps {
         return target - GL_MAP2_COLOR_4 < kEvaluatorMaps ? &map2[target - GL_MAP2_COLOR_4] : nullptr;
     }
 
-    /// The session's mutex is held.
-    void bring_up_to_date(Node& node, wire::PackBuffer& buffer) const;
+    template <class Use>
+    void for_each(Use&& use) const {
+        if (stamp == 0) return;
+        for (const auto* maps : {&map1, &map2})
+            for (const EvaluatorMap& map : *maps) use(map);
+        for (const PixelMap& map : pixel_maps) use(map);
+    }
 };
 
 /// Values of a control point, by place among the maps.
