@@ -104,6 +104,11 @@ def frame_of(pictures: list, number: int):
     return pictures[number] if number < len(pictures) else None
 
 
+def either(first: list[Outcome], second: list[Outcome]) -> list[Outcome]:
+    """Of the same checks against two plays of the references, the one that is good; else the first."""
+    return [two if two.good and not one.good else one for one, two in zip(first, second, strict=True)]
+
+
 class Played:
     """Each subject's references on plain Mesa: the whole window, and in parts. They are made one subject ahead, on the
     processor's time that the wall leaves."""
@@ -114,12 +119,19 @@ class Played:
 
     def __iter__(self) -> Iterator[tuple[Subject, Performance, Performance | None]]:
         with concurrent.futures.ThreadPoolExecutor(1) as beside:
+            self._beside = beside
             ahead = beside.submit(self._play, self._subjects[0])
             for i, subject in enumerate(self._subjects):
                 plain, moved = ahead.result()
                 if i + 1 < len(self._subjects):
                     ahead = beside.submit(self._play, self._subjects[i + 1])
                 yield subject, plain, moved
+
+    def again(self, subject: Subject) -> tuple[Performance, Performance | None]:
+        """Plays them a second time; between two steps of the iteration."""
+        def play() -> tuple[Performance, Performance | None]:
+            return self._whole.play(subject), self._parts.play(subject) if self._parts else None
+        return self._beside.submit(play).result()  # not beside another play: they have the displays in common
 
     def _play(self, subject: Subject) -> tuple[Performance, Performance | None]:
         plain = (None if self._keep else self._kept.find(subject)) or self._whole.play(subject)
@@ -144,7 +156,13 @@ def play_all(subjects: list[Subject], options: argparse.Namespace) -> Iterator[O
         played = Played(subjects, MesaStage(servers[0]), moved, References(options.references), keep=tiles == "mesa")
         for subject, plain, in_parts in played:
             start = time.monotonic()
-            outcomes = list(Comparison(subject, tiles, plain, in_parts, stage.play(subject), options.report).outcomes())
+            given = stage.play(subject)
+            outcomes = list(Comparison(subject, tiles, plain, in_parts, given, options.report).outcomes())
+            # Mesa itself does not draw each frame alike every time: it reads memory that nobody has written (frame 0 of
+            # `engine` shows it). So a frame is wrong only if Mesa draws it otherwise twice.
+            if not all(outcome.good for outcome in outcomes):
+                second = Comparison(subject, tiles, *played.again(subject), given, options.report)
+                outcomes = either(outcomes, list(second.outcomes()))
             wrong = sum(not outcome.good for outcome in outcomes)
             waits = next(outcome.detail for outcome in outcomes if outcome.check.view == "round_trips")
             print(f"{subject.kind} {subject.name}: {len(outcomes) - wrong} of {len(outcomes)} right, round trips "

@@ -10,7 +10,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from expectations import Check, Outcome, judge, load  # noqa: E402
-from golden import Comparison  # noqa: E402
+from golden import Comparison, either  # noqa: E402
 from stages import Performance, parts_of  # noqa: E402
 from subjects import Recording, Scene, load_recordings, read_frame  # noqa: E402
 
@@ -115,6 +115,16 @@ class Compared(unittest.TestCase):
         self.assertEqual(self.wrong(subject=recording), [])
         self.given.read[1] = self.given.read[2]
         self.assertEqual(self.wrong(subject=recording), [("read", 1)])
+
+
+class PlayedTwice(unittest.TestCase):
+    def test_what_either_play_of_mesa_shows_is_right(self):
+        def told(*good):
+            return [Outcome(Check("it", "2x2", "read", i), each, f"play {good}") for i, each in enumerate(good)]
+        first, second = told(True, False, False), told(False, True, False)
+        self.assertEqual(either(first, second), [first[0], second[1], first[2]])
+        with self.assertRaises(ValueError):
+            either(first, second[:2])
 
 
 class Parts(unittest.TestCase):
