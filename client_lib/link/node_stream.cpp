@@ -15,6 +15,7 @@
 
 #include "common/base/address.h"
 #include "common/wire/limits.h"
+#include "common/wire/padding.h"
 
 namespace wall::client {
 namespace {
@@ -130,7 +131,7 @@ void NodeStream::wait(std::unique_lock<std::mutex>& lock, int timeout_ms, Done&&
 
 void NodeStream::send(ContextId context, wire::PackBuffer batch) {
     if (batch.empty() || failed()) return;
-    const std::size_t padding = (4 - batch.commands() % 4) % 4;
+    const std::size_t padding = wire::padded4(batch.commands()) - batch.commands();
     const wire::BatchHeader header{context, static_cast<std::uint32_t>(batch.commands()),
                                    static_cast<std::uint32_t>(batch.operand_bytes())};
     Outgoing out;
