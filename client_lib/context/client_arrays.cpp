@@ -116,9 +116,8 @@ struct DirectArray {
     std::size_t stride;
     Op op;
     std::size_t bytes;
-    std::size_t slot;  ///< in Packer::last; kNoSlot: the vertex
+    Attribute attribute;  ///< kVertexArray: the vertex
 };
-constexpr std::size_t kNoSlot = kAttributes;
 
 struct DirectLayout {
     std::array<DirectArray, 4> arrays;
@@ -126,24 +125,21 @@ struct DirectLayout {
 };
 
 bool direct(const ArraySource& source, DirectArray& out) {
-    static constexpr Op kVertices[] = {Op::Vertex2f, Op::Vertex3f, Op::Vertex4f};
-    static constexpr Op kTexCoords[] = {Op::TexCoord1f, Op::TexCoord2f, Op::TexCoord3f, Op::TexCoord4f};
-    out = {source.base, source.stride, Op::Vertex3f, static_cast<std::size_t>(source.size) * 4, kNoSlot};
-    const bool floats = source.type == GL_FLOAT;
     if (source.count != ArraySource::kNoLimit) return false;
-    switch (source.kind) {
-        case ArrayKind::vertex: out.op = kVertices[source.size - 2]; return floats && source.size <= 3;
-        case ArrayKind::normal: out.op = Op::Normal3f, out.slot = place_of(Attribute::normal); return floats;
-        case ArrayKind::texcoord:
-            out.op = kTexCoords[source.size - 1], out.slot = place_of(Attribute::texcoord);
-            return floats && source.index == 0;
-        case ArrayKind::color:
-            out.slot = place_of(Attribute::color);
-            out.op = !floats ? Op::Color4ub : source.size == 3 ? Op::Color3f : Op::Color4f;
-            if (!floats) out.bytes = 4;
-            return floats || (source.type == GL_UNSIGNED_BYTE && source.size == 4);
-        default: return false;
+    const bool floats = source.type == GL_FLOAT;
+    const auto size = static_cast<unsigned>(source.size);
+    out = {source.base, source.stride, Op::Vertex3f, size * sizeof(float), source.attribute};
+    if (source.attribute == kVertexArray) {
+        if (size == 2) out.op = Op::Vertex2f;
+        return floats && size <= 3;
     }
+    if (source.attribute == Attribute::color && source.type == GL_UNSIGNED_BYTE && size == 4) {
+        out.op = Op::Color4ub, out.bytes = 4;
+        return true;
+    }
+    const auto op = glstate::float_command(source.attribute, size);
+    if (op) out.op = *op;
+    return floats && op;
 }
 
 /// False if some array needs conversion or a rarer command.
@@ -215,16 +211,16 @@ GLsizei pack_some(Packer& packer, const DirectLayout& layout, GLsizei first, GLs
                 operand += array.bytes;
             }
             *--opcode = static_cast<std::byte>(placed.op[k]);
-            if (array.slot == kNoSlot) box.add(load_vertex(from, array.bytes));
+            if (array.attribute == kVertexArray) box.add(load_vertex(from, array.bytes));
         }
     }
     packer.box = box;
     packer.next_operand() = operand;
     packer.next_opcode() = opcode;
     for (std::size_t k = 0; i > first && k < layout.count; ++k) {  // the last vertex has the current attributes
-        if (layout.arrays[k].slot == kNoSlot) continue;
-        packer.last[layout.arrays[k].slot] = placed.at[k];
-        packer.last_op[layout.arrays[k].slot] = placed.op[k];
+        if (layout.arrays[k].attribute == kVertexArray) continue;
+        packer.last[place_of(layout.arrays[k].attribute)] = placed.at[k];
+        packer.last_op[place_of(layout.arrays[k].attribute)] = placed.op[k];
     }
     return i - first;
 }
@@ -261,11 +257,11 @@ class SavedCurrent {
 public:
     SavedCurrent(Context& c, const ArraySet& arrays) : c_(c), arrays_(arrays) {
         for (std::size_t i = 0; i < arrays.sources().size(); ++i)
-            if (const auto attribute = attribute_of(arrays.sources()[i])) save(*attribute, saved_[i]);
+            if (arrays.sources()[i].attribute != kVertexArray) save(arrays.sources()[i].attribute, saved_[i]);
     }
     void restore() {
         for (std::size_t i = 0; i < arrays_.sources().size(); ++i)
-            if (const auto attribute = attribute_of(arrays_.sources()[i])) restore(*attribute, saved_[i]);
+            if (arrays_.sources()[i].attribute != kVertexArray) restore(arrays_.sources()[i].attribute, saved_[i]);
     }
 
 private:
@@ -274,20 +270,6 @@ private:
         Op op;
         std::array<std::byte, glstate::kMostAttributeBytes> operand;
     };
-    static std::optional<Attribute> attribute_of(const ArraySource& source) {
-        switch (source.kind) {
-            case ArrayKind::edge_flag: return Attribute::edge_flag;
-            case ArrayKind::index: return Attribute::color_index;
-            case ArrayKind::fog_coord: return Attribute::fog_coord;
-            case ArrayKind::secondary_color: return Attribute::secondary_color;
-            case ArrayKind::color: return Attribute::color;
-            case ArrayKind::normal: return Attribute::normal;
-            case ArrayKind::texcoord: return Attribute::texcoord + source.index;
-            case ArrayKind::attrib: return Attribute::vertex_attrib + source.index;
-            case ArrayKind::vertex: return std::nullopt;
-        }
-        return std::nullopt;
-    }
     /// The packed command is newer than the state.
     void save(Attribute attribute, Saved& out) const {
         const std::size_t place = place_of(attribute);
@@ -312,33 +294,17 @@ private:
 
 void send(Context& c, const ArraySource& source, GLuint element) {
     const std::byte* at = place(source, element);
-    if (source.kind == ArrayKind::color && source.type == GL_UNSIGNED_BYTE &&
+    if (source.attribute == Attribute::color && source.type == GL_UNSIGNED_BYTE &&
         (source.by_command || same_bytes(at, static_cast<std::size_t>(source.size)))) {
         const auto byte = [&](GLint i) { return std::to_integer<GLubyte>(at[i]); };
         return c.table->Color4ub(c, byte(0), byte(1), byte(2), source.size == 4 ? byte(3) : GLubyte{255});
     }
     float v[4] = {0, 0, 0, 1};
     source.load(at, source.size, v);
-    switch (source.kind) {
-        case ArrayKind::edge_flag: return c.table->EdgeFlag(c, at[0] != std::byte{0});
-        case ArrayKind::index: return c.table->Indexf(c, v[0]);
-        case ArrayKind::fog_coord: return c.table->FogCoordf(c, v[0]);
-        case ArrayKind::secondary_color: return c.table->SecondaryColor3f(c, v[0], v[1], v[2]);
-        case ArrayKind::color:
-            if (source.size == 3) return c.table->Color3f(c, v[0], v[1], v[2]);
-            return c.table->Color4f(c, v[0], v[1], v[2], v[3]);
-        case ArrayKind::normal: return c.table->Normal3f(c, v[0], v[1], v[2]);
-        case ArrayKind::texcoord:
-            if (source.index != 0)
-                return c.table->MultiTexCoord4f(c, GL_TEXTURE0 + source.index, v[0], v[1], v[2], v[3]);
-            if (source.size == 2) return c.table->TexCoord2f(c, v[0], v[1]);
-            return c.table->TexCoord4f(c, v[0], v[1], v[2], v[3]);
-        case ArrayKind::attrib: return c.table->VertexAttrib4f(c, source.index, v[0], v[1], v[2], v[3]);
-        case ArrayKind::vertex:
-            if (source.size == 2) return c.table->Vertex2f(c, v[0], v[1]);
-            if (source.size == 3) return c.table->Vertex3f(c, v[0], v[1], v[2]);
-            return c.table->Vertex4f(c, v[0], v[1], v[2], v[3]);
-    }
+    if (source.attribute != kVertexArray) return call_attribute(*c.table, c, source.attribute, source.size, v);
+    if (source.size == 2) return c.table->Vertex2f(c, v[0], v[1]);
+    if (source.size == 3) return c.table->Vertex3f(c, v[0], v[1], v[2]);
+    return c.table->Vertex4f(c, v[0], v[1], v[2], v[3]);
 }
 
 /// Calls `each(element)` for every element, and `restart()` where the index says so.
@@ -357,18 +323,13 @@ void walk(Context& c, const ElementRange& elements, Each&& each, Restart&& resta
 
 ArraySet::ArraySet(Context& c, bool by_command) : by_command_(by_command) {
     const auto& l = c.state.local;
-    add(c, ArrayKind::edge_flag, 0, l.edge_flag_array);
-    add(c, ArrayKind::index, 0, l.index_array);
-    add(c, ArrayKind::fog_coord, 0, l.fog_coord_array);
-    add(c, ArrayKind::secondary_color, 0, l.secondary_color_array);
-    add(c, ArrayKind::color, 0, l.color_array);
-    add(c, ArrayKind::normal, 0, l.normal_array);
-    for (unsigned unit = 0; unit < kTextureUnits; ++unit) add(c, ArrayKind::texcoord, unit, l.texcoord_array[unit]);
-    for (unsigned i = 1; i < kVertexAttributes; ++i) add(c, ArrayKind::attrib, i, l.attrib_array[i]);
-    add(c, ArrayKind::vertex, 0, l.attrib_array[0].enabled ? l.attrib_array[0] : l.vertex_array);
+    glstate::for_each_attribute_array(c.state, [&](Attribute attribute, const glstate::ClientArray& array) {
+        if (attribute != Attribute::vertex_attrib) add(c, attribute, array);  // number 0 is the position
+    });
+    add(c, kVertexArray, l.attrib_array[0].enabled ? l.attrib_array[0] : l.vertex_array);
 }
 
-void ArraySet::add(Context& c, ArrayKind kind, unsigned index, const glstate::ClientArray& array) {
+void ArraySet::add(Context& c, Attribute attribute, const glstate::ClientArray& array) {
     if (!array.enabled) return;
     const std::size_t bytes = bytes_of(array.type) * static_cast<std::size_t>(array.size);
     const std::size_t stride = array.stride ? static_cast<std::size_t>(array.stride) : bytes;
@@ -385,8 +346,8 @@ void ArraySet::add(Context& c, ArrayKind kind, unsigned index, const glstate::Cl
     const Conversion conversion = !array.normalized ? Conversion::none
                                   : by_command_     ? Conversion::command
                                                     : Conversion::fetch;
-    sources_[count_++] = {
-        kind, index, by_command_, base, stride, count, array.size, array.type, loader_of(array.type, conversion)};
+    sources_[count_++] = {attribute, by_command_, base,       stride,
+                          count,     array.size,  array.type, loader_of(array.type, conversion)};
 }
 
 void ArraySet::add_constant_vertex(Context& c) {
@@ -394,15 +355,8 @@ void ArraySet::add_constant_vertex(Context& c) {
     c.flush_block();  // the current attributes are in `state` after it
     constant_vertex_ = c.state.current.vertex_attrib[0];
     const auto* base = reinterpret_cast<const std::byte*>(constant_vertex_.data());
-    sources_[count_++] = {ArrayKind::vertex,
-                          0,
-                          by_command_,
-                          base,
-                          0,
-                          ArraySource::kNoLimit,
-                          4,
-                          GL_FLOAT,
-                          loader_of(GL_FLOAT, Conversion::none)};
+    sources_[count_++] = {kVertexArray,          by_command_, base,     0,
+                          ArraySource::kNoLimit, 4,           GL_FLOAT, loader_of(GL_FLOAT, Conversion::none)};
 }
 
 void send_element(Context& c, const ArraySet& arrays, GLuint element) {

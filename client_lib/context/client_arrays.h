@@ -13,23 +13,13 @@
 
 namespace wall::client {
 
-enum class ArrayKind : std::uint8_t {
-    edge_flag,
-    index,
-    fog_coord,
-    secondary_color,
-    color,
-    normal,
-    texcoord,
-    attrib,
-    vertex
-};
+/// The place of an array of positions among those of attributes.
+inline constexpr auto kVertexArray = static_cast<Attribute>(kAttributes);
 
 /// One enabled array, resolved to memory.
 struct ArraySource {
-    ArrayKind kind;
-    unsigned index;   ///< texture unit or attribute
-    bool by_command;  ///< converted as glColor and the like do
+    Attribute attribute;  ///< that it has the values of; kVertexArray: positions
+    bool by_command;      ///< converted as glColor and the like do
     const std::byte* base;
     std::size_t stride;
     std::size_t count;  ///< elements that lie in the buffer object; kNoLimit for client memory
@@ -38,7 +28,7 @@ struct ArraySource {
     void (*load)(const std::byte* from, GLint size, float* out);
     static constexpr std::size_t kNoLimit = ~std::size_t{0};
 };
-inline constexpr std::size_t kMaxArrays = 7 + kTextureUnits + kVertexAttributes - 1;
+inline constexpr std::size_t kMaxArrays = kAttributes + 1;
 
 /// The enabled arrays in the order in which an element's attributes are sent: the vertex last.
 class ArraySet {
@@ -50,10 +40,10 @@ public:
 
     /// A program may draw without an array of positions: all vertices have the current attribute 0 then.
     void add_constant_vertex(Context& c);
-    bool has_vertex() const { return count_ != 0 && sources_[count_ - 1].kind == ArrayKind::vertex; }
+    bool has_vertex() const { return count_ != 0 && sources_[count_ - 1].attribute == kVertexArray; }
 
 private:
-    void add(Context& c, ArrayKind kind, unsigned index, const glstate::ClientArray& array);
+    void add(Context& c, Attribute attribute, const glstate::ClientArray& array);
     std::array<ArraySource, kMaxArrays> sources_;  // not initialized: draws may be small
     std::size_t count_ = 0;
     bool by_command_;

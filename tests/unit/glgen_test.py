@@ -120,14 +120,25 @@ class Places(unittest.TestCase):
         self.assertIn("Clear: no command of [geometry]", refused('"Normal3f"', '"Clear"'))
         self.assertIn("a command with an index", refused('"VertexAttrib4f"', '"TexCoord4f"'))
 
-    def test_every_attribute_has_a_line(self):
+    def test_attribute_arrays(self):
+        ops, model = wire.load(PROTO / "wire.toml"), state.load(PROTO / "state.toml")
+        refused = functools.partial(self.refused, "attributes.toml", load=lambda f: attributes.load(f, ops, model))
+        self.assertIn("blend_color: no vertex array", refused('"normal_array"', '"blend_color"'))
+        self.assertIn("normal_array: not as many as values", refused('"texcoord_array"', '"normal_array"'))
+        self.assertIn("others: no line in [attribute]", refused('\nnormal = "normal_array"',
+                                                                '\nothers = "normal_array"\nnormal = "normal_array"'))
+
+    def test_every_attribute_has_its_lines(self):
         ops, model = wire.load(PROTO / "wire.toml"), state.load(PROTO / "state.toml")
         text = (PROTO / "attributes.toml").read_text()
-        with tempfile.NamedTemporaryFile("w", suffix=".toml") as f:
-            f.write(text.replace('normal = "Normal3f"\n', ""))
-            f.flush()
-            with self.assertRaisesRegex(AssertionError, "no line for normal"):
-                attributes.load(f.name, ops, model)
+        commands, array = 'normal = "Normal3f"\n', 'normal = "normal_array"\n'
+        for left, why in ((text.replace(commands, "").replace(array, ""), "no line for normal"),
+                          (text.replace(array, ""), r"normal: no line in \[attribute_array\]")):
+            with tempfile.NamedTemporaryFile("w", suffix=".toml") as f:
+                f.write(left)
+                f.flush()
+                with self.assertRaisesRegex(AssertionError, why):
+                    attributes.load(f.name, ops, model)
 
 
 class Files(unittest.TestCase):

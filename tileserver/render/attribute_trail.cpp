@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/render/attribute_trail.h"
 
+#include <bit>
+
 namespace wall::tileserver {
 namespace el = glstate::el;
 using glstate::assign;
+
+namespace {
+
+template <class Each>
+void for_each_bit(std::uint32_t bits, Each&& each) {
+    for (; bits != 0; bits &= bits - 1) each(static_cast<unsigned>(std::countr_zero(bits)));
+}
+
+}  // namespace
 
 bool AttributeTrail::material(GLenum face, GLenum pname, const glstate::Vec4& value) {
     constexpr std::array<GLenum, kMaterials> kNames = {GL_AMBIENT,  GL_DIFFUSE,   GL_SPECULAR,
@@ -21,35 +32,19 @@ bool AttributeTrail::material(GLenum face, GLenum pname, const glstate::Vec4& va
 }
 
 void AttributeTrail::append(const AttributeTrail& later) {
-    if (later.seen_ & kColor) color_ = later.color_;
-    if (later.seen_ & kNormal) normal_ = later.normal_;
-    if (later.seen_ & kSecondary) secondary_ = later.secondary_;
-    if (later.seen_ & kFog) fog_ = later.fog_;
-    if (later.seen_ & kEdge) edge_ = later.edge_;
-    if (later.seen_ & kIndex) index_ = later.index_;
-    for (unsigned i = 0; i < texcoord_.size(); ++i)
-        if (later.seen_ & kTexcoord0 << i) texcoord_[i] = later.texcoord_[i];
-    for (unsigned i = 0; i < attrib_.size(); ++i)
-        if (later.attribs_seen_ >> i & 1) attrib_[i] = later.attrib_[i];
-    for (unsigned i = 0; i < 2 * kMaterials; ++i)
-        if (later.materials_seen_ >> i & 1)
-            material_[i / kMaterials][i % kMaterials] = later.material_[i / kMaterials][i % kMaterials];
+    for_each_bit(later.seen_, [&](unsigned place) { values_[place] = later.values_[place]; });
+    for_each_bit(later.materials_seen_, [&](unsigned i) {
+        material_[i / kMaterials][i % kMaterials] = later.material_[i / kMaterials][i % kMaterials];
+    });
     seen_ |= later.seen_;
-    attribs_seen_ |= later.attribs_seen_;
     materials_seen_ |= later.materials_seen_;
 }
 
 void AttributeTrail::fold_into(glstate::State& state) const {
-    if (seen_ & kColor) assign<el::color>(state, 0, color_);
-    if (seen_ & kNormal) assign<el::normal>(state, 0, normal_);
-    if (seen_ & kSecondary) assign<el::secondary_color>(state, 0, secondary_);
-    if (seen_ & kFog) assign<el::fog_coord>(state, 0, fog_);
-    if (seen_ & kEdge) assign<el::edge_flag>(state, 0, edge_);
-    if (seen_ & kIndex) assign<el::color_index>(state, 0, index_);
-    for (unsigned i = 0; i < texcoord_.size(); ++i)
-        if (seen_ & kTexcoord0 << i) assign<el::texcoord>(state, i, texcoord_[i]);
-    for (unsigned i = 0; attribs_seen_ >> i != 0; ++i)
-        if (attribs_seen_ >> i & 1) assign<el::vertex_attrib>(state, i, attrib_[i]);
+    for_each_bit(seen_, [&](unsigned place) {
+        glstate::with_attribute(static_cast<glstate::Attribute>(place), values_[place],
+                                [&]<class E>(E, unsigned i, const auto& value) { assign<E>(state, i, value); });
+    });
     if (materials_seen_ != 0) fold_materials(state);
 }
 

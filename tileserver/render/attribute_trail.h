@@ -8,26 +8,20 @@
 #include <cstdint>
 
 #include "common/glstate/diff.h"
+#include "gen/glstate/attributes.gen.h"
 #include "gen/glstate/state.gen.h"
 
 namespace wall::tileserver {
 
 class AttributeTrail {
 public:
-    void clear() { seen_ = attribs_seen_ = materials_seen_ = 0; }
-    bool empty() const { return (seen_ | attribs_seen_ | materials_seen_) == 0; }
+    void clear() { seen_ = materials_seen_ = 0; }
+    bool empty() const { return (seen_ | materials_seen_) == 0; }
 
-    void color(float r, float g, float b, float a) { seen_ |= kColor, color_ = {r, g, b, a}; }
-    void normal(float x, float y, float z) { seen_ |= kNormal, normal_ = {x, y, z}; }
-    void secondary_color(float r, float g, float b) { seen_ |= kSecondary, secondary_ = {r, g, b, 1}; }
-    void fog_coord(float c) { seen_ |= kFog, fog_ = c; }
-    void edge_flag(bool flag) { seen_ |= kEdge, edge_ = flag ? 1 : 0; }
-    void color_index(float c) { seen_ |= kIndex, index_ = c; }
-    void texcoord(unsigned unit, float s, float t, float r, float q) {
-        seen_ |= kTexcoord0 << unit, texcoord_[unit] = {s, t, r, q};
-    }
-    void vertex_attrib(unsigned i, float x, float y, float z, float w) {
-        attribs_seen_ |= 1u << i, attrib_[i] = {x, y, z, w};
+    /// A command gave an attribute this value; what it lacks of four components is 0, 0, 1.
+    void set(glstate::Attribute attribute, float x, float y = 0, float z = 0, float w = 1) {
+        const std::size_t place = glstate::place_of(attribute);
+        seen_ |= 1u << place, values_[place] = {x, y, z, w};
     }
     /// False: no such face or parameter.
     bool material(GLenum face, GLenum pname, const glstate::Vec4& value);
@@ -39,21 +33,15 @@ public:
 private:
     // ambient, diffuse, specular, emission, shininess, indexes
     static constexpr unsigned kMaterials = 6;
-    static constexpr std::uint32_t kColor = 1, kNormal = 2, kSecondary = 4, kFog = 8, kEdge = 16, kIndex = 32,
-                                   kTexcoord0 = 64;
     void set_material(unsigned face, unsigned parameter, const glstate::Vec4& value) {
         materials_seen_ |= 1u << (face * kMaterials + parameter);
         material_[face][parameter] = value;
     }
     void fold_materials(glstate::State& state) const;
 
-    std::uint32_t seen_ = 0, attribs_seen_ = 0, materials_seen_ = 0;
-    glstate::Vec4 color_{}, secondary_{};
-    glstate::Vec3 normal_{};
-    float fog_ = 0, index_ = 0;
-    glstate::Flag edge_ = 0;
-    std::array<glstate::Vec4, 8> texcoord_{};
-    std::array<glstate::Vec4, 16> attrib_{};
+    static_assert(glstate::kAttributes <= 32 && 2 * kMaterials <= 32);
+    std::uint32_t seen_ = 0, materials_seen_ = 0;
+    std::array<glstate::Vec4, glstate::kAttributes> values_{};
     std::array<std::array<glstate::Vec4, kMaterials>, 2> material_{};
 };
 

@@ -26,6 +26,8 @@
 
 namespace wall::tileserver {
 
+using glstate::Attribute;
+
 class Executor : public glapi::Handler {
 public:
     Executor(RenderNode& node, SessionReplica& session, SessionOutput& output);
@@ -79,62 +81,62 @@ public:
         if (draws_) gl_.Vertex4f(x, y, z, w);
     }
     void Normal3f(float x, float y, float z) {
-        trail_.normal(x, y, z);
+        trail_.set(Attribute::normal, x, y, z);
         if (draws_) gl_.Normal3f(x, y, z);
     }
     void Color3f(float r, float g, float b) {
-        trail_.color(r, g, b, 1);
+        trail_.set(Attribute::color, r, g, b);
         if (draws_) gl_.Color3f(r, g, b);
     }
     void Color4f(float r, float g, float b, float a) {
-        trail_.color(r, g, b, a);
+        trail_.set(Attribute::color, r, g, b, a);
         if (draws_) gl_.Color4f(r, g, b, a);
     }
     void Color4ub(std::uint32_t rgba) {
         const auto byte = [rgba](unsigned shift) { return static_cast<float>(rgba >> shift & 0xff) / 255.0f; };
-        trail_.color(byte(0), byte(8), byte(16), byte(24));
+        trail_.set(Attribute::color, byte(0), byte(8), byte(16), byte(24));
         if (draws_) gl_.Color4ubv(reinterpret_cast<const GLubyte*>(&rgba));
     }
     void SecondaryColor3f(float r, float g, float b) {
-        trail_.secondary_color(r, g, b);
+        trail_.set(Attribute::secondary_color, r, g, b);
         if (draws_) gl_.SecondaryColor3f(r, g, b);
     }
     void TexCoord1f(float s) {
-        trail_.texcoord(0, s, 0, 0, 1);
+        trail_.set(Attribute::texcoord, s);
         if (draws_) gl_.TexCoord1f(s);
     }
     void TexCoord2f(float s, float t) {
-        trail_.texcoord(0, s, t, 0, 1);
+        trail_.set(Attribute::texcoord, s, t);
         if (draws_) gl_.TexCoord2f(s, t);
     }
     void TexCoord3f(float s, float t, float r) {
-        trail_.texcoord(0, s, t, r, 1);
+        trail_.set(Attribute::texcoord, s, t, r);
         if (draws_) gl_.TexCoord3f(s, t, r);
     }
     void TexCoord4f(float s, float t, float r, float q) {
-        trail_.texcoord(0, s, t, r, q);
+        trail_.set(Attribute::texcoord, s, t, r, q);
         if (draws_) gl_.TexCoord4f(s, t, r, q);
     }
     void MultiTexCoord4f(std::uint32_t unit, float s, float t, float r, float q) {
         if (unit >= kTextureUnits) return refuse("no such texture unit");
-        trail_.texcoord(unit, s, t, r, q);
+        trail_.set(Attribute::texcoord + unit, s, t, r, q);
         if (draws_) gl_.MultiTexCoord4f(GL_TEXTURE0 + unit, s, t, r, q);
     }
     void FogCoordf(float coord) {
-        trail_.fog_coord(coord);
+        trail_.set(Attribute::fog_coord, coord);
         if (draws_) gl_.FogCoordf(coord);
     }
     void EdgeFlag(std::uint32_t flag) {
-        trail_.edge_flag(flag != 0);
+        trail_.set(Attribute::edge_flag, flag != 0 ? 1.0f : 0.0f);
         if (draws_) gl_.EdgeFlag(flag != 0 ? GL_TRUE : GL_FALSE);
     }
     void Indexf(float c) {
-        trail_.color_index(c);
+        trail_.set(Attribute::color_index, c);
         if (draws_) gl_.Indexf(c);
     }
     void VertexAttrib4f(std::uint32_t index, float x, float y, float z, float w) {
         if (index >= glstate::el::vertex_attrib::count) return refuse("no such attribute");
-        if (index != 0) trail_.vertex_attrib(index, x, y, z, w);
+        if (index != 0) trail_.set(Attribute::vertex_attrib + index, x, y, z, w);
         else begin_.countable = false;
         if (draws_) gl_.VertexAttrib4f(index, x, y, z, w);
     }

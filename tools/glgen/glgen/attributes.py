@@ -24,6 +24,7 @@ class Attribute:
     element: object     # state.Element
     place: int          # of its first value among all attributes' values
     commands: tuple
+    array: object       # state.Element: its vertex arrays
 
     @property
     def name(self):
@@ -32,6 +33,10 @@ class Attribute:
     @property
     def count(self):
         return self.element.count
+
+    def of_floats(self, indexed):
+        """The commands of floats by how many they take, of the first value or of any."""
+        return {c.floats: c for c in self.commands if c.indexed == indexed and c.form == "floats"}
 
     def whole(self, indexed):
         """The command that says all of a value: of the first, or of any."""
@@ -43,18 +48,33 @@ def load(path, ops, model):
     file = data.load(path)
     by_name = {op.name: op for op in ops}
     elements = {e.name: e for e in model.elements if e.category == "current"}
+    arrays = {name: _array(file, name, word, model) for name, word in file.sections["attribute_array"].items()}
     attributes, place = [], 0
     for name, words in file.sections["attribute"].items():
         with file.line("attribute", name):
             assert name in elements, "no element of [current] in state.toml"
-            attributes.append(Attribute(elements[name], place, tuple(_command(by_name, w) for w in words.split())))
+            assert name in arrays, "no line in [attribute_array]"
+            sets = tuple(_command(by_name, w) for w in words.split())
+            attributes.append(Attribute(elements[name], place, sets, arrays[name]))
             one = elements[name].count == 1
             assert one or attributes[-1].whole(True), "several values need a command with an index"
             place += elements[name].count
+    for name in sorted(set(arrays) - {a.name for a in attributes}):
+        file.refuse(f"{name}: no line in [attribute]", "attribute_array", name)
     missing = sorted(set(elements) - {a.name for a in attributes})
     if missing:
         file.refuse(f"no line for {', '.join(missing)} of [current] in state.toml", "attribute")
     return attributes
+
+
+def _array(file, name, word, model):
+    """The element of an attribute's vertex arrays."""
+    elements = {e.name: e for e in model.elements}
+    with file.line("attribute_array", name):
+        array = elements.get(word)
+        assert array and array.cpp == "ClientArray", f"{word}: no vertex array in state.toml"
+        assert name not in elements or array.count == elements[name].count, f"{word}: not as many as values"
+    return array
 
 
 def _command(by_name, word):

@@ -10,7 +10,8 @@ second unit's is the next. Between values and the commands of the stream that se
 
 
 def attributes_header(attributes):
-    out = [header("proto/gl/attributes.toml", NOTES, ["<array>", "<cstddef>", "<cstdint>", "<cstring>"]),
+    out = [header("proto/gl/attributes.toml", NOTES,
+                   ["<array>", "<cstddef>", "<cstdint>", "<cstring>", "<optional>", "<type_traits>"]),
            '\n#include "gen/glapi/wire.gen.h"\n#include "gen/glstate/state.gen.h"\n'
            "\nnamespace wall::glstate {\n\nenum class Attribute : std::uint8_t {\n"]
     out += [f"    {a.name} = {a.place},\n" for a in attributes]
@@ -29,6 +30,9 @@ def attributes_header(attributes):
     out.append(_apply(attributes))
     out.append(_write(attributes))
     out.append(_of_element(attributes))
+    out.append(_with_element(attributes))
+    out.append(_float_command(attributes))
+    out.append(_arrays(attributes))
     out.append("}  // namespace wall::glstate\n")
     return "".join(out)
 
@@ -80,6 +84,13 @@ inline std::uint32_t attribute_word(const std::byte* operand) {
     std::uint32_t word;
     std::memcpy(&word, operand, sizeof word);
     return word;
+}
+template <class Value>
+Value attribute_value(const Vec4& v) {
+    if constexpr (std::is_same_v<Value, Flag>) return v[0] != 0 ? 1 : 0;
+    else if constexpr (std::is_same_v<Value, float>) return v[0];
+    else if constexpr (std::is_same_v<Value, Vec3>) return {v[0], v[1], v[2]};
+    else return v;
 }
 template <class Value>
 void put_attribute(std::byte* operand, const Value& value, std::size_t bytes = sizeof(Value)) {
@@ -148,4 +159,39 @@ def _of_element(attributes):
              "    static_assert(E::category == Category::current);\n"]
     lines += [f"    if (E::id == el::{a.name}::id) return Attribute::{a.name} + i;\n" for a in attributes]
     lines.append("    return Attribute{};\n}\n\n")
+    return "".join(lines)
+
+
+def _with_element(attributes):
+    lines = ["/// Calls use(element, i, v): the attribute is value i of that element of category `current`, and v is\n"
+             "/// `value`, which has four components, in the element's type.\n"
+             "template <class Use>\nvoid with_attribute(Attribute attribute, const Vec4& value, Use&& use) {\n"
+             "    const auto place = static_cast<unsigned>(place_of(attribute));\n"
+             "    const auto is = [&]<class E>(E, unsigned first) {\n"
+             "        if (place - first >= E::count) return false;\n"
+             "        use(E{}, place - first, detail::attribute_value<typename E::type>(value));\n"
+             "        return true;\n    };\n"]
+    tests = [f"is(el::{a.name}{{}}, {a.place})" for a in attributes]
+    lines.append("    static_cast<void>(" + " || ".join(tests) + ");\n}\n\n")
+    return "".join(lines)
+
+
+def _float_command(attributes):
+    lines = ["/// The command that gives an attribute its value by as many floats; nothing: there is none.\n"
+             "constexpr std::optional<glapi::Op> float_command(Attribute attribute, unsigned floats) {\n"
+             "    const std::size_t place = place_of(attribute);\n"]
+    for a in attributes:
+        for floats, c in sorted(a.of_floats(False).items()):
+            lines.append(f"    if (place == {a.place} && floats == {floats}) return glapi::Op::{c.op.name};\n")
+    lines.append("    return std::nullopt;\n}\n\n")
+    return "".join(lines)
+
+
+def _arrays(attributes):
+    lines = ["/// Calls use(attribute, array) for the vertex array of each attribute.\n"
+             "template <class Use>\nvoid for_each_attribute_array(const State& state, Use&& use) {\n"
+             "    const auto each = [&]<class E>(E, Attribute first) {\n"
+             "        for (unsigned i = 0; i < E::count; ++i) use(first + i, E::ref(state, i));\n    };\n"]
+    lines += [f"    each(el::{a.array.name}{{}}, Attribute::{a.name});\n" for a in attributes]
+    lines.append("}\n\n")
     return "".join(lines)

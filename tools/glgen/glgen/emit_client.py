@@ -29,7 +29,8 @@ def api_header(commands, model, attributes):
     canonical = commands.canonical
     out = [header("gl.xml, proto/gl/commands.toml, proto/gl/state.toml", API_NOTES, []),
            '#include <cstddef>\n#include <cstdint>\n#include <span>\n\n'
-           '#include "common/glapi/gl_types.h"\n#include "gen/glapi/wire.gen.h"\n\n'
+           '#include "common/glapi/gl_types.h"\n#include "gen/glapi/wire.gen.h"\n'
+           '#include "gen/glstate/attributes.gen.h"\n\n'
            "namespace wall::client {\n\nclass Context;\n\nnamespace api {\n\n"]
     for i in canonical:
         note = " // by hand" if i.way == "hand" else ""
@@ -65,6 +66,11 @@ def api_header(commands, model, attributes):
                "inline constexpr RecordedAttribute kRecordedAttributes[] = {\n"
                + "".join(f"    {{CommandId::{c.op.name}, glapi::Op::{c.op.name}}},\n"
                          for a in attributes for c in a.commands) + "};\n\n"
+               "/// Gives a vertex attribute its value by a command of the table: the one of `size` components if "
+               "there is one.\n/// `v` has four; those behind the first `size` are 0, 0, 1 as OpenGL would fill them "
+               "in.\n"
+               "void call_attribute(const GlTable& table, Context& c, glstate::Attribute attribute, GLint size, "
+               "const GLfloat* v);\n\n"
                "/// Executes a recorded command, as between glBegin and glEnd if the context is there.\n"
                "void replay_command(Context& c, std::uint16_t command, std::span<const std::byte> payload);\n\n")
     out.append("/// An entry point by name.\nstruct ProcEntry {\n    const char* name;\n    void (*entry)();\n};\n"
@@ -90,7 +96,29 @@ def _hot(commands):
 
 # ---- tables ----
 
-def tables_source(commands):
+def _attribute_calls(attributes):
+    """call_attribute(): a line for each command that gives an attribute its value."""
+    lines = ["void call_attribute(const GlTable& table, Context& c, glstate::Attribute attribute, GLint size, "
+             "const GLfloat* v) {\n    const auto place = static_cast<GLuint>(glstate::place_of(attribute));\n"]
+    for a in attributes:
+        for floats, command in a.of_floats(False).items():
+            if command is not a.whole(False):
+                lines.append(f"    if (place == {a.place} && size == {floats}) return {_attribute_call(a, command)};\n")
+        if a.whole(False):
+            lines.append(f"    if (place == {a.place}) return {_attribute_call(a, a.whole(False))};\n")
+        if a.whole(True):
+            lines.append(f"    if (place < {a.place + a.count}) return {_attribute_call(a, a.whole(True))};\n")
+    return "".join(lines) + "}\n\n"
+
+
+def _attribute_call(a, command):
+    index = {"unit": [f"GL_TEXTURE0 + place - {a.place}"], "index": [f"place - {a.place}"]}
+    first = index[command.op.operands[0].name] if command.indexed else []
+    values = ["v[0] != 0"] if command.form == "flag" else [f"v[{i}]" for i in range(command.floats)]
+    return f"table.{command.op.name}({', '.join(['c', *first, *values])})"
+
+
+def tables_source(commands, attributes):
     canonical = commands.canonical
     out = [header("gl.xml and proto/gl/commands.toml",
                   "The modes of a context as tables, display list recording and replay.", [], pragma=False),
@@ -125,6 +153,7 @@ def tables_source(commands):
                "void replay_command(Context& c, std::uint16_t command, std::span<const std::byte> payload) {\n"
                "    if (command < kCommandCount && kReplayRows[command].run) kReplayRows[command].run(c, payload);\n}\n"
                "\n"
+               + _attribute_calls(attributes) +
                "const char* const kCommandNames[kCommandCount] = {\n"
                + "".join(f'    "gl{i.name}",\n' for i in canonical) + "};\n\n"
                "namespace tables {\n\n")

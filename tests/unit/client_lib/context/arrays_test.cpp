@@ -86,6 +86,71 @@ TEST_F(ArraysTest, ConvertedTypes) {
     EXPECT_EQ(arrays, take());
 }
 
+// All arrays at once, one of three vertices' worth of floats for each attribute that the table has.
+TEST_F(ArraysTest, EveryAttributeComesFromItsArray) {
+    constexpr GLsizei kStride = 4 * sizeof(float);
+    std::array<std::array<float, 8>, kAttributes> values{};
+    for (std::size_t place = 0; place < kAttributes; ++place)
+        for (std::size_t i = 0; i < 8; ++i) values[place][i] = static_cast<float>(10 * place + i + 1) / 512.0f;
+    const auto of = [&](Attribute a) { return values[place_of(a)].data(); };
+    const float positions[] = {1, 2, 3, 0, 4, 5, 6, 0};
+    const GLboolean edges[] = {GL_FALSE, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, GL_TRUE};
+    gl().VertexPointer(c, 3, GL_FLOAT, kStride, positions);
+    gl().ColorPointer(c, 4, GL_FLOAT, kStride, of(Attribute::color));
+    gl().NormalPointer(c, GL_FLOAT, kStride, of(Attribute::normal));
+    gl().SecondaryColorPointer(c, 3, GL_FLOAT, kStride, of(Attribute::secondary_color));
+    gl().FogCoordPointer(c, GL_FLOAT, kStride, of(Attribute::fog_coord));
+    gl().IndexPointer(c, GL_FLOAT, kStride, of(Attribute::color_index));
+    gl().EdgeFlagPointer(c, kStride, edges);
+    for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
+        gl().ClientActiveTexture(c, GL_TEXTURE0 + unit);
+        gl().TexCoordPointer(c, unit == 0 ? 3 : 4, GL_FLOAT, kStride, of(Attribute::texcoord + unit));
+        gl().EnableClientState(c, GL_TEXTURE_COORD_ARRAY);
+    }
+    for (GLuint i = 1; i < kVertexAttributes; ++i) {
+        gl().VertexAttribPointer(c, i, 4, GL_FLOAT, GL_FALSE, kStride, of(Attribute::vertex_attrib + i));
+        gl().EnableVertexAttribArray(c, i);
+    }
+    for (const GLenum cap : {GL_VERTEX_ARRAY, GL_COLOR_ARRAY, GL_NORMAL_ARRAY, GL_SECONDARY_COLOR_ARRAY,
+                             GL_FOG_COORD_ARRAY, GL_INDEX_ARRAY, GL_EDGE_FLAG_ARRAY})
+        gl().EnableClientState(c, cap);
+    ASSERT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().DrawArrays(c, GL_LINES, 0, 2);
+    const auto arrays = take();
+
+    gl().Begin(c, GL_LINES);
+    for (std::size_t vertex = 0; vertex < 2; ++vertex) {
+        const auto at = [&](Attribute a) { return of(a) + 4 * vertex; };
+        const float *color = at(Attribute::color), *normal = at(Attribute::normal), *st = at(Attribute::texcoord),
+                    *second = at(Attribute::secondary_color), *position = positions + 4 * vertex;
+        gl().Color4f(c, color[0], color[1], color[2], color[3]);
+        gl().Normal3f(c, normal[0], normal[1], normal[2]);
+        gl().TexCoord3f(c, st[0], st[1], st[2]);
+        for (unsigned unit = 1; unit < kTextureUnits; ++unit) {
+            const float* v = at(Attribute::texcoord + unit);
+            gl().MultiTexCoord4f(c, GL_TEXTURE0 + unit, v[0], v[1], v[2], v[3]);
+        }
+        gl().SecondaryColor3f(c, second[0], second[1], second[2]);
+        gl().FogCoordf(c, *at(Attribute::fog_coord));
+        gl().EdgeFlag(c, edges[vertex * kStride]);
+        gl().Indexf(c, *at(Attribute::color_index));
+        for (GLuint i = 1; i < kVertexAttributes; ++i) {
+            const float* v = at(Attribute::vertex_attrib + i);
+            gl().VertexAttrib4f(c, i, v[0], v[1], v[2], v[3]);
+        }
+        gl().Vertex3f(c, position[0], position[1], position[2]);
+    }
+    gl().End(c);
+    const std::size_t drawn = c.packer.commands();
+    EXPECT_EQ(arrays.opcodes.size(), drawn + kAttributes - 1);  // and the current values again, but of attribute 0
+    const auto commands = take();
+    const std::span behind(arrays.operands);
+    ASSERT_GE(behind.size(), commands.operands.size());
+    EXPECT_TRUE(std::ranges::equal(behind.first(commands.operands.size()), commands.operands));
+    // Opcodes are packed backwards: the first command's is the last.
+    EXPECT_TRUE(std::ranges::equal(std::span(arrays.opcodes).last(drawn), commands.opcodes));
+}
+
 TEST_F(ArraysTest, CurrentColorInTheBlockIsRestored) {
     const float vertices[] = {0, 0, 1, 0, 1, 1}, colors[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     gl().Color4ub(c, 9, 8, 7, 6);
