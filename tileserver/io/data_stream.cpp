@@ -111,6 +111,7 @@ asio::awaitable<Result<void>> DataStream::greet() {
     };
     batches_ = std::make_shared<BatchQueue>(on_room);
     host_.render().add_stream(id_, session_, batches_, admission->membership, hello.rank());
+    host_.stream_open(id_);
     send(wire::FrameKind::welcome, {});
     log::info("stream_open stream={} session={}", id_.value, session_.value);
     co_return Result<void>{};

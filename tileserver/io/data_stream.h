@@ -42,6 +42,8 @@ public:
     virtual std::optional<std::chrono::seconds> shut_out(SessionId session) const = 0;
     virtual RenderThread& render() = 0;
     virtual void stream_bytes(std::size_t bytes) = 0;
+    /// It has shown a valid ticket.
+    virtual void stream_open(StreamId stream) = 0;
     virtual void stream_closed(StreamId stream) = 0;
 };
 

@@ -132,16 +132,28 @@ DataStream* NodeServer::stream(StreamId id) {
 
 // ---- clients ----
 
+/// Whoever connects without end keeps only those out who are slower to say who they are: a program shows its ticket in
+/// its first bytes, and a connection that does not makes room for it.
+void NodeServer::make_room_for_stranger() {
+    if (strangers_.size() < most_strangers_) return;
+    const StreamId oldest = *strangers_.begin();
+    strangers_.erase(strangers_.begin());
+    log::info("stream_ended stream={} reason=\"no ticket, and too many others\"", oldest.value);
+    if (DataStream* silent = stream(oldest)) silent->fail("too many connections that have shown no ticket");
+}
+
 void NodeServer::take_client(net::StreamSocket socket) {
+    make_room_for_stranger();
     const StreamId id(++last_stream_);
     const auto stream = std::make_shared<DataStream>(static_cast<StreamHost&>(*this), id, std::move(socket));
     streams_.emplace(id, stream);
+    strangers_.insert(id);
     asio::co_spawn(executor_, stream->run(), [this, id](std::exception_ptr failure) {
         if (!failure) return;
         log::error("stream_failed stream={}", id.value);  // out of memory
         if (DataStream* broken = this->stream(id)) broken->close();
         render_->remove_stream(id);
-        streams_.erase(id);
+        stream_closed(id);
     });
 }
 

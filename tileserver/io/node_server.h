@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 
@@ -43,6 +44,8 @@ public:
     /// How long one turn of a stream may take, that is, one call of the driver; then its session is ended. Before
     /// start().
     void set_longest_turn(std::chrono::milliseconds limit) { turn_watch_ = TurnWatch(limit); }
+    /// How many connections may be there that have shown no ticket; the oldest of more is closed. Before start().
+    void set_most_strangers(std::size_t most) { most_strangers_ = most; }
     /// Why the node cannot go on; none: it can.
     const std::optional<std::string>& failure() const { return failure_; }
 
@@ -56,7 +59,11 @@ private:
     }
     RenderThread& render() override { return *render_; }
     void stream_bytes(std::size_t bytes) override { bytes_received_ += bytes; }
-    void stream_closed(StreamId stream) override { streams_.erase(stream); }
+    void stream_open(StreamId stream) override { strangers_.erase(stream); }
+    void stream_closed(StreamId stream) override {
+        strangers_.erase(stream);
+        streams_.erase(stream);
+    }
     // NodeEvents: from the render thread
     void reply(StreamId stream, RequestId request, std::vector<std::byte> answer) override;
     void drawn(StreamId stream, SurfaceId surface, std::uint32_t frame) override;
@@ -71,6 +78,7 @@ private:
 
     void keep(const char* name, asio::awaitable<void> (NodeServer::*work)());
     void take_client(net::StreamSocket socket);
+    void make_room_for_stranger();
     asio::awaitable<void> keep_link();
     asio::awaitable<void> watch_turns();
     void blame(const RunningTurn& turn);
@@ -112,6 +120,8 @@ private:
     proto::WallNote wall_note_;      // kept for the walld that comes after this one
     std::unordered_map<SessionId, Admission> admissions_;
     std::map<StreamId, std::shared_ptr<DataStream>> streams_;
+    std::set<StreamId> strangers_;  // those of them that have shown no ticket; ids grow
+    std::size_t most_strangers_ = 1024;
     std::uint32_t last_stream_ = 0;
     std::uint64_t bytes_received_ = 0;
     std::optional<std::string> failure_;

@@ -146,6 +146,7 @@ protected:
         ASSERT_TRUE(server) << server.error().message;
         server_ = std::move(*server);
         server_->set_longest_turn(longest_turn_);
+        server_->set_most_strangers(kStrangers);
         server_->start();
         thread_ = std::thread([this] { io_.run(); });
         introduce();
@@ -242,6 +243,7 @@ protected:
         walld_->send(present);
     }
 
+    static constexpr std::size_t kStrangers = 4;
     std::chrono::milliseconds longest_turn_ = 60s;
     std::string folder_;
     config::WallConfig config_;
@@ -298,6 +300,26 @@ TEST_F(NodeServerTest, RefusesWhoHasNoTicket) {
     Client huge(node_address());
     huge.send(wire::FrameKind::hello, std::vector<std::byte>(100'000));
     EXPECT_THAT(huge.expect_error(), ::testing::HasSubstr("at most"));
+}
+
+// The oldest of those who have shown no ticket goes; whoever has shown one stays, and new ones are let in.
+TEST_F(NodeServerTest, ConnectionsWithoutATicketAreBounded) {
+    Client known(node_address());
+    known.hello(1, "secret1");
+    known.expect(wire::FrameKind::welcome);
+    std::vector<std::unique_ptr<Client>> silent;
+    for (std::size_t i = 0; i < kStrangers + 2; ++i) silent.push_back(std::make_unique<Client>(node_address()));
+    for (std::size_t i = 0; i < 2; ++i)
+        EXPECT_THAT(silent[i]->expect_error(), ::testing::HasSubstr("shown no ticket")) << i;
+    Client another(node_address());
+    another.hello(2, "secret2");
+    another.expect(wire::FrameKind::welcome);
+    EXPECT_THAT(silent[2]->expect_error(), ::testing::HasSubstr("shown no ticket"));
+    known.batch(one_frame({1, 0, 0, 0}, 1));
+    known.expect(wire::FrameKind::swap_done);
+    // One of the others may still say who it is.
+    silent.back()->hello(2, "guess");
+    EXPECT_THAT(silent.back()->expect_error(), ::testing::HasSubstr("no valid ticket"));
 }
 
 TEST_F(NodeServerTest, SaysWhatASessionCostsUntilItEnds) {
