@@ -19,8 +19,8 @@ namespace {
 constexpr std::size_t kMostAsked = 16u << 20;  // bytes of pixels in one question
 
 bool legal_target(GLenum target) {
-    const GLenum object = object_target(target);
-    return target != GL_TEXTURE_CUBE_MAP && (object == GL_TEXTURE_2D || object == GL_TEXTURE_CUBE_MAP);
+    const auto* info = image_target_of(target);
+    return info && info->blocks;
 }
 
 struct Image {
@@ -36,7 +36,7 @@ GLenum image_error(Context& c, const Image& image, GLint border) {
         return GL_INVALID_VALUE;
     const GLint most = std::max(1, 1 << (levels - 1) >> image.level);
     if (image.width > most || image.height > most) return GL_INVALID_VALUE;
-    if (object_target(image.target) == GL_TEXTURE_CUBE_MAP && image.width != image.height) return GL_INVALID_VALUE;
+    if (image_target_of(image.target)->square && image.width != image.height) return GL_INVALID_VALUE;
     const std::size_t bytes = s3tc_bytes(image.format, image.width, image.height);
     return image.bytes < 0 || static_cast<std::size_t>(image.bytes) != bytes ? GL_INVALID_VALUE : GL_NO_ERROR;
 }
@@ -200,8 +200,7 @@ void CompressedTexSubImage2D(Context& c, GLenum target, GLint number, GLint x, G
 }
 
 void GetCompressedTexImage(Context& c, GLenum target, GLint number, void* pixels) {
-    if (is_proxy(target) || object_target(target) == 0 || target == GL_TEXTURE_CUBE_MAP)
-        return c.error(GL_INVALID_ENUM);
+    if (is_proxy(target) || !image_target_of(target)) return c.error(GL_INVALID_ENUM);
     if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE);
     compress_as_driver(c, target, number);
     const auto texture = bound_texture(c, target);

@@ -18,20 +18,16 @@
 namespace wall::client {
 namespace {
 
-GLint largest_size(Context& c, GLenum target) {
-    const auto limit = [&](GLenum name, double otherwise) {
-        return static_cast<GLint>(limit_of(c.session().caps(), name, otherwise));
-    };
-    switch (object_target(target)) {
-        case GL_TEXTURE_3D: return limit(GL_MAX_3D_TEXTURE_SIZE, 2048);
-        case GL_TEXTURE_CUBE_MAP: return limit(GL_MAX_CUBE_MAP_TEXTURE_SIZE, 16384);
-        case GL_TEXTURE_RECTANGLE: return limit(GL_MAX_RECTANGLE_TEXTURE_SIZE, 16384);
-        default: return limit(GL_MAX_TEXTURE_SIZE, 16384);
-    }
+GLint largest_size(Context& c, const glapi::TextureTargetInfo& target) {
+    return static_cast<GLint>(limit_of(c.session().caps(), target.size_limit, target.usual_size));
 }
 
-bool legal_target(unsigned dimensions, GLenum target) {
-    return target != GL_TEXTURE_CUBE_MAP && object_target(target) != 0 && dimensions_of(target) == dimensions;
+/// What an image call's word says; the word has been checked.
+const glapi::TextureTargetInfo& info_of(const ImageCall& call) { return *target_word(call.target)->info; }
+
+bool legal_target(unsigned dimensions, GLenum word) {
+    const auto* target = image_target_of(word);
+    return target && target->images == dimensions;
 }
 
 bool depth_like(GLenum format) { return format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL; }
@@ -46,22 +42,24 @@ bool formats_agree(const TextureFormat& internal, GLenum format) {
 }
 
 bool legal_size(Context& c, const ImageCall& call) {
-    const GLint most = largest_size(c, call.target) >> call.level;
+    const glapi::TextureTargetInfo& target = info_of(call);
+    const GLint most = largest_size(c, target) >> call.level;
     const auto fits = [&](GLsizei size) { return size >= 0 && size <= std::max(most, 1); };
-    const bool face = object_target(call.target) == GL_TEXTURE_CUBE_MAP;
-    if (face && call.width != call.height) return false;
+    if (target.square && call.width != call.height) return false;
     return fits(call.width) && (call.dimensions < 2 || fits(call.height)) && (call.dimensions < 3 || fits(call.depth));
 }
 
+GLint most_border(const ImageCall& call) { return info_of(call).mipmaps ? 1 : 0; }
+
 GLenum image_error(Context& c, const ImageCall& call, const TextureFormat* internal) {
     if (call.level < 0 || call.level >= level_count(c, call.target)) return GL_INVALID_VALUE;
-    const bool rectangle = object_target(call.target) == GL_TEXTURE_RECTANGLE;
-    if (call.border < 0 || call.border > 1 || (rectangle && call.border != 0)) return GL_INVALID_VALUE;
+    if (call.border < 0 || call.border > most_border(call)) return GL_INVALID_VALUE;
     if (call.width < 0 || call.height < 0 || call.depth < 0) return GL_INVALID_VALUE;
     if (const GLenum error = glapi::format_type_error(call.format, call.type)) return error;
     if (!internal) return GL_INVALID_VALUE;
     if (!formats_agree(*internal, call.format)) return GL_INVALID_OPERATION;
-    if (depth_like(internal->base) && call.dimensions == 3) return GL_INVALID_OPERATION;
+    const bool volume = call.dimensions == 3 && !info_of(call).layers;
+    if (depth_like(internal->base) && volume) return GL_INVALID_OPERATION;
     return GL_NO_ERROR;
 }
 
@@ -166,8 +164,8 @@ void generate_if_asked(Texture& texture, GLint level) {
 }
 
 GLint level_count(Context& c, GLenum target) {
-    if (object_target(target) == GL_TEXTURE_RECTANGLE) return 1;
-    return std::bit_width(static_cast<unsigned>(largest_size(c, target)));
+    const glapi::TextureTargetInfo& info = *target_word(target)->info;
+    return info.mipmaps ? std::bit_width(static_cast<unsigned>(largest_size(c, info))) : 1;
 }
 
 void store_level(Context& c, const ImageCall& call, TexelData data) {
@@ -307,8 +305,7 @@ struct From {
 void copy_image(Context& c, ImageCall call, GLenum internal_format, From from, const char* function) {
     if (is_proxy(call.target) || !legal_target(call.dimensions, call.target)) return c.error(GL_INVALID_ENUM);
     if (call.level < 0 || call.level >= level_count(c, call.target)) return c.error(GL_INVALID_VALUE);
-    const bool rectangle = call.target == GL_TEXTURE_RECTANGLE;
-    if (call.border < 0 || call.border > 1 || (rectangle && call.border != 0)) return c.error(GL_INVALID_VALUE);
+    if (call.border < 0 || call.border > most_border(call)) return c.error(GL_INVALID_VALUE);
     const TextureFormat* internal = find_texture_format(static_cast<GLint>(internal_format));
     if (!internal || internal_format <= 4) return c.error(GL_INVALID_ENUM);
     if (call.width < 0 || call.height < 0) return c.error(GL_INVALID_VALUE);
@@ -323,7 +320,7 @@ void copy_image(Context& c, ImageCall call, GLenum internal_format, From from, c
 }
 
 void copy_sub_image(Context& c, ImageCall call, From from, const char* function) {
-    const auto texture = object_target(call.target) ? bound_texture(c, call.target) : nullptr;
+    const auto texture = target_word(call.target) ? bound_texture(c, call.target) : nullptr;
     const TextureLevel* level = texture ? texture->find_level(face_of(call.target), call.level) : nullptr;
     const TextureFormat* internal = level ? find_texture_format(level->internal_format) : nullptr;
     set_copied_format(c, call, internal ? internal->base : GLenum{GL_RGBA});

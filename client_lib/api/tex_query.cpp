@@ -49,11 +49,9 @@ GLint undefined_value(GLenum pname, bool& known) {
     return pname == GL_TEXTURE_INTERNAL_FORMAT ? GL_RGBA : value;
 }
 
-bool level_target(GLenum target) { return object_target(target) != 0 && target != GL_TEXTURE_CUBE_MAP; }
-
 template <class Out>
 void get_level(Context& c, GLenum target, GLint number, GLenum pname, Out* out) {
-    if (!level_target(target)) return c.error(GL_INVALID_ENUM);
+    if (!image_target_of(target)) return c.error(GL_INVALID_ENUM);
     if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE);
     bool known = true;
     GLint value = 0;
@@ -75,8 +73,6 @@ void get_level(Context& c, GLenum target, GLint number, GLenum pname, Out* out) 
     if (!known) return c.error(GL_INVALID_ENUM);
     *out = static_cast<Out>(value);
 }
-
-bool parameter_target(GLenum target) { return object_target(target) == target; }
 
 /// 1 for a value, 4 for the border colour, 0 if there is no such parameter.
 unsigned parameter_size(GLenum pname) {
@@ -109,14 +105,15 @@ GLint normalized_int(float value) {
 
 template <class Out>
 void get_parameter(Context& c, GLenum target, GLenum pname, Out* out) {
-    if (!parameter_target(target)) return c.error(GL_INVALID_ENUM);
+    const auto* info = target_of(target);
+    if (!info) return c.error(GL_INVALID_ENUM);
     const unsigned count = parameter_size(pname);
     if (count == 0) return c.error(GL_INVALID_ENUM);
     const auto texture = bound_texture(c, target);
     const auto value =
         pname == GL_TEXTURE_RESIDENT
             ? std::array<float, 4>{1}
-            : parameter_value(texture ? texture->parameters : Texture(ClientName(), 0, target).parameters, pname);
+            : parameter_value(texture ? texture->parameters : Texture(ClientName(), 0, info->id).parameters, pname);
     constexpr bool kInteger = std::is_same_v<Out, GLint>;
     const bool fraction = pname == GL_TEXTURE_BORDER_COLOR || pname == GL_TEXTURE_PRIORITY;
     for (unsigned i = 0; i < count; ++i) {
@@ -221,7 +218,7 @@ void GetTexParameteriv(Context& c, GLenum target, GLenum pname, GLint* params) {
 }
 
 void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum type, void* pixels) {
-    if (!level_target(target) || is_proxy(target)) return c.error(GL_INVALID_ENUM);
+    if (!image_target_of(target) || is_proxy(target)) return c.error(GL_INVALID_ENUM);
     if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE);
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
     if (format == GL_COLOR_INDEX || format == GL_STENCIL_INDEX) return c.error(GL_INVALID_ENUM);
@@ -236,7 +233,7 @@ void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum 
         const TextureFormat* internal = level ? find_texture_format(level->internal_format) : nullptr;
         if (!internal) return;
         if (!readable(internal->base, format)) return c.error(GL_INVALID_OPERATION);
-        size = {level->width, level->height, level->depth, dimensions_of(target)};
+        size = {level->width, level->height, level->depth, image_target_of(target)->images};
         auto texels = level_texels(*texture, face_of(target), number);
         if (format != GL_DEPTH_COMPONENT && format != GL_DEPTH_STENCIL) {
             const ComponentBits bits = stored_bits(*internal, level->format, level->type);

@@ -3,7 +3,6 @@
 // tex_query.cpp.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "client_lib/context/context.h"
 #include "client_lib/context/limits.h"
@@ -14,32 +13,29 @@
 namespace wall::client::api {
 namespace {
 
-constexpr GLenum kTargets[] = {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE};
-
-bool is_target(GLenum target) {
-    return std::find(std::begin(kTargets), std::end(kTargets), target) != std::end(kTargets);
+/// Of GL_GLOBAL_TEXTURE_1D and its like (GL_WALLGL_global_texture, docs/parallel-programs.md); null: no such word.
+const glapi::TextureTargetInfo* find_global_target(GLenum word) {
+    const auto found = std::ranges::find_if(glapi::kTextureTargetInfo,
+                                            [&](const auto& info) { return info.global != 0 && info.global == word; });
+    return found == glapi::kTextureTargetInfo.end() ? nullptr : &*found;
 }
 
-/// GL_WALLGL_global_texture: GL_GLOBAL_TEXTURE_1D, _2D and _3D, above all numbers that Khronos has given
-/// (docs/parallel-programs.md).
-constexpr std::pair<GLenum, GLenum> kGlobalTargets[] = {
-    {0x0001'D001, GL_TEXTURE_1D}, {0x0001'D002, GL_TEXTURE_2D}, {0x0001'D003, GL_TEXTURE_3D}};
-
 // A binding of a default texture that has content is its id, in every context that binds name 0.
-ClientName default_id(ShareGroup& share, GLenum target) {
+ClientName default_id(ShareGroup& share, glapi::TextureTarget target) {
     const auto found = share.default_textures.find(target);
     return found == share.default_textures.end() ? ClientName() : found->second->id;
 }
 
 void forget(Context& c, const std::shared_ptr<Texture>& texture) {
+    const glapi::TextureTarget target = texture->info.id;
     for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
-        if (bound_id(c, unit, texture->target) != texture->id) continue;
+        if (bound_id(c, unit, target) != texture->id) continue;
         ClientName id;
         {
             std::lock_guard lock(c.share().mutex);
-            id = default_id(c.share(), texture->target);
+            id = default_id(c.share(), target);
         }
-        set_bound_id(c, unit, texture->target, id);
+        set_bound_id(c, unit, target, id);
     }
     // Another context of the group may still have it bound; then it lives on without a name.
     if (texture->bound_by.size() > 1 || (!texture->bound_by.empty() && texture->bound_by[0] != c.id)) return;
@@ -51,7 +47,7 @@ void forget(Context& c, const std::shared_ptr<Texture>& texture) {
     c.session().delete_object(c, texture->id, glapi::pack::TexDelete);
 }
 
-bool valid_wrap(GLenum target, GLenum mode) {
+bool valid_wrap(const glapi::TextureTargetInfo& target, GLenum mode) {
     switch (mode) {
         case GL_CLAMP:
         case GL_CLAMP_TO_EDGE:
@@ -60,14 +56,14 @@ bool valid_wrap(GLenum target, GLenum mode) {
         case GL_MIRRORED_REPEAT:
         case GL_MIRROR_CLAMP_EXT:
         case GL_MIRROR_CLAMP_TO_EDGE:
-        case GL_MIRROR_CLAMP_TO_BORDER_EXT: return target != GL_TEXTURE_RECTANGLE;
+        case GL_MIRROR_CLAMP_TO_BORDER_EXT: return target.repeats;
         default: return false;
     }
 }
 
-bool valid_min_filter(GLenum target, GLenum filter) {
+bool valid_min_filter(const glapi::TextureTargetInfo& target, GLenum filter) {
     if (filter == GL_NEAREST || filter == GL_LINEAR) return true;
-    return target != GL_TEXTURE_RECTANGLE && filter >= GL_NEAREST_MIPMAP_NEAREST && filter <= GL_LINEAR_MIPMAP_LINEAR;
+    return target.mipmaps && filter >= GL_NEAREST_MIPMAP_NEAREST && filter <= GL_LINEAR_MIPMAP_LINEAR;
 }
 
 bool valid_compare(GLenum func) { return func >= GL_NEVER && func <= GL_ALWAYS; }
@@ -78,7 +74,7 @@ struct Change {
     TexParameters value;
 };
 
-Change changed(const TexParameters& old, GLenum target, GLenum pname, const GLfloat* params) {
+Change changed(const TexParameters& old, const glapi::TextureTargetInfo& target, GLenum pname, const GLfloat* params) {
     Change out{GL_NO_ERROR, old};
     TexParameters& p = out.value;
     const GLenum word = to_enum(params[0]);
@@ -101,7 +97,7 @@ Change changed(const TexParameters& old, GLenum target, GLenum pname, const GLfl
         case GL_TEXTURE_LOD_BIAS: p.lod_bias = params[0]; break;
         case GL_TEXTURE_BASE_LEVEL:
             p.base_level = number, check(number >= 0, GL_INVALID_VALUE);
-            if (target == GL_TEXTURE_RECTANGLE) check(number == 0, GL_INVALID_OPERATION);
+            if (!target.mipmaps) check(number == 0, GL_INVALID_OPERATION);
             break;
         case GL_TEXTURE_MAX_LEVEL: p.max_level = number, check(number >= 0, GL_INVALID_VALUE); break;
         case GL_GENERATE_MIPMAP: p.generate_mipmap = params[0] != 0; break;
@@ -146,12 +142,11 @@ void DeleteTextures(Context& c, GLsizei n, const GLuint* names) {
     }
 }
 
-void BindTexture(Context& c, GLenum target, GLuint name) {
-    const auto named = std::find_if(std::begin(kGlobalTargets), std::end(kGlobalTargets),
-                                    [&](const auto& row) { return row.first == target; });
-    const bool global = named != std::end(kGlobalTargets);
-    if (global) target = named->second;
-    if (!is_target(target)) return c.error(GL_INVALID_ENUM);
+void BindTexture(Context& c, GLenum word, GLuint name) {
+    const auto* plain = target_of(word);
+    const auto* info = plain ? plain : find_global_target(word);
+    if (!info) return c.error(GL_INVALID_ENUM);
+    const glapi::TextureTarget target = info->id;
     ClientName id;
     {
         std::lock_guard lock(c.share().mutex);
@@ -159,9 +154,9 @@ void BindTexture(Context& c, GLenum target, GLuint name) {
             id = default_id(c.share(), target);
         } else {
             auto texture = c.share().textures.find(name);
-            if (texture && texture->target != target) return c.error(GL_INVALID_OPERATION);
+            if (texture && texture->info.id != target) return c.error(GL_INVALID_OPERATION);
             if (!texture) c.share().textures.put(name, texture = make_texture(c.share(), name, target));
-            texture->global |= global;
+            texture->global |= plain == nullptr;
             auto& users = texture->bound_by;
             if (std::find(users.begin(), users.end(), c.id) == users.end()) users.push_back(c.id);
             id = texture->id;
@@ -194,10 +189,11 @@ void PrioritizeTextures(Context& c, GLsizei n, const GLuint* names, const GLfloa
 }
 
 void TexParameterfv(Context& c, GLenum target, GLenum pname, const GLfloat* params) {
-    if (!is_target(target)) return c.error(GL_INVALID_ENUM);
+    const auto* info = target_of(target);
+    if (!info) return c.error(GL_INVALID_ENUM);
     const auto current = bound_texture(c, target);
-    const TexParameters before = current ? current->parameters : Texture(ClientName(), 0, target).parameters;
-    const Change change = changed(before, target, pname, params);
+    const TexParameters before = current ? current->parameters : Texture(ClientName(), 0, info->id).parameters;
+    const Change change = changed(before, *info, pname, params);
     if (change.error != GL_NO_ERROR) return c.error(change.error);
     if (parameter_value(before, pname) == parameter_value(change.value, pname)) return;
     const auto texture = texture_to_change(c, target);
@@ -219,7 +215,8 @@ void ClientActiveTexture(Context& c, GLenum unit) {
 }
 
 void GenerateMipmap(Context& c, GLenum target) {
-    if (!is_target(target) || target == GL_TEXTURE_RECTANGLE) return c.error(GL_INVALID_ENUM);
+    const auto* info = target_of(target);
+    if (!info || !info->mipmaps) return c.error(GL_INVALID_ENUM);
     const auto current = bound_texture(c, target);
     if (!current || !current->find_level(0, current->parameters.base_level)) return c.error(GL_INVALID_OPERATION);
     const auto texture = texture_to_change(c, target);

@@ -31,8 +31,8 @@ struct OcclusionState;   // occlusion.h
 struct ContextMaps;      // maps.h: evaluator and pixel maps
 struct BufferUse;        // buffer_binding.h
 
-inline constexpr unsigned kTextureUnits = 8;
-inline constexpr unsigned kVertexAttributes = 16;
+inline constexpr unsigned kTextureUnits = glstate::el::texture_binding_2d::count;
+inline constexpr unsigned kVertexAttributes = glstate::el::vertex_attrib::count;
 /// A block larger than this is sent at the next glEnd, so that nodes draw while the program goes on.
 inline constexpr std::size_t kBlockBytes = 256 << 10;
 

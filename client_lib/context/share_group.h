@@ -81,7 +81,7 @@ struct ShareGroup {
         return found == by_id.end() ? nullptr : std::static_pointer_cast<Texture>(found->second);
     }
     /// Name 0 of each target, made when it first gets content; until then a binding of it is id 0.
-    std::map<GLenum, std::shared_ptr<Texture>> default_textures;
+    std::map<glapi::TextureTarget, std::shared_ptr<Texture>> default_textures;
 
     std::atomic<std::uint64_t> buffer_deletions{0};  ///< so far
 

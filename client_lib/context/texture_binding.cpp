@@ -3,41 +3,29 @@
 
 #include <algorithm>
 
+#include "gen/glstate/texture_elements.gen.h"
+
 namespace wall::client {
 namespace {
 
-namespace el = glstate::el;
-
-/// Calls `use` with the element that holds a target's binding.
-template <class Use>
-auto with_element(GLenum target, Use&& use) {
-    switch (target) {
-        case GL_TEXTURE_1D: return use(el::texture_binding_1d{});
-        case GL_TEXTURE_3D: return use(el::texture_binding_3d{});
-        case GL_TEXTURE_CUBE_MAP: return use(el::texture_binding_cube_map{});
-        case GL_TEXTURE_RECTANGLE: return use(el::texture_binding_rectangle{});
-        default: return use(el::texture_binding_2d{});
-    }
-}
-
 // A default texture that has come into being gets an id in this context's bindings of name 0.
-void adopt_default(Context& c, GLenum target, ClientName id) {
+void adopt_default(Context& c, glapi::TextureTarget target, ClientName id) {
     for (unsigned unit = 0; unit < kTextureUnits; ++unit)
         if (!bound_id(c, unit, target)) set_bound_id(c, unit, target, id);
 }
 
 }  // namespace
 
-ClientName bound_id(const Context& c, unsigned unit, GLenum target) {
-    return ClientName(with_element(target, [&](auto element) { return decltype(element)::ref(c.state, unit); }));
+ClientName bound_id(const Context& c, unsigned unit, glapi::TextureTarget target) {
+    return ClientName((c.state.textures.*glstate::kTextureBindings[static_cast<std::size_t>(target)])[unit]);
 }
 
-void set_bound_id(Context& c, unsigned unit, GLenum target, ClientName id) {
-    with_element(target, [&](auto element) { c.set<decltype(element)>(unit, id.value); });
+void set_bound_id(Context& c, unsigned unit, glapi::TextureTarget target, ClientName id) {
+    glstate::with_binding(target, [&]<class E>(E) { c.set<E>(unit, id.value); });
 }
 
-std::shared_ptr<Texture> bound_texture(Context& c, GLenum image_target) {
-    const GLenum target = object_target(image_target);
+std::shared_ptr<Texture> bound_texture(Context& c, GLenum word) {
+    const glapi::TextureTarget target = target_word(word)->info->id;
     const ClientName id = bound_id(c, c.active_texture(), target);
     std::lock_guard lock(c.share().mutex);
     if (!id) {
@@ -47,16 +35,16 @@ std::shared_ptr<Texture> bound_texture(Context& c, GLenum image_target) {
     return c.share().texture_of(id);
 }
 
-std::shared_ptr<Texture> make_texture(ShareGroup& share, GLuint name, GLenum target) {
+std::shared_ptr<Texture> make_texture(ShareGroup& share, GLuint name, glapi::TextureTarget target) {
     auto texture = std::make_shared<Texture>(next_object_id(), name, target);
     share.by_id[texture->id] = texture;
     return texture;
 }
 
-std::shared_ptr<Texture> texture_to_change(Context& c, GLenum image_target) {
+std::shared_ptr<Texture> texture_to_change(Context& c, GLenum word) {
     c.flush_block();
-    const GLenum target = object_target(image_target);
-    if (auto texture = bound_texture(c, target)) {
+    const glapi::TextureTarget target = target_word(word)->info->id;
+    if (auto texture = bound_texture(c, word)) {
         if (texture->is_default()) adopt_default(c, target, texture->id);
         c.before_change(texture->id);
         return texture;
@@ -79,9 +67,8 @@ std::vector<SavedTexture> bound_texture_parameters(Context& c) {
     std::vector<SavedTexture> saved;
     std::lock_guard lock(c.share().mutex);
     for (unsigned unit = 0; unit < kTextureUnits; ++unit)
-        for (const GLenum target :
-             {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE}) {
-            if (auto texture = c.share().texture_of(bound_id(c, unit, target)))
+        for (const auto& info : glapi::kTextureTargetInfo) {
+            if (auto texture = c.share().texture_of(bound_id(c, unit, info.id)))
                 saved.push_back({texture, texture->parameters});
         }
     return saved;

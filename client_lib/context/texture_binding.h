@@ -10,17 +10,17 @@
 
 namespace wall::client {
 
-/// Id at a target of a unit: 0 is the default texture without content. The target has been checked.
-ClientName bound_id(const Context& c, unsigned unit, GLenum target);
-void set_bound_id(Context& c, unsigned unit, GLenum target, ClientName id);
+/// Id at a target of a unit: 0 is the default texture without content.
+ClientName bound_id(const Context& c, unsigned unit, glapi::TextureTarget target);
+void set_bound_id(Context& c, unsigned unit, glapi::TextureTarget target, ClientName id);
 
-/// The object that the active unit has at a target (of a texture, face or proxy) for reading: null means the default
-/// texture without content.
-std::shared_ptr<Texture> bound_texture(Context& c, GLenum target);
+/// The object that the active unit has at a target for reading: null means the default texture without content. The
+/// word (of the target, a face or a proxy) has been checked.
+std::shared_ptr<Texture> bound_texture(Context& c, GLenum word);
 /// The same for changing: what was drawn so far is sent off first, and a default texture comes into being.
-std::shared_ptr<Texture> texture_to_change(Context& c, GLenum target);
+std::shared_ptr<Texture> texture_to_change(Context& c, GLenum word);
 /// A new object of the share group. Its mutex is held.
-std::shared_ptr<Texture> make_texture(ShareGroup& share, GLuint name, GLenum target);
+std::shared_ptr<Texture> make_texture(ShareGroup& share, GLuint name, glapi::TextureTarget target);
 /// To be called after every change of a texture.
 void touch(ShareGroup& share, Texture& texture);
 

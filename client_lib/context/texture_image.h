@@ -32,7 +32,7 @@ struct TexelData {
 /// GL_GENERATE_MIPMAP: after a change of a level, with the share group's mutex held.
 void generate_if_asked(Texture& texture, GLint level);
 
-/// How many levels a texture of this target may have.
+/// How many levels a texture may have of the target that this word, which has been checked, belongs to.
 GLint level_count(Context& c, GLenum target);
 
 /// glTexImage and glTexSubImage with their checks.

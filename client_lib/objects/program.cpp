@@ -123,9 +123,9 @@ void Executable::store(Uniform& uniform, std::uint32_t first, std::span<const st
 }
 
 void Executable::check_samplers() {
-    std::map<std::uint32_t, GLenum> targets;  // by unit
+    std::map<std::uint32_t, glapi::TextureTarget> targets;  // by unit
     samplers_conflict_ = false;
-    for_each_sampler([&](std::uint32_t unit, GLenum target) {
+    for_each_sampler([&](std::uint32_t unit, glapi::TextureTarget target) {
         samplers_conflict_ |= targets.emplace(unit, target).first->second != target;
     });
 }

@@ -25,10 +25,6 @@ TexBox united(const TexBox& a, const TexBox& b) {
     return out;
 }
 
-GLenum image_target(const Texture& texture, unsigned face) {
-    return texture.target == GL_TEXTURE_CUBE_MAP ? GL_TEXTURE_CUBE_MAP_POSITIVE_X + face : texture.target;
-}
-
 /// The tight bytes of a box of a level.
 std::vector<std::byte> cut(const TextureLevel& level, const TexBox& box) {
     const auto layout = glapi::pixel_layout(level.data_format, level.data_type);
@@ -58,7 +54,7 @@ public:
 private:
     void parameter(GLenum pname, const std::array<float, 4>& v) {
         any_ = true;
-        sink_.TexParameter(texture_.target, pname, v[0], v[1], v[2], v[3]);
+        sink_.TexParameter(texture_.info.target, pname, v[0], v[1], v[2], v[3]);
     }
     void current_parameter(GLenum pname) { parameter(pname, parameter_value(texture_.parameters, pname)); }
     void base_level(std::uint64_t known);
@@ -78,7 +74,7 @@ void TextureDiff<Sink>::run(std::uint64_t known) {
     for (const auto& [pname, stamp] : texture_.parameter_stamps)
         if (stamp > known) current_parameter(pname);
     base_level(known);
-    for (unsigned face = 0; face < texture_.face_count(); ++face)
+    for (unsigned face = 0; face < glapi::face_count(texture_.info); ++face)
         for (GLint number = 0; number < static_cast<GLint>(texture_.faces[face].size()); ++number)
             if (number != texture_.parameters.base_level) level(face, number, known);
     // A name that a state element carries must exist on the node.
@@ -91,7 +87,7 @@ template <class Sink>
 void TextureDiff<Sink>::base_level(std::uint64_t known) {
     const bool generate = texture_.generated_stamp > known;
     if (generate) parameter(GL_GENERATE_MIPMAP, {1, 0, 0, 0});
-    for (unsigned face = 0; face < texture_.face_count(); ++face)
+    for (unsigned face = 0; face < glapi::face_count(texture_.info); ++face)
         level(face, texture_.parameters.base_level, generate ? 0 : known);
     if (generate) parameter(GL_GENERATE_MIPMAP, {0, 0, 0, 0});
 }
@@ -111,7 +107,7 @@ template <class Sink>
 void TextureDiff<Sink>::define(unsigned face, GLint number, const TextureLevel& level) {
     any_ = true;
     const auto internal = static_cast<GLenum>(level.internal_format);
-    const GLenum target = image_target(texture_, face);
+    const GLenum target = glapi::image_target(texture_.info, face);
     if (level.compressed) {
         return sink_.TexCompressed(target, number, internal, level.width, level.height,
                                    std::span<const std::byte>(level.pixels));
@@ -143,8 +139,8 @@ void TextureDiff<Sink>::piece(unsigned face, GLint number, const TextureLevel& l
     const bool whole = box.width == level.width && box.height == level.height && box.depth == level.depth;
     const auto part = whole ? std::vector<std::byte>() : cut(level, box);
     any_ = true;
-    sink_.TexSubImage(image_target(texture_, face), number, box.x, box.y, box.z, box.width, box.height, box.depth,
-                      level.data_format, level.data_type,
+    sink_.TexSubImage(glapi::image_target(texture_.info, face), number, box.x, box.y, box.z, box.width, box.height,
+                      box.depth, level.data_format, level.data_type,
                       whole ? std::span<const std::byte>(level.pixels) : std::span<const std::byte>(part));
 }
 
@@ -196,11 +192,10 @@ struct NameAndShape {
 
 }  // namespace
 
-Texture::Texture(ClientName own_id, GLuint own_name, GLenum own_target)
-    : Object(own_id, own_name), target(own_target), stamp(next_stamp()) {
-    if (target != GL_TEXTURE_RECTANGLE) return;
-    parameters.min_filter = GL_LINEAR;
-    parameters.wrap_s = parameters.wrap_t = parameters.wrap_r = GL_CLAMP_TO_EDGE;
+Texture::Texture(ClientName own_id, GLuint own_name, glapi::TextureTarget own_target)
+    : Object(own_id, own_name), info(glapi::info_of(own_target)), stamp(next_stamp()) {
+    if (!info.mipmaps) parameters.min_filter = GL_LINEAR;
+    if (!info.repeats) parameters.wrap_s = parameters.wrap_t = parameters.wrap_r = GL_CLAMP_TO_EDGE;
 }
 
 void TextureLevel::note_change(TexBox box) {
@@ -243,7 +238,8 @@ void Texture::parameter_changed(GLenum pname) {
 void Texture::mipmaps_generated() {
     stamp = generated_stamp = next_stamp();
     const GLint base = parameters.base_level;
-    for (unsigned face = 0; face < face_count(); ++face) {
+    const unsigned halved = info.images - (info.layers ? 1u : 0u);  // dimensions that shrink from level to level
+    for (unsigned face = 0; face < glapi::face_count(info); ++face) {
         const TextureLevel* from = find_level(face, base);
         if (!from) continue;
         TextureLevel next;
@@ -253,14 +249,12 @@ void Texture::mipmaps_generated() {
         next.content = LevelContent::generated;
         next.stamp = stamp;
         std::int32_t width = from->width, height = from->height, depth = from->depth;
-        const bool layered = target == GL_TEXTURE_1D_ARRAY || target == GL_TEXTURE_2D_ARRAY;
         for (GLint level = base + 1; level <= parameters.max_level && level < static_cast<GLint>(kTextureLevels);
              ++level) {
-            const bool done = width == 1 && (height == 1 || target == GL_TEXTURE_1D_ARRAY) && (depth == 1 || layered);
-            if (done) break;
+            if (width == 1 && (halved < 2 || height == 1) && (halved < 3 || depth == 1)) break;
             next.width = width = std::max(1, width / 2);
-            next.height = height = target == GL_TEXTURE_1D_ARRAY ? height : std::max(1, height / 2);
-            next.depth = depth = layered ? depth : std::max(1, depth / 2);
+            next.height = height = halved < 2 ? height : std::max(1, height / 2);
+            next.depth = depth = halved < 3 ? depth : std::max(1, depth / 2);
             level_at(face, level) = next;
         }
     }
@@ -297,7 +291,7 @@ void Texture::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const 
 bool Texture::worth_asking() const { return global || content_bytes(*this) >= kLeastShared; }
 
 void Texture::pack_question(wire::PackBuffer& buffer, RequestId request) const {
-    glapi::pack::ShareTexture(buffer, request, id, target, global ? 1 : 0, content_key(*this));
+    glapi::pack::ShareTexture(buffer, request, id, info.target, global ? 1 : 0, content_key(*this));
 }
 
 bool Texture::pack_shared(wire::PackBuffer& buffer) const {
@@ -328,42 +322,29 @@ std::size_t content_bytes(const Texture& texture) {
     return bytes;
 }
 
-unsigned face_of(GLenum target) {
-    if (target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z)
-        return target - GL_TEXTURE_CUBE_MAP_POSITIVE_X;
-    return 0;
+std::optional<glapi::TargetWord> target_word(GLenum word) {
+    const auto found = glapi::find_target_word(word);
+    return found && !found->info->later ? found : std::nullopt;
 }
 
-GLenum object_target(GLenum target) {
-    switch (target) {
-        case GL_TEXTURE_1D:
-        case GL_PROXY_TEXTURE_1D: return GL_TEXTURE_1D;
-        case GL_TEXTURE_2D:
-        case GL_PROXY_TEXTURE_2D: return GL_TEXTURE_2D;
-        case GL_TEXTURE_3D:
-        case GL_PROXY_TEXTURE_3D: return GL_TEXTURE_3D;
-        case GL_TEXTURE_RECTANGLE:
-        case GL_PROXY_TEXTURE_RECTANGLE: return GL_TEXTURE_RECTANGLE;
-        case GL_TEXTURE_CUBE_MAP:
-        case GL_PROXY_TEXTURE_CUBE_MAP: return GL_TEXTURE_CUBE_MAP;
-        default:
-            return target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z
-                       ? GL_TEXTURE_CUBE_MAP
-                       : GLenum{0};
-    }
+const glapi::TextureTargetInfo* target_of(GLenum word) {
+    const auto found = target_word(word);
+    return found && found->is_object() ? found->info : nullptr;
 }
 
-bool is_proxy(GLenum target) {
-    return target == GL_PROXY_TEXTURE_1D || target == GL_PROXY_TEXTURE_2D || target == GL_PROXY_TEXTURE_3D ||
-           target == GL_PROXY_TEXTURE_RECTANGLE || target == GL_PROXY_TEXTURE_CUBE_MAP;
+const glapi::TextureTargetInfo* image_target_of(GLenum word) {
+    const auto found = target_word(word);
+    return found && found->has_images() ? found->info : nullptr;
 }
 
-unsigned dimensions_of(GLenum target) {
-    switch (object_target(target)) {
-        case GL_TEXTURE_1D: return 1;
-        case GL_TEXTURE_3D: return 3;
-        default: return 2;
-    }
+bool is_proxy(GLenum word) {
+    const auto found = target_word(word);
+    return found && found->is_proxy();
+}
+
+unsigned face_of(GLenum word) {
+    const auto found = target_word(word);
+    return found ? found->face : 0;
 }
 
 }  // namespace wall::client

@@ -14,6 +14,7 @@
 #include "client_lib/objects/object.h"
 #include "common/glapi/content_hash.h"
 #include "common/glapi/gl_types.h"
+#include "common/glapi/texture_target.h"
 
 namespace wall::client {
 
@@ -45,7 +46,6 @@ struct TextureLevel {
 };
 
 inline constexpr unsigned kTextureLevels = 15;  ///< 16384 texels a side
-inline constexpr unsigned kCubeFaces = 6;
 
 /// One glTexParameter value: as a node is told it.
 struct TexParameters {
@@ -59,8 +59,8 @@ struct TexParameters {
 };
 
 struct Texture : Object {
-    Texture(ClientName own_id, GLuint own_name, GLenum own_target);
-    const GLenum target;
+    Texture(ClientName own_id, GLuint own_name, glapi::TextureTarget own_target);
+    const glapi::TextureTargetInfo& info;  ///< of its target
 
     std::uint64_t latest() const override { return stamp; }
     void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
@@ -76,12 +76,11 @@ struct Texture : Object {
     std::vector<ContextId> bound_by;  ///< contexts that ever bound it
     bool global = false;  ///< the processes of the program mean the same by its name (GL_WALLGL_global_texture)
     std::uint64_t generated_stamp = 0;  ///< of the latest mipmap generation; 0: none
-    std::array<std::vector<TextureLevel>, kCubeFaces> faces;
+    std::array<std::vector<TextureLevel>, glapi::kCubeFaces> faces;
     /// As of a stamp: see content_key().
     mutable std::pair<std::uint64_t, glapi::ContentKey> key_cache{};
 
     bool is_default() const { return name == 0; }
-    unsigned face_count() const { return target == GL_TEXTURE_CUBE_MAP ? kCubeFaces : 1; }
     TextureLevel* find_level(unsigned face, GLint level);
     TextureLevel& level_at(unsigned face, GLint level);
     void parameter_changed(GLenum pname);
@@ -102,12 +101,14 @@ const glapi::ContentKey& content_key(const Texture& texture);
 /// Of all pixels.
 std::size_t content_bytes(const Texture& texture);
 
+/// What a word means to a program: nothing if it is none for a texture target, or for one that programs do not have.
+std::optional<glapi::TargetWord> target_word(GLenum word);
+/// The target whose textures are bound by that word; null: none. Faces and proxies are no such words.
+const glapi::TextureTargetInfo* target_of(GLenum word);
+/// The target whose images that word names: a target's, a face's, a proxy's; null: none.
+const glapi::TextureTargetInfo* image_target_of(GLenum word);
+bool is_proxy(GLenum word);
 /// 0 to 5 for a cube map's face, else 0.
-unsigned face_of(GLenum image_target);
-/// The target that a face or proxy belongs to; 0: no texture target.
-GLenum object_target(GLenum image_target);
-bool is_proxy(GLenum image_target);
-/// 1, 2 or 3.
-unsigned dimensions_of(GLenum target);
+unsigned face_of(GLenum word);
 
 }  // namespace wall::client

@@ -2,6 +2,7 @@
 #include "common/glapi/program_format.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "common/wire/operand_reader.h"
@@ -79,41 +80,41 @@ constexpr auto kUnsigned = UniformBase::unsigned_integer;
 constexpr auto kBoolean = UniformBase::boolean;
 constexpr auto kSampler = UniformBase::sampler;
 
-constexpr UniformType kUniformTypes[] = {
-    {GL_FLOAT, kReal, 1, 1, 0},
-    {GL_FLOAT_VEC2, kReal, 1, 2, 0},
-    {GL_FLOAT_VEC3, kReal, 1, 3, 0},
-    {GL_FLOAT_VEC4, kReal, 1, 4, 0},
-    {GL_INT, kInteger, 1, 1, 0},
-    {GL_INT_VEC2, kInteger, 1, 2, 0},
-    {GL_INT_VEC3, kInteger, 1, 3, 0},
-    {GL_INT_VEC4, kInteger, 1, 4, 0},
-    {GL_UNSIGNED_INT, kUnsigned, 1, 1, 0},
-    {GL_UNSIGNED_INT_VEC2, kUnsigned, 1, 2, 0},
-    {GL_UNSIGNED_INT_VEC3, kUnsigned, 1, 3, 0},
-    {GL_UNSIGNED_INT_VEC4, kUnsigned, 1, 4, 0},
-    {GL_BOOL, kBoolean, 1, 1, 0},
-    {GL_BOOL_VEC2, kBoolean, 1, 2, 0},
-    {GL_BOOL_VEC3, kBoolean, 1, 3, 0},
-    {GL_BOOL_VEC4, kBoolean, 1, 4, 0},
-    {GL_FLOAT_MAT2, kReal, 2, 2, 0},
-    {GL_FLOAT_MAT3, kReal, 3, 3, 0},
-    {GL_FLOAT_MAT4, kReal, 4, 4, 0},
-    {GL_FLOAT_MAT2x3, kReal, 2, 3, 0},
-    {GL_FLOAT_MAT2x4, kReal, 2, 4, 0},
-    {GL_FLOAT_MAT3x2, kReal, 3, 2, 0},
-    {GL_FLOAT_MAT3x4, kReal, 3, 4, 0},
-    {GL_FLOAT_MAT4x2, kReal, 4, 2, 0},
-    {GL_FLOAT_MAT4x3, kReal, 4, 3, 0},
-    {GL_SAMPLER_1D, kSampler, 1, 1, GL_TEXTURE_1D},
-    {GL_SAMPLER_2D, kSampler, 1, 1, GL_TEXTURE_2D},
-    {GL_SAMPLER_3D, kSampler, 1, 1, GL_TEXTURE_3D},
-    {GL_SAMPLER_CUBE, kSampler, 1, 1, GL_TEXTURE_CUBE_MAP},
-    {GL_SAMPLER_1D_SHADOW, kSampler, 1, 1, GL_TEXTURE_1D},
-    {GL_SAMPLER_2D_SHADOW, kSampler, 1, 1, GL_TEXTURE_2D},
-    {GL_SAMPLER_2D_RECT, kSampler, 1, 1, GL_TEXTURE_RECTANGLE},
-    {GL_SAMPLER_2D_RECT_SHADOW, kSampler, 1, 1, GL_TEXTURE_RECTANGLE},
-};
+constexpr auto kNumberTypes = std::to_array<UniformType>({
+    {GL_FLOAT, kReal, 1, 1, {}},
+    {GL_FLOAT_VEC2, kReal, 1, 2, {}},
+    {GL_FLOAT_VEC3, kReal, 1, 3, {}},
+    {GL_FLOAT_VEC4, kReal, 1, 4, {}},
+    {GL_INT, kInteger, 1, 1, {}},
+    {GL_INT_VEC2, kInteger, 1, 2, {}},
+    {GL_INT_VEC3, kInteger, 1, 3, {}},
+    {GL_INT_VEC4, kInteger, 1, 4, {}},
+    {GL_UNSIGNED_INT, kUnsigned, 1, 1, {}},
+    {GL_UNSIGNED_INT_VEC2, kUnsigned, 1, 2, {}},
+    {GL_UNSIGNED_INT_VEC3, kUnsigned, 1, 3, {}},
+    {GL_UNSIGNED_INT_VEC4, kUnsigned, 1, 4, {}},
+    {GL_BOOL, kBoolean, 1, 1, {}},
+    {GL_BOOL_VEC2, kBoolean, 1, 2, {}},
+    {GL_BOOL_VEC3, kBoolean, 1, 3, {}},
+    {GL_BOOL_VEC4, kBoolean, 1, 4, {}},
+    {GL_FLOAT_MAT2, kReal, 2, 2, {}},
+    {GL_FLOAT_MAT3, kReal, 3, 3, {}},
+    {GL_FLOAT_MAT4, kReal, 4, 4, {}},
+    {GL_FLOAT_MAT2x3, kReal, 2, 3, {}},
+    {GL_FLOAT_MAT2x4, kReal, 2, 4, {}},
+    {GL_FLOAT_MAT3x2, kReal, 3, 2, {}},
+    {GL_FLOAT_MAT3x4, kReal, 3, 4, {}},
+    {GL_FLOAT_MAT4x2, kReal, 4, 2, {}},
+    {GL_FLOAT_MAT4x3, kReal, 4, 3, {}},
+});
+
+constexpr auto kUniformTypes = [] {
+    std::array<UniformType, kNumberTypes.size() + kSamplerTypes.size()> all{};
+    std::ranges::transform(kSamplerTypes, std::ranges::copy(kNumberTypes, all.begin()).out, [](const SamplerType& s) {
+        return UniformType{s.type, kSampler, 1, 1, s.target};
+    });
+    return all;
+}();
 
 }  // namespace
 

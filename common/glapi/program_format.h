@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common/glapi/gl_types.h"
+#include "gen/glapi/texture_targets.gen.h"
 
 namespace wall::glapi {
 
@@ -88,7 +89,7 @@ struct UniformType {
     GLenum type;
     UniformBase base;
     std::uint8_t columns, rows;
-    GLenum texture_target;  ///< of a sampler
+    TextureTarget texture_target;  ///< of a sampler
     unsigned words() const { return unsigned{columns} * rows; }
     bool matrix() const { return columns > 1; }
 };

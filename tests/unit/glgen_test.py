@@ -12,7 +12,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/glgen"))
 
-from glgen import attributes, commands, emit_wire, registry, state, wire  # noqa: E402
+from glgen import attributes, commands, emit_wire, registry, state, texture_targets, wire  # noqa: E402
 
 REGISTRY = pathlib.Path(os.environ.get("WALLGL_GL_XML", "/usr/share/khronos-api/gl.xml"))
 PROTO = ROOT / "proto/gl"
@@ -127,6 +127,46 @@ class Places(unittest.TestCase):
         self.assertIn("normal_array: not as many as values", refused('"texcoord_array"', '"normal_array"'))
         self.assertIn("others: no line in [attribute]", refused('\nnormal = "normal_array"',
                                                                 '\nothers = "normal_array"\nnormal = "normal_array"'))
+
+    def texture_targets_refused(self, old, new):
+        gl, model = registry.load(REGISTRY, PROTO / "extensions.xml"), state.load(PROTO / "state.toml")
+        return self.refused("texture_targets.toml", old, new, lambda f: texture_targets.load(f, gl, model))
+
+    def test_texture_targets(self):
+        refused = self.texture_targets_refused
+        self.assertIn("no element texture_binding_4d", refused("\n3d =", "\n4d ="))
+        self.assertIn("unknown key face", refused("\ncube_map = { images = 2, faces =",
+                                                  "\ncube_map = { images = 2, face ="))
+        self.assertIn("no `size`", refused('size = "GL_MAX_3D_TEXTURE_SIZE 2048", ', ""))
+        self.assertIn("images of 0 to 3", refused("\n2d = { images = 2", "\n2d = { images = 4"))
+        self.assertIn("no GL_SAMPLER_5D", refused('"3D"', '"5D"'))
+        self.assertIn("no GL_PROXY_TEXTURE_BUFFER", refused("proxy = false, ", ""))
+        self.assertIn("no GL_TEXTURE_3D_POSITIVE_X", refused("\n3d = { images = 3,",
+                                                             "\n3d = { images = 3, faces = true,"))
+
+    def test_every_texture_binding_has_a_line_in_its_order(self):
+        lines = (PROTO / "texture_targets.toml").read_text().splitlines(keepends=True)
+        rectangle = next(line for line in lines if line.startswith("rectangle ="))
+        others = [line for line in lines if line != rectangle]
+        gl, model = registry.load(REGISTRY, PROTO / "extensions.xml"), state.load(PROTO / "state.toml")
+        for text, why in (("".join(others), "no line for texture_binding_rectangle"),
+                          ("".join(others) + rectangle, "not in the order of state.toml")):
+            with tempfile.NamedTemporaryFile("w", suffix=".toml") as f:
+                f.write(text)
+                f.flush()
+                with self.assertRaisesRegex(AssertionError, why):
+                    texture_targets.load(f.name, gl, model)
+
+    def test_texture_targets_have_what_their_lines_say(self):
+        gl, model = registry.load(REGISTRY, PROTO / "extensions.xml"), state.load(PROTO / "state.toml")
+        targets = {t.name: t for t in texture_targets.load(PROTO / "texture_targets.toml", gl, model)}
+        cube = targets["cube_map"]
+        self.assertEqual((cube.gl, cube.proxy, cube.first_face, cube.enabled.name, cube.constant),
+                         ("GL_TEXTURE_CUBE_MAP", "GL_PROXY_TEXTURE_CUBE_MAP", "GL_TEXTURE_CUBE_MAP_POSITIVE_X",
+                          "texture_cube_map_enabled", "cube_map"))
+        buffer = targets["buffer"]
+        self.assertEqual((buffer.proxy, buffer.first_face, buffer.enabled), (None, None, None))
+        self.assertEqual(targets["2d"].constant, "t2d")
 
     def test_every_attribute_has_its_lines(self):
         ops, model = wire.load(PROTO / "wire.toml"), state.load(PROTO / "state.toml")

@@ -52,7 +52,7 @@ TEST(ProgramFormat, AbsurdLengthsAreRefused) {
 
 TEST(ProgramFormat, UniformTypes) {
     EXPECT_EQ(find_uniform_type(GL_FLOAT_MAT2x3)->words(), 6u);
-    EXPECT_EQ(find_uniform_type(GL_SAMPLER_CUBE)->texture_target, GLenum{GL_TEXTURE_CUBE_MAP});
+    EXPECT_EQ(find_uniform_type(GL_SAMPLER_CUBE)->texture_target, TextureTarget::cube_map);
     EXPECT_EQ(find_uniform_type(GL_RGBA), nullptr);
 }
 

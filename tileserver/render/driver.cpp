@@ -11,14 +11,6 @@
 namespace wall::tileserver {
 namespace {
 
-constexpr std::array<GLenum, kTextureTargets> kGlTargets = {
-    GL_TEXTURE_1D,        GL_TEXTURE_2D,
-    GL_TEXTURE_3D,        GL_TEXTURE_CUBE_MAP,
-    GL_TEXTURE_RECTANGLE, GL_TEXTURE_1D_ARRAY,
-    GL_TEXTURE_2D_ARRAY,  GL_TEXTURE_CUBE_MAP_ARRAY,
-    GL_TEXTURE_BUFFER,    GL_TEXTURE_2D_MULTISAMPLE,
-};
-
 /// Exact for whole numbers that a viewport may have; absurd ones are cut.
 GLint whole(float value) { return static_cast<GLint>(std::clamp(value, -1e9f, 1e9f)); }
 
@@ -83,14 +75,9 @@ void diff_by_unit(glstate::State& from, glstate::State& to, Driver& driver) {
 
 }  // namespace
 
-GLenum gl_target(TextureTarget target) { return kGlTargets[static_cast<std::size_t>(target)]; }
-
-TextureTarget texture_target(GLenum target) {
-    if (target >= GL_TEXTURE_CUBE_MAP_POSITIVE_X && target <= GL_TEXTURE_CUBE_MAP_NEGATIVE_Z)
-        return TextureTarget::cube_map;
-    std::size_t i = 0;
-    while (i < kTextureTargets && kGlTargets[i] != target) ++i;
-    return static_cast<TextureTarget>(i);
+std::optional<TextureTarget> texture_target(GLenum target) {
+    const auto found = glapi::find_target_word(target);
+    return found && !found->is_proxy() ? std::optional(found->info->id) : std::nullopt;
 }
 
 Driver::Driver(const Gl& gl) : gl_(gl), flip_y_(has_extension(gl, "GL_MESA_framebuffer_flip_y")) {

@@ -5,8 +5,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
+#include "common/glapi/texture_target.h"
 #include "common/glstate/diff.h"
 #include "gen/glstate/driver_emit.gen.h"
 #include "gen/glstate/state.gen.h"
@@ -17,30 +19,14 @@ namespace wall::tileserver {
 
 inline constexpr unsigned kTextureUnits = glstate::el::texture_binding_2d::count;
 
-/// Texture targets with a binding of their own, in the order of glstate's elements.
-enum class TextureTarget : std::uint8_t {
-    t1d,
-    t2d,
-    t3d,
-    cube_map,
-    rectangle,
-    t1d_array,
-    t2d_array,
-    cube_map_array,
-    buffer,
-    t2d_multisample,
-    kCount
-};
-inline constexpr std::size_t kTextureTargets = static_cast<std::size_t>(TextureTarget::kCount);
-GLenum gl_target(TextureTarget target);
-/// Of a target or an image target (cube map faces); kCount: not one of ours.
-TextureTarget texture_target(GLenum target);
-inline bool is_1d(TextureTarget target) { return target == TextureTarget::t1d; }
+using glapi::kTextureTargets;
+using glapi::TextureTarget;
+inline GLenum gl_target(TextureTarget target) { return glapi::info_of(target).target; }
+/// Of a target or an image target (cube map faces); nothing: not one of ours.
+std::optional<TextureTarget> texture_target(GLenum target);
+inline bool is_1d(TextureTarget target) { return glapi::info_of(target).images == 1; }
 /// Its images have a depth.
-inline bool is_3d(TextureTarget target) {
-    return target == TextureTarget::t3d || target == TextureTarget::t2d_array ||
-           target == TextureTarget::cube_map_array;
-}
+inline bool is_3d(TextureTarget target) { return glapi::info_of(target).images == 3; }
 
 using TextureNames = std::array<std::array<GLuint, kTextureTargets>, kTextureUnits>;
 /// Driver textures at all units; equal ids mean equal names. Id 0: none anywhere.

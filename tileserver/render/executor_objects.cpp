@@ -32,12 +32,12 @@ bool Executor::check_image(GLenum format, GLenum type, std::int32_t width, std::
 // ---- textures ----
 
 Texture* Executor::bind_for_upload(ClientName name, GLenum target) {
-    const TextureTarget kind = texture_target(target);
-    if (kind == TextureTarget::kCount || kind == TextureTarget::buffer || kind == TextureTarget::t2d_multisample) {
+    const auto kind = texture_target(target);
+    if (!kind || glapi::info_of(*kind).images == 0) {
         refuse("no such target");
         return nullptr;
     }
-    Texture* texture = session_.make_texture(name, kind);
+    Texture* texture = session_.make_texture(ClientName(name), *kind);
     if (texture == nullptr) {
         refuse("texture " + std::to_string(name.value) + " has another target, or there are too many");
         return nullptr;
@@ -49,7 +49,7 @@ Texture* Executor::bind_for_upload(ClientName name, GLenum target) {
     }
     if (texture->promise)
         node_.textures.heard(texture->promise->key, session_.asker(), std::chrono::steady_clock::now());
-    node_.driver.bind_texture_to_edit(kind, texture->content->name());
+    node_.driver.bind_texture_to_edit(*kind, texture->content->name());
     return texture;
 }
 
@@ -114,8 +114,7 @@ void Executor::TexCompressed(ClientName name, GLenum target, std::int32_t level,
         return refuse("size does not fit the blocks");
     Texture* texture = bind_for_upload(name, target);
     if (texture == nullptr) return;
-    const TextureTarget kind = texture->content->target();
-    if (kind != TextureTarget::t2d && kind != TextureTarget::cube_map) return refuse("no such target");
+    if (!glapi::info_of(texture->content->target()).blocks) return refuse("no such target");
     if (!session_.affords(*texture, target, level, blocks.size()))
         return refuse("more texture memory than a session may have");
     if (auto* hash = texture->hash()) hash->TexCompressed(target, level, internal_format, width, height, blocks);

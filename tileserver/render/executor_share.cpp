@@ -47,7 +47,8 @@ bool Executor::answer_question() {
     const auto now = std::chrono::steady_clock::now();
     bool have = false;
     if (question.target != 0) {
-        Texture* texture = session_.make_texture(question.object, texture_target(question.target));
+        const auto target = texture_target(question.target);
+        Texture* texture = target ? session_.make_texture(question.object, *target) : nullptr;
         auto found = node_.textures.ask(question.key, session_.asker(), now);
         have = found.have != nullptr;
         if (!have && !found.send) return false;

@@ -36,7 +36,7 @@ Texture* SessionReplica::texture(ClientName name, TextureTarget target) {
 Texture* SessionReplica::make_texture(ClientName name, TextureTarget target) {
     Texture* known = texture(name, target);
     if (known != nullptr) return known->content->target() == target ? known : nullptr;
-    if (target == TextureTarget::kCount || textures_.size() >= kMaxTextures) return nullptr;
+    if (textures_.size() >= kMaxTextures) return nullptr;
     ++texture_version_;
     return &textures_.emplace(key(name, target), Texture{std::make_shared<TextureContent>(driver_, target), {}})
                 .first->second;

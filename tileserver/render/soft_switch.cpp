@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/render/soft_switch.h"
 
+#include "gen/glstate/texture_elements.gen.h"
+
 namespace wall::tileserver {
 namespace {
-
-using Names = std::array<std::uint32_t, kTextureUnits>;
-
-std::array<const Names*, kTextureTargets> names_by_target(const glstate::State& state) {
-    const auto& t = state.textures;
-    return {&t.texture_binding_1d,        &t.texture_binding_2d,
-            &t.texture_binding_3d,        &t.texture_binding_cube_map,
-            &t.texture_binding_rectangle, &t.texture_binding_1d_array,
-            &t.texture_binding_2d_array,  &t.texture_binding_cube_map_array,
-            &t.texture_binding_buffer,    &t.texture_binding_2d_multisample};
-}
 
 std::uint64_t textures_id(const SoftContext& context) {
     return context.state.ids[static_cast<std::size_t>(glstate::Category::textures)];
@@ -21,12 +12,11 @@ std::uint64_t textures_id(const SoftContext& context) {
 
 void look_up_textures(SessionReplica& session, SoftContext& context) {
     BoundTextures& bound = context.textures;
-    const auto names = names_by_target(context.state);
     TextureNames found{};
     for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
         for (std::size_t target = 0; target < kTextureTargets; ++target) {
-            const Texture* texture =
-                session.texture(ClientName((*names[target])[unit]), static_cast<TextureTarget>(target));
+            const std::uint32_t name = (context.state.textures.*glstate::kTextureBindings[target])[unit];
+            const Texture* texture = session.texture(ClientName(name), static_cast<TextureTarget>(target));
             if (texture != nullptr && texture->content->target() == static_cast<TextureTarget>(target))
                 found[unit][target] = texture->content->name();
         }

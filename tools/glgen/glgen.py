@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from glgen import attributes, commands, registry, state, wire  # noqa: E402
+from glgen import attributes, commands, registry, state, texture_targets, wire  # noqa: E402
 from glgen import emit_attributes, emit_client, emit_docs, emit_functions, emit_samples  # noqa: E402
-from glgen import emit_setters, emit_state, emit_wire  # noqa: E402
+from glgen import emit_setters, emit_state, emit_texture_targets, emit_wire  # noqa: E402
 
 DRIVER_EXTRA = ["glFramebufferParameteriMESA", "glGetFramebufferParameterivMESA"]
 
@@ -29,6 +29,7 @@ class Model:
     ops: list
     state: state.StateModel
     attributes: list
+    textures: list
     api: commands.Commands
 
 
@@ -37,6 +38,7 @@ def load(registry_path, proto):
     elements = state.load(proto / "state.toml")
     ops = wire.load(proto / "wire.toml")
     return Model(gl, ops, elements, attributes.load(proto / "attributes.toml", ops, elements),
+                 texture_targets.load(proto / "texture_targets.toml", gl, elements),
                  commands.load(proto / "commands.toml", gl, elements))
 
 
@@ -47,6 +49,8 @@ def generate(m):
         "glapi/decode.gen.h": emit_wire.decode_header(m.ops),
         "glapi/null_handler.gen.h": emit_wire.null_handler_header(m.ops),
         "glapi/gl_functions.gen.h": emit_functions.functions_header(m.gl, DRIVER_EXTRA),
+        "glapi/texture_targets.gen.h": emit_texture_targets.targets_header(m.textures),
+        "glstate/texture_elements.gen.h": emit_texture_targets.elements_header(m.textures),
         "glstate/state.gen.h": emit_state.state_header(m.state),
         "glstate/attributes.gen.h": emit_attributes.attributes_header(m.attributes),
         "glstate/tables.gen.h": emit_state.tables_header(m.state),

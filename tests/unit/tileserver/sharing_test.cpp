@@ -123,7 +123,7 @@ constexpr geom::Rect kWindow{0, 0, kWidth, kHeight};
 /// A texture as a client keeps it.
 class Content {
 public:
-    explicit Content(GLenum target = GL_TEXTURE_2D)
+    explicit Content(TextureTarget target = TextureTarget::t2d)
         : texture_(std::make_shared<client::Texture>(ClientName(1), 1, target)) {}
     Content& level(GLint number, GLint internal_format, int size, GLenum format, GLenum type, std::uint32_t seed,
                    unsigned face = 0) {
@@ -131,7 +131,7 @@ public:
         const bool compressed = format == 0;
         level.internal_format = internal_format;
         level.width = level.height = size;
-        level.depth = texture_->target == GL_TEXTURE_3D ? size : 1;
+        level.depth = texture_->info.images == 3 ? size : 1;
         level.format = level.data_format = format;
         level.type = level.data_type = type;
         level.compressed = compressed;
@@ -157,7 +157,7 @@ public:
         texture_->global = true;
         return *this;
     }
-    GLenum target() const { return texture_->target; }
+    GLenum target() const { return texture_->info.target; }
     std::uint32_t is_global() const { return texture_->global; }
     glapi::ContentKey key() const { return client::content_key(*texture_); }
     void define(wire::PackBuffer& buffer) const { texture_->pack_changes(0, buffer, client::no_limit); }
@@ -310,13 +310,13 @@ TEST_F(SharingTest, AChangeIsOnlyOnesOwn) {
         {"generated",
          Content().level(0, GL_RGBA, 64, GL_RGBA, GL_UNSIGNED_BYTE, 18).parameter(GL_LINEAR_MIPMAP_LINEAR).mipmaps()});
     cases.push_back(
-        {"3D", Content(GL_TEXTURE_3D).level(0, GL_RGBA, 8, GL_RGBA, GL_UNSIGNED_BYTE, 19).parameter(GL_LINEAR)});
-    Content cube(GL_TEXTURE_CUBE_MAP);
+        {"3D", Content(TextureTarget::t3d).level(0, GL_RGBA, 8, GL_RGBA, GL_UNSIGNED_BYTE, 19).parameter(GL_LINEAR)});
+    Content cube(TextureTarget::cube_map);
     for (unsigned face = 0; face < 6; ++face) cube.level(0, GL_RGB, 8, GL_RGB, GL_UNSIGNED_BYTE, 20 + face, face);
     cases.push_back({"cube", cube.parameter(GL_LINEAR)});
     for (const auto& [name, content] : cases) {
         SCOPED_TRACE(name);
-        const auto target = texture_target(content.target());
+        const auto target = texture_target(content.target()).value();
         const auto a = open(1), b = open(2), c = open(3);
         define(*a, content);
         define(*b, content);

@@ -3,11 +3,15 @@
 #include "client_lib/objects/texture.h"
 #include "client_lib/objects/texture_formats.h"
 #include "common/glapi/decoder.h"
+#include "common/glstate/queries.h"
+#include "gen/glstate/texture_elements.gen.h"
 #include "tests/unit/client_lib/context_fixture.h"
 #include "tests/unit/mesa_context.h"
 
 namespace wall::client {
 namespace {
+
+using glapi::TextureTarget;
 
 GLint level_parameter(const glapi::GlFunctions& gl, GLenum pname) {
     GLint value = -1;
@@ -89,7 +93,7 @@ void define(Texture& texture, GLint number, std::int32_t size) {
 using Names = std::vector<std::string>;
 
 TEST(Texture, ANodeGetsOnlyWhatItLacks) {
-    Texture texture(ClientName(1), 1, GL_TEXTURE_2D);
+    Texture texture(ClientName(1), 1, TextureTarget::t2d);
     EXPECT_EQ(sent(texture, 0), Names{"TexParameter"});  // so that the name exists
     define(texture, 0, 8);
     EXPECT_EQ(sent(texture, 0), Names{"TexImage"});
@@ -104,7 +108,7 @@ TEST(Texture, ANodeGetsOnlyWhatItLacks) {
 }
 
 TEST(Texture, AChangedRectangleIsCutOut) {
-    Texture texture(ClientName(1), 1, GL_TEXTURE_2D);
+    Texture texture(ClientName(1), 1, TextureTarget::t2d);
     define(texture, 0, 8);
     TextureLevel& level = texture.level_at(0, 0);
     for (std::size_t i = 0; i < level.pixels.size(); ++i) level.pixels[i] = static_cast<std::byte>(i);
@@ -123,7 +127,7 @@ TEST(Texture, AChangedRectangleIsCutOut) {
 }
 
 TEST(Texture, ManyChangesAreMerged) {
-    Texture texture(ClientName(1), 1, GL_TEXTURE_2D);
+    Texture texture(ClientName(1), 1, TextureTarget::t2d);
     define(texture, 0, 64);
     const auto known = texture.stamp;
     for (int i = 0; i < 60; ++i) texture.level_at(0, 0).note_change({i, i, 0, 1, 1, 1, next_stamp()});
@@ -133,7 +137,7 @@ TEST(Texture, ManyChangesAreMerged) {
 }
 
 TEST(Texture, LargeImagesTravelInPieces) {
-    Texture texture(ClientName(1), 1, GL_TEXTURE_2D);
+    Texture texture(ClientName(1), 1, TextureTarget::t2d);
     define(texture, 0, 3000);
     wire::PackBuffer buffer;
     std::size_t largest = 0, commands = 0;
@@ -147,7 +151,7 @@ TEST(Texture, LargeImagesTravelInPieces) {
 }
 
 TEST(Texture, MipmapsAreMadeByTheNode) {
-    Texture texture(ClientName(1), 1, GL_TEXTURE_2D);
+    Texture texture(ClientName(1), 1, TextureTarget::t2d);
     texture.parameters.generate_mipmap = true;
     define(texture, 0, 8);
     texture.mipmaps_generated();
@@ -159,7 +163,29 @@ TEST(Texture, MipmapsAreMadeByTheNode) {
     EXPECT_EQ(sent(texture, 0), (Names{"TexParameter", "TexImage", "TexParameter", "TexImage"}));
 }
 
-class TextureApiTest : public ContextTest {};
+TEST(Texture, MipmapsKeepTheLayers) {
+    for (const TextureTarget target : {TextureTarget::t3d, TextureTarget::t2d_array, TextureTarget::t1d_array}) {
+        Texture texture(ClientName(1), 1, target);
+        define(texture, 0, 8);
+        texture.level_at(0, 0).depth = texture.info.images == 3 ? 6 : 1;
+        texture.mipmaps_generated();
+        const TextureLevel* level = texture.find_level(0, 3);
+        ASSERT_NE(level, nullptr);
+        EXPECT_EQ(level->width, 1);
+        EXPECT_EQ(level->height, target == TextureTarget::t1d_array ? 8 : 1);
+        EXPECT_EQ(level->depth, target == TextureTarget::t2d_array ? 6 : 1);
+        EXPECT_EQ(texture.find_level(0, 4), nullptr);
+    }
+}
+
+class TextureApiTest : public ContextTest {
+protected:
+    static GLenum binding_of(const glapi::TextureTargetInfo& info) {
+        const auto element = glstate::with_binding(info.id, []<class E>(E) { return E::id; });
+        const auto entry = std::ranges::find(glstate::kGetEntries, element, &glstate::GetEntry::id);
+        return entry->pname;
+    }
+};
 
 TEST_F(TextureApiTest, NamesAreMesas) {
     GLuint names[3];
@@ -190,6 +216,73 @@ TEST_F(TextureApiTest, Errors) {
     const GLfloat negative = -1;
     gl().TexParameterfv(c, GL_TEXTURE_2D, GL_TEXTURE_BASE_LEVEL, &negative);
     EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+}
+
+TEST_F(TextureApiTest, ProgramsHaveTheTargetsThatAreNotForLater) {
+    for (const auto& info : glapi::kTextureTargetInfo) {
+        SCOPED_TRACE(static_cast<unsigned>(info.id));
+        const auto name = static_cast<GLuint>(info.id) + 1;
+        gl().BindTexture(c, info.target, name);
+        EXPECT_EQ(error(), info.later ? GLenum{GL_INVALID_ENUM} : GLenum{GL_NO_ERROR});
+        if (info.proxy != 0) {
+            gl().BindTexture(c, info.proxy, name);
+            EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
+        }
+        if (info.later) continue;
+        GLint bound = 0;
+        gl().GetIntegerv(c, binding_of(info), &bound);
+        EXPECT_EQ(static_cast<GLuint>(bound), name);
+        if (info.global == 0) continue;
+        gl().BindTexture(c, info.global, name + 100);
+        EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+        gl().GetIntegerv(c, binding_of(info), &bound);
+        EXPECT_EQ(static_cast<GLuint>(bound), name + 100);
+        EXPECT_TRUE(c.share().textures.find(name + 100)->global);
+    }
+}
+
+TEST_F(TextureApiTest, ImagesOfOtherDimensionsAreRefused) {
+    const auto define = [&](GLenum word, unsigned dimensions) {
+        if (dimensions == 1) gl().TexImage1D(c, word, 0, GL_RGBA, 4, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+        else if (dimensions == 2) gl().TexImage2D(c, word, 0, GL_RGBA, 4, 4, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+        else gl().TexImage3D(c, word, 0, GL_RGBA, 4, 4, 4, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+        return error();
+    };
+    for (const auto& info : glapi::kTextureTargetInfo)
+        for (unsigned dimensions = 1; dimensions <= 3; ++dimensions) {
+            SCOPED_TRACE(testing::Message() << static_cast<unsigned>(info.id) << ' ' << dimensions);
+            const bool fits = !info.later && dimensions == info.images;
+            for (unsigned face = 0; !fits && face < glapi::face_count(info); ++face)
+                EXPECT_EQ(define(glapi::image_target(info, face), dimensions), GLenum{GL_INVALID_ENUM});
+            if (!fits && info.proxy != 0) {
+                EXPECT_EQ(define(info.proxy, dimensions), GLenum{GL_INVALID_ENUM});
+            }
+            if (glapi::face_count(info) > 1) {
+                EXPECT_EQ(define(info.target, dimensions), GLenum{GL_INVALID_ENUM});
+            }
+        }
+}
+
+TEST_F(TextureApiTest, ParametersGoByTheTargetsRules) {
+    const auto value_of = [&](GLenum target, GLenum pname) {
+        GLint value = 0;
+        gl().GetTexParameteriv(c, target, pname, &value);
+        return value;
+    };
+    const GLenum kNone = GL_NO_ERROR, kEnum = GL_INVALID_ENUM;
+    for (const auto& info : glapi::kTextureTargetInfo) {
+        if (info.later) continue;
+        SCOPED_TRACE(static_cast<unsigned>(info.id));
+        EXPECT_EQ(value_of(info.target, GL_TEXTURE_MIN_FILTER), info.mipmaps ? GL_NEAREST_MIPMAP_LINEAR : GL_LINEAR);
+        EXPECT_EQ(value_of(info.target, GL_TEXTURE_WRAP_R), info.repeats ? GL_REPEAT : GL_CLAMP_TO_EDGE);
+        const GLfloat mipmapped = GL_LINEAR_MIPMAP_LINEAR, mirrored = GL_MIRRORED_REPEAT;
+        gl().TexParameterfv(c, info.target, GL_TEXTURE_MIN_FILTER, &mipmapped);
+        EXPECT_EQ(error(), info.mipmaps ? kNone : kEnum);
+        gl().TexParameterfv(c, info.target, GL_TEXTURE_WRAP_S, &mirrored);
+        EXPECT_EQ(error(), info.repeats ? kNone : kEnum);
+        gl().GenerateMipmap(c, info.target);  // of no image
+        EXPECT_EQ(error(), info.mipmaps ? GLenum{GL_INVALID_OPERATION} : kEnum);
+    }
 }
 
 TEST_F(TextureApiTest, AttributeStackKeepsParameters) {
