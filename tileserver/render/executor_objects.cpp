@@ -37,7 +37,7 @@ Texture* Executor::bind_for_upload(ClientName name, GLenum target) {
         refuse("no such target");
         return nullptr;
     }
-    Texture* texture = session_.make_texture(ClientName(name), *kind);
+    Texture* texture = session_.make_texture(name, *kind);
     if (texture == nullptr) {
         refuse("texture " + std::to_string(name.value) + " has another target, or there are too many");
         return nullptr;
