@@ -31,8 +31,14 @@ class Outcome:
     detail: str
 
 
-def load(path: Path) -> dict[Check, str]:
-    """Expected failures with their reasons."""
+@dataclasses.dataclass(frozen=True)
+class Expected:
+    reason: str
+    sometimes: bool = False  # chance decides: it may be right as well
+
+
+def load(path: Path) -> dict[Check, Expected]:
+    """Failures that are expected."""
     expected = {}
     for entry in tomllib.loads(path.read_text()).get("expected", []):
         if not entry.get("reason", "").strip():
@@ -42,7 +48,8 @@ def load(path: Path) -> dict[Check, str]:
                              f"{', '.join(VIEWS)}")
         for tiles in entry["tiles"]:
             for frame in entry.get("frames", [-1]):
-                expected[Check(entry["subject"], tiles, entry["view"], frame)] = entry["reason"]
+                check = Check(entry["subject"], tiles, entry["view"], frame)
+                expected[check] = Expected(entry["reason"], entry.get("sometimes", False))
     return expected
 
 
@@ -57,11 +64,11 @@ class Judgement:
         return not self.failures and not self.unexpected_passes
 
 
-def judge(outcomes: Iterable[Outcome], expected: dict[Check, str]) -> Judgement:
+def judge(outcomes: Iterable[Outcome], expected: dict[Check, Expected]) -> Judgement:
     judgement = Judgement([], [], [])
     for outcome in outcomes:
-        known = outcome.check in expected
-        if outcome.good and known:
+        known = expected.get(outcome.check)
+        if outcome.good and known and not known.sometimes:
             judgement.unexpected_passes.append(outcome.check)
         elif not outcome.good:
             (judgement.expected if known else judgement.failures).append(outcome)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from expectations import Check, Outcome, judge, load  # noqa: E402
+from expectations import Check, Expected, Outcome, judge, load  # noqa: E402
 from golden import Comparison, either  # noqa: E402
 from stages import Performance, parts_of  # noqa: E402
 from subjects import Recording, Scene, load_recordings, read_frame  # noqa: E402
@@ -118,13 +118,19 @@ class Compared(unittest.TestCase):
 
 
 class PlayedTwice(unittest.TestCase):
+    @staticmethod
+    def told(*good):
+        return [Outcome(Check("it", "2x2", "read", i), each, f"play {good}") for i, each in enumerate(good)]
+
     def test_what_either_play_of_mesa_shows_is_right(self):
-        def told(*good):
-            return [Outcome(Check("it", "2x2", "read", i), each, f"play {good}") for i, each in enumerate(good)]
-        first, second = told(True, False, False), told(False, True, False)
-        self.assertEqual(either(first, second), [first[0], second[1], first[2]])
+        first, second = self.told(True, False, False), self.told(False, True, False)
+        self.assertEqual(either(first, second, []), [first[0], second[1], first[2]])
         with self.assertRaises(ValueError):
-            either(first, second[:2])
+            either(first, second[:2], [])
+
+    def test_not_what_is_expected_to_fail(self):
+        first, second = self.told(False, False), self.told(True, True)
+        self.assertEqual(either(first, second, [first[0].check]), [first[0], second[1]])
 
 
 class Parts(unittest.TestCase):
@@ -149,20 +155,26 @@ class Judged(unittest.TestCase):
         self.assertTrue(judge([self.outcome(True)], {}).good)
 
     def test_expected_failure(self):
-        self.assertTrue(judge([self.outcome(False)], {self.known: "why"}).good)
+        self.assertTrue(judge([self.outcome(False)], {self.known: Expected("why")}).good)
         other = Check("a", "1x1", "shown", 2)
-        self.assertFalse(judge([self.outcome(False, other)], {self.known: "why"}).good)
+        self.assertFalse(judge([self.outcome(False, other)], {self.known: Expected("why")}).good)
 
     def test_unexpected_pass(self):
-        self.assertEqual(judge([self.outcome(True)], {self.known: "why"}).unexpected_passes, [self.known])
-        self.assertFalse(judge([self.outcome(True)], {self.known: "why"}).good)
+        self.assertEqual(judge([self.outcome(True)], {self.known: Expected("why")}).unexpected_passes, [self.known])
+        self.assertFalse(judge([self.outcome(True)], {self.known: Expected("why")}).good)
+
+    def test_what_chance_decides(self):
+        known = {self.known: Expected("why", sometimes=True)}
+        self.assertTrue(judge([self.outcome(True)], known).good)
+        self.assertTrue(judge([self.outcome(False)], known).good)
 
     def test_list(self):
         with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
             file.write('[[expected]]\nsubject = "a"\ntiles = ["1x1", "2x2"]\nview = "read"\nframes = [2]\n'
                        'reason = "why"\n')
             file.flush()
-            self.assertEqual(load(Path(file.name)), {self.known: "why", Check("a", "2x2", "read", 2): "why"})
+            other = Check("a", "2x2", "read", 2)
+            self.assertEqual(load(Path(file.name)), {self.known: Expected("why"), other: Expected("why")})
             file.write('[[expected]]\nsubject = "b"\ntiles = ["1x1"]\nview = "read"\nframes = [2]\nreason = " "\n')
             file.flush()
             with self.assertRaises(ValueError):
