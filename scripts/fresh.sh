@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Runs the README's commands where nothing is installed: in a clean Debian 12 root (mmdebstrap) with a clone of what is
-# committed. The compiler's cache and the packages downloaded before are mounted, everything else is the root's own.
+# committed. The compiler's cache and the packages downloaded before (Debian's, npm's) are mounted, everything else is
+# the root's own.
 # As root: scripts/fresh.sh [--keep] [COMMAND]   COMMAND: of bash, in the clone; by default both commands of the README
 set -euo pipefail
 project="$(cd "$(dirname "$0")/.." && pwd)"
@@ -31,13 +32,21 @@ cache="${CCACHE_DIR:-$HOME/.cache/ccache}"
 mkdir -p "$cache" "$root/ccache"
 mount --bind "$cache" "$root/ccache"
 
+mkdir -p "$HOME/.npm" "$root/root/.npm"
+mount --bind "$HOME/.npm" "$root/root/.npm"
+# Whom this machine trusts on its network, such as a proxy of its own, the root trusts as well (Node.js has a list of its
+# own, and only adds to it).
+certificates=/etc/ssl/certs/ca-certificates.crt
+[[ ! -f $certificates ]] || cp "$certificates" "$root/srv/certificates.crt"
+
 echo "fresh: $command"
 result=0
 env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 CCACHE_DIR=/ccache \
+  NODE_EXTRA_CA_CERTS=/srv/certificates.crt \
   chroot "$root" bash -c "cd /srv/wallgl && $command" </dev/null || result=$?
 [[ ! -f "$root/tmp/wall.png" ]] || cp "$root/tmp/wall.png" "$work/wall.png"
 if [[ -z $keep ]]; then
-  umount -R "$root/ccache" "$root/tmp" "$root/dev" "$root/sys" "$root/proc" "$root/var/cache/apt/archives"
+  umount -R "$root/root/.npm" "$root/ccache" "$root/tmp" "$root/dev" "$root/sys" "$root/proc" "$root/var/cache/apt/archives"
   rm -rf --one-file-system "${root:?}"
 fi
 echo "fresh: exit code $result"
