@@ -34,8 +34,8 @@ mount --bind "$cache" "$root/ccache"
 
 mkdir -p "$HOME/.npm" "$root/root/.npm"
 mount --bind "$HOME/.npm" "$root/root/.npm"
-# Whom this machine trusts on its network, such as a proxy of its own, the root trusts as well (Node.js has a list of its
-# own, and only adds to it).
+# Whom this machine trusts on its network, such as a proxy of its own, the root trusts as well. (Node.js has a list of
+# its own, and adds to that.)
 certificates=/etc/ssl/certs/ca-certificates.crt
 [[ ! -f $certificates ]] || cp "$certificates" "$root/srv/certificates.crt"
 
@@ -46,7 +46,8 @@ env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 CCACHE_DIR=/cc
   chroot "$root" bash -c "cd /srv/wallgl && $command" </dev/null || result=$?
 [[ ! -f "$root/tmp/wall.png" ]] || cp "$root/tmp/wall.png" "$work/wall.png"
 if [[ -z $keep ]]; then
-  umount -R "$root/root/.npm" "$root/ccache" "$root/tmp" "$root/dev" "$root/sys" "$root/proc" "$root/var/cache/apt/archives"
+  umount -R "$root/root/.npm" "$root/ccache" "$root/tmp" "$root/dev" "$root/sys" "$root/proc" \
+    "$root/var/cache/apt/archives"
   rm -rf --one-file-system "${root:?}"
 fi
 echo "fresh: exit code $result"
