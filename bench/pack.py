@@ -32,7 +32,7 @@ def measure(command: list[str], environment: dict[str, str]) -> dict[str, float]
 
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    arguments.add_argument("--rounds", type=int, default=5)
+    arguments.add_argument("--rounds", type=int, default=9)
     arguments.add_argument("--json", type=Path)
     arguments.add_argument("filter", nargs="?", default=".*")
     options = arguments.parse_args()

@@ -128,7 +128,8 @@ def judge(rows: dict[str, dict], most_state: float) -> bool:
 
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    arguments.add_argument("--seconds", type=float, default=20, help="how long the program is recorded")
+    arguments.add_argument("--seconds", type=float, default=60,
+                           help="how long the program is recorded; in short clips much depends on where the fish swim")
     arguments.add_argument("--recording")
     arguments.add_argument("--tiles", action="append")
     arguments.add_argument("--json", type=Path)
