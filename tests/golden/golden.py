@@ -97,7 +97,7 @@ class Comparison:
         if not verdict.good:
             name = f"{self._subject.name}-{self._tiles}-{view}-{number}.png"
             compare.save_png(self._report / name, compare.difference_picture(reference, picture))
-        return Outcome(check, verdict.good, str(verdict))
+        return Outcome(check, verdict.good, str(verdict), near=not verdict.reason and verdict.outside == 0)
 
 
 def frame_of(pictures: list, number: int):

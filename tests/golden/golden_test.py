@@ -168,6 +168,11 @@ class Judged(unittest.TestCase):
         self.assertTrue(judge([self.outcome(True)], known).good)
         self.assertTrue(judge([self.outcome(False)], known).good)
 
+    def test_wrong_only_so_far(self):
+        known = {self.known: Expected("why", sometimes=True, near=True)}
+        self.assertTrue(judge([Outcome(self.known, False, "", near=True)], known).good)
+        self.assertFalse(judge([Outcome(self.known, False, "", near=False)], known).good)
+
     def test_list(self):
         with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
             file.write('[[expected]]\nsubject = "a"\ntiles = ["1x1", "2x2"]\nview = "read"\nframes = [2]\n'
