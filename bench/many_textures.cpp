@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 // A program with many large textures: defines them, draws a frame with all of them, says so, and goes on showing it
 // until it is ended. Any GLX. bench/share.py runs several of it at once.
-#include <GL/gl.h>
-#include <GL/glx.h>
-
 #include <unistd.h>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
+
+#include "bench/gl_window.h"
 
 namespace {
 
@@ -58,20 +57,10 @@ int main(int argc, char** argv) {
             stderr);
         return 2;
     }
-    Display* display = XOpenDisplay(nullptr);
-    if (!display) return std::fputs("many_textures: cannot open the display; is DISPLAY set?\n", stderr), 1;
-    int attributes[] = {GLX_RGBA, GLX_DOUBLEBUFFER, 0};
-    XVisualInfo* visual = glXChooseVisual(display, DefaultScreen(display), attributes);
-    if (!visual) return std::fputs("many_textures: no visual\n", stderr), 1;
-    XSetWindowAttributes window_attributes{};
-    const Window root = RootWindow(display, visual->screen);
-    window_attributes.colormap = XCreateColormap(display, root, visual->visual, AllocNone);
+    constexpr int kAttributes[] = {GLX_RGBA, GLX_DOUBLEBUFFER, 0};
     const auto side = static_cast<unsigned>(o.window);
-    const Window window = XCreateWindow(display, root, 0, 0, side, side, 0, visual->depth, InputOutput, visual->visual,
-                                        CWColormap, &window_attributes);
-    XMapWindow(display, window);
-    GLXContext context = glXCreateContext(display, visual, nullptr, True);
-    if (!glXMakeCurrent(display, window, context)) return std::fputs("many_textures: no context\n", stderr), 1;
+    wall::bench::GlWindow window("many_textures", side, side, kAttributes);
+    if (!window.current()) return 1;
 
     glEnable(GL_TEXTURE_2D);
     std::vector<GLuint> names(static_cast<std::size_t>(o.textures));
@@ -94,7 +83,7 @@ int main(int argc, char** argv) {
             glTexCoord2f(0, 1), glVertex2f(-1, top);
             glEnd();
         }
-        glXSwapBuffers(display, window);
+        window.swap();
         if (frame == 0) {
             glFinish();
             std::puts("drawn");

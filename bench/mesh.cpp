@@ -2,14 +2,13 @@
 // A mesh of many small triangles in immediate mode, one glBegin for all of it or one for each strip: what a
 // simulation's surface looks like to the packer. Any GLX. `mesh --help` tells the options; bench/mesh.py measures it on
 // a wall.
-#include <GL/gl.h>
-#include <GL/glx.h>
-
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+
+#include "bench/gl_window.h"
 
 namespace {
 
@@ -70,20 +69,9 @@ int main(int argc, char** argv) {
             stderr);
         return 2;
     }
-    Display* display = XOpenDisplay(nullptr);
-    if (!display) return std::fputs("mesh: cannot open the display; is DISPLAY set?\n", stderr), 1;
-    int attributes[] = {GLX_RGBA, GLX_DOUBLEBUFFER, GLX_DEPTH_SIZE, 24, 0};
-    XVisualInfo* visual = glXChooseVisual(display, DefaultScreen(display), attributes);
-    if (!visual) return std::fputs("mesh: no visual with a depth buffer\n", stderr), 1;
-    XSetWindowAttributes window_attributes{};
-    const Window root = RootWindow(display, visual->screen);
-    window_attributes.colormap = XCreateColormap(display, root, visual->visual, AllocNone);
-    const Window window =
-        XCreateWindow(display, root, 0, 0, static_cast<unsigned>(o.width), static_cast<unsigned>(o.height), 0,
-                      visual->depth, InputOutput, visual->visual, CWColormap, &window_attributes);
-    XMapWindow(display, window);
-    GLXContext context = glXCreateContext(display, visual, nullptr, True);
-    if (!glXMakeCurrent(display, window, context)) return std::fputs("mesh: no context\n", stderr), 1;
+    constexpr int kAttributes[] = {GLX_RGBA, GLX_DOUBLEBUFFER, GLX_DEPTH_SIZE, 24, 0};
+    wall::bench::GlWindow window("mesh", static_cast<unsigned>(o.width), static_cast<unsigned>(o.height), kAttributes);
+    if (!window.current()) return 1;
 
     glViewport(0, 0, o.width, o.height);
     glEnable(GL_DEPTH_TEST);
@@ -95,12 +83,9 @@ int main(int argc, char** argv) {
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         const float time = 0.05f * static_cast<float>(frame);
         o.strips ? draw_strips(o, time) : draw_triangles(o, time);
-        glXSwapBuffers(display, window);
+        window.swap();
     }
     glFinish();
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     std::printf("%d frames in %.2f s: %.1f frames/s\n", o.frames, seconds.count(), o.frames / seconds.count());
-    glXMakeCurrent(display, None, nullptr);
-    glXDestroyContext(display, context);
-    XCloseDisplay(display);
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Runs the benchmarks of build/release and prints their tables.
-# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, switch,
-#                                         pack, mesh, march, off_wall, traffic, share, streams, codec)
+# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, execute, switch,
+#                                         pack, mesh, buffers, march, off_wall, traffic, share, streams, codec)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -29,9 +29,12 @@ run() {
 
 run state "$build/bench/state_bench" --benchmark_out="$results/state.json" --benchmark_out_format=json \
   --benchmark_color=false
+run execute "$build/bench/execute_bench" --benchmark_out="$results/execute.json" --benchmark_out_format=json \
+  --benchmark_color=false
 run switch bench/switch.py --json "$results/switch.json"
 run pack bench/pack.py --json "$results/pack.json"
 run mesh bench/mesh.py --json "$results/mesh.json"
+run buffers bench/buffers.py --json "$results/buffers.json"
 run march bench/march.py --json "$results/march.json"
 run off_wall bench/off_wall.py --json "$results/off_wall.json"
 run traffic bench/traffic.py --json "$results/traffic.json"

@@ -13,109 +13,21 @@
 #include <memory>
 #include <vector>
 
-#include "common/base/assert.h"
-#include "common/wire/batch.h"
-#include "gen/glapi/wire.gen.h"
+#include "bench/render_side.h"
 #include "gen/glstate/samples.gen.h"
-#include "tileserver/gpu/backend.h"
-#include "tileserver/gpu/memory.h"
-#include "tileserver/render/executor.h"
-#include "tileserver/render/soft_switch.h"
+#include "tileserver/session/soft_switch.h"
 
 namespace wall::tileserver {
 namespace {
 
 namespace el = glstate::el;
 namespace pack = glapi::pack;
+using namespace bench;
 
-constexpr int kSize = 256;             // pixels of every window, each way
 constexpr std::int64_t kTurns = 1000;  // switches between two glFinish
 constexpr std::array<glstate::Vec4, 2> kColors = {{{1, 0.5f, 0, 1}, {0, 0.5f, 1, 1}}};
 constexpr std::array<glstate::Mat4, 2> kMatrices = {{{0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 1, 0, -0.3f, 0, 0, 1},
                                                      {0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 1, 0, 0.3f, 0, 0, 1}}};
-
-// ---- drivers ----
-
-/// Takes every command and does nothing. Callers pass more than it reads, which this machine's calling convention
-/// allows.
-long nothing() { return 0; }
-GLenum complete(GLenum) { return GL_FRAMEBUFFER_COMPLETE; }
-
-class NullBackend final : public GlBackend {
-public:
-    Result<void> make_current() override { return {}; }
-    void* get_proc_address(const char* name) const override {
-        return std::string_view(name) == "glCheckFramebufferStatus" ? reinterpret_cast<void*>(&complete)
-                                                                    : reinterpret_cast<void*>(&nothing);
-    }
-    std::string_view name() const override { return "null"; }
-};
-
-enum class To { null, llvmpipe };
-
-struct Ignore final : SessionOutput {
-    void reply(RequestId, std::vector<std::byte>) override {}
-    void frame_rendered(SurfaceId, std::uint32_t) override {}
-};
-
-/// A tileserver's render side with one tile and sessions that each have a window on it and two contexts.
-class Node {
-public:
-    explicit Node(To to) {
-        keep_freed_memory();  // as the tileserver does
-        if (to == To::null) {
-            backend_ = std::make_unique<NullBackend>();
-        } else {
-            auto opened = open_egl_backend();
-            WALL_ASSERT(opened);
-            backend_ = std::move(*opened);
-        }
-        WALL_ASSERT(backend_->make_current());
-        Gl gl;
-        gl.load([this](const char* name) { return backend_->get_proc_address(name); });
-        driver_ = std::make_unique<Driver>(gl);
-        node_ = std::make_unique<RenderNode>(*driver_);
-        node_->tiles = {{0, {0, 0, kSize, kSize}}};
-    }
-    RenderNode& node() { return *node_; }
-    const Gl& gl() const { return driver_->gl(); }
-
-private:
-    std::unique_ptr<GlBackend> backend_;
-    std::unique_ptr<Driver> driver_;
-    std::unique_ptr<RenderNode> node_;
-};
-
-class Client {
-public:
-    Client(Node& node, std::uint32_t id)
-        : session(node.node().driver, SessionId(id)), executor(node.node(), session, output_) {
-        wire::PackBuffer buffer;
-        pack::SurfaceCreate(buffer, SurfaceId(1), 1, 8, 24, 8, 0, 0);
-        pack::SurfacePlace(buffer, SurfaceId(1), 1, kSize, kSize, 0, 0, kSize, kSize, 0);
-        run(1, buffer);
-        for (const std::uint32_t context : {1u, 2u}) {
-            wire::PackBuffer bind;
-            pack::Bind(bind, SurfaceId(1), SurfaceId(1));
-            run(context, bind);
-            glstate::assign<el::viewport>(this->context(context).state, 0, {0, 0, kSize, kSize});
-        }
-    }
-    void run(std::uint32_t context, const wire::PackBuffer& buffer) {
-        std::vector<std::byte> payload;
-        wire::append_batch(payload, {ContextId(context), buffer.opcodes(), buffer.operands()});
-        WALL_ASSERT(executor.run_batch(payload));
-    }
-    SoftContext& context(std::uint32_t id) { return session.context(ContextId(id)); }
-    Layer& layer() { return *session.surface(SurfaceId(1))->layer(0); }
-
-private:
-    Ignore output_;  // before what uses it
-
-public:
-    SessionReplica session;
-    Executor executor;
-};
 
 /// Two contexts of the same driver, each with a window of its own.
 class EglPair {
@@ -203,9 +115,9 @@ void set_varying(glstate::State& state, std::size_t who) {
 void set_samples(glstate::State& state, std::size_t n) {
     glstate::for_each_element([&]<class E>() {
         constexpr auto kKept =
-            glstate::kLayerCategories | glstate::mask_of(glstate::Category::local) |
-            glstate::mask_of(glstate::Category::textures) | glstate::mask_of(glstate::Category::objects) |
-            glstate::mask_of(glstate::Category::modelview_origin) | glstate::mask_of(glstate::Category::pixel_transfer);
+            glstate::kLayerCategories | ~glstate::kSentCategories | glstate::mask_of(glstate::Category::textures) |
+            glstate::mask_of(glstate::Category::objects) | glstate::mask_of(glstate::Category::modelview_origin) |
+            glstate::mask_of(glstate::Category::pixel_transfer);
         if ((kKept & glstate::mask_of(E::category)) != 0) return;
         for (unsigned i = 0; i < E::count; ++i) glstate::assign<E>(state, i, glstate::Samples<E>::values[(n + i) % 3]);
     });
@@ -229,8 +141,8 @@ void time_turns(benchmark::State& run, const Gl& gl, Turn&& turn) {
 template <bool kFresh>
 void Identical_Soft(benchmark::State& run) {
     Node node(To::null);
-    Client client(node, 1);
-    std::array<SoftContext*, 2> contexts = {&client.context(1), &client.context(2)};
+    Client client(node, SessionId(1));
+    std::array<SoftContext*, 2> contexts = {&client.context(ContextId(1)), &client.context(ContextId(2))};
     if (!kFresh)
         for (SoftContext* context : contexts) set_samples(context->state, 1);
     Layer& layer = client.layer();
@@ -251,8 +163,8 @@ BENCHMARK(Identical_Egl)->Name("identical/eglMakeCurrent")->UseRealTime();
 
 void Varying_Soft(benchmark::State& run, To to) {
     Node node(to);
-    Client client(node, 1);
-    std::array<SoftContext*, 2> contexts = {&client.context(1), &client.context(2)};
+    Client client(node, SessionId(1));
+    std::array<SoftContext*, 2> contexts = {&client.context(ContextId(1)), &client.context(ContextId(2))};
     for (std::size_t i = 0; i < 2; ++i) set_varying(contexts[i]->state, i);
     Layer& layer = client.layer();
     time_turns(run, node.gl(), [&](std::size_t i) {
@@ -266,8 +178,9 @@ BENCHMARK_CAPTURE(Varying_Soft, llvmpipe, To::llvmpipe)->Name("varying/llvmpipe/
 /// The same drawing in one context: its commands without any switch.
 void Varying_One(benchmark::State& run, To to) {
     Node node(to);
-    Client client(node, 1);
-    benchmark::DoNotOptimize(switch_to(node.node(), client.session, client.context(1), client.layer(), true));
+    Client client(node, SessionId(1));
+    benchmark::DoNotOptimize(
+        switch_to(node.node(), client.session, client.context(ContextId(1)), client.layer(), true));
     time_turns(run, node.gl(), [&](std::size_t i) {
         set_values(node.gl(), i);
         draw_triangle(node.gl());
@@ -281,8 +194,8 @@ BENCHMARK_CAPTURE(Varying_One, llvmpipe, To::llvmpipe)->Name("varying/llvmpipe/o
 /// difference.
 void Varying_Kept(benchmark::State& run) {
     Node node(To::llvmpipe);
-    Client client(node, 1);
-    std::array<SoftContext*, 2> contexts = {&client.context(1), &client.context(2)};
+    Client client(node, SessionId(1));
+    std::array<SoftContext*, 2> contexts = {&client.context(ContextId(1)), &client.context(ContextId(2))};
     for (std::size_t i = 0; i < 2; ++i) set_varying(contexts[i]->state, i);
     Layer& layer = client.layer();
     const auto seconds = [&](auto&& turn) {
@@ -331,8 +244,8 @@ void Varying_Batches(benchmark::State& run, To to) {
     std::array<std::unique_ptr<Client>, 2> clients;
     std::array<std::vector<std::byte>, 2> payloads;
     for (std::size_t i = 0; i < 2; ++i) {
-        clients[i] = std::make_unique<Client>(node, static_cast<std::uint32_t>(i + 1));
-        set_varying(clients[i]->context(1).state, i);
+        clients[i] = std::make_unique<Client>(node, SessionId(static_cast<std::uint32_t>(i + 1)));
+        set_varying(clients[i]->context(ContextId(1)).state, i);
         wire::PackBuffer body, buffer;
         pack::Begin(body, GL_TRIANGLES);
         pack::Vertex3f(body, -0.1f, -0.1f, 0);
@@ -371,8 +284,8 @@ BENCHMARK(TwoWindows_Egl)->Name("two windows/llvmpipe/eglMakeCurrent")->UseRealT
 
 void Different_Soft(benchmark::State& run, To to) {
     Node node(to);
-    Client client(node, 1);
-    std::array<SoftContext*, 2> contexts = {&client.context(1), &client.context(2)};
+    Client client(node, SessionId(1));
+    std::array<SoftContext*, 2> contexts = {&client.context(ContextId(1)), &client.context(ContextId(2))};
     for (std::size_t i = 0; i < 2; ++i) set_samples(contexts[i]->state, i);
     Layer& layer = client.layer();
     time_turns(run, node.gl(), [&](std::size_t i) {

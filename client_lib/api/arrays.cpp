@@ -7,7 +7,8 @@
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/client_arrays.h"
 #include "client_lib/context/lists.h"
-#include "client_lib/geometry/select.h"
+#include "client_lib/context/node_draw.h"
+#include "client_lib/context/select.h"
 #include "common/glstate/diff.h"
 
 namespace wall::client::api {
@@ -111,6 +112,7 @@ bool check_mode(Context& c, GLenum mode) {
 }
 
 void draw_range(Context& c, GLenum mode, GLint first, GLsizei count) {
+    if (draw_on_nodes(c, {.mode = mode, .first = first, .count = count})) return;
     ElementRange elements;
     elements.first = first;
     elements.count = count;
@@ -118,12 +120,13 @@ void draw_range(Context& c, GLenum mode, GLint first, GLsizei count) {
 }
 
 void draw_indices(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices) {
+    if (draw_on_nodes(c, {.mode = mode, .count = count, .index_type = type, .indices = indices})) return;
     ElementRange elements;
     elements.count = count;
     elements.type = type;
     elements.indices = indices;
     BufferReading reading;
-    if (const ClientName buffer(c.state.local.element_array_buffer); buffer) {
+    if (const ClientName buffer(c.state.vertex_arrays.element_array_buffer); buffer) {
         reading = buffer_content(c, buffer, reinterpret_cast<std::uintptr_t>(indices));
         const auto content = reading.bytes();
         const std::size_t bytes = type == GL_UNSIGNED_BYTE ? 1 : type == GL_UNSIGNED_SHORT ? 2 : 4;
@@ -230,7 +233,7 @@ void MultiDrawElements(Context& c, GLenum mode, const GLsizei* count, GLenum typ
 
 void GetPointerv(Context& c, GLenum pname, void** params) {
     if (!params) return;
-    const auto& l = c.state.local;
+    const auto& l = c.state.vertex_arrays;
     const auto answer = [&](const void* pointer) { *params = const_cast<void*>(pointer); };
     switch (pname) {
         case GL_VERTEX_ARRAY_POINTER: return answer(pointer_of(l.vertex_array));

@@ -2,6 +2,7 @@
 // glPushAttrib and glPopAttrib.
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/context.h"
+#include "client_lib/context/texture_binding.h"
 #include "common/glstate/diff.h"
 
 namespace wall::client::api {

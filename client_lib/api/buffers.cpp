@@ -2,21 +2,22 @@
 // Buffer objects (OpenGL 2.1, 2.9), kept here whole: mapping gives the shadow itself, and reading back asks nobody.
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "client_lib/context/buffer_binding.h"
-#include "client_lib/context/share_group.h"
+#include "client_lib/objects/share_group.h"
 
 namespace wall::client::api {
 namespace {
 
 /// The buffer bound to a target, or null and the error.
 Buffer* bound_buffer(Context& c, GLenum target) {
-    const std::uint32_t* binding = buffer_binding(c, target);
-    if (!binding) {
+    const auto id = bound_buffer_id(c, target);
+    if (!id) {
         c.error(GL_INVALID_ENUM);
         return nullptr;
     }
-    Buffer* buffer = buffer_of(c, ClientName(*binding));
+    Buffer* buffer = buffer_of(c, *id);
     if (!buffer) c.error(GL_INVALID_OPERATION);
     return buffer;
 }
@@ -38,10 +39,26 @@ bool is_usage(GLenum usage) {
 }
 static_assert((GL_STREAM_DRAW & 3) == 0 && (GL_STATIC_DRAW & 3) == 0 && (GL_DYNAMIC_DRAW & 3) == 0);
 
+/// Largest buffer that can be named in the stream.
+constexpr GLsizeiptr kMostBytes = std::numeric_limits<std::uint32_t>::max();
+
 /// A deleted buffer leaves the bindings of the context that deletes it (OpenGL 2.1, 2.9).
 void unbind(Context& c, ClientName id) {
     for (const GLenum target : {GL_ARRAY_BUFFER, GL_ELEMENT_ARRAY_BUFFER, GL_PIXEL_PACK_BUFFER, GL_PIXEL_UNPACK_BUFFER})
-        if (std::uint32_t& bound = *buffer_binding(c, target); bound == id.value) bound = 0;
+        if (bound_buffer_id(c, target) == id) bind_buffer(c, target, {});
+}
+
+void delete_buffer(Context& c, GLuint name) {
+    std::shared_ptr<Buffer> buffer;
+    {
+        std::lock_guard lock(c.share().mutex);
+        buffer = name == 0 ? nullptr : c.share().buffers.erase(name);
+        if (!buffer) return;
+        buffer->deleted = true;
+        c.share().buffer_deletions.fetch_add(1, std::memory_order_release);
+    }
+    unbind(c, buffer->id);
+    let_go_of_buffer(c, std::move(buffer));
 }
 
 }  // namespace
@@ -56,15 +73,7 @@ void GenBuffers(Context& c, GLsizei count, GLuint* names) {
 void DeleteBuffers(Context& c, GLsizei count, const GLuint* names) {
     if (count < 0) return c.error(GL_INVALID_VALUE);
     c.flush_block();
-    std::lock_guard lock(c.share().mutex);
-    for (GLsizei i = 0; i < count; ++i) {
-        const auto buffer = names[i] == 0 ? nullptr : c.share().buffers.erase(names[i]);
-        if (!buffer) continue;
-        buffer->deleted = true;
-        unbind(c, buffer->id);
-        c.buffers->by_id.erase(buffer->id);
-        c.share().buffer_deletions.fetch_add(1, std::memory_order_release);
-    }
+    for (GLsizei i = 0; i < count; ++i) delete_buffer(c, names[i]);
 }
 
 GLboolean IsBuffer(Context& c, GLuint name) {
@@ -73,9 +82,8 @@ GLboolean IsBuffer(Context& c, GLuint name) {
 }
 
 void BindBuffer(Context& c, GLenum target, GLuint name) {
-    std::uint32_t* binding = buffer_binding(c, target);
-    if (!binding) return c.error(GL_INVALID_ENUM);
-    *binding = 0;
+    if (!bound_buffer_id(c, target)) return c.error(GL_INVALID_ENUM);
+    bind_buffer(c, target, {});
     if (c.buffers->holds_deleted || buffers_were_deleted(c)) let_go_of_deleted_buffers(c);
     if (name == 0) return;
     ShareGroup& share = c.share();
@@ -84,8 +92,9 @@ void BindBuffer(Context& c, GLenum target, GLuint name) {
     if (!buffer) {
         buffer = std::make_shared<Buffer>(next_object_id(), name);
         share.buffers.put(name, buffer);
+        share.by_id[buffer->id] = buffer;
     }
-    *binding = buffer->id.value;
+    bind_buffer(c, target, buffer->id);
     c.buffers->by_id.try_emplace(buffer->id, std::move(buffer));
 }
 
@@ -94,26 +103,20 @@ void BufferData(Context& c, GLenum target, GLsizeiptr size, const void* data, GL
     if (!is_usage(usage)) return c.error(GL_INVALID_ENUM);
     Buffer* buffer = bound_buffer(c, target);
     if (!buffer) return;
-    c.buffers->transfer = {};
+    if (size > kMostBytes) return c.error(GL_OUT_OF_MEMORY);
+    before_writing(c, *buffer);
     std::lock_guard lock(c.share().mutex);
-    buffer->leave_all_to_readers();
-    auto& bytes = buffer->memory->bytes;
-    const auto* first = static_cast<const std::byte*>(data);
-    if (data) bytes.assign(first, first + size);
-    else bytes.resize(static_cast<std::size_t>(size));
-    buffer->usage = usage;
-    buffer->mapped = false;
-    buffer->stamp = next_stamp();
+    buffer->define(data, static_cast<std::size_t>(size), usage);
 }
 
 void BufferSubData(Context& c, GLenum target, GLintptr offset, GLsizeiptr size, const void* data) {
-    c.buffers->transfer = {};
+    if (Buffer* bound = bound_buffer(c, target)) before_writing(c, *bound);
+    else return;
     std::lock_guard lock(c.share().mutex);
     Buffer* buffer = buffer_with(c, target, offset, size);
     if (!buffer || size == 0) return;
-    buffer->leave_to_readers();
-    std::memcpy(buffer->data() + offset, data, static_cast<std::size_t>(size));
-    buffer->stamp = next_stamp();
+    const auto first = static_cast<std::size_t>(offset);
+    buffer->write({first, first + static_cast<std::size_t>(size)}, data);
 }
 
 void GetBufferSubData(Context& c, GLenum target, GLintptr offset, GLsizeiptr size, void* data) {
@@ -127,7 +130,9 @@ void* MapBuffer(Context& c, GLenum target, GLenum access) {
         c.error(GL_INVALID_ENUM);
         return nullptr;
     }
-    c.buffers->transfer = {};
+    Buffer* bound = bound_buffer(c, target);
+    if (!bound) return nullptr;
+    if (access != GL_READ_ONLY) before_writing(c, *bound);
     std::lock_guard lock(c.share().mutex);
     Buffer* buffer = buffer_with(c, target, 0, 0);
     if (!buffer) return nullptr;
@@ -135,10 +140,9 @@ void* MapBuffer(Context& c, GLenum target, GLenum access) {
         c.error(GL_OUT_OF_MEMORY);
         return nullptr;
     }
-    if (access != GL_READ_ONLY) buffer->leave_to_readers();
     buffer->mapped = true;
     buffer->access = access;
-    return buffer->data();
+    return access == GL_READ_ONLY ? const_cast<std::byte*>(buffer->data()) : buffer->begin_writing();
 }
 
 GLboolean UnmapBuffer(Context& c, GLenum target) {
@@ -150,7 +154,7 @@ GLboolean UnmapBuffer(Context& c, GLenum target) {
         return GL_FALSE;
     }
     buffer->mapped = false;
-    if (buffer->access != GL_READ_ONLY) buffer->stamp = next_stamp();
+    if (buffer->access != GL_READ_ONLY) buffer->wrote({0, buffer->size()});
     return GL_TRUE;
 }
 
@@ -160,7 +164,7 @@ void GetBufferParameteriv(Context& c, GLenum target, GLenum pname, GLint* params
     if (!buffer) return;
     switch (pname) {
         case GL_BUFFER_SIZE: *params = static_cast<GLint>(std::min<std::size_t>(buffer->size(), 0x7fffffff)); break;
-        case GL_BUFFER_USAGE: *params = static_cast<GLint>(buffer->usage); break;
+        case GL_BUFFER_USAGE: *params = static_cast<GLint>(buffer->usage()); break;
         case GL_BUFFER_ACCESS: *params = static_cast<GLint>(buffer->access); break;
         case GL_BUFFER_MAPPED: *params = buffer->mapped; break;
         default: c.error(GL_INVALID_ENUM);
@@ -170,7 +174,8 @@ void GetBufferParameteriv(Context& c, GLenum target, GLenum pname, GLint* params
 void GetBufferPointerv(Context& c, GLenum target, GLenum pname, void** params) {
     if (pname != GL_BUFFER_MAP_POINTER) return c.error(GL_INVALID_ENUM);
     std::lock_guard lock(c.share().mutex);
-    if (Buffer* buffer = bound_buffer(c, target)) *params = buffer->mapped ? buffer->data() : nullptr;
+    if (Buffer* buffer = bound_buffer(c, target))
+        *params = buffer->mapped ? const_cast<std::byte*>(buffer->data()) : nullptr;
 }
 
 }  // namespace wall::client::api

@@ -196,7 +196,7 @@ void EdgeFlag(Context& c, GLboolean flag) {
 }
 
 void MultiTexCoord4f(Context& c, GLenum unit, GLfloat s, GLfloat t, GLfloat r, GLfloat q) {
-    if (unit < GL_TEXTURE0 || unit >= GL_TEXTURE0 + kTextureUnits) return c.error(GL_INVALID_ENUM);
+    if (unit < GL_TEXTURE0 || unit >= GL_TEXTURE0 + kTextureCoords) return c.error(GL_INVALID_ENUM);
     if (unit == GL_TEXTURE0) return TexCoord4f(c, s, t, r, q);
     const std::uint32_t index = unit - GL_TEXTURE0;
     std::byte* at = c.packer.append_attribute(Attribute::texcoord + index, Op::MultiTexCoord4f, 20);

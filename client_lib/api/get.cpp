@@ -8,8 +8,8 @@
 #include "client_lib/context/context.h"
 #include "client_lib/context/limits.h"
 #include "client_lib/context/lists.h"
-#include "client_lib/context/share_group.h"
-#include "client_lib/geometry/select.h"
+#include "client_lib/context/object_name.h"
+#include "client_lib/context/select.h"
 #include "client_lib/objects/maps.h"
 #include "common/glstate/elements.h"
 #include "common/glstate/queries.h"
@@ -26,7 +26,7 @@ struct Special {
 
 const SurfaceFormat& format_of(Context& c) {
     static constexpr SurfaceFormat kNone;
-    return c.draw_surface() ? c.draw_surface()->options.format : kNone;
+    return c.draw_target() ? c.draw_target().format() : kNone;
 }
 
 template <int kValue>
@@ -109,10 +109,10 @@ const Special kSpecials[] = {
     {GL_MAX_LIGHTS, 1, constant<glstate::el::light_enabled::count>},
     {GL_MAX_CLIP_PLANES, 1, limited<GL_MAX_CLIP_PLANES, glstate::el::clip_plane::count>},
     {GL_MAX_TEXTURE_UNITS, 1, limited<GL_MAX_TEXTURE_UNITS, kTextureUnits>},
-    {GL_MAX_TEXTURE_COORDS, 1, limited<GL_MAX_TEXTURE_COORDS, kTextureUnits>},
-    {GL_MAX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_TEXTURE_IMAGE_UNITS, kTextureUnits>},
-    {GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, kTextureUnits>},
-    {GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, kTextureUnits>},
+    {GL_MAX_TEXTURE_COORDS, 1, limited<GL_MAX_TEXTURE_COORDS, kTextureCoords>},
+    {GL_MAX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
+    {GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
+    {GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
     {GL_MAX_DRAW_BUFFERS, 1, constant<1>},
     // For general use: RGBA of DXT1 has but one bit of alpha.
     {GL_NUM_COMPRESSED_TEXTURE_FORMATS, 1, constant<3>},

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "client_lib/context/param_commands.h"
-#include "client_lib/context/share_group.h"
+#include "client_lib/objects/share_group.h"
 
 namespace wall::client::api {
 namespace {

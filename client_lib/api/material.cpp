@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // glMaterial: state outside of glBegin .. glEnd, geometry inside (OpenGL 1.2.1, 2.13.2).
-#include "client_lib/context/material.h"
+#include "client_lib/geometry/material.h"
 
 #include <cstring>
 
@@ -22,11 +22,11 @@ void pack_material(Context& c, GLenum face, GLenum pname, const glstate::Vec4& v
     const GLenum words[2] = {face, pname};
     std::memcpy(at, words, sizeof words);
     std::memcpy(at + sizeof words, value.data(), sizeof value);
-    c.pending_materials.push_back({face, pname, value});
+    c.packer.materials.push_back({face, pname, value});
 }
 
 void set_material(Context& c, GLenum face, GLenum pname, const glstate::Vec4& value) {
-    if (!c.pending_materials.empty()) c.flush_block();
+    if (!c.packer.materials.empty()) c.flush_block();
     if (!changes_material(c.state, face, pname, value)) return;
     c.flush_block();
     assign_material(c.state, face, pname, value);

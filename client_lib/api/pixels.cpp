@@ -8,9 +8,9 @@
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/pixel_store.h"
-#include "client_lib/context/share_group.h"
-#include "client_lib/follow/readback.h"
+#include "client_lib/context/readback.h"
 #include "client_lib/objects/maps.h"
+#include "client_lib/objects/share_group.h"
 #include "client_lib/objects/texture.h"
 #include "common/wire/limits.h"
 
@@ -30,8 +30,8 @@ PixelRect drawn_rect(const Context& c, float width, float height) {
             std::max(position[1], y) + kMargin};
 }
 
-bool has_depth(const Context& c) { return c.draw_surface() && c.draw_surface()->options.format.depth_bits != 0; }
-bool has_stencil(const Context& c) { return c.draw_surface() && c.draw_surface()->options.format.stencil_bits != 0; }
+bool has_depth(const Context& c) { return c.draw_target() && c.draw_target().format().depth_bits != 0; }
+bool has_stencil(const Context& c) { return c.draw_target() && c.draw_target().format().stencil_bits != 0; }
 
 /// Whether the buffers that a format means exist.
 bool buffers_exist(const Context& c, GLenum format) {
@@ -48,7 +48,7 @@ bool buffers_exist(const Context& c, GLenum format) {
 void draw_tight(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum type,
                 std::span<const std::byte> pixels) {
     const bool color = format != GL_DEPTH_COMPONENT && format != GL_STENCIL_INDEX && format != GL_DEPTH_STENCIL;
-    if (!color && c.draw_surface()) c.draw_surface()->depth_images = true;
+    if (!color && c.draw_target()) c.draw_target().note_depth_image();
     c.draw(drawn_rect(c, static_cast<float>(width), static_cast<float>(height)),
            [&](wire::PackBuffer& buffer) { glapi::pack::DrawPixels(buffer, width, height, format, type, pixels); });
 }
@@ -114,8 +114,9 @@ void get_pixel_map(Context& c, GLenum map, Out* out, double scale) {
     if (!is_pixel_map(map)) return c.error(GL_INVALID_ENUM);
     constexpr double kRounding = std::is_same_v<Out, GLushort> ? 0.5 : 0.0;  // Mesa rounds these only
     const auto values = c.maps->pixel.of(map);
-    auto* to = static_cast<std::byte*>(pack_target(c, out, values.size() * sizeof(Out)));
-    if (!to) return;
+    const PackTarget target = pack_target(c, out, values.size() * sizeof(Out));
+    if (!target) return;
+    auto* to = static_cast<std::byte*>(target.get());
     for (const float value : values) {
         const auto result = static_cast<Out>(is_index_map(map) ? value : value * scale + kRounding);
         std::memcpy(to, &result, sizeof result);
@@ -147,14 +148,12 @@ int named_buffers(GLenum word) {
     }
 }
 
-int existing_buffers(const ClientSurface* surface) {
-    return !surface || surface->options.format.double_buffered ? 3 : 1;
-}
+int existing_buffers(const DrawTarget& target) { return !target || target.format().double_buffered ? 3 : 1; }
 
-GLenum buffer_error(GLenum word, const ClientSurface* surface) {
+GLenum buffer_error(GLenum word, const DrawTarget& target) {
     const int named = named_buffers(word);
     if (named < 0) return GL_INVALID_ENUM;
-    return named == 0 || (named & existing_buffers(surface)) ? GL_NO_ERROR : GL_INVALID_OPERATION;
+    return named == 0 || (named & existing_buffers(target)) ? GL_NO_ERROR : GL_INVALID_OPERATION;
 }
 
 constexpr std::byte kOnePixel[4] = {};
@@ -260,19 +259,20 @@ void PolygonStipple(Context& c, const GLubyte* mask) {
 }
 
 void GetPolygonStipple(Context& c, GLubyte* mask) {
-    void* to = image_target(c, {{32, 32}, GL_COLOR_INDEX, GL_BITMAP}, mask);
+    const PackTarget to = image_target(c, {{32, 32}, GL_COLOR_INDEX, GL_BITMAP}, mask);
     if (!to) return;
     const glstate::Words32& words = c.state.window.polygon_stipple;
-    glapi::pack_image(pack_store(c.state), {32, 32}, GL_COLOR_INDEX, GL_BITMAP, std::as_bytes(std::span(words)), to);
+    glapi::pack_image(pack_store(c.state), {32, 32}, GL_COLOR_INDEX, GL_BITMAP, std::as_bytes(std::span(words)),
+                      to.get());
 }
 
 void DrawBuffer(Context& c, GLenum buffer) {
-    if (const GLenum error = buffer_error(buffer, c.draw_surface())) return c.error(error);
+    if (const GLenum error = buffer_error(buffer, c.draw_target())) return c.error(error);
     c.set<el::draw_buffer>(0, buffer);
 }
 
 void ReadBuffer(Context& c, GLenum buffer) {
-    if (const GLenum error = buffer_error(buffer, c.read_surface())) return c.error(error);
+    if (const GLenum error = buffer_error(buffer, c.read_target())) return c.error(error);
     c.set<el::read_buffer>(0, buffer);
 }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "client_lib/context/context.h"
 #include "client_lib/context/occlusion.h"
 
 namespace wall::client::api {
@@ -13,9 +14,11 @@ namespace el = glstate::el;
 
 constexpr GLint kCounterBits = 64;
 
+/// No stamp says which nodes have counted for it: each that has drawn while it was current.
 void forget(Context& c, const OcclusionQuery& query) {
     if (!query.id) return;
-    c.session().on_every_node(c, [&](wire::PackBuffer& buffer, Node&) { glapi::pack::QueryDelete(buffer, query.id); });
+    c.session().on_every_node(c.id,
+                              [&](wire::PackBuffer& buffer, Node&) { glapi::pack::ObjectDelete(buffer, query.id); });
 }
 
 std::vector<Node*> live_nodes(ClientSession& session) {
@@ -29,10 +32,10 @@ std::vector<Node*> live_nodes(ClientSession& session) {
 std::uint64_t samples_of(Context& c, OcclusionQuery& query) {
     if (query.answered || !query.id) return query.samples;
     c.flush_block();
-    c.session().count_hidden_samples();
+    c.session().hidden_parts([](HiddenParts& parts) { parts.before_counting_samples(); });
     for (Node* node : live_nodes(c.session())) {
         const auto answer = c.session().ask(
-            c, *node, "glGetQueryObject",
+            c.draw_source(), *node, "glGetQueryObject",
             [&](wire::PackBuffer& buffer, RequestId request) { glapi::pack::QueryResult(buffer, request, query.id); });
         std::uint64_t samples = 0;
         if (answer && answer->size() == sizeof samples) std::memcpy(&samples, answer->data(), sizeof samples);

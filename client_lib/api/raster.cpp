@@ -178,7 +178,7 @@ float generated(const glstate::TextureGenState& t, unsigned at, unsigned coordin
 }
 
 void set_texcoords(const glstate::State& s, const Generated& g, RasterState& raster) {
-    for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
+    for (unsigned unit = 0; unit < kTextureCoords; ++unit) {
         Vec4 coords = s.current.texcoord[unit];
         for (unsigned i = 0; i < 4; ++i)
             if (s.texture_gen.tex_gen_enabled[unit * 4 + i]) coords[i] = generated(s.texture_gen, unit * 4 + i, i, g);

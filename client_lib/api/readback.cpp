@@ -4,16 +4,15 @@
 
 #include "client_lib/context/context.h"
 #include "client_lib/context/pixel_store.h"
-#include "client_lib/follow/readback.h"
+#include "client_lib/context/readback.h"
 #include "client_lib/objects/pixel_convert.h"
 
 namespace wall::client::api {
 namespace {
 
 bool source_exists(const Context& c, GLenum format) {
-    const ClientSurface* surface = c.read_surface();
-    if (!surface) return false;
-    const SurfaceFormat& f = surface->options.format;
+    if (!c.read_target()) return false;
+    const SurfaceFormat& f = c.read_target().format();
     switch (format) {
         case GL_DEPTH_COMPONENT: return f.depth_bits != 0;
         case GL_STENCIL_INDEX: return f.stencil_bits != 0;
@@ -56,7 +55,7 @@ void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
     if (!source_exists(c, format)) return c.error(GL_INVALID_OPERATION);
     const PixelBox box = clip_to_window(c, {x, y, width, height});
     if (box.empty()) return;
-    void* to = image_target(c, {{width, height}, format, type}, pixels);
+    const PackTarget to = image_target(c, {{width, height}, format, type}, pixels);
     if (!to) return;
     glapi::PixelStore store = pack_store(c.state);
     if (store.row_length == 0) store.row_length = width;
@@ -68,7 +67,7 @@ void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
         tight = from_rgba(format, type,
                           to_rgba(format, GL_FLOAT, tight,
                                   static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height)));
-    glapi::pack_image(store, {box.width, box.height}, format, type, tight, to);
+    glapi::pack_image(store, {box.width, box.height}, format, type, tight, to.get());
 }
 
 }  // namespace wall::client::api

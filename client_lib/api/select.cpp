@@ -1,27 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Selection and feedback (OpenGL 1.2.1, 5.2 and 5.3).
-#include "client_lib/geometry/select.h"
+#include "client_lib/context/select.h"
 
 #include <algorithm>
 #include <cstring>
 
 #include "client_lib/context/context.h"
-#include "common/wire/limits.h"
 
 namespace wall::client::api {
 namespace {
-
-/// One layer of the window's size on `node`.
-SurfaceLayout single_layer(const ClientSurface& surface, NodeIndex node) {
-    SurfaceLayout layout = surface.layout;
-    const auto width = static_cast<int>(layout.width), height = static_cast<int>(layout.height);
-    layout.offscreen = true;
-    layout.rect = {0, 0, width, height};
-    layout.targets.assign(
-        1,
-        Target{node, wire::kOffscreenSlot, {0, 0, static_cast<float>(width), static_cast<float>(height)}, layout.rect});
-    return layout;
-}
 
 Node* first_alive(ClientSession& session) {
     std::lock_guard lock(session.mutex());
@@ -31,9 +18,9 @@ Node* first_alive(ClientSession& session) {
 }
 
 Node* selecting_node(Context& c) {
-    if (!c.select->layout) return first_alive(c.session());
+    if (!c.select->layer) return first_alive(c.session());
     std::lock_guard lock(c.session().mutex());
-    return &c.session().node_of(c.select->layout->targets.front());
+    return &c.session().nodes()[*c.select->layer];
 }
 
 /// Switches the node over; its answer: the result of the mode that ended, then its buffer.
@@ -41,9 +28,10 @@ std::vector<std::byte> switch_mode(Context& c, Node& node, GLenum mode) {
     const SelectState& s = *c.select;
     const GLsizei entries = mode == GL_SELECT ? s.select_entries : s.feedback_entries;
     const auto count = static_cast<std::uint32_t>(mode == GL_RENDER ? 0 : entries);
-    auto answer = c.session().ask(c, node, "glRenderMode", [&](wire::PackBuffer& buffer, RequestId request) {
-        glapi::pack::RenderMode(buffer, request, mode, s.feedback_type, count);
-    });
+    auto answer =
+        c.session().ask(c.draw_source(), node, "glRenderMode", [&](wire::PackBuffer& buffer, RequestId request) {
+            glapi::pack::RenderMode(buffer, request, mode, s.feedback_type, count);
+        });
     return std::move(answer).value_or(std::vector<std::byte>{});
 }
 
@@ -95,11 +83,14 @@ GLint RenderMode(Context& c, GLenum mode) {
         return c.error(GL_INVALID_OPERATION), 0;
     if (ended == GL_RENDER && mode == GL_RENDER) return 0;
     c.flush_block();
-    Node* node = c.draw_surface() ? selecting_node(c) : nullptr;
+    Node* node = c.draw_target() ? selecting_node(c) : nullptr;
     const auto answer = node ? switch_mode(c, *node, mode) : std::vector<std::byte>{};
     s.name_depth = 0;
-    s.layout.reset();
-    if (mode != GL_RENDER && node) s.layout = single_layer(*c.draw_surface(), node->index);
+    s.layer.reset();
+    if (mode != GL_RENDER && node) {
+        const auto [width, height] = c.draw_target().size();
+        s.layer = whole_window(width, height, node->index);
+    }
     glstate::assign<glstate::el::render_mode>(c.state, 0, mode);
     return deliver(c, ended, answer);
 }

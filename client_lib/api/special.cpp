@@ -27,27 +27,24 @@ void Clear(Context& c, GLbitfield mask) {
     if (mask & ~kKnown) return c.error(GL_INVALID_VALUE);
     if (mask == 0 || c.state.local.render_mode != GL_RENDER) return;
     c.flush_block();
-    if (c.draw_surface()) c.session().clear_hidden(c, mask);
+    c.session().hidden_parts([&](HiddenParts& parts) { parts.before_clear(c.draw_source(), mask); });
     c.draw(clear_box(c), needs_of_clear(), [&](wire::PackBuffer& buffer) { glapi::pack::Clear(buffer, mask); });
-    if (c.draw_surface() && clears_all(c, mask)) c.draw_surface()->cleared = true;
+    if (c.draw_target() && clears_all(c, mask)) c.draw_target().note_cleared();
 }
 
 void Accum(Context& c, GLenum op, GLfloat value) {
     if (op < GL_ACCUM || op > GL_ADD) return c.error(GL_INVALID_ENUM);
-    if (!c.draw_surface() || c.draw_surface()->options.format.accum_bits == 0) return c.error(GL_INVALID_OPERATION);
+    if (!c.draw_target() || c.draw_target().format().accum_bits == 0) return c.error(GL_INVALID_OPERATION);
     c.flush_block();
-    c.session().accumulate_hidden(*c.draw_surface());
+    c.session().hidden_parts([&](HiddenParts& parts) { parts.before_accumulating(c.draw_target()); });
     c.draw(clear_box(c), needs_of_clear(), [&](wire::PackBuffer& buffer) { glapi::pack::Accum(buffer, op, value); });
 }
 
-void Flush(Context& c) { c.session().flush(&c, false); }
+void Flush(Context& c) { c.flush(false); }
 
 // With a double-buffered surface nobody can see before the swap whether the nodes have finished, so glFinish only
 // sends (116 of 146 screensaver hacks call it in every frame). What a single-buffered program has drawn is on show
 // when glFinish returns.
-void Finish(Context& c) {
-    const ClientSurface* surface = c.draw_surface();
-    c.session().flush(&c, surface && !surface->options.format.double_buffered);
-}
+void Finish(Context& c) { c.flush(c.draw_target() && c.draw_target().shows_at_once()); }
 
 }  // namespace wall::client::api

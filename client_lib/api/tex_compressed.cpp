@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cstring>
 
+#include "client_lib/context/ask_one.h"
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/texture_image.h"
-#include "client_lib/follow/ask_one.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/s3tc.h"
 #include "client_lib/objects/texture_formats.h"
@@ -206,8 +206,8 @@ void GetCompressedTexImage(Context& c, GLenum target, GLint number, void* pixels
     const auto texture = bound_texture(c, target);
     const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
     if (!level || !level->compressed) return c.error(GL_INVALID_OPERATION);
-    if (void* to = pack_target(c, pixels, level->pixels.size()))
-        std::memcpy(to, level->pixels.data(), level->pixels.size());
+    if (const PackTarget to = pack_target(c, pixels, level->pixels.size()))
+        std::memcpy(to.get(), level->pixels.data(), level->pixels.size());
 }
 
 // No format is for them.

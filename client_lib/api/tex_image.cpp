@@ -8,9 +8,9 @@
 
 #include "client_lib/context/limits.h"
 #include "client_lib/context/pixel_store.h"
+#include "client_lib/context/readback.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/texture_image.h"
-#include "client_lib/follow/readback.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/s3tc.h"
 #include "client_lib/objects/texture_formats.h"

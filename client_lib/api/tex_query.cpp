@@ -246,8 +246,8 @@ void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum 
         }
         tight = from_rgba(format, type, texels);  // luminance is red here, unlike in glReadPixels
     }
-    if (void* to = image_target(c, {size, format, type}, pixels))
-        glapi::pack_image(pack_store(c.state), size, format, type, tight, to);
+    if (const PackTarget to = image_target(c, {size, format, type}, pixels))
+        glapi::pack_image(pack_store(c.state), size, format, type, tight, to.get());
 }
 
 }  // namespace wall::client::api

@@ -28,7 +28,7 @@ ClientName default_id(ShareGroup& share, glapi::TextureTarget target) {
 
 void forget(Context& c, const std::shared_ptr<Texture>& texture) {
     const glapi::TextureTarget target = texture->info.id;
-    for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
+    for (unsigned unit = 0; unit < kTextureImageUnits; ++unit) {
         if (bound_id(c, unit, target) != texture->id) continue;
         ClientName id;
         {
@@ -44,7 +44,7 @@ void forget(Context& c, const std::shared_ptr<Texture>& texture) {
         std::lock_guard lock(c.share().mutex);
         c.share().by_id.erase(texture->id);
     }
-    c.session().delete_object(c, texture->id, glapi::pack::TexDelete);
+    c.session().delete_object(c.id, texture->id);
 }
 
 bool valid_wrap(const glapi::TextureTargetInfo& target, GLenum mode) {
@@ -205,12 +205,12 @@ void TexParameterfv(Context& c, GLenum target, GLenum pname, const GLfloat* para
 }
 
 void ActiveTexture(Context& c, GLenum unit) {
-    if (unit - GL_TEXTURE0 >= kTextureUnits) return c.error(GL_INVALID_ENUM);
+    if (unit - GL_TEXTURE0 >= kActiveTextures) return c.error(GL_INVALID_ENUM);
     c.set<glstate::el::active_texture>(0, unit);
 }
 
 void ClientActiveTexture(Context& c, GLenum unit) {
-    if (unit - GL_TEXTURE0 >= kTextureUnits) return c.error(GL_INVALID_ENUM);
+    if (unit - GL_TEXTURE0 >= kTextureCoords) return c.error(GL_INVALID_ENUM);
     c.set<glstate::el::client_active_texture>(0, unit);
 }
 

@@ -44,7 +44,7 @@ std::vector<std::uint32_t> as_booleans(const Given& given, std::size_t words) {
 }
 
 bool names_units(std::span<const std::uint32_t> words) {
-    return std::all_of(words.begin(), words.end(), [](std::uint32_t unit) { return unit < kTextureUnits; });
+    return std::all_of(words.begin(), words.end(), [](std::uint32_t unit) { return unit < kTextureImageUnits; });
 }
 
 /// The error to raise, or none. Geometry that is still packed is sent with the values it was drawn with.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Arrays of generic vertex attributes (OpenGL 2.1, 2.8) and what is asked about them.
 #include "client_lib/context/buffer_binding.h"
-#include "client_lib/context/share_group.h"
+#include "client_lib/context/object_name.h"
 
 namespace wall::client::api {
 namespace {

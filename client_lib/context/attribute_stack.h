@@ -7,13 +7,19 @@
 #include <memory>
 #include <vector>
 
-#include "client_lib/context/texture_binding.h"
+#include "client_lib/objects/texture.h"
 #include "common/glapi/gl_types.h"
 #include "gen/glstate/state.gen.h"
 
 namespace wall::client {
 
 inline constexpr std::size_t kAttributeStackLimit = 16;
+
+/// A texture's parameters, which glPushAttrib(GL_TEXTURE_BIT) saves of those that are bound.
+struct SavedTexture {
+    std::shared_ptr<Texture> texture;
+    TexParameters parameters;
+};
 
 struct SavedAttributes {
     GLbitfield mask = 0;

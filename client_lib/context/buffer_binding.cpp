@@ -6,20 +6,38 @@
 #include <utility>
 
 #include "client_lib/context/attribute_stack.h"
-#include "client_lib/context/share_group.h"
+#include "client_lib/context/forget_objects.h"
+#include "client_lib/context/vertex_inputs.h"
+#include "client_lib/objects/share_group.h"
 #include "common/glstate/diff.h"
 
 namespace wall::client {
 
-std::uint32_t* buffer_binding(Context& c, GLenum target) {
-    auto& local = c.state.local;
+namespace {
+
+/// Calls use.operator()<E>() with the binding's element; false: no such target.
+template <class Use>
+bool with_binding(GLenum target, Use&& use) {
+    namespace el = glstate::el;
     switch (target) {
-        case GL_ARRAY_BUFFER: return &local.array_buffer;
-        case GL_ELEMENT_ARRAY_BUFFER: return &local.element_array_buffer;
-        case GL_PIXEL_PACK_BUFFER: return &local.pixel_pack_buffer;
-        case GL_PIXEL_UNPACK_BUFFER: return &local.pixel_unpack_buffer;
-        default: return nullptr;
+        case GL_ARRAY_BUFFER: return use.template operator()<el::array_buffer>(), true;
+        case GL_ELEMENT_ARRAY_BUFFER: return use.template operator()<el::element_array_buffer>(), true;
+        case GL_PIXEL_PACK_BUFFER: return use.template operator()<el::pixel_pack_buffer>(), true;
+        case GL_PIXEL_UNPACK_BUFFER: return use.template operator()<el::pixel_unpack_buffer>(), true;
+        default: return false;
     }
+}
+
+}  // namespace
+
+std::optional<ClientName> bound_buffer_id(const Context& c, GLenum target) {
+    ClientName id;
+    const bool known = with_binding(target, [&]<class E>() { id = ClientName(E::ref(c.state)); });
+    return known ? std::optional(id) : std::nullopt;
+}
+
+void bind_buffer(Context& c, GLenum target, ClientName id) {
+    with_binding(target, [&]<class E>() { c.set<E>(0, id.value); });
 }
 
 Buffer* buffer_of(Context& c, ClientName id) {
@@ -32,8 +50,8 @@ namespace {
 bool names_buffer(const glstate::State& state, ClientName id) {
     const auto& local = state.local;
     bool named = false;
-    for (const std::uint32_t bound :
-         {local.array_buffer, local.element_array_buffer, local.pixel_pack_buffer, local.pixel_unpack_buffer})
+    for (const std::uint32_t bound : {local.array_buffer, state.vertex_arrays.element_array_buffer,
+                                      local.pixel_pack_buffer, local.pixel_unpack_buffer})
         named = named || bound == id.value;
     glstate::for_each_element([&]<class E>() {
         if constexpr (std::is_same_v<typename E::type, glstate::ClientArray>)
@@ -58,13 +76,39 @@ void let_go_of_deleted_buffers(Context& c) {
     BufferUse& use = *c.buffers;
     use.deletions = c.share().buffer_deletions.load(std::memory_order_acquire);
     use.holds_deleted = false;
-    std::lock_guard lock(c.share().mutex);
-    std::erase_if(use.by_id, [&](const auto& entry) {
-        if (!entry.second->deleted) return false;
-        const bool named = names_buffer(c, entry.first);
-        use.holds_deleted = use.holds_deleted || named;
-        return !named;
-    });
+    std::vector<std::shared_ptr<Buffer>> unnamed;
+    {
+        std::lock_guard lock(c.share().mutex);
+        for (const auto& [id, buffer] : use.by_id) {
+            if (!buffer->deleted) continue;
+            if (names_buffer(c, id)) use.holds_deleted = true;
+            else unnamed.push_back(buffer);
+        }
+    }
+    for (auto& buffer : unnamed) let_go_of_buffer(c, std::move(buffer));
+}
+
+void let_go_of_buffer(Context& c, std::shared_ptr<Buffer> buffer) {
+    const ClientName id = buffer->id;
+    forget_inputs(c, c.inputs->take_those_of(id));
+    {
+        std::lock_guard lock(c.share().mutex);
+        c.buffers->by_id.erase(id);
+        const bool others = buffer.use_count() > 2;  // the table by id, and this
+        if (!buffer->deleted || others) return;
+        c.share().by_id.erase(id);
+    }
+    c.forget_object(id);
+}
+
+void let_go_of_all_buffers(Context& c) {
+    auto named = std::exchange(c.buffers->by_id, {});
+    for (auto& [id, buffer] : named) let_go_of_buffer(c, std::move(buffer));
+}
+
+void before_writing(Context& c, const Buffer& buffer) {
+    c.buffers->transfer = {};
+    c.before_change(buffer.id);
 }
 
 BufferReading buffer_content(Context& c, ClientName id, std::uintptr_t offset) {
@@ -77,31 +121,51 @@ BufferReading buffer_content(Context& c, ClientName id, std::uintptr_t offset) {
 
 namespace {
 
-/// Null with an error if the bytes are not within the buffer, or the application has it mapped.
-std::byte* bytes_within(Context& c, ClientName id, const void* pointer, std::size_t bytes, bool to_write) {
-    Buffer* buffer = buffer_of(c, id);
-    const auto offset = reinterpret_cast<std::uintptr_t>(pointer);
-    c.buffers->transfer = {};
-    std::lock_guard lock(c.share().mutex);
-    if (!buffer || buffer->mapped || offset > buffer->size() || bytes > buffer->size() - offset) {
-        c.error(GL_INVALID_OPERATION);
-        return nullptr;
-    }
-    if (to_write) buffer->leave_to_readers();
-    c.buffers->transfer = buffer->read(offset);
-    return c.buffers->transfer.bytes().data();
+/// Whether a pixel command may use these bytes: they are in the buffer, and the application does not have it mapped.
+/// Else there is an error.
+bool may_use(Context& c, const Buffer* buffer, std::uintptr_t offset, std::size_t bytes) {
+    if (buffer && !buffer->mapped && offset <= buffer->size() && bytes <= buffer->size() - offset) return true;
+    c.error(GL_INVALID_OPERATION);
+    return false;
 }
 
 }  // namespace
 
 const void* unpack_source(Context& c, const void* pointer, std::size_t bytes) {
     const ClientName id(c.state.local.pixel_unpack_buffer);
-    return !id ? pointer : bytes_within(c, id, pointer, bytes, false);
+    if (!id) return pointer;
+    const Buffer* buffer = buffer_of(c, id);
+    const auto offset = reinterpret_cast<std::uintptr_t>(pointer);
+    c.buffers->transfer = {};
+    std::lock_guard lock(c.share().mutex);
+    if (!may_use(c, buffer, offset, bytes)) return nullptr;
+    c.buffers->transfer = buffer->read(offset);
+    return c.buffers->transfer.bytes().data();
 }
 
-void* pack_target(Context& c, void* pointer, std::size_t bytes) {
+PackTarget pack_target(Context& c, void* pointer, std::size_t bytes) {
     const ClientName id(c.state.local.pixel_pack_buffer);
-    return !id ? pointer : bytes_within(c, id, pointer, bytes, true);
+    if (!id) return PackTarget(pointer);
+    const auto found = c.buffers->by_id.find(id);
+    const auto buffer = found == c.buffers->by_id.end() ? nullptr : found->second;
+    const auto offset = reinterpret_cast<std::uintptr_t>(pointer);
+    if (buffer) before_writing(c, *buffer);
+    std::lock_guard lock(c.share().mutex);
+    if (!may_use(c, buffer.get(), offset, bytes)) return PackTarget(nullptr);
+    return PackTarget(c.share(), buffer, {offset, offset + bytes});
+}
+
+PackTarget::PackTarget(ShareGroup& share, std::shared_ptr<Buffer> buffer, ByteRange range)
+    : share_(&share), buffer_(std::move(buffer)), range_(range) {
+    buffer_->begin_writing();
+    reading_ = buffer_->read(range.begin);
+    at_ = reading_.bytes().data();
+}
+
+PackTarget::~PackTarget() {
+    if (!buffer_) return;
+    std::lock_guard lock(share_->mutex);
+    buffer_->wrote(range_);
 }
 
 }  // namespace wall::client

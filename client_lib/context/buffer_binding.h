@@ -5,28 +5,30 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
-#include <unordered_map>
 
+#include "client_lib/context/buffer_use.h"
 #include "client_lib/context/context.h"
-#include "client_lib/objects/buffer.h"
 
 namespace wall::client {
 
-/// The buffers that a context's bindings and arrays may name, by id. Used by the context's thread.
-struct BufferUse {
-    std::unordered_map<ClientName, std::shared_ptr<Buffer>> by_id;
-    std::uint64_t deletions = 0;  ///< ShareGroup::buffer_deletions when deleted ones were last let go
-    bool holds_deleted = false;   ///< some were still named then
-    BufferReading transfer;       ///< what the latest pixel command reads or writes
-};
-
-/// The context's binding of a target: a buffer's id; null: no such target.
-std::uint32_t* buffer_binding(Context& c, GLenum target);
+/// What is bound to a target: a buffer's id, 0: none. Nothing: no such target.
+std::optional<ClientName> bound_buffer_id(const Context& c, GLenum target);
+/// `target` is one. 0 unbinds.
+void bind_buffer(Context& c, GLenum target, ClientName id);
 
 /// The buffer of an id; null: none, or this context deleted it.
 Buffer* buffer_of(Context& c, ClientName id);
 
+/// This context names the buffer, which is deleted, no more. With the last context's use of it the nodes are told.
+/// No mutex is held.
+void let_go_of_buffer(Context& c, std::shared_ptr<Buffer> buffer);
+/// Before a context is gone.
+void let_go_of_all_buffers(Context& c);
+/// Before a buffer's content changes: what was drawn from it and is kept is sent, and the latest pixel command does
+/// not read it any more. No mutex is held.
+void before_writing(Context& c, const Buffer& buffer);
 /// Lets go of buffers that others deleted and that this context does not name any more.
 void let_go_of_deleted_buffers(Context& c);
 /// Whether others deleted buffers since that was last done.
@@ -39,7 +41,28 @@ BufferReading buffer_content(Context& c, ClientName buffer, std::uintptr_t offse
 /// The source of an image command (GL_PIXEL_UNPACK_BUFFER) of `bytes` bytes; null with an error if it reaches over the
 /// buffer's end. Without a buffer, `pointer` itself. It stays until the next of these two.
 const void* unpack_source(Context& c, const void* pointer, std::size_t bytes);
-/// The same for a command that writes (GL_PIXEL_PACK_BUFFER).
-void* pack_target(Context& c, void* pointer, std::size_t bytes);
+/// Where a command that writes pixels puts them: memory of the program or of a buffer. That the buffer has changed is
+/// noted when this goes.
+class PackTarget {
+public:
+    explicit PackTarget(void* memory) : at_(memory) {}
+    /// `range` lies within the buffer, whose share group's mutex is held.
+    PackTarget(ShareGroup& share, std::shared_ptr<Buffer> buffer, ByteRange range);
+    ~PackTarget();
+    PackTarget(const PackTarget&) = delete;
+    /// Null: nowhere.
+    void* get() const { return at_; }
+    explicit operator bool() const { return at_ != nullptr; }
+
+private:
+    void* at_ = nullptr;
+    ShareGroup* share_ = nullptr;
+    std::shared_ptr<Buffer> buffer_;
+    BufferReading reading_;  ///< the memory stays
+    ByteRange range_;
+};
+
+/// The same as unpack_source() for a command that writes (GL_PIXEL_PACK_BUFFER).
+PackTarget pack_target(Context& c, void* pointer, std::size_t bytes);
 
 }  // namespace wall::client

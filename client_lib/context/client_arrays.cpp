@@ -91,18 +91,6 @@ bool same_bytes(const std::byte* at, std::size_t count) {
     return same;
 }
 
-std::size_t bytes_of(GLenum type) {
-    switch (type) {
-        case GL_BYTE:
-        case GL_UNSIGNED_BYTE: return 1;
-        case GL_SHORT:
-        case GL_UNSIGNED_SHORT:
-        case GL_HALF_FLOAT: return 2;
-        case GL_DOUBLE: return 8;
-        default: return 4;
-    }
-}
-
 const std::byte* place(const ArraySource& source, GLuint element) {
     static constexpr std::byte kNothing[32]{};
     return element < source.count ? source.base + source.stride * element : kNothing;
@@ -321,8 +309,20 @@ void walk(Context& c, const ElementRange& elements, Each&& each, Restart&& resta
 
 }  // namespace
 
+ArraySource array_source(const glstate::InputArray& array, std::span<const std::byte> content) {
+    const std::size_t bytes = array.element_bytes();
+    return {.attribute = static_cast<Attribute>(array.place),
+            .by_command = false,
+            .base = content.data(),
+            .stride = array.step(),
+            .count = content.size() < bytes ? 0 : (content.size() - bytes) / array.step() + 1,
+            .size = array.size,
+            .type = array.type,
+            .load = loader_of(array.type, array.normalized != 0 ? Conversion::fetch : Conversion::none)};
+}
+
 ArraySet::ArraySet(Context& c, bool by_command) : by_command_(by_command) {
-    const auto& l = c.state.local;
+    const auto& l = c.state.vertex_arrays;
     glstate::for_each_attribute_array(c.state, [&](Attribute attribute, const glstate::ClientArray& array) {
         if (attribute != Attribute::vertex_attrib) add(c, attribute, array);  // number 0 is the position
     });
@@ -331,7 +331,7 @@ ArraySet::ArraySet(Context& c, bool by_command) : by_command_(by_command) {
 
 void ArraySet::add(Context& c, Attribute attribute, const glstate::ClientArray& array) {
     if (!array.enabled) return;
-    const std::size_t bytes = bytes_of(array.type) * static_cast<std::size_t>(array.size);
+    const std::size_t bytes = glstate::component_bytes(array.type) * static_cast<std::size_t>(array.size);
     const std::size_t stride = array.stride ? static_cast<std::size_t>(array.stride) : bytes;
     const auto* base = reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(array.pointer));
     std::size_t count = ArraySource::kNoLimit;

@@ -10,6 +10,7 @@
 
 #include "client_lib/context/context.h"
 #include "client_lib/objects/buffer.h"
+#include "common/glstate/vertex_input.h"
 
 namespace wall::client {
 
@@ -29,6 +30,9 @@ struct ArraySource {
     static constexpr std::size_t kNoLimit = ~std::size_t{0};
 };
 inline constexpr std::size_t kMaxArrays = kAttributes + 1;
+
+/// The array of an attribute in `content`, which are the bytes of its buffer from its first element on, and stay.
+ArraySource array_source(const glstate::InputArray& array, std::span<const std::byte> content);
 
 /// The enabled arrays in the order in which an element's attributes are sent: the vertex last.
 class ArraySet {

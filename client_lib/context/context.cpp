@@ -4,16 +4,14 @@
 #include <algorithm>
 
 #include "client_lib/context/attribute_stack.h"
-#include "client_lib/context/buffer_binding.h"
-#include "client_lib/context/lists.h"
-#include "client_lib/context/material.h"
+#include "client_lib/context/buffer_use.h"
+#include "client_lib/context/list_state.h"
 #include "client_lib/context/occlusion.h"
-#include "client_lib/context/program_use.h"
-#include "client_lib/context/share_group.h"
-#include "client_lib/follow/block_sender.h"
-#include "client_lib/geometry/select.h"
+#include "client_lib/context/select.h"
+#include "client_lib/context/vertex_inputs.h"
+#include "client_lib/geometry/fold.h"
 #include "client_lib/objects/maps.h"
-#include "client_lib/process/guard.h"
+#include "client_lib/objects/share_group.h"
 #include "client_lib/process/log.h"
 
 namespace wall::client {
@@ -21,7 +19,7 @@ namespace wall::client {
 constinit thread_local Context* tls_context = nullptr;
 constinit thread_local Packer* tls_packer = nullptr;
 
-Context::Context(std::shared_ptr<ShareGroup> share, const ContextOptions&)
+Context::Context(std::shared_ptr<ShareGroup> share)
     : id(next_context_id()),
       table(&tables::immediate),
       lists(std::make_unique<ListState>()),
@@ -29,20 +27,13 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextOptions&)
       select(std::make_unique<SelectState>()),
       maps(std::make_unique<ContextMaps>()),
       buffers(std::make_unique<BufferUse>()),
+      inputs(std::make_unique<VertexInputs>()),
       occlusion(std::make_unique<OcclusionState>()),
       share_(std::move(share)) {
     for (auto& stack : texture_stacks) stack.limit = 10;
 }
 
-Context::~Context() {
-    if (!session_) return;
-    try {
-        if (program) use_program(*this, nullptr);
-        session_->destroy_context(id);
-    } catch (...) {
-        caught_exception("the end of a context");
-    }
-}
+Context::~Context() = default;
 
 void Context::bind_surfaces(std::shared_ptr<ClientSurface> draw, std::shared_ptr<ClientSurface> read) {
     draw_ = std::move(draw);
@@ -62,7 +53,7 @@ void Context::first_use() {
     glstate::assign<glstate::el::read_buffer>(state, 0, buffer);
 }
 
-const Projection& Context::projection() {
+const glstate::Projection& Context::projection() {
     using glstate::Category;
     const std::array<std::uint64_t, 3> ids = {state.ids[static_cast<std::size_t>(Category::matrix)],
                                               state.ids[static_cast<std::size_t>(Category::window)],
@@ -74,7 +65,11 @@ const Projection& Context::projection() {
     return projection_;
 }
 
-const SurfaceLayout& Context::draw_layout() const { return select->layout ? *select->layout : draw_->layout; }
+void Context::forget_object(ClientName gone) {
+    if (!session_) return;
+    before_change(gone);
+    session_->delete_object(id, gone);
+}
 
 void Context::begin_primitive(GLenum mode) {
     packer.begin(mode);
@@ -105,38 +100,19 @@ void Context::submit_block() {
     if (packer.inside())
         return;  // only commands that are legal inside come here then, and they change nothing that is drawn with
     try {
-        if (packer.has_geometry()) session_->submit_block(*this);
-        else fold_attributes();
+        if (packer.has_geometry()) session_->submit_block(draw_source(), packer, projection());
+        else fold_block(packer, state);
     } catch (...) {  // the geometry is lost, what it set is not
-        fold_attributes();
-        forget_block();
+        fold_block(packer, state);
+        packer.reset();
         throw;
     }
-    forget_block();
-}
-
-void Context::forget_block() {
     packer.reset();
-    pending_materials.clear();
 }
 
 void Context::lose() {
     lost_ = true;
-    forget_block();
-}
-
-// Attributes go from the packed block to `state` (T3.2).
-void Context::fold_attributes() {
-    bool changed = false;
-    for (std::size_t i = 0; i < kAttributes; ++i) {
-        if (!packer.last[i]) continue;
-        glstate::apply_attribute(state, packer.last_op[i], packer.last[i]);
-        changed = true;
-    }
-    if (changed) state.ids[static_cast<std::size_t>(glstate::Category::current)] = glstate::next_value_id();
-    folded_material_ = !pending_materials.empty();
-    for (const PendingMaterial& material : pending_materials)
-        assign_material(state, material.face, material.pname, material.value);
+    packer.reset();
 }
 
 }  // namespace wall::client

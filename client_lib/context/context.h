@@ -5,33 +5,36 @@
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include "client_lib/context/core.h"
 #include "client_lib/context/current.h"
 #include "client_lib/context/matrix.h"
+#include "client_lib/context/texture_units.h"
+#include "client_lib/follow/draw_source.h"
 #include "client_lib/follow/session.h"
 #include "client_lib/geometry/packer.h"
-#include "client_lib/geometry/router.h"
 #include "common/glapi/recorder.h"
 #include "common/glstate/diff.h"
+#include "common/glstate/projection.h"
 #include "common/wire/limits.h"
 #include "gen/client_lib/api.gen.h"
 
 namespace wall::client {
 
-struct ShareGroup;       // share_group.h: objects
-struct ListState;        // lists.h: display list being compiled, call nesting
+struct ShareGroup;       // objects/share_group.h: objects
+struct ListState;        // list_state.h: display list being compiled, call nesting
 struct AttributeStacks;  // attribute_stack.h
 struct SelectState;      // select.h: feedback and selection
 struct Program;          // objects/program.h
 struct OcclusionState;   // occlusion.h
-struct ContextMaps;      // maps.h: evaluator and pixel maps
-struct BufferUse;        // buffer_binding.h
+struct ContextMaps;      // objects/maps.h: evaluator and pixel maps
+struct BufferUse;        // buffer_use.h
+class VertexInputs;      // vertex_inputs.h
 
-inline constexpr unsigned kTextureUnits = glstate::el::texture_binding_2d::count;
 inline constexpr unsigned kVertexAttributes = glstate::el::vertex_attrib::count;
 /// A block larger than this is sent at the next glEnd, so that nodes draw while the program goes on.
 inline constexpr std::size_t kBlockBytes = 256 << 10;
@@ -44,9 +47,9 @@ struct MatrixStack {
     unsigned limit = 32;
 };
 
-class Context {
+class Context final : private UsedObjects {
 public:
-    Context(std::shared_ptr<ShareGroup> share, const ContextOptions& options);
+    explicit Context(std::shared_ptr<ShareGroup> share);
     ~Context();
     Context(const Context&) = delete;
 
@@ -63,7 +66,7 @@ public:
     template <class E>
     void set(unsigned i, const typename E::type& value) {
         if (glstate::same(E::ref(state, i), value)) return;
-        if constexpr (E::category != glstate::Category::local) flush_block();
+        if constexpr (E::sent) flush_block();
         glstate::assign<E>(state, i, value);
     }
 
@@ -77,6 +80,11 @@ public:
     void flush_block() {
         if (!packer.empty()) submit_block();
     }
+    /// Everything goes out; `wait`: and the nodes have executed it.
+    void flush(bool wait) {
+        flush_block();
+        session_->flush(draw_target(), wait);
+    }
     /// Draws with a command other than vertices. `box`: what it touches, in window pixels; nothing: unknown.
     template <class Pack>
     void draw(const std::optional<PixelRect>& box, Pack&& pack) {
@@ -86,39 +94,40 @@ public:
     template <class Pack>
     void draw(const std::optional<PixelRect>& box, const Needs& needs, Pack&& pack) {
         flush_block();
-        session_->draw(*this, box, needs, std::forward<Pack>(pack));
+        session_->draw(draw_source(), box, needs, std::forward<Pack>(pack));
     }
 
     ClientSession& session() { return *session_; }
+    bool attached() const { return session_ != nullptr; }
     ShareGroup& share() const { return *share_; }
     const std::shared_ptr<ShareGroup>& share_pointer() const { return share_; }
-    ClientSurface* draw_surface() const { return draw_.get(); }
-    ClientSurface* read_surface() const { return read_.get(); }
+    /// What its commands draw to now, and what they read from.
+    DrawTarget draw_target() const;
+    DrawTarget read_target() const;
+    /// What the session needs to send one of its commands; flush_block() comes first.
+    DrawSource draw_source();
     unsigned active_texture() const { return state.local.active_texture - GL_TEXTURE0; }
 
     // ---- parts by subject, each with its own header ----
     MatrixStack modelview_stack, projection_stack;
-    std::array<MatrixStack, kTextureUnits> texture_stacks;
+    std::array<MatrixStack, kTextureCoords> texture_stacks;
     std::unique_ptr<ListState> lists;
     std::unique_ptr<AttributeStacks> attributes;
     std::unique_ptr<SelectState> select;
     glapi::ListRecorder& list();  ///< of the list being compiled
     std::unique_ptr<ContextMaps> maps;
     std::unique_ptr<BufferUse> buffers;
+    std::unique_ptr<VertexInputs> inputs;
     std::shared_ptr<Program> program;  ///< drawn with; null: fixed function
     std::unique_ptr<OcclusionState> occlusion;
 
-    /// glMaterial calls inside the open Begin/End, applied to `state` when the block is sent.
-    struct PendingMaterial {
-        GLenum face, pname;
-        std::array<float, 4> value;
-    };
-    std::vector<PendingMaterial> pending_materials;
-
     /// Before an object that was drawn with changes or goes: by its id.
     void before_change(ClientName changing_id) {
-        if (session_) session_->before_object_changes(changing_id);
+        if (session_) session_->hidden_parts([&](HiddenParts& parts) { parts.before_object_changes(changing_id); });
     }
+
+    /// An object of the nodes that nothing names any more.
+    void forget_object(ClientName gone);
 
     /// glBegin and glEnd after their checks.
     void begin_primitive(GLenum mode);
@@ -127,16 +136,10 @@ public:
     /// A driver looks at the modelview matrix when it draws.
     void determine_modelview_form();
 
-    /// Moves the packed block's last attributes and materials into `state` (BlockSender).
-    void fold_attributes();
-    bool folded_material() const { return folded_material_; }
-    /// Where the draw surface lies: its tiles, or one offscreen layer while selecting or in feedback.
-    const SurfaceLayout& draw_layout() const;
-
-    /// Before its first use; the connection is made no earlier.
+    /// Before its first use; the connection is made no earlier. Whoever destroys it afterwards tells the session.
     void attach(std::shared_ptr<ClientSession> session) { session_ = std::move(session); }
     void bind_surfaces(std::shared_ptr<ClientSurface> draw, std::shared_ptr<ClientSurface> read);
-    const Projection& projection();
+    const glstate::Projection& projection();
 
     std::atomic<bool> in_use{false};  ///< current in some thread
 
@@ -145,8 +148,8 @@ public:
     bool lost() const { return lost_; }
 
 private:
+    void for_each_used(const std::function<void(const Object&)>& use) override;
     void submit_block();
-    void forget_block();
     void first_use();
 
     std::shared_ptr<ClientSession> session_;
@@ -155,112 +158,8 @@ private:
     GLenum error_ = GL_NO_ERROR;
     bool used_ = false;
     bool lost_ = false;
-    bool folded_material_ = false;
-    Projection projection_;
+    glstate::Projection projection_;
     std::array<std::uint64_t, 3> projection_ids_{};
 };
-
-template <class Pack>
-void ClientSession::draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Pack&& pack) {
-    draw(
-        context, box, needs, [](Node&, wire::PackBuffer&) {}, std::forward<Pack>(pack), [](Node&) {});
-}
-
-template <class Before, class Pack, class After>
-void ClientSession::draw(Context& context, const std::optional<PixelRect>& box, const Needs& needs, Before&& before,
-                         Pack&& pack, After&& after) {
-    packing([&] {
-        if (!context.draw_surface()) return;
-        const auto pack_block = [&](wire::PackBuffer& buffer, std::uint64_t slots) {
-            const std::size_t operands = buffer.operand_bytes();
-            glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32), 0,
-                               0);
-            const auto start = buffer.mark();
-            pack(buffer);
-            const auto end = buffer.mark();
-            const std::uint32_t counts[2] = {static_cast<std::uint32_t>(end.commands - start.commands),
-                                             static_cast<std::uint32_t>(end.operand_bytes - start.operand_bytes)};
-            std::memcpy(buffer.operand_at(operands + 8), counts, sizeof counts);
-        };
-        if (Node* kept = context.draw_surface()->hidden ? begin_keeping(context, box) : nullptr) {
-            Node& node = node_of(kept->index);
-            before(node, batch(node, context.id));
-            pack_block(prepare_kept(context, needs), std::uint64_t{1} << wire::kOffscreenSlot);
-            after(*kept);
-        }
-        const SurfaceLayout& layout = context.draw_layout();
-        for (const auto& [index, slots] : targets_of(layout, box)) {
-            Node& node = node_of(index);
-            if (!node.takes(context.draw_surface()->id)) continue;
-            wire::PackBuffer& buffer = prepare(node, context, needs);
-            before(node, buffer);
-            const std::size_t bytes = buffer.bytes();
-            pack_block(buffer, slots);
-            count_geometry(node, buffer.bytes() - bytes);
-            after(node);
-        }
-    });
-}
-
-template <class Pack>
-void ClientSession::on_every_node(Context& context, Pack&& pack) {
-    packing([&] {
-        for (auto& node : nodes_)
-            if (node->alive()) pack(batch(*node, context.id), *node);
-    });
-}
-
-template <class Note, class Pack>
-void ClientSession::synchronize(Context& context, bool at_once, Note&& note, Pack&& pack) {
-    context.flush_block();
-    packing([&] {
-        if (const GLenum error = note(sync_); error != GL_NO_ERROR) return context.error(error);
-        if (!group_) return;
-        for (auto& node : nodes_) {
-            if (!node->alive()) continue;
-            pack(batch(*node, context.id));
-            if (at_once) send(*node);
-        }
-    });
-}
-
-template <class Pack>
-std::optional<std::vector<std::byte>> ClientSession::ask(Context& context, Node& node, const char* function,
-                                                         Pack&& pack) {
-    context.flush_block();
-    std::shared_ptr<NodeStream> stream;  // the node may get another one meanwhile
-    const RequestId request = packing([&] {
-        if (!node.answers() || !context.draw_surface()) return RequestId();
-        const RequestId next = next_request();
-        pack(prepare(node, context), next);
-        count_round_trip(function);
-        send(node);
-        stream = node.stream;
-        return next;
-    });
-    if (!request) return std::nullopt;
-    return stream->wait_reply(request, reply_timeout_ms());
-}
-
-template <class Pack>
-std::vector<std::optional<std::vector<std::byte>>> ClientSession::ask_all(Context& context,
-                                                                          const std::vector<Target>& targets,
-                                                                          const char* function, Pack&& pack) {
-    context.flush_block();
-    std::vector<std::pair<std::shared_ptr<NodeStream>, RequestId>> asked;  // null: cannot be asked
-    packing([&] {
-        for (const Target& target : targets) {
-            Node& node = node_of(target);
-            asked.emplace_back(node.answers() && context.draw_surface() ? node.stream : nullptr, next_request());
-            if (asked.back().first) pack(prepare(node, context), asked.back().second, asked.size() - 1);
-        }
-        for (const Target& target : targets) send(node_of(target));
-        if (!targets.empty()) count_round_trip(function);
-    });
-    std::vector<std::optional<std::vector<std::byte>>> answers;
-    for (const auto& [stream, request] : asked)
-        answers.push_back(stream ? stream->wait_reply(request, reply_timeout_ms()) : std::nullopt);
-    return answers;
-}
 
 }  // namespace wall::client

@@ -5,8 +5,12 @@
 #include <cstring>
 #include <utility>
 
+#include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/context.h"
-#include "client_lib/context/share_group.h"
+#include "client_lib/context/forget_objects.h"
+#include "client_lib/context/program_use.h"
+#include "client_lib/context/vertex_inputs.h"
+#include "client_lib/objects/share_group.h"
 #include "client_lib/process/guard.h"
 #include "client_lib/process/log.h"
 #include "client_lib/process/process.h"
@@ -36,7 +40,7 @@ void release() {
     const std::unique_ptr<Current> last(std::exchange(current, nullptr));
     if (last) {
         last->context->flush_block();
-        last->context->session().flush(nullptr, false);
+        last->context->session().flush(DrawTarget(), false);
         last->context->in_use = false;
     }
     go_dark();
@@ -67,10 +71,30 @@ std::shared_ptr<ClientSurface> create_surface(SurfaceOptions options) {
     });
 }
 
+namespace {
+
+/// Lets go of what the context holds beside itself, on the nodes and in its share group.
+void end_context(Context* context) {
+    try {
+        forget_inputs(*context, context->inputs->take_all());
+        let_go_of_all_buffers(*context);
+        if (context->attached()) {
+            if (context->program) use_program(*context, nullptr);
+            context->session().destroy_context(context->id);
+        }
+    } catch (...) {
+        caught_exception("the end of a context");
+    }
+    delete context;
+}
+
+}  // namespace
+
+// Versions up to 2.1 know no flags, so there is nothing else in the options that a context has to remember.
 std::shared_ptr<Context> create_context(const ContextOptions& options) {
     if (options.core_profile || options.major > 2) return nullptr;
-    return std::make_shared<Context>(options.share ? options.share->share_pointer() : std::make_shared<ShareGroup>(),
-                                     options);
+    auto share = options.share ? options.share->share_pointer() : std::make_shared<ShareGroup>();
+    return std::shared_ptr<Context>(new Context(std::move(share)), end_context);
 }
 
 bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurface> draw,
@@ -116,7 +140,8 @@ Context* current_context() { return tls_context; }
 void swap_buffers(ClientSurface& surface) {
     const auto session = ClientSession::get_if_open();
     if (!session || !surface.opened) return;
-    session->swap(tls_context, surface);
+    if (tls_context) tls_context->flush_block();
+    session->swap(tls_context ? tls_context->id : ContextId(), surface);
     session->begin_frame(surface);
 }
 
@@ -127,7 +152,7 @@ Extent surface_size(const ClientSurface& surface) {
 
 void flush_current(bool wait) {
     if (!tls_context) return;
-    tls_context->session().flush(tls_context, wait);
+    tls_context->flush(wait);
 }
 
 ProcAddress gl_proc_address(const char* name) {

@@ -4,40 +4,14 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <optional>
-#include <string>
 
-#include "client_lib/link/window_messages.h"
+#include "client_lib/follow/surface_options.h"
 
 namespace wall::client {
 
 class Context;
 class ClientSurface;
-
-struct Extent {
-    std::uint32_t width = 0, height = 0;  // pixels
-};
-
-/// What a framebuffer configuration promises (one row of the config matrix).
-struct SurfaceFormat {
-    bool double_buffered = true;
-    std::uint8_t alpha_bits = 0;    // red, green, blue are 8 each
-    std::uint8_t depth_bits = 24;   // 0 or 24
-    std::uint8_t stencil_bits = 8;  // 0 or 8
-    std::uint8_t accum_bits = 16;   // per channel, 0 or 16
-    std::uint8_t samples = 0;
-};
-
-struct SurfaceOptions {
-    SurfaceFormat format;
-    bool visible = true;                                ///< a window; false: pbuffer, pixmap (never placed on the wall)
-    Extent size;                                        ///< at creation
-    std::function<std::optional<Extent>()> query_size;  ///< window's size now; empty function: it never changes
-    std::string title;
-    WindowMessages messages;  ///< of a window; empty functions: it cannot be spoken to
-};
 
 struct ContextOptions {
     Context* share = nullptr;  ///< same share group as this one

@@ -63,7 +63,7 @@ std::uint64_t attribute_bit(const Recorded& r) {
     const auto index = sets.indexed ? glapi::RecordReader(r.payload).get<std::uint32_t>() % sets.count : 0;
     return std::uint64_t{1} << (sets.place + index);
 }
-static_assert(GL_TEXTURE0 % kTextureUnits == 0);  // so that a texture unit's word gives its number
+static_assert(GL_TEXTURE0 % kTextureCoords == 0);  // so that a texture unit's word gives its number
 
 /// Follows the groups of a recording, and which attributes the driver would have other values for than the context.
 class GroupScan {
@@ -168,7 +168,7 @@ public:
     void add(const BlockWalk& walk, std::uint32_t operand) {
         if (walk.sets_attribute()) last_[place_of(walk.attribute())] = ListRun::Effect{walk.op(), operand};
         if (walk.op() != Op::Material) return;
-        Context::PendingMaterial material{};
+        MaterialChange material{};
         std::memcpy(&material.face, walk.operand(), 4);
         std::memcpy(&material.pname, walk.operand() + 4, 4);
         std::memcpy(material.value.data(), walk.operand() + 8, sizeof material.value);
@@ -189,7 +189,7 @@ public:
 
 private:
     std::array<std::optional<ListRun::Effect>, kAttributes> last_;
-    std::vector<Context::PendingMaterial> materials_;
+    std::vector<MaterialChange> materials_;
 };
 
 /// What calling the run leaves behind, in a driver and in the context.
@@ -244,7 +244,6 @@ public:
         std::unique_ptr<ListRun> run;
         if (scratch_.has_geometry()) run = take();
         scratch_.reset();
-        materials_.clear();
         context_.lists->array_draws.clear();
         return run;
     }
@@ -264,7 +263,6 @@ private:
     /// What the list is drawn with, a program or none, is known when it is called.
     void swap() {
         std::swap(context_.packer, scratch_);
-        std::swap(context_.pending_materials, materials_);
         std::swap(context_.program, program_);
     }
     std::unique_ptr<ListRun> take() {
@@ -280,7 +278,6 @@ private:
 
     Context& context_;
     Packer scratch_;
-    std::vector<Context::PendingMaterial> materials_;
     std::shared_ptr<Program> program_;
 };
 

@@ -8,10 +8,10 @@
 #include <mutex>
 #include <utility>
 
-#include "client_lib/context/material.h"
 #include "client_lib/context/program_use.h"
 #include "client_lib/follow/object_sender.h"
 #include "client_lib/geometry/block_walk.h"
+#include "client_lib/geometry/material.h"
 #include "client_lib/process/options.h"
 #include "common/glapi/content_hash.h"
 #include "common/glstate/diff.h"
@@ -65,10 +65,10 @@ EncodedRun encoded(const wire::PackBuffer& content) {
             std::move(bytes)};
 }
 
-void define_once(ClientSession& session, Node& node, wire::PackBuffer& buffer, const ListRun& run) {
-    ObjectSender sender(session, node, buffer);
+void define_once(Nodes& nodes, Node& node, wire::PackBuffer& buffer, const ListRun& run) {
+    ObjectSender sender(nodes, node, buffer);
     sender.send(run);
-    session.count_objects(node, sender.bytes());
+    count(node, NodeCounter::object_bytes, sender.bytes());
 }
 
 void apply_effects(glstate::State& state, const ListRun& run, const ListRun::Effects& effects) {
@@ -103,15 +103,15 @@ Needs needs_of_run(const Context& c, const ListRun& run) {
 void call_run(Context& c, const ListRun& run) {
     c.flush_block();
     c.determine_modelview_form();
-    if (!c.draw_surface() || !may_draw(c)) return apply_effects(c.state, run, run.in_context);
+    if (!c.draw_target() || !may_draw(c)) return apply_effects(c.state, run, run.in_context);
     forget_dead_runs(c);
     // A program's shader puts the vertices anywhere.
     const bool bounded = !options().broadcast && !c.program;
     const auto box = bounded ? project(c.projection(), run.box) : std::nullopt;
     std::vector<Node*> reached;
     c.session().draw(
-        c, box, needs_of_run(c, run),
-        [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session(), node, buffer, run); },
+        c.draw_source(), box, needs_of_run(c, run),
+        [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session().nodes(), node, buffer, run); },
         [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
         [&](Node& node) {
             node.object_stamps[run.id] = run.latest();  // kept commands call it, too
@@ -217,7 +217,7 @@ void forget_dead_runs(Context& c) {
     if (dead.empty()) return;
     for (const ClientName id : dead) {
         c.before_change(id);
-        c.session().delete_object(c, id, glapi::pack::RunDelete);
+        c.session().delete_object(c.id, id);
     }
 }
 

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "client_lib/context/context.h"
+#include "client_lib/context/list_state.h"
 #include "client_lib/objects/object.h"
 #include "common/geom/box.h"
-#include "common/glapi/recorder.h"
 #include "common/wire/pack_buffer.h"
 
 namespace wall::client {
@@ -43,7 +43,7 @@ struct ListRun : Object {
     /// What calling it leaves behind.
     struct Effects {
         std::vector<Effect> attributes;
-        std::vector<Context::PendingMaterial> materials;  ///< in order
+        std::vector<MaterialChange> materials;  ///< in order
     };
     Effects in_driver;                     ///< the driver of a node that ran it holds these
     Effects in_context;                    ///< the program may see these (list_compile.cpp has the difference)
@@ -62,15 +62,6 @@ struct ListItem {
 
 struct DisplayList {
     std::vector<ListItem> items;
-};
-
-struct ListState {
-    GLuint name = 0;  ///< of the list being compiled; 0: none
-    GLenum mode = 0;  ///< GL_COMPILE, GL_COMPILE_AND_EXECUTE; 0: none
-    glapi::ListRecorder recorder;
-    unsigned depth = 0;                    ///< of calls being executed
-    bool packing = false;                  ///< a run is being packed: materials go into the packer
-    std::vector<std::size_t> array_draws;  ///< of the run being packed
 };
 
 /// Takes a recording apart. Leaves the context as it was.

@@ -5,8 +5,7 @@
 
 #include <memory>
 
-#include "client_lib/context/context.h"
-#include "client_lib/context/share_group.h"
+#include "client_lib/objects/share_group.h"
 
 namespace wall::client {
 

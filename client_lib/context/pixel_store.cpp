@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/context/pixel_store.h"
 
-#include "client_lib/context/buffer_binding.h"
-
 namespace wall::client {
 
 glapi::PixelStore unpack_store(const glstate::State& state) {
@@ -22,8 +20,8 @@ const void* image_source(Context& c, const MemoryImage& image, const void* pixel
     return unpack_source(c, pixels, glapi::memory_bytes(unpack_store(c.state), image.size, image.format, image.type));
 }
 
-void* image_target(Context& c, const MemoryImage& image, void* pixels) {
-    if (!c.state.local.pixel_pack_buffer) return pixels;
+PackTarget image_target(Context& c, const MemoryImage& image, void* pixels) {
+    if (!c.state.local.pixel_pack_buffer) return PackTarget(pixels);
     return pack_target(c, pixels, glapi::memory_bytes(pack_store(c.state), image.size, image.format, image.type));
 }
 

@@ -2,6 +2,7 @@
 // glPixelStore's values of a context as common/glapi/image.h takes them, and the memory they apply to.
 #pragma once
 
+#include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/context.h"
 #include "common/glapi/image.h"
 
@@ -18,6 +19,6 @@ struct MemoryImage {
 /// Where the pixels are that an image command reads or writes; null if there are none, or with an error if they reach
 /// over the buffer's end.
 const void* image_source(Context& c, const MemoryImage& image, const void* pixels);
-void* image_target(Context& c, const MemoryImage& image, void* pixels);
+PackTarget image_target(Context& c, const MemoryImage& image, void* pixels);
 
 }  // namespace wall::client

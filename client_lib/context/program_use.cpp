@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "client_lib/follow/ask_one.h"
+#include "client_lib/context/ask_one.h"
 #include "client_lib/process/log.h"
 
 namespace wall::client {
@@ -91,7 +91,7 @@ void destroy(Context& c, const std::shared_ptr<GlslObject>& object) {
         shaders = std::exchange(static_cast<Program&>(*object).shaders, {});
     }
     for (const auto& shader : shaders) drop_user(c, shader);
-    c.session().delete_object(c, object->id, glapi::pack::ProgramDelete);
+    c.session().delete_object(c.id, object->id);
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "client_lib/context/context.h"
-#include "client_lib/context/share_group.h"
 #include "client_lib/objects/program.h"
+#include "client_lib/objects/share_group.h"
 
 namespace wall::client {
 

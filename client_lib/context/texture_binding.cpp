@@ -10,7 +10,7 @@ namespace {
 
 // A default texture that has come into being gets an id in this context's bindings of name 0.
 void adopt_default(Context& c, glapi::TextureTarget target, ClientName id) {
-    for (unsigned unit = 0; unit < kTextureUnits; ++unit)
+    for (unsigned unit = 0; unit < kTextureImageUnits; ++unit)
         if (!bound_id(c, unit, target)) set_bound_id(c, unit, target, id);
 }
 
@@ -66,7 +66,7 @@ void touch(ShareGroup& share, Texture& texture) {
 std::vector<SavedTexture> bound_texture_parameters(Context& c) {
     std::vector<SavedTexture> saved;
     std::lock_guard lock(c.share().mutex);
-    for (unsigned unit = 0; unit < kTextureUnits; ++unit)
+    for (unsigned unit = 0; unit < kTextureImageUnits; ++unit)
         for (const auto& info : glapi::kTextureTargetInfo) {
             if (auto texture = c.share().texture_of(bound_id(c, unit, info.id)))
                 saved.push_back({texture, texture->parameters});

@@ -5,8 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/context.h"
-#include "client_lib/context/share_group.h"
+#include "client_lib/objects/share_group.h"
 
 namespace wall::client {
 
@@ -25,10 +26,6 @@ std::shared_ptr<Texture> make_texture(ShareGroup& share, GLuint name, glapi::Tex
 void touch(ShareGroup& share, Texture& texture);
 
 /// Parameters of the textures that a context has bound, which glPushAttrib(GL_TEXTURE_BIT) saves too.
-struct SavedTexture {
-    std::shared_ptr<Texture> texture;
-    TexParameters parameters;
-};
 std::vector<SavedTexture> bound_texture_parameters(Context& c);
 void restore_texture_parameters(Context& c, const std::vector<SavedTexture>& saved);
 

@@ -2,8 +2,8 @@
 #include "client_lib/context/used_objects.h"
 
 #include "client_lib/context/context.h"
-#include "client_lib/context/share_group.h"
 #include "client_lib/objects/maps.h"
+#include "client_lib/objects/share_group.h"
 #include "gen/glstate/texture_elements.gen.h"
 
 namespace wall::client {
@@ -39,7 +39,7 @@ void for_each_enabled(const glstate::State& state, UseId&& use) {
 template <class UseId>
 void for_each_sampled(const glstate::State& state, const Executable& executable, UseId&& use) {
     executable.for_each_sampler([&](std::uint32_t unit, glapi::TextureTarget target) {
-        if (unit < kTextureUnits) use(bound_to(state, target, unit));
+        if (unit < kTextureImageUnits) use(bound_to(state, target, unit));
     });
 }
 

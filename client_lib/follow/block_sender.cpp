@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "client_lib/follow/hidden_part.h"
+#include "client_lib/geometry/fold.h"
 #include "client_lib/process/options.h"
 
 namespace wall::client {
@@ -24,26 +26,22 @@ constexpr std::int64_t kGapVertices = 2;
 }  // namespace
 
 void BlockSender::run() {
-    if (context_.draw_surface()) layout_ = &context_.draw_layout();
-    if (!packer_.has_geometry() || !layout_) return fold({});
-    const bool hidden = context_.draw_surface()->hidden != nullptr;
-    if (layout_->targets.empty() && !hidden) return fold({});
-    const auto box = options().broadcast ? std::nullopt : project(context_.projection(), packer_.block_box());
-    if (hidden) kept_ = session_.begin_keeping(context_, box);
-    if (options().count_ideal) session_.ideal_.count(context_, *layout_);
-    needs_ = needs_of_block(context_.state, packer_);
-    if (kept_) keep();
+    if (!packer_.has_geometry() || !source_.draw) return fold({});
+    if (source_.draw.layers().empty() && !source_.draw.with_hidden_part()) return fold({});
+    const auto box = options().broadcast ? std::nullopt : project(projection_, packer_.block_box());
+    kept_ = followers_.hidden.begin_keeping(source_, box);
+    if (options().count_ideal) scratch_.ideal.count(source_, packer_, projection_);
+    needs_ = needs_of_block(source_.state, packer_);
+    if (kept_) pack_whole(followers_.hidden.prepare(*kept_, source_, needs_), kept_->layer.bit());
     NodeMasks& nodes = scratch_.touched;
-    targets_of(layout_->targets, box, nodes);
+    nodes_touched(source_.draw.layers(), box, nodes);
     const bool single = packer_.primitives().size() == 1 && !may_be_divided(packer_.primitives()[0]);
     if (nodes.size() <= 1 || packer_.has_rare() || options().broadcast || single) send_whole(nodes);
     else send_apart();
 }
 
-void BlockSender::keep() {
-    constexpr std::uint64_t kSlots = std::uint64_t{1} << wire::kOffscreenSlot;
-    auto& buffer = session_.prepare_kept(context_, needs_);
-    glapi::pack::Block(buffer, static_cast<std::uint32_t>(kSlots), static_cast<std::uint32_t>(kSlots >> 32),
+void BlockSender::pack_whole(wire::PackBuffer& buffer, std::uint64_t slots) const {
+    glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32),
                        static_cast<std::uint32_t>(packer_.commands()),
                        static_cast<std::uint32_t>(packer_.operand_bytes()));
     buffer.append(packer_, {}, packer_.mark());
@@ -52,27 +50,24 @@ void BlockSender::keep() {
 void BlockSender::send_whole(const NodeMasks& nodes) {
     std::vector<Node*> reached;
     for (const auto& [index, slots] : nodes) {
-        Node& node = session_.node_of(index);
-        if (!node.takes(context_.draw_surface()->id)) continue;
-        auto& buffer = session_.prepare(node, context_, needs_);
+        Node& node = followers_.nodes[index];
+        if (!source_.draw.goes_to(node)) continue;
+        auto& buffer = followers_.updater.prepare(node, source_, needs_);
         const std::size_t before = buffer.bytes();
-        glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32),
-                           static_cast<std::uint32_t>(packer_.commands()),
-                           static_cast<std::uint32_t>(packer_.operand_bytes()));
-        buffer.append(packer_, {}, packer_.mark());
-        session_.count_geometry(node, buffer.bytes() - before);
-        session_.count_block(node);
+        pack_whole(buffer, slots);
+        count(node, NodeCounter::geometry_bytes, buffer.bytes() - before);
+        count(node, NodeCounter::blocks, 1);
         reached.push_back(&node);
     }
     fold(reached);
 }
 
 void BlockSender::send_apart() {
-    scratch_.shares.assign(session_.nodes().size(), Share{});
+    scratch_.shares.assign(followers_.nodes.size(), Share{});
     BlockWalk walk(packer_, {}, packer_.mark(), {});
     for (const Primitive& primitive : packer_.primitives()) {
-        const auto rect = project(context_.projection(), primitive.box);
-        targets_of(layout_->targets, rect, scratch_.touched);
+        const auto rect = project(projection_, primitive.box);
+        nodes_touched(source_.draw.layers(), rect, scratch_.touched);
         if (scratch_.touched.empty()) continue;
         walk.go_to(primitive.first);
         if (scratch_.touched.size() > 1 && may_be_divided(primitive)) divide(primitive, walk.places(), rect);
@@ -83,7 +78,7 @@ void BlockSender::send_apart() {
     // Nodes that got a part hold the attributes of their own last piece; the next diff brings the rest.
     for (Share& share : scratch_.shares) {
         if (!share.buffer) continue;
-        auto& mirror = share.node->mirrors[context_.id].state;
+        auto& mirror = share.node->mirrors[source_.id].state;
         bool changed = false;
         for (std::size_t i = 0; i < kAttributes; ++i) {
             if (share.sent.offset[i] == AttributePlaces::kNone) continue;
@@ -113,21 +108,20 @@ bool BlockSender::may_be_divided(const Primitive& primitive) const {
     if (!primitive.divisible || !topology_of(primitive.mode)) return false;
     if (primitive.last.operand_bytes - primitive.first.operand_bytes < kSmallPrimitiveBytes) return false;
     if (primitive.box.unbounded()) return false;
-    return !context_.state.line_point.line_stipple_enabled;  // its counter runs along the primitive
+    return !source_.state.line_point.line_stipple_enabled;  // its counter runs along the primitive
 }
 
 /// `rect`: what the primitive touches.
 void BlockSender::divide(const Primitive& primitive, const AttributePlaces& before,
                          const std::optional<PixelRect>& rect) {
     const Topology topology = *topology_of(primitive.mode);
-    const Projection& projection = context_.projection();
     VertexScan& vertices = scratch_.vertices;
-    vertices.scan(packer_, primitive, before, projection);
+    vertices.scan(packer_, primitive, before, projection_);
     scratch_.candidates.clear();
-    for (const Target& target : layout_->targets)
-        if (!rect || rect->overlaps(target.area)) scratch_.candidates.push_back(target);
+    for (const TargetLayer& layer : source_.draw.layers())
+        if (!rect || rect->overlaps(layer.area)) scratch_.candidates.push_back(layer);
     for (std::size_t v = topology.fan ? 1 : 0; v + topology.size <= vertices.size(); v += topology.step) {
-        targets_of(scratch_.candidates, window_rect(topology, vertices, v, projection), scratch_.touched_part);
+        nodes_touched(scratch_.candidates, window_rect(topology, vertices, v, projection_), scratch_.touched_part);
         const auto first = static_cast<std::int64_t>(v / topology.alignment * topology.alignment),
                    last = static_cast<std::int64_t>(v + topology.size - 1);
         for (const auto& [index, slots] : scratch_.touched_part)
@@ -165,22 +159,21 @@ void BlockSender::finish_run(Share& share, const Primitive& primitive) {
     copy(share, vertices.lead(first), vertices.lead(behind));
     share.sent = vertices.attributes(behind);
     glapi::pack::End(*share.buffer);
-    session_.count_geometry(*share.node, 1);
+    count(*share.node, NodeCounter::geometry_bytes, 1);
     share.run_first = share.run_last = -1;
 }
 
 void BlockSender::begin_part(Share& share, const Primitive& primitive) {
     const std::size_t before = share.buffer->bytes();
     glapi::pack::Begin(*share.buffer, primitive.mode);
-    session_.count_geometry(*share.node, share.buffer->bytes() - before);
+    count(*share.node, NodeCounter::geometry_bytes, share.buffer->bytes() - before);
 }
 
 BlockSender::Share& BlockSender::share_of(NodeIndex index) {
     Share& share = scratch_.shares[index.value];
     if (!share.node) {
-        share.node = &session_.node_of(index);
-        if (share.node->takes(context_.draw_surface()->id))
-            share.buffer = &session_.prepare(*share.node, context_, needs_);
+        share.node = &followers_.nodes[index];
+        if (source_.draw.goes_to(*share.node)) share.buffer = &followers_.updater.prepare(*share.node, source_, needs_);
     }
     return share;
 }
@@ -188,21 +181,16 @@ BlockSender::Share& BlockSender::share_of(NodeIndex index) {
 void BlockSender::open_block(Share& share, std::uint64_t mask) {
     if (share.mask == mask) return;
     close_block(share);
-    share.block_operands = share.buffer->operand_bytes();
     const std::size_t before = share.buffer->bytes();
-    glapi::pack::Block(*share.buffer, static_cast<std::uint32_t>(mask), static_cast<std::uint32_t>(mask >> 32), 0, 0);
-    session_.count_geometry(*share.node, share.buffer->bytes() - before);
-    session_.count_block(*share.node);
-    share.block_start = share.buffer->mark();
+    share.block = begin_block(*share.buffer, mask);
+    count(*share.node, NodeCounter::geometry_bytes, share.buffer->bytes() - before);
+    count(*share.node, NodeCounter::blocks, 1);
     share.mask = mask;
 }
 
 void BlockSender::close_block(Share& share) {
     if (share.mask == 0) return;
-    const auto end = share.buffer->mark();
-    const std::uint32_t counts[2] = {static_cast<std::uint32_t>(end.commands - share.block_start.commands),
-                                     static_cast<std::uint32_t>(end.operand_bytes - share.block_start.operand_bytes)};
-    std::memcpy(share.buffer->operand_at(share.block_operands + 8), counts, sizeof counts);
+    end_block(*share.buffer, share.block);
     share.mask = 0;
 }
 
@@ -217,7 +205,7 @@ void BlockSender::pack_attributes(Share& share, const AttributePlaces& wanted) {
         const std::size_t bytes = operand_bytes_of(wanted.op[i]);
         std::memcpy(share.buffer->append(static_cast<std::uint8_t>(wanted.op[i]), bytes),
                     packer_.operand_at(wanted.offset[i]), bytes);
-        session_.count_geometry(*share.node, bytes + 1);
+        count(*share.node, NodeCounter::geometry_bytes, bytes + 1);
         share.sent.offset[i] = wanted.offset[i];
         share.sent.op[i] = wanted.op[i];
     }
@@ -226,33 +214,26 @@ void BlockSender::pack_attributes(Share& share, const AttributePlaces& wanted) {
 // A fan's hub, repeated for a later run, sees the attributes of before the block.
 void BlockSender::restore_attribute(Share& share, Attribute attribute) {
     std::array<std::byte, glstate::kMostAttributeBytes> operand;
-    const glapi::Op op = glstate::write_attribute(context_.state, attribute, operand.data());
+    const glapi::Op op = glstate::write_attribute(source_.state, attribute, operand.data());
     const std::size_t bytes = operand_bytes_of(op);
     std::memcpy(share.buffer->append(static_cast<std::uint8_t>(op), bytes), operand.data(), bytes);
-    glstate::apply_attribute(share.node->mirrors[context_.id].state, op, operand.data());
-    session_.count_geometry(*share.node, bytes + 1);
+    glstate::apply_attribute(share.node->mirrors[source_.id].state, op, operand.data());
+    count(*share.node, NodeCounter::geometry_bytes, bytes + 1);
     share.sent.offset[place_of(attribute)] = AttributePlaces::kNone;
 }
 
 void BlockSender::copy(Share& share, wire::PackMark first, wire::PackMark last) {
     share.buffer->append(packer_, first, last);
-    session_.count_geometry(*share.node, last.commands - first.commands + last.operand_bytes - first.operand_bytes);
+    count(*share.node, NodeCounter::geometry_bytes,
+          last.commands - first.commands + last.operand_bytes - first.operand_bytes);
 }
 
 // The block's last attributes become the context's current ones, and those of every node that ran all of it.
 void BlockSender::fold(const std::vector<Node*>& whole) {
-    context_.fold_attributes();
-    const auto follow = [&](Node* node) {
-        auto& mirror = node->mirrors[context_.id].state;
-        for (std::size_t i = 0; i < kAttributes; ++i)
-            if (packer_.last[i]) glstate::apply_attribute(mirror, packer_.last_op[i], packer_.last[i]);
-        unify_id(mirror, context_.state, Category::current);
-        if (!context_.folded_material()) return;
-        mirror.material = context_.state.material;
-        unify_id(mirror, context_.state, Category::material);
-    };
-    for (Node* node : whole) follow(node);
-    if (kept_) follow(kept_);
+    fold_block(packer_, source_.state);
+    const auto follow = [&](Node& node) { fold_block(packer_, node.mirrors[source_.id].state, source_.state); };
+    for (Node* node : whole) follow(*node);
+    if (kept_) follow(kept_->follower);
 }
 
 }  // namespace wall::client

@@ -8,7 +8,9 @@
 
 #include <vector>
 
-#include "client_lib/context/context.h"
+#include "client_lib/follow/draw_source.h"
+#include "client_lib/follow/followers.h"
+#include "client_lib/follow/ideal.h"
 #include "client_lib/geometry/primitive_scan.h"
 
 namespace wall::client {
@@ -17,35 +19,38 @@ namespace wall::client {
 struct NodeShare {
     Node* node = nullptr;
     wire::PackBuffer* buffer = nullptr;
-    std::uint64_t mask = 0;          ///< of the open Block; 0: none is open
-    std::size_t block_operands = 0;  ///< where the open Block's operands stand
-    wire::PackMark block_start;
+    std::uint64_t mask = 0;  ///< of the open Block; 0: none is open
+    OpenBlock block;
     AttributePlaces sent;                        ///< what the node got of this block's attributes
     std::int64_t run_first = -1, run_last = -1;  ///< pending run of vertices of the primitive being divided
     std::uint64_t run_mask = 0;
 };
 
-/// What sorting writes into, kept by the session from block to block, so that no triangle asks for memory. Guarded by
-/// the session's mutex.
+/// What sorting writes into, kept by whoever sends blocks from block to block, so that no triangle asks for memory.
+/// Guarded by the session's mutex.
 struct SortScratch {
-    std::vector<NodeShare> shares;   ///< by node
-    NodeMasks touched;               ///< by a primitive
-    NodeMasks touched_part;          ///< by a triangle of it
-    std::vector<Target> candidates;  ///< that a primitive's triangles may touch
-    VertexScan vertices;             ///< of the primitive being divided
+    std::vector<NodeShare> shares;        ///< by node
+    NodeMasks touched;                    ///< by a primitive
+    NodeMasks touched_part;               ///< by a triangle of it
+    std::vector<TargetLayer> candidates;  ///< that a primitive's triangles may touch
+    VertexScan vertices;                  ///< of the primitive being divided
+    IdealTraffic ideal;                   ///< unused without WALLGL_IDEAL
 };
 
 class BlockSender {
 public:
-    BlockSender(ClientSession& session, Context& context, SortScratch& scratch)
-        : session_(session), context_(context), packer_(context.packer), scratch_(scratch) {}
+    /// All of them outlive it.
+    BlockSender(const Followers& followers, const DrawSource& source, const Packer& packer,
+                const glstate::Projection& projection, SortScratch& scratch)
+        : followers_(followers), source_(source), packer_(packer), projection_(projection), scratch_(scratch) {}
 
-    /// Sends the block and leaves `context.state` and all mirrors as they are after it.
+    /// Sends the block and leaves the context's state and all mirrors as they are after it.
     void run();
 
 private:
     using Share = NodeShare;
-    void keep();
+    /// The block as one Block for these layers.
+    void pack_whole(wire::PackBuffer& buffer, std::uint64_t slots) const;
     void send_whole(const NodeMasks& nodes);
     void send_apart();
     void send_primitive(const Primitive& primitive, BlockWalk& walk);
@@ -65,13 +70,13 @@ private:
 
     void fold(const std::vector<Node*>& whole);
 
-    ClientSession& session_;
-    Context& context_;
-    Packer& packer_;
+    const Followers& followers_;
+    const DrawSource& source_;
+    const Packer& packer_;
+    const glstate::Projection& projection_;
     SortScratch& scratch_;
-    const SurfaceLayout* layout_ = nullptr;
-    Node* kept_ =
-        nullptr;  ///< follows the block's copy for the part of the window that no tile shows; null: there is none
+    KeptFrame* kept_ =
+        nullptr;  ///< has the block, too, for the part of the window that no tile shows; null: it has not
     Needs needs_;
 };
 

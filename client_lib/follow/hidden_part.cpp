@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "client_lib/context/context.h"
-
 namespace wall::client {
 namespace {
 
@@ -13,11 +11,11 @@ constexpr std::size_t kMostSpareBuffers = 8;  // of a frame
 
 }  // namespace
 
-void KeptFrame::turn_to(Context& context) {
-    if (follower.batch_context == context.id) return;
+void KeptFrame::turn_to(ContextId context) {
+    if (follower.batch_context == context) return;
     seal();
-    follower.batch_context = context.id;
-    mirror = &follower.mirrors[context.id];
+    follower.batch_context = context;
+    mirror = &follower.mirrors[context];
 }
 
 void KeptFrame::seal() {

@@ -12,9 +12,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "client_lib/context/share_group.h"
-#include "client_lib/follow/session.h"
-#include "client_lib/geometry/router.h"
+#include "client_lib/follow/node.h"
+#include "client_lib/geometry/target_layers.h"
+#include "client_lib/objects/share_group.h"
 #include "common/base/ids.h"
 #include "gen/glstate/state.gen.h"
 
@@ -49,7 +49,7 @@ public:
     };
 
     /// Sets the follower to a context: what has been packed for another one is a stretch of its own.
-    void turn_to(Context& context);
+    void turn_to(ContextId context);
     void seal();
     /// Begins anew, with the memory that it has.
     void restart(bool whole);
@@ -58,6 +58,7 @@ public:
 
     /// Stands for the node when it has executed the frame; its batch is the stretch being packed.
     Node follower;
+    TargetLayer layer;             ///< that the commands are for
     Mirror* mirror = nullptr;      ///< the follower's, of the context that it is set to
     std::vector<Matrix> matrices;  ///< of that stretch
     std::vector<Stretch> stretches;
@@ -73,7 +74,7 @@ private:
 };
 
 struct HiddenPart {
-    Target target;                        ///< the layer of the whole window; its area is what may be seen of the part
+    TargetLayer layer;                    ///< of the whole window; its area is what may be seen of the part
     std::uint32_t width = 0, height = 0;  ///< of the window
     bool everything = false;              ///< no tile shows any of the window
     bool drawn = false;                   ///< like the rest; otherwise its commands are kept

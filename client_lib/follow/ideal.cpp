@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "client_lib/context/context.h"
 #include "client_lib/geometry/primitive_scan.h"
 #include "client_lib/process/stats.h"
 
@@ -20,12 +19,12 @@ std::size_t bytes_between(wire::PackMark first, wire::PackMark last) {
 /// A primitive that is divided among nodes.
 class Division {
 public:
-    Division(const Packer& packer, const Primitive& primitive, const Topology& topology, const Projection& projection,
-             const SurfaceLayout& layout)
+    Division(const Packer& packer, const Primitive& primitive, const Topology& topology,
+             const glstate::Projection& projection, std::span<const TargetLayer> layers)
         : topology_(topology) {
         vertices_.scan(packer, primitive, {}, projection);
         for (std::size_t v = topology.fan ? 1 : 0; v + topology.size <= vertices_.size(); v += topology.step)
-            touched_.push_back(targets_of(layout, window_rect(topology, vertices_, v, projection)));
+            touched_.push_back(nodes_touched(layers, window_rect(topology, vertices_, v, projection)));
     }
     /// Bytes that this node needs; 0: none of the triangles touches it.
     std::size_t bytes_for(NodeIndex node) const {
@@ -52,7 +51,8 @@ private:
 
 }  // namespace
 
-IdealBlock ideal_block(const Packer& packer, const Projection& projection, const SurfaceLayout& layout) {
+IdealBlock ideal_block(const Packer& packer, const glstate::Projection& projection,
+                       std::span<const TargetLayer> layers) {
     IdealBlock block;
     const auto add = [&](NodeIndex node, std::size_t bytes) {
         if (bytes == 0) return;
@@ -61,20 +61,20 @@ IdealBlock ideal_block(const Packer& packer, const Projection& projection, const
     };
     for (const Primitive& primitive : packer.primitives()) {
         const auto topology = topology_of(primitive.mode);
-        const auto nodes = targets_of(layout, project(projection, primitive.box));
+        const auto nodes = nodes_touched(layers, project(projection, primitive.box));
         if (!topology || nodes.size() < 2 || !primitive.divisible) {
             for (const NodeMask& node : nodes) add(node.node, bytes_between(primitive.first, primitive.last));
             continue;
         }
-        const Division division(packer, primitive, *topology, projection, layout);
+        const Division division(packer, primitive, *topology, projection, layers);
         for (const NodeMask& node : nodes) add(node.node, division.bytes_for(node.node));
     }
     return block;
 }
 
-void IdealTraffic::count(Context& context, const SurfaceLayout& layout) {
-    const IdealBlock block = ideal_block(context.packer, context.projection(), layout);
-    const std::pair matrices{context.id, context.state.ids[static_cast<std::size_t>(glstate::Category::matrix)]};
+void IdealTraffic::count(const DrawSource& source, const Packer& packer, const glstate::Projection& projection) {
+    const IdealBlock block = ideal_block(packer, projection, source.draw.layers());
+    const std::pair matrices{source.id, source.state.ids[static_cast<std::size_t>(glstate::Category::matrix)]};
     if (matrices != matrices_) nodes_.clear();
     matrices_ = matrices;
     const std::size_t before = nodes_.size();

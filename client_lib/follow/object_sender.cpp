@@ -3,9 +3,7 @@
 
 #include <utility>
 
-#include "client_lib/context/context.h"
-#include "client_lib/context/share_group.h"
-#include "client_lib/context/used_objects.h"
+#include "client_lib/objects/share_group.h"
 
 namespace wall::client {
 namespace {
@@ -39,49 +37,46 @@ bool ObjectSender::held(const Object& object) {
         sent_ += batch.bytes() - start_;
         start_ = 0;  // it goes out
     };
-    const auto answer = session_.ask_now(node_, "global share", kQuestionLimitMs, pack);
+    const auto answer = nodes_.ask_now(node_, "global share", kQuestionLimitMs, pack);
     node_.asks_unanswered = !answer || answer->empty();
     return !node_.asks_unanswered && answer->front() != std::byte{0};
 }
 
 void ObjectSender::send_off() {
     sent_ += buffer_.bytes() - start_;
-    session_.send(node_);
+    nodes_.send(node_);
     start_ = buffer_.bytes();
 }
 
-std::size_t bring_up_to_date(ClientSession& session, Node& node, Context& context, wire::PackBuffer& buffer) {
-    Mirror& mirror = node.mirrors[context.id];
-    const UseStamp now = use_stamp(context);
-    if (mirror.used == now) return 0;
-    ObjectSender sender(session, node, buffer);
-    for_each_used(context, [&](const Object& object) { sender.send(object); });
-    mirror.used = now;
+std::size_t bring_up_to_date(Nodes& nodes, Node& node, const DrawSource& source, wire::PackBuffer& buffer) {
+    Mirror& mirror = node.mirrors[source.id];
+    if (mirror.used == source.used) return 0;
+    ObjectSender sender(nodes, node, buffer);
+    source.objects.for_each_used([&](const Object& object) { sender.send(object); });
+    mirror.used = source.used;
     return sender.bytes();
 }
 
-void note_used(Node& follower, Mirror& mirror, Context& context, wire::PackBuffer& buffer) {
-    const UseStamp now = use_stamp(context);
-    if (mirror.used == now) return;
-    for_each_used(context, [&](const Object& object) {
+void note_used(Node& follower, Mirror& mirror, const DrawSource& source, wire::PackBuffer& buffer) {
+    if (mirror.used == source.used) return;
+    source.objects.for_each_used([&](const Object& object) {
         auto& known = follower.object_stamps[object.id];
         object.pack_values(known, buffer);
         known = object.latest();
     });
-    mirror.used = now;
+    mirror.used = source.used;
 }
 
-void bring_noted(ClientSession& session, Node& node, ShareGroup& share, const ObjectStamps& noted,
-                 wire::PackBuffer& buffer) {
+void bring_noted(Nodes& nodes, Node& node, ShareGroup& share, const ObjectStamps& noted, wire::PackBuffer& buffer) {
     std::lock_guard lock(share.mutex);
-    ObjectSender sender(session, node, buffer);
+    ObjectSender sender(nodes, node, buffer);
     for (const auto& [id, stamp] : noted) {
         const auto found = share.by_id.find(id);
         if (found == share.by_id.end() || found->second->latest() == 0) continue;
         sender.send(*found->second);
         node.object_stamps[id] = found->second->defined();
     }
-    session.count_objects(node, sender.bytes());
+    count(node, NodeCounter::object_bytes, sender.bytes());
 }
 
 }  // namespace wall::client

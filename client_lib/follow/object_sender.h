@@ -7,18 +7,17 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "client_lib/follow/session.h"
+#include "client_lib/follow/draw_source.h"
+#include "client_lib/follow/nodes.h"
 #include "client_lib/objects/object.h"
 
 namespace wall::client {
 
-struct ShareGroup;
-
 /// Packs what one node lacks into its batch.
 class ObjectSender {
 public:
-    ObjectSender(ClientSession& session, Node& node, wire::PackBuffer& buffer)
-        : session_(session), node_(node), buffer_(buffer), start_(buffer.bytes()) {}
+    ObjectSender(Nodes& nodes, Node& node, wire::PackBuffer& buffer)
+        : nodes_(nodes), node_(node), buffer_(buffer), start_(buffer.bytes()) {}
 
     void send(const Object& object);
     /// Of all objects together, also those that are on their way.
@@ -28,7 +27,7 @@ private:
     bool held(const Object& object);
     void send_off();
 
-    ClientSession& session_;
+    Nodes& nodes_;
     Node& node_;
     wire::PackBuffer& buffer_;
     std::size_t start_;     // of what is still in the buffer
@@ -37,14 +36,13 @@ private:
 
 /// Packs of all objects that drawing with the context needs what the node lacks. Returns the bytes; full batches among
 /// them have been sent.
-std::size_t bring_up_to_date(ClientSession& session, Node& node, Context& context, wire::PackBuffer& buffer);
+std::size_t bring_up_to_date(Nodes& nodes, Node& node, const DrawSource& source, wire::PackBuffer& buffer);
 
 /// For a block that is kept: notes in `follower.object_stamps` what drawing with the context uses, and packs the values
 /// that go with the block.
-void note_used(Node& follower, Mirror& mirror, Context& context, wire::PackBuffer& buffer);
+void note_used(Node& follower, Mirror& mirror, const DrawSource& source, wire::PackBuffer& buffer);
 
 /// Packs of the noted objects what the node lacks; none of them has changed since. Values that go with blocks follow.
-void bring_noted(ClientSession& session, Node& node, ShareGroup& share, const ObjectStamps& noted,
-                 wire::PackBuffer& buffer);
+void bring_noted(Nodes& nodes, Node& node, ShareGroup& share, const ObjectStamps& noted, wire::PackBuffer& buffer);
 
 }  // namespace wall::client

@@ -114,6 +114,7 @@ void Packer::reset() {
     primitives_.clear();
     block_box_ = geom::Box{};
     last.fill(nullptr);
+    materials.clear();
     rare_ = false;
     update_limit();
 }

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "client_lib/geometry/material.h"
 #include "common/geom/box.h"
 #include "common/wire/limits.h"
 #include "common/wire/pack_buffer.h"
@@ -45,6 +46,7 @@ public:
     std::array<const std::byte*, kAttributes>
         last{};  ///< the latest operands of each attribute; null: not in this block
     std::array<glapi::Op, kAttributes> last_op{};
+    std::vector<MaterialChange> materials;  ///< of glMaterial inside the block, in order
 
     // ---- the rest ----
 

@@ -23,7 +23,7 @@ std::optional<Topology> topology_of(std::uint32_t mode) {
 }
 
 void VertexScan::scan(const Packer& packer, const Primitive& primitive, const AttributePlaces& before,
-                      const Projection& projection) {
+                      const glstate::Projection& projection) {
     packer_ = &packer;
     leads_.clear();
     windows_.clear();
@@ -51,9 +51,9 @@ AttributePlaces VertexScan::attributes(std::size_t v) const {
     return walk.places();
 }
 
-std::optional<PixelRect> window_rect(const Topology& topology, const VertexScan& vertices, std::size_t first,
-                                     const Projection& projection) {
-    std::array<WindowVertex, kMostVertices> corners;
+std::optional<geom::PixelRect> window_rect(const Topology& topology, const VertexScan& vertices, std::size_t first,
+                                           const glstate::Projection& projection) {
+    std::array<glstate::WindowVertex, kMostVertices> corners;
     std::size_t count = 0;
     if (topology.fan) corners[count++] = vertices.window(0);
     for (std::size_t i = first; i < first + topology.size; ++i) corners[count++] = vertices.window(i);

@@ -8,7 +8,7 @@
 
 #include "client_lib/geometry/block_walk.h"
 #include "client_lib/geometry/packer.h"
-#include "client_lib/geometry/router.h"
+#include "common/glstate/projection.h"
 
 namespace wall::client {
 
@@ -30,10 +30,10 @@ class VertexScan {
 public:
     /// `before`: the attributes as they are at glBegin. The packer stays as it is while the vertices are looked at.
     void scan(const Packer& packer, const Primitive& primitive, const AttributePlaces& before,
-              const Projection& projection);
+              const glstate::Projection& projection);
 
     std::size_t size() const { return windows_.size(); }
-    const WindowVertex& window(std::size_t v) const { return windows_[v]; }
+    const glstate::WindowVertex& window(std::size_t v) const { return windows_[v]; }
     /// Where vertex v's attributes begin, or what is behind the last vertex.
     wire::PackMark lead(std::size_t v) const { return {leads_[v].commands, leads_[v].operand_bytes}; }
     /// The attributes there. Those that vertex v has itself are at lead v + 1.
@@ -47,12 +47,12 @@ private:
 
     const Packer* packer_ = nullptr;
     std::vector<Lead> leads_;  ///< one more than vertices
-    std::vector<WindowVertex> windows_;
+    std::vector<glstate::WindowVertex> windows_;
     std::vector<AttributePlaces> snapshots_;  ///< at every kSnapshotEvery-th lead
 };
 
 /// Where the point, line, triangle or quad that starts at vertex `first` may be drawn; nothing if that is unknown.
-std::optional<PixelRect> window_rect(const Topology& topology, const VertexScan& vertices, std::size_t first,
-                                     const Projection& projection);
+std::optional<geom::PixelRect> window_rect(const Topology& topology, const VertexScan& vertices, std::size_t first,
+                                           const glstate::Projection& projection);
 
 }  // namespace wall::client

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Buffer objects: their content lives in the client, whose vertex arrays and pixel transfers read it.
-// Guarded by the share group's mutex, but for what a reading holds.
+// Buffer objects. The client has all of their content, which pixel transfers and display lists read; a node gets what
+// it lacks of it when it draws with it (T3.5). Guarded by the share group's mutex, but for what a reading holds.
 #pragma once
 
 #include <atomic>
@@ -11,6 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "client_lib/objects/changed_ranges.h"
+#include "client_lib/objects/churn.h"
+#include "client_lib/objects/object.h"
 #include "common/base/ids.h"
 #include "common/glapi/gl_types.h"
 
@@ -49,32 +52,44 @@ private:
     std::span<std::byte> bytes_;
 };
 
-struct Buffer {
-    Buffer(ClientName own_id, GLuint own_name) : id(own_id), name(own_name) {}
-    const ClientName id;  ///< in state elements and client arrays
-    const GLuint name;    ///< the application's
+/// What one command to a node carries at most.
+inline constexpr std::size_t kLargestBufferCommand = std::size_t{4} << 20;
 
-    std::size_t size() const { return memory->bytes.size(); }
-    std::byte* data() { return memory->bytes.data(); }
-    BufferReading read(std::size_t offset = 0) const { return {memory, offset}; }
-    /// Call before its content is changed.
-    void leave_to_readers() {
-        if (memory->readings.load(std::memory_order_acquire) == 0) return;
-        auto copy = std::make_shared<BufferMemory>();
-        copy->bytes = memory->bytes;
-        memory = std::move(copy);
-    }
-    /// Call before its content is replaced: the old one need not be kept.
-    void leave_all_to_readers() {
-        if (memory->readings.load(std::memory_order_acquire) != 0) memory = std::make_shared<BufferMemory>();
-    }
+class Buffer : public Object {
+public:
+    Buffer(ClientName own_id, GLuint own_name) : Object(own_id, own_name) {}
 
-    std::shared_ptr<BufferMemory> memory = std::make_shared<BufferMemory>();
-    GLenum usage = GL_STATIC_DRAW;
+    std::size_t size() const { return memory_->bytes.size(); }
+    /// For reading; it is another place after a change.
+    const std::byte* data() const { return memory_->bytes.data(); }
+    BufferReading read(std::size_t offset = 0) const { return {memory_, offset}; }
+
+    // ---- changes ----
+    /// New memory; without `data` its content is undefined.
+    void define(const void* data, std::size_t bytes, GLenum usage);
+    /// `range` lies within it.
+    void write(ByteRange range, const void* data);
+    /// What a mapping or a pixel command writes into; what was written is told by wrote().
+    std::byte* begin_writing();
+    void wrote(ByteRange range);
+
+    std::uint64_t latest() const override { return stamp_; }
+    void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
+                      const std::function<void()>& packed) const override;
+
+    GLenum usage() const { return usage_; }
     GLenum access = GL_READ_WRITE;  ///< of the latest glMapBuffer
     bool mapped = false;
-    bool deleted = false;     ///< its name is gone
-    std::uint64_t stamp = 0;  ///< of the latest change
+    bool deleted = false;  ///< its name is gone
+    Churn churn;
+
+private:
+    void leave_to_readers();
+
+    std::shared_ptr<BufferMemory> memory_ = std::make_shared<BufferMemory>();
+    GLenum usage_ = GL_STATIC_DRAW;
+    std::uint64_t stamp_ = 0;  ///< of the latest change; 0: it was never defined
+    ChangedRanges changes_;
 };
 
 }  // namespace wall::client

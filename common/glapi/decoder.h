@@ -4,13 +4,12 @@
 //
 // H derives from glapi::Handler and offers
 //   - one member per command of proto/gl/wire.toml: `void Clear(uint32_t mask)`, ... (bytes operand: std::span<const
-//   std::byte>);
-//   - `uint32_t state_bytes(uint32_t id)`, 0 = no such element (glstate::element_bytes), and `bool State(uint32_t id,
-//      std::span<const std::byte> value)`, false = bad value;
+//     std::byte>); if H::kByGroup is true, as members of an object for each group, which H has under the group's name:
+//     `h.draw.Clear(mask)`;
+//   - with those of group `stream`: `uint32_t state_bytes(uint32_t id)`, 0 = no such element (glstate::element_bytes),
+//     and `bool State(uint32_t id, std::span<const std::byte> value)`, false = bad value;
 //   - `uint64_t begin_block(uint64_t tiles, size_t bytes)`: the tiles to run the block for (all asked for, or fewer);
-//   `bytes` of
-//      commands it takes in the batch,
-//     `void begin_tile(unsigned slot)`, `void end_block()`.
+//     `bytes` of commands it takes in the batch; `void begin_tile(unsigned slot)`, `void end_block()`.
 // A member that cannot go on calls `refuse("why")`. A handler that hides Handler::should_pause() can stop between two
 // commands, also in the middle of a block; BatchRun and DrawingRun then go on where they stood.
 #pragma once
@@ -36,10 +35,9 @@ enum class Pause : std::uint8_t {
     now,
 };
 
-/// The refusal of a handler: sticky, the first reason stays.
-class Handler {
+/// Of a handler: sticky, the first reason stays.
+class Refusal {
 public:
-    static constexpr Pause should_pause() { return Pause::go_on; }
     void refuse(std::string reason) {
         if (!refused_) reason_ = std::move(reason);
         refused_ = true;
@@ -50,6 +48,12 @@ public:
 private:
     bool refused_ = false;
     std::string reason_;
+};
+
+class Handler : public Refusal {
+public:
+    static constexpr bool kByGroup = false;
+    static constexpr Pause should_pause() { return Pause::go_on; }
 };
 
 namespace detail {
@@ -67,7 +71,9 @@ struct OpcodeWalk {
 /// A Block command itself: its opcode and four words.
 inline constexpr std::size_t kBlockBytes = 1 + 4 * sizeof(std::uint32_t);
 
-inline bool inside_block(OpGroup group) { return group == OpGroup::geometry || group == OpGroup::draw; }
+inline bool inside_block(OpGroup group) {
+    return group == OpGroup::geometry || group == OpGroup::draw || group == OpGroup::array_draw;
+}
 
 template <class H>
 tl::unexpected<Error> refusal(std::size_t op, const H& h) {

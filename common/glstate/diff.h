@@ -20,7 +20,7 @@ namespace wall::glstate {
 /// A set of categories, one bit each.
 using CategoryMask = std::uint32_t;
 constexpr CategoryMask mask_of(Category c) { return CategoryMask{1} << static_cast<unsigned>(c); }
-inline constexpr CategoryMask kSentCategories = (CategoryMask{1} << (kCategoryCount - 1)) - 1;  ///< all but `local`
+inline constexpr CategoryMask kSentCategories = (CategoryMask{1} << kSentCategoryCount) - 1;
 /// What a tile's layer changes: applied per tile.
 inline constexpr CategoryMask kLayerCategories = mask_of(Category::window) | mask_of(Category::raster);
 
@@ -148,7 +148,6 @@ TwoIds differing_bits(const State& a, const State& b) {
 
 template <CategoryMask Mask, std::size_t... Pair>
 bool same_pairs(const State& a, const State& b, std::index_sequence<Pair...>) {
-    static_assert(kCategoryCount % 2 == 0);
     const TwoIds different = (differing_bits<Mask, Pair>(a, b) | ...);
     return (different[0] | different[1]) == 0;
 }
@@ -165,7 +164,9 @@ void diff(State& from, const State& to, Sink&& sink) {
 /// Whether all categories of Mask have the same value ids: no branch until the end, two categories an instruction.
 template <CategoryMask Mask>
 bool same_ids(const State& a, const State& b) {
-    return detail::same_pairs<Mask>(a, b, std::make_index_sequence<kCategoryCount / 2>{});
+    constexpr std::size_t kPairs = (kSentCategoryCount + 1) / 2;
+    static_assert(2 * kPairs <= kCategoryCount && (Mask & ~kSentCategories) == 0);
+    return detail::same_pairs<Mask>(a, b, std::make_index_sequence<kPairs>{});
 }
 
 /// diff() for a receiver that goes between several states (T5): a category of `to` that proves equal takes the value id

@@ -36,7 +36,7 @@ inline std::size_t element_offset(std::uint32_t id) {
     return e.offset + std::size_t{id - e.id} * e.bytes;
 }
 
-/// Size of a value that may travel; 0 = unknown id, or one of category `local`.
+/// Size of a value that may travel; 0 = unknown id, or one that is not sent.
 inline std::uint32_t element_bytes(std::uint32_t id) {
     return id == 0 || id > kLastSentId ? 0 : element_info(id).bytes;
 }

@@ -5,8 +5,8 @@
 
 #include "common/base/assert.h"
 #include "tests/fuzz/batch_input.h"
+#include "tileserver/execute/executor.h"
 #include "tileserver/gpu/backend.h"
-#include "tileserver/render/executor.h"
 
 namespace {
 

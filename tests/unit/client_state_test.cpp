@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "client_lib/context/context.h"
-#include "client_lib/context/share_group.h"
+#include "client_lib/objects/share_group.h"
 #include "common/glstate/elements.h"
 #include "common/glstate/queries.h"
 #include "tests/unit/mesa_context.h"
@@ -151,7 +151,7 @@ void expect_same_answers(glapi::GlFunctions& mesa, Context& c, unsigned round) {
 TEST(ClientState, RandomCommandsAreTakenAsInMesa) {
     const auto mesa = test::MesaContext::open();
     if (!mesa) GTEST_SKIP() << "no Mesa with a surfaceless compatibility context";
-    Context c(std::make_shared<ShareGroup>(), {});
+    Context c(std::make_shared<ShareGroup>());
     tls_context = &c;
     Caller caller(mesa->gl, c);
     using Gl = glapi::GlFunctions;

@@ -103,6 +103,42 @@ TEST(PackedStream, DecodesWhatWasPacked) {
     EXPECT_EQ(h.image, std::vector<std::byte>(std::begin(kPixels), std::end(kPixels)));
 }
 
+/// The commands of some groups apart; what it does not look at goes to the rest.
+struct HandlerByGroup : glapi::Handler {
+    static constexpr bool kByGroup = true;
+    struct Geometry : glapi::NullHandler {
+        std::vector<float> vertex;
+        void Vertex3f(float x, float y, float z) { vertex = {x, y, z}; }
+    } geometry;
+    struct Stream : glapi::NullHandler {
+        std::uint32_t last = 0;
+        std::uint32_t state_bytes(std::uint32_t id) { return id == 7 ? 4 : 0; }
+        bool State(std::uint32_t id, std::span<const std::byte>) { return last = id, true; }
+    } stream;
+    struct Surface : glapi::NullHandler {
+        glapi::Refusal& refusal;
+        explicit Surface(glapi::Refusal& all) : refusal(all) {}
+        void Swap(SurfaceId, std::uint32_t) { refusal.refuse("not now"); }
+    } surface{*this};
+    glapi::NullHandler draw, array_draw, buffer, vertex_input, draw_pieces, read, object, texture, run, program, query,
+        map, sync;
+
+    std::uint64_t begin_block(std::uint64_t tiles, std::size_t) { return tiles; }
+    void begin_tile(unsigned) {}
+    void end_block() {}
+};
+
+TEST(PackedStream, EachGroupMayHaveAHandler) {
+    wire::PackBuffer batch;
+    pack_sample(batch);
+    HandlerByGroup h;
+    const auto done = glapi::decode(batch.opcodes(), batch.operands(), h);
+    EXPECT_EQ(h.geometry.vertex, (std::vector<float>{1, 2, 3}));
+    EXPECT_EQ(h.stream.last, 7u);
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().message, "Swap: not now") << "a group refuses for all";
+}
+
 /// Wants a pause whenever it is asked.
 struct PausingHandler : TestHandler {
     glapi::Pause wanted = glapi::Pause::now;

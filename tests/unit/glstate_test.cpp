@@ -55,7 +55,7 @@ void receive(const wire::PackBuffer& batch, State& state, glstate::ValueHistory&
 /// Values that travel, but for those that mean nothing because the current colour drives them.
 void expect_equal(const State& a, const State& b) {
     glstate::for_each_element([&]<class E>() {
-        if (E::category == glstate::Category::local) return;
+        if (!E::sent) return;
         for (unsigned i = 0; i < E::count; ++i)
             EXPECT_TRUE(glstate::follows_color<E>(a, i) || glstate::same(E::ref(a, i), E::ref(b, i)))
                 << E::name << " " << i;
@@ -291,7 +291,7 @@ TEST(Groups, HoldWhatTheSpecificationSays) {
     const auto enables = names(GL_ENABLE_BIT);
     glstate::for_each_element([&]<class E>() {  // every glEnable word of the server is in the enable group
         const bool is_cap = std::ranges::any_of(glstate::kCapEntries, [](const auto& e) { return e.id == E::id; });
-        EXPECT_EQ(is_cap && E::category != glstate::Category::local, (E::groups & GL_ENABLE_BIT) != 0) << E::name;
+        EXPECT_EQ(is_cap && E::sent, (E::groups & GL_ENABLE_BIT) != 0) << E::name;
     });
 }
 

@@ -16,7 +16,7 @@ namespace wall::tileserver {
 /// Names that the driver has given and not got back.
 struct DriverObjects {
     std::int64_t textures = 0, buffers = 0, lists = 0, programs = 0, shaders = 0, framebuffers = 0, renderbuffers = 0,
-                 queries = 0;
+                 queries = 0, vertex_arrays = 0;
     bool operator==(const DriverObjects&) const = default;
 };
 
@@ -53,6 +53,14 @@ struct Gl : glapi::GlFunctions {
     void DeleteRenderbuffers(GLsizei n, const GLuint* names) const {
         objects->renderbuffers -= named(n, names);
         GlFunctions::DeleteRenderbuffers(n, names);
+    }
+    void CreateVertexArrays(GLsizei n, GLuint* names) const {
+        GlFunctions::CreateVertexArrays(n, names);
+        objects->vertex_arrays += named(n, names);
+    }
+    void DeleteVertexArrays(GLsizei n, const GLuint* names) const {
+        objects->vertex_arrays -= named(n, names);
+        GlFunctions::DeleteVertexArrays(n, names);
     }
     void GenQueries(GLsizei n, GLuint* names) const {
         GlFunctions::GenQueries(n, names);

@@ -15,7 +15,7 @@
 
 #include "common/base/ids.h"
 #include "tileserver/render/picture_budget.h"
-#include "tileserver/render/render_node.h"
+#include "tileserver/session/render_node.h"
 
 namespace wall::tileserver {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "common/wire/batch.h"
-#include "tileserver/render/executor.h"
+#include "tileserver/execute/executor.h"
 #include "tileserver/render/pace.h"
 #include "tileserver/render/tile_watches.h"
 

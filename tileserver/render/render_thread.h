@@ -20,10 +20,10 @@
 #include "tileserver/gpu/caps.h"
 #include "tileserver/render/batch_queue.h"
 #include "tileserver/render/compositor.h"
-#include "tileserver/render/parallel_group.h"
 #include "tileserver/render/running_turn.h"
 #include "tileserver/render/window_output.h"
-#include "tileserver/render/work.h"
+#include "tileserver/session/parallel_group.h"
+#include "tileserver/session/work.h"
 
 namespace wall::tileserver {
 

@@ -6,7 +6,7 @@
 
 #include "client_lib/context/context.h"
 #include "client_lib/context/current.h"
-#include "client_lib/context/share_group.h"
+#include "client_lib/objects/share_group.h"
 
 namespace wall::client {
 
@@ -24,7 +24,7 @@ protected:
     GLenum error() { return c.take_error(); }
 
     std::shared_ptr<ShareGroup> share = std::make_shared<ShareGroup>();
-    Context c{share, ContextOptions{}};
+    Context c{share};
 };
 
 }  // namespace wall::client

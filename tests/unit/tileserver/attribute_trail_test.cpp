@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What geometry leaves behind, attribute by attribute, against what its commands set.
-#include "tileserver/render/attribute_trail.h"
+#include "tileserver/driver/attribute_trail.h"
 
 #include <gtest/gtest.h>
 

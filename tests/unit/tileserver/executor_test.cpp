@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the executor draws, compared with the same commands given to plain Mesa directly.
-#include "tileserver/render/executor.h"
+#include "tileserver/execute/executor.h"
 
 #include <gmock/gmock.h>
 
@@ -575,21 +575,21 @@ protected:
         pack::TexCompressed(batch.buffer(), ClientName(1), GL_TEXTURE_2D, 0, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, kSize,
                             kSize, blocks(kSize));
         session.expect_run(batch);
-        const auto bytes_before = session.session.texture_bytes();
-        EXPECT_EQ(bytes_before, blocks(kSize).size());
+        const auto bytes_before = session.session.objects.bytes();
+        EXPECT_EQ(bytes_before, kLeastObjectBytes + blocks(kSize).size());
         Batch bad;
         refused(bad.buffer());
         session.expect_run(bad);
         EXPECT_GT(session.session.work.gl_errors, 0u) << "the driver has refused it";
-        EXPECT_EQ(session.session.texture_bytes(), bytes_before);
-        const Texture* texture = session.session.texture(ClientName(1), TextureTarget::t2d);
-        const auto shared = texture->content;  // held by another one, so that a change needs a copy
+        EXPECT_EQ(session.session.objects.bytes(), bytes_before);
+        const Texture* texture = session.session.objects.find<Texture>(ClientName(1));
+        const auto shared = texture->shared();  // held by another one, so that a change needs a copy
         Batch change;
         pack::TexParameter(change.buffer(), ClientName(1), GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST, 0, 0, 0);
         session.expect_run(change);
-        EXPECT_NE(texture->content, shared);
+        EXPECT_NE(texture->shared(), shared);
         std::vector<std::byte> copied(blocks(kSize).size());
-        node_.driver->gl().GetCompressedTextureImage(texture->content->name(), 0, static_cast<GLsizei>(copied.size()),
+        node_.driver->gl().GetCompressedTextureImage(texture->content().name(), 0, static_cast<GLsizei>(copied.size()),
                                                      copied.data());
         return copied;
     }
@@ -757,7 +757,7 @@ TEST_F(ExecutorTest, BadStreamsAreRefusedWithAReason) {
                 }),
                 ::testing::HasSubstr("DrawPixels"));
     EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::RunCall(p, ClientName(3)); }); }),
-                ::testing::HasSubstr("not defined"));
+                ::testing::HasSubstr("there is no run 3"));
     EXPECT_THAT(reason([](Batch& b) { pack::Swap(b.buffer(), SurfaceId(8), 1); }), ::testing::HasSubstr("Swap"));
     EXPECT_THAT(reason([](Batch& b) {
                     pack::TexImage(b.buffer(), ClientName(1), GL_TEXTURE_2D, 0, GL_RGBA, 1 << 30, 4, 1, 0, GL_RGBA,

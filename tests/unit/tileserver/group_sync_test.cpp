@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tileserver/render/group_sync.h"
+#include "tileserver/session/group_sync.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A layer must be, pixel by pixel, what plain Mesa draws in a window (DESIGN, section 8: "same").
-#include "tileserver/render/layer.h"
+#include "tileserver/driver/layer.h"
 
 #include <gtest/gtest.h>
 

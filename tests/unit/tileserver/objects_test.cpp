@@ -3,21 +3,29 @@
 // each draws alone, and leave nothing behind in the driver.
 #include <array>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <memory>
 #include <random>
 #include <set>
 
 #include "common/glapi/program_format.h"
+#include "common/glstate/vertex_input.h"
 #include "common/wire/batch.h"
 #include "tests/unit/tileserver/test_node.h"
+#include "tileserver/objects/texture.h"
 
 namespace wall::tileserver::test {
 namespace {
 
 constexpr int kWidth = 40, kHeight = 32;
 constexpr geom::Rect kWindow{0, 0, kWidth, kHeight};
-constexpr std::uint32_t kNames = 3;  // of every kind: 1 to 3
+constexpr std::uint32_t kNames = 3;  // of every kind
+
+/// The n-th name of a kind: ids are unique over kinds.
+ClientName name_of(ObjectKind kind, std::uint32_t n) {
+    return ClientName(static_cast<std::uint32_t>(kind) * kNames + 1 + n);
+}
 constexpr std::uint32_t kContexts = 2;
 
 /// The same random numbers with every library.
@@ -25,8 +33,11 @@ class Random {
 public:
     explicit Random(std::uint32_t seed) : engine_(seed) {}
     std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(engine_()) % n; }
-    ClientName name() { return ClientName(1 + below(kNames)); }
-    ClientName name_or_none() { return ClientName(below(kNames + 1)); }
+    ClientName name(ObjectKind kind) { return name_of(kind, below(kNames)); }
+    ClientName name_or_none(ObjectKind kind) {
+        const std::uint32_t n = below(kNames + 1);
+        return n == 0 ? ClientName() : name_of(kind, n - 1);
+    }
     float unit() { return static_cast<float>(below(1000)) / 1000.0f; }
     float place() { return unit() * 2 - 1; }
     glstate::Vec4 color() { return {unit(), unit(), unit(), 1}; }
@@ -72,7 +83,7 @@ private:
             switch (random_.below(8)) {
                 case 0:
                 case 1: define_texture(b); break;
-                case 2: pack::TexDelete(b, random_.name()); break;
+                case 2: pack::ObjectDelete(b, random_.name(ObjectKind::texture)); break;
                 case 3: define_run(b); break;
                 case 4: delete_run(b); break;
                 case 5: define_program(b); break;
@@ -82,7 +93,7 @@ private:
         }
     }
     void define_texture(wire::PackBuffer& b) {
-        const ClientName name = random_.name_or_none();  // the default one as well
+        const ClientName name = random_.name_or_none(ObjectKind::texture);  // the default one as well
         std::vector<std::byte> image(8 * 8 * 4);
         for (auto& byte : image) byte = static_cast<std::byte>(random_.below(256));
         pack::TexImage(b, name, GL_TEXTURE_2D, 0, GL_RGBA, 8, 8, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, image);
@@ -90,7 +101,7 @@ private:
                            random_.below(2) == 0 ? GL_NEAREST : GL_LINEAR, 0, 0, 0);
     }
     void define_run(wire::PackBuffer& b) {
-        const ClientName name = random_.name();
+        const ClientName name = random_.name(ObjectKind::run);
         wire::PackBuffer body;
         triangle(body);
         if (large_ && random_.below(3) == 0) many_triangles(body, 2 * kRunPartVertices / 3);
@@ -99,15 +110,15 @@ private:
         runs_.insert(name);
     }
     void delete_run(wire::PackBuffer& b) {
-        const ClientName name = random_.name();
-        pack::RunDelete(b, name);
+        const ClientName name = random_.name(ObjectKind::run);
+        pack::ObjectDelete(b, name);
         runs_.erase(name);
     }
     /// Few different sources, so that equal ones meet, too.
     void define_program(wire::PackBuffer& b) {
-        const ClientName name = random_.name();
+        const ClientName name = random_.name(ObjectKind::program);
         if (random_.below(4) == 0) {
-            pack::ProgramDelete(b, name);
+            pack::ObjectDelete(b, name);
             programs_.erase(name);
             return;
         }
@@ -122,7 +133,7 @@ private:
         tint(b, name);
     }
     void set_uniform(wire::PackBuffer& b) {
-        const ClientName name = random_.name();
+        const ClientName name = random_.name(ObjectKind::program);
         if (programs_.contains(name)) tint(b, name);
     }
     void tint(wire::PackBuffer& b, ClientName program) {
@@ -140,13 +151,13 @@ private:
     void change_state(Batch& batch) {
         batch.set<el::color>(random_.color())
             .set<el::texture_2d_enabled>(random_.below(2))
-            .set<el::texture_binding_2d>(random_.below(kNames + 1));
+            .set<el::texture_binding_2d>(random_.name_or_none(ObjectKind::texture).value);
         batch.set<el::blend_enabled>(random_.below(2)).set<el::blend_func>({GL_ONE, GL_ONE, GL_ONE, GL_ZERO});
         batch.set<el::modelview>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, random_.place() / 2, random_.place() / 2, 0, 1});
         batch.set<el::map_color>(random_.below(2))
             .set<el::map1_vertex_3>(random_.below(2))
             .set<el::depth_test>(random_.below(2));
-        const ClientName program = random_.name_or_none();
+        const ClientName program = random_.name_or_none(ObjectKind::program);
         batch.set<el::current_program>(programs_.contains(program) ? program.value : 0);
     }
     void draw(wire::PackBuffer& b) {
@@ -184,12 +195,12 @@ private:
     }
     /// Counted, asked for under a new number each time, and now and then deleted.
     void count_samples(Batch& batch) {
-        const ClientName query = random_.name();
+        const ClientName query = random_.name(ObjectKind::query);
         batch.set<el::occlusion_query>(query.value);
         batch.block(1, [this](auto& b) { triangle(b); });
         batch.set<el::occlusion_query>(0);
         pack::QueryResult(batch.buffer(), RequestId(++last_request_), query);
-        if (random_.below(2) == 0) pack::QueryDelete(batch.buffer(), query);
+        if (random_.below(2) == 0) pack::ObjectDelete(batch.buffer(), query);
     }
 
     Random random_;
@@ -340,41 +351,41 @@ TEST_F(ObjectsTest, ScriptsAreOfAllKinds) {
 
 TEST_F(ObjectsTest, NamesOfASessionReachNoOther) {
     const auto owner = open(1), other = open(2);
+    static constexpr ClientName kTexture(1), kRun(2), kProgram(3);
     Batch made;
     const std::vector<std::byte> white(8 * 8 * 4, std::byte{255});
-    pack::TexImage(made.buffer(), ClientName(1), GL_TEXTURE_2D, 0, GL_RGBA, 8, 8, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                   white);
+    pack::TexImage(made.buffer(), kTexture, GL_TEXTURE_2D, 0, GL_RGBA, 8, 8, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, white);
     wire::PackBuffer body;
     pack::Begin(body, GL_POINTS);
     pack::End(body);
-    pack::RunDefine(made.buffer(), ClientName(1), static_cast<std::uint32_t>(body.commands()),
+    pack::RunDefine(made.buffer(), kRun, static_cast<std::uint32_t>(body.commands()),
                     static_cast<std::uint32_t>(body.operand_bytes()), run_content(body));
     const glapi::ProgramDefinition definition{
         {{GL_FRAGMENT_SHADER, true, "uniform vec4 tint; void main() { gl_FragColor = tint; }"}}, {}, {}};
-    pack::ProgramLink(made.buffer(), RequestId(0), ClientName(1), encode(definition));
+    pack::ProgramLink(made.buffer(), RequestId(0), kProgram, encode(definition));
     owner->expect_run(made);
 
-    EXPECT_EQ(other->session.texture(ClientName(1), TextureTarget::t2d), nullptr);
+    EXPECT_EQ(other->session.objects.find<Texture>(kTexture), nullptr);
     const auto refused = [this](auto&& fill) {
         const auto session = open(3);
         Batch batch;
         fill(batch);
         return !session->run(batch);
     };
-    EXPECT_TRUE(refused([](Batch& b) { b.block(1, [](auto& p) { pack::RunCall(p, ClientName(1)); }); }))
+    EXPECT_TRUE(refused([](Batch& b) { b.block(1, [](auto& p) { pack::RunCall(p, kRun); }); }))
         << "a run of another session";
     const glstate::Vec4 red = {1, 0, 0, 1};
     EXPECT_TRUE(refused([&](Batch& b) {
-        pack::Uniform(b.buffer(), ClientName(1), 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red)));
+        pack::Uniform(b.buffer(), kProgram, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red)));
     })) << "a program of another session";
     // Drawing with and deleting another's names does nothing to them, nor does the driver's own number work as a name.
-    const GLuint driver_name = owner->session.texture(ClientName(1), TextureTarget::t2d)->content->name();
-    for (const ClientName name : {ClientName(1), ClientName(driver_name)}) {
+    const GLuint driver_name = owner->session.objects.find<Texture>(kTexture)->content().name();
+    for (const ClientName name : {kTexture, ClientName(driver_name)}) {
         Batch batch;
         batch.set<el::texture_2d_enabled>(1)
             .set<el::texture_binding_2d>(name.value)
             .set<el::color>({0, 0, 1, 1})
-            .set<el::current_program>(1);
+            .set<el::current_program>(kProgram.value);
         batch.block(1, [](auto& p) {
             pack::Begin(p, GL_QUADS);
             for (const auto& v :
@@ -382,18 +393,76 @@ TEST_F(ObjectsTest, NamesOfASessionReachNoOther) {
                 pack::Vertex2f(p, v[0], v[1]);
             pack::End(p);
         });
-        pack::TexDelete(batch.buffer(), name);
-        pack::RunDelete(batch.buffer(), name);
-        pack::ProgramDelete(batch.buffer(), name);
+        for (const ClientName gone : {name, kRun, kProgram}) pack::ObjectDelete(batch.buffer(), gone);
         other->expect_run(batch);
         EXPECT_EQ(other->read(0, {5, 5, 1, 1}), (Pixels{0, 0, 255, 255})) << name.value;
     }
-    EXPECT_NE(owner->session.texture(ClientName(1), TextureTarget::t2d), nullptr);
+    EXPECT_NE(owner->session.objects.find<Texture>(kTexture), nullptr);
     EXPECT_TRUE(node_.driver->gl().IsTexture(driver_name));
     Batch use;
-    use.block(1, [](auto& p) { pack::RunCall(p, ClientName(1)); });
-    pack::Uniform(use.buffer(), ClientName(1), 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red)));
+    use.block(1, [](auto& p) { pack::RunCall(p, kRun); });
+    pack::Uniform(use.buffer(), kProgram, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(red)));
     owner->expect_run(use);
+}
+
+/// An id of another kind is refused, and what is there stays.
+TEST_F(ObjectsTest, AnIdIsOfOneKind) {
+    wire::PackBuffer body;
+    pack::Begin(body, GL_POINTS);
+    pack::End(body);
+    const glapi::ProgramDefinition definition{
+        {{GL_FRAGMENT_SHADER, true, "void main() { gl_FragColor = vec4(1); }"}}, {}, {}};
+    static constexpr std::array<float, 4> values{};
+    using Say = std::function<void(Batch&, ClientName)>;
+    const std::array<std::pair<ObjectKind, Say>, 7> makes = {{
+        {ObjectKind::texture,
+         [](Batch& b, ClientName id) {
+             pack::TexParameter(b.buffer(), id, GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST, 0, 0, 0);
+         }},
+        {ObjectKind::program,
+         [&](Batch& b, ClientName id) { pack::ProgramLink(b.buffer(), RequestId(0), id, encode(definition)); }},
+        {ObjectKind::run,
+         [&](Batch& b, ClientName id) {
+             pack::RunDefine(b.buffer(), id, static_cast<std::uint32_t>(body.commands()),
+                             static_cast<std::uint32_t>(body.operand_bytes()), run_content(body));
+         }},
+        {ObjectKind::query,
+         [](Batch& b, ClientName id) {
+             b.set<el::occlusion_query>(id.value);
+             b.block(1, [](auto& p) { pack::Clear(p, GL_DEPTH_BUFFER_BIT); });
+             b.set<el::occlusion_query>(0);
+         }},
+        {ObjectKind::buffer, [](Batch& b, ClientName id) { pack::BufferData(b.buffer(), id, 16, GL_STATIC_DRAW); }},
+        {ObjectKind::vertex_input,
+         [](Batch& b, ClientName id) { pack::VertexInput(b.buffer(), id, glstate::encode({})); }},
+        {ObjectKind::draw_pieces, [](Batch& b, ClientName id) { pack::DrawPieces(b.buffer(), id, 12, 0, {}); }},
+    }};
+    const std::array<Say, 7> uses = {
+        makes[0].second,
+        [&](Batch& b, ClientName id) {
+            pack::Uniform(b.buffer(), id, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(values)));
+        },
+        [](Batch& b, ClientName id) { b.block(1, [&](auto& p) { pack::RunCall(p, id); }); },
+        [](Batch& b, ClientName id) { pack::QueryResult(b.buffer(), RequestId(7), id); },
+        [](Batch& b, ClientName id) { pack::BufferSubData(b.buffer(), id, 0, {}); },
+        [](Batch& b, ClientName id) { b.block(1, [&](auto& p) { pack::DrawArrays(p, id, {}, GL_POINTS, 0, 1); }); },
+        makes[6].second,
+    };
+    static_assert(makes.size() == kObjectKinds, "a new kind is tried, too");
+    for (std::size_t is = 0; is < kObjectKinds; ++is) {
+        for (std::size_t wanted = 0; wanted < kObjectKinds; ++wanted) {
+            if (is == wanted) continue;
+            for (const Say& say : {makes[wanted].second, uses[wanted]}) {
+                const auto session = open(1);
+                Batch made, wrong;
+                makes[is].second(made, ClientName(9));
+                session->expect_run(made);
+                say(wrong, ClientName(9));
+                EXPECT_FALSE(session->run(wrong)) << kObjectKindNames[is] << " as " << kObjectKindNames[wanted];
+                EXPECT_EQ(session->session.objects.size(), 1u);
+            }
+        }
+    }
 }
 
 /// Equal contexts of different sessions cost a comparison of values once.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Two members of a parallel program on one node, without threads: what they share and what not.
-#include "tileserver/render/parallel_group.h"
+#include "tileserver/session/parallel_group.h"
 
 #include <gmock/gmock.h>
 

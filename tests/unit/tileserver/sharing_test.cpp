@@ -9,7 +9,7 @@
 #include "client_lib/objects/texture.h"
 #include "common/glapi/image.h"
 #include "tests/unit/tileserver/test_node.h"
-#include "tileserver/render/content_store.h"
+#include "tileserver/objects/content_store.h"
 
 namespace wall::tileserver::test {
 namespace {
@@ -204,7 +204,7 @@ protected:
         if (answer == Said::send) send(session, content);
     }
     static GLuint driver_name(TestSession& session, TextureTarget target = TextureTarget::t2d) {
-        return session.session.texture(ClientName(1), target)->content->name();
+        return session.session.objects.find<Texture>(Texture::key(ClientName(1), target))->content().name();
     }
     /// The texture over the whole window, some of it minified.
     static Pixels picture(TestSession& session, GLenum target = GL_TEXTURE_2D) {
@@ -250,7 +250,7 @@ TEST_F(SharingTest, EqualContentIsOneObject) {
     EXPECT_NE(driver_name(*a), driver_name(*c));
     EXPECT_EQ(count_different(picture(*b), alone(plain(1))), 0u);
     EXPECT_EQ(count_different(picture(*c), alone(plain(2))), 0u);
-    EXPECT_EQ(a->session.texture_bytes(), b->session.texture_bytes()) << "everybody pays";
+    EXPECT_EQ(a->session.objects.bytes(), b->session.objects.bytes()) << "everybody pays";
 }
 
 TEST_F(SharingTest, ParametersBelongToTheContent) {
@@ -268,7 +268,7 @@ TEST_F(SharingTest, OutlivesWhoSentIt) {
     EXPECT_EQ(count_different(picture(*b), alone(plain(1))), 0u);
     EXPECT_EQ(ask(*c, plain(1)), Said::have);
     Batch gone;
-    pack::TexDelete(gone.buffer(), ClientName(1));
+    pack::ObjectDelete(gone.buffer(), ClientName(1));
     b->expect_run(gone);
     EXPECT_EQ(count_different(picture(*c), alone(plain(1))), 0u);
     c->expect_run(gone);
@@ -456,16 +456,17 @@ TEST_F(SharingTest, RunsAreShared) {
     pack::ShareRun(second.buffer(), RequestId(5), ClientName(3), key);
     b->expect_run(second);
     EXPECT_EQ(said(*b), Said::have);
-    EXPECT_EQ(a->session.runs.at(ClientName(8)), b->session.runs.at(ClientName(3)));
+    EXPECT_EQ(a->session.objects.find<tileserver::Run>(ClientName(8))->content(),
+              b->session.objects.find<tileserver::Run>(ClientName(3))->content());
     Batch gone;
-    pack::RunDelete(gone.buffer(), ClientName(8));
+    pack::ObjectDelete(gone.buffer(), ClientName(8));
     a->expect_run(gone);
     Batch use;
     use.block(1, [](auto& p) { pack::RunCall(p, ClientName(3)); });
     b->expect_run(use);
     EXPECT_EQ(b->read(0, {5, 5, 1, 1}), (Pixels{0, 255, 0, 255}));
-    EXPECT_EQ(a->session.run_bytes, 0u);
-    EXPECT_EQ(b->session.run_bytes, content.size());
+    EXPECT_EQ(a->session.objects.bytes(), 0u);
+    EXPECT_EQ(b->session.objects.bytes(), kLeastObjectBytes + content.size());
 }
 
 /// Random sessions over few contents, in random turns: each draws what it draws alone.
@@ -487,7 +488,7 @@ TEST_F(SharingTest, SessionsInTurnsDrawAsEachAlone) {
             pack::TexParameter(batch.buffer(), ClientName(1), GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER,
                                act.seed % 2 != 0 ? GL_NEAREST : GL_LINEAR, 0, 0, 0);
         } else {
-            pack::TexDelete(batch.buffer(), ClientName(1));
+            pack::ObjectDelete(batch.buffer(), ClientName(1));
         }
         session.expect_run(batch);
     };

@@ -12,8 +12,8 @@
 #include "common/wire/batch.h"
 #include "gen/glapi/wire.gen.h"
 #include "tests/unit/tileserver/reference_window.h"
+#include "tileserver/execute/executor.h"
 #include "tileserver/gpu/backend.h"
-#include "tileserver/render/executor.h"
 
 namespace wall::tileserver::test {
 

@@ -36,9 +36,11 @@ def state_header(model):
     out.append(f"inline constexpr std::size_t kCategoryCount = {len(names)};\n")
     out.append("inline constexpr std::array<const char*, kCategoryCount> kCategoryNames = {\n"
                + "".join(f'    "{n}",\n' for n in names) + "};\n")
-    last_sent = model.categories[-2].elements[-1]
+    sent = [c for c in model.categories if c.sent]
+    last_sent = sent[-1].elements[-1]
+    out.append(f"inline constexpr std::size_t kSentCategoryCount = {len(sent)};  ///< the first ones\n")
     out.append(f"inline constexpr std::uint32_t kLastSentId = {last_sent.id + last_sent.count - 1};  ///< ids 1 to "
-               f"this travel; those of `local` do not\n")
+               f"this travel; those of the other categories do not\n")
     out.append(f"inline constexpr std::uint32_t kLastId = {model.last_id};\n\n")
     for struct, fields in model.structs.items():
         out.append(f"struct {struct} {{\n" + "".join(f"    {TYPES[f.type][0]} {f.name};\n" for f in fields)
@@ -88,6 +90,7 @@ def _tag(e, c):
             f'    static constexpr const char* name = "{e.name}";\n'
             f"    static constexpr std::uint16_t id = {e.id};\n    static constexpr unsigned count = {e.count};\n"
             f"    static constexpr Category category = Category::{c.name};\n"
+            f"    static constexpr bool sent = {str(c.sent).lower()};\n"
             f"    static constexpr GLbitfield groups = {_mask(e.groups, GROUP_BITS)};\n"
             f"    static constexpr GLbitfield client_groups = {_mask(e.client_groups, CLIENT_GROUP_BITS)};\n"
             f"    static type& ref(State& s, unsigned {i or ''}{' = 0' if i else ' = 0'}) {{ return {at}; }}\n"
@@ -200,9 +203,7 @@ def driver_header(model, registry):
            "        if (active_unit != i) gl.ActiveTexture(GL_TEXTURE0 + (active_unit = i));\n    }\n"
            "    static GLenum face(unsigned i) { return i == 0 ? GL_FRONT : GL_BACK; }\n\n"]
     custom = []
-    for e in model.elements:
-        if e.category == "local":
-            continue
+    for e in (e for c in model.categories if c.sent for e in c.elements):
         if e.emit_custom:
             custom.append(e)
         else:

@@ -16,8 +16,8 @@ The opcodes of the data stream and a packer for each. Usage:
 """
 
 DECODE_NOTES = """
-DecodeTable<H>::rows[op]: checks the operands' bounds and calls the member of H of the same name; see
-common/glapi/decoder.h for what H must offer and for the loop around it.
+DecodeTable<H>::rows[op]: checks the operands' bounds and calls the member of the same name, of H or of what H has for
+the command's group; see common/glapi/decoder.h for what H must offer and for the loop around it.
 """
 
 
@@ -123,7 +123,10 @@ struct DecodeTable {
     static const Row rows[kOpCount];
 
 private:
+    // Whose member takes the commands of a group.
 """)
+    out += [_group(name) for name in dict.fromkeys(op.group for op in ops)]
+    out.append("\n")
     out += [_decoder(op) for op in ops]
     out.append("};\n\ntemplate <class H>\nconst typename DecodeTable<H>::Row DecodeTable<H>::rows[kOpCount] = {\n")
     for op in ops:
@@ -134,16 +137,21 @@ private:
     return "".join(out)
 
 
+def _group(name):
+    return (f"    static auto& {name}(H& h) {{\n        if constexpr (H::kByGroup) return h.{name};\n"
+            f"        else return h;\n    }}\n")
+
+
 def _decoder(op):
     if op.name == "Block":
         return ""
     lines = [f"    static bool {op.name}(H& h, wire::OperandReader& in) {{\n"]
     if op.is_state:
         lines += ["        const std::uint32_t id = in.get<std::uint32_t>();\n",
-                  "        const std::uint32_t bytes = in.ok() ? h.state_bytes(id) : 0;\n",
+                  f"        const std::uint32_t bytes = in.ok() ? {op.group}(h).state_bytes(id) : 0;\n",
                   "        if (bytes == 0) return false;\n",
                   "        const std::span<const std::byte> value = in.raw(bytes);\n",
-                  "        return in.ok() && h.State(id, value) && !h.refused();\n    }\n"]
+                  f"        return in.ok() && {op.group}(h).State(id, value) && !h.refused();\n    }}\n"]
         return "".join(lines)
     args = [o.name for o in op.operands] + ([op.bytes_name] if op.bytes_name else [])
     if op.operands:
@@ -162,7 +170,7 @@ def _decoder(op):
         loads.append(op.bytes_name)
     if not args:
         lines.append("        (void)in;\n")
-    lines.append(f"        h.{op.name}({', '.join(loads)});\n")
+    lines.append(f"        {op.group}(h).{op.name}({', '.join(loads)});\n")
     lines.append("        return !h.refused();\n    }\n")
     return "".join(lines)
 

@@ -150,6 +150,7 @@ _KEYS = _OPTIONAL | {"name", "type", "fields", "value", "default", "defaults", "
 class Category:
     name: str
     note: str
+    sent: bool
     elements: list
 
     @property
@@ -263,10 +264,11 @@ def load(path):
             names.add(element_name)
             elements.append(e)
             next_id += e.count
-        categories.append(Category(name, attributes.get("_note", ""), elements))
+        categories.append(Category(name, attributes.get("_note", ""), not attributes.get("_unsent", False), elements))
     model = StateModel(categories, valid, families, structs)
-    if categories[-1].name != "local":
-        file.refuse("local must be the last category (its elements have no wire ids)", categories[-1].name)
+    for before, category in zip(categories, categories[1:]):
+        if category.sent and not before.sent:
+            file.refuse("unsent categories must be the last ones (their elements do not travel)", before.name)
     unused = set(valid) - _named_lists(model.elements)
     for name in sorted(unused):
         file.refuse(f"no element names the list {name}", "valid", name)

@@ -102,7 +102,7 @@ TEST_F(ArraysTest, EveryAttributeComesFromItsArray) {
     gl().FogCoordPointer(c, GL_FLOAT, kStride, of(Attribute::fog_coord));
     gl().IndexPointer(c, GL_FLOAT, kStride, of(Attribute::color_index));
     gl().EdgeFlagPointer(c, kStride, edges);
-    for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
+    for (unsigned unit = 0; unit < kTextureCoords; ++unit) {
         gl().ClientActiveTexture(c, GL_TEXTURE0 + unit);
         gl().TexCoordPointer(c, unit == 0 ? 3 : 4, GL_FLOAT, kStride, of(Attribute::texcoord + unit));
         gl().EnableClientState(c, GL_TEXTURE_COORD_ARRAY);
@@ -126,7 +126,7 @@ TEST_F(ArraysTest, EveryAttributeComesFromItsArray) {
         gl().Color4f(c, color[0], color[1], color[2], color[3]);
         gl().Normal3f(c, normal[0], normal[1], normal[2]);
         gl().TexCoord3f(c, st[0], st[1], st[2]);
-        for (unsigned unit = 1; unit < kTextureUnits; ++unit) {
+        for (unsigned unit = 1; unit < kTextureCoords; ++unit) {
             const float* v = at(Attribute::texcoord + unit);
             gl().MultiTexCoord4f(c, GL_TEXTURE0 + unit, v[0], v[1], v[2], v[3]);
         }

@@ -40,7 +40,7 @@ protected:
         return bound;
     }
 
-    Context other{share, ContextOptions{}};
+    Context other{share};
     GLuint name = 0;
 };
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/client_lib/context_fixture.h"
+#include "gen/glapi/wire.gen.h"
 
 namespace wall::client {
 namespace {
@@ -35,22 +35,20 @@ TEST(UncoveredPart, MayBeCoveredTwice) {
     EXPECT_TRUE(uncovered({0, 0, 100, 100}, {{0, 0, 60, 100}, {40, 0, 60, 100}}).empty());
 }
 
-using AKeptFrame = ContextTest;
-
-TEST_F(AKeptFrame, HasAStretchForEachTurnOfAContext) {
-    Context other{share, ContextOptions{}};
+TEST(AKeptFrame, HasAStretchForEachTurnOfAContext) {
+    constexpr ContextId kFirst(1), kOther(2);
     KeptFrame frame;
     EXPECT_TRUE(frame.empty());
-    for (Context* context : {&c, &c, &other, &c}) {
-        frame.turn_to(*context);
+    for (const ContextId context : {kFirst, kFirst, kOther, kFirst}) {
+        frame.turn_to(context);
         glapi::pack::Vertex2f(frame.follower.batch, 1, 2);
     }
     EXPECT_EQ(frame.bytes(), 4 * 9u);
     frame.seal();
     ASSERT_EQ(frame.stretches.size(), 3u);
     EXPECT_EQ(frame.stretches[0].commands.commands(), 2u);
-    EXPECT_EQ(frame.stretches[1].context, other.id);
-    EXPECT_EQ(frame.stretches[2].context, c.id);
+    EXPECT_EQ(frame.stretches[1].context, kOther);
+    EXPECT_EQ(frame.stretches[2].context, kFirst);
     EXPECT_EQ(frame.bytes(), 4 * 9u);
 }
 

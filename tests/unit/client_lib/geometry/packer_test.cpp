@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "client_lib/context/context.h"
-#include "client_lib/context/share_group.h"
 #include "client_lib/geometry/primitive_scan.h"
+#include "client_lib/objects/share_group.h"
 
 namespace wall::client {
 
@@ -93,7 +93,7 @@ TEST_F(PackerTest, GrowsBeyondItsFirstRoomWithoutLosingAnything) {
     packer.end();
     const auto& primitive = packer.primitives().at(0);
     VertexScan vertices;
-    vertices.scan(packer, primitive, {}, Projection{});
+    vertices.scan(packer, primitive, {}, glstate::Projection{});
     ASSERT_EQ(vertices.size(), static_cast<std::size_t>(kMany));
     const auto color = vertices.attributes(vertices.size()).offset[place_of(Attribute::color)];
     float last;
@@ -131,7 +131,7 @@ TEST(PrimitiveScan, KnowsTheAttributesOfEachVertex) {
     VertexScan vertices;
     BlockWalk walk(packer, {}, packer.mark(), {});
     walk.go_to(packer.primitives()[0].first);
-    vertices.scan(packer, packer.primitives()[0], walk.places(), Projection{});
+    vertices.scan(packer, packer.primitives()[0], walk.places(), glstate::Projection{});
     ASSERT_EQ(vertices.size(), std::size_t{kVertices});
     const auto red_at = [&](std::size_t v) {
         float red;
@@ -145,7 +145,7 @@ TEST(PrimitiveScan, KnowsTheAttributesOfEachVertex) {
 }
 
 TEST(PrimitiveScan, TextureUnitsAndGenericAttributesAreRememberedLikeAllOthers) {
-    Context c(std::make_shared<ShareGroup>(), ContextOptions{});
+    Context c(std::make_shared<ShareGroup>());
     const GlTable& gl = *c.table;
     gl.MultiTexCoord4f(c, GL_TEXTURE3, 1, 2, 3, 4);
     gl.Begin(c, GL_TRIANGLES);
@@ -160,7 +160,7 @@ TEST(PrimitiveScan, TextureUnitsAndGenericAttributesAreRememberedLikeAllOthers) 
     VertexScan vertices;
     BlockWalk walk(c.packer, {}, c.packer.mark(), {});
     walk.go_to(c.packer.primitives()[0].first);
-    vertices.scan(c.packer, c.packer.primitives()[0], walk.places(), Projection{});
+    vertices.scan(c.packer, c.packer.primitives()[0], walk.places(), glstate::Projection{});
     const auto places = vertices.attributes(3);
     EXPECT_EQ(places.op[place_of(Attribute::texcoord + 3)], glapi::Op::MultiTexCoord4f);
     EXPECT_EQ(places.op[place_of(Attribute::color_index)], glapi::Op::Indexf);

@@ -239,7 +239,7 @@ TEST_F(BufferTest, DeletingUnbinds) {
     gl().GenBuffers(c, 1, &name);
     gl().BindBuffer(c, GL_ELEMENT_ARRAY_BUFFER, name);
     gl().DeleteBuffers(c, 1, &name);
-    EXPECT_EQ(c.state.local.element_array_buffer, 0u);
+    EXPECT_EQ(c.state.vertex_arrays.element_array_buffer, 0u);
     EXPECT_FALSE(gl().IsBuffer(c, name));
 }
 

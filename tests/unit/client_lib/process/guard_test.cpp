@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "client_lib/context/core.h"
 #include "client_lib/context/lists.h"
 #include "tests/unit/client_lib/context_fixture.h"
 

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// How many texture units there are, by what they are for (OpenGL 2.1, 2.7 and 3.8).
+#pragma once
+
+#include <algorithm>
+
+#include "gen/glstate/state.gen.h"
+
+namespace wall::client {
+
+/// Of fixed function: with a switch, an environment. GL_MAX_TEXTURE_UNITS.
+inline constexpr unsigned kTextureUnits = glstate::el::texture_2d_enabled::count;
+/// Sets of coordinates, with their matrices and arrays. GL_MAX_TEXTURE_COORDS.
+inline constexpr unsigned kTextureCoords = glstate::el::texcoord::count;
+/// What textures are bound to and samplers name, in all kinds of shaders together. GL_MAX_TEXTURE_IMAGE_UNITS and its
+/// VERTEX and COMBINED sisters.
+inline constexpr unsigned kTextureImageUnits = glstate::el::texture_binding_2d::count;
+/// That glActiveTexture may name.
+inline constexpr unsigned kActiveTextures = std::max(kTextureCoords, kTextureImageUnits);
+
+// What is set for the active unit is an element of each of them, without a further check.
+static_assert(kTextureUnits == kActiveTextures && kTextureCoords == kActiveTextures);
+
+}  // namespace wall::client

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Who follows a process's contexts: its nodes, brought up to date when they draw, and what is kept for the parts of
+// windows that no tile shows. The session's mutex is held.
+#pragma once
+
+#include <cstring>
+#include <optional>
+
+#include "client_lib/follow/draw_source.h"
+#include "client_lib/follow/hidden_parts.h"
+#include "client_lib/follow/node_updater.h"
+#include "client_lib/follow/nodes.h"
+
+namespace wall::client {
+
+struct Followers {
+    Nodes& nodes;
+    NodeUpdater& updater;
+    HiddenParts& hidden;
+};
+
+/// Packs the head of a Block for these layers; its counts are filled in by end_block().
+struct OpenBlock {
+    std::size_t counts;    ///< where they stand among the operands
+    wire::PackMark start;  ///< of its commands
+};
+inline OpenBlock begin_block(wire::PackBuffer& buffer, std::uint64_t slots) {
+    const std::size_t operands = buffer.operand_bytes();
+    glapi::pack::Block(buffer, static_cast<std::uint32_t>(slots), static_cast<std::uint32_t>(slots >> 32), 0, 0);
+    return {operands + 2 * sizeof(std::uint32_t), buffer.mark()};
+}
+inline void end_block(wire::PackBuffer& buffer, const OpenBlock& block) {
+    const auto end = buffer.mark();
+    const std::uint32_t counts[2] = {static_cast<std::uint32_t>(end.commands - block.start.commands),
+                                     static_cast<std::uint32_t>(end.operand_bytes - block.start.operand_bytes)};
+    std::memcpy(buffer.operand_at(block.counts), counts, sizeof counts);
+}
+
+/// Runs `pack(buffer)` inside a Block on every layer of the draw target that `box` touches (nothing: all of them),
+/// after `before(node, buffer)` outside of the Block; `after(node)` when it is packed.
+template <class Before, class Pack, class After>
+void draw_on(const Followers& followers, const DrawSource& source, const std::optional<PixelRect>& box,
+             const Needs& needs, Before&& before, Pack&& pack, After&& after) {
+    if (!source.draw) return;
+    const auto pack_block = [&](wire::PackBuffer& buffer, std::uint64_t slots) {
+        const OpenBlock block = begin_block(buffer, slots);
+        pack(buffer);
+        end_block(buffer, block);
+    };
+    auto& [nodes, updater, hidden] = followers;
+    if (KeptFrame* const kept = hidden.begin_keeping(source, box)) {
+        Node& node = nodes[kept->layer];
+        before(node, nodes.batch(node, source.id));
+        pack_block(hidden.prepare(*kept, source, needs), kept->layer.bit());
+        after(kept->follower);
+    }
+    for (const auto& [index, slots] : nodes_touched(source.draw.layers(), box)) {
+        Node& node = nodes[index];
+        if (!source.draw.goes_to(node)) continue;
+        wire::PackBuffer& buffer = updater.prepare(node, source, needs);
+        before(node, buffer);
+        const std::size_t bytes = buffer.bytes();
+        pack_block(buffer, slots);
+        count(node, NodeCounter::geometry_bytes, buffer.bytes() - bytes);
+        after(node);
+    }
+}
+
+}  // namespace wall::client

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/follow/frame_wait.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "client_lib/link/pacing.h"
+#include "client_lib/process/log.h"
+
+namespace wall::client {
+namespace {
+
+constexpr int kLookMs = 20;  // at one node, while none has drawn a frame
+
+}  // namespace
+
+// A node that is slow for once (a long frame of all nodes alike) is waited for; one that has stopped is left out. If
+// all are late, the wall holds the frames or has stopped as a whole: then the program goes at the limit's pace.
+void wait_for_nodes(const FrameWait& wait, ClientSurface& surface, bool whole_frames) {
+    if (surface.frame < kFramesInFlight) return;
+    struct Waited {
+        Node& node;
+        std::shared_ptr<NodeStream> stream;
+        std::uint32_t frame;
+        NodeProgress progress;
+    };
+    std::vector<Waited> waited;
+    bool all_slow = true;
+    {
+        std::lock_guard lock(wait.mutex);
+        for (const auto& [index, slots] : nodes_touched(surface.layout.layers, std::nullopt)) {
+            Node& node = wait.nodes[index];
+            if (!node.alive()) continue;
+            const auto left = node.left_out.find(surface.id);
+            const bool left_out = left != node.left_out.end();
+            waited.push_back({node,
+                              node.stream,
+                              left_out ? left->second : surface.frame - (kFramesInFlight - 1),
+                              {.left_out = left_out}});
+            all_slow = all_slow && node.slow;
+        }
+    }
+    const auto deadline = std::chrono::steady_clock::now() + wait.limit;
+    bool someone_done = false;
+    for (Waited& w : waited) {
+        const auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
+        const bool patient = all_slow || !w.node.slow;
+        w.progress.done = w.stream->wait_swap(surface.id, w.frame, patient && left > 0 ? static_cast<int>(left) : 0);
+        w.progress.queued_bytes = w.stream->queued_bytes();
+        someone_done = someone_done || w.progress.done;
+    }
+    std::lock_guard lock(wait.mutex);
+    for (Waited& w : waited) {
+        if (w.node.stream != w.stream) continue;  // another incarnation meanwhile
+        w.node.slow = !w.progress.done;
+        if (!leave_out(w.progress, someone_done, whole_frames)) w.node.left_out.erase(surface.id);
+        else w.node.left_out.try_emplace(surface.id, surface.frame);
+    }
+}
+
+// As long as no node has drawn the frame, a member of the group may be late: however long that takes, it is waited for.
+// A node that is late with what others have drawn is not; what is queued for it has a limit.
+void wait_for_group(const FrameWait& wait, const ClientSurface& surface) {
+    if (surface.frame < kFramesInFlight) return;
+    const std::uint32_t frame = surface.frame - (kFramesInFlight - 1);
+    std::vector<std::pair<Node*, std::shared_ptr<NodeStream>>> waited;
+    {
+        std::lock_guard lock(wait.mutex);
+        for (auto& node : wait.nodes)
+            if (node->alive()) waited.emplace_back(node.get(), node->stream);
+        std::ranges::stable_sort(waited, {}, [](const auto& w) { return w.first->slow; });
+    }
+    const auto drawn = [&](const auto& w, int timeout_ms) {
+        return w.second->wait_swap(surface.id, frame, timeout_ms);
+    };
+    const auto some_drawn = [&] {
+        return std::ranges::any_of(waited, [&](const auto& w) { return drawn(w, kLookMs); });
+    };
+    const auto all_failed = [&] {
+        return std::ranges::all_of(waited, [](const auto& w) { return w.second->failed(); });
+    };
+    while (!some_drawn() && !all_failed()) continue;
+    const auto deadline = std::chrono::steady_clock::now() + wait.limit;
+    for (const auto& w : waited) {
+        const auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
+        const bool done = drawn(w, w.first->slow || left <= 0 ? 0 : static_cast<int>(left));
+        std::lock_guard lock(wait.mutex);
+        w.first->slow = !done;
+        if (done || w.second->queued_bytes() <= kMaxLateBytes || w.first->stream != w.second) continue;
+        w.second->give_up("too late with a parallel program's frames");
+        log_warning("event=node_given_up node=" + std::to_string(w.first->index.value) + " why=\"" +
+                    w.second->failure() + "\"");
+        w.first->stream.reset();
+    }
+}
+
+}  // namespace wall::client

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// One tileserver as a process sees it: the stream to it, and a mirror of what it holds. Every node is a follower of the
+// process's contexts, some logical time behind (DESIGN, section 1). The session's mutex guards it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <unordered_map>
+
+#include "client_lib/link/connect_attempt.h"
+#include "client_lib/link/control_messages.h"
+#include "client_lib/link/node_stream.h"
+#include "client_lib/link/reopening.h"
+#include "client_lib/objects/object.h"
+#include "client_lib/process/stats.h"
+#include "common/base/ids.h"
+#include "common/glstate/value_history.h"
+#include "common/wire/pack_buffer.h"
+#include "gen/glstate/state.gen.h"
+
+namespace wall::client {
+
+/// Logical times, by object.
+using ObjectStamps = std::unordered_map<ClientName, std::uint64_t>;
+
+/// What a node holds of one context.
+struct Mirror {
+    glstate::State state;
+    glstate::ValueHistory history;
+    SurfaceId draw_surface, read_surface;
+    UseStamp used;  ///< as of when the node was last brought what drawing with the context needs
+};
+
+/// One tileserver as this process sees it.
+struct Node {
+    NodeIndex index;
+    std::string name;
+    NodeInfo info;
+    std::shared_ptr<NodeStream> stream;                     ///< null: not connected
+    std::unordered_map<ContextId, Mirror> mirrors;          ///< by context
+    ObjectStamps object_stamps;                             ///< of what the node has; absent: nothing
+    std::unordered_map<SurfaceId, std::uint32_t> surfaces;  ///< by surface: layout version it knows
+    std::unordered_map<SurfaceId, std::uint32_t>
+        left_out;                             ///< surfaces whose frames it does not get now: the last one it got
+    bool asks_unanswered = false;             ///< a question about content took too long: it gets no more
+    bool slow = false;                        ///< missed a frame's limit; not waited for until it answers again
+    std::shared_ptr<ConnectAttempt> attempt;  ///< one that is being made
+    Reopening reopening;
+
+    wire::PackBuffer batch;   ///< being packed
+    ContextId batch_context;  ///< whose
+
+    bool alive() const { return stream && !stream->failed(); }
+    /// Whether it can be expected to answer soon.
+    bool answers() const { return alive() && left_out.empty(); }
+};
+
+/// Adds to what the statistics know of the node.
+inline void count(const Node& node, NodeCounter counter, std::size_t amount) {
+    if (amount != 0) stats().add_node(node.index, counter, amount);
+}
+
+}  // namespace wall::client

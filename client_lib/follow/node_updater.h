@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The lazy update (T4, W3.3): before a node draws with a context, its batch gets what its mirror lacks. The session's
+// mutex is held.
+#pragma once
+
+#include "client_lib/follow/draw_source.h"
+#include "client_lib/follow/nodes.h"
+#include "client_lib/geometry/needs.h"
+
+namespace wall::client {
+
+class NodeUpdater {
+public:
+    /// `nodes` outlives it.
+    explicit NodeUpdater(Nodes& nodes) : nodes_(nodes) {}
+
+    /// The node's batch after everything that drawing with this context needs: targets, objects, state.
+    wire::PackBuffer& prepare(Node& node, const DrawSource& source, const Needs& needs = {});
+
+private:
+    Nodes& nodes_;
+    std::uint32_t prepared_ = 0;  ///< counts towards the next sample of the diff time
+};
+
+}  // namespace wall::client

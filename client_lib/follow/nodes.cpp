@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/follow/nodes.h"
+
+#include <utility>
+
+#include "client_lib/process/log.h"
+
+namespace wall::client {
+namespace {
+
+constexpr int kConnectTimeoutMs = 2000;
+constexpr std::size_t kBatchBytes =
+    256 << 10;  // sent when it reaches this: large enough to be cheap, small enough to overlap
+
+}  // namespace
+
+Node& Nodes::at(NodeIndex index) {
+    while (nodes_.size() <= index.value) {
+        nodes_.push_back(std::make_unique<Node>());
+        nodes_.back()->index = NodeIndex(static_cast<std::uint32_t>(nodes_.size() - 1));
+    }
+    return (*this)[index];
+}
+
+/// A node at time zero: whatever it needs is sent when it needs it.
+void Nodes::forget(Node& node) {
+    if (node.stream) transport_.remove(node.stream.get());
+    node.stream.reset();
+    node.mirrors.clear();
+    node.object_stamps.clear();
+    node.surfaces.clear();
+    node.batch.clear();
+    node.left_out.clear();
+    node.slow = node.asks_unanswered = false;
+    node.attempt.reset();
+}
+
+void Nodes::connect(const NodeInfo& info) {
+    Node& node = at(info.node);
+    node.info = info;
+    forget(node);
+    node.reopening = {};
+    if (!node.info.up) return;
+    attempt(node);
+    attempts_begun_ = true;
+}
+
+void Nodes::connect_and_wait(const NodeInfo& info) {
+    Node& node = at(info.node);
+    if (node.alive() && node.info.incarnation == info.incarnation) return;
+    connect(info);
+    if (!node.attempt) return;
+    node.attempt->wait_until(std::chrono::steady_clock::time_point::max());
+    take_attempt(node);
+}
+
+void Nodes::attempt(Node& node) {
+    const auto hello = encode_data_hello(session_, node.info.ticket, group_ ? group_->rank : 0);
+    node.attempt = ConnectAttempt::start(node.info.address, hello, kConnectTimeoutMs, events_.can_be_taken);
+    if (!node.attempt) adopt_stream(node, NodeStream::open(node.info.address, hello, kConnectTimeoutMs));
+}
+
+void Nodes::wait_for_attempts(std::unique_lock<std::mutex>& lock, std::chrono::milliseconds limit) {
+    if (!std::exchange(attempts_begun_, false)) return;
+    std::vector<std::shared_ptr<ConnectAttempt>> attempts;
+    for (const auto& node : nodes_)
+        if (node->attempt) attempts.push_back(node->attempt);
+    lock.unlock();
+    const auto deadline = std::chrono::steady_clock::now() + limit;
+    for (const auto& attempt : attempts) attempt->wait_until(deadline);
+    lock.lock();
+    for (const auto& node : nodes_) take_attempt(*node);
+}
+
+void Nodes::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!stream) {
+        log_warning("event=node_refused node=" + std::to_string(node.index.value) + " reason=\"" +
+                    stream.error().message + "\"");
+        return node.reopening.not_opened(now);
+    }
+    node.reopening.opened(now);
+    node.stream = std::move(*stream);
+    if (group_) node.stream->never_stalls();
+    transport_.add(node.stream);
+    events_.opened(node);
+}
+
+void Nodes::take_attempt(Node& node) {
+    if (!node.attempt) return;
+    auto outcome = node.attempt->take();
+    if (!outcome) return;
+    node.attempt.reset();
+    adopt_stream(node, std::move(*outcome));
+}
+
+// The stream has failed, whatever the node does. What it held of this process is gone with it.
+void Nodes::lose(Node& node) {
+    const std::string why = node.stream->failure();
+    const bool ended = node.stream->ended_by_node();
+    node.reopening.lost(std::chrono::steady_clock::now(), ended);
+    log_warning("event=stream_lost node=" + std::to_string(node.index.value) + " why=\"" + why + "\"");
+    if (node.reopening.given_up())
+        complain_once("a node of the wall has ended this program's drawing again and again and is left alone: " + why,
+                      "node_given_up");
+    forget(node);
+    events_.lost();
+}
+
+void Nodes::keep_connected() {
+    for (const auto& node : nodes_) keep_connected(*node);
+}
+
+// A node that is there, but did not answer when it was asked, or whose stream has failed since. (The members of a
+// parallel program take a node up together.)
+void Nodes::keep_connected(Node& node) {
+    if (group_) return;
+    if (node.stream && node.stream->failed()) lose(node);
+    take_attempt(node);
+    if (!node.stream && !node.attempt && node.info.up && node.reopening.due(std::chrono::steady_clock::now()))
+        attempt(node);
+}
+
+wire::PackBuffer& Nodes::batch(Node& node, ContextId context) {
+    if (node.batch_context != context || node.batch.bytes() > kBatchBytes) send(node);
+    node.batch_context = context;
+    return node.batch;
+}
+
+void Nodes::send(Node& node) {
+    if (node.batch.empty()) return;
+    if (node.alive()) {
+        stats().add_node(node.index, NodeCounter::batches, 1);
+        node.stream->send(node.batch_context, std::exchange(node.batch, wire::PackBuffer()));
+        transport_.wake();
+    }
+    node.batch.clear();
+}
+
+void Nodes::distrust() {
+    for (auto& node : nodes_) {
+        if (!node->alive()) continue;
+        node->stream->give_up("out of memory");  // short enough to need none
+        node->batch.clear();
+    }
+}
+
+}  // namespace wall::client

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// A session's nodes: the streams to them, made all at once and made again beside the program, and what is packed for
+// each. Application threads; the session's mutex is held, but where a member says otherwise.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client_lib/follow/node.h"
+#include "client_lib/geometry/target_layers.h"
+#include "client_lib/link/parallel.h"
+#include "client_lib/link/transport.h"
+
+namespace wall::client {
+
+/// What is to be done when streams come and go. None may be empty.
+struct StreamEvents {
+    std::function<void(Node&)> opened;    ///< nothing has been packed for it yet
+    std::function<void()> lost;           ///< what the node held is gone
+    std::function<void()> can_be_taken;   ///< one was opened beside the program. Any thread; may outlive the nodes
+    std::function<void()> stream_failed;  ///< the transport's thread; waits for nobody who waits for a stream
+};
+
+class Nodes {
+public:
+    explicit Nodes(StreamEvents events) : events_(std::move(events)), transport_(events_.stream_failed) {}
+
+    auto begin() { return nodes_.begin(); }
+    auto end() { return nodes_.end(); }
+    std::size_t size() const { return nodes_.size(); }
+    /// One that is known.
+    Node& operator[](NodeIndex index) { return *nodes_[index.value]; }
+    Node& operator[](const TargetLayer& layer) { return (*this)[layer.node]; }
+    /// One that is known from now on.
+    Node& at(NodeIndex index);
+
+    // ---- streams ----
+    /// As whose nodes they are spoken to.
+    void set_session(SessionId session) { session_ = session; }
+    /// The node, as walld names it now, is another one than before: what it held is gone.
+    void connect(const NodeInfo& info);
+    /// The same, unless it is connected to that very process; waits until something has come of it.
+    void connect_and_wait(const NodeInfo& info);
+    /// Until what connect() has begun since the last call has come to something, at most `limit`; the lock is not held
+    /// meanwhile.
+    void wait_for_attempts(std::unique_lock<std::mutex>& lock, std::chrono::milliseconds limit);
+    /// Opens streams again that have failed, and those of nodes that did not answer.
+    void keep_connected();
+
+    // ---- batches ----
+    /// The node's batch, set to this context (earlier commands of another one are sent first).
+    wire::PackBuffer& batch(Node& node, ContextId context);
+    void send(Node& node);
+    RequestId next_request() { return last_request_ = RequestId(last_request_.value + 1); }
+    /// Packs a question, `pack(buffer, request)`, into the node's batch, sends it and waits for `limit_ms` with the
+    /// mutex held. Counted as a round trip of `function`.
+    template <class Pack>
+    std::optional<std::vector<std::byte>> ask_now(Node& node, const char* function, int limit_ms, Pack&& pack) {
+        const RequestId request = next_request();
+        pack(node.batch, request);
+        stats().count_round_trip(function);
+        send(node);
+        return node.stream->wait_reply(request, limit_ms);
+    }
+    /// Batches and mirrors may be half made: every node begins again at time zero.
+    void distrust();
+
+    // ---- the end; the mutex need not be held ----
+    void drain(int timeout_ms) { transport_.drain(timeout_ms); }
+    void give_up_all(const std::string& why) { transport_.give_up_all(why); }
+
+private:
+    void attempt(Node& node);
+    void take_attempt(Node& node);
+    void adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream);
+    void keep_connected(Node& node);
+    void lose(Node& node);
+    void forget(Node& node);
+
+    const std::optional<Parallel>& group_ = parallel();
+    const StreamEvents events_;
+    Transport transport_;
+    std::vector<std::unique_ptr<Node>> nodes_;  ///< by index
+    SessionId session_;
+    bool attempts_begun_ = false;  ///< by connect(), since wait_for_attempts()
+    RequestId last_request_;
+};
+
+}  // namespace wall::client

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/follow/surfaces.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "client_lib/follow/draw_target.h"
+#include "gen/glapi/wire.gen.h"
+
+namespace wall::client {
+namespace {
+
+constexpr std::chrono::seconds kPlacementTimeout{2};
+
+bool in_frame(const ClientSurface& surface) { return surface.drawn && surface.frame > 0; }
+
+std::optional<Extent> window_size(const ClientSurface& surface) {
+    return surface.options.query_size ? surface.options.query_size() : std::nullopt;
+}
+
+}  // namespace
+
+// ---- opening and closing ----
+
+void Surfaces::open(ClientSurface& surface) {
+    surface.opened = true;
+    open_[surface.id] = &surface;
+    const Extent size = window_size(surface).value_or(surface.options.size);
+    surface.layout.width = std::max(1u, size.width);
+    surface.layout.height = std::max(1u, size.height);
+    if (!surface.options.visible) return apply_layout(surface, Placement{});
+    control_.surface_open(surface.id, surface.layout.width, surface.layout.height, surface.options.title,
+                          surface.options.messages);
+    const auto placement = control_.wait_placement(surface.id, kPlacementTimeout);
+    if (group_) surface.window = {surface.layout.width, surface.layout.height};
+    else if (placement) apply_layout(surface, *placement);
+}
+
+void Surfaces::close(ClientSurface& surface) {
+    surface.opened = false;
+    open_.erase(surface.id);
+    if (surface.options.visible) control_.surface_close(surface.id);
+    for (auto& node : nodes_) {
+        node->left_out.erase(surface.id);
+        if (!node->alive() || node->surfaces.erase(surface.id) == 0) continue;
+        glapi::pack::SurfaceDestroy(nodes_.batch(*node, node->batch_context), surface.id);
+        nodes_.send(*node);
+    }
+}
+
+// ---- where they lie ----
+
+void Surfaces::take(const Placement& placement) {
+    const auto found = open_.find(placement.surface);
+    if (found == open_.end()) return;
+    if (group_) found->second->coming.push_back(placement);
+    else found->second->next = placement;
+}
+
+void Surfaces::begin_frame(ClientSurface& surface) {
+    if (common(surface)) {
+        report_window(surface);
+        return adopt_agreed(surface);
+    }
+    if (in_frame(surface)) return;
+    adopt_placement(surface);
+    follow_window(surface);
+}
+
+void Surfaces::adopt_placements() {
+    for (auto& [id, surface] : open_) adopt_placement(*surface);
+}
+
+void Surfaces::apply_layout(ClientSurface& surface, const Placement& placement) {
+    SurfaceLayout& layout = surface.layout;
+    layout.layers.clear();
+    ++layout.version;
+    layout.offscreen = !surface.options.visible;
+    if (layout.offscreen) {
+        layout.rect = {0, 0, static_cast<int>(layout.width), static_cast<int>(layout.height)};
+        for (auto& node : nodes_) {
+            if (!node->alive()) continue;
+            layout.layers.push_back(whole_window(layout.width, layout.height, node->index));
+            break;
+        }
+        return;
+    }
+    layout.rect = placement.rect;
+    for (const TileInfo& tile : tiles_) {
+        const geom::Rect part = geom::intersect(tile.rect, layout.rect);
+        if (!part.empty()) layout.layers.push_back(tile_layer(layout, tile.node, tile.slot, part));
+    }
+    hidden_.lay(surface, tiles_);
+}
+
+void Surfaces::place_off_wall() {
+    for (auto& [id, surface] : open_)
+        if (!surface->layout.offscreen) hidden_.lay(*surface, tiles_);
+    for (auto& [id, surface] : open_) {
+        const auto& layers = surface->layout.layers;
+        if (surface->layout.offscreen && (layers.empty() || !nodes_[layers.front()].alive()))
+            apply_layout(*surface, {});
+    }
+}
+
+void Surfaces::ask_to_redraw() {
+    for (const auto& [id, surface] : open_)
+        if (!surface->layout.offscreen && surface->frame > 0) control_.ask_to_redraw(id);
+}
+
+void Surfaces::follow_window(ClientSurface& surface) {
+    const auto size = window_size(surface);
+    if (!size || !size->width || !size->height ||
+        (size->width == surface.layout.width && size->height == surface.layout.height))
+        return;
+    surface.layout.width = size->width;
+    surface.layout.height = size->height;
+    control_.surface_resize(surface.id, size->width, size->height);
+    surface.next = control_.wait_placement(surface.id, kPlacementTimeout);
+    adopt_placement(surface);
+    if (surface.frame > 0) control_.ask_to_redraw(surface.id);
+}
+
+// Only between two frames, so that none mixes two layouts. What the last frame shows was drawn for the old one.
+void Surfaces::adopt_placement(ClientSurface& surface) {
+    if (!surface.next || in_frame(surface)) return;
+    const Placement placement = *std::exchange(surface.next, std::nullopt);
+    const bool moved = placement.rect != surface.layout.rect;
+    apply_layout(surface, placement);
+    control_.surface_adopted(surface.id, placement.layout_version, surface.frame + 1, kPlacementTimeout);
+    if (moved && (surface.frame > 0 || !surface.options.format.double_buffered)) control_.ask_to_redraw(surface.id);
+}
+
+// ---- of a parallel program ----
+
+void Surfaces::adopt_agreed(ClientSurface& surface) {
+    auto& coming = surface.coming;
+    while (!coming.empty() && coming.front().from_frame <= surface.frame + 1) {
+        const Placement placement = std::move(coming.front());
+        coming.pop_front();
+        for (const NodeInfo& info : placement.nodes) nodes_.connect_and_wait(info);
+        const bool moved = placement.rect != surface.layout.rect;
+        surface.layout.width = placement.width;
+        surface.layout.height = placement.height;
+        apply_layout(surface, placement);
+        surface.layout.version = placement.layout_version;
+        if (moved && surface.frame > 0) control_.ask_to_redraw(surface.id);
+    }
+    if (!coming.empty())
+        control_.ask_to_redraw(surface.id);  // a program that draws only when asked comes to that frame, too
+}
+
+/// The window is as large as rank 0 has it.
+void Surfaces::report_window(ClientSurface& surface) {
+    const auto size = window_size(surface);
+    if (group_->rank != 0 || !size || !size->width || !size->height ||
+        (size->width == surface.window.width && size->height == surface.window.height))
+        return;
+    surface.window = *size;
+    control_.surface_resize(surface.id, size->width, size->height);
+}
+
+}  // namespace wall::client

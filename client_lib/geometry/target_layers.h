@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Where the pixels of what is drawn to lie: in layers on nodes; and which of them a rectangle touches. Pure; the
+// caller's thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/base/ids.h"
+#include "common/geom/pixel_rect.h"
+#include "common/geom/rect.h"
+
+namespace wall::client {
+
+using geom::PixelRect;
+
+/// One layer of a target: a tile's, or a node's layer of the whole window.
+struct TargetLayer {
+    NodeIndex node;
+    std::uint32_t slot = 0;
+    PixelRect area;     ///< of the window: what is seen of it here
+    geom::Rect pixels;  ///< the same, whole pixels, rounded outwards
+
+    std::uint64_t bit() const { return std::uint64_t{1} << slot; }  ///< in a Block's mask
+    bool is_whole_window() const;                                   ///< made by whole_window()
+};
+
+/// How a surface lies on the wall just now.
+struct SurfaceLayout {
+    std::uint32_t version = 0;
+    std::uint32_t width = 0, height = 0;  ///< window
+    geom::Rect rect;                      ///< canvas
+    bool offscreen = false;               ///< on no tile, ever: a pixel buffer
+    std::vector<TargetLayer> layers;
+};
+
+/// The layer of a node's tile that shows `part` of the canvas.
+TargetLayer tile_layer(const SurfaceLayout& layout, NodeIndex node, std::uint32_t slot, const geom::Rect& part);
+/// The layer that a node has of the whole window, at the window's own resolution and apart from its tiles; only `part`
+/// of the canvas is to be seen there.
+TargetLayer whole_window(const SurfaceLayout& layout, NodeIndex node, const geom::Rect& part);
+/// The same with all of a window of this size to be seen, wherever the window lies.
+TargetLayer whole_window(std::uint32_t width, std::uint32_t height, NodeIndex node);
+
+/// Some layers of one node.
+struct NodeMask {
+    NodeIndex node;
+    std::uint64_t slots;  ///< a bit each
+};
+using NodeMasks = std::vector<NodeMask>;
+
+/// The layers that a rectangle touches; nothing: all. Each node once.
+NodeMasks nodes_touched(std::span<const TargetLayer> layers, const std::optional<PixelRect>& rect);
+/// The same into a vector that is used again and again, so that no memory is asked for.
+void nodes_touched(std::span<const TargetLayer> layers, const std::optional<PixelRect>& rect, NodeMasks& out);
+
+}  // namespace wall::client

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "common/glstate/projection.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wall::glstate {
+namespace {
+
+constexpr float kSmallestW = 1e-6f;
+constexpr float kLargestCoordinate = 1e30f;  ///< of clip space; beyond it differences overflow
+constexpr float kRounding = 1e-6f;           ///< of a clip coordinate, relative to the largest
+
+__m128 column(const Mat4& m, int c) { return _mm_loadu_ps(m.data() + 4 * c); }
+
+__m128 transform(const Mat4& m, __m128 x, __m128 y, __m128 z, __m128 w) {
+    return _mm_add_ps(_mm_add_ps(_mm_mul_ps(column(m, 0), x), _mm_mul_ps(column(m, 1), y)),
+                      _mm_add_ps(_mm_mul_ps(column(m, 2), z), _mm_mul_ps(column(m, 3), w)));
+}
+
+WindowVertex to_window(const Projection& p, __m128 clip) {
+    WindowVertex v;
+    _mm_storeu_ps(v.clip.data(), clip);
+    v.in_front = v.clip[3] > kSmallestW;
+    v.x = p.viewport[0] + (v.clip[0] / v.clip[3] + 1) * 0.5f * p.viewport[2];
+    v.y = p.viewport[1] + (v.clip[1] / v.clip[3] + 1) * 0.5f * p.viewport[3];
+    return v;
+}
+
+constexpr PixelRect kNowhere{INFINITY, INFINITY, -INFINITY, -INFINITY};
+
+void grow(PixelRect& rect, const WindowVertex& v) {
+    rect.x0 = std::min(rect.x0, v.x);
+    rect.x1 = std::max(rect.x1, v.x);
+    rect.y0 = std::min(rect.y0, v.y);
+    rect.y1 = std::max(rect.y1, v.y);
+}
+
+/// What is in front of the plane where `distance` is 0: the vertices there, and where edges cross it. Nothing if a
+/// crossing is not in front of the eye.
+template <class Distance>
+std::optional<PixelRect> clipped_rect(const Projection& p, std::span<const WindowVertex> vertices,
+                                      Distance&& distance) {
+    PixelRect rect = kNowhere;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        const float di = distance(vertices[i]);
+        if (di >= 0) {
+            if (!vertices[i].in_front) return std::nullopt;
+            grow(rect, vertices[i]);
+        }
+        for (std::size_t j = 0; j < i; ++j) {
+            const float dj = distance(vertices[j]);
+            if ((di >= 0) == (dj >= 0)) continue;
+            const __m128 from = _mm_loadu_ps(vertices[i].clip.data()), to = _mm_loadu_ps(vertices[j].clip.data());
+            const WindowVertex cut =
+                to_window(p, _mm_add_ps(from, _mm_mul_ps(_mm_set1_ps(di / (di - dj)), _mm_sub_ps(to, from))));
+            if (!cut.in_front) return std::nullopt;
+            grow(rect, cut);
+        }
+    }
+    return rect;
+}
+
+}  // namespace
+
+Mat4 multiply(const Mat4& a, const Mat4& b) {
+    Mat4 out;
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r)
+            out[4 * c + r] =
+                a[r] * b[4 * c] + a[4 + r] * b[4 * c + 1] + a[8 + r] * b[4 * c + 2] + a[12 + r] * b[4 * c + 3];
+    return out;
+}
+
+Projection make_projection(const State& state) {
+    Projection p;
+    p.clip_from_object = multiply(state.matrix.projection, state.matrix.modelview);
+    const auto& v = state.window.viewport;
+    const int viewport[4] = {v.x, v.y, v.width, v.height};
+    for (int i = 0; i < 4; ++i) p.viewport[i] = static_cast<float>(viewport[i]);
+    const auto& lp = state.line_point;
+    const bool attenuated = lp.point_distance_attenuation != glstate::Vec3{1, 0, 0};
+    const float point = attenuated || lp.program_point_size ? lp.point_size_max : lp.point_size;
+    p.margin = 1 + std::max(lp.line_width, point) / 2;
+    p.near_plane = !state.transform.depth_clamp;
+    return p;
+}
+
+std::optional<PixelRect> project(const Projection& p, const geom::Box& box) {
+    if (box.unbounded()) return std::nullopt;
+    alignas(16) float lo[4], hi[4];
+    _mm_store_ps(lo, box.min);
+    _mm_store_ps(hi, box.max);
+    std::array<WindowVertex, 8> corners;
+    for (unsigned corner = 0; corner < corners.size(); ++corner) {
+        const __m128 x = _mm_set1_ps(corner & 1 ? hi[0] : lo[0]);
+        const __m128 y = _mm_set1_ps(corner & 2 ? hi[1] : lo[1]);
+        const __m128 z = _mm_set1_ps(corner & 4 ? hi[2] : lo[2]);
+        corners[corner] = to_window(p, transform(p.clip_from_object, x, y, z, _mm_set1_ps(1)));
+    }
+    return hull_rect(p, corners);
+}
+
+std::optional<PixelRect> hull_rect(const Projection& p, std::span<const WindowVertex> vertices) {
+    std::optional<PixelRect> rect = kNowhere;
+    bool in_front = true;
+    float largest = 0;  // coordinate
+    for (const WindowVertex& v : vertices) {
+        in_front = in_front && v.in_front;
+        grow(*rect, v);
+        for (const float c : v.clip) largest = std::max(largest, std::abs(c));
+    }
+    if (!(largest < kLargestCoordinate)) return std::nullopt;  // or not a number
+    if (!in_front) {
+        const float slack = largest * kRounding;
+        rect.reset();
+        if (p.near_plane)
+            rect = clipped_rect(p, vertices, [&](const WindowVertex& v) { return v.clip[2] + v.clip[3] + slack; });
+        if (!rect) rect = clipped_rect(p, vertices, [](const WindowVertex& v) { return v.clip[3] - 2 * kSmallestW; });
+        if (!rect) return std::nullopt;
+    }
+    return PixelRect{rect->x0 - p.margin, rect->y0 - p.margin, rect->x1 + p.margin, rect->y1 + p.margin};
+}
+
+WindowVertex project(const Projection& p, float x, float y, float z, float w) {
+    return to_window(p, transform(p.clip_from_object, _mm_set1_ps(x), _mm_set1_ps(y), _mm_set1_ps(z), _mm_set1_ps(w)));
+}
+
+}  // namespace wall::glstate

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// From geometry to the pixels that it may touch, for sorting it among nodes (W3.2, T6.1) and pieces of it among tiles.
+// Conservative: what cannot be bounded may touch all. Pure; the caller's thread.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "common/geom/box.h"
+#include "common/geom/pixel_rect.h"
+#include "gen/glstate/state.gen.h"
+
+namespace wall::glstate {
+
+using geom::PixelRect;
+
+/// The transformation of object space to window pixels, and how far rasterization may reach beyond the vertices.
+struct Projection {
+    Mat4 clip_from_object{};
+    float viewport[4]{};     ///< x, y, width, height
+    float margin = 1;        ///< pixels: half the line width or point size, and one for rounding
+    bool near_plane = true;  ///< clips; not while depths are clamped
+};
+
+Projection make_projection(const State& state);
+Mat4 multiply(const Mat4& a, const Mat4& b);
+
+/// Where the box can be drawn; nothing if that is unknown. Empty behind the eye.
+std::optional<PixelRect> project(const Projection& projection, const geom::Box& box);
+
+struct WindowVertex {
+    std::array<float, 4> clip;
+    float x, y;
+    bool in_front;  ///< of the eye; else x and y mean nothing
+};
+WindowVertex project(const Projection& projection, float x, float y, float z, float w);
+
+/// Where the convex hull of some vertices can be drawn, what clipping leaves of it; nothing if that is unknown.
+std::optional<PixelRect> hull_rect(const Projection& projection, std::span<const WindowVertex> vertices);
+
+}  // namespace wall::glstate

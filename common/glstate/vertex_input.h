@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// A vertex input: which arrays of which buffer objects a draw reads, and where its indices lie. Never changes; a draw
+// from arrays names one (wire.toml, VertexInput). What travels of it is the index buffer, the number of arrays, and
+// eight words for each. Pure.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/base/ids.h"
+#include "common/glapi/gl_types.h"
+#include "gen/glstate/attributes.gen.h"
+
+namespace wall::glstate {
+
+/// The place of glVertexPointer's array among those of attributes.
+inline constexpr std::uint32_t kPositionArray = kAttributes;
+inline constexpr std::size_t kInputPlaces = kAttributes + 1;
+
+/// One array, as it travels.
+struct InputArray {
+    std::uint32_t place = 0;  ///< of the attribute that it has the values of (Attribute), or kPositionArray
+    ClientName buffer;
+    std::uint32_t offset = 0;  ///< bytes into the buffer
+    std::int32_t stride = 0;   ///< bytes from one element to the next, as the program gave it; 0: they lie close
+    GLenum type = GL_FLOAT;
+    std::int32_t size = 4;  ///< components
+    std::uint32_t normalized = 0;
+    std::uint32_t divisor = 0;
+    bool operator==(const InputArray&) const = default;
+
+    /// Of one element.
+    std::size_t element_bytes() const;
+    /// From one element to the next.
+    std::size_t step() const { return stride != 0 ? static_cast<std::size_t>(stride) : element_bytes(); }
+    /// How many elements lie in a buffer of that size.
+    std::uint64_t elements_in(std::uint64_t buffer_bytes) const;
+};
+static_assert(sizeof(InputArray) == 8 * sizeof(std::uint32_t));
+
+struct VertexInputDefinition {
+    ClientName indices;  ///< the element array buffer; 0: none
+    std::vector<InputArray> arrays;
+    bool operator==(const VertexInputDefinition&) const = default;
+};
+
+/// Bytes of one component; 0: no type of an array.
+std::size_t component_bytes(GLenum type);
+/// Bytes of one index; 0: no type of indices.
+std::size_t index_bytes(GLenum type);
+
+std::vector<std::byte> encode(const VertexInputDefinition& definition);
+/// Nothing if a definition does not look so, or says what no OpenGL command can: then the driver never sees it.
+std::optional<VertexInputDefinition> decode_vertex_input(std::span<const std::byte> bytes);
+
+}  // namespace wall::glstate

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/driver/driver.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+#include "common/glstate/modelview.h"
+
+namespace wall::tileserver {
+namespace {
+
+/// Exact for whole numbers that a viewport may have; absurd ones are cut.
+GLint whole(float value) { return static_cast<GLint>(std::clamp(value, -1e9f, 1e9f)); }
+
+bool has_extension(const Gl& gl, std::string_view wanted) {
+    GLint count = 0;
+    gl.GetIntegerv(GL_NUM_EXTENSIONS, &count);
+    for (GLint i = 0; i < count; ++i) {
+        const auto* name = reinterpret_cast<const char*>(gl.GetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
+        if (name != nullptr && wanted == name) return true;
+    }
+    return false;
+}
+
+// Lights, clip planes and eye planes are kept in eye coordinates, but the driver transforms them by its modelview when
+// it is told. While this lives, that is none: for all of a difference, since for each value apart it would be four
+// calls around one.
+class IdentityModelview {
+public:
+    IdentityModelview(const Gl& gl, bool needed) : gl_(gl), needed_(needed) {
+        if (!needed_) return;
+        gl_.MatrixMode(GL_MODELVIEW);
+        gl_.PushMatrix();
+        gl_.LoadIdentity();
+    }
+    ~IdentityModelview() {
+        if (!needed_) return;
+        gl_.MatrixMode(GL_MODELVIEW);
+        gl_.PopMatrix();
+    }
+    IdentityModelview(const IdentityModelview&) = delete;
+
+private:
+    const Gl& gl_;
+    const bool needed_;
+};
+
+/// Categories that hold such values.
+constexpr glstate::CategoryMask kEyeCategories = glstate::mask_of(glstate::el::clip_plane::category) |
+                                                 glstate::mask_of(glstate::el::light_position::category) |
+                                                 glstate::mask_of(glstate::el::light_spot_direction::category) |
+                                                 glstate::mask_of(glstate::el::tex_gen_eye_plane::category);
+
+/// diff of a category whose elements have a value for each texture unit, unit by unit: element by element the driver
+/// would be told another active unit before nearly each value.
+template <glstate::Category C, class... E>
+void diff_by_unit(glstate::ElementList<E...>, glstate::State& from, glstate::State& to, Driver& driver) {
+    constexpr auto kId = static_cast<std::size_t>(C);
+    if (from.ids[kId] == to.ids[kId]) return;
+    const std::array different = {std::memcmp(&E::ref(std::as_const(from), 0), &E::ref(std::as_const(to), 0),
+                                              sizeof(typename E::type) * E::count) != 0 ...};
+    bool any = false;
+    for (unsigned i = 0; i < std::max({E::count...}); ++i) {
+        std::size_t element = 0;
+        ((any |= different[element++] && i < E::count && glstate::detail::diff_value<E>(from, to, i, driver)), ...);
+    }
+    (any ? from : to).ids[kId] = (any ? to : from).ids[kId];
+}
+template <glstate::Category C>
+void diff_by_unit(glstate::State& from, glstate::State& to, Driver& driver) {
+    diff_by_unit<C>(typename glstate::CategoryElements<C>::list{}, from, to, driver);
+}
+
+}  // namespace
+
+std::optional<TextureTarget> texture_target(GLenum target) {
+    const auto found = glapi::find_target_word(target);
+    return found && !found->is_proxy() ? std::optional(found->info->id) : std::nullopt;
+}
+
+Driver::Driver(const Gl& gl) : gl_(gl), flip_y_(has_extension(gl, "GL_MESA_framebuffer_flip_y")) {
+    gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);  // images travel with tight rows
+    gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
+    // Whatever the driver started with, it now holds what the mirror says.
+    {
+        const IdentityModelview identity(gl_, true);
+        glstate::for_each_element([&]<class E>() {
+            if constexpr (((kSynced | kCurrentMask) >> static_cast<unsigned>(E::category) & 1) != 0)
+                for (unsigned i = 0; i < E::count; ++i) set<E>(i, E::ref(defaults_, i));
+        });
+    }
+    gl_.Disable(GL_SCISSOR_TEST);
+    drain_errors();
+}
+
+unsigned Driver::drain_errors() {
+    unsigned count = 0;
+    while (count < 64 && gl_.GetError() != GL_NO_ERROR) ++count;
+    return count;
+}
+
+const char* Driver::reset() const {
+    switch (gl_.GetGraphicsResetStatus != nullptr ? gl_.GetGraphicsResetStatus() : GLenum{GL_NO_ERROR}) {
+        case GL_NO_ERROR: return nullptr;
+        case GL_GUILTY_CONTEXT_RESET: return "what was drawn here made the GPU hang";
+        case GL_INNOCENT_CONTEXT_RESET: return "another program made the GPU hang";
+        default: return "the GPU was reset";
+    }
+}
+
+bool Driver::fragments_change(const glstate::State& from, const glstate::State& to) {
+    for (std::size_t category = 0; category < glstate::kCategoryCount; ++category)
+        if ((kSynced >> category & 1) != 0 && from.ids[category] != to.ids[category]) return true;
+    return false;
+}
+
+/// glColorMaterial is given while tracking is off: a colour that Mesa 22.3 still holds then (glColor outside of
+/// glBegin) would be lost to the material.
+void Driver::stop_tracking(const glstate::State& state) {
+    constexpr auto kMaterial = static_cast<std::size_t>(glstate::Category::material);
+    if (mirror.ids[kMaterial] == state.ids[kMaterial] || !mirror.material.color_material_enabled) return;
+    if (glstate::same(mirror.material.color_material, state.material.color_material)) return;
+    gl_.Disable(GL_COLOR_MATERIAL);
+    glstate::assign<glstate::el::color_material_enabled>(mirror, 0, 0);
+}
+
+void Driver::sync_values(glstate::State& state) {
+    if (bitmap_held_ && fragments_change(mirror, state)) {
+        gl_.Flush();
+        bitmap_held_ = false;
+    }
+    stop_tracking(state);
+    {
+        const IdentityModelview identity(gl_, !glstate::same_ids<kEyeCategories>(mirror, state));
+        diff_by_unit<glstate::Category::texture_units>(mirror, state, *this);
+        diff_by_unit<glstate::Category::texture_gen>(mirror, state, *this);
+        glstate::diff_and_unify<kSynced>(mirror, state, *this);
+    }
+    if (std::exchange(modelview_changed_, false))
+        modelview_has_origin_ = glstate::load_modelview(gl_, mirror, modelview_has_origin_);
+}
+
+void Driver::sync_pixel_transfer(const glstate::State& state) {
+    glstate::diff_category<glstate::Category::pixel_transfer>(mirror, state, *this);
+}
+
+// ---- matrices, and what is transformed by them (IdentityModelview) ----
+
+// Four elements make up one matrix; it is loaded when all of them are known.
+void Driver::emit(Gl&, glstate::el::modelview, unsigned, const glstate::Mat4&) { modelview_changed_ = true; }
+void Driver::emit(Gl&, glstate::el::modelview_base, unsigned, const glstate::Mat4&) { modelview_changed_ = true; }
+void Driver::emit(Gl&, glstate::el::modelview_step, unsigned, const glstate::ModelviewStep&) {
+    modelview_changed_ = true;
+}
+void Driver::emit(Gl&, glstate::el::modelview_form, unsigned, const glstate::ModelviewForm&) {
+    modelview_changed_ = true;
+}
+void Driver::emit(Gl& gl, glstate::el::projection, unsigned, const glstate::Mat4& v) {
+    gl.MatrixMode(GL_PROJECTION);
+    gl.LoadMatrixf(v.data());
+}
+void Driver::emit(Gl& gl, glstate::el::texture_matrix, unsigned i, const glstate::Mat4& v) {
+    unit(gl, i);
+    gl.MatrixMode(GL_TEXTURE);
+    gl.LoadMatrixf(v.data());
+}
+void Driver::emit(Gl& gl, glstate::el::clip_plane, unsigned i, const glstate::Vec4& v) {
+    const std::array<GLdouble, 4> plane = {v[0], v[1], v[2], v[3]};
+    gl.ClipPlane(GL_CLIP_PLANE0 + i, plane.data());
+}
+void Driver::emit(Gl& gl, glstate::el::light_position, unsigned i, const glstate::Vec4& v) {
+    gl.Lightfv(GL_LIGHT0 + i, GL_POSITION, v.data());
+}
+void Driver::emit(Gl& gl, glstate::el::light_spot_direction, unsigned i, const glstate::Vec3& v) {
+    gl.Lightfv(GL_LIGHT0 + i, GL_SPOT_DIRECTION, v.data());
+}
+void Driver::emit(Gl& gl, glstate::el::tex_gen_eye_plane, unsigned i, const glstate::Vec4& v) {
+    unit(gl, i / 4);
+    gl.TexGenfv(GL_S + i % 4, GL_EYE_PLANE, v.data());
+}
+
+// ---- textures ----
+
+void Driver::bind_texture(unsigned i, TextureTarget target, GLuint texture) {
+    GLuint& bound = bound_textures_.names[i][static_cast<std::size_t>(target)];
+    if (bound == texture) return;
+    unit(gl_, i);
+    gl_.BindTexture(gl_target(target), texture);
+    bound = texture;
+    bound_textures_.id = glstate::next_value_id();
+}
+
+void Driver::bind_all(const TextureBindings& wanted) {
+    for (unsigned i = 0; i < kTextureUnits; ++i) {
+        if (bound_textures_.names[i] == wanted.names[i]) continue;
+        for (std::size_t target = 0; target < kTextureTargets; ++target)
+            bind_texture(i, static_cast<TextureTarget>(target), wanted.names[i][target]);
+    }
+    bound_textures_.id = wanted.id;
+}
+
+void Driver::forget_texture(GLuint texture) {
+    for (auto& unit_bindings : bound_textures_.names)
+        for (GLuint& bound : unit_bindings)
+            if (bound == texture) bound = 0, bound_textures_.id = glstate::next_value_id();
+}
+
+// ---- the layer ----
+
+void Driver::bind_window(Layer& layer, glstate::State& state) {
+    if (glstate::same(mirror.window, state.window)) {
+        state.ids[kWindow] = mirror.ids[kWindow];
+        if (layer_ == &layer) return;
+    }
+    mirror.window = state.window;
+    mirror.ids[kWindow] = state.ids[kWindow];
+    layer_ = &layer;
+    layer.bind(glstate::el::draw_buffer::ref(state), glstate::el::read_buffer::ref(state));
+    const WindowValues wanted = window_values(layer.geometry(), state);
+    apply_viewport(wanted, layer.geometry().scaled());
+    if (wanted.scissor_enabled != window_.scissor_enabled)
+        wanted.scissor_enabled ? gl_.Enable(GL_SCISSOR_TEST) : gl_.Disable(GL_SCISSOR_TEST);
+    if (wanted.scissor != window_.scissor)
+        gl_.Scissor(wanted.scissor.x, wanted.scissor.y, wanted.scissor.width, wanted.scissor.height);
+    if (wanted.stipple != window_.stipple) gl_.PolygonStipple(reinterpret_cast<const GLubyte*>(wanted.stipple.data()));
+    if (wanted.pixel_zoom != window_.pixel_zoom) gl_.PixelZoom(wanted.pixel_zoom[0], wanted.pixel_zoom[1]);
+    window_ = wanted;
+}
+
+void Driver::apply_viewport(const WindowValues& values, bool scaled) {
+    if (values.viewport == window_.viewport && scaled == viewport_scaled_) return;
+    const auto& v = values.viewport;
+    viewport_scaled_ = scaled;
+    if (scaled) gl_.ViewportIndexedf(0, v.x, v.y, v.width, v.height);
+    else gl_.Viewport(whole(v.x), whole(v.y), whole(v.width), whole(v.height));
+}
+
+void Driver::disable_scissor() {
+    if (std::exchange(window_.scissor_enabled, false)) gl_.Disable(GL_SCISSOR_TEST);
+    layer_ = nullptr;
+}
+
+}  // namespace wall::tileserver

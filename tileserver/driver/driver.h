@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+// The one driver context of a GPU and what is known to be in it: a mirror that every soft context is compared with
+// before it draws, so that a switch costs what differs (Tracking Graphics State, section 5). Render thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "common/glapi/texture_target.h"
+#include "common/glstate/diff.h"
+#include "gen/glstate/driver_emit.gen.h"
+#include "gen/glstate/state.gen.h"
+#include "tileserver/driver/window_values.h"
+#include "tileserver/gpu/gl.h"
+
+namespace wall::tileserver {
+
+inline constexpr unsigned kTextureUnits = glstate::el::texture_binding_2d::count;
+
+using glapi::kTextureTargets;
+using glapi::TextureTarget;
+inline GLenum gl_target(TextureTarget target) { return glapi::info_of(target).target; }
+/// Of a target or an image target (cube map faces); nothing: not one of ours.
+std::optional<TextureTarget> texture_target(GLenum target);
+inline bool is_1d(TextureTarget target) { return glapi::info_of(target).images == 1; }
+/// Its images have a depth.
+inline bool is_3d(TextureTarget target) { return glapi::info_of(target).images == 3; }
+
+using TextureNames = std::array<std::array<GLuint, kTextureTargets>, kTextureUnits>;
+/// Driver textures at all units; equal ids mean equal names. Id 0: none anywhere.
+struct TextureBindings {
+    std::uint64_t id = 0;
+    TextureNames names{};
+};
+
+/// The state of a driver context goes through here, never around it.
+class Driver : private glstate::DriverEmit<Gl> {
+public:
+    /// The context is current; `gl` is loaded.
+    explicit Driver(const Gl& gl);
+    Driver(const Driver&) = delete;
+
+    const Gl& gl() const { return gl_; }
+    bool flip_y() const { return flip_y_; }
+    /// What the driver holds; of the window category, what it was computed from. Textures, the raster position and
+    /// objects are kept elsewhere.
+    glstate::State mirror;
+
+    /// A glBitmap was drawn. Mesa 22 gathers them, and would draw them by the state of a later one.
+    void hold_bitmap() { bitmap_held_ = true; }
+    /// Everything but vertex attributes and what depends on the layer or names objects. The state's categories take the
+    /// driver's value ids where they prove equal.
+    void sync(glstate::State& state) {
+        if (!glstate::same_ids<kSynced>(mirror, state)) sync_values(state);
+    }
+    /// The current attributes; the last thing before geometry, so that Mesa packs them with its vertices. Behind them
+    /// any other change would make it set up each as an array of its own.
+    void sync_current(glstate::State& state) { glstate::diff_and_unify<kCurrentMask>(mirror, state, *this); }
+    /// `state` holds what the driver holds since sync() and the vertex attributes that both have seen since.
+    void unify_attributes(glstate::State& state) const { glstate::unify_ids(kAttributesMask, state, mirror); }
+    void sync_pixel_transfer(const glstate::State& state);
+    /// Images pass unchanged, for the driver's own work.
+    void neutral_pixel_transfer() { sync_pixel_transfer(defaults_); }
+    /// The layer and the window category as it concerns it.
+    void bind_layer(Layer& layer, glstate::State& state) {
+        if (layer_ != &layer || mirror.ids[kWindow] != state.ids[kWindow]) bind_window(layer, state);
+    }
+    /// Another framebuffer was bound, or a layer is gone.
+    void forget_layer() { layer_ = nullptr; }
+    void bind_textures(const TextureBindings& wanted) {
+        if (wanted.id != bound_textures_.id) bind_all(wanted);
+    }
+    /// On the active unit, for commands that work on the bound object.
+    void bind_texture_to_edit(TextureTarget target, GLuint texture) {
+        bind_texture(0, target, texture);
+        unit(gl_, 0);
+    }
+    void select_first_unit() { unit(gl_, 0); }
+    /// The driver unbinds a deleted texture by itself.
+    void forget_texture(GLuint texture);
+    /// A program of the driver; 0: fixed function.
+    void use_program(GLuint program) {
+        if (program_ != program) gl_.UseProgram(program_ = program);
+    }
+    /// Before a program is deleted.
+    void forget_program(GLuint program) {
+        if (program_ == program) use_program(0);
+    }
+    /// Counts samples for a query of the driver until end_query().
+    void begin_query(GLuint query) {
+        gl_.BeginQuery(GL_SAMPLES_PASSED, query);
+        query_ = query;
+    }
+    /// Of whatever query counts.
+    void end_query() {
+        if (std::exchange(query_, 0) != 0) gl_.EndQuery(GL_SAMPLES_PASSED);
+    }
+    void delete_query(GLuint query) {
+        if (query_ == query) end_query();
+        gl_.DeleteQueries(1, &query);
+    }
+    /// A vertex array object of the driver, for the next draw from arrays.
+    void bind_vertex_array(GLuint vertex_array) {
+        if (vertex_array_ != vertex_array) gl_.BindVertexArray(vertex_array_ = vertex_array);
+    }
+    /// Before it is deleted.
+    void forget_vertex_array(GLuint vertex_array) {
+        if (vertex_array_ == vertex_array) bind_vertex_array(0);
+    }
+    /// No scissor for the driver's own work (blits, clears); the next bind_layer() sets it again.
+    void disable_scissor();
+
+    /// Takes all of the driver's errors; how many there were.
+    unsigned drain_errors();
+    /// Why the context is lost; null: it is not. After a reset nothing that it had is left.
+    const char* reset() const;
+
+    template <class E>
+    void set(unsigned i, const typename E::type& value) {
+        emit(gl_, E{}, i, value);
+    }
+
+private:
+    using DriverEmit::emit;
+    void emit(Gl& gl, glstate::el::modelview, unsigned, const glstate::Mat4& v);
+    void emit(Gl& gl, glstate::el::modelview_base, unsigned, const glstate::Mat4& v);
+    void emit(Gl& gl, glstate::el::modelview_step, unsigned, const glstate::ModelviewStep& v);
+    void emit(Gl& gl, glstate::el::modelview_form, unsigned, const glstate::ModelviewForm& v);
+    void emit(Gl& gl, glstate::el::projection, unsigned, const glstate::Mat4& v);
+    void emit(Gl& gl, glstate::el::texture_matrix, unsigned i, const glstate::Mat4& v);
+    void emit(Gl& gl, glstate::el::clip_plane, unsigned i, const glstate::Vec4& v);
+    void emit(Gl& gl, glstate::el::light_position, unsigned i, const glstate::Vec4& v);
+    void emit(Gl& gl, glstate::el::light_spot_direction, unsigned i, const glstate::Vec3& v);
+    void emit(Gl& gl, glstate::el::tex_gen_eye_plane, unsigned i, const glstate::Vec4& v);
+    void apply_viewport(const WindowValues& values, bool scaled);
+
+    void stop_tracking(const glstate::State& state);
+    void sync_values(glstate::State& state);
+    void bind_window(Layer& layer, glstate::State& state);
+    void bind_all(const TextureBindings& wanted);
+    void bind_texture(unsigned unit, TextureTarget target, GLuint texture);
+
+    static constexpr auto kWindow = static_cast<std::size_t>(glstate::Category::window);
+    static constexpr glstate::CategoryMask kCurrentMask = glstate::mask_of(glstate::Category::current);
+    static constexpr glstate::CategoryMask kAttributesMask =
+        kCurrentMask | glstate::mask_of(glstate::Category::material);
+    /// Whether a category differs that takes part in drawing a bitmap.
+    static bool fragments_change(const glstate::State& from, const glstate::State& to);
+
+    static constexpr glstate::CategoryMask kSynced =
+        glstate::kSentCategories & ~kCurrentMask & ~glstate::kLayerCategories &
+        ~glstate::mask_of(glstate::Category::textures) & ~glstate::mask_of(glstate::Category::objects);
+
+    Gl gl_;
+    const glstate::State defaults_;
+    bool flip_y_ = false;
+    bool modelview_changed_ = false;     // since it was loaded
+    bool modelview_has_origin_ = false;  // what was loaded
+    TextureBindings bound_textures_;
+    GLuint program_ = 0;  // that the driver draws with
+    GLuint query_ = 0;    // that counts samples
+    GLuint vertex_array_ = 0;
+    Layer* layer_ = nullptr;  // whose window values are in the driver
+    bool viewport_scaled_ = false;
+    WindowValues window_;  // what the driver holds
+    bool bitmap_held_ = false;
+};
+
+}  // namespace wall::tileserver

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/driver/window_values.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace wall::tileserver {
+namespace {
+
+/// The pattern is anchored at the window's corner; the layer's corner lies elsewhere.
+std::array<std::uint32_t, 32> rotate_stipple(const std::array<std::uint32_t, 32>& words, std::int32_t dx,
+                                             std::int32_t dy) {
+    std::array<std::uint32_t, 32> out{};
+    for (std::uint32_t row = 0; row < 32; ++row) {
+        const std::uint32_t from = words[(row + static_cast<std::uint32_t>(dy)) % 32];
+        // Byte 0 holds the leftmost eight pixels, its highest bit the first of them.
+        const std::uint32_t left_first = __builtin_bswap32(from);
+        out[row] = __builtin_bswap32(std::rotl(left_first, dx & 31));
+    }
+    return out;
+}
+
+/// Rounds an edge; saturates where a program gave an absurd rectangle.
+std::int32_t round_edge(double value) {
+    return static_cast<std::int32_t>(std::clamp(std::floor(value + 0.5), -1e9, 1e9));
+}
+
+}  // namespace
+
+LayerPoint layer_point(const LayerGeometry& g, double x, double y) {
+    if (!g.scaled()) return {x - g.offset_x(), y - g.offset_y()};
+    return {x * g.scale_x() - g.offset_x(), y * g.scale_y() - g.offset_y()};
+}
+
+WindowValues::IntBox layer_box(const LayerGeometry& g, const WindowValues::IntBox& w) {
+    const double sx = g.scale_x(), sy = g.scale_y();
+    const std::int32_t x0 = round_edge(w.x * sx) - g.offset_x(),
+                       x1 = round_edge((static_cast<double>(w.x) + w.width) * sx) - g.offset_x();
+    const std::int32_t y0 = round_edge(w.y * sy) - g.offset_y(),
+                       y1 = round_edge((static_cast<double>(w.y) + w.height) * sy) - g.offset_y();
+    return {x0, y0, std::max(x1 - x0, 0), std::max(y1 - y0, 0)};
+}
+
+WindowValues window_values(const LayerGeometry& g, const glstate::State& state) {
+    WindowValues out;
+    const auto& viewport = glstate::el::viewport::ref(state);
+    const auto at = layer_point(g, viewport.x, viewport.y);
+    out.viewport = {static_cast<float>(at.x), static_cast<float>(at.y),
+                    static_cast<float>(viewport.width * g.scale_x()),
+                    static_cast<float>(viewport.height * g.scale_y())};
+    const auto& scissor = glstate::el::scissor::ref(state);
+    out.scissor = layer_box(g, {scissor.x, scissor.y, scissor.width, scissor.height});
+    out.scissor_enabled = glstate::el::scissor_enabled::ref(state) != 0;
+    out.stipple = rotate_stipple(glstate::el::polygon_stipple::ref(state), g.offset_x(), g.offset_y());
+    const auto& zoom = glstate::el::pixel_zoom::ref(state);
+    out.pixel_zoom = {static_cast<float>(zoom.x * g.scale_x()), static_cast<float>(zoom.y * g.scale_y())};
+    return out;
+}
+
+}  // namespace wall::tileserver

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/execute/array_draw_commands.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "common/glstate/projection.h"
+#include "tileserver/objects/buffer.h"
+#include "tileserver/objects/draw_pieces.h"
+
+namespace wall::tileserver {
+namespace {
+
+const void* offset_pointer(std::uint64_t offset) {
+    return reinterpret_cast<const void*>(static_cast<std::uintptr_t>(offset));
+}
+
+bool draws_lines(GLenum mode, const glstate::State& state) {
+    const auto& fill = state.polygon.polygon_mode;
+    return mode == GL_LINES || mode == GL_LINE_STRIP || fill[0] == GL_LINE || fill[1] == GL_LINE;
+}
+
+}  // namespace
+
+bool ArrayDrawCommands::may_be_cut(GLenum mode) const {
+    const glstate::State& state = execution_.context->state;
+    if (state.objects.current_program != 0 || execution_.modes.mode() != GL_RENDER) return false;
+    return !state.line_point.line_stipple_enabled || !draws_lines(mode, state);  // its counter runs along the draw
+}
+
+const VertexInput* ArrayDrawCommands::begin(ClientName name, GLenum mode, std::int32_t count) {
+    if (block_.in_begin) return execution_.refuse("between Begin and End"), nullptr;
+    const auto input = execution_.session.objects.get<VertexInput>(name);
+    if (!input) return execution_.refuse(input.error().message), nullptr;
+    if (mode > GL_POLYGON || count < 0)
+        return execution_.refuse("no such primitive, or fewer than no elements"), nullptr;
+    if (!block_.draws || count == 0) return nullptr;
+    execution_.node.driver.bind_vertex_array((*input)->name());
+    return *input;
+}
+
+void ArrayDrawCommands::find_runs(ClientName name, std::int32_t count, GLenum mode) {
+    firsts_.clear();
+    counts_.clear();
+    const auto add = [&](std::uint32_t first, std::uint32_t elements) {
+        firsts_.push_back(static_cast<GLint>(first));
+        counts_.push_back(static_cast<GLsizei>(elements));
+    };
+    const auto all = static_cast<std::uint32_t>(count);
+    if (!name || !may_be_cut(mode)) return add(0, all);
+    const auto found = execution_.session.objects.get<DrawPieces>(name);
+    if (!found) return execution_.refuse(found.error().message);
+    const DrawPieces& pieces = **found;
+    if ((all + pieces.cut().step - 1) / pieces.cut().step != pieces.boxes().size())
+        return execution_.refuse("pieces of another draw");
+    const glstate::Projection projection = glstate::make_projection(execution_.context->state);
+    const geom::PixelRect area = block_.layer->geometry().window_area();
+    const auto wanted = [&](const geom::Box& box) {
+        const auto rect = glstate::project(projection, box);
+        return !rect || rect->overlaps(area);
+    };
+    glstate::for_each_run(pieces.cut(), pieces.boxes(), all, wanted, add);
+}
+
+void ArrayDrawCommands::DrawArrays(ClientName name, ClientName pieces, GLenum mode, std::int32_t first,
+                                   std::int32_t count) {
+    if (first < 0 || first > std::numeric_limits<std::int32_t>::max() - std::max(count, 0))
+        return execution_.refuse("no such elements");
+    if (begin(name, mode, count) == nullptr) return;
+    find_runs(pieces, count, mode);
+    for (GLint& run : firsts_) run += first;
+    execution_.gl.MultiDrawArrays(mode, firsts_.data(), counts_.data(), static_cast<GLsizei>(counts_.size()));
+}
+
+void ArrayDrawCommands::DrawElements(ClientName name, ClientName pieces, GLenum mode, std::int32_t count, GLenum type,
+                                     std::uint32_t offset, std::int32_t base_vertex) {
+    const VertexInput* input = begin(name, mode, count);
+    if (input == nullptr) return;
+    const auto indices = execution_.session.objects.get<Buffer>(input->indices());
+    if (!indices) return execution_.refuse(indices.error().message);
+    const std::size_t one = glstate::index_bytes(type);
+    if (one == 0 || offset % one != 0) return execution_.refuse("no such indices");
+    // Another thread of the program may have made the buffer smaller since the client has looked.
+    if (offset + static_cast<std::uint64_t>(count) * one > (*indices)->size()) {
+        ++execution_.session.work.gl_errors;
+        return;
+    }
+    find_runs(pieces, count, mode);
+    places_.clear();
+    for (const GLint first : firsts_)
+        places_.push_back(offset_pointer(offset + static_cast<std::uint64_t>(first) * one));
+    base_vertices_.assign(places_.size(), base_vertex);
+    execution_.gl.MultiDrawElementsBaseVertex(mode, counts_.data(), type, places_.data(),
+                                              static_cast<GLsizei>(counts_.size()), base_vertices_.data());
+}
+
+void ArrayDrawCommands::DrawIndices(ClientName name, GLenum mode, GLenum type, std::int32_t base_vertex,
+                                    std::span<const std::byte> indices) {
+    const std::size_t one = glstate::index_bytes(type);
+    if (one == 0 || indices.size() % one != 0 || indices.size() / one > std::numeric_limits<std::int32_t>::max())
+        return execution_.refuse("no such indices");
+    const auto count = static_cast<std::int32_t>(indices.size() / one);
+    const VertexInput* input = begin(name, mode, count);
+    if (input == nullptr) return;
+    if (input->indices()) return execution_.refuse("the input's indices lie in a buffer");
+    execution_.gl.DrawElementsBaseVertex(mode, count, type, indices.data(), base_vertex);
+}
+
+}  // namespace wall::tileserver

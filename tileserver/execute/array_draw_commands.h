@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Group [array_draw]: draws from buffers, in a block. Of a large one only those pieces are drawn that may touch the
+// tile (common/glstate/pieces.h). Render thread.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tileserver/execute/execution.h"
+#include "tileserver/objects/vertex_input.h"
+
+namespace wall::tileserver {
+
+class ArrayDrawCommands {
+public:
+    /// Both outlive it.
+    ArrayDrawCommands(Execution& execution, OpenBlock& block) : execution_(execution), block_(block) {}
+
+    void DrawArrays(ClientName input, ClientName pieces, GLenum mode, std::int32_t first, std::int32_t count);
+    void DrawElements(ClientName input, ClientName pieces, GLenum mode, std::int32_t count, GLenum type,
+                      std::uint32_t offset, std::int32_t base_vertex);
+    void DrawIndices(ClientName input, GLenum mode, GLenum type, std::int32_t base_vertex,
+                     std::span<const std::byte> indices);
+
+private:
+    /// The driver's vertex array object is bound. Null: nothing is to be drawn, perhaps because it was refused.
+    const VertexInput* begin(ClientName input, GLenum mode, std::int32_t count);
+    /// Elements of the draw, in runs, that the tile may show, into `firsts_` and `counts_`.
+    void find_runs(ClientName pieces, std::int32_t count, GLenum mode);
+    /// Whether vertices go where the matrices of fixed function put them, and all that counts is what a tile shows.
+    bool may_be_cut(GLenum mode) const;
+
+    Execution& execution_;
+    OpenBlock& block_;
+    std::vector<GLint> firsts_;
+    std::vector<GLsizei> counts_;
+    std::vector<const void*> places_;  // of the indices
+    std::vector<GLint> base_vertices_;
+};
+
+}  // namespace wall::tileserver

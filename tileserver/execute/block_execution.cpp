@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/execute/block_execution.h"
+
+#include <bit>
+#include <utility>
+
+#include "common/wire/limits.h"
+#include "tileserver/session/soft_switch.h"
+
+namespace wall::tileserver {
+
+std::uint64_t BlockExecution::begin(std::uint64_t tiles, std::size_t bytes) {
+    execution_.session.work.geometry_bytes += bytes;
+    note_switch();
+    if (!execution_.surfaces_known) execution_.look_up_surfaces();
+    block_.open = true;
+    SurfaceReplica* surface = execution_.draw_surface;
+    std::uint64_t present = 0;
+    for (std::uint64_t rest = tiles; rest != 0 && surface != nullptr; rest &= rest - 1) {
+        const auto slot = static_cast<unsigned>(std::countr_zero(rest));
+        if (surface->layer(slot) != nullptr) present |= std::uint64_t{1} << slot;
+    }
+    // With no layer at all the block is still decoded once, for what it leaves in the soft context.
+    return present != 0 ? present : tiles & (~tiles + 1);
+}
+
+void BlockExecution::begin_tile(unsigned slot) {
+    if (block_.tile_open) finish_tile();
+    block_.tile_open = true;
+    block_.slot = slot;
+    block_.trail.clear();
+    block_.raster = glstate::el::raster_position::ref(execution_.context->state);
+    find_layer();
+    if (block_.draws) enter_tile();
+}
+
+void BlockExecution::note_switch() {
+    const SoftContext* context = execution_.context;
+    if (std::exchange(execution_.node.current, context) != context) ++execution_.session.work.context_switches;
+}
+
+void BlockExecution::find_layer() {
+    SurfaceReplica* surface = execution_.draw_surface;
+    block_.layer = surface != nullptr ? surface->layer(block_.slot) : nullptr;
+    block_.draws = block_.layer != nullptr && block_.layer->complete();
+}
+
+void BlockExecution::enter_tile() {
+    // Of a window partly off the wall, its tiles' samples count.
+    const bool counts = block_.slot != wire::kOffscreenSlot || !execution_.draw_surface->on_tiles();
+    if (!switch_to(execution_.node, execution_.session, *execution_.context, *block_.layer, counts))
+        execution_.refuse("no such query, or more objects than a session may have");
+    execution_.modes.enter();
+}
+
+void BlockExecution::finish_tile() {
+    block_.tile_open = false;
+    if (block_.in_begin) {
+        execution_.refuse("a block ends between Begin and End");
+        block_.in_begin = false;
+        if (block_.draws) execution_.gl.End();
+    }
+    execution_.node.driver.end_query();
+    if (block_.draws) block_.trail.fold_into(execution_.node.driver.mirror);
+}
+
+void BlockExecution::end() {
+    if (block_.tile_open) finish_tile();
+    glstate::State& state = execution_.context->state;
+    if (!block_.trail.empty()) {
+        block_.trail.fold_into(state);
+        if (block_.draws) execution_.node.driver.unify_attributes(state);
+        block_.trail.clear();
+    }
+    if (!glstate::same(block_.raster, glstate::el::raster_position::ref(state)))
+        glstate::assign<glstate::el::raster_position>(state, 0, block_.raster);
+    block_.open = block_.draws = false;
+    block_.layer = nullptr;
+    if (shows_at_once()) ++execution_.node.damage;
+}
+
+/// What is drawn to the front buffer needs no swap.
+bool BlockExecution::shows_at_once() const {
+    const SurfaceReplica* surface = execution_.draw_surface;
+    const GLenum buffer = glstate::el::draw_buffer::ref(execution_.context->state);
+    return surface != nullptr &&
+           (!surface->format().layer.double_buffered || (buffer != GL_BACK && buffer != GL_BACK_LEFT));
+}
+
+void BlockExecution::pause() {
+    if (!block_.tile_open || !block_.draws) return;
+    if (block_.in_begin) execution_.gl.End();
+    execution_.node.driver.end_query();
+    block_.trail.fold_into(execution_.node.driver.mirror);
+}
+
+void BlockExecution::resume() {
+    execution_.surfaces_known = false;
+    if (!block_.tile_open) return;
+    execution_.look_up_surfaces();
+    note_switch();
+    find_layer();
+    if (!block_.draws) return;
+    const glstate::State before_block = execution_.context->state;
+    block_.trail.fold_into(execution_.context->state);
+    enter_tile();
+    execution_.context->state = before_block;
+    if (block_.in_begin) execution_.gl.Begin(block_.begin.mode);
+}
+
+}  // namespace wall::tileserver

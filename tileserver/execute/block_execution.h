@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Blocks: commands that are executed once for each tile of a set. Before a block draws in a tile, the driver is brought
+// from what it holds to the soft context (lazily, by diff) and the tile's layer is bound. Render thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "tileserver/execute/execution.h"
+
+namespace wall::tileserver {
+
+class BlockExecution {
+public:
+    /// Both outlive it.
+    BlockExecution(Execution& execution, OpenBlock& block) : execution_(execution), block_(block) {}
+
+    /// The tiles to execute a block for, out of `tiles`. `bytes`: that it takes in the batch.
+    std::uint64_t begin(std::uint64_t tiles, std::size_t bytes);
+    void begin_tile(unsigned slot);
+    void end();
+
+    /// Others draw meanwhile: the driver is left in the middle of nothing.
+    void pause();
+    /// Others have drawn, and the tiles may be others.
+    void resume();
+
+private:
+    void note_switch();
+    /// Of the open tile; it draws if the layer can be drawn on.
+    void find_layer();
+    void enter_tile();
+    void finish_tile();
+    bool shows_at_once() const;
+
+    Execution& execution_;
+    OpenBlock& block_;
+};
+
+}  // namespace wall::tileserver

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/execute/draw_commands.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tileserver/driver/accum.h"
+#include "tileserver/execute/image_check.h"
+
+namespace wall::tileserver {
+namespace {
+
+constexpr std::int64_t kMaxScaledBitmap = std::int64_t{1} << 28;  // pixels
+constexpr std::int32_t kMaxEvalSteps = 1 << 16;                   // of a mesh, in each direction
+
+/// A bitmap in which every pixel is repeated: glBitmap knows no zoom. Nearest, anchored at the bottom left.
+std::vector<GLubyte> scale_bitmap(std::span<const std::byte> bits, std::int32_t width, std::int32_t height,
+                                  std::int32_t new_width, std::int32_t new_height) {
+    const std::size_t row = (static_cast<std::size_t>(width) + 7) / 8,
+                      new_row = (static_cast<std::size_t>(new_width) + 7) / 8;
+    std::vector<GLubyte> out(new_row * static_cast<std::size_t>(new_height));
+    for (std::int32_t y = 0; y < new_height; ++y) {
+        const std::byte* from = bits.data() + row * static_cast<std::size_t>(std::int64_t{y} * height / new_height);
+        for (std::int32_t x = 0; x < new_width; ++x) {
+            const auto source = static_cast<std::size_t>(std::int64_t{x} * width / new_width);
+            if ((std::to_integer<unsigned>(from[source / 8]) >> (7 - source % 8) & 1) != 0)
+                out[new_row * static_cast<std::size_t>(y) + static_cast<std::size_t>(x) / 8] |=
+                    static_cast<GLubyte>(0x80u >> (x % 8));
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+bool DrawCommands::outside_begin() {
+    if (block_.in_begin) execution_.refuse("between Begin and End");
+    return !block_.in_begin;
+}
+
+void DrawCommands::EvalMesh1(GLenum mode, std::int32_t i1, std::int32_t i2) {
+    if (!outside_begin()) return;
+    if (std::int64_t{i2} - i1 > kMaxEvalSteps) return execution_.refuse("mesh is too fine");
+    if (block_.draws) execution_.gl.EvalMesh1(mode, i1, i2);
+}
+void DrawCommands::EvalMesh2(GLenum mode, std::int32_t i1, std::int32_t i2, std::int32_t j1, std::int32_t j2) {
+    if (!outside_begin()) return;
+    const std::int64_t across = std::int64_t{i2} - i1, along = std::int64_t{j2} - j1;
+    if (across > kMaxEvalSteps || along > kMaxEvalSteps ||
+        (across > 0 && along > 0 && across * along > std::int64_t{kMaxEvalSteps} * 64))
+        return execution_.refuse("mesh is too fine");
+    if (block_.draws) execution_.gl.EvalMesh2(mode, i1, i2, j1, j2);
+}
+
+void DrawCommands::Clear(std::uint32_t mask) {
+    if (!outside_begin()) return;
+    constexpr GLbitfield kBuffers = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
+    if ((mask & ~(kBuffers | GL_ACCUM_BUFFER_BIT)) != 0) return execution_.refuse("no such buffer");
+    if (!block_.draws) return;
+    if ((mask & kBuffers) != 0) execution_.gl.Clear(mask & kBuffers);
+    if ((mask & GL_ACCUM_BUFFER_BIT) != 0 && execution_.draw_surface->format().accum)
+        clear_accum(*block_.layer, accum_area(*block_.layer, execution_.context->state),
+                    glstate::el::clear_accum::ref(execution_.context->state));
+}
+
+void DrawCommands::Accum(GLenum op, float value) {
+    if (!outside_begin()) return;
+    if (op < GL_ACCUM || op > GL_ADD) return execution_.refuse("no such operation");
+    if (block_.draws && execution_.draw_surface->format().accum)
+        accumulate(execution_.node.driver, *block_.layer, execution_.context->state, op, value);
+}
+
+// ---- images at the raster position ----
+
+/// Calls `draw` with the driver's raster position at the soft context's, and its colour the raster colour.
+template <class Draw>
+void DrawCommands::at_raster_position(Draw&& draw) {
+    namespace el = glstate::el;
+    const glstate::State& state = execution_.context->state;
+    if (el::raster_position_valid::ref(state) == 0 || !std::isfinite(block_.raster[0]) ||
+        !std::isfinite(block_.raster[1]) || !std::isfinite(block_.raster[2]))
+        return;
+    Driver& driver = execution_.node.driver;
+    block_.trail.fold_into(driver.mirror);
+    // glWindowPos takes the current colour for the raster colour, and maps z through the depth range.
+    const bool tracking = driver.mirror.material.color_material_enabled != 0;
+    if (tracking) execution_.gl.Disable(GL_COLOR_MATERIAL);
+    const auto& color = el::raster_color::ref(state);
+    const auto& secondary = el::raster_secondary_color::ref(state);
+    execution_.gl.Color4f(color[0], color[1], color[2], color[3]);
+    execution_.gl.SecondaryColor3f(secondary[0], secondary[1], secondary[2]);
+    const auto& depth = el::depth_range::ref(state);
+    const double range = depth.far_value - depth.near_value;
+    const auto at = layer_point(block_.layer->geometry(), block_.raster[0], block_.raster[1]);
+    execution_.gl.WindowPos3f(static_cast<float>(at.x), static_cast<float>(at.y),
+                              range == 0 ? 0.0f : static_cast<float>((block_.raster[2] - depth.near_value) / range));
+    draw();
+    const auto& now = driver.mirror.current;
+    execution_.gl.Color4f(now.color[0], now.color[1], now.color[2], now.color[3]);
+    execution_.gl.SecondaryColor3f(now.secondary_color[0], now.secondary_color[1], now.secondary_color[2]);
+    if (tracking) execution_.gl.Enable(GL_COLOR_MATERIAL);
+}
+
+void DrawCommands::DrawPixels(std::int32_t width, std::int32_t height, GLenum format, GLenum type,
+                              std::span<const std::byte> pixels) {
+    if (!outside_begin() || !image_fits(execution_, format, type, {width, height, 1}, pixels)) return;
+    if (!block_.draws || width == 0 || height == 0) return;
+    execution_.node.maps.sync_pixel_maps(execution_.gl, execution_.context->maps);
+    at_raster_position([&] { execution_.gl.DrawPixels(width, height, format, type, pixels.data()); });
+}
+
+void DrawCommands::Bitmap(std::int32_t width, std::int32_t height, float xorig, float yorig, float xmove, float ymove,
+                          std::span<const std::byte> bits) {
+    if (!outside_begin()) return;
+    if (width < 0 || height < 0 || width > (1 << 16) || height > (1 << 16)) return execution_.refuse("absurd size");
+    if (bits.size() != (static_cast<std::size_t>(width) + 7) / 8 * static_cast<std::size_t>(height))
+        return execution_.refuse("size does not fit the bits");
+    if (block_.draws && width != 0 && height != 0) {
+        execution_.node.driver.hold_bitmap();
+        const LayerGeometry& g = block_.layer->geometry();
+        at_raster_position([&] {
+            if (!g.scaled())
+                return execution_.gl.Bitmap(width, height, xorig, yorig, 0, 0,
+                                            reinterpret_cast<const GLubyte*>(bits.data()));
+            const auto new_width = std::max(1, static_cast<std::int32_t>(std::lround(width * g.scale_x())));
+            const auto new_height = std::max(1, static_cast<std::int32_t>(std::lround(height * g.scale_y())));
+            if (std::int64_t{new_width} * new_height > kMaxScaledBitmap) return;
+            const auto scaled = scale_bitmap(bits, width, height, new_width, new_height);
+            execution_.gl.Bitmap(new_width, new_height, static_cast<float>(xorig * g.scale_x()),
+                                 static_cast<float>(yorig * g.scale_y()), 0, 0, scaled.data());
+        });
+    }
+    if (glstate::el::raster_position_valid::ref(execution_.context->state) == 0) return;
+    block_.raster[0] += xmove;
+    block_.raster[1] += ymove;
+}
+
+// ---- selection and feedback ----
+
+void DrawCommands::InitNames() {
+    if (outside_begin() && block_.draws) execution_.modes.init_names();
+}
+void DrawCommands::LoadName(std::uint32_t name) {
+    if (outside_begin() && block_.draws) execution_.modes.load_name(name);
+}
+void DrawCommands::PushName(std::uint32_t name) {
+    if (outside_begin() && block_.draws) execution_.modes.push_name(name);
+}
+void DrawCommands::PopName() {
+    if (outside_begin() && block_.draws) execution_.modes.pop_name();
+}
+void DrawCommands::PassThrough(float token) {
+    if (outside_begin() && block_.draws) execution_.gl.PassThrough(token);
+}
+
+// ---- runs ----
+
+void DrawCommands::RunCall(ClientName id) {
+    if (!outside_begin()) return;
+    const Run* run = execution_.session.objects.find<Run>(id);
+    if (run == nullptr) return execution_.refuse(execution_.session.objects.get<Run>(id).error().message);
+    next_ = 0;
+    if (!call_parts(*run->content())) called_ = run->content();
+}
+
+void DrawCommands::go_on() {
+    if (call_parts(*called_)) called_.reset();
+}
+
+bool DrawCommands::call_parts(const RunContent& run) {
+    while (next_ < run.parts.size()) {
+        const RunContent::Part& part = run.parts[next_++];
+        if (block_.draws) execution_.gl.CallList(part.list);
+        block_.trail.append(part.trail);
+        if (next_ < run.parts.size() && execution_.out_of_time()) return false;
+    }
+    return true;
+}
+
+}  // namespace wall::tileserver

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// What the commands of all groups share while a session's stream is executed: whose stream it is, what its batch draws
+// to, the block that is open, and the refusal of a command that a correct client cannot send. Render thread.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "common/glapi/decoder.h"
+#include "tileserver/driver/attribute_trail.h"
+#include "tileserver/driver/render_modes.h"
+#include "tileserver/session/render_node.h"
+#include "tileserver/session/session.h"
+#include "tileserver/session/session_output.h"
+
+namespace wall::tileserver {
+
+/// One for each stream. What it refers to outlives it.
+struct Execution {
+    using Clock = std::chrono::steady_clock;
+
+    Execution(RenderNode& n, SessionReplica& s, SessionOutput& o, glapi::Refusal& r)
+        : node(n), session(s), output(o), gl(n.driver.gl()), refusal(r), modes(gl) {}
+
+    /// With it the stream ends; the first reason stays.
+    void refuse(std::string why) { refusal.refuse(std::move(why)); }
+    bool refused() const { return refusal.refused(); }
+    bool out_of_time() const { return Clock::now() >= until; }
+    void look_up_surfaces() {
+        draw_surface = session.surface(context->draw);
+        surfaces_known = true;
+    }
+
+    RenderNode& node;
+    SessionReplica& session;
+    SessionOutput& output;
+    const Gl& gl;
+    glapi::Refusal& refusal;
+    RenderModes modes;
+
+    // Of the batch.
+    ContextId context_id;
+    SoftContext* context = nullptr;
+    SurfaceReplica* draw_surface = nullptr;  ///< of the context, while `surfaces_known`
+    bool surfaces_known = false;
+    Clock::time_point until;  ///< of the slice
+};
+
+/// A block in the tile that it is being executed for. Within it the driver's current attributes run ahead of the soft
+/// context: `trail` notes what the commands leave behind. Each tile starts from the soft context's values; the soft
+/// context takes the trail at the end.
+struct OpenBlock {
+    bool draws = false;  ///< false: only the effects on the soft context count
+    bool in_begin = false;
+    bool open = false;
+    bool tile_open = false;
+    unsigned slot = 0;  ///< of the tile
+    Layer* layer = nullptr;
+    std::uint64_t vertices = 0;  ///< so far, of all blocks
+    /// The last Begin.
+    struct {
+        GLenum mode = 0;
+        std::uint64_t vertices = 0;  ///< OpenBlock::vertices there
+        bool countable = true;       ///< every vertex since then is counted
+    } begin;
+    AttributeTrail trail;
+    glstate::Vec4 raster{};  ///< position as the block's bitmaps move it
+};
+
+}  // namespace wall::tileserver

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Executes one session's stream: the handler of glapi::BatchRun, made of a class for each group of proto/gl/wire.toml.
+// State commands change soft contexts; blocks draw (block_execution.h). A command that a correct client cannot send is
+// refused, and with it the stream. Render thread.
+//
+// A batch is executed in slices, so that no stream keeps the driver for as long as it likes. Between two of them others
+// draw, so a slice leaves the driver in the middle of nothing: glBegin, a list that is compiled, a query and the
+// selection mode are ended and begun anew. glBegin can be ended only between two points, lines, triangles or quads of
+// their own; what is in the middle of a strip goes on to its end.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "common/glapi/decoder.h"
+#include "tileserver/execute/array_draw_commands.h"
+#include "tileserver/execute/block_execution.h"
+#include "tileserver/execute/buffer_commands.h"
+#include "tileserver/execute/content_question.h"
+#include "tileserver/execute/draw_commands.h"
+#include "tileserver/execute/draw_pieces_commands.h"
+#include "tileserver/execute/execution.h"
+#include "tileserver/execute/geometry_commands.h"
+#include "tileserver/execute/map_commands.h"
+#include "tileserver/execute/object_commands.h"
+#include "tileserver/execute/program_commands.h"
+#include "tileserver/execute/query_commands.h"
+#include "tileserver/execute/read_commands.h"
+#include "tileserver/execute/run_commands.h"
+#include "tileserver/execute/stream_commands.h"
+#include "tileserver/execute/surface_commands.h"
+#include "tileserver/execute/sync_commands.h"
+#include "tileserver/execute/texture_commands.h"
+#include "tileserver/execute/vertex_input_commands.h"
+
+namespace wall::tileserver {
+
+class Executor : public glapi::Handler {
+    // Before the groups, which refer to them.
+    Execution execution_;
+    ContentQuestion question_;
+
+public:
+    using Clock = Execution::Clock;
+
+    /// All three outlive it.
+    Executor(RenderNode& node, SessionReplica& session, SessionOutput& output);
+
+    /// Begins one batch frame's payload, which must stay until it has been executed; nothing of it runs yet.
+    Result<void> start_batch(std::span<const std::byte> payload);
+    /// Executes what is left of it until about `until`. True: all of it is done. Behind it the driver is in the
+    /// middle of nothing, and others may draw.
+    Result<bool> run_slice(Clock::time_point until);
+    /// Both, to the end.
+    Result<void> run_batch(std::span<const std::byte> payload);
+    void present(SurfaceId surface_id, std::uint32_t frame) { surface.present(surface_id, frame); }
+    /// False: the session waits for content that another one is sending; nothing of it may run.
+    Result<bool> pursue_question();
+
+    // ---- the decoder's interface: what takes the commands of each group ----
+    static constexpr bool kByGroup = true;
+    GeometryCommands geometry{execution_};
+    DrawCommands draw{execution_, geometry.block()};
+    ArrayDrawCommands array_draw{execution_, geometry.block()};
+    StreamCommands stream{execution_};
+    SurfaceCommands surface{execution_};
+    ReadCommands read{execution_};
+    ObjectCommands object{execution_};
+    TextureCommands texture{execution_, question_};
+    RunCommands run{execution_, geometry.block(), question_, [this](glapi::DrawingRun& r) { return r.run(*this); }};
+    ProgramCommands program{execution_};
+    BufferCommands buffer{execution_};
+    VertexInputCommands vertex_input{execution_};
+    DrawPiecesCommands draw_pieces{execution_};
+    QueryCommands query{execution_};
+    MapCommands map{execution_};
+    SyncCommands sync{execution_};
+
+    std::uint64_t begin_block(std::uint64_t tiles, std::size_t bytes) { return blocks_.begin(tiles, bytes); }
+    void begin_tile(unsigned slot) { blocks_.begin_tile(slot); }
+    void end_block() { blocks_.end(); }
+    glapi::Pause should_pause();
+
+private:
+    Result<bool> go_on();
+    void finish_batch();
+    /// Between two commands the open glBegin, if there is one, can be ended and begun anew without a difference.
+    bool divisible();
+
+    BlockExecution blocks_{execution_, geometry.block()};
+
+    // Of the batch.
+    std::optional<glapi::BatchRun> batch_;
+    std::size_t batch_commands_ = 0, batch_bytes_ = 0;
+    std::uint64_t counted_before_ = 0;  // bytes of state and geometry
+    bool paused_ = false, closely_ = false;
+};
+
+}  // namespace wall::tileserver

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Group [stream]: the state of soft contexts, and how far the stream is executed. Render thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "common/glstate/elements.h"
+#include "tileserver/execute/execution.h"
+
+namespace wall::tileserver {
+
+class StreamCommands {
+public:
+    /// `execution` outlives it.
+    explicit StreamCommands(Execution& execution) : execution_(execution) {}
+
+    std::uint32_t state_bytes(std::uint32_t id) const { return glstate::element_bytes(id); }
+    bool State(std::uint32_t id, std::span<const std::byte> value);
+    void StateSmall(std::uint32_t word);
+    void StateRecall(std::uint32_t word);
+    void Sync(RequestId request);
+
+private:
+    Execution& execution_;
+};
+
+}  // namespace wall::tileserver

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/execute/surface_commands.h"
+
+#include <string>
+
+#include "common/wire/whole_window.h"
+#include "tileserver/execute/say_to_group.h"
+#include "tileserver/session/limits.h"
+
+namespace wall::tileserver {
+
+SurfaceReplica* SurfaceCommands::known_surface(SurfaceId id) {
+    SurfaceReplica* surface = execution_.session.surface(id);
+    if (surface == nullptr) execution_.refuse("surface " + std::to_string(id.value) + " does not exist");
+    return surface;
+}
+
+void SurfaceCommands::SurfaceCreate(SurfaceId surface, std::uint32_t double_buffered, std::uint32_t alpha_bits,
+                                    std::uint32_t depth_bits, std::uint32_t stencil_bits, std::uint32_t accum_bits,
+                                    std::uint32_t) {
+    if (!surface) return execution_.refuse("surface 0 is none");
+    execution_.surfaces_known = false;
+    const LayerFormat layer{double_buffered != 0, alpha_bits != 0, depth_bits != 0, stencil_bits != 0};
+    if (execution_.session.create_surface(surface, {layer, accum_bits != 0}) != nullptr) return;
+    execution_.refuse(execution_.session.shares(surface)
+                          ? "the members of the parallel program have windows of different formats"
+                          : "too many surfaces");
+}
+
+void SurfaceCommands::SurfacePlace(SurfaceId id, std::uint32_t layout_version, std::uint32_t window_width,
+                                   std::uint32_t window_height, std::int32_t x, std::int32_t y, std::uint32_t width,
+                                   std::uint32_t height, std::uint32_t offscreen) {
+    SurfaceReplica* surface = known_surface(id);
+    if (surface == nullptr) return;
+    constexpr std::uint32_t kMost = wire::kMaxSurfaceExtent;
+    if (window_width > kMost || window_height > kMost || width > kMost || height > kMost)
+        return execution_.refuse("larger than a surface may be");
+    constexpr std::int32_t kFarthest = 1 << 24;  // canvas pixels
+    if (x < -kFarthest || x > kFarthest || y < -kFarthest || y > kFarthest)
+        return execution_.refuse("far off any canvas");
+    if (window_width == 0 || window_height == 0) return execution_.refuse("an empty window");
+    if (offscreen > wire::kAlsoWholeWindow) return execution_.refuse("no such kind of place");
+    const geom::Rect rect{x, y, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
+    const tileserver::SurfacePlace place{layout_version,
+                                         window_width,
+                                         window_height,
+                                         rect,
+                                         offscreen == wire::kOnlyWholeWindow,
+                                         offscreen == wire::kAlsoWholeWindow};
+    if (execution_.session.shares(id) && surface->where().window_width != 0) {
+        if (surface->where() == place) return;
+        if (layout_version <= surface->where().layout_version)
+            return execution_.refuse("the members of the parallel program draw for different places");
+    }
+    execution_.node.driver.forget_layer();
+    execution_.node.driver.disable_scissor();
+    ++execution_.node.damage;
+    if (!surface->place(place, execution_.node.tiles)) execution_.refuse("more pixels than a session may have");
+}
+
+void SurfaceCommands::SurfaceDestroy(SurfaceId id) {
+    execution_.session.destroy_surface(id);
+    execution_.surfaces_known = false;
+    ++execution_.node.damage;
+}
+
+void SurfaceCommands::Bind(SurfaceId draw_surface, SurfaceId read_surface) {
+    execution_.context->draw = draw_surface;
+    execution_.context->read = read_surface;
+    execution_.surfaces_known = false;
+}
+
+void SurfaceCommands::ContextDestroy(ContextId context) {
+    if (context == execution_.context_id) {
+        execution_.session.context(execution_.context_id) =
+            SoftContext{};  // the batch goes on in it; an empty one costs nothing
+        return;
+    }
+    execution_.session.destroy_context(context);
+}
+
+void SurfaceCommands::Swap(SurfaceId id, std::uint32_t frame) {
+    SurfaceReplica* surface = known_surface(id);
+    if (surface == nullptr) return;
+    if (execution_.session.shares(id))
+        return say_to_group(execution_, [=](GroupSync& sync, Rank rank) { return sync.swap(rank, id, frame); });
+    const bool at_once = !surface->on_tiles() || execution_.node.shows_at_once(execution_.session.id(), id);
+    finish_frame(execution_.node, execution_.session.work, *surface, frame, at_once);
+    execution_.output.frame_rendered(id, frame);
+}
+
+void SurfaceCommands::SwapOffscreen(SurfaceId window) {
+    SurfaceReplica* surface = known_surface(window);
+    if (surface == nullptr) return;
+    surface->swap_offscreen();
+    execution_.node.driver.forget_layer();
+}
+
+void SurfaceCommands::present(SurfaceId id, std::uint32_t frame) {
+    SurfaceReplica* surface = execution_.session.surface(id);
+    if (surface == nullptr || !surface->waiting_frame() ||
+        static_cast<std::int32_t>(frame - *surface->waiting_frame()) < 0)
+        return;
+    surface->show_frame();
+    execution_.node.driver.forget_layer();
+    ++execution_.node.damage;
+}
+
+}  // namespace wall::tileserver

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/objects/buffer.h"
+
+namespace wall::tileserver {
+
+Buffer::Buffer(ObjectAccount& account, Driver& driver) : ObjectOf(account), gl_(driver.gl()), driver_(driver) {
+    gl_.CreateBuffers(1, &name_);
+}
+
+Buffer::~Buffer() { gl_.DeleteBuffers(1, &name_); }
+
+bool Buffer::define(std::uint32_t size, GLenum usage) {
+    driver_.drain_errors();
+    gl_.NamedBufferData(name_, size, nullptr, usage);
+    // The driver's memory may have been another session's.
+    if (size != 0) gl_.ClearNamedBufferData(name_, GL_R8, GL_RED, GL_UNSIGNED_BYTE, nullptr);
+    size_ = driver_.drain_errors() == 0 ? size : 0;
+    return has_content(size_) && size_ == size;
+}
+
+bool Buffer::write(std::uint32_t offset, std::span<const std::byte> content) {
+    if (offset > size_ || content.size() > size_ - offset) return false;
+    if (!content.empty())
+        gl_.NamedBufferSubData(name_, offset, static_cast<GLsizeiptr>(content.size()), content.data());
+    return true;
+}
+
+}  // namespace wall::tileserver

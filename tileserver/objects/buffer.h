@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// A buffer object of a session: vertices and indices that draws of vertex inputs read. Render thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "tileserver/driver/driver.h"
+#include "tileserver/objects/object.h"
+
+namespace wall::tileserver {
+
+class Buffer final : public ObjectOf<ObjectKind::buffer> {
+public:
+    Buffer(ObjectAccount& account, Driver& driver);
+    ~Buffer() override;
+
+    GLuint name() const { return name_; }  ///< the driver's; the same for life
+    std::uint64_t size() const { return size_; }
+    bool affords_size(std::uint64_t size) const { return affords(size, size_); }
+    /// New memory, all 0. False: more than a session may have, or than the driver has.
+    [[nodiscard]] bool define(std::uint32_t size, GLenum usage);
+    /// False: it reaches over the end.
+    [[nodiscard]] bool write(std::uint32_t offset, std::span<const std::byte> content);
+
+private:
+    const Gl& gl_;
+    Driver& driver_;
+    GLuint name_ = 0;
+    std::uint64_t size_ = 0;
+};
+
+}  // namespace wall::tileserver

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// All objects of one session by the client's ids, which are unique over kinds. A lookup says which kind it wants; an id
+// of another kind is never taken for it. Render thread.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "common/base/ids.h"
+#include "common/base/result.h"
+#include "tileserver/objects/object.h"
+
+namespace wall::tileserver {
+
+/// What an object is found by: the client's id, or for id 0 a default object, of which a kind may have several.
+class ObjectKey {
+public:
+    ObjectKey(ClientName name) : value_(name.value) {}
+    static ObjectKey default_object(ObjectKind kind, std::uint32_t which) {
+        ObjectKey key{ClientName{}};
+        key.value_ = (std::uint64_t{1} + static_cast<std::uint64_t>(kind)) << 32 | which;
+        return key;
+    }
+    explicit operator bool() const { return value_ != 0; }
+    bool is_default() const { return value_ >> 32 != 0; }
+    bool operator==(const ObjectKey&) const = default;
+    std::uint64_t value() const { return value_; }
+
+private:
+    std::uint64_t value_;
+};
+
+class ObjectTable {
+public:
+    ObjectTable() = default;
+    ObjectTable(const ObjectTable&) = delete;
+
+    /// Null: there is none, or it is of another kind.
+    template <class T>
+    T* find(ObjectKey key) const {
+        if (key.is_default() && !has_defaults_) return nullptr;
+        const auto at = objects_.find(key);
+        return at != objects_.end() && at->second->kind() == T::kKind ? static_cast<T*>(at->second.get()) : nullptr;
+    }
+    /// Null: there is none. An error: it is of another kind.
+    template <class T>
+    Result<T*> look_up(ObjectKey key) const {
+        if (T* found = find<T>(key)) return found;
+        if (objects_.contains(key)) return another_kind(key, T::kKind);
+        return nullptr;
+    }
+    /// An error: there is none, or it is of another kind.
+    template <class T>
+    Result<T*> get(ObjectKey key) const {
+        auto found = look_up<T>(key);
+        return !found || *found != nullptr ? found : none(key, T::kKind);
+    }
+    /// Makes one of `arguments` if there is none. An error: it is of another kind, or the session may have no more.
+    template <class T, class... Arguments>
+    Result<T*> make(ObjectKey key, Arguments&&... arguments) {
+        auto known = look_up<T>(key);
+        if (!known || *known != nullptr) return known;
+        if (auto room = has_room_for(key); !room) return tl::unexpected(std::move(room).error());
+        auto made = std::make_unique<T>(account_, std::forward<Arguments>(arguments)...);
+        has_defaults_ |= key.is_default();
+        return static_cast<T*>(objects_.emplace(key, std::move(made)).first->second.get());
+    }
+    /// Of whatever kind, if there is one.
+    void erase(ClientName name) {
+        if (name) objects_.erase(name);
+    }
+
+    /// As long as it stays the same, all lookups of a kind find objects of the same driver names.
+    std::uint64_t version(ObjectKind kind) const { return account_.versions[static_cast<std::size_t>(kind)]; }
+    std::uint64_t bytes() const { return account_.bytes; }
+    bool affords(std::uint64_t bytes) const { return account_.affords(bytes); }
+    std::size_t size() const { return objects_.size(); }
+
+private:
+    struct Hash {
+        std::size_t operator()(ObjectKey key) const { return std::hash<std::uint64_t>{}(key.value()); }
+    };
+    Result<void> has_room_for(ObjectKey key) const;
+    tl::unexpected<Error> another_kind(ObjectKey key, ObjectKind wanted) const;
+    static tl::unexpected<Error> none(ObjectKey key, ObjectKind wanted);
+
+    bool has_defaults_ = false;  // few sessions have any, and most names in a state are 0
+    ObjectAccount account_;      // before the objects, which use it to the end
+    std::unordered_map<ObjectKey, std::unique_ptr<ObjectReplica>, Hash> objects_;
+};
+
+}  // namespace wall::tileserver

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/objects/program.h"
+
+#include <string>
+#include <utility>
+
+#include "tileserver/objects/program_build.h"
+#include "tileserver/objects/shader_patch.h"
+
+namespace wall::tileserver {
+namespace {
+
+// A linked program is source, intermediate code and machine code.
+constexpr std::uint64_t kProgramBytes = 64 << 10, kBytesForEachOfSource = 8;
+
+void set_matrix(const Gl& gl, GLuint program, GLint location, GLsizei count, const glapi::UniformType& type,
+                const GLfloat* v) {
+    using Call = decltype(gl.ProgramUniformMatrix2fv);
+    const Call calls[3][3] = {
+        {gl.ProgramUniformMatrix2fv, gl.ProgramUniformMatrix2x3fv, gl.ProgramUniformMatrix2x4fv},
+        {gl.ProgramUniformMatrix3x2fv, gl.ProgramUniformMatrix3fv, gl.ProgramUniformMatrix3x4fv},
+        {gl.ProgramUniformMatrix4x2fv, gl.ProgramUniformMatrix4x3fv, gl.ProgramUniformMatrix4fv},
+    };
+    calls[type.columns - 2][type.rows - 2](program, location, count, GL_FALSE, v);
+}
+
+void set_vector(const Gl& gl, GLuint program, GLint location, GLsizei count, const glapi::UniformType& type,
+                const std::byte* values) {
+    const auto call = [&](const auto(&calls)[4], auto* v) { calls[type.rows - 1](program, location, count, v); };
+    if (type.base == glapi::UniformBase::real) {
+        const decltype(gl.ProgramUniform1fv) calls[] = {gl.ProgramUniform1fv, gl.ProgramUniform2fv,
+                                                        gl.ProgramUniform3fv, gl.ProgramUniform4fv};
+        call(calls, reinterpret_cast<const GLfloat*>(values));
+    } else if (type.base == glapi::UniformBase::unsigned_integer) {
+        const decltype(gl.ProgramUniform1uiv) calls[] = {gl.ProgramUniform1uiv, gl.ProgramUniform2uiv,
+                                                         gl.ProgramUniform3uiv, gl.ProgramUniform4uiv};
+        call(calls, reinterpret_cast<const GLuint*>(values));
+    } else {
+        const decltype(gl.ProgramUniform1iv) calls[] = {gl.ProgramUniform1iv, gl.ProgramUniform2iv,
+                                                        gl.ProgramUniform3iv, gl.ProgramUniform4iv};
+        call(calls, reinterpret_cast<const GLint*>(values));
+    }
+}
+
+/// From the layer's pixels to the window's: scale, then offset.
+std::array<float, 4> window_of(const LayerGeometry& g, bool upper_left) {
+    if (g.window_width == 0 || g.window_height == 0) return {1, 1, 0, 0};
+    const std::int32_t y = upper_left ? g.area.y - g.surface.y : g.offset_y();
+    if (!g.scaled()) return {1, 1, static_cast<float>(g.offset_x()), static_cast<float>(y)};
+    const double sx = 1 / g.scale_x(), sy = 1 / g.scale_y();
+    return {static_cast<float>(sx), static_cast<float>(sy), static_cast<float>(g.offset_x() * sx),
+            static_cast<float>(y * sy)};
+}
+
+}  // namespace
+
+void Program::release() {
+    if (name_ == 0) return;
+    driver_.forget_program(name_);
+    driver_.gl().DeleteProgram(std::exchange(name_, 0));
+}
+
+std::vector<GLint> Program::map_locations(GLuint program, const std::vector<glapi::UniformName>& names) const {
+    std::vector<GLint> out;
+    for (const auto& uniform : names)
+        for (std::uint32_t i = 0; i < uniform.size; ++i)
+            out.push_back(element_location(driver_.gl(), program, uniform.name, i));
+    return out;
+}
+
+Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, bool wants_reflection) {
+    const auto definition = read_definition(bytes);
+    if (!definition) return tl::unexpected(definition.error());
+    const BuiltProgram built = build_program(driver_.gl(), *definition);
+    GLint linked = 0;
+    driver_.gl().GetProgramiv(built.driver, GL_LINK_STATUS, &linked);
+    glapi::ProgramReflection reflection;
+    if (wants_reflection || definition->uniforms.empty()) reflection = reflect_program(driver_.gl(), built.driver);
+    if (linked == 0) {
+        driver_.gl().DeleteProgram(built.driver);
+        return encode(reflection);
+    }
+    std::vector<glapi::UniformName> names = definition->uniforms;
+    if (names.empty())
+        for (const auto& uniform : reflection.uniforms)
+            if (!uniform.built_in) names.push_back({uniform.size, uniform.name});
+    release();
+    name_ = built.driver;
+    locations_ = map_locations(name_, names);
+    window_ = driver_.gl().GetUniformLocation(name_, kWindowUniform);
+    upper_left_ = built.upper_left;
+    window_value_ = {};
+    renamed();
+    if (!has_content(kProgramBytes + kBytesForEachOfSource * bytes.size()))
+        return fail("more programs than a session may have");
+    return encode(reflection);
+}
+
+// ---- drawing ----
+
+Result<void> Program::set_uniform(std::uint32_t location, GLenum type_name, std::uint32_t count,
+                                  std::span<const std::byte> values) {
+    const auto* type = glapi::find_uniform_type(type_name);
+    if (type == nullptr) return fail("no such type");
+    if (count == 0 || location >= locations_.size() || count > locations_.size() - location)
+        return fail("no such location");
+    if (values.size() != std::size_t{count} * type->words() * 4) return fail("size does not fit the values");
+    const GLint here = locations_[location];
+    if (here < 0) return {};
+    if (type->matrix())
+        set_matrix(driver_.gl(), name_, here, static_cast<GLsizei>(count), *type,
+                   reinterpret_cast<const GLfloat*>(values.data()));
+    else set_vector(driver_.gl(), name_, here, static_cast<GLsizei>(count), *type, values.data());
+    return {};
+}
+
+void Program::use(const LayerGeometry& layer) {
+    driver_.use_program(name_);
+    if (window_ < 0) return;
+    const auto value = window_of(layer, upper_left_);
+    if (std::exchange(window_value_, value) != value) driver_.gl().ProgramUniform4fv(name_, window_, 1, value.data());
+}
+
+}  // namespace wall::tileserver

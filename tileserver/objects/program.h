@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// A GLSL program of a session in the driver: the client's locations of uniforms -> the driver's. Render thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/base/result.h"
+#include "common/glapi/program_format.h"
+#include "tileserver/driver/driver.h"
+#include "tileserver/driver/layer.h"
+#include "tileserver/objects/object.h"
+
+namespace wall::tileserver {
+
+class Program final : public ObjectOf<ObjectKind::program> {
+public:
+    /// One that has not been linked.
+    Program(ObjectAccount& account, Driver& driver) : ObjectOf(account), driver_(driver) {}
+    ~Program() override { release(); }
+
+    /// Links a definition, and takes the result's place if that works. The encoded ProgramReflection if `reflect`. An
+    /// error: bad bytes, or more memory than a session may have.
+    Result<std::vector<std::byte>> link(std::span<const std::byte> definition, bool reflect);
+    Result<void> set_uniform(std::uint32_t location, GLenum type, std::uint32_t count,
+                             std::span<const std::byte> values);
+    /// The driver draws with it, in this layer.
+    void use(const LayerGeometry& layer);
+
+private:
+    std::vector<GLint> map_locations(GLuint program, const std::vector<glapi::UniformName>& names) const;
+    void release();
+
+    Driver& driver_;
+    GLuint name_ = 0;               // the driver's; 0: fixed function
+    std::vector<GLint> locations_;  // by the client's location; -1: not active here
+    GLint window_ = -1;             // location of kWindowUniform
+    bool upper_left_ = false;
+    std::array<float, 4> window_value_{};
+};
+
+}  // namespace wall::tileserver

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/objects/texture.h"
+
+#include <utility>
+
+namespace wall::tileserver {
+
+Texture::Texture(ObjectAccount& account, Driver& driver, TextureTarget target)
+    : ObjectOf(account), content_(std::make_shared<TextureContent>(driver, target)) {}
+
+bool Texture::adopt(std::shared_ptr<TextureContent> content) {
+    content_ = std::move(content);
+    renamed();
+    return has_content(content_->bytes());
+}
+
+bool Texture::affords_image(GLenum image_target, std::int32_t level, std::uint64_t bytes) const {
+    return affords(bytes, content_->image_bytes(image_target, level));
+}
+
+bool Texture::note_image(GLenum image_target, std::int32_t level, const TextureContent::ImageFormat* format) {
+    content_->note_image(image_target, level, format);
+    return has_content(content_->bytes());
+}
+
+}  // namespace wall::tileserver

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/objects/texture_content.h"
+
+#include <vector>
+
+#include "common/glapi/image.h"
+
+namespace wall::tileserver {
+
+TextureContent::TextureContent(Driver& driver, TextureTarget target)
+    : SharedContent(kKind), driver_(driver), target_(target) {
+    driver.gl().CreateTextures(gl_target(target), 1, &name_);
+}
+
+TextureContent::~TextureContent() {
+    driver_.forget_texture(name_);
+    driver_.gl().DeleteTextures(1, &name_);
+}
+
+namespace {
+
+/// Of an image of the bound texture, as the driver has it; all 0: it has none.
+struct DriverImage {
+    ImageExtent extent;
+    GLint compressed_bytes = 0;  ///< 0: it is not compressed
+};
+
+DriverImage driver_image(const Gl& gl, GLenum image_target, GLint level) {
+    DriverImage image;
+    gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_WIDTH, &image.extent.width);
+    gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_HEIGHT, &image.extent.height);
+    gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_DEPTH, &image.extent.depth);
+    GLint compressed = 0;
+    gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_COMPRESSED, &compressed);
+    if (compressed != 0)
+        gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_COMPRESSED_IMAGE_SIZE, &image.compressed_bytes);
+    return image;
+}
+
+std::uint64_t estimate(const DriverImage& image) {
+    if (image.compressed_bytes != 0) return static_cast<std::uint64_t>(image.compressed_bytes);
+    return std::uint64_t{4} * static_cast<std::uint64_t>(image.extent.width) *
+           static_cast<std::uint64_t>(image.extent.height) * static_cast<std::uint64_t>(image.extent.depth);
+}
+
+}  // namespace
+
+void TextureContent::note_image(GLenum image_target, std::int32_t level, const ImageFormat* format) {
+    const auto known = images_.find({image_target, level});
+    if (format == nullptr && known == images_.end()) return;
+    const Image now{format != nullptr ? *format : known->second.format,
+                    estimate(driver_image(driver_.gl(), image_target, level))};
+    bytes_ += now.bytes - (known == images_.end() ? 0 : known->second.bytes);
+    images_[{image_target, level}] = now;
+}
+
+std::uint64_t TextureContent::image_bytes(GLenum image_target, std::int32_t level) const {
+    const auto known = images_.find({image_target, level});
+    return known == images_.end() ? 0 : known->second.bytes;
+}
+
+// Through the processor's memory, image by image, in the format of the definition: glCopyImageSubData would refuse
+// incomplete textures. (glGetnTexImage of Mesa 22.3 writes nothing, and reports nothing.)
+std::shared_ptr<TextureContent> TextureContent::copy() const {
+    const Gl& gl = driver_.gl();
+    auto made = std::make_shared<TextureContent>(driver_, target_);
+    made->images_ = images_;
+    made->parameters_ = parameters_;
+    made->bytes_ = bytes_;
+    driver_.neutral_pixel_transfer();
+    driver_.bind_texture_to_edit(target_, made->name_);
+    for (const auto& [pname, value] : parameters_) gl.TexParameterfv(gl_target(target_), pname, value.data());
+    const auto base = parameters_.find(GL_TEXTURE_BASE_LEVEL);
+    const auto base_level = base == parameters_.end() ? 0 : static_cast<std::int32_t>(base->second[0]);
+    for (const auto& [where, image] : images_)
+        if (where.second == base_level) copy_image(where.first, where.second, image.format, *made);
+    if (generated_) gl.GenerateMipmap(gl_target(target_));
+    for (const auto& [where, image] : images_)
+        if (where.second != base_level) copy_image(where.first, where.second, image.format, *made);
+    return made;
+}
+
+// All sizes are the driver's: it writes as much as it has.
+void TextureContent::copy_image(GLenum image_target, std::int32_t level, const ImageFormat& format,
+                                const TextureContent& to) const {
+    const Gl& gl = driver_.gl();
+    driver_.bind_texture_to_edit(target_, name_);
+    const auto [extent, compressed_bytes] = driver_image(gl, image_target, level);
+    const std::uint64_t bytes =
+        format.compressed
+            ? static_cast<std::uint64_t>(compressed_bytes)
+            : glapi::image_bytes(format.format, format.type, extent.width, extent.height, extent.depth).value_or(0);
+    if (bytes == 0) return;
+    std::vector<std::byte> pixels(bytes);
+    if (format.compressed) gl.GetCompressedTexImage(image_target, level, pixels.data());
+    else gl.GetTexImage(image_target, level, format.format, format.type, pixels.data());
+    driver_.bind_texture_to_edit(target_, to.name_);
+    if (format.compressed)
+        gl.CompressedTexImage2D(image_target, level, format.internal_format, extent.width, extent.height, 0,
+                                static_cast<GLsizei>(bytes), pixels.data());
+    else upload_image(gl, target_, image_target, level, format, extent, pixels.data());
+}
+
+void upload_image(const Gl& gl, TextureTarget target, GLenum image_target, GLint level,
+                  const TextureContent::ImageFormat& format, const ImageExtent& extent, const void* pixels,
+                  GLint border) {
+    const auto internal = static_cast<GLint>(format.internal_format);
+    if (is_1d(target))
+        gl.TexImage1D(image_target, level, internal, extent.width, border, format.format, format.type, pixels);
+    else if (is_3d(target))
+        gl.TexImage3D(image_target, level, internal, extent.width, extent.height, extent.depth, border, format.format,
+                      format.type, pixels);
+    else
+        gl.TexImage2D(image_target, level, internal, extent.width, extent.height, border, format.format, format.type,
+                      pixels);
+}
+
+}  // namespace wall::tileserver

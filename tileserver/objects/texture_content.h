@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// A texture of the driver and what it was defined with, which is enough to make a copy of it. Several sessions may hold
+// the same one as long as none changes it (ContentStore). Render thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "common/glapi/content_hash.h"
+#include "tileserver/driver/driver.h"
+#include "tileserver/driver/image_extent.h"
+#include "tileserver/objects/shared_content.h"
+
+namespace wall::tileserver {
+
+class TextureContent final : public SharedContent {
+public:
+    static constexpr ObjectKind kKind = ObjectKind::texture;
+
+    TextureContent(Driver& driver, TextureTarget target);
+    ~TextureContent() override;
+
+    GLuint name() const { return name_; }
+    TextureTarget target() const { return target_; }
+    std::uint64_t bytes() const { return bytes_; }  ///< of all images, by estimate
+
+    /// As the command had it that defined an image; the driver's choice of storage depends on all of it.
+    struct ImageFormat {
+        GLenum internal_format = 0, format = 0, type = 0;
+        bool compressed = false;  ///< blocks of `internal_format`
+    };
+    /// Notes what the driver has of an image (of an image target, such as a cube map's face, and a level) after a
+    /// definition, with the texture bound to be edited. `format`: of the definition; null: the driver refused it.
+    void note_image(GLenum image_target, std::int32_t level, const ImageFormat* format);
+    /// Of one image, by estimate.
+    std::uint64_t image_bytes(GLenum image_target, std::int32_t level) const;
+    void note_parameter(GLenum pname, const std::array<float, 4>& value) {
+        parameters_[pname] = value;
+        generated_ |= pname == GL_GENERATE_MIPMAP && value[0] != 0;
+    }
+
+    /// The same texture again, copied by the driver.
+    std::shared_ptr<TextureContent> copy() const;
+
+    std::optional<glapi::ContentKey> key;  ///< its name in the node's store
+
+private:
+    struct Image {
+        ImageFormat format;
+        std::uint64_t bytes = 0;  ///< estimate
+    };
+    void copy_image(GLenum image_target, std::int32_t level, const ImageFormat& format, const TextureContent& to) const;
+
+    Driver& driver_;
+    const TextureTarget target_;
+    GLuint name_ = 0;
+    std::map<std::pair<GLenum, std::int32_t>, Image> images_;
+    std::map<GLenum, std::array<float, 4>> parameters_;
+    bool generated_ = false;  // the driver has made mipmaps
+    std::uint64_t bytes_ = 0;
+};
+
+/// Defines an image of the bound texture. `pixels`: null for no content.
+void upload_image(const Gl& gl, TextureTarget target, GLenum image_target, GLint level,
+                  const TextureContent::ImageFormat& format, const ImageExtent& extent, const void* pixels,
+                  GLint border = 0);
+
+}  // namespace wall::tileserver

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/session/soft_switch.h"
+
+#include "gen/glstate/texture_elements.gen.h"
+#include "tileserver/objects/program.h"
+#include "tileserver/objects/query.h"
+#include "tileserver/objects/texture.h"
+
+namespace wall::tileserver {
+namespace {
+
+std::uint64_t textures_id(const SoftContext& context) {
+    return context.state.ids[static_cast<std::size_t>(glstate::Category::textures)];
+}
+
+void look_up_textures(SessionReplica& session, SoftContext& context) {
+    BoundTextures& bound = context.textures;
+    TextureNames found{};
+    for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
+        for (std::size_t target = 0; target < kTextureTargets; ++target) {
+            const std::uint32_t name = (context.state.textures.*glstate::kTextureBindings[target])[unit];
+            const auto key = Texture::key(ClientName(name), static_cast<TextureTarget>(target));
+            const Texture* texture = session.objects.find<Texture>(key);
+            if (texture != nullptr && texture->target() == static_cast<TextureTarget>(target))
+                found[unit][target] = texture->content().name();
+        }
+    }
+    if (found != bound.bindings.names) bound.bindings = {found == TextureNames{} ? 0 : glstate::next_value_id(), found};
+    bound.state_id = textures_id(context);
+    bound.version = session.objects.version(Texture::kKind);
+}
+
+/// None, and what is no program: fixed function.
+void use_program(RenderNode& node, SessionReplica& session, ClientName name, const LayerGeometry& layer) {
+    Program* program = name ? session.objects.find<Program>(name) : nullptr;
+    if (program != nullptr) program->use(layer);
+    else node.driver.use_program(0);
+}
+
+bool count_samples(RenderNode& node, SessionReplica& session, ClientName name, const LayerGeometry& layer) {
+    auto query = session.objects.make<Query>(name, node.driver);
+    return query && (*query)->begin(layer.scale_x() * layer.scale_y());
+}
+
+}  // namespace
+
+bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, Layer& layer, bool counts) {
+    node.driver.sync(context.state);
+    if (context.textures.state_id != textures_id(context) ||
+        context.textures.version != session.objects.version(Texture::kKind))
+        look_up_textures(session, context);
+    node.driver.bind_textures(context.textures.bindings);
+    node.maps.sync_evaluators(node.driver, context.maps);
+    node.driver.bind_layer(layer, context.state);
+    use_program(node, session, ClientName(glstate::el::current_program::ref(context.state)), layer.geometry());
+    node.driver.sync_current(context.state);
+    const ClientName query(glstate::el::occlusion_query::ref(context.state));
+    return !query || !counts || count_samples(node, session, query, layer.geometry());
+}
+
+}  // namespace wall::tileserver

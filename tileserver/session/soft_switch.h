@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// The soft context switch (Tracking Graphics State, section 5): the one driver context is brought from whatever it
+// holds to what a session's context wants, on the layer that is drawn to. What is the same costs a comparison of ids.
+// Render thread.
+#pragma once
+
+#include "tileserver/session/render_node.h"
+#include "tileserver/session/session.h"
+
+namespace wall::tileserver {
+
+/// `counts`: an occlusion query of the context counts what is drawn on the layer. False: there is no such
+/// query, or the session may have no more.
+[[nodiscard]] bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, Layer& layer,
+                             bool counts);
+
+}  // namespace wall::tileserver

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// One window of a session on this node: its format, its place on the canvas, and a layer on each tile that it touches.
+// Render thread.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/geom/rect.h"
+#include "common/wire/limits.h"
+#include "tileserver/driver/layer.h"
+
+namespace wall::tileserver {
+
+/// A tile of this node; its slot is the bit in tile masks.
+struct Tile {
+    std::uint32_t slot = 0;
+    geom::Rect rect;  ///< canvas
+};
+
+struct SurfaceFormat {
+    LayerFormat layer;
+    bool accum = false;
+    bool operator==(const SurfaceFormat&) const = default;
+};
+
+struct SurfacePlace {
+    std::uint32_t layout_version = 0;
+    std::uint32_t window_width = 0, window_height = 0;
+    geom::Rect rect;            ///< canvas pixels that the whole window covers
+    bool offscreen = false;     ///< on no tile
+    bool whole_window = false;  ///< the layer of the whole window stays, if there is one
+    bool operator==(const SurfacePlace&) const = default;
+};
+
+class SurfaceReplica {
+public:
+    SurfaceReplica(const Gl& gl, bool flip_y, const SurfaceFormat& format, PixelBudget& budget)
+        : gl_(gl), flip_y_(flip_y), format_(format), budget_(budget) {}
+
+    /// Makes the layers anew where they differ; what stays in sight keeps its pixels. What the wall shows stays as it
+    /// is until the first frame drawn there is shown. False: that is more than the session may have, and some layers
+    /// are missing. No frame may wait to be shown: it would be lost.
+    bool place(const SurfacePlace& place, const std::vector<Tile>& tiles);
+    /// Null if the surface does not reach the tile. The off-screen slot gives a layer of the whole window for any
+    /// surface.
+    Layer* layer(std::uint32_t slot);
+    const Layer* layer(std::uint32_t slot) const { return layers_[slot].get(); }
+
+    /// What the wall shows on the tile, if anything.
+    const Layer* shown_layer(std::uint32_t slot) const;
+
+    const SurfaceFormat& format() const { return format_; }
+    const SurfacePlace& where() const { return place_; }
+    bool on_tiles() const;
+
+    /// A frame has been drawn and waits to be shown.
+    void finish_frame(std::uint32_t frame);
+    void show_frame();
+    /// A frame has been drawn in the layer of the whole window alone, for nobody to be shown.
+    void swap_offscreen();
+    std::optional<std::uint32_t> waiting_frame() const { return waiting_; }
+    /// The last one on show; 0: none.
+    std::uint32_t shown_frame() const { return shown_; }
+
+private:
+    using Layers = std::array<std::unique_ptr<Layer>, wire::kMaxTilesPerNode>;
+
+    /// With the content of `older`, if there is one. Null: over the budget.
+    std::unique_ptr<Layer> make_layer(const LayerGeometry& geometry, const Layer* older);
+    void replace(std::uint32_t slot, std::unique_ptr<Layer> layer);
+    void forget_older();
+
+    const Gl& gl_;
+    bool flip_y_;
+    SurfaceFormat format_;
+    PixelBudget& budget_;
+    SurfacePlace place_;
+    Layers layers_;  ///< that are drawn on
+    std::optional<std::uint32_t> waiting_;
+    std::uint32_t shown_ = 0;
+    bool shown_once_ = false;
+
+    // Of a move that is not shown yet.
+    Layers older_;                                  ///< that are shown, where they are others
+    std::bitset<wire::kMaxTilesPerNode> replaced_;  ///< slots in which others are drawn on than shown
+};
+
+}  // namespace wall::tileserver
