@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "tools/view/picture_builder.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "common/json/parse_json.h"
 #include "common/net/base64.h"
@@ -28,7 +30,18 @@ std::uint32_t color_of(const std::string& text) {
     return static_cast<std::uint32_t>(std::stoul(text.substr(1), nullptr, 16));
 }
 
-geom::Rect rect_of(const json& rect) { return {rect.at(0), rect.at(1), rect.at(2), rect.at(3)}; }
+/// A number of pixels, or a place: never one with which a sum could overflow.
+std::int32_t pixels_of(const json& value) {
+    constexpr std::int64_t kMost = 1 << 24;
+    const bool fits = value.is_number_unsigned() || (value.is_number_integer() && value.get<std::int64_t>() >= 0);
+    if (!fits || value.get<std::uint64_t>() > kMost)
+        throw std::range_error(fmt::format("pixels: expected an integer from 0 to {}, not {}", kMost, value.dump()));
+    return value;
+}
+
+geom::Rect rect_of(const json& rect) {
+    return {pixels_of(rect.at(0)), pixels_of(rect.at(1)), pixels_of(rect.at(2)), pixels_of(rect.at(3))};
+}
 
 std::byte* pixel(codec::Picture& picture, std::int32_t x, std::int32_t y) {
     return picture.row(static_cast<std::uint32_t>(y)) + std::ptrdiff_t{4} * x;
@@ -40,7 +53,7 @@ Result<void> PictureBuilder::take_text(std::string_view text) try {
     const auto parsed = parse_json(text, kAnswerJson);
     if (!parsed) return fail("walld said what is not expected: " + parsed.error().message);
     const json& message = *parsed;
-    if (message.contains("error")) return fail(message.at("error").get<std::string>());
+    if (message.contains("error")) return fail("walld refused: " + message.at("error").get<std::string>());
     if (message.contains("parts")) return set_parts(message);
     if (message.contains("part")) {
         const std::size_t number = message.at("part");
@@ -52,12 +65,14 @@ Result<void> PictureBuilder::take_text(std::string_view text) try {
     parts_.clear();
     clear({0, 0, static_cast<std::int32_t>(format_.width), static_cast<std::int32_t>(format_.height)});
     return {};
-} catch (const std::exception& error) {  // of the JSON library
+} catch (const std::exception& error) {  // of the JSON library, std::stoul and pixels_of
     return fail(std::string("walld said what is not expected: ") + error.what());
 }
 
 Result<void> PictureBuilder::set_parts(const json& text) {
-    const codec::StreamFormat format{text.at("width"), text.at("height"), kLayout, false};
+    // Nothing is taken over before all of it is read: what is wrong must not leave old parts on a new picture.
+    const codec::StreamFormat format{static_cast<std::uint32_t>(pixels_of(text.at("width"))),
+                                     static_cast<std::uint32_t>(pixels_of(text.at("height"))), kLayout, false};
     if (const auto fits = codec::check(format); !fits) return fits;
     const geom::Rect whole{0, 0, static_cast<std::int32_t>(format.width), static_cast<std::int32_t>(format.height)};
     std::vector<Part> parts;
@@ -66,11 +81,12 @@ Result<void> PictureBuilder::set_parts(const json& text) {
         if (geom::intersect(parts.back().at, whole) != parts.back().at)
             return fail("walld speaks of a part outside the picture");
     }
+    const auto background = color_of(text.at("background"));
+    codec_ = text.at("codec");
     // A window that moves keeps its picture until its new parts come.
     const auto old = std::exchange(picture_, codec::Picture(format));
     const bool same_size = format == std::exchange(format_, format);
-    background_ = color_of(text.at("background"));
-    codec_ = text.at("codec");
+    background_ = background;
     parts_ = std::move(parts);
     ended_.clear();
     clear(whole);

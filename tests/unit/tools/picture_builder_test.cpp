@@ -104,10 +104,13 @@ TEST_F(PictureBuilderTest, AWindowThatIsGoneLeavesTheBackground) {
 }
 
 TEST_F(PictureBuilderTest, RefusesWhatDoesNotFit) {
-    EXPECT_EQ(tell({{"error", "watch[0]: no"}}).error().message, "watch[0]: no");
+    EXPECT_EQ(tell({{"error", "watch[0]: no"}}).error().message, "walld refused: watch[0]: no");
+    EXPECT_EQ(tell({{"error", ""}}).error().message, "walld refused: ");
     EXPECT_FALSE(builder_.take_text("{"));
     EXPECT_FALSE(parts({part("l", {0, 0, 6, 2})}));
     EXPECT_FALSE(parts({part("l", {-1, 0, 2, 2})}));
+    EXPECT_FALSE(parts({part("l", {INT32_MAX, 0, 1, 1})}));
+    EXPECT_FALSE(parts({part("l", {1, 1, INT32_MAX, INT32_MAX})}));
     EXPECT_FALSE(parts({}, 0, 5));
     EXPECT_FALSE(parts({}, 40000, 40000));
     ASSERT_TRUE(parts({part("l", {0, 0, 2, 2})}));
@@ -116,7 +119,19 @@ TEST_F(PictureBuilderTest, RefusesWhatDoesNotFit) {
     ASSERT_TRUE(header(0));
     EXPECT_FALSE(frame(0, 1, 2, 0));
     EXPECT_FALSE(frame(1, 2, 2, 0));
+    EXPECT_THAT(tell({{"parts", json::array()}, {"width", 1e300}, {"height", 2}}).error().message,
+                HasSubstr("expected an integer from 0 to 16777216, not 1e+300"));
     EXPECT_THAT(builder_.take_frame("short").error().message, HasSubstr("a frame of 5 bytes"));
+}
+
+TEST_F(PictureBuilderTest, PartsThatAreWrongChangeNothing) {
+    ASSERT_TRUE(parts({part("l", {0, 0, 5, 2})}));
+    ASSERT_TRUE(header(0));
+    EXPECT_FALSE(
+        tell({{"codec", 7}, {"width", 1}, {"height", 1}, {"background", "#204060"}, {"parts", json::array()}}));
+    EXPECT_FALSE(tell({{"codec", "raw"}, {"width", 1}, {"height", 1}, {"background", "#"}, {"parts", json::array()}}));
+    ASSERT_TRUE(frame(0, 5, 2, 0x112233ff));  // still of the size that its parts were told for
+    EXPECT_EQ(at(4, 1), 0x112233ffu);
 }
 
 }  // namespace
