@@ -1,24 +1,53 @@
 // SPDX-License-Identifier: MIT
-// glDrawBuffers for the default framebuffer, which has one fragment colour (GL_MAX_DRAW_BUFFERS is 1).
-#include "client_lib/context/context.h"
+// glDrawBuffers (OpenGL 4.6, 17.4.1).
+#include <algorithm>
+#include <array>
+
+#include "client_lib/context/framebuffer_binding.h"
 
 namespace wall::client::api {
 namespace {
 
-constexpr GLsizei kDrawBuffers = 1;
+using glstate::kColorAttachments;
 
 /// OpenGL 2.1, table 4.5: names of single buffers only.
 bool names_one(GLenum buffer) {
     return buffer == GL_NONE || buffer == GL_BACK || (buffer >= GL_FRONT_LEFT && buffer <= GL_BACK_RIGHT);
 }
 
+bool names_attachment(GLenum buffer) { return buffer >= GL_COLOR_ATTACHMENT0 && buffer <= GL_COLOR_ATTACHMENT0 + 31; }
+
+using Buffers = std::array<GLenum, kColorAttachments>;
+
+/// Those of a framebuffer object; each may be named once.
+GLenum attachments_error(const Buffers& buffers) {
+    for (unsigned i = 0; i < buffers.size(); ++i) {
+        if (buffers[i] == GL_NONE) continue;
+        if (names_one(buffers[i])) return GL_INVALID_OPERATION;
+        if (!names_attachment(buffers[i])) return GL_INVALID_ENUM;
+        if (buffers[i] >= GL_COLOR_ATTACHMENT0 + kColorAttachments) return GL_INVALID_OPERATION;
+        for (unsigned j = 0; j < i; ++j)
+            if (buffers[j] == buffers[i]) return GL_INVALID_OPERATION;
+    }
+    return GL_NO_ERROR;
+}
+
 }  // namespace
 
-void DrawBuffers(Context& c, GLsizei count, const GLenum* buffers) {
-    if (count < 0 || count > kDrawBuffers) return c.error(GL_INVALID_VALUE);
-    const GLenum buffer = count == 0 ? GLenum{GL_NONE} : buffers[0];
-    if (!names_one(buffer)) return c.error(GL_INVALID_ENUM);
-    DrawBuffer(c, buffer);
+// A window has one fragment colour; those that follow it must go nowhere.
+void DrawBuffers(Context& c, GLsizei count, const GLenum* words) {
+    if (count < 0 || count > static_cast<GLsizei>(kColorAttachments)) return c.error(GL_INVALID_VALUE);
+    Buffers buffers{};
+    std::copy_n(words, count, buffers.begin());
+    if (const auto framebuffer = c.framebuffers->draw) {
+        if (const GLenum error = attachments_error(buffers)) return c.error(error);
+        return change_framebuffer(c, *framebuffer, [&](Framebuffer& f) { f.set_draw_buffers(buffers); });
+    }
+    for (const GLenum buffer : buffers)
+        if (!names_one(buffer)) return c.error(names_attachment(buffer) ? GL_INVALID_OPERATION : GL_INVALID_ENUM);
+    for (unsigned i = 1; i < buffers.size(); ++i)
+        if (buffers[i] != GL_NONE) return c.error(GL_INVALID_OPERATION);
+    DrawBuffer(c, buffers[0]);
 }
 
 }  // namespace wall::client::api

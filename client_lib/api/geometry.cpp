@@ -155,7 +155,7 @@ namespace api {
 void Begin(Context& c, GLenum mode) {
     if (mode > GL_POLYGON) return c.error(GL_INVALID_ENUM);
     if (c.packer.inside()) return c.error(GL_INVALID_OPERATION);
-    if (!c.program || may_draw(c)) c.begin_primitive(mode);
+    if (may_draw(c)) c.begin_primitive(mode);
 }
 
 void End(Context& c) {

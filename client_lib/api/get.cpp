@@ -6,6 +6,7 @@
 #include "client_lib/api/version.h"
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/context.h"
+#include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/limits.h"
 #include "client_lib/context/lists.h"
 #include "client_lib/context/object_name.h"
@@ -27,6 +28,18 @@ struct Special {
 const SurfaceFormat& format_of(Context& c) {
     static constexpr SurfaceFormat kNone;
     return c.draw_target() ? c.draw_target().format() : kNone;
+}
+
+double samples_of(Context& c) {
+    const auto& framebuffer = c.framebuffers->draw;
+    if (!framebuffer) return format_of(c).samples;
+    std::lock_guard lock(c.share().mutex);
+    return framebuffer->samples();
+}
+
+template <class T>
+double name_of(const std::shared_ptr<T>& object) {
+    return object ? object->name : 0;
 }
 
 template <int kValue>
@@ -113,7 +126,7 @@ const Special kSpecials[] = {
     {GL_MAX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
     {GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
     {GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
-    {GL_MAX_DRAW_BUFFERS, 1, constant<1>},
+    {GL_MAX_DRAW_BUFFERS, 1, limited<GL_MAX_DRAW_BUFFERS, glstate::kColorAttachments>},
     // For general use: RGBA of DXT1 has but one bit of alpha.
     {GL_NUM_COMPRESSED_TEXTURE_FORMATS, 1, constant<3>},
     {GL_COMPRESSED_TEXTURE_FORMATS, 3,
@@ -130,19 +143,23 @@ const Special kSpecials[] = {
     {GL_INDEX_BITS, 1, constant<0>},
     {GL_AUX_BUFFERS, 1, constant<0>},
     {GL_STEREO, 1, constant<0>},
-    {GL_RED_BITS, 1, constant<8>},
-    {GL_GREEN_BITS, 1, constant<8>},
-    {GL_BLUE_BITS, 1, constant<8>},
-    {GL_ALPHA_BITS, 1, [](Context& c, double* out) { *out = format_of(c).alpha_bits; }},
-    {GL_DEPTH_BITS, 1, [](Context& c, double* out) { *out = format_of(c).depth_bits; }},
-    {GL_STENCIL_BITS, 1, [](Context& c, double* out) { *out = format_of(c).stencil_bits; }},
+    {GL_RED_BITS, 1, [](Context& c, double* out) { *out = draw_target_bits(c).red; }},
+    {GL_GREEN_BITS, 1, [](Context& c, double* out) { *out = draw_target_bits(c).green; }},
+    {GL_BLUE_BITS, 1, [](Context& c, double* out) { *out = draw_target_bits(c).blue; }},
+    {GL_ALPHA_BITS, 1, [](Context& c, double* out) { *out = draw_target_bits(c).alpha; }},
+    {GL_DEPTH_BITS, 1, [](Context& c, double* out) { *out = draw_target_bits(c).depth; }},
+    {GL_STENCIL_BITS, 1, [](Context& c, double* out) { *out = draw_target_bits(c).stencil; }},
     {GL_ACCUM_RED_BITS, 1, [](Context& c, double* out) { *out = format_of(c).accum_bits; }},
     {GL_ACCUM_GREEN_BITS, 1, [](Context& c, double* out) { *out = format_of(c).accum_bits; }},
     {GL_ACCUM_BLUE_BITS, 1, [](Context& c, double* out) { *out = format_of(c).accum_bits; }},
     {GL_ACCUM_ALPHA_BITS, 1, [](Context& c, double* out) { *out = format_of(c).accum_bits; }},
     {GL_DOUBLEBUFFER, 1, [](Context& c, double* out) { *out = format_of(c).double_buffered; }},
-    {GL_SAMPLES, 1, [](Context& c, double* out) { *out = format_of(c).samples; }},
-    {GL_SAMPLE_BUFFERS, 1, [](Context& c, double* out) { *out = format_of(c).samples > 0; }},
+    {GL_SAMPLES, 1, [](Context& c, double* out) { *out = samples_of(c); }},
+    {GL_SAMPLE_BUFFERS, 1, [](Context& c, double* out) { *out = samples_of(c) > 0; }},
+    {GL_DRAW_FRAMEBUFFER_BINDING, 1, [](Context& c, double* out) { *out = name_of(c.framebuffers->draw); }},
+    {GL_READ_FRAMEBUFFER_BINDING, 1, [](Context& c, double* out) { *out = name_of(c.framebuffers->read); }},
+    {GL_RENDERBUFFER_BINDING, 1, [](Context& c, double* out) { *out = name_of(c.framebuffers->renderbuffer); }},
+    {GL_MAX_COLOR_ATTACHMENTS, 1, limited<GL_MAX_COLOR_ATTACHMENTS, glstate::kColorAttachments>},
     {GL_MAJOR_VERSION, 1, [](Context& c, double* out) { *out = offered_version(c.session().caps()).major; }},
     {GL_MINOR_VERSION, 1, [](Context& c, double* out) { *out = offered_version(c.session().caps()).minor; }},
     {GL_NUM_EXTENSIONS, 1,
@@ -210,6 +227,22 @@ bool get_special(Context& c, GLenum pname, Out* out) {
     return false;
 }
 
+/// What a framebuffer object that is bound has of its own.
+template <class Out>
+bool get_of_framebuffer(Context& c, GLenum pname, Out* out) {
+    const FramebufferUse& use = *c.framebuffers;
+    const GLenum buffer = pname == GL_DRAW_BUFFER ? GLenum{GL_DRAW_BUFFER0} : pname;
+    if (buffer >= GL_DRAW_BUFFER0 && buffer < GL_DRAW_BUFFER0 + glstate::kColorAttachments) {
+        const unsigned i = buffer - GL_DRAW_BUFFER0;
+        if (!use.draw && i == 0) return false;
+        *out = converted<Out>(use.draw ? use.draw->draw_buffers()[i] : GLenum{GL_NONE});
+        return true;
+    }
+    if (pname != GL_READ_BUFFER || !use.read) return false;
+    *out = converted<Out>(use.read->read_buffer());
+    return true;
+}
+
 template <class Out>
 bool get_limit(Context& c, GLenum pname, Out* out) {
     const auto& limits = c.session().caps().limits;
@@ -229,6 +262,7 @@ const std::uint32_t* flag_of(const Context& c, GLenum cap) {
 
 template <class Out>
 void get(Context& c, GLenum pname, Out* out) {
+    if (get_of_framebuffer(c, pname, out)) return;
     if (const auto* entry = glstate::find_get(pname))
         return answered_clamped(pname) ? get_clamped(c, *entry, out) : get_element(c, *entry, out);
     if (const auto* flag = flag_of(c, pname)) *out = converted<Out>(*flag);

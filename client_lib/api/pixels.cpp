@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "client_lib/context/buffer_binding.h"
-#include "client_lib/context/context.h"
+#include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/pixel_store.h"
 #include "client_lib/context/readback.h"
 #include "client_lib/objects/maps.h"
@@ -30,17 +30,14 @@ PixelRect drawn_rect(const Context& c, float width, float height) {
             std::max(position[1], y) + kMargin};
 }
 
-bool has_depth(const Context& c) { return c.draw_target() && c.draw_target().format().depth_bits != 0; }
-bool has_stencil(const Context& c) { return c.draw_target() && c.draw_target().format().stencil_bits != 0; }
-
 /// Whether the buffers that a format means exist.
-bool buffers_exist(const Context& c, GLenum format) {
+bool buffers_exist(Context& c, GLenum format) {
     switch (format) {
         case GL_DEPTH_COMPONENT:
-        case GL_DEPTH: return has_depth(c);
+        case GL_DEPTH: return has_depth(c, false);
         case GL_STENCIL_INDEX:
-        case GL_STENCIL: return has_stencil(c);
-        case GL_DEPTH_STENCIL: return has_depth(c) && has_stencil(c);
+        case GL_STENCIL: return has_stencil(c, false);
+        case GL_DEPTH_STENCIL: return has_depth(c, false) && has_stencil(c, false);
         default: return true;
     }
 }
@@ -156,6 +153,14 @@ GLenum buffer_error(GLenum word, const DrawTarget& target) {
     return named == 0 || (named & existing_buffers(target)) ? GL_NO_ERROR : GL_INVALID_OPERATION;
 }
 
+/// Of a framebuffer object's.
+GLenum attachment_buffer_error(GLenum word) {
+    if (word == GL_NONE ||
+        (glstate::attachment_place(word) && word != GL_DEPTH_ATTACHMENT && word != GL_STENCIL_ATTACHMENT))
+        return GL_NO_ERROR;
+    return named_buffers(word) < 0 ? GL_INVALID_ENUM : GL_INVALID_OPERATION;
+}
+
 constexpr std::byte kOnePixel[4] = {};
 
 /// While nothing is drawn an image is a token in the feedback buffer, of whatever size it is.
@@ -170,6 +175,7 @@ void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
     if (glapi::is_integer_format(format)) return c.error(GL_INVALID_OPERATION);
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
+    if (!may_draw_to_target(c)) return;
     if (!buffers_exist(c, format)) return c.error(GL_INVALID_OPERATION);
     if (!c.state.raster.raster_position_valid) return;
     if (c.state.local.render_mode != GL_RENDER)
@@ -189,6 +195,7 @@ void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
 void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig, GLfloat xmove, GLfloat ymove,
             const GLubyte* bitmap) {
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
+    if (!may_draw_to_target(c)) return;
     if (!c.state.raster.raster_position_valid) return;
     auto position = c.state.raster.raster_position;
     const bool drawing = c.state.local.render_mode == GL_RENDER;
@@ -215,6 +222,7 @@ void CopyPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
     if (what != GL_COLOR && what != GL_DEPTH && what != GL_STENCIL && what != GL_DEPTH_STENCIL)
         return c.error(GL_INVALID_ENUM);
+    if (!may_draw_to_target(c) || !may_read_pixels(c)) return;
     if (!buffers_exist(c, what)) return c.error(GL_INVALID_OPERATION);
     if (!c.state.raster.raster_position_valid || c.state.local.render_mode == GL_SELECT) return;
     const PixelBox from = clip_to_window(c, {x, y, width, height});
@@ -267,11 +275,19 @@ void GetPolygonStipple(Context& c, GLubyte* mask) {
 }
 
 void DrawBuffer(Context& c, GLenum buffer) {
+    if (const auto framebuffer = c.framebuffers->draw) {
+        if (const GLenum error = attachment_buffer_error(buffer)) return c.error(error);
+        return change_framebuffer(c, *framebuffer, [&](Framebuffer& f) { f.set_draw_buffers({buffer}); });
+    }
     if (const GLenum error = buffer_error(buffer, c.draw_target())) return c.error(error);
     c.set<el::draw_buffer>(0, buffer);
 }
 
 void ReadBuffer(Context& c, GLenum buffer) {
+    if (const auto framebuffer = c.framebuffers->read) {
+        if (const GLenum error = attachment_buffer_error(buffer)) return c.error(error);
+        return change_framebuffer(c, *framebuffer, [&](Framebuffer& f) { f.set_read_buffer(buffer); });
+    }
     if (const GLenum error = buffer_error(buffer, c.read_target())) return c.error(error);
     c.set<el::read_buffer>(0, buffer);
 }

@@ -2,7 +2,7 @@
 // glReadPixels: one of the few commands that must wait (OpenGL 1.2.1, 4.3.2).
 #include <algorithm>
 
-#include "client_lib/context/context.h"
+#include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/pixel_store.h"
 #include "client_lib/context/readback.h"
 #include "client_lib/objects/pixel_convert.h"
@@ -10,15 +10,21 @@
 namespace wall::client::api {
 namespace {
 
-bool source_exists(const Context& c, GLenum format) {
+bool has_color(Context& c) {
+    const auto& framebuffer = c.framebuffers->read;
+    if (!framebuffer) return c.state.window.read_buffer != GL_NONE;
+    std::lock_guard lock(c.share().mutex);
+    return framebuffer->read_shape().has_value();
+}
+
+bool source_exists(Context& c, GLenum format) {
     if (!c.read_target()) return false;
-    const SurfaceFormat& f = c.read_target().format();
     switch (format) {
-        case GL_DEPTH_COMPONENT: return f.depth_bits != 0;
-        case GL_STENCIL_INDEX: return f.stencil_bits != 0;
-        case GL_DEPTH_STENCIL: return f.depth_bits != 0 && f.stencil_bits != 0;
+        case GL_DEPTH_COMPONENT: return has_depth(c, true);
+        case GL_STENCIL_INDEX: return has_stencil(c, true);
+        case GL_DEPTH_STENCIL: return has_depth(c, true) && has_stencil(c, true);
         case GL_COLOR_INDEX: return false;
-        default: return c.state.window.read_buffer != GL_NONE;
+        default: return has_color(c);
     }
 }
 
@@ -52,6 +58,7 @@ void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
     if (glapi::is_integer_format(format)) return c.error(GL_INVALID_OPERATION);
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
+    if (!may_read_pixels(c)) return;
     if (!source_exists(c, format)) return c.error(GL_INVALID_OPERATION);
     const PixelBox box = clip_to_window(c, {x, y, width, height});
     if (box.empty()) return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Commands about the stream as a whole: clearing, accumulating, flushing, finishing.
 #include "client_lib/context/context.h"
+#include "client_lib/context/framebuffer_binding.h"
 
 namespace wall::client::api {
 namespace {
@@ -25,6 +26,7 @@ void Clear(Context& c, GLbitfield mask) {
     constexpr GLbitfield kKnown =
         GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT | GL_ACCUM_BUFFER_BIT;
     if (mask & ~kKnown) return c.error(GL_INVALID_VALUE);
+    if (!may_draw_to_target(c)) return;
     if (mask == 0 || c.state.local.render_mode != GL_RENDER) return;
     c.flush_block();
     c.session().hidden_parts([&](HiddenParts& parts) { parts.before_clear(c.draw_source(), mask); });
@@ -34,6 +36,7 @@ void Clear(Context& c, GLbitfield mask) {
 
 void Accum(Context& c, GLenum op, GLfloat value) {
     if (op < GL_ACCUM || op > GL_ADD) return c.error(GL_INVALID_ENUM);
+    if (!may_draw_to_target(c)) return;
     if (!c.draw_target() || c.draw_target().format().accum_bits == 0) return c.error(GL_INVALID_OPERATION);
     c.flush_block();
     c.session().hidden_parts([&](HiddenParts& parts) { parts.before_accumulating(c.draw_target()); });

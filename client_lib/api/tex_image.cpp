@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstring>
 
+#include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/limits.h"
 #include "client_lib/context/pixel_store.h"
 #include "client_lib/context/readback.h"
@@ -197,13 +198,15 @@ void change_level(Context& c, const ImageCall& call, TexelData data) {
     }
     std::lock_guard lock(c.share().mutex);
     TextureLevel& level = *texture->find_level(face_of(call.target), call.level);
-    if (level.content != LevelContent::stored) {
+    if (texture->only_on_nodes(level)) level.content = LevelContent::drawn;
+    const bool partial = level.content == LevelContent::drawn;
+    if (partial ? level.pixels.empty() : level.content != LevelContent::stored) {
         const auto whole = glapi::image_bytes(data.format, data.type, level.width, level.height, level.depth);
         level.pixels.assign(whole.value_or(0), std::byte{0});
         level.data_format = data.format;
         level.data_type = data.type;
         if (level.content == LevelContent::generated) level.stamp = next_stamp();
-        level.content = LevelContent::stored;
+        if (!partial) level.content = LevelContent::stored;
     }
     unify(level, data, texels(call));
     const TexBox box{call.x, call.y, call.z, call.width, call.height, call.depth, next_stamp()};
@@ -308,6 +311,7 @@ void copy_image(Context& c, ImageCall call, GLenum internal_format, From from, c
     if (call.border < 0 || call.border > most_border(call)) return c.error(GL_INVALID_VALUE);
     const TextureFormat* internal = find_texture_format(static_cast<GLint>(internal_format));
     if (!internal || internal_format <= 4) return c.error(GL_INVALID_ENUM);
+    if (!may_read_pixels(c)) return;
     if (call.width < 0 || call.height < 0) return c.error(GL_INVALID_VALUE);
     call.internal_format = static_cast<GLint>(internal_format);
     from.x += call.border;
@@ -324,6 +328,7 @@ void copy_sub_image(Context& c, ImageCall call, From from, const char* function)
     const TextureLevel* level = texture ? texture->find_level(face_of(call.target), call.level) : nullptr;
     const TextureFormat* internal = level ? find_texture_format(level->internal_format) : nullptr;
     set_copied_format(c, call, internal ? internal->base : GLenum{GL_RGBA});
+    if (!may_read_pixels(c)) return;
     if (const GLenum error = sub_image_error(c, call)) return c.error(error);
     if (texels(call) == 0) return;
     change_level(c, call, copied(c, call, from.x, from.y, function));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "client_lib/context/drawn_texels.h"
 #include "client_lib/context/pixel_store.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/texture_image.h"
@@ -225,6 +226,7 @@ void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum 
     const auto texture = bound_texture(c, target);
     if (!texture) return;
     compress_as_driver(c, target, number);
+    const auto drawn = drawn_texels(c, texture, face_of(target), number, "glGetTexImage");
     std::vector<std::byte> tight;
     glapi::ImageSize size;
     {
@@ -234,7 +236,7 @@ void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum 
         if (!internal) return;
         if (!readable(internal->base, format)) return c.error(GL_INVALID_OPERATION);
         size = {level->width, level->height, level->depth, image_target_of(target)->images};
-        auto texels = level_texels(*texture, face_of(target), number);
+        auto texels = drawn ? *drawn : level_texels(*texture, face_of(target), number);
         if (format != GL_DEPTH_COMPONENT && format != GL_DEPTH_STENCIL) {
             const ComponentBits bits = stored_bits(*internal, level->format, level->type);
             const bool to_bytes = type == GL_UNSIGNED_BYTE && format != GL_LUMINANCE && format != GL_LUMINANCE_ALPHA;

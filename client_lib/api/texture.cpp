@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "client_lib/context/context.h"
+#include "client_lib/context/forget_objects.h"
 #include "client_lib/context/limits.h"
 #include "client_lib/context/param_commands.h"
 #include "client_lib/context/texture_binding.h"
@@ -18,33 +19,6 @@ const glapi::TextureTargetInfo* find_global_target(GLenum word) {
     const auto found = std::ranges::find_if(glapi::kTextureTargetInfo,
                                             [&](const auto& info) { return info.global != 0 && info.global == word; });
     return found == glapi::kTextureTargetInfo.end() ? nullptr : &*found;
-}
-
-// A binding of a default texture that has content is its id, in every context that binds name 0.
-ClientName default_id(ShareGroup& share, glapi::TextureTarget target) {
-    const auto found = share.default_textures.find(target);
-    return found == share.default_textures.end() ? ClientName() : found->second->id;
-}
-
-void forget(Context& c, const std::shared_ptr<Texture>& texture) {
-    const glapi::TextureTarget target = texture->info.id;
-    for (unsigned unit = 0; unit < kTextureImageUnits; ++unit) {
-        if (bound_id(c, unit, target) != texture->id) continue;
-        ClientName id;
-        {
-            std::lock_guard lock(c.share().mutex);
-            id = default_id(c.share(), target);
-        }
-        set_bound_id(c, unit, target, id);
-    }
-    // Another context of the group may still have it bound; then it lives on without a name.
-    if (texture->bound_by.size() > 1 || (!texture->bound_by.empty() && texture->bound_by[0] != c.id)) return;
-    c.before_change(texture->id);
-    {
-        std::lock_guard lock(c.share().mutex);
-        c.share().by_id.erase(texture->id);
-    }
-    c.session().delete_object(c.id, texture->id);
 }
 
 bool valid_wrap(const glapi::TextureTargetInfo& target, GLenum mode) {
@@ -138,7 +112,7 @@ void DeleteTextures(Context& c, GLsizei n, const GLuint* names) {
             std::lock_guard lock(c.share().mutex);
             texture = c.share().textures.erase(names[i]);
         }
-        if (texture) forget(c, texture);
+        if (texture) forget_texture(c, texture);
     }
 }
 

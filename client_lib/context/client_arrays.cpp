@@ -380,7 +380,7 @@ void draw_elements(Context& c, GLenum mode, const ElementRange& elements) {
             });
         return c.table->End(c);
     }
-    if (c.program && !may_draw(c)) return;
+    if (!may_draw(c)) return;
     SavedCurrent current(c, arrays);
     c.begin_primitive(mode);
     const auto restart = [&] { c.end_primitive(), c.begin_primitive(mode); };

@@ -5,6 +5,7 @@
 
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/buffer_use.h"
+#include "client_lib/context/framebuffer_use.h"
 #include "client_lib/context/list_state.h"
 #include "client_lib/context/occlusion.h"
 #include "client_lib/context/select.h"
@@ -28,6 +29,7 @@ Context::Context(std::shared_ptr<ShareGroup> share)
       maps(std::make_unique<ContextMaps>()),
       buffers(std::make_unique<BufferUse>()),
       inputs(std::make_unique<VertexInputs>()),
+      framebuffers(std::make_unique<FramebufferUse>()),
       occlusion(std::make_unique<OcclusionState>()),
       share_(std::move(share)) {
     for (auto& stack : texture_stacks) stack.limit = 10;

@@ -34,6 +34,7 @@ struct OcclusionState;   // occlusion.h
 struct ContextMaps;      // objects/maps.h: evaluator and pixel maps
 struct BufferUse;        // buffer_use.h
 class VertexInputs;      // vertex_inputs.h
+struct FramebufferUse;   // framebuffer_use.h
 
 inline constexpr unsigned kVertexAttributes = glstate::el::vertex_attrib::count;
 /// A block larger than this is sent at the next glEnd, so that nodes draw while the program goes on.
@@ -118,6 +119,7 @@ public:
     std::unique_ptr<ContextMaps> maps;
     std::unique_ptr<BufferUse> buffers;
     std::unique_ptr<VertexInputs> inputs;
+    std::unique_ptr<FramebufferUse> framebuffers;
     std::shared_ptr<Program> program;  ///< drawn with; null: fixed function
     std::unique_ptr<OcclusionState> occlusion;
 

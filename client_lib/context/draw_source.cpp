@@ -3,6 +3,7 @@
 #include "client_lib/follow/draw_source.h"
 
 #include "client_lib/context/context.h"
+#include "client_lib/context/framebuffer_use.h"
 #include "client_lib/context/select.h"
 #include "client_lib/context/used_objects.h"
 
@@ -10,10 +11,14 @@ namespace wall::client {
 
 DrawTarget Context::draw_target() const {
     if (!draw_) return {};
+    if (framebuffers->draw && !select->layer) return DrawTarget(*framebuffers->draw, session_->nodes().everywhere());
     return select->layer ? DrawTarget(*draw_, *select->layer) : DrawTarget(*draw_);
 }
 
-DrawTarget Context::read_target() const { return read_ ? DrawTarget(*read_) : DrawTarget(); }
+DrawTarget Context::read_target() const {
+    if (!read_) return {};
+    return framebuffers->read ? DrawTarget(*framebuffers->read, session_->nodes().everywhere()) : DrawTarget(*read_);
+}
 
 void Context::for_each_used(const std::function<void(const Object&)>& use) { client::for_each_used(*this, use); }
 

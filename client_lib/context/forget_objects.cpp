@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/context/forget_objects.h"
 
+#include <mutex>
+
+#include "client_lib/context/framebuffer_binding.h"
+#include "client_lib/context/texture_binding.h"
 #include "client_lib/objects/share_group.h"
 
 namespace wall::client {
@@ -23,6 +27,43 @@ void forget_inputs(Context& c, const std::vector<std::shared_ptr<VertexInput>>& 
         forget_ranges(c, *input);
         forget(c, input->id);
     }
+}
+
+void forget_texture(Context& c, const std::shared_ptr<Texture>& texture) {
+    const glapi::TextureTarget target = texture->info.id;
+    for (unsigned unit = 0; unit < kTextureImageUnits; ++unit) {
+        if (bound_id(c, unit, target) != texture->id) continue;
+        ClientName id;
+        {
+            std::lock_guard lock(c.share().mutex);
+            id = default_id(c.share(), target);
+        }
+        set_bound_id(c, unit, target, id);
+    }
+    texture->orphan = true;
+    detach_from_bound(c, *texture);
+    if (is_attached(c, *texture)) return;
+    // Another context of the group may still have it bound; then it lives on without a name.
+    if (texture->bound_by.size() > 1 || (!texture->bound_by.empty() && texture->bound_by[0] != c.id)) return;
+    c.before_change(texture->id);
+    {
+        std::lock_guard lock(c.share().mutex);
+        c.share().by_id.erase(texture->id);
+    }
+    c.session().delete_object(c.id, texture->id);
+}
+
+void forget_orphan(Context& c, const Renderbuffer& renderbuffer) {
+    if (!renderbuffer.orphan || is_attached(c, renderbuffer)) return;
+    const ClientName id = renderbuffer.id;
+    c.forget_object(id);
+    std::lock_guard lock(c.share().mutex);
+    c.share().by_id.erase(id);
+}
+
+void forget_orphan(Context& c, const Attachment& attachment) {
+    if (attachment.renderbuffer) forget_orphan(c, *attachment.renderbuffer);
+    if (attachment.texture && attachment.texture->orphan) forget_texture(c, attachment.texture);
 }
 
 }  // namespace wall::client

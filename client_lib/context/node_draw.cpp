@@ -148,7 +148,7 @@ Needs NodeDraw::needs() const {
 }
 
 void NodeDraw::send() {
-    if (c_.program && !may_draw(c_)) return;
+    if (!may_draw(c_)) return;
     c_.determine_modelview_form();
     // A program's shader puts the vertices anywhere.
     const bool bounded = !options().broadcast && !c_.program;

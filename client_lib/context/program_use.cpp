@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "client_lib/context/ask_one.h"
+#include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/process/log.h"
 
 namespace wall::client {
@@ -70,6 +71,7 @@ void use_program(Context& c, std::shared_ptr<Program> program) {
 }
 
 bool may_draw(Context& c) {
+    if (c.framebuffers->draw && !may_draw_to_target(c)) return false;
     if (!c.program) return true;
     std::lock_guard lock(c.share().mutex);
     if (!c.program->executable->samplers_conflict()) return true;

@@ -19,7 +19,8 @@ void learn_link_result(Context& c, Program& program);
 /// The context draws with it from now on; null: with none.
 void use_program(Context& c, std::shared_ptr<Program> program);
 
-/// False, and an error, if the context's program cannot draw as its samplers are set.
+/// False, and an error, if the context's framebuffer is not complete, or its program cannot draw as its samplers are
+/// set.
 bool may_draw(Context& c);
 
 /// One user less; the object goes if it was to be deleted and nothing else uses it.

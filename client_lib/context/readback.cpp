@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "client_lib/context/ask_one.h"
 #include "common/glapi/image.h"
 
 namespace wall::client {
@@ -37,6 +38,29 @@ private:
     std::uint64_t id_;
 };
 
+/// Rows of a box that one answer may have.
+std::int32_t most_rows(const glapi::PixelLayout& layout, std::int32_t width) {
+    const std::size_t row = std::max<std::size_t>(1, glapi::row_bytes(layout, width));
+    return static_cast<std::int32_t>(std::max<std::size_t>(1, kMostAnswerBytes / row));
+}
+
+/// Of a framebuffer object, which every node holds.
+void gather_from_one(Context& c, const PixelBox& box, GLenum format, GLenum type, const char* function,
+                     std::vector<std::byte>& pixels) {
+    const auto layout = *glapi::pixel_layout(format, type);
+    const std::int32_t rows = most_rows(layout, box.width);
+    for (std::int32_t y = 0; y < box.height; y += rows) {
+        const std::int32_t height = std::min(rows, box.height - y);
+        const auto answer = ask_one_node(c, function, [&](wire::PackBuffer& buffer, RequestId request) {
+            glapi::pack::ReadPixels(buffer, request, 0, box.x, box.y + y, box.width, height, format, type);
+        });
+        if (!answer || answer->bytes.size() != glapi::row_bytes(layout, box.width) * static_cast<std::size_t>(height))
+            continue;
+        glapi::copy_rect(layout, {pixels.data(), box.width, box.height}, 0, y, answer->bytes.data(), box.width,
+                         box.width, height);
+    }
+}
+
 }  // namespace
 
 PixelBox clip_to_window(const Context& c, const PixelBox& box) {
@@ -56,13 +80,16 @@ std::vector<std::byte> gather_pixels(Context& c, const PixelBox& box, GLenum for
     c.session().hidden_parts([&](HiddenParts& parts) {
         parts.before_reading(target, {box.x, box.y, box.width, box.height});
     });
+    if (target.of_objects()) {
+        gather_from_one(c, box, format, type, function, pixels);
+        return pixels;
+    }
     std::vector<TargetLayer> layers;  // one for each of the parts
     std::vector<PixelBox> parts;
     for (const TargetLayer& layer : target.layers()) {
         const PixelBox part = common_part(box, layer.pixels);
         if (part.empty()) continue;
-        const std::size_t row = std::max<std::size_t>(1, glapi::row_bytes(*layout, part.width));
-        const auto rows = static_cast<std::int32_t>(std::max<std::size_t>(1, kMostAnswerBytes / row));
+        const std::int32_t rows = most_rows(*layout, part.width);
         for (std::int32_t y = 0; y < part.height; y += rows) {
             layers.push_back(layer);
             parts.push_back({part.x, part.y + y, part.width, std::min(rows, part.height - y)});

@@ -63,6 +63,11 @@ void touch(ShareGroup& share, Texture& texture) {
     share.last_change.store(texture.stamp = next_stamp(), std::memory_order_release);
 }
 
+ClientName default_id(ShareGroup& share, glapi::TextureTarget target) {
+    const auto found = share.default_textures.find(target);
+    return found == share.default_textures.end() ? ClientName() : found->second->id;
+}
+
 std::vector<SavedTexture> bound_texture_parameters(Context& c) {
     std::vector<SavedTexture> saved;
     std::lock_guard lock(c.share().mutex);

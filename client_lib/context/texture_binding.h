@@ -25,6 +25,9 @@ std::shared_ptr<Texture> make_texture(ShareGroup& share, GLuint name, glapi::Tex
 /// To be called after every change of a texture.
 void touch(ShareGroup& share, Texture& texture);
 
+/// Name 0 of a target: the id of the default texture, in every context that binds it; none: that has no content. The
+/// share group's mutex is held.
+ClientName default_id(ShareGroup& share, glapi::TextureTarget target);
 /// Parameters of the textures that a context has bound, which glPushAttrib(GL_TEXTURE_BIT) saves too.
 std::vector<SavedTexture> bound_texture_parameters(Context& c);
 void restore_texture_parameters(Context& c, const std::vector<SavedTexture>& saved);

@@ -2,6 +2,7 @@
 #include "client_lib/context/used_objects.h"
 
 #include "client_lib/context/context.h"
+#include "client_lib/context/framebuffer_use.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/share_group.h"
 #include "gen/glstate/texture_elements.gen.h"
@@ -53,6 +54,11 @@ void for_each_used(Context& context, const Use& use) {
     const auto use_bound = [&](ClientName id) {
         if (const auto found = share.by_id.find(id); found != share.by_id.end()) use(*found->second);
     };
+    for (const auto& framebuffer : {context.framebuffers->draw, context.framebuffers->read}) {
+        if (!framebuffer) continue;
+        framebuffer->for_each_image(use);
+        use(*framebuffer);
+    }
     for_each_enabled(context.state, use_bound);
     if (!context.program) return;
     use(*context.program);
@@ -65,6 +71,7 @@ UseStamp use_stamp(const Context& context) {
     return {.texture_units = ids[static_cast<std::size_t>(Category::texture_units)],
             .textures = ids[static_cast<std::size_t>(Category::textures)],
             .objects = ids[static_cast<std::size_t>(Category::objects)],
+            .targets = context.framebuffers->stamp,
             .shared = context.share().last_change.load(std::memory_order_acquire),
             .maps = context.maps->stamp};
 }

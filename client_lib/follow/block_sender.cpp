@@ -28,6 +28,7 @@ constexpr std::int64_t kGapVertices = 2;
 void BlockSender::run() {
     if (!packer_.has_geometry() || !source_.draw) return fold({});
     if (source_.draw.layers().empty() && !source_.draw.with_hidden_part()) return fold({});
+    before_drawing(followers_, source_);
     const auto box = options().broadcast ? std::nullopt : project(projection_, packer_.block_box());
     kept_ = followers_.hidden.begin_keeping(source_, box);
     if (options().count_ideal) scratch_.ideal.count(source_, packer_, projection_);
@@ -36,8 +37,10 @@ void BlockSender::run() {
     NodeMasks& nodes = scratch_.touched;
     nodes_touched(source_.draw.layers(), box, nodes);
     const bool single = packer_.primitives().size() == 1 && !may_be_divided(packer_.primitives()[0]);
-    if (nodes.size() <= 1 || packer_.has_rare() || options().broadcast || single) send_whole(nodes);
+    const bool whole = packer_.has_rare() || options().broadcast || single || source_.draw.of_objects();
+    if (nodes.size() <= 1 || whole) send_whole(nodes);
     else send_apart();
+    source_.draw.note_content(*source_.share);
 }
 
 void BlockSender::pack_whole(wire::PackBuffer& buffer, std::uint64_t slots) const {

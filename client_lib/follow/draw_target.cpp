@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/follow/draw_target.h"
 
+#include <mutex>
+#include <utility>
+
 #include "client_lib/follow/hidden_part.h"
 #include "common/wire/whole_window.h"
 #include "gen/glapi/wire.gen.h"
@@ -16,7 +19,18 @@ std::uint32_t whole_window_of(const Node& node, const ClientSurface& surface) {
 
 }  // namespace
 
+const SurfaceFormat& DrawTarget::format() const {
+    static constexpr SurfaceFormat kNothingPromised{.depth_bits = 0, .stencil_bits = 0, .accum_bits = 0};
+    return surface_ ? surface_->options.format : kNothingPromised;
+}
+
+Extent DrawTarget::size() const {
+    if (objects_) return {objects_->width(), objects_->height()};
+    return {surface_->layout.width, surface_->layout.height};
+}
+
 void DrawTarget::describe_to(Node& node) const {
+    if (!surface_) return;
     const SurfaceLayout& layout = surface_->layout;
     const auto known = node.surfaces.find(surface_->id);
     if (known == node.surfaces.end()) {
@@ -32,14 +46,29 @@ void DrawTarget::describe_to(Node& node) const {
     node.surfaces[surface_->id] = layout.version;
 }
 
+void DrawTarget::note_content(ShareGroup& share) const {
+    if (!objects_) return;
+    std::lock_guard lock(share.mutex);
+    objects_->note_drawn();
+    share.has_drawn.store(true, std::memory_order_relaxed);
+}
+
+/// All draw the same, so one counts: the first that does.
+bool DrawTarget::counts_samples_on(const Node& node) const {
+    return !objects_ || everywhere_->empty() || everywhere_->front().node == node.index;
+}
+
 void bind_targets(Node& node, Mirror& mirror, const DrawTarget& draw, const DrawTarget& read) {
     draw.describe_to(node);
     if (read.surface_ != draw.surface_) read.describe_to(node);
-    const SurfaceId to = draw.surface_->id, from = read.surface_->id;
-    if (mirror.draw_surface == to && mirror.read_surface == from) return;
-    glapi::pack::Bind(node.batch, to, from);
+    const SurfaceId to = draw.surface_ ? draw.surface_->id : mirror.draw_surface,
+                    from = read.surface_ ? read.surface_->id : mirror.read_surface;
+    if (mirror.draw_surface != to || mirror.read_surface != from) glapi::pack::Bind(node.batch, to, from);
     mirror.draw_surface = to;
     mirror.read_surface = from;
+    const Mirror::Objects objects{draw.object(), read.object(), draw.counts_samples_on(node)};
+    if (std::exchange(mirror.targets, objects) != objects)
+        glapi::pack::BindTargets(node.batch, objects.draw, objects.read, objects.counts);
 }
 
 }  // namespace wall::client

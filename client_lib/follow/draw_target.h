@@ -4,14 +4,18 @@
 // and what is noted when something was drawn. The session's mutex is held, but where a member says otherwise.
 #pragma once
 
+#include <functional>
 #include <span>
+#include <vector>
 
 #include "client_lib/follow/node.h"
 #include "client_lib/follow/surface.h"
+#include "client_lib/objects/drawn_target.h"
+#include "client_lib/objects/share_group.h"
 
 namespace wall::client {
 
-/// Copied freely; the surface outlives it.
+/// Copied freely; what it is made of outlives it.
 class DrawTarget {
 public:
     /// Nothing: a context without a surface. Only what says so may be called, and operator bool.
@@ -22,40 +26,66 @@ public:
     /// One layer in place of those (selection, feedback): nothing of the surface changes by what is sent there. `only`
     /// outlives the target.
     DrawTarget(ClientSurface& surface, const TargetLayer& only) : surface_(&surface), only_(&only) {}
+    /// A target of objects, in the layers of all nodes, which outlive it.
+    DrawTarget(DrawnTarget& objects, const std::vector<TargetLayer>& everywhere)
+        : objects_(&objects), everywhere_(&everywhere) {}
 
-    explicit operator bool() const { return surface_ != nullptr; }
+    explicit operator bool() const { return surface_ != nullptr || objects_ != nullptr; }
+    /// Not a window or pixel buffer: it is made of objects, and all nodes hold the same of it.
+    bool of_objects() const { return objects_ != nullptr; }
 
     // ---- any application thread that has it current ----
-    const SurfaceFormat& format() const { return surface_->options.format; }
-    Extent size() const { return {surface_->layout.width, surface_->layout.height}; }
+    /// Of a surface; that of one made of objects is nothing that a window promises.
+    const SurfaceFormat& format() const;
+    Extent size() const;
     /// There is no back buffer, so what is drawn is on show, and a frame ends with glFlush.
-    bool shows_at_once() const { return !format().double_buffered; }
+    bool shows_at_once() const { return surface_ != nullptr && !format().double_buffered; }
     /// glClear has left nothing of the back buffer from before.
-    void note_cleared() const { surface_->cleared = true; }
+    void note_cleared() const {
+        if (surface_) surface_->cleared = true;
+    }
     /// An image of depth or stencil values is drawn.
-    void note_depth_image() const { surface_->depth_images = true; }
+    void note_depth_image() const {
+        if (surface_) surface_->depth_images = true;
+    }
 
     // ---- nodes ----
     std::span<const TargetLayer> layers() const {
-        return only_ ? std::span(only_, 1) : std::span<const TargetLayer>(surface_->layout.layers);
+        if (only_) return std::span(only_, 1);
+        return objects_ ? *everywhere_ : surface_->layout.layers;
     }
     /// The surface whose hidden part may be kept instead of being drawn; null: there is no such part, or no target.
     ClientSurface* with_hidden_part() const {
         return surface_ && only_ == nullptr && surface_->hidden ? surface_ : nullptr;
     }
     /// Whether what is drawn goes to a node that has a layer; a node may be left out for a while.
-    bool goes_to(const Node& node) const { return node.alive() && !node.left_out.contains(surface_->id); }
-    /// Packs into the node's batch what it must know before anything is drawn, read or swapped there.
+    bool goes_to(const Node& node) const {
+        return node.alive() && (objects_ ? node.left_out.empty() : !node.left_out.contains(surface_->id));
+    }
+    /// Packs into the node's batch what it must know of a surface before anything is drawn, read or swapped there.
     void describe_to(Node& node) const;
-    void note_drawn() const { surface_->drawn = true; }
+    void note_drawn() const {
+        if (surface_) surface_->drawn = true;
+    }
+    /// Something was drawn on all nodes that it goes to.
+    void note_content(ShareGroup& share) const;
+    /// The objects whose images are drawn to. The share group's mutex is held.
+    void for_each_image(const std::function<void(const Object&)>& use) const {
+        if (objects_) objects_->for_each_image(use);
+    }
 
     /// Packs into the node's batch, set to the context of `mirror`, what that context draws to and reads from, as far
     /// as the node does not know it.
     friend void bind_targets(Node& node, Mirror& mirror, const DrawTarget& draw, const DrawTarget& read);
 
 private:
+    ClientName object() const { return objects_ ? objects_->target_id() : ClientName(); }
+    bool counts_samples_on(const Node& node) const;
+
     ClientSurface* surface_ = nullptr;
     const TargetLayer* only_ = nullptr;  ///< null: those of the surface
+    DrawnTarget* objects_ = nullptr;     ///< instead of a surface
+    const std::vector<TargetLayer>* everywhere_ = nullptr;
 };
 
 }  // namespace wall::client

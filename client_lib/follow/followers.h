@@ -10,6 +10,7 @@
 #include "client_lib/follow/hidden_parts.h"
 #include "client_lib/follow/node_updater.h"
 #include "client_lib/follow/nodes.h"
+#include "client_lib/follow/object_sender.h"
 
 namespace wall::client {
 
@@ -36,12 +37,20 @@ inline void end_block(wire::PackBuffer& buffer, const OpenBlock& block) {
     std::memcpy(buffer.operand_at(block.counts), counts, sizeof counts);
 }
 
+/// Before the first node is told of a draw: all that it goes to have what only others have, as it is now; and what
+/// somebody keeps is done with the images that are drawn to.
+inline void before_drawing(const Followers& followers, const DrawSource& source) {
+    if (source.draw.of_objects()) followers.hidden.before_drawing_to(source);
+    if (source.share->has_drawn.load(std::memory_order_relaxed)) bring_drawn(followers.nodes, source);
+}
+
 /// Runs `pack(buffer)` inside a Block on every layer of the draw target that `box` touches (nothing: all of them),
 /// after `before(node, buffer)` outside of the Block; `after(node)` when it is packed.
 template <class Before, class Pack, class After>
 void draw_on(const Followers& followers, const DrawSource& source, const std::optional<PixelRect>& box,
              const Needs& needs, Before&& before, Pack&& pack, After&& after) {
     if (!source.draw) return;
+    before_drawing(followers, source);
     const auto pack_block = [&](wire::PackBuffer& buffer, std::uint64_t slots) {
         const OpenBlock block = begin_block(buffer, slots);
         pack(buffer);
@@ -64,6 +73,7 @@ void draw_on(const Followers& followers, const DrawSource& source, const std::op
         count(node, NodeCounter::geometry_bytes, buffer.bytes() - bytes);
         after(node);
     }
+    source.draw.note_content(*source.share);
 }
 
 }  // namespace wall::client

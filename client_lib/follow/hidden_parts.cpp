@@ -227,6 +227,16 @@ void HiddenParts::before_accumulating(const DrawTarget& target) {
     if (!surface->hidden->drawn) show(*surface);
 }
 
+void HiddenParts::before_drawing_to(const DrawSource& source) {
+    if (std::ranges::none_of(surfaces_, [](const auto& entry) { return entry.second->hidden != nullptr; })) return;
+    std::vector<ClientName> images;
+    {
+        std::lock_guard lock(source.share->mutex);
+        source.draw.for_each_image([&](const Object& image) { images.push_back(image.id); });
+    }
+    for (const ClientName image : images) before_object_changes(image);
+}
+
 void HiddenParts::before_object_changes(ClientName object) {
     const auto uses = [&](const KeptFrame& frame) { return frame.follower.object_stamps.contains(object); };
     for (auto& [id, surface] : surfaces_) {

@@ -42,6 +42,8 @@ public:
     void before_counting_samples();
     /// glAccum: its buffer goes on from frame to frame.
     void before_accumulating(const DrawTarget& target);
+    /// The images of a target made of objects change.
+    void before_drawing_to(const DrawSource& source);
     /// A texture, program or run that has been drawn with changes or goes.
     void before_object_changes(ClientName object);
     void before_context_goes(ContextId context);

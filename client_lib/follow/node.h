@@ -29,6 +29,13 @@ struct Mirror {
     glstate::State state;
     glstate::ValueHistory history;
     SurfaceId draw_surface, read_surface;
+    /// Targets made of objects, instead of surfaces.
+    struct Objects {
+        ClientName draw, read;
+        bool counts = true;  ///< samples
+        bool operator==(const Objects&) const = default;
+    };
+    Objects targets;
     UseStamp used;  ///< as of when the node was last brought what drawing with the context needs
 };
 

@@ -12,6 +12,8 @@ constexpr int kConnectTimeoutMs = 2000;
 constexpr std::size_t kBatchBytes =
     256 << 10;  // sent when it reaches this: large enough to be cheap, small enough to overlap
 
+constexpr PixelRect kEverything{-1e9f, -1e9f, 1e9f, 1e9f};
+
 }  // namespace
 
 Node& Nodes::at(NodeIndex index) {
@@ -26,6 +28,7 @@ Node& Nodes::at(NodeIndex index) {
 void Nodes::forget(Node& node) {
     if (node.stream) transport_.remove(node.stream.get());
     node.stream.reset();
+    find_everywhere();
     node.mirrors.clear();
     node.object_stamps.clear();
     node.surfaces.clear();
@@ -33,6 +36,12 @@ void Nodes::forget(Node& node) {
     node.left_out.clear();
     node.slow = node.asks_unanswered = false;
     node.attempt.reset();
+}
+
+void Nodes::find_everywhere() {
+    everywhere_.clear();
+    for (const auto& node : nodes_)
+        if (node->stream) everywhere_.push_back({node->index, 0, kEverything, {}});
 }
 
 void Nodes::connect(const NodeInfo& info) {
@@ -81,6 +90,7 @@ void Nodes::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream)
     }
     node.reopening.opened(now);
     node.stream = std::move(*stream);
+    find_everywhere();
     if (group_) node.stream->never_stalls();
     transport_.add(node.stream);
     events_.opened(node);

@@ -39,6 +39,9 @@ public:
     /// One that is known from now on.
     Node& at(NodeIndex index);
 
+    /// A layer on each that has a stream, of whatever is drawn alike everywhere.
+    const std::vector<TargetLayer>& everywhere() const { return everywhere_; }
+
     // ---- streams ----
     /// As whose nodes they are spoken to.
     void set_session(SessionId session) { session_ = session; }
@@ -81,11 +84,13 @@ private:
     void keep_connected(Node& node);
     void lose(Node& node);
     void forget(Node& node);
+    void find_everywhere();
 
     const std::optional<Parallel>& group_ = parallel();
     const StreamEvents events_;
     Transport transport_;
     std::vector<std::unique_ptr<Node>> nodes_;  ///< by index
+    std::vector<TargetLayer> everywhere_;
     SessionId session_;
     bool attempts_begun_ = false;  ///< by connect(), since wait_for_attempts()
     RequestId last_request_;

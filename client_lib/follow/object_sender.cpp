@@ -1,18 +1,32 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/follow/object_sender.h"
 
+#include <algorithm>
+#include <mutex>
+#include <string>
 #include <utility>
 
 #include "client_lib/objects/share_group.h"
+#include "client_lib/process/log.h"
 
 namespace wall::client {
 namespace {
 
 constexpr std::size_t kObjectBatchBytes = std::size_t{4} << 20;  // a batch of objects is sent when it reaches this
+constexpr int kDrawnLimitMs = 5000;                              // a node answers behind all that it has to draw before
 constexpr int kQuestionLimitMs = 1500;  // the node may be waiting for another program that is sending this very content
 
 /// Whether an answer can be expected soon.
 bool may_be_asked(const Node& node) { return node.answers() && !node.slow && !node.asks_unanswered; }
+
+/// What is drawn now the node does not draw.
+void lose_images(Node& node, const DrawSource& source) {
+    std::lock_guard lock(source.share->mutex);
+    source.draw.for_each_image([&](const Object& image) {
+        if (const auto known = node.object_stamps.find(image.id); known != node.object_stamps.end()) known->second = 0;
+    });
+    for (auto& [context, mirror] : node.mirrors) mirror.used = {};
+}
 
 }  // namespace
 
@@ -26,7 +40,27 @@ void ObjectSender::send(const Object& object) {
     object.pack_changes(known, buffer_, [this] {  // a node at time zero may need more than a frame holds
         if (buffer_.bytes() >= kObjectBatchBytes) send_off();
     });
+    if (known == 0 && object.is_drawn()) fetch(object);
     if (asks && object.pack_shared(buffer_)) send_off();  // others may be waiting for it
+}
+
+/// From a node that has the object. If there is none, the program has to draw it again.
+void ObjectSender::fetch(const Object& object) {
+    const auto has_it = [&](const auto& node) {
+        const auto known = node->object_stamps.find(object.id);
+        return node.get() != &node_ && node->answers() && known != node->object_stamps.end() && known->second != 0;
+    };
+    const auto holder = std::ranges::find_if(nodes_, has_it);
+    if (holder == nodes_.end()) {
+        log_warning("event=drawn_content_lost object=" + std::to_string(object.id.value));
+        return;
+    }
+    Node& from = **holder;
+    ObjectSender(nodes_, from, from.batch).send(object);  // what was changed since it was drawn
+    const auto ask = [&](const auto& pack) { return nodes_.ask_now(from, "drawn content", kDrawnLimitMs, pack); };
+    object.pack_drawn(ask, buffer_, [this] {
+        if (buffer_.bytes() >= kObjectBatchBytes) send_off();
+    });
 }
 
 /// One short round trip, for which the session's mutex stays taken. True: the node has the object now. False: send it;
@@ -46,6 +80,25 @@ void ObjectSender::send_off() {
     sent_ += buffer_.bytes() - start_;
     nodes_.send(node_);
     start_ = buffer_.bytes();
+}
+
+void bring_drawn(Nodes& nodes, const DrawSource& source) {
+    for (const TargetLayer& layer : source.draw.layers()) {
+        Node& node = nodes[layer];
+        if (!node.alive()) continue;
+        if (!source.draw.goes_to(node)) {
+            if (source.draw.of_objects()) lose_images(node, source);
+            continue;
+        }
+        if (node.mirrors[source.id].used == source.used) continue;
+        ObjectSender sender(nodes, node, nodes.batch(node, source.id));
+        source.objects.for_each_used([&](const Object& object) {
+            if (!object.is_drawn()) return;
+            const auto known = node.object_stamps.find(object.id);
+            if (known == node.object_stamps.end() || known->second == 0) sender.send(object);
+        });
+        count(node, NodeCounter::object_bytes, sender.bytes());
+    }
 }
 
 std::size_t bring_up_to_date(Nodes& nodes, Node& node, const DrawSource& source, wire::PackBuffer& buffer) {

@@ -25,6 +25,7 @@ public:
 
 private:
     bool held(const Object& object);
+    void fetch(const Object& object);
     void send_off();
 
     Nodes& nodes_;
@@ -33,6 +34,11 @@ private:
     std::size_t start_;     // of what is still in the buffer
     std::size_t sent_ = 0;  // is not in the buffer any more
 };
+
+/// Before a command is packed for any node: those that it goes to, and have not what nodes alone have of the objects
+/// that it needs (Object::is_drawn), get that from one that has it. A node that it would go to but is left out of
+/// frames has it no more.
+void bring_drawn(Nodes& nodes, const DrawSource& source);
 
 /// Packs of all objects that drawing with the context needs what the node lacks. Returns the bytes; full batches among
 /// them have been sent.

@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <vector>
 
 #include "common/base/ids.h"
 #include "common/glapi/gl_types.h"
@@ -48,6 +50,16 @@ public:
     /// Packs these values as they are now, as far as they are newer than `known`.
     virtual void pack_values(std::uint64_t /*known*/, wire::PackBuffer& /*buffer*/) const {}
 
+    // ---- content that only nodes have, because they drew it (DESIGN, section 4: drawn content) ----
+    /// Whether there is any.
+    virtual bool is_drawn() const { return false; }
+    /// Asks a node that has it, `pack(buffer, request)` being the question; nothing: it does not answer.
+    using AskHolder = std::function<std::optional<std::vector<std::byte>>(
+        const std::function<void(wire::PackBuffer& buffer, RequestId request)>& pack)>;
+    /// Behind pack_changes() for a node that had nothing: packs it as another node has it.
+    virtual void pack_drawn(const AskHolder& /*ask*/, wire::PackBuffer& /*buffer*/,
+                            const std::function<void()>& /*packed*/) const {}
+
     // ---- content that a node may hold already, from another program (A6: global share) ----
     /// Whether it is large enough for a round trip.
     virtual bool worth_asking() const { return false; }
@@ -64,8 +76,9 @@ inline void no_limit() {}
 /// state's categories that name objects, and stamps.
 struct UseStamp {
     std::uint64_t texture_units = 0, textures = 0, objects = 0;
-    std::uint64_t shared = 0;  ///< of all objects of the share group
-    std::uint64_t maps = 0;    ///< of the context's own
+    std::uint64_t targets = 0;  ///< of the context's framebuffer bindings
+    std::uint64_t shared = 0;   ///< of all objects of the share group
+    std::uint64_t maps = 0;     ///< of the context's own
     bool operator==(const UseStamp&) const = default;
 };
 

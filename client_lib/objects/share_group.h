@@ -15,6 +15,7 @@
 
 #include "client_lib/objects/buffer.h"
 #include "client_lib/objects/program.h"
+#include "client_lib/objects/renderbuffer.h"
 #include "client_lib/objects/texture.h"
 #include "common/glapi/gl_types.h"
 
@@ -45,6 +46,11 @@ public:
         names_[name] = std::move(object);
         last_ = std::max(last_, name);
     }
+    template <class Use>
+    void for_each(Use&& use) const {
+        for (const auto& [name, object] : names_)
+            if (object) use(*object);
+    }
     /// What the name stood for.
     std::shared_ptr<T> erase(GLuint name) {
         const auto at = names_.find(name);
@@ -69,6 +75,7 @@ struct ShareGroup {
     NameTable<DisplayList> lists;
     NameTable<Buffer> buffers;
     NameTable<GlslObject> glsl_objects;  ///< shaders and programs
+    NameTable<Renderbuffer> renderbuffers;
 
     /// By id: textures and programs, as state elements name them. They are kept as long as their name or any binding
     /// lives. (Buffers are kept by the contexts that name them: context/buffer_binding.h.)
@@ -82,6 +89,9 @@ struct ShareGroup {
     std::map<glapi::TextureTarget, std::shared_ptr<Texture>> default_textures;
 
     std::atomic<std::uint64_t> buffer_deletions{0};  ///< so far
+
+    /// Something was drawn to: from then on nodes may lack what only others have.
+    std::atomic<bool> has_drawn{false};
 
     /// Stamp of the latest change of any object, so that a look at one number tells that there is nothing to send.
     std::atomic<std::uint64_t> last_change{0};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "client_lib/objects/texture_formats.h"
 #include "common/glapi/image.h"
 #include "gen/glapi/wire.gen.h"
 
@@ -57,7 +58,7 @@ private:
         sink_.TexParameter(texture_.info.target, pname, v[0], v[1], v[2], v[3]);
     }
     void current_parameter(GLenum pname) { parameter(pname, parameter_value(texture_.parameters, pname)); }
-    void base_level(std::uint64_t known);
+    void mipmaps();
     /// What changed of one level since `known`.
     void level(unsigned face, GLint number, std::uint64_t known);
     void define(unsigned face, GLint number, const TextureLevel& level);
@@ -73,23 +74,22 @@ template <class Sink>
 void TextureDiff<Sink>::run(std::uint64_t known) {
     for (const auto& [pname, stamp] : texture_.parameter_stamps)
         if (stamp > known) current_parameter(pname);
-    base_level(known);
+    const GLint base = texture_.parameters.base_level;
+    for (unsigned face = 0; face < glapi::face_count(texture_.info); ++face) level(face, base, known);
+    if (texture_.generated_stamp > known) mipmaps();
     for (unsigned face = 0; face < glapi::face_count(texture_.info); ++face)
         for (GLint number = 0; number < static_cast<GLint>(texture_.faces[face].size()); ++number)
-            if (number != texture_.parameters.base_level) level(face, number, known);
+            if (number != base) level(face, number, known);
     // A name that a state element carries must exist on the node.
     if (known == 0 && !any_) current_parameter(GL_TEXTURE_MAG_FILTER);
 }
 
-// The driver makes the mipmaps when it gets the base level while the parameter is set. Nodes never see the parameter
-// otherwise: whether the application had it set when some level came is history that a late node cannot replay.
+// Nodes never see GL_GENERATE_MIPMAP: whether the application had it set when some level came is history that a late
+// node cannot replay.
 template <class Sink>
-void TextureDiff<Sink>::base_level(std::uint64_t known) {
-    const bool generate = texture_.generated_stamp > known;
-    if (generate) parameter(GL_GENERATE_MIPMAP, {1, 0, 0, 0});
-    for (unsigned face = 0; face < glapi::face_count(texture_.info); ++face)
-        level(face, texture_.parameters.base_level, generate ? 0 : known);
-    if (generate) parameter(GL_GENERATE_MIPMAP, {0, 0, 0, 0});
+void TextureDiff<Sink>::mipmaps() {
+    any_ = true;
+    sink_.TexMipmaps(texture_.info.target);
 }
 
 template <class Sink>
@@ -98,7 +98,8 @@ void TextureDiff<Sink>::level(unsigned face, GLint number, std::uint64_t known) 
     if (static_cast<std::size_t>(number) >= levels.size()) return;
     const TextureLevel& level = levels[static_cast<std::size_t>(number)];
     if (!level.defined() || level.content == LevelContent::generated) return;
-    if (level.stamp > known) return define(face, number, level);
+    if (level.stamp > known) define(face, number, level);
+    if (level.stamp > known && level.content != LevelContent::drawn) return;
     for (const TexBox& change : level.changes)
         if (change.stamp > known) box(face, number, level, change);
 }
@@ -170,6 +171,10 @@ struct TexturePacker {
         glapi::pack::TexCompressed(buffer, id, operands...);
         packed();
     }
+    void TexMipmaps(GLenum target) {
+        glapi::pack::TexMipmaps(buffer, id, target);
+        packed();
+    }
 };
 
 /// Leaves out the pixels.
@@ -188,6 +193,7 @@ struct NameAndShape {
                        std::int32_t height, std::span<const std::byte>) {
         hash.TexCompressed(target, level, internal_format, width, height, {});
     }
+    void TexMipmaps(GLenum target) { hash.TexMipmaps(target); }
 };
 
 }  // namespace
@@ -206,9 +212,20 @@ void TextureLevel::note_change(TexBox box) {
     };
     changes.erase(std::remove_if(changes.begin(), changes.end(), covered), changes.end());
     changes.push_back(box);
-    if (changes.size() <= kMaxChanges) return;
+    if (changes.size() <= kMaxChanges || content == LevelContent::drawn) return;
     changes[1] = united(changes[0], changes[1]);
     changes.erase(changes.begin());
+}
+
+void TextureLevel::note_drawn() {
+    if (content == LevelContent::drawn && changes.empty()) return;
+    content = LevelContent::drawn;
+    pixels = {};
+    changes.clear();
+}
+
+const TextureLevel* Texture::find_level(unsigned face, GLint level) const {
+    return const_cast<Texture*>(this)->find_level(face, level);
 }
 
 TextureLevel* Texture::find_level(unsigned face, GLint level) {
@@ -288,7 +305,48 @@ void Texture::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const 
     TextureDiff(*this, packer).run(known);
 }
 
-bool Texture::worth_asking() const { return global || content_bytes(*this) >= kLeastShared; }
+bool Texture::is_drawn() const {
+    return std::ranges::any_of(faces, [](const auto& face) {
+        return std::ranges::any_of(face, [](const auto& l) { return l.content == LevelContent::drawn; });
+    });
+}
+
+// All levels that the client does not have, made or drawn: the mipmaps may be of an older picture than the base.
+void Texture::pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer, const std::function<void()>& packed) const {
+    for (unsigned face = 0; face < glapi::face_count(info); ++face)
+        for (GLint number = 0; number < static_cast<GLint>(faces[face].size()); ++number) {
+            const TextureLevel& level = faces[face][static_cast<std::size_t>(number)];
+            if (!level.defined() || !only_on_nodes(level)) continue;
+            const GLenum target = glapi::image_target(info, face);
+            const auto [format, type] = exact_pixels(level);
+            for_each_part(level, [&](std::int32_t slice, std::int32_t first, std::int32_t rows) {
+                const auto pixels = ask([&](wire::PackBuffer& question, RequestId request) {
+                    glapi::pack::TexRead(question, request, id, target, number, slice, first, rows, format, type);
+                });
+                if (!pixels || pixels->empty()) return;
+                glapi::pack::TexSubImage(buffer, id, target, number, 0, first, slice, level.width, rows, 1, format,
+                                         type, *pixels);
+                packed();
+            });
+        }
+}
+
+PixelKind exact_pixels(const TextureLevel& level) {
+    const TextureFormat* format = find_texture_format(level.internal_format);
+    const GLenum base = format ? format->base : GL_RGBA;
+    const bool real = format && (format->component_type == GL_FLOAT || format->bits.depth == 32);
+    if (base == GL_DEPTH_COMPONENT)
+        return {GL_DEPTH_COMPONENT,
+                level.internal_format == GL_DEPTH_COMPONENT32F ? GLenum{GL_FLOAT} : GLenum{GL_UNSIGNED_INT}};
+    if (base == GL_DEPTH_STENCIL)
+        return {GL_DEPTH_STENCIL, real ? GLenum{GL_FLOAT_32_UNSIGNED_INT_24_8_REV} : GLenum{GL_UNSIGNED_INT_24_8}};
+    if (real) return {GL_RGBA, GL_FLOAT};
+    const ComponentBits b = format ? stored_bits(*format, level.format, level.type) : ComponentBits{};
+    const bool bytes = std::max({b.red, b.green, b.blue, b.alpha, b.luminance, b.intensity}) <= 8;
+    return {GL_RGBA, bytes ? GLenum{GL_UNSIGNED_BYTE} : GLenum{GL_UNSIGNED_SHORT}};
+}
+
+bool Texture::worth_asking() const { return !is_drawn() && (global || content_bytes(*this) >= kLeastShared); }
 
 void Texture::pack_question(wire::PackBuffer& buffer, RequestId request) const {
     glapi::pack::ShareTexture(buffer, request, id, info.target, global ? 1 : 0, content_key(*this));

@@ -4,6 +4,7 @@
 // Guarded by the share group's mutex.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -28,6 +29,7 @@ enum class LevelContent : std::uint8_t {
     none,       ///< glTexImage without pixels
     stored,     ///< `pixels`
     generated,  ///< made from the base level by each node itself
+    drawn,      ///< by the nodes; `pixels` has only what was changed since, in `changes`
 };
 
 struct TextureLevel {
@@ -43,6 +45,8 @@ struct TextureLevel {
 
     bool defined() const { return internal_format != 0; }
     void note_change(TexBox box);
+    /// All nodes have drawn to it, each with all that was changed before.
+    void note_drawn();
 };
 
 inline constexpr unsigned kTextureLevels = 15;  ///< 16384 texels a side
@@ -65,6 +69,8 @@ struct Texture : Object {
     std::uint64_t latest() const override { return stamp; }
     void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
                       const std::function<void()>& packed) const override;
+    bool is_drawn() const override;
+    void pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer, const std::function<void()>& packed) const override;
     bool worth_asking() const override;
     void pack_question(wire::PackBuffer& buffer, RequestId request) const override;
     bool pack_shared(wire::PackBuffer& buffer) const override;
@@ -80,8 +86,15 @@ struct Texture : Object {
     /// As of a stamp: see content_key().
     mutable std::pair<std::uint64_t, glapi::ContentKey> key_cache{};
 
+    bool orphan = false;  ///< its name is gone; it goes with the last framebuffer that has it
+
     bool is_default() const { return name == 0; }
     TextureLevel* find_level(unsigned face, GLint level);
+    const TextureLevel* find_level(unsigned face, GLint level) const;
+    /// Whether only the nodes have all of a level: it is drawn, or made of what was.
+    bool only_on_nodes(const TextureLevel& level) const {
+        return level.content == LevelContent::drawn || (level.content == LevelContent::generated && is_drawn());
+    }
     TextureLevel& level_at(unsigned face, GLint level);
     void parameter_changed(GLenum pname);
     /// The base level got new pixels and the parameter is set, or glGenerateMipmap.
@@ -90,6 +103,22 @@ struct Texture : Object {
 
 /// Current value of a parameter as four numbers for the TexParameter command.
 std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname);
+
+/// The format and type of an image's pixels.
+struct PixelKind {
+    GLenum format, type;
+};
+/// How the texels of a level travel between nodes, so that none of them changes; the level is not compressed.
+PixelKind exact_pixels(const TextureLevel& level);
+
+/// Calls `use(slice, first_row, rows)` for parts of a level as they are asked for, so that no answer is too large.
+template <class Use>
+void for_each_part(const TextureLevel& level, Use&& use) {
+    constexpr std::int32_t kMostTexels = 1 << 22;  // of 16 bytes at most
+    const std::int32_t rows = std::max(1, kMostTexels / std::max(1, level.width));
+    for (std::int32_t slice = 0; slice < level.depth; ++slice)
+        for (std::int32_t y = 0; y < level.height; y += rows) use(slice, y, std::min(rows, level.height - y));
+}
 
 /// Images larger than this travel in several pieces.
 inline constexpr std::size_t kLargestImageCommand = std::size_t{16} << 20;

@@ -44,6 +44,7 @@ public:
                        std::int32_t height, std::span<const std::byte> blocks) {
         add(Op::TexCompressed, blocks, target, level, internal_format, width, height);
     }
+    void TexMipmaps(GLenum target) { add(Op::TexMipmaps, {}, target); }
     /// A name that a program gave, instead of pixels: GL_WALLGL_global_texture.
     void OwnName(std::uint32_t name) { add(Op::ShareTexture, {}, name); }
     /// A name of content that is known only in one session.

@@ -73,7 +73,7 @@ def group_of(name: str, offer: Offer) -> str:
 
 
 def windowed(words: Iterable[str], home: Path = HOME) -> tuple[str, ...]:
-    """A test's command line without -fbo: framebuffer objects are not offered, and a window is what a wall is about."""
+    """A test's command line without -fbo: a window is what a wall is about."""
     program, *arguments = (word for word in words if word != "-fbo")
     return (str(home / "bin" / Path(program).name), *arguments)
 

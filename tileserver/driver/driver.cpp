@@ -207,19 +207,19 @@ void Driver::forget_texture(GLuint texture) {
             if (bound == texture) bound = 0, bound_textures_.id = glstate::next_value_id();
 }
 
-// ---- the layer ----
+// ---- the target ----
 
-void Driver::bind_window(Layer& layer, glstate::State& state) {
+void Driver::bind_window(RenderTarget& target, glstate::State& state) {
     if (glstate::same(mirror.window, state.window)) {
         state.ids[kWindow] = mirror.ids[kWindow];
-        if (layer_ == &layer) return;
+        if (target_ == &target) return;
     }
     mirror.window = state.window;
     mirror.ids[kWindow] = state.ids[kWindow];
-    layer_ = &layer;
-    layer.bind(glstate::el::draw_buffer::ref(state), glstate::el::read_buffer::ref(state));
-    const WindowValues wanted = window_values(layer.geometry(), state);
-    apply_viewport(wanted, layer.geometry().scaled());
+    target_ = &target;
+    target.bind(glstate::el::draw_buffer::ref(state), glstate::el::read_buffer::ref(state));
+    const WindowValues wanted = window_values(target.geometry(), state);
+    apply_viewport(wanted, target.geometry().scaled());
     if (wanted.scissor_enabled != window_.scissor_enabled)
         wanted.scissor_enabled ? gl_.Enable(GL_SCISSOR_TEST) : gl_.Disable(GL_SCISSOR_TEST);
     if (wanted.scissor != window_.scissor)
@@ -239,7 +239,7 @@ void Driver::apply_viewport(const WindowValues& values, bool scaled) {
 
 void Driver::disable_scissor() {
     if (std::exchange(window_.scissor_enabled, false)) gl_.Disable(GL_SCISSOR_TEST);
-    layer_ = nullptr;
+    target_ = nullptr;
 }
 
 }  // namespace wall::tileserver

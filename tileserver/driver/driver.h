@@ -50,8 +50,8 @@ public:
 
     /// A glBitmap was drawn. Mesa 22 gathers them, and would draw them by the state of a later one.
     void hold_bitmap() { bitmap_held_ = true; }
-    /// Everything but vertex attributes and what depends on the layer or names objects. The state's categories take the
-    /// driver's value ids where they prove equal.
+    /// Everything but vertex attributes and what depends on the target or names objects. The state's categories take
+    /// the driver's value ids where they prove equal.
     void sync(glstate::State& state) {
         if (!glstate::same_ids<kSynced>(mirror, state)) sync_values(state);
     }
@@ -63,12 +63,12 @@ public:
     void sync_pixel_transfer(const glstate::State& state);
     /// Images pass unchanged, for the driver's own work.
     void neutral_pixel_transfer() { sync_pixel_transfer(defaults_); }
-    /// The layer and the window category as it concerns it.
-    void bind_layer(Layer& layer, glstate::State& state) {
-        if (layer_ != &layer || mirror.ids[kWindow] != state.ids[kWindow]) bind_window(layer, state);
+    /// The target and the window category as it concerns it.
+    void bind_target(RenderTarget& target, glstate::State& state) {
+        if (target_ != &target || mirror.ids[kWindow] != state.ids[kWindow]) bind_window(target, state);
     }
-    /// Another framebuffer was bound, or a layer is gone.
-    void forget_layer() { layer_ = nullptr; }
+    /// Another framebuffer was bound, or a target is gone.
+    void forget_target() { target_ = nullptr; }
     void bind_textures(const TextureBindings& wanted) {
         if (wanted.id != bound_textures_.id) bind_all(wanted);
     }
@@ -109,7 +109,7 @@ public:
     void forget_vertex_array(GLuint vertex_array) {
         if (vertex_array_ == vertex_array) bind_vertex_array(0);
     }
-    /// No scissor for the driver's own work (blits, clears); the next bind_layer() sets it again.
+    /// No scissor for the driver's own work (blits, clears); the next bind_target() sets it again.
     void disable_scissor();
 
     /// Takes all of the driver's errors; how many there were.
@@ -138,7 +138,7 @@ private:
 
     void stop_tracking(const glstate::State& state);
     void sync_values(glstate::State& state);
-    void bind_window(Layer& layer, glstate::State& state);
+    void bind_window(RenderTarget& target, glstate::State& state);
     void bind_all(const TextureBindings& wanted);
     void bind_texture(unsigned unit, TextureTarget target, GLuint texture);
 
@@ -162,7 +162,7 @@ private:
     GLuint program_ = 0;  // that the driver draws with
     GLuint query_ = 0;    // that counts samples
     GLuint vertex_array_ = 0;
-    Layer* layer_ = nullptr;  // whose window values are in the driver
+    RenderTarget* target_ = nullptr;  // whose window values are in the driver
     bool viewport_scaled_ = false;
     WindowValues window_;  // what the driver holds
     bool bitmap_held_ = false;

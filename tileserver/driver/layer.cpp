@@ -26,7 +26,8 @@ std::pair<GLenum, GLenum> attachments(GLenum buffer, bool double_buffered) {
 }  // namespace
 
 Layer::Layer(const Gl& gl, bool flip_y, const LayerGeometry& geometry, const LayerFormat& format, PixelBudget& budget)
-    : gl_(gl), budget_(budget), geometry_(geometry), format_(format), flip_y_(flip_y) {
+    : gl_(gl), budget_(budget), format_(format), flip_y_(flip_y) {
+    geometry_ = geometry;
     budget_.left -= pixels();
     const GLenum color = format.alpha ? GL_RGBA8 : GL_RGB8;
     front_ = make_texture(color);

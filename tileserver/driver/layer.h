@@ -11,9 +11,8 @@
 #include <memory>
 #include <vector>
 
-#include "common/geom/pixel_rect.h"
 #include "common/geom/rect.h"
-#include "tileserver/gpu/gl.h"
+#include "tileserver/driver/render_target.h"
 
 namespace wall::tileserver {
 
@@ -23,54 +22,21 @@ struct LayerFormat {
     bool operator==(const LayerFormat&) const = default;
 };
 
-/// What decides how a window's pixels lie in a layer; `area` within `surface`.
-struct LayerGeometry {
-    geom::Rect surface;  ///< canvas pixels; offscreen: {0, 0, window}
-    geom::Rect area;     ///< canvas pixels that the layer holds
-    std::uint32_t window_width = 0, window_height = 0;
-    bool operator==(const LayerGeometry&) const = default;
-
-    bool scaled() const {
-        return surface.width != static_cast<std::int32_t>(window_width) ||
-               surface.height != static_cast<std::int32_t>(window_height);
-    }
-    double scale_x() const { return static_cast<double>(surface.width) / window_width; }
-    double scale_y() const { return static_cast<double>(surface.height) / window_height; }
-    /// The layer's bottom left in the surface's pixels, y up.
-    std::int32_t offset_x() const { return area.x - surface.x; }
-    std::int32_t offset_y() const { return surface.bottom() - area.bottom(); }
-    /// What the layer holds of the window.
-    geom::PixelRect window_area() const {
-        const auto left = static_cast<float>(offset_x() / scale_x()),
-                   bottom = static_cast<float>(offset_y() / scale_y());
-        return {left, bottom, left + static_cast<float>(area.width / scale_x()),
-                bottom + static_cast<float>(area.height / scale_y())};
-    }
-};
-
 /// Pixels that a session's layers may still take.
 struct PixelBudget {
     std::int64_t left = 0;
 };
 
-class Layer {
+class Layer final : public RenderTarget {
 public:
     /// `budget` outlives the layer.
     Layer(const Gl& gl, bool flip_y, const LayerGeometry& geometry, const LayerFormat& format, PixelBudget& budget);
     ~Layer();
-    Layer(const Layer&) = delete;
-    Layer& operator=(const Layer&) = delete;
 
-    const LayerGeometry& geometry() const { return geometry_; }
-    std::int32_t width() const { return geometry_.area.width; }
-    std::int32_t height() const { return geometry_.area.height; }
     std::int64_t pixels() const { return std::int64_t{width()} * height(); }
     bool top_row_first() const { return flip_y_; }
-    bool complete() const { return complete_; }
 
-    /// Makes it the framebuffer that is drawn to and read from, with these of the window's buffers (GL_BACK,
-    /// GL_NONE...).
-    void bind(GLenum draw_buffer, GLenum read_buffer);
+    void bind(GLenum draw_buffer, GLenum read_buffer) override;
     /// End of a frame: a copy of the back buffer waits to be shown. Nothing for a single-buffered surface.
     void finish_frame();
     /// The waiting frame becomes the front buffer.
@@ -81,7 +47,6 @@ public:
     /// Takes over the common pixels of a layer of the same surface at an older place of the same scale.
     void take_content(const Layer& older);
 
-    GLuint framebuffer() const { return framebuffer_; }
     /// Textures of the buffers that are drawn to since bind().
     std::vector<GLuint> draw_textures() const;
     /// A rectangle of a colour texture as RGBA bytes, bottom row first. Pixel transfer must be neutral.
@@ -100,10 +65,8 @@ private:
 
     const Gl& gl_;
     PixelBudget& budget_;
-    LayerGeometry geometry_;
     LayerFormat format_;
-    bool flip_y_, complete_ = false, frame_waits_ = false;
-    GLuint framebuffer_ = 0;
+    bool flip_y_, frame_waits_ = false;
     GLuint front_ = 0, back_ = 0, ready_ = 0, depth_stencil_ = 0;           // textures; 0: none
     GLenum draw_buffer_ = GL_INVALID_ENUM, read_buffer_ = GL_INVALID_ENUM;  // bound last
 };

@@ -33,13 +33,14 @@ LayerPoint layer_point(const LayerGeometry& g, double x, double y) {
     return {x * g.scale_x() - g.offset_x(), y * g.scale_y() - g.offset_y()};
 }
 
+LayerEdge layer_edge(const LayerGeometry& g, double x, double y) {
+    return {round_edge(x * g.scale_x()) - g.offset_x(), round_edge(y * g.scale_y()) - g.offset_y()};
+}
+
 WindowValues::IntBox layer_box(const LayerGeometry& g, const WindowValues::IntBox& w) {
-    const double sx = g.scale_x(), sy = g.scale_y();
-    const std::int32_t x0 = round_edge(w.x * sx) - g.offset_x(),
-                       x1 = round_edge((static_cast<double>(w.x) + w.width) * sx) - g.offset_x();
-    const std::int32_t y0 = round_edge(w.y * sy) - g.offset_y(),
-                       y1 = round_edge((static_cast<double>(w.y) + w.height) * sy) - g.offset_y();
-    return {x0, y0, std::max(x1 - x0, 0), std::max(y1 - y0, 0)};
+    const auto low = layer_edge(g, w.x, w.y),
+               high = layer_edge(g, static_cast<double>(w.x) + w.width, static_cast<double>(w.y) + w.height);
+    return {low.x, low.y, std::max(high.x - low.x, 0), std::max(high.y - low.y, 0)};
 }
 
 WindowValues window_values(const LayerGeometry& g, const glstate::State& state) {

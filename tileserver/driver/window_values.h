@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "gen/glstate/state.gen.h"
-#include "tileserver/driver/layer.h"
+#include "tileserver/driver/render_target.h"
 
 namespace wall::tileserver {
 
@@ -34,6 +34,12 @@ struct LayerPoint {
     double x, y;
 };
 LayerPoint layer_point(const LayerGeometry& geometry, double x, double y);
+
+/// A corner of a rectangle of whole window pixels in whole layer pixels, rounded as those of layer_box().
+struct LayerEdge {
+    std::int32_t x, y;
+};
+LayerEdge layer_edge(const LayerGeometry& geometry, double x, double y);
 
 /// A rectangle of whole window pixels in whole layer pixels. Edges are rounded on the surface before the layer's offset
 /// is taken off, so neighbouring rectangles and neighbouring layers neither overlap nor leave a gap.

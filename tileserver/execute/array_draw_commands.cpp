@@ -54,7 +54,7 @@ void ArrayDrawCommands::find_runs(ClientName name, std::int32_t count, GLenum mo
     if ((all + pieces.cut().step - 1) / pieces.cut().step != pieces.boxes().size())
         return execution_.refuse("pieces of another draw");
     const glstate::Projection projection = glstate::make_projection(execution_.context->state);
-    const geom::PixelRect area = block_.layer->geometry().window_area();
+    const geom::PixelRect area = block_.target->geometry().window_area();
     const auto wanted = [&](const geom::Box& box) {
         const auto rect = glstate::project(projection, box);
         return !rect || rect->overlaps(area);

@@ -12,10 +12,10 @@ namespace wall::tileserver {
 std::uint64_t BlockExecution::begin(std::uint64_t tiles, std::size_t bytes) {
     execution_.session.work.geometry_bytes += bytes;
     note_switch();
-    if (!execution_.surfaces_known) execution_.look_up_surfaces();
+    if (!execution_.targets_known) execution_.look_up_targets();
     block_.open = true;
     SurfaceReplica* surface = execution_.draw_surface;
-    std::uint64_t present = 0;
+    std::uint64_t present = execution_.draw_framebuffer != nullptr ? tiles & (~tiles + 1) : 0;
     for (std::uint64_t rest = tiles; rest != 0 && surface != nullptr; rest &= rest - 1) {
         const auto slot = static_cast<unsigned>(std::countr_zero(rest));
         if (surface->layer(slot) != nullptr) present |= std::uint64_t{1} << slot;
@@ -30,7 +30,7 @@ void BlockExecution::begin_tile(unsigned slot) {
     block_.slot = slot;
     block_.trail.clear();
     block_.raster = glstate::el::raster_position::ref(execution_.context->state);
-    find_layer();
+    find_target();
     if (block_.draws) enter_tile();
 }
 
@@ -39,16 +39,22 @@ void BlockExecution::note_switch() {
     if (std::exchange(execution_.node.current, context) != context) ++execution_.session.work.context_switches;
 }
 
-void BlockExecution::find_layer() {
+void BlockExecution::find_target() {
     SurfaceReplica* surface = execution_.draw_surface;
     block_.layer = surface != nullptr ? surface->layer(block_.slot) : nullptr;
-    block_.draws = block_.layer != nullptr && block_.layer->complete();
+    block_.target = block_.layer;
+    if (execution_.draw_framebuffer != nullptr) block_.target = execution_.updated(execution_.draw_framebuffer);
+    block_.draws = block_.target != nullptr && block_.target->complete();
+}
+
+/// Of a window partly off the wall, its tiles' samples count.
+bool BlockExecution::counts_samples() const {
+    if (block_.layer == nullptr) return execution_.context->counts_samples;
+    return block_.slot != wire::kOffscreenSlot || !execution_.draw_surface->on_tiles();
 }
 
 void BlockExecution::enter_tile() {
-    // Of a window partly off the wall, its tiles' samples count.
-    const bool counts = block_.slot != wire::kOffscreenSlot || !execution_.draw_surface->on_tiles();
-    if (!switch_to(execution_.node, execution_.session, *execution_.context, *block_.layer, counts))
+    if (!switch_to(execution_.node, execution_.session, *execution_.context, *block_.target, counts_samples()))
         execution_.refuse("no such query, or more objects than a session may have");
     execution_.modes.enter();
 }
@@ -75,6 +81,7 @@ void BlockExecution::end() {
     if (!glstate::same(block_.raster, glstate::el::raster_position::ref(state)))
         glstate::assign<glstate::el::raster_position>(state, 0, block_.raster);
     block_.open = block_.draws = false;
+    block_.target = nullptr;
     block_.layer = nullptr;
     if (shows_at_once()) ++execution_.node.damage;
 }
@@ -95,11 +102,11 @@ void BlockExecution::pause() {
 }
 
 void BlockExecution::resume() {
-    execution_.surfaces_known = false;
+    execution_.targets_known = false;
     if (!block_.tile_open) return;
-    execution_.look_up_surfaces();
+    execution_.look_up_targets();
     note_switch();
-    find_layer();
+    find_target();
     if (!block_.draws) return;
     const glstate::State before_block = execution_.context->state;
     block_.trail.fold_into(execution_.context->state);

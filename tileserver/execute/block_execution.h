@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Blocks: commands that are executed once for each tile of a set. Before a block draws in a tile, the driver is brought
-// from what it holds to the soft context (lazily, by diff) and the tile's layer is bound. Render thread.
+// from what it holds to the soft context (lazily, by diff) and the tile's layer, or the framebuffer object, is bound.
+// Render thread.
 #pragma once
 
 #include <cstddef>
@@ -27,10 +28,11 @@ public:
 
 private:
     void note_switch();
-    /// Of the open tile; it draws if the layer can be drawn on.
-    void find_layer();
+    /// Of the open tile; it draws if that can be drawn to.
+    void find_target();
     void enter_tile();
     void finish_tile();
+    bool counts_samples() const;
     bool shows_at_once() const;
 
     Execution& execution_;

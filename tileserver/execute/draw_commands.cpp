@@ -59,7 +59,7 @@ void DrawCommands::Clear(std::uint32_t mask) {
     if ((mask & ~(kBuffers | GL_ACCUM_BUFFER_BIT)) != 0) return execution_.refuse("no such buffer");
     if (!block_.draws) return;
     if ((mask & kBuffers) != 0) execution_.gl.Clear(mask & kBuffers);
-    if ((mask & GL_ACCUM_BUFFER_BIT) != 0 && execution_.draw_surface->format().accum)
+    if ((mask & GL_ACCUM_BUFFER_BIT) != 0 && has_accum())
         clear_accum(*block_.layer, accum_area(*block_.layer, execution_.context->state),
                     glstate::el::clear_accum::ref(execution_.context->state));
 }
@@ -67,7 +67,7 @@ void DrawCommands::Clear(std::uint32_t mask) {
 void DrawCommands::Accum(GLenum op, float value) {
     if (!outside_begin()) return;
     if (op < GL_ACCUM || op > GL_ADD) return execution_.refuse("no such operation");
-    if (block_.draws && execution_.draw_surface->format().accum)
+    if (block_.draws && has_accum())
         accumulate(execution_.node.driver, *block_.layer, execution_.context->state, op, value);
 }
 
@@ -92,7 +92,7 @@ void DrawCommands::at_raster_position(Draw&& draw) {
     execution_.gl.SecondaryColor3f(secondary[0], secondary[1], secondary[2]);
     const auto& depth = el::depth_range::ref(state);
     const double range = depth.far_value - depth.near_value;
-    const auto at = layer_point(block_.layer->geometry(), block_.raster[0], block_.raster[1]);
+    const auto at = layer_point(block_.target->geometry(), block_.raster[0], block_.raster[1]);
     execution_.gl.WindowPos3f(static_cast<float>(at.x), static_cast<float>(at.y),
                               range == 0 ? 0.0f : static_cast<float>((block_.raster[2] - depth.near_value) / range));
     draw();
@@ -118,7 +118,7 @@ void DrawCommands::Bitmap(std::int32_t width, std::int32_t height, float xorig, 
         return execution_.refuse("size does not fit the bits");
     if (block_.draws && width != 0 && height != 0) {
         execution_.node.driver.hold_bitmap();
-        const LayerGeometry& g = block_.layer->geometry();
+        const LayerGeometry& g = block_.target->geometry();
         at_raster_position([&] {
             if (!g.scaled())
                 return execution_.gl.Bitmap(width, height, xorig, yorig, 0, 0,

@@ -40,6 +40,7 @@ public:
 
 private:
     bool outside_begin();
+    bool has_accum() const { return block_.layer != nullptr && execution_.draw_surface->format().accum; }
     /// From `next_` on. True: to the last one.
     bool call_parts(const RunContent& run);
     template <class Draw>

@@ -11,6 +11,7 @@
 #include "common/glapi/decoder.h"
 #include "tileserver/driver/attribute_trail.h"
 #include "tileserver/driver/render_modes.h"
+#include "tileserver/objects/framebuffer.h"
 #include "tileserver/session/render_node.h"
 #include "tileserver/session/session.h"
 #include "tileserver/session/session_output.h"
@@ -28,9 +29,18 @@ struct Execution {
     void refuse(std::string why) { refusal.refuse(std::move(why)); }
     bool refused() const { return refusal.refused(); }
     bool out_of_time() const { return Clock::now() >= until; }
-    void look_up_surfaces() {
-        draw_surface = session.surface(context->draw);
-        surfaces_known = true;
+    void look_up_targets() {
+        const ClientName framebuffer = context->draw_framebuffer;
+        draw_surface = framebuffer ? nullptr : session.surface(context->draw);
+        draw_framebuffer = framebuffer ? session.objects.find<Framebuffer>(framebuffer) : nullptr;
+        targets_known = true;
+    }
+    /// The framebuffer as the session's objects are now; null: there is none that can be drawn to or read.
+    Framebuffer* updated(Framebuffer* framebuffer) {
+        if (framebuffer == nullptr) return nullptr;
+        const auto done = framebuffer->update(session.objects, node.shared);
+        if (!done) refuse(done.error().message);
+        return done && framebuffer->complete() ? framebuffer : nullptr;
     }
 
     RenderNode& node;
@@ -43,8 +53,10 @@ struct Execution {
     // Of the batch.
     ContextId context_id;
     SoftContext* context = nullptr;
-    SurfaceReplica* draw_surface = nullptr;  ///< of the context, while `surfaces_known`
-    bool surfaces_known = false;
+    // Of the context, while `targets_known`: one or none of them.
+    SurfaceReplica* draw_surface = nullptr;
+    Framebuffer* draw_framebuffer = nullptr;
+    bool targets_known = false;
     Clock::time_point until;  ///< of the slice
 };
 
@@ -56,9 +68,10 @@ struct OpenBlock {
     bool in_begin = false;
     bool open = false;
     bool tile_open = false;
-    unsigned slot = 0;  ///< of the tile
-    Layer* layer = nullptr;
-    std::uint64_t vertices = 0;  ///< so far, of all blocks
+    unsigned slot = 0;               ///< of the tile
+    RenderTarget* target = nullptr;  ///< that it draws to
+    Layer* layer = nullptr;          ///< the same; null: it is a framebuffer object
+    std::uint64_t vertices = 0;      ///< so far, of all blocks
     /// The last Begin.
     struct {
         GLenum mode = 0;

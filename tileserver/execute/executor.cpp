@@ -29,7 +29,7 @@ Result<void> Executor::start_batch(std::span<const std::byte> payload) {
     execution_.context_id = batch->context;
     execution_.context = &session.context(batch->context);
     if (session.context_count() > kMaxContexts) return fail("too many contexts");
-    execution_.surfaces_known = false;
+    execution_.targets_known = false;
     batch_.emplace(batch->opcodes, batch->operands);
     batch_commands_ = batch->opcodes.size();
     batch_bytes_ = batch->opcodes.size() + batch->operands.size();

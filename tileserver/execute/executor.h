@@ -17,23 +17,27 @@
 
 #include "common/glapi/decoder.h"
 #include "tileserver/execute/array_draw_commands.h"
+#include "tileserver/execute/blit_commands.h"
 #include "tileserver/execute/block_execution.h"
 #include "tileserver/execute/buffer_commands.h"
 #include "tileserver/execute/content_question.h"
 #include "tileserver/execute/draw_commands.h"
 #include "tileserver/execute/draw_pieces_commands.h"
 #include "tileserver/execute/execution.h"
+#include "tileserver/execute/framebuffer_commands.h"
 #include "tileserver/execute/geometry_commands.h"
 #include "tileserver/execute/map_commands.h"
 #include "tileserver/execute/object_commands.h"
 #include "tileserver/execute/program_commands.h"
 #include "tileserver/execute/query_commands.h"
 #include "tileserver/execute/read_commands.h"
+#include "tileserver/execute/renderbuffer_commands.h"
 #include "tileserver/execute/run_commands.h"
 #include "tileserver/execute/stream_commands.h"
 #include "tileserver/execute/surface_commands.h"
 #include "tileserver/execute/sync_commands.h"
 #include "tileserver/execute/texture_commands.h"
+#include "tileserver/execute/texture_drawn_commands.h"
 #include "tileserver/execute/vertex_input_commands.h"
 
 namespace wall::tileserver {
@@ -75,6 +79,10 @@ public:
     BufferCommands buffer{execution_};
     VertexInputCommands vertex_input{execution_};
     DrawPiecesCommands draw_pieces{execution_};
+    RenderbufferCommands renderbuffer{execution_};
+    FramebufferCommands framebuffer{execution_};
+    TextureDrawnCommands texture_drawn{execution_};
+    BlitCommands blit{execution_, geometry.block()};
     QueryCommands query{execution_};
     MapCommands map{execution_};
     SyncCommands sync{execution_};

@@ -11,7 +11,10 @@ public:
     /// `execution` outlives it.
     explicit ObjectCommands(Execution& execution) : execution_(execution) {}
 
-    void ObjectDelete(ClientName object) { execution_.session.objects.erase(object); }
+    void ObjectDelete(ClientName object) {
+        execution_.session.objects.erase(object);
+        execution_.targets_known = false;
+    }
 
 private:
     Execution& execution_;

@@ -43,19 +43,23 @@ void ReadCommands::ReadPixels(RequestId request, std::uint32_t slot, std::int32_
     if (!bytes || *bytes > wire::kMaxFramePayload - 8) return execution_.refuse("no such format or type, or too large");
     std::vector<std::byte> answer(*bytes);
     const Timed timed(execution_.session.work.render);
+    if (const ClientName framebuffer = execution_.context->read_framebuffer) {
+        read_framebuffer(framebuffer, {x, y, width, height}, format, type, answer);
+        return execution_.output.reply(request, std::move(answer));
+    }
     SurfaceReplica* surface = execution_.session.surface(execution_.context->read);
     Layer* layer = surface != nullptr ? surface->layer(slot) : nullptr;
     if (layer != nullptr && layer->complete() && !answer.empty()) {
         Driver& driver = execution_.node.driver;
         driver.sync_pixel_transfer(execution_.context->state);
         execution_.node.maps.sync_pixel_maps(execution_.gl, execution_.context->maps);
-        driver.forget_layer();
-        driver.bind_layer(*layer, execution_.context->state);
+        driver.forget_target();
+        driver.bind_target(*layer, execution_.context->state);
         if (layer->geometry().scaled()) {
             PixelBudget budget;  // gone with the answer
             const auto copy = window_copy(driver, *layer, surface->format(), {x, y, width, height}, budget);
             execution_.gl.ReadPixels(0, 0, width, height, format, type, answer.data());
-            driver.forget_layer();
+            driver.forget_target();
         } else {
             const auto at = layer_point(layer->geometry(), x, y);
             execution_.gl.ReadPixels(static_cast<GLint>(at.x), static_cast<GLint>(at.y), width, height, format, type,
@@ -63,6 +67,19 @@ void ReadCommands::ReadPixels(RequestId request, std::uint32_t slot, std::int32_
         }
     }
     execution_.output.reply(request, std::move(answer));
+}
+
+void ReadCommands::read_framebuffer(ClientName name, const WindowValues::IntBox& box, GLenum format, GLenum type,
+                                    std::span<std::byte> answer) {
+    Driver& driver = execution_.node.driver;
+    Framebuffer* framebuffer = execution_.updated(execution_.session.objects.find<Framebuffer>(name));
+    if (framebuffer == nullptr || answer.empty()) return;
+    driver.sync_pixel_transfer(execution_.context->state);
+    execution_.node.maps.sync_pixel_maps(execution_.gl, execution_.context->maps);
+    driver.forget_target();
+    driver.bind_target(*framebuffer, execution_.context->state);
+    execution_.gl.ReadPixels(box.x, box.y, box.width, box.height, format, type, answer.data());
+    driver.forget_target();
 }
 
 void ReadCommands::RenderMode(RequestId request, GLenum mode, GLenum feedback_type, std::uint32_t buffer_entries) {

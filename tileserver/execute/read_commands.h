@@ -2,8 +2,11 @@
 // Group [read]: what the program reads back of its drawing. Render thread.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include "tileserver/driver/window_values.h"
 #include "tileserver/execute/execution.h"
 
 namespace wall::tileserver {
@@ -18,6 +21,9 @@ public:
     void RenderMode(RequestId request, GLenum mode, GLenum feedback_type, std::uint32_t buffer_entries);
 
 private:
+    void read_framebuffer(ClientName framebuffer, const WindowValues::IntBox& box, GLenum format, GLenum type,
+                          std::span<std::byte> answer);
+
     Execution& execution_;
 };
 

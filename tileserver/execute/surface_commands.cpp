@@ -19,7 +19,7 @@ void SurfaceCommands::SurfaceCreate(SurfaceId surface, std::uint32_t double_buff
                                     std::uint32_t depth_bits, std::uint32_t stencil_bits, std::uint32_t accum_bits,
                                     std::uint32_t) {
     if (!surface) return execution_.refuse("surface 0 is none");
-    execution_.surfaces_known = false;
+    execution_.targets_known = false;
     const LayerFormat layer{double_buffered != 0, alpha_bits != 0, depth_bits != 0, stencil_bits != 0};
     if (execution_.session.create_surface(surface, {layer, accum_bits != 0}) != nullptr) return;
     execution_.refuse(execution_.session.shares(surface)
@@ -52,7 +52,7 @@ void SurfaceCommands::SurfacePlace(SurfaceId id, std::uint32_t layout_version, s
         if (layout_version <= surface->where().layout_version)
             return execution_.refuse("the members of the parallel program draw for different places");
     }
-    execution_.node.driver.forget_layer();
+    execution_.node.driver.forget_target();
     execution_.node.driver.disable_scissor();
     ++execution_.node.damage;
     if (!surface->place(place, execution_.node.tiles)) execution_.refuse("more pixels than a session may have");
@@ -60,14 +60,14 @@ void SurfaceCommands::SurfacePlace(SurfaceId id, std::uint32_t layout_version, s
 
 void SurfaceCommands::SurfaceDestroy(SurfaceId id) {
     execution_.session.destroy_surface(id);
-    execution_.surfaces_known = false;
+    execution_.targets_known = false;
     ++execution_.node.damage;
 }
 
 void SurfaceCommands::Bind(SurfaceId draw_surface, SurfaceId read_surface) {
     execution_.context->draw = draw_surface;
     execution_.context->read = read_surface;
-    execution_.surfaces_known = false;
+    execution_.targets_known = false;
 }
 
 void SurfaceCommands::ContextDestroy(ContextId context) {
@@ -93,7 +93,7 @@ void SurfaceCommands::SwapOffscreen(SurfaceId window) {
     SurfaceReplica* surface = known_surface(window);
     if (surface == nullptr) return;
     surface->swap_offscreen();
-    execution_.node.driver.forget_layer();
+    execution_.node.driver.forget_target();
 }
 
 void SurfaceCommands::present(SurfaceId id, std::uint32_t frame) {
@@ -102,7 +102,7 @@ void SurfaceCommands::present(SurfaceId id, std::uint32_t frame) {
         static_cast<std::int32_t>(frame - *surface->waiting_frame()) < 0)
         return;
     surface->show_frame();
-    execution_.node.driver.forget_layer();
+    execution_.node.driver.forget_target();
     ++execution_.node.damage;
 }
 

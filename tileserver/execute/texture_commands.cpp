@@ -31,11 +31,7 @@ Texture* TextureCommands::bind_to_edit(ClientName name, GLenum target) {
         return nullptr;
     }
     Texture& texture = **made;
-    if (texture.shared().use_count() > 1) {
-        if (!texture.adopt(texture.content().copy())) execution_.refuse("more texture memory than a session may have");
-    } else if (const auto key = std::exchange(texture.content().key, {})) {
-        execution_.node.shared.forget(*key, texture.content());
-    }
+    if (!texture.own(execution_.node.shared)) execution_.refuse("more texture memory than a session may have");
     if (texture.promise)
         execution_.node.shared.heard(texture.promise->key, execution_.session.asker(),
                                      std::chrono::steady_clock::now());

@@ -12,9 +12,19 @@
 namespace wall::tileserver {
 
 /// The kinds, a word each; kObjectKindNames has what a person calls them.
-enum class ObjectKind : std::uint8_t { texture, program, run, query, buffer, vertex_input, draw_pieces };
-inline constexpr std::array kObjectKindNames = {"texture", "program",      "run",        "query",
-                                                "buffer",  "vertex input", "piece table"};
+enum class ObjectKind : std::uint8_t {
+    texture,
+    program,
+    run,
+    query,
+    buffer,
+    vertex_input,
+    draw_pieces,
+    renderbuffer,
+    framebuffer,
+};
+inline constexpr std::array kObjectKindNames = {"texture",      "program",     "run",          "query",      "buffer",
+                                                "vertex input", "piece table", "renderbuffer", "framebuffer"};
 inline constexpr std::size_t kObjectKinds = kObjectKindNames.size();
 
 // What one session may have on a node, of all kinds together: they fill the same memory, and no kind knows what is
@@ -27,8 +37,8 @@ inline constexpr std::uint64_t kLeastObjectBytes = 4096;
 /// What a session's objects come to. Outlives them.
 struct ObjectAccount {
     std::uint64_t bytes = 0;  ///< of the driver's memory, by estimate
-    /// By kind: grows whenever the driver's name of an object may have become another, so that it must be looked up
-    /// again.
+    /// By kind: grows whenever the driver's name of an object, or the size of its images, may have become another, so
+    /// that it must be looked up again.
     std::array<std::uint64_t, kObjectKinds> versions{};
 
     bool affords(std::uint64_t more) const { return more <= kMaxObjectBytes && bytes <= kMaxObjectBytes - more; }
@@ -60,7 +70,7 @@ protected:
     bool affords(std::uint64_t bytes, std::uint64_t instead_of) const {
         return bytes <= instead_of || account_.affords(bytes - instead_of);
     }
-    /// The driver's name of it may be another from now on.
+    /// The driver's name of it, or what its images are, may be another from now on.
     void renamed() { ++account_.versions[static_cast<std::size_t>(kind_)]; }
 
 private:

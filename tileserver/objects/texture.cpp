@@ -14,12 +14,19 @@ bool Texture::adopt(std::shared_ptr<TextureContent> content) {
     return has_content(content_->bytes());
 }
 
+bool Texture::own(SharedContents& shared) {
+    if (content_.use_count() > 1) return adopt(content_->copy());
+    if (const auto key = std::exchange(content_->key, {})) shared.forget(*key, *content_);
+    return true;
+}
+
 bool Texture::affords_image(GLenum image_target, std::int32_t level, std::uint64_t bytes) const {
     return affords(bytes, content_->image_bytes(image_target, level));
 }
 
 bool Texture::note_image(GLenum image_target, std::int32_t level, const TextureContent::ImageFormat* format) {
     content_->note_image(image_target, level, format);
+    renamed();  // framebuffers that it belongs to may have another size
     return has_content(content_->bytes());
 }
 

@@ -28,6 +28,8 @@ public:
     TextureTarget target() const { return content_->target(); }
     /// It is that content from now on, which other sessions may hold, too. False: more memory than a session may have.
     [[nodiscard]] bool adopt(std::shared_ptr<TextureContent> content);
+    /// Before it changes: what other sessions hold stays as it is, and nobody new is given it. False: as adopt().
+    [[nodiscard]] bool own(SharedContents& shared);
     /// Whether the session may have `bytes` for that image, instead of what it has for it now.
     bool affords_image(GLenum image_target, std::int32_t level, std::uint64_t bytes) const;
     /// Notes what the driver has of one image after a definition (TextureContent::note_image). False: as adopt().

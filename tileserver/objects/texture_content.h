@@ -38,10 +38,9 @@ public:
     void note_image(GLenum image_target, std::int32_t level, const ImageFormat* format);
     /// Of one image, by estimate.
     std::uint64_t image_bytes(GLenum image_target, std::int32_t level) const;
-    void note_parameter(GLenum pname, const std::array<float, 4>& value) {
-        parameters_[pname] = value;
-        generated_ |= pname == GL_GENERATE_MIPMAP && value[0] != 0;
-    }
+    void note_parameter(GLenum pname, const std::array<float, 4>& value) { parameters_[pname] = value; }
+    /// The driver has made mipmaps of the base level.
+    void note_mipmaps() { generated_ = true; }
 
     /// The same texture again, copied by the driver.
     std::shared_ptr<TextureContent> copy() const;

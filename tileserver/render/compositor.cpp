@@ -145,7 +145,7 @@ void Compositor::read_back(const PictureRequest& request, GLuint framebuffer, co
                       nullptr,
                       budget_.hold(bytes)};
     node_.driver.neutral_pixel_transfer();
-    node_.driver.forget_layer();
+    node_.driver.forget_target();
     gl_.CreateBuffers(1, &readback.buffer);
     gl_.NamedBufferStorage(readback.buffer, static_cast<GLsizeiptr>(bytes), nullptr,
                            GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);

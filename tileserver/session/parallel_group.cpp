@@ -20,7 +20,7 @@ SurfaceReplica* ParallelGroup::open_surface(Rank rank, SurfaceId id, const Surfa
 
 void ParallelGroup::close_surface(Rank rank, SurfaceId id) {
     if (!sync.surface_close(rank, id)) return;
-    driver_.forget_layer();
+    driver_.forget_target();
     surfaces_.erase(id);
 }
 

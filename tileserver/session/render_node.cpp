@@ -13,7 +13,7 @@ void finish_frame(RenderNode& node, Work& work, SurfaceReplica& surface, std::ui
     }
     ++work.frames;
     if (at_once) surface.show_frame();
-    node.driver.forget_layer();
+    node.driver.forget_target();
     if (overtaken || at_once) ++node.damage;  // else the tiles change when it is presented
 }
 

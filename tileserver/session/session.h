@@ -34,6 +34,8 @@ struct SoftContext {
     glstate::State state;
     glstate::ValueHistory history;
     SurfaceId draw, read;
+    ClientName draw_framebuffer, read_framebuffer;  ///< instead of these; 0: none
+    bool counts_samples = true;                     ///< of what is drawn to the framebuffer: one node does
     SoftMaps maps;
     BoundTextures textures;
 };
@@ -43,7 +45,7 @@ public:
     /// `group`: of a parallel program, of which this is the member `rank`; outlives the session.
     SessionReplica(Driver& driver, SessionId id, ParallelGroup* group = nullptr, Rank rank = 0)
         : driver_(driver), id_(id), group_(group), rank_(rank) {}
-    ~SessionReplica() { driver_.forget_layer(); }
+    ~SessionReplica() { driver_.forget_target(); }
     SessionReplica(const SessionReplica&) = delete;
 
     SessionId id() const { return id_; }

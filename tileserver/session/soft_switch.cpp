@@ -44,18 +44,18 @@ bool count_samples(RenderNode& node, SessionReplica& session, ClientName name, c
 
 }  // namespace
 
-bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, Layer& layer, bool counts) {
+bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, RenderTarget& target, bool counts) {
     node.driver.sync(context.state);
     if (context.textures.state_id != textures_id(context) ||
         context.textures.version != session.objects.version(Texture::kKind))
         look_up_textures(session, context);
     node.driver.bind_textures(context.textures.bindings);
     node.maps.sync_evaluators(node.driver, context.maps);
-    node.driver.bind_layer(layer, context.state);
-    use_program(node, session, ClientName(glstate::el::current_program::ref(context.state)), layer.geometry());
+    node.driver.bind_target(target, context.state);
+    use_program(node, session, ClientName(glstate::el::current_program::ref(context.state)), target.geometry());
     node.driver.sync_current(context.state);
     const ClientName query(glstate::el::occlusion_query::ref(context.state));
-    return !query || !counts || count_samples(node, session, query, layer.geometry());
+    return !query || !counts || count_samples(node, session, query, target.geometry());
 }
 
 }  // namespace wall::tileserver

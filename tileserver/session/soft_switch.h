@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The soft context switch (Tracking Graphics State, section 5): the one driver context is brought from whatever it
-// holds to what a session's context wants, on the layer that is drawn to. What is the same costs a comparison of ids.
+// holds to what a session's context wants, on the target that is drawn to. What is the same costs a comparison of ids.
 // Render thread.
 #pragma once
 
@@ -9,9 +9,9 @@
 
 namespace wall::tileserver {
 
-/// `counts`: an occlusion query of the context counts what is drawn on the layer. False: there is no such
+/// `counts`: an occlusion query of the context counts what is drawn to the target. False: there is no such
 /// query, or the session may have no more.
-[[nodiscard]] bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, Layer& layer,
+[[nodiscard]] bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, RenderTarget& target,
                              bool counts);
 
 }  // namespace wall::tileserver

@@ -17,13 +17,13 @@ namespace {
 
 Lookup g_lookup = nullptr;
 
-void Viewport(GLint x, GLint y, GLsizei width, GLsizei height) {
-    mesa().Viewport(x + place().dx(), y + place().dy(), width, height);
-}
+/// What is added to a position in what is drawn to.
+int dx() { return draws_to_window() ? place().dx() : 0; }
+int dy() { return draws_to_window() ? place().dy() : 0; }
 
-void Scissor(GLint x, GLint y, GLsizei width, GLsizei height) {
-    mesa().Scissor(x + place().dx(), y + place().dy(), width, height);
-}
+void Viewport(GLint x, GLint y, GLsizei width, GLsizei height) { mesa().Viewport(x + dx(), y + dy(), width, height); }
+
+void Scissor(GLint x, GLint y, GLsizei width, GLsizei height) { mesa().Scissor(x + dx(), y + dy(), width, height); }
 
 void PolygonStipple(const GLubyte* mask) {
     if (integer(GL_UNPACK_ROW_LENGTH) != 0 || integer(GL_UNPACK_SKIP_ROWS) != 0 ||
@@ -41,8 +41,7 @@ void PolygonStipple(const GLubyte* mask) {
 
 template <class T>
 void WindowPos3(T x, T y, T z) {
-    mesa().WindowPos3d(static_cast<GLdouble>(x) + place().dx(), static_cast<GLdouble>(y) + place().dy(),
-                       static_cast<GLdouble>(z));
+    mesa().WindowPos3d(static_cast<GLdouble>(x) + dx(), static_cast<GLdouble>(y) + dy(), static_cast<GLdouble>(z));
 }
 template <class T>
 void WindowPos3v(const T* at) {
@@ -57,17 +56,11 @@ void WindowPos2v(const T* at) {
     WindowPos3(at[0], at[1], T{0});
 }
 
-/// What is drawn into a framebuffer object must stay where it is, and is not told apart here.
-void BindFramebuffer(GLenum target, GLuint framebuffer) {
-    if (framebuffer != 0) stop("framebuffer objects");
-    mesa().BindFramebuffer(target, 0);
-}
-
 template <class T>
 void answer_in_window_pixels(GLenum name, T* values) {
     if (name != GL_VIEWPORT && name != GL_SCISSOR_BOX && name != GL_CURRENT_RASTER_POSITION) return;
-    values[0] -= static_cast<T>(place().dx());
-    values[1] -= static_cast<T>(place().dy());
+    values[0] -= static_cast<T>(dx());
+    values[1] -= static_cast<T>(dy());
 }
 void GetIntegerv(GLenum name, GLint* values) {
     mesa().GetIntegerv(name, values);
@@ -82,6 +75,26 @@ void GetDoublev(GLenum name, GLdouble* values) {
     answer_in_window_pixels(name, values);
 }
 
+bool g_moves_fragments = false;  ///< a shader does
+
+/// What is drawn into a framebuffer object stays where it is: positions are set anew.
+void BindFramebuffer(GLenum target, GLuint framebuffer) {
+    if (framebuffer != 0 && g_moves_fragments) stop("gl_FragCoord and framebuffer objects");
+    std::array<GLint, 4> viewport{}, scissor{};
+    GetIntegerv(GL_VIEWPORT, viewport.data());
+    GetIntegerv(GL_SCISSOR_BOX, scissor.data());
+    mesa().BindFramebuffer(target, framebuffer);
+    Viewport(viewport[0], viewport[1], viewport[2], viewport[3]);
+    Scissor(scissor[0], scissor[1], scissor[2], scissor[3]);
+}
+
+void BlitFramebuffer(GLint from_x0, GLint from_y0, GLint from_x1, GLint from_y1, GLint to_x0, GLint to_y0, GLint to_x1,
+                     GLint to_y1, GLbitfield mask, GLenum filter) {
+    if (reads_from_window()) stop("glBlitFramebuffer out of a window");
+    mesa().BlitFramebuffer(from_x0, from_y0, from_x1, from_y1, to_x0 + dx(), to_y0 + dy(), to_x1 + dx(), to_y1 + dy(),
+                           mask, filter);
+}
+
 /// gl_FragCoord of the window, out of that of this process.
 void ShaderSource(GLuint shader, GLsizei count, const GLchar* const* strings, const GLint* lengths) {
     std::string source;
@@ -92,8 +105,10 @@ void ShaderSource(GLuint shader, GLsizei count, const GLchar* const* strings, co
     if (source.find("origin_upper_left") != source.npos) stop("origin_upper_left");
     const std::string moved = "(gl_FragCoord - vec4(" + std::to_string(place().dx()) + ".0, " +
                               std::to_string(place().dy()) + ".0, 0.0, 0.0))";
-    for (std::size_t at = 0; (at = source.find(kName, at)) != source.npos; at += moved.size())
+    for (std::size_t at = 0; (at = source.find(kName, at)) != source.npos; at += moved.size()) {
+        g_moves_fragments = true;
         source.replace(at, kName.size(), moved);
+    }
     const GLchar* whole = source.c_str();
     mesa().ShaderSource(shader, 1, &whole, nullptr);
 }
@@ -112,7 +127,7 @@ Replacement with(std::string_view name, Function* function) {
 }
 
 constexpr std::array<std::string_view, 9> kNeverStart = {
-    "glViewportIndexed",   "glViewportArray", "glScissorIndexed",      "glScissorArray", "glBlitFramebuffer",
+    "glViewportIndexed",   "glViewportArray", "glScissorIndexed",      "glScissorArray", "glBlitNamed",
     "glCopyTexSubImage3D", "glReadnPixels",   "glCopyTextureSubImage", "glProgramString"};
 
 /// The name without what marks it as an extension's.
@@ -136,6 +151,9 @@ int integer(GLenum name) {
     mesa().GetIntegerv(name, &value);
     return value;
 }
+
+bool draws_to_window() { return integer(GL_DRAW_FRAMEBUFFER_BINDING) == 0; }
+bool reads_from_window() { return integer(GL_READ_FRAMEBUFFER_BINDING) == 0; }
 
 void use(Lookup lookup) { g_lookup = lookup; }
 
@@ -161,6 +179,7 @@ void* replacement(std::string_view name) {
         with("glWindowPos3fv", WindowPos3v<GLfloat>),
         with("glWindowPos3dv", WindowPos3v<GLdouble>),
         with("glBindFramebuffer", BindFramebuffer),
+        with("glBlitFramebuffer", BlitFramebuffer),
         with("glGetIntegerv", GetIntegerv),
         with("glGetFloatv", GetFloatv),
         with("glGetDoublev", GetDoublev),

@@ -23,6 +23,11 @@ struct Mesa {
     decltype(&glScissor) Scissor = find("glScissor");
     decltype(&glWindowPos3d) WindowPos3d = find("glWindowPos3d");
     decltype(&glBindFramebuffer) BindFramebuffer = find("glBindFramebuffer");
+    decltype(&glBlitFramebuffer) BlitFramebuffer = find("glBlitFramebuffer");
+    decltype(&glCopyTexImage1D) CopyTexImage1D = find("glCopyTexImage1D");
+    decltype(&glCopyTexImage2D) CopyTexImage2D = find("glCopyTexImage2D");
+    decltype(&glCopyTexSubImage1D) CopyTexSubImage1D = find("glCopyTexSubImage1D");
+    decltype(&glCopyTexSubImage2D) CopyTexSubImage2D = find("glCopyTexSubImage2D");
     decltype(&glPolygonStipple) PolygonStipple = find("glPolygonStipple");
     decltype(&glGetIntegerv) GetIntegerv = find("glGetIntegerv");
     decltype(&glGetFloatv) GetFloatv = find("glGetFloatv");
@@ -41,6 +46,10 @@ struct Mesa {
     decltype(&glPopClientAttrib) PopClientAttrib = find("glPopClientAttrib");
 };
 const Mesa& mesa();
+
+/// Whether the program draws to (reads from) its window, and not to a framebuffer object, where nothing is moved.
+bool draws_to_window();
+bool reads_from_window();
 
 /// The value of a state variable, as Mesa has it.
 int integer(GLenum name);

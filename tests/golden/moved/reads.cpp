@@ -146,7 +146,8 @@ void copy_to_texture(const char* function, const Box& area, Load&& load) {
 /// Mesa packs this tile's part to where it belongs in the program's memory; the other tiles' parts are copied there.
 void ReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* data) {
     const std::size_t bytes = pixel_bytes(format, type);
-    if (bytes == 0 || width <= 0 || height <= 0) return mesa().ReadPixels(x, y, width, height, format, type, data);
+    if (bytes == 0 || width <= 0 || height <= 0 || !reads_from_window())
+        return mesa().ReadPixels(x, y, width, height, format, type, data);
     if (integer(GL_PIXEL_PACK_BUFFER_BINDING) != 0) stop("glReadPixels into a buffer object");
     const int row_length = integer(GL_PACK_ROW_LENGTH), skip_pixels = integer(GL_PACK_SKIP_PIXELS),
               skip_rows = integer(GL_PACK_SKIP_ROWS), alignment = integer(GL_PACK_ALIGNMENT);
@@ -172,6 +173,7 @@ void ReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, 
 /// What lies beyond the window is not copied, so that the rest begins later.
 void CopyPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum what) {
     must_execute("glCopyPixels in a list");
+    if (!reads_from_window()) stop("glCopyPixels out of a framebuffer object");
     const Box from = intersect({x, y, width, height}, place().window);
     GLboolean valid = static_cast<GLboolean>(integer(GL_CURRENT_RASTER_POSITION_VALID));
     if (from.empty() || !valid) return;
@@ -189,6 +191,7 @@ void CopyPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum what) {
 }
 
 void CopyTexImage1D(GLenum target, GLint level, GLenum internal, GLint x, GLint y, GLsizei width, GLint border) {
+    if (!reads_from_window()) return mesa().CopyTexImage1D(target, level, internal, x, y, width, border);
     copy_to_texture("glCopyTexImage1D in a list", {x, y, width, 1}, [&](const void* pixels) {
         mesa().TexImage1D(target, level, static_cast<GLint>(internal), width, border, GL_RGBA, GL_UNSIGNED_BYTE,
                           pixels);
@@ -196,18 +199,21 @@ void CopyTexImage1D(GLenum target, GLint level, GLenum internal, GLint x, GLint 
 }
 void CopyTexImage2D(GLenum target, GLint level, GLenum internal, GLint x, GLint y, GLsizei width, GLsizei height,
                     GLint border) {
+    if (!reads_from_window()) return mesa().CopyTexImage2D(target, level, internal, x, y, width, height, border);
     copy_to_texture("glCopyTexImage2D in a list", {x, y, width, height}, [&](const void* pixels) {
         mesa().TexImage2D(target, level, static_cast<GLint>(internal), width, height, border, GL_RGBA, GL_UNSIGNED_BYTE,
                           pixels);
     });
 }
 void CopyTexSubImage1D(GLenum target, GLint level, GLint to, GLint x, GLint y, GLsizei width) {
+    if (!reads_from_window()) return mesa().CopyTexSubImage1D(target, level, to, x, y, width);
     copy_to_texture("glCopyTexSubImage1D in a list", {x, y, width, 1}, [&](const void* pixels) {
         mesa().TexSubImage1D(target, level, to, width, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
     });
 }
 void CopyTexSubImage2D(GLenum target, GLint level, GLint to_x, GLint to_y, GLint x, GLint y, GLsizei width,
                        GLsizei height) {
+    if (!reads_from_window()) return mesa().CopyTexSubImage2D(target, level, to_x, to_y, x, y, width, height);
     copy_to_texture("glCopyTexSubImage2D in a list", {x, y, width, height}, [&](const void* pixels) {
         mesa().TexSubImage2D(target, level, to_x, to_y, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
     });

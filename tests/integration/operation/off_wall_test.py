@@ -25,10 +25,10 @@ SCENES = {"primitive_modes": 3, "draw_pixels": 5, "bitmaps": 4, "copy_pixels": 4
           "clears": 4, "depth": 8, "stencil": 6, "accumulation": 4, "draw_buffers": 4, "front_buffer": 4,
           "single_buffered": 4, "kept_back_buffer": 5, "through_egl": 3, "lighting": 5, "texture_updates": 4,
           "copy_texture": 3, "list_state": 4, "list_images": 3, "vertex_arrays": 5, "evaluators": 5, "glsl_values": 2,
-          "glsl_in_lists": 2, "occlusion": 2, "queries": 2, "selection": 2, "feedback": 2}
+          "glsl_in_lists": 2, "occlusion": 2, "queries": 2, "selection": 2, "feedback": 2, "framebuffer": 4}
 # Read for the first time after so many frames that were not.
 LATE = {"depth": 8, "lighting": 90, "texture_updates": 7, "glsl_values": 70, "kept_back_buffer": 20, "list_state": 9,
-        "single_buffered": 12}
+        "single_buffered": 12, "framebuffer": 20}
 
 
 class WallWithBezels(Wall):

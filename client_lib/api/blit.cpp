@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+// glBlitFramebuffer (OpenGL 4.6, 18.3.1). Every node copies by itself out of a framebuffer object, which all of them
+// hold. Out of a window, of which each holds a part, the pixels are gathered first and given to the nodes as one.
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+#include "client_lib/context/forget_objects.h"
+#include "client_lib/context/framebuffer_binding.h"
+#include "client_lib/context/readback.h"
+#include "client_lib/context/texture_binding.h"
+
+namespace wall::client::api {
+namespace {
+
+struct Corners {
+    GLint x0, y0, x1, y1;
+
+    bool empty() const { return x0 == x1 || y0 == y1; }
+    PixelBox box() const { return {std::min(x0, x1), std::min(y0, y1), std::abs(x1 - x0), std::abs(y1 - y0)}; }
+};
+
+constexpr GLint kFarthest = 1 << 24;  // pixels: nothing can lie there
+
+bool is_absurd(const Corners& c) {
+    return std::ranges::any_of(std::array{c.x0, c.y0, c.x1, c.y1},
+                               [](GLint v) { return v < -kFarthest || v > kFarthest; });
+}
+
+std::uint32_t samples_of(const std::shared_ptr<Framebuffer>& framebuffer) {
+    return framebuffer ? framebuffer->samples() : 0;
+}
+
+/// Buffers of `mask` that both have.
+GLbitfield common_buffers(Context& c, GLbitfield mask) {
+    const FramebufferUse& use = *c.framebuffers;
+    const bool from_color = use.read ? use.read->read_shape().has_value() : c.state.window.read_buffer != GL_NONE;
+    const bool to_color = use.draw ? use.draw->draw_shape().has_value() : c.state.window.draw_buffer != GL_NONE;
+    if (!from_color || !to_color) mask &= ~GLbitfield{GL_COLOR_BUFFER_BIT};
+    if (!has_depth(c, true) || !has_depth(c, false)) mask &= ~GLbitfield{GL_DEPTH_BUFFER_BIT};
+    if (!has_stencil(c, true) || !has_stencil(c, false)) mask &= ~GLbitfield{GL_STENCIL_BUFFER_BIT};
+    return mask;
+}
+
+GLenum multisample_error(Context& c, const Corners& from, const Corners& to) {
+    const FramebufferUse& use = *c.framebuffers;
+    const std::uint32_t read = samples_of(use.read), draw = samples_of(use.draw);
+    if (read != 0 && draw != 0 && read != draw) return GL_INVALID_OPERATION;
+    const bool same_size = from.box().width == to.box().width && from.box().height == to.box().height;
+    return read != 0 && !same_size ? GL_INVALID_OPERATION : GL_NO_ERROR;
+}
+
+/// A part of the window as a framebuffer object of its own, while it lives the one that is read from.
+class GatheredWindow {
+public:
+    GatheredWindow(Context& c, const PixelBox& box, GLbitfield mask) : c_(c) {
+        const auto made = std::make_shared<Framebuffer>(0);
+        if (mask & GL_COLOR_BUFFER_BIT) attach(*made, 0, box, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE);
+        if (mask & (GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT)) attach_depth(*made, box);
+        {
+            std::lock_guard lock(c_.share().mutex);
+            c_.share().by_id[made->id] = made;
+        }
+        bind_framebuffer(c_, GL_READ_FRAMEBUFFER, made);
+    }
+    ~GatheredWindow() {
+        const auto made = c_.framebuffers->read;
+        bind_framebuffer(c_, GL_READ_FRAMEBUFFER, nullptr);
+        c_.forget_object(made->id);
+        {
+            std::lock_guard lock(c_.share().mutex);
+            c_.share().by_id.erase(made->id);
+        }
+        for (const auto& texture : textures_) forget_texture(c_, texture);
+    }
+    GatheredWindow(const GatheredWindow&) = delete;
+
+private:
+    void attach_depth(Framebuffer& to, const PixelBox& box) {
+        const bool stencil = has_stencil(c_, true);
+        if (stencil)
+            attach(to, glstate::kColorAttachments, box, GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8);
+        else attach(to, glstate::kColorAttachments, box, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT);
+        if (stencil) to.attach(glstate::kColorAttachments + 1, to.at(glstate::kColorAttachments));
+    }
+    void attach(Framebuffer& to, unsigned place, const PixelBox& box, GLint internal_format, GLenum format,
+                GLenum type) {
+        auto pixels = gather_plain(c_, box, format, type, "glBlitFramebuffer");
+        std::lock_guard lock(c_.share().mutex);
+        const auto texture = make_texture(c_.share(), 0, glapi::TextureTarget::t2d);
+        TextureLevel& level = texture->level_at(0, 0);
+        level.internal_format = internal_format;
+        level.width = box.width;
+        level.height = box.height;
+        level.depth = 1;
+        level.format = level.data_format = format;
+        level.type = level.data_type = type;
+        level.content = LevelContent::stored;
+        level.pixels = std::move(pixels);
+        level.stamp = next_stamp();
+        touch(c_.share(), *texture);
+        to.attach(place, {.texture = texture, .target = GL_TEXTURE_2D});
+        textures_.push_back(texture);
+    }
+
+    Context& c_;
+    std::vector<std::shared_ptr<Texture>> textures_;
+};
+
+void blit(Context& c, const Corners& from, const Corners& to, GLbitfield mask, GLenum filter) {
+    constexpr float kMargin = 1;  // where a scaled window rounds
+    const PixelBox box = to.box();
+    const PixelRect touched{static_cast<float>(box.x) - kMargin, static_cast<float>(box.y) - kMargin,
+                            static_cast<float>(box.x + box.width) + kMargin,
+                            static_cast<float>(box.y + box.height) + kMargin};
+    c.draw(touched, needs_of_clear(), [&](wire::PackBuffer& buffer) {
+        glapi::pack::Blit(buffer, from.x0, from.y0, from.x1, from.y1, to.x0, to.y0, to.x1, to.y1, mask, filter);
+    });
+}
+
+}  // namespace
+
+void BlitFramebuffer(Context& c, GLint from_x0, GLint from_y0, GLint from_x1, GLint from_y1, GLint to_x0, GLint to_y0,
+                     GLint to_x1, GLint to_y1, GLbitfield mask, GLenum filter) {
+    constexpr GLbitfield kBuffers = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
+    if (!may_draw_to_target(c) || !may_read_from_target(c)) return;
+    if (filter != GL_NEAREST && filter != GL_LINEAR) return c.error(GL_INVALID_ENUM);
+    if (mask & ~kBuffers) return c.error(GL_INVALID_VALUE);
+    if ((mask & ~GLbitfield{GL_COLOR_BUFFER_BIT}) != 0 && filter != GL_NEAREST) return c.error(GL_INVALID_OPERATION);
+    const Corners from{from_x0, from_y0, from_x1, from_y1}, to{to_x0, to_y0, to_x1, to_y1};
+    if (is_absurd(from) || is_absurd(to)) return;
+    if (const GLenum error = multisample_error(c, from, to)) return c.error(error);
+    mask = common_buffers(c, mask);
+    if (mask == 0 || from.empty() || to.empty()) return;
+    c.flush_block();
+    if (c.framebuffers->read) return blit(c, from, to, mask, filter);
+    // What lies outside of the window is not written; outside of what was gathered of it neither.
+    const PixelBox inside = clip_to_window(c, from.box());
+    if (inside.empty()) return;
+    const GatheredWindow gathered(c, inside, mask);
+    blit(c, {from.x0 - inside.x, from.y0 - inside.y, from.x1 - inside.x, from.y1 - inside.y}, to, mask, filter);
+}
+
+}  // namespace wall::client::api

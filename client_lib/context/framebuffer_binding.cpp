@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "client_lib/context/framebuffer_binding.h"
+
+#include <mutex>
+#include <utility>
+
+namespace wall::client {
+namespace {
+
+bool complete(Context& c, const Framebuffer* framebuffer) {
+    if (!framebuffer) return true;
+    std::lock_guard lock(c.share().mutex);
+    return framebuffer->status() == GL_FRAMEBUFFER_COMPLETE;
+}
+
+/// Of the framebuffer that is drawn to or read from; nothing: it has none.
+template <class Shape>
+std::optional<ImageShape> shape(Context& c, const Framebuffer& framebuffer, Shape&& shape) {
+    std::lock_guard lock(c.share().mutex);
+    return (framebuffer.*shape)();
+}
+
+}  // namespace
+
+std::shared_ptr<Framebuffer>* framebuffer_binding(Context& c, GLenum target) {
+    switch (target) {
+        case GL_FRAMEBUFFER:
+        case GL_DRAW_FRAMEBUFFER: return &c.framebuffers->draw;
+        case GL_READ_FRAMEBUFFER: return &c.framebuffers->read;
+        default: return nullptr;
+    }
+}
+
+void bind_framebuffer(Context& c, GLenum target, std::shared_ptr<Framebuffer> framebuffer) {
+    FramebufferUse& use = *c.framebuffers;
+    const bool draw = target != GL_READ_FRAMEBUFFER, read = target != GL_DRAW_FRAMEBUFFER;
+    if ((!draw || use.draw == framebuffer) && (!read || use.read == framebuffer)) return;
+    c.flush_block();
+    if (draw) use.draw = framebuffer;
+    if (read) use.read = std::move(framebuffer);
+    use.stamp = next_stamp();
+}
+
+bool may_draw_to_target(Context& c) {
+    if (complete(c, c.framebuffers->draw.get())) return true;
+    c.error(GL_INVALID_FRAMEBUFFER_OPERATION);
+    return false;
+}
+
+bool may_read_from_target(Context& c) {
+    if (complete(c, c.framebuffers->read.get())) return true;
+    c.error(GL_INVALID_FRAMEBUFFER_OPERATION);
+    return false;
+}
+
+bool may_read_pixels(Context& c) {
+    if (!may_read_from_target(c)) return false;
+    const auto& framebuffer = c.framebuffers->read;
+    if (!framebuffer) return true;
+    std::lock_guard lock(c.share().mutex);
+    if (framebuffer->samples() != 0) c.error(GL_INVALID_OPERATION);
+    return framebuffer->samples() == 0;
+}
+
+void detach_from_bound(Context& c, const Object& image) {
+    const FramebufferUse& use = *c.framebuffers;
+    for (const auto& framebuffer : {use.draw, use.read}) {
+        if (!framebuffer) continue;
+        for (unsigned place = 0; place < glstate::kAttachmentPoints; ++place)
+            if (framebuffer->at(place).object() == &image)
+                change_framebuffer(c, *framebuffer, [&](Framebuffer& f) { f.attach(place, {}); });
+    }
+}
+
+bool is_attached(const Context& c, const Object& image) {
+    bool attached = false;
+    c.framebuffers->names.for_each([&](const Framebuffer& framebuffer) {
+        for (unsigned place = 0; place < glstate::kAttachmentPoints; ++place)
+            attached = attached || framebuffer.at(place).object() == &image;
+    });
+    return attached;
+}
+
+ComponentBits draw_target_bits(Context& c) {
+    const auto& framebuffer = c.framebuffers->draw;
+    if (!framebuffer) {
+        const DrawTarget target = c.draw_target();
+        if (!target) return {};
+        const SurfaceFormat& format = target.format();
+        return {8, 8, 8, format.alpha_bits, 0, 0, format.depth_bits, format.stencil_bits};
+    }
+    ComponentBits bits{};
+    if (const auto color = shape(c, *framebuffer, &Framebuffer::draw_shape)) bits = color->bits;
+    bits.depth = bits.stencil = 0;
+    if (const auto depth = shape(c, *framebuffer, &Framebuffer::depth_shape)) bits.depth = depth->bits.depth;
+    if (const auto stencil = shape(c, *framebuffer, &Framebuffer::stencil_shape)) bits.stencil = stencil->bits.stencil;
+    return bits;
+}
+
+bool has_depth(Context& c, bool reading) {
+    const auto& framebuffer = reading ? c.framebuffers->read : c.framebuffers->draw;
+    if (framebuffer) return shape(c, *framebuffer, &Framebuffer::depth_shape).has_value();
+    const DrawTarget target = reading ? c.read_target() : c.draw_target();
+    return target && target.format().depth_bits != 0;
+}
+
+bool has_stencil(Context& c, bool reading) {
+    const auto& framebuffer = reading ? c.framebuffers->read : c.framebuffers->draw;
+    if (framebuffer) return shape(c, *framebuffer, &Framebuffer::stencil_shape).has_value();
+    const DrawTarget target = reading ? c.read_target() : c.draw_target();
+    return target && target.format().stencil_bits != 0;
+}
+
+}  // namespace wall::client

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+// Framebuffer objects on a node: what is drawn to them, sampled, copied and read back, and what is refused.
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cstring>
+
+#include "common/glstate/framebuffer.h"
+#include "tests/unit/tileserver/test_node.h"
+
+namespace wall::tileserver::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr int kSize = 32;
+constexpr geom::Rect kWindow{0, 0, kSize, kSize};
+constexpr ClientName kTexture(21), kColor(22), kDepth(23), kFramebuffer(24), kOther(25);
+
+using Pixel = std::array<std::uint8_t, 4>;
+constexpr Pixel kRed{255, 0, 0, 255}, kGreen{0, 255, 0, 255};
+
+class FramebufferTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (!node_.usable()) GTEST_SKIP() << "no driver";
+        node_.node->tiles = {{0, kWindow}};
+        session_.emplace(*node_.node, SessionId(1));
+        session_->open_surface(kSize, kSize, kWindow);
+    }
+    static void define_texture(wire::PackBuffer& b, ClientName name, int size = kSize) {
+        pack::TexImage(b, name, GL_TEXTURE_2D, 0, GL_RGBA8, size, size, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, {});
+        pack::TexParameter(b, name, GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST, 0, 0, 0);
+    }
+    static void define_framebuffer(wire::PackBuffer& b, ClientName name, ClientName color,
+                                   GLenum target = GL_TEXTURE_2D) {
+        glstate::FramebufferDefinition definition;
+        definition.attachments = {{GL_COLOR_ATTACHMENT0, color, target, 0, 0}};
+        pack::Framebuffer(b, name, encode(definition));
+    }
+    /// Clears to a colour what is bound.
+    static void clear(Batch& batch, const glstate::Vec4& color) {
+        batch.set<el::clear_color>(color);
+        batch.block(1, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT); });
+    }
+    /// A texture that was drawn red.
+    void draw_texture() {
+        Batch batch;
+        define_texture(batch.buffer(), kTexture);
+        define_framebuffer(batch.buffer(), kFramebuffer, kTexture);
+        pack::BindTargets(batch.buffer(), kFramebuffer, kFramebuffer, 1);
+        clear(batch, {1, 0, 0, 1});
+        session_->expect_run(batch);
+    }
+    Pixel at(int x, int y) {
+        const Pixels pixels = session_->read(0, {x, y, 1, 1});
+        Pixel out{};
+        std::memcpy(out.data(), pixels.data(), out.size());
+        return out;
+    }
+    /// Why a stream is refused that has these commands.
+    std::string refusal(const std::function<void(wire::PackBuffer&)>& commands) {
+        TestSession session(*node_.node, SessionId(2));
+        Batch batch;
+        commands(batch.buffer());
+        const auto done = session.run(batch);
+        return done ? "" : done.error().message;
+    }
+    std::size_t texels(ClientName name, GLenum format = GL_RGBA) {
+        Batch batch;
+        pack::TexRead(batch.buffer(), RequestId(5), name, GL_TEXTURE_2D, 0, 0, 0, kSize, format, GL_UNSIGNED_BYTE);
+        session_->expect_run(batch);
+        return session_->replies[RequestId(5)].size();
+    }
+
+    TestNode node_;
+    std::optional<TestSession> session_;
+};
+
+TEST_F(FramebufferTest, WhatIsDrawnIsReadAndSampled) {
+    draw_texture();
+    EXPECT_EQ(at(3, 3), kRed);
+    Batch batch;
+    pack::BindTargets(batch.buffer(), {}, {}, 1);
+    clear(batch, {0, 1, 0, 1});
+    batch.set<el::texture_binding_2d>(kTexture.value).set<el::texture_2d_enabled>(1);
+    batch.block(1, [](auto& b) {
+        pack::Begin(b, GL_QUADS);
+        for (const auto& [x, y] : {std::pair{-1.f, -1.f}, {0.f, -1.f}, {0.f, 0.f}, {-1.f, 0.f}})
+            pack::Vertex2f(b, x, y);
+        pack::End(b);
+    });
+    session_->expect_run(batch);
+    EXPECT_EQ(at(3, 3), kRed) << "the window, where the texture was drawn";
+    EXPECT_EQ(at(kSize - 3, 3), kGreen);
+}
+
+TEST_F(FramebufferTest, TheWindowIsLeftAlone) {
+    Batch window;
+    clear(window, {0, 1, 0, 1});
+    session_->expect_run(window);
+    draw_texture();
+    Batch back;
+    pack::BindTargets(back.buffer(), {}, {}, 1);
+    session_->expect_run(back);
+    EXPECT_EQ(at(3, 3), kGreen);
+}
+
+TEST_F(FramebufferTest, ScissorAndViewportAreItsOwnPixels) {
+    draw_texture();
+    Batch batch;
+    batch.set<el::scissor>({4, 5, 2, 3}).set<el::scissor_enabled>(1);
+    clear(batch, {0, 1, 0, 1});
+    session_->expect_run(batch);
+    EXPECT_EQ(at(3, 5), kRed);
+    EXPECT_EQ(at(4, 5), kGreen);
+    EXPECT_EQ(at(5, 7), kGreen);
+    EXPECT_EQ(at(5, 8), kRed);
+}
+
+TEST_F(FramebufferTest, AnImageThatIsDefinedAnewIsDrawnToAsItIsNow) {
+    draw_texture();
+    Batch batch;
+    define_texture(batch.buffer(), kTexture, 2 * kSize);
+    clear(batch, {0, 1, 0, 1});
+    session_->expect_run(batch);
+    EXPECT_EQ(at(2 * kSize - 1, 2 * kSize - 1), kGreen);
+}
+
+TEST_F(FramebufferTest, WithoutAnImageNothingIsDrawn) {
+    draw_texture();
+    Batch batch;
+    pack::ObjectDelete(batch.buffer(), kTexture);
+    clear(batch, {0, 1, 0, 1});
+    session_->expect_run(batch);
+    EXPECT_EQ(at(3, 3), Pixel{}) << "an answer without pixels";
+}
+
+TEST_F(FramebufferTest, ItMayBeDeletedWhileItIsBound) {
+    draw_texture();
+    Batch batch;
+    pack::ObjectDelete(batch.buffer(), kFramebuffer);
+    clear(batch, {0, 1, 0, 1});
+    pack::BindTargets(batch.buffer(), {}, {}, 1);
+    clear(batch, {0, 1, 0, 1});
+    session_->expect_run(batch);
+    EXPECT_EQ(at(3, 3), kGreen);
+}
+
+TEST_F(FramebufferTest, ARenderbufferStartsEmptyAndIsBlitted) {
+    Batch batch;
+    pack::Renderbuffer(batch.buffer(), kColor, 0, GL_RGBA8, kSize, kSize);
+    define_framebuffer(batch.buffer(), kFramebuffer, kColor, GL_RENDERBUFFER);
+    pack::BindTargets(batch.buffer(), kFramebuffer, kFramebuffer, 1);
+    session_->expect_run(batch);
+    EXPECT_EQ(at(3, 3), Pixel{});
+    Batch blit;
+    clear(blit, {1, 0, 0, 1});
+    pack::BindTargets(blit.buffer(), {}, kFramebuffer, 1);
+    clear(blit, {0, 1, 0, 1});
+    blit.block(1, [](auto& b) { pack::Blit(b, 0, 0, 8, 8, 10, 12, 18, 20, GL_COLOR_BUFFER_BIT, GL_NEAREST); });
+    pack::BindTargets(blit.buffer(), {}, {}, 1);
+    session_->expect_run(blit);
+    EXPECT_EQ(at(9, 12), kGreen);
+    EXPECT_EQ(at(10, 12), kRed);
+    EXPECT_EQ(at(17, 19), kRed);
+    EXPECT_EQ(at(18, 20), kGreen);
+}
+
+TEST_F(FramebufferTest, SamplesOfItAreCountedOnOneNodeOnly) {
+    draw_texture();
+    for (const std::uint32_t counts : {1u, 0u}) {
+        const ClientName query(90 + counts);
+        Batch batch;
+        pack::BindTargets(batch.buffer(), kFramebuffer, kFramebuffer, counts);
+        batch.set<el::occlusion_query>(query.value);
+        batch.block(1, [](auto& b) {
+            pack::Begin(b, GL_POINTS);
+            pack::Vertex2f(b, 0, 0);
+            pack::End(b);
+        });
+        batch.set<el::occlusion_query>(0);
+        pack::QueryResult(batch.buffer(), RequestId(6), query);
+        session_->expect_run(batch);
+        std::uint64_t samples = 99;
+        const auto& answer = session_->replies[RequestId(6)];
+        ASSERT_EQ(answer.size(), sizeof samples);
+        std::memcpy(&samples, answer.data(), sizeof samples);
+        EXPECT_EQ(samples, counts);
+    }
+}
+
+TEST_F(FramebufferTest, TexelsThatWereDrawnCanBeAskedFor) {
+    draw_texture();
+    EXPECT_EQ(texels(kTexture), std::size_t{4} * kSize * kSize);
+    const auto& answer = session_->replies[RequestId(5)];
+    EXPECT_EQ(std::memcmp(answer.data(), kRed.data(), 4), 0);
+    EXPECT_EQ(texels(kOther), 0u) << "no such texture";
+}
+
+TEST_F(FramebufferTest, MipmapsAreMadeOfWhatWasDrawn) {
+    draw_texture();
+    Batch batch;
+    pack::TexMipmaps(batch.buffer(), kTexture, GL_TEXTURE_2D);
+    pack::TexRead(batch.buffer(), RequestId(5), kTexture, GL_TEXTURE_2D, 3, 0, 0, 4, GL_RGBA, GL_UNSIGNED_BYTE);
+    session_->expect_run(batch);
+    const auto& answer = session_->replies[RequestId(5)];
+    ASSERT_EQ(answer.size(), std::size_t{4} * 4 * 4);
+    EXPECT_EQ(std::memcmp(answer.data(), kRed.data(), 4), 0);
+}
+
+TEST_F(FramebufferTest, RefusesWhatAClientCannotSend) {
+    EXPECT_THAT(refusal([](auto& b) { pack::Framebuffer(b, kFramebuffer, std::vector<std::byte>(7)); }),
+                HasSubstr("no definition of a framebuffer"));
+    EXPECT_THAT(refusal([](auto& b) { pack::Renderbuffer(b, kColor, 0, GL_RGBA8, 1 << 20, 4); }),
+                HasSubstr("absurd size"));
+    EXPECT_THAT(refusal([](auto& b) { pack::Renderbuffer(b, kColor, 1000, GL_RGBA8, 4, 4); }),
+                HasSubstr("absurd size"));
+    EXPECT_THAT(refusal([](auto& b) { pack::TexMipmaps(b, kOther, GL_TEXTURE_2D); }), HasSubstr("no such texture"));
+    EXPECT_THAT(refusal([](auto& b) {
+                    pack::TexRead(b, RequestId(5), kTexture, GL_TEXTURE_2D, 0, -1, 0, 1, GL_RGBA, GL_FLOAT);
+                }),
+                HasSubstr("no such part"));
+    EXPECT_THAT(refusal([](auto& b) {
+                    define_framebuffer(b, kFramebuffer, kTexture);
+                    define_framebuffer(b, kOther, kFramebuffer);
+                    pack::BindTargets(b, kOther, kOther, 1);
+                    Batch draw;
+                    clear(draw, {});
+                    b.append(draw.buffer(), {}, draw.buffer().mark());
+                }),
+                HasSubstr("framebuffer"))
+        << "a framebuffer as an image";
+}
+
+// Of an incomplete cube map the driver gives no part, but all of a face.
+TEST_F(FramebufferTest, AFaceIsReadWhereTheOthersAreMissing) {
+    Batch batch;
+    pack::TexImage(batch.buffer(), kTexture, GL_TEXTURE_CUBE_MAP_NEGATIVE_Y, 0, GL_RGBA8, 8, 8, 1, 0, GL_RGBA,
+                   GL_UNSIGNED_BYTE, {});
+    define_framebuffer(batch.buffer(), kFramebuffer, kTexture, GL_TEXTURE_CUBE_MAP_NEGATIVE_Y);
+    pack::BindTargets(batch.buffer(), kFramebuffer, kFramebuffer, 1);
+    batch.set<el::scissor>({0, 0, 8, 4}).set<el::scissor_enabled>(1);
+    clear(batch, {1, 0, 0, 1});
+    pack::TexRead(batch.buffer(), RequestId(5), kTexture, GL_TEXTURE_CUBE_MAP_NEGATIVE_Y, 0, 0, 3, 2, GL_RGBA,
+                  GL_UNSIGNED_BYTE);
+    session_->expect_run(batch);
+    const auto& answer = session_->replies[RequestId(5)];
+    ASSERT_EQ(answer.size(), std::size_t{4} * 8 * 2);
+    EXPECT_EQ(std::memcmp(answer.data(), kRed.data(), 4), 0);
+    EXPECT_EQ(std::memcmp(answer.data() + 4 * 8, Pixel{}.data(), 4), 0);
+}
+
+// The driver refuses it; the renderbuffer is empty, and nothing else happens.
+TEST_F(FramebufferTest, AFormatThatTheDriverDoesNotKnowIsAnEmptyImage) {
+    Batch batch;
+    pack::Renderbuffer(batch.buffer(), kColor, 0, GL_BACK, kSize, kSize);
+    define_framebuffer(batch.buffer(), kFramebuffer, kColor, GL_RENDERBUFFER);
+    pack::BindTargets(batch.buffer(), kFramebuffer, kFramebuffer, 1);
+    clear(batch, {1, 0, 0, 1});
+    session_->expect_run(batch);
+    EXPECT_EQ(at(3, 3), Pixel{});
+}
+
+}  // namespace
+}  // namespace wall::tileserver::test

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/execute/blit_commands.h"
+
+#include "tileserver/driver/window_values.h"
+
+namespace wall::tileserver {
+
+// The driver's scissor is that of the target: the block's tile has been entered.
+void BlitCommands::Blit(std::int32_t from_x0, std::int32_t from_y0, std::int32_t from_x1, std::int32_t from_y1,
+                        std::int32_t to_x0, std::int32_t to_y0, std::int32_t to_x1, std::int32_t to_y1,
+                        std::uint32_t mask, GLenum filter) {
+    constexpr GLbitfield kBuffers = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
+    if (block_.in_begin) return execution_.refuse("between Begin and End");
+    if ((mask & ~kBuffers) != 0 || (filter != GL_NEAREST && filter != GL_LINEAR))
+        return execution_.refuse("no such buffer or filter");
+    if (!block_.draws) return;
+    Framebuffer* from = execution_.updated(
+        execution_.session.objects.find<tileserver::Framebuffer>(execution_.context->read_framebuffer));
+    if (from == nullptr) return;
+    const LayerGeometry& g = block_.target->geometry();
+    const LayerEdge left = layer_edge(g, to_x0, to_y0), right = layer_edge(g, to_x1, to_y1);
+    execution_.gl.BlitNamedFramebuffer(from->framebuffer(), block_.target->framebuffer(), from_x0, from_y0, from_x1,
+                                       from_y1, left.x, left.y, right.x, right.y, mask, filter);
+    // Updating may have bound others.
+    execution_.node.driver.forget_target();
+}
+
+}  // namespace wall::tileserver

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/objects/framebuffer.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "tileserver/objects/renderbuffer.h"
+#include "tileserver/objects/texture.h"
+
+namespace wall::tileserver {
+
+Framebuffer::Framebuffer(ObjectAccount& account, Driver& driver)
+    : ObjectOf(account), driver_(driver), gl_(driver.gl()) {
+    gl_.CreateFramebuffers(1, &framebuffer_);
+}
+
+Framebuffer::~Framebuffer() {
+    driver_.forget_target();
+    gl_.DeleteFramebuffers(1, &framebuffer_);
+}
+
+void Framebuffer::define(const glstate::FramebufferDefinition& definition) {
+    definition_ = definition;
+    defined_ = true;
+}
+
+Result<void> Framebuffer::update(const ObjectTable& objects, SharedContents& shared) {
+    if (!defined_ && textures_ == objects.version(ObjectKind::texture) &&
+        renderbuffers_ == objects.version(ObjectKind::renderbuffer))
+        return {};
+    detach_all();
+    for (const auto& attachment : definition_.attachments)
+        if (auto attached = attach(attachment, objects, shared); !attached) return attached;
+    gl_.NamedFramebufferDrawBuffers(framebuffer_, static_cast<GLsizei>(definition_.draw_buffers.size()),
+                                    definition_.draw_buffers.data());
+    gl_.NamedFramebufferReadBuffer(framebuffer_, definition_.read_buffer);
+    complete_ = gl_.CheckNamedFramebufferStatus(framebuffer_, GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+    find_size();
+    driver_.forget_target();
+    defined_ = false;
+    textures_ = objects.version(ObjectKind::texture);
+    renderbuffers_ = objects.version(ObjectKind::renderbuffer);
+    return {};
+}
+
+void Framebuffer::detach_all() {
+    for (unsigned place = 0; place < glstate::kAttachmentPoints; ++place)
+        gl_.NamedFramebufferRenderbuffer(framebuffer_, glstate::attachment_point(place), GL_RENDERBUFFER, 0);
+}
+
+/// One that is gone leaves its point empty.
+Result<void> Framebuffer::attach(const glstate::FramebufferAttachment& attachment, const ObjectTable& objects,
+                                 SharedContents& shared) {
+    if (attachment.target == GL_RENDERBUFFER) {
+        const auto renderbuffer = objects.look_up<Renderbuffer>(attachment.object);
+        if (!renderbuffer) return tl::unexpected(renderbuffer.error());
+        if (*renderbuffer != nullptr)
+            gl_.NamedFramebufferRenderbuffer(framebuffer_, attachment.point, GL_RENDERBUFFER, (*renderbuffer)->name());
+        return {};
+    }
+    const auto found = objects.look_up<Texture>(attachment.object);
+    if (!found) return tl::unexpected(found.error());
+    Texture* const texture = *found;
+    const auto target = texture_target(attachment.target);
+    if (texture == nullptr || !target || texture->target() != *target) return {};
+    if (!texture->own(shared)) return fail("more texture memory than a session may have");
+    const auto& info = glapi::info_of(*target);
+    const GLuint name = texture->content().name();
+    if (info.first_face != 0) {  // by its name: as a layer only where all faces are there
+        gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+        gl_.FramebufferTexture2D(GL_FRAMEBUFFER, attachment.point, attachment.target, name, attachment.level);
+    } else if (is_3d(*target) || info.layers) {
+        gl_.NamedFramebufferTextureLayer(framebuffer_, attachment.point, name, attachment.level, attachment.layer);
+    } else {
+        gl_.NamedFramebufferTexture(framebuffer_, attachment.point, name, attachment.level);
+    }
+    return {};
+}
+
+/// That of the smallest image (OpenGL 4.6, section 9.2.8), as the driver has them.
+void Framebuffer::find_size() {
+    std::array<GLint, 2> size{std::numeric_limits<GLint>::max(), std::numeric_limits<GLint>::max()};
+    for (const auto& attachment : definition_.attachments) {
+        GLint name = 0, kind = GL_NONE;
+        gl_.GetNamedFramebufferAttachmentParameteriv(framebuffer_, attachment.point,
+                                                     GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &kind);
+        if (kind == GL_NONE) continue;
+        gl_.GetNamedFramebufferAttachmentParameteriv(framebuffer_, attachment.point,
+                                                     GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME, &name);
+        std::array<GLint, 2> image{};
+        if (kind == GL_RENDERBUFFER) {
+            gl_.GetNamedRenderbufferParameteriv(static_cast<GLuint>(name), GL_RENDERBUFFER_WIDTH, &image[0]);
+            gl_.GetNamedRenderbufferParameteriv(static_cast<GLuint>(name), GL_RENDERBUFFER_HEIGHT, &image[1]);
+        } else {
+            driver_.bind_texture_to_edit(*texture_target(attachment.target), static_cast<GLuint>(name));
+            gl_.GetTexLevelParameteriv(attachment.target, attachment.level, GL_TEXTURE_WIDTH, &image[0]);
+            gl_.GetTexLevelParameteriv(attachment.target, attachment.level, GL_TEXTURE_HEIGHT, &image[1]);
+        }
+        size = {std::min(size[0], image[0]), std::min(size[1], image[1])};
+    }
+    const bool any = size[0] != std::numeric_limits<GLint>::max();
+    geometry_ = any ? plain_geometry(size[0], size[1]) : LayerGeometry{};
+    complete_ = complete_ && any && size[0] > 0 && size[1] > 0;
+    driver_.drain_errors();
+}
+
+// Its draw buffers are its own, not the window's.
+void Framebuffer::bind(GLenum, GLenum) { gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_); }
+
+}  // namespace wall::tileserver

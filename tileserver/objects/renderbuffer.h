@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// A renderbuffer of a session: an image that framebuffers draw to and nothing samples. Render thread.
+#pragma once
+
+#include <cstdint>
+
+#include "tileserver/driver/driver.h"
+#include "tileserver/objects/object.h"
+
+namespace wall::tileserver {
+
+class Renderbuffer final : public ObjectOf<ObjectKind::renderbuffer> {
+public:
+    Renderbuffer(ObjectAccount& account, Driver& driver);
+    ~Renderbuffer() override;
+
+    GLuint name() const { return name_; }  ///< the driver's; the same for life
+    std::int32_t width() const { return width_; }
+    std::int32_t height() const { return height_; }
+    /// Whether the session may have one of that many samples.
+    bool affords_samples(std::uint64_t samples) const { return affords(kSampleBytes * samples, bytes()); }
+    /// New memory, all 0. `samples`: 0, one a pixel. False: more than a session may have.
+    [[nodiscard]] bool define(std::uint32_t samples, GLenum internal_format, std::int32_t width, std::int32_t height);
+
+private:
+    static constexpr std::uint64_t kSampleBytes = 4;  // by estimate
+    void clear();
+
+    Driver& driver_;
+    const Gl& gl_;
+    GLuint name_ = 0;
+    std::int32_t width_ = 0, height_ = 0;
+};
+
+}  // namespace wall::tileserver
