@@ -414,7 +414,7 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
         {{GL_FRAGMENT_SHADER, true, "void main() { gl_FragColor = vec4(1); }"}}, {}, {}};
     static constexpr std::array<float, 4> values{};
     using Say = std::function<void(Batch&, ClientName)>;
-    const std::array<std::pair<ObjectKind, Say>, 7> makes = {{
+    const std::array<std::pair<ObjectKind, Say>, 9> makes = {{
         {ObjectKind::texture,
          [](Batch& b, ClientName id) {
              pack::TexParameter(b.buffer(), id, GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST, 0, 0, 0);
@@ -434,10 +434,14 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
          }},
         {ObjectKind::buffer, [](Batch& b, ClientName id) { pack::BufferData(b.buffer(), id, 16, GL_STATIC_DRAW); }},
         {ObjectKind::vertex_input,
-         [](Batch& b, ClientName id) { pack::VertexInput(b.buffer(), id, glstate::encode({})); }},
+         [](Batch& b, ClientName id) { pack::VertexInput(b.buffer(), id, encode(glstate::VertexInputDefinition{})); }},
         {ObjectKind::draw_pieces, [](Batch& b, ClientName id) { pack::DrawPieces(b.buffer(), id, 12, 0, {}); }},
+        {ObjectKind::renderbuffer,
+         [](Batch& b, ClientName id) { pack::Renderbuffer(b.buffer(), id, 0, GL_RGBA8, 4, 4); }},
+        {ObjectKind::framebuffer,
+         [](Batch& b, ClientName id) { pack::Framebuffer(b.buffer(), id, encode(glstate::FramebufferDefinition{})); }},
     }};
-    const std::array<Say, 7> uses = {
+    const std::array<Say, 9> uses = {
         makes[0].second,
         [&](Batch& b, ClientName id) {
             pack::Uniform(b.buffer(), id, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(values)));
@@ -447,6 +451,8 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
         [](Batch& b, ClientName id) { pack::BufferSubData(b.buffer(), id, 0, {}); },
         [](Batch& b, ClientName id) { b.block(1, [&](auto& p) { pack::DrawArrays(p, id, {}, GL_POINTS, 0, 1); }); },
         makes[6].second,
+        makes[7].second,
+        makes[8].second,
     };
     static_assert(makes.size() == kObjectKinds, "a new kind is tried, too");
     for (std::size_t is = 0; is < kObjectKinds; ++is) {
