@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Meshes in buffer objects (bench/buffers.cpp): frames a second on plain Mesa, on one tile and on 2x2, taken in turns,
-and what travels for a frame once the nodes have the buffers.
+what travels for a frame once the nodes have the buffers, how much of the mesh all nodes together process, and how soon
+a node that comes late has all of a program's objects.
 
 buffers.py [--rounds N] [--json FILE]      exit code 1 if a figure is below its bar
 """
@@ -14,6 +15,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
@@ -30,6 +32,8 @@ CASES = {
     "100,000 draws": (["--draws", "100000"], 5, {(1, 1): 0.7, (2, 2): None}),
 }
 MOST_BYTES = 200  # of a static mesh, a touched node and frame
+MESH_ELEMENTS = 3 * 1_001_000  # of the large mesh
+MOST_PROCESSED = 1.3  # of a static mesh of fixed function, on 2x2 tiles, by all nodes together
 STEADY = ("state_bytes", "geometry_bytes")
 
 
@@ -39,6 +43,17 @@ def run(command: list[str], environment: dict[str, str]) -> float:
     return float(re.search(r"([\d.]+) frames/s", done.stdout)[1])
 
 
+def elements_of(wall: Wall) -> int:
+    """What all nodes have processed, when they have said so: they do once a second."""
+    def now() -> int:
+        return sum(node["array_elements"] for node in wall.nodes())
+    before = -1
+    while (after := now()) != before:
+        before = after
+        time.sleep(2.5)
+    return after
+
+
 def on_wall(tiles: tuple[int, int], program: list[str], x: XServer) -> tuple[float, dict[str, float]]:
     size = (SIDE // tiles[0], SIDE // tiles[1])
     with Wall(tiles=tiles, tile_size=size, name="buffers",
@@ -46,7 +61,9 @@ def on_wall(tiles: tuple[int, int], program: list[str], x: XServer) -> tuple[flo
         stats = Path(folder) / "stats.json"
         rate = run(wall.wallrun(*program), x.environment(WALLGL_STATS=str(stats)))
         counted = json.loads(stats.read_text())
-    return rate, {"steady": sum(counted["total"][kind] for kind in STEADY) / counted["frames"] / len(counted["nodes"]),
+        elements = elements_of(wall)
+    return rate, {"elements": elements / counted["frames"],
+                  "steady": sum(counted["total"][kind] for kind in STEADY) / counted["frames"] / len(counted["nodes"]),
                   "objects": counted["total"]["object_bytes"] / counted["frames"]}
 
 
@@ -82,6 +99,11 @@ def main() -> int:
                 print(f"{case:14} {name}  {rate:8.1f} frames/s, {rate / mesa:.2f} of Mesa{wanted}; "
                       f"{sent['steady']:,.0f} bytes a node and frame, objects {sent['objects']:,.0f} a frame",
                       flush=True)
+                processed = sent["elements"] / MESH_ELEMENTS
+                if not case.startswith("100,000"):
+                    print(f"{case:14} {name}  {processed:.2f} times the mesh's elements processed a frame", flush=True)
+                if case == "static" and processed > MOST_PROCESSED:
+                    missed.append(f"{case} {name}: {processed:.2f} times its elements, at most {MOST_PROCESSED} wanted")
                 if bar and rate < bar * mesa:
                     missed.append(f"{case} {name}: {rate / mesa:.2f}, at least {bar} wanted")
                 if case.startswith("static") and sent["steady"] > MOST_BYTES:

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Runs the benchmarks of build/release and prints their tables.
 # bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, execute, switch,
-#                                         pack, mesh, buffers, march, off_wall, traffic, share, streams, codec)
+#                                         pack, mesh, buffers, late_node, march, off_wall, traffic, share, streams,
+#                                         codec)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -10,7 +11,7 @@ json="" filter="."
 while (($#)); do
   case "$1" in
     --json) json="$(realpath -m "$2")"; shift 2 ;;
-    -h|--help) sed -n '3,4s/^# //p' "$0"; exit 0 ;;
+    -h|--help) sed -n '3,6s/^# //p' "$0"; exit 0 ;;
     *) filter="$1"; shift ;;
   esac
 done
@@ -35,6 +36,7 @@ run switch bench/switch.py --json "$results/switch.json"
 run pack bench/pack.py --json "$results/pack.json"
 run mesh bench/mesh.py --json "$results/mesh.json"
 run buffers bench/buffers.py --json "$results/buffers.json"
+run late_node bench/late_node.py --json "$results/late_node.json"
 run march bench/march.py --json "$results/march.json"
 run off_wall bench/off_wall.py --json "$results/off_wall.json"
 run traffic bench/traffic.py --json "$results/traffic.json"

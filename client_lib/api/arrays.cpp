@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Vertex arrays (OpenGL 1.2.1, 2.8): what they are and drawing from them. Later levels: vertex array objects.
+// Vertex arrays (OpenGL 1.2.1, 2.8): what they are and drawing from them.
 #include <algorithm>
 #include <iterator>
+#include <optional>
 
+#include "client_lib/context/array_copies.h"
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/client_arrays.h"
+#include "client_lib/context/copied_draw.h"
 #include "client_lib/context/lists.h"
 #include "client_lib/context/node_draw.h"
 #include "client_lib/context/select.h"
+#include "client_lib/context/staged_draw.h"
+#include "client_lib/context/vertex_array_objects.h"
 #include "common/glstate/diff.h"
 
 namespace wall::client::api {
@@ -70,6 +75,7 @@ void enable(Context& c, GLenum cap, bool on) {
         case GL_EDGE_FLAG_ARRAY: return enable<el::edge_flag_array>(c, 0, on);
         case GL_FOG_COORD_ARRAY: return enable<el::fog_coord_array>(c, 0, on);
         case GL_SECONDARY_COLOR_ARRAY: return enable<el::secondary_color_array>(c, 0, on);
+        case GL_PRIMITIVE_RESTART_NV: return c.set<el::primitive_restart>(0, on);
         default: return c.error(GL_INVALID_ENUM);
     }
 }
@@ -111,30 +117,59 @@ bool check_mode(Context& c, GLenum mode) {
     return false;
 }
 
-void draw_range(Context& c, GLenum mode, GLint first, GLsizei count) {
-    if (draw_on_nodes(c, {.mode = mode, .first = first, .count = count})) return;
-    ElementRange elements;
-    elements.first = first;
-    elements.count = count;
-    draw_elements(c, mode, elements);
-}
-
-void draw_indices(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices) {
-    if (draw_on_nodes(c, {.mode = mode, .count = count, .index_type = type, .indices = indices})) return;
-    ElementRange elements;
-    elements.count = count;
-    elements.type = type;
-    elements.indices = indices;
+/// Draws one instance into the block or the list.
+void draw_inline(Context& c, const ArrayDraw& draw, GLsizei instance) {
+    ElementRange elements{.first = draw.first,
+                          .count = draw.count,
+                          .type = draw.index_type,
+                          .indices = draw.indices,
+                          .base_vertex = draw.base_vertex,
+                          .restart = draw.restart,
+                          .instance = instance};
+    if (draw.index_type == 0) return draw_elements(c, draw.mode, elements);
     BufferReading reading;
     if (const ClientName buffer(c.state.vertex_arrays.element_array_buffer); buffer) {
-        reading = buffer_content(c, buffer, reinterpret_cast<std::uintptr_t>(indices));
+        reading = buffer_content(c, buffer, reinterpret_cast<std::uintptr_t>(draw.indices));
         const auto content = reading.bytes();
-        const std::size_t bytes = type == GL_UNSIGNED_BYTE ? 1 : type == GL_UNSIGNED_SHORT ? 2 : 4;
+        const std::size_t have = content.size() / glstate::index_bytes(draw.index_type);
         elements.indices = content.data();
-        elements.count =
-            static_cast<GLsizei>(std::min<std::size_t>(static_cast<std::size_t>(count), content.size() / bytes));
+        elements.count = static_cast<GLsizei>(std::min<std::size_t>(static_cast<std::size_t>(draw.count), have));
     }
-    if (elements.indices) draw_elements(c, mode, elements);
+    if (elements.indices) draw_elements(c, draw.mode, elements);
+}
+
+void draw(Context& c, const ArrayDraw& draw) {
+    const auto elements = static_cast<std::uint64_t>(draw.count) * static_cast<std::uint64_t>(draw.instances);
+    if (draw.instances > 1 && elements > wire::kMostInstancedElements) return c.error(GL_OUT_OF_MEMORY);
+    if (draw_on_nodes(c, draw)) return;
+    if (draw_copied(c, draw)) return;
+    if (draw.instances == 1) return draw_inline(c, draw, 0);
+    if (c.table == &tables::immediate) return draw_staged(c, draw);
+    // As Mesa: all that a list knows of instances are the arrays that go on with them.
+    for (GLsizei i = 0; i < draw.instances; ++i) draw_inline(c, draw, i);
+}
+
+void draw_range(Context& c, GLenum mode, GLint first, GLsizei count, GLsizei instances = 1) {
+    draw(c, {.mode = mode, .first = first, .count = count, .instances = instances});
+}
+
+void draw_indices(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices, GLint base_vertex = 0,
+                  GLsizei instances = 1) {
+    const auto& local = c.state.local;
+    draw(c, {.mode = mode,
+             .count = count,
+             .index_type = type,
+             .indices = indices,
+             .base_vertex = base_vertex,
+             .restart = local.primitive_restart ? std::optional(local.primitive_restart_index) : std::nullopt,
+             .instances = instances});
+}
+
+bool check_indices(Context& c, GLenum mode, GLsizei count, GLenum type, GLsizei instances = 1) {
+    if (count < 0 || instances < 0) return c.error(GL_INVALID_VALUE), false;
+    if (!check_mode(c, mode)) return false;
+    if (!is_index_type(type)) return c.error(GL_INVALID_ENUM), false;
+    return true;
 }
 
 template <class Named>
@@ -190,8 +225,27 @@ void InterleavedArrays(Context& c, GLenum format, GLsizei stride, const void* po
     part(GL_VERTEX_ARRAY, true, [&] { VertexPointer(c, f.vertices, GL_FLOAT, step, at + f.vertex_at); });
 }
 
+/// GL_EXT_compiled_vertex_array: what the program promises of its memory.
+void LockArraysEXT(Context& c, GLint first, GLsizei count) {
+    if (first < 0 || count <= 0) return c.error(GL_INVALID_VALUE);
+    if (c.state.local.array_element_lock_count != 0) return c.error(GL_INVALID_OPERATION);
+    c.set<el::array_element_lock_first>(0, first);
+    c.set<el::array_element_lock_count>(0, count);
+    c.copies->lock();
+}
+
+void UnlockArraysEXT(Context& c) {
+    if (c.state.local.array_element_lock_count == 0) return c.error(GL_INVALID_OPERATION);
+    c.set<el::array_element_lock_first>(0, 0);
+    c.set<el::array_element_lock_count>(0, 0);
+    c.copies->unlock();
+}
+
 void ArrayElement(Context& c, GLint element) {
     if (element < 0) return c.error(GL_INVALID_VALUE);
+    const auto& local = c.state.local;
+    if (local.primitive_restart && static_cast<GLuint>(element) == local.primitive_restart_index)
+        return c.table->PrimitiveRestartNV(c);
     send_element(c, ArraySet(c, true), static_cast<GLuint>(element));
 }
 
@@ -200,17 +254,41 @@ void DrawArrays(Context& c, GLenum mode, GLint first, GLsizei count) {
     if (check_mode(c, mode)) draw_range(c, mode, first, count);
 }
 
+void DrawArraysInstanced(Context& c, GLenum mode, GLint first, GLsizei count, GLsizei instances) {
+    if (first < 0 || count < 0 || instances < 0) return c.error(GL_INVALID_VALUE);
+    if (check_mode(c, mode)) draw_range(c, mode, first, count, instances);
+}
+
 void DrawElements(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices) {
-    if (count < 0) return c.error(GL_INVALID_VALUE);
-    if (!check_mode(c, mode)) return;
-    if (!is_index_type(type)) return c.error(GL_INVALID_ENUM);
-    draw_indices(c, mode, count, type, indices);
+    if (check_indices(c, mode, count, type)) draw_indices(c, mode, count, type, indices);
+}
+
+void DrawElementsBaseVertex(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices,
+                            GLint base_vertex) {
+    if (check_indices(c, mode, count, type)) draw_indices(c, mode, count, type, indices, base_vertex);
+}
+
+void DrawElementsInstanced(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices,
+                           GLsizei instances) {
+    if (check_indices(c, mode, count, type, instances)) draw_indices(c, mode, count, type, indices, 0, instances);
+}
+
+void DrawElementsInstancedBaseVertex(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices,
+                                     GLsizei instances, GLint base_vertex) {
+    if (check_indices(c, mode, count, type, instances))
+        draw_indices(c, mode, count, type, indices, base_vertex, instances);
 }
 
 void DrawRangeElements(Context& c, GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type,
                        const void* indices) {
     if (end < start) return c.error(GL_INVALID_VALUE);
     DrawElements(c, mode, count, type, indices);
+}
+
+void DrawRangeElementsBaseVertex(Context& c, GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type,
+                                 const void* indices, GLint base_vertex) {
+    if (end < start) return c.error(GL_INVALID_VALUE);
+    DrawElementsBaseVertex(c, mode, count, type, indices, base_vertex);
 }
 
 void MultiDrawArrays(Context& c, GLenum mode, const GLint* first, const GLsizei* count, GLsizei draws) {
@@ -221,14 +299,20 @@ void MultiDrawArrays(Context& c, GLenum mode, const GLint* first, const GLsizei*
     for (GLsizei i = 0; i < draws; ++i) draw_range(c, mode, first[i], count[i]);
 }
 
-void MultiDrawElements(Context& c, GLenum mode, const GLsizei* count, GLenum type, const void* const* indices,
-                       GLsizei draws) {
+void MultiDrawElementsBaseVertex(Context& c, GLenum mode, const GLsizei* count, GLenum type, const void* const* indices,
+                                 GLsizei draws, const GLint* base_vertex) {
     if (draws < 0) return c.error(GL_INVALID_VALUE);
     if (!check_mode(c, mode)) return;
     if (!is_index_type(type)) return c.error(GL_INVALID_ENUM);
     for (GLsizei i = 0; i < draws; ++i)
         if (count[i] < 0) return c.error(GL_INVALID_VALUE);
-    for (GLsizei i = 0; i < draws; ++i) draw_indices(c, mode, count[i], type, indices[i]);
+    for (GLsizei i = 0; i < draws; ++i)
+        draw_indices(c, mode, count[i], type, indices[i], base_vertex ? base_vertex[i] : 0);
+}
+
+void MultiDrawElements(Context& c, GLenum mode, const GLsizei* count, GLenum type, const void* const* indices,
+                       GLsizei draws) {
+    MultiDrawElementsBaseVertex(c, mode, count, type, indices, draws, nullptr);
 }
 
 void GetPointerv(Context& c, GLenum pname, void** params) {
@@ -261,8 +345,15 @@ void PopClientAttrib(Context& c) {
     if (stack.empty()) return c.error(GL_STACK_UNDERFLOW);
     const auto saved = std::move(stack.back());
     stack.pop_back();
+    GLbitfield mask = saved->mask;
+    if (mask & GL_CLIENT_VERTEX_ARRAY_BIT) {
+        const GLuint object = saved->state.vertex_arrays.vertex_array_object;
+        // A deleted one does not come back (GL_ARB_vertex_array_object, issue 3); there is nowhere to put the arrays.
+        if (c.vertex_array_objects->may_be_bound(object)) c.vertex_array_objects->bind(c.state, object);
+        else mask &= ~GLbitfield{GL_CLIENT_VERTEX_ARRAY_BIT};
+    }
     glstate::for_each_in_client_group(
-        saved->mask, [&]<class E>(unsigned i) { c.set<E>(i, E::ref(std::as_const(saved->state), i)); });
+        mask, [&]<class E>(unsigned i) { c.set<E>(i, E::ref(std::as_const(saved->state), i)); });
 }
 
 }  // namespace wall::client::api
@@ -288,6 +379,30 @@ void MultiDrawElements(Context& c, GLenum mode, const GLsizei* count, GLenum typ
     api::MultiDrawElements(c, mode, count, type, indices, draws);
 }
 
+void DrawArraysInstanced(Context& c, GLenum mode, GLint first, GLsizei count, GLsizei instances) {
+    api::DrawArraysInstanced(c, mode, first, count, instances);
+}
+void DrawElementsBaseVertex(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices,
+                            GLint base_vertex) {
+    api::DrawElementsBaseVertex(c, mode, count, type, indices, base_vertex);
+}
+void DrawElementsInstanced(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices,
+                           GLsizei instances) {
+    api::DrawElementsInstanced(c, mode, count, type, indices, instances);
+}
+void DrawElementsInstancedBaseVertex(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices,
+                                     GLsizei instances, GLint base_vertex) {
+    api::DrawElementsInstancedBaseVertex(c, mode, count, type, indices, instances, base_vertex);
+}
+void DrawRangeElementsBaseVertex(Context& c, GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type,
+                                 const void* indices, GLint base_vertex) {
+    api::DrawRangeElementsBaseVertex(c, mode, start, end, count, type, indices, base_vertex);
+}
+void MultiDrawElementsBaseVertex(Context& c, GLenum mode, const GLsizei* count, GLenum type, const void* const* indices,
+                                 GLsizei draws, const GLint* base_vertex) {
+    api::MultiDrawElementsBaseVertex(c, mode, count, type, indices, draws, base_vertex);
+}
+
 }  // namespace wall::client::compile
 
 namespace wall::client::replay {
@@ -298,5 +413,12 @@ void DrawElements(Context&, std::span<const std::byte>) {}
 void DrawRangeElements(Context&, std::span<const std::byte>) {}
 void MultiDrawArrays(Context&, std::span<const std::byte>) {}
 void MultiDrawElements(Context&, std::span<const std::byte>) {}
+
+void DrawArraysInstanced(Context&, std::span<const std::byte>) {}
+void DrawElementsBaseVertex(Context&, std::span<const std::byte>) {}
+void DrawElementsInstanced(Context&, std::span<const std::byte>) {}
+void DrawElementsInstancedBaseVertex(Context&, std::span<const std::byte>) {}
+void DrawRangeElementsBaseVertex(Context&, std::span<const std::byte>) {}
+void MultiDrawElementsBaseVertex(Context&, std::span<const std::byte>) {}
 
 }  // namespace wall::client::replay

@@ -163,6 +163,14 @@ void End(Context& c) {
     c.end_primitive();
 }
 
+/// GL_NV_primitive_restart.
+void PrimitiveRestartNV(Context& c) {
+    if (!c.packer.inside()) return c.error(GL_INVALID_OPERATION);
+    const GLenum mode = c.packer.mode();
+    c.end_primitive();
+    c.begin_primitive(mode);
+}
+
 void Vertex2f(Context& c, GLfloat x, GLfloat y) { pack_vertex2(room(c), x, y); }
 void Vertex3f(Context& c, GLfloat x, GLfloat y, GLfloat z) { pack_vertex3(room(c), x, y, z); }
 void Vertex4f(Context& c, GLfloat x, GLfloat y, GLfloat z, GLfloat w) { pack_vertex4(room(c), x, y, z, w); }

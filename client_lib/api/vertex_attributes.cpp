@@ -28,6 +28,7 @@ void get(Context& c, GLuint index, GLenum pname, Out* params) {
         case GL_VERTEX_ATTRIB_ARRAY_STRIDE: *params = static_cast<Out>(array.stride); break;
         case GL_VERTEX_ATTRIB_ARRAY_TYPE: *params = static_cast<Out>(array.type); break;
         case GL_VERTEX_ATTRIB_ARRAY_NORMALIZED: *params = static_cast<Out>(array.normalized); break;
+        case GL_VERTEX_ATTRIB_ARRAY_DIVISOR: *params = static_cast<Out>(array.divisor); break;
         case GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING:
             *params = static_cast<Out>(object_name(c, glstate::ValueKind::name_buffer, ClientName(array.buffer)));
             break;
@@ -54,6 +55,13 @@ void VertexAttribPointer(Context& c, GLuint index, GLint size, GLenum type, GLbo
     array.buffer = c.state.local.array_buffer;
     array.normalized = normalized != GL_FALSE;
     array.integer = false;
+    c.set<el::attrib_array>(index, array);
+}
+
+void VertexAttribDivisor(Context& c, GLuint index, GLuint divisor) {
+    if (index >= kVertexAttributes) return c.error(GL_INVALID_VALUE);
+    Array array = c.get<el::attrib_array>(index);
+    array.divisor = divisor;
     c.set<el::attrib_array>(index, array);
 }
 

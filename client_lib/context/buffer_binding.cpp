@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
+#include "client_lib/context/array_copies.h"
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/forget_objects.h"
+#include "client_lib/context/staging_buffers.h"
+#include "client_lib/context/vertex_array_objects.h"
 #include "client_lib/context/vertex_inputs.h"
 #include "client_lib/objects/share_group.h"
 #include "common/glstate/diff.h"
@@ -15,6 +19,9 @@ namespace wall::client {
 
 namespace {
 
+constexpr GLenum kTargets[] = {GL_ARRAY_BUFFER,        GL_ELEMENT_ARRAY_BUFFER, GL_PIXEL_PACK_BUFFER,
+                               GL_PIXEL_UNPACK_BUFFER, GL_COPY_READ_BUFFER,     GL_COPY_WRITE_BUFFER};
+
 /// Calls use.operator()<E>() with the binding's element; false: no such target.
 template <class Use>
 bool with_binding(GLenum target, Use&& use) {
@@ -22,6 +29,8 @@ bool with_binding(GLenum target, Use&& use) {
     switch (target) {
         case GL_ARRAY_BUFFER: return use.template operator()<el::array_buffer>(), true;
         case GL_ELEMENT_ARRAY_BUFFER: return use.template operator()<el::element_array_buffer>(), true;
+        case GL_COPY_READ_BUFFER: return use.template operator()<el::copy_read_buffer>(), true;
+        case GL_COPY_WRITE_BUFFER: return use.template operator()<el::copy_write_buffer>(), true;
         case GL_PIXEL_PACK_BUFFER: return use.template operator()<el::pixel_pack_buffer>(), true;
         case GL_PIXEL_UNPACK_BUFFER: return use.template operator()<el::pixel_unpack_buffer>(), true;
         default: return false;
@@ -47,24 +56,45 @@ Buffer* buffer_of(Context& c, ClientName id) {
 
 namespace {
 
-bool names_buffer(const glstate::State& state, ClientName id) {
-    const auto& local = state.local;
-    bool named = false;
-    for (const std::uint32_t bound : {local.array_buffer, state.vertex_arrays.element_array_buffer,
-                                      local.pixel_pack_buffer, local.pixel_unpack_buffer})
-        named = named || bound == id.value;
+/// Calls use.operator()<E>(i) with each array of the state.
+template <class Use>
+void for_each_array(Use&& use) {
     glstate::for_each_element([&]<class E>() {
         if constexpr (std::is_same_v<typename E::type, glstate::ClientArray>)
-            for (unsigned i = 0; i < E::count; ++i) named = named || E::ref(state, i).buffer == id.value;
+            for (unsigned i = 0; i < E::count; ++i) use.template operator()<E>(i);
     });
-    return named;
 }
 
-bool names_buffer(const Context& c, ClientName id) {
-    const auto& saved = c.attributes->client;
-    return names_buffer(c.state, id) ||
-           std::any_of(saved.begin(), saved.end(), [&](const auto& s) { return names_buffer(s->state, id); });
+void add_named_by_arrays(const glstate::State& state, std::vector<std::uint32_t>& ids) {
+    const auto add = [&](std::uint32_t id) {
+        if (id != 0) ids.push_back(id);
+    };
+    add(state.vertex_arrays.element_array_buffer);
+    for_each_array([&]<class E>(unsigned i) { add(E::ref(state, i).buffer); });
 }
+
+void add_named(const glstate::State& state, std::vector<std::uint32_t>& ids) {
+    const auto& local = state.local;
+    ids.insert(ids.end(), {local.array_buffer, local.pixel_pack_buffer, local.pixel_unpack_buffer,
+                           local.copy_read_buffer, local.copy_write_buffer});
+    add_named_by_arrays(state, ids);
+}
+
+/// Ids of the buffers that the context names in any way, sorted.
+std::vector<std::uint32_t> named_buffers(const Context& c) {
+    std::vector<std::uint32_t> ids;
+    add_named(c.state, ids);
+    for (const auto& saved : c.attributes->client) add_named(saved->state, ids);
+    glstate::State looked_at;
+    c.vertex_array_objects->for_each_kept([&](const glstate::VertexArraysState& arrays) {
+        looked_at.vertex_arrays = arrays;
+        add_named_by_arrays(looked_at, ids);
+    });
+    std::ranges::sort(ids);
+    return ids;
+}
+
+bool names_buffer(const Context& c, ClientName id) { return std::ranges::binary_search(named_buffers(c), id.value); }
 
 }  // namespace
 
@@ -72,20 +102,50 @@ bool buffers_were_deleted(const Context& c) {
     return c.buffers->deletions != c.share().buffer_deletions.load(std::memory_order_acquire);
 }
 
+bool deleted_buffers_are_due(Context& c) {
+    if (buffers_were_deleted(c)) return true;
+    BufferUse& use = *c.buffers;
+    if (!use.holds_deleted) return false;
+    // Looking for them costs as much as there are buffers and vertex array objects; a program that deletes the names of
+    // buffers that vertex array objects keep must not pay that for every glBindBuffer.
+    constexpr std::size_t kPerCall = 4;
+    return ++use.calls_since_look > (use.by_id.size() + c.vertex_array_objects->size()) / kPerCall;
+}
+
 void let_go_of_deleted_buffers(Context& c) {
     BufferUse& use = *c.buffers;
+    use.calls_since_look = 0;
+    use.bound_lately.forget();
     use.deletions = c.share().buffer_deletions.load(std::memory_order_acquire);
     use.holds_deleted = false;
     std::vector<std::shared_ptr<Buffer>> unnamed;
+    const auto named = named_buffers(c);
     {
         std::lock_guard lock(c.share().mutex);
         for (const auto& [id, buffer] : use.by_id) {
             if (!buffer->deleted) continue;
-            if (names_buffer(c, id)) use.holds_deleted = true;
+            if (std::ranges::binary_search(named, id.value)) use.holds_deleted = true;
             else unnamed.push_back(buffer);
         }
     }
     for (auto& buffer : unnamed) let_go_of_buffer(c, std::move(buffer));
+}
+
+void let_go_of_own_buffer(Context& c, std::shared_ptr<Buffer> buffer) {
+    const ClientName id = buffer->id;
+    for (const GLenum target : kTargets)
+        if (bound_buffer_id(c, target) == id) bind_buffer(c, target, {});
+    if (!names_buffer(c, id)) return let_go_of_buffer(c, std::move(buffer));
+    // In the arrays that are set now there is nothing in its place: a buffer that nobody has.
+    const ClientName nothing = next_object_id();
+    for_each_array([&]<class E>(unsigned i) {
+        glstate::ClientArray array = E::ref(c.state, i);
+        if (array.buffer != id.value) return;
+        array.buffer = nothing.value;
+        c.set<E>(i, array);
+    });
+    if (names_buffer(c, id)) c.buffers->holds_deleted = true;
+    else let_go_of_buffer(c, std::move(buffer));
 }
 
 void let_go_of_buffer(Context& c, std::shared_ptr<Buffer> buffer) {
@@ -102,6 +162,8 @@ void let_go_of_buffer(Context& c, std::shared_ptr<Buffer> buffer) {
 }
 
 void let_go_of_all_buffers(Context& c) {
+    for (auto& [place, buffer] : std::exchange(c.staging->by_place, {})) buffer->deleted = true;
+    for (auto& buffer : c.copies->take_all()) buffer->deleted = true;
     auto named = std::exchange(c.buffers->by_id, {});
     for (auto& [id, buffer] : named) let_go_of_buffer(c, std::move(buffer));
 }
@@ -124,7 +186,7 @@ namespace {
 /// Whether a pixel command may use these bytes: they are in the buffer, and the application does not have it mapped.
 /// Else there is an error.
 bool may_use(Context& c, const Buffer* buffer, std::uintptr_t offset, std::size_t bytes) {
-    if (buffer && !buffer->mapped && offset <= buffer->size() && bytes <= buffer->size() - offset) return true;
+    if (buffer && !buffer->blocked() && offset <= buffer->size() && bytes <= buffer->size() - offset) return true;
     c.error(GL_INVALID_OPERATION);
     return false;
 }

@@ -21,6 +21,9 @@ void bind_buffer(Context& c, GLenum target, ClientName id);
 /// The buffer of an id; null: none, or this context deleted it.
 Buffer* buffer_of(Context& c, ClientName id);
 
+/// This context has deleted the buffer's name: it leaves the bindings and the arrays that are set now. What another
+/// vertex array object or glPushClientAttrib keeps of it stays (OpenGL 3.0, 2.9 and D.1). No mutex is held.
+void let_go_of_own_buffer(Context& c, std::shared_ptr<Buffer> buffer);
 /// This context names the buffer, which is deleted, no more. With the last context's use of it the nodes are told.
 /// No mutex is held.
 void let_go_of_buffer(Context& c, std::shared_ptr<Buffer> buffer);
@@ -31,6 +34,8 @@ void let_go_of_all_buffers(Context& c);
 void before_writing(Context& c, const Buffer& buffer);
 /// Lets go of buffers that others deleted and that this context does not name any more.
 void let_go_of_deleted_buffers(Context& c);
+/// Whether that should be done now, at a command that may have taken a name of one away.
+bool deleted_buffers_are_due(Context& c);
 /// Whether others deleted buffers since that was last done.
 bool buffers_were_deleted(const Context& c);
 

@@ -223,8 +223,9 @@ void pack_direct(Packer& packer, const DirectLayout& layout, GLsizei count, Elem
 
 void pack_direct(Packer& packer, const DirectLayout& layout, const ElementRange& elements) {
     const auto indexed = [&](const auto* indices) {
-        pack_direct(packer, layout, elements.count,
-                    [indices](GLsizei i) { return static_cast<std::size_t>(indices[i]); });
+        pack_direct(packer, layout, elements.count, [indices, base = elements.base_vertex](GLsizei i) {
+            return static_cast<std::size_t>(static_cast<GLuint>(indices[i]) + static_cast<GLuint>(base));
+        });
     };
     switch (elements.type) {
         case GL_UNSIGNED_BYTE: return indexed(static_cast<const GLubyte*>(elements.indices));
@@ -297,14 +298,10 @@ void send(Context& c, const ArraySource& source, GLuint element) {
 
 /// Calls `each(element)` for every element, and `restart()` where the index says so.
 template <class Each, class Restart>
-void walk(Context& c, const ElementRange& elements, Each&& each, Restart&& restart) {
-    const bool restarts = elements.type != 0 && c.state.local.primitive_restart;
-    const GLuint restart_index = c.state.local.primitive_restart_index;
-    for (GLsizei i = 0; i < elements.count; ++i) {
-        const GLuint element = elements.at(i);
-        if (restarts && element == restart_index) restart();
-        else each(element);
-    }
+void walk(const ElementRange& elements, Each&& each, Restart&& restart) {
+    for (GLsizei i = 0; i < elements.count; ++i)
+        if (elements.restarts_at(i)) restart();
+        else each(elements.at(i));
 }
 
 }  // namespace
@@ -321,7 +318,7 @@ ArraySource array_source(const glstate::InputArray& array, std::span<const std::
             .load = loader_of(array.type, array.normalized != 0 ? Conversion::fetch : Conversion::none)};
 }
 
-ArraySet::ArraySet(Context& c, bool by_command) : by_command_(by_command) {
+ArraySet::ArraySet(Context& c, bool by_command, GLsizei instance) : by_command_(by_command), instance_(instance) {
     const auto& l = c.state.vertex_arrays;
     glstate::for_each_attribute_array(c.state, [&](Attribute attribute, const glstate::ClientArray& array) {
         if (attribute != Attribute::vertex_attrib) add(c, attribute, array);  // number 0 is the position
@@ -343,10 +340,17 @@ void ArraySet::add(Context& c, Attribute attribute, const glstate::ClientArray& 
     } else if (!base) {
         return;
     }
+    std::size_t step = stride;
+    if (array.divisor != 0) {
+        const std::size_t element = static_cast<std::size_t>(instance_) / array.divisor;
+        base += stride * element;
+        count = element < count ? ArraySource::kNoLimit : 0;
+        step = 0;
+    }
     const Conversion conversion = !array.normalized ? Conversion::none
                                   : by_command_     ? Conversion::command
                                                     : Conversion::fetch;
-    sources_[count_++] = {attribute, by_command_, base,       stride,
+    sources_[count_++] = {attribute, by_command_, base,       step,
                           count,     array.size,  array.type, loader_of(array.type, conversion)};
 }
 
@@ -365,7 +369,7 @@ void send_element(Context& c, const ArraySet& arrays, GLuint element) {
 
 void draw_elements(Context& c, GLenum mode, const ElementRange& elements) {
     const bool at_once = c.table == &tables::immediate;
-    ArraySet arrays(c, !at_once);
+    ArraySet arrays(c, !at_once, elements.instance);
     if (c.program) arrays.add_constant_vertex(c);
     const bool draws = arrays.has_vertex() && elements.count > 0;
     if (!at_once && !record_array_draw(c, draws)) return;
@@ -373,7 +377,7 @@ void draw_elements(Context& c, GLenum mode, const ElementRange& elements) {
     if (!at_once) {
         c.table->Begin(c, mode);
         walk(
-            c, elements, [&](GLuint e) { send_element(c, arrays, e); },
+            elements, [&](GLuint e) { send_element(c, arrays, e); },
             [&] {
                 c.table->End(c);
                 if (record_array_draw(c, true)) c.table->Begin(c, mode);
@@ -384,11 +388,11 @@ void draw_elements(Context& c, GLenum mode, const ElementRange& elements) {
     SavedCurrent current(c, arrays);
     c.begin_primitive(mode);
     const auto restart = [&] { c.end_primitive(), c.begin_primitive(mode); };
-    const bool restarts = elements.type != 0 && c.state.local.primitive_restart;
-    if (DirectLayout layout; !restarts && direct_layout(arrays, layout)) pack_direct(c.packer, layout, elements);
+    if (DirectLayout layout; !elements.restart && direct_layout(arrays, layout))
+        pack_direct(c.packer, layout, elements);
     else
         walk(
-            c, elements, [&](GLuint e) { send_element(c, arrays, e); }, restart);
+            elements, [&](GLuint e) { send_element(c, arrays, e); }, restart);
     c.end_primitive();
     current.restore();
 }

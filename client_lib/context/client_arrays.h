@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,8 +38,9 @@ ArraySource array_source(const glstate::InputArray& array, std::span<const std::
 /// The enabled arrays in the order in which an element's attributes are sent: the vertex last.
 class ArraySet {
 public:
-    /// `by_command`: values are converted as by glColor and the like, not as by a draw.
-    ArraySet(Context& c, bool by_command);
+    /// `by_command`: values are converted as by glColor and the like, not as by a draw. Of arrays that go on from
+    /// instance to instance, all elements are those of `instance`.
+    ArraySet(Context& c, bool by_command, GLsizei instance = 0);
     std::span<const ArraySource> sources() const { return {sources_.data(), count_}; }
     ArraySet(const ArraySet&) = delete;  // sources may point to constant_vertex_
 
@@ -51,6 +53,7 @@ private:
     std::array<ArraySource, kMaxArrays> sources_;  // not initialized: draws may be small
     std::size_t count_ = 0;
     bool by_command_;
+    GLsizei instance_;
     glstate::Vec4 constant_vertex_{};
     std::vector<BufferReading> readings_;  ///< of the buffers that the sources lie in
 };
@@ -61,7 +64,14 @@ struct ElementRange {
     GLsizei count = 0;
     GLenum type = 0;  ///< of the indices; 0: none
     const void* indices = nullptr;
-    GLuint at(GLsizei i) const {
+    GLint base_vertex = 0;          ///< is added to indices
+    std::optional<GLuint> restart;  ///< an index that is none: the primitive begins anew there
+    GLsizei instance = 0;           ///< which one it is
+
+    bool restarts_at(GLsizei i) const { return type != 0 && restart && index_at(i) == *restart; }
+    /// The element; not where it restarts.
+    GLuint at(GLsizei i) const { return index_at(i) + (type != 0 ? static_cast<GLuint>(base_vertex) : 0); }
+    GLuint index_at(GLsizei i) const {
         switch (type) {
             case GL_UNSIGNED_BYTE: return static_cast<const GLubyte*>(indices)[i];
             case GL_UNSIGNED_SHORT: return static_cast<const GLushort*>(indices)[i];

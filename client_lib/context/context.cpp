@@ -3,12 +3,15 @@
 
 #include <algorithm>
 
+#include "client_lib/context/array_copies.h"
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/buffer_use.h"
 #include "client_lib/context/framebuffer_use.h"
 #include "client_lib/context/list_state.h"
 #include "client_lib/context/occlusion.h"
 #include "client_lib/context/select.h"
+#include "client_lib/context/staging_buffers.h"
+#include "client_lib/context/vertex_array_objects.h"
 #include "client_lib/context/vertex_inputs.h"
 #include "client_lib/geometry/fold.h"
 #include "client_lib/objects/maps.h"
@@ -30,6 +33,9 @@ Context::Context(std::shared_ptr<ShareGroup> share)
       buffers(std::make_unique<BufferUse>()),
       inputs(std::make_unique<VertexInputs>()),
       framebuffers(std::make_unique<FramebufferUse>()),
+      vertex_array_objects(std::make_unique<VertexArrayObjects>()),
+      staging(std::make_unique<StagingBuffers>()),
+      copies(std::make_unique<ArrayCopies>()),
       occlusion(std::make_unique<OcclusionState>()),
       share_(std::move(share)) {
     for (auto& stack : texture_stacks) stack.limit = 10;

@@ -25,16 +25,19 @@
 
 namespace wall::client {
 
-struct ShareGroup;       // objects/share_group.h: objects
-struct ListState;        // list_state.h: display list being compiled, call nesting
-struct AttributeStacks;  // attribute_stack.h
-struct SelectState;      // select.h: feedback and selection
-struct Program;          // objects/program.h
-struct OcclusionState;   // occlusion.h
-struct ContextMaps;      // objects/maps.h: evaluator and pixel maps
-struct BufferUse;        // buffer_use.h
-class VertexInputs;      // vertex_inputs.h
-struct FramebufferUse;   // framebuffer_use.h
+struct ShareGroup;         // objects/share_group.h: objects
+struct ListState;          // list_state.h: display list being compiled, call nesting
+struct AttributeStacks;    // attribute_stack.h
+struct SelectState;        // select.h: feedback and selection
+struct Program;            // objects/program.h
+struct OcclusionState;     // occlusion.h
+struct ContextMaps;        // objects/maps.h: evaluator and pixel maps
+struct BufferUse;          // buffer_use.h
+class VertexInputs;        // vertex_inputs.h
+class VertexArrayObjects;  // vertex_array_objects.h
+class ArrayCopies;         // array_copies.h
+struct StagingBuffers;     // staging_buffers.h
+struct FramebufferUse;     // framebuffer_use.h
 
 inline constexpr unsigned kVertexAttributes = glstate::el::vertex_attrib::count;
 /// A block larger than this is sent at the next glEnd, so that nodes draw while the program goes on.
@@ -120,6 +123,9 @@ public:
     std::unique_ptr<BufferUse> buffers;
     std::unique_ptr<VertexInputs> inputs;
     std::unique_ptr<FramebufferUse> framebuffers;
+    std::unique_ptr<VertexArrayObjects> vertex_array_objects;
+    std::unique_ptr<StagingBuffers> staging;
+    std::unique_ptr<ArrayCopies> copies;
     std::shared_ptr<Program> program;  ///< drawn with; null: fixed function
     std::unique_ptr<OcclusionState> occlusion;
 

@@ -40,6 +40,7 @@ public:
                 });
         }
     }
+    GLuint first() const { return first_; }
     GLuint last() const { return last_; }
     bool flat() const { return flat_; }  ///< no w that would move a vertex
 
@@ -49,8 +50,14 @@ private:
     geom::Box around(std::size_t first, std::size_t end, ElementAt&& element_at) {
         geom::Box box;
         const bool three_floats = positions_.type == GL_FLOAT && positions_.size == 3;
+        constexpr std::uint64_t kNever = std::uint64_t{1} << 32;
+        const std::uint64_t restart = elements_.type != 0 && elements_.restart ? *elements_.restart : kNever;
+        const GLuint base = elements_.type != 0 ? static_cast<GLuint>(elements_.base_vertex) : 0;
         for (std::size_t i = first; i < end; ++i) {
-            const GLuint element = element_at(i);
+            const GLuint index = element_at(i);
+            if (index == restart) continue;
+            const GLuint element = index + base;
+            first_ = std::min(first_, element);
             last_ = std::max(last_, element);
             if (element >= positions_.count) continue;
             const std::byte* at = positions_.base + positions_.stride * element;
@@ -61,7 +68,7 @@ private:
 
     const ArraySource& positions_;
     const ElementRange& elements_;
-    GLuint last_ = 0;
+    GLuint first_ = ~GLuint{0}, last_ = 0;
     bool flat_ = true;
 };
 
@@ -78,6 +85,7 @@ ElementBounds bounds_of(const ArraySource& positions, const ElementRange& elemen
         out.box.add(box);
         if (cut) out.pieces.push_back(glstate::piece_box(box));
     }
+    out.first = bounding.first();
     out.last = bounding.last();
     if (bounding.flat()) return out;
     out.box.make_unbounded();

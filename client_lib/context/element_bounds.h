@@ -15,7 +15,7 @@ namespace wall::client {
 
 struct ElementBounds {
     geom::Box box;
-    std::uint32_t last = 0;                 ///< the highest element
+    std::uint32_t first = 0, last = 0;      ///< the lowest and the highest element
     std::vector<glstate::PieceBox> pieces;  ///< empty: not cut, or one of them has no bounds
 };
 

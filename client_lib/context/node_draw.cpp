@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/element_bounds.h"
@@ -17,22 +19,31 @@
 namespace wall::client {
 namespace {
 
-constexpr std::size_t kLargestIndices = std::size_t{64} << 20;  // bytes that come along with a draw
-
 /// One draw on its way.
 class NodeDraw {
 public:
-    NodeDraw(Context& c, VertexInput& input, const ArrayDraw& draw) : c_(c), input_(input), draw_(draw) {}
+    NodeDraw(Context& c, VertexInput& input, const ArrayDraw& draw)
+        : c_(c), input_(input), draw_(draw), range_{draw.mode,  draw.index_type,  place(),
+                                                    draw.count, draw.base_vertex, restart_key(draw)} {}
 
+    /// Before anything else: what the program has written into persistent mappings of what is drawn is a change.
+    void find_written();
     /// Whether the nodes can draw it from their buffers and should.
     bool suits() {
         std::lock_guard lock(c_.share().mutex);
         if (!input_.positions()) return false;  // all vertices have the current attribute then
-        if (std::ranges::any_of(input_.buffers(), [](const auto& buffer) { return buffer->mapped; }))
-            return false;  // it changes meanwhile
-        range_ = {draw_.mode, draw_.index_type, place(), draw_.count};
+        if (input_.blocked()) return false;     // it changes meanwhile
         known_ = in_buffers();
-        return known_ != nullptr && worth_keeping();
+        if (known_ == nullptr) return false;
+        const bool worth = worth_keeping();
+        return worth || draw_.instances != 1;  // in a block of vertices there are no instances
+    }
+    /// Instead, if the input was made for this draw.
+    void know_all_of_it() {
+        std::lock_guard lock(c_.share().mutex);
+        if (of_each_vertex()) once_.box = bounds(draw_.indices, {}).box;
+        else once_.box.make_unbounded();
+        known_ = &once_;
     }
     void send();
 
@@ -44,8 +55,15 @@ private:
         use(input_);
         if (cut()) use(*known_->pieces);
     }
+    static std::uint64_t restart_key(const ArrayDraw& draw) {
+        return draw.index_type != 0 && draw.restart ? std::uint64_t{1} << 32 | *draw.restart : 0;
+    }
+    /// More than what most draws are.
+    bool special() const { return draw_.instances != 1 || range_.restart != 0; }
     /// A shader puts the vertices anywhere.
-    bool cut() const { return known_->cut && !c_.program; }
+    bool cut() const { return known_->cut && !c_.program && !special(); }
+    /// Not one position for a whole instance.
+    bool of_each_vertex() const { return input_.positions()->divisor == 0; }
     bool in_memory() const { return indexed() && input_.indices() == nullptr; }  ///< the indices
     std::span<const std::byte> indices() const {
         return {static_cast<const std::byte*>(draw_.indices),
@@ -57,12 +75,17 @@ private:
                          : static_cast<std::uint32_t>(draw_.first);
     }
     const RangeBounds* in_buffers();
+    /// Whether the indices lie in their buffer.
+    bool indices_in_buffer() const;
+    /// The lowest and the highest element; nothing: they are not in the buffers.
+    std::optional<std::pair<std::uint32_t, std::uint32_t>> elements();
     ElementBounds bounds(const void* indices, const std::optional<glstate::Cut>& cut) const;
     const RangeBounds& known_bounds();
     bool worth_keeping();
     Needs needs() const;
     void bring_objects(Node& node, wire::PackBuffer& buffer) const;
     void pack(wire::PackBuffer& buffer) const;
+    void pack_special(wire::PackBuffer& buffer) const;
 
     Context& c_;
     VertexInput& input_;
@@ -72,10 +95,51 @@ private:
     RangeBounds once_;  ///< of indices that are not in a buffer: nobody knows whether they are those of before
 };
 
+bool NodeDraw::indices_in_buffer() const {
+    const auto offset = reinterpret_cast<std::uintptr_t>(draw_.indices);
+    const std::size_t size = input_.indices()->size(), one = glstate::index_bytes(draw_.index_type);
+    return offset % one == 0 && offset <= size && static_cast<std::size_t>(draw_.count) <= (size - offset) / one;
+}
+
+std::optional<std::pair<std::uint32_t, std::uint32_t>> NodeDraw::elements() {
+    if (!indexed()) {
+        const auto count = static_cast<std::uint32_t>(draw_.count);
+        return std::pair{range_.first, range_.first + count - 1};
+    }
+    if (!in_memory()) {
+        if (!indices_in_buffer()) return std::nullopt;
+        const RangeBounds& known = input_.bounds_of(range_);
+        if (known.indices != 0 && known.indices == input_.indices()->latest())
+            return std::pair{known.first_element, known.last_element};
+    }
+    const void* indices = in_memory() ? draw_.indices : input_.indices()->data() + range_.first;
+    const ElementBounds found = bounds(indices, {});
+    return std::pair{found.first, found.last};
+}
+
+void NodeDraw::find_written() {
+    std::vector<ClientName> changed;
+    {
+        std::lock_guard lock(c_.share().mutex);
+        if (!input_.written_unseen() || !input_.positions() || input_.elements() == 0) return;
+        if (indexed() && !in_memory() && indices_in_buffer() && input_.indices()->written_unseen()) {
+            const std::size_t bytes = glstate::index_bytes(draw_.index_type) * static_cast<std::size_t>(draw_.count);
+            if (input_.find_written_indices({range_.first, range_.first + bytes}))
+                changed.push_back(input_.indices()->id);
+        }
+        if (const auto drawn = elements(); drawn && drawn->second < input_.elements()) {
+            const auto in_arrays = input_.find_written(drawn->first, drawn->second);
+            changed.insert(changed.end(), in_arrays.begin(), in_arrays.end());
+        }
+    }
+    for (const ClientName id : changed) c_.before_change(id);
+}
+
 /// What is known of the draw, if all indices and all elements that they name lie in the buffers; else null.
 const RangeBounds* NodeDraw::in_buffers() {
     const std::uint64_t elements = input_.elements();
-    if (elements == 0) return nullptr;
+    if (elements == 0 || !of_each_vertex()) return nullptr;
+    if (input_.instances() < static_cast<std::uint64_t>(draw_.instances)) return nullptr;
     if (!indexed()) {
         const bool within = std::uint64_t{range_.first} + static_cast<std::uint64_t>(draw_.count) <= elements;
         return within ? &known_bounds() : nullptr;
@@ -85,10 +149,7 @@ const RangeBounds* NodeDraw::in_buffers() {
         once_.box = of_draw.box;
         return of_draw.last < elements ? &once_ : nullptr;
     }
-    const auto offset = reinterpret_cast<std::uintptr_t>(draw_.indices);
-    const std::size_t size = input_.indices()->size(), one = glstate::index_bytes(draw_.index_type);
-    if (offset % one != 0 || offset > size || static_cast<std::size_t>(draw_.count) > (size - offset) / one)
-        return nullptr;
+    if (!indices_in_buffer()) return nullptr;
     const RangeBounds& known = known_bounds();
     return known.last_element < elements ? &known : nullptr;
 }
@@ -100,6 +161,8 @@ ElementBounds NodeDraw::bounds(const void* indices, const std::optional<glstate:
     elements.count = draw_.count;
     elements.type = draw_.index_type;
     elements.indices = indices;
+    elements.base_vertex = draw_.base_vertex;
+    elements.restart = draw_.restart;
     return bounds_of(array_source(*input_.positions(), content.bytes()), elements, cut);
 }
 
@@ -108,9 +171,11 @@ const RangeBounds& NodeDraw::known_bounds() {
     const std::uint64_t positions = input_.position_buffer().latest(),
                         indices = indexed() ? input_.indices()->latest() : 0;
     if (known.positions == positions && known.indices == indices) return known;
-    const auto cut = glstate::cut_of(draw_.mode, static_cast<std::uint32_t>(draw_.count));
+    // Where primitives begin anew the pieces would not be whole ones.
+    const auto cut =
+        range_.restart == 0 ? glstate::cut_of(draw_.mode, static_cast<std::uint32_t>(draw_.count)) : std::nullopt;
     ElementBounds found = bounds(indexed() ? input_.indices()->data() + range_.first : nullptr, cut);
-    known = {positions, indices, found.box, found.last, std::move(known.pieces), !found.pieces.empty()};
+    known = {positions, indices, found.box, found.first, found.last, std::move(known.pieces), !found.pieces.empty()};
     if (!known.cut) return known;
     if (!known.pieces) {
         known.pieces = std::make_shared<DrawPieces>();
@@ -123,7 +188,7 @@ const RangeBounds& NodeDraw::known_bounds() {
 /// Each buffer is charged with what its own arrays would take; that of the indices with all, since without it every
 /// element would come along.
 bool NodeDraw::worth_keeping() {
-    const auto nodes = static_cast<std::uint64_t>(nodes_touched(c_.draw_target().layers(), std::nullopt).size());
+    const auto nodes = static_cast<std::uint64_t>(count_nodes(c_.draw_target().layers()));
     // What cannot be bounded would go to all of them.
     const std::uint64_t copies = c_.program ? nodes : 1;
     bool keep = true;
@@ -133,7 +198,7 @@ bool NodeDraw::worth_keeping() {
         const std::uint64_t bytes = components != 0
                                         ? (1 + sizeof(float) * components) * static_cast<std::uint64_t>(draw_.count)
                                         : input_.inline_bytes(draw_.count);
-        input_.buffers()[i]->churn.drawn(bytes * copies, nodes);
+        input_.buffers()[i]->churn.drawn(bytes * copies * static_cast<std::uint64_t>(draw_.instances), nodes);
         keep = keep && input_.buffers()[i]->churn.keep();
     }
     return keep;
@@ -158,24 +223,45 @@ void NodeDraw::send() {
         [&](wire::PackBuffer& buffer) { pack(buffer); },
         [&](Node& node) {  // kept commands draw with them, too
             std::lock_guard lock(c_.share().mutex);
+            const std::uint64_t latest = input_.latest_of_all();
+            if (!cut() && node.brought.has(input_.id, latest)) return;
             for_each_object([&](const Object& object) { node.object_stamps[object.id] = object.latest(); });
+            node.brought.note(input_.id, latest);
         });
 }
 
 void NodeDraw::bring_objects(Node& node, wire::PackBuffer& buffer) const {
     std::lock_guard lock(c_.share().mutex);
+    const std::uint64_t latest = input_.latest_of_all();
+    if (!cut() && node.brought.has(input_.id, latest)) return;
     ObjectSender sender(c_.session().nodes(), node, buffer);
     for_each_object([&](const Object& object) { sender.send(object); });
+    node.brought.note(input_.id, latest);
     count(node, NodeCounter::object_bytes, sender.bytes());
 }
 
 void NodeDraw::pack(wire::PackBuffer& buffer) const {
-    if (in_memory()) return glapi::pack::DrawIndices(buffer, input_.id, draw_.mode, draw_.index_type, 0, indices());
+    if (special()) return pack_special(buffer);
+    if (in_memory())
+        return glapi::pack::DrawIndices(buffer, input_.id, draw_.mode, draw_.index_type, draw_.base_vertex, indices());
     const ClientName pieces = cut() ? known_->pieces->id : ClientName();
     if (indexed())
         glapi::pack::DrawElements(buffer, input_.id, pieces, draw_.mode, draw_.count, draw_.index_type, range_.first,
-                                  0);
+                                  draw_.base_vertex);
     else glapi::pack::DrawArrays(buffer, input_.id, pieces, draw_.mode, draw_.first, draw_.count);
+}
+
+void NodeDraw::pack_special(wire::PackBuffer& buffer) const {
+    const bool restarts = range_.restart != 0;
+    const GLuint restart = restarts ? *draw_.restart : 0;
+    if (!indexed())
+        glapi::pack::DrawArraysInstanced(buffer, input_.id, draw_.mode, draw_.first, draw_.count, draw_.instances);
+    else if (in_memory())
+        glapi::pack::DrawIndicesInstanced(buffer, input_.id, draw_.mode, draw_.index_type, draw_.base_vertex,
+                                          draw_.instances, restarts, restart, indices());
+    else
+        glapi::pack::DrawElementsInstanced(buffer, input_.id, draw_.mode, draw_.count, draw_.index_type, range_.first,
+                                           draw_.base_vertex, draw_.instances, restarts, restart);
 }
 
 /// Indices in the program's memory, of a size that a command of the stream can have.
@@ -189,18 +275,29 @@ bool may_come_along(const ArrayDraw& draw) {
 bool draw_on_nodes(Context& c, const ArrayDraw& draw) {
     if (c.table != &tables::immediate || !c.draw_target()) return false;
     const bool indexed = draw.index_type != 0, in_buffer = c.state.vertex_arrays.element_array_buffer != 0;
-    if (indexed && (c.state.local.primitive_restart || (!in_buffer && !may_come_along(draw)))) return false;
-    if (draw.count == 0) return true;
+    if (indexed && !in_buffer && !may_come_along(draw)) return false;
+    if (draw.count == 0 || draw.instances == 0) return true;
     if (buffers_were_deleted(c)) let_go_of_deleted_buffers(c);
     VertexInput* input = c.inputs->current(c.state, *c.buffers, c.share(), indexed && in_buffer);
     if (!input) return false;
     forget_inputs(c, c.inputs->take_unused());
+    return draw_if_worth(c, *input, draw);
+}
+
+bool draw_if_worth(Context& c, VertexInput& input, const ArrayDraw& draw) {
     c.flush_block();
-    if (input->has_too_many_ranges()) forget_ranges(c, *input);
-    NodeDraw on_nodes(c, *input, draw);
+    if (input.has_too_many_ranges()) forget_ranges(c, input);
+    NodeDraw on_nodes(c, input, draw);
+    on_nodes.find_written();
     if (!on_nodes.suits()) return false;
     on_nodes.send();
     return true;
+}
+
+void draw_from(Context& c, VertexInput& input, const ArrayDraw& draw) {
+    NodeDraw made(c, input, draw);
+    made.know_all_of_it();
+    made.send();
 }
 
 }  // namespace wall::client

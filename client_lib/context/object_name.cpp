@@ -17,7 +17,8 @@ GLuint object_name(Context& c, glstate::ValueKind kind, ClientName id) {
         case glstate::ValueKind::name_texture:
         case glstate::ValueKind::name_program: return name_in(share.by_id);
         case glstate::ValueKind::name_buffer: return name_in(c.buffers->by_id);
-        default: return 0;  // nothing of this kind can be bound yet
+        case glstate::ValueKind::name_vertex_array: return id.value;  // no other context has it
+        default: return 0;                                            // nothing of this kind can be bound yet
     }
 }
 

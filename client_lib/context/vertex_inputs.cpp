@@ -26,9 +26,10 @@ std::optional<InputArray> input_array(std::uint32_t place, const ClientArray& ar
                       .divisor = array.divisor};
 }
 
-/// Nothing: not all arrays are in buffers.
-std::optional<glstate::VertexInputDefinition> definition_of(const glstate::State& state, bool indexed) {
-    glstate::VertexInputDefinition out;
+/// False: not all arrays are in buffers, or there are none.
+bool define(const glstate::State& state, bool indexed, glstate::VertexInputDefinition& out) {
+    out.arrays.clear();
+    out.indices = indexed ? ClientName(state.vertex_arrays.element_array_buffer) : ClientName();
     bool all = true;
     const auto add = [&](std::uint32_t place, const ClientArray& array) {
         if (!array.enabled) return;
@@ -40,9 +41,7 @@ std::optional<glstate::VertexInputDefinition> definition_of(const glstate::State
         add(static_cast<std::uint32_t>(place_of(attribute)), array);
     });
     add(glstate::kPositionArray, state.vertex_arrays.vertex_array);
-    if (!all || out.arrays.empty()) return std::nullopt;
-    if (indexed) out.indices = ClientName(state.vertex_arrays.element_array_buffer);
-    return out;
+    return all && !out.arrays.empty();
 }
 
 /// All of its buffers; empty: one is gone.
@@ -73,23 +72,42 @@ VertexInput* VertexInputs::current(const glstate::State& state, const BufferUse&
                                    bool indexed) {
     const std::uint64_t arrays = state.ids[static_cast<std::size_t>(glstate::Category::vertex_arrays)];
     Latest& latest = latest_[indexed];
-    if (latest.arrays != arrays) latest = {arrays, find(state, buffers, share, indexed)};
+    if (latest.arrays != arrays) {
+        const bool named = state.vertex_arrays.vertex_array_object != 0;
+        Latest& at = named ? place_of(arrays, indexed) : latest;
+        if (at.arrays != arrays) at = {arrays, find(state, buffers, share, indexed)};
+        latest = at;
+    }
     if (latest.input) latest.input->last_use = ++uses_;
     return latest.input;
 }
 
+VertexInputs::Latest& VertexInputs::place_of(std::uint64_t arrays, bool indexed) {
+    auto& remembered = remembered_[indexed];
+    if (remembered.empty()) remembered.resize(kRemembered);
+    // Programs set up their objects one like the other, so that ids lie at regular distances.
+    return remembered[(arrays * std::uint64_t{0x9e3779b97f4a7c15} >> 32) % kRemembered];
+}
+
 VertexInput* VertexInputs::find(const glstate::State& state, const BufferUse& use, ShareGroup& share, bool indexed) {
-    auto definition = definition_of(state, indexed);
-    if (!definition) return nullptr;
-    if (const auto found = known_.find(*definition); found != known_.end()) return found->second.get();
-    auto buffers = buffers_of(use, *definition);
+    return define(state, indexed, looked_for_) ? of(looked_for_, use, share) : nullptr;
+}
+
+VertexInput* VertexInputs::of(const glstate::VertexInputDefinition& definition, const BufferUse& use,
+                              ShareGroup& share) {
+    if (const auto found = known_.find(definition); found != known_.end()) {
+        found->second->last_use = ++uses_;
+        return found->second.get();
+    }
+    auto buffers = buffers_of(use, definition);
     if (buffers.empty()) return nullptr;
-    auto input = std::make_shared<VertexInput>(next_object_id(), *definition, std::move(buffers));
+    auto input = std::make_shared<VertexInput>(next_object_id(), definition, std::move(buffers));
+    input->last_use = ++uses_;
     {
         std::lock_guard lock(share.mutex);
         share.by_id[input->id] = input;
     }
-    return known_.emplace(std::move(*definition), std::move(input)).first->second.get();
+    return known_.emplace(definition, std::move(input)).first->second.get();
 }
 
 template <class Goes>
@@ -101,6 +119,7 @@ std::vector<std::shared_ptr<VertexInput>> VertexInputs::take(Goes&& goes) {
         return true;
     });
     for (Latest& latest : latest_) latest = {};
+    for (auto& remembered : remembered_) remembered.clear();
     return out;
 }
 

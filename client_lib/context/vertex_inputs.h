@@ -21,6 +21,8 @@ public:
     /// The enabled arrays of a context with these buffers; with that of the indices if `indexed`. Null: not all of them
     /// lie in buffers, or there are none. The share group, whose mutex is taken, knows what is new.
     VertexInput* current(const glstate::State& state, const BufferUse& buffers, ShareGroup& share, bool indexed);
+    /// The input of a definition; null: one of its buffers is gone.
+    VertexInput* of(const glstate::VertexInputDefinition& definition, const BufferUse& buffers, ShareGroup& share);
     /// Takes out, when there are too many, the half that was not used for longest; they were told to nodes.
     std::vector<std::shared_ptr<VertexInput>> take_unused();
     /// Takes out those that read the buffer; they were told to nodes.
@@ -38,12 +40,18 @@ private:
         std::uint64_t arrays = 0;
         VertexInput* input = nullptr;
     };
+    /// Of vertex array objects, which come again with the value ids that they had: a place for each id, which another
+    /// one takes.
+    static constexpr std::size_t kRemembered = 2048;
+    Latest& place_of(std::uint64_t arrays, bool indexed);
     VertexInput* find(const glstate::State& state, const BufferUse& buffers, ShareGroup& share, bool indexed);
     template <class Goes>
     std::vector<std::shared_ptr<VertexInput>> take(Goes&& goes);
 
     std::unordered_map<glstate::VertexInputDefinition, std::shared_ptr<VertexInput>, Hash> known_;
-    Latest latest_[2];  ///< without and with indices
+    Latest latest_[2];                           ///< without and with indices
+    std::vector<Latest> remembered_[2];          ///< the same; empty until a vertex array object is drawn with
+    glstate::VertexInputDefinition looked_for_;  ///< its memory is used again
     std::uint64_t uses_ = 0;
 };
 

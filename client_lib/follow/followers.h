@@ -63,7 +63,7 @@ void draw_on(const Followers& followers, const DrawSource& source, const std::op
         pack_block(hidden.prepare(*kept, source, needs), kept->layer.bit());
         after(kept->follower);
     }
-    for (const auto& [index, slots] : nodes_touched(source.draw.layers(), box)) {
+    for (const auto& [index, slots] : nodes.touched(source.draw.layers(), box)) {
         Node& node = nodes[index];
         if (!source.draw.goes_to(node)) continue;
         wire::PackBuffer& buffer = updater.prepare(node, source, needs);

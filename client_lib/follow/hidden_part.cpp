@@ -48,6 +48,7 @@ void KeptFrame::restart(bool from_nothing) {
     follower.batch_context = {};
     follower.mirrors.clear();
     follower.object_stamps.clear();
+    follower.brought.forget();
     sealed_bytes_ = 0;
     whole = from_nothing;
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "client_lib/link/connect_attempt.h"
 #include "client_lib/link/control_messages.h"
@@ -23,6 +24,30 @@ namespace wall::client {
 
 /// Logical times, by object.
 using ObjectStamps = std::unordered_map<ClientName, std::uint64_t>;
+
+/// Which objects, together, a node was brought as of which stamp, by the id of one of them that stands for all: a look
+/// here instead of one at each. A place may be taken by another, and then the objects themselves tell.
+class BroughtTogether {
+public:
+    bool has(ClientName id, std::uint64_t stamp) const {
+        if (places_.empty()) return false;
+        const Place& place = places_[id.value % kPlaces];
+        return place.id == id && place.stamp == stamp;
+    }
+    void note(ClientName id, std::uint64_t stamp) {
+        if (places_.empty()) places_.resize(kPlaces);
+        places_[id.value % kPlaces] = {id, stamp};
+    }
+    void forget() { places_.clear(); }
+
+private:
+    static constexpr std::size_t kPlaces = 4096;
+    struct Place {
+        ClientName id;
+        std::uint64_t stamp = 0;
+    };
+    std::vector<Place> places_;  ///< empty: nothing
+};
 
 /// What a node holds of one context.
 struct Mirror {
@@ -47,6 +72,7 @@ struct Node {
     std::shared_ptr<NodeStream> stream;                     ///< null: not connected
     std::unordered_map<ContextId, Mirror> mirrors;          ///< by context
     ObjectStamps object_stamps;                             ///< of what the node has; absent: nothing
+    BroughtTogether brought;                                ///< vertex inputs with their buffers
     std::unordered_map<SurfaceId, std::uint32_t> surfaces;  ///< by surface: layout version it knows
     std::unordered_map<SurfaceId, std::uint32_t>
         left_out;                             ///< surfaces whose frames it does not get now: the last one it got

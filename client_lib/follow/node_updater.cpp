@@ -21,7 +21,7 @@ wire::PackBuffer& NodeUpdater::prepare(Node& node, const DrawSource& source, con
     source.draw.note_drawn();
     bind_targets(node, mirror, source.draw, source.read);
     const std::size_t surface_bytes = buffer.bytes() - start;
-    const std::size_t object_bytes = bring_up_to_date(nodes_, node, source, buffer);
+    const std::size_t object_bytes = bring_up_to_date(nodes_, node, mirror, source, buffer);
     const std::size_t state_start = buffer.bytes();
     const bool sampled = ++prepared_ % kDiffSample == 0;
     const auto diff_start = sampled ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();

@@ -31,6 +31,7 @@ void Nodes::forget(Node& node) {
     find_everywhere();
     node.mirrors.clear();
     node.object_stamps.clear();
+    node.brought.forget();
     node.surfaces.clear();
     node.batch.clear();
     node.left_out.clear();

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,12 @@ public:
     /// Opens streams again that have failed, and those of nodes that did not answer.
     void keep_connected();
 
+    /// Nodes whose layers a rectangle touches (target_layers.h). Good until the next call.
+    const NodeMasks& touched(std::span<const TargetLayer> layers, const std::optional<PixelRect>& rect) {
+        nodes_touched(layers, rect, touched_);
+        return touched_;
+    }
+
     // ---- batches ----
     /// The node's batch, set to this context (earlier commands of another one are sent first).
     wire::PackBuffer& batch(Node& node, ContextId context);
@@ -94,6 +101,7 @@ private:
     SessionId session_;
     bool attempts_begun_ = false;  ///< by connect(), since wait_for_attempts()
     RequestId last_request_;
+    NodeMasks touched_;  ///< used again and again, so that no draw asks for memory
 };
 
 }  // namespace wall::client

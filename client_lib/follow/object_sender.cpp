@@ -101,8 +101,8 @@ void bring_drawn(Nodes& nodes, const DrawSource& source) {
     }
 }
 
-std::size_t bring_up_to_date(Nodes& nodes, Node& node, const DrawSource& source, wire::PackBuffer& buffer) {
-    Mirror& mirror = node.mirrors[source.id];
+std::size_t bring_up_to_date(Nodes& nodes, Node& node, Mirror& mirror, const DrawSource& source,
+                             wire::PackBuffer& buffer) {
     if (mirror.used == source.used) return 0;
     ObjectSender sender(nodes, node, buffer);
     source.objects.for_each_used([&](const Object& object) { sender.send(object); });

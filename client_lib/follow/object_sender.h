@@ -40,9 +40,10 @@ private:
 /// frames has it no more.
 void bring_drawn(Nodes& nodes, const DrawSource& source);
 
-/// Packs of all objects that drawing with the context needs what the node lacks. Returns the bytes; full batches among
-/// them have been sent.
-std::size_t bring_up_to_date(Nodes& nodes, Node& node, const DrawSource& source, wire::PackBuffer& buffer);
+/// Packs of all objects that drawing with the context, whose mirror it is, needs what the node lacks. Returns the
+/// bytes; full batches among them have been sent.
+std::size_t bring_up_to_date(Nodes& nodes, Node& node, Mirror& mirror, const DrawSource& source,
+                             wire::PackBuffer& buffer);
 
 /// For a block that is kept: notes in `follower.object_stamps` what drawing with the context uses, and packs the values
 /// that go with the block.

@@ -2,6 +2,7 @@
 #include "client_lib/geometry/target_layers.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "common/wire/limits.h"
@@ -41,6 +42,12 @@ void nodes_touched(std::span<const TargetLayer> layers, const std::optional<Pixe
         NodeMask& of_node = mask != out.rend() ? *mask : out.emplace_back(NodeMask{layer.node, 0});
         of_node.slots |= layer.bit();
     }
+}
+
+std::size_t count_nodes(std::span<const TargetLayer> layers) {
+    std::uint64_t seen = 0;
+    for (const TargetLayer& layer : layers) seen |= std::uint64_t{1} << (layer.node.value & 63);
+    return static_cast<std::size_t>(std::popcount(seen));
 }
 
 NodeMasks nodes_touched(std::span<const TargetLayer> layers, const std::optional<PixelRect>& rect) {

@@ -55,5 +55,7 @@ using NodeMasks = std::vector<NodeMask>;
 NodeMasks nodes_touched(std::span<const TargetLayer> layers, const std::optional<PixelRect>& rect);
 /// The same into a vector that is used again and again, so that no memory is asked for.
 void nodes_touched(std::span<const TargetLayer> layers, const std::optional<PixelRect>& rect, NodeMasks& out);
+/// On how many nodes the layers lie; where these are more than 64, perhaps fewer.
+std::size_t count_nodes(std::span<const TargetLayer> layers);
 
 }  // namespace wall::client

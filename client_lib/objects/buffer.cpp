@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/objects/buffer.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "gen/glapi/wire.gen.h"
@@ -11,15 +12,22 @@ void Buffer::define(const void* data, std::size_t bytes, GLenum usage) {
     if (memory_->readings.load(std::memory_order_acquire) != 0) memory_ = std::make_shared<BufferMemory>();
     const auto* first = static_cast<const std::byte*>(data);
     if (data) memory_->bytes.assign(first, first + bytes);
-    else memory_->bytes.resize(bytes);
+    else memory_->bytes.assign(bytes, std::byte{0});
     if (stamp_ == 0 || usage != usage_) churn.expect(usage);
     usage_ = usage;
-    mapped = false;
+    mapping_.reset();
+    zeros_ = data == nullptr;
     stamp_ = next_stamp();
     changes_.reset(stamp_);
     if (!data) return;  // what is going to be written counts then, and nothing else of it travels
     changes_.add({0, bytes}, stamp_);
     churn.changed(bytes);
+}
+
+void Buffer::define_storage(const void* data, std::size_t bytes, GLbitfield flags) {
+    define(data, bytes, GL_DYNAMIC_DRAW);  // as Mesa answers when it is asked for the usage
+    storage_flags_ = flags;
+    immutable_ = true;
 }
 
 void Buffer::write(ByteRange range, const void* data) {
@@ -34,16 +42,43 @@ std::byte* Buffer::begin_writing() {
 
 void Buffer::wrote(ByteRange range) {
     stamp_ = next_stamp();
+    zeros_ = false;
     changes_.add(range, stamp_);
     churn.changed(range.size());
 }
 
-/// Who reads goes on with the bytes as they are now.
+/// Who reads goes on with the bytes as they are now. What the program has a pointer to stays where it is.
 void Buffer::leave_to_readers() {
-    if (memory_->readings.load(std::memory_order_acquire) == 0) return;
+    if (mapping_ || memory_->readings.load(std::memory_order_acquire) == 0) return;
     auto copy = std::make_shared<BufferMemory>();
     copy->bytes = memory_->bytes;
     memory_ = std::move(copy);
+}
+
+std::byte* Buffer::map(const BufferMapping& mapping) {
+    std::byte* const bytes = mapping.writes() ? begin_writing() : memory_->bytes.data();
+    if (mapping.writes() && !mapping.tells()) pages_.begin(memory_->bytes, mapping.range, zeros_);
+    mapping_ = mapping;
+    access = mapping.access;
+    return bytes + mapping.range.begin;
+}
+
+void Buffer::unmap() {
+    if (mapping_->writes() && !mapping_->tells()) find_written(mapping_->range);
+    mapping_.reset();
+    pages_ = {};
+}
+
+bool Buffer::find_written(ByteRange range) {
+    bool any = false;
+    // Whole pages: one that was looked at is known from then on, with what changed beside the range.
+    constexpr std::size_t kPage = ChangedPages::kPageBytes;
+    const ByteRange pages{range.begin / kPage * kPage, (range.end + kPage - 1) / kPage * kPage};
+    pages_.find(memory_->bytes, pages, [&](ByteRange changed) {
+        wrote(changed);
+        any = true;
+    });
+    return any;
 }
 
 void Buffer::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed) const {

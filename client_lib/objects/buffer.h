@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Buffer objects. The client has all of their content, which pixel transfers and display lists read; a node gets what
-// it lacks of it when it draws with it (T3.5). Guarded by the share group's mutex, but for what a reading holds.
+// it lacks of it when it draws with it (T3.5). Guarded by the share group's mutex, but for what a reading holds and
+// what the program does with a mapping.
 #pragma once
 
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "client_lib/objects/changed_pages.h"
 #include "client_lib/objects/changed_ranges.h"
 #include "client_lib/objects/churn.h"
 #include "client_lib/objects/object.h"
@@ -26,7 +29,7 @@ struct BufferMemory {
 };
 
 /// The bytes of a buffer object from some offset on, as they were when the reading began: they stay while it lives,
-/// whatever other threads do with the object.
+/// whatever other threads do with the object, but for what the program writes into a mapping.
 class BufferReading {
 public:
     BufferReading() = default;
@@ -55,7 +58,19 @@ private:
 /// What one command to a node carries at most.
 inline constexpr std::size_t kLargestBufferCommand = std::size_t{4} << 20;
 
-class Buffer : public Object {
+/// A part of a buffer that the program may read or write by a pointer.
+struct BufferMapping {
+    ByteRange range;
+    GLbitfield access = 0;  ///< as of glMapBufferRange
+
+    bool writes() const { return (access & GL_MAP_WRITE_BIT) != 0; }
+    /// The buffer may be used meanwhile.
+    bool persistent() const { return (access & GL_MAP_PERSISTENT_BIT) != 0; }
+    /// The program says what it has written.
+    bool tells() const { return (access & GL_MAP_FLUSH_EXPLICIT_BIT) != 0; }
+};
+
+class Buffer final : public Object {
 public:
     Buffer(ClientName own_id, GLuint own_name) : Object(own_id, own_name) {}
 
@@ -65,22 +80,44 @@ public:
     BufferReading read(std::size_t offset = 0) const { return {memory_, offset}; }
 
     // ---- changes ----
-    /// New memory; without `data` its content is undefined.
+    /// New memory; without `data` it is zeros, here and on the nodes. What was mapped is not any more.
     void define(const void* data, std::size_t bytes, GLenum usage);
+    /// The same for good, with the flags of glBufferStorage.
+    void define_storage(const void* data, std::size_t bytes, GLbitfield flags);
     /// `range` lies within it.
     void write(ByteRange range, const void* data);
-    /// What a mapping or a pixel command writes into; what was written is told by wrote().
+    /// What a pixel command writes into; what was written is told by wrote().
     std::byte* begin_writing();
     void wrote(ByteRange range);
+
+    // ---- mapping ----
+    const std::optional<BufferMapping>& mapping() const { return mapping_; }
+    /// By which no command may use the buffer.
+    bool blocked() const { return mapping_ && !mapping_->persistent(); }
+    /// What is written into it is seen by whoever uses the buffer afterwards: find_written() comes first.
+    bool written_unseen() const {
+        return mapping_ && mapping_->persistent() && mapping_->writes() && !mapping_->tells();
+    }
+    /// It is not mapped; `mapping.range` lies within it and is not empty. Where the range is.
+    std::byte* map(const BufferMapping& mapping);
+    /// Of the mapping, what the program says that it has written.
+    void flush(ByteRange range) { wrote(range); }
+    /// It is mapped. What was written into it counts as a change, page by page.
+    void unmap();
+    /// What was written into the mapping within `range` since it was looked for last counts as a change. False:
+    /// nothing was.
+    bool find_written(ByteRange range);
 
     std::uint64_t latest() const override { return stamp_; }
     void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
                       const std::function<void()>& packed) const override;
 
     GLenum usage() const { return usage_; }
-    GLenum access = GL_READ_WRITE;  ///< of the latest glMapBuffer
-    bool mapped = false;
-    bool deleted = false;  ///< its name is gone
+    /// As glBufferStorage said; of one that may get other memory, what goes with any.
+    GLbitfield storage_flags() const { return storage_flags_; }
+    bool immutable() const { return immutable_; }
+    GLbitfield access = GL_MAP_READ_BIT | GL_MAP_WRITE_BIT;  ///< of the latest mapping
+    bool deleted = false;                                    ///< its name is gone
     Churn churn;
 
 private:
@@ -88,8 +125,13 @@ private:
 
     std::shared_ptr<BufferMemory> memory_ = std::make_shared<BufferMemory>();
     GLenum usage_ = GL_STATIC_DRAW;
+    GLbitfield storage_flags_ = GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_DYNAMIC_STORAGE_BIT;
+    bool immutable_ = false;
+    bool zeros_ = false;       ///< nothing was written since it was defined without content
     std::uint64_t stamp_ = 0;  ///< of the latest change; 0: it was never defined
     ChangedRanges changes_;
+    std::optional<BufferMapping> mapping_;
+    ChangedPages pages_;  ///< of the mapping, if it writes and does not tell
 };
 
 }  // namespace wall::client

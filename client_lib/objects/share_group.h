@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "client_lib/objects/buffer.h"
@@ -46,10 +47,11 @@ public:
         names_[name] = std::move(object);
         last_ = std::max(last_, name);
     }
-    template <class Use>
-    void for_each(Use&& use) const {
+    /// Calls look(object) with each object, in no order.
+    template <class Look>
+    void for_each(Look&& look) const {
         for (const auto& [name, object] : names_)
-            if (object) use(*object);
+            if (object) look(*object);
     }
     /// What the name stood for.
     std::shared_ptr<T> erase(GLuint name) {

@@ -30,8 +30,34 @@ VertexInput::VertexInput(ClientName own_id, glstate::VertexInputDefinition defin
 std::uint64_t VertexInput::elements() const {
     std::uint64_t count = std::numeric_limits<std::uint64_t>::max();
     for (std::size_t i = 0; i < definition_.arrays.size(); ++i)
-        count = std::min(count, definition_.arrays[i].elements_in(buffers_[i]->size()));
+        if (definition_.arrays[i].divisor == 0)
+            count = std::min(count, definition_.arrays[i].elements_in(buffers_[i]->size()));
     return count;
+}
+
+std::uint64_t VertexInput::instances() const {
+    std::uint64_t count = std::numeric_limits<std::uint64_t>::max();
+    for (std::size_t i = 0; i < definition_.arrays.size(); ++i) {
+        const glstate::InputArray& array = definition_.arrays[i];
+        if (array.divisor == 0) continue;
+        count = std::min(count, array.elements_in(buffers_[i]->size()) * array.divisor);
+    }
+    return count;
+}
+
+std::vector<ClientName> VertexInput::find_written(std::uint32_t first, std::uint32_t last) {
+    std::vector<ClientName> out;
+    for (std::size_t i = 0; i < definition_.arrays.size(); ++i) {
+        const glstate::InputArray& array = definition_.arrays[i];
+        Buffer& buffer = *buffers_[i];
+        if (!buffer.written_unseen()) continue;
+        const bool each_vertex = array.divisor == 0;  // of the others, all
+        const std::size_t begin = array.offset + (each_vertex ? array.step() * first : 0);
+        const std::size_t end =
+            each_vertex ? array.offset + array.step() * last + array.element_bytes() : buffer.size();
+        if (buffer.find_written({begin, std::min(end, buffer.size())})) out.push_back(buffer.id);
+    }
+    return out;
 }
 
 void VertexInput::pack_changes(std::uint64_t, wire::PackBuffer& buffer, const std::function<void()>& packed) const {
@@ -44,6 +70,7 @@ std::vector<std::shared_ptr<DrawPieces>> VertexInput::take_pieces() {
     for (auto& [range, bounds] : ranges_)
         if (bounds.pieces) out.push_back(std::move(bounds.pieces));
     ranges_.clear();
+    latest_ = nullptr;
     return out;
 }
 

@@ -6,6 +6,7 @@
 // definition by whoever holds the share group's mutex.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -27,6 +28,8 @@ struct DrawnRange {
     GLenum index_type = 0;    ///< 0: `count` in a row from `first` on
     std::uint32_t first = 0;  ///< element, or where the indices begin in their buffer, bytes
     std::int32_t count = 0;
+    std::int32_t base_vertex = 0;
+    std::uint64_t restart = 0;  ///< 0: there is none; else 2^32 and the index
     bool operator==(const DrawnRange&) const = default;
 };
 
@@ -34,6 +37,7 @@ struct DrawnRange {
 struct RangeBounds {
     std::uint64_t positions = 0, indices = 0;  ///< stamps
     geom::Box box;                             ///< of the positions
+    std::uint32_t first_element = 0;           ///< the lowest
     std::uint32_t last_element = 0;            ///< the highest
     std::shared_ptr<DrawPieces> pieces;        ///< null: it has never been worth while
     bool cut = false;                          ///< whether it is drawn in them
@@ -50,20 +54,45 @@ public:
     /// The array of positions; null: it has none.
     const glstate::InputArray* positions() const { return positions_ ? &definition_.arrays[*positions_] : nullptr; }
     const Buffer& position_buffer() const { return *buffers_[*positions_]; }
+    /// Stamp of the latest change of itself or of any of its buffers: as long as it stays the same, who has been
+    /// brought them lacks nothing of them. The share group's mutex is held.
+    std::uint64_t latest_of_all() const {
+        std::uint64_t latest = stamp_;
+        for (const auto& buffer : buffers_) latest = std::max(latest, buffer->latest());
+        return latest;
+    }
     /// Null: none.
     const Buffer* indices() const { return definition_.indices ? buffers_.back().get() : nullptr; }
+    /// Whether a buffer is mapped so that no command may use it. The share group's mutex is held, here and below.
+    bool blocked() const {
+        return std::ranges::any_of(buffers_, [](const auto& buffer) { return buffer->blocked(); });
+    }
+    bool written_unseen() const {
+        return std::ranges::any_of(buffers_, [](const auto& buffer) { return buffer->written_unseen(); });
+    }
+    /// Buffer::find_written() of what the arrays have of these elements; the buffers in which something was found.
+    std::vector<ClientName> find_written(std::uint32_t first, std::uint32_t last);
+    /// The same of a range of the indices.
+    bool find_written_indices(ByteRange range) { return buffers_.back()->find_written(range); }
     /// What its elements take, each with all of its arrays, in a block of geometry.
     std::uint64_t inline_bytes(std::int32_t elements) const {
         return inline_bytes_ * static_cast<std::uint64_t>(elements);
     }
-    /// How many elements lie in all of its buffers, as large as they are now. The share group's mutex is held.
+    /// How many elements lie in all of its buffers, as large as they are now; of those arrays that go on from vertex to
+    /// vertex. The share group's mutex is held.
     std::uint64_t elements() const;
+    /// The same of instances and the other arrays.
+    std::uint64_t instances() const;
 
     std::uint64_t latest() const override { return stamp_; }
     void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
                       const std::function<void()>& packed) const override;
 
-    RangeBounds& bounds_of(const DrawnRange& range) { return ranges_[range]; }
+    /// Stays until take_pieces().
+    RangeBounds& bounds_of(const DrawnRange& range) {
+        if (!latest_ || !(latest_->first == range)) latest_ = &*ranges_.try_emplace(range).first;
+        return latest_->second;
+    }
     /// More than that is a stream, of which no range comes again: they are to be forgotten.
     bool has_too_many_ranges() const { return ranges_.size() > kMostRanges; }
     static constexpr std::size_t kMostRanges = std::size_t{1} << 16;
@@ -76,7 +105,9 @@ private:
     struct RangeHash {
         std::size_t operator()(const DrawnRange& range) const {
             const std::uint64_t low = std::uint64_t{range.first} << 32 | static_cast<std::uint32_t>(range.count);
-            return static_cast<std::size_t>((low ^ range.index_type << 4 ^ range.mode) * 0x9e3779b97f4a7c15u >> 16);
+            const std::uint64_t rest = range.restart << 8 ^ static_cast<std::uint32_t>(range.base_vertex);
+            return static_cast<std::size_t>(
+                (low ^ rest * 0xff51afd7ed558ccdu ^ range.index_type << 4 ^ range.mode) * 0x9e3779b97f4a7c15u >> 16);
         }
     };
 
@@ -86,6 +117,7 @@ private:
     std::uint64_t inline_bytes_ = 0;        ///< of one element
     std::uint64_t stamp_ = next_stamp();
     std::unordered_map<DrawnRange, RangeBounds, RangeHash> ranges_;
+    std::pair<const DrawnRange, RangeBounds>* latest_ = nullptr;  ///< the range asked for last; most have only one
 };
 
 }  // namespace wall::client

@@ -65,10 +65,12 @@ std::optional<PixelRect> clipped_rect(const Projection& p, std::span<const Windo
 
 Mat4 multiply(const Mat4& a, const Mat4& b) {
     Mat4 out;
-    for (int c = 0; c < 4; ++c)
-        for (int r = 0; r < 4; ++r)
-            out[4 * c + r] =
-                a[r] * b[4 * c] + a[4 + r] * b[4 * c + 1] + a[8 + r] * b[4 * c + 2] + a[12 + r] * b[4 * c + 3];
+    for (int c = 0; c < 4; ++c) {
+        const float* from = b.data() + 4 * c;
+        __m128 sum = _mm_mul_ps(column(a, 0), _mm_set1_ps(from[0]));
+        for (int i = 1; i < 4; ++i) sum = _mm_add_ps(sum, _mm_mul_ps(column(a, i), _mm_set1_ps(from[i])));
+        _mm_storeu_ps(out.data() + 4 * c, sum);
+    }
     return out;
 }
 
@@ -86,18 +88,61 @@ Projection make_projection(const State& state) {
     return p;
 }
 
-std::optional<PixelRect> project(const Projection& p, const geom::Box& box) {
-    if (box.unbounded()) return std::nullopt;
+namespace {
+
+struct ClipCorners {
+    __m128 at[8];
+};
+
+/// The corners of a box in clip space.
+ClipCorners clip_corners(const Projection& p, const geom::Box& box) {
     alignas(16) float lo[4], hi[4];
     _mm_store_ps(lo, box.min);
     _mm_store_ps(hi, box.max);
-    std::array<WindowVertex, 8> corners;
-    for (unsigned corner = 0; corner < corners.size(); ++corner) {
-        const __m128 x = _mm_set1_ps(corner & 1 ? hi[0] : lo[0]);
-        const __m128 y = _mm_set1_ps(corner & 2 ? hi[1] : lo[1]);
-        const __m128 z = _mm_set1_ps(corner & 4 ? hi[2] : lo[2]);
-        corners[corner] = to_window(p, transform(p.clip_from_object, x, y, z, _mm_set1_ps(1)));
+    const auto part = [&](int axis, const float* from) {
+        return _mm_mul_ps(column(p.clip_from_object, axis), _mm_set1_ps(from[axis]));
+    };
+    const __m128 x[2] = {part(0, lo), part(0, hi)}, y[2] = {part(1, lo), part(1, hi)};
+    const __m128 origin = column(p.clip_from_object, 3);
+    const __m128 z[2] = {_mm_add_ps(part(2, lo), origin), _mm_add_ps(part(2, hi), origin)};
+    ClipCorners out;
+    for (unsigned corner = 0; corner < 8; ++corner)
+        out.at[corner] = _mm_add_ps(_mm_add_ps(x[corner & 1], y[corner >> 1 & 1]), z[corner >> 2]);
+    return out;
+}
+
+/// hull_rect() of corners that are all in front of the eye, and numbers of a usual size; else nothing.
+std::optional<PixelRect> rect_in_front(const Projection& p, const ClipCorners& corners) {
+    const __m128 sign = _mm_set1_ps(-0.0f), largest = _mm_set1_ps(kLargestCoordinate),
+                 smallest = _mm_set1_ps(kSmallestW);
+    __m128 fine = _mm_cmpeq_ps(sign, sign), least = _mm_set1_ps(INFINITY), most = _mm_set1_ps(-INFINITY);
+    for (const __m128& clip : corners.at) {
+        const __m128 w = _mm_shuffle_ps(clip, clip, _MM_SHUFFLE(3, 3, 3, 3));
+        fine =
+            _mm_and_ps(fine, _mm_and_ps(_mm_cmplt_ps(_mm_andnot_ps(sign, clip), largest), _mm_cmpgt_ps(w, smallest)));
+        const __m128 device = _mm_div_ps(clip, w);
+        least = _mm_min_ps(least, device);
+        most = _mm_max_ps(most, device);
     }
+    if (_mm_movemask_ps(fine) != 0xf) return std::nullopt;
+    alignas(16) float low[4], high[4];
+    _mm_store_ps(low, least);
+    _mm_store_ps(high, most);
+    const auto pixel = [&](int axis, float device) {
+        return p.viewport[axis] + (device + 1) * 0.5f * p.viewport[2 + axis];
+    };
+    return PixelRect{pixel(0, low[0]) - p.margin, pixel(1, low[1]) - p.margin, pixel(0, high[0]) + p.margin,
+                     pixel(1, high[1]) + p.margin};
+}
+
+}  // namespace
+
+std::optional<PixelRect> project(const Projection& p, const geom::Box& box) {
+    if (box.unbounded()) return std::nullopt;
+    const auto clip = clip_corners(p, box);
+    if (const auto rect = rect_in_front(p, clip)) return rect;
+    std::array<WindowVertex, 8> corners;
+    for (unsigned corner = 0; corner < corners.size(); ++corner) corners[corner] = to_window(p, clip.at[corner]);
     return hull_rect(p, corners);
 }
 

@@ -11,7 +11,6 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <vector>
 
 namespace wall::glstate {
 
@@ -22,31 +21,42 @@ public:
 
     /// Where the value stands, the latest first.
     std::optional<std::uint32_t> find(std::uint32_t element, const void* value) const {
-        const auto list = lists_.find(element);
-        if (list == lists_.end()) return std::nullopt;
-        for (std::size_t i = 0; i < list->second.size(); ++i)
-            if (std::memcmp(list->second[i].data(), value, kValueBytes) == 0) return static_cast<std::uint32_t>(i);
+        const auto at = lists_.find(element);
+        if (at == lists_.end()) return std::nullopt;
+        const List& list = at->second;
+        for (std::uint32_t i = 0; i < list.count; ++i)
+            if (std::memcmp(list.values[list.order[i]].data(), value, kValueBytes) == 0) return i;
         return std::nullopt;
     }
 
     /// The value at a place, which becomes the latest; empty if there is none.
     std::span<const std::byte> recall(std::uint32_t element, std::uint32_t place) {
-        const auto list = lists_.find(element);
-        if (list == lists_.end() || place >= list->second.size()) return {};
-        std::rotate(list->second.begin(), list->second.begin() + place, list->second.begin() + place + 1);
-        return list->second.front();
+        const auto at = lists_.find(element);
+        if (at == lists_.end() || place >= at->second.count) return {};
+        return at->second.values[at->second.make_latest(place)];
     }
 
     /// A value that was sent in full is the latest; the oldest falls out.
     void add(std::uint32_t element, const void* value) {
-        auto& list = lists_[element];
-        if (list.size() == kDepth) list.pop_back();
-        std::memcpy(list.emplace(list.begin())->data(), value, kValueBytes);
+        List& list = lists_[element];
+        if (list.count < kDepth) list.order[list.count] = static_cast<std::uint8_t>(list.count), ++list.count;
+        std::memcpy(list.values[list.make_latest(list.count - 1)].data(), value, kValueBytes);
     }
 
 private:
     using Value = std::array<std::byte, kValueBytes>;
-    std::map<std::uint32_t, std::vector<Value>> lists_;
+    /// Values stay where they are, their order changes: a program sets a matrix for every draw.
+    struct List {
+        std::array<Value, kDepth> values;
+        std::array<std::uint8_t, kDepth> order;  ///< places of the values, the latest first
+        std::uint32_t count = 0;
+
+        std::uint8_t make_latest(std::uint32_t place) {
+            std::rotate(order.begin(), order.begin() + place, order.begin() + place + 1);
+            return order.front();
+        }
+    };
+    std::map<std::uint32_t, List> lists_;
 };
 
 }  // namespace wall::glstate

@@ -57,6 +57,33 @@ TEST(Projection, WhatCannotBeComputedIsUnknown) {
     EXPECT_FALSE(project(perspective(1, 100), box).has_value());
 }
 
+TEST(Projection, OfABoxIsThatOfItsCorners) {
+    const Projection p = perspective(1, 100);
+    std::mt19937 random(9);
+    std::uniform_real_distribution<float> place(-30, 30);
+    int known = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const std::array<float, 3> a = {place(random), place(random), place(random) - 25};
+        const std::array<float, 3> b = {place(random), place(random), place(random) - 25};
+        std::array<WindowVertex, 8> corners;
+        for (unsigned corner = 0; corner < corners.size(); ++corner) {
+            const auto of = [&](unsigned axis) {
+                return corner >> axis & 1 ? std::max(a[axis], b[axis]) : std::min(a[axis], b[axis]);
+            };
+            corners[corner] = project(p, of(0), of(1), of(2), 1);
+        }
+        const auto rect = project(p, box_of(a, b)), expected = hull_rect(p, corners);
+        ASSERT_EQ(rect.has_value(), expected.has_value());
+        if (!rect) continue;
+        ++known;
+        EXPECT_EQ(rect->x0, expected->x0);
+        EXPECT_EQ(rect->y0, expected->y0);
+        EXPECT_EQ(rect->x1, expected->x1);
+        EXPECT_EQ(rect->y1, expected->y1);
+    }
+    EXPECT_GT(known, 1000);
+}
+
 // Every visible point of a hull lies in its rectangle.
 TEST(Projection, HullsAreBoundedConservatively) {
     std::mt19937 random(11);

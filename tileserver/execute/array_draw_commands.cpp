@@ -62,30 +62,48 @@ void ArrayDrawCommands::find_runs(ClientName name, std::int32_t count, GLenum mo
     glstate::for_each_run(pieces.cut(), pieces.boxes(), all, wanted, add);
 }
 
+void ArrayDrawCommands::count_runs() {
+    for (const GLsizei count : counts_) count_elements(static_cast<std::uint64_t>(count));
+}
+
 void ArrayDrawCommands::DrawArrays(ClientName name, ClientName pieces, GLenum mode, std::int32_t first,
                                    std::int32_t count) {
     if (first < 0 || first > std::numeric_limits<std::int32_t>::max() - std::max(count, 0))
         return execution_.refuse("no such elements");
     if (begin(name, mode, count) == nullptr) return;
     find_runs(pieces, count, mode);
+    count_runs();
     for (GLint& run : firsts_) run += first;
     execution_.gl.MultiDrawArrays(mode, firsts_.data(), counts_.data(), static_cast<GLsizei>(counts_.size()));
+}
+
+bool ArrayDrawCommands::has_indices(const VertexInput& input, std::int32_t count, GLenum type, std::uint32_t offset) {
+    const auto indices = execution_.session.objects.get<Buffer>(input.indices());
+    if (!indices) return execution_.refuse(indices.error().message), false;
+    const std::size_t one = glstate::index_bytes(type);
+    if (one == 0 || offset % one != 0) return execution_.refuse("no such indices"), false;
+    // Another thread of the program may have made the buffer smaller since the client has looked.
+    if (offset + static_cast<std::uint64_t>(count) * one <= (*indices)->size()) return true;
+    ++execution_.session.work.gl_errors;
+    return false;
+}
+
+std::optional<std::int32_t> ArrayDrawCommands::count_indices(GLenum type, std::span<const std::byte> indices) {
+    const std::size_t one = glstate::index_bytes(type);
+    if (one == 0 || indices.size() % one != 0 || indices.size() / one > std::numeric_limits<std::int32_t>::max()) {
+        execution_.refuse("no such indices");
+        return std::nullopt;
+    }
+    return static_cast<std::int32_t>(indices.size() / one);
 }
 
 void ArrayDrawCommands::DrawElements(ClientName name, ClientName pieces, GLenum mode, std::int32_t count, GLenum type,
                                      std::uint32_t offset, std::int32_t base_vertex) {
     const VertexInput* input = begin(name, mode, count);
-    if (input == nullptr) return;
-    const auto indices = execution_.session.objects.get<Buffer>(input->indices());
-    if (!indices) return execution_.refuse(indices.error().message);
-    const std::size_t one = glstate::index_bytes(type);
-    if (one == 0 || offset % one != 0) return execution_.refuse("no such indices");
-    // Another thread of the program may have made the buffer smaller since the client has looked.
-    if (offset + static_cast<std::uint64_t>(count) * one > (*indices)->size()) {
-        ++execution_.session.work.gl_errors;
-        return;
-    }
+    if (input == nullptr || !has_indices(*input, count, type, offset)) return;
     find_runs(pieces, count, mode);
+    count_runs();
+    const std::size_t one = glstate::index_bytes(type);
     places_.clear();
     for (const GLint first : firsts_)
         places_.push_back(offset_pointer(offset + static_cast<std::uint64_t>(first) * one));
@@ -96,14 +114,12 @@ void ArrayDrawCommands::DrawElements(ClientName name, ClientName pieces, GLenum 
 
 void ArrayDrawCommands::DrawIndices(ClientName name, GLenum mode, GLenum type, std::int32_t base_vertex,
                                     std::span<const std::byte> indices) {
-    const std::size_t one = glstate::index_bytes(type);
-    if (one == 0 || indices.size() % one != 0 || indices.size() / one > std::numeric_limits<std::int32_t>::max())
-        return execution_.refuse("no such indices");
-    const auto count = static_cast<std::int32_t>(indices.size() / one);
-    const VertexInput* input = begin(name, mode, count);
+    const auto count = count_indices(type, indices);
+    const VertexInput* input = count ? begin(name, mode, *count) : nullptr;
     if (input == nullptr) return;
     if (input->indices()) return execution_.refuse("the input's indices lie in a buffer");
-    execution_.gl.DrawElementsBaseVertex(mode, count, type, indices.data(), base_vertex);
+    count_elements(static_cast<std::uint64_t>(*count));
+    execution_.gl.DrawElementsBaseVertex(mode, *count, type, indices.data(), base_vertex);
 }
 
 }  // namespace wall::tileserver

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,9 +24,18 @@ public:
     void DrawIndices(ClientName input, GLenum mode, GLenum type, std::int32_t base_vertex,
                      std::span<const std::byte> indices);
 
-private:
-    /// The driver's vertex array object is bound. Null: nothing is to be drawn, perhaps because it was refused.
+    /// For draws of all kinds: the checks that they have in common. The driver's vertex array object is bound. Null:
+    /// nothing is to be drawn, perhaps because it was refused.
     const VertexInput* begin(ClientName input, GLenum mode, std::int32_t count);
+    /// Whether the indices lie in the input's buffer. False: refused, or not to be drawn.
+    bool has_indices(const VertexInput& input, std::int32_t count, GLenum type, std::uint32_t offset);
+    /// How many indices there are in memory; nothing: refused.
+    std::optional<std::int32_t> count_indices(GLenum type, std::span<const std::byte> indices);
+    /// The driver is given so many.
+    void count_elements(std::uint64_t elements) { execution_.session.work.array_elements += elements; }
+
+private:
+    void count_runs();
     /// Elements of the draw, in runs, that the tile may show, into `firsts_` and `counts_`.
     void find_runs(ClientName pieces, std::int32_t count, GLenum mode);
     /// Whether vertices go where the matrices of fixed function put them, and all that counts is what a tile shows.

@@ -26,6 +26,7 @@
 #include "tileserver/execute/execution.h"
 #include "tileserver/execute/framebuffer_commands.h"
 #include "tileserver/execute/geometry_commands.h"
+#include "tileserver/execute/instanced_draw_commands.h"
 #include "tileserver/execute/map_commands.h"
 #include "tileserver/execute/object_commands.h"
 #include "tileserver/execute/program_commands.h"
@@ -69,6 +70,7 @@ public:
     GeometryCommands geometry{execution_};
     DrawCommands draw{execution_, geometry.block()};
     ArrayDrawCommands array_draw{execution_, geometry.block()};
+    InstancedDrawCommands instanced_draw{execution_, array_draw};
     StreamCommands stream{execution_};
     SurfaceCommands surface{execution_};
     ReadCommands read{execution_};

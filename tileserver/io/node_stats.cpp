@@ -14,6 +14,7 @@ void fill_work(const Work& work, Out& out) {
     out.set_frames(work.frames);
     out.set_commands(work.commands);
     out.set_gl_errors(work.gl_errors);
+    out.set_array_elements(work.array_elements);
     out.set_context_switches(work.context_switches);
     out.set_decode_ns(nanoseconds(work.decode));
     out.set_render_ns(nanoseconds(work.render));

@@ -13,6 +13,7 @@ struct Work {
     std::uint64_t frames = 0, commands = 0, gl_errors = 0;
     std::uint64_t state_bytes = 0, geometry_bytes = 0;  ///< of commands: context differences, blocks
     std::uint64_t object_bytes = 0;                     ///< of all other commands
+    std::uint64_t array_elements = 0;                   ///< of draws from buffers, as often as a tile drew them
     std::uint64_t context_switches = 0;                 ///< blocks that found another context in the driver
     Clock::duration decode{};                           ///< taking batches apart and calling the driver
     Clock::duration render{};                           ///< waiting until the driver has ended a frame or an answer
@@ -24,6 +25,7 @@ struct Work {
         state_bytes += other.state_bytes;
         geometry_bytes += other.geometry_bytes;
         object_bytes += other.object_bytes;
+        array_elements += other.array_elements;
         context_switches += other.context_switches;
         decode += other.decode;
         render += other.render;

@@ -65,6 +65,7 @@ json node_json(const Node& node) {
             {"bytes_received", node.stats.bytes_received()},
             {"commands", node.stats.commands()},
             {"gl_errors", node.stats.gl_errors()},
+            {"array_elements", node.stats.array_elements()},
             {"objects", objects_json(node.stats.objects())}};
 }
 

@@ -208,6 +208,69 @@ TEST_F(ArrayDrawTest, TheCurrentColorIsThatOfBefore) {
     EXPECT_EQ(drawn[2], 191);
 }
 
+// All of the grid by a restart between any two triangles of a strip.
+TEST_F(ArrayDrawTest, PrimitivesBeginAnewWhereTheIndexSaysSo) {
+    std::vector<std::uint16_t> indices;
+    for (std::size_t i = 0; i < grid_.indices.size(); i += 3) {
+        indices.insert(indices.end(), grid_.indices.begin() + static_cast<std::ptrdiff_t>(i),
+                       grid_.indices.begin() + static_cast<std::ptrdiff_t>(i + 3));
+        indices.push_back(0xffff);
+    }
+    const auto count = static_cast<std::int32_t>(indices.size());
+    Batch batch;
+    define(batch.buffer());
+    define_buffer(batch.buffer(), kIndices, std::as_bytes(std::span(indices)));
+    draw(batch, [&](auto& b) {
+        pack::DrawElementsInstanced(b, kInput, GL_TRIANGLE_STRIP, count, GL_UNSIGNED_SHORT, 0, 0, 1, 1, 0xffff);
+    });
+    session_->expect_run(batch);
+    expect_reference();
+    EXPECT_EQ(session_->session.work.array_elements, indices.size());
+    Batch next;  // no other draw knows of it
+    draw(next, [&](auto& b) {
+        pack::DrawIndicesInstanced(b, kInput, GL_TRIANGLES, GL_UNSIGNED_SHORT, 0, 2, 0, 0,
+                                   std::as_bytes(std::span(grid_.indices)));
+    });
+    EXPECT_FALSE(session_->run(next)) << "the input has indices";
+}
+
+TEST_F(ArrayDrawTest, InstancesAndTheirArrays) {
+    input_.indices = {};
+    const float shifts[] = {-9, 0, 0};  // the first instance is not to be seen
+    input_.arrays.push_back({.place = static_cast<std::uint32_t>(glstate::Attribute::vertex_attrib) + 3,
+                             .buffer = kIndices,
+                             .type = GL_FLOAT,
+                             .size = 1,
+                             .divisor = 1});
+    Batch batch;
+    define(batch.buffer());
+    define_buffer(batch.buffer(), kIndices, std::as_bytes(std::span(shifts)));
+    draw(batch, [&](auto& b) {
+        pack::DrawIndicesInstanced(b, kInput, GL_TRIANGLES, GL_UNSIGNED_SHORT, 0, 3, 0, 0,
+                                   std::as_bytes(std::span(grid_.indices)));
+    });
+    session_->expect_run(batch);
+    expect_reference();
+    EXPECT_EQ(session_->session.work.array_elements, 3 * grid_.indices.size());
+}
+
+TEST_F(ArrayDrawTest, RefusesFewerThanNoInstances) {
+    EXPECT_THAT(refusal([&](auto& b) { pack::DrawArraysInstanced(b, kInput, GL_TRIANGLES, 0, 3, -1); }),
+                HasSubstr("fewer than no instances"));
+}
+TEST_F(ArrayDrawTest, RefusesMoreElementsThanADrawMayHave) {
+    EXPECT_THAT(refusal([&](auto& b) { pack::DrawArraysInstanced(b, kInput, GL_TRIANGLES, 0, 1 << 20, 1 << 20); }),
+                HasSubstr("more elements than a draw may have"));
+}
+TEST_F(ArrayDrawTest, RefusesInstancesOfElementsBeforeTheFirst) {
+    EXPECT_THAT(refusal([&](auto& b) { pack::DrawArraysInstanced(b, kInput, GL_TRIANGLES, -1, 3, 1); }),
+                HasSubstr("no such elements"));
+}
+TEST_F(ArrayDrawTest, OfNoInstancesNothingIsDrawn) {
+    EXPECT_EQ(refusal([&](auto& b) { pack::DrawArraysInstanced(b, kInput, GL_TRIANGLES, 0, 3, 0); }), "");
+    EXPECT_EQ(session_->session.work.array_elements, 0u);
+}
+
 TEST_F(ArrayDrawTest, DrawsNothingWhoseIndicesReachBehindTheirBuffer) {
     Batch batch;
     define(batch.buffer());

@@ -44,6 +44,19 @@ TEST(ElementBounds, AreThoseOfTheElementsThatAreDrawn) {
     EXPECT_EQ(bounds_of(positions(kThree, 3), row, {}).last, 3u);
 }
 
+TEST(ElementBounds, ABaseIsAddedAndARestartIsNoElement) {
+    constexpr GLushort kIndices[] = {0, 0xffff, 1};
+    ElementRange range = indexed(kIndices);
+    range.base_vertex = 1;
+    range.restart = 0xffff;
+    const auto bounds = bounds_of(positions(kThree, 3), range, {});
+    EXPECT_EQ(bounds.first, 1u);
+    EXPECT_EQ(bounds.last, 2u);
+    EXPECT_EQ(floats(bounds.box.min)[0], -4);
+    range.base_vertex = -1;
+    EXPECT_EQ(bounds_of(positions(kThree, 3), range, {}).last, ~GLuint{0}) << "before the first";
+}
+
 TEST(ElementBounds, OfPlanePositionsHaveNoDepth) {
     ElementRange row;
     row.count = 2;

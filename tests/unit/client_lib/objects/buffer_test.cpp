@@ -82,6 +82,81 @@ TEST_F(BufferContentTest, AMappingCountsWhenItEnds) {
     expect_same(copy);
 }
 
+TEST_F(BufferContentTest, OfAMappingTheChangedPagesAreSent) {
+    const Bytes content(10 * ChangedPages::kPageBytes, std::byte{7});
+    buffer.define(content.data(), content.size(), GL_STATIC_DRAW);
+    follow(copy, known);
+    std::byte* mapped = buffer.map({{0, content.size()}, GL_MAP_READ_BIT | GL_MAP_WRITE_BIT});
+    EXPECT_TRUE(buffer.blocked());
+    mapped[5] = mapped[3 * ChangedPages::kPageBytes] = std::byte{8};
+    buffer.unmap();
+    EXPECT_FALSE(buffer.mapping());
+    EXPECT_EQ(follow(copy, known), 2 * ChangedPages::kPageBytes);
+    expect_same(copy);
+    buffer.map({{100, 200}, GL_MAP_READ_BIT});
+    buffer.unmap();
+    EXPECT_EQ(buffer.latest(), known) << "was only read";
+}
+
+TEST_F(BufferContentTest, OfOneThatWasNeverWrittenEvenZerosAreThere) {
+    buffer.define(nullptr, 3 * ChangedPages::kPageBytes, GL_STREAM_DRAW);
+    std::byte* mapped = buffer.map({{ChangedPages::kPageBytes, 3 * ChangedPages::kPageBytes}, GL_MAP_WRITE_BIT});
+    std::memset(mapped, 0, 100);
+    mapped[ChangedPages::kPageBytes] = std::byte{1};
+    buffer.unmap();
+    EXPECT_EQ(follow(copy, known), ChangedPages::kPageBytes);
+    expect_same(copy);
+    buffer.define(nullptr, 3 * ChangedPages::kPageBytes, GL_STREAM_DRAW);
+    follow(copy, known);
+    expect_same(copy);
+}
+
+TEST_F(BufferContentTest, AProgramThatTellsWhatItWroteIsBelieved) {
+    const Bytes content(100000, std::byte{7});
+    buffer.define(content.data(), content.size(), GL_STATIC_DRAW);
+    follow(copy, known);
+    std::byte* mapped = buffer.map({{1000, 50000}, GL_MAP_WRITE_BIT | GL_MAP_FLUSH_EXPLICIT_BIT});
+    std::memset(mapped, 8, 49000);
+    buffer.flush({2000, 2010});
+    buffer.unmap();
+    EXPECT_EQ(follow(copy, known), 10u);
+    EXPECT_EQ(copy.content[2005], std::byte{8});
+    EXPECT_EQ(copy.content[2010], std::byte{7});
+}
+
+TEST_F(BufferContentTest, WhatChangedBesideARangeOnItsPageIsNotLost) {
+    constexpr GLbitfield kFlags = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT;
+    buffer.define_storage(nullptr, 3 * ChangedPages::kPageBytes, kFlags);
+    std::byte* const mapped = buffer.map({{0, 3 * ChangedPages::kPageBytes}, kFlags});
+    mapped[100] = mapped[108] = mapped[4000] = std::byte{1};
+    EXPECT_TRUE(buffer.find_written({108, 200}));
+    EXPECT_FALSE(buffer.find_written({100, 200})) << "it is known with the other";
+    follow(copy, known);
+    expect_same(copy);
+}
+
+TEST_F(BufferContentTest, APersistentMappingIsLookedAtWhereItIsUsed) {
+    constexpr std::size_t kPage = ChangedPages::kPageBytes;
+    buffer.define_storage(nullptr, 100 * kPage, GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT);
+    std::byte* const mapped =
+        buffer.map({{0, 100 * kPage}, GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT});
+    EXPECT_FALSE(buffer.blocked());
+    EXPECT_TRUE(buffer.written_unseen());
+    mapped[3 * kPage] = mapped[50 * kPage] = std::byte{1};
+    EXPECT_TRUE(buffer.find_written({2 * kPage, 4 * kPage}));
+    EXPECT_EQ(follow(copy, known), kPage);
+    EXPECT_FALSE(buffer.find_written({2 * kPage, 4 * kPage}));
+    EXPECT_EQ(follow(copy, known), 0u);
+    const BufferReading reading = buffer.read();
+    const Bytes part(10, std::byte{5});
+    buffer.write({0, 10}, part.data());
+    EXPECT_EQ(mapped[0], std::byte{5}) << "it stays where it is, whoever reads";
+    buffer.unmap();
+    EXPECT_FALSE(buffer.written_unseen());
+    follow(copy, known);
+    expect_same(copy);
+}
+
 TEST_F(BufferContentTest, WhatIsReadStaysWhileItChanges) {
     const Bytes content(100, std::byte{7}), part(100, std::byte{9});
     buffer.define(content.data(), content.size(), GL_STATIC_DRAW);
