@@ -14,6 +14,7 @@ using namespace wall;
 using namespace wall::tileserver;
 
 constexpr int kOthersTurns = 4;
+constexpr std::uint64_t kObjectBytes = std::uint64_t{4} << 20;  // of a session: gigabytes take the driver seconds
 
 struct Ignore final : SessionOutput {
     void reply(RequestId, std::vector<std::byte> bytes) override { answer = std::move(bytes); }
@@ -95,6 +96,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     {
         Ignore output;
         SessionReplica session(*node->driver, SessionId(1));
+        session.objects.set_limit(kObjectBytes);
         Executor executor(*node->node, session, output);
         open_surface(executor);
         (void)executor.run_batch(fuzz::batch_of(data, size, ContextId(1)));
@@ -102,6 +104,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     {
         Ignore output;
         SessionReplica session(*node->driver, SessionId(1));
+        session.objects.set_limit(kObjectBytes);
         Executor executor(*node->node, session, output);
         open_surface(executor);
         const auto batch = fuzz::batch_of(data, size, ContextId(1));
@@ -111,6 +114,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         Ignore output;
         ParallelGroup group(*node->driver, {2, {}});
         SessionReplica member(*node->driver, SessionId(1), &group, 0), other(*node->driver, SessionId(1), &group, 1);
+        member.objects.set_limit(kObjectBytes);
+        other.objects.set_limit(kObjectBytes);
         Executor executor(*node->node, member, output), others(*node->node, other, output);
         WALL_ASSERT(group.sync.join(0) && group.sync.join(1));
         open_surface(executor);

@@ -28,7 +28,7 @@ bool ArrayDrawCommands::may_be_cut(GLenum mode) const {
     return !state.line_point.line_stipple_enabled || !draws_lines(mode, state);  // its counter runs along the draw
 }
 
-const VertexInput* ArrayDrawCommands::begin(ClientName name, GLenum mode, std::int32_t count) {
+VertexInput* ArrayDrawCommands::begin(ClientName name, GLenum mode, std::int32_t count) {
     if (block_.in_begin) return execution_.refuse("between Begin and End"), nullptr;
     const auto input = execution_.session.objects.get<VertexInput>(name);
     if (!input) return execution_.refuse(input.error().message), nullptr;
@@ -68,13 +68,21 @@ void ArrayDrawCommands::count_runs() {
 
 void ArrayDrawCommands::DrawArrays(ClientName name, ClientName pieces, GLenum mode, std::int32_t first,
                                    std::int32_t count) {
-    if (first < 0 || first > std::numeric_limits<std::int32_t>::max() - std::max(count, 0))
-        return execution_.refuse("no such elements");
-    if (begin(name, mode, count) == nullptr) return;
+    VertexInput* input = begin(name, mode, count);
+    if (input == nullptr || !has_elements(*input, first, count)) return;
     find_runs(pieces, count, mode);
     count_runs();
     for (GLint& run : firsts_) run += first;
     execution_.gl.MultiDrawArrays(mode, firsts_.data(), counts_.data(), static_cast<GLsizei>(counts_.size()));
+}
+
+bool ArrayDrawCommands::has_elements(VertexInput& input, std::int32_t first, std::int32_t count) {
+    if (first < 0) return execution_.refuse("no such elements"), false;
+    const std::uint64_t behind = static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(count);
+    // Another thread of the program may have made a buffer smaller since the client has looked.
+    if (behind <= input.elements(execution_.session.objects)) return true;
+    ++execution_.session.work.gl_errors;
+    return false;
 }
 
 bool ArrayDrawCommands::has_indices(const VertexInput& input, std::int32_t count, GLenum type, std::uint32_t offset) {

@@ -26,7 +26,9 @@ public:
 
     /// For draws of all kinds: the checks that they have in common. The driver's vertex array object is bound. Null:
     /// nothing is to be drawn, perhaps because it was refused.
-    const VertexInput* begin(ClientName input, GLenum mode, std::int32_t count);
+    VertexInput* begin(ClientName input, GLenum mode, std::int32_t count);
+    /// Whether elements in a row lie in the input's buffers. False: refused, or not to be drawn.
+    bool has_elements(VertexInput& input, std::int32_t first, std::int32_t count);
     /// Whether the indices lie in the input's buffer. False: refused, or not to be drawn.
     bool has_indices(const VertexInput& input, std::int32_t count, GLenum type, std::uint32_t offset);
     /// How many indices there are in memory; nothing: refused.

@@ -29,13 +29,12 @@ private:
 
 }  // namespace
 
-const VertexInput* InstancedDrawCommands::begin(ClientName input, GLenum mode, std::int32_t count,
-                                                std::int32_t instances) {
+VertexInput* InstancedDrawCommands::begin(ClientName input, GLenum mode, std::int32_t count, std::int32_t instances) {
     if (instances < 0) return execution_.refuse("fewer than no instances"), nullptr;
     if (count > 0 &&
         static_cast<std::uint64_t>(count) * static_cast<std::uint64_t>(instances) > wire::kMostInstancedElements)
         return execution_.refuse("more elements than a draw may have"), nullptr;
-    const VertexInput* found = instances != 0 ? draws_.begin(input, mode, count) : nullptr;
+    VertexInput* found = instances != 0 ? draws_.begin(input, mode, count) : nullptr;
     if (found != nullptr)
         draws_.count_elements(static_cast<std::uint64_t>(count) * static_cast<std::uint64_t>(instances));
     return found;
@@ -43,9 +42,8 @@ const VertexInput* InstancedDrawCommands::begin(ClientName input, GLenum mode, s
 
 void InstancedDrawCommands::DrawArraysInstanced(ClientName name, GLenum mode, std::int32_t first, std::int32_t count,
                                                 std::int32_t instances) {
-    if (first < 0 || first > std::numeric_limits<std::int32_t>::max() - std::max(count, 0))
-        return execution_.refuse("no such elements");
-    if (begin(name, mode, count, instances) != nullptr)
+    VertexInput* input = begin(name, mode, count, instances);
+    if (input != nullptr && draws_.has_elements(*input, first, count))
         execution_.gl.DrawArraysInstanced(mode, first, count, instances);
 }
 

@@ -26,7 +26,7 @@ public:
 
 private:
     /// Null: nothing is to be drawn, perhaps because it was refused.
-    const VertexInput* begin(ClientName input, GLenum mode, std::int32_t count, std::int32_t instances);
+    VertexInput* begin(ClientName input, GLenum mode, std::int32_t count, std::int32_t instances);
 
     Execution& execution_;
     ArrayDrawCommands& draws_;

@@ -15,6 +15,7 @@ bool Buffer::define(std::uint32_t size, GLenum usage) {
     // The driver's memory may have been another session's.
     if (size != 0) gl_.ClearNamedBufferData(name_, GL_R8, GL_RED, GL_UNSIGNED_BYTE, nullptr);
     size_ = driver_.drain_errors() == 0 ? size : 0;
+    renamed();  // vertex inputs have another number of elements
     return has_content(size_) && size_ == size;
 }
 

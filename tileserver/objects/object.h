@@ -37,11 +37,12 @@ inline constexpr std::uint64_t kLeastObjectBytes = 4096;
 /// What a session's objects come to. Outlives them.
 struct ObjectAccount {
     std::uint64_t bytes = 0;  ///< of the driver's memory, by estimate
+    std::uint64_t most_bytes = kMaxObjectBytes;
     /// By kind: grows whenever the driver's name of an object, or the size of its images, may have become another, so
     /// that it must be looked up again.
     std::array<std::uint64_t, kObjectKinds> versions{};
 
-    bool affords(std::uint64_t more) const { return more <= kMaxObjectBytes && bytes <= kMaxObjectBytes - more; }
+    bool affords(std::uint64_t more) const { return more <= most_bytes && bytes <= most_bytes - more; }
 };
 
 class ObjectReplica {

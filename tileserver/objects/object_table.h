@@ -77,6 +77,8 @@ public:
     /// As long as it stays the same, all lookups of a kind find objects of the same driver names.
     std::uint64_t version(ObjectKind kind) const { return account_.versions[static_cast<std::size_t>(kind)]; }
     std::uint64_t bytes() const { return account_.bytes; }
+    /// Instead of kMaxObjectBytes.
+    void set_limit(std::uint64_t most_bytes) { account_.most_bytes = most_bytes; }
     bool affords(std::uint64_t bytes) const { return account_.affords(bytes); }
     std::size_t size() const { return objects_.size(); }
 

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/objects/vertex_input.h"
 
+#include <algorithm>
+
+#include "tileserver/objects/buffer.h"
+
 namespace wall::tileserver {
 namespace {
 
 using glstate::Attribute;
 using glstate::InputArray;
+
+/// Elements of a draw whose arrays all go on from instance to instance.
+constexpr std::uint64_t kMostWithoutArrays = std::uint64_t{1} << 31;
 
 /// An array of fixed function; the buffer is bound.
 void define_array(const Gl& gl, const InputArray& array, const void* at) {
@@ -67,7 +74,20 @@ void VertexInput::define(const glstate::VertexInputDefinition& definition, std::
     }
     gl.BindBuffer(GL_ARRAY_BUFFER, 0);
     if (definition.indices) gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers.back());
-    indices_ = definition.indices;
+    definition_ = definition;
+}
+
+std::uint64_t VertexInput::elements(const ObjectTable& objects) {
+    const std::uint64_t version = objects.version(ObjectKind::buffer);
+    if (buffers_ == version) return elements_;
+    buffers_ = version;
+    elements_ = kMostWithoutArrays;
+    for (const InputArray& array : definition_.arrays) {
+        if (array.divisor != 0) continue;
+        const Buffer* buffer = objects.find<Buffer>(array.buffer);
+        elements_ = std::min(elements_, buffer != nullptr ? array.elements_in(buffer->size()) : 0);
+    }
+    return elements_;
 }
 
 }  // namespace wall::tileserver

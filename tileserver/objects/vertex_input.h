@@ -3,11 +3,12 @@
 // vertex_input.h). The driver keeps the memory of its buffers for as long as it lives. Render thread.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "common/glstate/vertex_input.h"
 #include "tileserver/driver/driver.h"
-#include "tileserver/objects/object.h"
+#include "tileserver/objects/object_table.h"
 
 namespace wall::tileserver {
 
@@ -22,12 +23,16 @@ public:
     bool defined() const { return name_ != 0; }
     GLuint name() const { return name_; }  ///< the driver's
     /// 0: it has none.
-    ClientName indices() const { return indices_; }
+    ClientName indices() const { return definition_.indices; }
+    /// How many elements lie in all buffers of arrays that go on from vertex to vertex, as large as they are now: a
+    /// draw must not read behind them.
+    std::uint64_t elements(const ObjectTable& objects);
 
 private:
     Driver& driver_;
     GLuint name_ = 0;
-    ClientName indices_;
+    glstate::VertexInputDefinition definition_;
+    std::uint64_t elements_ = 0, buffers_ = 0;  ///< as of that version of the table's buffers
 };
 
 }  // namespace wall::tileserver
