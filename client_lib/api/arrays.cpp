@@ -379,20 +379,15 @@ void MultiDrawElements(Context& c, GLenum mode, const GLsizei* count, GLenum typ
     api::MultiDrawElements(c, mode, count, type, indices, draws);
 }
 
-void DrawArraysInstanced(Context& c, GLenum mode, GLint first, GLsizei count, GLsizei instances) {
-    api::DrawArraysInstanced(c, mode, first, count, instances);
+// Of several instances no list can be made (GL_ARB_draw_instanced).
+void DrawArraysInstanced(Context& c, GLenum, GLint, GLsizei, GLsizei) { c.error(GL_INVALID_OPERATION); }
+void DrawElementsInstanced(Context& c, GLenum, GLsizei, GLenum, const void*, GLsizei) { c.error(GL_INVALID_OPERATION); }
+void DrawElementsInstancedBaseVertex(Context& c, GLenum, GLsizei, GLenum, const void*, GLsizei, GLint) {
+    c.error(GL_INVALID_OPERATION);
 }
 void DrawElementsBaseVertex(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices,
                             GLint base_vertex) {
     api::DrawElementsBaseVertex(c, mode, count, type, indices, base_vertex);
-}
-void DrawElementsInstanced(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices,
-                           GLsizei instances) {
-    api::DrawElementsInstanced(c, mode, count, type, indices, instances);
-}
-void DrawElementsInstancedBaseVertex(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices,
-                                     GLsizei instances, GLint base_vertex) {
-    api::DrawElementsInstancedBaseVertex(c, mode, count, type, indices, instances, base_vertex);
 }
 void DrawRangeElementsBaseVertex(Context& c, GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type,
                                  const void* indices, GLint base_vertex) {
