@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 
 constexpr int kSize = 32;
 constexpr geom::Rect kWindow{0, 0, kSize, kSize};
-constexpr ClientName kTexture(21), kColor(22), kDepth(23), kFramebuffer(24), kOther(25);
+constexpr ClientName kTexture(21), kColor(22), kFramebuffer(24), kOther(25);
 
 using Pixel = std::array<std::uint8_t, 4>;
 constexpr Pixel kRed{255, 0, 0, 255}, kGreen{0, 255, 0, 255};
