@@ -7,6 +7,7 @@
 
 #include "common/glstate/values.h"
 #include "tileserver/driver/driver.h"
+#include "tileserver/driver/layer.h"
 
 namespace wall::tileserver {
 
