@@ -27,16 +27,14 @@ bool is_absurd(const Corners& c) {
                                [](GLint v) { return v < -kFarthest || v > kFarthest; });
 }
 
-std::uint32_t samples_of(const std::shared_ptr<Framebuffer>& framebuffer) {
+std::uint32_t samples_of(Context& c, const std::shared_ptr<Framebuffer>& framebuffer) {
+    std::lock_guard lock(c.share().mutex);
     return framebuffer ? framebuffer->samples() : 0;
 }
 
 /// Buffers of `mask` that both have.
 GLbitfield common_buffers(Context& c, GLbitfield mask) {
-    const FramebufferUse& use = *c.framebuffers;
-    const bool from_color = use.read ? use.read->read_shape().has_value() : c.state.window.read_buffer != GL_NONE;
-    const bool to_color = use.draw ? use.draw->draw_shape().has_value() : c.state.window.draw_buffer != GL_NONE;
-    if (!from_color || !to_color) mask &= ~GLbitfield{GL_COLOR_BUFFER_BIT};
+    if (!read_color_format(c) || !draw_color_format(c)) mask &= ~GLbitfield{GL_COLOR_BUFFER_BIT};
     if (!has_depth(c, true) || !has_depth(c, false)) mask &= ~GLbitfield{GL_DEPTH_BUFFER_BIT};
     if (!has_stencil(c, true) || !has_stencil(c, false)) mask &= ~GLbitfield{GL_STENCIL_BUFFER_BIT};
     return mask;
@@ -44,10 +42,18 @@ GLbitfield common_buffers(Context& c, GLbitfield mask) {
 
 GLenum multisample_error(Context& c, const Corners& from, const Corners& to) {
     const FramebufferUse& use = *c.framebuffers;
-    const std::uint32_t read = samples_of(use.read), draw = samples_of(use.draw);
+    const std::uint32_t read = samples_of(c, use.read), draw = samples_of(c, use.draw);
     if (read != 0 && draw != 0 && read != draw) return GL_INVALID_OPERATION;
     const bool same_size = from.box().width == to.box().width && from.box().height == to.box().height;
     return read != 0 && !same_size ? GL_INVALID_OPERATION : GL_NO_ERROR;
+}
+
+/// Whole numbers go to the same kind of them, and nothing lies between two of them.
+GLenum whole_error(Context& c, GLbitfield mask, GLenum filter) {
+    if ((mask & GL_COLOR_BUFFER_BIT) == 0) return GL_NO_ERROR;
+    const TextureFormat &from = *read_color_format(c), &to = *draw_color_format(c);
+    if (!from.whole() && !to.whole()) return GL_NO_ERROR;
+    return from.component_type != to.component_type || filter == GL_LINEAR ? GL_INVALID_OPERATION : GL_NO_ERROR;
 }
 
 /// A part of the window as a framebuffer object of its own, while it lives the one that is read from.
@@ -131,6 +137,7 @@ void BlitFramebuffer(Context& c, GLint from_x0, GLint from_y0, GLint from_x1, GL
     if (is_absurd(from) || is_absurd(to)) return;
     if (const GLenum error = multisample_error(c, from, to)) return c.error(error);
     mask = common_buffers(c, mask);
+    if (const GLenum error = whole_error(c, mask, filter)) return c.error(error);
     if (mask == 0 || from.empty() || to.empty()) return;
     c.flush_block();
     if (c.framebuffers->read) return blit(c, from, to, mask, filter);

@@ -44,20 +44,44 @@ void attach(Context& c, Framebuffer& framebuffer, std::span<const unsigned> plac
     for (const Attachment& old : before) forget_orphan(c, old);
 }
 
+constexpr GLint kMostLayers = 2048;
+
 /// What glFramebufferTexture* names, before its texture is looked for.
 struct TextureImage {
-    unsigned dimensions;  ///< of the command; 0: glFramebufferTextureLayer
+    enum class By : std::uint8_t { dimensions, layer, all_layers };
+    By by;
+    unsigned dimensions;  ///< of the command, if it is by them
     GLenum image_target;
     GLuint texture;
     GLint level, layer;
 };
 
+/// Whether images of a target lie one behind another.
+bool has_layers(const glapi::TextureTargetInfo& target) {
+    return target.layers != 0 || target.first_face != 0 || glapi::spatial_dimensions_of(target) == 3;
+}
+
 GLenum image_target_error(const TextureImage& image, const Texture& texture) {
-    if (image.dimensions == 0)
-        return texture.info.images == 3 || texture.info.layers ? GL_NO_ERROR : GL_INVALID_OPERATION;
+    if (image.by == TextureImage::By::all_layers)
+        return glapi::dimensions_of(texture.info) != 0 ? GL_NO_ERROR : GL_INVALID_OPERATION;
+    if (image.by == TextureImage::By::layer) return has_layers(texture.info) ? GL_NO_ERROR : GL_INVALID_OPERATION;
     const auto word = target_word(image.image_target);
-    if (!word || !word->has_images() || word->is_proxy()) return GL_INVALID_ENUM;
-    return word->info == &texture.info && word->info->images == image.dimensions ? GL_NO_ERROR : GL_INVALID_OPERATION;
+    if (!word || word->is_proxy() || glapi::dimensions_of(*word->info) == 0) return GL_INVALID_ENUM;
+    return word->info == &texture.info && word->has_images() &&
+                   glapi::spatial_dimensions_of(*word->info) == image.dimensions
+               ? GL_NO_ERROR
+               : GL_INVALID_OPERATION;
+}
+
+/// Where it is attached, the texture's kind having been checked.
+void place_image(Attachment& attachment, const TextureImage& image) {
+    const glapi::TextureTargetInfo& info = attachment.texture->info;
+    attachment.target = image.by == TextureImage::By::dimensions ? image.image_target : info.target;
+    attachment.level = image.level;
+    attachment.layered = image.by == TextureImage::By::all_layers && has_layers(info);
+    if (image.by == TextureImage::By::layer && info.first_face != 0)
+        attachment.target = glapi::image_target(info, static_cast<unsigned>(image.layer));
+    else attachment.layer = image.layer;
 }
 
 void attach_texture(Context& c, GLenum target, GLenum point, const TextureImage& image) {
@@ -71,11 +95,11 @@ void attach_texture(Context& c, GLenum target, GLenum point, const TextureImage&
     if (image.texture != 0 && !attachment.texture) return c.error(GL_INVALID_OPERATION);
     if (attachment.texture) {
         if (const GLenum error = image_target_error(image, *attachment.texture)) return c.error(error);
-        attachment.target = image.dimensions == 0 ? attachment.texture->info.target : image.image_target;
-        attachment.level = image.level;
-        attachment.layer = image.layer;
-        if (image.layer < 0 || image.layer >= 2048) return c.error(GL_INVALID_VALUE);
-        if (image.level < 0 || image.level >= level_count(c, attachment.target)) return c.error(GL_INVALID_VALUE);
+        const auto& info = attachment.texture->info;
+        const GLint layers = info.first_face != 0 ? static_cast<GLint>(glapi::kCubeFaces) : kMostLayers;
+        if (image.layer < 0 || image.layer >= layers) return c.error(GL_INVALID_VALUE);
+        if (image.level < 0 || image.level >= level_count(c, info.target)) return c.error(GL_INVALID_VALUE);
+        place_image(attachment, image);
     }
     const auto places = places_of(c, point);
     if (!places.empty()) attach(c, *framebuffer, places, attachment);
@@ -97,20 +121,7 @@ void delete_framebuffer(Context& c, GLuint name) {
 // ---- glGetFramebufferAttachmentParameteriv ----
 
 GLint component_type(const TextureFormat& format) {
-    switch (format.component_type) {
-        case 0: return format.base == GL_STENCIL_INDEX ? GL_UNSIGNED_INT : GL_UNSIGNED_NORMALIZED;
-        default: return static_cast<GLint>(format.component_type);
-    }
-}
-
-bool is_srgb(const TextureFormat& format) {
-    switch (format.internal_format) {
-        case GL_SRGB:
-        case GL_SRGB8:
-        case GL_SRGB_ALPHA:
-        case GL_SRGB8_ALPHA8: return true;
-        default: return false;
-    }
+    return static_cast<GLint>(format.base == GL_STENCIL_INDEX ? GLenum{GL_INDEX} : format.component_type);
 }
 
 /// Of an image; false: no such word.
@@ -123,9 +134,7 @@ bool shape_value(const ImageShape& shape, GLenum pname, GLint* value) {
         case GL_FRAMEBUFFER_ATTACHMENT_DEPTH_SIZE: *value = shape.bits.depth; return true;
         case GL_FRAMEBUFFER_ATTACHMENT_STENCIL_SIZE: *value = shape.bits.stencil; return true;
         case GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE: *value = component_type(*shape.format); return true;
-        case GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING:
-            *value = is_srgb(*shape.format) ? GL_SRGB : GL_LINEAR;
-            return true;
+        case GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING: *value = shape.format->srgb ? GL_SRGB : GL_LINEAR; return true;
         default: return false;
     }
 }
@@ -138,14 +147,16 @@ bool attachment_value(const Attachment& attachment, GLenum pname, GLint* value) 
         case GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME: *value = static_cast<GLint>(attachment.object()->name); return true;
         case GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL: *value = attachment.level; return texture;
         case GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_CUBE_MAP_FACE:
-            *value = texture && attachment.texture->info.first_face != 0 ? static_cast<GLint>(attachment.target) : 0;
+            *value = texture && attachment.texture->info.first_face != 0 && !attachment.layered
+                         ? static_cast<GLint>(attachment.target)
+                         : 0;
             return texture;
         case GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER: *value = attachment.layer; return texture;
-        case GL_FRAMEBUFFER_ATTACHMENT_LAYERED: *value = GL_FALSE; return true;
+        case GL_FRAMEBUFFER_ATTACHMENT_LAYERED: *value = attachment.layered; return texture;
         default: break;
     }
     const auto shape = shape_of(attachment);
-    static constexpr TextureFormat kNone{};
+    static constexpr TextureFormat kNone{.component_type = GL_UNSIGNED_NORMALIZED};
     return shape_value(shape.value_or(ImageShape{.format = &kNone}), pname, value);
 }
 
@@ -156,8 +167,9 @@ void window_value(Context& c, GLenum point, GLenum pname, GLint* value) {
     const bool color = point >= GL_FRONT_LEFT && point <= GL_BACK;
     if (!depth && !stencil && !color) return c.error(GL_INVALID_ENUM);
     const bool there = depth ? bits.depth != 0 : stencil ? bits.stencil != 0 : true;
-    static constexpr TextureFormat kColor{GL_RGBA8, GL_RGBA, GL_RGBA8, {}, GL_UNSIGNED_NORMALIZED, false};
-    static constexpr TextureFormat kStencil{GL_STENCIL_INDEX, GL_STENCIL_INDEX, GL_STENCIL_INDEX, {}, 0, false};
+    static constexpr TextureFormat kColor{GL_RGBA8, GL_RGBA, GL_RGBA8, {}, GL_UNSIGNED_NORMALIZED, ImageUse::drawn};
+    static constexpr TextureFormat kStencil{GL_STENCIL_INDEX, GL_STENCIL_INDEX, GL_STENCIL_INDEX, {}, 0,
+                                            ImageUse::drawn};
     ImageShape shape{.format = stencil ? &kStencil : &kColor, .bits = bits};
     if (color) shape.bits.depth = shape.bits.stencil = 0;
     if (pname == GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) *value = there ? GL_FRAMEBUFFER_DEFAULT : GL_NONE;
@@ -207,17 +219,20 @@ GLenum CheckFramebufferStatus(Context& c, GLenum target) {
 }
 
 void FramebufferTexture1D(Context& c, GLenum target, GLenum point, GLenum image_target, GLuint texture, GLint level) {
-    attach_texture(c, target, point, {1, image_target, texture, level, 0});
+    attach_texture(c, target, point, {TextureImage::By::dimensions, 1, image_target, texture, level, 0});
 }
 void FramebufferTexture2D(Context& c, GLenum target, GLenum point, GLenum image_target, GLuint texture, GLint level) {
-    attach_texture(c, target, point, {2, image_target, texture, level, 0});
+    attach_texture(c, target, point, {TextureImage::By::dimensions, 2, image_target, texture, level, 0});
 }
 void FramebufferTexture3D(Context& c, GLenum target, GLenum point, GLenum image_target, GLuint texture, GLint level,
                           GLint layer) {
-    attach_texture(c, target, point, {3, image_target, texture, level, layer});
+    attach_texture(c, target, point, {TextureImage::By::dimensions, 3, image_target, texture, level, layer});
 }
 void FramebufferTextureLayer(Context& c, GLenum target, GLenum point, GLuint texture, GLint level, GLint layer) {
-    attach_texture(c, target, point, {0, GL_NONE, texture, level, layer});
+    attach_texture(c, target, point, {TextureImage::By::layer, 0, GL_NONE, texture, level, layer});
+}
+void FramebufferTexture(Context& c, GLenum target, GLenum point, GLuint texture, GLint level) {
+    attach_texture(c, target, point, {TextureImage::By::all_layers, 0, GL_NONE, texture, level, 0});
 }
 
 void FramebufferRenderbuffer(Context& c, GLenum target, GLenum point, GLenum renderbuffer_target, GLuint name) {

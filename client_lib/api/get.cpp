@@ -65,13 +65,23 @@ void pixel_map_size(Context& c, double* out) {
 /// The nodes' limit, but no more than the client keeps.
 template <GLenum kName, int kMost>
 void limited(Context& c, double* out) {
-    *out = std::min<double>(kMost, limit_of(c.session().caps(), kName, kMost));
+    *out = std::min<double>(kMost, limit_of(c.caps(), kName, kMost));
+}
+
+/// Calls `use` with the active unit if it has a matrix.
+template <class Use>
+void of_texture_matrix(Context& c, Use&& use) {
+    if (c.fixed_unit()) use(c.active_texture());
+    else c.error(GL_INVALID_OPERATION);
 }
 
 const Special kSpecials[] = {
     {GL_MODELVIEW_STACK_DEPTH, 1, [](Context& c, double* out) { *out = depth_of(c.modelview_stack); }},
     {GL_PROJECTION_STACK_DEPTH, 1, [](Context& c, double* out) { *out = depth_of(c.projection_stack); }},
-    {GL_TEXTURE_STACK_DEPTH, 1, [](Context& c, double* out) { *out = depth_of(c.texture_stacks[c.active_texture()]); }},
+    {GL_TEXTURE_STACK_DEPTH, 1,
+     [](Context& c, double* out) {
+         of_texture_matrix(c, [&](unsigned unit) { *out = depth_of(c.texture_stacks[unit]); });
+     }},
     {GL_MAX_MODELVIEW_STACK_DEPTH, 1, [](Context& c, double* out) { *out = c.modelview_stack.limit; }},
     {GL_MAX_PROJECTION_STACK_DEPTH, 1, [](Context& c, double* out) { *out = c.projection_stack.limit; }},
     {GL_MAX_TEXTURE_STACK_DEPTH, 1, [](Context& c, double* out) { *out = c.texture_stacks[0].limit; }},
@@ -79,7 +89,9 @@ const Special kSpecials[] = {
     {GL_TRANSPOSE_PROJECTION_MATRIX, 16,
      [](Context& c, double* out) { put_transposed(c.state.matrix.projection, out); }},
     {GL_TRANSPOSE_TEXTURE_MATRIX, 16,
-     [](Context& c, double* out) { put_transposed(c.state.matrix.texture_matrix[c.active_texture()], out); }},
+     [](Context& c, double* out) {
+         of_texture_matrix(c, [&](unsigned unit) { put_transposed(c.state.matrix.texture_matrix[unit], out); });
+     }},
 
     {GL_ATTRIB_STACK_DEPTH, 1,
      [](Context& c, double* out) { *out = static_cast<double>(c.attributes->server.size()); }},
@@ -125,8 +137,11 @@ const Special kSpecials[] = {
     {GL_MAX_TEXTURE_COORDS, 1, limited<GL_MAX_TEXTURE_COORDS, kTextureCoords>},
     {GL_MAX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
     {GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
+    {GL_MAX_GEOMETRY_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_GEOMETRY_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
     {GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
     {GL_MAX_DRAW_BUFFERS, 1, limited<GL_MAX_DRAW_BUFFERS, glstate::kColorAttachments>},
+    {GL_NUM_SHADER_BINARY_FORMATS, 1, constant<0>},
+    {GL_NUM_PROGRAM_BINARY_FORMATS, 1, constant<0>},
     // For general use: RGBA of DXT1 has but one bit of alpha.
     {GL_NUM_COMPRESSED_TEXTURE_FORMATS, 1, constant<3>},
     {GL_COMPRESSED_TEXTURE_FORMATS, 3,
@@ -160,10 +175,10 @@ const Special kSpecials[] = {
     {GL_READ_FRAMEBUFFER_BINDING, 1, [](Context& c, double* out) { *out = name_of(c.framebuffers->read); }},
     {GL_RENDERBUFFER_BINDING, 1, [](Context& c, double* out) { *out = name_of(c.framebuffers->renderbuffer); }},
     {GL_MAX_COLOR_ATTACHMENTS, 1, limited<GL_MAX_COLOR_ATTACHMENTS, glstate::kColorAttachments>},
-    {GL_MAJOR_VERSION, 1, [](Context& c, double* out) { *out = offered_version(c.session().caps()).major; }},
-    {GL_MINOR_VERSION, 1, [](Context& c, double* out) { *out = offered_version(c.session().caps()).minor; }},
+    {GL_MAJOR_VERSION, 1, [](Context& c, double* out) { *out = offered_version(c.caps()).major; }},
+    {GL_MINOR_VERSION, 1, [](Context& c, double* out) { *out = offered_version(c.caps()).minor; }},
     {GL_NUM_EXTENSIONS, 1,
-     [](Context& c, double* out) { *out = static_cast<double>(offered_extensions(c.session().caps()).size()); }},
+     [](Context& c, double* out) { *out = static_cast<double>(offered_extensions(c.caps()).size()); }},
     {GL_CONTEXT_FLAGS, 1, constant<0>},
     {GL_CONTEXT_PROFILE_MASK, 1, constant<GL_CONTEXT_COMPATIBILITY_PROFILE_BIT>},
     {GL_IMPLEMENTATION_COLOR_READ_FORMAT, 1, constant<GL_RGBA>},
@@ -187,7 +202,9 @@ unsigned index_of(const Context& c, glstate::IndexRule rule) {
 
 template <class Out>
 void get_element(Context& c, const glstate::GetEntry& entry, Out* out) {
-    const std::uint32_t id = entry.id + index_of(c, entry.rule) * entry.unit_stride;
+    const unsigned unit = index_of(c, entry.rule);
+    if (unit != 0 && unit >= entry.units) return c.error(GL_INVALID_OPERATION);
+    const std::uint32_t id = entry.id + unit * entry.unit_stride;
     const auto category = glstate::element_info(id).category;
     if (category == glstate::Category::current || category == glstate::Category::material)
         c.flush_block();  // folds attributes
@@ -219,7 +236,7 @@ template <class Out>
 bool get_special(Context& c, GLenum pname, Out* out) {
     for (const Special& special : kSpecials) {
         if (special.pname != pname) continue;
-        double values[16];
+        double values[16]{};
         special.read(c, values);
         std::transform(values, values + special.components, out, converted<Out>);
         return true;
@@ -245,7 +262,7 @@ bool get_of_framebuffer(Context& c, GLenum pname, Out* out) {
 
 template <class Out>
 bool get_limit(Context& c, GLenum pname, Out* out) {
-    const auto& limits = c.session().caps().limits;
+    const auto& limits = c.caps().limits;
     const auto found = limits.find(pname);
     if (found == limits.end()) return false;
     std::transform(found->second.begin(), found->second.end(), out, converted<Out>);

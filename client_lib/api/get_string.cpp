@@ -26,7 +26,7 @@ std::string joined(const std::vector<std::string>& words) {
 }  // namespace
 
 const GLubyte* GetString(Context& c, GLenum name) {
-    const Caps& caps = c.session().caps();
+    const Caps& caps = c.caps();
     if (name == GL_VENDOR) return kept("WallGL");
     if (name == GL_RENDERER) return kept("WallGL (" + caps.renderer + ")");
     if (name == GL_VERSION) return kept(version_string(caps));
@@ -38,7 +38,7 @@ const GLubyte* GetString(Context& c, GLenum name) {
 }
 
 const GLubyte* GetStringi(Context& c, GLenum name, GLuint index) {
-    const auto extensions = offered_extensions(c.session().caps());
+    const auto extensions = offered_extensions(c.caps());
     if (name != GL_EXTENSIONS) return c.error(GL_INVALID_ENUM), nullptr;
     if (index >= extensions.size()) return c.error(GL_INVALID_VALUE), nullptr;
     return kept(extensions[index]);

@@ -38,6 +38,7 @@ void change_top(Context& c, Change&& change) {
         return change_element<el::modelview>(c, 0, c.modelview_stack, change);
     if (c.state.local.matrix_mode == GL_PROJECTION)
         return change_element<el::projection>(c, 0, c.projection_stack, change);
+    if (!c.fixed_unit()) return c.error(GL_INVALID_OPERATION);
     change_element<el::texture_matrix>(c, unit, c.texture_stacks[unit], change);
 }
 
@@ -134,7 +135,7 @@ void Ortho(Context& c, GLdouble left, GLdouble right, GLdouble bottom, GLdouble 
 void Viewport(Context& c, GLint x, GLint y, GLsizei width, GLsizei height) {
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
     const auto most = [&](std::size_t i) {
-        return static_cast<GLsizei>(limit_of(c.session().caps(), GL_MAX_VIEWPORT_DIMS, 16384, i));
+        return static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_VIEWPORT_DIMS, 16384, i));
     };
     c.set<el::viewport>(0, {x, y, std::min(width, most(0)), std::min(height, most(1))});
 }

@@ -10,13 +10,6 @@
 namespace wall::client::api {
 namespace {
 
-bool has_color(Context& c) {
-    const auto& framebuffer = c.framebuffers->read;
-    if (!framebuffer) return c.state.window.read_buffer != GL_NONE;
-    std::lock_guard lock(c.share().mutex);
-    return framebuffer->read_shape().has_value();
-}
-
 bool source_exists(Context& c, GLenum format) {
     if (!c.read_target()) return false;
     switch (format) {
@@ -24,7 +17,10 @@ bool source_exists(Context& c, GLenum format) {
         case GL_STENCIL_INDEX: return has_stencil(c, true);
         case GL_DEPTH_STENCIL: return has_depth(c, true) && has_stencil(c, true);
         case GL_COLOR_INDEX: return false;
-        default: return has_color(c);
+        default: {
+            const TextureFormat* colors = read_color_format(c);
+            return colors && colors->whole() == glapi::is_integer_format(format);
+        }
     }
 }
 
@@ -43,12 +39,15 @@ std::vector<std::byte> to_bits(const std::vector<std::byte>& pixels, const Pixel
     return bits;
 }
 
-bool has_ten_bits(GLenum type) { return type == GL_UNSIGNED_INT_10_10_10_2 || type == GL_UNSIGNED_INT_2_10_10_10_REV; }
+bool has_ten_bits(GLenum format, GLenum type) {
+    return !glapi::is_integer_format(format) &&
+           (type == GL_UNSIGNED_INT_10_10_10_2 || type == GL_UNSIGNED_INT_2_10_10_10_REV);
+}
 
 /// What the nodes are asked for. Mesa makes ten bits of eight out of a framebuffer object otherwise than out of a
 /// window.
-GLenum gathered_type(GLenum type) {
-    return type == GL_BITMAP ? GL_UNSIGNED_BYTE : has_ten_bits(type) ? GL_FLOAT : type;
+GLenum gathered_type(GLenum format, GLenum type) {
+    return type == GL_BITMAP ? GL_UNSIGNED_BYTE : has_ten_bits(format, type) ? GL_FLOAT : type;
 }
 
 }  // namespace
@@ -56,7 +55,6 @@ GLenum gathered_type(GLenum type) {
 // What lies outside the window is not written (Mesa's way; OpenGL leaves it undefined).
 void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels) {
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
-    if (glapi::is_integer_format(format)) return c.error(GL_INVALID_OPERATION);
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
     if (!may_read_pixels(c)) return;
     if (!source_exists(c, format)) return c.error(GL_INVALID_OPERATION);
@@ -68,9 +66,9 @@ void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
     if (store.row_length == 0) store.row_length = width;
     store.skip_pixels += box.x - x;
     store.skip_rows += box.y - y;
-    auto tight = gather_pixels(c, box, format, gathered_type(type), "glReadPixels");
+    auto tight = gather_pixels(c, box, format, gathered_type(format, type), "glReadPixels");
     if (type == GL_BITMAP) tight = to_bits(tight, box);
-    if (has_ten_bits(type))
+    if (has_ten_bits(format, type))
         tight = from_rgba(format, type,
                           to_rgba(format, GL_FLOAT, tight,
                                   static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height)));

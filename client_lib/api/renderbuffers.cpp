@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Renderbuffer objects (OpenGL 4.6, 9.2.4 to 9.2.6). The order of the checks is Mesa's (fbobject.c).
-#include <bit>
-
 #include "client_lib/context/forget_objects.h"
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/limits.h"
@@ -10,14 +8,7 @@
 namespace wall::client::api {
 namespace {
 
-constexpr GLsizei kUsualSize = 16384, kUsualSamples = 4;
-
-/// What a driver makes of a number of samples that it may not have.
-std::uint32_t rounded_samples(GLsizei samples, GLsizei most) {
-    if (samples == 0) return 0;
-    return most <= kUsualSamples ? static_cast<std::uint32_t>(most)
-                                 : std::bit_ceil(static_cast<std::uint32_t>(samples));
-}
+constexpr GLsizei kUsualSize = 16384;
 
 void delete_renderbuffer(Context& c, GLuint name) {
     std::shared_ptr<Renderbuffer> renderbuffer;
@@ -74,9 +65,9 @@ void RenderbufferStorageMultisample(Context& c, GLenum target, GLsizei samples, 
     const auto renderbuffer = c.framebuffers->renderbuffer;
     if (!renderbuffer) return c.error(GL_INVALID_OPERATION);
     if (!find_renderbuffer_format(internal_format)) return c.error(GL_INVALID_ENUM);
-    const auto most = static_cast<GLsizei>(limit_of(c.session().caps(), GL_MAX_RENDERBUFFER_SIZE, kUsualSize));
+    const auto most = static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_RENDERBUFFER_SIZE, kUsualSize));
     if (width < 0 || width > most || height < 0 || height > most) return c.error(GL_INVALID_VALUE);
-    const auto most_samples = static_cast<GLsizei>(limit_of(c.session().caps(), GL_MAX_SAMPLES, kUsualSamples));
+    const auto most_samples = static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_SAMPLES, kUsualSamples));
     if (samples < 0 || samples > most_samples) return c.error(GL_INVALID_VALUE);
     c.flush_block();
     c.before_change(renderbuffer->id);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Compressed texture images (OpenGL 2.1, 3.8.3): the S3TC formats, kept and sent as they come. An image that comes as
+// Compressed texture images (OpenGL 3.0, 3.9.3): formats of blocks, kept and sent as they come. An image that comes as
 // pixels is compressed by each node; when the program asks for its blocks or gives some, one node is asked what its
 // driver makes of it. Formats for one and three dimensions there are none.
 #include <algorithm>
@@ -18,27 +18,39 @@ namespace {
 
 constexpr std::size_t kMostAsked = 16u << 20;  // bytes of pixels in one question
 
-bool legal_target(GLenum target) {
-    const auto* info = image_target_of(target);
-    return info && info->blocks;
-}
-
 struct Image {
     GLenum target;
     GLint level, format;
-    GLsizei width, height, bytes;
+    GLsizei width, height, depth = 1, bytes = 0;
+    unsigned dimensions = 2;  ///< of the command
 };
 
+struct Place {
+    GLint x, y, z = 0;
+};
+
+/// Of a target that a command of so many dimensions can have, in a format.
+GLenum target_error(const Image& image) {
+    const auto* info = image_target_of(image.target);
+    if (block_bytes(image.format) == 0 || !info || info->images != image.dimensions) return GL_INVALID_ENUM;
+    if (glapi::spatial_dimensions_of(*info) == 3) return GL_INVALID_OPERATION;
+    return info->blocks ? GL_NO_ERROR : GLenum{GL_INVALID_ENUM};
+}
+
+std::size_t all_bytes(const Image& image) {
+    return blocks_bytes(image.format, image.width, image.height) * static_cast<std::size_t>(image.depth);
+}
+
 GLenum image_error(Context& c, const Image& image, GLint border) {
-    if (!legal_target(image.target) || s3tc_block_bytes(image.format) == 0) return GL_INVALID_ENUM;
+    if (const GLenum error = target_error(image)) return error;
     const GLint levels = level_count(c, image.target);
-    if (image.level < 0 || image.level >= levels || border != 0 || image.width < 0 || image.height < 0)
-        return GL_INVALID_VALUE;
-    const GLint most = std::max(1, 1 << (levels - 1) >> image.level);
-    if (image.width > most || image.height > most) return GL_INVALID_VALUE;
-    if (image_target_of(image.target)->square && image.width != image.height) return GL_INVALID_VALUE;
-    const std::size_t bytes = s3tc_bytes(image.format, image.width, image.height);
-    return image.bytes < 0 || static_cast<std::size_t>(image.bytes) != bytes ? GL_INVALID_VALUE : GL_NO_ERROR;
+    if (image.level < 0 || image.level >= levels || border != 0) return GL_INVALID_VALUE;
+    ImageCall call;
+    call.target = image.target, call.level = image.level;
+    call.width = image.width, call.height = image.height, call.depth = image.depth;
+    if (!legal_size(c, call)) return GL_INVALID_VALUE;
+    return image.bytes < 0 || static_cast<std::size_t>(image.bytes) != all_bytes(image) ? GL_INVALID_VALUE
+                                                                                        : GL_NO_ERROR;
 }
 
 TextureLevel described(const Image& image) {
@@ -46,49 +58,55 @@ TextureLevel described(const Image& image) {
     level.internal_format = image.format;
     level.width = image.width;
     level.height = image.height;
-    level.depth = 1;
+    level.depth = image.depth;
     level.compressed = true;
     return level;
 }
 
-GLenum sub_image_error(const TextureLevel& level, const Image& part, GLint x, GLint y) {
+GLenum sub_image_error(const TextureLevel& level, const Image& part, const Place& at) {
     if (!level.compressed || level.internal_format != part.format) return GL_INVALID_OPERATION;
-    const auto inside = [](GLint at, GLsizei size, GLint all) {
-        return at >= 0 && size >= 0 && std::int64_t{at} + size <= all;
+    const auto inside = [](GLint from, GLsizei size, GLint all) {
+        return from >= 0 && size >= 0 && std::int64_t{from} + size <= all;
     };
-    if (!inside(x, part.width, level.width) || !inside(y, part.height, level.height)) return GL_INVALID_VALUE;
-    if (!is_whole_blocks(x, part.width, level.width) || !is_whole_blocks(y, part.height, level.height))
+    if (!inside(at.x, part.width, level.width) || !inside(at.y, part.height, level.height) ||
+        !inside(at.z, part.depth, level.depth))
+        return GL_INVALID_VALUE;
+    if (!is_whole_blocks(at.x, part.width, level.width) || !is_whole_blocks(at.y, part.height, level.height))
         return GL_INVALID_OPERATION;
-    return static_cast<std::size_t>(part.bytes) == s3tc_bytes(part.format, part.width, part.height) ? GL_NO_ERROR
-                                                                                                    : GL_INVALID_VALUE;
+    return static_cast<std::size_t>(part.bytes) == all_bytes(part) ? GL_NO_ERROR : GL_INVALID_VALUE;
 }
 
-void copy_blocks(TextureLevel& level, const Image& part, GLint x, GLint y, const std::byte* from) {
-    const std::size_t row = s3tc_bytes(level.internal_format, level.width, kS3tcBlock),
-                      part_row = s3tc_bytes(part.format, part.width, kS3tcBlock);
-    const std::size_t left = s3tc_bytes(part.format, x, kS3tcBlock);
-    for (GLsizei done = 0; done < part.height; done += kS3tcBlock, from += part_row)
-        std::memcpy(level.pixels.data() + static_cast<std::size_t>((y + done) / kS3tcBlock) * row + left, from,
-                    part_row);
+void copy_blocks(TextureLevel& level, const Image& part, const Place& at, const std::byte* from) {
+    const std::size_t slice = blocks_bytes(level.internal_format, level.width, level.height),
+                      row = blocks_bytes(level.internal_format, level.width, kBlockSide),
+                      part_row = blocks_bytes(part.format, part.width, kBlockSide);
+    const std::size_t left = blocks_bytes(part.format, at.x, kBlockSide);
+    for (GLsizei z = 0; z < part.depth; ++z)
+        for (GLsizei done = 0; done < part.height; done += kBlockSide, from += part_row)
+            std::memcpy(level.pixels.data() + static_cast<std::size_t>(at.z + z) * slice +
+                            static_cast<std::size_t>((at.y + done) / kBlockSide) * row + left,
+                        from, part_row);
 }
 
-/// What a node's driver makes of an image; nothing if none answers. A large one is asked for in rows of blocks.
+/// What a node's driver makes of an image; nothing if none answers. It is asked slice by slice, for a large one in rows
+/// of blocks.
 std::optional<std::vector<std::byte>> compressed(Context& c, const Image& image, const TexelData& data,
                                                  const char* function) {
     const auto layout = glapi::pixel_layout(data.format, data.type);
     if (!layout) return std::nullopt;
     const std::size_t row = glapi::row_bytes(*layout, image.width);
-    const auto most = static_cast<GLsizei>(std::max<std::size_t>(kMostAsked / row / kS3tcBlock, 1)) * kS3tcBlock;
+    const auto most = static_cast<GLsizei>(std::max<std::size_t>(kMostAsked / row / kBlockSide, 1)) * kBlockSide;
     std::vector<std::byte> blocks;
-    for (GLsizei y = 0; y < image.height; y += most) {
-        const GLsizei height = std::min(most, image.height - y);
+    for (GLsizei line = 0; line < image.height * image.depth;) {
+        const GLsizei height = std::min(most, image.height - line % image.height);
         const auto pixels =
-            std::span(data.bytes).subspan(static_cast<std::size_t>(y) * row, static_cast<std::size_t>(height) * row);
+            std::span(data.bytes).subspan(static_cast<std::size_t>(line) * row, static_cast<std::size_t>(height) * row);
+        line += height;
         const auto answer = ask_one_node(c, function, [&](wire::PackBuffer& buffer, RequestId request) {
             glapi::pack::Compress(buffer, request, static_cast<GLenum>(image.format), image.width, height, data.format,
                                   data.type, pixels);
         });
-        if (!answer || answer->bytes.size() != s3tc_bytes(image.format, image.width, height)) return std::nullopt;
+        if (!answer || answer->bytes.size() != blocks_bytes(image.format, image.width, height)) return std::nullopt;
         blocks.insert(blocks.end(), answer->bytes.begin(), answer->bytes.end());
     }
     return blocks;
@@ -101,12 +119,12 @@ namespace wall::client {
 
 GLint blocks_format(GLint internal_format) {
     const TextureFormat* format = find_texture_format(internal_format);
-    return format && s3tc_block_bytes(format->answer) != 0 ? format->answer : 0;
+    return format && block_bytes(format->answer) != 0 ? format->answer : 0;
 }
 
 void compress_as_driver(Context& c, GLenum target, GLint number) {
     const auto texture = bound_texture(c, target);
-    api::Image image{target, number, 0, 0, 0, 0};
+    api::Image image{.target = target, .level = number};
     TexelData data;
     {
         std::lock_guard lock(c.share().mutex);
@@ -116,12 +134,13 @@ void compress_as_driver(Context& c, GLenum target, GLint number) {
             return;
         image.format = blocks_format(level->internal_format);
         if (image.format == 0) return;
-        image.width = level->width, image.height = level->height;
+        image.width = level->width, image.height = level->height, image.depth = level->depth;
         if (level->content == LevelContent::stored) data = {level->data_format, level->data_type, level->pixels};
         else
             data = {GL_RGBA, GL_UNSIGNED_BYTE,
                     std::vector<std::byte>(std::size_t{4} * static_cast<std::size_t>(level->width) *
-                                           static_cast<std::size_t>(level->height))};
+                                           static_cast<std::size_t>(level->height) *
+                                           static_cast<std::size_t>(level->depth))};
     }
     auto blocks = api::compressed(c, image, data, "glGetCompressedTexImage");
     if (!blocks) return;
@@ -138,12 +157,17 @@ void compress_as_driver(Context& c, GLenum target, GLint number) {
 bool change_blocks(Context& c, const ImageCall& call, const TexelData& data) {
     const auto texture = texture_to_change(c, call.target);
     const GLint format = texture->find_level(face_of(call.target), call.level)->internal_format;
-    const api::Image part{call.target, call.level, format, call.width, call.height, 0};
+    const api::Image part{.target = call.target,
+                          .level = call.level,
+                          .format = format,
+                          .width = call.width,
+                          .height = call.height,
+                          .depth = call.depth};
     const auto blocks = api::compressed(c, part, data, "glTexSubImage2D");
     if (!blocks) return false;
     std::lock_guard lock(c.share().mutex);
     TextureLevel& level = *texture->find_level(face_of(call.target), call.level);
-    api::copy_blocks(level, part, call.x, call.y, blocks->data());
+    api::copy_blocks(level, part, {call.x, call.y, call.z}, blocks->data());
     level.stamp = next_stamp();
     generate_if_asked(*texture, call.level);
     touch(c.share(), *texture);
@@ -153,50 +177,68 @@ bool change_blocks(Context& c, const ImageCall& call, const TexelData& data) {
 }  // namespace wall::client
 
 namespace wall::client::api {
+namespace {
 
-void CompressedTexImage2D(Context& c, GLenum target, GLint number, GLenum internal, GLsizei width, GLsizei height,
-                          GLint border, GLsizei bytes, const void* data) {
-    const Image image{target, number, static_cast<GLint>(internal), width, height, bytes};
+void define_blocks(Context& c, const Image& image, GLint border, const void* data) {
     const GLenum error = image_error(c, image, border);
-    if (is_proxy(target) && legal_target(target)) {
-        c.maps->proxies[{target, number}] = error == GL_NO_ERROR ? described(image) : TextureLevel{};
+    if (is_proxy(image.target) && target_error(image) == GL_NO_ERROR) {
+        c.maps->proxies[{image.target, image.level}] = error == GL_NO_ERROR ? described(image) : TextureLevel{};
         return;
     }
     if (error != GL_NO_ERROR) return c.error(error);
-    const auto* from = static_cast<const std::byte*>(unpack_source(c, data, static_cast<std::size_t>(bytes)));
+    if (is_immutable(c, image.target)) return c.error(GL_INVALID_OPERATION);
+    const auto bytes = static_cast<std::size_t>(image.bytes);
+    const auto* from = static_cast<const std::byte*>(unpack_source(c, data, bytes));
     if (!from && c.state.local.pixel_unpack_buffer) return;
-    const auto texture = texture_to_change(c, target);
+    const auto texture = texture_to_change(c, image.target);
     std::lock_guard lock(c.share().mutex);
-    TextureLevel& level = texture->level_at(face_of(target), number);
+    TextureLevel& level = texture->level_at(face_of(image.target), image.level);
     level = described(image);
-    level.pixels.resize(static_cast<std::size_t>(bytes));
+    level.pixels.resize(bytes);
     if (from) std::copy(from, from + bytes, level.pixels.begin());
     level.content = LevelContent::stored;
     level.stamp = next_stamp();
-    generate_if_asked(*texture, number);
+    generate_if_asked(*texture, image.level);
     touch(c.share(), *texture);
 }
 
-void CompressedTexSubImage2D(Context& c, GLenum target, GLint number, GLint x, GLint y, GLsizei width, GLsizei height,
-                             GLenum format, GLsizei bytes, const void* data) {
-    if (is_proxy(target) || !legal_target(target) || s3tc_block_bytes(static_cast<GLint>(format)) == 0)
-        return c.error(GL_INVALID_ENUM);
-    if (number < 0 || number >= level_count(c, target) || bytes < 0) return c.error(GL_INVALID_VALUE);
-    const Image part{target, number, static_cast<GLint>(format), width, height, bytes};
-    compress_as_driver(c, target, number);
-    const auto texture = bound_texture(c, target);
-    const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
-    if (const GLenum error = level ? sub_image_error(*level, part, x, y) : GLenum{GL_INVALID_OPERATION})
+void define_sub_blocks(Context& c, const Image& part, const Place& at, const void* data) {
+    if (is_proxy(part.target)) return c.error(GL_INVALID_ENUM);
+    if (const GLenum error = target_error(part)) return c.error(error);
+    if (part.level < 0 || part.level >= level_count(c, part.target) || part.bytes < 0) return c.error(GL_INVALID_VALUE);
+    compress_as_driver(c, part.target, part.level);
+    const auto texture = bound_texture(c, part.target);
+    const TextureLevel* level = texture ? texture->find_level(face_of(part.target), part.level) : nullptr;
+    if (const GLenum error = level ? sub_image_error(*level, part, at) : GLenum{GL_INVALID_OPERATION})
         return c.error(error);
-    const auto* from = static_cast<const std::byte*>(unpack_source(c, data, static_cast<std::size_t>(bytes)));
-    if (!from || bytes == 0) return;
-    const auto changed = texture_to_change(c, target);
+    const auto* from = static_cast<const std::byte*>(unpack_source(c, data, static_cast<std::size_t>(part.bytes)));
+    if (!from || part.bytes == 0) return;
+    const auto changed = texture_to_change(c, part.target);
     std::lock_guard lock(c.share().mutex);
-    TextureLevel& to = *changed->find_level(face_of(target), number);
-    copy_blocks(to, part, x, y, from);
+    TextureLevel& to = *changed->find_level(face_of(part.target), part.level);
+    copy_blocks(to, part, at, from);
     to.stamp = next_stamp();
-    generate_if_asked(*changed, number);
+    generate_if_asked(*changed, part.level);
     touch(c.share(), *changed);
+}
+
+}  // namespace
+
+void CompressedTexImage2D(Context& c, GLenum target, GLint level, GLenum internal, GLsizei width, GLsizei height,
+                          GLint border, GLsizei bytes, const void* data) {
+    define_blocks(c, {target, level, static_cast<GLint>(internal), width, height, 1, bytes, 2}, border, data);
+}
+void CompressedTexImage3D(Context& c, GLenum target, GLint level, GLenum internal, GLsizei width, GLsizei height,
+                          GLsizei depth, GLint border, GLsizei bytes, const void* data) {
+    define_blocks(c, {target, level, static_cast<GLint>(internal), width, height, depth, bytes, 3}, border, data);
+}
+void CompressedTexSubImage2D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height,
+                             GLenum format, GLsizei bytes, const void* data) {
+    define_sub_blocks(c, {target, level, static_cast<GLint>(format), width, height, 1, bytes, 2}, {x, y, 0}, data);
+}
+void CompressedTexSubImage3D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width,
+                             GLsizei height, GLsizei depth, GLenum format, GLsizei bytes, const void* data) {
+    define_sub_blocks(c, {target, level, static_cast<GLint>(format), width, height, depth, bytes, 3}, {x, y, z}, data);
 }
 
 void GetCompressedTexImage(Context& c, GLenum target, GLint number, void* pixels) {
@@ -214,14 +256,7 @@ void GetCompressedTexImage(Context& c, GLenum target, GLint number, void* pixels
 void CompressedTexImage1D(Context& c, GLenum, GLint, GLenum, GLsizei, GLint, GLsizei, const void*) {
     c.error(GL_INVALID_ENUM);
 }
-void CompressedTexImage3D(Context& c, GLenum, GLint, GLenum, GLsizei, GLsizei, GLsizei, GLint, GLsizei, const void*) {
-    c.error(GL_INVALID_ENUM);
-}
 void CompressedTexSubImage1D(Context& c, GLenum, GLint, GLint, GLsizei, GLenum, GLsizei, const void*) {
-    c.error(GL_INVALID_ENUM);
-}
-void CompressedTexSubImage3D(Context& c, GLenum, GLint, GLint, GLint, GLint, GLsizei, GLsizei, GLsizei, GLenum, GLsizei,
-                             const void*) {
     c.error(GL_INVALID_ENUM);
 }
 

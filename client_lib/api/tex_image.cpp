@@ -3,6 +3,7 @@
 // with the texture. Pixel transfer is applied here, so that what is stored does not depend on later state; nodes upload
 // with neutral transfer. The order of the checks is Mesa's (teximage.c), so that the error is the same where two apply.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -20,7 +21,7 @@ namespace wall::client {
 namespace {
 
 GLint largest_size(Context& c, const glapi::TextureTargetInfo& target) {
-    return static_cast<GLint>(limit_of(c.session().caps(), target.size_limit, target.usual_size));
+    return static_cast<GLint>(limit_of(c.caps(), target.size_limit, target.usual_size));
 }
 
 /// What an image call's word says; the word has been checked.
@@ -35,20 +36,29 @@ bool depth_like(GLenum format) { return format == GL_DEPTH_COMPONENT || format =
 
 /// Colour pixels go into colour textures only, and so on.
 bool formats_agree(const TextureFormat& internal, GLenum format) {
-    const bool integer = internal.component_type == GL_INT || internal.component_type == GL_UNSIGNED_INT;
     if (depth_like(internal.base)) return depth_like(format);
     if (internal.base == GL_STENCIL_INDEX) return format == GL_STENCIL_INDEX;
     if (depth_like(format) || format == GL_STENCIL_INDEX) return false;
-    return integer == glapi::is_integer_format(format);
+    return internal.whole() == glapi::is_integer_format(format);
 }
+
+GLint most_layers(Context& c) { return static_cast<GLint>(limit_of(c.caps(), GL_MAX_ARRAY_TEXTURE_LAYERS, 2048)); }
+
+}  // namespace
 
 bool legal_size(Context& c, const ImageCall& call) {
     const glapi::TextureTargetInfo& target = info_of(call);
-    const GLint most = largest_size(c, target) >> call.level;
-    const auto fits = [&](GLsizei size) { return size >= 0 && size <= std::max(most, 1); };
+    const GLint most = std::max(largest_size(c, target) >> call.level, 1);
+    const std::array sizes{call.width, call.height, call.depth};
+    const unsigned spatial = glapi::spatial_dimensions_of(target);
+    for (unsigned i = 0; i < spatial; ++i)
+        if (sizes[i] < 0 || sizes[i] > most) return false;
     if (target.square && call.width != call.height) return false;
-    return fits(call.width) && (call.dimensions < 2 || fits(call.height)) && (call.dimensions < 3 || fits(call.depth));
+    return target.layers == 0 ||
+           (sizes[spatial] >= 0 && sizes[spatial] <= most_layers(c) && sizes[spatial] % target.layers == 0);
 }
+
+namespace {
 
 GLint most_border(const ImageCall& call) { return info_of(call).mipmaps ? 1 : 0; }
 
@@ -59,7 +69,7 @@ GLenum image_error(Context& c, const ImageCall& call, const TextureFormat* inter
     if (const GLenum error = glapi::format_type_error(call.format, call.type)) return error;
     if (!internal) return GL_INVALID_VALUE;
     if (!formats_agree(*internal, call.format)) return GL_INVALID_OPERATION;
-    const bool volume = call.dimensions == 3 && !info_of(call).layers;
+    const bool volume = glapi::spatial_dimensions_of(info_of(call)) == 3;
     if (depth_like(internal->base) && volume) return GL_INVALID_OPERATION;
     return GL_NO_ERROR;
 }
@@ -70,9 +80,10 @@ void strip_border(ImageCall& call) {
     if (call.store.row_length == 0) call.store.row_length = call.width;
     if (call.store.image_height == 0) call.store.image_height = call.height;
     call.store.skip_pixels += 1;
+    const unsigned spatial = glapi::spatial_dimensions_of(info_of(call));
     call.width = std::max(0, call.width - 2);
-    if (call.dimensions > 1) call.store.skip_rows += 1, call.height = std::max(0, call.height - 2);
-    if (call.dimensions > 2) call.store.skip_images += 1, call.depth = std::max(0, call.depth - 2);
+    if (spatial > 1) call.store.skip_rows += 1, call.height = std::max(0, call.height - 2);
+    if (spatial > 2) call.store.skip_images += 1, call.depth = std::max(0, call.depth - 2);
     call.border = 0;
 }
 
@@ -124,17 +135,25 @@ bool find_pixels(Context& c, ImageCall& call) {
 bool eight_bits(GLenum format, GLenum type) { return type == GL_UNSIGNED_BYTE && !depth_like(format); }
 
 void convert(TexelData& data, std::size_t count, GLenum format, GLenum type) {
-    data.bytes = from_rgba(format, type, to_rgba(data.format, data.type, data.bytes, count));
+    data.bytes = glapi::is_integer_format(format)
+                     ? from_whole(format, type, to_whole(data.format, data.type, data.bytes, count))
+                     : from_rgba(format, type, to_rgba(data.format, data.type, data.bytes, count));
     data.format = format;
     data.type = type;
+}
+
+/// One that holds all that a level may have, whatever it came as.
+PixelKind common_kind(const TextureLevel& level, const TexelData& data) {
+    if (depth_like(level.data_format)) return {GL_DEPTH_COMPONENT, GL_FLOAT};
+    if (glapi::is_integer_format(level.data_format)) return exact_pixels(level);
+    const bool bytes = eight_bits(level.data_format, level.data_type) && eight_bits(data.format, data.type);
+    return {GL_RGBA, bytes ? GLenum{GL_UNSIGNED_BYTE} : GLenum{GL_FLOAT}};
 }
 
 /// Brings a level's pixels and new ones to one format.
 void unify(TextureLevel& level, TexelData& data, std::size_t count) {
     if (level.data_format == data.format && level.data_type == data.type) return;
-    const bool depth = depth_like(level.data_format);
-    const bool bytes = eight_bits(level.data_format, level.data_type) && eight_bits(data.format, data.type);
-    const GLenum format = depth ? GL_DEPTH_COMPONENT : GL_RGBA, type = bytes ? GL_UNSIGNED_BYTE : GL_FLOAT;
+    const auto [format, type] = common_kind(level, data);
     TexelData old{level.data_format, level.data_type, std::move(level.pixels)};
     const std::size_t all = static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height) *
                             static_cast<std::size_t>(level.depth);
@@ -159,6 +178,11 @@ void copy_box(TextureLevel& level, const TexBox& box, const std::vector<std::byt
 }
 
 }  // namespace
+
+bool is_immutable(Context& c, GLenum target) {
+    const auto texture = bound_texture(c, target);
+    return texture && texture->immutable_levels != 0;
+}
 
 void generate_if_asked(Texture& texture, GLint level) {
     if (texture.parameters.generate_mipmap && level == texture.parameters.base_level) texture.mipmaps_generated();
@@ -232,6 +256,7 @@ void define_image(Context& c, ImageCall call) {
         return;
     }
     if (error != GL_NO_ERROR) return c.error(error);
+    if (is_immutable(c, call.target)) return c.error(GL_INVALID_OPERATION);
     if (!glapi::image_bytes(call.format, call.type, call.width, call.height, call.depth))
         return c.error(GL_OUT_OF_MEMORY);
     if (!find_pixels(c, call)) return;
@@ -287,13 +312,32 @@ ImageCall image_call(Context& c, unsigned dimensions, GLenum target, GLint level
     return call;
 }
 
+/// What loses nothing that a texture of that format keeps.
+PixelKind copied_kind(const TextureFormat& to) {
+    if (depth_like(to.base))
+        return {GL_DEPTH_COMPONENT, to.component_type == GL_FLOAT ? GLenum{GL_FLOAT} : GLenum{GL_UNSIGNED_INT}};
+    if (to.whole()) return {GL_RGBA_INTEGER, to.component_type};
+    const ComponentBits& b = to.bits;
+    const bool bytes = to.component_type == GL_UNSIGNED_NORMALIZED &&
+                       std::max({b.red, b.green, b.blue, b.alpha, b.luminance, b.intensity}) <= 8;
+    return {GL_RGBA, bytes ? GLenum{GL_UNSIGNED_BYTE} : GLenum{GL_FLOAT}};
+}
+
 /// What to read from the framebuffer for a texture of this kind. Neutral: pixel transfer follows in store or change.
-void set_copied_format(Context& c, ImageCall& call, GLenum base) {
-    call.format = depth_like(base) ? GL_DEPTH_COMPONENT : GL_RGBA;
-    call.type = depth_like(base) ? GL_UNSIGNED_INT : GL_UNSIGNED_BYTE;
-    if (transfer_matters(c.state, call.format)) call.type = GL_FLOAT;
+void set_copied_format(Context& c, ImageCall& call, const TextureFormat& to) {
+    const PixelKind kind = copied_kind(to);
+    call.format = kind.format;
+    call.type = transfer_matters(c.state, call.format) ? GLenum{GL_FLOAT} : kind.type;
     call.store = {};
     call.store.alignment = 1;
+}
+
+/// Whole numbers are copied to the same kind of them, and to nothing else.
+bool may_copy(Context& c, const TextureFormat& to) {
+    if (depth_like(to.base)) return true;
+    const TextureFormat* from = read_color_format(c);
+    if (!from) return false;
+    return from->whole() == to.whole() && (!to.whole() || from->component_type == to.component_type);
 }
 
 TexelData copied(Context& c, const ImageCall& call, GLint x, GLint y, const char* function) {
@@ -318,7 +362,9 @@ void copy_image(Context& c, ImageCall call, GLenum internal_format, From from, c
     if (call.dimensions > 1) from.y += call.border;
     strip_border(call);
     if (!legal_size(c, call)) return c.error(GL_INVALID_VALUE);
-    set_copied_format(c, call, internal->base);
+    if (is_immutable(c, call.target)) return c.error(GL_INVALID_OPERATION);
+    if (!may_copy(c, *internal)) return c.error(GL_INVALID_OPERATION);
+    set_copied_format(c, call, *internal);
     call.pixels = "";  // there will be some
     store_level(c, call, copied(c, call, from.x, from.y, function));
 }
@@ -327,9 +373,10 @@ void copy_sub_image(Context& c, ImageCall call, From from, const char* function)
     const auto texture = target_word(call.target) ? bound_texture(c, call.target) : nullptr;
     const TextureLevel* level = texture ? texture->find_level(face_of(call.target), call.level) : nullptr;
     const TextureFormat* internal = level ? find_texture_format(level->internal_format) : nullptr;
-    set_copied_format(c, call, internal ? internal->base : GLenum{GL_RGBA});
+    if (internal) set_copied_format(c, call, *internal);
     if (!may_read_pixels(c)) return;
     if (const GLenum error = sub_image_error(c, call)) return c.error(error);
+    if (!may_copy(c, *internal)) return c.error(GL_INVALID_OPERATION);
     if (texels(call) == 0) return;
     change_level(c, call, copied(c, call, from.x, from.y, function));
 }

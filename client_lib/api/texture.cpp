@@ -2,6 +2,7 @@
 // Texture objects: names, binding, parameters (OpenGL 1.2.1, 3.8.4 and 3.8.8). Images: tex_image.cpp, queries:
 // tex_query.cpp.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "client_lib/context/context.h"
@@ -10,6 +11,7 @@
 #include "client_lib/context/param_commands.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/follow/session.h"
+#include "client_lib/objects/texture_formats.h"
 
 namespace wall::client::api {
 namespace {
@@ -40,7 +42,36 @@ bool valid_min_filter(const glapi::TextureTargetInfo& target, GLenum filter) {
     return target.mipmaps && filter >= GL_NEAREST_MIPMAP_NEAREST && filter <= GL_LINEAR_MIPMAP_LINEAR;
 }
 
+bool valid_swizzle(GLenum word) { return word == GL_ZERO || word == GL_ONE || (word >= GL_RED && word <= GL_ALPHA); }
+
+/// Texels with several samples are fetched one by one: nothing filters them.
+bool of_sampler(GLenum pname) {
+    switch (pname) {
+        case GL_TEXTURE_MIN_FILTER:
+        case GL_TEXTURE_MAG_FILTER:
+        case GL_TEXTURE_WRAP_S:
+        case GL_TEXTURE_WRAP_T:
+        case GL_TEXTURE_WRAP_R:
+        case GL_TEXTURE_BORDER_COLOR:
+        case GL_TEXTURE_MIN_LOD:
+        case GL_TEXTURE_MAX_LOD:
+        case GL_TEXTURE_LOD_BIAS:
+        case GL_TEXTURE_COMPARE_MODE:
+        case GL_TEXTURE_COMPARE_FUNC:
+        case GL_TEXTURE_MAX_ANISOTROPY_EXT:
+        case GL_TEXTURE_SRGB_DECODE_EXT: return true;
+        default: return false;
+    }
+}
+
 bool valid_compare(GLenum func) { return func >= GL_NEVER && func <= GL_ALWAYS; }
+
+/// Whole numbers, depths and stencils are not averaged (Mesa's _mesa_is_valid_generate_texture_mipmap_internalformat
+/// lets all else).
+bool may_have_mipmaps(const TextureLevel& base) {
+    const TextureFormat* format = find_texture_format(base.internal_format);
+    return format && !format->whole() && format->base != GL_DEPTH_STENCIL && format->base != GL_STENCIL_INDEX;
+}
 
 /// What glTexParameter asks for, checked: an error, or the parameters with the new value.
 struct Change {
@@ -54,8 +85,9 @@ Change changed(const TexParameters& old, const glapi::TextureTargetInfo& target,
     const GLenum word = to_enum(params[0]);
     const GLint number = to_int(std::nearbyint(params[0]));
     const auto check = [&](bool good, GLenum error) {
-        if (!good) out.error = error;
+        if (!good && out.error == GL_NO_ERROR) out.error = error;
     };
+    if (target.samples) check(!of_sampler(pname), GL_INVALID_ENUM);
     switch (pname) {
         case GL_TEXTURE_MIN_FILTER: p.min_filter = word, check(valid_min_filter(target, word), GL_INVALID_ENUM); break;
         case GL_TEXTURE_MAG_FILTER:
@@ -64,7 +96,7 @@ Change changed(const TexParameters& old, const glapi::TextureTargetInfo& target,
         case GL_TEXTURE_WRAP_S: p.wrap_s = word, check(valid_wrap(target, word), GL_INVALID_ENUM); break;
         case GL_TEXTURE_WRAP_T: p.wrap_t = word, check(valid_wrap(target, word), GL_INVALID_ENUM); break;
         case GL_TEXTURE_WRAP_R: p.wrap_r = word, check(valid_wrap(target, word), GL_INVALID_ENUM); break;
-        case GL_TEXTURE_BORDER_COLOR: std::copy_n(params, 4, p.border_color.begin()); break;
+        case GL_TEXTURE_BORDER_COLOR: std::copy_n(params, 4, p.border_color.begin()), p.border_whole = false; break;
         case GL_TEXTURE_PRIORITY: p.priority = std::clamp(params[0], 0.0f, 1.0f); break;
         case GL_TEXTURE_MIN_LOD: p.min_lod = params[0]; break;
         case GL_TEXTURE_MAX_LOD: p.max_lod = params[0]; break;
@@ -72,6 +104,15 @@ Change changed(const TexParameters& old, const glapi::TextureTargetInfo& target,
         case GL_TEXTURE_BASE_LEVEL:
             p.base_level = number, check(number >= 0, GL_INVALID_VALUE);
             if (!target.mipmaps) check(number == 0, GL_INVALID_OPERATION);
+            break;
+        case GL_TEXTURE_SWIZZLE_R:
+        case GL_TEXTURE_SWIZZLE_G:
+        case GL_TEXTURE_SWIZZLE_B:
+        case GL_TEXTURE_SWIZZLE_A:
+            p.swizzle[pname - GL_TEXTURE_SWIZZLE_R] = word, check(valid_swizzle(word), GL_INVALID_ENUM);
+            break;
+        case GL_TEXTURE_SRGB_DECODE_EXT:
+            p.srgb_decode = word, check(word == GL_DECODE_EXT || word == GL_SKIP_DECODE_EXT, GL_INVALID_ENUM);
             break;
         case GL_TEXTURE_MAX_LEVEL: p.max_level = number, check(number >= 0, GL_INVALID_VALUE); break;
         case GL_GENERATE_MIPMAP: p.generate_mipmap = params[0] != 0; break;
@@ -89,6 +130,31 @@ Change changed(const TexParameters& old, const glapi::TextureTargetInfo& target,
         default: out.error = GL_INVALID_ENUM;
     }
     return out;
+}
+
+void store_parameters(Context& c, GLenum target, GLenum pname, const TexParameters& before,
+                      const TexParameters& after) {
+    if (same_parameter(before, after, pname)) return;
+    const auto texture = texture_to_change(c, target);
+    std::lock_guard lock(c.share().mutex);
+    texture->parameters = after;
+    if (pname == GL_GENERATE_MIPMAP || pname == GL_TEXTURE_PRIORITY) return;  // nodes are told when it happens; never
+    texture->parameter_changed(pname);
+    touch(c.share(), *texture);
+}
+
+template <class Whole>
+void set_whole_border(Context& c, GLenum target, const Whole* params) {
+    const auto* info = target_of(target);
+    if (!info || info->samples || info->id == glapi::TextureTarget::buffer) return c.error(GL_INVALID_ENUM);
+    const auto current = bound_texture(c, target);
+    const TexParameters before = current ? current->parameters : Texture(ClientName(), 0, info->id).parameters;
+    TexParameters after = before;
+    std::array<Whole, 4> words;
+    std::copy_n(params, 4, words.begin());
+    after.border_color = std::bit_cast<std::array<float, 4>>(words);
+    after.border_whole = true;
+    store_parameters(c, target, GL_TEXTURE_BORDER_COLOR, before, after);
 }
 
 }  // namespace
@@ -164,18 +230,32 @@ void PrioritizeTextures(Context& c, GLsizei n, const GLuint* names, const GLfloa
 
 void TexParameterfv(Context& c, GLenum target, GLenum pname, const GLfloat* params) {
     const auto* info = target_of(target);
-    if (!info) return c.error(GL_INVALID_ENUM);
+    if (!info || info->id == glapi::TextureTarget::buffer) return c.error(GL_INVALID_ENUM);
+    if (pname == GL_TEXTURE_SWIZZLE_RGBA) {
+        if (!std::all_of(params, params + 4, [](GLfloat word) { return valid_swizzle(to_enum(word)); }))
+            return c.error(GL_INVALID_ENUM);
+        for (unsigned i = 0; i < 4; ++i) TexParameterfv(c, target, GL_TEXTURE_SWIZZLE_R + i, params + i);
+        return;
+    }
     const auto current = bound_texture(c, target);
     const TexParameters before = current ? current->parameters : Texture(ClientName(), 0, info->id).parameters;
     const Change change = changed(before, *info, pname, params);
     if (change.error != GL_NO_ERROR) return c.error(change.error);
-    if (parameter_value(before, pname) == parameter_value(change.value, pname)) return;
-    const auto texture = texture_to_change(c, target);
-    std::lock_guard lock(c.share().mutex);
-    texture->parameters = change.value;
-    if (pname == GL_GENERATE_MIPMAP || pname == GL_TEXTURE_PRIORITY) return;  // nodes are told when it happens; never
-    texture->parameter_changed(pname);
-    touch(c.share(), *texture);
+    store_parameters(c, target, pname, before, change.value);
+}
+
+void TexParameterIiv(Context& c, GLenum target, GLenum pname, const GLint* params) {
+    if (pname == GL_TEXTURE_BORDER_COLOR) return set_whole_border(c, target, params);
+    std::array<GLfloat, 4> values{};
+    std::copy_n(params, pname == GL_TEXTURE_SWIZZLE_RGBA ? 4 : 1, values.begin());
+    TexParameterfv(c, target, pname, values.data());
+}
+
+void TexParameterIuiv(Context& c, GLenum target, GLenum pname, const GLuint* params) {
+    if (pname == GL_TEXTURE_BORDER_COLOR) return set_whole_border(c, target, params);
+    std::array<GLfloat, 4> values{};
+    std::copy_n(params, pname == GL_TEXTURE_SWIZZLE_RGBA ? 4 : 1, values.begin());
+    TexParameterfv(c, target, pname, values.data());
 }
 
 void ActiveTexture(Context& c, GLenum unit) {
@@ -192,7 +272,8 @@ void GenerateMipmap(Context& c, GLenum target) {
     const auto* info = target_of(target);
     if (!info || !info->mipmaps) return c.error(GL_INVALID_ENUM);
     const auto current = bound_texture(c, target);
-    if (!current || !current->find_level(0, current->parameters.base_level)) return c.error(GL_INVALID_OPERATION);
+    const TextureLevel* base = current ? current->find_level(0, current->parameters.base_level) : nullptr;
+    if (!base || !may_have_mipmaps(*base)) return c.error(GL_INVALID_OPERATION);
     const auto texture = texture_to_change(c, target);
     std::lock_guard lock(c.share().mutex);
     texture->mipmaps_generated();

@@ -123,4 +123,9 @@ void Context::lose() {
     packer.reset();
 }
 
+const Caps& Context::caps() const {
+    static const Caps kNone;
+    return session_ ? session_->caps() : kNone;
+}
+
 }  // namespace wall::client

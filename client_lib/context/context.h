@@ -103,6 +103,8 @@ public:
 
     ClientSession& session() { return *session_; }
     bool attached() const { return session_ != nullptr; }
+    /// What the wall's nodes can do; of a context that is not attached, nothing.
+    const Caps& caps() const;
     ShareGroup& share() const { return *share_; }
     const std::shared_ptr<ShareGroup>& share_pointer() const { return share_; }
     /// What its commands draw to now, and what they read from.
@@ -111,6 +113,8 @@ public:
     /// What the session needs to send one of its commands; flush_block() comes first.
     DrawSource draw_source();
     unsigned active_texture() const { return state.local.active_texture - GL_TEXTURE0; }
+    /// Whether the active unit is one of fixed function: it has a switch, an environment, coordinates and a matrix.
+    bool fixed_unit() const { return active_texture() < kTextureCoords; }
 
     // ---- parts by subject, each with its own header ----
     MatrixStack modelview_stack, projection_stack;

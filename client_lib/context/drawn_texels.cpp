@@ -6,16 +6,24 @@
 
 #include "client_lib/context/ask_one.h"
 #include "client_lib/follow/object_sender.h"
+#include "client_lib/objects/s3tc.h"
 
 namespace wall::client {
 
-std::optional<std::vector<Rgba>> drawn_texels(Context& c, const std::shared_ptr<Texture>& texture, unsigned face,
-                                              GLint number, const char* function) {
+namespace {
+
+/// Blocks that the client keeps and cannot decode.
+bool only_nodes_decode(const TextureLevel& level) { return level.compressed && !is_s3tc(level.internal_format); }
+
+}  // namespace
+
+std::optional<TexelData> drawn_texels(Context& c, const std::shared_ptr<Texture>& texture, unsigned face, GLint number,
+                                      const char* function) {
     TextureLevel shape;  // without its pixels
     {
         std::lock_guard lock(c.share().mutex);
         const TextureLevel* level = texture->find_level(face, number);
-        if (!level || !texture->only_on_nodes(*level)) return std::nullopt;
+        if (!level || (!texture->only_on_nodes(*level) && !only_nodes_decode(*level))) return std::nullopt;
         shape.internal_format = level->internal_format;
         shape.format = level->format;
         shape.type = level->type;
@@ -23,7 +31,7 @@ std::optional<std::vector<Rgba>> drawn_texels(Context& c, const std::shared_ptr<
     }
     const GLenum target = glapi::image_target(texture->info, face);
     const auto [format, type] = exact_pixels(shape);
-    std::vector<Rgba> texels;
+    TexelData texels{format, type, {}};
     for_each_part(shape, [&](std::int32_t slice, std::int32_t first, std::int32_t rows) {
         const auto answer = ask_one_node(c, function, [&](wire::PackBuffer& buffer, RequestId request, Node& node) {
             {
@@ -32,10 +40,10 @@ std::optional<std::vector<Rgba>> drawn_texels(Context& c, const std::shared_ptr<
             }
             glapi::pack::TexRead(buffer, request, texture->id, target, number, slice, first, rows, format, type);
         });
-        const std::size_t count = static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(rows);
-        const auto part = answer && !answer->bytes.empty() ? to_rgba(format, type, answer->bytes, count)
-                                                           : std::vector<Rgba>(count, Rgba{});
-        texels.insert(texels.end(), part.begin(), part.end());
+        const std::size_t bytes = glapi::image_bytes(format, type, shape.width, rows, 1).value_or(0);
+        if (answer && answer->bytes.size() == bytes)
+            texels.bytes.insert(texels.bytes.end(), answer->bytes.begin(), answer->bytes.end());
+        else texels.bytes.resize(texels.bytes.size() + bytes);
     });
     return texels;
 }

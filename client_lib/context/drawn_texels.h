@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Texels that only the nodes have, because they drew them (DESIGN, section 4: drawn content). The application's thread.
+// Texels that only the nodes have, because they drew them (DESIGN, section 4: drawn content), or can decode. The
+// application's thread.
 #pragma once
 
 #include <memory>
@@ -7,14 +8,13 @@
 #include <vector>
 
 #include "client_lib/context/context.h"
-#include "client_lib/objects/pixel_convert.h"
-#include "client_lib/objects/texture.h"
+#include "client_lib/context/texture_image.h"
 
 namespace wall::client {
 
-/// All texels of a level, from a node. Nothing: the client has them itself, or there is no such level. Counted as round
-/// trips of `function`.
-std::optional<std::vector<Rgba>> drawn_texels(Context& c, const std::shared_ptr<Texture>& texture, unsigned face,
-                                              GLint number, const char* function);
+/// All texels of a level, from a node; 0 where none answers. Nothing: the client has them itself, or there is no such
+/// level. Counted as round trips of `function`.
+std::optional<TexelData> drawn_texels(Context& c, const std::shared_ptr<Texture>& texture, unsigned face, GLint number,
+                                      const char* function);
 
 }  // namespace wall::client

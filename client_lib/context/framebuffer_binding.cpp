@@ -81,6 +81,20 @@ bool is_attached(const Context& c, const Object& image) {
     return attached;
 }
 
+const TextureFormat* read_color_format(Context& c) {
+    const auto& framebuffer = c.framebuffers->read;
+    if (!framebuffer) return c.state.window.read_buffer == GL_NONE ? nullptr : find_texture_format(GL_RGBA8);
+    const auto read = shape(c, *framebuffer, &Framebuffer::read_shape);
+    return read ? read->format : nullptr;
+}
+
+const TextureFormat* draw_color_format(Context& c) {
+    const auto& framebuffer = c.framebuffers->draw;
+    if (!framebuffer) return c.state.window.draw_buffer == GL_NONE ? nullptr : find_texture_format(GL_RGBA8);
+    const auto drawn = shape(c, *framebuffer, &Framebuffer::draw_shape);
+    return drawn ? drawn->format : nullptr;
+}
+
 ComponentBits draw_target_bits(Context& c) {
     const auto& framebuffer = c.framebuffers->draw;
     if (!framebuffer) {

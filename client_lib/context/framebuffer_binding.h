@@ -18,7 +18,14 @@ std::shared_ptr<Framebuffer>* framebuffer_binding(Context& c, GLenum target);
 void bind_framebuffer(Context& c, GLenum target, std::shared_ptr<Framebuffer> framebuffer);
 /// To be called around every change of a framebuffer: `change(framebuffer)`.
 template <class Change>
-void change_framebuffer(Context& c, Framebuffer& framebuffer, Change&& change);
+void change_framebuffer(Context& c, Framebuffer& framebuffer, Change&& change) {
+    c.flush_block();
+    {
+        std::lock_guard lock(c.share().mutex);
+        change(framebuffer);
+    }
+    c.framebuffers->stamp = next_stamp();
+}
 
 /// False, and GL_INVALID_FRAMEBUFFER_OPERATION, if what is drawn to (read from) is not complete.
 bool may_draw_to_target(Context& c);
@@ -31,19 +38,12 @@ void detach_from_bound(Context& c, const Object& image);
 /// Whether any framebuffer of the context has it attached.
 bool is_attached(const Context& c, const Object& image);
 
-/// Bits of what is drawn to or read from. Of a window: as its format says.
+/// Of the colours that are read from, or that are drawn first. Null: there are none.
+const TextureFormat* read_color_format(Context& c);
+const TextureFormat* draw_color_format(Context& c);
+/// Bits of what is drawn to. Of a window: as its format says.
 ComponentBits draw_target_bits(Context& c);
 bool has_depth(Context& c, bool reading);
 bool has_stencil(Context& c, bool reading);
-
-template <class Change>
-void change_framebuffer(Context& c, Framebuffer& framebuffer, Change&& change) {
-    c.flush_block();
-    {
-        std::lock_guard lock(c.share().mutex);
-        change(framebuffer);
-    }
-    c.framebuffers->stamp = next_stamp();
-}
 
 }  // namespace wall::client

@@ -2,6 +2,9 @@
 // What the wall's nodes can do, as numbers. Pure.
 #pragma once
 
+#include <bit>
+#include <cstdint>
+
 #include "client_lib/link/control_messages.h"
 #include "common/glapi/gl_types.h"
 
@@ -14,6 +17,16 @@ inline constexpr std::size_t kMostTexels = std::size_t{1} << 28;
 inline double limit_of(const Caps& caps, GLenum name, double otherwise, std::size_t i = 0) {
     const auto found = caps.limits.find(name);
     return found == caps.limits.end() || found->second.size() <= i ? otherwise : found->second[i];
+}
+
+/// Samples of a texel where no node says how many there may be.
+inline constexpr GLsizei kUsualSamples = 4;
+
+/// What a driver makes of a number of samples that it may not have, `most` being its largest.
+inline std::uint32_t rounded_samples(GLsizei samples, GLsizei most) {
+    if (samples == 0) return 0;
+    return most <= kUsualSamples ? static_cast<std::uint32_t>(most)
+                                 : std::bit_ceil(static_cast<std::uint32_t>(samples));
 }
 
 }  // namespace wall::client

@@ -46,8 +46,18 @@ void convert(ParamFamily family, GLenum pname, const T* from, GLfloat* to) {
         to[k] = row->normalized ? glapi::to_fraction(from[k]) : static_cast<GLfloat>(from[k]);
 }
 
+/// Texture units that only samplers name have no environment, and generate no coordinates. As in Mesa, the first is not
+/// an error.
+bool lacks_unit(Context& c, ParamFamily family, GLenum lead) {
+    const bool coordinates = family == ParamFamily::TexGen || lead == GL_POINT_SPRITE;
+    if ((family != ParamFamily::TexEnv && family != ParamFamily::TexGen) || c.fixed_unit()) return false;
+    if (coordinates) c.error(GL_INVALID_OPERATION);
+    return true;
+}
+
 template <class T>
 void set_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, const T* values) {
+    if (lacks_unit(c, family, lead)) return;
     const auto index = index_of(c, family, lead);
     const ParamRow* row = find_row(family, target_of(family, lead), pname);
     if (!index || !row || !row->set) return c.error(GL_INVALID_ENUM);
@@ -71,6 +81,7 @@ void get_truncated(const Context& c, std::uint32_t id, unsigned components, GLin
 
 template <class T>
 void get_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, T* values) {
+    if (lacks_unit(c, family, lead)) return;
     const auto index = index_of(c, family, lead);
     const auto* entry = glstate::find_param(family, target_of(family, lead), pname);
     if (!index || !entry) return c.error(GL_INVALID_ENUM);
@@ -130,6 +141,7 @@ void set_capability(Context& c, GLenum cap, bool on) {
     const CapRow* row = find_cap_row(cap);
     if (!row)
         return on ? api::EnableClientState(c, cap) : api::DisableClientState(c, cap);  // as GL_EXT_vertex_array had it
+    if (row->unit_stride != 0 && !c.fixed_unit()) return;                              // no error in Mesa
     row->set(c, row->index + row->unit_stride * c.active_texture(), on ? 1 : 0);
 }
 
@@ -143,6 +155,7 @@ GLboolean is_capability_set(Context& c, GLenum cap) {
                           : entry->rule == glstate::IndexRule::client_unit
                               ? c.state.local.client_active_texture - GL_TEXTURE0
                               : c.active_texture();
+    if (unit != 0 && unit >= entry->units) return GL_FALSE;
     GLboolean value = GL_FALSE;
     glstate::read_components(c.state, entry->id + unit * entry->unit_stride, entry->offset, entry->kind, 1, &value);
     return value;

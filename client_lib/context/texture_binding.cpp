@@ -80,15 +80,16 @@ std::vector<SavedTexture> bound_texture_parameters(Context& c) {
 }
 
 void restore_texture_parameters(Context& c, const std::vector<SavedTexture>& saved) {
-    constexpr GLenum kSent[] = {GL_TEXTURE_BORDER_COLOR, GL_TEXTURE_MIN_FILTER,   GL_TEXTURE_MAG_FILTER,
-                                GL_TEXTURE_WRAP_S,       GL_TEXTURE_WRAP_T,       GL_TEXTURE_WRAP_R,
-                                GL_TEXTURE_MIN_LOD,      GL_TEXTURE_MAX_LOD,      GL_TEXTURE_LOD_BIAS,
-                                GL_TEXTURE_BASE_LEVEL,   GL_TEXTURE_MAX_LEVEL,    GL_TEXTURE_MAX_ANISOTROPY_EXT,
-                                GL_TEXTURE_COMPARE_MODE, GL_TEXTURE_COMPARE_FUNC, GL_DEPTH_TEXTURE_MODE};
+    constexpr GLenum kSent[] = {
+        GL_TEXTURE_BORDER_COLOR, GL_TEXTURE_MIN_FILTER,   GL_TEXTURE_MAG_FILTER, GL_TEXTURE_WRAP_S,
+        GL_TEXTURE_WRAP_T,       GL_TEXTURE_WRAP_R,       GL_TEXTURE_MIN_LOD,    GL_TEXTURE_MAX_LOD,
+        GL_TEXTURE_LOD_BIAS,     GL_TEXTURE_BASE_LEVEL,   GL_TEXTURE_MAX_LEVEL,  GL_TEXTURE_MAX_ANISOTROPY_EXT,
+        GL_TEXTURE_COMPARE_MODE, GL_TEXTURE_COMPARE_FUNC, GL_DEPTH_TEXTURE_MODE, GL_TEXTURE_SWIZZLE_R,
+        GL_TEXTURE_SWIZZLE_G,    GL_TEXTURE_SWIZZLE_B,    GL_TEXTURE_SWIZZLE_A,  GL_TEXTURE_SRGB_DECODE_EXT};
     if (saved.empty()) return;
     c.flush_block();
     const auto differs = [&](const TexParameters& a, const TexParameters& b) {
-        return std::ranges::any_of(kSent, [&](GLenum p) { return parameter_value(a, p) != parameter_value(b, p); });
+        return std::ranges::any_of(kSent, [&](GLenum p) { return !same_parameter(a, b, p); });
     };
     for (const auto& [texture, parameters] : saved)
         if (differs(texture->parameters, parameters)) c.before_change(texture->id);
@@ -96,7 +97,7 @@ void restore_texture_parameters(Context& c, const std::vector<SavedTexture>& sav
     for (const auto& [texture, parameters] : saved) {
         const TexParameters now = std::exchange(texture->parameters, parameters);
         for (const GLenum pname : kSent) {
-            if (parameter_value(now, pname) == parameter_value(parameters, pname)) continue;
+            if (same_parameter(now, parameters, pname)) continue;
             texture->parameter_changed(pname);
             touch(c.share(), *texture);
         }

@@ -35,6 +35,12 @@ void generate_if_asked(Texture& texture, GLint level);
 /// How many levels a texture may have of the target that this word, which has been checked, belongs to.
 GLint level_count(Context& c, GLenum target);
 
+/// Whether the texture of that target, which has been checked, has all its levels for good.
+bool is_immutable(Context& c, GLenum target);
+
+/// Whether an image of that size may be at that level of its target.
+bool legal_size(Context& c, const ImageCall& call);
+
 /// glTexImage and glTexSubImage with their checks.
 void define_image(Context& c, ImageCall call);
 void define_sub_image(Context& c, ImageCall call);

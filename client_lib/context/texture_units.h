@@ -12,13 +12,12 @@ namespace wall::client {
 inline constexpr unsigned kTextureUnits = glstate::el::texture_2d_enabled::count;
 /// Sets of coordinates, with their matrices and arrays. GL_MAX_TEXTURE_COORDS.
 inline constexpr unsigned kTextureCoords = glstate::el::texcoord::count;
-/// What textures are bound to and samplers name, in all kinds of shaders together. GL_MAX_TEXTURE_IMAGE_UNITS and its
-/// VERTEX and COMBINED sisters.
+/// What textures are bound to and samplers name, in all kinds of shaders together. GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS.
 inline constexpr unsigned kTextureImageUnits = glstate::el::texture_binding_2d::count;
 /// That glActiveTexture may name.
 inline constexpr unsigned kActiveTextures = std::max(kTextureCoords, kTextureImageUnits);
 
-// What is set for the active unit is an element of each of them, without a further check.
-static_assert(kTextureUnits == kActiveTextures && kTextureCoords == kActiveTextures);
+// What is set for the active unit by fixed function is an element of both of them, after one check.
+static_assert(kTextureUnits == kTextureCoords);
 
 }  // namespace wall::client

@@ -31,7 +31,7 @@ bool color_renderable(GLenum base) {
 }
 
 bool renderable(unsigned place, const TextureFormat& format) {
-    if (format.compressed) return false;
+    if (format.compressed()) return false;
     if (place < kColorAttachments) return color_renderable(format.base);
     if (format.base == GL_DEPTH_STENCIL) return true;
     return format.base == (place == kDepth ? GL_DEPTH_COMPONENT : GL_STENCIL_INDEX);
@@ -55,8 +55,12 @@ std::optional<ImageShape> shape_of(const Attachment& attachment) {
     }
     const TextureLevel* image = attachment.image();
     const TextureFormat* format = image ? find_texture_format(image->internal_format) : nullptr;
-    if (!format || image->width <= 0 || image->height <= 0 || attachment.layer >= image->depth) return std::nullopt;
-    return ImageShape{static_cast<std::uint32_t>(image->width), static_cast<std::uint32_t>(image->height), 0, format,
+    if (!format || image->width <= 0 || image->height <= 0) return std::nullopt;
+    const bool rows_are_layers = glapi::spatial_dimensions_of(attachment.texture->info) == 1;
+    const auto& layers = rows_are_layers ? image->height : image->depth;
+    if (!attachment.layered && attachment.layer >= layers) return std::nullopt;
+    return ImageShape{static_cast<std::uint32_t>(image->width),
+                      rows_are_layers ? 1u : static_cast<std::uint32_t>(image->height), image->samples, format,
                       stored_bits(*format, image->format, image->type)};
 }
 
@@ -78,7 +82,18 @@ GLenum Framebuffer::attachment_error(unsigned place) const {
     const Attachment& attachment = attachments_[place];
     if (!attachment.present()) return GL_NO_ERROR;
     const auto shape = shape_of(attachment);
-    return shape && renderable(place, *shape->format) ? GL_NO_ERROR : GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT;
+    if (!shape || !renderable(place, *shape->format)) return GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT;
+    return shape->format->use == ImageUse::drawn ? GL_NO_ERROR : GL_FRAMEBUFFER_UNSUPPORTED;
+}
+
+/// Either all attachments are layered, by textures of one target, or none is (OpenGL 4.6, 9.4.2).
+bool Framebuffer::mixes_layers() const {
+    const Attachment* first = nullptr;
+    return std::ranges::any_of(attachments_, [&](const Attachment& attachment) {
+        if (!attachment.present()) return false;
+        if (!first) first = &attachment;
+        return attachment.layered != first->layered || (attachment.layered && attachment.target != first->target);
+    });
 }
 
 // The order is Mesa's: depth, stencil, colours; then what they have in common.
@@ -92,6 +107,7 @@ GLenum Framebuffer::status() const {
         same_samples = same_samples && samples.value_or(shape->samples) == shape->samples;
         samples = shape->samples;
     }
+    if (mixes_layers()) return GL_FRAMEBUFFER_INCOMPLETE_LAYER_TARGETS;
     if (!same_samples) return GL_FRAMEBUFFER_INCOMPLETE_MULTISAMPLE;
     if (!samples) return GL_FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT;
     const Attachment &depth = attachments_[kDepth], &stencil = attachments_[kStencil];
@@ -129,8 +145,9 @@ void Framebuffer::pack_changes(std::uint64_t, wire::PackBuffer& buffer, const st
         const Attachment& attachment = attachments_[place];
         if (!attachment.present()) continue;
         const GLenum target = attachment.renderbuffer ? GLenum{GL_RENDERBUFFER} : attachment.target;
+        const GLint layer = attachment.layered ? glstate::kAllLayers : attachment.layer;
         definition.attachments.push_back(
-            {glstate::attachment_point(place), attachment.object()->id, target, attachment.level, attachment.layer});
+            {glstate::attachment_point(place), attachment.object()->id, target, attachment.level, layer});
     }
     glapi::pack::Framebuffer(buffer, id, encode(definition));
     packed();
@@ -142,8 +159,13 @@ void Framebuffer::for_each_image(const std::function<void(const Object&)>& use) 
 }
 
 void Framebuffer::note_drawn() {
-    for (const Attachment& attachment : attachments_)
+    for (const Attachment& attachment : attachments_) {
+        if (attachment.renderbuffer) attachment.renderbuffer->note_drawn();
         if (TextureLevel* image = attachment.image()) image->note_drawn();
+        if (!attachment.layered) continue;
+        for (unsigned face = 1; face < glapi::face_count(attachment.texture->info); ++face)
+            if (TextureLevel* image = attachment.texture->find_level(face, attachment.level)) image->note_drawn();
+    }
 }
 
 }  // namespace wall::client

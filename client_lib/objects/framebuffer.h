@@ -22,10 +22,11 @@ struct Attachment {
     std::shared_ptr<Renderbuffer> renderbuffer;
     GLenum target = GL_NONE;  ///< of a texture: the image target, such as a cube map's face
     GLint level = 0, layer = 0;
+    bool layered = false;  ///< all layers, or faces; `target` is the texture's own then
 
     bool present() const { return texture || renderbuffer; }
     const Object* object() const;
-    /// The texture's image; null: it has none there.
+    /// The texture's image, the first of several; null: it has none there.
     TextureLevel* image() const;
     bool operator==(const Attachment&) const = default;
 };
@@ -76,6 +77,7 @@ private:
     std::uint32_t size(std::uint32_t ImageShape::*side) const;
     std::optional<ImageShape> named_shape(GLenum buffer) const;
     GLenum attachment_error(unsigned place) const;
+    bool mixes_layers() const;
 
     std::array<Attachment, glstate::kAttachmentPoints> attachments_;
     std::array<GLenum, glstate::kColorAttachments> draw_buffers_{GL_COLOR_ATTACHMENT0};

@@ -2,9 +2,11 @@
 #include "client_lib/objects/pixel_convert.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
+
+#include "client_lib/objects/small_floats.h"
 
 namespace wall::client {
 namespace {
@@ -14,27 +16,6 @@ T load(const std::byte* at) {
     T value;
     std::memcpy(&value, at, sizeof value);
     return value;
-}
-
-float half_to_float(std::uint16_t h) {
-    const float sign = h & 0x8000 ? -1.0f : 1.0f;
-    const int exponent = h >> 10 & 31, mantissa = h & 0x3ff;
-    if (exponent == 0) return sign * std::ldexp(static_cast<float>(mantissa), -24);
-    if (exponent == 31) return mantissa ? NAN : sign * INFINITY;
-    return sign * std::ldexp(static_cast<float>(mantissa + 1024), exponent - 25);
-}
-
-std::uint16_t float_to_half(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
-    const auto sign = static_cast<std::uint16_t>(bits >> 16 & 0x8000);
-    const float magnitude = std::fabs(value);
-    if (std::isnan(value)) return sign | 0x7e00;
-    if (magnitude >= 65520.0f) return sign | 0x7c00;
-    if (magnitude < 6.103515625e-05f) return sign | static_cast<std::uint16_t>(std::lrint(std::ldexp(magnitude, 24)));
-    int exponent;
-    const float fraction = std::frexp(magnitude, &exponent);                                 // [0.5, 1)
-    const auto mantissa = static_cast<std::uint32_t>(std::lrint(std::ldexp(fraction, 11)));  // [1024, 2048]
-    return static_cast<std::uint16_t>(sign | ((static_cast<std::uint32_t>(exponent + 13) << 10) + mantissa));
 }
 
 double unsigned_max(unsigned bits) { return bits == 32 ? 4294967295.0 : static_cast<double>((1u << bits) - 1); }
@@ -49,7 +30,7 @@ std::uint32_t to_unorm(float value, unsigned bits) {
     if (value >= 1) return static_cast<std::uint32_t>(unsigned_max(bits));
     return static_cast<std::uint32_t>(std::llrint(value * unsigned_max(bits)));
 }
-std::uint32_t to_whole(float value, std::uint32_t max) {
+std::uint32_t to_number(float value, std::uint32_t max) {
     return value > 0 ? static_cast<std::uint32_t>(std::min(static_cast<double>(value), static_cast<double>(max))) : 0;
 }
 std::int32_t to_snorm(float value, unsigned bits) {
@@ -88,6 +69,34 @@ void store_component(GLenum type, std::byte* at, float value, bool whole) {
         case GL_INT: return store(at, static_cast<std::int32_t>(whole ? number : to_snorm(value, 32)));
         case GL_HALF_FLOAT: return store(at, float_to_half(value));
         default: return store(at, value);
+    }
+}
+
+std::int64_t load_whole(GLenum type, const std::byte* at) {
+    switch (type) {
+        case GL_UNSIGNED_BYTE: return load<std::uint8_t>(at);
+        case GL_BYTE: return load<std::int8_t>(at);
+        case GL_UNSIGNED_SHORT: return load<std::uint16_t>(at);
+        case GL_SHORT: return load<std::int16_t>(at);
+        case GL_UNSIGNED_INT: return load<std::uint32_t>(at);
+        default: return load<std::int32_t>(at);
+    }
+}
+
+template <class T>
+void store_nearest(std::byte* at, std::int64_t value) {
+    using Limits = std::numeric_limits<T>;
+    store(at, static_cast<T>(std::clamp(value, std::int64_t{Limits::min()}, std::int64_t{Limits::max()})));
+}
+
+void store_whole(GLenum type, std::byte* at, std::int64_t value) {
+    switch (type) {
+        case GL_UNSIGNED_BYTE: return store_nearest<std::uint8_t>(at, value);
+        case GL_BYTE: return store_nearest<std::int8_t>(at, value);
+        case GL_UNSIGNED_SHORT: return store_nearest<std::uint16_t>(at, value);
+        case GL_SHORT: return store_nearest<std::int16_t>(at, value);
+        case GL_UNSIGNED_INT: return store_nearest<std::uint32_t>(at, value);
+        default: return store_nearest<std::int32_t>(at, value);
     }
 }
 
@@ -161,13 +170,23 @@ Order order_of(GLenum format) {
     }
 }
 
-void put_component(Rgba& pixel, std::uint8_t place, float value) {
+/// One component of a packed type, as it lies there.
+std::uint32_t packed_component(std::uint32_t word, const PackedBits& bits, unsigned component,
+                               const glapi::PixelLayout& layout) {
+    return word >> shift_of(bits, component, layout.pixel_bytes * 8) & ((1u << bits.bits[component]) - 1);
+}
+
+template <class Number>
+void put_component(std::array<Number, 4>& pixel, std::uint8_t place, Number value) {
     if (place == kLuminance) pixel[0] = pixel[1] = pixel[2] = value;
     else if (place == kIntensity) pixel.fill(value);
     else pixel[place] = value;
 }
 
-float get_component(const Rgba& pixel, std::uint8_t place) { return place >= kLuminance ? pixel[0] : pixel[place]; }
+template <class Number>
+Number get_component(const std::array<Number, 4>& pixel, std::uint8_t place) {
+    return place >= kLuminance ? pixel[0] : pixel[place];
+}
 
 bool whole_numbers(GLenum format) {
     return format == GL_COLOR_INDEX || format == GL_STENCIL_INDEX || glapi::is_integer_format(format);
@@ -182,19 +201,7 @@ float looked_up_index(const std::vector<float>& table, float index) {
     return table[static_cast<std::size_t>(static_cast<std::int64_t>(index)) & (table.size() - 1)];
 }
 
-Rgba unpack_special(GLenum type, std::uint32_t word) {
-    Rgba pixel{0, 0, 0, 1};
-    if (type == GL_UNSIGNED_INT_5_9_9_9_REV) {
-        const float scale = std::ldexp(1.0f, static_cast<int>(word >> 27) - 24);
-        for (unsigned i = 0; i < 3; ++i) pixel[i] = static_cast<float>(word >> 9 * i & 0x1ff) * scale;
-        return pixel;
-    }
-    // Floats of 11 and 10 bits are halves without a sign and with a shorter mantissa.
-    pixel[0] = half_to_float(static_cast<std::uint16_t>((word & 0x7ff) << 4));
-    pixel[1] = half_to_float(static_cast<std::uint16_t>((word >> 11 & 0x7ff) << 4));
-    pixel[2] = half_to_float(static_cast<std::uint16_t>((word >> 22) << 5));
-    return pixel;
-}
+Rgb rgb_of(const Rgba& pixel) { return {pixel[0], pixel[1], pixel[2]}; }
 
 }  // namespace
 
@@ -213,18 +220,60 @@ std::vector<Rgba> to_rgba(GLenum format, GLenum type, std::span<const std::byte>
             out[i] = {unorm(load<std::uint32_t>(at) >> 8, 24), static_cast<float>(load<std::uint32_t>(at) & 0xff), 0,
                       1};
         } else if (type == GL_UNSIGNED_INT_5_9_9_9_REV || type == GL_UNSIGNED_INT_10F_11F_11F_REV) {
-            out[i] = unpack_special(type, load<std::uint32_t>(at));
+            const auto word = load<std::uint32_t>(at);
+            const auto rgb = type == GL_UNSIGNED_INT_5_9_9_9_REV ? from_shared_exponent(word) : from_short_floats(word);
+            out[i] = {rgb[0], rgb[1], rgb[2], 1};
         } else if (packed) {
             const std::uint32_t word = load_word(at, layout->pixel_bytes);
             for (unsigned k = 0; k < order.count; ++k) {
-                const std::uint32_t value =
-                    word >> shift_of(bits, k, layout->pixel_bytes * 8) & ((1u << bits.bits[k]) - 1);
+                const std::uint32_t value = packed_component(word, bits, k, *layout);
                 put_component(out[i], order.place[k], whole ? static_cast<float>(value) : unorm(value, bits.bits[k]));
             }
         } else {
             for (unsigned k = 0; k < order.count; ++k)
                 put_component(out[i], order.place[k], load_component(type, at + k * layout->element_bytes, whole));
         }
+    }
+    return out;
+}
+
+std::vector<Whole> to_whole(GLenum format, GLenum type, std::span<const std::byte> tight, std::size_t pixels) {
+    std::vector<Whole> out(pixels, Whole{0, 0, 0, 1});
+    const auto layout = glapi::pixel_layout(format, type);
+    if (!layout || layout->bitmap) return out;
+    const Order order = order_of(format);
+    const PackedBits bits = packed_bits(type);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const std::byte* at = tight.data() + i * layout->pixel_bytes;
+        for (unsigned k = 0; k < order.count; ++k)
+            put_component(out[i], order.place[k],
+                          glapi::is_packed_type(type)
+                              ? std::int64_t{packed_component(load_word(at, layout->pixel_bytes), bits, k, *layout)}
+                              : load_whole(type, at + k * layout->element_bytes));
+    }
+    return out;
+}
+
+std::vector<std::byte> from_whole(GLenum format, GLenum type, std::span<const Whole> pixels) {
+    const auto layout = glapi::pixel_layout(format, type);
+    if (!layout || layout->bitmap) return {};
+    std::vector<std::byte> out(pixels.size() * layout->pixel_bytes);
+    const Order order = order_of(format);
+    const PackedBits bits = packed_bits(type);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        std::byte* at = out.data() + i * layout->pixel_bytes;
+        std::uint32_t word = 0;
+        for (unsigned k = 0; k < order.count; ++k) {
+            const std::int64_t value = get_component(pixels[i], order.place[k]);
+            if (glapi::is_packed_type(type)) {
+                const std::int64_t most = (std::int64_t{1} << bits.bits[k]) - 1;
+                word |= static_cast<std::uint32_t>(std::clamp<std::int64_t>(value, 0, most))
+                        << shift_of(bits, k, layout->pixel_bytes * 8);
+            } else {
+                store_whole(type, at + k * layout->element_bytes, value);
+            }
+        }
+        if (glapi::is_packed_type(type)) std::memcpy(at, &word, layout->pixel_bytes);
     }
     return out;
 }
@@ -255,13 +304,20 @@ std::vector<std::byte> from_rgba(GLenum format, GLenum type, std::span<const Rgb
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         std::byte* at = out.data() + i * layout->pixel_bytes;
         if (type == GL_UNSIGNED_INT_24_8) {
-            store(at, to_unorm(pixels[i][0], 24) << 8 | to_whole(pixels[i][1], 0xff));
+            store(at, to_unorm(pixels[i][0], 24) << 8 | to_number(pixels[i][1], 0xff));
+        } else if (type == GL_FLOAT_32_UNSIGNED_INT_24_8_REV) {
+            store(at, pixels[i][0]);
+            store(at + 4, to_number(pixels[i][1], 0xff));
+        } else if (type == GL_UNSIGNED_INT_5_9_9_9_REV) {
+            store(at, to_shared_exponent(rgb_of(pixels[i])));
+        } else if (type == GL_UNSIGNED_INT_10F_11F_11F_REV) {
+            store(at, to_short_floats(rgb_of(pixels[i])));
         } else if (packed) {
             std::uint32_t word = 0;
             for (unsigned k = 0; k < order.count; ++k) {
                 const float value = get_component(pixels[i], order.place[k]);
                 const std::uint32_t max = (1u << bits.bits[k]) - 1;
-                const std::uint32_t number = whole ? to_whole(value, max) : to_unorm(value, bits.bits[k]);
+                const std::uint32_t number = whole ? to_number(value, max) : to_unorm(value, bits.bits[k]);
                 word |= number << shift_of(bits, k, layout->pixel_bytes * 8);
             }
             std::memcpy(at, &word, layout->pixel_bytes);

@@ -25,6 +25,13 @@ struct PixelMapTables {
 
 /// Tight pixels as RGBA; missing components are 0, alpha 1. Depth, stencil and indices: in the first component.
 std::vector<Rgba> to_rgba(GLenum format, GLenum type, std::span<const std::byte> tight, std::size_t pixels);
+/// The components of a texel of whole numbers.
+using Whole = std::array<std::int64_t, 4>;
+/// The same of the *_INTEGER formats, every bit kept.
+std::vector<Whole> to_whole(GLenum format, GLenum type, std::span<const std::byte> tight, std::size_t pixels);
+/// Each to the nearest that the type holds.
+std::vector<std::byte> from_whole(GLenum format, GLenum type, std::span<const Whole> pixels);
+
 /// Indices (GL_COLOR_INDEX, GL_STENCIL_INDEX), bitmaps included (`width` pixels a row), shift, offset and maps not
 /// applied.
 std::vector<float> to_indices(GLenum type, std::span<const std::byte> tight, std::int32_t width, std::int32_t rows);

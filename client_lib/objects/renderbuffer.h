@@ -26,6 +26,11 @@ public:
     std::uint64_t latest() const override { return stamp_; }
     void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
                       const std::function<void()>& packed) const override;
+    /// Something was drawn to it.
+    void note_drawn() { drawn_ = true; }
+    /// Several samples a pixel cannot be read, so they stay where they are.
+    bool is_drawn() const override { return drawn_ && samples_ == 0; }
+    void pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer, const std::function<void()>& packed) const override;
 
     bool orphan = false;  ///< its name is gone; it goes with the last framebuffer that has it
 
@@ -33,6 +38,7 @@ private:
     std::uint32_t samples_ = 0, width_ = 0, height_ = 0;
     GLenum internal_format_ = GL_RGBA;
     std::uint64_t stamp_ = 0;
+    bool drawn_ = false;
 };
 
 /// Of an image with that internal format, as the driver stores it. Null: nothing can be drawn to such an image.

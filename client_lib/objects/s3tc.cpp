@@ -61,8 +61,19 @@ std::uint8_t interpolated_alpha(const std::byte* block, unsigned i) {
     return static_cast<std::uint8_t>((a0 * (6 - code) + a1 * (code - 1)) / 5);
 }
 
+/// The same blocks without the curve of sRGB.
+GLint linear_format(GLint format) {
+    switch (format) {
+        case GL_COMPRESSED_SRGB_S3TC_DXT1_EXT: return GL_COMPRESSED_RGB_S3TC_DXT1_EXT;
+        case GL_COMPRESSED_SRGB_ALPHA_S3TC_DXT1_EXT: return GL_COMPRESSED_RGBA_S3TC_DXT1_EXT;
+        case GL_COMPRESSED_SRGB_ALPHA_S3TC_DXT3_EXT: return GL_COMPRESSED_RGBA_S3TC_DXT3_EXT;
+        case GL_COMPRESSED_SRGB_ALPHA_S3TC_DXT5_EXT: return GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
+        default: return format;
+    }
+}
+
 std::array<Texel, 16> decode_block(GLint format, const std::byte* block) {
-    if (s3tc_block_bytes(format) == 8) return colors(block, true, format == GL_COMPRESSED_RGBA_S3TC_DXT1_EXT);
+    if (block_bytes(format) == 8) return colors(block, true, format == GL_COMPRESSED_RGBA_S3TC_DXT1_EXT);
     auto out = colors(block + 8, false, false);
     for (unsigned i = 0; i < 16; ++i)
         out[i][3] =
@@ -72,19 +83,25 @@ std::array<Texel, 16> decode_block(GLint format, const std::byte* block) {
 
 }  // namespace
 
-std::vector<std::byte> decode_s3tc(GLint format, std::int32_t width, std::int32_t height,
+bool is_s3tc(GLint format) {
+    const GLint linear = linear_format(format);
+    return linear >= GL_COMPRESSED_RGB_S3TC_DXT1_EXT && linear <= GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
+}
+
+std::vector<std::byte> decode_s3tc(GLint internal_format, std::int32_t width, std::int32_t height,
                                    std::span<const std::byte> blocks) {
+    const GLint format = linear_format(internal_format);
     std::vector<std::byte> out(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
     const std::byte* block = blocks.data();
-    for (std::int32_t y = 0; y < height; y += kS3tcBlock)
-        for (std::int32_t x = 0; x < width; x += kS3tcBlock, block += s3tc_block_bytes(format)) {
+    for (std::int32_t y = 0; y < height; y += kBlockSide)
+        for (std::int32_t x = 0; x < width; x += kBlockSide, block += block_bytes(format)) {
             const auto texels = decode_block(format, block);
-            const std::int32_t columns = std::min(kS3tcBlock, width - x);
-            for (std::int32_t row = 0; row < std::min(kS3tcBlock, height - y); ++row)
+            const std::int32_t columns = std::min(kBlockSide, width - x);
+            for (std::int32_t row = 0; row < std::min(kBlockSide, height - y); ++row)
                 std::memcpy(out.data() + (static_cast<std::size_t>(y + row) * static_cast<std::size_t>(width) +
                                           static_cast<std::size_t>(x)) *
                                              4,
-                            &texels[static_cast<std::size_t>(row * kS3tcBlock)], static_cast<std::size_t>(columns) * 4);
+                            &texels[static_cast<std::size_t>(row * kBlockSide)], static_cast<std::size_t>(columns) * 4);
         }
     return out;
 }

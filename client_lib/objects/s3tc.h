@@ -1,29 +1,31 @@
 // SPDX-License-Identifier: MIT
-// The S3TC block formats (EXT_texture_compression_s3tc): sizes, and decoding for glGetTexImage. Pure.
+// The S3TC block formats (EXT_texture_compression_s3tc, EXT_texture_sRGB), decoded for glGetTexImage. Pure.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "common/glapi/s3tc.h"
+#include "common/glapi/block_formats.h"
 
 namespace wall::client {
 
-using glapi::kS3tcBlock;
+using glapi::kBlockSide;
 
 /// Whether a part (first texel, texels, in one direction) of an image is made of blocks; it may end with the image.
 constexpr bool is_whole_blocks(std::int32_t at, std::int32_t size, std::int32_t all) {
-    return at % kS3tcBlock == 0 && (size % kS3tcBlock == 0 || at + size == all);
+    return at % kBlockSide == 0 && (size % kBlockSide == 0 || at + size == all);
 }
-/// glapi::s3tc_block_bytes and s3tc_bytes of an internal format as programs give it.
-constexpr std::size_t s3tc_block_bytes(GLint internal_format) {
-    return glapi::s3tc_block_bytes(static_cast<GLenum>(internal_format));
+/// glapi::block_bytes and blocks_bytes of an internal format as programs give it.
+constexpr std::size_t block_bytes(GLint internal_format) {
+    return glapi::block_bytes(static_cast<GLenum>(internal_format));
 }
-constexpr std::size_t s3tc_bytes(GLint internal_format, std::int32_t width, std::int32_t height) {
-    return glapi::s3tc_bytes(static_cast<GLenum>(internal_format), width, height);
+constexpr std::size_t blocks_bytes(GLint internal_format, std::int32_t width, std::int32_t height) {
+    return glapi::blocks_bytes(static_cast<GLenum>(internal_format), width, height);
 }
-/// RGBA bytes, row by row. `blocks` has s3tc_bytes() bytes.
+/// Whether decode_s3tc() knows it.
+bool is_s3tc(GLint internal_format);
+/// RGBA bytes, row by row, the curve of sRGB kept. `blocks` has blocks_bytes() bytes.
 std::vector<std::byte> decode_s3tc(GLint internal_format, std::int32_t width, std::int32_t height,
                                    std::span<const std::byte> blocks);
 

@@ -2,6 +2,7 @@
 #include "client_lib/objects/texture.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "client_lib/objects/texture_formats.h"
@@ -53,11 +54,15 @@ public:
     void run(std::uint64_t known);
 
 private:
-    void parameter(GLenum pname, const std::array<float, 4>& v) {
+    void current_parameter(GLenum pname) {
         any_ = true;
+        const auto v = parameter_value(texture_.parameters, pname);
+        if (pname == GL_TEXTURE_BORDER_COLOR && texture_.parameters.border_whole) {
+            const auto w = std::bit_cast<std::array<std::int32_t, 4>>(v);
+            return sink_.TexBorderWhole(texture_.info.target, w[0], w[1], w[2], w[3]);
+        }
         sink_.TexParameter(texture_.info.target, pname, v[0], v[1], v[2], v[3]);
     }
-    void current_parameter(GLenum pname) { parameter(pname, parameter_value(texture_.parameters, pname)); }
     void mipmaps();
     /// What changed of one level since `known`.
     void level(unsigned face, GLint number, std::uint64_t known);
@@ -81,7 +86,7 @@ void TextureDiff<Sink>::run(std::uint64_t known) {
         for (GLint number = 0; number < static_cast<GLint>(texture_.faces[face].size()); ++number)
             if (number != base) level(face, number, known);
     // A name that a state element carries must exist on the node.
-    if (known == 0 && !any_) current_parameter(GL_TEXTURE_MAG_FILTER);
+    if (known == 0 && !any_) current_parameter(texture_.info.samples ? GL_TEXTURE_MAX_LEVEL : GL_TEXTURE_MAG_FILTER);
 }
 
 // Nodes never see GL_GENERATE_MIPMAP: whether the application had it set when some level came is history that a late
@@ -110,9 +115,12 @@ void TextureDiff<Sink>::define(unsigned face, GLint number, const TextureLevel& 
     const auto internal = static_cast<GLenum>(level.internal_format);
     const GLenum target = glapi::image_target(texture_.info, face);
     if (level.compressed) {
-        return sink_.TexCompressed(target, number, internal, level.width, level.height,
+        return sink_.TexCompressed(target, number, internal, level.width, level.height, level.depth,
                                    std::span<const std::byte>(level.pixels));
     }
+    if (level.samples != 0)
+        return sink_.TexImageSamples(target, level.samples, internal, level.width, level.height, level.depth,
+                                     level.fixed_places ? 1u : 0u);
     const bool stored = level.content == LevelContent::stored;
     const bool at_once = stored && level.format == level.data_format && level.type == level.data_type &&
                          level.pixels.size() <= kLargestImageCommand;
@@ -157,8 +165,18 @@ struct TexturePacker {
         packed();
     }
     template <class... Operands>
+    void TexBorderWhole(Operands... operands) {
+        glapi::pack::TexBorderWhole(buffer, id, operands...);
+        packed();
+    }
+    template <class... Operands>
     void TexImage(Operands... operands) {
         glapi::pack::TexImage(buffer, id, operands...);
+        packed();
+    }
+    template <class... Operands>
+    void TexImageSamples(Operands... operands) {
+        glapi::pack::TexImageSamples(buffer, id, operands...);
         packed();
     }
     template <class... Operands>
@@ -183,15 +201,22 @@ struct NameAndShape {
     void TexParameter(GLenum target, GLenum pname, float p0, float p1, float p2, float p3) {
         hash.TexParameter(target, pname, p0, p1, p2, p3);
     }
+    void TexBorderWhole(GLenum target, std::int32_t p0, std::int32_t p1, std::int32_t p2, std::int32_t p3) {
+        hash.TexBorderWhole(target, p0, p1, p2, p3);
+    }
     void TexImage(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
                   std::int32_t depth, std::int32_t border, GLenum format, GLenum type, std::span<const std::byte>) {
         hash.TexImage(target, level, internal_format, width, height, depth, border, format, type, {});
     }
+    void TexImageSamples(GLenum target, std::uint32_t samples, GLenum internal_format, std::int32_t width,
+                         std::int32_t height, std::int32_t depth, std::uint32_t fixed) {
+        hash.TexImageSamples(target, samples, internal_format, width, height, depth, fixed);
+    }
     template <class... Operands>
     void TexSubImage(Operands...) {}
     void TexCompressed(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width,
-                       std::int32_t height, std::span<const std::byte>) {
-        hash.TexCompressed(target, level, internal_format, width, height, {});
+                       std::int32_t height, std::int32_t depth, std::span<const std::byte>) {
+        hash.TexCompressed(target, level, internal_format, width, height, depth, {});
     }
     void TexMipmaps(GLenum target) { hash.TexMipmaps(target); }
 };
@@ -255,7 +280,7 @@ void Texture::parameter_changed(GLenum pname) {
 void Texture::mipmaps_generated() {
     stamp = generated_stamp = next_stamp();
     const GLint base = parameters.base_level;
-    const unsigned halved = info.images - (info.layers ? 1u : 0u);  // dimensions that shrink from level to level
+    const unsigned halved = glapi::spatial_dimensions_of(info);
     for (unsigned face = 0; face < glapi::face_count(info); ++face) {
         const TextureLevel* from = find_level(face, base);
         if (!from) continue;
@@ -296,8 +321,24 @@ std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname) {
         case GL_TEXTURE_COMPARE_MODE: return one(p.compare_mode);
         case GL_TEXTURE_COMPARE_FUNC: return one(p.compare_func);
         case GL_DEPTH_TEXTURE_MODE: return one(p.depth_mode);
+        case GL_TEXTURE_SWIZZLE_R:
+        case GL_TEXTURE_SWIZZLE_G:
+        case GL_TEXTURE_SWIZZLE_B:
+        case GL_TEXTURE_SWIZZLE_A: return one(p.swizzle[pname - GL_TEXTURE_SWIZZLE_R]);
+        case GL_TEXTURE_SWIZZLE_RGBA: {
+            std::array<float, 4> all;
+            std::ranges::transform(p.swizzle, all.begin(), [](GLenum word) { return static_cast<float>(word); });
+            return all;
+        }
+        case GL_TEXTURE_SRGB_DECODE_EXT: return one(p.srgb_decode);
         default: return one(p.generate_mipmap ? 1 : 0);
     }
+}
+
+bool same_parameter(const TexParameters& a, const TexParameters& b, GLenum pname) {
+    using Bits = std::array<std::uint32_t, 4>;
+    return std::bit_cast<Bits>(parameter_value(a, pname)) == std::bit_cast<Bits>(parameter_value(b, pname)) &&
+           (pname != GL_TEXTURE_BORDER_COLOR || a.border_whole == b.border_whole);
 }
 
 void Texture::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed) const {
@@ -316,7 +357,7 @@ void Texture::pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer, const s
     for (unsigned face = 0; face < glapi::face_count(info); ++face)
         for (GLint number = 0; number < static_cast<GLint>(faces[face].size()); ++number) {
             const TextureLevel& level = faces[face][static_cast<std::size_t>(number)];
-            if (!level.defined() || !only_on_nodes(level)) continue;
+            if (!level.defined() || !only_on_nodes(level) || level.samples != 0) continue;  // samples cannot be read
             const GLenum target = glapi::image_target(info, face);
             const auto [format, type] = exact_pixels(level);
             for_each_part(level, [&](std::int32_t slice, std::int32_t first, std::int32_t rows) {
@@ -333,17 +374,8 @@ void Texture::pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer, const s
 
 PixelKind exact_pixels(const TextureLevel& level) {
     const TextureFormat* format = find_texture_format(level.internal_format);
-    const GLenum base = format ? format->base : GL_RGBA;
-    const bool real = format && (format->component_type == GL_FLOAT || format->bits.depth == 32);
-    if (base == GL_DEPTH_COMPONENT)
-        return {GL_DEPTH_COMPONENT,
-                level.internal_format == GL_DEPTH_COMPONENT32F ? GLenum{GL_FLOAT} : GLenum{GL_UNSIGNED_INT}};
-    if (base == GL_DEPTH_STENCIL)
-        return {GL_DEPTH_STENCIL, real ? GLenum{GL_FLOAT_32_UNSIGNED_INT_24_8_REV} : GLenum{GL_UNSIGNED_INT_24_8}};
-    if (real) return {GL_RGBA, GL_FLOAT};
-    const ComponentBits b = format ? stored_bits(*format, level.format, level.type) : ComponentBits{};
-    const bool bytes = std::max({b.red, b.green, b.blue, b.alpha, b.luminance, b.intensity}) <= 8;
-    return {GL_RGBA, bytes ? GLenum{GL_UNSIGNED_BYTE} : GLenum{GL_UNSIGNED_SHORT}};
+    return format ? exact_pixels(*format, stored_bits(*format, level.format, level.type))
+                  : PixelKind{GL_RGBA, GL_UNSIGNED_BYTE};
 }
 
 bool Texture::worth_asking() const { return !is_drawn() && (global || content_bytes(*this) >= kLeastShared); }
@@ -380,10 +412,7 @@ std::size_t content_bytes(const Texture& texture) {
     return bytes;
 }
 
-std::optional<glapi::TargetWord> target_word(GLenum word) {
-    const auto found = glapi::find_target_word(word);
-    return found && !found->info->later ? found : std::nullopt;
-}
+std::optional<glapi::TargetWord> target_word(GLenum word) { return glapi::find_target_word(word); }
 
 const glapi::TextureTargetInfo* target_of(GLenum word) {
     const auto found = target_word(word);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "client_lib/objects/object.h"
+#include "client_lib/objects/texture_formats.h"
 #include "common/glapi/content_hash.h"
 #include "common/glapi/gl_types.h"
 #include "common/glapi/texture_target.h"
@@ -38,6 +39,8 @@ struct TextureLevel {
     GLenum format = 0, type = 0;  ///< of the call that defined it: the driver's choice of storage depends on them
     GLenum data_format = 0, data_type = 0;  ///< of `pixels`
     bool compressed = false;                ///< pixels as for glCompressedTexImage, format and type 0
+    std::uint32_t samples = 0;              ///< of each texel, of a target that has them; there are no pixels then
+    bool fixed_places = false;              ///< of the samples, the same in all texels
     LevelContent content = LevelContent::none;
     std::vector<std::byte> pixels;
     std::uint64_t stamp = 0;      ///< of the definition
@@ -53,7 +56,10 @@ inline constexpr unsigned kTextureLevels = 15;  ///< 16384 texels a side
 
 /// One glTexParameter value: as a node is told it.
 struct TexParameters {
-    std::array<float, 4> border_color{};
+    std::array<float, 4> border_color{};  ///< the bits of whole numbers if border_whole
+    bool border_whole = false;
+    std::array<GLenum, 4> swizzle{GL_RED, GL_GREEN, GL_BLUE, GL_ALPHA};
+    GLenum srgb_decode = GL_DECODE_EXT;
     float priority = 1, min_lod = -1000, max_lod = 1000, lod_bias = 0, max_anisotropy = 1;
     GLenum min_filter = GL_NEAREST_MIPMAP_LINEAR, mag_filter = GL_LINEAR;
     GLenum wrap_s = GL_REPEAT, wrap_t = GL_REPEAT, wrap_r = GL_REPEAT;
@@ -86,7 +92,8 @@ struct Texture : Object {
     /// As of a stamp: see content_key().
     mutable std::pair<std::uint64_t, glapi::ContentKey> key_cache{};
 
-    bool orphan = false;  ///< its name is gone; it goes with the last framebuffer that has it
+    std::uint32_t immutable_levels = 0;  ///< glTexStorage gave it so many, for good; 0: it did not
+    bool orphan = false;                 ///< its name is gone; it goes with the last framebuffer that has it
 
     bool is_default() const { return name == 0; }
     TextureLevel* find_level(unsigned face, GLint level);
@@ -101,23 +108,20 @@ struct Texture : Object {
     void mipmaps_generated();
 };
 
-/// Current value of a parameter as four numbers for the TexParameter command.
+/// Current value of a parameter as four numbers for the TexParameter command; a border colour of whole numbers: their
+/// bits.
 std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname);
+/// To the bit.
+bool same_parameter(const TexParameters& a, const TexParameters& b, GLenum pname);
 
-/// The format and type of an image's pixels.
-struct PixelKind {
-    GLenum format, type;
-};
 /// How the texels of a level travel between nodes, so that none of them changes; the level is not compressed.
 PixelKind exact_pixels(const TextureLevel& level);
 
 /// Calls `use(slice, first_row, rows)` for parts of a level as they are asked for, so that no answer is too large.
 template <class Use>
 void for_each_part(const TextureLevel& level, Use&& use) {
-    constexpr std::int32_t kMostTexels = 1 << 22;  // of 16 bytes at most
-    const std::int32_t rows = std::max(1, kMostTexels / std::max(1, level.width));
     for (std::int32_t slice = 0; slice < level.depth; ++slice)
-        for (std::int32_t y = 0; y < level.height; y += rows) use(slice, y, std::min(rows, level.height - y));
+        for_each_rows(level.width, level.height, [&](std::int32_t y, std::int32_t rows) { use(slice, y, rows); });
 }
 
 /// Images larger than this travel in several pieces.

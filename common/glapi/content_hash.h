@@ -30,6 +30,9 @@ public:
     void TexParameter(GLenum target, GLenum pname, float p0, float p1, float p2, float p3) {
         add(Op::TexParameter, {}, target, pname, p0, p1, p2, p3);
     }
+    void TexBorderWhole(GLenum target, std::int32_t p0, std::int32_t p1, std::int32_t p2, std::int32_t p3) {
+        add(Op::TexBorderWhole, {}, target, p0, p1, p2, p3);
+    }
     void TexImage(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width, std::int32_t height,
                   std::int32_t depth, std::int32_t border, GLenum format, GLenum type,
                   std::span<const std::byte> pixels) {
@@ -41,8 +44,12 @@ public:
         add(Op::TexSubImage, pixels, target, level, x, y, z, width, height, depth, format, type);
     }
     void TexCompressed(GLenum target, std::int32_t level, GLenum internal_format, std::int32_t width,
-                       std::int32_t height, std::span<const std::byte> blocks) {
-        add(Op::TexCompressed, blocks, target, level, internal_format, width, height);
+                       std::int32_t height, std::int32_t depth, std::span<const std::byte> blocks) {
+        add(Op::TexCompressed, blocks, target, level, internal_format, width, height, depth);
+    }
+    void TexImageSamples(GLenum target, std::uint32_t samples, GLenum internal_format, std::int32_t width,
+                         std::int32_t height, std::int32_t depth, std::uint32_t fixed) {
+        add(Op::TexImageSamples, {}, target, samples, internal_format, width, height, depth, fixed);
     }
     void TexMipmaps(GLenum target) { add(Op::TexMipmaps, {}, target); }
     /// A name that a program gave, instead of pixels: GL_WALLGL_global_texture.

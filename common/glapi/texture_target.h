@@ -15,6 +15,14 @@ constexpr const TextureTargetInfo& info_of(TextureTarget target) {
     return kTextureTargetInfo[static_cast<std::size_t>(target)];
 }
 constexpr unsigned face_count(const TextureTargetInfo& info) { return info.first_face != 0 ? kCubeFaces : 1; }
+/// Of its images, layers counted as one.
+constexpr unsigned dimensions_of(const TextureTargetInfo& info) {
+    return info.samples ? 2 + (info.layers != 0 ? 1u : 0u) : info.images;
+}
+/// Of them, those that are of the picture: what a mipmap halves.
+constexpr unsigned spatial_dimensions_of(const TextureTargetInfo& info) {
+    return dimensions_of(info) - (info.layers != 0 ? 1u : 0u);
+}
 /// The word for the images of a face; there is one face, 0, where images belong to the target itself.
 constexpr GLenum image_target(const TextureTargetInfo& info, unsigned face) {
     return info.first_face != 0 ? info.first_face + face : info.target;

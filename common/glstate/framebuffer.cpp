@@ -23,8 +23,11 @@ bool plausible(const FramebufferAttachment& attachment, std::bitset<kAttachmentP
     taken.set(*place);
     if (attachment.target == GL_RENDERBUFFER) return attachment.level == 0 && attachment.layer == 0;
     const auto word = glapi::find_target_word(attachment.target);
-    return word && word->has_images() && !word->is_proxy() && attachment.level >= 0 && attachment.level < kMostLevels &&
-           attachment.layer >= 0 && attachment.layer < kMostLayers;
+    if (!word || word->is_proxy() || glapi::dimensions_of(*word->info) == 0 || attachment.level < 0 ||
+        attachment.level >= kMostLevels)
+        return false;
+    if (attachment.layer == kAllLayers) return word->is_object();
+    return word->has_images() && attachment.layer >= 0 && attachment.layer < kMostLayers;
 }
 
 }  // namespace

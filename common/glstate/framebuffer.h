@@ -27,13 +27,15 @@ std::optional<unsigned> attachment_place(GLenum point);
 /// The point of a place below kAttachmentPoints.
 GLenum attachment_point(unsigned place);
 
+inline constexpr std::int32_t kAllLayers = -1;  ///< all layers of a texture, or all faces
+
 /// One image.
 struct FramebufferAttachment {
     GLenum point = GL_NONE;
     ClientName object;        ///< a renderbuffer's or a texture's
     GLenum target = GL_NONE;  ///< GL_RENDERBUFFER, or the image target of the texture: a cube map's is that of a face
     std::int32_t level = 0;
-    std::int32_t layer = 0;  ///< slice of a 3D image
+    std::int32_t layer = 0;  ///< of an array's image, slice of a 3D one; or kAllLayers
     bool operator==(const FramebufferAttachment&) const = default;
 };
 static_assert(sizeof(FramebufferAttachment) == 5 * sizeof(std::uint32_t));

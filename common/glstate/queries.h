@@ -28,6 +28,7 @@ struct GetEntry {
     std::uint16_t offset;
     IndexRule rule;
     std::uint8_t unit_stride;
+    std::uint8_t units;  ///< that have a value
 };
 
 /// A word of glEnable: element `id` + active unit * `unit_stride`.
@@ -36,6 +37,7 @@ struct CapEntry {
     std::uint16_t id;
     IndexRule rule;
     std::uint8_t unit_stride;
+    std::uint8_t units;  ///< that have a value
 };
 
 /// A parameter of glLight*, glFog*, ...: element `id` + the command's index (light; face; unit; unit * 4 + coordinate).

@@ -44,7 +44,7 @@ TEST(Framebuffer, RefusesWhatNoCommandCanSay) {
     EXPECT_TRUE(refused([](auto& f) { f.attachments[0].target = GL_PROXY_TEXTURE_2D; }));
     EXPECT_TRUE(refused([](auto& f) { f.attachments[0].target = GL_TEXTURE_CUBE_MAP; })) << "a face has the image";
     EXPECT_TRUE(refused([](auto& f) { f.attachments[0].level = -1; }));
-    EXPECT_TRUE(refused([](auto& f) { f.attachments[1].layer = -1; }));
+    EXPECT_TRUE(refused([](auto& f) { f.attachments[1].layer = -2; }));
     EXPECT_TRUE(refused([](auto& f) { f.attachments[2].level = 1; })) << "of a renderbuffer";
     EXPECT_FALSE(refused([](auto&) {}));
 }

@@ -130,6 +130,7 @@ private:
     void emit(Gl& gl, glstate::el::modelview_form, unsigned, const glstate::ModelviewForm& v);
     void emit(Gl& gl, glstate::el::projection, unsigned, const glstate::Mat4& v);
     void emit(Gl& gl, glstate::el::texture_matrix, unsigned i, const glstate::Mat4& v);
+    void emit(Gl& gl, glstate::el::sample_mask, unsigned, std::uint32_t v) { gl.SampleMaski(0, v); }
     void emit(Gl& gl, glstate::el::clip_plane, unsigned i, const glstate::Vec4& v);
     void emit(Gl& gl, glstate::el::light_position, unsigned i, const glstate::Vec4& v);
     void emit(Gl& gl, glstate::el::light_spot_direction, unsigned i, const glstate::Vec3& v);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/execute/read_commands.h"
 
+#include <array>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -80,6 +82,27 @@ void ReadCommands::read_framebuffer(ClientName name, const WindowValues::IntBox&
     driver.bind_target(*framebuffer, execution_.context->state);
     execution_.gl.ReadPixels(box.x, box.y, box.width, box.height, format, type, answer.data());
     driver.forget_target();
+}
+
+// The driver says it of a framebuffer that has so many.
+void ReadCommands::SamplePosition(RequestId request, std::uint32_t samples, std::uint32_t index) {
+    constexpr std::uint32_t kMostSamples = 64;
+    if (samples < 1 || samples > kMostSamples || index >= samples) return execution_.refuse("no such sample");
+    const Gl& gl = execution_.gl;
+    GLuint framebuffer = 0, texture = 0;
+    gl.CreateFramebuffers(1, &framebuffer);
+    gl.CreateTextures(gl_target(TextureTarget::t2d_multisample), 1, &texture);
+    gl.TextureStorage2DMultisample(texture, static_cast<GLsizei>(samples), GL_RGBA8, 1, 1, GL_TRUE);
+    gl.NamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, texture, 0);
+    execution_.node.driver.forget_target();
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    std::array<GLfloat, 2> position{};
+    gl.GetMultisamplefv(GL_SAMPLE_POSITION, index, position.data());
+    gl.DeleteFramebuffers(1, &framebuffer);
+    gl.DeleteTextures(1, &texture);
+    execution_.node.driver.drain_errors();
+    const auto bytes = std::as_bytes(std::span(position));
+    execution_.output.reply(request, {bytes.begin(), bytes.end()});
 }
 
 void ReadCommands::RenderMode(RequestId request, GLenum mode, GLenum feedback_type, std::uint32_t buffer_entries) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/execute/texture_commands.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "common/glapi/s3tc.h"
+#include "common/glapi/block_formats.h"
 #include "tileserver/execute/image_check.h"
 
 namespace wall::tileserver {
@@ -14,12 +16,18 @@ namespace {
 
 constexpr std::int32_t kMaxTextureExtent = 16384 + 2;  // texels, with borders
 constexpr std::int32_t kMaxTextureLevel = 16;
+constexpr std::uint32_t kMaxSamples = 64;
+
+bool sane_extent(const ImageExtent& extent) {
+    return std::ranges::all_of(std::array{extent.width, extent.height, extent.depth},
+                               [](std::int32_t side) { return side >= 0 && side <= kMaxTextureExtent; });
+}
 
 }  // namespace
 
 Texture* TextureCommands::bind_to_edit(ClientName name, GLenum target) {
     const auto kind = texture_target(target);
-    if (!kind || glapi::info_of(*kind).images == 0) {
+    if (!kind || glapi::dimensions_of(glapi::info_of(*kind)) == 0) {
         execution_.refuse("no such target");
         return nullptr;
     }
@@ -54,11 +62,11 @@ void TextureCommands::define_image(Texture& texture, GLenum target, std::int32_t
 void TextureCommands::TexImage(ClientName name, GLenum target, std::int32_t level, GLenum internal_format,
                                std::int32_t width, std::int32_t height, std::int32_t depth, std::int32_t border,
                                GLenum format, GLenum type, std::span<const std::byte> pixels) {
-    if (width < 0 || height < 0 || depth < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent ||
-        depth > kMaxTextureExtent)
-        return execution_.refuse("absurd size");
+    if (!sane_extent({width, height, depth})) return execution_.refuse("absurd size");
     if (level < 0 || level > kMaxTextureLevel || border < 0 || border > 1)
         return execution_.refuse("no such level or border");
+    const auto kind = texture_target(target);
+    if (kind && glapi::info_of(*kind).images == 0) return execution_.refuse("no such target");
     if (!pixels.empty() && !image_fits(execution_, format, type, {width, height, depth}, pixels)) return;
     Texture* texture = bind_to_edit(name, target);
     if (texture == nullptr) return;
@@ -94,22 +102,21 @@ void TextureCommands::TexSubImage(ClientName name, GLenum target, std::int32_t l
 }
 
 void TextureCommands::TexCompressed(ClientName name, GLenum target, std::int32_t level, GLenum internal_format,
-                                    std::int32_t width, std::int32_t height, std::span<const std::byte> blocks) {
-    if (width < 0 || height < 0 || width > kMaxTextureExtent || height > kMaxTextureExtent || level < 0 ||
-        level > kMaxTextureLevel)
+                                    std::int32_t width, std::int32_t height, std::int32_t depth,
+                                    std::span<const std::byte> blocks) {
+    if (!sane_extent({width, height, depth}) || level < 0 || level > kMaxTextureLevel)
         return execution_.refuse("absurd size");
-    if (glapi::s3tc_block_bytes(internal_format) == 0 ||
-        blocks.size() != glapi::s3tc_bytes(internal_format, width, height))
+    if (glapi::block_bytes(internal_format) == 0 ||
+        blocks.size() != glapi::blocks_bytes(internal_format, width, height) * static_cast<std::size_t>(depth))
         return execution_.refuse("size does not fit the blocks");
     Texture* texture = bind_to_edit(name, target);
     if (texture == nullptr) return;
     if (!glapi::info_of(texture->target()).blocks) return execution_.refuse("no such target");
     if (!texture->affords_image(target, level, blocks.size()))
         return execution_.refuse("more texture memory than a session may have");
-    if (auto* hash = texture->hash()) hash->TexCompressed(target, level, internal_format, width, height, blocks);
+    if (auto* hash = texture->hash()) hash->TexCompressed(target, level, internal_format, width, height, depth, blocks);
     define_image(*texture, target, level, {internal_format, 0, 0, true}, [&] {
-        execution_.gl.CompressedTexImage2D(target, level, internal_format, width, height, 0,
-                                           static_cast<GLsizei>(blocks.size()), blocks.data());
+        upload_blocks(execution_.gl, texture->target(), target, level, internal_format, {width, height, depth}, blocks);
     });
 }
 
@@ -117,9 +124,9 @@ void TextureCommands::Compress(RequestId request, GLenum internal_format, std::i
                                GLenum format, GLenum type, std::span<const std::byte> pixels) {
     if (width < 1 || height < 1 || width > kMaxTextureExtent || height > kMaxTextureExtent)
         return execution_.refuse("absurd size");
-    if (glapi::s3tc_block_bytes(internal_format) == 0) return execution_.refuse("no such compressed format");
+    if (glapi::block_bytes(internal_format) == 0) return execution_.refuse("no such compressed format");
     if (!image_fits(execution_, format, type, {width, height, 1}, pixels)) return;
-    std::vector<std::byte> blocks(glapi::s3tc_bytes(internal_format, width, height));
+    std::vector<std::byte> blocks(glapi::blocks_bytes(internal_format, width, height));
     execution_.node.driver.neutral_pixel_transfer();
     GLuint texture = 0;
     execution_.gl.CreateTextures(GL_TEXTURE_2D, 1, &texture);
@@ -138,6 +145,40 @@ void TextureCommands::TexParameter(ClientName name, GLenum target, GLenum pname,
     texture->content().note_parameter(pname, values);
     if (auto* hash = texture->hash()) hash->TexParameter(target, pname, p0, p1, p2, p3);
     execution_.gl.TexParameterfv(target, pname, values.data());
+}
+
+void TextureCommands::TexBorderWhole(ClientName name, GLenum target, std::int32_t p0, std::int32_t p1, std::int32_t p2,
+                                     std::int32_t p3) {
+    Texture* texture = bind_to_edit(name, target);
+    if (texture == nullptr) return;
+    const std::array<GLint, 4> values = {p0, p1, p2, p3};
+    texture->content().note_whole_border(values);
+    if (auto* hash = texture->hash()) hash->TexBorderWhole(target, p0, p1, p2, p3);
+    execution_.gl.TexParameterIiv(target, GL_TEXTURE_BORDER_COLOR, values.data());
+}
+
+void TextureCommands::TexImageSamples(ClientName name, GLenum target, std::uint32_t samples, GLenum internal_format,
+                                      std::int32_t width, std::int32_t height, std::int32_t depth,
+                                      std::uint32_t fixed_places) {
+    const auto kind = texture_target(target);
+    if (!kind || !glapi::info_of(*kind).samples) return execution_.refuse("no such target");
+    if (!sane_extent({width, height, depth}) || samples < 1 || samples > kMaxSamples)
+        return execution_.refuse("absurd size");
+    Texture* texture = bind_to_edit(name, target);
+    if (texture == nullptr) return;
+    const auto estimate = std::uint64_t{4} * samples * static_cast<std::uint64_t>(width) *
+                          static_cast<std::uint64_t>(height) * static_cast<std::uint64_t>(depth);
+    if (!texture->affords_image(target, 0, estimate))
+        return execution_.refuse("more texture memory than a session may have");
+    if (auto* hash = texture->hash())
+        hash->TexImageSamples(target, samples, internal_format, width, height, depth, fixed_places);
+    const auto fixed = static_cast<GLboolean>(fixed_places != 0);
+    const auto count = static_cast<GLsizei>(samples);
+    define_image(*texture, target, 0, {internal_format, 0, 0, false}, [&] {
+        if (glapi::info_of(*kind).layers != 0)
+            execution_.gl.TexImage3DMultisample(target, count, internal_format, width, height, depth, fixed);
+        else execution_.gl.TexImage2DMultisample(target, count, internal_format, width, height, fixed);
+    });
 }
 
 // ---- shared content ----

@@ -24,8 +24,12 @@ public:
                      std::int32_t z, std::int32_t width, std::int32_t height, std::int32_t depth, GLenum format,
                      GLenum type, std::span<const std::byte> pixels);
     void TexCompressed(ClientName texture, GLenum target, std::int32_t level, GLenum internal_format,
-                       std::int32_t width, std::int32_t height, std::span<const std::byte> blocks);
+                       std::int32_t width, std::int32_t height, std::int32_t depth, std::span<const std::byte> blocks);
     void TexParameter(ClientName texture, GLenum target, GLenum pname, float p0, float p1, float p2, float p3);
+    void TexBorderWhole(ClientName texture, GLenum target, std::int32_t p0, std::int32_t p1, std::int32_t p2,
+                        std::int32_t p3);
+    void TexImageSamples(ClientName texture, GLenum target, std::uint32_t samples, GLenum internal_format,
+                         std::int32_t width, std::int32_t height, std::int32_t depth, std::uint32_t fixed_places);
     void ShareTexture(RequestId request, ClientName texture, GLenum target, std::uint32_t own_name,
                       std::span<const std::byte> key);
     void TexShared(ClientName texture);

@@ -65,7 +65,7 @@ void TextureDrawnCommands::TexRead(RequestId request, ClientName name, GLenum ta
                                    GLenum type) {
     const auto kind = texture_target(target);
     const auto word = glapi::find_target_word(target);
-    if (!kind || !word || !word->has_images()) return execution_.refuse("no such target");
+    if (!kind || !word || !word->has_images() || word->info->images == 0) return execution_.refuse("no such target");
     if (level < 0 || level > kMaxTextureLevel || slice < 0 || first_row < 0 || rows < 1)
         return execution_.refuse("no such part of an image");
     std::vector<std::byte> answer;

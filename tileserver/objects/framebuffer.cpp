@@ -67,10 +67,12 @@ Result<void> Framebuffer::attach(const glstate::FramebufferAttachment& attachmen
     if (!texture->own(shared)) return fail("more texture memory than a session may have");
     const auto& info = glapi::info_of(*target);
     const GLuint name = texture->content().name();
-    if (info.first_face != 0) {  // by its name: as a layer only where all faces are there
+    if (attachment.layer == glstate::kAllLayers) {
+        gl_.NamedFramebufferTexture(framebuffer_, attachment.point, name, attachment.level);
+    } else if (info.first_face != 0) {  // by its name: as a layer only where all faces are there
         gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
         gl_.FramebufferTexture2D(GL_FRAMEBUFFER, attachment.point, attachment.target, name, attachment.level);
-    } else if (is_3d(*target) || info.layers) {
+    } else if (is_3d(*target) || info.layers != 0) {
         gl_.NamedFramebufferTextureLayer(framebuffer_, attachment.point, name, attachment.level, attachment.layer);
     } else {
         gl_.NamedFramebufferTexture(framebuffer_, attachment.point, name, attachment.level);
@@ -93,9 +95,14 @@ void Framebuffer::find_size() {
             gl_.GetNamedRenderbufferParameteriv(static_cast<GLuint>(name), GL_RENDERBUFFER_WIDTH, &image[0]);
             gl_.GetNamedRenderbufferParameteriv(static_cast<GLuint>(name), GL_RENDERBUFFER_HEIGHT, &image[1]);
         } else {
-            driver_.bind_texture_to_edit(*texture_target(attachment.target), static_cast<GLuint>(name));
-            gl_.GetTexLevelParameteriv(attachment.target, attachment.level, GL_TEXTURE_WIDTH, &image[0]);
-            gl_.GetTexLevelParameteriv(attachment.target, attachment.level, GL_TEXTURE_HEIGHT, &image[1]);
+            const TextureTarget target = *texture_target(attachment.target);
+            const auto& info = glapi::info_of(target);
+            const bool all_faces = info.first_face != 0 && attachment.target == info.target;
+            const GLenum images = all_faces ? info.first_face : attachment.target;
+            driver_.bind_texture_to_edit(target, static_cast<GLuint>(name));
+            gl_.GetTexLevelParameteriv(images, attachment.level, GL_TEXTURE_WIDTH, &image[0]);
+            gl_.GetTexLevelParameteriv(images, attachment.level, GL_TEXTURE_HEIGHT, &image[1]);
+            if (glapi::spatial_dimensions_of(info) == 1) image[1] = std::min(image[1], 1);
         }
         size = {std::min(size[0], image[0]), std::min(size[1], image[1])};
     }

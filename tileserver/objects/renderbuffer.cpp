@@ -19,39 +19,94 @@ bool Renderbuffer::define(std::uint32_t samples, GLenum internal_format, std::in
     const bool stored = driver_.drain_errors() == 0;
     width_ = stored ? width : 0;
     height_ = stored ? height : 0;
+    samples_ = samples;
+    internal_format_ = internal_format;
     renamed();  // framebuffers that it belongs to have another size
     if (width_ != 0 && height_ != 0) clear();
     return has_content(kSampleBytes * std::max(samples, 1u) * static_cast<std::uint64_t>(width_) *
                        static_cast<std::uint64_t>(height_));
 }
 
-/// The driver's memory may have been another session's.
-void Renderbuffer::clear() {
-    GLint depth = 0, stencil = 0, kind = GL_NONE;
+GLenum Renderbuffer::point() const {
+    GLint depth = 0, stencil = 0;
     gl_.GetNamedRenderbufferParameteriv(name_, GL_RENDERBUFFER_DEPTH_SIZE, &depth);
     gl_.GetNamedRenderbufferParameteriv(name_, GL_RENDERBUFFER_STENCIL_SIZE, &stencil);
-    const bool color = depth == 0 && stencil == 0;
-    const GLenum point = color          ? GL_COLOR_ATTACHMENT0
-                         : stencil == 0 ? GL_DEPTH_ATTACHMENT
-                         : depth == 0   ? GL_STENCIL_ATTACHMENT
-                                        : GL_DEPTH_STENCIL_ATTACHMENT;
-    GLuint framebuffer = 0;
-    gl_.CreateFramebuffers(1, &framebuffer);
-    gl_.NamedFramebufferRenderbuffer(framebuffer, point, GL_RENDERBUFFER, name_);
+    if (depth != 0) return stencil != 0 ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT;
+    return stencil != 0 ? GL_STENCIL_ATTACHMENT : GL_COLOR_ATTACHMENT0;
+}
+
+namespace {
+
+/// A framebuffer of the driver for one image.
+class OneImage {
+public:
+    explicit OneImage(const Gl& gl) : gl_(gl) { gl_.CreateFramebuffers(1, &name_); }
+    ~OneImage() { gl_.DeleteFramebuffers(1, &name_); }
+    OneImage(const OneImage&) = delete;
+    GLuint name() const { return name_; }
+
+private:
+    const Gl& gl_;
+    GLuint name_ = 0;
+};
+
+GLbitfield buffers_at(GLenum point) {
+    switch (point) {
+        case GL_DEPTH_ATTACHMENT: return GL_DEPTH_BUFFER_BIT;
+        case GL_STENCIL_ATTACHMENT: return GL_STENCIL_BUFFER_BIT;
+        case GL_DEPTH_STENCIL_ATTACHMENT: return GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
+        default: return GL_COLOR_BUFFER_BIT;
+    }
+}
+
+}  // namespace
+
+void Renderbuffer::read(std::int32_t first, std::int32_t rows, GLenum format, GLenum type, std::span<std::byte> to) {
+    const OneImage framebuffer(gl_);
+    gl_.NamedFramebufferRenderbuffer(framebuffer.name(), point(), GL_RENDERBUFFER, name_);
+    driver_.forget_target();
+    driver_.neutral_pixel_transfer();
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
+    gl_.ReadnPixels(0, first, width_, rows, format, type, static_cast<GLsizei>(to.size()), to.data());
+    driver_.drain_errors();
+}
+
+// By way of a texture of the same format, which takes pixels.
+void Renderbuffer::write(std::int32_t first, std::int32_t rows, GLenum format, GLenum type,
+                         std::span<const std::byte> from) {
+    const OneImage source(gl_), target(gl_);
+    GLuint texture = 0;
+    gl_.CreateTextures(GL_TEXTURE_2D, 1, &texture);
+    driver_.neutral_pixel_transfer();
+    driver_.bind_texture_to_edit(TextureTarget::t2d, texture);
+    gl_.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal_format_), width_, rows, 0, format, type, from.data());
+    gl_.NamedFramebufferTexture(source.name(), point(), texture, 0);
+    gl_.NamedFramebufferRenderbuffer(target.name(), point(), GL_RENDERBUFFER, name_);
+    driver_.disable_scissor();
+    gl_.BlitNamedFramebuffer(source.name(), target.name(), 0, 0, width_, rows, 0, first, width_, first + rows,
+                             buffers_at(point()), GL_NEAREST);
+    driver_.forget_texture(texture);
+    gl_.DeleteTextures(1, &texture);
+    driver_.drain_errors();
+}
+
+/// The driver's memory may have been another session's.
+void Renderbuffer::clear() {
+    const OneImage framebuffer(gl_);
+    const GLuint to = framebuffer.name();
+    const GLbitfield buffers = buffers_at(point());
+    GLint kind = GL_NONE;
+    gl_.NamedFramebufferRenderbuffer(to, point(), GL_RENDERBUFFER, name_);
     driver_.disable_scissor();
     constexpr std::array<GLint, 4> kZero{};
     constexpr std::array<GLfloat, 4> kZeroReal{};
-    if (color) {
-        gl_.GetNamedFramebufferAttachmentParameteriv(framebuffer, point, GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE,
-                                                     &kind);
-        if (kind == GL_INT || kind == GL_UNSIGNED_INT)
-            gl_.ClearNamedFramebufferiv(framebuffer, GL_COLOR, 0, kZero.data());
-        else gl_.ClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, kZeroReal.data());
-    } else {
-        if (depth != 0) gl_.ClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, kZeroReal.data());
-        if (stencil != 0) gl_.ClearNamedFramebufferiv(framebuffer, GL_STENCIL, 0, kZero.data());
+    if (buffers & GL_COLOR_BUFFER_BIT) {
+        gl_.GetNamedFramebufferAttachmentParameteriv(to, point(), GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE, &kind);
+        if (kind == GL_INT || kind == GL_UNSIGNED_INT) gl_.ClearNamedFramebufferiv(to, GL_COLOR, 0, kZero.data());
+        else gl_.ClearNamedFramebufferfv(to, GL_COLOR, 0, kZeroReal.data());
     }
-    gl_.DeleteFramebuffers(1, &framebuffer);
+    if (buffers & GL_DEPTH_BUFFER_BIT) gl_.ClearNamedFramebufferfv(to, GL_DEPTH, 0, kZeroReal.data());
+    if (buffers & GL_STENCIL_BUFFER_BIT) gl_.ClearNamedFramebufferiv(to, GL_STENCIL, 0, kZero.data());
     driver_.drain_errors();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/objects/texture_content.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "common/glapi/image.h"
@@ -23,6 +24,7 @@ namespace {
 struct DriverImage {
     ImageExtent extent;
     GLint compressed_bytes = 0;  ///< 0: it is not compressed
+    GLint texel_bits = 0;        ///< of all samples together
 };
 
 DriverImage driver_image(const Gl& gl, GLenum image_target, GLint level) {
@@ -30,7 +32,16 @@ DriverImage driver_image(const Gl& gl, GLenum image_target, GLint level) {
     gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_WIDTH, &image.extent.width);
     gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_HEIGHT, &image.extent.height);
     gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_DEPTH, &image.extent.depth);
-    GLint compressed = 0;
+    for (const GLenum component :
+         {GL_TEXTURE_RED_SIZE, GL_TEXTURE_GREEN_SIZE, GL_TEXTURE_BLUE_SIZE, GL_TEXTURE_ALPHA_SIZE,
+          GL_TEXTURE_LUMINANCE_SIZE, GL_TEXTURE_INTENSITY_SIZE, GL_TEXTURE_DEPTH_SIZE, GL_TEXTURE_STENCIL_SIZE}) {
+        GLint bits = 0;
+        gl.GetTexLevelParameteriv(image_target, level, component, &bits);
+        image.texel_bits += bits;
+    }
+    GLint samples = 0, compressed = 0;
+    gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_SAMPLES, &samples);
+    image.texel_bits *= std::max(samples, 1);
     gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_COMPRESSED, &compressed);
     if (compressed != 0)
         gl.GetTexLevelParameteriv(image_target, level, GL_TEXTURE_COMPRESSED_IMAGE_SIZE, &image.compressed_bytes);
@@ -39,8 +50,10 @@ DriverImage driver_image(const Gl& gl, GLenum image_target, GLint level) {
 
 std::uint64_t estimate(const DriverImage& image) {
     if (image.compressed_bytes != 0) return static_cast<std::uint64_t>(image.compressed_bytes);
-    return std::uint64_t{4} * static_cast<std::uint64_t>(image.extent.width) *
-           static_cast<std::uint64_t>(image.extent.height) * static_cast<std::uint64_t>(image.extent.depth);
+    // Drivers store texels of one to four bytes as four.
+    const auto texel = std::max<std::uint64_t>((static_cast<std::uint64_t>(image.texel_bits) + 7) / 8, 4);
+    return texel * static_cast<std::uint64_t>(image.extent.width) * static_cast<std::uint64_t>(image.extent.height) *
+           static_cast<std::uint64_t>(image.extent.depth);
 }
 
 }  // namespace
@@ -66,10 +79,12 @@ std::shared_ptr<TextureContent> TextureContent::copy() const {
     auto made = std::make_shared<TextureContent>(driver_, target_);
     made->images_ = images_;
     made->parameters_ = parameters_;
+    made->whole_border_ = whole_border_;
     made->bytes_ = bytes_;
     driver_.neutral_pixel_transfer();
     driver_.bind_texture_to_edit(target_, made->name_);
     for (const auto& [pname, value] : parameters_) gl.TexParameterfv(gl_target(target_), pname, value.data());
+    if (whole_border_) gl.TexParameterIiv(gl_target(target_), GL_TEXTURE_BORDER_COLOR, whole_border_->data());
     const auto base = parameters_.find(GL_TEXTURE_BASE_LEVEL);
     const auto base_level = base == parameters_.end() ? 0 : static_cast<std::int32_t>(base->second[0]);
     for (const auto& [where, image] : images_)
@@ -85,20 +100,30 @@ void TextureContent::copy_image(GLenum image_target, std::int32_t level, const I
                                 const TextureContent& to) const {
     const Gl& gl = driver_.gl();
     driver_.bind_texture_to_edit(target_, name_);
-    const auto [extent, compressed_bytes] = driver_image(gl, image_target, level);
+    const DriverImage image = driver_image(gl, image_target, level);
+    const ImageExtent& extent = image.extent;
     const std::uint64_t bytes =
         format.compressed
-            ? static_cast<std::uint64_t>(compressed_bytes)
+            ? static_cast<std::uint64_t>(image.compressed_bytes)
             : glapi::image_bytes(format.format, format.type, extent.width, extent.height, extent.depth).value_or(0);
     if (bytes == 0) return;
     std::vector<std::byte> pixels(bytes);
     if (format.compressed) gl.GetCompressedTexImage(image_target, level, pixels.data());
     else gl.GetTexImage(image_target, level, format.format, format.type, pixels.data());
     driver_.bind_texture_to_edit(target_, to.name_);
-    if (format.compressed)
-        gl.CompressedTexImage2D(image_target, level, format.internal_format, extent.width, extent.height, 0,
-                                static_cast<GLsizei>(bytes), pixels.data());
+    if (format.compressed) upload_blocks(gl, target_, image_target, level, format.internal_format, extent, pixels);
     else upload_image(gl, target_, image_target, level, format, extent, pixels.data());
+}
+
+void upload_blocks(const Gl& gl, TextureTarget target, GLenum image_target, GLint level, GLenum internal_format,
+                   const ImageExtent& extent, std::span<const std::byte> blocks) {
+    const auto bytes = static_cast<GLsizei>(blocks.size());
+    if (is_3d(target))
+        gl.CompressedTexImage3D(image_target, level, internal_format, extent.width, extent.height, extent.depth, 0,
+                                bytes, blocks.data());
+    else
+        gl.CompressedTexImage2D(image_target, level, internal_format, extent.width, extent.height, 0, bytes,
+                                blocks.data());
 }
 
 void upload_image(const Gl& gl, TextureTarget target, GLenum image_target, GLint level,

@@ -38,7 +38,12 @@ public:
     void note_image(GLenum image_target, std::int32_t level, const ImageFormat* format);
     /// Of one image, by estimate.
     std::uint64_t image_bytes(GLenum image_target, std::int32_t level) const;
-    void note_parameter(GLenum pname, const std::array<float, 4>& value) { parameters_[pname] = value; }
+    void note_parameter(GLenum pname, const std::array<float, 4>& value) {
+        parameters_[pname] = value;
+        if (pname == GL_TEXTURE_BORDER_COLOR) whole_border_.reset();
+    }
+    /// The border colour of whole numbers, instead of any of before.
+    void note_whole_border(const std::array<GLint, 4>& value) { whole_border_ = value; }
     /// The driver has made mipmaps of the base level.
     void note_mipmaps() { generated_ = true; }
 
@@ -59,6 +64,7 @@ private:
     GLuint name_ = 0;
     std::map<std::pair<GLenum, std::int32_t>, Image> images_;
     std::map<GLenum, std::array<float, 4>> parameters_;
+    std::optional<std::array<GLint, 4>> whole_border_;
     bool generated_ = false;  // the driver has made mipmaps
     std::uint64_t bytes_ = 0;
 };
@@ -67,5 +73,9 @@ private:
 void upload_image(const Gl& gl, TextureTarget target, GLenum image_target, GLint level,
                   const TextureContent::ImageFormat& format, const ImageExtent& extent, const void* pixels,
                   GLint border = 0);
+
+/// The same of a compressed one.
+void upload_blocks(const Gl& gl, TextureTarget target, GLenum image_target, GLint level, GLenum internal_format,
+                   const ImageExtent& extent, std::span<const std::byte> blocks);
 
 }  // namespace wall::tileserver

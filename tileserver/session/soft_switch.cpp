@@ -13,17 +13,21 @@ std::uint64_t textures_id(const SoftContext& context) {
     return context.state.ids[static_cast<std::size_t>(glstate::Category::textures)];
 }
 
+/// 0: the session has no such texture.
+GLuint driver_name(const SessionReplica& session, ClientName name, TextureTarget target) {
+    const Texture* texture = session.objects.find<Texture>(Texture::key(name, target));
+    return texture != nullptr && texture->target() == target ? texture->content().name() : 0;
+}
+
 void look_up_textures(SessionReplica& session, SoftContext& context) {
     BoundTextures& bound = context.textures;
     TextureNames found{};
-    for (unsigned unit = 0; unit < kTextureUnits; ++unit) {
-        for (std::size_t target = 0; target < kTextureTargets; ++target) {
-            const std::uint32_t name = (context.state.textures.*glstate::kTextureBindings[target])[unit];
-            const auto key = Texture::key(ClientName(name), static_cast<TextureTarget>(target));
-            const Texture* texture = session.objects.find<Texture>(key);
-            if (texture != nullptr && texture->target() == static_cast<TextureTarget>(target))
-                found[unit][target] = texture->content().name();
-        }
+    for (std::size_t target = 0; target < kTextureTargets; ++target) {
+        const auto kind = static_cast<TextureTarget>(target);
+        const auto& names = context.state.textures.*glstate::kTextureBindings[target];
+        const GLuint otherwise = driver_name(session, ClientName(), kind);
+        for (unsigned unit = 0; unit < kTextureUnits; ++unit)
+            found[unit][target] = names[unit] == 0 ? otherwise : driver_name(session, ClientName(names[unit]), kind);
     }
     if (found != bound.bindings.names) bound.bindings = {found == TextureNames{} ? 0 : glstate::next_value_id(), found};
     bound.state_id = textures_id(context);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A program that draws a picture into a texture once, and shows it in every frame until it is ended: what it shows,
-// only the nodes have. Also a second texture that it changes in part from memory after it was drawn, and mipmaps.
+// only the nodes have. Also a second texture that it changes in part from memory after it was drawn, mipmaps, and a
+// renderbuffer.
 //
 // drawn_once [--size WxH] [--anew-at N]   --anew-at: draws the picture again in frame N
 #include <array>
@@ -36,10 +37,8 @@ void quad(float x0, float y0, float x1, float y1) {
     glEnd();
 }
 
-/// Squares of many colours, one over the other.
-void draw_picture(GLuint framebuffer, GLuint texture) {
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+/// Squares of many colours, one over the other, in the framebuffer that is bound.
+void draw_squares() {
     glViewport(0, 0, kTexels, kTexels);
     glClearColor(0.1f, 0.2f, 0.3f, 1);
     glClear(GL_COLOR_BUFFER_BIT);
@@ -50,6 +49,12 @@ void draw_picture(GLuint framebuffer, GLuint texture) {
                   static_cast<float>(i % 10) / 9);
         quad(x, y, x + 0.3f, y + 0.3f);
     }
+}
+
+void draw_picture(GLuint framebuffer, GLuint texture) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+    draw_squares();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glBindTexture(GL_TEXTURE_2D, texture);
     glGenerateMipmap(GL_TEXTURE_2D);
@@ -67,6 +72,26 @@ void show(GLuint texture, float x0, float y0, float x1, float y1) {
     quad(x0, y0, x1, y1);
 }
 
+/// A framebuffer whose picture is in a renderbuffer.
+GLuint make_renderbuffer() {
+    GLuint framebuffer = 0, renderbuffer = 0;
+    glGenFramebuffers(1, &framebuffer);
+    glGenRenderbuffers(1, &renderbuffer);
+    glBindRenderbuffer(GL_RENDERBUFFER, renderbuffer);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, kTexels, kTexels);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, renderbuffer);
+    return framebuffer;
+}
+
+/// Copies a part of it to the same part of the window.
+void show_renderbuffer(GLuint framebuffer) {
+    constexpr int kFrom = 20, kTo = 150;
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+    glBlitFramebuffer(kFrom, kFrom, kTo, kTo, kFrom, kFrom, kTo, kTo, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -79,12 +104,15 @@ int main(int argc, char** argv) {
     const auto window = golden::Window::by_glx(size, {});
     GLuint framebuffer = 0;
     glGenFramebuffers(1, &framebuffer);
-    const GLuint whole = make_texture(), changed = make_texture();
+    const GLuint whole = make_texture(), changed = make_texture(), renderbuffer = make_renderbuffer();
     for (int frame = 0;; ++frame) {
         if (frame == 0 || frame == anew_at) {
             draw_picture(framebuffer, whole);
             draw_picture(framebuffer, changed);
             change_part(changed);
+            glBindFramebuffer(GL_FRAMEBUFFER, renderbuffer);
+            draw_squares();
+            glBindFramebuffer(GL_FRAMEBUFFER, 0);
         }
         glViewport(0, 0, size.width, size.height);
         glClearColor(0, 0, 0, 1);
@@ -94,6 +122,7 @@ int main(int argc, char** argv) {
         show(whole, -1, -1, 0.2f, 1);
         show(changed, 0.2f, -1, 1, 0.5f);
         show(whole, 0.4f, 0.6f, 0.7f, 0.9f);  // from the mipmaps
+        show_renderbuffer(renderbuffer);
         window->swap();
         std::this_thread::sleep_for(kFrame);
     }

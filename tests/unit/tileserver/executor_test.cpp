@@ -573,7 +573,7 @@ protected:
         session.open_surface(kWidth, kHeight, kWindow);
         Batch batch;
         pack::TexCompressed(batch.buffer(), ClientName(1), GL_TEXTURE_2D, 0, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, kSize,
-                            kSize, blocks(kSize));
+                            kSize, 1, blocks(kSize));
         session.expect_run(batch);
         const auto bytes_before = session.session.objects.bytes();
         EXPECT_EQ(bytes_before, kLeastObjectBytes + blocks(kSize).size());
@@ -606,7 +606,7 @@ TEST_F(RefusedImageTest, LargerThanTheDriverAllows) {
                   constexpr int kTooWide = 16384 + 2;
                   const std::vector<std::byte> row(static_cast<std::size_t>(kTooWide + 3) / 4 * 16);
                   pack::TexCompressed(b, ClientName(1), GL_TEXTURE_2D, 0, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, kTooWide, 1,
-                                      row);
+                                      1, row);
               }),
               blocks(kSize));
 }

@@ -174,7 +174,7 @@ def _table(name, canonical, value):
 
 def _array_length(i, p, commands):
     if p.len and p.len.startswith("COMPSIZE"):
-        family, _ = commands.family_of(i.name)
+        family = max((f for f in commands.families if i.name.startswith(f)), key=len)
         return f"param_components(ParamFamily::{family}, pname)"
     assert p.len, f"{i.place}: {i.name}: {p.name} has no length in gl.xml: word `record`"
     return p.len

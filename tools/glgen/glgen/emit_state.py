@@ -144,7 +144,7 @@ def _getters(model, registry):
         for word, first, f, components in e.getters:
             rows.append((registry.enums[word],
                          f"    {{{word}, ValueKind::{value_kind(e, f)}, {components}, el::{e.name}::id + {first}, "
-                         f"{f.offset}, IndexRule::{_rule(e)}, {e.unit_stride}}},\n"))
+                         f"{f.offset}, IndexRule::{_rule(e)}, {e.unit_stride}, {e.units}}},\n"))
     rows.sort()
     assert len({r[0] for r in rows}) == len(rows), "state.toml: two elements answer the same glGet word"
     return f"const std::array<GetEntry, {len(rows)}> kGetTable = {{{{\n" + "".join(r[1] for r in rows) + "}};\n" \
@@ -156,7 +156,8 @@ def _caps(model, registry):
     for e in model.elements:
         for word, first in e.caps:
             rows.append((registry.enums[word],
-                         f"    {{{word}, el::{e.name}::id + {first}, IndexRule::{_rule(e)}, {e.unit_stride}}},\n"))
+                         f"    {{{word}, el::{e.name}::id + {first}, IndexRule::{_rule(e)}, {e.unit_stride}, "
+                         f"{e.units}}},\n"))
     rows.sort()
     return f"const std::array<CapEntry, {len(rows)}> kCapTable = {{{{\n" + "".join(r[1] for r in rows) + "}};\n" \
         "const std::span<const CapEntry> kCapEntries = kCapTable;\n\n"

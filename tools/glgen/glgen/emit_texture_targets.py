@@ -23,12 +23,12 @@ struct TextureTargetInfo {
     GLenum size_limit;      ///< glGet's word for the largest image
     GLint usual_size;       ///< what that is where no node has said so
     std::uint8_t images;    ///< dimensions of the commands that give it images; 0: it gets none by such
-    bool layers;            ///< the last of these dimensions counts layers, which mipmaps keep
+    std::uint8_t layers;    ///< 0: none; else the last dimension counts them, by as many, and mipmaps keep them
+    bool samples;           ///< texels have several samples
     bool square;            ///< an image is as high as it is wide
     bool mipmaps;           ///< false: it has level 0 only, and no border
     bool repeats;           ///< false: coordinates are texels, and nothing is outside but the edge
-    bool blocks;            ///< images may be of S3TC
-    bool later;             ///< nodes know it, programs do not have it yet
+    bool blocks;            ///< images may be compressed in blocks
 };
 
 """
@@ -44,11 +44,11 @@ def targets_header(targets):
     out.append(_INFO)
     out.append("inline constexpr std::array<TextureTargetInfo, kTextureTargets> kTextureTargetInfo = {{\n")
     out += [f"    {{{', '.join(_row(t))}}},\n" for t in targets]
-    out.append("}};\n\n/// A type of GLSL that looks up a texture, for targets that programs have.\n"
+    out.append("}};\n\n/// A type of GLSL that looks up a texture.\n"
                "struct SamplerType {\n    GLenum type;\n    TextureTarget target;\n};\n"
                "inline constexpr auto kSamplerTypes = std::to_array<SamplerType>({\n")
     out += [f"    {{{type_}, TextureTarget::{t.constant}}},\n"
-            for t in targets if not t.says("later") for type_ in t.samplers]
+            for t in targets for type_ in t.samplers]
     out.append("});\n\n}  // namespace wall::glapi\n")
     return "".join(out)
 
@@ -56,11 +56,11 @@ def targets_header(targets):
 def _row(t):
     words = {"target": t.gl, "proxy": t.proxy, "first_face": t.first_face, "global": hex(t.says("global", 0)),
              "size_limit": t.size_name}
-    flags = (("layers", False), ("square", False), ("mipmaps", True), ("repeats", True), ("blocks", False),
-             ("later", False))
+    flags = (("samples", False), ("square", False), ("mipmaps", True), ("repeats", True), ("blocks", False))
     return [f".id = TextureTarget::{t.constant}",
             *(f".{name} = {word or 0}" for name, word in words.items()),
             f".usual_size = {t.size_otherwise}", f".images = {t.says('images')}",
+            f".layers = {t.says('layers', 0)}",
             *(f".{key} = {str(t.says(key, otherwise)).lower()}" for key, otherwise in flags)]
 
 

@@ -118,6 +118,11 @@ class Element:
         return {"unit": 1, "client_unit": 1, "coord": 4}.get(self.index, 0)
 
     @property
+    def units(self):
+        """How many units have a value; 0: it is not by units."""
+        return self.count // self.unit_stride if self.unit_stride else 0
+
+    @property
     def family(self):
         return self.param.split()[0] if self.param else None
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from . import data
 
 _KEYS = {"images", "layers", "faces", "square", "mipmaps", "repeats", "blocks", "proxy", "size", "samplers", "global",
-         "later"}
+         "samples"}
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,10 @@ class Target:
 
     @property
     def samplers(self):
-        return [f"GL_SAMPLER_{word}" for word in self.keys.get("samplers", "").split()]
+        words = self.keys.get("samplers", "").split()
+        whole = [word for word in words if not word.endswith("_SHADOW")]
+        return ([f"GL_SAMPLER_{word}" for word in words] +
+                [f"GL_{kind}_SAMPLER_{word}" for kind in ("INT", "UNSIGNED_INT") for word in whole])
 
     def says(self, key, otherwise=False):
         return self.keys.get(key, otherwise)
@@ -68,8 +71,9 @@ def _target(name, keys, elements, gl):
     binding = elements.get(f"texture_binding_{name}")
     assert binding, f"no element texture_binding_{name} in state.toml"
     enabled = elements.get(f"texture_{name}_enabled")
-    assert not enabled or enabled.count == binding.count, f"{enabled.name} and {binding.name} have other units"
+    assert not enabled or enabled.count <= binding.count, f"{enabled.name} has more units than {binding.name}"
     assert keys["images"] in range(4), "images of 0 to 3 dimensions"
+    assert keys.get("layers", 0) in (0, 1, 6), "layers by ones or sixes"
     size_name, size = keys["size"].split()
     target = Target(name, binding, enabled, keys, size_name, int(size))
     for word in filter(None, (target.gl, target.proxy, target.first_face, size_name, *target.samplers)):

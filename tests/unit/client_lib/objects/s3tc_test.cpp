@@ -13,9 +13,9 @@ std::vector<std::byte> bytes(std::initializer_list<int> values) {
 }
 
 TEST(S3tc, Sizes) {
-    EXPECT_EQ(s3tc_bytes(GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 5, 4), 16u);
-    EXPECT_EQ(s3tc_bytes(GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, 1, 1), 16u);
-    EXPECT_EQ(s3tc_bytes(GL_RGBA, 4, 4), 0u);
+    EXPECT_EQ(blocks_bytes(GL_COMPRESSED_RGB_S3TC_DXT1_EXT, 5, 4), 16u);
+    EXPECT_EQ(blocks_bytes(GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, 1, 1), 16u);
+    EXPECT_EQ(blocks_bytes(GL_RGBA, 4, 4), 0u);
 }
 
 TEST(S3tc, FourAndThreeColours) {

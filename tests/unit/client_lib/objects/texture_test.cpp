@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Textures: the table of internal formats against Mesa, what is sent to a node and what is not.
 #include "client_lib/objects/texture.h"
+
+#include <array>
+#include <limits>
+
+#include "client_lib/context/texture_units.h"
 #include "client_lib/objects/texture_formats.h"
 #include "common/glapi/decoder.h"
 #include "common/glstate/queries.h"
@@ -19,6 +24,49 @@ GLint level_parameter(const glapi::GlFunctions& gl, GLenum pname) {
     return value;
 }
 
+void expect_types(const glapi::GlFunctions& gl, const TextureFormat& row, const ComponentBits& bits) {
+    const auto expect_type = [&](unsigned size, GLenum pname) {
+        EXPECT_EQ(size ? row.component_type : 0, static_cast<GLenum>(level_parameter(gl, pname))) << std::hex << pname;
+    };
+    expect_type(bits.red, GL_TEXTURE_RED_TYPE);
+    expect_type(bits.alpha, GL_TEXTURE_ALPHA_TYPE);
+    expect_type(bits.luminance, GL_TEXTURE_LUMINANCE_TYPE);
+    expect_type(bits.intensity, GL_TEXTURE_INTENSITY_TYPE);
+    expect_type(bits.depth, GL_TEXTURE_DEPTH_TYPE);
+}
+
+TEST(TextureFormats, AreDrawnToAsInMesa) {
+    const auto mesa = test::MesaContext::open();
+    if (!mesa) GTEST_SKIP() << "no Mesa here";
+    const auto& gl = mesa->gl;
+    GLuint name = 0, framebuffer = 0;
+    gl.GenTextures(1, &name);
+    gl.BindTexture(GL_TEXTURE_2D, name);
+    gl.GenFramebuffers(1, &framebuffer);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    unsigned compared = 0;
+    for (GLint internal = 1; internal < 0x9100; ++internal) {
+        const TextureFormat* row = find_texture_format(internal);
+        if (!row || row->base == GL_DEPTH_COMPONENT || row->base == GL_DEPTH_STENCIL || row->base == GL_STENCIL_INDEX)
+            continue;
+        SCOPED_TRACE(testing::Message() << std::hex << internal);
+        gl.TexImage2D(GL_TEXTURE_2D, 0, internal, 4, 4, 0, row->whole() ? GL_RGBA_INTEGER : GL_RGBA, GL_UNSIGNED_BYTE,
+                      nullptr);
+        ASSERT_EQ(gl.GetError(), GLenum{GL_NO_ERROR});
+        gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, name, 0);
+        const GLenum expected = row->use == ImageUse::drawn     ? GLenum{GL_FRAMEBUFFER_COMPLETE}
+                                : row->use == ImageUse::sampled ? GLenum{GL_FRAMEBUFFER_UNSUPPORTED}
+                                                                : GLenum{GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT};
+        EXPECT_EQ(gl.CheckFramebufferStatus(GL_FRAMEBUFFER), expected);
+        GLint encoding = 0;
+        gl.GetFramebufferAttachmentParameteriv(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0,
+                                               GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING, &encoding);
+        EXPECT_EQ(row->srgb, encoding == GL_SRGB);
+        ++compared;
+    }
+    EXPECT_GT(compared, 150u);
+}
+
 TEST(TextureFormats, AreWhatMesaAnswers) {
     const auto mesa = test::MesaContext::open();
     if (!mesa) GTEST_SKIP() << "no Mesa here";
@@ -35,10 +83,14 @@ TEST(TextureFormats, AreWhatMesaAnswers) {
                                   {GL_RGB, GL_UNSIGNED_BYTE_3_3_2},
                                   {GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV},
                                   {GL_LUMINANCE, GL_UNSIGNED_BYTE},
+                                  {GL_RGBA_INTEGER, GL_INT},
                                   {GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT},
+                                  {GL_DEPTH_COMPONENT, GL_UNSIGNED_INT},
+                                  {GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8},
+                                  {GL_STENCIL_INDEX, GL_UNSIGNED_BYTE},
                                   {GL_DEPTH_COMPONENT, GL_FLOAT}};
     unsigned compared = 0;
-    for (GLint internal = 1; internal < 0x9000; ++internal) {
+    for (GLint internal = 1; internal < 0x9100; ++internal) {
         const TextureFormat* row = find_texture_format(internal);
         if (!row) continue;
         for (const Pixels& p : kPixels) {
@@ -56,7 +108,8 @@ TEST(TextureFormats, AreWhatMesaAnswers) {
             EXPECT_EQ(bits.intensity, level_parameter(gl, GL_TEXTURE_INTENSITY_SIZE));
             EXPECT_EQ(bits.depth, level_parameter(gl, GL_TEXTURE_DEPTH_SIZE));
             EXPECT_EQ(bits.stencil, level_parameter(gl, GL_TEXTURE_STENCIL_SIZE));
-            EXPECT_EQ(row->compressed, level_parameter(gl, GL_TEXTURE_COMPRESSED) != 0);
+            EXPECT_EQ(row->compressed(), level_parameter(gl, GL_TEXTURE_COMPRESSED) != 0);
+            expect_types(gl, *row, bits);
             ++compared;
         }
     }
@@ -221,17 +274,16 @@ TEST_F(TextureApiTest, Errors) {
     EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
 }
 
-TEST_F(TextureApiTest, ProgramsHaveTheTargetsThatAreNotForLater) {
+TEST_F(TextureApiTest, ProgramsHaveAllTargets) {
     for (const auto& info : glapi::kTextureTargetInfo) {
         SCOPED_TRACE(static_cast<unsigned>(info.id));
         const auto name = static_cast<GLuint>(info.id) + 1;
         gl().BindTexture(c, info.target, name);
-        EXPECT_EQ(error(), info.later ? GLenum{GL_INVALID_ENUM} : GLenum{GL_NO_ERROR});
+        EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
         if (info.proxy != 0) {
             gl().BindTexture(c, info.proxy, name);
             EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
         }
-        if (info.later) continue;
         GLint bound = 0;
         gl().GetIntegerv(c, binding_of(info), &bound);
         EXPECT_EQ(static_cast<GLuint>(bound), name);
@@ -254,7 +306,7 @@ TEST_F(TextureApiTest, ImagesOfOtherDimensionsAreRefused) {
     for (const auto& info : glapi::kTextureTargetInfo)
         for (unsigned dimensions = 1; dimensions <= 3; ++dimensions) {
             SCOPED_TRACE(testing::Message() << static_cast<unsigned>(info.id) << ' ' << dimensions);
-            const bool fits = !info.later && dimensions == info.images;
+            const bool fits = dimensions == info.images;
             for (unsigned face = 0; !fits && face < glapi::face_count(info); ++face)
                 EXPECT_EQ(define(glapi::image_target(info, face), dimensions), GLenum{GL_INVALID_ENUM});
             if (!fits && info.proxy != 0) {
@@ -274,7 +326,7 @@ TEST_F(TextureApiTest, ParametersGoByTheTargetsRules) {
     };
     const GLenum kNone = GL_NO_ERROR, kEnum = GL_INVALID_ENUM;
     for (const auto& info : glapi::kTextureTargetInfo) {
-        if (info.later) continue;
+        if (info.samples || info.images == 0) continue;  // those have no filters
         SCOPED_TRACE(static_cast<unsigned>(info.id));
         EXPECT_EQ(value_of(info.target, GL_TEXTURE_MIN_FILTER), info.mipmaps ? GL_NEAREST_MIPMAP_LINEAR : GL_LINEAR);
         EXPECT_EQ(value_of(info.target, GL_TEXTURE_WRAP_R), info.repeats ? GL_REPEAT : GL_CLAMP_TO_EDGE);
@@ -286,6 +338,148 @@ TEST_F(TextureApiTest, ParametersGoByTheTargetsRules) {
         gl().GenerateMipmap(c, info.target);  // of no image
         EXPECT_EQ(error(), info.mipmaps ? GLenum{GL_INVALID_OPERATION} : kEnum);
     }
+}
+
+TEST_F(TextureApiTest, ABorderColorOfWholeNumbersIsKeptToTheBit) {
+    gl().BindTexture(c, GL_TEXTURE_2D, 1);
+    const std::array<GLint, 4> signed_border{-1, std::numeric_limits<GLint>::min(), 7, 0};
+    gl().TexParameterIiv(c, GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, signed_border.data());
+    std::array<GLint, 4> read{};
+    gl().GetTexParameterIiv(c, GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, read.data());
+    EXPECT_EQ(read, signed_border);
+    const Texture& texture = *c.share().textures.find(1);
+    EXPECT_EQ(sent(texture, 0), Names{"TexBorderWhole"});
+    const auto known = texture.stamp;
+    const std::array<GLuint, 4> zero{};
+    gl().TexParameterIuiv(c, GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, zero.data());
+    EXPECT_EQ(sent(texture, known), Names{"TexBorderWhole"}) << "minus zero is another number";
+    const std::array<GLfloat, 4> real{};
+    gl().TexParameterfv(c, GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, real.data());
+    EXPECT_EQ(sent(texture, known), Names{"TexParameter"});
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+}
+
+TEST_F(TextureApiTest, SwizzlesAreFourParameters) {
+    gl().BindTexture(c, GL_TEXTURE_2D, 1);
+    const std::array<GLfloat, 4> all{GL_ONE, GL_RED, GL_BLUE, GL_ZERO};
+    gl().TexParameterfv(c, GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, all.data());
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    std::array<GLint, 4> read{};
+    gl().GetTexParameteriv(c, GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, read.data());
+    EXPECT_EQ(read, (std::array<GLint, 4>{GL_ONE, GL_RED, GL_BLUE, GL_ZERO}));
+    gl().GetTexParameteriv(c, GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_G, read.data());
+    EXPECT_EQ(read[0], GL_RED);
+    EXPECT_EQ(sent(*c.share().textures.find(1), 0), (Names{"TexParameter", "TexParameter", "TexParameter"}));
+    const std::array<GLfloat, 4> bad{GL_RED, GL_RED, GL_RED, GL_LUMINANCE};
+    gl().TexParameterfv(c, GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, bad.data());
+    EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
+}
+
+TEST_F(TextureApiTest, ArraysHaveLayers) {
+    gl().BindTexture(c, GL_TEXTURE_1D_ARRAY, 1);
+    gl().TexImage2D(c, GL_TEXTURE_1D_ARRAY, 0, GL_RGBA8, 8, 3, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    gl().TexImage2D(c, GL_TEXTURE_1D_ARRAY, 1, GL_RGBA8, 4, 3, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().TexImage2D(c, GL_TEXTURE_1D_ARRAY, 0, GL_RGBA8, 8, 1 << 20, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+    gl().BindTexture(c, GL_TEXTURE_CUBE_MAP_ARRAY, 2);
+    gl().TexImage3D(c, GL_TEXTURE_CUBE_MAP_ARRAY, 0, GL_RGBA8, 8, 8, 8, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE}) << "faces come by sixes";
+    gl().TexImage3D(c, GL_TEXTURE_CUBE_MAP_ARRAY, 0, GL_RGBA8, 8, 8, 12, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    const std::vector<std::byte> blocks(2 * 2 * 8 * 3);
+    gl().BindTexture(c, GL_TEXTURE_2D_ARRAY, 3);
+    gl().CompressedTexImage3D(c, GL_TEXTURE_2D_ARRAY, 0, GL_COMPRESSED_RED_RGTC1, 8, 8, 3, 0,
+                              static_cast<GLsizei>(blocks.size()), blocks.data());
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().BindTexture(c, GL_TEXTURE_3D, 4);
+    gl().CompressedTexImage3D(c, GL_TEXTURE_3D, 0, GL_COMPRESSED_RED_RGTC1, 8, 8, 3, 0,
+                              static_cast<GLsizei>(blocks.size()), blocks.data());
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+}
+
+TEST_F(TextureApiTest, WholeNumbersKeepEveryBit) {
+    gl().BindTexture(c, GL_TEXTURE_2D, 1);
+    const std::array<GLuint, 4> texels{0xffffffff, 0x80000001, 3, 0x01234567};
+    gl().TexImage2D(c, GL_TEXTURE_2D, 0, GL_R32UI, 2, 2, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, texels.data());
+    const GLushort other = 0xfedc;
+    gl().TexSubImage2D(c, GL_TEXTURE_2D, 0, 0, 1, 1, 1, GL_RED_INTEGER, GL_UNSIGNED_SHORT, &other);
+    std::array<GLuint, 4> read{};
+    gl().GetTexImage(c, GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_UNSIGNED_INT, read.data());
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    EXPECT_EQ(read, (std::array<GLuint, 4>{0xffffffff, 0x80000001, 0xfedc, 0x01234567}));
+    std::array<GLubyte, 4> bytes{};
+    gl().PixelStorei(c, GL_PACK_ALIGNMENT, 1);
+    gl().GetTexImage(c, GL_TEXTURE_2D, 0, GL_RED_INTEGER, GL_UNSIGNED_BYTE, bytes.data());
+    EXPECT_EQ(bytes, (std::array<GLubyte, 4>{255, 255, 255, 255})) << "the nearest that a byte holds";
+    gl().GetTexImage(c, GL_TEXTURE_2D, 0, GL_RED, GL_FLOAT, read.data());
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "whole numbers are no fractions";
+    gl().TexImage2D(c, GL_TEXTURE_2D, 0, GL_R32UI, 2, 2, 0, GL_RED, GL_FLOAT, nullptr);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().GenerateMipmap(c, GL_TEXTURE_2D);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+}
+
+TEST_F(TextureApiTest, UnitsOfSamplersOnlyHaveNoFixedFunction) {
+    gl().ActiveTexture(c, GL_TEXTURE0 + kTextureCoords);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().BindTexture(c, GL_TEXTURE_2D, 9);
+    GLint bound = 0;
+    gl().GetIntegerv(c, GL_TEXTURE_BINDING_2D, &bound);
+    EXPECT_EQ(bound, 9);
+    gl().Enable(c, GL_TEXTURE_2D);
+    EXPECT_FALSE(gl().IsEnabled(c, GL_TEXTURE_2D));
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    const GLfloat linear = GL_OBJECT_LINEAR;
+    gl().TexGenfv(c, GL_S, GL_TEXTURE_GEN_MODE, &linear);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().MatrixMode(c, GL_TEXTURE);
+    gl().LoadIdentity(c);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().ActiveTexture(c, GL_TEXTURE0 + kActiveTextures);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
+}
+
+TEST_F(TextureApiTest, TexelsMayHaveSamples) {
+    gl().BindTexture(c, GL_TEXTURE_2D_MULTISAMPLE, 1);
+    gl().TexImage2DMultisample(c, GL_TEXTURE_2D_MULTISAMPLE, 2, GL_RGBA8, 16, 8, GL_TRUE);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    GLint samples = 0;
+    gl().GetTexLevelParameteriv(c, GL_TEXTURE_2D_MULTISAMPLE, 0, GL_TEXTURE_SAMPLES, &samples);
+    EXPECT_GE(samples, 2);
+    EXPECT_EQ(sent(*c.share().textures.find(1), 0), Names{"TexImageSamples"});
+    const GLfloat linear = GL_LINEAR;
+    gl().TexParameterfv(c, GL_TEXTURE_2D_MULTISAMPLE, GL_TEXTURE_MAG_FILTER, &linear);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
+    gl().TexImage2DMultisample(c, GL_TEXTURE_2D_MULTISAMPLE, 0, GL_RGBA8, 16, 8, GL_TRUE);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+    gl().TexImage2DMultisample(c, GL_TEXTURE_2D_MULTISAMPLE, 1000, GL_RGBA8, 16, 8, GL_TRUE);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().TexImage2DMultisample(c, GL_TEXTURE_2D_MULTISAMPLE, 2, GL_COMPRESSED_RGBA, 16, 8, GL_TRUE);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+}
+
+TEST_F(TextureApiTest, StorageIsForGood) {
+    gl().TexStorage2D(c, GL_TEXTURE_2D, 1, GL_RGBA8, 8, 4);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "the default texture";
+    gl().BindTexture(c, GL_TEXTURE_2D, 1);
+    gl().TexStorage2D(c, GL_TEXTURE_2D, 1, GL_RGBA, 8, 4);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM}) << "not sized";
+    gl().TexStorage2D(c, GL_TEXTURE_2D, 5, GL_RGBA8, 8, 4);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "8, 4, 2, 1 are four";
+    gl().TexStorage2D(c, GL_TEXTURE_2D, 4, GL_RGBA8, 8, 4);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    const Texture& texture = *c.share().textures.find(1);
+    EXPECT_EQ(sent(texture, 0), Names(4, "TexImage"));
+    EXPECT_EQ(texture.find_level(0, 3)->width, 1);
+    gl().TexImage2D(c, GL_TEXTURE_2D, 0, GL_RGBA8, 8, 4, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    GLint levels = 0;
+    gl().GetTexParameteriv(c, GL_TEXTURE_2D, GL_TEXTURE_IMMUTABLE_LEVELS, &levels);
+    EXPECT_EQ(levels, 4);
+    const std::vector<std::byte> texels(2 * 2 * 4);
+    gl().TexSubImage2D(c, GL_TEXTURE_2D, 0, 1, 1, 2, 2, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
 }
 
 TEST_F(TextureApiTest, AttributeStackKeepsParameters) {

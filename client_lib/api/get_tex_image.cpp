@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// glGetTexImage (OpenGL 1.2.1, 6.1.4), answered from the shadow as the nodes' driver would, or by a node.
+#include <algorithm>
+#include <cmath>
+
+#include "client_lib/context/drawn_texels.h"
+#include "client_lib/context/pixel_store.h"
+#include "client_lib/context/texture_binding.h"
+#include "client_lib/context/texture_image.h"
+#include "client_lib/objects/maps.h"
+#include "client_lib/objects/pixel_convert.h"
+#include "client_lib/objects/s3tc.h"
+#include "client_lib/objects/texture_formats.h"
+
+namespace wall::client::api {
+namespace {
+
+/// What a texel of the base format is to the outside: missing components as 0, alpha as 1.
+template <class Number>
+void rebase(GLenum base, std::array<Number, 4>& p) {
+    switch (base) {
+        case GL_ALPHA: p = {0, 0, 0, p[3]}; break;
+        case GL_LUMINANCE: p = {p[0], 0, 0, 1}; break;
+        case GL_LUMINANCE_ALPHA: p = {p[0], 0, 0, p[3]}; break;
+        case GL_INTENSITY: p = {p[0], 0, 0, 1}; break;
+        case GL_RED: p = {p[0], 0, 0, 1}; break;
+        case GL_RG: p = {p[0], p[1], 0, 1}; break;
+        case GL_RGB: p[3] = 1; break;
+        default: break;
+    }
+}
+
+/// `to_bytes`: five and six bits become eight by repeating their highest, not by rounding (Mesa's format_utils).
+float quantized(float value, unsigned bits, bool to_bytes) {
+    if (bits == 0 || bits > 16) return value;
+    const auto most = static_cast<float>((1u << bits) - 1);
+    const auto number = static_cast<unsigned>(std::lrint(std::clamp(value, 0.0f, 1.0f) * most));
+    if (to_bytes && (bits == 5 || bits == 6))
+        return static_cast<float>(number << (8 - bits) | number >> (2 * bits - 8)) / 255.0f;
+    return static_cast<float>(number) / most;
+}
+
+/// To the precision that the driver keeps.
+void quantize(const TextureFormat& format, const ComponentBits& bits, bool to_bytes, Rgba& p) {
+    if (format.component_type == GL_FLOAT || format.component_type == GL_SIGNED_NORMALIZED) return;
+    const unsigned red = bits.red ? bits.red : bits.luminance ? bits.luminance : bits.intensity;
+    const unsigned sizes[4] = {red, bits.green, bits.blue, bits.alpha};
+    for (unsigned i = 0; i < 4; ++i) p[i] = quantized(p[i], sizes[i], to_bytes);
+}
+
+bool readable(const TextureFormat& internal, GLenum format) {
+    const bool depth = internal.base == GL_DEPTH_COMPONENT || internal.base == GL_DEPTH_STENCIL;
+    if (format == GL_DEPTH_COMPONENT) return depth;
+    if (format == GL_DEPTH_STENCIL) return internal.base == GL_DEPTH_STENCIL;
+    return format != GL_STENCIL_INDEX && !depth && internal.whole() == glapi::is_integer_format(format);
+}
+
+/// A mipmap that only the nodes have, computed here by a box filter.
+std::vector<Rgba> halved(const std::vector<Rgba>& from, const TextureLevel& size, const TextureLevel& to) {
+    std::vector<Rgba> out;
+    out.reserve(static_cast<std::size_t>(to.width) * static_cast<std::size_t>(to.height) *
+                static_cast<std::size_t>(to.depth));
+    const auto at = [&](GLint x, GLint y, GLint z) -> const Rgba& {
+        x = std::min(x, size.width - 1), y = std::min(y, size.height - 1), z = std::min(z, size.depth - 1);
+        return from[(static_cast<std::size_t>(z) * static_cast<std::size_t>(size.height) +
+                     static_cast<std::size_t>(y)) *
+                        static_cast<std::size_t>(size.width) +
+                    static_cast<std::size_t>(x)];
+    };
+    for (GLint z = 0; z < to.depth; ++z)
+        for (GLint y = 0; y < to.height; ++y)
+            for (GLint x = 0; x < to.width; ++x) {
+                Rgba sum{};
+                for (unsigned corner = 0; corner < 8; ++corner) {
+                    const Rgba& p = at(2 * x + (corner & 1), 2 * y + (corner >> 1 & 1), 2 * z + (corner >> 2));
+                    for (unsigned i = 0; i < 4; ++i) sum[i] += p[i] / 8;
+                }
+                out.push_back(sum);
+            }
+    return out;
+}
+
+std::size_t count_texels(const TextureLevel& level) {
+    return static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height) *
+           static_cast<std::size_t>(level.depth);
+}
+
+std::vector<std::byte> decoded_slices(const TextureLevel& level) {
+    std::vector<std::byte> texels;
+    const std::size_t slice = blocks_bytes(level.internal_format, level.width, level.height);
+    for (std::size_t z = 0; z < static_cast<std::size_t>(level.depth); ++z) {
+        const auto part = decode_s3tc(level.internal_format, level.width, level.height,
+                                      std::span(level.pixels).subspan(z * slice, slice));
+        texels.insert(texels.end(), part.begin(), part.end());
+    }
+    return texels;
+}
+
+std::vector<Rgba> level_texels(Texture& texture, unsigned face, GLint number) {
+    const TextureLevel& level = *texture.find_level(face, number);
+    const std::size_t count = count_texels(level);
+    if (level.compressed) return to_rgba(GL_RGBA, GL_UNSIGNED_BYTE, decoded_slices(level), count);
+    if (level.content == LevelContent::stored) return to_rgba(level.data_format, level.data_type, level.pixels, count);
+    if (level.content == LevelContent::generated && texture.find_level(face, number - 1))
+        return halved(level_texels(texture, face, number - 1), *texture.find_level(face, number - 1), level);
+    return std::vector<Rgba>(count, Rgba{});
+}
+
+/// A level that has been asked for. The share group's mutex is held.
+struct Request {
+    Texture& texture;
+    unsigned face;
+    GLint number;
+    const TexelData* drawn;  ///< what a node has said; null: the client has it
+    const TextureFormat& internal;
+
+    const TextureLevel& level() const { return *texture.find_level(face, number); }
+};
+
+/// Whole numbers, as many bits of them as are kept.
+std::vector<std::byte> whole_texels(const Request& request, GLenum format, GLenum type) {
+    const TextureLevel& level = request.level();
+    const ComponentBits& b = request.internal.bits;
+    const std::array<unsigned, 4> bits{std::max({b.red, b.luminance, b.intensity}), b.green, b.blue, b.alpha};
+    const bool is_signed = request.internal.component_type == GL_INT;
+    std::vector<Whole> texels(count_texels(level), Whole{});
+    if (request.drawn)
+        texels = to_whole(request.drawn->format, request.drawn->type, request.drawn->bytes, texels.size());
+    else if (level.content == LevelContent::stored)
+        texels = to_whole(level.data_format, level.data_type, level.pixels, texels.size());
+    for (Whole& texel : texels) {
+        for (unsigned i = 0; i < 4; ++i) {
+            if (bits[i] == 0) continue;
+            const std::int64_t most = (std::int64_t{1} << (is_signed ? bits[i] - 1 : bits[i])) - 1;
+            texel[i] = std::clamp(texel[i], is_signed ? -most - 1 : 0, most);
+        }
+        rebase(request.internal.base, texel);
+    }
+    return from_whole(format, type, texels);
+}
+
+std::vector<std::byte> color_texels(Context& c, const Request& request, GLenum format, GLenum type) {
+    const TextureLevel& level = request.level();
+    auto texels = request.drawn
+                      ? to_rgba(request.drawn->format, request.drawn->type, request.drawn->bytes, count_texels(level))
+                      : level_texels(request.texture, request.face, request.number);
+    if (format != GL_DEPTH_COMPONENT && format != GL_DEPTH_STENCIL) {
+        const ComponentBits bits = stored_bits(request.internal, level.format, level.type);
+        const bool to_bytes = type == GL_UNSIGNED_BYTE && format != GL_LUMINANCE && format != GL_LUMINANCE_ALPHA;
+        for (Rgba& texel : texels) {
+            if (!level.compressed) quantize(request.internal, bits, to_bytes, texel);
+            rebase(request.internal.base, texel);
+        }
+        if (transfer_matters(c.state, format)) transfer_colors(c.state, c.maps->pixel, texels);
+    }
+    return from_rgba(format, type, texels);  // luminance is red here, unlike in glReadPixels
+}
+
+}  // namespace
+
+void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum type, void* pixels) {
+    const auto* info = image_target_of(target);
+    if (!info || info->images == 0 || is_proxy(target)) return c.error(GL_INVALID_ENUM);
+    if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE);
+    if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
+    if (format == GL_COLOR_INDEX || format == GL_STENCIL_INDEX) return c.error(GL_INVALID_ENUM);
+    const auto texture = bound_texture(c, target);
+    if (!texture) return;
+    compress_as_driver(c, target, number);
+    const auto drawn = drawn_texels(c, texture, face_of(target), number, "glGetTexImage");
+    std::vector<std::byte> tight;
+    glapi::ImageSize size;
+    {
+        std::lock_guard lock(c.share().mutex);
+        const TextureLevel* level = texture->find_level(face_of(target), number);
+        const TextureFormat* internal = level ? find_texture_format(level->internal_format) : nullptr;
+        if (!internal) return;
+        if (!readable(*internal, format)) return c.error(GL_INVALID_OPERATION);
+        size = {level->width, level->height, level->depth, info->images};
+        const Request request{*texture, face_of(target), number, drawn ? &*drawn : nullptr, *internal};
+        tight = internal->whole() ? whole_texels(request, format, type) : color_texels(c, request, format, type);
+    }
+    if (const PackTarget to = image_target(c, {size, format, type}, pixels))
+        glapi::pack_image(pack_store(c.state), size, format, type, tight, to.get());
+}
+
+}  // namespace wall::client::api
