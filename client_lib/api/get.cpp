@@ -68,6 +68,20 @@ void limited(Context& c, double* out) {
     *out = std::min<double>(kMost, limit_of(c.caps(), kName, kMost));
 }
 
+/// Of the colours that are drawn first: which can be negative (EXT_packed_float). One that has no bits is not.
+void signed_components(Context& c, double* out) {
+    const TextureFormat* format = draw_color_format(c);
+    const auto& framebuffer = c.framebuffers->draw;
+    if (framebuffer && framebuffer->draw_buffers()[0] == GL_NONE) return;
+    if (!format || format->internal_format == GL_R11F_G11F_B10F) return;
+    const GLenum type = format->component_type;
+    if (type != GL_FLOAT && type != GL_SIGNED_NORMALIZED && type != GL_INT) return;
+    const ComponentBits& b = format->bits;
+    const unsigned gray = b.luminance + b.intensity;
+    const unsigned sizes[] = {b.red + gray, b.green + gray, b.blue + gray, unsigned{b.alpha} + b.intensity};
+    std::ranges::transform(sizes, out, [](unsigned bits) { return bits != 0; });
+}
+
 /// Calls `use` with the active unit if it has a matrix.
 template <class Use>
 void of_texture_matrix(Context& c, Use&& use) {
@@ -140,6 +154,12 @@ const Special kSpecials[] = {
     {GL_MAX_GEOMETRY_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_GEOMETRY_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
     {GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
     {GL_MAX_DRAW_BUFFERS, 1, limited<GL_MAX_DRAW_BUFFERS, glstate::kColorAttachments>},
+    {GL_RGBA_SIGNED_COMPONENTS_EXT, 4, signed_components},
+    {GL_FRAMEBUFFER_SRGB_CAPABLE_EXT, 1,
+     [](Context& c, double* out) {
+         const TextureFormat* format = draw_color_format(c);
+         *out = format != nullptr && format->srgb;
+     }},
     {GL_NUM_SHADER_BINARY_FORMATS, 1, constant<0>},
     {GL_NUM_PROGRAM_BINARY_FORMATS, 1, constant<0>},
     // For general use: RGBA of DXT1 has but one bit of alpha.

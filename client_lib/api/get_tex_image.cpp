@@ -10,6 +10,7 @@
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/pixel_convert.h"
 #include "client_lib/objects/s3tc.h"
+#include "client_lib/objects/small_floats.h"
 #include "client_lib/objects/texture_formats.h"
 
 namespace wall::client::api {
@@ -37,15 +38,35 @@ float quantized(float value, unsigned bits, bool to_bytes) {
     const auto number = static_cast<unsigned>(std::lrint(std::clamp(value, 0.0f, 1.0f) * most));
     if (to_bytes && (bits == 5 || bits == 6))
         return static_cast<float>(number << (8 - bits) | number >> (2 * bits - 8)) / 255.0f;
-    return static_cast<float>(number) / most;
+    return static_cast<float>(number) * (1.0f / most);
+}
+
+float quantized_signed(float value, unsigned bits) {
+    if (bits == 0 || bits > 16) return value;
+    const auto most = static_cast<float>((1u << (bits - 1)) - 1);
+    return std::rint(std::clamp(value, -1.0f, 1.0f) * most) * (1.0f / most);
+}
+
+/// What floats of a format keep of theirs.
+void quantize_floats(const TextureFormat& format, unsigned bits, Rgba& p) {
+    const bool one_exponent = format.internal_format == GL_RGB9_E5;
+    if (one_exponent || format.internal_format == GL_R11F_G11F_B10F) {
+        const Rgb kept = one_exponent ? from_shared_exponent(to_shared_exponent({p[0], p[1], p[2]}))
+                                      : from_short_floats(to_short_floats({p[0], p[1], p[2]}));
+        p = {kept[0], kept[1], kept[2], p[3]};
+    } else if (bits == 16) {
+        for (float& component : p) component = half_to_float(float_to_half_cut(component));
+    }
 }
 
 /// To the precision that the driver keeps.
 void quantize(const TextureFormat& format, const ComponentBits& bits, bool to_bytes, Rgba& p) {
-    if (format.component_type == GL_FLOAT || format.component_type == GL_SIGNED_NORMALIZED) return;
     const unsigned red = bits.red ? bits.red : bits.luminance ? bits.luminance : bits.intensity;
+    if (format.component_type == GL_FLOAT) return quantize_floats(format, std::max<unsigned>(red, bits.alpha), p);
+    const bool is_signed = format.component_type == GL_SIGNED_NORMALIZED;
     const unsigned sizes[4] = {red, bits.green, bits.blue, bits.alpha};
-    for (unsigned i = 0; i < 4; ++i) p[i] = quantized(p[i], sizes[i], to_bytes);
+    for (unsigned i = 0; i < 4; ++i)
+        p[i] = is_signed ? quantized_signed(p[i], sizes[i]) : quantized(p[i], sizes[i], to_bytes);
 }
 
 bool readable(const TextureFormat& internal, GLenum format) {
@@ -53,31 +74,6 @@ bool readable(const TextureFormat& internal, GLenum format) {
     if (format == GL_DEPTH_COMPONENT) return depth;
     if (format == GL_DEPTH_STENCIL) return internal.base == GL_DEPTH_STENCIL;
     return format != GL_STENCIL_INDEX && !depth && internal.whole() == glapi::is_integer_format(format);
-}
-
-/// A mipmap that only the nodes have, computed here by a box filter.
-std::vector<Rgba> halved(const std::vector<Rgba>& from, const TextureLevel& size, const TextureLevel& to) {
-    std::vector<Rgba> out;
-    out.reserve(static_cast<std::size_t>(to.width) * static_cast<std::size_t>(to.height) *
-                static_cast<std::size_t>(to.depth));
-    const auto at = [&](GLint x, GLint y, GLint z) -> const Rgba& {
-        x = std::min(x, size.width - 1), y = std::min(y, size.height - 1), z = std::min(z, size.depth - 1);
-        return from[(static_cast<std::size_t>(z) * static_cast<std::size_t>(size.height) +
-                     static_cast<std::size_t>(y)) *
-                        static_cast<std::size_t>(size.width) +
-                    static_cast<std::size_t>(x)];
-    };
-    for (GLint z = 0; z < to.depth; ++z)
-        for (GLint y = 0; y < to.height; ++y)
-            for (GLint x = 0; x < to.width; ++x) {
-                Rgba sum{};
-                for (unsigned corner = 0; corner < 8; ++corner) {
-                    const Rgba& p = at(2 * x + (corner & 1), 2 * y + (corner >> 1 & 1), 2 * z + (corner >> 2));
-                    for (unsigned i = 0; i < 4; ++i) sum[i] += p[i] / 8;
-                }
-                out.push_back(sum);
-            }
-    return out;
 }
 
 std::size_t count_texels(const TextureLevel& level) {
@@ -96,30 +92,24 @@ std::vector<std::byte> decoded_slices(const TextureLevel& level) {
     return texels;
 }
 
-std::vector<Rgba> level_texels(Texture& texture, unsigned face, GLint number) {
-    const TextureLevel& level = *texture.find_level(face, number);
+/// Of a level that the client has itself; of one without content, zeros.
+std::vector<Rgba> level_texels(const TextureLevel& level) {
     const std::size_t count = count_texels(level);
     if (level.compressed) return to_rgba(GL_RGBA, GL_UNSIGNED_BYTE, decoded_slices(level), count);
     if (level.content == LevelContent::stored) return to_rgba(level.data_format, level.data_type, level.pixels, count);
-    if (level.content == LevelContent::generated && texture.find_level(face, number - 1))
-        return halved(level_texels(texture, face, number - 1), *texture.find_level(face, number - 1), level);
     return std::vector<Rgba>(count, Rgba{});
 }
 
 /// A level that has been asked for. The share group's mutex is held.
 struct Request {
-    Texture& texture;
-    unsigned face;
-    GLint number;
+    const TextureLevel& level;
     const TexelData* drawn;  ///< what a node has said; null: the client has it
     const TextureFormat& internal;
-
-    const TextureLevel& level() const { return *texture.find_level(face, number); }
 };
 
 /// Whole numbers, as many bits of them as are kept.
 std::vector<std::byte> whole_texels(const Request& request, GLenum format, GLenum type) {
-    const TextureLevel& level = request.level();
+    const TextureLevel& level = request.level;
     const ComponentBits& b = request.internal.bits;
     const std::array<unsigned, 4> bits{std::max({b.red, b.luminance, b.intensity}), b.green, b.blue, b.alpha};
     const bool is_signed = request.internal.component_type == GL_INT;
@@ -140,10 +130,10 @@ std::vector<std::byte> whole_texels(const Request& request, GLenum format, GLenu
 }
 
 std::vector<std::byte> color_texels(Context& c, const Request& request, GLenum format, GLenum type) {
-    const TextureLevel& level = request.level();
+    const TextureLevel& level = request.level;
     auto texels = request.drawn
                       ? to_rgba(request.drawn->format, request.drawn->type, request.drawn->bytes, count_texels(level))
-                      : level_texels(request.texture, request.face, request.number);
+                      : level_texels(level);
     if (format != GL_DEPTH_COMPONENT && format != GL_DEPTH_STENCIL) {
         const ComponentBits bits = stored_bits(request.internal, level.format, level.type);
         const bool to_bytes = type == GL_UNSIGNED_BYTE && format != GL_LUMINANCE && format != GL_LUMINANCE_ALPHA;
@@ -166,7 +156,8 @@ void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum 
     if (format == GL_COLOR_INDEX || format == GL_STENCIL_INDEX) return c.error(GL_INVALID_ENUM);
     const auto texture = bound_texture(c, target);
     if (!texture) return;
-    compress_as_driver(c, target, number);
+    c.flush_block();  // it may draw to the texture
+    compress_as_driver(c, target, number, "glGetTexImage");
     const auto drawn = drawn_texels(c, texture, face_of(target), number, "glGetTexImage");
     std::vector<std::byte> tight;
     glapi::ImageSize size;
@@ -177,7 +168,7 @@ void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum 
         if (!internal) return;
         if (!readable(*internal, format)) return c.error(GL_INVALID_OPERATION);
         size = {level->width, level->height, level->depth, info->images};
-        const Request request{*texture, face_of(target), number, drawn ? &*drawn : nullptr, *internal};
+        const Request request{*level, drawn ? &*drawn : nullptr, *internal};
         tight = internal->whole() ? whole_texels(request, format, type) : color_texels(c, request, format, type);
     }
     if (const PackTarget to = image_target(c, {size, format, type}, pixels))

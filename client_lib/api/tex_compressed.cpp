@@ -122,7 +122,7 @@ GLint blocks_format(GLint internal_format) {
     return format && block_bytes(format->answer) != 0 ? format->answer : 0;
 }
 
-void compress_as_driver(Context& c, GLenum target, GLint number) {
+void compress_as_driver(Context& c, GLenum target, GLint number, const char* function) {
     const auto texture = bound_texture(c, target);
     api::Image image{.target = target, .level = number};
     TexelData data;
@@ -142,7 +142,7 @@ void compress_as_driver(Context& c, GLenum target, GLint number) {
                                            static_cast<std::size_t>(level->height) *
                                            static_cast<std::size_t>(level->depth))};
     }
-    auto blocks = api::compressed(c, image, data, "glGetCompressedTexImage");
+    auto blocks = api::compressed(c, image, data, function);
     if (!blocks) return;
     c.flush_block();
     std::lock_guard lock(c.share().mutex);
@@ -206,7 +206,7 @@ void define_sub_blocks(Context& c, const Image& part, const Place& at, const voi
     if (is_proxy(part.target)) return c.error(GL_INVALID_ENUM);
     if (const GLenum error = target_error(part)) return c.error(error);
     if (part.level < 0 || part.level >= level_count(c, part.target) || part.bytes < 0) return c.error(GL_INVALID_VALUE);
-    compress_as_driver(c, part.target, part.level);
+    compress_as_driver(c, part.target, part.level, "glCompressedTexSubImage");
     const auto texture = bound_texture(c, part.target);
     const TextureLevel* level = texture ? texture->find_level(face_of(part.target), part.level) : nullptr;
     if (const GLenum error = level ? sub_image_error(*level, part, at) : GLenum{GL_INVALID_OPERATION})
@@ -244,7 +244,7 @@ void CompressedTexSubImage3D(Context& c, GLenum target, GLint level, GLint x, GL
 void GetCompressedTexImage(Context& c, GLenum target, GLint number, void* pixels) {
     if (is_proxy(target) || !image_target_of(target)) return c.error(GL_INVALID_ENUM);
     if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE);
-    compress_as_driver(c, target, number);
+    compress_as_driver(c, target, number, "glGetCompressedTexImage");
     const auto texture = bound_texture(c, target);
     const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
     if (!level || !level->compressed) return c.error(GL_INVALID_OPERATION);

@@ -132,6 +132,13 @@ Change changed(const TexParameters& old, const glapi::TextureTargetInfo& target,
     return out;
 }
 
+/// Storage for good has these levels and no others (OpenGL 4.2, 3.9.13).
+void clamp_levels(TexParameters& p, GLenum pname, std::uint32_t levels) {
+    const auto last = static_cast<GLint>(levels) - 1;
+    if (pname == GL_TEXTURE_BASE_LEVEL) p.base_level = std::clamp(p.base_level, 0, last);
+    if (pname == GL_TEXTURE_MAX_LEVEL) p.max_level = std::clamp(p.max_level, p.base_level, last);
+}
+
 void store_parameters(Context& c, GLenum target, GLenum pname, const TexParameters& before,
                       const TexParameters& after) {
     if (same_parameter(before, after, pname)) return;
@@ -140,6 +147,9 @@ void store_parameters(Context& c, GLenum target, GLenum pname, const TexParamete
     texture->parameters = after;
     if (pname == GL_GENERATE_MIPMAP || pname == GL_TEXTURE_PRIORITY) return;  // nodes are told when it happens; never
     texture->parameter_changed(pname);
+    // Of storage for good, nodes are told of the last level that the first one allows.
+    if (pname == GL_TEXTURE_BASE_LEVEL && texture->immutable_levels != 0)
+        texture->parameter_changed(GL_TEXTURE_MAX_LEVEL);
     touch(c.share(), *texture);
 }
 
@@ -239,8 +249,9 @@ void TexParameterfv(Context& c, GLenum target, GLenum pname, const GLfloat* para
     }
     const auto current = bound_texture(c, target);
     const TexParameters before = current ? current->parameters : Texture(ClientName(), 0, info->id).parameters;
-    const Change change = changed(before, *info, pname, params);
+    Change change = changed(before, *info, pname, params);
     if (change.error != GL_NO_ERROR) return c.error(change.error);
+    if (current && current->immutable_levels != 0) clamp_levels(change.value, pname, current->immutable_levels);
     store_parameters(c, target, pname, before, change.value);
 }
 

@@ -12,8 +12,10 @@ namespace wall::client {
 
 namespace {
 
-/// Blocks that the client keeps and cannot decode.
-bool only_nodes_decode(const TextureLevel& level) { return level.compressed && !is_s3tc(level.internal_format); }
+/// Mipmaps that the nodes' driver made, and blocks that the client keeps and cannot decode.
+bool nodes_know_better(const TextureLevel& level) {
+    return level.content == LevelContent::generated || (level.compressed && !is_s3tc(level.internal_format));
+}
 
 }  // namespace
 
@@ -23,7 +25,7 @@ std::optional<TexelData> drawn_texels(Context& c, const std::shared_ptr<Texture>
     {
         std::lock_guard lock(c.share().mutex);
         const TextureLevel* level = texture->find_level(face, number);
-        if (!level || (!texture->only_on_nodes(*level) && !only_nodes_decode(*level))) return std::nullopt;
+        if (!level || (!texture->only_on_nodes(*level) && !nodes_know_better(*level))) return std::nullopt;
         shape.internal_format = level->internal_format;
         shape.format = level->format;
         shape.type = level->type;

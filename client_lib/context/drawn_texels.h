@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Texels that only the nodes have, because they drew them (DESIGN, section 4: drawn content), or can decode. The
-// application's thread.
+// Texels that only the nodes have, because they drew them (DESIGN, section 4: drawn content), made mipmaps of them, or
+// can decode them. The application's thread.
 #pragma once
 
 #include <memory>

@@ -56,7 +56,8 @@ void change_level(Context& c, const ImageCall& call, TexelData data);
 GLint blocks_format(GLint internal_format);
 /// A level that came as pixels and that the nodes compress becomes what a node's driver makes of it: from now on it is
 /// kept and sent as blocks. Nothing happens to any other, or if no node answers.
-void compress_as_driver(Context& c, GLenum target, GLint level);
+/// Counted as a round trip of `function`.
+void compress_as_driver(Context& c, GLenum target, GLint level, const char* function);
 /// change_level() of such a level: the new pixels are compressed by a node. False: no node answers.
 bool change_blocks(Context& c, const ImageCall& call, const TexelData& data);
 

@@ -20,7 +20,11 @@ T load(const std::byte* at) {
 
 double unsigned_max(unsigned bits) { return bits == 32 ? 4294967295.0 : static_cast<double>((1u << bits) - 1); }
 
-float unorm(std::uint32_t value, unsigned bits) { return static_cast<float>(value / unsigned_max(bits)); }
+/// By the reciprocal, as Mesa does it: the last bit may differ from a division's.
+float unorm(std::uint32_t value, unsigned bits) {
+    return bits > 16 ? static_cast<float>(value / unsigned_max(bits))
+                     : static_cast<float>(value) * (1.0f / static_cast<float>(unsigned_max(bits)));
+}
 float snorm(std::int32_t value, unsigned bits) {
     return static_cast<float>(
         std::max(value / (bits == 32 ? 2147483647.0 : static_cast<double>((1 << (bits - 1)) - 1)), -1.0));

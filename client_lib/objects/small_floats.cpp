@@ -46,6 +46,12 @@ std::uint16_t float_to_half(float value) {
     return static_cast<std::uint16_t>(sign | ((static_cast<std::uint32_t>(exponent + 13) << 10) + mantissa));
 }
 
+std::uint16_t float_to_half_cut(float value) {
+    const std::uint16_t half = float_to_half(value);
+    const bool grew = std::isfinite(value) && std::fabs(half_to_float(half)) > std::fabs(value);
+    return static_cast<std::uint16_t>(grew ? half - 1 : half);
+}
+
 Rgb from_short_floats(std::uint32_t word) {
     return {half_to_float(static_cast<std::uint16_t>((word & 0x7ff) << 4)),
             half_to_float(static_cast<std::uint16_t>((word >> 11 & 0x7ff) << 4)),

@@ -11,6 +11,8 @@ using Rgb = std::array<float, 3>;
 
 float half_to_float(std::uint16_t half);
 std::uint16_t float_to_half(float value);
+/// The same without rounding, as Mesa stores texels.
+std::uint16_t float_to_half_cut(float value);
 
 /// GL_UNSIGNED_INT_10F_11F_11F_REV. Negative numbers become 0, numbers too large the largest; the rest is cut off, as
 /// Mesa does it.

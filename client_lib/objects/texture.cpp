@@ -56,12 +56,19 @@ public:
 private:
     void current_parameter(GLenum pname) {
         any_ = true;
-        const auto v = parameter_value(texture_.parameters, pname);
+        auto v = parameter_value(texture_.parameters, pname);
+        if (pname == GL_TEXTURE_MAX_LEVEL && texture_.immutable_levels != 0) v[0] = static_cast<float>(last_level());
         if (pname == GL_TEXTURE_BORDER_COLOR && texture_.parameters.border_whole) {
             const auto w = std::bit_cast<std::array<std::int32_t, 4>>(v);
             return sink_.TexBorderWhole(texture_.info.target, w[0], w[1], w[2], w[3]);
         }
         sink_.TexParameter(texture_.info.target, pname, v[0], v[1], v[2], v[3]);
+    }
+    /// Of storage for good: what sampling makes of the parameters (OpenGL 4.2, 3.9.13).
+    GLint last_level() const {
+        const TexParameters& p = texture_.parameters;
+        const auto last = static_cast<GLint>(texture_.immutable_levels) - 1;
+        return std::clamp(p.max_level, std::min(p.base_level, last), last);
     }
     void mipmaps();
     /// What changed of one level since `known`.

@@ -116,6 +116,10 @@ SCENE(float_targets, 2) {  // light adds up above one in a framebuffer of halves
         glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
         say("status %#x", glCheckFramebufferStatus(GL_FRAMEBUFFER));
+        glViewport(0, 0, kSize, kSize);
+        glColor3f(0.5f, 2, 0.25f);
+        unit_square();  // the first that is drawn to it, read at once
+        say_texels("one square", GL_TEXTURE_2D, kSize * kSize, GL_RGBA, GL_FLOAT, 16);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, kSize, kSize);

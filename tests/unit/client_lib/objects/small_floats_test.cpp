@@ -20,6 +20,10 @@ TEST(SmallFloats, EveryHalfSurvives) {
     }
     EXPECT_EQ(float_to_half(65520.0f), 0x7c00) << "rounds to infinity";
     EXPECT_EQ(float_to_half(1.0f / 3), 0x3555);
+    EXPECT_EQ(float_to_half(2.0f / 3), 0x3955 + 0) << "0.66650 is nearer than 0.66699";
+    EXPECT_EQ(float_to_half_cut(0.6825397f), 0x3975);
+    EXPECT_EQ(float_to_half(0.6825397f), 0x3976);
+    EXPECT_EQ(float_to_half_cut(-1e9f), 0xfbff) << "the largest, not infinity";
 }
 
 TEST(SmallFloats, EveryShortFloatSurvives) {
