@@ -70,9 +70,7 @@ void limited(Context& c, double* out) {
 
 /// Of the colours that are drawn first: which can be negative (EXT_packed_float). One that has no bits is not.
 void signed_components(Context& c, double* out) {
-    const TextureFormat* format = draw_color_format(c);
-    const auto& framebuffer = c.framebuffers->draw;
-    if (framebuffer && framebuffer->draw_buffers()[0] == GL_NONE) return;
+    const TextureFormat* format = first_draw_format(c);
     if (!format || format->internal_format == GL_R11F_G11F_B10F) return;
     const GLenum type = format->component_type;
     if (type != GL_FLOAT && type != GL_SIGNED_NORMALIZED && type != GL_INT) return;

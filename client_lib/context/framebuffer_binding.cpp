@@ -81,18 +81,27 @@ bool is_attached(const Context& c, const Object& image) {
     return attached;
 }
 
-const TextureFormat* read_color_format(Context& c) {
-    const auto& framebuffer = c.framebuffers->read;
-    if (!framebuffer) return c.state.window.read_buffer == GL_NONE ? nullptr : find_texture_format(GL_RGBA8);
-    const auto read = shape(c, *framebuffer, &Framebuffer::read_shape);
-    return read ? read->format : nullptr;
+namespace {
+
+/// Of the window's buffer, or the framebuffer object's.
+template <class Shape>
+const TextureFormat* color_format(Context& c, const std::shared_ptr<Framebuffer>& framebuffer, GLenum window_buffer,
+                                  Shape&& which) {
+    if (!framebuffer) return window_buffer == GL_NONE ? nullptr : find_texture_format(GL_RGBA8);
+    const auto found = shape(c, *framebuffer, which);
+    return found ? found->format : nullptr;
 }
 
+}  // namespace
+
+const TextureFormat* read_color_format(Context& c) {
+    return color_format(c, c.framebuffers->read, c.state.window.read_buffer, &Framebuffer::read_shape);
+}
 const TextureFormat* draw_color_format(Context& c) {
-    const auto& framebuffer = c.framebuffers->draw;
-    if (!framebuffer) return c.state.window.draw_buffer == GL_NONE ? nullptr : find_texture_format(GL_RGBA8);
-    const auto drawn = shape(c, *framebuffer, &Framebuffer::draw_shape);
-    return drawn ? drawn->format : nullptr;
+    return color_format(c, c.framebuffers->draw, c.state.window.draw_buffer, &Framebuffer::draw_shape);
+}
+const TextureFormat* first_draw_format(Context& c) {
+    return color_format(c, c.framebuffers->draw, c.state.window.draw_buffer, &Framebuffer::first_draw_shape);
 }
 
 ComponentBits draw_target_bits(Context& c) {

@@ -38,9 +38,10 @@ void detach_from_bound(Context& c, const Object& image);
 /// Whether any framebuffer of the context has it attached.
 bool is_attached(const Context& c, const Object& image);
 
-/// Of the colours that are read from, or that are drawn first. Null: there are none.
+/// Of the colours that are read from, that are drawn, and that the first draw buffer takes. Null: there are none.
 const TextureFormat* read_color_format(Context& c);
 const TextureFormat* draw_color_format(Context& c);
+const TextureFormat* first_draw_format(Context& c);
 /// Bits of what is drawn to. Of a window: as its format says.
 ComponentBits draw_target_bits(Context& c);
 bool has_depth(Context& c, bool reading);

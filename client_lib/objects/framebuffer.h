@@ -55,9 +55,11 @@ public:
     /// GL_FRAMEBUFFER_COMPLETE, or why not, as Mesa decides it (OpenGL 4.6, 9.4.2; what GL_ARB_framebuffer_object and
     /// GL_ARB_ES2_compatibility say). The share group's mutex is held.
     GLenum status() const;
-    /// Of the image that a read buffer or the first draw buffer names. Nothing: none. The share group's mutex is held.
+    /// Of the image that the read buffer, any draw buffer, the first one names. Nothing: none. The share group's mutex
+    /// is held.
     std::optional<ImageShape> read_shape() const;
     std::optional<ImageShape> draw_shape() const;
+    std::optional<ImageShape> first_draw_shape() const { return named_shape(draw_buffers_[0]); }
     std::optional<ImageShape> depth_shape() const { return shape_of(attachments_[glstate::kColorAttachments]); }
     std::optional<ImageShape> stencil_shape() const { return shape_of(attachments_[glstate::kColorAttachments + 1]); }
     /// Samples of each pixel; 0: one, and it is not multisampled.
