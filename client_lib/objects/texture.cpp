@@ -86,7 +86,7 @@ template <class Sink>
 void TextureDiff<Sink>::run(std::uint64_t known) {
     for (const auto& [pname, stamp] : texture_.parameter_stamps)
         if (stamp > known) current_parameter(pname);
-    const GLint base = texture_.parameters.base_level;
+    const GLint base = texture_.generated_base;
     for (unsigned face = 0; face < glapi::face_count(texture_.info); ++face) level(face, base, known);
     if (texture_.generated_stamp > known) mipmaps();
     for (unsigned face = 0; face < glapi::face_count(texture_.info); ++face)
@@ -101,7 +101,7 @@ void TextureDiff<Sink>::run(std::uint64_t known) {
 template <class Sink>
 void TextureDiff<Sink>::mipmaps() {
     any_ = true;
-    sink_.TexMipmaps(texture_.info.target);
+    sink_.TexMipmaps(texture_.info.target, texture_.generated_base, texture_.generated_last);
 }
 
 template <class Sink>
@@ -196,8 +196,8 @@ struct TexturePacker {
         glapi::pack::TexCompressed(buffer, id, operands...);
         packed();
     }
-    void TexMipmaps(GLenum target) {
-        glapi::pack::TexMipmaps(buffer, id, target);
+    void TexMipmaps(GLenum target, std::int32_t base, std::int32_t last) {
+        glapi::pack::TexMipmaps(buffer, id, target, base, last);
         packed();
     }
 };
@@ -225,7 +225,7 @@ struct NameAndShape {
                        std::int32_t height, std::int32_t depth, std::span<const std::byte>) {
         hash.TexCompressed(target, level, internal_format, width, height, depth, {});
     }
-    void TexMipmaps(GLenum target) { hash.TexMipmaps(target); }
+    void TexMipmaps(GLenum target, std::int32_t base, std::int32_t last) { hash.TexMipmaps(target, base, last); }
 };
 
 }  // namespace
@@ -286,7 +286,9 @@ void Texture::parameter_changed(GLenum pname) {
 
 void Texture::mipmaps_generated() {
     stamp = generated_stamp = next_stamp();
-    const GLint base = parameters.base_level;
+    const GLint base = generated_base = parameters.base_level;
+    generated_last = parameters.max_level;
+    if (immutable_levels != 0) generated_last = std::min(generated_last, static_cast<GLint>(immutable_levels) - 1);
     const unsigned halved = glapi::spatial_dimensions_of(info);
     for (unsigned face = 0; face < glapi::face_count(info); ++face) {
         const TextureLevel* from = find_level(face, base);
@@ -298,8 +300,7 @@ void Texture::mipmaps_generated() {
         next.content = LevelContent::generated;
         next.stamp = stamp;
         std::int32_t width = from->width, height = from->height, depth = from->depth;
-        for (GLint level = base + 1; level <= parameters.max_level && level < static_cast<GLint>(kTextureLevels);
-             ++level) {
+        for (GLint level = base + 1; level <= generated_last && level < static_cast<GLint>(kTextureLevels); ++level) {
             if (width == 1 && (halved < 2 || height == 1) && (halved < 3 || depth == 1)) break;
             next.width = width = std::max(1, width / 2);
             next.height = height = halved < 2 ? height : std::max(1, height / 2);

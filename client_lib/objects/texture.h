@@ -87,7 +87,8 @@ struct Texture : Object {
     std::vector<std::pair<GLenum, std::uint64_t>> parameter_stamps;
     std::vector<ContextId> bound_by;  ///< contexts that ever bound it
     bool global = false;  ///< the processes of the program mean the same by its name (GL_WALLGL_global_texture)
-    std::uint64_t generated_stamp = 0;  ///< of the latest mipmap generation; 0: none
+    std::uint64_t generated_stamp = 0;             ///< of the latest mipmap generation; 0: none
+    GLint generated_base = 0, generated_last = 0;  ///< the level that they were made of, and the last that was allowed
     std::array<std::vector<TextureLevel>, glapi::kCubeFaces> faces;
     /// As of a stamp: see content_key().
     mutable std::pair<std::uint64_t, glapi::ContentKey> key_cache{};

@@ -51,7 +51,9 @@ public:
                          std::int32_t height, std::int32_t depth, std::uint32_t fixed) {
         add(Op::TexImageSamples, {}, target, samples, internal_format, width, height, depth, fixed);
     }
-    void TexMipmaps(GLenum target) { add(Op::TexMipmaps, {}, target); }
+    void TexMipmaps(GLenum target, std::int32_t base, std::int32_t last) {
+        add(Op::TexMipmaps, {}, target, base, last);
+    }
     /// A name that a program gave, instead of pixels: GL_WALLGL_global_texture.
     void OwnName(std::uint32_t name) { add(Op::ShareTexture, {}, name); }
     /// A name of content that is known only in one session.

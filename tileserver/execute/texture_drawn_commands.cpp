@@ -22,15 +22,15 @@ Texture* find_texture(const SessionReplica& session, ClientName name, TextureTar
 
 }  // namespace
 
-void TextureDrawnCommands::TexMipmaps(ClientName name, GLenum target) {
+void TextureDrawnCommands::TexMipmaps(ClientName name, GLenum target, std::int32_t base, std::int32_t last) {
+    if (base < 0 || last < 0) return execution_.refuse("no such levels");
     const auto kind = texture_target(target);
     if (!kind || !glapi::info_of(*kind).mipmaps) return execution_.refuse("no such target");
     Texture* texture = find_texture(execution_.session, name, *kind);
     if (texture == nullptr) return execution_.refuse("no such texture");
     if (!texture->own(execution_.node.shared)) return execution_.refuse("more texture memory than a session may have");
-    if (auto* hash = texture->hash()) hash->TexMipmaps(target);
-    texture->content().note_mipmaps();
-    execution_.gl.GenerateTextureMipmap(texture->content().name());
+    if (auto* hash = texture->hash()) hash->TexMipmaps(target, base, last);
+    texture->content().make_mipmaps(base, last);
     execution_.session.work.gl_errors += execution_.node.driver.drain_errors();
 }
 

@@ -17,7 +17,7 @@ public:
     /// `execution` outlives it.
     explicit TextureDrawnCommands(Execution& execution) : execution_(execution) {}
 
-    void TexMipmaps(ClientName texture, GLenum target);
+    void TexMipmaps(ClientName texture, GLenum target, std::int32_t base, std::int32_t last);
     void TexRead(RequestId request, ClientName texture, GLenum target, std::int32_t level, std::int32_t slice,
                  std::int32_t first_row, std::int32_t rows, GLenum format, GLenum type);
 

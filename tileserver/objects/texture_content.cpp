@@ -85,14 +85,29 @@ std::shared_ptr<TextureContent> TextureContent::copy() const {
     driver_.bind_texture_to_edit(target_, made->name_);
     for (const auto& [pname, value] : parameters_) gl.TexParameterfv(gl_target(target_), pname, value.data());
     if (whole_border_) gl.TexParameterIiv(gl_target(target_), GL_TEXTURE_BORDER_COLOR, whole_border_->data());
-    const auto base = parameters_.find(GL_TEXTURE_BASE_LEVEL);
-    const auto base_level = base == parameters_.end() ? 0 : static_cast<std::int32_t>(base->second[0]);
+    const std::int32_t base_level = made_ ? made_->base : 0;
     for (const auto& [where, image] : images_)
         if (where.second == base_level) copy_image(where.first, where.second, image.format, *made);
-    if (generated_) gl.GenerateMipmap(gl_target(target_));
+    if (made_) made->make_mipmaps(made_->base, made_->last);
+    driver_.bind_texture_to_edit(target_, made->name_);
     for (const auto& [where, image] : images_)
         if (where.second != base_level) copy_image(where.first, where.second, image.format, *made);
     return made;
+}
+
+void TextureContent::make_mipmaps(std::int32_t base, std::int32_t last) {
+    constexpr GLint kLast = 1000;
+    const auto parameter = [&](GLenum pname, GLint otherwise) {
+        const auto known = parameters_.find(pname);
+        return known == parameters_.end() ? otherwise : static_cast<GLint>(known->second[0]);
+    };
+    made_ = Mipmaps{base, last};
+    const Gl& gl = driver_.gl();
+    gl.TextureParameteri(name_, GL_TEXTURE_BASE_LEVEL, base);
+    gl.TextureParameteri(name_, GL_TEXTURE_MAX_LEVEL, last);
+    gl.GenerateTextureMipmap(name_);
+    gl.TextureParameteri(name_, GL_TEXTURE_BASE_LEVEL, parameter(GL_TEXTURE_BASE_LEVEL, 0));
+    gl.TextureParameteri(name_, GL_TEXTURE_MAX_LEVEL, parameter(GL_TEXTURE_MAX_LEVEL, kLast));
 }
 
 // All sizes are the driver's: it writes as much as it has.

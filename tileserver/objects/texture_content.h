@@ -44,8 +44,8 @@ public:
     }
     /// The border colour of whole numbers, instead of any of before.
     void note_whole_border(const std::array<GLint, 4>& value) { whole_border_ = value; }
-    /// The driver has made mipmaps of the base level.
-    void note_mipmaps() { generated_ = true; }
+    /// Makes the levels behind one of it, `last` at most, whichever levels the parameters let be sampled.
+    void make_mipmaps(std::int32_t base, std::int32_t last);
 
     /// The same texture again, copied by the driver.
     std::shared_ptr<TextureContent> copy() const;
@@ -65,7 +65,10 @@ private:
     std::map<std::pair<GLenum, std::int32_t>, Image> images_;
     std::map<GLenum, std::array<float, 4>> parameters_;
     std::optional<std::array<GLint, 4>> whole_border_;
-    bool generated_ = false;  // the driver has made mipmaps
+    struct Mipmaps {
+        std::int32_t base, last;
+    };
+    std::optional<Mipmaps> made_;  // the latest that the driver made
     std::uint64_t bytes_ = 0;
 };
 

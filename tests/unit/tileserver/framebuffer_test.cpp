@@ -201,7 +201,7 @@ TEST_F(FramebufferTest, TexelsThatWereDrawnCanBeAskedFor) {
 TEST_F(FramebufferTest, MipmapsAreMadeOfWhatWasDrawn) {
     draw_texture();
     Batch batch;
-    pack::TexMipmaps(batch.buffer(), kTexture, GL_TEXTURE_2D);
+    pack::TexMipmaps(batch.buffer(), kTexture, GL_TEXTURE_2D, 0, 1000);
     pack::TexRead(batch.buffer(), RequestId(5), kTexture, GL_TEXTURE_2D, 3, 0, 0, 4, GL_RGBA, GL_UNSIGNED_BYTE);
     session_->expect_run(batch);
     const auto& answer = session_->replies[RequestId(5)];
@@ -216,7 +216,8 @@ TEST_F(FramebufferTest, RefusesWhatAClientCannotSend) {
                 HasSubstr("absurd size"));
     EXPECT_THAT(refusal([](auto& b) { pack::Renderbuffer(b, kColor, 1000, GL_RGBA8, 4, 4); }),
                 HasSubstr("absurd size"));
-    EXPECT_THAT(refusal([](auto& b) { pack::TexMipmaps(b, kOther, GL_TEXTURE_2D); }), HasSubstr("no such texture"));
+    EXPECT_THAT(refusal([](auto& b) { pack::TexMipmaps(b, kOther, GL_TEXTURE_2D, 0, 1000); }),
+                HasSubstr("no such texture"));
     EXPECT_THAT(refusal([](auto& b) {
                     pack::TexRead(b, RequestId(5), kTexture, GL_TEXTURE_2D, 0, -1, 0, 1, GL_RGBA, GL_FLOAT);
                 }),
