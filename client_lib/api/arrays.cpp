@@ -11,6 +11,7 @@
 #include "client_lib/context/copied_draw.h"
 #include "client_lib/context/lists.h"
 #include "client_lib/context/node_draw.h"
+#include "client_lib/context/program_use.h"
 #include "client_lib/context/select.h"
 #include "client_lib/context/staged_draw.h"
 #include "client_lib/context/vertex_array_objects.h"
@@ -24,15 +25,22 @@ using glstate::ClientArray;
 
 // ---- defining ----
 
-/// Types that a pointer command takes, as bits from GL_BYTE on.
-constexpr unsigned type_bit(GLenum type) { return type >= GL_BYTE && type <= GL_DOUBLE ? 1u << (type - GL_BYTE) : 0; }
-constexpr unsigned kSigned = type_bit(GL_SHORT) | type_bit(GL_INT) | type_bit(GL_FLOAT) | type_bit(GL_DOUBLE);
+/// Types that a pointer command takes, as bits: those from GL_BYTE on, and the packed ones.
+constexpr unsigned type_bit(GLenum type) {
+    if (glstate::is_packed(type)) return 1u << 16;
+    return type >= GL_BYTE && type <= GL_HALF_FLOAT ? 1u << (type - GL_BYTE) : 0;
+}
+constexpr unsigned kReal = type_bit(GL_FLOAT) | type_bit(GL_DOUBLE) | type_bit(GL_HALF_FLOAT);
+constexpr unsigned kSigned = kReal | type_bit(GL_SHORT) | type_bit(GL_INT) | type_bit(GL_INT_2_10_10_10_REV);
+constexpr unsigned kIndices =
+    type_bit(GL_UNSIGNED_BYTE) | type_bit(GL_SHORT) | type_bit(GL_INT) | type_bit(GL_FLOAT) | type_bit(GL_DOUBLE);
 constexpr unsigned kAny =
     kSigned | type_bit(GL_BYTE) | type_bit(GL_UNSIGNED_BYTE) | type_bit(GL_UNSIGNED_SHORT) | type_bit(GL_UNSIGNED_INT);
 
 struct Allowed {
     GLint min_size, max_size;
     unsigned types;
+    bool bgra = false;  ///< for a size (GL_ARB_vertex_array_bgra)
 };
 
 struct Given {
@@ -45,8 +53,14 @@ struct Given {
 template <class E>
 void define(Context& c, unsigned i, const Allowed& allowed, const Given& given) {
     if (!(allowed.types & type_bit(given.type))) return c.error(GL_INVALID_ENUM);
-    if (given.size < allowed.min_size || given.size > allowed.max_size || given.stride < 0)
-        return c.error(GL_INVALID_VALUE);
+    if (given.stride < 0) return c.error(GL_INVALID_VALUE);
+    const bool packed = glstate::is_packed(given.type);
+    if (allowed.bgra && given.size == GL_BGRA) {
+        if (!packed && given.type != GL_UNSIGNED_BYTE) return c.error(GL_INVALID_OPERATION);
+    } else {
+        if (given.size < allowed.min_size || given.size > allowed.max_size) return c.error(GL_INVALID_VALUE);
+        if (packed && allowed.max_size == 4 && given.size != 4) return c.error(GL_INVALID_OPERATION);
+    }
     ClientArray array = E::ref(c.state, i);
     array.pointer = reinterpret_cast<std::uintptr_t>(given.pointer);
     array.size = given.size;
@@ -143,8 +157,9 @@ void draw(Context& c, const ArrayDraw& draw) {
     if (draw.instances > 1 && elements > wire::kMostInstancedElements) return c.error(GL_OUT_OF_MEMORY);
     if (draw_on_nodes(c, draw)) return;
     if (draw_copied(c, draw)) return;
-    if (draw.instances == 1) return draw_inline(c, draw, 0);
-    if (c.table == &tables::immediate) return draw_staged(c, draw);
+    const bool at_once = c.table == &tables::immediate;
+    if (draw.instances == 1 && !(at_once && reads_vertex_numbers(c))) return draw_inline(c, draw, 0);
+    if (at_once) return draw_staged(c, draw);
     // As Mesa: all that a list knows of instances are the arrays that go on with them.
     for (GLsizei i = 0; i < draw.instances; ++i) draw_inline(c, draw, i);
 }
@@ -186,16 +201,16 @@ void NormalPointer(Context& c, GLenum type, GLsizei stride, const void* pointer)
     define<el::normal_array>(c, 0, {3, 3, kSigned | type_bit(GL_BYTE)}, {3, type, stride, pointer});
 }
 void ColorPointer(Context& c, GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    define<el::color_array>(c, 0, {3, 4, kAny}, {size, type, stride, pointer});
+    define<el::color_array>(c, 0, {3, 4, kAny, true}, {size, type, stride, pointer});
 }
 void SecondaryColorPointer(Context& c, GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    define<el::secondary_color_array>(c, 0, {3, 3, kAny}, {size, type, stride, pointer});
+    define<el::secondary_color_array>(c, 0, {3, 3, kAny, true}, {size, type, stride, pointer});
 }
 void FogCoordPointer(Context& c, GLenum type, GLsizei stride, const void* pointer) {
-    define<el::fog_coord_array>(c, 0, {1, 1, type_bit(GL_FLOAT) | type_bit(GL_DOUBLE)}, {1, type, stride, pointer});
+    define<el::fog_coord_array>(c, 0, {1, 1, kReal}, {1, type, stride, pointer});
 }
 void IndexPointer(Context& c, GLenum type, GLsizei stride, const void* pointer) {
-    define<el::index_array>(c, 0, {1, 1, kSigned | type_bit(GL_UNSIGNED_BYTE)}, {1, type, stride, pointer});
+    define<el::index_array>(c, 0, {1, 1, kIndices}, {1, type, stride, pointer});
 }
 void EdgeFlagPointer(Context& c, GLsizei stride, const void* pointer) {
     define<el::edge_flag_array>(c, 0, {1, 1, type_bit(GL_UNSIGNED_BYTE)}, {1, GL_UNSIGNED_BYTE, stride, pointer});

@@ -87,6 +87,8 @@ void of_texture_matrix(Context& c, Use&& use) {
     else c.error(GL_INVALID_OPERATION);
 }
 
+constexpr int kUniformBuffers = glstate::el::uniform_buffer::count;
+
 const Special kSpecials[] = {
     {GL_MODELVIEW_STACK_DEPTH, 1, [](Context& c, double* out) { *out = depth_of(c.modelview_stack); }},
     {GL_PROJECTION_STACK_DEPTH, 1, [](Context& c, double* out) { *out = depth_of(c.projection_stack); }},
@@ -168,6 +170,8 @@ const Special kSpecials[] = {
          out[2] = GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
      }},
     {GL_MAX_VERTEX_ATTRIBS, 1, limited<GL_MAX_VERTEX_ATTRIBS, kVertexAttributes>},
+    {GL_MAX_UNIFORM_BUFFER_BINDINGS, 1, limited<GL_MAX_UNIFORM_BUFFER_BINDINGS, kUniformBuffers>},
+    {GL_MAX_COMBINED_UNIFORM_BLOCKS, 1, limited<GL_MAX_COMBINED_UNIFORM_BLOCKS, kUniformBuffers>},
     {GL_MAX_ELEMENTS_VERTICES, 1, constant<3000>},
     {GL_MAX_ELEMENTS_INDICES, 1, constant<3000>},
 

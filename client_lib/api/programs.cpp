@@ -2,39 +2,12 @@
 // Shaders and programs (OpenGL 2.1, 2.15 and 6.1.14): names are given here, one node is asked how compiling and linking
 // went, and all queries are answered from the shadow.
 #include <algorithm>
-#include <cstring>
 
+#include "client_lib/api/program_access.h"
 #include "client_lib/context/program_use.h"
 
 namespace wall::client::api {
 namespace {
-
-std::shared_ptr<GlslObject> find(Context& c, GLuint name) {
-    std::lock_guard lock(c.share().mutex);
-    return c.share().glsl_objects.find(name);
-}
-
-/// The object of a name, or null and the error that OpenGL gives for it.
-template <class T>
-std::shared_ptr<T> object_of(Context& c, GLuint name, GlslObject::Kind kind) {
-    auto object = find(c, name);
-    if (object && object->kind == kind) return std::static_pointer_cast<T>(object);
-    c.error(object ? GL_INVALID_OPERATION : GL_INVALID_VALUE);
-    return nullptr;
-}
-std::shared_ptr<Shader> shader_of(Context& c, GLuint name) {
-    return object_of<Shader>(c, name, GlslObject::Kind::shader);
-}
-std::shared_ptr<Program> program_of(Context& c, GLuint name) {
-    return object_of<Program>(c, name, GlslObject::Kind::program);
-}
-
-/// The program, once it is known how its linking went.
-std::shared_ptr<Program> linked_program(Context& c, GLuint name) {
-    auto program = program_of(c, name);
-    if (program) learn_link_result(c, *program);
-    return program;
-}
 
 template <class T, class... Args>
 GLuint create(Context& c, Args... args) {
@@ -47,22 +20,8 @@ GLuint create(Context& c, Args... args) {
     return name;
 }
 
-/// Text and its length, as the Get...InfoLog and Get...Source commands give them.
-void give_text(Context& c, const std::string& text, GLsizei room, GLsizei* length, GLchar* out) {
-    if (room < 0) return c.error(GL_INVALID_VALUE);
-    const std::size_t copied = room == 0 ? 0 : std::min(text.size(), static_cast<std::size_t>(room) - 1);
-    if (out && room > 0) {
-        std::memcpy(out, text.data(), copied);
-        out[copied] = '\0';
-    }
-    if (length) *length = static_cast<GLsizei>(copied);
-}
-
 /// With the terminating zero; 0 for nothing.
 GLint text_length(const std::string& text) { return text.empty() ? 0 : static_cast<GLint>(text.size() + 1); }
-
-/// What is active in the program as linked last; null if that failed.
-const Executable* active(const Program& program) { return program.linked ? program.executable.get() : nullptr; }
 
 template <class Items, class NameOf>
 GLint longest_name(const Items& items, NameOf&& name_of) {
@@ -79,6 +38,9 @@ GLint active_value(const Program& program, GLenum pname) {
         case GL_ACTIVE_ATTRIBUTES: return static_cast<GLint>(executable->attributes.size());
         case GL_ACTIVE_UNIFORM_MAX_LENGTH:
             return longest_name(executable->uniforms, [](const Uniform& u) { return u.full_name(); });
+        case GL_ACTIVE_UNIFORM_BLOCKS: return static_cast<GLint>(executable->blocks.size());
+        case GL_ACTIVE_UNIFORM_BLOCK_MAX_NAME_LENGTH:
+            return longest_name(executable->blocks, [](const UniformBlock& b) { return b.name; });
         default: return longest_name(executable->attributes, [](const glapi::ActiveAttribute& a) { return a.name; });
     }
 }
@@ -99,7 +61,7 @@ void DeleteShader(Context& c, GLuint name) {
 }
 
 GLboolean IsShader(Context& c, GLuint name) {
-    const auto object = find(c, name);
+    const auto object = find_glsl_object(c, name);
     return object && object->kind == GlslObject::Kind::shader;
 }
 
@@ -168,7 +130,7 @@ void DeleteProgram(Context& c, GLuint name) {
 }
 
 GLboolean IsProgram(Context& c, GLuint name) {
-    const auto object = find(c, name);
+    const auto object = find_glsl_object(c, name);
     return object && object->kind == GlslObject::Kind::program;
 }
 
@@ -245,6 +207,8 @@ void GetProgramiv(Context& c, GLuint name, GLenum pname, GLint* params) {
         case GL_ATTACHED_SHADERS: *params = static_cast<GLint>(program->shaders.size()); break;
         case GL_ACTIVE_UNIFORMS:
         case GL_ACTIVE_UNIFORM_MAX_LENGTH:
+        case GL_ACTIVE_UNIFORM_BLOCKS:
+        case GL_ACTIVE_UNIFORM_BLOCK_MAX_NAME_LENGTH:
         case GL_ACTIVE_ATTRIBUTES:
         case GL_ACTIVE_ATTRIBUTE_MAX_LENGTH: *params = active_value(*program, pname); break;
         default: c.error(GL_INVALID_ENUM);

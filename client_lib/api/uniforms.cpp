@@ -2,6 +2,7 @@
 // Values of uniforms (OpenGL 2.1, 2.15.3): kept in the program, sent when something is drawn with it. Setting an equal
 // value is no change.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <span>
 #include <type_traits>
@@ -109,15 +110,24 @@ void set_matrices(Context& c, GLint location, GLsizei count, GLboolean transpose
         {UniformBase::real, kColumns, kRows, {reinterpret_cast<const std::uint32_t*>(values), words}});
 }
 
+/// The nearest that there is (OpenGL 4.5, 2.2.2).
+GLuint rounded_unsigned(GLfloat value) {
+    constexpr GLfloat kBehind = 4294967296.0f;
+    if (!(value > 0)) return 0;
+    return value >= kBehind ? ~GLuint{0} : static_cast<GLuint>(std::round(value));
+}
+
 template <class Out>
 Out converted(UniformBase base, std::uint32_t word) {
     if (base == UniformBase::real) {
         GLfloat value;
         std::memcpy(&value, &word, sizeof value);
         if constexpr (std::is_same_v<Out, GLint>) return rounded_param(value);
+        else if constexpr (std::is_same_v<Out, GLuint>) return rounded_unsigned(value);
         else return value;
     }
     if (base == UniformBase::unsigned_integer) return static_cast<Out>(word);
+    if constexpr (std::is_same_v<Out, GLuint>) return static_cast<GLuint>(std::max(static_cast<GLint>(word), 0));
     return static_cast<Out>(static_cast<GLint>(word));
 }
 
@@ -164,6 +174,17 @@ void Uniform2iv(Context& c, GLint location, GLsizei count, const GLint* v) { set
 void Uniform3iv(Context& c, GLint location, GLsizei count, const GLint* v) { set_vectors<3>(c, location, count, v); }
 void Uniform4iv(Context& c, GLint location, GLsizei count, const GLint* v) { set_vectors<4>(c, location, count, v); }
 
+void Uniform1ui(Context& c, GLint location, GLuint x) { set_one(c, location, x); }
+void Uniform2ui(Context& c, GLint location, GLuint x, GLuint y) { set_one(c, location, x, y); }
+void Uniform3ui(Context& c, GLint location, GLuint x, GLuint y, GLuint z) { set_one(c, location, x, y, z); }
+void Uniform4ui(Context& c, GLint location, GLuint x, GLuint y, GLuint z, GLuint w) {
+    set_one(c, location, x, y, z, w);
+}
+void Uniform1uiv(Context& c, GLint location, GLsizei count, const GLuint* v) { set_vectors<1>(c, location, count, v); }
+void Uniform2uiv(Context& c, GLint location, GLsizei count, const GLuint* v) { set_vectors<2>(c, location, count, v); }
+void Uniform3uiv(Context& c, GLint location, GLsizei count, const GLuint* v) { set_vectors<3>(c, location, count, v); }
+void Uniform4uiv(Context& c, GLint location, GLsizei count, const GLuint* v) { set_vectors<4>(c, location, count, v); }
+
 void UniformMatrix2fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
     set_matrices<2, 2>(c, l, n, t, v);
 }
@@ -193,6 +214,7 @@ void UniformMatrix4x3fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLflo
 }
 
 void GetUniformfv(Context& c, GLuint program, GLint location, GLfloat* params) { get(c, program, location, params); }
+void GetUniformuiv(Context& c, GLuint program, GLint location, GLuint* params) { get(c, program, location, params); }
 void GetUniformiv(Context& c, GLuint program, GLint location, GLint* params) { get(c, program, location, params); }
 
 }  // namespace wall::client::api

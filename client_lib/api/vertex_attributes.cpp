@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Arrays of generic vertex attributes (OpenGL 2.1, 2.8) and what is asked about them.
+#include <bit>
+
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/object_name.h"
+#include "common/glstate/vertex_input.h"
 
 namespace wall::client::api {
 namespace {
@@ -9,7 +12,11 @@ namespace {
 namespace el = glstate::el;
 using Array = el::attrib_array::type;
 
-bool is_array_type(GLenum type) { return (type >= GL_BYTE && type <= GL_FLOAT) || type == GL_DOUBLE; }
+bool is_integer_type(GLenum type) { return type >= GL_BYTE && type <= GL_UNSIGNED_INT; }
+bool is_array_type(GLenum type) {
+    return is_integer_type(type) || type == GL_FLOAT || type == GL_DOUBLE || type == GL_HALF_FLOAT ||
+           glstate::is_packed(type);
+}
 
 void enable(Context& c, GLuint index, bool enabled) {
     if (index >= kVertexAttributes) return c.error(GL_INVALID_VALUE);
@@ -18,7 +25,14 @@ void enable(Context& c, GLuint index, bool enabled) {
     c.set<el::attrib_array>(index, array);
 }
 
-template <class Out>
+/// The number, or what an integer's bits stand for.
+template <bool kBits, class Out>
+Out as(float value) {
+    if constexpr (kBits) return std::bit_cast<Out>(value);
+    else return static_cast<Out>(value);
+}
+
+template <bool kBits, class Out>
 void get(Context& c, GLuint index, GLenum pname, Out* params) {
     if (index >= kVertexAttributes) return c.error(GL_INVALID_VALUE);
     const Array& array = c.get<el::attrib_array>(index);
@@ -28,6 +42,7 @@ void get(Context& c, GLuint index, GLenum pname, Out* params) {
         case GL_VERTEX_ATTRIB_ARRAY_STRIDE: *params = static_cast<Out>(array.stride); break;
         case GL_VERTEX_ATTRIB_ARRAY_TYPE: *params = static_cast<Out>(array.type); break;
         case GL_VERTEX_ATTRIB_ARRAY_NORMALIZED: *params = static_cast<Out>(array.normalized); break;
+        case GL_VERTEX_ATTRIB_ARRAY_INTEGER: *params = static_cast<Out>(array.integer); break;
         case GL_VERTEX_ATTRIB_ARRAY_DIVISOR: *params = static_cast<Out>(array.divisor); break;
         case GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING:
             *params = static_cast<Out>(object_name(c, glstate::ValueKind::name_buffer, ClientName(array.buffer)));
@@ -35,7 +50,7 @@ void get(Context& c, GLuint index, GLenum pname, Out* params) {
         case GL_CURRENT_VERTEX_ATTRIB:
             if (index == 0) return c.error(GL_INVALID_OPERATION);
             c.flush_block();
-            for (const float value : c.get<el::vertex_attrib>(index)) *params++ = static_cast<Out>(value);
+            for (const float value : c.get<el::vertex_attrib>(index)) *params++ = as<kBits, Out>(value);
             break;
         default: c.error(GL_INVALID_ENUM);
     }
@@ -43,19 +58,45 @@ void get(Context& c, GLuint index, GLenum pname, Out* params) {
 
 }  // namespace
 
+namespace {
+
+struct Given {
+    GLint size;
+    GLenum type;
+    GLsizei stride;
+    const void* pointer;
+    bool normalized, integer;
+};
+
+void define(Context& c, GLuint index, const Given& given) {
+    Array array = c.get<el::attrib_array>(index);
+    array.pointer = reinterpret_cast<std::uintptr_t>(given.pointer);
+    array.size = given.size;
+    array.type = given.type;
+    array.stride = given.stride;
+    array.buffer = c.state.local.array_buffer;
+    array.normalized = given.normalized;
+    array.integer = given.integer;
+    c.set<el::attrib_array>(index, array);
+}
+
+}  // namespace
+
 void VertexAttribPointer(Context& c, GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride,
                          const void* pointer) {
-    if (index >= kVertexAttributes || size < 1 || size > 4 || stride < 0) return c.error(GL_INVALID_VALUE);
+    const bool bgra = size == GL_BGRA;
+    if (index >= kVertexAttributes || (!bgra && (size < 1 || size > 4)) || stride < 0) return c.error(GL_INVALID_VALUE);
     if (!is_array_type(type)) return c.error(GL_INVALID_ENUM);
-    Array array = c.get<el::attrib_array>(index);
-    array.pointer = reinterpret_cast<std::uintptr_t>(pointer);
-    array.size = size;
-    array.type = type;
-    array.stride = stride;
-    array.buffer = c.state.local.array_buffer;
-    array.normalized = normalized != GL_FALSE;
-    array.integer = false;
-    c.set<el::attrib_array>(index, array);
+    const bool packed = glstate::is_packed(type);
+    if (bgra && ((type != GL_UNSIGNED_BYTE && !packed) || !normalized)) return c.error(GL_INVALID_OPERATION);
+    if (packed && !bgra && size != 4) return c.error(GL_INVALID_OPERATION);
+    define(c, index, {size, type, stride, pointer, normalized != GL_FALSE, false});
+}
+
+void VertexAttribIPointer(Context& c, GLuint index, GLint size, GLenum type, GLsizei stride, const void* pointer) {
+    if (index >= kVertexAttributes || size < 1 || size > 4 || stride < 0) return c.error(GL_INVALID_VALUE);
+    if (!is_integer_type(type)) return c.error(GL_INVALID_ENUM);
+    define(c, index, {size, type, stride, pointer, false, true});
 }
 
 void VertexAttribDivisor(Context& c, GLuint index, GLuint divisor) {
@@ -68,9 +109,13 @@ void VertexAttribDivisor(Context& c, GLuint index, GLuint divisor) {
 void EnableVertexAttribArray(Context& c, GLuint index) { enable(c, index, true); }
 void DisableVertexAttribArray(Context& c, GLuint index) { enable(c, index, false); }
 
-void GetVertexAttribfv(Context& c, GLuint index, GLenum pname, GLfloat* params) { get(c, index, pname, params); }
-void GetVertexAttribdv(Context& c, GLuint index, GLenum pname, GLdouble* params) { get(c, index, pname, params); }
-void GetVertexAttribiv(Context& c, GLuint index, GLenum pname, GLint* params) { get(c, index, pname, params); }
+void GetVertexAttribfv(Context& c, GLuint index, GLenum pname, GLfloat* params) { get<false>(c, index, pname, params); }
+void GetVertexAttribdv(Context& c, GLuint index, GLenum pname, GLdouble* params) {
+    get<false>(c, index, pname, params);
+}
+void GetVertexAttribiv(Context& c, GLuint index, GLenum pname, GLint* params) { get<false>(c, index, pname, params); }
+void GetVertexAttribIiv(Context& c, GLuint index, GLenum pname, GLint* params) { get<true>(c, index, pname, params); }
+void GetVertexAttribIuiv(Context& c, GLuint index, GLenum pname, GLuint* params) { get<true>(c, index, pname, params); }
 
 void GetVertexAttribPointerv(Context& c, GLuint index, GLenum pname, void** pointer) {
     if (index >= kVertexAttributes) return c.error(GL_INVALID_VALUE);

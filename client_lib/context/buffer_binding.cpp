@@ -9,6 +9,7 @@
 #include "client_lib/context/array_copies.h"
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/forget_objects.h"
+#include "client_lib/context/indexed_buffers.h"
 #include "client_lib/context/staging_buffers.h"
 #include "client_lib/context/vertex_array_objects.h"
 #include "client_lib/context/vertex_inputs.h"
@@ -20,7 +21,8 @@ namespace wall::client {
 namespace {
 
 constexpr GLenum kTargets[] = {GL_ARRAY_BUFFER,        GL_ELEMENT_ARRAY_BUFFER, GL_PIXEL_PACK_BUFFER,
-                               GL_PIXEL_UNPACK_BUFFER, GL_COPY_READ_BUFFER,     GL_COPY_WRITE_BUFFER};
+                               GL_PIXEL_UNPACK_BUFFER, GL_COPY_READ_BUFFER,     GL_COPY_WRITE_BUFFER,
+                               GL_UNIFORM_BUFFER};
 
 /// Calls use.operator()<E>() with the binding's element; false: no such target.
 template <class Use>
@@ -32,6 +34,7 @@ bool with_binding(GLenum target, Use&& use) {
         case GL_COPY_READ_BUFFER: return use.template operator()<el::copy_read_buffer>(), true;
         case GL_COPY_WRITE_BUFFER: return use.template operator()<el::copy_write_buffer>(), true;
         case GL_PIXEL_PACK_BUFFER: return use.template operator()<el::pixel_pack_buffer>(), true;
+        case GL_UNIFORM_BUFFER: return use.template operator()<el::bound_uniform_buffer>(), true;
         case GL_PIXEL_UNPACK_BUFFER: return use.template operator()<el::pixel_unpack_buffer>(), true;
         default: return false;
     }
@@ -76,7 +79,8 @@ void add_named_by_arrays(const glstate::State& state, std::vector<std::uint32_t>
 void add_named(const glstate::State& state, std::vector<std::uint32_t>& ids) {
     const auto& local = state.local;
     ids.insert(ids.end(), {local.array_buffer, local.pixel_pack_buffer, local.pixel_unpack_buffer,
-                           local.copy_read_buffer, local.copy_write_buffer});
+                           local.copy_read_buffer, local.copy_write_buffer, local.bound_uniform_buffer});
+    for (const glstate::BufferRange& range : state.uniform_buffers.uniform_buffer) ids.push_back(range.buffer);
     add_named_by_arrays(state, ids);
 }
 
@@ -135,6 +139,7 @@ void let_go_of_own_buffer(Context& c, std::shared_ptr<Buffer> buffer) {
     const ClientName id = buffer->id;
     for (const GLenum target : kTargets)
         if (bound_buffer_id(c, target) == id) bind_buffer(c, target, {});
+    unbind_indexed(c, id);
     if (!names_buffer(c, id)) return let_go_of_buffer(c, std::move(buffer));
     // In the arrays that are set now there is nothing in its place: a buffer that nobody has.
     const ClientName nothing = next_object_id();
@@ -170,6 +175,7 @@ void let_go_of_all_buffers(Context& c) {
 
 void before_writing(Context& c, const Buffer& buffer) {
     c.buffers->transfer = {};
+    if (!c.packer.empty() && is_uniform_buffer(c, buffer.id)) c.flush_block();
     c.before_change(buffer.id);
 }
 

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/lists.h"
 #include "client_lib/context/program_use.h"
 #include "client_lib/geometry/block_walk.h"
+#include "common/glapi/convert.h"
+#include "common/glapi/packed_vertex.h"
 
 namespace wall::client {
 namespace {
@@ -28,12 +31,15 @@ enum class Conversion : std::uint8_t {
     none,     ///< the number itself
     fetch,    ///< llvmpipe's, of a draw from arrays
     command,  ///< glColor's and glNormal's, which glArrayElement and display lists go through
+    integer,  ///< none: a float of the same bits
 };
 
 template <class T, Conversion kConversion>
 float to_float(T value) {
     constexpr auto kMax = static_cast<double>(std::numeric_limits<T>::max());
-    if constexpr (kConversion == Conversion::none || std::is_floating_point_v<T>) return static_cast<float>(value);
+    if constexpr (std::is_floating_point_v<T>) return static_cast<float>(value);
+    else if constexpr (kConversion == Conversion::none) return static_cast<float>(value);
+    else if constexpr (kConversion == Conversion::integer) return glapi::to_bits(value);
     else if constexpr (std::is_same_v<T, GLubyte> && kConversion == Conversion::command)
         return static_cast<float>(value) / 255.0f;
     else if constexpr (std::is_unsigned_v<T> && sizeof(T) < 4)
@@ -53,9 +59,25 @@ void load_values(const std::byte* from, GLint size, float* out) {
         out[i] = to_float<T, kConversion>(load_one<T>(from + static_cast<std::size_t>(i) * sizeof(T)));
 }
 
+void load_halves(const std::byte* from, GLint size, float* out) {
+    for (GLint i = 0; i < size; ++i)
+        out[i] = glapi::half_to_float(load_one<std::uint16_t>(from + static_cast<std::size_t>(i) * 2));
+}
+
+template <GLenum kType, bool kNormalized>
+void load_packed(const std::byte* from, GLint size, float* out) {
+    glapi::unpack_2_10_10_10(kType, load_one<GLuint>(from), kNormalized, static_cast<unsigned>(size), out);
+}
+
+template <GLenum kType>
+Load packed_loader(Conversion conversion) {
+    return conversion == Conversion::none ? &load_packed<kType, false> : &load_packed<kType, true>;
+}
+
 template <class T>
 Load loader(Conversion conversion) {
     switch (conversion) {
+        case Conversion::integer: return &load_values<T, Conversion::integer>;
         case Conversion::fetch: return &load_values<T, Conversion::fetch>;
         case Conversion::command: return &load_values<T, Conversion::command>;
         case Conversion::none: break;
@@ -72,6 +94,9 @@ Load loader_of(GLenum type, Conversion conversion) {
         case GL_INT: return loader<GLint>(conversion);
         case GL_UNSIGNED_INT: return loader<GLuint>(conversion);
         case GL_DOUBLE: return loader<GLdouble>(Conversion::none);
+        case GL_HALF_FLOAT: return &load_halves;
+        case GL_INT_2_10_10_10_REV: return packed_loader<GL_INT_2_10_10_10_REV>(conversion);
+        case GL_UNSIGNED_INT_2_10_10_10_REV: return packed_loader<GL_UNSIGNED_INT_2_10_10_10_REV>(conversion);
         default: return loader<GLfloat>(Conversion::none);
     }
 }
@@ -114,6 +139,7 @@ struct DirectLayout {
 
 bool direct(const ArraySource& source, DirectArray& out) {
     if (source.count != ArraySource::kNoLimit) return false;
+    if (source.bgra) return false;
     const bool floats = source.type == GL_FLOAT;
     const auto size = static_cast<unsigned>(source.size);
     out = {source.base, source.stride, Op::Vertex3f, size * sizeof(float), source.attribute};
@@ -283,13 +309,16 @@ private:
 
 void send(Context& c, const ArraySource& source, GLuint element) {
     const std::byte* at = place(source, element);
-    if (source.attribute == Attribute::color && source.type == GL_UNSIGNED_BYTE &&
+    if (source.attribute == Attribute::color && source.type == GL_UNSIGNED_BYTE && !source.bgra &&
         (source.by_command || same_bytes(at, static_cast<std::size_t>(source.size)))) {
         const auto byte = [&](GLint i) { return std::to_integer<GLubyte>(at[i]); };
         return c.table->Color4ub(c, byte(0), byte(1), byte(2), source.size == 4 ? byte(3) : GLubyte{255});
     }
-    float v[4] = {0, 0, 0, 1};
+    float v[4] = {0, 0, 0, source.integer ? glapi::to_bits(1) : 1.0f};
     source.load(at, source.size, v);
+    if (source.bgra) std::swap(v[0], v[2]);
+    if (source.integer && source.attribute == kVertexArray)
+        return c.table->VertexAttrib4f(c, 0, v[0], v[1], v[2], v[3]);
     if (source.attribute != kVertexArray) return call_attribute(*c.table, c, source.attribute, source.size, v);
     if (source.size == 2) return c.table->Vertex2f(c, v[0], v[1]);
     if (source.size == 3) return c.table->Vertex3f(c, v[0], v[1], v[2]);
@@ -306,6 +335,15 @@ void walk(const ElementRange& elements, Each&& each, Restart&& restart) {
 
 }  // namespace
 
+namespace {
+
+Conversion conversion_of(std::uint32_t integer, std::uint32_t normalized, Conversion of_normalized) {
+    if (integer != 0) return Conversion::integer;
+    return normalized != 0 ? of_normalized : Conversion::none;
+}
+
+}  // namespace
+
 ArraySource array_source(const glstate::InputArray& array, std::span<const std::byte> content) {
     const std::size_t bytes = array.element_bytes();
     return {.attribute = static_cast<Attribute>(array.place),
@@ -313,9 +351,11 @@ ArraySource array_source(const glstate::InputArray& array, std::span<const std::
             .base = content.data(),
             .stride = array.step(),
             .count = content.size() < bytes ? 0 : (content.size() - bytes) / array.step() + 1,
-            .size = array.size,
+            .size = glstate::components(array.size),
             .type = array.type,
-            .load = loader_of(array.type, array.normalized != 0 ? Conversion::fetch : Conversion::none)};
+            .integer = array.integer != 0,
+            .bgra = array.size == GL_BGRA,
+            .load = loader_of(array.type, conversion_of(array.integer, array.normalized, Conversion::fetch))};
 }
 
 ArraySet::ArraySet(Context& c, bool by_command, GLsizei instance) : by_command_(by_command), instance_(instance) {
@@ -328,7 +368,7 @@ ArraySet::ArraySet(Context& c, bool by_command, GLsizei instance) : by_command_(
 
 void ArraySet::add(Context& c, Attribute attribute, const glstate::ClientArray& array) {
     if (!array.enabled) return;
-    const std::size_t bytes = glstate::component_bytes(array.type) * static_cast<std::size_t>(array.size);
+    const std::size_t bytes = glstate::element_bytes(array.type, array.size);
     const std::size_t stride = array.stride ? static_cast<std::size_t>(array.stride) : bytes;
     const auto* base = reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(array.pointer));
     std::size_t count = ArraySource::kNoLimit;
@@ -347,11 +387,18 @@ void ArraySet::add(Context& c, Attribute attribute, const glstate::ClientArray& 
         count = element < count ? ArraySource::kNoLimit : 0;
         step = 0;
     }
-    const Conversion conversion = !array.normalized ? Conversion::none
-                                  : by_command_     ? Conversion::command
-                                                    : Conversion::fetch;
-    sources_[count_++] = {attribute, by_command_, base,       step,
-                          count,     array.size,  array.type, loader_of(array.type, conversion)};
+    const Conversion conversion =
+        conversion_of(array.integer, array.normalized, by_command_ ? Conversion::command : Conversion::fetch);
+    sources_[count_++] = {.attribute = attribute,
+                          .by_command = by_command_,
+                          .base = base,
+                          .stride = step,
+                          .count = count,
+                          .size = glstate::components(array.size),
+                          .type = array.type,
+                          .integer = array.integer != 0,
+                          .bgra = array.size == GL_BGRA,
+                          .load = loader_of(array.type, conversion)};
 }
 
 void ArraySet::add_constant_vertex(Context& c) {
@@ -359,8 +406,16 @@ void ArraySet::add_constant_vertex(Context& c) {
     c.flush_block();  // the current attributes are in `state` after it
     constant_vertex_ = c.state.current.vertex_attrib[0];
     const auto* base = reinterpret_cast<const std::byte*>(constant_vertex_.data());
-    sources_[count_++] = {kVertexArray,          by_command_, base,     0,
-                          ArraySource::kNoLimit, 4,           GL_FLOAT, loader_of(GL_FLOAT, Conversion::none)};
+    sources_[count_++] = {.attribute = kVertexArray,
+                          .by_command = by_command_,
+                          .base = base,
+                          .stride = 0,
+                          .count = ArraySource::kNoLimit,
+                          .size = 4,
+                          .type = GL_FLOAT,
+                          .integer = false,
+                          .bgra = false,
+                          .load = loader_of(GL_FLOAT, Conversion::none)};
 }
 
 void send_element(Context& c, const ArraySet& arrays, GLuint element) {

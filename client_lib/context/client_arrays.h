@@ -25,8 +25,10 @@ struct ArraySource {
     const std::byte* base;
     std::size_t stride;
     std::size_t count;  ///< elements that lie in the buffer object; kNoLimit for client memory
-    GLint size;
+    GLint size;         ///< components
     GLenum type;
+    bool integer;  ///< the values are bits of integers
+    bool bgra;     ///< the first and the third component change places
     void (*load)(const std::byte* from, GLint size, float* out);
     static constexpr std::size_t kNoLimit = ~std::size_t{0};
 };

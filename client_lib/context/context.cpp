@@ -86,6 +86,7 @@ void Context::begin_primitive(GLenum mode) {
 }
 
 void Context::end_primitive() {
+    if (program) packer.mark_unbounded();  // what it takes for positions may be no numbers at all
     packer.end();
     if (table == &tables::inside_begin) table = &tables::immediate;
     if (packer.take_overflow()) {

@@ -102,7 +102,8 @@ void CopiedDraw::add(std::uint32_t place, const ClientArray& array) {
                             .type = array.type,
                             .size = array.size,
                             .normalized = array.normalized,
-                            .divisor = array.divisor}};
+                            .divisor = array.divisor,
+                            .integer = array.integer}};
     if (array.buffer == 0) {
         placed.pointer = static_cast<std::uintptr_t>(array.pointer);
         placed.input.stride = static_cast<std::int32_t>(placed.input.step());

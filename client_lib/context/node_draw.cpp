@@ -36,7 +36,8 @@ public:
         known_ = in_buffers();
         if (known_ == nullptr) return false;
         const bool worth = worth_keeping();
-        return worth || draw_.instances != 1;  // in a block of vertices there are no instances
+        // In a block of vertices there are no instances, and no numbers.
+        return worth || draw_.instances != 1 || (c_.program && c_.program->executable->reads_vertex_numbers());
     }
     /// Instead, if the input was made for this draw.
     void know_all_of_it() {
@@ -194,7 +195,7 @@ bool NodeDraw::worth_keeping() {
     bool keep = true;
     const auto& arrays = input_.definition().arrays;
     for (std::size_t i = 0; i < input_.buffers().size(); ++i) {
-        const auto components = i < arrays.size() ? static_cast<std::uint64_t>(arrays[i].size) : 0;
+        const auto components = i < arrays.size() ? static_cast<std::uint64_t>(glstate::components(arrays[i].size)) : 0;
         const std::uint64_t bytes = components != 0
                                         ? (1 + sizeof(float) * components) * static_cast<std::uint64_t>(draw_.count)
                                         : input_.inline_bytes(draw_.count);

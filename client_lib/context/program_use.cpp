@@ -5,6 +5,7 @@
 
 #include "client_lib/context/ask_one.h"
 #include "client_lib/context/framebuffer_binding.h"
+#include "client_lib/context/indexed_buffers.h"
 #include "client_lib/process/log.h"
 
 namespace wall::client {
@@ -70,9 +71,16 @@ void use_program(Context& c, std::shared_ptr<Program> program) {
     if (const auto before = std::exchange(c.program, std::move(program))) drop_user(c, before);
 }
 
+bool reads_vertex_numbers(const Context& c) {
+    if (!c.program) return false;
+    std::lock_guard lock(c.share().mutex);
+    return c.program->executable->reads_vertex_numbers();
+}
+
 bool may_draw(Context& c) {
     if (c.framebuffers->draw && !may_draw_to_target(c)) return false;
     if (!c.program) return true;
+    find_written_uniforms(c);
     std::lock_guard lock(c.share().mutex);
     if (!c.program->executable->samplers_conflict()) return true;
     c.error(GL_INVALID_OPERATION);

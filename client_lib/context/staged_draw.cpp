@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cstring>
 #include <mutex>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/forget_objects.h"
+#include "client_lib/context/program_use.h"
 #include "client_lib/context/staging_buffers.h"
 #include "client_lib/context/vertex_inputs.h"
 #include "client_lib/objects/share_group.h"
@@ -20,7 +22,8 @@ using glstate::Attribute;
 using glstate::ClientArray;
 using glstate::InputArray;
 
-constexpr GLuint kRestart = ~GLuint{0};  // among the staged indices
+constexpr std::size_t kMostUnused = std::size_t{1} << 20;  // elements that come along for the others' numbers
+constexpr GLuint kRestart = ~GLuint{0};                    // among the staged indices
 
 class StagedDraw {
 public:
@@ -29,6 +32,7 @@ public:
 
 private:
     bool find_elements();
+    bool keep_numbers(const std::vector<GLuint>& drawn);
     void stage(std::uint32_t place, const ClientArray& array);
     void stage_constant_position();
     Buffer& buffer_at(std::uint32_t place);
@@ -61,6 +65,10 @@ bool StagedDraw::find_elements() {
     drawn.reserve(static_cast<std::size_t>(range.count));
     for (GLsizei i = 0; i < range.count; ++i)
         if (!range.restarts_at(i)) drawn.push_back(range.at(i));
+    if (reads_vertex_numbers(c_) && keep_numbers(drawn)) {
+        for (GLsizei i = 0; i < range.count; ++i) indices_.push_back(range.restarts_at(i) ? kRestart : range.at(i));
+        return true;
+    }
     elements_ = drawn;
     std::ranges::sort(elements_);
     const auto behind = std::ranges::unique(elements_);
@@ -75,6 +83,16 @@ bool StagedDraw::find_elements() {
         indices_.push_back(static_cast<GLuint>(at - elements_.begin()));
     }
     return !elements_.empty();
+}
+
+/// All elements up to the highest, so that each keeps its number. False: there are too many, or none.
+bool StagedDraw::keep_numbers(const std::vector<GLuint>& drawn) {
+    if (drawn.empty()) return false;
+    const std::size_t behind = std::size_t{*std::ranges::max_element(drawn)} + 1;
+    if (behind > kMostUnused + drawn.size()) return false;
+    elements_.resize(behind);
+    std::iota(elements_.begin(), elements_.end(), GLuint{0});
+    return true;
 }
 
 Buffer& StagedDraw::buffer_at(std::uint32_t place) {
@@ -104,7 +122,8 @@ void StagedDraw::stage(std::uint32_t place, const ClientArray& array) {
                            .type = array.type,
                            .size = array.size,
                            .normalized = array.normalized,
-                           .divisor = array.divisor};
+                           .divisor = array.divisor,
+                           .integer = array.integer};
     const std::size_t bytes = input.element_bytes();
     const std::size_t stride = array.stride ? static_cast<std::size_t>(array.stride) : bytes;
     const auto pointer = static_cast<std::uintptr_t>(array.pointer);

@@ -3,6 +3,7 @@
 
 #include "client_lib/context/context.h"
 #include "client_lib/context/framebuffer_use.h"
+#include "client_lib/context/indexed_buffers.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/share_group.h"
 #include "gen/glstate/texture_elements.gen.h"
@@ -63,6 +64,7 @@ void for_each_used(Context& context, const Use& use) {
     if (!context.program) return;
     use(*context.program);
     for_each_sampled(context.state, *context.program->executable, use_bound);
+    for_each_uniform_buffer(context, use_bound);
 }
 
 UseStamp use_stamp(const Context& context) {
@@ -71,6 +73,8 @@ UseStamp use_stamp(const Context& context) {
     return {.texture_units = ids[static_cast<std::size_t>(Category::texture_units)],
             .textures = ids[static_cast<std::size_t>(Category::textures)],
             .objects = ids[static_cast<std::size_t>(Category::objects)],
+            .uniform_buffers = ids[static_cast<std::size_t>(Category::uniform_buffers)],
+            .uniforms = latest_of_uniform_buffers(context),
             .targets = context.framebuffers->stamp,
             .shared = context.share().last_change.load(std::memory_order_acquire),
             .maps = context.maps->stamp};

@@ -23,7 +23,8 @@ std::optional<InputArray> input_array(std::uint32_t place, const ClientArray& ar
                       .type = array.type,
                       .size = array.size,
                       .normalized = array.normalized,
-                      .divisor = array.divisor};
+                      .divisor = array.divisor,
+                      .integer = array.integer};
 }
 
 /// False: not all arrays are in buffers, or there are none.

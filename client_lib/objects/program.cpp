@@ -35,7 +35,7 @@ std::optional<ElementName> parse_element(std::string_view text) {
 
 bool consistent(const glapi::ActiveUniform& u, const glapi::UniformType* type) {
     if (!type || u.size == 0 || u.size > kMaxUniformElements) return false;
-    return u.built_in || u.initial.size() == std::size_t{u.size} * type->words();
+    return !u.has_location() || u.initial.size() == std::size_t{u.size} * type->words();
 }
 
 /// With the driver's choice of locations, so that all nodes make the same one.
@@ -49,7 +49,14 @@ std::vector<std::byte> final_definition(glapi::ProgramDefinition definition,
     }
     definition.uniforms.clear();
     for (const auto& u : reflection.uniforms)
-        if (!u.built_in) definition.uniforms.push_back({u.size, u.name});
+        if (u.has_location()) definition.uniforms.push_back({u.size, u.name});
+    definition.blocks.clear();
+    for (const auto& b : reflection.blocks) definition.blocks.push_back(b.name);
+    for (const auto& o : reflection.outputs) {
+        std::erase_if(definition.outputs, [&](const glapi::OutputBinding& b) { return b.name == o.name; });
+        definition.outputs.push_back(
+            {static_cast<std::uint32_t>(o.location), static_cast<std::uint32_t>(o.index), o.name});
+    }
     return encode(definition);
 }
 
@@ -57,6 +64,7 @@ std::vector<std::byte> final_definition(glapi::ProgramDefinition definition,
 
 std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition, glapi::ProgramReflection reflection) {
     auto made = std::make_unique<Executable>();
+    made->capture_mode = definition.feedback.mode;
     made->definition = final_definition(std::move(definition), reflection);
     for (auto& active : reflection.uniforms) {
         const auto* type = glapi::find_uniform_type(active.type);
@@ -66,7 +74,10 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
         uniform.type = type;
         uniform.size = static_cast<GLint>(active.size);
         uniform.array = active.array;
-        if (!active.built_in) {
+        uniform.place = active.place;
+        if (active.in_block() && static_cast<std::size_t>(active.place.block) >= reflection.blocks.size())
+            return nullptr;
+        if (active.has_location()) {
             uniform.location = static_cast<GLint>(made->places_.size());
             uniform.first = made->words_.size();
             made->words_.insert(made->words_.end(), active.initial.begin(), active.initial.end());
@@ -75,7 +86,12 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
         }
         made->uniforms.push_back(std::move(uniform));
     }
+    for (auto& block : reflection.blocks) made->blocks.push_back({std::move(block), 0});
     made->attributes = std::move(reflection.attributes);
+    made->outputs = std::move(reflection.outputs);
+    made->captured = std::move(reflection.captured);
+    made->geometry = reflection.geometry;
+    made->reads_vertex_numbers_ = made->find_attribute("gl_VertexID") != nullptr;
     made->stamp = made->last_change = next_stamp();
     made->check_samplers();
     return made;
@@ -93,10 +109,42 @@ GLint Executable::location_of(std::string_view text) const {
     return -1;
 }
 
+std::optional<GLuint> Executable::uniform_index_of(std::string_view text) const {
+    const auto wanted = parse_element(text);
+    if (!wanted || wanted->element != 0) return std::nullopt;
+    for (std::size_t i = 0; i < uniforms.size(); ++i)
+        if (uniforms[i].name == wanted->name && (uniforms[i].array || !wanted->indexed)) return static_cast<GLuint>(i);
+    return std::nullopt;
+}
+
+/// An array's name is that of its first block (OpenGL 3.1, 2.11.4).
+std::optional<GLuint> Executable::block_index_of(std::string_view name) const {
+    const std::string first = std::string(name) + "[0]";
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+        if (blocks[i].name == name || blocks[i].name == first) return static_cast<GLuint>(i);
+    return std::nullopt;
+}
+
+const glapi::ActiveOutput* Executable::output_of(std::string_view text, GLint& element) const {
+    const auto wanted = parse_element(text);
+    if (!wanted) return nullptr;
+    for (const auto& output : outputs) {
+        if (output.name != wanted->name || wanted->element >= output.size) continue;
+        if (wanted->indexed && !output.array) continue;
+        element = static_cast<GLint>(wanted->element);
+        return &output;
+    }
+    return nullptr;
+}
+
+const glapi::ActiveAttribute* Executable::find_attribute(std::string_view name) const {
+    const auto found = std::ranges::find(attributes, name, &glapi::ActiveAttribute::name);
+    return found == attributes.end() ? nullptr : &*found;
+}
+
 GLint Executable::attribute_location_of(std::string_view name) const {
-    const auto found =
-        std::find_if(attributes.begin(), attributes.end(), [name](const auto& a) { return a.name == name; });
-    return found == attributes.end() ? -1 : found->location;
+    const auto* found = find_attribute(name);
+    return found ? found->location : -1;
 }
 
 const UniformPlace* Executable::place_of(GLint location) const {
@@ -122,6 +170,11 @@ void Executable::store(Uniform& uniform, std::uint32_t first, std::span<const st
     if (uniform.type->base == glapi::UniformBase::sampler) check_samplers();
 }
 
+void Executable::bind_block(UniformBlock& block, std::uint32_t binding) {
+    block.binding = binding;
+    block.stamp = last_change = next_stamp();
+}
+
 void Executable::check_samplers() {
     std::map<std::uint32_t, glapi::TextureTarget> targets;  // by unit
     samplers_conflict_ = false;
@@ -135,6 +188,8 @@ glapi::ProgramDefinition Program::definition() const {
     for (const auto& shader : shaders)
         out.shaders.push_back({shader->type, shader->state != Shader::State::not_compiled, shader->compiled_source});
     for (const auto& [bound, index] : attribute_bindings) out.attributes.push_back({index, bound});
+    out.outputs = output_bindings;
+    out.feedback = feedback;
     return out;
 }
 
@@ -144,6 +199,14 @@ void pack_uniform(const Program& program, const Uniform& uniform, wire::PackBuff
     glapi::pack::Uniform(buffer, program.id, static_cast<std::uint32_t>(uniform.location), uniform.type->type,
                          static_cast<std::uint32_t>(uniform.size),
                          std::as_bytes(program.executable->words_of(uniform)));
+}
+
+/// Those that were bound since `known`.
+void pack_blocks(const Program& program, std::uint64_t known, wire::PackBuffer& buffer) {
+    const auto& blocks = program.executable->blocks;
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+        if (blocks[i].stamp > known)
+            glapi::pack::UniformBlock(buffer, program.id, static_cast<std::uint32_t>(i), blocks[i].binding);
 }
 
 }  // namespace
@@ -156,12 +219,14 @@ void Program::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const 
     }
     for (const Uniform& uniform : executable->uniforms)
         if (uniform.stamp > known) pack_uniform(*this, uniform, buffer);
+    pack_blocks(*this, known, buffer);
 }
 
 void Program::pack_values(std::uint64_t known, wire::PackBuffer& buffer) const {
     if (known != 0) return pack_changes(known, buffer, no_limit);
     for (const Uniform& uniform : executable->uniforms)
         if (uniform.location >= 0) pack_uniform(*this, uniform, buffer);
+    pack_blocks(*this, 0, buffer);
 }
 
 }  // namespace wall::client

@@ -49,8 +49,9 @@ struct Uniform {
     std::string name;  ///< without "[0]"
     const glapi::UniformType* type = nullptr;
     GLint size = 1;
-    GLint location = -1;  ///< -1: built into GLSL
+    GLint location = -1;  ///< -1: built into GLSL, or in a block
     bool array = false;
+    glapi::BlockPlace place = {};
     std::size_t first = 0;    ///< of its words in Executable::words
     std::uint64_t stamp = 0;  ///< of the latest change; 0: as the shader says
     std::string full_name() const { return array ? name + "[0]" : name; }
@@ -59,6 +60,11 @@ struct Uniform {
 struct UniformPlace {
     std::uint32_t uniform = 0;  ///< index in Executable::uniforms
     std::uint32_t element = 0;
+};
+
+/// A block of uniforms, which takes their values from a part of a buffer.
+struct UniformBlock : glapi::ActiveBlock {
+    std::uint64_t stamp = 0;  ///< of the latest glUniformBlockBinding; 0: as the shader says
 };
 
 /// A program that was linked, with its uniforms' values.
@@ -70,6 +76,12 @@ public:
     /// Location of "name", "name[3]"; -1: no such uniform.
     GLint location_of(std::string_view name) const;
     GLint attribute_location_of(std::string_view name) const;
+    /// Index of a uniform ("name" or "name[0]") or block; nothing: there is no such one.
+    std::optional<GLuint> uniform_index_of(std::string_view name) const;
+    std::optional<GLuint> block_index_of(std::string_view name) const;
+    /// The colour that an output ("name", "name[3]") is; null: there is no such one. `element` is added to its
+    /// location.
+    const glapi::ActiveOutput* output_of(std::string_view name, GLint& element) const;
     /// Null: no such location.
     const UniformPlace* place_of(GLint location) const;
 
@@ -77,6 +89,11 @@ public:
     bool holds(const Uniform& uniform, std::uint32_t first, std::span<const std::uint32_t> words) const;
     void store(Uniform& uniform, std::uint32_t first, std::span<const std::uint32_t> words);
     std::span<const std::uint32_t> words_of(const Uniform& uniform) const;
+
+    /// The block takes its uniforms from another place from now on.
+    void bind_block(UniformBlock& block, std::uint32_t binding);
+    /// Whether it counts vertices by itself (gl_VertexID), so that they must be drawn with their own numbers.
+    bool reads_vertex_numbers() const { return reads_vertex_numbers_; }
 
     /// Texture units that the samplers name, with the texture target of each.
     template <class Use>
@@ -93,20 +110,29 @@ public:
     std::uint64_t last_change = 0;  ///< of a uniform, or `stamp`
     std::vector<std::byte> definition;
     std::vector<Uniform> uniforms;
+    std::vector<UniformBlock> blocks;
     std::vector<glapi::ActiveAttribute> attributes;
+    std::vector<glapi::ActiveOutput> outputs;
+    std::vector<glapi::CapturedVarying> captured;  ///< by transform feedback
+    GLenum capture_mode = GL_INTERLEAVED_ATTRIBS;
+    glapi::GeometryStage geometry;
 
 private:
+    const glapi::ActiveAttribute* find_attribute(std::string_view name) const;
     void check_samplers();
 
     std::vector<std::uint32_t> words_;
     std::vector<UniformPlace> places_;  ///< by location
     bool samplers_conflict_ = false;
+    bool reads_vertex_numbers_ = false;
 };
 
 struct Program : GlslObject {
     Program(ClientName own_id, GLuint own_name) : GlslObject(Kind::program, own_id, own_name) {}
     std::vector<std::shared_ptr<Shader>> shaders;
     std::map<std::string, GLuint> attribute_bindings;
+    std::vector<glapi::OutputBinding> output_bindings;
+    glapi::FeedbackDefinition feedback;
     std::optional<glapi::ProgramDefinition> to_link;  ///< glLinkProgram was called, nobody has asked yet how it went
     bool linked = false;                              ///< GL_LINK_STATUS
     bool validated = false;                           ///< GL_VALIDATE_STATUS

@@ -22,7 +22,7 @@ VertexInput::VertexInput(ClientName own_id, glstate::VertexInputDefinition defin
     : Object(own_id), definition_(std::move(definition)), buffers_(std::move(buffers)) {
     for (std::size_t i = 0; i < definition_.arrays.size(); ++i) {
         const glstate::InputArray& array = definition_.arrays[i];
-        inline_bytes_ += 1 + sizeof(float) * static_cast<std::uint64_t>(array.size);
+        inline_bytes_ += 1 + sizeof(float) * static_cast<std::uint64_t>(glstate::components(array.size));
         if (!positions_ && holds_positions(array)) positions_ = i;
     }
 }

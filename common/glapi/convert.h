@@ -3,9 +3,20 @@
 // the last bit. Pure.
 #pragma once
 
+#include <bit>
+#include <type_traits>
+
 #include "common/glapi/gl_types.h"
 
 namespace wall::glapi {
+
+/// An integer attribute as the float of its bits: so it is kept and travels, and so the driver hands it on.
+template <class T>
+constexpr GLfloat to_bits(T v) {
+    static_assert(std::is_integral_v<T> && sizeof(T) <= 4);
+    using Word = std::conditional_t<std::is_signed_v<T>, GLint, GLuint>;
+    return std::bit_cast<GLfloat>(static_cast<Word>(v));
+}
 
 inline GLfloat to_fraction(GLubyte v) { return static_cast<GLfloat>(v) / 255.0f; }
 inline GLfloat to_fraction(GLbyte v) { return (2.0f * static_cast<GLfloat>(v) + 1.0f) * (1.0f / 255.0f); }

@@ -21,6 +21,18 @@ public:
         append(text.data(), text.size());
         out.resize(wire::padded4(out.size()));
     }
+    void put(const FeedbackDefinition& feedback) {
+        put(feedback.mode);
+        list(feedback.names, [&](const std::string& name) { put(name); });
+    }
+    void put(const BlockPlace& place) {
+        for (const std::int32_t value : {place.block, place.offset, place.array_stride, place.matrix_stride})
+            put(static_cast<std::uint32_t>(value));
+        put(place.row_major);
+    }
+    void put(const GeometryStage& stage) {
+        for (const std::uint32_t value : {stage.input, stage.output, stage.vertices, stage.invocations}) put(value);
+    }
     void put(const std::vector<std::uint32_t>& words) {
         put(static_cast<std::uint32_t>(words.size()));
         append(words.data(), words.size() * sizeof(std::uint32_t));
@@ -43,6 +55,7 @@ public:
     explicit Reader(std::span<const std::byte> bytes) : in_(bytes) {}
 
     std::uint32_t word() { return in_.get<std::uint32_t>(); }
+    std::int32_t number() { return static_cast<std::int32_t>(word()); }
     bool flag() { return word() != 0; }
     std::string text() {
         const auto bytes = in_.bytes();
@@ -62,6 +75,13 @@ public:
         if (count > in_.remaining() / 4) return in_.fail();
         for (std::size_t i = 0; i < count && in_.ok(); ++i) items.push_back(get_item());
     }
+    FeedbackDefinition feedback() {
+        FeedbackDefinition out{word(), {}};
+        list(out.names, [&] { return text(); });
+        return out;
+    }
+    BlockPlace place() { return {number(), number(), number(), number(), flag()}; }
+    GeometryStage geometry() { return {word(), word(), word(), word()}; }
     bool complete() const { return in_.ok() && in_.remaining() == 0; }
 
 private:
@@ -123,6 +143,9 @@ std::vector<std::byte> encode(const ProgramDefinition& definition) {
     to.list(definition.shaders, [&](const ShaderSource& s) { to.put(s.type), to.put(s.compiled), to.put(s.source); });
     to.list(definition.attributes, [&](const AttributeBinding& a) { to.put(a.index), to.put(a.name); });
     to.list(definition.uniforms, [&](const UniformName& u) { to.put(u.size), to.put(u.name); });
+    to.list(definition.blocks, [&](const std::string& name) { to.put(name); });
+    to.list(definition.outputs, [&](const OutputBinding& o) { to.put(o.color), to.put(o.index), to.put(o.name); });
+    to.put(definition.feedback);
     return std::move(to.out);
 }
 
@@ -132,6 +155,9 @@ std::optional<ProgramDefinition> decode_definition(std::span<const std::byte> by
     from.list(out.shaders, [&] { return ShaderSource{from.word(), from.flag(), from.text()}; });
     from.list(out.attributes, [&] { return AttributeBinding{from.word(), from.text()}; });
     from.list(out.uniforms, [&] { return UniformName{from.word(), from.text()}; });
+    from.list(out.blocks, [&] { return from.text(); });
+    from.list(out.outputs, [&] { return OutputBinding{from.word(), from.word(), from.text()}; });
+    out.feedback = from.feedback();
     return if_complete(from, std::move(out));
 }
 
@@ -140,11 +166,20 @@ std::vector<std::byte> encode(const ProgramReflection& reflection) {
     to.put(reflection.linked);
     to.put(reflection.log);
     to.list(reflection.uniforms, [&](const ActiveUniform& u) {
-        to.put(u.type), to.put(u.size), to.put(u.built_in), to.put(u.array), to.put(u.name), to.put(u.initial);
+        to.put(u.type), to.put(u.size), to.put(u.built_in), to.put(u.array), to.put(u.name), to.put(u.initial),
+            to.put(u.place);
     });
     to.list(reflection.attributes, [&](const ActiveAttribute& a) {
         to.put(a.type), to.put(a.size), to.put(static_cast<std::uint32_t>(a.location)), to.put(a.name);
     });
+    to.list(reflection.blocks,
+            [&](const ActiveBlock& b) { to.put(b.name), to.put(b.bytes), to.put(b.binding), to.put(b.stages); });
+    to.list(reflection.outputs, [&](const ActiveOutput& o) {
+        to.put(static_cast<std::uint32_t>(o.location)), to.put(static_cast<std::uint32_t>(o.index)), to.put(o.size),
+            to.put(o.array), to.put(o.name);
+    });
+    to.list(reflection.captured, [&](const CapturedVarying& v) { to.put(v.type), to.put(v.size), to.put(v.name); });
+    to.put(reflection.geometry);
     return std::move(to.out);
 }
 
@@ -154,11 +189,16 @@ std::optional<ProgramReflection> decode_reflection(std::span<const std::byte> by
     out.linked = from.flag();
     out.log = from.text();
     from.list(out.uniforms, [&] {
-        return ActiveUniform{from.word(), from.word(), from.flag(), from.flag(), from.text(), from.words()};
+        return ActiveUniform{from.word(), from.word(),  from.flag(), from.flag(),
+                             from.text(), from.words(), from.place()};
     });
-    from.list(out.attributes, [&] {
-        return ActiveAttribute{from.word(), from.word(), static_cast<std::int32_t>(from.word()), from.text()};
+    from.list(out.attributes, [&] { return ActiveAttribute{from.word(), from.word(), from.number(), from.text()}; });
+    from.list(out.blocks, [&] { return ActiveBlock{from.text(), from.word(), from.word(), from.word()}; });
+    from.list(out.outputs, [&] {
+        return ActiveOutput{from.number(), from.number(), from.word(), from.flag(), from.text()};
     });
+    from.list(out.captured, [&] { return CapturedVarying{from.word(), from.word(), from.text()}; });
+    out.geometry = from.geometry();
     return if_complete(from, std::move(out));
 }
 

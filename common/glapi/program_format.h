@@ -36,12 +36,38 @@ struct UniformName {
     std::string name;        ///< without "[0]"
 };
 
+/// glBindFragDataLocationIndexed.
+struct OutputBinding {
+    std::uint32_t color = 0;
+    std::uint32_t index = 0;  ///< of the two colours that blending may take
+    std::string name;
+    bool operator==(const OutputBinding&) const = default;
+};
+
+/// glTransformFeedbackVaryings; no names: nothing is captured.
+struct FeedbackDefinition {
+    GLenum mode = GL_INTERLEAVED_ATTRIBS;
+    std::vector<std::string> names;
+};
+
 /// Everything that linking a program depends on.
 struct ProgramDefinition {
     std::vector<ShaderSource> shaders;
     std::vector<AttributeBinding> attributes;
-    /// Empty: as the driver lists them (of the node that is asked first).
+    /// Empty: as the driver lists them (of the node that is asked first). The same for the blocks.
     std::vector<UniformName> uniforms;
+    std::vector<std::string> blocks = {};  ///< of uniforms, in the order that gives indices
+    std::vector<OutputBinding> outputs = {};
+    FeedbackDefinition feedback = {};
+};
+
+/// Where a member of a uniform block lies in it (OpenGL 3.1, 2.11.4); -1 throughout for any other uniform.
+struct BlockPlace {
+    std::int32_t block = -1;   ///< index
+    std::int32_t offset = -1;  ///< bytes, like the strides; -1: no array, no matrix
+    std::int32_t array_stride = -1, matrix_stride = -1;
+    bool row_major = false;
+    bool operator==(const BlockPlace&) const = default;
 };
 
 struct ActiveUniform {
@@ -50,7 +76,10 @@ struct ActiveUniform {
     bool built_in = false;               ///< gl_ModelViewMatrix and the like: no location
     bool array = false;                  ///< declared as one: its name is told with "[0]"
     std::string name;                    ///< without "[0]"
-    std::vector<std::uint32_t> initial;  ///< words of all elements: uniform_words() each
+    std::vector<std::uint32_t> initial;  ///< words of all elements: uniform_words() each; of a block's members none
+    BlockPlace place = {};
+    bool in_block() const { return place.block >= 0; }
+    bool has_location() const { return !built_in && !in_block(); }
 };
 
 struct ActiveAttribute {
@@ -60,12 +89,51 @@ struct ActiveAttribute {
     std::string name;
 };
 
+/// A block of uniforms.
+struct ActiveBlock {
+    std::string name;
+    std::uint32_t bytes = 0;    ///< that a buffer for it must have
+    std::uint32_t binding = 0;  ///< as the shader says
+    std::uint32_t stages = 0;   ///< that it is active in, a bit for each of kShaderStages
+};
+
+/// A colour that the fragment shader writes.
+struct ActiveOutput {
+    std::int32_t location = -1;
+    std::int32_t index = 0;
+    std::uint32_t size = 1;  ///< elements
+    bool array = false;
+    std::string name;  ///< without "[0]"
+};
+
+/// What transform feedback captures of a vertex.
+struct CapturedVarying {
+    GLenum type = 0;
+    std::uint32_t size = 1;
+    std::string name;
+};
+
+/// Of a geometry shader; 0 throughout: there is none.
+struct GeometryStage {
+    GLenum input = 0, output = 0;  ///< primitives
+    std::uint32_t vertices = 0;    ///< at most
+    std::uint32_t invocations = 0;
+    bool operator==(const GeometryStage&) const = default;
+};
+
 struct ProgramReflection {
     bool linked = false;
     std::string log;
     std::vector<ActiveUniform> uniforms;
     std::vector<ActiveAttribute> attributes;
+    std::vector<ActiveBlock> blocks = {};
+    std::vector<ActiveOutput> outputs = {};
+    std::vector<CapturedVarying> captured = {};
+    GeometryStage geometry = {};
 };
+
+/// The stages that programs may have, in the order of ActiveBlock::stages.
+inline constexpr GLenum kShaderStages[] = {GL_VERTEX_SHADER, GL_FRAGMENT_SHADER, GL_GEOMETRY_SHADER};
 
 struct CompileResult {
     bool compiled = false;

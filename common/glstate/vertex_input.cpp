@@ -11,17 +11,25 @@ namespace {
 
 constexpr std::int32_t kMostComponents = 4;
 
+/// Integers that may stay such.
+bool is_integer(GLenum type) { return type >= GL_BYTE && type <= GL_UNSIGNED_INT; }
+
+bool has_plausible_size(const InputArray& array) {
+    if (array.size == GL_BGRA) return array.type == GL_UNSIGNED_BYTE || is_packed(array.type);
+    return array.size >= 1 && array.size <= kMostComponents;
+}
+
 /// Each place may have one array.
 bool plausible(const InputArray& array, std::bitset<kInputPlaces>& taken) {
     if (array.place >= kInputPlaces || taken[array.place]) return false;
     taken.set(array.place);
-    return array.buffer && array.stride >= 0 && component_bytes(array.type) != 0 && array.size >= 1 &&
-           array.size <= kMostComponents && array.normalized <= 1;
+    if (array.normalized > 1 || array.integer > 1 || (array.integer != 0 && !is_integer(array.type))) return false;
+    return array.buffer && array.stride >= 0 && component_bytes(array.type) != 0 && has_plausible_size(array);
 }
 
 }  // namespace
 
-std::size_t InputArray::element_bytes() const { return component_bytes(type) * static_cast<std::size_t>(size); }
+std::size_t InputArray::element_bytes() const { return glstate::element_bytes(type, size); }
 
 std::uint64_t InputArray::elements_in(std::uint64_t buffer_bytes) const {
     const std::uint64_t behind_first = std::uint64_t{offset} + element_bytes();
@@ -37,6 +45,8 @@ std::size_t component_bytes(GLenum type) {
         case GL_HALF_FLOAT: return 2;
         case GL_INT:
         case GL_UNSIGNED_INT:
+        case GL_INT_2_10_10_10_REV:
+        case GL_UNSIGNED_INT_2_10_10_10_REV:
         case GL_FLOAT: return 4;
         case GL_DOUBLE: return 8;
         default: return 0;

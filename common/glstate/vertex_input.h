@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A vertex input: which arrays of which buffer objects a draw reads, and where its indices lie. Never changes; a draw
 // from arrays names one (wire.toml, VertexInput). What travels of it is the index buffer, the number of arrays, and
-// eight words for each. Pure.
+// nine words for each. Pure.
 #pragma once
 
 #include <cstddef>
@@ -27,9 +27,10 @@ struct InputArray {
     std::uint32_t offset = 0;  ///< bytes into the buffer
     std::int32_t stride = 0;   ///< bytes from one element to the next, as the program gave it; 0: they lie close
     GLenum type = GL_FLOAT;
-    std::int32_t size = 4;  ///< components
+    std::int32_t size = 4;  ///< components; or GL_BGRA: four, of which the first and the third change places
     std::uint32_t normalized = 0;
     std::uint32_t divisor = 0;
+    std::uint32_t integer = 0;  ///< its values reach the shader as integers
     bool operator==(const InputArray&) const = default;
 
     /// Of one element.
@@ -39,7 +40,7 @@ struct InputArray {
     /// How many elements lie in a buffer of that size.
     std::uint64_t elements_in(std::uint64_t buffer_bytes) const;
 };
-static_assert(sizeof(InputArray) == 8 * sizeof(std::uint32_t));
+static_assert(sizeof(InputArray) == 9 * sizeof(std::uint32_t));
 
 struct VertexInputDefinition {
     ClientName indices;  ///< the element array buffer; 0: none
@@ -47,8 +48,18 @@ struct VertexInputDefinition {
     bool operator==(const VertexInputDefinition&) const = default;
 };
 
-/// Bytes of one component; 0: no type of an array.
+/// Bytes of one component; 0: no type of an array. Of a packed type, those of all.
 std::size_t component_bytes(GLenum type);
+/// Whether one word holds all components (GL_ARB_vertex_type_2_10_10_10_rev).
+constexpr bool is_packed(GLenum type) {
+    return type == GL_INT_2_10_10_10_REV || type == GL_UNSIGNED_INT_2_10_10_10_REV;
+}
+/// How many components a size, as the program gave it, stands for.
+constexpr std::int32_t components(std::int32_t size) { return size == GL_BGRA ? 4 : size; }
+/// Of one element.
+inline std::size_t element_bytes(GLenum type, std::int32_t size) {
+    return component_bytes(type) * (is_packed(type) ? 1 : static_cast<std::size_t>(components(size)));
+}
 /// Bytes of one index; 0: no type of indices.
 std::size_t index_bytes(GLenum type);
 

@@ -18,7 +18,10 @@ void refuses_prefixes(const std::vector<std::byte>& bytes, Decode&& decode) {
 TEST(ProgramFormat, Definition) {
     const ProgramDefinition in{{{GL_VERTEX_SHADER, true, "void main() {}"}, {GL_FRAGMENT_SHADER, false, ""}},
                                {{3, "place"}},
-                               {{4, "lights"}, {1, "x"}}};
+                               {{4, "lights"}, {1, "x"}},
+                               {"Light", "Place"},
+                               {{2, 1, "tint"}},
+                               {GL_SEPARATE_ATTRIBS, {"speed", "gl_Position"}}};
     const auto bytes = encode(in);
     const auto out = decode_definition(bytes);
     ASSERT_TRUE(out);
@@ -27,12 +30,23 @@ TEST(ProgramFormat, Definition) {
     EXPECT_EQ(out->attributes[0].index, 3u);
     EXPECT_EQ(out->uniforms[0].name, "lights");
     EXPECT_EQ(out->uniforms[1].size, 1u);
+    EXPECT_EQ(out->blocks, in.blocks);
+    EXPECT_EQ(out->outputs, in.outputs);
+    EXPECT_EQ(out->feedback.mode, GLenum{GL_SEPARATE_ATTRIBS});
+    EXPECT_EQ(out->feedback.names, in.feedback.names);
     refuses_prefixes(bytes, decode_definition);
 }
 
 TEST(ProgramFormat, Reflection) {
-    const ProgramReflection in{
-        true, "fine", {{GL_FLOAT_VEC2, 2, false, true, "uv", {1, 2, 3, 4}}}, {{GL_FLOAT, 1, -1, "gl_Vertex"}}};
+    const ProgramReflection in{true,
+                               "fine",
+                               {{GL_FLOAT_VEC2, 2, false, true, "uv", {1, 2, 3, 4}},
+                                {GL_FLOAT_MAT2, 1, false, false, "m", {}, {0, 32, -1, 16, true}}},
+                               {{GL_FLOAT, 1, -1, "gl_Vertex"}},
+                               {{"Light", 64, 3, 2}},
+                               {{1, 0, 2, true, "tint"}},
+                               {{GL_FLOAT_VEC3, 1, "speed"}},
+                               {GL_TRIANGLES, GL_LINE_STRIP, 12, 1}};
     const auto bytes = encode(in);
     const auto out = decode_reflection(bytes);
     ASSERT_TRUE(out);
@@ -40,6 +54,12 @@ TEST(ProgramFormat, Reflection) {
     EXPECT_EQ(out->uniforms[0].initial, in.uniforms[0].initial);
     EXPECT_TRUE(out->uniforms[0].array);
     EXPECT_EQ(out->attributes[0].location, -1);
+    EXPECT_FALSE(out->uniforms[0].in_block());
+    EXPECT_EQ(out->uniforms[1].place, in.uniforms[1].place);
+    EXPECT_EQ(out->blocks[0].binding, 3u);
+    EXPECT_EQ(out->outputs[0].location, 1);
+    EXPECT_EQ(out->captured[0].name, "speed");
+    EXPECT_EQ(out->geometry, in.geometry);
     refuses_prefixes(bytes, decode_reflection);
 }
 

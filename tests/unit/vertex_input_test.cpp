@@ -42,7 +42,9 @@ TEST(VertexInput, RefusesWhatNoCommandCanSay) {
     EXPECT_TRUE(refused([](InputArray& a) { a.stride = -1; }));
     EXPECT_TRUE(refused([](InputArray& a) { a.type = GL_RGBA; }));
     EXPECT_TRUE(refused([](InputArray& a) { a.size = 5; }));
+    EXPECT_TRUE(refused([](InputArray& a) { a.size = GL_BGRA, a.type = GL_SHORT; }));
     EXPECT_TRUE(refused([](InputArray& a) { a.normalized = 2; }));
+    EXPECT_TRUE(refused([](InputArray& a) { a.integer = 1, a.type = GL_FLOAT; }));
     EXPECT_FALSE(refused([](InputArray&) {}));
 }
 

@@ -92,6 +92,9 @@ Driver::Driver(const Gl& gl) : gl_(gl), flip_y_(has_extension(gl, "GL_MESA_frame
         });
     }
     gl_.Disable(GL_SCISSOR_TEST);
+    GLint alignment = 1;
+    gl_.GetIntegerv(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, &alignment);
+    uniform_buffer_alignment_ = static_cast<std::uint32_t>(std::max(alignment, 1));
     drain_errors();
 }
 

@@ -101,6 +101,22 @@ public:
         if (query_ == query) end_query();
         gl_.DeleteQueries(1, &query);
     }
+    /// Part of a buffer of the driver, for blocks of uniforms; buffer 0: nothing. It lies within the buffer, and
+    /// begins where the driver allows it.
+    void bind_uniform_buffer(unsigned place, const glstate::BufferRange& wanted) {
+        glstate::BufferRange& bound = uniform_buffers_[place];
+        if (glstate::same(bound, wanted)) return;
+        bound = wanted;
+        if (bound.buffer == 0) gl_.BindBufferBase(GL_UNIFORM_BUFFER, place, 0);
+        else gl_.BindBufferRange(GL_UNIFORM_BUFFER, place, bound.buffer, bound.offset, bound.size);
+    }
+    /// Bytes that such a part may begin at a multiple of.
+    std::uint32_t uniform_buffer_alignment() const { return uniform_buffer_alignment_; }
+    /// The driver unbinds a deleted buffer by itself.
+    void forget_buffer(GLuint buffer) {
+        for (glstate::BufferRange& bound : uniform_buffers_)
+            if (bound.buffer == buffer) bound = {};
+    }
     /// A vertex array object of the driver, for the next draw from arrays.
     void bind_vertex_array(GLuint vertex_array) {
         if (vertex_array_ != vertex_array) gl_.BindVertexArray(vertex_array_ = vertex_array);
@@ -152,7 +168,8 @@ private:
 
     static constexpr glstate::CategoryMask kSynced =
         glstate::kSentCategories & ~kCurrentMask & ~glstate::kLayerCategories &
-        ~glstate::mask_of(glstate::Category::textures) & ~glstate::mask_of(glstate::Category::objects);
+        ~glstate::mask_of(glstate::Category::textures) & ~glstate::mask_of(glstate::Category::objects) &
+        ~glstate::mask_of(glstate::Category::uniform_buffers);
 
     Gl gl_;
     const glstate::State defaults_;
@@ -163,6 +180,8 @@ private:
     GLuint program_ = 0;  // that the driver draws with
     GLuint query_ = 0;    // that counts samples
     GLuint vertex_array_ = 0;
+    std::array<glstate::BufferRange, glstate::el::uniform_buffer::count> uniform_buffers_{};  // the driver's names
+    std::uint32_t uniform_buffer_alignment_ = 1;
     RenderTarget* target_ = nullptr;  // whose window values are in the driver
     bool viewport_scaled_ = false;
     WindowValues window_;  // what the driver holds

@@ -30,4 +30,10 @@ void ProgramCommands::Uniform(ClientName program, std::uint32_t location, GLenum
         execution_.refuse(done.error().message);
 }
 
+void ProgramCommands::UniformBlock(ClientName program, std::uint32_t block, std::uint32_t binding) {
+    const auto found = execution_.session.objects.get<Program>(program);
+    if (!found) return execution_.refuse(found.error().message);
+    if (auto done = (*found)->bind_block(block, binding); !done) execution_.refuse(done.error().message);
+}
+
 }  // namespace wall::tileserver

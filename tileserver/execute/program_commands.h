@@ -16,6 +16,7 @@ public:
 
     void ShaderCompile(RequestId request, GLenum type, std::span<const std::byte> source);
     void ProgramLink(RequestId request, ClientName program, std::span<const std::byte> definition);
+    void UniformBlock(ClientName program, std::uint32_t block, std::uint32_t binding);
     void Uniform(ClientName program, std::uint32_t location, GLenum type, std::uint32_t count,
                  std::span<const std::byte> values);
 

@@ -24,7 +24,7 @@ void VertexInputCommands::VertexInput(ClientName name, std::span<const std::byte
     const auto input = objects.make<tileserver::VertexInput>(name, execution_.node.driver);
     if (!input) return execution_.refuse(input.error().message);
     if ((*input)->defined()) return execution_.refuse("a vertex input is defined once");
-    (*input)->define(*definition, buffers);
+    if (!(*input)->define(*definition, buffers)) execution_.refuse("no array of OpenGL");
 }
 
 }  // namespace wall::tileserver

@@ -7,7 +7,10 @@ Buffer::Buffer(ObjectAccount& account, Driver& driver) : ObjectOf(account), gl_(
     gl_.CreateBuffers(1, &name_);
 }
 
-Buffer::~Buffer() { gl_.DeleteBuffers(1, &name_); }
+Buffer::~Buffer() {
+    driver_.forget_buffer(name_);
+    gl_.DeleteBuffers(1, &name_);
+}
 
 bool Buffer::define(std::uint32_t size, GLenum usage) {
     driver_.drain_errors();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/objects/program.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -43,13 +44,14 @@ void set_vector(const Gl& gl, GLuint program, GLint location, GLsizei count, con
 }
 
 /// From the layer's pixels to the window's: scale, then offset.
-std::array<float, 4> window_of(const LayerGeometry& g, bool upper_left) {
+std::array<float, 4> window_of(const LayerGeometry& g, bool upper_left, bool whole_centers) {
     if (g.window_width == 0 || g.window_height == 0) return {1, 1, 0, 0};
     const std::int32_t y = upper_left ? g.area.y - g.surface.y : g.offset_y();
     if (!g.scaled()) return {1, 1, static_cast<float>(g.offset_x()), static_cast<float>(y)};
     const double sx = 1 / g.scale_x(), sy = 1 / g.scale_y();
-    return {static_cast<float>(sx), static_cast<float>(sy), static_cast<float>(g.offset_x() * sx),
-            static_cast<float>(y * sy)};
+    const double middle = whole_centers ? 0.5 : 0;  // that the layer's pixels lack
+    return {static_cast<float>(sx), static_cast<float>(sy), static_cast<float>((g.offset_x() + middle) * sx - middle),
+            static_cast<float>((y + middle) * sy - middle)};
 }
 
 }  // namespace
@@ -68,6 +70,23 @@ std::vector<GLint> Program::map_locations(GLuint program, const std::vector<glap
     return out;
 }
 
+/// All that are active, whether the client has named them or not: what others have bound must not be seen.
+void Program::find_blocks(const std::vector<std::string>& names) {
+    const Gl& gl = driver_.gl();
+    blocks_.clear();
+    for (const std::string& name : names) blocks_.push_back(gl.GetUniformBlockIndex(name_, name.c_str()));
+    GLint count = 0;
+    gl.GetProgramiv(name_, GL_ACTIVE_UNIFORM_BLOCKS, &count);
+    block_bindings_.clear();
+    for (GLuint i = 0; i < static_cast<GLuint>(std::max(count, 0)); ++i) {
+        GLint binding = 0;
+        gl.GetActiveUniformBlockiv(name_, i, GL_UNIFORM_BLOCK_BINDING, &binding);
+        constexpr auto kLast = static_cast<GLint>(glstate::el::uniform_buffer::count - 1);
+        if (binding > kLast) gl.UniformBlockBinding(name_, i, static_cast<GLuint>(kLast));
+        block_bindings_.push_back(static_cast<std::uint32_t>(std::clamp(binding, 0, kLast)));
+    }
+}
+
 Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, bool wants_reflection) {
     const auto definition = read_definition(bytes);
     if (!definition) return tl::unexpected(definition.error());
@@ -75,20 +94,26 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
     GLint linked = 0;
     driver_.gl().GetProgramiv(built.driver, GL_LINK_STATUS, &linked);
     glapi::ProgramReflection reflection;
-    if (wants_reflection || definition->uniforms.empty()) reflection = reflect_program(driver_.gl(), built.driver);
+    const bool named = !definition->uniforms.empty() || !definition->blocks.empty();
+    if (wants_reflection || !named) reflection = reflect_program(driver_.gl(), built.driver, *definition);
     if (linked == 0) {
         driver_.gl().DeleteProgram(built.driver);
         return encode(reflection);
     }
     std::vector<glapi::UniformName> names = definition->uniforms;
-    if (names.empty())
+    std::vector<std::string> blocks = definition->blocks;
+    if (!named) {
         for (const auto& uniform : reflection.uniforms)
-            if (!uniform.built_in) names.push_back({uniform.size, uniform.name});
+            if (uniform.has_location()) names.push_back({uniform.size, uniform.name});
+        for (const auto& block : reflection.blocks) blocks.push_back(block.name);
+    }
     release();
     name_ = built.driver;
     locations_ = map_locations(name_, names);
+    find_blocks(blocks);
     window_ = driver_.gl().GetUniformLocation(name_, kWindowUniform);
     upper_left_ = built.upper_left;
+    whole_centers_ = built.whole_centers;
     window_value_ = {};
     renamed();
     if (!has_content(kProgramBytes + kBytesForEachOfSource * bytes.size()))
@@ -114,10 +139,19 @@ Result<void> Program::set_uniform(std::uint32_t location, GLenum type_name, std:
     return {};
 }
 
+Result<void> Program::bind_block(std::uint32_t block, std::uint32_t binding) {
+    if (block >= blocks_.size() || binding >= glstate::el::uniform_buffer::count) return fail("no such uniform block");
+    const GLuint here = blocks_[block];
+    if (here == GL_INVALID_INDEX) return {};
+    block_bindings_[here] = binding;
+    driver_.gl().UniformBlockBinding(name_, here, binding);
+    return {};
+}
+
 void Program::use(const LayerGeometry& layer) {
     driver_.use_program(name_);
     if (window_ < 0) return;
-    const auto value = window_of(layer, upper_left_);
+    const auto value = window_of(layer, upper_left_, whole_centers_);
     if (std::exchange(window_value_, value) != value) driver_.gl().ProgramUniform4fv(name_, window_, 1, value.data());
 }
 

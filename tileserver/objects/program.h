@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/base/result.h"
@@ -26,18 +27,26 @@ public:
     Result<std::vector<std::byte>> link(std::span<const std::byte> definition, bool reflect);
     Result<void> set_uniform(std::uint32_t location, GLenum type, std::uint32_t count,
                              std::span<const std::byte> values);
+    /// From now on a block takes its uniforms from what is bound there. An error: no such block, no such place.
+    Result<void> bind_block(std::uint32_t block, std::uint32_t binding);
     /// The driver draws with it, in this layer.
     void use(const LayerGeometry& layer);
 
+    /// Where each of the blocks that are active here takes its uniforms from (glstate::el::uniform_buffer).
+    const std::vector<std::uint32_t>& block_bindings() const { return block_bindings_; }
+
 private:
     std::vector<GLint> map_locations(GLuint program, const std::vector<glapi::UniformName>& names) const;
+    void find_blocks(const std::vector<std::string>& names);
     void release();
 
     Driver& driver_;
     GLuint name_ = 0;               // the driver's; 0: fixed function
     std::vector<GLint> locations_;  // by the client's location; -1: not active here
-    GLint window_ = -1;             // location of kWindowUniform
-    bool upper_left_ = false;
+    std::vector<GLuint> blocks_;    // by the client's index: the driver's; GL_INVALID_INDEX: not active here
+    std::vector<std::uint32_t> block_bindings_;  // by the driver's
+    GLint window_ = -1;                          // location of kWindowUniform
+    bool upper_left_ = false, whole_centers_ = false;
     std::array<float, 4> window_value_{};
 };
 

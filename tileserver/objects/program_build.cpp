@@ -2,6 +2,7 @@
 #include "tileserver/objects/program_build.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 
 #include "tileserver/objects/info_log.h"
@@ -16,19 +17,29 @@ std::string_view text(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-bool is_shader_type(GLenum type) { return type == GL_VERTEX_SHADER || type == GL_FRAGMENT_SHADER; }
+bool is_shader_type(GLenum type) {
+    return std::ranges::find(glapi::kShaderStages, type) != std::end(glapi::kShaderStages);
+}
 
-GLuint build_shader(const Gl& gl, const glapi::ShaderSource& shader, bool& upper_left) {
+GLuint build_shader(const Gl& gl, const glapi::ShaderSource& shader, BuiltProgram& built) {
     const GLuint made = gl.CreateShader(shader.type);
     if (!shader.compiled) return made;
     const PatchedShader patched =
         shader.type == GL_FRAGMENT_SHADER ? patch_fragment_shader(shader.source) : PatchedShader{shader.source};
-    upper_left |= patched.upper_left;
+    built.upper_left |= patched.upper_left;
+    built.whole_centers |= patched.whole_centers;
     const GLchar* string = patched.source.data();
     const auto length = static_cast<GLint>(patched.source.size());
     gl.ShaderSource(made, 1, &string, &length);
     gl.CompileShader(made);
     return made;
+}
+
+void capture(const Gl& gl, GLuint program, const glapi::FeedbackDefinition& feedback) {
+    if (feedback.names.empty()) return;
+    std::vector<const GLchar*> names;
+    for (const std::string& name : feedback.names) names.push_back(name.c_str());
+    gl.TransformFeedbackVaryings(program, static_cast<GLsizei>(names.size()), names.data(), feedback.mode);
 }
 
 }  // namespace
@@ -64,11 +75,14 @@ BuiltProgram build_program(const Gl& gl, const glapi::ProgramDefinition& definit
     BuiltProgram built{gl.CreateProgram()};
     std::vector<GLuint> shaders;
     for (const auto& shader : definition.shaders) {
-        shaders.push_back(build_shader(gl, shader, built.upper_left));
+        shaders.push_back(build_shader(gl, shader, built));
         gl.AttachShader(built.driver, shaders.back());
     }
     for (const auto& attribute : definition.attributes)
         gl.BindAttribLocation(built.driver, attribute.index, attribute.name.c_str());
+    for (const auto& output : definition.outputs)
+        gl.BindFragDataLocationIndexed(built.driver, output.color, output.index, output.name.c_str());
+    capture(gl, built.driver, definition.feedback);
     gl.LinkProgram(built.driver);
     for (const GLuint shader : shaders) {
         gl.DetachShader(built.driver, shader);

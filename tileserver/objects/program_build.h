@@ -22,12 +22,13 @@ Result<glapi::ProgramDefinition> read_definition(std::span<const std::byte> byte
 /// A program of the driver, linked or not, which is the caller's.
 struct BuiltProgram {
     GLuint driver = 0;
-    bool upper_left = false;  ///< gl_FragCoord begins at the window's top
+    bool upper_left = false;     ///< gl_FragCoord begins at the window's top
+    bool whole_centers = false;  ///< and with the middle of a pixel
 };
 BuiltProgram build_program(const Gl& gl, const glapi::ProgramDefinition& definition);
 
 /// How linking went, and what is active if it went well; kWindowUniform is not told.
-glapi::ProgramReflection reflect_program(const Gl& gl, GLuint program);
+glapi::ProgramReflection reflect_program(const Gl& gl, GLuint program, const glapi::ProgramDefinition& definition);
 
 /// The driver's location of one element of a uniform; -1: it is not active.
 GLint element_location(const Gl& gl, GLuint program, const std::string& name, std::uint32_t element);

@@ -2,6 +2,7 @@
 // What linking told about a program.
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "tileserver/objects/info_log.h"
@@ -10,6 +11,8 @@
 
 namespace wall::tileserver {
 namespace {
+
+using glapi::BlockPlace;
 
 void read_initial(const Gl& gl, GLuint program, glapi::ActiveUniform& uniform) {
     const auto* type = glapi::find_uniform_type(uniform.type);
@@ -21,10 +24,31 @@ void read_initial(const Gl& gl, GLuint program, glapi::ActiveUniform& uniform) {
         if (location >= 0) {
             if (type->base == glapi::UniformBase::real)
                 gl.GetUniformfv(program, location, reinterpret_cast<GLfloat*>(words.data()));
+            else if (type->base == glapi::UniformBase::unsigned_integer)
+                gl.GetUniformuiv(program, location, words.data());
             else gl.GetUniformiv(program, location, reinterpret_cast<GLint*>(words.data()));
         }
         uniform.initial.insert(uniform.initial.end(), words.begin(), words.begin() + type->words());
     }
+}
+
+BlockPlace read_place(const Gl& gl, GLuint program, GLuint uniform) {
+    const auto ask = [&](GLenum what) {
+        GLint value = -1;
+        gl.GetActiveUniformsiv(program, 1, &uniform, what, &value);
+        return value;
+    };
+    const GLint block = ask(GL_UNIFORM_BLOCK_INDEX);
+    if (block < 0) return {};
+    return {block, ask(GL_UNIFORM_OFFSET), ask(GL_UNIFORM_ARRAY_STRIDE), ask(GL_UNIFORM_MATRIX_STRIDE),
+            ask(GL_UNIFORM_IS_ROW_MAJOR) == GL_TRUE};
+}
+
+/// "name[0]" is told as an array of that name.
+bool take_array_suffix(std::string& name) {
+    if (!name.ends_with("[0]")) return false;
+    name.resize(name.size() - 3);
+    return true;
 }
 
 void read_uniforms(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
@@ -41,14 +65,11 @@ void read_uniforms(const Gl& gl, GLuint program, glapi::ProgramReflection& out) 
         glapi::ActiveUniform uniform{
             type, static_cast<std::uint32_t>(size), false, false, name.substr(0, static_cast<std::size_t>(length)), {}};
         if (uniform.name == kWindowUniform) continue;
-        if (uniform.name.ends_with("[0]")) {
-            uniform.array = true;
-            uniform.name.resize(uniform.name.size() - 3);
-        }
-        uniform.array |= size > 1;
+        uniform.array = take_array_suffix(uniform.name) || size > 1;
         uniform.built_in = uniform.name.starts_with("gl_");
-        if (!uniform.built_in) {
-            if (gl.GetUniformLocation(program, uniform.name.c_str()) < 0) continue;  // in a block
+        uniform.place = read_place(gl, program, static_cast<GLuint>(i));
+        if (uniform.has_location()) {
+            if (gl.GetUniformLocation(program, uniform.name.c_str()) < 0) continue;  // an atomic counter
             read_initial(gl, program, uniform);
         }
         out.uniforms.push_back(std::move(uniform));
@@ -73,6 +94,80 @@ void read_attributes(const Gl& gl, GLuint program, glapi::ProgramReflection& out
     }
 }
 
+void read_blocks(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
+    static_assert(std::size(glapi::kShaderStages) == 3);
+    constexpr GLenum kReferenced[] = {GL_UNIFORM_BLOCK_REFERENCED_BY_VERTEX_SHADER,
+                                      GL_UNIFORM_BLOCK_REFERENCED_BY_FRAGMENT_SHADER,
+                                      GL_UNIFORM_BLOCK_REFERENCED_BY_GEOMETRY_SHADER};
+    GLint count = 0, longest = 0;
+    gl.GetProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &count);
+    gl.GetProgramiv(program, GL_ACTIVE_UNIFORM_BLOCK_MAX_NAME_LENGTH, &longest);
+    std::string name(static_cast<std::size_t>(std::max(longest, 1)), '\0');
+    for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
+        GLsizei length = 0;
+        gl.GetActiveUniformBlockName(program, i, static_cast<GLsizei>(name.size()), &length, name.data());
+        const auto ask = [&](GLenum what) {
+            GLint value = 0;
+            gl.GetActiveUniformBlockiv(program, i, what, &value);
+            return static_cast<std::uint32_t>(value);
+        };
+        glapi::ActiveBlock block{name.substr(0, static_cast<std::size_t>(length)), ask(GL_UNIFORM_BLOCK_DATA_SIZE),
+                                 ask(GL_UNIFORM_BLOCK_BINDING), 0};
+        for (std::size_t stage = 0; stage < std::size(kReferenced); ++stage)
+            if (ask(kReferenced[stage]) != 0) block.stages |= 1u << stage;
+        out.blocks.push_back(std::move(block));
+    }
+}
+
+/// What the last stage gives away is the driver's output of the program: colours, if that is a fragment shader.
+void read_outputs(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
+    GLint count = 0, longest = 0;
+    gl.GetProgramInterfaceiv(program, GL_PROGRAM_OUTPUT, GL_ACTIVE_RESOURCES, &count);
+    gl.GetProgramInterfaceiv(program, GL_PROGRAM_OUTPUT, GL_MAX_NAME_LENGTH, &longest);
+    std::string name(static_cast<std::size_t>(std::max(longest, 1)), '\0');
+    constexpr GLenum kAsked[] = {GL_REFERENCED_BY_FRAGMENT_SHADER, GL_LOCATION, GL_LOCATION_INDEX, GL_ARRAY_SIZE};
+    for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
+        GLsizei length = 0;
+        std::array<GLint, std::size(kAsked)> answers{};
+        gl.GetProgramResourceName(program, GL_PROGRAM_OUTPUT, i, static_cast<GLsizei>(name.size()), &length,
+                                  name.data());
+        gl.GetProgramResourceiv(program, GL_PROGRAM_OUTPUT, i, std::size(kAsked), kAsked,
+                                static_cast<GLsizei>(answers.size()), nullptr, answers.data());
+        if (answers[0] == 0 || answers[1] < 0) continue;
+        glapi::ActiveOutput output{answers[1], std::max(answers[2], 0),
+                                   static_cast<std::uint32_t>(std::max(answers[3], 1)), false,
+                                   name.substr(0, static_cast<std::size_t>(length))};
+        output.array = take_array_suffix(output.name);
+        out.outputs.push_back(std::move(output));
+    }
+}
+
+void read_captured(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
+    GLint count = 0, longest = 0;
+    gl.GetProgramiv(program, GL_TRANSFORM_FEEDBACK_VARYINGS, &count);
+    gl.GetProgramiv(program, GL_TRANSFORM_FEEDBACK_VARYING_MAX_LENGTH, &longest);
+    std::string name(static_cast<std::size_t>(std::max(longest, 1)), '\0');
+    for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
+        GLsizei length = 0, size = 0;
+        GLenum type = 0;
+        gl.GetTransformFeedbackVarying(program, i, static_cast<GLsizei>(name.size()), &length, &size, &type,
+                                       name.data());
+        out.captured.push_back(
+            {type, static_cast<std::uint32_t>(size), name.substr(0, static_cast<std::size_t>(length))});
+    }
+}
+
+/// It has one.
+void read_geometry_stage(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
+    const auto ask = [&](GLenum what) {
+        GLint value = 0;
+        gl.GetProgramiv(program, what, &value);
+        return static_cast<std::uint32_t>(value);
+    };
+    out.geometry = {ask(GL_GEOMETRY_INPUT_TYPE), ask(GL_GEOMETRY_OUTPUT_TYPE), ask(GL_GEOMETRY_VERTICES_OUT),
+                    ask(GL_GEOMETRY_SHADER_INVOCATIONS)};
+}
+
 }  // namespace
 
 GLint element_location(const Gl& gl, GLuint program, const std::string& name, std::uint32_t element) {
@@ -80,7 +175,7 @@ GLint element_location(const Gl& gl, GLuint program, const std::string& name, st
     return gl.GetUniformLocation(program, (name + "[" + std::to_string(element) + "]").c_str());
 }
 
-glapi::ProgramReflection reflect_program(const Gl& gl, GLuint program) {
+glapi::ProgramReflection reflect_program(const Gl& gl, GLuint program, const glapi::ProgramDefinition& definition) {
     glapi::ProgramReflection out;
     GLint linked = 0;
     gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
@@ -90,6 +185,11 @@ glapi::ProgramReflection reflect_program(const Gl& gl, GLuint program) {
     if (!out.linked) return out;
     read_uniforms(gl, program, out);
     read_attributes(gl, program, out);
+    read_blocks(gl, program, out);
+    read_outputs(gl, program, out);
+    read_captured(gl, program, out);
+    const auto is_geometry = [](const auto& shader) { return shader.type == GL_GEOMETRY_SHADER; };
+    if (std::ranges::any_of(definition.shaders, is_geometry)) read_geometry_stage(gl, program, out);
     return out;
 }
 

@@ -23,7 +23,7 @@ public:
 
     std::vector<std::size_t> uses;
     std::size_t insertion = 0;
-    bool es = false, upper_left = false;
+    bool es = false, upper_left = false, whole_centers = false;
 
     void run() {
         while (at_ < text_.size()) step();
@@ -79,6 +79,7 @@ private:
         if (in_directive_ && directive_.empty()) directive_ = name;
         else if (directive_ == "version" && name == "es") es = true;
         if (name == "origin_upper_left") upper_left = true;
+        if (name == "pixel_center_integer") whole_centers = true;
         if (name == kFragCoord && !is_redeclaration()) uses.push_back(start);
         previous_ = name;
     }
@@ -124,6 +125,7 @@ PatchedShader patch_fragment_shader(std::string source) {
     }
     out.reads_window = true;
     out.upper_left = scanner.upper_left;
+    out.whole_centers = scanner.whole_centers;
     std::size_t copied = 0;
     const auto copy_to = [&](std::size_t end) {
         out.source.append(source, copied, end - copied);

@@ -13,8 +13,9 @@ inline constexpr const char* kWindowUniform = "wallgl_Window";
 
 struct PatchedShader {
     std::string source;
-    bool reads_window = false;  ///< has the uniform
-    bool upper_left = false;    ///< origin_upper_left: y goes down
+    bool reads_window = false;   ///< has the uniform
+    bool upper_left = false;     ///< origin_upper_left: y goes down
+    bool whole_centers = false;  ///< pixel_center_integer: the first pixel's middle is at 0
 };
 
 /// Comments, directives and redeclarations of gl_FragCoord stay as they are.

@@ -48,7 +48,8 @@ bool define_numbered_array(const Gl& gl, const InputArray& array, const void* at
     if (generic < 0) return false;
     const auto index = static_cast<GLuint>(generic);
     gl.EnableVertexAttribArray(index);
-    gl.VertexAttribPointer(index, array.size, array.type, array.normalized != 0, array.stride, at);
+    if (array.integer != 0) gl.VertexAttribIPointer(index, array.size, array.type, array.stride, at);
+    else gl.VertexAttribPointer(index, array.size, array.type, array.normalized != 0, array.stride, at);
     if (array.divisor != 0) gl.VertexAttribDivisor(index, array.divisor);
     return true;
 }
@@ -62,8 +63,9 @@ VertexInput::~VertexInput() {
     driver_.gl().DeleteVertexArrays(1, &name_);
 }
 
-void VertexInput::define(const glstate::VertexInputDefinition& definition, std::span<const GLuint> buffers) {
+bool VertexInput::define(const glstate::VertexInputDefinition& definition, std::span<const GLuint> buffers) {
     const Gl& gl = driver_.gl();
+    driver_.drain_errors();
     gl.CreateVertexArrays(1, &name_);
     driver_.bind_vertex_array(name_);
     for (std::size_t i = 0; i < definition.arrays.size(); ++i) {
@@ -75,6 +77,7 @@ void VertexInput::define(const glstate::VertexInputDefinition& definition, std::
     gl.BindBuffer(GL_ARRAY_BUFFER, 0);
     if (definition.indices) gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers.back());
     definition_ = definition;
+    return driver_.drain_errors() == 0;
 }
 
 std::uint64_t VertexInput::elements(const ObjectTable& objects) {

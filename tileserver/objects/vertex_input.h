@@ -17,8 +17,9 @@ public:
     VertexInput(ObjectAccount& account, Driver& driver);
     ~VertexInput() override;
 
-    /// Once. `buffers`: the driver's names, of each array, then that of the indices, if there is one.
-    void define(const glstate::VertexInputDefinition& definition, std::span<const GLuint> buffers);
+    /// Once. `buffers`: the driver's names, of each array, then that of the indices, if there is one. False: the driver
+    /// has no such arrays, and it must not be drawn with.
+    [[nodiscard]] bool define(const glstate::VertexInputDefinition& definition, std::span<const GLuint> buffers);
 
     bool defined() const { return name_ != 0; }
     GLuint name() const { return name_; }  ///< the driver's

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/session/soft_switch.h"
 
+#include <algorithm>
+
 #include "gen/glstate/texture_elements.gen.h"
+#include "tileserver/objects/buffer.h"
 #include "tileserver/objects/program.h"
 #include "tileserver/objects/query.h"
 #include "tileserver/objects/texture.h"
@@ -34,11 +37,26 @@ void look_up_textures(SessionReplica& session, SoftContext& context) {
     bound.version = session.objects.version(Texture::kKind);
 }
 
+/// The part in the driver's name, as large as the buffer is now. Nothing, if the buffer is not there or does not reach
+/// so far, or if the driver would refuse it: what is bound must be this session's.
+glstate::BufferRange found_range(const RenderNode& node, const SessionReplica& session,
+                                 const glstate::BufferRange& wanted) {
+    const Buffer* buffer = wanted.buffer != 0 ? session.objects.find<Buffer>(ClientName(wanted.buffer)) : nullptr;
+    if (buffer == nullptr || wanted.offset >= buffer->size()) return {};
+    if (wanted.offset % node.driver.uniform_buffer_alignment() != 0) return {};
+    const auto rest = static_cast<std::uint32_t>(buffer->size() - wanted.offset);
+    return {buffer->name(), wanted.offset, wanted.size != 0 ? std::min(wanted.size, rest) : rest};
+}
+
 /// None, and what is no program: fixed function.
-void use_program(RenderNode& node, SessionReplica& session, ClientName name, const LayerGeometry& layer) {
+void use_program(RenderNode& node, SessionReplica& session, const glstate::State& state, const LayerGeometry& layer) {
+    const ClientName name(glstate::el::current_program::ref(state));
     Program* program = name ? session.objects.find<Program>(name) : nullptr;
-    if (program != nullptr) program->use(layer);
-    else node.driver.use_program(0);
+    if (program == nullptr) return node.driver.use_program(0);
+    program->use(layer);
+    for (const std::uint32_t place : program->block_bindings())
+        node.driver.bind_uniform_buffer(place,
+                                        found_range(node, session, glstate::el::uniform_buffer::ref(state, place)));
 }
 
 bool count_samples(RenderNode& node, SessionReplica& session, ClientName name, const LayerGeometry& layer) {
@@ -56,7 +74,7 @@ bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, 
     node.driver.bind_textures(context.textures.bindings);
     node.maps.sync_evaluators(node.driver, context.maps);
     node.driver.bind_target(target, context.state);
-    use_program(node, session, ClientName(glstate::el::current_program::ref(context.state)), target.geometry());
+    use_program(node, session, context.state, target.geometry());
     node.driver.sync_current(context.state);
     const ClientName query(glstate::el::occlusion_query::ref(context.state));
     return !query || !counts || count_samples(node, session, query, target.geometry());

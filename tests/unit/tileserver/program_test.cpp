@@ -53,6 +53,14 @@ TEST(ShaderPatch, KeepsRedeclarations) {
             .upper_left);
 }
 
+TEST(ShaderPatch, KnowsWhereThePixelsMiddlesAre) {
+    const PatchedShader patched_shader = patch_fragment_shader(
+        "#version 150\nlayout(pixel_center_integer) in vec4 gl_FragCoord;\nout vec4 c;\nvoid main() { c = "
+        "gl_FragCoord; }\n");
+    EXPECT_TRUE(patched_shader.whole_centers);
+    EXPECT_FALSE(patched_shader.upper_left);
+}
+
 TEST(ShaderPatch, ReplacesInExpressions) {
     EXPECT_NE(patched("void main() { gl_FragColor = vec4(gl_FragCoord.xy, vec2(1e2 * gl_FragCoord)); }")
                   .find("vec4(wallgl_FragCoord.xy, vec2(1e2 * wallgl_FragCoord))"),
@@ -159,6 +167,55 @@ TEST_F(ProgramsTest, ReflectsUniformsAndAttributes) {
     EXPECT_EQ(find(kWindowUniform).type, GLenum{0}) << "ours must not show";
     ASSERT_FALSE(r.attributes.empty());
     for (const auto& attribute : r.attributes) EXPECT_TRUE(attribute.name != "place" || attribute.location == 3);
+}
+
+TEST_F(ProgramsTest, ReflectsWhatCameWithOpenGL3) {
+    glapi::ProgramDefinition definition{
+        {{GL_VERTEX_SHADER, true,
+          "#version 330\nlayout(location = 5) in ivec3 place; out vec3 speed; uniform Turn { mat4 m; vec2 a[3]; } "
+          "turn;\n"
+          "void main() { speed = vec3(gl_VertexID); gl_Position = turn.m * vec4(place + turn.a[2].xyx, 1); }"},
+         {GL_FRAGMENT_SHADER, true,
+          "#version 330\nlayout(std140, row_major) uniform Light { vec4 color; mat3 m; } ;\n"
+          "uniform uvec2 mask = uvec2(4294967295u, 3u); uniform usampler2D image; uniform samplerCubeShadow depths;\n"
+          "in vec3 speed; out vec4 tint; out uvec4 more[2];\n"
+          "void main() { tint = color * texture(depths, vec4(speed, 1)) * m[0][0]; more[0] = mask.xyxy; "
+          "more[1] = texture(image, gl_FragCoord.xy); }"}},
+        {},
+        {}};
+    definition.outputs = {{3, 0, "tint"}, {1, 0, "more"}};
+    definition.feedback = {GL_INTERLEAVED_ATTRIBS, {"gl_Position", "speed"}};
+    const auto r = link(1, definition);
+    ASSERT_TRUE(r.linked) << r.log;
+    const auto find = [&](const auto& all, const std::string& name) {
+        for (const auto& one : all)
+            if (one.name == name) return one;
+        ADD_FAILURE() << name;
+        return std::decay_t<decltype(all[0])>{};
+    };
+    EXPECT_EQ(find(r.uniforms, "mask").initial, (std::vector<std::uint32_t>{4294967295u, 3}));
+    EXPECT_EQ(find(r.uniforms, "image").type, GLenum{GL_UNSIGNED_INT_SAMPLER_2D});
+    EXPECT_EQ(find(r.uniforms, "depths").type, GLenum{GL_SAMPLER_CUBE_SHADOW});
+    for (const auto& uniform : r.uniforms) EXPECT_NE(glapi::find_uniform_type(uniform.type), nullptr) << uniform.name;
+    ASSERT_EQ(r.blocks.size(), 2u);
+    EXPECT_EQ(find(r.blocks, "Turn").stages, 1u);
+    EXPECT_EQ(find(r.blocks, "Light").stages, 2u);
+    EXPECT_EQ(find(r.blocks, "Light").bytes, 64u);
+    const auto matrix = find(r.uniforms, "m");
+    EXPECT_EQ(matrix.place.offset, 16);
+    EXPECT_EQ(matrix.place.matrix_stride, 16);
+    EXPECT_TRUE(matrix.place.row_major);
+    EXPECT_EQ(r.blocks[static_cast<std::size_t>(matrix.place.block)].name, "Light");
+    EXPECT_TRUE(find(r.uniforms, "Turn.a").array);
+    EXPECT_EQ(find(r.outputs, "tint").location, 3);
+    EXPECT_EQ(find(r.outputs, "more").location, 1);
+    EXPECT_EQ(find(r.outputs, "more").size, 2u);
+    EXPECT_EQ(find(r.attributes, "place").location, 5);
+    EXPECT_EQ(find(r.attributes, "gl_VertexID").location, -1);
+    ASSERT_EQ(r.captured.size(), 2u);
+    EXPECT_EQ(r.captured[1].name, "speed");
+    EXPECT_EQ(r.captured[1].type, GLenum{GL_FLOAT_VEC3});
+    EXPECT_EQ(find(r.uniforms, "color").initial.size(), 0u);
 }
 
 TEST_F(ProgramsTest, AProgramThatDoesNotLinkLeavesTheEarlierOne) {

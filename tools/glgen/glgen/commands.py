@@ -9,7 +9,7 @@ from . import data
 CLASSES = ("primitive", "state", "object", "query", "special")
 LISTED = {"primitive": True, "state": True, "special": True, "object": False, "query": False}
 WAYS = ("hand", "state", "param", "caps", "convert", "as", "later")
-FLAGS = {"inside", "list", "nolist", "record", "hot", "norm"}
+FLAGS = {"inside", "list", "nolist", "record", "hot", "norm", "bits", "packed"}
 
 
 @dataclass

@@ -209,8 +209,9 @@ def entries_source(commands, registry):
            '#include "client_lib/context/context.h"\n#include "client_lib/context/current.h"\n'
            '#include "client_lib/api/entry_guard.h"\n#include "client_lib/context/param_commands.h"\n'
            '#include "client_lib/api/unsupported.h"\n#include "common/glapi/convert.h"\n'
+           '#include "common/glapi/packed_vertex.h"\n'
            '#include "gen/client_lib/api.gen.h"\n\n'
-           "namespace wall::client {\nnamespace {\n\nusing glapi::to_fraction;\n\n"]
+           "namespace wall::client {\nnamespace {\n\nusing glapi::to_bits;\nusing glapi::to_fraction;\n\n"]
     for i in commands.unique:
         if not i.later and "hot" not in i.flags:
             out.append(_entry(i, commands, registry))
@@ -238,7 +239,7 @@ def _entry(i, commands, registry):
     """Nothing that is thrown leaves it. What another entry point by hand does goes straight there."""
     returns = i.command.returns
     head = f"{returns} GLAPIENTRY gl_entry_{i.name}({i.command.declaration}) {{\n"
-    if i.way in ("convert", "as") and "hot" in commands.all["gl" + i.target].flags:
+    if i.way in ("convert", "as") and "packed" not in i.flags and "hot" in commands.all["gl" + i.target].flags:
         return f"{head}    gl_entry_{i.target}({', '.join(_target_args(i, registry))});\n}}\n"
     none = "return;" if returns == "void" else "return {};"
     lines = [head, f"    Context* c = tls_context;\n    if (!c) {none}\n    try {{\n"]
@@ -252,7 +253,7 @@ def _entry(i, commands, registry):
 def _target_args(i, registry):
     target = registry.commands["gl" + i.target]
     if i.way == "as":
-        return [_converted(p.type, a, False) for p, a in zip(target.params, i.args)]
+        return [_converted(p.type, a, ()) for p, a in zip(target.params, i.args)]
     return _convert_args(i, target)
 
 
@@ -264,13 +265,31 @@ def _call(i, name, args):
 def _entry_body(i, commands, registry):
     if commands.has_slot(i):
         return [_call(i, i.name, [p.name for p in i.command.params])]
+    if "packed" in i.flags:
+        return _packed_entry(i, registry)
     if i.way in ("as", "convert"):
         return [_call(i, i.target, _target_args(i, registry))]
     return _param_entry(i, commands)
 
 
-def _converted(wanted, expression, norm):
-    if norm:
+def _packed_entry(i, registry):
+    """A word of type 2_10_10_10, and what stands before its type."""
+    target = registry.commands["gl" + i.target]
+    names = [p.name for p in i.command.params]
+    word = names[-1] + ("[0]" if i.command.params[-1].pointer else "")
+    normalized = "normalized != GL_FALSE" if "normalized" in names else str("norm" in i.flags).lower()
+    lead = names[:names.index("type")]
+    floats = [f"v[{n}]" for n in range(len(target.params) - len(lead))]
+    components = i.name.rstrip("uiv")[-1]
+    return ["GLfloat v[4] = {0, 0, 0, 1};",
+            f"if (!glapi::unpack_2_10_10_10(type, {word}, {normalized}, {components}, v)) "
+            "return c->error(GL_INVALID_ENUM);", _call(i, i.target, lead + floats)]
+
+
+def _converted(wanted, expression, flags):
+    if "bits" in flags:
+        return f"to_bits({expression})"
+    if "norm" in flags:
         return f"to_fraction({expression})"
     return f"static_cast<{wanted}>({expression})"
 
@@ -288,11 +307,12 @@ def _convert_args(i, target):
     for n, p in enumerate(target.params):
         if n >= len(given):
             last = n == len(target.params) - 1 and len(target.params) >= 4
-            out.append("255" if p.type == "GLubyte" else "1" if last else "0")
+            one = "to_bits(1)" if "bits" in i.flags else "1"
+            out.append("255" if p.type == "GLubyte" else one if last else "0")
         elif given[n][1] == p.type:
             out.append(given[n][0])
         else:
-            out.append(_converted(p.type, given[n][0], "norm" in i.flags))
+            out.append(_converted(p.type, given[n][0], i.flags))
     return out
 
 

@@ -38,10 +38,11 @@ class Target:
 
     @property
     def samplers(self):
+        """Of floats, of integers and unsigned ones; those that compare are of floats alone."""
         words = self.keys.get("samplers", "").split()
         whole = [word for word in words if not word.endswith("_SHADOW")]
-        return ([f"GL_SAMPLER_{word}" for word in words] +
-                [f"GL_{kind}_SAMPLER_{word}" for kind in ("INT", "UNSIGNED_INT") for word in whole])
+        return ([f"GL_SAMPLER_{word}" for word in words] + [f"GL_INT_SAMPLER_{word}" for word in whole]
+                + [f"GL_UNSIGNED_INT_SAMPLER_{word}" for word in whole])
 
     def says(self, key, otherwise=False):
         return self.keys.get(key, otherwise)
