@@ -64,14 +64,17 @@ void load_halves(const std::byte* from, GLint size, float* out) {
         out[i] = glapi::half_to_float(load_one<std::uint16_t>(from + static_cast<std::size_t>(i) * 2));
 }
 
-template <GLenum kType, bool kNormalized>
+template <GLenum kType, glapi::Fraction kFraction>
 void load_packed(const std::byte* from, GLint size, float* out) {
-    glapi::unpack_2_10_10_10(kType, load_one<GLuint>(from), kNormalized, static_cast<unsigned>(size), out);
+    glapi::unpack_2_10_10_10(kType, load_one<GLuint>(from), kFraction, static_cast<unsigned>(size), out);
 }
 
 template <GLenum kType>
 Load packed_loader(Conversion conversion) {
-    return conversion == Conversion::none ? &load_packed<kType, false> : &load_packed<kType, true>;
+    using glapi::Fraction;
+    if (conversion == Conversion::none) return &load_packed<kType, Fraction::none>;
+    return conversion == Conversion::fetch ? &load_packed<kType, Fraction::fetch>
+                                           : &load_packed<kType, Fraction::command>;
 }
 
 template <class T>

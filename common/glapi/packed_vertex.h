@@ -11,19 +11,28 @@
 
 namespace wall::glapi {
 
-/// The first `components`, 1 to 4, of a word of this type: x in the lowest bits, w in the highest two. Normalized,
-/// signed ones are c / 511 and w, cut at -1 (OpenGL 4.2, equation 2.2), others c / 1023 and w / 3. False: no such type.
-constexpr bool unpack_2_10_10_10(GLenum type, GLuint word, bool normalized, unsigned components, GLfloat* out) {
+/// What integers stand for.
+enum class Fraction : std::uint8_t {
+    none,     ///< themselves
+    command,  ///< of glColorP3ui and the like: signed ones are (2c + 1) / (2^b - 1), up to OpenGL 4.1
+    fetch,    ///< of an array that a driver reads: signed ones are c / (2^(b-1) - 1), cut at -1
+};
+
+/// The first `components`, 1 to 4, of a word of this type: x in the lowest bits, w in the highest two. False: no such
+/// type.
+constexpr bool unpack_2_10_10_10(GLenum type, GLuint word, Fraction fraction, unsigned components, GLfloat* out) {
     if (type != GL_INT_2_10_10_10_REV && type != GL_UNSIGNED_INT_2_10_10_10_REV) return false;
     const bool is_signed = type == GL_INT_2_10_10_10_REV;
     for (unsigned i = 0; i < components; ++i) {
         const unsigned bits = i < 3 ? 10 : 2;
         const GLuint field = word >> (10 * i) & ((1u << bits) - 1);
         const bool negative = is_signed && (field >> (bits - 1) & 1) != 0;
-        const GLint number = static_cast<GLint>(field) - (negative ? GLint{1} << bits : 0);
-        const auto largest = static_cast<GLfloat>((1u << (is_signed ? bits - 1 : bits)) - 1);
-        out[i] = static_cast<GLfloat>(number);
-        if (normalized) out[i] = std::max(out[i] / largest, -1.0f);
+        const auto number = static_cast<GLfloat>(static_cast<GLint>(field) - (negative ? GLint{1} << bits : 0));
+        const auto all = static_cast<GLfloat>((1u << bits) - 1), half = static_cast<GLfloat>((1u << (bits - 1)) - 1);
+        if (fraction == Fraction::none) out[i] = number;
+        else if (!is_signed) out[i] = number / all;
+        else if (fraction == Fraction::command) out[i] = (2.0f * number + 1.0f) * (1.0f / all);
+        else out[i] = std::max(number / half, -1.0f);
     }
     return true;
 }

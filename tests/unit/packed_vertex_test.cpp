@@ -13,9 +13,9 @@
 namespace wall::glapi {
 namespace {
 
-std::array<float, 4> unpacked(GLenum type, GLuint word, bool normalized, unsigned components = 4) {
+std::array<float, 4> unpacked(GLenum type, GLuint word, Fraction fraction, unsigned components = 4) {
     std::array<float, 4> v = {9, 9, 9, 9};
-    EXPECT_TRUE(unpack_2_10_10_10(type, word, normalized, components, v.data()));
+    EXPECT_TRUE(unpack_2_10_10_10(type, word, fraction, components, v.data()));
     return v;
 }
 
@@ -25,26 +25,29 @@ constexpr GLuint word_of(GLuint x, GLuint y, GLuint z, GLuint w) {
 
 TEST(PackedVertex, UnsignedComponents) {
     const GLuint word = word_of(1023, 0, 512, 2);
-    EXPECT_EQ(unpacked(GL_UNSIGNED_INT_2_10_10_10_REV, word, false), (std::array{1023.f, 0.f, 512.f, 2.f}));
-    EXPECT_EQ(unpacked(GL_UNSIGNED_INT_2_10_10_10_REV, word, true), (std::array{1.f, 0.f, 512.f / 1023.f, 2.f / 3.f}));
+    EXPECT_EQ(unpacked(GL_UNSIGNED_INT_2_10_10_10_REV, word, Fraction::none), (std::array{1023.f, 0.f, 512.f, 2.f}));
+    EXPECT_EQ(unpacked(GL_UNSIGNED_INT_2_10_10_10_REV, word, Fraction::command),
+              (std::array{1.f, 0.f, 512.f / 1023.f, 2.f / 3.f}));
 }
 
 TEST(PackedVertex, SignedComponents) {
     const GLuint word = word_of(static_cast<GLuint>(-512), 511, static_cast<GLuint>(-1), 3);
-    EXPECT_EQ(unpacked(GL_INT_2_10_10_10_REV, word, false), (std::array{-512.f, 511.f, -1.f, -1.f}));
-    EXPECT_EQ(unpacked(GL_INT_2_10_10_10_REV, word, true), (std::array{-1.f, 1.f, -1.f / 511.f, -1.f}))
+    EXPECT_EQ(unpacked(GL_INT_2_10_10_10_REV, word, Fraction::none), (std::array{-512.f, 511.f, -1.f, -1.f}));
+    EXPECT_EQ(unpacked(GL_INT_2_10_10_10_REV, word, Fraction::command),
+              (std::array{-1023.f * (1.f / 1023.f), 1.f, -1.f * (1.f / 1023.f), -1.f * (1.f / 3.f)}));
+    EXPECT_EQ(unpacked(GL_INT_2_10_10_10_REV, word, Fraction::fetch), (std::array{-1.f, 1.f, -1.f / 511.f, -1.f}))
         << "the lowest number is cut";
 }
 
 TEST(PackedVertex, OnlyWhatIsAskedForIsWritten) {
-    EXPECT_EQ(unpacked(GL_UNSIGNED_INT_2_10_10_10_REV, word_of(1, 2, 3, 1), false, 2),
+    EXPECT_EQ(unpacked(GL_UNSIGNED_INT_2_10_10_10_REV, word_of(1, 2, 3, 1), Fraction::none, 2),
               (std::array{1.f, 2.f, 9.f, 9.f}));
 }
 
 TEST(PackedVertex, OtherTypesAreNone) {
     float v[4];
     for (const GLenum type : {GL_FLOAT, GL_UNSIGNED_INT, GL_UNSIGNED_INT_10F_11F_11F_REV, GL_UNSIGNED_INT_10_10_10_2})
-        EXPECT_FALSE(unpack_2_10_10_10(type, 0, false, 4, v)) << type;
+        EXPECT_FALSE(unpack_2_10_10_10(type, 0, Fraction::none, 4, v)) << type;
 }
 
 TEST(PackedVertex, HalfFloats) {

@@ -112,6 +112,12 @@ public:
     }
     /// Bytes that such a part may begin at a multiple of.
     std::uint32_t uniform_buffer_alignment() const { return uniform_buffer_alignment_; }
+    /// Before a buffer changes: what is drawn and not yet sent on by the driver has read its uniforms. (Mesa 22 gathers
+    /// glBegin .. glEnd, and a change of a buffer's content does not send them on as one of a binding does.)
+    void release_uniform_buffer(GLuint buffer) {
+        for (unsigned place = 0; place < uniform_buffers_.size(); ++place)
+            if (uniform_buffers_[place].buffer == buffer) bind_uniform_buffer(place, {});
+    }
     /// The driver unbinds a deleted buffer by itself.
     void forget_buffer(GLuint buffer) {
         for (glstate::BufferRange& bound : uniform_buffers_)

@@ -13,6 +13,7 @@ Buffer::~Buffer() {
 }
 
 bool Buffer::define(std::uint32_t size, GLenum usage) {
+    driver_.release_uniform_buffer(name_);
     driver_.drain_errors();
     gl_.NamedBufferData(name_, size, nullptr, usage);
     // The driver's memory may have been another session's.
@@ -24,6 +25,7 @@ bool Buffer::define(std::uint32_t size, GLenum usage) {
 
 bool Buffer::write(std::uint32_t offset, std::span<const std::byte> content) {
     if (offset > size_ || content.size() > size_ - offset) return false;
+    driver_.release_uniform_buffer(name_);
     if (!content.empty())
         gl_.NamedBufferSubData(name_, offset, static_cast<GLsizeiptr>(content.size()), content.data());
     return true;

@@ -104,6 +104,27 @@ TEST_F(UniformBlocksTest, ANewContentIsSeen) {
     EXPECT_EQ(pixel(*first_), kBluePixel);
 }
 
+TEST_F(UniformBlocksTest, WhatWasDrawnKeepsTheContentOfThen) {
+    Batch batch;
+    fill(batch.buffer(), kBuffer, kGreen);
+    batch.set<el::current_program>(kProgram.value).set<el::uniform_buffer>({kBuffer.value, 0, 0}, 0);
+    const auto half = [&](float left) {
+        batch.block(1, [&](auto& b) {
+            pack::Begin(b, GL_QUADS);
+            for (const auto& v :
+                 {std::array{left, -1.f}, std::array{left + 1, -1.f}, std::array{left + 1, 1.f}, std::array{left, 1.f}})
+                pack::Vertex2f(b, v[0], v[1]);
+            pack::End(b);
+        });
+    };
+    half(-1);
+    pack::BufferSubData(batch.buffer(), kBuffer, 16, std::as_bytes(std::span(kBlue)));
+    half(0);
+    first_->expect_run(batch);
+    EXPECT_EQ(first_->read(0, {1, 3, 1, 1}), kGreenPixel);
+    EXPECT_EQ(first_->read(0, {6, 3, 1, 1}), kBluePixel);
+}
+
 TEST_F(UniformBlocksTest, SessionsSeeTheirOwnBuffers) {
     Batch green, blue;
     fill(green.buffer(), kBuffer, kGreen);

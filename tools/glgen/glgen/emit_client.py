@@ -277,12 +277,13 @@ def _packed_entry(i, registry):
     target = registry.commands["gl" + i.target]
     names = [p.name for p in i.command.params]
     word = names[-1] + ("[0]" if i.command.params[-1].pointer else "")
-    normalized = "normalized != GL_FALSE" if "normalized" in names else str("norm" in i.flags).lower()
+    command, none = "glapi::Fraction::command", "glapi::Fraction::none"
+    fraction = f"normalized ? {command} : {none}" if "normalized" in names else command if "norm" in i.flags else none
     lead = names[:names.index("type")]
     floats = [f"v[{n}]" for n in range(len(target.params) - len(lead))]
     components = i.name.rstrip("uiv")[-1]
     return ["GLfloat v[4] = {0, 0, 0, 1};",
-            f"if (!glapi::unpack_2_10_10_10(type, {word}, {normalized}, {components}, v)) "
+            f"if (!glapi::unpack_2_10_10_10(type, {word}, {fraction}, {components}, v)) "
             "return c->error(GL_INVALID_ENUM);", _call(i, i.target, lead + floats)]
 
 
