@@ -41,12 +41,19 @@ void get(Context& c, GLuint index, GLenum pname, Out* params) {
     }
 }
 
+/// A core profile has arrays in buffers and in array objects only.
+bool may_point(const Context& c, const void* pointer) {
+    if (!c.profile.core) return true;
+    return c.state.vertex_arrays.vertex_array_object != 0 && (c.state.local.array_buffer != 0 || pointer == nullptr);
+}
+
 }  // namespace
 
 void VertexAttribPointer(Context& c, GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride,
                          const void* pointer) {
     if (index >= kVertexAttributes || size < 1 || size > 4 || stride < 0) return c.error(GL_INVALID_VALUE);
     if (!is_array_type(type)) return c.error(GL_INVALID_ENUM);
+    if (!may_point(c, pointer)) return c.error(GL_INVALID_OPERATION);
     Array array = c.get<el::attrib_array>(index);
     array.pointer = reinterpret_cast<std::uintptr_t>(pointer);
     array.size = size;
