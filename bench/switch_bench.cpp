@@ -147,7 +147,7 @@ void Identical_Soft(benchmark::State& run) {
         for (SoftContext* context : contexts) set_samples(context->state, 1);
     Layer& layer = client.layer();
     time_turns(run, node.gl(), [&](std::size_t i) {
-        benchmark::DoNotOptimize(switch_to(node.node(), client.session, *contexts[i], layer, true));
+        benchmark::DoNotOptimize(switch_to(node.node(), client.session, *contexts[i], layer, {true, true}));
     });
 }
 BENCHMARK(Identical_Soft<true>)->Name("identical/soft switch/fresh")->UseRealTime();
@@ -168,7 +168,7 @@ void Varying_Soft(benchmark::State& run, To to) {
     for (std::size_t i = 0; i < 2; ++i) set_varying(contexts[i]->state, i);
     Layer& layer = client.layer();
     time_turns(run, node.gl(), [&](std::size_t i) {
-        benchmark::DoNotOptimize(switch_to(node.node(), client.session, *contexts[i], layer, true));
+        benchmark::DoNotOptimize(switch_to(node.node(), client.session, *contexts[i], layer, {true, true}));
         draw_triangle(node.gl());
     });
 }
@@ -180,7 +180,7 @@ void Varying_One(benchmark::State& run, To to) {
     Node node(to);
     Client client(node, SessionId(1));
     benchmark::DoNotOptimize(
-        switch_to(node.node(), client.session, client.context(ContextId(1)), client.layer(), true));
+        switch_to(node.node(), client.session, client.context(ContextId(1)), client.layer(), {true, true}));
     time_turns(run, node.gl(), [&](std::size_t i) {
         set_values(node.gl(), i);
         draw_triangle(node.gl());
@@ -206,7 +206,7 @@ void Varying_Kept(benchmark::State& run) {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
     const auto soft = [&](std::size_t i) {
-        benchmark::DoNotOptimize(switch_to(node.node(), client.session, *contexts[i], layer, true));
+        benchmark::DoNotOptimize(switch_to(node.node(), client.session, *contexts[i], layer, {true, true}));
         draw_triangle(node.gl());
     };
     const auto one = [&](std::size_t i) {
@@ -289,7 +289,7 @@ void Different_Soft(benchmark::State& run, To to) {
     for (std::size_t i = 0; i < 2; ++i) set_samples(contexts[i]->state, i);
     Layer& layer = client.layer();
     time_turns(run, node.gl(), [&](std::size_t i) {
-        benchmark::DoNotOptimize(switch_to(node.node(), client.session, *contexts[i], layer, true));
+        benchmark::DoNotOptimize(switch_to(node.node(), client.session, *contexts[i], layer, {true, true}));
         draw_triangle(node.gl());
     });
 }

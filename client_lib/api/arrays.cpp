@@ -9,6 +9,7 @@
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/client_arrays.h"
 #include "client_lib/context/copied_draw.h"
+#include "client_lib/context/debug_state.h"
 #include "client_lib/context/lists.h"
 #include "client_lib/context/node_draw.h"
 #include "client_lib/context/program_use.h"
@@ -125,10 +126,11 @@ bool is_index_type(GLenum type) {
     return type == GL_UNSIGNED_BYTE || type == GL_UNSIGNED_SHORT || type == GL_UNSIGNED_INT;
 }
 
+/// A core profile knows no quads and no polygons, and draws from no arrays but those of an object.
 bool check_mode(Context& c, GLenum mode) {
-    if (mode <= GL_POLYGON) return true;
-    c.error(GL_INVALID_ENUM);
-    return false;
+    if (mode > (c.profile.core ? GL_TRIANGLE_FAN : GL_POLYGON)) return c.error(GL_INVALID_ENUM), false;
+    if (!c.profile.core || c.state.vertex_arrays.vertex_array_object != 0) return true;
+    return c.error(GL_INVALID_OPERATION), false;
 }
 
 /// Draws one instance into the block or the list.
@@ -157,7 +159,7 @@ void draw(Context& c, const ArrayDraw& draw) {
     if (draw.instances > 1 && elements > wire::kMostInstancedElements) return c.error(GL_OUT_OF_MEMORY);
     if (draw_on_nodes(c, draw)) return;
     if (draw_copied(c, draw)) return;
-    const bool at_once = c.table == &tables::immediate;
+    const bool at_once = c.at_once();
     if (draw.instances == 1 && !(at_once && reads_vertex_numbers(c))) return draw_inline(c, draw, 0);
     if (at_once) return draw_staged(c, draw);
     // As Mesa: all that a list knows of instances are the arrays that go on with them.
@@ -344,6 +346,8 @@ void GetPointerv(Context& c, GLenum pname, void** params) {
         case GL_FOG_COORD_ARRAY_POINTER: return answer(pointer_of(l.fog_coord_array));
         case GL_SECONDARY_COLOR_ARRAY_POINTER: return answer(pointer_of(l.secondary_color_array));
         case GL_FEEDBACK_BUFFER_POINTER: return answer(c.select->feedback_buffer);
+        case GL_DEBUG_CALLBACK_FUNCTION: return void(*params = reinterpret_cast<void*>(c.debug->log.callback));
+        case GL_DEBUG_CALLBACK_USER_PARAM: return answer(c.debug->log.user);
         case GL_SELECTION_BUFFER_POINTER: return answer(c.select->select_buffer);
         default: return c.error(GL_INVALID_ENUM);
     }

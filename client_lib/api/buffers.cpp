@@ -43,6 +43,11 @@ static_assert((GL_STREAM_DRAW & 3) == 0 && (GL_STATIC_DRAW & 3) == 0 && (GL_DYNA
 /// Largest buffer that can be named in the stream.
 constexpr GLsizeiptr kMostBytes = std::numeric_limits<std::uint32_t>::max();
 
+bool is_reserved(Context& c, GLuint name) {
+    std::lock_guard lock(c.share().mutex);
+    return c.share().buffers.known(name);
+}
+
 void delete_buffer(Context& c, GLuint name) {
     std::shared_ptr<Buffer> buffer;
     {
@@ -77,6 +82,7 @@ GLboolean IsBuffer(Context& c, GLuint name) {
 
 void BindBuffer(Context& c, GLenum target, GLuint name) {
     if (!bound_buffer_id(c, target)) return c.error(GL_INVALID_ENUM);
+    if (c.profile.core && name != 0 && !is_reserved(c, name)) return c.error(GL_INVALID_OPERATION);
     if (!c.buffers->holds_deleted && !buffers_were_deleted(c))
         if (const ClientName id = c.buffers->bound_lately.id_of(name)) return bind_buffer(c, target, id);
     bind_buffer(c, target, {});

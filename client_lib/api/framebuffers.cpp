@@ -202,6 +202,7 @@ void BindFramebuffer(Context& c, GLenum target, GLuint name) {
     auto& names = c.framebuffers->names;
     auto framebuffer = names.find(name);
     if (!framebuffer) {
+        if (c.profile.core && !names.known(name)) return c.error(GL_INVALID_OPERATION);
         framebuffer = std::make_shared<Framebuffer>(name);
         names.put(name, framebuffer);
         std::lock_guard lock(c.share().mutex);

@@ -2,15 +2,19 @@
 // glGet* and the like, answered from the context's shadow; none of them asks a node.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "client_lib/api/version.h"
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/context.h"
+#include "client_lib/context/debug_state.h"
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/limits.h"
 #include "client_lib/context/lists.h"
 #include "client_lib/context/object_name.h"
+#include "client_lib/context/param_commands.h"
+#include "client_lib/context/query_result.h"
 #include "client_lib/context/select.h"
+#include "client_lib/context/version.h"
 #include "client_lib/objects/maps.h"
 #include "common/glstate/elements.h"
 #include "common/glstate/queries.h"
@@ -201,8 +205,21 @@ const Special kSpecials[] = {
     {GL_MINOR_VERSION, 1, [](Context& c, double* out) { *out = offered_version(c.caps()).minor; }},
     {GL_NUM_EXTENSIONS, 1,
      [](Context& c, double* out) { *out = static_cast<double>(offered_extensions(c.caps()).size()); }},
-    {GL_CONTEXT_FLAGS, 1, constant<0>},
-    {GL_CONTEXT_PROFILE_MASK, 1, constant<GL_CONTEXT_COMPATIBILITY_PROFILE_BIT>},
+    {GL_DEBUG_LOGGED_MESSAGES, 1,
+     [](Context& c, double* out) { *out = static_cast<double>(c.debug->log.logged.size()); }},
+    {GL_DEBUG_NEXT_LOGGED_MESSAGE_LENGTH, 1,
+     [](Context& c, double* out) {
+         const auto& logged = c.debug->log.logged;
+         *out = logged.empty() ? 0 : static_cast<double>(logged.front().text.size() + 1);
+     }},
+    {GL_DEBUG_GROUP_STACK_DEPTH, 1, [](Context& c, double* out) { *out = static_cast<double>(c.debug->log.depth()); }},
+    {GL_MAX_DEBUG_MESSAGE_LENGTH, 1, constant<static_cast<int>(DebugLog::kMostText)>},
+    {GL_MAX_DEBUG_LOGGED_MESSAGES, 1, constant<static_cast<int>(DebugLog::kMostLogged)>},
+    {GL_MAX_DEBUG_GROUP_STACK_DEPTH, 1, constant<static_cast<int>(DebugLog::kMostGroups)>},
+    {GL_MAX_LABEL_LENGTH, 1, constant<static_cast<int>(ObjectLabels::kMostText)>},
+    {GL_TIMESTAMP, 1, [](Context&, double* out) { *out = static_cast<double>(timestamp(Fence::Clock::now())); }},
+    {GL_CONTEXT_FLAGS, 1, [](Context& c, double* out) { *out = c.profile.flags(); }},
+    {GL_CONTEXT_PROFILE_MASK, 1, [](Context& c, double* out) { *out = c.profile.mask(); }},
     {GL_IMPLEMENTATION_COLOR_READ_FORMAT, 1, constant<GL_RGBA>},
     {GL_IMPLEMENTATION_COLOR_READ_TYPE, 1, constant<GL_UNSIGNED_BYTE>},
 };
@@ -213,6 +230,10 @@ Out converted(double value) {
     if constexpr (std::is_same_v<Out, GLboolean>) return value != 0;
     else if constexpr (std::is_same_v<Out, GLint>)
         return static_cast<GLint>(std::clamp(std::round(value), -2147483648.0, 2147483647.0));
+    else if constexpr (std::is_same_v<Out, GLint64>)
+        return std::abs(value) < 9.2e18 ? static_cast<GLint64>(std::round(value))
+               : value < 0              ? std::numeric_limits<GLint64>::min()
+                                        : std::numeric_limits<GLint64>::max();
     else return static_cast<Out>(value);
 }
 
@@ -239,8 +260,10 @@ void get_element(Context& c, const glstate::GetEntry& entry, Out* out) {
     glstate::read_components(c.state, id, entry.offset, entry.kind, entry.components, out);
 }
 
-/// Colours that are kept as given and answered as a fixed point framebuffer uses them (ARB_color_buffer_float).
-bool answered_clamped(GLenum pname) {
+/// Colours that are kept as given and answered as they are used: by GL_FIXED_ONLY clamped, no framebuffer being of
+/// floats (ARB_color_buffer_float).
+bool answered_clamped(const Context& c, GLenum pname) {
+    if (c.state.color_buffer.clamp_fragment_color == GL_FALSE) return false;
     return pname == GL_COLOR_CLEAR_VALUE || pname == GL_BLEND_COLOR || pname == GL_FOG_COLOR;
 }
 
@@ -250,7 +273,8 @@ void get_clamped(Context& c, const glstate::GetEntry& entry, Out* out) {
     get_element(c, entry, values);
     for (unsigned i = 0; i < entry.components; ++i) {
         const double value = std::clamp(values[i], 0.0, 1.0);
-        out[i] = std::is_same_v<Out, GLint> ? static_cast<Out>(2147483647.0 * value) : converted<Out>(value);
+        out[i] = std::is_same_v<Out, GLint> || std::is_same_v<Out, GLint64> ? static_cast<Out>(2147483647.0 * value)
+                                                                            : converted<Out>(value);
     }
 }
 
@@ -301,9 +325,10 @@ const std::uint32_t* flag_of(const Context& c, GLenum cap) {
 
 template <class Out>
 void get(Context& c, GLenum pname, Out* out) {
+    if (is_removed(c, pname)) return c.error(GL_INVALID_ENUM);
     if (get_of_framebuffer(c, pname, out)) return;
     if (const auto* entry = glstate::find_get(pname))
-        return answered_clamped(pname) ? get_clamped(c, *entry, out) : get_element(c, *entry, out);
+        return answered_clamped(c, pname) ? get_clamped(c, *entry, out) : get_element(c, *entry, out);
     if (const auto* flag = flag_of(c, pname)) *out = converted<Out>(*flag);
     else if (!get_special(c, pname, out) && !get_limit(c, pname, out)) c.error(GL_INVALID_ENUM);
 }
@@ -313,6 +338,7 @@ void get(Context& c, GLenum pname, Out* out) {
 void GetBooleanv(Context& c, GLenum pname, GLboolean* params) { get(c, pname, params); }
 void GetIntegerv(Context& c, GLenum pname, GLint* params) { get(c, pname, params); }
 void GetFloatv(Context& c, GLenum pname, GLfloat* params) { get(c, pname, params); }
+void GetInteger64v(Context& c, GLenum pname, GLint64* data) { get(c, pname, data); }
 void GetDoublev(Context& c, GLenum pname, GLdouble* params) { get(c, pname, params); }
 
 GLenum GetError(Context& c) { return c.take_error(); }

@@ -3,8 +3,8 @@
 #include <map>
 #include <mutex>
 
-#include "client_lib/api/version.h"
 #include "client_lib/context/context.h"
+#include "client_lib/context/version.h"
 
 namespace wall::client::api {
 namespace {
@@ -29,8 +29,8 @@ const GLubyte* GetString(Context& c, GLenum name) {
     const Caps& caps = c.caps();
     if (name == GL_VENDOR) return kept("WallGL");
     if (name == GL_RENDERER) return kept("WallGL (" + caps.renderer + ")");
-    if (name == GL_VERSION) return kept(version_string(caps));
-    if (name == GL_EXTENSIONS) return kept(joined(offered_extensions(caps)));
+    if (name == GL_VERSION) return kept(version_string(caps, c.profile));
+    if (name == GL_EXTENSIONS && !c.profile.core) return kept(joined(offered_extensions(caps)));
     const GlVersion version = offered_version(caps);
     if (name == GL_SHADING_LANGUAGE_VERSION && version.shading_language) return kept(version.shading_language);
     c.error(GL_INVALID_ENUM);

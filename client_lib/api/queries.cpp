@@ -1,57 +1,94 @@
 // SPDX-License-Identifier: MIT
-// Occlusion queries. Only glGetQueryObject waits for an answer, once for each query.
+// Query objects (OpenGL 3.3, 2.14). Only a question for a result waits for an answer, once for each query.
 #include <algorithm>
-#include <cstring>
+#include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "client_lib/context/context.h"
-#include "client_lib/context/occlusion.h"
+#include "client_lib/context/query_result.h"
+#include "client_lib/context/query_state.h"
 
 namespace wall::client::api {
 namespace {
 
 namespace el = glstate::el;
 
-constexpr GLint kCounterBits = 64;
+/// A target: where a query of it is current, and the bits of its result.
+struct Target {
+    GLenum target;
+    QuerySlot slot;
+    GLint bits;
+};
+constexpr Target kTargets[] = {
+    {GL_SAMPLES_PASSED, QuerySlot::samples, 64},
+    {GL_ANY_SAMPLES_PASSED, QuerySlot::samples, 1},
+    {GL_ANY_SAMPLES_PASSED_CONSERVATIVE, QuerySlot::samples, 1},
+    {GL_PRIMITIVES_GENERATED, QuerySlot::primitives, 64},
+    {GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, QuerySlot::captured, 64},
+    {GL_TIME_ELAPSED, QuerySlot::time, 64},
+    {GL_TIMESTAMP, QuerySlot::none, 64},
+};
+
+/// Null, and the error is set: there is none of that name.
+const Target* find_target(Context& c, GLenum target, bool begins) {
+    const auto* found = std::ranges::find(kTargets, target, &Target::target);
+    if (found != std::end(kTargets) && !(begins && found->slot == QuerySlot::none)) return found;
+    c.error(GL_INVALID_ENUM);
+    return nullptr;
+}
 
 /// No stamp says which nodes have counted for it: each that has drawn while it was current.
-void forget(Context& c, const OcclusionQuery& query) {
-    if (!query.id) return;
+void forget(Context& c, const QueryObject& query) {
+    if (!query.id || query.slot == QuerySlot::time || query.slot == QuerySlot::none) return;
     c.session().on_every_node(c.id,
                               [&](wire::PackBuffer& buffer, Node&) { glapi::pack::ObjectDelete(buffer, query.id); });
 }
 
-std::vector<Node*> live_nodes(ClientSession& session) {
-    std::lock_guard lock(session.mutex());
-    std::vector<Node*> nodes;
-    for (const auto& node : session.nodes())
-        if (node->answers()) nodes.push_back(node.get());
-    return nodes;
+/// What is counted from here on counts for it; null: for none.
+void make_current(Context& c, QuerySlot slot, std::shared_ptr<QueryObject> query) {
+    const std::uint32_t id = query ? query->id.value : 0;
+    if (slot == QuerySlot::samples) c.set<el::occlusion_query>(0, id);
+    if (slot == QuerySlot::primitives) c.set<el::primitives_query>(0, id);
+    if (slot == QuerySlot::captured) c.set<el::captured_query>(0, id);
+    if (slot == QuerySlot::time) c.flush_block();
+    c.queries->current[static_cast<std::size_t>(slot)] = std::move(query);
 }
 
-std::uint64_t samples_of(Context& c, OcclusionQuery& query) {
-    if (query.answered || !query.id) return query.samples;
-    c.flush_block();
-    c.session().hidden_parts([](HiddenParts& parts) { parts.before_counting_samples(); });
-    for (Node* node : live_nodes(c.session())) {
-        const auto answer = c.session().ask(
-            c.draw_source(), *node, "glGetQueryObject",
-            [&](wire::PackBuffer& buffer, RequestId request) { glapi::pack::QueryResult(buffer, request, query.id); });
-        std::uint64_t samples = 0;
-        if (answer && answer->size() == sizeof samples) std::memcpy(&samples, answer->data(), sizeof samples);
-        query.samples += samples;
-    }
-    query.answered = true;
-    return query.samples;
+bool is_current(const Context& c, const QueryObject& query) {
+    return query.slot != QuerySlot::none && c.queries->current[static_cast<std::size_t>(query.slot)].get() == &query;
+}
+
+void end(Context& c, const std::shared_ptr<QueryObject>& query) {
+    make_current(c, query->slot, nullptr);
+    query->place = ++c.queries->ended;
+    if (query->slot == QuerySlot::time) query->ended = c.session().fence();
+}
+
+/// The object of a name that begins anew; null, and the error is set, if it may not.
+std::shared_ptr<QueryObject> begun_anew(Context& c, GLuint name, const Target& target) {
+    if (name == 0) return c.error(GL_INVALID_OPERATION), nullptr;
+    auto query = c.queries->names.find(name);
+    if (query && (is_current(c, *query) || query->target != target.target))
+        return c.error(GL_INVALID_OPERATION), nullptr;
+    if (!query && c.profile.core && !c.queries->names.known(name)) return c.error(GL_INVALID_OPERATION), nullptr;
+    if (!query) c.queries->names.put(name, query = std::make_shared<QueryObject>());
+    forget(c, *query);
+    *query = {};
+    query->name = name;
+    query->target = target.target;
+    query->slot = target.slot;
+    query->id = next_object_id();
+    return query;
 }
 
 template <class Out>
 void get(Context& c, GLuint name, GLenum pname, Out* params) {
-    const auto query = c.occlusion->queries.find(name);
-    if (!query || query == c.occlusion->current) return c.error(GL_INVALID_OPERATION);
-    if (pname == GL_QUERY_RESULT)
-        *params = static_cast<Out>(std::min<std::uint64_t>(samples_of(c, *query), std::numeric_limits<Out>::max()));
-    else if (pname == GL_QUERY_RESULT_AVAILABLE) *params = GL_TRUE;  // asking for the result waits
+    const auto query = c.queries->names.find(name);
+    if (!query || is_current(c, *query)) return c.error(GL_INVALID_OPERATION);
+    constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<Out>::max());
+    if (pname == GL_QUERY_RESULT) *params = static_cast<Out>(std::min(result_of(c, *query), kMost));
+    else if (pname == GL_QUERY_RESULT_AVAILABLE) *params = is_available(c, *query);
     else c.error(GL_INVALID_ENUM);
 }
 
@@ -59,53 +96,62 @@ void get(Context& c, GLuint name, GLenum pname, Out* params) {
 
 void GenQueries(Context& c, GLsizei count, GLuint* names) {
     if (count < 0) return c.error(GL_INVALID_VALUE);
-    const GLuint first = c.occlusion->queries.reserve(static_cast<GLuint>(count));
+    const GLuint first = c.queries->names.reserve(static_cast<GLuint>(count));
     for (GLsizei i = 0; i < count; ++i) names[i] = first + static_cast<GLuint>(i);
 }
 
 void DeleteQueries(Context& c, GLsizei count, const GLuint* names) {
     if (count < 0) return c.error(GL_INVALID_VALUE);
     for (GLsizei i = 0; i < count; ++i) {
-        const auto query = names[i] == 0 ? nullptr : c.occlusion->queries.erase(names[i]);
+        const auto query = names[i] == 0 ? nullptr : c.queries->names.erase(names[i]);
         if (!query) continue;
-        if (query == c.occlusion->current) EndQuery(c, GL_SAMPLES_PASSED);
+        if (is_current(c, *query)) end(c, query);
         forget(c, *query);
     }
 }
 
-GLboolean IsQuery(Context& c, GLuint name) { return name != 0 && c.occlusion->queries.find(name) != nullptr; }
+GLboolean IsQuery(Context& c, GLuint name) { return name != 0 && c.queries->names.find(name) != nullptr; }
 
-void BeginQuery(Context& c, GLenum target, GLuint name) {
-    if (target != GL_SAMPLES_PASSED) return c.error(GL_INVALID_ENUM);
-    auto& queries = *c.occlusion;
-    if (name == 0 || queries.current) return c.error(GL_INVALID_OPERATION);
-    auto query = queries.queries.find(name);
-    if (!query) {
-        query = std::make_shared<OcclusionQuery>();
-        queries.queries.put(name, query);
-    }
-    forget(c, *query);
-    *query = {name, next_object_id()};
-    queries.current = query;
-    c.set<el::occlusion_query>(0, query->id.value);
+void BeginQuery(Context& c, GLenum word, GLuint name) {
+    const Target* target = find_target(c, word, true);
+    if (!target) return;
+    if (c.queries->current[static_cast<std::size_t>(target->slot)]) return c.error(GL_INVALID_OPERATION);
+    const auto query = begun_anew(c, name, *target);
+    if (!query) return;
+    make_current(c, target->slot, query);
+    if (target->slot == QuerySlot::time) query->begun = c.session().fence();
 }
 
-void EndQuery(Context& c, GLenum target) {
-    if (target != GL_SAMPLES_PASSED) return c.error(GL_INVALID_ENUM);
-    if (!c.occlusion->current) return c.error(GL_INVALID_OPERATION);
-    c.occlusion->current = nullptr;
-    c.set<el::occlusion_query>(0, 0);
+void EndQuery(Context& c, GLenum word) {
+    const Target* target = find_target(c, word, true);
+    if (!target) return;
+    const auto query = c.queries->current[static_cast<std::size_t>(target->slot)];
+    if (!query || query->target != word) return c.error(GL_INVALID_OPERATION);
+    end(c, query);
 }
 
-void GetQueryiv(Context& c, GLenum target, GLenum pname, GLint* params) {
-    if (target != GL_SAMPLES_PASSED) return c.error(GL_INVALID_ENUM);
-    const auto& current = c.occlusion->current;
-    if (pname == GL_CURRENT_QUERY) *params = current ? static_cast<GLint>(current->name) : 0;
-    else if (pname == GL_QUERY_COUNTER_BITS) *params = kCounterBits;
+void QueryCounter(Context& c, GLuint name, GLenum word) {
+    if (word != GL_TIMESTAMP) return c.error(GL_INVALID_ENUM);
+    const auto query = begun_anew(c, name, *find_target(c, word, false));
+    if (!query) return;
+    c.flush_block();
+    query->place = ++c.queries->ended;
+    query->ended = c.session().fence();
+}
+
+void GetQueryiv(Context& c, GLenum word, GLenum pname, GLint* params) {
+    const Target* target = find_target(c, word, false);
+    if (!target) return;
+    const auto current =
+        target->slot == QuerySlot::none ? nullptr : c.queries->current[static_cast<std::size_t>(target->slot)];
+    if (pname == GL_CURRENT_QUERY) *params = current && current->target == word ? static_cast<GLint>(current->name) : 0;
+    else if (pname == GL_QUERY_COUNTER_BITS) *params = target->bits;
     else c.error(GL_INVALID_ENUM);
 }
 
 void GetQueryObjectiv(Context& c, GLuint name, GLenum pname, GLint* params) { get(c, name, pname, params); }
 void GetQueryObjectuiv(Context& c, GLuint name, GLenum pname, GLuint* params) { get(c, name, pname, params); }
+void GetQueryObjecti64v(Context& c, GLuint name, GLenum pname, GLint64* params) { get(c, name, pname, params); }
+void GetQueryObjectui64v(Context& c, GLuint name, GLenum pname, GLuint64* params) { get(c, name, pname, params); }
 
 }  // namespace wall::client::api

@@ -52,6 +52,7 @@ void BindRenderbuffer(Context& c, GLenum target, GLuint name) {
     std::lock_guard lock(share.mutex);
     auto renderbuffer = share.renderbuffers.find(name);
     if (!renderbuffer) {
+        if (c.profile.core && !share.renderbuffers.known(name)) return c.error(GL_INVALID_OPERATION);
         renderbuffer = std::make_shared<Renderbuffer>(name);
         share.renderbuffers.put(name, renderbuffer);
         share.by_id[renderbuffer->id] = renderbuffer;

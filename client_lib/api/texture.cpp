@@ -205,6 +205,7 @@ void BindTexture(Context& c, GLenum word, GLuint name) {
         } else {
             auto texture = c.share().textures.find(name);
             if (texture && texture->info.id != target) return c.error(GL_INVALID_OPERATION);
+            if (!texture && c.profile.core && !c.share().textures.known(name)) return c.error(GL_INVALID_OPERATION);
             if (!texture) c.share().textures.put(name, texture = make_texture(c.share(), name, target));
             texture->global |= plain == nullptr;
             auto& users = texture->bound_by;

@@ -56,6 +56,12 @@ void get(Context& c, GLuint index, GLenum pname, Out* params) {
     }
 }
 
+/// A core profile has arrays in buffers and in array objects only.
+bool may_point(const Context& c, const void* pointer) {
+    if (!c.profile.core) return true;
+    return c.state.vertex_arrays.vertex_array_object != 0 && (c.state.local.array_buffer != 0 || pointer == nullptr);
+}
+
 }  // namespace
 
 namespace {
@@ -90,12 +96,14 @@ void VertexAttribPointer(Context& c, GLuint index, GLint size, GLenum type, GLbo
     const bool packed = glstate::is_packed(type);
     if (bgra && ((type != GL_UNSIGNED_BYTE && !packed) || !normalized)) return c.error(GL_INVALID_OPERATION);
     if (packed && !bgra && size != 4) return c.error(GL_INVALID_OPERATION);
+    if (!may_point(c, pointer)) return c.error(GL_INVALID_OPERATION);
     define(c, index, {size, type, stride, pointer, normalized != GL_FALSE, false});
 }
 
 void VertexAttribIPointer(Context& c, GLuint index, GLint size, GLenum type, GLsizei stride, const void* pointer) {
     if (index >= kVertexAttributes || size < 1 || size > 4 || stride < 0) return c.error(GL_INVALID_VALUE);
     if (!is_integer_type(type)) return c.error(GL_INVALID_ENUM);
+    if (!may_point(c, pointer)) return c.error(GL_INVALID_OPERATION);
     define(c, index, {size, type, stride, pointer, false, true});
 }
 

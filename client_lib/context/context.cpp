@@ -6,9 +6,10 @@
 #include "client_lib/context/array_copies.h"
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/buffer_use.h"
+#include "client_lib/context/debug_state.h"
 #include "client_lib/context/framebuffer_use.h"
 #include "client_lib/context/list_state.h"
-#include "client_lib/context/occlusion.h"
+#include "client_lib/context/query_state.h"
 #include "client_lib/context/select.h"
 #include "client_lib/context/staging_buffers.h"
 #include "client_lib/context/vertex_array_objects.h"
@@ -23,9 +24,10 @@ namespace wall::client {
 constinit thread_local Context* tls_context = nullptr;
 constinit thread_local Packer* tls_packer = nullptr;
 
-Context::Context(std::shared_ptr<ShareGroup> share)
+Context::Context(std::shared_ptr<ShareGroup> share, const ContextProfile& own_profile)
     : id(next_context_id()),
-      table(&tables::immediate),
+      profile(own_profile),
+      table(profile.core ? &tables::core : &tables::immediate),
       lists(std::make_unique<ListState>()),
       attributes(std::make_unique<AttributeStacks>()),
       select(std::make_unique<SelectState>()),
@@ -36,9 +38,20 @@ Context::Context(std::shared_ptr<ShareGroup> share)
       vertex_array_objects(std::make_unique<VertexArrayObjects>()),
       staging(std::make_unique<StagingBuffers>()),
       copies(std::make_unique<ArrayCopies>()),
-      occlusion(std::make_unique<OcclusionState>()),
+      queries(std::make_unique<QueryState>()),
+      debug(std::make_unique<DebugState>()),
       share_(std::move(share)) {
     for (auto& stack : texture_stacks) stack.limit = 10;
+    {
+        std::lock_guard lock(share_->mutex);
+        if (!share_->labels) share_->labels = std::make_shared<ObjectLabels>();
+    }
+    glstate::assign<glstate::el::debug_output>(state, 0, profile.debug);
+    if (!profile.core) return;
+    // What a core profile always has, and the nodes' drivers, which are no core profile, have to be told.
+    glstate::assign<glstate::el::point_sprite>(state, 0, 1);
+    glstate::assign<glstate::el::clamp_vertex_color>(state, 0, GL_FALSE);
+    glstate::assign<glstate::el::clamp_fragment_color>(state, 0, GL_FALSE);
 }
 
 Context::~Context() = default;
@@ -79,6 +92,8 @@ void Context::forget_object(ClientName gone) {
     session_->delete_object(id, gone);
 }
 
+void Context::report_error(GLenum code, const char* where) { debug->log.say(error_message(code, where)); }
+
 void Context::begin_primitive(GLenum mode) {
     packer.begin(mode);
     if (program) packer.mark_unbounded();  // its shader puts the vertices anywhere
@@ -109,7 +124,7 @@ void Context::submit_block() {
     if (packer.inside())
         return;  // only commands that are legal inside come here then, and they change nothing that is drawn with
     try {
-        if (packer.has_geometry()) session_->submit_block(draw_source(), packer, projection());
+        if (packer.has_geometry() && !draws_nothing) session_->submit_block(draw_source(), packer, projection());
         else fold_block(packer, state);
     } catch (...) {  // the geometry is lost, what it set is not
         fold_block(packer, state);

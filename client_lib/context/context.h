@@ -13,6 +13,7 @@
 
 #include "client_lib/context/current.h"
 #include "client_lib/context/matrix.h"
+#include "client_lib/context/profile.h"
 #include "client_lib/context/texture_units.h"
 #include "client_lib/follow/draw_source.h"
 #include "client_lib/follow/session.h"
@@ -30,10 +31,11 @@ struct ListState;          // list_state.h: display list being compiled, call ne
 struct AttributeStacks;    // attribute_stack.h
 struct SelectState;        // select.h: feedback and selection
 struct Program;            // objects/program.h
-struct OcclusionState;     // occlusion.h
+struct QueryState;         // query_state.h
 struct ContextMaps;        // objects/maps.h: evaluator and pixel maps
 struct BufferUse;          // buffer_use.h
 class VertexInputs;        // vertex_inputs.h
+struct DebugState;         // debug_state.h
 class VertexArrayObjects;  // vertex_array_objects.h
 class ArrayCopies;         // array_copies.h
 struct StagingBuffers;     // staging_buffers.h
@@ -53,13 +55,16 @@ struct MatrixStack {
 
 class Context final : private UsedObjects {
 public:
-    explicit Context(std::shared_ptr<ShareGroup> share);
+    explicit Context(std::shared_ptr<ShareGroup> share, const ContextProfile& profile = {});
     ~Context();
     Context(const Context&) = delete;
 
     const ContextId id;
+    const ContextProfile profile;
     glstate::State state;
     const GlTable* table = nullptr;
+    /// Commands are executed: not between glBegin and glEnd, and no list is compiled.
+    bool at_once() const { return table == &tables::immediate || table == &tables::core; }
     Packer packer;
 
     template <class E>
@@ -75,8 +80,10 @@ public:
     }
 
     /// Records an OpenGL error; the first one since the last glGetError stays.
-    void error(GLenum code) {
+    /// `where`: the function that found it, for people.
+    void error(GLenum code, const char* where = __builtin_FUNCTION()) {
         if (error_ == GL_NO_ERROR) error_ = code;
+        if (state.local.debug_output) report_error(code, where);
     }
     GLenum take_error() { return std::exchange(error_, GLenum{GL_NO_ERROR}); }
 
@@ -98,7 +105,7 @@ public:
     template <class Pack>
     void draw(const std::optional<PixelRect>& box, const Needs& needs, Pack&& pack) {
         flush_block();
-        session_->draw(draw_source(), box, needs, std::forward<Pack>(pack));
+        if (!draws_nothing) session_->draw(draw_source(), box, needs, std::forward<Pack>(pack));
     }
 
     ClientSession& session() { return *session_; }
@@ -112,6 +119,8 @@ public:
     DrawTarget read_target() const;
     /// What the session needs to send one of its commands; flush_block() comes first.
     DrawSource draw_source();
+    /// Conditional rendering has decided that drawing and clearing have no effect.
+    bool draws_nothing = false;
     unsigned active_texture() const { return state.local.active_texture - GL_TEXTURE0; }
     /// Whether the active unit is one of fixed function: it has a switch, an environment, coordinates and a matrix.
     bool fixed_unit() const { return active_texture() < kTextureCoords; }
@@ -131,7 +140,8 @@ public:
     std::unique_ptr<StagingBuffers> staging;
     std::unique_ptr<ArrayCopies> copies;
     std::shared_ptr<Program> program;  ///< drawn with; null: fixed function
-    std::unique_ptr<OcclusionState> occlusion;
+    std::unique_ptr<QueryState> queries;
+    std::unique_ptr<DebugState> debug;
 
     /// Before an object that was drawn with changes or goes: by its id.
     void before_change(ClientName changing_id) {
@@ -162,6 +172,7 @@ public:
 private:
     void for_each_used(const std::function<void(const Object&)>& use) override;
     void submit_block();
+    void report_error(GLenum code, const char* where);
     void first_use();
 
     std::shared_ptr<ClientSession> session_;

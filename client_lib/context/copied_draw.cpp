@@ -217,7 +217,7 @@ bool CopiedDraw::run() {
 
 bool draw_copied(Context& c, const ArrayDraw& draw) {
     if (draw.count < kFewest || draw.instances != 1 || !c.draw_target()) return false;
-    if (c.table != &tables::immediate) return false;
+    if (!c.at_once()) return false;
     const std::size_t bytes = static_cast<std::size_t>(draw.count) * glstate::index_bytes(draw.index_type);
     if (draw.index_type != 0 && bytes > kLargestIndices) return false;
     return CopiedDraw(c, draw).run();

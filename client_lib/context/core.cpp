@@ -9,6 +9,7 @@
 #include "client_lib/context/context.h"
 #include "client_lib/context/forget_objects.h"
 #include "client_lib/context/program_use.h"
+#include "client_lib/context/version.h"
 #include "client_lib/context/vertex_inputs.h"
 #include "client_lib/objects/share_group.h"
 #include "client_lib/process/guard.h"
@@ -90,11 +91,14 @@ void end_context(Context* context) {
 
 }  // namespace
 
-// Versions up to 2.1 know no flags, so there is nothing else in the options that a context has to remember.
+// A forward-compatible context is of the core profile, as in Mesa.
 std::shared_ptr<Context> create_context(const ContextOptions& options) {
-    if (options.core_profile || options.major > 2) return nullptr;
+    const bool core = options.core_profile || options.forward_compatible;
+    if (!is_implemented(options.major, options.minor) || (core && !is_implemented(3, 1))) return nullptr;
     auto share = options.share ? options.share->share_pointer() : std::make_shared<ShareGroup>();
-    return std::shared_ptr<Context>(new Context(std::move(share)), end_context);
+    const ContextProfile profile{core, options.forward_compatible, options.debug, options.robust,
+                                 options.notifies_of_resets};
+    return std::shared_ptr<Context>(new Context(std::move(share), profile), end_context);
 }
 
 bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurface> draw,
@@ -131,7 +135,8 @@ bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurfac
         return true;
     }
     tls_context = current->context.get();
-    tls_packer = &current->context->packer;
+    // In a core profile no vertex is packed by itself: all entry points go through the table.
+    tls_packer = current->context->profile.core ? closed_packer() : &current->context->packer;
     return true;
 }
 

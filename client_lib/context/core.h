@@ -18,6 +18,7 @@ struct ContextOptions {
     int major = 1, minor = 0;  ///< least version wanted
     bool core_profile = false;
     bool debug = false, forward_compatible = false;
+    bool robust = false, notifies_of_resets = false;
 };
 
 /// The connection to the wall is made here, at a process's first make_current, never before: children of the

@@ -103,7 +103,7 @@ Needs needs_of_run(const Context& c, const ListRun& run) {
 void call_run(Context& c, const ListRun& run) {
     c.flush_block();
     c.determine_modelview_form();
-    if (!c.draw_target() || !may_draw(c)) return apply_effects(c.state, run, run.in_context);
+    if (!c.draw_target() || !may_draw(c) || c.draws_nothing) return apply_effects(c.state, run, run.in_context);
     forget_dead_runs(c);
     // A program's shader puts the vertices anywhere.
     const bool bounded = !options().broadcast && !c.program;

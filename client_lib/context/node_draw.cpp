@@ -15,6 +15,7 @@
 #include "client_lib/follow/object_sender.h"
 #include "client_lib/objects/share_group.h"
 #include "client_lib/process/options.h"
+#include "common/glstate/draw_buffers.h"
 
 namespace wall::client {
 namespace {
@@ -31,13 +32,21 @@ public:
     /// Whether the nodes can draw it from their buffers and should.
     bool suits() {
         std::lock_guard lock(c_.share().mutex);
-        if (!input_.positions()) return false;  // all vertices have the current attribute then
-        if (input_.blocked()) return false;     // it changes meanwhile
+        if (input_.blocked()) return false;  // it changes meanwhile
+        if (!input_.positions()) return suits_without_positions();
         known_ = in_buffers();
         if (known_ == nullptr) return false;
         const bool worth = worth_keeping();
         // In a block of vertices there are no instances, and no numbers.
         return worth || draw_.instances != 1 || (c_.program && c_.program->executable->reads_vertex_numbers());
+    }
+    /// A program may make of gl_VertexID what it likes. In fixed function all vertices have the current attribute then.
+    bool suits_without_positions() {
+        if (!c_.program || indexed() || input_.written_unseen()) return false;
+        if (input_.instances() < static_cast<std::uint64_t>(draw_.instances)) return false;
+        once_.box.make_unbounded();
+        known_ = &once_;
+        return std::uint64_t{range_.first} + static_cast<std::uint64_t>(draw_.count) <= input_.elements();
     }
     /// Instead, if the input was made for this draw.
     void know_all_of_it() {
@@ -62,7 +71,7 @@ private:
     /// More than what most draws are.
     bool special() const { return draw_.instances != 1 || range_.restart != 0; }
     /// A shader puts the vertices anywhere.
-    bool cut() const { return known_->cut && !c_.program && !special(); }
+    bool cut() const { return known_->cut && !c_.program && !special() && !glstate::counts_primitives(c_.state); }
     /// Not one position for a whole instance.
     bool of_each_vertex() const { return input_.positions()->divisor == 0; }
     bool in_memory() const { return indexed() && input_.indices() == nullptr; }  ///< the indices
@@ -214,7 +223,7 @@ Needs NodeDraw::needs() const {
 }
 
 void NodeDraw::send() {
-    if (!may_draw(c_)) return;
+    if (!may_draw(c_) || c_.draws_nothing) return;
     c_.determine_modelview_form();
     // A program's shader puts the vertices anywhere.
     const bool bounded = !options().broadcast && !c_.program;
@@ -274,7 +283,7 @@ bool may_come_along(const ArrayDraw& draw) {
 }  // namespace
 
 bool draw_on_nodes(Context& c, const ArrayDraw& draw) {
-    if (c.table != &tables::immediate || !c.draw_target()) return false;
+    if (!c.at_once() || !c.draw_target()) return false;
     const bool indexed = draw.index_type != 0, in_buffer = c.state.vertex_arrays.element_array_buffer != 0;
     if (indexed && !in_buffer && !may_come_along(draw)) return false;
     if (draw.count == 0 || draw.instances == 0) return true;

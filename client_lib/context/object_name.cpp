@@ -15,6 +15,7 @@ GLuint object_name(Context& c, glstate::ValueKind kind, ClientName id) {
     };
     switch (kind) {
         case glstate::ValueKind::name_texture:
+        case glstate::ValueKind::name_sampler:
         case glstate::ValueKind::name_program: return name_in(share.by_id);
         case glstate::ValueKind::name_buffer: return name_in(c.buffers->by_id);
         case glstate::ValueKind::name_vertex_array: return id.value;  // no other context has it

@@ -60,7 +60,7 @@ void set_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, const T*
     if (lacks_unit(c, family, lead)) return;
     const auto index = index_of(c, family, lead);
     const ParamRow* row = find_row(family, target_of(family, lead), pname);
-    if (!index || !row || !row->set) return c.error(GL_INVALID_ENUM);
+    if (!index || !row || !row->set || is_removed(c, pname)) return c.error(GL_INVALID_ENUM);
     double v[4] = {};
     std::copy_n(values, row->components, v);
     row->set(c, *index, v);
@@ -100,13 +100,17 @@ const CapRow* find_cap_row(GLenum cap) {
 
 }  // namespace
 
+bool is_removed(const Context& c, GLenum word) {
+    return c.profile.core && std::ranges::binary_search(kRemovedWords, word);
+}
+
 unsigned param_components(ParamFamily family, GLenum pname) {
     const ParamRow* row = find_row(family, std::nullopt, pname);
     return row ? row->components : 0;
 }
 
 bool refuses_one_value(const Context& c, ParamFamily family, GLenum pname) {
-    return c.table == &tables::immediate && param_components(family, pname) > 1;
+    return c.at_once() && param_components(family, pname) > 1;
 }
 
 void convert_params(ParamFamily family, GLenum pname, const GLint* from, GLfloat* to) {
@@ -138,7 +142,9 @@ void get_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLdou
 }
 
 void set_capability(Context& c, GLenum cap, bool on) {
+    if (is_removed(c, cap)) return c.error(GL_INVALID_ENUM);
     const CapRow* row = find_cap_row(cap);
+    if (c.profile.core && row && row->unit_stride != 0) return c.error(GL_INVALID_ENUM);  // fixed function's
     if (!row)
         return on ? api::EnableClientState(c, cap) : api::DisableClientState(c, cap);  // as GL_EXT_vertex_array had it
     if (row->unit_stride != 0 && !c.fixed_unit()) return;                              // no error in Mesa
@@ -146,8 +152,10 @@ void set_capability(Context& c, GLenum cap, bool on) {
 }
 
 GLboolean is_capability_set(Context& c, GLenum cap) {
-    const auto* entry = glstate::find_get(cap);  // client arrays as well
-    if (!entry || entry->kind != glstate::ValueKind::flag || entry->components != 1) {
+    const auto* entry = is_removed(c, cap) ? nullptr : glstate::find_get(cap);  // client arrays as well
+    using enum glstate::ValueKind;
+    const bool fixed_function = entry && c.profile.core && entry->rule != glstate::IndexRule::none;
+    if (!entry || fixed_function || (entry->kind != flag && entry->kind != first_bit) || entry->components != 1) {
         c.error(GL_INVALID_ENUM);
         return GL_FALSE;
     }

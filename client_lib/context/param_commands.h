@@ -39,6 +39,9 @@ struct CapRow {
 };
 extern const std::span<const CapRow> kCapRows;  ///< by cap
 
+/// In a core profile: there is no such word any more.
+bool is_removed(const Context& c, GLenum word);
+
 /// Values that a parameter takes; 0: no such parameter.
 unsigned param_components(ParamFamily family, GLenum pname);
 /// A command for one value that is called with a parameter of several. Display lists take it, with zeros for the
@@ -77,6 +80,11 @@ T clamped(T value, T low, T high) {
 template <class T>
 glstate::Flag to_flag(T value) {
     return value != 0 ? 1 : 0;
+}
+/// The value for all of `count` draw buffers, a bit each.
+template <class T>
+std::uint32_t all_or_none(T value, unsigned count) {
+    return value != 0 ? (1u << count) - 1 : 0;
 }
 /// Zero for what is no int.
 inline std::int32_t to_int(double v) {

@@ -19,5 +19,6 @@ inline constexpr unsigned kActiveTextures = std::max(kTextureCoords, kTextureIma
 
 // What is set for the active unit by fixed function is an element of both of them, after one check.
 static_assert(kTextureUnits == kTextureCoords);
+static_assert(glstate::el::sampler_binding::count == kTextureImageUnits);
 
 }  // namespace wall::client

@@ -60,6 +60,8 @@ void for_each_used(Context& context, const Use& use) {
         framebuffer->for_each_image(use);
         use(*framebuffer);
     }
+    for (const std::uint32_t sampler : context.state.objects.sampler_binding)
+        if (sampler != 0) use_bound(ClientName(sampler));
     for_each_enabled(context.state, use_bound);
     if (!context.program) return;
     use(*context.program);

@@ -27,7 +27,7 @@ std::optional<InputArray> input_array(std::uint32_t place, const ClientArray& ar
                       .integer = array.integer};
 }
 
-/// False: not all arrays are in buffers, or there are none.
+/// False: not all arrays are in buffers.
 bool define(const glstate::State& state, bool indexed, glstate::VertexInputDefinition& out) {
     out.arrays.clear();
     out.indices = indexed ? ClientName(state.vertex_arrays.element_array_buffer) : ClientName();
@@ -42,7 +42,7 @@ bool define(const glstate::State& state, bool indexed, glstate::VertexInputDefin
         add(static_cast<std::uint32_t>(place_of(attribute)), array);
     });
     add(glstate::kPositionArray, state.vertex_arrays.vertex_array);
-    return all && !out.arrays.empty();
+    return all;
 }
 
 /// All of its buffers; empty: one is gone.
@@ -101,7 +101,7 @@ VertexInput* VertexInputs::of(const glstate::VertexInputDefinition& definition, 
         return found->second.get();
     }
     auto buffers = buffers_of(use, definition);
-    if (buffers.empty()) return nullptr;
+    if (buffers.empty() && (!definition.arrays.empty() || definition.indices)) return nullptr;
     auto input = std::make_shared<VertexInput>(next_object_id(), definition, std::move(buffers));
     input->last_use = ++uses_;
     {

@@ -19,7 +19,7 @@ namespace wall::client {
 class VertexInputs {
 public:
     /// The enabled arrays of a context with these buffers; with that of the indices if `indexed`. Null: not all of them
-    /// lie in buffers, or there are none. The share group, whose mutex is taken, knows what is new.
+    /// lie in buffers. The share group, whose mutex is taken, knows what is new.
     VertexInput* current(const glstate::State& state, const BufferUse& buffers, ShareGroup& share, bool indexed);
     /// The input of a definition; null: one of its buffers is gone.
     VertexInput* of(const glstate::VertexInputDefinition& definition, const BufferUse& buffers, ShareGroup& share);

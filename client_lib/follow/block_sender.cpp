@@ -7,6 +7,7 @@
 #include "client_lib/follow/hidden_part.h"
 #include "client_lib/geometry/fold.h"
 #include "client_lib/process/options.h"
+#include "common/glstate/draw_buffers.h"
 
 namespace wall::client {
 namespace {
@@ -29,7 +30,8 @@ void BlockSender::run() {
     if (!packer_.has_geometry() || !source_.draw) return fold({});
     if (source_.draw.layers().empty() && !source_.draw.with_hidden_part()) return fold({});
     before_drawing(followers_, source_);
-    const auto box = options().broadcast ? std::nullopt : project(projection_, packer_.block_box());
+    const bool everywhere = options().broadcast || glstate::counts_primitives(source_.state);
+    const auto box = everywhere ? std::nullopt : project(projection_, packer_.block_box());
     kept_ = followers_.hidden.begin_keeping(source_, box);
     if (options().count_ideal) scratch_.ideal.count(source_, packer_, projection_);
     needs_ = needs_of_block(source_.state, packer_);
@@ -37,7 +39,7 @@ void BlockSender::run() {
     NodeMasks& nodes = scratch_.touched;
     nodes_touched(source_.draw.layers(), box, nodes);
     const bool single = packer_.primitives().size() == 1 && !may_be_divided(packer_.primitives()[0]);
-    const bool whole = packer_.has_rare() || options().broadcast || single || source_.draw.of_objects();
+    const bool whole = packer_.has_rare() || everywhere || single || source_.draw.of_objects();
     if (nodes.size() <= 1 || whole) send_whole(nodes);
     else send_apart();
     source_.draw.note_content(*source_.share);

@@ -11,6 +11,7 @@
 #include "client_lib/follow/node_updater.h"
 #include "client_lib/follow/nodes.h"
 #include "client_lib/follow/object_sender.h"
+#include "common/glstate/draw_buffers.h"
 
 namespace wall::client {
 
@@ -44,12 +45,13 @@ inline void before_drawing(const Followers& followers, const DrawSource& source)
     if (source.share->has_drawn.load(std::memory_order_relaxed)) bring_drawn(followers.nodes, source);
 }
 
-/// Runs `pack(buffer)` inside a Block on every layer of the draw target that `box` touches (nothing: all of them),
-/// after `before(node, buffer)` outside of the Block; `after(node)` when it is packed.
+/// Runs `pack(buffer)` inside a Block on every layer of the draw target that the box `touched` touches (nothing:
+/// all of them), after `before(node, buffer)` outside of the Block; `after(node)` when it is packed.
 template <class Before, class Pack, class After>
-void draw_on(const Followers& followers, const DrawSource& source, const std::optional<PixelRect>& box,
+void draw_on(const Followers& followers, const DrawSource& source, const std::optional<PixelRect>& touched,
              const Needs& needs, Before&& before, Pack&& pack, After&& after) {
     if (!source.draw) return;
+    const auto box = glstate::counts_primitives(source.state) ? std::nullopt : touched;
     before_drawing(followers, source);
     const auto pack_block = [&](wire::PackBuffer& buffer, std::uint64_t slots) {
         const OpenBlock block = begin_block(buffer, slots);

@@ -8,6 +8,7 @@
 #include "client_lib/follow/object_sender.h"
 #include "client_lib/objects/share_group.h"
 #include "client_lib/process/options.h"
+#include "common/glstate/draw_buffers.h"
 #include "common/glstate/pack_sink.h"
 
 namespace wall::client {
@@ -44,7 +45,7 @@ bool clears_whole(const DrawSource& source, const HiddenPart& part, GLbitfield m
     const GLenum buffer = s.window.draw_buffer;
     const bool back = buffer == GL_BACK || buffer == GL_BACK_LEFT;
     if (s.window.scissor_enabled || (format.double_buffered ? !back : buffer == GL_NONE)) return false;
-    if (!(mask & GL_COLOR_BUFFER_BIT) || s.color_buffer.color_mask != glstate::ColorMask{1, 1, 1, 1}) return false;
+    if (!(mask & GL_COLOR_BUFFER_BIT) || !glstate::writes_all_channels(s)) return false;
     const bool depth = (mask & GL_DEPTH_BUFFER_BIT) != 0 && s.depth_stencil.depth_mask;
     const bool stencil = (mask & GL_STENCIL_BUFFER_BIT) != 0 && (s.depth_stencil.stencil_mask[0] & 0xff) == 0xff;
     const bool accum = (mask & GL_ACCUM_BUFFER_BIT) != 0;

@@ -232,6 +232,20 @@ void ClientSession::flush(const DrawTarget& target, bool wait) {
     for (auto& [stream, request] : pending) stream->wait_reply(request, reply_timeout_ms());
 }
 
+Fence ClientSession::fence() {
+    return ask_later([](wire::PackBuffer& buffer, RequestId request) { glapi::pack::Sync(buffer, request); });
+}
+
+bool ClientSession::wait_for(const Fence& fence, Fence::Clock::time_point deadline, const char* function) {
+    if (fence.done()) return true;
+    flush({}, false);
+    stats().count_round_trip(function);
+    const auto now = Fence::Clock::now();
+    const auto limit = std::chrono::milliseconds(reply_timeout_ms());
+    const bool patient = group_ || deadline - now <= limit;
+    return fence.wait_until(patient ? deadline : now + limit) || !patient;
+}
+
 /// A member of a parallel program may have to wait for the others, however long they take.
 int ClientSession::reply_timeout_ms() const { return group_ ? NodeStream::kNoLimit : kReplyTimeoutMs; }
 

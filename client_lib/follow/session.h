@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "client_lib/follow/fence.h"
 #include "client_lib/follow/followers.h"
 #include "client_lib/follow/surfaces.h"
 #include "client_lib/follow/sync_objects.h"
@@ -81,6 +82,15 @@ public:
     /// Everything queued goes out; `wait` also waits until all nodes have executed it. A frame of `target` ends where
     /// that is shown at once; it may be nothing.
     void flush(const DrawTarget& target, bool wait);
+    /// A mark behind everything that has been packed so far, for the nodes that can be expected to answer. It goes out
+    /// with the next flush.
+    Fence fence();
+    /// The same with a question, `pack(buffer, request)`, whose answers tell that it has been reached.
+    template <class Pack>
+    Fence ask_later(Pack&& pack);
+    /// Waits for it, at most until the deadline or as long as a node may take for an answer. `function`: for the count
+    /// of round trips. False: the time is over.
+    bool wait_for(const Fence& fence, Fence::Clock::time_point deadline, const char* function);
     /// A command of GL_CR_synchronization. `note(SyncObjects&)` gives its OpenGL error, which is returned; if there is
     /// none, `pack(buffer)` says it to all nodes, behind everything before it. `at_once`: others may wait for it, or
     /// the stream is held behind it.
@@ -161,6 +171,20 @@ GLenum ClientSession::synchronize(ContextId context, bool at_once, Note&& note, 
             if (at_once) nodes_.send(*node);
         }
         return error;
+    });
+}
+
+template <class Pack>
+Fence ClientSession::ask_later(Pack&& pack) {
+    return packing([&] {
+        Fence made;
+        for (auto& node : nodes_) {
+            if (!node->answers()) continue;
+            const RequestId request = nodes_.next_request();
+            pack(nodes_.batch(*node, node->batch_context), request);
+            made.add(node->stream, request);
+        }
+        return made;
     });
 }
 

@@ -174,9 +174,25 @@ std::optional<std::vector<std::byte>> NodeStream::wait_reply(RequestId request, 
         unwanted_.insert(request);
         return std::nullopt;
     }
-    auto bytes = std::move(found->second);
+    auto bytes = std::move(found->second.bytes);
     replies_.erase(found);
     return bytes;
+}
+
+bool NodeStream::wait_until_answered(RequestId request, std::chrono::nanoseconds timeout) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, timeout, [&] { return failed() || replies_.contains(request); });
+}
+
+std::optional<Clock::time_point> NodeStream::answered_at(RequestId request) const {
+    std::lock_guard lock(mutex_);
+    const auto found = replies_.find(request);
+    return found == replies_.end() ? std::nullopt : std::optional(found->second.at);
+}
+
+void NodeStream::forget_request(RequestId request) {
+    std::lock_guard lock(mutex_);
+    if (replies_.erase(request) == 0) unwanted_.insert(request);
 }
 
 bool NodeStream::wait_swap(SurfaceId surface, std::uint32_t frame, int timeout_ms) {
@@ -297,7 +313,8 @@ void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> paylo
     if (kind == wire::FrameKind::reply && payload.size() >= 4) {
         std::memcpy(words, payload.data(), 4);
         payload.erase(payload.begin(), payload.begin() + 4);
-        if (const RequestId request(words[0]); unwanted_.erase(request) == 0) replies_[request] = std::move(payload);
+        if (const RequestId request(words[0]); unwanted_.erase(request) == 0)
+            replies_[request] = {std::move(payload), Clock::now()};
     } else if (kind == wire::FrameKind::swap_done && payload.size() == 8) {
         std::memcpy(words, payload.data(), 8);
         swaps_[SurfaceId(words[0])] = words[1];

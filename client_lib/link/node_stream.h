@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -41,6 +42,12 @@ public:
 
     /// The answer to `request`; nothing if the stream fails or the time is over. Application threads.
     std::optional<std::vector<std::byte>> wait_reply(RequestId request, int timeout_ms);
+    /// The same without taking the answer: whether it is there, or none will come. `timeout`: 0 only looks.
+    bool wait_until_answered(RequestId request, std::chrono::nanoseconds timeout);
+    /// When the answer came; nothing: it has not, or none will. Application threads.
+    std::optional<std::chrono::steady_clock::time_point> answered_at(RequestId request) const;
+    /// Nobody wants the answer any more, whether it is there or not. Application threads.
+    void forget_request(RequestId request);
     /// Waits until the node has drawn `frame` of `surface`; false if it did not in time. Application threads.
     bool wait_swap(SurfaceId surface, std::uint32_t frame, int timeout_ms);
 
@@ -88,7 +95,11 @@ private:
     std::condition_variable changed_;
     std::deque<Outgoing> queue_;
     std::size_t queued_bytes_ = 0;
-    std::unordered_map<RequestId, std::vector<std::byte>> replies_;
+    struct Reply {
+        std::vector<std::byte> bytes;
+        std::chrono::steady_clock::time_point at;  ///< when it came
+    };
+    std::unordered_map<RequestId, Reply> replies_;
     std::unordered_set<RequestId> unwanted_;              ///< requests whose answers nobody waits for any more
     std::unordered_map<SurfaceId, std::uint32_t> swaps_;  // surface -> last frame drawn
     std::string failure_;

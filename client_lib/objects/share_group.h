@@ -17,12 +17,15 @@
 #include "client_lib/objects/buffer.h"
 #include "client_lib/objects/program.h"
 #include "client_lib/objects/renderbuffer.h"
+#include "client_lib/objects/sampler.h"
 #include "client_lib/objects/texture.h"
 #include "common/glapi/gl_types.h"
 
 namespace wall::client {
 
 struct DisplayList;  // context/lists.h
+struct FenceObject;  // context/fence_object.h
+class ObjectLabels;  // context/object_labels.h
 
 /// The application's names of one kind. A name is free, reserved (null), or an object's. New names are given above all
 /// that were ever used, as Mesa does, so that a program sees the same numbers.
@@ -78,6 +81,9 @@ struct ShareGroup {
     NameTable<Buffer> buffers;
     NameTable<GlslObject> glsl_objects;  ///< shaders and programs
     NameTable<Renderbuffer> renderbuffers;
+    NameTable<Sampler> samplers;
+    std::unordered_map<GLsync, std::shared_ptr<FenceObject>> fences;
+    std::shared_ptr<ObjectLabels> labels;  ///< of what is shared; set by the first context of the group
 
     /// By id: textures and programs, as state elements name them. They are kept as long as their name or any binding
     /// lives. (Buffers are kept by the contexts that name them: context/buffer_binding.h.)

@@ -56,6 +56,7 @@ Out component(const std::byte* at, ValueKind kind, unsigned i) {
         case ValueKind::normalized: return from_normalized<Out>(load<float>(at + 4 * i));
         case ValueKind::real64: return from_real<Out>(load<double>(at + 8 * i));
         case ValueKind::normalized64: return from_normalized<Out>(load<double>(at + 8 * i));
+        case ValueKind::first_bit: return from_integer<Out>(load<std::uint32_t>(at + 4 * i) & 1);
         case ValueKind::pointer: return from_integer<Out>(load<std::int64_t>(at + 8 * i));
         case ValueKind::unsigned_integer:
             if constexpr (std::is_same_v<Out, GLint64>) return from_integer<Out>(load<std::uint32_t>(at + 4 * i));

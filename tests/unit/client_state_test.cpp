@@ -222,7 +222,10 @@ TEST(ClientState, RandomCommandsAreTakenAsInMesa) {
             WALL_CALL(BlendEquationSeparate, equation);
         WALL_CALL(BlendColor, caps), WALL_CALL(ClearColor, caps), WALL_CALL(ClearDepth, caps),
             WALL_CALL(ClearStencil, caps), WALL_CALL(ClearAccum, caps);
-        WALL_CALL(ColorMask, caps), WALL_CALL(IndexMask, caps), WALL_CALL(LogicOp, range(GL_CLEAR, GL_SET, {GL_ZERO}));
+        WALL_CALL(ColorMask, caps), WALL_CALL(ColorMaski, caps), WALL_CALL(Enablei, (Words{GL_BLEND, GL_FOG})),
+            WALL_CALL(Disablei, (Words{GL_BLEND, GL_FOG})),
+            WALL_CALL(ClampColor, (Words{GL_CLAMP_READ_COLOR, GL_TRUE, GL_FALSE, GL_FIXED_ONLY, GL_FOG}));
+        WALL_CALL(IndexMask, caps), WALL_CALL(LogicOp, range(GL_CLEAR, GL_SET, {GL_ZERO}));
         WALL_CALL(CullFace, faces), WALL_CALL(FrontFace, (Words{GL_CW, GL_CCW, GL_FRONT})),
             WALL_CALL(PolygonMode, fill), WALL_CALL(PolygonOffset, caps);
         WALL_CALL(ShadeModel, (Words{GL_FLAT, GL_SMOOTH, GL_FILL})),

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "common/glstate/draw_buffers.h"
+
 namespace wall::tileserver {
 namespace {
 
@@ -54,8 +56,8 @@ void add_color(Driver& driver, Layer& layer, const Box& area, float value, bool 
 void return_color(Driver& driver, Layer& layer, const Box& area, const glstate::State& state, float value) {
     const float scale = value / 32767.0f;
     const std::size_t row_bytes = static_cast<std::size_t>(area.width) * 4;
-    const auto& mask = glstate::el::color_mask::ref(state);
-    const std::array<bool, 4> keep = {mask.red == 0, mask.green == 0, mask.blue == 0, mask.alpha == 0};
+    const std::array<bool, 4> writes = glstate::written_channels(state, 0);
+    const std::array<bool, 4> keep = {!writes[0], !writes[1], !writes[2], !writes[3]};
     for (const GLuint texture : layer.draw_textures()) {
         std::vector<std::uint8_t> pixels(row_bytes * static_cast<std::size_t>(area.height));
         if (keep[0] || keep[1] || keep[2] || keep[3])

@@ -210,6 +210,12 @@ void Driver::forget_texture(GLuint texture) {
             if (bound == texture) bound = 0, bound_textures_.id = glstate::next_value_id();
 }
 
+void Driver::bind_each_sampler(const SamplerNames& wanted) {
+    for (unsigned i = 0; i < wanted.size(); ++i)
+        if (samplers_[i] != wanted[i]) gl_.BindSampler(i, wanted[i]);
+    samplers_ = wanted;
+}
+
 // ---- the target ----
 
 void Driver::bind_window(RenderTarget& target, glstate::State& state) {

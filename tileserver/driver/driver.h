@@ -3,7 +3,9 @@
 // before it draws, so that a switch costs what differs (Tracking Graphics State, section 5). Render thread.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -29,6 +31,18 @@ inline bool is_1d(TextureTarget target) { return glapi::info_of(target).images =
 inline bool is_3d(TextureTarget target) { return glapi::info_of(target).images == 3; }
 
 using TextureNames = std::array<std::array<GLuint, kTextureTargets>, kTextureUnits>;
+/// What a query of the driver counts.
+enum class QueryTarget : std::uint8_t { samples, primitives, captured };
+inline constexpr std::size_t kQueryTargets = 3;
+inline GLenum gl_query_target(QueryTarget target) {
+    constexpr std::array<GLenum, kQueryTargets> kTargets = {GL_SAMPLES_PASSED, GL_PRIMITIVES_GENERATED,
+                                                            GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN};
+    return kTargets[static_cast<std::size_t>(target)];
+}
+
+/// Driver samplers at all units; 0: what the texture itself says.
+using SamplerNames = std::array<GLuint, glstate::el::sampler_binding::count>;
+
 /// Driver textures at all units; equal ids mean equal names. Id 0: none anywhere.
 struct TextureBindings {
     std::uint64_t id = 0;
@@ -72,6 +86,13 @@ public:
     void bind_textures(const TextureBindings& wanted) {
         if (wanted.id != bound_textures_.id) bind_all(wanted);
     }
+    void bind_samplers(const SamplerNames& wanted) {
+        if (wanted != samplers_) bind_each_sampler(wanted);
+    }
+    void delete_sampler(GLuint sampler) {  // the driver unbinds it by itself
+        std::ranges::replace(samplers_, sampler, 0u);
+        gl_.DeleteSamplers(1, &sampler);
+    }
     /// On the active unit, for commands that work on the bound object.
     void bind_texture_to_edit(TextureTarget target, GLuint texture) {
         bind_texture(0, target, texture);
@@ -88,17 +109,17 @@ public:
     void forget_program(GLuint program) {
         if (program_ == program) use_program(0);
     }
-    /// Counts samples for a query of the driver until end_query().
-    void begin_query(GLuint query) {
-        gl_.BeginQuery(GL_SAMPLES_PASSED, query);
-        query_ = query;
+    /// Counts for a query of the driver until end_queries(): one of each target.
+    void begin_query(QueryTarget target, GLuint query) {
+        gl_.BeginQuery(gl_query_target(target), queries_[static_cast<std::size_t>(target)] = query);
     }
-    /// Of whatever query counts.
-    void end_query() {
-        if (std::exchange(query_, 0) != 0) gl_.EndQuery(GL_SAMPLES_PASSED);
+    /// Of whatever counts.
+    void end_queries() {
+        for (std::size_t i = 0; i < kQueryTargets; ++i)
+            if (std::exchange(queries_[i], 0) != 0) gl_.EndQuery(gl_query_target(static_cast<QueryTarget>(i)));
     }
     void delete_query(GLuint query) {
-        if (query_ == query) end_query();
+        if (std::ranges::count(queries_, query) != 0) end_queries();
         gl_.DeleteQueries(1, &query);
     }
     /// Part of a buffer of the driver, for blocks of uniforms; buffer 0: nothing. It lies within the buffer, and
@@ -164,6 +185,7 @@ private:
     void bind_window(RenderTarget& target, glstate::State& state);
     void bind_all(const TextureBindings& wanted);
     void bind_texture(unsigned unit, TextureTarget target, GLuint texture);
+    void bind_each_sampler(const SamplerNames& wanted);
 
     static constexpr auto kWindow = static_cast<std::size_t>(glstate::Category::window);
     static constexpr glstate::CategoryMask kCurrentMask = glstate::mask_of(glstate::Category::current);
@@ -183,8 +205,9 @@ private:
     bool modelview_changed_ = false;     // since it was loaded
     bool modelview_has_origin_ = false;  // what was loaded
     TextureBindings bound_textures_;
-    GLuint program_ = 0;  // that the driver draws with
-    GLuint query_ = 0;    // that counts samples
+    SamplerNames samplers_{};                      // that the driver has bound
+    GLuint program_ = 0;                           // that the driver draws with
+    std::array<GLuint, kQueryTargets> queries_{};  // that count
     GLuint vertex_array_ = 0;
     std::array<glstate::BufferRange, glstate::el::uniform_buffer::count> uniform_buffers_{};  // the driver's names
     std::uint32_t uniform_buffer_alignment_ = 1;

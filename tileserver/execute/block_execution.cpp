@@ -21,7 +21,9 @@ std::uint64_t BlockExecution::begin(std::uint64_t tiles, std::size_t bytes) {
         if (surface->layer(slot) != nullptr) present |= std::uint64_t{1} << slot;
     }
     // With no layer at all the block is still decoded once, for what it leaves in the soft context.
-    return present != 0 ? present : tiles & (~tiles + 1);
+    if (present == 0) present = tiles & (~tiles + 1);
+    first_slot_ = static_cast<unsigned>(std::countr_zero(present));
+    return present;
 }
 
 void BlockExecution::begin_tile(unsigned slot) {
@@ -54,7 +56,8 @@ bool BlockExecution::counts_samples() const {
 }
 
 void BlockExecution::enter_tile() {
-    if (!switch_to(execution_.node, execution_.session, *execution_.context, *block_.target, counts_samples()))
+    if (!switch_to(execution_.node, execution_.session, *execution_.context, *block_.target,
+                   {counts_samples(), block_.slot == first_slot_}))
         execution_.refuse("no such query, or more objects than a session may have");
     execution_.modes.enter();
 }
@@ -66,7 +69,7 @@ void BlockExecution::finish_tile() {
         block_.in_begin = false;
         if (block_.draws) execution_.gl.End();
     }
-    execution_.node.driver.end_query();
+    execution_.node.driver.end_queries();
     if (block_.draws) block_.trail.fold_into(execution_.node.driver.mirror);
 }
 
@@ -97,7 +100,7 @@ bool BlockExecution::shows_at_once() const {
 void BlockExecution::pause() {
     if (!block_.tile_open || !block_.draws) return;
     if (block_.in_begin) execution_.gl.End();
-    execution_.node.driver.end_query();
+    execution_.node.driver.end_queries();
     block_.trail.fold_into(execution_.node.driver.mirror);
 }
 

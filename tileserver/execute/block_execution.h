@@ -37,6 +37,7 @@ private:
 
     Execution& execution_;
     OpenBlock& block_;
+    unsigned first_slot_ = 0;  // of the block's tiles: in one of them primitives are counted
 };
 
 }  // namespace wall::tileserver

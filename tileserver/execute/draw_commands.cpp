@@ -2,9 +2,12 @@
 #include "tileserver/execute/draw_commands.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <vector>
 
+#include "common/glstate/draw_buffers.h"
 #include "tileserver/driver/accum.h"
 #include "tileserver/execute/image_check.h"
 
@@ -30,6 +33,29 @@ std::vector<GLubyte> scale_bitmap(std::span<const std::byte> bits, std::int32_t 
         }
     }
     return out;
+}
+
+/// Whether the values of a buffer may be given in a type.
+bool clears_by(GLenum buffer, GLenum type) {
+    switch (buffer) {
+        case GL_COLOR: return type == GL_FLOAT || type == GL_INT || type == GL_UNSIGNED_INT;
+        case GL_DEPTH: return type == GL_FLOAT;
+        case GL_STENCIL: return type == GL_INT;
+        case GL_DEPTH_STENCIL: return type == GL_FLOAT_32_UNSIGNED_INT_24_8_REV;
+        default: return false;
+    }
+}
+
+/// glClearBuffer with four values, as bits of the type.
+void clear_buffer(const Gl& gl, GLenum buffer, GLint drawbuffer, GLenum type, const std::array<std::uint32_t, 4>& v) {
+    const std::array real = {std::bit_cast<float>(v[0]), std::bit_cast<float>(v[1]), std::bit_cast<float>(v[2]),
+                             std::bit_cast<float>(v[3])};
+    const std::array whole = {static_cast<GLint>(v[0]), static_cast<GLint>(v[1]), static_cast<GLint>(v[2]),
+                              static_cast<GLint>(v[3])};
+    if (type == GL_FLOAT) gl.ClearBufferfv(buffer, drawbuffer, real.data());
+    else if (type == GL_INT) gl.ClearBufferiv(buffer, drawbuffer, whole.data());
+    else if (type == GL_UNSIGNED_INT) gl.ClearBufferuiv(buffer, drawbuffer, v.data());
+    else gl.ClearBufferfi(buffer, drawbuffer, real[0], whole[1]);
 }
 
 }  // namespace
@@ -62,6 +88,21 @@ void DrawCommands::Clear(std::uint32_t mask) {
     if ((mask & GL_ACCUM_BUFFER_BIT) != 0 && has_accum())
         clear_accum(*block_.layer, accum_area(*block_.layer, execution_.context->state),
                     glstate::el::clear_accum::ref(execution_.context->state));
+}
+
+void DrawCommands::ClearBuffer(GLenum buffer, std::int32_t drawbuffer, GLenum type, std::uint32_t v0, std::uint32_t v1,
+                               std::uint32_t v2, std::uint32_t v3) {
+    if (!outside_begin()) return;
+    if (!clears_by(buffer, type)) return execution_.refuse("no such buffer, or not by such values");
+    const bool color = buffer == GL_COLOR;
+    if (drawbuffer < 0 || drawbuffer >= (color ? static_cast<std::int32_t>(glstate::kDrawBuffers) : 1))
+        return execution_.refuse("no such draw buffer");
+    if (!block_.draws) return;
+    // A window has one draw buffer, which may be the front and the back: two of the layer.
+    auto behind = drawbuffer + 1;
+    if (color && block_.layer != nullptr && drawbuffer == 0)
+        behind = static_cast<std::int32_t>(block_.layer->draw_textures().size());
+    for (std::int32_t i = drawbuffer; i < behind; ++i) clear_buffer(execution_.gl, buffer, i, type, {v0, v1, v2, v3});
 }
 
 void DrawCommands::Accum(GLenum op, float value) {

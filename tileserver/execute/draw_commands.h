@@ -19,6 +19,8 @@ public:
     void EvalMesh1(GLenum mode, std::int32_t i1, std::int32_t i2);
     void EvalMesh2(GLenum mode, std::int32_t i1, std::int32_t i2, std::int32_t j1, std::int32_t j2);
     void Clear(std::uint32_t mask);
+    void ClearBuffer(GLenum buffer, std::int32_t drawbuffer, GLenum type, std::uint32_t v0, std::uint32_t v1,
+                     std::uint32_t v2, std::uint32_t v3);
     void Accum(GLenum op, float value);
     void DrawPixels(std::int32_t width, std::int32_t height, GLenum format, GLenum type,
                     std::span<const std::byte> pixels);

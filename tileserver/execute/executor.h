@@ -34,6 +34,7 @@
 #include "tileserver/execute/read_commands.h"
 #include "tileserver/execute/renderbuffer_commands.h"
 #include "tileserver/execute/run_commands.h"
+#include "tileserver/execute/sampler_commands.h"
 #include "tileserver/execute/stream_commands.h"
 #include "tileserver/execute/surface_commands.h"
 #include "tileserver/execute/sync_commands.h"
@@ -84,6 +85,7 @@ public:
     RenderbufferCommands renderbuffer{execution_};
     FramebufferCommands framebuffer{execution_};
     TextureDrawnCommands texture_drawn{execution_};
+    SamplerCommands sampler{execution_};
     BlitCommands blit{execution_, geometry.block()};
     QueryCommands query{execution_};
     MapCommands map{execution_};

@@ -16,7 +16,7 @@ namespace wall::tileserver {
 /// Names that the driver has given and not got back.
 struct DriverObjects {
     std::int64_t textures = 0, buffers = 0, lists = 0, programs = 0, shaders = 0, framebuffers = 0, renderbuffers = 0,
-                 queries = 0, vertex_arrays = 0;
+                 queries = 0, vertex_arrays = 0, samplers = 0;
     bool operator==(const DriverObjects&) const = default;
 };
 
@@ -61,6 +61,14 @@ struct Gl : glapi::GlFunctions {
     void DeleteVertexArrays(GLsizei n, const GLuint* names) const {
         objects->vertex_arrays -= named(n, names);
         GlFunctions::DeleteVertexArrays(n, names);
+    }
+    void CreateSamplers(GLsizei n, GLuint* names) const {
+        GlFunctions::CreateSamplers(n, names);
+        objects->samplers += named(n, names);
+    }
+    void DeleteSamplers(GLsizei n, const GLuint* names) const {
+        objects->samplers -= named(n, names);
+        GlFunctions::DeleteSamplers(n, names);
     }
     void GenQueries(GLsizei n, GLuint* names) const {
         GlFunctions::GenQueries(n, names);

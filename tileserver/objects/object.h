@@ -22,9 +22,11 @@ enum class ObjectKind : std::uint8_t {
     draw_pieces,
     renderbuffer,
     framebuffer,
+    sampler,
 };
-inline constexpr std::array kObjectKindNames = {"texture",      "program",     "run",          "query",      "buffer",
-                                                "vertex input", "piece table", "renderbuffer", "framebuffer"};
+inline constexpr std::array kObjectKindNames = {"texture",     "program",      "run",         "query",
+                                                "buffer",      "vertex input", "piece table", "renderbuffer",
+                                                "framebuffer", "sampler"};
 inline constexpr std::size_t kObjectKinds = kObjectKindNames.size();
 
 // What one session may have on a node, of all kinds together: they fill the same memory, and no kind knows what is

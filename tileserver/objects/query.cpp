@@ -19,7 +19,7 @@ bool Query::begin(double scale) {
     if (parts_.size() >= kMaxParts) collect();
     Part part{0, scale};
     driver_.gl().GenQueries(1, &part.driver);
-    driver_.begin_query(part.driver);
+    driver_.begin_query(target_, part.driver);
     parts_.push_back(part);
     return has_content(parts_.size() * kPartBytes);
 }

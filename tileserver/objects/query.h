@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// An occlusion query. It is a part of the soft context: while it is current, each tile of each block is counted by a
-// driver query of its own, so that nothing of other sessions is; the answer is their sum. Render thread.
+// A query: of samples, or of primitives. It is a part of the soft context: while it is current, each tile of each block
+// is counted by a driver query of its own, so that nothing of other sessions is; the answer is their sum. Primitives
+// are counted in one tile of a block only. Render thread.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +14,13 @@ namespace wall::tileserver {
 
 class Query final : public ObjectOf<ObjectKind::query> {
 public:
-    Query(ObjectAccount& account, Driver& driver) : ObjectOf(account), driver_(driver) {}
+    Query(ObjectAccount& account, Driver& driver, QueryTarget target)
+        : ObjectOf(account), driver_(driver), target_(target) {}
     ~Query() override;
 
-    /// Counts what is drawn from here to Driver::end_query(). `scale`: pixels of the layer for each one of the window.
-    /// False: more memory than a session may have.
+    QueryTarget target() const { return target_; }
+    /// Counts what is drawn from here to Driver::end_queries(). `scale`: pixels of the layer for each one of the
+    /// window. False: more memory than a session may have.
     [[nodiscard]] bool begin(double scale);
     /// Waits for the driver.
     std::uint64_t result();
@@ -30,6 +33,7 @@ private:
     void collect();
 
     Driver& driver_;
+    const QueryTarget target_;
     std::vector<Part> parts_;
     double sum_ = 0;
 };

@@ -30,6 +30,12 @@ struct BoundTextures {
     TextureBindings bindings;
 };
 
+/// The same of its samplers.
+struct BoundSamplers {
+    std::uint64_t values = 0, version = 0;  ///< value id of the category `objects`, ObjectTable::version()
+    SamplerNames names{};
+};
+
 struct SoftContext {
     glstate::State state;
     glstate::ValueHistory history;
@@ -38,6 +44,7 @@ struct SoftContext {
     bool counts_samples = true;                     ///< of what is drawn to the framebuffer: one node does
     SoftMaps maps;
     BoundTextures textures;
+    BoundSamplers samplers;
 };
 
 class SessionReplica {

@@ -7,6 +7,7 @@
 #include "tileserver/objects/buffer.h"
 #include "tileserver/objects/program.h"
 #include "tileserver/objects/query.h"
+#include "tileserver/objects/sampler.h"
 #include "tileserver/objects/texture.h"
 
 namespace wall::tileserver {
@@ -48,6 +49,20 @@ glstate::BufferRange found_range(const RenderNode& node, const SessionReplica& s
     return {buffer->name(), wanted.offset, wanted.size != 0 ? std::min(wanted.size, rest) : rest};
 }
 
+void look_up_samplers(SessionReplica& session, SoftContext& context) {
+    BoundSamplers& bound = context.samplers;
+    const std::uint64_t values = context.state.ids[static_cast<std::size_t>(glstate::Category::objects)],
+                        version = session.objects.version(Sampler::kKind);
+    if (bound.values == values && bound.version == version) return;
+    for (unsigned unit = 0; unit < bound.names.size(); ++unit) {
+        const ClientName name(glstate::el::sampler_binding::ref(context.state, unit));
+        const Sampler* sampler = name ? session.objects.find<Sampler>(name) : nullptr;
+        bound.names[unit] = sampler != nullptr ? sampler->name() : 0;
+    }
+    bound.values = values;
+    bound.version = version;
+}
+
 /// None, and what is no program: fixed function.
 void use_program(RenderNode& node, SessionReplica& session, const glstate::State& state, const LayerGeometry& layer) {
     const ClientName name(glstate::el::current_program::ref(state));
@@ -59,25 +74,39 @@ void use_program(RenderNode& node, SessionReplica& session, const glstate::State
                                         found_range(node, session, glstate::el::uniform_buffer::ref(state, place)));
 }
 
-bool count_samples(RenderNode& node, SessionReplica& session, ClientName name, const LayerGeometry& layer) {
-    auto query = session.objects.make<Query>(name, node.driver);
-    return query && (*query)->begin(layer.scale_x() * layer.scale_y());
+/// `scale`: as of Query::begin(). True without a query of that name.
+bool count(RenderNode& node, SessionReplica& session, ClientName name, QueryTarget target, double scale) {
+    if (!name) return true;
+    auto query = session.objects.make<Query>(name, node.driver, target);
+    return query && (*query)->target() == target && (*query)->begin(scale);
+}
+
+bool count_all(RenderNode& node, SessionReplica& session, const glstate::State& state, const LayerGeometry& layer,
+               Counted counted) {
+    namespace el = glstate::el;
+    const auto one = [&]<class E>(E, bool wanted, QueryTarget target, double scale) {
+        return !wanted || count(node, session, ClientName(E::ref(state)), target, scale);
+    };
+    return one(el::occlusion_query{}, counted.samples, QueryTarget::samples, layer.scale_x() * layer.scale_y()) &&
+           one(el::primitives_query{}, counted.primitives, QueryTarget::primitives, 1) &&
+           one(el::captured_query{}, counted.primitives, QueryTarget::captured, 1);
 }
 
 }  // namespace
 
-bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, RenderTarget& target, bool counts) {
+bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, RenderTarget& target, Counted counted) {
     node.driver.sync(context.state);
     if (context.textures.state_id != textures_id(context) ||
         context.textures.version != session.objects.version(Texture::kKind))
         look_up_textures(session, context);
     node.driver.bind_textures(context.textures.bindings);
+    look_up_samplers(session, context);
+    node.driver.bind_samplers(context.samplers.names);
     node.maps.sync_evaluators(node.driver, context.maps);
     node.driver.bind_target(target, context.state);
     use_program(node, session, context.state, target.geometry());
     node.driver.sync_current(context.state);
-    const ClientName query(glstate::el::occlusion_query::ref(context.state));
-    return !query || !counts || count_samples(node, session, query, target.geometry());
+    return count_all(node, session, context.state, target.geometry(), counted);
 }
 
 }  // namespace wall::tileserver

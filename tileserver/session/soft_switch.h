@@ -9,9 +9,14 @@
 
 namespace wall::tileserver {
 
-/// `counts`: an occlusion query of the context counts what is drawn to the target. False: there is no such
-/// query, or the session may have no more.
+/// Which queries of a context count what is drawn to a target.
+struct Counted {
+    bool samples = false;
+    bool primitives = false;  ///< also captured ones
+};
+
+/// False: there is no such query as the context names, or the session may have no more.
 [[nodiscard]] bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, RenderTarget& target,
-                             bool counts);
+                             Counted counted);
 
 }  // namespace wall::tileserver

@@ -59,7 +59,7 @@ def generate(m):
         "glstate/samples.gen.h": emit_samples.samples_header(m.state),
         "client_lib/api.gen.h": emit_client.api_header(m.api, m.state, m.attributes),
         "client_lib/entries.gen.cpp": emit_client.entries_source(m.api, m.gl),
-        "client_lib/tables.gen.cpp": emit_client.tables_source(m.api, m.attributes),
+        "client_lib/tables.gen.cpp": emit_client.tables_source(m.api, m.attributes, m.gl),
         "client_lib/state_api.gen.cpp": emit_setters.setters_source(m.api, m.state, m.gl),
     }
 

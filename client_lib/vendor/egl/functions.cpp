@@ -387,6 +387,8 @@ struct ContextWish {
 ContextWish read_context_attributes(const EGLint* list) {
     ContextWish wish;
     auto& o = wish.options;
+    constexpr EGLint kKnownFlags = EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR | EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR |
+                                   EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
     EGLAttrib profile = EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT;
     for (const auto& [name, value] : read_list(list)) {
         switch (name) {
@@ -396,16 +398,25 @@ ContextWish read_context_attributes(const EGLint* list) {
             case EGL_CONTEXT_OPENGL_DEBUG: o.debug = value; break;
             case EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE: o.forward_compatible = value; break;
             case EGL_CONTEXT_FLAGS_KHR:
+                if (value & ~EGLAttrib{kKnownFlags}) wish.error = EGL_BAD_ATTRIBUTE;
+                o.robust = value & EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
                 o.debug = value & EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR;
                 o.forward_compatible = value & EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR;
                 break;
             case EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY:
-            case EGL_CONTEXT_OPENGL_ROBUST_ACCESS:
+                o.notifies_of_resets = value == EGL_LOSE_CONTEXT_ON_RESET;
+                if (!o.notifies_of_resets && value != EGL_NO_RESET_NOTIFICATION) wish.error = EGL_BAD_ATTRIBUTE;
+                break;
+            case EGL_CONTEXT_OPENGL_ROBUST_ACCESS: o.robust = value; break;
             case EGL_CONTEXT_PRIORITY_LEVEL_IMG: break;  // hints
             default: wish.error = EGL_BAD_ATTRIBUTE;
         }
     }
-    o.core_profile = o.major * 10 + o.minor >= 32 && profile == EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT;
+    const bool has_profiles = o.major * 10 + o.minor >= 32;
+    const bool compatible = profile == EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT;
+    o.core_profile = has_profiles && profile == EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT;
+    const bool no_profile = has_profiles && !o.core_profile && !compatible;
+    if (wish.error == EGL_SUCCESS && (no_profile || (o.forward_compatible && o.major < 3))) wish.error = EGL_BAD_MATCH;
     return wish;
 }
 

@@ -26,7 +26,8 @@ using vendor::XConnection;
 constexpr const char* kVendor = "WallGL";
 constexpr const char* kVersion = "1.4";
 constexpr const char* kExtensions =
-    "GLX_ARB_create_context GLX_ARB_create_context_profile GLX_ARB_get_proc_address GLX_ARB_multisample "
+    "GLX_ARB_create_context GLX_ARB_create_context_profile GLX_ARB_create_context_robustness "
+    "GLX_ARB_get_proc_address GLX_ARB_multisample "
     "GLX_EXT_swap_control GLX_EXT_visual_info GLX_EXT_visual_rating GLX_MESA_swap_control GLX_SGI_swap_control "
     "GLX_SGIX_fbconfig ";
 
@@ -178,8 +179,10 @@ bool is_version(int major, int minor) {
 }
 
 ContextWish read_context_attributes(const int* attributes) {
-    constexpr int kKnownFlags = GLX_CONTEXT_DEBUG_BIT_ARB | GLX_CONTEXT_FORWARD_COMPATIBLE_BIT_ARB;
+    constexpr int kKnownFlags =
+        GLX_CONTEXT_DEBUG_BIT_ARB | GLX_CONTEXT_FORWARD_COMPATIBLE_BIT_ARB | GLX_CONTEXT_ROBUST_ACCESS_BIT_ARB;
     ContextWish wish;
+    bool unknown_strategy = false;
     int flags = 0, profile = GLX_CONTEXT_CORE_PROFILE_BIT_ARB, render_type = GLX_RGBA_TYPE;
     for (const int* a = attributes; a && *a != None; a += 2) {
         switch (a[0]) {
@@ -188,6 +191,10 @@ ContextWish read_context_attributes(const int* attributes) {
             case GLX_CONTEXT_FLAGS_ARB: flags = a[1]; break;
             case GLX_CONTEXT_PROFILE_MASK_ARB: profile = a[1]; break;
             case GLX_RENDER_TYPE: render_type = a[1]; break;
+            case GLX_CONTEXT_RESET_NOTIFICATION_STRATEGY_ARB:
+                wish.options.notifies_of_resets = a[1] == GLX_LOSE_CONTEXT_ON_RESET_ARB;
+                if (!wish.options.notifies_of_resets && a[1] != GLX_NO_RESET_NOTIFICATION_ARB) unknown_strategy = true;
+                break;
             default: wish.x_error = BadValue;
         }
     }
@@ -195,11 +202,13 @@ ContextWish read_context_attributes(const int* attributes) {
     const int version = o.major * 10 + o.minor;
     o.debug = flags & GLX_CONTEXT_DEBUG_BIT_ARB;
     o.forward_compatible = flags & GLX_CONTEXT_FORWARD_COMPATIBLE_BIT_ARB;
+    o.robust = flags & GLX_CONTEXT_ROBUST_ACCESS_BIT_ARB;
     o.core_profile = version >= 32 && profile == GLX_CONTEXT_CORE_PROFILE_BIT_ARB;
     if (profile != GLX_CONTEXT_CORE_PROFILE_BIT_ARB && profile != GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB)
         wish.glx_error = kGLXBadProfileARB;
     if (flags & ~kKnownFlags) wish.x_error = BadValue;
-    if (render_type == GLX_COLOR_INDEX_TYPE || (o.forward_compatible && o.major < 3) || !is_version(o.major, o.minor))
+    if (unknown_strategy || render_type == GLX_COLOR_INDEX_TYPE || (o.forward_compatible && o.major < 3) ||
+        !is_version(o.major, o.minor))
         wish.x_error = BadMatch;
     else if (render_type != GLX_RGBA_TYPE) wish.x_error = BadValue;
     return wish;

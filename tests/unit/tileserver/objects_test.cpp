@@ -414,7 +414,7 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
         {{GL_FRAGMENT_SHADER, true, "void main() { gl_FragColor = vec4(1); }"}}, {}, {}};
     static constexpr std::array<float, 4> values{};
     using Say = std::function<void(Batch&, ClientName)>;
-    const std::array<std::pair<ObjectKind, Say>, 9> makes = {{
+    const std::array<std::pair<ObjectKind, Say>, 10> makes = {{
         {ObjectKind::texture,
          [](Batch& b, ClientName id) {
              pack::TexParameter(b.buffer(), id, GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST, 0, 0, 0);
@@ -440,8 +440,12 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
          [](Batch& b, ClientName id) { pack::Renderbuffer(b.buffer(), id, 0, GL_RGBA8, 4, 4); }},
         {ObjectKind::framebuffer,
          [](Batch& b, ClientName id) { pack::Framebuffer(b.buffer(), id, encode(glstate::FramebufferDefinition{})); }},
+        {ObjectKind::sampler,
+         [](Batch& b, ClientName id) {
+             pack::SamplerParameter(b.buffer(), id, GL_TEXTURE_LOD_BIAS, GL_FLOAT, 0, 0, 0, 0);
+         }},
     }};
-    const std::array<Say, 9> uses = {
+    const std::array<Say, 10> uses = {
         makes[0].second,
         [&](Batch& b, ClientName id) {
             pack::Uniform(b.buffer(), id, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(values)));
@@ -453,6 +457,7 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
         makes[6].second,
         makes[7].second,
         makes[8].second,
+        makes[9].second,
     };
     static_assert(makes.size() == kObjectKinds, "a new kind is tried, too");
     for (std::size_t is = 0; is < kObjectKinds; ++is) {

@@ -53,6 +53,8 @@ def api_header(commands, model, attributes):
                "extern const GlTable immediate;     ///< each command at once\n"
                "extern const GlTable inside_begin;  ///< between glBegin and glEnd: most are errors\n"
                "extern const GlTable compile;       ///< into the context's list()\n"
+               "extern const GlTable core;          ///< at once, in a core profile: what it does not have is an "
+               "error\n"
                "}  // namespace tables\n\n"
                "/// What the context does with a command at once, while a list may be compiled as well: `inside_begin` "
                "or `immediate`.\n"
@@ -79,6 +81,12 @@ def api_header(commands, model, attributes):
     out.append("/// Commands that are not implemented; report_unsupported (unsupported.h) takes an index of these.\n"
                f"inline constexpr std::size_t kUnsupportedCount = {len(unsupported)};\n"
                "extern const char* const kUnsupportedNames[kUnsupportedCount];\n\n")
+    out.append("/// A version of OpenGL, compatibility profile.\n"
+               "struct VersionCommands {\n    int major, minor;\n"
+               "    const char* missing;  ///< a command of it that is not implemented; null: there is none\n};\n"
+               "extern const std::span<const VersionCommands> kVersions;  ///< all that there are, in order\n"
+               "/// Words that mean nothing in a core profile, in order.\n"
+               "extern const std::span<const GLenum> kRemovedWords;\n\n")
     hot = _hot(commands)
     out.append("}  // namespace wall::client\n\n// Entry points written by hand.\nnamespace wall::client {\n\n")
     out += [f"{i.command.returns} GLAPIENTRY gl_entry_{i.name}({i.command.declaration});\n" for i in hot]
@@ -118,7 +126,7 @@ def _attribute_call(a, command):
     return f"table.{command.op.name}({', '.join(['c', *first, *values])})"
 
 
-def tables_source(commands, attributes):
+def tables_source(commands, attributes, registry):
     canonical = commands.canonical
     out = [header("gl.xml and proto/gl/commands.toml",
                   "The modes of a context as tables, display list recording and replay.", [], pragma=False),
@@ -130,7 +138,7 @@ def tables_source(commands, attributes):
            "template <auto kCommand, class Function>\nstruct Direct;\n"
            "template <auto kCommand, class R, class... A>\nstruct Direct<kCommand, R (*)(Context&, A...)> {\n"
            "    static R call(Context& c, A... a) { return (execution_table(c).*kCommand)(c, a...); }\n};\n\n"
-           "/// A command that is an error between glBegin and glEnd.\n"
+           "/// A command that is an error: between glBegin and glEnd, in a core profile.\n"
            "template <class Function>\nstruct RefusedInside;\n"
            "template <class R, class... A>\nstruct RefusedInside<R (*)(Context&, A...)> {\n"
            "    static R call(Context& c, A...) {\n        c.error(GL_INVALID_OPERATION);\n        return R();\n    }\n"
@@ -164,8 +172,38 @@ def tables_source(commands, attributes):
     out.append(_table("compile", canonical,
                       lambda i: f"&Direct<&GlTable::{i.name}, decltype(GlTable::{i.name})>::call"
                       if not i.in_list else f"&compile::{i.name}" if "record" in i.flags else f"&compile_{i.name}"))
-    out.append("}  // namespace tables\n}  // namespace wall::client\n")
+    out.append(_table("core", canonical,
+                      lambda i: f"&api::{i.name}"
+                      if i.command.core else f"&RefusedInside<decltype(GlTable::{i.name})>::call"))
+    out.append("}  // namespace tables\n\n" + _versions(commands) + _removed_words(registry)
+               + "}  // namespace wall::client\n")
     return "".join(out)
+
+
+def _versions(commands):
+    missing = {}
+    for i in commands.all.values():
+        if i.command.gl:
+            missing.setdefault(i.command.gl, None)
+    for name in sorted(commands.all):
+        i = commands.all[name]
+        if i.later and i.command.gl:
+            missing[i.command.gl] = missing[i.command.gl] or name
+    rows = sorted((tuple(int(n) for n in version.split(".")), name) for version, name in missing.items())
+    return ("namespace {\nconst VersionCommands kVersionTable[] = {\n"
+            + "".join(f"    {{{major}, {minor}, {f'{chr(34)}{name}{chr(34)}' if name else 'nullptr'}}},\n"
+                      for (major, minor), name in rows)
+            + "};\n}  // namespace\nconst std::span<const VersionCommands> kVersions = kVersionTable;\n\n")
+
+
+def _removed_words(registry):
+    """By value, which some of them share with words that stay."""
+    removed = set(registry.removed)
+    staying = {registry.enums[name] for name in registry.core_enums}
+    values = {registry.enums[name] for name in removed} - staying
+    return ("namespace {\nconst GLenum kRemovedWordTable[] = {\n"
+            + "".join(f"    0x{value:04x},\n" for value in sorted(values) if value > 0xFF)
+            + "};\n}  // namespace\nconst std::span<const GLenum> kRemovedWords = kRemovedWordTable;\n\n")
 
 
 def _table(name, canonical, value):

@@ -63,6 +63,10 @@ def _checks(e, f, expression):
             exempt = f" && {expression} != {_literal(f.type, other)}" if other is not None else ""
             lines.append(f"if ({expression} {operator} {_literal(f.type, limit)}{exempt}) return "
                          f"c.error(GL_INVALID_VALUE);")
+    most = e.of_field("forward_max", f.name)
+    if most is not None:
+        lines.append(f"if (c.profile.forward_compatible && {expression} > {_literal(f.type, most)}) return "
+                     f"c.error(GL_INVALID_VALUE);")
     return lines
 
 
@@ -74,8 +78,10 @@ def _clamped(e, f, expression):
     return f"clamped({expression}, {low}, {high})"
 
 
-def _component(f, expression, given):
+def _component(e, f, expression, given):
     """A parameter of the command as the component's type."""
+    if e.bits:
+        return f"all_or_none({expression}, {e.bits})"
     wanted = TYPES[f.type][0] if f.components == 1 else "float"
     if f.type == "flag":
         return f"to_flag({expression})"
@@ -97,12 +103,12 @@ def _setter(i, e):
         f = e.fields[0]
         for p in params:
             lines += _checks(e, f, p.name)
-        parts = [_clamped(e, f, _component(f, p.name, p.type)) for p in params]
+        parts = [_clamped(e, f, _component(e, f, p.name, p.type)) for p in params]
         value = parts[0] if f.components == 1 else f"{{{', '.join(parts)}}}"
     else:
         for name, p in zip(order, params):
             lines += _checks(e, fields[name], p.name)
-            values[name] = _clamped(e, fields[name], _component(fields[name], p.name, p.type))
+            values[name] = _clamped(e, fields[name], _component(e, fields[name], p.name, p.type))
         value = "{" + ", ".join(values[f.name] for f in e.fields) + "}"
     face = i.command.params[0].name
     if e.index == "face":
@@ -166,10 +172,13 @@ def _param_rows(model, registry):
 
 def _cap_rows(model, registry):
     rows = sorted((registry.enums[word], word, first, e) for e in model.elements for word, first in e.caps)
-    out = "template <class E>\nvoid set_cap(Context& c, unsigned i, glstate::Flag on) {\n    c.set<E>(i, on);\n}\n\n"
+    out = "template <class E>\nvoid set_cap(Context& c, unsigned i, glstate::Flag on) {\n    c.set<E>(i, on);\n}\n" \
+          "template <class E, unsigned kBits>\nvoid set_bits_cap(Context& c, unsigned, glstate::Flag on) {\n" \
+          "    c.set<E>(0, all_or_none(on, kBits));\n}\n\n"
     out += f"const std::array<CapRow, {len(rows)}> kCapTable = {{{{\n"
     for _, word, first, e in rows:
-        out += f"    {{{word}, &set_cap<el::{e.name}>, {first}, {e.unit_stride}}},\n"
+        set_ = f"set_bits_cap<el::{e.name}, {e.bits}>" if e.bits else f"set_cap<el::{e.name}>"
+        out += f"    {{{word}, &{set_}, {first}, {e.unit_stride}}},\n"
     return out + "}};\n\n"
 
 

@@ -124,6 +124,8 @@ def tables_source(model, registry):
 
 def value_kind(e, f):
     component = TYPES[f.type][1]
+    if e.bits:
+        return "first_bit"
     if e.name_of:
         return f"name_{e.name_of}"
     if f.name == "buffer":  # of a client array
@@ -183,8 +185,8 @@ def tables_header(model):
     out.append(f"inline constexpr std::size_t kElementCount = {len(model.elements)};\n\n")
     out.append("/// Commands that set a parameter by its name.\nenum class ParamFamily : std::uint8_t { "
                + ", ".join(families) + " };\n\n")
-    kinds = ["flag", "enumerant", "integer", "unsigned_integer", "real", "normalized", "real64", "normalized64",
-             "pointer"]
+    kinds = ["flag", "first_bit", "enumerant", "integer", "unsigned_integer", "real", "normalized", "real64",
+             "normalized64", "pointer"]
     out.append("/// What a component is, which decides how glGet* converts it.\nenum class ValueKind : std::uint8_t {\n"
                + "".join(f"    {k},\n" for k in kinds)
                + "".join(f"    name_{n},  ///< a session's name of an object: the application has its own\n"
@@ -202,7 +204,11 @@ def driver_header(model, registry):
            "    unsigned active_unit = 0;  ///< the driver's\n\n"
            "    void unit(Gl& gl, unsigned i) {\n"
            "        if (active_unit != i) gl.ActiveTexture(GL_TEXTURE0 + (active_unit = i));\n    }\n"
-           "    static GLenum face(unsigned i) { return i == 0 ? GL_FRONT : GL_BACK; }\n\n"]
+           "    static GLenum face(unsigned i) { return i == 0 ? GL_FRONT : GL_BACK; }\n"
+           "    /// The lowest `count` bits are all alike.\n"
+           "    static bool alike(std::uint32_t bits, unsigned count) {\n"
+           "        const std::uint32_t all = (1u << count) - 1;\n"
+           "        return (bits & all) == 0 || (bits & all) == all;\n    }\n\n"]
     custom = []
     for e in (e for c in model.categories if c.sent for e in c.elements):
         if e.emit_custom:
@@ -218,7 +224,9 @@ def _emit(e, registry, model):
     lead = {"unit": "unit(gl, i); "}.get(e.index, "")
     if e.index == "coord":
         lead = "unit(gl, i / 4); "
-    if e.cap:
+    if e.bits:
+        body = _emit_bits(e)
+    elif e.cap:
         word = e.cap
         if e.index == "coord":
             word = "GL_TEXTURE_GEN_S + i % 4"
@@ -234,6 +242,20 @@ def _emit(e, registry, model):
     return f"    void emit(Gl& gl, el::{e.name}, unsigned{i}, const {e.cpp}& v) {{ {lead}{body} }}\n"
 
 
+def _emit_bits(e):
+    """Of all draw buffers in one call where they are alike; else of each."""
+    values = components(e)
+    alike = " && ".join(f"alike({v}, {e.bits})" for v in values)
+    if e.cap:
+        once = f"v & 1 ? gl.Enable({e.cap}) : gl.Disable({e.cap});"
+        each = f"v >> k & 1 ? gl.Enablei({e.cap}, k) : gl.Disablei({e.cap}, k);"
+    else:
+        once = f"gl.{e.set}({', '.join(_cast('GLboolean', f'{v} & 1') for v in values)});"
+        each = f"gl.{e.set}i(k, {', '.join(_cast('GLboolean', f'{v} >> k & 1') for v in values)});"
+    return (f"if ({alike}) {{ {once} return; }} "
+            f"for (unsigned k = 0; k < {e.bits}; ++k) {{ {each} }}")
+
+
 def _identifiers(text):
     import re
     return set(re.findall(r"[A-Za-z_]\w*", text))
@@ -244,8 +266,8 @@ def _emit_param(e):
     lead = {"light": "GL_LIGHT0 + i, ", "face": "face(i), ", "coord": "GL_S + i % 4, "}.get(e.index, "")
     if e.param_target:
         lead = e.param_target + ", "
-    if e.family == "Hint":
-        return f"gl.Hint({e.pname}, v);"
+    if e.family in ("Hint", "ClampColor"):
+        return f"gl.{e.family}({e.pname}, v);"
     component = TYPES[f.type][1]
     if f.components > 1:
         return f"gl.{e.family}fv({lead}{e.pname}, v.data());"

@@ -31,6 +31,7 @@ class Command:
     alias: str | None = None    # the command that this one is another name of, as gl.xml says
     gl: str | None = None       # first OpenGL version ("1.0"), compatibility profile
     es: str | None = None       # first OpenGL ES version
+    core: bool = True           # false: the core profile of OpenGL does not have it
     extensions: list = field(default_factory=list)
 
     @property
@@ -51,6 +52,8 @@ class Command:
 class Registry:
     commands: dict  # name -> Command
     enums: dict     # GL_NAME -> int (desktop GL and ES)
+    removed: set = field(default_factory=set)       # GL_NAMEs of OpenGL that its core profile does not have
+    core_enums: set = field(default_factory=set)    # those that it has
 
     def canonical(self, name):
         """Follows aliases to the command that is implemented."""
@@ -87,6 +90,27 @@ def _version(text):
     return tuple(int(x) for x in text.split("."))
 
 
+def _note_core_profile(gl, root):
+    """What the core profile of the last version has: removed by one version, some of it came again by a later one."""
+    features = sorted((f for f in root.findall("feature") if f.get("api") == "gl"),
+                      key=lambda f: _version(f.get("number")))
+    known, core = set(), set()
+    for feature in features:
+        for change in feature:
+            names = {item.get("name") for item in change if item.tag in ("command", "enum")}
+            if change.tag == "remove":
+                core -= names
+                continue
+            known |= names
+            if change.get("profile") != "compatibility":
+                core |= names
+    for name in known - core:
+        if name in gl.commands:
+            gl.commands[name].core = False
+    gl.removed |= {name for name in known - core if name not in gl.commands}
+    gl.core_enums |= {name for name in core if name not in gl.commands}
+
+
 def load(path, *more):
     """The registry at `path`, and the files in its format that add to it."""
     gl = Registry({}, {})
@@ -112,6 +136,7 @@ def _add(gl, root):
                     c.gl = min(c.gl or number, number, key=_version)
                 elif api == "gles2":
                     c.es = min(c.es or number, number, key=_version)
+    _note_core_profile(gl, root)
     for extension in root.find("extensions"):
         for require in extension.findall("require"):
             for item in require.findall("command"):

@@ -70,7 +70,7 @@ class Element:
         last = self.fields[-1]
         return last.offset + TYPES[last.type][3]
 
-    # cap, get, set, param, emit, hand, norm, valid, min, max, above, below, clamp, name...
+    # cap, get, set, param, emit, hand, norm, bits, valid, min, max, above, below, clamp, name...
     def __getattr__(self, key):
         if key in _OPTIONAL:
             return self.keys.get(key)
@@ -146,7 +146,7 @@ class Element:
 
 
 _OPTIONAL = {"cap", "get", "set", "param", "emit", "hand", "norm", "valid", "min", "max", "above", "below", "clamp",
-             "args", "or", "invalid"}
+             "args", "or", "invalid", "bits", "forward_max"}
 _KEYS = _OPTIONAL | {"name", "type", "fields", "value", "default", "defaults", "count", "index", "groups",
                      "client_groups"}
 

@@ -104,7 +104,8 @@ TEST_F(VertexArrayObjectsTest, BindingOneAgainFindsItsInput) {
     gl().BindVertexArray(c, objects[0]);
     EXPECT_EQ(input(), first);
     gl().DisableClientState(c, GL_VERTEX_ARRAY);
-    EXPECT_EQ(input(), nullptr);
+    ASSERT_TRUE(input());
+    EXPECT_TRUE(input()->definition().arrays.empty());
 }
 
 TEST_F(VertexArrayObjectsTest, TheBoundOneThatIsDeletedIsBoundNoMore) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "client_lib/api/version.h"
+#include "client_lib/context/version.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -7,6 +7,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "client_lib/context/texture_units.h"
 #include "gen/client_lib/api.gen.h"
 
 namespace wall::client {
@@ -19,14 +20,20 @@ bool implemented(const char* command) {
                         [&](const char* name) { return std::strcmp(name, command) == 0; });
 }
 
-/// A version and the command that came with it last.
-struct Step {
-    GlVersion version;
-    const char* command;
+/// What a version asks for besides its commands, as far as it is known to be missing, and its shading language.
+struct Beyond {
+    int major, minor;
+    const char* shading_language;
+    bool met;
 };
-constexpr Step kSteps[] = {
-    {{1, 2, nullptr}, "glTexImage3D"}, {{1, 3, nullptr}, "glMultiTexCoord4f"}, {{1, 4, nullptr}, "glMultiDrawElements"},
-    {{1, 5, nullptr}, "glBindBuffer"}, {{2, 0, "1.10"}, "glUseProgram"},       {{2, 1, "1.20"}, "glUniformMatrix2x3fv"},
+constexpr Beyond kBeyond[] = {
+    {2, 0, "1.10", true},
+    {2, 1, "1.20", true},
+    {3, 0, "1.30", kTextureImageUnits >= 16},
+    {3, 1, "1.40", true},
+    {3, 2, "1.50", kTextureImageUnits >= 48},
+    {3, 3, "3.30", true},
+    {4, 0, "4.00", true},
 };
 
 /// What no driver need have: it is between the programs and the nodes.
@@ -39,7 +46,9 @@ struct Extension {
 };
 constexpr Extension kExtensions[] = {
     {"GL_ARB_buffer_storage", "glBufferStorage"},
+    {"GL_ARB_conditional_render_inverted", "glBeginConditionalRender"},
     {"GL_ARB_copy_buffer", "glCopyBufferSubData"},
+    {"GL_ARB_debug_output", "glDebugMessageCallback"},
     {"GL_ARB_depth_buffer_float", nullptr},
     {"GL_ARB_depth_clamp", nullptr},
     {"GL_ARB_depth_texture", nullptr},
@@ -58,15 +67,19 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_multisample", "glSampleCoverage"},
     {"GL_ARB_multitexture", "glMultiTexCoord4f"},
     {"GL_ARB_occlusion_query", "glBeginQuery"},
+    {"GL_ARB_occlusion_query2", "glBeginQuery"},
     {"GL_ARB_pixel_buffer_object", "glBindBuffer"},
     {"GL_ARB_point_parameters", nullptr},
     {"GL_ARB_point_sprite", nullptr},
     {"GL_ARB_provoking_vertex", "glProvokingVertex"},
     {"GL_ARB_shader_bit_encoding", "glUseProgram"},
+    {"GL_ARB_sampler_objects", "glBindSampler"},
+    {"GL_ARB_seamless_cube_map", nullptr},
     {"GL_ARB_shader_objects", "glDeleteObjectARB"},
     {"GL_ARB_shader_texture_lod", "glUseProgram"},
     {"GL_ARB_shading_language_100", "glUseProgram"},
     {"GL_ARB_shadow", nullptr},
+    {"GL_ARB_sync", "glFenceSync"},
     {"GL_ARB_texture_border_clamp", nullptr},
     {"GL_ARB_texture_compression", "glCompressedTexImage2D"},
     {"GL_ARB_texture_compression_rgtc", "glCompressedTexImage2D"},
@@ -85,6 +98,7 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_texture_rgb10_a2ui", nullptr},
     {"GL_ARB_texture_storage", "glTexStorage3D"},
     {"GL_ARB_texture_swizzle", nullptr},
+    {"GL_ARB_timer_query", "glQueryCounter"},
     {"GL_ARB_transpose_matrix", nullptr},
     {"GL_ARB_uniform_buffer_object", "glUniformBlockBinding"},
     {"GL_ARB_vertex_array_bgra", nullptr},
@@ -102,6 +116,7 @@ constexpr Extension kExtensions[] = {
     {"GL_EXT_blend_subtract", nullptr},
     {"GL_EXT_compiled_vertex_array", "glLockArraysEXT"},
     {"GL_EXT_copy_texture", nullptr},
+    {"GL_EXT_draw_buffers2", "glColorMaski"},
     {"GL_EXT_draw_range_elements", nullptr},
     {"GL_EXT_draw_instanced", "glDrawArraysInstanced"},
     {"GL_EXT_fog_coord", nullptr},
@@ -116,6 +131,7 @@ constexpr Extension kExtensions[] = {
     {"GL_EXT_pixel_buffer_object", "glBindBuffer"},
     {"GL_EXT_point_parameters", nullptr},
     {"GL_EXT_polygon_offset", nullptr},
+    {"GL_EXT_provoking_vertex", "glProvokingVertex"},
     {"GL_EXT_rescale_normal", nullptr},
     {"GL_EXT_secondary_color", nullptr},
     {"GL_EXT_separate_specular_color", nullptr},
@@ -140,9 +156,12 @@ constexpr Extension kExtensions[] = {
     {"GL_EXT_texture_shared_exponent", nullptr},
     {"GL_EXT_texture_snorm", nullptr},
     {"GL_EXT_texture_swizzle", nullptr},
+    {"GL_EXT_timer_query", "glQueryCounter"},
     {"GL_EXT_vertex_array", nullptr},
     {"GL_EXT_vertex_array_bgra", nullptr},
+    {"GL_KHR_debug", "glDebugMessageCallback"},
     {"GL_NV_blend_square", nullptr},
+    {"GL_NV_conditional_render", "glBeginConditionalRender"},
     {"GL_NV_primitive_restart", "glPrimitiveRestartNV"},
     {"GL_NV_texgen_reflection", nullptr},
     {"GL_NV_texture_rectangle", nullptr},
@@ -163,13 +182,29 @@ bool at_most(const GlVersion& a, const GlVersion& b) {
 
 }  // namespace
 
-GlVersion offered_version(const Caps& caps) {
+// By construction: a version is there when all of its commands are, and what else it asks for.
+GlVersion implemented_version() {
     GlVersion offered;
-    const GlVersion node = node_version(caps);
-    for (const Step& step : kSteps) {
-        if (!implemented(step.command) || !at_most(step.version, node)) break;
-        offered = step.version;
+    for (const VersionCommands& version : kVersions) {
+        if (version.missing) break;
+        const auto* beyond = std::ranges::find_if(
+            kBeyond, [&](const Beyond& b) { return b.major == version.major && b.minor == version.minor; });
+        const bool known = beyond != std::end(kBeyond);
+        if ((known && !beyond->met) || (!known && version.major > 1)) break;
+        offered = {version.major, version.minor, known ? beyond->shading_language : nullptr};
     }
+    return offered;
+}
+
+bool is_implemented(int major, int minor) { return at_most({major, minor, nullptr}, implemented_version()); }
+
+GlVersion offered_version(const Caps& caps) {
+    const GlVersion implemented = implemented_version(), node = node_version(caps);
+    if (at_most(implemented, node)) return implemented;
+    GlVersion offered = node;
+    offered.shading_language = nullptr;
+    for (const Beyond& beyond : kBeyond)
+        if (at_most({beyond.major, beyond.minor, nullptr}, node)) offered.shading_language = beyond.shading_language;
     return offered;
 }
 
@@ -184,9 +219,11 @@ std::vector<std::string> offered_extensions(const Caps& caps) {
     return offered;
 }
 
-std::string version_string(const Caps& caps) {
+std::string version_string(const Caps& caps, const ContextProfile& profile) {
     const GlVersion version = offered_version(caps);
-    return std::to_string(version.major) + "." + std::to_string(version.minor) + " " + kWallVersion;
+    const bool has_profiles = version.major > 3 || (version.major == 3 && version.minor >= 2);
+    const char* words = !has_profiles ? " " : profile.core ? " (Core Profile) " : " (Compatibility Profile) ";
+    return std::to_string(version.major) + "." + std::to_string(version.minor) + words + kWallVersion;
 }
 
 }  // namespace wall::client

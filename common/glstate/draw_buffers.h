@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// What a state says of single draw buffers: elements with a bit for each of them (`bits` in proto/gl/state.toml). Pure.
+#pragma once
+
+#include <array>
+
+#include "gen/glstate/state.gen.h"
+
+namespace wall::glstate {
+
+/// That elements have a bit for.
+inline constexpr unsigned kDrawBuffers = 8;
+
+/// Whether red, green, blue and alpha of that draw buffer are written.
+inline std::array<bool, 4> written_channels(const State& state, unsigned buffer) {
+    const ColorMask& mask = state.color_buffer.color_mask;
+    const auto written = [&](std::uint32_t bits) { return (bits >> buffer & 1) != 0; };
+    return {written(mask.red), written(mask.green), written(mask.blue), written(mask.alpha)};
+}
+
+/// Whether nothing of the first one, which is the only one of a window, is kept by the colour mask.
+inline bool writes_all_channels(const State& state) {
+    return written_channels(state, 0) == std::array<bool, 4>{true, true, true, true};
+}
+
+/// `bits` with that of one draw buffer set to `on`.
+inline std::uint32_t with_bit(std::uint32_t bits, unsigned buffer, bool on) {
+    const std::uint32_t bit = 1u << buffer;
+    return on ? bits | bit : bits & ~bit;
+}
+
+/// Whether a query counts primitives, which then go to all tiles as they are, so that each node sees all of them.
+inline bool counts_primitives(const State& state) {
+    return state.objects.primitives_query != 0 || state.objects.captured_query != 0;
+}
+
+}  // namespace wall::glstate
