@@ -210,9 +210,9 @@ void Driver::forget_texture(GLuint texture) {
             if (bound == texture) bound = 0, bound_textures_.id = glstate::next_value_id();
 }
 
-void Driver::bind_each_sampler(const SamplerNames& wanted) {
-    for (unsigned i = 0; i < wanted.size(); ++i)
-        if (samplers_[i] != wanted[i]) gl_.BindSampler(i, wanted[i]);
+void Driver::bind_each_sampler(const SamplerBindings& wanted) {
+    for (unsigned i = 0; i < wanted.names.size(); ++i)
+        if (samplers_.names[i] != wanted.names[i]) gl_.BindSampler(i, wanted.names[i]);
     samplers_ = wanted;
 }
 

@@ -42,6 +42,11 @@ inline GLenum gl_query_target(QueryTarget target) {
 
 /// Driver samplers at all units; 0: what the texture itself says.
 using SamplerNames = std::array<GLuint, glstate::el::sampler_binding::count>;
+/// Equal ids mean equal names. Id 0: none anywhere.
+struct SamplerBindings {
+    std::uint64_t id = 0;
+    SamplerNames names{};
+};
 
 /// Driver textures at all units; equal ids mean equal names. Id 0: none anywhere.
 struct TextureBindings {
@@ -86,11 +91,12 @@ public:
     void bind_textures(const TextureBindings& wanted) {
         if (wanted.id != bound_textures_.id) bind_all(wanted);
     }
-    void bind_samplers(const SamplerNames& wanted) {
-        if (wanted != samplers_) bind_each_sampler(wanted);
+    void bind_samplers(const SamplerBindings& wanted) {
+        if (wanted.id != samplers_.id) bind_each_sampler(wanted);
     }
     void delete_sampler(GLuint sampler) {  // the driver unbinds it by itself
-        std::ranges::replace(samplers_, sampler, 0u);
+        std::ranges::replace(samplers_.names, sampler, 0u);
+        samplers_.id = glstate::next_value_id();
         gl_.DeleteSamplers(1, &sampler);
     }
     /// On the active unit, for commands that work on the bound object.
@@ -185,7 +191,7 @@ private:
     void bind_window(RenderTarget& target, glstate::State& state);
     void bind_all(const TextureBindings& wanted);
     void bind_texture(unsigned unit, TextureTarget target, GLuint texture);
-    void bind_each_sampler(const SamplerNames& wanted);
+    void bind_each_sampler(const SamplerBindings& wanted);
 
     static constexpr auto kWindow = static_cast<std::size_t>(glstate::Category::window);
     static constexpr glstate::CategoryMask kCurrentMask = glstate::mask_of(glstate::Category::current);
@@ -205,7 +211,7 @@ private:
     bool modelview_changed_ = false;     // since it was loaded
     bool modelview_has_origin_ = false;  // what was loaded
     TextureBindings bound_textures_;
-    SamplerNames samplers_{};                      // that the driver has bound
+    SamplerBindings samplers_;                     // that the driver has bound
     GLuint program_ = 0;                           // that the driver draws with
     std::array<GLuint, kQueryTargets> queries_{};  // that count
     GLuint vertex_array_ = 0;

@@ -33,7 +33,7 @@ struct BoundTextures {
 /// The same of its samplers.
 struct BoundSamplers {
     std::uint64_t values = 0, version = 0;  ///< value id of the category `objects`, ObjectTable::version()
-    SamplerNames names{};
+    SamplerBindings bindings;
 };
 
 struct SoftContext {

@@ -54,11 +54,13 @@ void look_up_samplers(SessionReplica& session, SoftContext& context) {
     const std::uint64_t values = context.state.ids[static_cast<std::size_t>(glstate::Category::objects)],
                         version = session.objects.version(Sampler::kKind);
     if (bound.values == values && bound.version == version) return;
-    for (unsigned unit = 0; unit < bound.names.size(); ++unit) {
+    SamplerNames found{};
+    for (unsigned unit = 0; unit < found.size(); ++unit) {
         const ClientName name(glstate::el::sampler_binding::ref(context.state, unit));
         const Sampler* sampler = name ? session.objects.find<Sampler>(name) : nullptr;
-        bound.names[unit] = sampler != nullptr ? sampler->name() : 0;
+        found[unit] = sampler != nullptr ? sampler->name() : 0;
     }
+    if (found != bound.bindings.names) bound.bindings = {found == SamplerNames{} ? 0 : glstate::next_value_id(), found};
     bound.values = values;
     bound.version = version;
 }
@@ -101,7 +103,7 @@ bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, 
         look_up_textures(session, context);
     node.driver.bind_textures(context.textures.bindings);
     look_up_samplers(session, context);
-    node.driver.bind_samplers(context.samplers.names);
+    node.driver.bind_samplers(context.samplers.bindings);
     node.maps.sync_evaluators(node.driver, context.maps);
     node.driver.bind_target(target, context.state);
     use_program(node, session, context.state, target.geometry());
