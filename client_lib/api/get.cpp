@@ -165,6 +165,7 @@ const Special kSpecials[] = {
          *out = format != nullptr && format->srgb;
      }},
     {GL_NUM_SHADER_BINARY_FORMATS, 1, constant<0>},
+    {GL_SHADER_BINARY_FORMATS, 0, constant<0>},
     {GL_NUM_PROGRAM_BINARY_FORMATS, 1, constant<0>},
     // For general use: RGBA of DXT1 has but one bit of alpha.
     {GL_NUM_COMPRESSED_TEXTURE_FORMATS, 1, constant<3>},

@@ -15,7 +15,7 @@ using Array = el::attrib_array::type;
 bool is_integer_type(GLenum type) { return type >= GL_BYTE && type <= GL_UNSIGNED_INT; }
 bool is_array_type(GLenum type) {
     return is_integer_type(type) || type == GL_FLOAT || type == GL_DOUBLE || type == GL_HALF_FLOAT ||
-           glstate::is_packed(type);
+           type == GL_FIXED || glstate::is_packed(type);
 }
 
 void enable(Context& c, GLuint index, bool enabled) {

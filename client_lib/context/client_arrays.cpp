@@ -69,6 +69,12 @@ void load_packed(const std::byte* from, GLint size, float* out) {
     glapi::unpack_2_10_10_10(kType, load_one<GLuint>(from), kFraction, static_cast<unsigned>(size), out);
 }
 
+/// Sixteen bits before and behind the point.
+void load_fixed(const std::byte* from, GLint count, GLfloat* out) {
+    for (GLint i = 0; i < count; ++i)
+        out[i] = static_cast<float>(load_one<GLfixed>(from + static_cast<std::size_t>(i) * sizeof(GLfixed))) / 65536.0f;
+}
+
 template <GLenum kType>
 Load packed_loader(Conversion conversion) {
     using glapi::Fraction;
@@ -98,6 +104,7 @@ Load loader_of(GLenum type, Conversion conversion) {
         case GL_UNSIGNED_INT: return loader<GLuint>(conversion);
         case GL_DOUBLE: return loader<GLdouble>(Conversion::none);
         case GL_HALF_FLOAT: return &load_halves;
+        case GL_FIXED: return &load_fixed;
         case GL_INT_2_10_10_10_REV: return packed_loader<GL_INT_2_10_10_10_REV>(conversion);
         case GL_UNSIGNED_INT_2_10_10_10_REV: return packed_loader<GL_UNSIGNED_INT_2_10_10_10_REV>(conversion);
         default: return loader<GLfloat>(Conversion::none);

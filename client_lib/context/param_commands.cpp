@@ -92,6 +92,12 @@ void get_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, T* value
     glstate::read_components(c.state, entry->id + *index, 0, entry->kind, entry->components, values);
 }
 
+/// Of a unit without fixed function. As in Mesa, only that of generated coordinates is an error.
+void lacks_switch(Context& c, unsigned unit_stride) {
+    constexpr unsigned kOfCoordinates = 4;
+    if (unit_stride == kOfCoordinates) c.error(GL_INVALID_OPERATION);
+}
+
 const CapRow* find_cap_row(GLenum cap) {
     const auto at = std::lower_bound(kCapRows.begin(), kCapRows.end(), cap,
                                      [](const CapRow& row, GLenum word) { return row.cap < word; });
@@ -147,7 +153,7 @@ void set_capability(Context& c, GLenum cap, bool on) {
     if (c.profile.core && row && row->unit_stride != 0) return c.error(GL_INVALID_ENUM);  // fixed function's
     if (!row)
         return on ? api::EnableClientState(c, cap) : api::DisableClientState(c, cap);  // as GL_EXT_vertex_array had it
-    if (row->unit_stride != 0 && !c.fixed_unit()) return;                              // no error in Mesa
+    if (row->unit_stride != 0 && !c.fixed_unit()) return lacks_switch(c, row->unit_stride);
     row->set(c, row->index + row->unit_stride * c.active_texture(), on ? 1 : 0);
 }
 
@@ -163,7 +169,7 @@ GLboolean is_capability_set(Context& c, GLenum cap) {
                           : entry->rule == glstate::IndexRule::client_unit
                               ? c.state.local.client_active_texture - GL_TEXTURE0
                               : c.active_texture();
-    if (unit != 0 && unit >= entry->units) return GL_FALSE;
+    if (unit != 0 && unit >= entry->units) return lacks_switch(c, entry->unit_stride), GLboolean{GL_FALSE};
     GLboolean value = GL_FALSE;
     glstate::read_components(c.state, entry->id + unit * entry->unit_stride, entry->offset, entry->kind, 1, &value);
     return value;

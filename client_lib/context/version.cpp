@@ -45,6 +45,7 @@ struct Extension {
     const char* command;
 };
 constexpr Extension kExtensions[] = {
+    {"GL_ARB_ES2_compatibility", "glGetShaderPrecisionFormat"},
     {"GL_ARB_buffer_storage", "glBufferStorage"},
     {"GL_ARB_conditional_render_inverted", "glBeginConditionalRender"},
     {"GL_ARB_copy_buffer", "glCopyBufferSubData"},

@@ -25,14 +25,6 @@ std::uint32_t short_float(float value, unsigned mantissa_bits) {
 
 }  // namespace
 
-float half_to_float(std::uint16_t h) {
-    const float sign = h & 0x8000 ? -1.0f : 1.0f;
-    const int exponent = h >> 10 & 31, mantissa = h & 0x3ff;
-    if (exponent == 0) return sign * std::ldexp(static_cast<float>(mantissa), -24);
-    if (exponent == 31) return mantissa ? NAN : sign * INFINITY;
-    return sign * std::ldexp(static_cast<float>(mantissa + 1024), exponent - 25);
-}
-
 std::uint16_t float_to_half(float value) {
     const auto bits = std::bit_cast<std::uint32_t>(value);
     const auto sign = static_cast<std::uint16_t>(bits >> 16 & 0x8000);

@@ -5,11 +5,13 @@
 #include <array>
 #include <cstdint>
 
+#include "common/glapi/packed_vertex.h"
+
 namespace wall::client {
 
 using Rgb = std::array<float, 3>;
 
-float half_to_float(std::uint16_t half);
+using glapi::half_to_float;
 std::uint16_t float_to_half(float value);
 /// The same without rounding, as Mesa stores texels.
 std::uint16_t float_to_half_cut(float value);

@@ -47,6 +47,7 @@ std::size_t component_bytes(GLenum type) {
         case GL_UNSIGNED_INT:
         case GL_INT_2_10_10_10_REV:
         case GL_UNSIGNED_INT_2_10_10_10_REV:
+        case GL_FIXED:
         case GL_FLOAT: return 4;
         case GL_DOUBLE: return 8;
         default: return 0;

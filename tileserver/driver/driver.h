@@ -42,9 +42,9 @@ inline GLenum gl_query_target(QueryTarget target) {
 
 /// Driver samplers at all units; 0: what the texture itself says.
 using SamplerNames = std::array<GLuint, glstate::el::sampler_binding::count>;
-/// Equal ids mean equal names. Id 0: none anywhere.
+/// Equal stamps mean equal names. 0: none anywhere.
 struct SamplerBindings {
-    std::uint64_t id = 0;
+    std::uint64_t stamp = 0;
     SamplerNames names{};
 };
 
@@ -92,11 +92,11 @@ public:
         if (wanted.id != bound_textures_.id) bind_all(wanted);
     }
     void bind_samplers(const SamplerBindings& wanted) {
-        if (wanted.id != samplers_.id) bind_each_sampler(wanted);
+        if (wanted.stamp != samplers_.stamp) bind_each_sampler(wanted);
     }
     void delete_sampler(GLuint sampler) {  // the driver unbinds it by itself
         std::ranges::replace(samplers_.names, sampler, 0u);
-        samplers_.id = glstate::next_value_id();
+        samplers_.stamp = glstate::next_value_id();
         gl_.DeleteSamplers(1, &sampler);
     }
     /// On the active unit, for commands that work on the bound object.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "common/glstate/vertex_input.h"
@@ -33,7 +34,8 @@ private:
     Driver& driver_;
     GLuint name_ = 0;
     glstate::VertexInputDefinition definition_;
-    std::uint64_t elements_ = 0, buffers_ = 0;  ///< as of that version of the table's buffers
+    std::uint64_t elements_ = 0;
+    std::optional<std::uint64_t> buffers_;  ///< the version of the table's buffers that elements_ is of
 };
 
 }  // namespace wall::tileserver

@@ -271,6 +271,14 @@ TEST_F(ArrayDrawTest, OfNoInstancesNothingIsDrawn) {
     EXPECT_EQ(session_->session.work.array_elements, 0u);
 }
 
+TEST_F(ArrayDrawTest, ADrawNeedsNoArraysAndNoBuffers) {
+    Batch batch;
+    pack::VertexInput(batch.buffer(), kInput, glstate::encode(glstate::VertexInputDefinition{}));
+    draw(batch, [](auto& b) { pack::DrawArrays(b, kInput, {}, GL_POINTS, 5, 7); });
+    session_->expect_run(batch);
+    EXPECT_EQ(session_->session.work.gl_errors, 0u);
+    EXPECT_EQ(session_->session.work.array_elements, 7u);
+}
 TEST_F(ArrayDrawTest, DrawsNothingWhoseIndicesReachBehindTheirBuffer) {
     Batch batch;
     define(batch.buffer());
