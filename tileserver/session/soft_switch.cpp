@@ -13,6 +13,10 @@
 namespace wall::tileserver {
 namespace {
 
+std::uint64_t objects_id(const SoftContext& context) {
+    return context.state.ids[static_cast<std::size_t>(glstate::Category::objects)];
+}
+
 std::uint64_t textures_id(const SoftContext& context) {
     return context.state.ids[static_cast<std::size_t>(glstate::Category::textures)];
 }
@@ -51,9 +55,6 @@ glstate::BufferRange found_range(const RenderNode& node, const SessionReplica& s
 
 void look_up_samplers(SessionReplica& session, SoftContext& context) {
     BoundSamplers& bound = context.samplers;
-    const std::uint64_t values = context.state.ids[static_cast<std::size_t>(glstate::Category::objects)],
-                        version = session.objects.version(Sampler::kKind);
-    if (bound.values == values && bound.version == version) return;
     SamplerNames found{};
     for (unsigned unit = 0; unit < found.size(); ++unit) {
         const ClientName name(glstate::el::sampler_binding::ref(context.state, unit));
@@ -61,8 +62,8 @@ void look_up_samplers(SessionReplica& session, SoftContext& context) {
         found[unit] = sampler != nullptr ? sampler->name() : 0;
     }
     if (found != bound.bindings.names) bound.bindings = {found == SamplerNames{} ? 0 : glstate::next_value_id(), found};
-    bound.values = values;
-    bound.version = version;
+    bound.values = objects_id(context);
+    bound.version = session.objects.version(Sampler::kKind);
 }
 
 /// None, and what is no program: fixed function.
@@ -86,6 +87,8 @@ bool count(RenderNode& node, SessionReplica& session, ClientName name, QueryTarg
 bool count_all(RenderNode& node, SessionReplica& session, const glstate::State& state, const LayerGeometry& layer,
                Counted counted) {
     namespace el = glstate::el;
+    if ((el::occlusion_query::ref(state) | el::primitives_query::ref(state) | el::captured_query::ref(state)) == 0)
+        return true;
     const auto one = [&]<class E>(E, bool wanted, QueryTarget target, double scale) {
         return !wanted || count(node, session, ClientName(E::ref(state)), target, scale);
     };
@@ -102,7 +105,9 @@ bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, 
         context.textures.version != session.objects.version(Texture::kKind))
         look_up_textures(session, context);
     node.driver.bind_textures(context.textures.bindings);
-    look_up_samplers(session, context);
+    if (context.samplers.values != objects_id(context) ||
+        context.samplers.version != session.objects.version(Sampler::kKind))
+        look_up_samplers(session, context);
     node.driver.bind_samplers(context.samplers.bindings);
     node.maps.sync_evaluators(node.driver, context.maps);
     node.driver.bind_target(target, context.state);
