@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs what is missing, builds, and runs every test: scripts/test.sh [STAGE...], stages as listed below.
-# Ends with CTest's own summary of each stage; exit code 1 if anything failed. `fresh` runs only when it is named: it
-# does everything once more on a clean Debian 12 (scripts/fresh.sh).
+# Ends with CTest's own summary of each stage; exit code 1 if anything failed. Two run only when they are named:
+# conformance-all takes hours; fresh does everything once more on a clean Debian 12 (scripts/fresh.sh).
 set -uo pipefail
 cd "$(dirname "$0")/.."
-readonly all_stages=(release golden conformance asan tsan fuzz) on_request=(fresh)
+readonly all_stages=(release golden conformance asan tsan fuzz) on_request=(conformance-all fresh)
 readonly summaries="build/test-summaries"
 begin=$SECONDS
 failed=()
@@ -40,6 +40,18 @@ stage_conformance() {
   say "conformance tests: piglit on walls; what fails there, on plain Mesa"
   build release || { failed+=(conformance); return; }
   run conformance release -L conformance
+}
+
+stage_conformance-all() {
+  say "conformance tests: all that the walls offer, also what the usual run takes samples of"
+  build release || { failed+=(conformance-all); return; }
+  local wall
+  for wall in "1x1 1280x1024" "4x3 144x150"; do
+    # shellcheck disable=SC2086  # two words
+    set -- $wall
+    WALLGL_BUILD="$PWD/build/release" tests/conformance/piglit.py --tiles "$1" --tile-size "$2" \
+      --report "build/release/test-output/conformance-all-$1" || failed+=("conformance-all ($1)")
+  done
 }
 
 stage_asan() {

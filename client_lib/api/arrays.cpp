@@ -16,6 +16,7 @@
 #include "client_lib/context/select.h"
 #include "client_lib/context/staged_draw.h"
 #include "client_lib/context/vertex_array_objects.h"
+#include "common/glapi/primitive.h"
 #include "common/glstate/diff.h"
 
 namespace wall::client::api {
@@ -128,9 +129,10 @@ bool is_index_type(GLenum type) {
 
 /// A core profile knows no quads and no polygons, and draws from no arrays but those of an object.
 bool check_mode(Context& c, GLenum mode) {
-    if (mode > (c.profile.core ? GL_TRIANGLE_FAN : GL_POLYGON)) return c.error(GL_INVALID_ENUM), false;
-    if (!c.profile.core || c.state.vertex_arrays.vertex_array_object != 0) return true;
-    return c.error(GL_INVALID_OPERATION), false;
+    if (!glapi::is_primitive(mode) || (c.profile.core && mode >= GL_QUADS && mode <= GL_POLYGON))
+        return c.error(GL_INVALID_ENUM), false;
+    if (c.profile.core && c.state.vertex_arrays.vertex_array_object == 0) return c.error(GL_INVALID_OPERATION), false;
+    return !c.at_once() || fits_program(c, mode);
 }
 
 /// Draws one instance into the block or the list.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "client_lib/context/buffer_binding.h"
+#include "client_lib/context/captured_content.h"
 #include "client_lib/objects/share_group.h"
 
 namespace wall::client::api {
@@ -32,6 +33,12 @@ Buffer* buffer_with(Context& c, GLenum target, GLintptr offset, GLsizeiptr size)
     else if (buffer->blocked()) c.error(GL_INVALID_OPERATION);
     else return buffer;
     return nullptr;
+}
+
+/// What only nodes have of the buffer that is bound there is here afterwards.
+void fetch_bound(Context& c, GLenum target, const char* function) {
+    const auto found = c.buffers->by_id.find(bound_buffer_id(c, target).value_or(ClientName()));
+    if (found != c.buffers->by_id.end()) fetch_captured(c, found->second, function);
 }
 
 bool is_usage(GLenum usage) {
@@ -126,6 +133,7 @@ void BufferSubData(Context& c, GLenum target, GLintptr offset, GLsizeiptr size, 
 }
 
 void GetBufferSubData(Context& c, GLenum target, GLintptr offset, GLsizeiptr size, void* data) {
+    fetch_bound(c, target, "glGetBufferSubData");
     std::lock_guard lock(c.share().mutex);
     Buffer* buffer = buffer_with(c, target, offset, size);
     if (buffer && size != 0) std::memcpy(data, buffer->data() + offset, static_cast<std::size_t>(size));
@@ -159,6 +167,7 @@ GLenum error_of_mapping(const Buffer& buffer, GLintptr offset, GLsizeiptr length
 
 void* map(Context& c, GLenum target, GLintptr offset, GLsizeiptr length, GLbitfield access) {
     const auto first = static_cast<std::size_t>(offset);
+    fetch_bound(c, target, "glMapBuffer");
     Buffer* buffer = bound_buffer(c, target);
     if (access & GL_MAP_WRITE_BIT) before_writing(c, *buffer);
     std::lock_guard lock(c.share().mutex);
@@ -261,6 +270,7 @@ void CopyBufferSubData(Context& c, GLenum from_target, GLenum to_target, GLintpt
     Buffer* const from = bound_buffer(c, from_target);
     Buffer* const to = from ? bound_buffer(c, to_target) : nullptr;
     if (!to) return;
+    fetch_bound(c, from_target, "glCopyBufferSubData");
     before_writing(c, *to);
     std::lock_guard lock(c.share().mutex);
     if (from->blocked() || to->blocked()) return c.error(GL_INVALID_OPERATION);

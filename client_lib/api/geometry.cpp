@@ -7,6 +7,7 @@
 #include "client_lib/api/entry_guard.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/program_use.h"
+#include "common/glapi/primitive.h"
 
 namespace wall::client {
 namespace {
@@ -153,9 +154,9 @@ void GLAPIENTRY gl_entry_TexCoord2fv(const GLfloat* v) { gl_entry_TexCoord2f(v[0
 namespace api {
 
 void Begin(Context& c, GLenum mode) {
-    if (mode > GL_POLYGON) return c.error(GL_INVALID_ENUM);
+    if (!glapi::is_primitive(mode)) return c.error(GL_INVALID_ENUM);
     if (c.packer.inside()) return c.error(GL_INVALID_OPERATION);
-    if (may_draw(c)) c.begin_primitive(mode);
+    if (may_draw(c) && fits_program(c, mode)) c.begin_primitive(mode);
 }
 
 void End(Context& c) {

@@ -14,6 +14,7 @@
 #include "client_lib/context/param_commands.h"
 #include "client_lib/context/query_result.h"
 #include "client_lib/context/select.h"
+#include "client_lib/context/texture_binding.h"
 #include "client_lib/context/version.h"
 #include "client_lib/objects/maps.h"
 #include "common/glstate/elements.h"
@@ -82,6 +83,14 @@ void signed_components(Context& c, double* out) {
     const unsigned gray = b.luminance + b.intensity;
     const unsigned sizes[] = {b.red + gray, b.green + gray, b.blue + gray, unsigned{b.alpha} + b.intensity};
     std::ranges::transform(sizes, out, [](unsigned bits) { return bits != 0; });
+}
+
+/// Of the active unit's texture that is made of a buffer.
+template <GLenum kName>
+void part_of_buffer(Context& c, double* out) {
+    const auto texture = bound_texture(c, GL_TEXTURE_BUFFER);
+    const Texture::BufferPart part = texture ? texture->part : Texture::BufferPart();
+    *out = kName == GL_TEXTURE_BUFFER_FORMAT_ARB ? part.internal_format : part.buffer ? part.buffer->name : 0;
 }
 
 /// Calls `use` with the active unit if it has a matrix.
@@ -164,6 +173,8 @@ const Special kSpecials[] = {
          const TextureFormat* format = draw_color_format(c);
          *out = format != nullptr && format->srgb;
      }},
+    {GL_TEXTURE_BUFFER_DATA_STORE_BINDING, 1, part_of_buffer<GL_TEXTURE_BUFFER_DATA_STORE_BINDING>},
+    {GL_TEXTURE_BUFFER_FORMAT_ARB, 1, part_of_buffer<GL_TEXTURE_BUFFER_FORMAT_ARB>},
     {GL_NUM_SHADER_BINARY_FORMATS, 1, constant<0>},
     {GL_SHADER_BINARY_FORMATS, 0, constant<0>},
     {GL_NUM_PROGRAM_BINARY_FORMATS, 1, constant<0>},
@@ -177,6 +188,8 @@ const Special kSpecials[] = {
     {GL_MAX_VERTEX_ATTRIBS, 1, limited<GL_MAX_VERTEX_ATTRIBS, kVertexAttributes>},
     {GL_MAX_UNIFORM_BUFFER_BINDINGS, 1, limited<GL_MAX_UNIFORM_BUFFER_BINDINGS, kUniformBuffers>},
     {GL_MAX_COMBINED_UNIFORM_BLOCKS, 1, limited<GL_MAX_COMBINED_UNIFORM_BLOCKS, kUniformBuffers>},
+    {GL_MAX_TRANSFORM_FEEDBACK_SEPARATE_ATTRIBS, 1,
+     limited<GL_MAX_TRANSFORM_FEEDBACK_SEPARATE_ATTRIBS, glstate::el::feedback_buffer::count>},
     {GL_MAX_ELEMENTS_VERTICES, 1, constant<3000>},
     {GL_MAX_ELEMENTS_INDICES, 1, constant<3000>},
 

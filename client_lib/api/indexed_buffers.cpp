@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "client_lib/context/buffer_binding.h"
+#include "client_lib/context/capture_use.h"
 #include "client_lib/context/limits.h"
 #include "client_lib/context/object_name.h"
 
@@ -13,55 +14,90 @@ namespace {
 
 namespace el = glstate::el;
 
-/// The error of binding a part to a place of GL_UNIFORM_BUFFER, whatever the buffer.
-GLenum error_of_place(GLenum target, GLuint index) {
-    if (target != GL_UNIFORM_BUFFER) return GL_INVALID_ENUM;
-    return index < el::uniform_buffer::count ? GL_NO_ERROR : GL_INVALID_VALUE;
+/// The error of binding a part to a place of a target, whatever the buffer.
+GLenum error_of_place(Context& c, GLenum target, GLuint index) {
+    if (target == GL_UNIFORM_BUFFER) return index < el::uniform_buffer::count ? GL_NO_ERROR : GL_INVALID_VALUE;
+    if (target != GL_TRANSFORM_FEEDBACK_BUFFER) return GL_INVALID_ENUM;
+    if (c.captures->active) return GL_INVALID_OPERATION;
+    return index < kCaptureBuffers ? GL_NO_ERROR : GL_INVALID_VALUE;
 }
 
-bool may_begin_at(Context& c, GLintptr offset) {
-    if (!c.attached()) return true;
-    const auto alignment = static_cast<GLintptr>(limit_of(c.session().caps(), GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, 1));
-    return alignment <= 1 || offset % alignment == 0;
+/// Bytes that a part begins at a multiple of.
+GLintptr alignment_of(Context& c, GLenum target) {
+    if (target == GL_TRANSFORM_FEEDBACK_BUFFER) return 4;
+    if (!c.attached()) return 1;
+    return std::max<GLintptr>(
+        static_cast<GLintptr>(limit_of(c.session().caps(), GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, 1)), 1);
+}
+
+void set(Context& c, GLenum target, GLuint index, const glstate::BufferRange& range) {
+    if (target == GL_UNIFORM_BUFFER) c.set<el::uniform_buffer>(index, range);
+    else c.set<el::feedback_buffer>(index, range);
 }
 
 /// `bytes` 0: as far as the buffer goes.
 void bind(Context& c, GLenum target, GLuint index, GLuint name, std::uint64_t offset, std::uint64_t bytes) {
     BindBuffer(c, target, name);
     const ClientName id = bound_buffer_id(c, target).value_or(ClientName());
-    if (!id) return c.set<el::uniform_buffer>(index, {});
+    if (!id) return set(c, target, index, {});
     // No buffer is as large: what begins behind its end is nothing, and what ends there is all of the rest.
     static constexpr std::uint64_t kMost = ~std::uint32_t{0};
     const auto cut = [](std::uint64_t value) { return static_cast<std::uint32_t>(std::min(value, kMost)); };
-    c.set<el::uniform_buffer>(index, {id.value, cut(offset), cut(bytes)});
+    set(c, target, index, {id.value, cut(offset), cut(bytes)});
 }
 
 }  // namespace
 
 void BindBufferBase(Context& c, GLenum target, GLuint index, GLuint name) {
-    if (const GLenum error = error_of_place(target, index)) return c.error(error);
+    if (const GLenum error = error_of_place(c, target, index)) return c.error(error);
     bind(c, target, index, name, 0, 0);
 }
 
 void BindBufferRange(Context& c, GLenum target, GLuint index, GLuint name, GLintptr offset, GLsizeiptr bytes) {
-    if (const GLenum error = error_of_place(target, index)) return c.error(error);
+    if (const GLenum error = error_of_place(c, target, index)) return c.error(error);
     if (name == 0) return bind(c, target, index, 0, 0, 0);
-    if (offset < 0 || bytes <= 0 || !may_begin_at(c, offset)) return c.error(GL_INVALID_VALUE);
+    if (offset < 0 || bytes <= 0 || offset % alignment_of(c, target) != 0) return c.error(GL_INVALID_VALUE);
+    if (target == GL_TRANSFORM_FEEDBACK_BUFFER && bytes % 4 != 0) return c.error(GL_INVALID_VALUE);
     bind(c, target, index, name, static_cast<std::uint64_t>(offset), static_cast<std::uint64_t>(bytes));
+}
+
+/// GL_EXT_transform_feedback's own.
+void BindBufferOffsetEXT(Context& c, GLenum target, GLuint index, GLuint name, GLintptr offset) {
+    if (target != GL_TRANSFORM_FEEDBACK_BUFFER) return c.error(GL_INVALID_ENUM);
+    if (const GLenum error = error_of_place(c, target, index)) return c.error(error);
+    if (offset < 0 || offset % 4 != 0) return c.error(GL_INVALID_VALUE);
+    bind(c, target, index, name, static_cast<std::uint64_t>(offset), 0);
 }
 
 }  // namespace wall::client::api
 
 namespace wall::client {
+namespace {
+
+struct Words {
+    GLenum name, start, size;
+};
+
+/// False: none of these words.
+template <class E>
+bool answer(Context& c, const Words& words, GLenum pname, GLuint index, GLint64& value) {
+    if (pname != words.name && pname != words.start && pname != words.size) return false;
+    if (index >= E::count) return c.error(GL_INVALID_VALUE), true;
+    const glstate::BufferRange& range = c.get<E>(index);
+    if (pname == words.name) value = object_name(c, glstate::ValueKind::name_buffer, ClientName(range.buffer));
+    else value = pname == words.start ? range.offset : range.size;
+    return true;
+}
+
+}  // namespace
 
 bool get_indexed_buffer(Context& c, GLenum pname, GLuint index, GLint64& value) {
-    const bool name = pname == GL_UNIFORM_BUFFER_BINDING, start = pname == GL_UNIFORM_BUFFER_START;
-    if (!name && !start && pname != GL_UNIFORM_BUFFER_SIZE) return false;
-    if (index >= glstate::el::uniform_buffer::count) return c.error(GL_INVALID_VALUE), true;
-    const glstate::BufferRange& range = c.get<glstate::el::uniform_buffer>(index);
-    if (name) value = object_name(c, glstate::ValueKind::name_buffer, ClientName(range.buffer));
-    else value = start ? range.offset : range.size;
-    return true;
+    namespace el = glstate::el;
+    constexpr Words kUniform{GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE};
+    constexpr Words kFeedback{GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, GL_TRANSFORM_FEEDBACK_BUFFER_START,
+                              GL_TRANSFORM_FEEDBACK_BUFFER_SIZE};
+    return answer<el::uniform_buffer>(c, kUniform, pname, index, value) ||
+           answer<el::feedback_buffer>(c, kFeedback, pname, index, value);
 }
 
 }  // namespace wall::client

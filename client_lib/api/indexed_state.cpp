@@ -44,6 +44,7 @@ void buffer_value(Context& c, GLuint index, std::int64_t* out) {
     *out = value;
 }
 GLuint uniform_buffers(Context&) { return el::uniform_buffer::count; }
+GLuint feedback_buffers(Context&) { return el::feedback_buffer::count; }
 
 GLuint mask_words(Context&) { return 1; }
 
@@ -57,6 +58,10 @@ const IndexedWord kWords[] = {
     {GL_UNIFORM_BUFFER_BINDING, false, 1, uniform_buffers, buffer_value<GL_UNIFORM_BUFFER_BINDING>},
     {GL_UNIFORM_BUFFER_START, false, 1, uniform_buffers, buffer_value<GL_UNIFORM_BUFFER_START>},
     {GL_UNIFORM_BUFFER_SIZE, false, 1, uniform_buffers, buffer_value<GL_UNIFORM_BUFFER_SIZE>},
+    {GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, false, 1, feedback_buffers,
+     buffer_value<GL_TRANSFORM_FEEDBACK_BUFFER_BINDING>},
+    {GL_TRANSFORM_FEEDBACK_BUFFER_START, false, 1, feedback_buffers, buffer_value<GL_TRANSFORM_FEEDBACK_BUFFER_START>},
+    {GL_TRANSFORM_FEEDBACK_BUFFER_SIZE, false, 1, feedback_buffers, buffer_value<GL_TRANSFORM_FEEDBACK_BUFFER_SIZE>},
     {GL_MAX_COMPUTE_WORK_GROUP_COUNT, false, 1, dimensions, work_groups<GL_MAX_COMPUTE_WORK_GROUP_COUNT>},
     {GL_MAX_COMPUTE_WORK_GROUP_SIZE, false, 1, dimensions, work_groups<GL_MAX_COMPUTE_WORK_GROUP_SIZE>},
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "client_lib/api/program_access.h"
+#include "client_lib/context/capture_use.h"
 #include "client_lib/context/program_use.h"
 
 namespace wall::client::api {
@@ -38,10 +39,25 @@ GLint active_value(const Program& program, GLenum pname) {
         case GL_ACTIVE_ATTRIBUTES: return static_cast<GLint>(executable->attributes.size());
         case GL_ACTIVE_UNIFORM_MAX_LENGTH:
             return longest_name(executable->uniforms, [](const Uniform& u) { return u.full_name(); });
+        case GL_TRANSFORM_FEEDBACK_VARYINGS: return static_cast<GLint>(executable->captured.size());
+        case GL_TRANSFORM_FEEDBACK_BUFFER_MODE: return static_cast<GLint>(executable->capture_mode);
+        case GL_TRANSFORM_FEEDBACK_VARYING_MAX_LENGTH:
+            return longest_name(executable->captured, [](const glapi::CapturedVarying& v) { return v.name; });
         case GL_ACTIVE_UNIFORM_BLOCKS: return static_cast<GLint>(executable->blocks.size());
         case GL_ACTIVE_UNIFORM_BLOCK_MAX_NAME_LENGTH:
             return longest_name(executable->blocks, [](const UniformBlock& b) { return b.name; });
         default: return longest_name(executable->attributes, [](const glapi::ActiveAttribute& a) { return a.name; });
+    }
+}
+
+/// Null: no such word.
+GLuint glapi::GeometryStage::*field_of_geometry_stage(GLenum pname) {
+    switch (pname) {
+        case GL_GEOMETRY_INPUT_TYPE: return &glapi::GeometryStage::input;
+        case GL_GEOMETRY_OUTPUT_TYPE: return &glapi::GeometryStage::output;
+        case GL_GEOMETRY_VERTICES_OUT: return &glapi::GeometryStage::vertices;
+        case GL_GEOMETRY_SHADER_INVOCATIONS: return &glapi::GeometryStage::invocations;
+        default: return nullptr;
     }
 }
 
@@ -50,7 +66,7 @@ GLint active_value(const Program& program, GLenum pname) {
 // ---- shaders ----
 
 GLuint CreateShader(Context& c, GLenum type) {
-    if (type == GL_VERTEX_SHADER || type == GL_FRAGMENT_SHADER) return create<Shader>(c, type);
+    if (std::ranges::find(glapi::kShaderStages, type) != std::end(glapi::kShaderStages)) return create<Shader>(c, type);
     c.error(GL_INVALID_ENUM);
     return 0;
 }
@@ -168,12 +184,19 @@ void BindAttribLocation(Context& c, GLuint name, GLuint index, const GLchar* att
 void LinkProgram(Context& c, GLuint name) {
     const auto program = program_of(c, name);
     if (!program) return;
+    if (c.captures->program == program) return c.error(GL_INVALID_OPERATION);
     c.flush_block();
     bool in_use = false;
     {
         std::lock_guard lock(c.share().mutex);
-        program->to_link = program->definition();
         program->validated = false;
+        if (c.profile.core && program->shaders.empty()) {  // in others fixed function takes their place
+            program->to_link.reset();
+            program->linked = false;
+            program->log = "error: no shaders attached to the program\n";
+            return;
+        }
+        program->to_link = program->definition();
         in_use = program->users != 0;
     }
     if (in_use) learn_link_result(c, *program);
@@ -187,6 +210,7 @@ void ValidateProgram(Context& c, GLuint name) {
 }
 
 void UseProgram(Context& c, GLuint name) {
+    if (c.captures->active) return c.error(GL_INVALID_OPERATION);
     if (name == 0) return use_program(c, nullptr);
     const auto program = linked_program(c, name);
     if (!program) return;
@@ -199,6 +223,12 @@ void GetProgramiv(Context& c, GLuint name, GLenum pname, GLint* params) {
     if (!program) return;
     if (pname != GL_DELETE_STATUS && pname != GL_ATTACHED_SHADERS) learn_link_result(c, *program);
     std::lock_guard lock(c.share().mutex);
+    if (const auto field = field_of_geometry_stage(pname)) {
+        const Executable* executable = active(*program);
+        if (!executable || !executable->geometry.exists()) return c.error(GL_INVALID_OPERATION);
+        *params = static_cast<GLint>(executable->geometry.*field);
+        return;
+    }
     switch (pname) {
         case GL_DELETE_STATUS: *params = program->deleted; break;
         case GL_LINK_STATUS: *params = program->linked; break;
@@ -207,6 +237,9 @@ void GetProgramiv(Context& c, GLuint name, GLenum pname, GLint* params) {
         case GL_ATTACHED_SHADERS: *params = static_cast<GLint>(program->shaders.size()); break;
         case GL_ACTIVE_UNIFORMS:
         case GL_ACTIVE_UNIFORM_MAX_LENGTH:
+        case GL_TRANSFORM_FEEDBACK_VARYINGS:
+        case GL_TRANSFORM_FEEDBACK_BUFFER_MODE:
+        case GL_TRANSFORM_FEEDBACK_VARYING_MAX_LENGTH:
         case GL_ACTIVE_UNIFORM_BLOCKS:
         case GL_ACTIVE_UNIFORM_BLOCK_MAX_NAME_LENGTH:
         case GL_ACTIVE_ATTRIBUTES:

@@ -9,6 +9,7 @@
 
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/limits.h"
+#include "client_lib/context/param_commands.h"
 #include "client_lib/context/pixel_store.h"
 #include "client_lib/context/readback.h"
 #include "client_lib/context/texture_binding.h"
@@ -60,11 +61,18 @@ bool legal_size(Context& c, const ImageCall& call) {
 
 namespace {
 
-GLint most_border(const ImageCall& call) { return info_of(call).mipmaps ? 1 : 0; }
+GLint most_border(const Context& c, const ImageCall& call) { return info_of(call).mipmaps && !c.profile.core ? 1 : 0; }
+
+/// Null: no such internal format, or none in the context's profile.
+const TextureFormat* format_named(const Context& c, GLint internal_format) {
+    const bool removed = c.profile.core && internal_format <= 4;  // numbers of components
+    return removed || is_removed(c, static_cast<GLenum>(internal_format)) ? nullptr
+                                                                          : find_texture_format(internal_format);
+}
 
 GLenum image_error(Context& c, const ImageCall& call, const TextureFormat* internal) {
     if (call.level < 0 || call.level >= level_count(c, call.target)) return GL_INVALID_VALUE;
-    if (call.border < 0 || call.border > most_border(call)) return GL_INVALID_VALUE;
+    if (call.border < 0 || call.border > most_border(c, call)) return GL_INVALID_VALUE;
     if (call.width < 0 || call.height < 0 || call.depth < 0) return GL_INVALID_VALUE;
     if (const GLenum error = glapi::format_type_error(call.format, call.type)) return error;
     if (!internal) return GL_INVALID_VALUE;
@@ -242,7 +250,7 @@ void change_level(Context& c, const ImageCall& call, TexelData data) {
 
 void define_image(Context& c, ImageCall call) {
     if (!legal_target(call.dimensions, call.target)) return c.error(GL_INVALID_ENUM);
-    const TextureFormat* internal = find_texture_format(call.internal_format);
+    const TextureFormat* internal = format_named(c, call.internal_format);
     const GLenum error = image_error(c, call, internal);
     if (is_proxy(call.target)) {
         if (error != GL_NO_ERROR) return c.error(error);
@@ -352,8 +360,8 @@ struct From {
 void copy_image(Context& c, ImageCall call, GLenum internal_format, From from, const char* function) {
     if (is_proxy(call.target) || !legal_target(call.dimensions, call.target)) return c.error(GL_INVALID_ENUM);
     if (call.level < 0 || call.level >= level_count(c, call.target)) return c.error(GL_INVALID_VALUE);
-    if (call.border < 0 || call.border > most_border(call)) return c.error(GL_INVALID_VALUE);
-    const TextureFormat* internal = find_texture_format(static_cast<GLint>(internal_format));
+    if (call.border < 0 || call.border > most_border(c, call)) return c.error(GL_INVALID_VALUE);
+    const TextureFormat* internal = format_named(c, static_cast<GLint>(internal_format));
     if (!internal || internal_format <= 4) return c.error(GL_INVALID_ENUM);
     if (!may_read_pixels(c)) return;
     if (call.width < 0 || call.height < 0) return c.error(GL_INVALID_VALUE);

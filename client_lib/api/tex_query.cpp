@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "client_lib/context/param_commands.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/texture_image.h"
 #include "client_lib/objects/maps.h"
@@ -56,9 +57,26 @@ GLint undefined_value(GLenum pname, bool& known) {
     return pname == GL_TEXTURE_INTERNAL_FORMAT ? GL_RGBA : value;
 }
 
+/// Of a texture whose texels are a buffer's.
+GLint buffer_value(const Texture::BufferPart& part, GLenum pname, bool& known) {
+    const TextureFormat& format = *find_texture_format(static_cast<GLint>(part.internal_format));
+    const ComponentBits& bits = format.bits;
+    const int texel = (bits.red + bits.green + bits.blue + bits.alpha + bits.luminance + bits.intensity) / 8;
+    const auto texels = part.size() / static_cast<std::uint32_t>(std::max(texel, 1));
+    TextureLevel level;
+    level.width = static_cast<std::int32_t>(texels);
+    level.height = level.depth = 1;
+    switch (pname) {
+        case GL_TEXTURE_BUFFER_DATA_STORE_BINDING: return part.buffer ? static_cast<GLint>(part.buffer->name) : 0;
+        case GL_TEXTURE_BUFFER_OFFSET: return static_cast<GLint>(part.offset);
+        case GL_TEXTURE_BUFFER_SIZE: return static_cast<GLint>(part.size());
+        default: return level_value(level, format, pname, known);
+    }
+}
+
 template <class Out>
 void get_level(Context& c, GLenum target, GLint number, GLenum pname, Out* out) {
-    if (!image_target_of(target)) return c.error(GL_INVALID_ENUM);
+    if (!image_target_of(target) || is_removed(c, pname)) return c.error(GL_INVALID_ENUM);
     if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE);
     bool known = true;
     GLint value = 0;
@@ -75,7 +93,9 @@ void get_level(Context& c, GLenum target, GLint number, GLenum pname, Out* out) 
     } else {
         const auto texture = bound_texture(c, target);
         std::lock_guard lock(c.share().mutex);
-        answer(texture ? texture->find_level(face_of(target), number) : nullptr);
+        if (target == GL_TEXTURE_BUFFER)
+            value = buffer_value(texture ? texture->part : Texture::BufferPart(), pname, known);
+        else answer(texture ? texture->find_level(face_of(target), number) : nullptr);
     }
     if (!known) return c.error(GL_INVALID_ENUM);
     *out = static_cast<Out>(value);
@@ -129,7 +149,7 @@ void get_whole_border(Context& c, GLenum target, Whole* out) {
 template <class Out>
 void get_parameter(Context& c, GLenum target, GLenum pname, Out* out) {
     const auto* info = target_of(target);
-    if (!info || info->id == glapi::TextureTarget::buffer) return c.error(GL_INVALID_ENUM);
+    if (!info || info->id == glapi::TextureTarget::buffer || is_removed(c, pname)) return c.error(GL_INVALID_ENUM);
     const auto texture = bound_texture(c, target);
     const std::uint32_t immutable = texture ? texture->immutable_levels : 0;
     if (pname == GL_TEXTURE_IMMUTABLE_FORMAT) return void(*out = static_cast<Out>(immutable != 0));

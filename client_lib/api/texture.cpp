@@ -248,6 +248,8 @@ void TexParameterfv(Context& c, GLenum target, GLenum pname, const GLfloat* para
         for (unsigned i = 0; i < 4; ++i) TexParameterfv(c, target, GL_TEXTURE_SWIZZLE_R + i, params + i);
         return;
     }
+    const bool wrap = pname == GL_TEXTURE_WRAP_S || pname == GL_TEXTURE_WRAP_T || pname == GL_TEXTURE_WRAP_R;
+    if (is_removed(c, pname) || (wrap && is_removed(c, to_enum(params[0])))) return c.error(GL_INVALID_ENUM);
     const auto current = bound_texture(c, target);
     const TexParameters before = current ? current->parameters : Texture(ClientName(), 0, info->id).parameters;
     Change change = changed(before, *info, pname, params);

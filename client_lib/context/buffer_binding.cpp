@@ -8,6 +8,7 @@
 
 #include "client_lib/context/array_copies.h"
 #include "client_lib/context/attribute_stack.h"
+#include "client_lib/context/captured_content.h"
 #include "client_lib/context/forget_objects.h"
 #include "client_lib/context/indexed_buffers.h"
 #include "client_lib/context/staging_buffers.h"
@@ -20,9 +21,9 @@ namespace wall::client {
 
 namespace {
 
-constexpr GLenum kTargets[] = {GL_ARRAY_BUFFER,        GL_ELEMENT_ARRAY_BUFFER, GL_PIXEL_PACK_BUFFER,
-                               GL_PIXEL_UNPACK_BUFFER, GL_COPY_READ_BUFFER,     GL_COPY_WRITE_BUFFER,
-                               GL_UNIFORM_BUFFER};
+constexpr GLenum kTargets[] = {GL_ARRAY_BUFFER,        GL_ELEMENT_ARRAY_BUFFER,      GL_PIXEL_PACK_BUFFER,
+                               GL_PIXEL_UNPACK_BUFFER, GL_COPY_READ_BUFFER,          GL_COPY_WRITE_BUFFER,
+                               GL_UNIFORM_BUFFER,      GL_TRANSFORM_FEEDBACK_BUFFER, GL_TEXTURE_BUFFER};
 
 /// Calls use.operator()<E>() with the binding's element; false: no such target.
 template <class Use>
@@ -35,6 +36,8 @@ bool with_binding(GLenum target, Use&& use) {
         case GL_COPY_WRITE_BUFFER: return use.template operator()<el::copy_write_buffer>(), true;
         case GL_PIXEL_PACK_BUFFER: return use.template operator()<el::pixel_pack_buffer>(), true;
         case GL_UNIFORM_BUFFER: return use.template operator()<el::bound_uniform_buffer>(), true;
+        case GL_TEXTURE_BUFFER: return use.template operator()<el::bound_texture_buffer>(), true;
+        case GL_TRANSFORM_FEEDBACK_BUFFER: return use.template operator()<el::bound_feedback_buffer>(), true;
         case GL_PIXEL_UNPACK_BUFFER: return use.template operator()<el::pixel_unpack_buffer>(), true;
         default: return false;
     }
@@ -79,7 +82,9 @@ void add_named_by_arrays(const glstate::State& state, std::vector<std::uint32_t>
 void add_named(const glstate::State& state, std::vector<std::uint32_t>& ids) {
     const auto& local = state.local;
     ids.insert(ids.end(), {local.array_buffer, local.pixel_pack_buffer, local.pixel_unpack_buffer,
-                           local.copy_read_buffer, local.copy_write_buffer, local.bound_uniform_buffer});
+                           local.copy_read_buffer, local.copy_write_buffer, local.bound_uniform_buffer,
+                           local.bound_feedback_buffer, local.bound_texture_buffer});
+    for (const glstate::BufferRange& range : local.feedback_buffer) ids.push_back(range.buffer);
     for (const glstate::BufferRange& range : state.uniform_buffers.uniform_buffer) ids.push_back(range.buffer);
     add_named_by_arrays(state, ids);
 }
@@ -156,14 +161,8 @@ void let_go_of_own_buffer(Context& c, std::shared_ptr<Buffer> buffer) {
 void let_go_of_buffer(Context& c, std::shared_ptr<Buffer> buffer) {
     const ClientName id = buffer->id;
     forget_inputs(c, c.inputs->take_those_of(id));
-    {
-        std::lock_guard lock(c.share().mutex);
-        c.buffers->by_id.erase(id);
-        const bool others = buffer.use_count() > 2;  // the table by id, and this
-        if (!buffer->deleted || others) return;
-        c.share().by_id.erase(id);
-    }
-    c.forget_object(id);
+    c.buffers->by_id.erase(id);
+    forget_unused(c, std::move(buffer));
 }
 
 void let_go_of_all_buffers(Context& c) {
@@ -173,14 +172,24 @@ void let_go_of_all_buffers(Context& c) {
     for (auto& [id, buffer] : named) let_go_of_buffer(c, std::move(buffer));
 }
 
+namespace {
+
+void fetch_captured_of(Context& c, ClientName id, const char* what) {
+    const auto found = c.buffers->by_id.find(id);
+    if (found != c.buffers->by_id.end()) fetch_captured(c, found->second, what);
+}
+
+}  // namespace
+
 void before_writing(Context& c, const Buffer& buffer) {
     c.buffers->transfer = {};
-    if (!c.packer.empty() && is_uniform_buffer(c, buffer.id)) c.flush_block();
+    if (!c.packer.empty() && is_read_buffer(c, buffer.id)) c.flush_block();
     c.before_change(buffer.id);
 }
 
 BufferReading buffer_content(Context& c, ClientName id, std::uintptr_t offset) {
     if (buffers_were_deleted(c)) let_go_of_deleted_buffers(c);
+    fetch_captured_of(c, id, "vertices");
     const Buffer* buffer = buffer_of(c, id);
     if (!buffer) return {};
     std::lock_guard lock(c.share().mutex);
@@ -202,6 +211,7 @@ bool may_use(Context& c, const Buffer* buffer, std::uintptr_t offset, std::size_
 const void* unpack_source(Context& c, const void* pointer, std::size_t bytes) {
     const ClientName id(c.state.local.pixel_unpack_buffer);
     if (!id) return pointer;
+    fetch_captured_of(c, id, "pixels");
     const Buffer* buffer = buffer_of(c, id);
     const auto offset = reinterpret_cast<std::uintptr_t>(pointer);
     c.buffers->transfer = {};

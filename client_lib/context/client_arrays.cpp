@@ -155,7 +155,7 @@ bool direct(const ArraySource& source, DirectArray& out) {
     out = {source.base, source.stride, Op::Vertex3f, size * sizeof(float), source.attribute};
     if (source.attribute == kVertexArray) {
         if (size == 2) out.op = Op::Vertex2f;
-        return floats && size <= 3;
+        return floats && (size == 2 || size == 3);
     }
     if (source.attribute == Attribute::color && source.type == GL_UNSIGNED_BYTE && size == 4) {
         out.op = Op::Color4ub, out.bytes = 4;

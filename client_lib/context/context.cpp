@@ -6,6 +6,7 @@
 #include "client_lib/context/array_copies.h"
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/buffer_use.h"
+#include "client_lib/context/capture_use.h"
 #include "client_lib/context/debug_state.h"
 #include "client_lib/context/framebuffer_use.h"
 #include "client_lib/context/list_state.h"
@@ -40,6 +41,7 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextProfile& own_pr
       copies(std::make_unique<ArrayCopies>()),
       queries(std::make_unique<QueryState>()),
       debug(std::make_unique<DebugState>()),
+      captures(std::make_unique<CaptureUse>()),
       share_(std::move(share)) {
     for (auto& stack : texture_stacks) stack.limit = 10;
     {
@@ -92,18 +94,31 @@ void Context::forget_object(ClientName gone) {
     session_->delete_object(id, gone);
 }
 
-void Context::report_error(GLenum code, const char* where) { debug->log.say(error_message(code, where)); }
+void Context::report_error(GLenum code, const char* where) {
+    const bool logged = log_enabled(LogLevel::debug);
+    if (!logged && !state.local.debug_output) return;
+    DebugMessage message = error_message(code, where);
+    if (logged) log(LogLevel::debug, "opengl_error %s", message.text.c_str());
+    if (!state.local.debug_output) return;
+    debug->untold.push_back(std::move(message));
+    has_untold_ = true;
+}
+
+void Context::tell() {
+    has_untold_ = false;
+    for (DebugMessage& message : std::exchange(debug->untold, {})) debug->log.say(std::move(message));
+}
 
 void Context::begin_primitive(GLenum mode) {
     packer.begin(mode);
     if (program) packer.mark_unbounded();  // its shader puts the vertices anywhere
-    if (table == &tables::immediate) table = &tables::inside_begin;
+    if (at_once()) table = &tables::inside_begin;
 }
 
 void Context::end_primitive() {
     if (program) packer.mark_unbounded();  // what it takes for positions may be no numbers at all
     packer.end();
-    if (table == &tables::inside_begin) table = &tables::immediate;
+    if (table == &tables::inside_begin) table = profile.core ? &tables::core : &tables::immediate;
     if (packer.take_overflow()) {
         complain_once("one glBegin .. glEnd or draw is larger than can be carried to a node; it was left out", "block");
         error(GL_OUT_OF_MEMORY);
@@ -119,12 +134,30 @@ void Context::determine_modelview_form() {
     modelview_stack.origin = top.origin;
 }
 
+/// Sending a block leaves its attributes in the state; each pass begins with those of before.
+void Context::submit_geometry() {
+    if (!captures->active && !state.local.rasterizer_discard)
+        return session_->submit_block(draw_source(), packer, projection());
+    const glstate::State before = state;
+    draw_in_passes(state, *captures, [&] {
+        const auto objects = state.objects;
+        auto& value_id = state.ids[static_cast<std::size_t>(glstate::Category::objects)];
+        const auto kept_id = value_id;
+        state = before;
+        state.objects = objects;
+        value_id = kept_id;
+        session_->submit_block(draw_source(), packer, projection());
+    });
+    state = before;
+    fold_block(packer, state);
+}
+
 void Context::submit_block() {
     if (packer.has_geometry()) determine_modelview_form();
     if (packer.inside())
         return;  // only commands that are legal inside come here then, and they change nothing that is drawn with
     try {
-        if (packer.has_geometry() && !draws_nothing) session_->submit_block(draw_source(), packer, projection());
+        if (packer.has_geometry() && !draws_nothing) submit_geometry();
         else fold_block(packer, state);
     } catch (...) {  // the geometry is lost, what it set is not
         fold_block(packer, state);

@@ -40,6 +40,7 @@ class VertexArrayObjects;  // vertex_array_objects.h
 class ArrayCopies;         // array_copies.h
 struct StagingBuffers;     // staging_buffers.h
 struct FramebufferUse;     // framebuffer_use.h
+struct CaptureUse;         // capture_use.h: transform feedback
 
 inline constexpr unsigned kVertexAttributes = glstate::el::vertex_attrib::count;
 /// A block larger than this is sent at the next glEnd, so that nodes draw while the program goes on.
@@ -75,7 +76,8 @@ public:
     template <class E>
     void set(unsigned i, const typename E::type& value) {
         if (glstate::same(E::ref(state, i), value)) return;
-        if constexpr (E::sent) flush_block();
+        // Nodes are not told of what is discarded, but what was drawn before is drawn.
+        if constexpr (E::sent || E::id == glstate::el::rasterizer_discard::id) flush_block();
         glstate::assign<E>(state, i, value);
     }
 
@@ -83,7 +85,11 @@ public:
     /// `where`: the function that found it, for people.
     void error(GLenum code, const char* where = __builtin_FUNCTION()) {
         if (error_ == GL_NO_ERROR) error_ = code;
-        if (state.local.debug_output) report_error(code, where);
+        report_error(code, where);
+    }
+    /// At the end of a command, when no mutex is held: the program's callback may call any command.
+    void tell_errors() {
+        if (has_untold_) tell();
     }
     GLenum take_error() { return std::exchange(error_, GLenum{GL_NO_ERROR}); }
 
@@ -105,7 +111,8 @@ public:
     template <class Pack>
     void draw(const std::optional<PixelRect>& box, const Needs& needs, Pack&& pack) {
         flush_block();
-        if (!draws_nothing) session_->draw(draw_source(), box, needs, std::forward<Pack>(pack));
+        if (draws_nothing || state.local.rasterizer_discard) return;
+        session_->draw(draw_source(), box, needs, std::forward<Pack>(pack));
     }
 
     ClientSession& session() { return *session_; }
@@ -142,6 +149,7 @@ public:
     std::shared_ptr<Program> program;  ///< drawn with; null: fixed function
     std::unique_ptr<QueryState> queries;
     std::unique_ptr<DebugState> debug;
+    std::unique_ptr<CaptureUse> captures;
 
     /// Before an object that was drawn with changes or goes: by its id.
     void before_change(ClientName changing_id) {
@@ -173,11 +181,14 @@ private:
     void for_each_used(const std::function<void(const Object&)>& use) override;
     void submit_block();
     void report_error(GLenum code, const char* where);
+    void tell();
+    void submit_geometry();
     void first_use();
 
     std::shared_ptr<ClientSession> session_;
     std::shared_ptr<ShareGroup> share_;
     std::shared_ptr<ClientSurface> draw_, read_;
+    bool has_untold_ = false;  ///< debug->untold is not empty
     GLenum error_ = GL_NO_ERROR;
     bool used_ = false;
     bool lost_ = false;

@@ -2,6 +2,7 @@
 // A context as those see it who follow its state.
 #include "client_lib/follow/draw_source.h"
 
+#include "client_lib/context/capture_use.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/framebuffer_use.h"
 #include "client_lib/context/select.h"
@@ -11,6 +12,7 @@ namespace wall::client {
 
 DrawTarget Context::draw_target() const {
     if (!draw_) return {};
+    if (captures->now) return DrawTarget(*captures->now, session_->nodes().everywhere());
     if (framebuffers->draw && !select->layer) return DrawTarget(*framebuffers->draw, session_->nodes().everywhere());
     return select->layer ? DrawTarget(*draw_, *select->layer) : DrawTarget(*draw_);
 }

@@ -2,6 +2,7 @@
 #include "client_lib/context/forget_objects.h"
 
 #include <mutex>
+#include <utility>
 
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/texture_binding.h"
@@ -29,6 +30,16 @@ void forget_inputs(Context& c, const std::vector<std::shared_ptr<VertexInput>>& 
     }
 }
 
+void forget_unused(Context& c, std::shared_ptr<Buffer> buffer) {
+    {
+        std::lock_guard lock(c.share().mutex);
+        const bool others = buffer.use_count() > 2;  // the table by id, and this
+        if (!buffer->deleted || others) return;
+        c.share().by_id.erase(buffer->id);
+    }
+    c.forget_object(buffer->id);
+}
+
 void forget_texture(Context& c, const std::shared_ptr<Texture>& texture) {
     const glapi::TextureTarget target = texture->info.id;
     for (unsigned unit = 0; unit < kTextureImageUnits; ++unit) {
@@ -45,12 +56,8 @@ void forget_texture(Context& c, const std::shared_ptr<Texture>& texture) {
     if (is_attached(c, *texture)) return;
     // Another context of the group may still have it bound; then it lives on without a name.
     if (texture->bound_by.size() > 1 || (!texture->bound_by.empty() && texture->bound_by[0] != c.id)) return;
-    c.before_change(texture->id);
-    {
-        std::lock_guard lock(c.share().mutex);
-        c.share().by_id.erase(texture->id);
-    }
-    c.session().delete_object(c.id, texture->id);
+    forget(c, texture->id);
+    if (auto buffer = std::exchange(texture->part.buffer, nullptr)) forget_unused(c, std::move(buffer));
 }
 
 void forget_orphan(Context& c, const Renderbuffer& renderbuffer) {

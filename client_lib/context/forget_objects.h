@@ -20,6 +20,9 @@ void forget_inputs(Context& c, const std::vector<std::shared_ptr<VertexInput>>& 
 /// Its name is gone: it leaves this context's bindings and the framebuffers that are bound, and the nodes, unless
 /// another context or a framebuffer has it.
 void forget_texture(Context& c, const std::shared_ptr<Texture>& texture);
+/// A buffer that no context names any more: it goes with the last use of it if its name is gone. With that the nodes
+/// are told.
+void forget_unused(Context& c, std::shared_ptr<Buffer> buffer);
 /// What is attached, or was, goes if its name is gone and no framebuffer of the context has it.
 void forget_orphan(Context& c, const Attachment& attachment);
 void forget_orphan(Context& c, const Renderbuffer& renderbuffer);

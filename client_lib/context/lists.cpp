@@ -8,6 +8,7 @@
 #include <mutex>
 #include <utility>
 
+#include "client_lib/context/capture_use.h"
 #include "client_lib/context/program_use.h"
 #include "client_lib/follow/object_sender.h"
 #include "client_lib/geometry/block_walk.h"
@@ -108,17 +109,19 @@ void call_run(Context& c, const ListRun& run) {
     // A program's shader puts the vertices anywhere.
     const bool bounded = !options().broadcast && !c.program;
     const auto box = bounded ? project(c.projection(), run.box) : std::nullopt;
-    std::vector<Node*> reached;
-    c.session().draw(
-        c.draw_source(), box, needs_of_run(c, run),
-        [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session().nodes(), node, buffer, run); },
-        [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
-        [&](Node& node) {
-            node.object_stamps[run.id] = run.latest();  // kept commands call it, too
-            reached.push_back(&node);
-        });
+    draw_in_passes(c.state, *c.captures, [&] {
+        std::vector<Node*> reached;
+        c.session().draw(
+            c.draw_source(), box, needs_of_run(c, run),
+            [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session().nodes(), node, buffer, run); },
+            [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
+            [&](Node& node) {
+                node.object_stamps[run.id] = run.latest();  // kept commands call it, too
+                reached.push_back(&node);
+            });
+        follow(c, reached, run);
+    });
     apply_effects(c.state, run, run.in_context);
-    follow(c, reached, run);
 }
 
 // ---- a run within glBegin .. glEnd: unpacked again ----

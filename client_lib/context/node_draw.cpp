@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "client_lib/context/buffer_binding.h"
+#include "client_lib/context/capture_use.h"
+#include "client_lib/context/captured_content.h"
 #include "client_lib/context/element_bounds.h"
 #include "client_lib/context/forget_objects.h"
 #include "client_lib/context/program_use.h"
@@ -36,6 +38,8 @@ public:
         if (!input_.positions()) return suits_without_positions();
         known_ = in_buffers();
         if (known_ == nullptr) return false;
+        if (input_.position_buffer().is_drawn()) know_no_bounds();
+        if (input_.any_drawn()) return true;  // nobody else has it
         const bool worth = worth_keeping();
         // In a block of vertices there are no instances, and no numbers.
         return worth || draw_.instances != 1 || (c_.program && c_.program->executable->reads_vertex_numbers());
@@ -58,6 +62,7 @@ public:
     void send();
 
 private:
+    void send_once();
     /// What a node must hold before it can draw this.
     template <class Use>
     void for_each_object(Use&& use) const {
@@ -85,6 +90,7 @@ private:
                          : static_cast<std::uint32_t>(draw_.first);
     }
     const RangeBounds* in_buffers();
+    void know_no_bounds();
     /// Whether the indices lie in their buffer.
     bool indices_in_buffer() const;
     /// The lowest and the highest element; nothing: they are not in the buffers.
@@ -104,6 +110,13 @@ private:
     const RangeBounds* known_ = nullptr;
     RangeBounds once_;  ///< of indices that are not in a buffer: nobody knows whether they are those of before
 };
+
+/// The positions are known to the nodes only.
+void NodeDraw::know_no_bounds() {
+    once_.box.make_unbounded();
+    once_.cut = false;
+    known_ = &once_;
+}
 
 bool NodeDraw::indices_in_buffer() const {
     const auto offset = reinterpret_cast<std::uintptr_t>(draw_.indices);
@@ -225,6 +238,10 @@ Needs NodeDraw::needs() const {
 void NodeDraw::send() {
     if (!may_draw(c_) || c_.draws_nothing) return;
     c_.determine_modelview_form();
+    draw_in_passes(c_.state, *c_.captures, [&] { send_once(); });
+}
+
+void NodeDraw::send_once() {
     // A program's shader puts the vertices anywhere.
     const bool bounded = !options().broadcast && !c_.program;
     const auto box = bounded ? project(c_.projection(), known_->box) : std::nullopt;
@@ -297,6 +314,8 @@ bool draw_on_nodes(Context& c, const ArrayDraw& draw) {
 bool draw_if_worth(Context& c, VertexInput& input, const ArrayDraw& draw) {
     c.flush_block();
     if (input.has_too_many_ranges()) forget_ranges(c, input);
+    if (draw.index_type != 0 && input.indices())
+        fetch_captured(c, input.shared_indices(), "glDrawElements");  // the highest is looked for
     NodeDraw on_nodes(c, input, draw);
     on_nodes.find_written();
     if (!on_nodes.suits()) return false;

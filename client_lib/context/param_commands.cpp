@@ -151,6 +151,7 @@ void set_capability(Context& c, GLenum cap, bool on) {
     if (is_removed(c, cap)) return c.error(GL_INVALID_ENUM);
     const CapRow* row = find_cap_row(cap);
     if (c.profile.core && row && row->unit_stride != 0) return c.error(GL_INVALID_ENUM);  // fixed function's
+    if (!row && c.profile.core) return c.error(GL_INVALID_ENUM);
     if (!row)
         return on ? api::EnableClientState(c, cap) : api::DisableClientState(c, cap);  // as GL_EXT_vertex_array had it
     if (row->unit_stride != 0 && !c.fixed_unit()) return lacks_switch(c, row->unit_stride);

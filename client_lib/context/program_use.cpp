@@ -4,9 +4,11 @@
 #include <utility>
 
 #include "client_lib/context/ask_one.h"
+#include "client_lib/context/capture_use.h"
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/indexed_buffers.h"
 #include "client_lib/process/log.h"
+#include "common/glapi/primitive.h"
 
 namespace wall::client {
 namespace {
@@ -77,10 +79,27 @@ bool reads_vertex_numbers(const Context& c) {
     return c.program->executable->reads_vertex_numbers();
 }
 
+bool fits_program(Context& c, GLenum mode) {
+    if (!c.program) return true;
+    GLenum single = glapi::single_primitive(mode);
+    bool fits = true;
+    {
+        std::lock_guard lock(c.share().mutex);
+        const glapi::GeometryStage& stage = c.program->executable->geometry;
+        if (stage.exists()) {
+            fits = single == stage.input;
+            single = glapi::single_primitive(stage.output);
+        }
+    }
+    if (c.captures->active) fits = fits && single == c.captures->active->mode();
+    if (!fits) c.error(GL_INVALID_OPERATION);
+    return fits;
+}
+
 bool may_draw(Context& c) {
     if (c.framebuffers->draw && !may_draw_to_target(c)) return false;
     if (!c.program) return true;
-    find_written_uniforms(c);
+    find_written_to_read(c);
     std::lock_guard lock(c.share().mutex);
     if (!c.program->executable->samplers_conflict()) return true;
     c.error(GL_INVALID_OPERATION);

@@ -26,6 +26,10 @@ bool reads_vertex_numbers(const Context& c);
 /// set.
 bool may_draw(Context& c);
 
+/// Whether primitives of that mode can go through the context's program, to its geometry shader and to transform
+/// feedback. False, and an error.
+bool fits_program(Context& c, GLenum mode);
+
 /// One user less; the object goes if it was to be deleted and nothing else uses it.
 void drop_user(Context& c, const std::shared_ptr<GlslObject>& object);
 /// glDeleteShader, glDeleteProgram.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/context/used_objects.h"
 
+#include "client_lib/context/capture_use.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/framebuffer_use.h"
 #include "client_lib/context/indexed_buffers.h"
@@ -62,11 +63,12 @@ void for_each_used(Context& context, const Use& use) {
     }
     for (const std::uint32_t sampler : context.state.objects.sampler_binding)
         if (sampler != 0) use_bound(ClientName(sampler));
+    if (context.captures->now) context.captures->now->for_each_used(use);
     for_each_enabled(context.state, use_bound);
     if (!context.program) return;
     use(*context.program);
+    for_each_read_buffer(context, [&](const auto& buffer) { use(*buffer); });  // before textures that are made of them
     for_each_sampled(context.state, *context.program->executable, use_bound);
-    for_each_uniform_buffer(context, use_bound);
 }
 
 UseStamp use_stamp(const Context& context) {
@@ -76,7 +78,7 @@ UseStamp use_stamp(const Context& context) {
             .textures = ids[static_cast<std::size_t>(Category::textures)],
             .objects = ids[static_cast<std::size_t>(Category::objects)],
             .uniform_buffers = ids[static_cast<std::size_t>(Category::uniform_buffers)],
-            .uniforms = latest_of_uniform_buffers(context),
+            .read_buffers = latest_of_read_buffers(context),
             .targets = context.framebuffers->stamp,
             .shared = context.share().last_change.load(std::memory_order_acquire),
             .maps = context.maps->stamp};

@@ -16,6 +16,7 @@ void Buffer::define(const void* data, std::size_t bytes, GLenum usage) {
     if (stamp_ == 0 || usage != usage_) churn.expect(usage);
     usage_ = usage;
     mapping_.reset();
+    drawn_ = false;
     zeros_ = data == nullptr;
     stamp_ = next_stamp();
     changes_.reset(stamp_);
@@ -45,6 +46,33 @@ void Buffer::wrote(ByteRange range) {
     zeros_ = false;
     changes_.add(range, stamp_);
     churn.changed(range.size());
+}
+
+void Buffer::note_drawn() {
+    stamp_ = next_stamp();
+    drawn_ = true;
+    zeros_ = false;
+}
+
+/// The nodes that are told of later changes have it.
+void Buffer::take_drawn(std::span<const std::byte> content) {
+    leave_to_readers();
+    std::ranges::copy(content, memory_->bytes.begin());
+    drawn_ = false;
+    changes_.add({0, content.size()}, stamp_);
+}
+
+void Buffer::pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer, const std::function<void()>& packed) const {
+    for (std::size_t at = 0; at < size(); at += kLargestBufferCommand) {
+        const std::size_t bytes = std::min(kLargestBufferCommand, size() - at);
+        const auto answer = ask([&](wire::PackBuffer& question, RequestId request) {
+            glapi::pack::BufferRead(question, request, id, static_cast<std::uint32_t>(at),
+                                    static_cast<std::uint32_t>(bytes));
+        });
+        if (!answer || answer->size() != bytes) return;
+        glapi::pack::BufferSubData(buffer, id, static_cast<std::uint32_t>(at), *answer);
+        packed();
+    }
 }
 
 /// Who reads goes on with the bytes as they are now. What the program has a pointer to stays where it is.

@@ -108,6 +108,13 @@ public:
     /// nothing was.
     bool find_written(ByteRange range);
 
+    /// Captured by transform feedback: what it holds is on the nodes only from now on.
+    void note_drawn();
+    /// What a node says that it holds: all of it, as after note_drawn() and what was written since.
+    void take_drawn(std::span<const std::byte> content);
+    bool is_drawn() const override { return drawn_; }
+    void pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer, const std::function<void()>& packed) const override;
+
     std::uint64_t latest() const override { return stamp_; }
     void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
                       const std::function<void()>& packed) const override;
@@ -127,6 +134,7 @@ private:
     GLenum usage_ = GL_STATIC_DRAW;
     GLbitfield storage_flags_ = GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_DYNAMIC_STORAGE_BIT;
     bool immutable_ = false;
+    bool drawn_ = false;       ///< `memory_` has only what was written since
     bool zeros_ = false;       ///< nothing was written since it was defined without content
     std::uint64_t stamp_ = 0;  ///< of the latest change; 0: it was never defined
     ChangedRanges changes_;

@@ -180,6 +180,7 @@ void Executable::check_samplers() {
     samplers_conflict_ = false;
     for_each_sampler([&](std::uint32_t unit, glapi::TextureTarget target) {
         samplers_conflict_ |= targets.emplace(unit, target).first->second != target;
+        samples_buffers_ |= target == glapi::TextureTarget::buffer;
     });
 }
 

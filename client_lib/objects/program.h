@@ -103,6 +103,8 @@ public:
                 for (const std::uint32_t unit : words_of(uniform)) use(unit, uniform.type->texture_target);
     }
 
+    /// Whether drawing takes values from buffers, by blocks of uniforms or by textures.
+    bool reads_buffers() const { return !blocks.empty() || samples_buffers_; }
     /// Samplers of different targets name one unit: nothing may be drawn (OpenGL 2.1, 2.15.4).
     bool samplers_conflict() const { return samplers_conflict_; }
 
@@ -124,6 +126,7 @@ private:
     std::vector<std::uint32_t> words_;
     std::vector<UniformPlace> places_;  ///< by location
     bool samplers_conflict_ = false;
+    bool samples_buffers_ = false;
     bool reads_vertex_numbers_ = false;
 };
 

@@ -349,7 +349,18 @@ bool same_parameter(const TexParameters& a, const TexParameters& b, GLenum pname
            (pname != GL_TEXTURE_BORDER_COLOR || a.border_whole == b.border_whole);
 }
 
+std::uint32_t Texture::BufferPart::size() const {
+    if (!buffer || offset >= buffer->size()) return 0;
+    const auto rest = static_cast<std::uint32_t>(buffer->size() - offset);
+    return bytes != 0 ? std::min(bytes, rest) : rest;
+}
+
 void Texture::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed) const {
+    if (info.id == glapi::TextureTarget::buffer) {  // it has no parameters
+        glapi::pack::TexBuffer(buffer, id, part.internal_format, part.buffer ? part.buffer->id : ClientName(),
+                               part.offset, part.bytes);
+        return packed();
+    }
     TexturePacker packer{id, buffer, packed};
     TextureDiff(*this, packer).run(known);
 }

@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "client_lib/objects/buffer.h"
 #include "client_lib/objects/object.h"
 #include "client_lib/objects/texture_formats.h"
 #include "common/glapi/content_hash.h"
@@ -92,6 +93,14 @@ struct Texture : Object {
     std::array<std::vector<TextureLevel>, glapi::kCubeFaces> faces;
     /// As of a stamp: see content_key().
     mutable std::pair<std::uint64_t, glapi::ContentKey> key_cache{};
+
+    /// Of GL_TEXTURE_BUFFER: the part of a buffer that the texels are. bytes 0: as far as the buffer goes.
+    struct BufferPart {
+        std::shared_ptr<Buffer> buffer;  ///< null: none
+        GLenum internal_format = GL_R8;
+        std::uint32_t offset = 0, bytes = 0;
+        std::uint32_t size() const;  ///< bytes of it that there are
+    } part;
 
     std::uint32_t immutable_levels = 0;  ///< glTexStorage gave it so many, for good; 0: it did not
     bool orphan = false;                 ///< its name is gone; it goes with the last framebuffer that has it

@@ -63,7 +63,12 @@ public:
     }
     /// Null: none.
     const Buffer* indices() const { return definition_.indices ? buffers_.back().get() : nullptr; }
-    /// Whether a buffer is mapped so that no command may use it. The share group's mutex is held, here and below.
+    const std::shared_ptr<Buffer>& shared_indices() const { return buffers_.back(); }
+    /// Whether only nodes have the content of a buffer. The share group's mutex is held, here and below.
+    bool any_drawn() const {
+        return std::ranges::any_of(buffers_, [](const auto& buffer) { return buffer->is_drawn(); });
+    }
+    /// Whether a buffer is mapped so that no command may use it.
     bool blocked() const {
         return std::ranges::any_of(buffers_, [](const auto& buffer) { return buffer->blocked(); });
     }

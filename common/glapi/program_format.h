@@ -115,9 +115,10 @@ struct CapturedVarying {
 
 /// Of a geometry shader; 0 throughout: there is none.
 struct GeometryStage {
-    GLenum input = 0, output = 0;  ///< primitives
-    std::uint32_t vertices = 0;    ///< at most
-    std::uint32_t invocations = 0;
+    GLenum input = 0, output = 0;   ///< primitives
+    std::uint32_t vertices = 0;     ///< at most
+    std::uint32_t invocations = 0;  ///< 0: there is no geometry shader
+    bool exists() const { return invocations != 0; }
     bool operator==(const GeometryStage&) const = default;
 };
 

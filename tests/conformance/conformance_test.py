@@ -11,6 +11,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "support")]
 
+import piglit  # noqa: E402
 import players  # noqa: E402
 import report  # noqa: E402
 from expectations import load, on_wall  # noqa: E402
@@ -142,6 +143,23 @@ class Judged(unittest.TestCase):
                           "abc")
         self.assertEqual([(group, counts.total(), counts["pass"]) for group, counts in judgement.table()],
                          [("group", 2, 1), ("other", 1, 1), ("all", 3, 2)])
+
+
+class Sampled(unittest.TestCase):
+    @staticmethod
+    def some(group: str, count: int) -> list[Test]:
+        return [Test(f"{group}@{n}", ("true",), "shader") for n in range(count)]
+
+    def test_small_groups_are_whole(self):
+        tests = self.some("small", piglit.LARGE_GROUP)
+        self.assertEqual(piglit.sample(tests, 4, lambda test: "small"), tests)
+
+    def test_of_large_ones_there_is_a_part(self):
+        tests = self.some("small", 10) + self.some("large", 4000)
+        chosen = piglit.sample(tests, 4, lambda test: test.name.split("@")[0])
+        self.assertEqual(chosen[:10], tests[:10])
+        self.assertTrue(800 < len(chosen) < 1200, len(chosen))
+        self.assertEqual(chosen, piglit.sample(tests, 4, lambda test: test.name.split("@")[0]), "always the same")
 
 
 class Suite(unittest.TestCase):

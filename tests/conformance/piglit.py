@@ -10,7 +10,8 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Collection, Iterator
+import zlib
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -25,6 +26,7 @@ from wall import Wall, WallError  # noqa: E402
 from xserver import XServer  # noqa: E402
 
 PROGRESS = 10.0  # seconds between two lines of progress
+LARGE_GROUP = 300  # tests; its like are generated, hundreds of a kind
 HELP = """\
 Selected are the tests about what the wall offers: its OpenGL and GLSL versions and extensions, GLX and EGL. They draw
 into windows. A test that is skipped asks for something that is not offered: that is no failure.
@@ -60,6 +62,8 @@ def read_arguments() -> argparse.Namespace:
                         help="only tests of this profile; may be given again; "
                         "opengl are programs, shader are scripts that draw, glslparser only compile")
     parser.add_argument("--all", action="store_true", help="also what selection.toml leaves out")
+    parser.add_argument("--sample", type=int, default=1, metavar="N",
+                        help=f"of groups of more than {LARGE_GROUP} tests only one of N, always the same; default all")
     parser.add_argument("--list", action="store_true", help="only print the tests")
     parser.add_argument("-j", "--jobs", type=int, default=2, help="tests at a time; default 2")
     parser.add_argument("--timeout", type=float, default=60.0, metavar="S",
@@ -89,6 +93,15 @@ class Selection:
                 self.left_out[reason] += 1
             else:
                 self.tests.append(test)
+        if options.sample > 1:
+            self.tests = sample(self.tests, options.sample, lambda test: group_of(test.name, offer))
+
+
+def sample(tests: list[Test], of: int, group: Callable[[Test], str]) -> list[Test]:
+    """One of so many tests of each large group, by their names, so that it is the same everywhere; all of the others."""
+    sizes = collections.Counter(group(test) for test in tests)
+    return [test for test in tests
+            if sizes[group(test)] <= LARGE_GROUP or zlib.crc32(test.name.encode()) % of == 0]
 
 
 class Progress:

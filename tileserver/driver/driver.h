@@ -150,6 +150,25 @@ public:
         for (glstate::BufferRange& bound : uniform_buffers_)
             if (bound.buffer == buffer) bound = {};
     }
+    /// Transform feedback of the driver has begun or goes on; nothing of what is drawn is seen.
+    void captures() {
+        discard_all();
+        capturing_ = true;
+    }
+    /// The same without it.
+    void discard_all() {
+        gl_.Enable(GL_RASTERIZER_DISCARD);
+        discarding_ = true;
+    }
+    /// It waits.
+    void stop_capturing() {
+        if (!std::exchange(discarding_, false)) return;
+        if (std::exchange(capturing_, false)) {
+            gl_.PauseTransformFeedback();
+            gl_.BindTransformFeedback(GL_TRANSFORM_FEEDBACK, 0);
+        }
+        gl_.Disable(GL_RASTERIZER_DISCARD);
+    }
     /// A vertex array object of the driver, for the next draw from arrays.
     void bind_vertex_array(GLuint vertex_array) {
         if (vertex_array_ != vertex_array) gl_.BindVertexArray(vertex_array_ = vertex_array);
@@ -215,6 +234,7 @@ private:
     GLuint program_ = 0;                           // that the driver draws with
     std::array<GLuint, kQueryTargets> queries_{};  // that count
     GLuint vertex_array_ = 0;
+    bool discarding_ = false, capturing_ = false;
     std::array<glstate::BufferRange, glstate::el::uniform_buffer::count> uniform_buffers_{};  // the driver's names
     std::uint32_t uniform_buffer_alignment_ = 1;
     RenderTarget* target_ = nullptr;  // whose window values are in the driver

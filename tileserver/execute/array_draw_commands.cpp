@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/glapi/primitive.h"
 #include "common/glstate/projection.h"
 #include "tileserver/objects/buffer.h"
 #include "tileserver/objects/draw_pieces.h"
@@ -32,7 +33,7 @@ VertexInput* ArrayDrawCommands::begin(ClientName name, GLenum mode, std::int32_t
     if (block_.in_begin) return execution_.refuse("between Begin and End"), nullptr;
     const auto input = execution_.session.objects.get<VertexInput>(name);
     if (!input) return execution_.refuse(input.error().message), nullptr;
-    if (mode > GL_POLYGON || count < 0)
+    if (!glapi::is_primitive(mode) || count < 0)
         return execution_.refuse("no such primitive, or fewer than no elements"), nullptr;
     if (!block_.draws || count == 0) return nullptr;
     execution_.node.driver.bind_vertex_array((*input)->name());

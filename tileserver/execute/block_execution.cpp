@@ -70,6 +70,7 @@ void BlockExecution::finish_tile() {
         if (block_.draws) execution_.gl.End();
     }
     execution_.node.driver.end_queries();
+    execution_.node.driver.stop_capturing();
     if (block_.draws) block_.trail.fold_into(execution_.node.driver.mirror);
 }
 
@@ -101,6 +102,7 @@ void BlockExecution::pause() {
     if (!block_.tile_open || !block_.draws) return;
     if (block_.in_begin) execution_.gl.End();
     execution_.node.driver.end_queries();
+    execution_.node.driver.stop_capturing();
     block_.trail.fold_into(execution_.node.driver.mirror);
 }
 

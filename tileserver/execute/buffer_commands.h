@@ -15,6 +15,7 @@ public:
     explicit BufferCommands(Execution& execution) : execution_(execution) {}
 
     void BufferData(ClientName buffer, std::uint32_t size, GLenum usage);
+    void BufferRead(RequestId request, ClientName buffer, std::uint32_t offset, std::uint32_t size);
     void BufferSubData(ClientName buffer, std::uint32_t offset, std::span<const std::byte> content);
 
 private:

@@ -20,6 +20,7 @@
 #include "tileserver/execute/blit_commands.h"
 #include "tileserver/execute/block_execution.h"
 #include "tileserver/execute/buffer_commands.h"
+#include "tileserver/execute/capture_commands.h"
 #include "tileserver/execute/content_question.h"
 #include "tileserver/execute/draw_commands.h"
 #include "tileserver/execute/draw_pieces_commands.h"
@@ -38,6 +39,7 @@
 #include "tileserver/execute/stream_commands.h"
 #include "tileserver/execute/surface_commands.h"
 #include "tileserver/execute/sync_commands.h"
+#include "tileserver/execute/texture_buffer_commands.h"
 #include "tileserver/execute/texture_commands.h"
 #include "tileserver/execute/texture_drawn_commands.h"
 #include "tileserver/execute/vertex_input_commands.h"
@@ -80,12 +82,14 @@ public:
     RunCommands run{execution_, geometry.block(), question_, [this](glapi::DrawingRun& r) { return r.run(*this); }};
     ProgramCommands program{execution_};
     BufferCommands buffer{execution_};
+    CaptureCommands capture{execution_};
     VertexInputCommands vertex_input{execution_};
     DrawPiecesCommands draw_pieces{execution_};
     RenderbufferCommands renderbuffer{execution_};
     FramebufferCommands framebuffer{execution_};
     TextureDrawnCommands texture_drawn{execution_};
     SamplerCommands sampler{execution_};
+    TextureBufferCommands texture_buffer{execution_};
     BlitCommands blit{execution_, geometry.block()};
     QueryCommands query{execution_};
     MapCommands map{execution_};

@@ -12,8 +12,13 @@ Buffer::~Buffer() {
     gl_.DeleteBuffers(1, &name_);
 }
 
-bool Buffer::define(std::uint32_t size, GLenum usage) {
+void Buffer::release() {
     driver_.release_uniform_buffer(name_);
+    if (gives_texels_) gl_.Flush();
+}
+
+bool Buffer::define(std::uint32_t size, GLenum usage) {
+    release();
     driver_.drain_errors();
     gl_.NamedBufferData(name_, size, nullptr, usage);
     // The driver's memory may have been another session's.
@@ -23,9 +28,16 @@ bool Buffer::define(std::uint32_t size, GLenum usage) {
     return has_content(size_) && size_ == size;
 }
 
+std::vector<std::byte> Buffer::read(std::uint32_t offset, std::uint32_t size) const {
+    if (offset > size_ || size > size_ - offset) return {};
+    std::vector<std::byte> content(size);
+    if (size != 0) gl_.GetNamedBufferSubData(name_, offset, static_cast<GLsizeiptr>(size), content.data());
+    return content;
+}
+
 bool Buffer::write(std::uint32_t offset, std::span<const std::byte> content) {
     if (offset > size_ || content.size() > size_ - offset) return false;
-    driver_.release_uniform_buffer(name_);
+    release();
     if (!content.empty())
         gl_.NamedBufferSubData(name_, offset, static_cast<GLsizeiptr>(content.size()), content.data());
     return true;

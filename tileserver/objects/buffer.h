@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "tileserver/driver/driver.h"
 #include "tileserver/objects/object.h"
@@ -23,12 +24,21 @@ public:
     [[nodiscard]] bool define(std::uint32_t size, GLenum usage);
     /// False: it reaches over the end.
     [[nodiscard]] bool write(std::uint32_t offset, std::span<const std::byte> content);
+    /// A texture is made of it from now on.
+    void give_texels() { gives_texels_ = true; }
+    /// Nothing: it reaches over the end.
+    std::vector<std::byte> read(std::uint32_t offset, std::uint32_t size) const;
 
 private:
+    /// Before it changes: what is drawn and not yet sent on by the driver has read it (Mesa 22 gathers glBegin ..
+    /// glEnd).
+    void release();
+
     const Gl& gl_;
     Driver& driver_;
     GLuint name_ = 0;
     std::uint64_t size_ = 0;
+    bool gives_texels_ = false;
 };
 
 }  // namespace wall::tileserver

@@ -23,10 +23,12 @@ enum class ObjectKind : std::uint8_t {
     renderbuffer,
     framebuffer,
     sampler,
+    capture,
 };
-inline constexpr std::array kObjectKindNames = {"texture",     "program",      "run",         "query",
-                                                "buffer",      "vertex input", "piece table", "renderbuffer",
-                                                "framebuffer", "sampler"};
+inline constexpr std::array kObjectKindNames = {
+    "texture",           "program",     "run",          "query",       "buffer",
+    "vertex input",      "piece table", "renderbuffer", "framebuffer", "sampler",
+    "transform feedback"};
 inline constexpr std::size_t kObjectKinds = kObjectKindNames.size();
 
 // What one session may have on a node, of all kinds together: they fill the same memory, and no kind knows what is

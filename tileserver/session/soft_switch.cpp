@@ -5,6 +5,7 @@
 
 #include "gen/glstate/texture_elements.gen.h"
 #include "tileserver/objects/buffer.h"
+#include "tileserver/objects/capture.h"
 #include "tileserver/objects/program.h"
 #include "tileserver/objects/query.h"
 #include "tileserver/objects/sampler.h"
@@ -84,11 +85,15 @@ bool count(RenderNode& node, SessionReplica& session, ClientName name, QueryTarg
     return query && (*query)->target() == target && (*query)->begin(scale);
 }
 
-bool count_all(RenderNode& node, SessionReplica& session, const glstate::State& state, const LayerGeometry& layer,
-               Counted counted) {
+/// Last, since it takes part in no other state.
+bool count_and_capture(RenderNode& node, SessionReplica& session, const glstate::State& state,
+                       const LayerGeometry& layer, Counted counted) {
     namespace el = glstate::el;
-    if ((el::occlusion_query::ref(state) | el::primitives_query::ref(state) | el::captured_query::ref(state)) == 0)
+    const ClientName capture(el::capture::ref(state));
+    if ((el::occlusion_query::ref(state) | el::primitives_query::ref(state) | el::captured_query::ref(state) |
+         capture.value) == 0)
         return true;
+    if (Capture* found = capture ? session.objects.find<Capture>(capture) : nullptr) found->go_on(session.objects);
     const auto one = [&]<class E>(E, bool wanted, QueryTarget target, double scale) {
         return !wanted || count(node, session, ClientName(E::ref(state)), target, scale);
     };
@@ -113,7 +118,7 @@ bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, 
     node.driver.bind_target(target, context.state);
     use_program(node, session, context.state, target.geometry());
     node.driver.sync_current(context.state);
-    return count_all(node, session, context.state, target.geometry(), counted);
+    return count_and_capture(node, session, context.state, target.geometry(), counted);
 }
 
 }  // namespace wall::tileserver

@@ -414,7 +414,8 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
         {{GL_FRAGMENT_SHADER, true, "void main() { gl_FragColor = vec4(1); }"}}, {}, {}};
     static constexpr std::array<float, 4> values{};
     using Say = std::function<void(Batch&, ClientName)>;
-    const std::array<std::pair<ObjectKind, Say>, 10> makes = {{
+    static constexpr std::array<std::uint32_t, 3> part{9, 0, 0};
+    const std::array<std::pair<ObjectKind, Say>, 11> makes = {{
         {ObjectKind::texture,
          [](Batch& b, ClientName id) {
              pack::TexParameter(b.buffer(), id, GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST, 0, 0, 0);
@@ -444,8 +445,10 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
          [](Batch& b, ClientName id) {
              pack::SamplerParameter(b.buffer(), id, GL_TEXTURE_LOD_BIAS, GL_FLOAT, 0, 0, 0, 0);
          }},
+        {ObjectKind::capture,
+         [](Batch& b, ClientName id) { pack::Capture(b.buffer(), id, GL_POINTS, std::as_bytes(std::span(part))); }},
     }};
-    const std::array<Say, 10> uses = {
+    const std::array<Say, 11> uses = {
         makes[0].second,
         [&](Batch& b, ClientName id) {
             pack::Uniform(b.buffer(), id, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(values)));
@@ -458,6 +461,7 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
         makes[7].second,
         makes[8].second,
         makes[9].second,
+        makes[10].second,
     };
     static_assert(makes.size() == kObjectKinds, "a new kind is tried, too");
     for (std::size_t is = 0; is < kObjectKinds; ++is) {

@@ -280,7 +280,8 @@ def _entry(i, commands, registry):
     if i.way in ("convert", "as") and "packed" not in i.flags and "hot" in commands.all["gl" + i.target].flags:
         return f"{head}    gl_entry_{i.target}({', '.join(_target_args(i, registry))});\n}}\n"
     none = "return;" if returns == "void" else "return {};"
-    lines = [head, f"    Context* c = tls_context;\n    if (!c) {none}\n    try {{\n"]
+    lines = [head, f"    Context* c = tls_context;\n    if (!c) {none}\n",
+             "    const EntryEnd entry_end(*c);\n    try {\n"]
     lines += [f"        {line}\n" for line in _entry_body(i, commands, registry)]
     lines.append(f'    }} catch (...) {{\n        entry_failed("gl{i.name}");\n')
     lines += [] if returns == "void" else [f"        {none}\n"]

@@ -59,6 +59,8 @@ TEST_F(DebugOutput, NothingIsSaidWhileItIsOff) {
 
 TEST_F(DebugOutput, AnErrorSaysWhichCommandItIsOf) {
     gl().BlendFuncSeparate(c, GL_FRONT, GL_ONE, GL_ONE, GL_ONE);
+    EXPECT_EQ(read(), "") << "while the command goes on, and holds mutexes that a callback's commands may want";
+    c.tell_errors();
     EXPECT_THAT(read(), HasSubstr("GL_INVALID_ENUM in glBlendFuncSeparate"));
     EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM}) << "and is one as before";
 }

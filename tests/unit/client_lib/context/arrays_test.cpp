@@ -45,6 +45,18 @@ TEST_F(ArraysTest, FloatsAndBytesPackAsImmediateMode) {
     EXPECT_EQ(arrays, take());
 }
 
+TEST_F(ArraysTest, VerticesOfOneComponentAreWhole) {
+    const float values[] = {1, 2, 3};
+    gl().VertexAttribPointer(c, 0, 1, GL_FLOAT, GL_FALSE, 0, values);
+    gl().EnableVertexAttribArray(c, 0);
+    gl().DrawArrays(c, GL_TRIANGLES, 0, 3);
+    const auto arrays = take();
+    gl().Begin(c, GL_TRIANGLES);
+    for (const float value : values) gl().Vertex4f(c, value, 0, 0, 1);
+    gl().End(c);
+    EXPECT_EQ(arrays, take());
+}
+
 // llvmpipe multiplies by 1/255 where glColor4ub divides by 255: for half of the bytes not the same float.
 TEST_F(ArraysTest, BytesThatADrawConvertsOtherwiseTravelAsFloats) {
     const float vertices[] = {1, 2};
