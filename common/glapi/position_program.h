@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// How a vertex shader makes gl_Position of one attribute, where that is an affine function of it: a list of steps that
+// a node recognised in the parsed source (tileserver/objects/position_recogniser.h), and which the client and the nodes
+// evaluate to a matrix when uniforms or matrices have changed, so that draws with shaders have boxes like those of
+// fixed function (DESIGN, section 4, "Shaders and boxes"). It travels with a program's definition and with what linking
+// told about it (program_format.h). Pure.
+//
+// The steps are a list in which each names earlier ones, not a postfix expression: what a shader uses twice is there
+// once, so that sixty lines of `p += p;` are sixty steps.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace wall::glapi {
+
+enum class PositionOp : std::uint8_t {
+    constant,   ///< its components, as bits of floats
+    uniform,    ///< index in PositionProgram::uniforms
+    built_in,   ///< BuiltInMatrix
+    attribute,  ///< none; x, y, z and w as far as the shader declares them
+    pick,       ///< for each component: a step and a component of it, which is what swizzles and constructors do
+    add,        ///< two steps of the same shape, here and in the next three, or one of them is a scalar
+    subtract,
+    multiply,  ///< component by component
+    divide,
+    product,  ///< of linear algebra: matrices and vectors, which stand as rows on the left; of two vectors the scalar
+    inverse,  ///< of a square matrix
+};
+
+/// Of fixed function (OpenGL 2.1, 2.11.2), as GLSL names them.
+enum class BuiltInMatrix : std::uint8_t { modelview, projection, modelview_projection };
+
+struct PositionStep {
+    PositionOp op = PositionOp::constant;
+    std::uint8_t columns = 1, rows = 1;  ///< of its value; components go column by column
+    std::vector<std::uint32_t> operands;
+    bool operator==(const PositionStep&) const = default;
+    std::size_t components() const { return std::size_t{columns} * rows; }
+};
+
+/// One element of a uniform of floats.
+struct PositionUniform {
+    std::string name;  ///< as the program's other ends name it, without "[0]"
+    std::uint32_t element = 0;
+    bool operator==(const PositionUniform&) const = default;
+};
+
+struct PositionProgram {
+    std::vector<PositionUniform> uniforms;
+    std::string attribute;            ///< "gl_Vertex", or a generic one
+    bool depth = true;                ///< false: z is another function, and 0 here
+    std::vector<PositionStep> steps;  ///< the last one is the position; none: it was not recognised
+    bool operator==(const PositionProgram&) const = default;
+    bool known() const { return !steps.empty(); }
+};
+
+/// Shaders that people write take about ten.
+inline constexpr std::size_t kMostPositionSteps = 256;
+
+/// Whether every step has a meaning: operands that are there and of shapes that go together, and nothing that is not
+/// affine. One that is not known is valid. To be asked of what comes from elsewhere, before evaluate().
+bool is_valid(const PositionProgram& program);
+
+/// What a program's value depends on; all of it must stay while it is used.
+struct PositionValues {
+    std::span<const std::span<const float>> uniforms;  ///< in the program's order, each column by column
+    std::span<const float, 16> modelview, projection;
+};
+
+/// From the attribute (x, y, z, 1) to gl_Position, column by column. Nothing: the program is not known, or a uniform
+/// has not as many components as the shader takes. Of a valid program only.
+std::optional<std::array<float, 16>> evaluate(const PositionProgram& program, const PositionValues& values);
+
+}  // namespace wall::glapi
