@@ -16,6 +16,7 @@
 #include "client_lib/context/vertex_inputs.h"
 #include "client_lib/geometry/fold.h"
 #include "client_lib/objects/maps.h"
+#include "client_lib/objects/program.h"
 #include "client_lib/objects/share_group.h"
 #include "client_lib/process/log.h"
 
@@ -74,16 +75,47 @@ void Context::first_use() {
     glstate::assign<glstate::el::read_buffer>(state, 0, buffer);
 }
 
-const glstate::Projection& Context::projection() {
+namespace {
+
+/// Of what a projection depends on.
+std::array<std::uint64_t, 4> projection_ids(const glstate::State& state) {
     using glstate::Category;
-    const std::array<std::uint64_t, 3> ids = {state.ids[static_cast<std::size_t>(Category::matrix)],
-                                              state.ids[static_cast<std::size_t>(Category::window)],
-                                              state.ids[static_cast<std::size_t>(Category::line_point)]};
+    const auto id = [&](Category category) { return state.ids[static_cast<std::size_t>(category)]; };
+    return {id(Category::matrix), id(Category::window), id(Category::line_point), id(Category::transform)};
+}
+
+}  // namespace
+
+const glstate::Projection& Context::projection() {
+    const auto ids = projection_ids(state);
     if (ids != projection_ids_) {
         projection_ = make_projection(state);
         projection_ids_ = ids;
     }
     return projection_;
+}
+
+const Placing& Context::placing() {
+    const glstate::Projection& fixed_function = projection();
+    if (!program) {
+        if (placing_change_ != 0 || placing_ids_ != projection_ids_) placing_ = {true, 0, true, fixed_function};
+        placing_change_ = 0;
+        placing_ids_ = projection_ids_;
+        return placing_;
+    }
+    std::lock_guard lock(share_->mutex);
+    Executable& executable = *program->executable;
+    if (placing_change_ == executable.last_change && placing_ids_ == projection_ids_) return placing_;
+    placing_change_ = executable.last_change;
+    placing_ids_ = projection_ids_;
+    placing_ = {false, 0, true, glstate::unknown_projection()};
+    const GLint attribute = executable.position_attribute();
+    const auto* transform = executable.position().transform(state.matrix.modelview, state.matrix.projection);
+    if (transform == nullptr || attribute < 0) return placing_;
+    const bool depth = executable.position().program().depth;
+    placing_ = {true, static_cast<std::uint32_t>(attribute), transform->homogeneous(),
+                make_projection(fixed_function, *transform, depth)};
+    return placing_;
 }
 
 void Context::forget_object(ClientName gone) {
@@ -96,12 +128,13 @@ void Context::report_error(GLenum code, const char* where) { debug->log.say(erro
 
 void Context::begin_primitive(GLenum mode) {
     packer.begin(mode);
-    if (program) packer.mark_unbounded();  // its shader puts the vertices anywhere
+    if (program && !placing().of_vertices()) packer.mark_unbounded();
     if (table == &tables::immediate) table = &tables::inside_begin;
 }
 
 void Context::end_primitive() {
-    if (program) packer.mark_unbounded();  // what it takes for positions may be no numbers at all
+    if (program && !places_packed_vertices())
+        packer.mark_unbounded();  // of what are no positions, they may be no numbers
     packer.end();
     if (table == &tables::inside_begin) table = &tables::immediate;
     if (packer.take_overflow()) {
@@ -109,6 +142,11 @@ void Context::end_primitive() {
         error(GL_OUT_OF_MEMORY);
     }
     if (packer.bytes() > kBlockBytes && !packer.closed()) flush_block();
+}
+
+bool Context::places_packed_vertices() {
+    const Placing& now = placing();
+    return now.of_vertices() && (now.homogeneous || !packer.has_w());
 }
 
 void Context::determine_modelview_form() {
@@ -119,12 +157,18 @@ void Context::determine_modelview_form() {
     modelview_stack.origin = top.origin;
 }
 
+/// If another thread has linked the program anew meanwhile, boxes that were known may not be so any more.
+void Context::submit_geometry() {
+    const bool known = !program || places_packed_vertices();
+    session_->submit_block(draw_source(), packer, known ? placing().projection : glstate::unknown_projection());
+}
+
 void Context::submit_block() {
     if (packer.has_geometry()) determine_modelview_form();
     if (packer.inside())
         return;  // only commands that are legal inside come here then, and they change nothing that is drawn with
     try {
-        if (packer.has_geometry() && !draws_nothing) session_->submit_block(draw_source(), packer, projection());
+        if (packer.has_geometry() && !draws_nothing) submit_geometry();
         else fold_block(packer, state);
     } catch (...) {  // the geometry is lost, what it set is not
         fold_block(packer, state);

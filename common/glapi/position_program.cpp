@@ -103,26 +103,27 @@ private:
 
 // ---- evaluation ----
 
-/// A value as a function of the attribute (x, y, z, 1). Only vectors depend on it.
+/// A value as a function of the attribute. Only vectors depend on it.
 struct Value {
     std::array<float, kMostComponents> constant{};
-    std::array<std::array<float, 3>, kVectorComponents> slope{};  ///< of each component, to each of x, y and z
+    std::array<std::array<float, 4>, kVectorComponents> slope{};  ///< of each component, to each of x, y, z and w
 };
 
-/// The terms of one component: what it is at the origin, and its slopes.
+/// The terms of one component: its slopes, and what it is where the attribute is 0.
 struct Component {
-    std::array<float, 4> terms{};
+    static constexpr std::size_t kConstant = 4;
+    std::array<float, 5> terms{};
 };
 
 Component component(const Value& value, std::size_t i) {
-    Component out{{0, 0, 0, value.constant[i]}};
+    Component out{{0, 0, 0, 0, value.constant[i]}};
     if (i < kVectorComponents) std::ranges::copy(value.slope[i], out.terms.begin());
     return out;
 }
 
 void put(Value& value, std::size_t i, const Component& c) {
-    value.constant[i] = c.terms[3];
-    if (i < kVectorComponents) std::copy_n(c.terms.begin(), 3, value.slope[i].begin());
+    value.constant[i] = c.terms[Component::kConstant];
+    if (i < kVectorComponents) std::copy_n(c.terms.begin(), 4, value.slope[i].begin());
 }
 
 template <class F>
@@ -135,8 +136,9 @@ Component combine(const Component& a, const Component& b, F&& f) {
 /// One of them does not depend on the vertex, so that its slopes are 0.
 Component times(const Component& a, const Component& b) {
     Component out{};
-    for (std::size_t i = 0; i < 3; ++i) out.terms[i] = a.terms[i] * b.terms[3] + a.terms[3] * b.terms[i];
-    out.terms[3] = a.terms[3] * b.terms[3];
+    const float x = a.terms[Component::kConstant], y = b.terms[Component::kConstant];
+    for (std::size_t i = 0; i < Component::kConstant; ++i) out.terms[i] = a.terms[i] * y + x * b.terms[i];
+    out.terms[Component::kConstant] = x * y;
     return out;
 }
 
@@ -146,7 +148,7 @@ Component divided(const Component& a, float by) {
     return out;
 }
 
-/// By Gauss and Jordan with pivots; of a singular matrix it is no numbers, like what a driver makes of it.
+/// By Gauss and Jordan with pivots; of a singular matrix it is no numbers.
 std::array<float, kMostComponents> inverse(const std::array<float, kMostComponents>& matrix, std::size_t n) {
     double work[4][8] = {};
     for (std::size_t row = 0; row < n; ++row) {
@@ -178,7 +180,7 @@ class Evaluation {
 public:
     Evaluation(const PositionProgram& program, const PositionValues& values) : program_(program), given_(values) {}
 
-    std::optional<std::array<float, 16>> run() {
+    std::optional<PositionTransform> run() {
         if (!program_.known() || given_.uniforms.size() != program_.uniforms.size()) return std::nullopt;
         values_.reserve(program_.steps.size());
         for (const PositionStep& step : program_.steps) {
@@ -186,12 +188,15 @@ public:
             if (!find(step, value)) return std::nullopt;
             values_.push_back(value);
         }
-        std::array<float, 16> out{};
+        PositionTransform out;
+        bool finite = true;
         for (std::size_t row = 0; row < kVectorComponents; ++row) {
             const Component c = component(values_.back(), row);
-            for (std::size_t column = 0; column < 4; ++column) out[4 * column + row] = c.terms[column];
+            for (std::size_t column = 0; column < 4; ++column) out.linear[4 * column + row] = c.terms[column];
+            out.constant[row] = c.terms[Component::kConstant];
+            for (const float term : c.terms) finite = finite && std::isfinite(term);
         }
-        return out;
+        return finite ? std::optional(out) : std::nullopt;
     }
 
 private:
@@ -220,8 +225,7 @@ private:
         return true;
     }
     static void attribute(const PositionStep& step, Value& out) {
-        for (std::size_t i = 0; i < std::min<std::size_t>(step.rows, 3); ++i) out.slope[i][i] = 1;
-        if (step.rows == 4) out.constant[3] = 1;
+        for (std::size_t i = 0; i < step.rows; ++i) out.slope[i][i] = 1;
     }
     std::array<float, 16> built_in(BuiltInMatrix which) const {
         std::array<float, 16> out{};
@@ -243,7 +247,7 @@ private:
             if (step.op == PositionOp::add) put(out, i, combine(x, y, std::plus<>()));
             else if (step.op == PositionOp::subtract) put(out, i, combine(x, y, std::minus<>()));
             else if (step.op == PositionOp::multiply) put(out, i, times(x, y));
-            else put(out, i, divided(x, y.terms[3]));
+            else put(out, i, divided(x, y.terms[Component::kConstant]));
         }
     }
     void product(const PositionStep& step, Value& out) const {
@@ -273,8 +277,42 @@ private:
 
 bool is_valid(const PositionProgram& program) { return Check(program).run(); }
 
-std::optional<std::array<float, 16>> evaluate(const PositionProgram& program, const PositionValues& values) {
+std::array<float, 16> PositionTransform::matrix() const {
+    std::array<float, 16> out = linear;
+    for (std::size_t row = 0; row < kVectorComponents; ++row) out[12 + row] += constant[row];
+    return out;
+}
+
+std::optional<PositionTransform> evaluate(const PositionProgram& program, const PositionValues& values) {
     return Evaluation(program, values).run();
+}
+
+LinkedPosition::LinkedPosition(PositionProgram program, std::vector<std::uint32_t> locations)
+    : program_(std::move(program)), locations_(std::move(locations)), values_(program_.uniforms.size()) {}
+
+void LinkedPosition::set(std::uint32_t first, std::size_t words_each, std::span<const std::uint32_t> words) {
+    for (std::size_t i = 0; i < locations_.size(); ++i) {
+        const std::size_t element = locations_[i] - first;
+        if (locations_[i] < first || (element + 1) * words_each > words.size()) continue;
+        std::vector<float>& value = values_[i];
+        value.resize(words_each);
+        std::ranges::transform(words.subspan(element * words_each, words_each), value.begin(),
+                               [](std::uint32_t bits) { return std::bit_cast<float>(bits); });
+        current_ = false;
+    }
+}
+
+const PositionTransform* LinkedPosition::transform(std::span<const float, 16> modelview,
+                                                   std::span<const float, 16> projection) {
+    if (!program_.known()) return nullptr;
+    if (!current_ || !std::ranges::equal(modelview, modelview_) || !std::ranges::equal(projection, projection_)) {
+        const std::vector<std::span<const float>> values(values_.begin(), values_.end());
+        transform_ = evaluate(program_, {values, modelview, projection});
+        std::ranges::copy(modelview, modelview_.begin());
+        std::ranges::copy(projection, projection_.begin());
+        current_ = true;
+    }
+    return transform_ ? &*transform_ : nullptr;
 }
 
 }  // namespace wall::glapi

@@ -73,8 +73,42 @@ struct PositionValues {
     std::span<const float, 16> modelview, projection;
 };
 
-/// From the attribute (x, y, z, 1) to gl_Position, column by column. Nothing: the program is not known, or a uniform
-/// has not as many components as the shader takes. Of a valid program only.
-std::optional<std::array<float, 16>> evaluate(const PositionProgram& program, const PositionValues& values);
+/// gl_Position is `linear` times the attribute (x, y, z, w), and `constant`.
+struct PositionTransform {
+    std::array<float, 16> linear{};  ///< column by column
+    std::array<float, 4> constant{};
+    /// Multiples of a vertex are the same place, as in fixed function.
+    bool homogeneous() const { return constant == std::array<float, 4>{}; }
+    /// Of attributes whose w is 1.
+    std::array<float, 16> matrix() const;
+};
+
+/// Nothing: the program is not known, a uniform has not as many components as the shader takes, or what comes of it is
+/// no number. Of a valid program only.
+std::optional<PositionTransform> evaluate(const PositionProgram& program, const PositionValues& values);
+
+/// The position program of a linked program with the values that its uniforms have now; evaluated when it is asked for
+/// and something has changed. For one thread at a time.
+class LinkedPosition {
+public:
+    LinkedPosition() = default;
+    /// `locations`: of the program's uniforms, in its order, as whoever sets them names them.
+    LinkedPosition(PositionProgram program, std::vector<std::uint32_t> locations);
+
+    const PositionProgram& program() const { return program_; }
+    const std::vector<std::uint32_t>& locations() const { return locations_; }
+    /// Uniforms have values from now on: those with the locations from `first` on, each of `words_each`.
+    void set(std::uint32_t first, std::size_t words_each, std::span<const std::uint32_t> words);
+    /// Null as evaluate() says. Stays until the next call.
+    const PositionTransform* transform(std::span<const float, 16> modelview, std::span<const float, 16> projection);
+
+private:
+    PositionProgram program_;
+    std::vector<std::uint32_t> locations_;
+    std::vector<std::vector<float>> values_;  ///< of the uniforms
+    std::array<float, 16> modelview_{}, projection_{};
+    bool current_ = false;
+    std::optional<PositionTransform> transform_;
+};
 
 }  // namespace wall::glapi

@@ -88,6 +88,19 @@ Projection make_projection(const State& state) {
     return p;
 }
 
+Projection make_projection(const Projection& fixed_function, const glapi::PositionTransform& transform, bool depth) {
+    Projection p = fixed_function;
+    p.clip_from_object = transform.matrix();
+    p.near_plane = p.near_plane && depth;
+    return p;
+}
+
+Projection unknown_projection() {
+    Projection p;
+    p.clip_from_object[12] = 10 * kLargestCoordinate;
+    return p;
+}
+
 namespace {
 
 struct ClipCorners {

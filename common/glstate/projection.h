@@ -9,6 +9,7 @@
 
 #include "common/geom/box.h"
 #include "common/geom/pixel_rect.h"
+#include "common/glapi/position_program.h"
 #include "gen/glstate/state.gen.h"
 
 namespace wall::glstate {
@@ -24,6 +25,10 @@ struct Projection {
 };
 
 Projection make_projection(const State& state);
+/// The same of vertices that a shader places. `depth`: as of its position program.
+Projection make_projection(const Projection& fixed_function, const glapi::PositionTransform& transform, bool depth);
+/// Every box may be anywhere.
+Projection unknown_projection();
 Mat4 multiply(const Mat4& a, const Mat4& b);
 
 /// Where the box can be drawn; nothing if that is unknown. Empty behind the eye.

@@ -22,7 +22,8 @@ PositionProgram program_of(std::vector<PositionStep> steps) { return {{{"u", 0}}
 
 std::optional<Matrix> value_of(const PositionProgram& program, std::span<const float> uniform = {}) {
     const std::span<const float> uniforms[] = {uniform};
-    return evaluate(program, {uniforms, kModelview, kProjection});
+    const auto transform = evaluate(program, {uniforms, kModelview, kProjection});
+    return transform ? std::optional(transform->matrix()) : std::nullopt;
 }
 
 TEST(PositionProgram, MatricesOfFixedFunction) {
@@ -61,7 +62,7 @@ TEST(PositionProgram, Inverse) {
     ASSERT_TRUE(result);
     for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR((*result)[i], i % 5 == 0 ? 1 : 0, 1e-4) << i;
     const Matrix singular{};
-    EXPECT_TRUE(std::isnan((*value_of(program, singular))[0]));
+    EXPECT_FALSE(value_of(program, singular));
 }
 
 TEST(PositionProgram, UniformsMustHaveTheirSize) {
@@ -73,6 +74,50 @@ TEST(PositionProgram, UniformsMustHaveTheirSize) {
     EXPECT_FALSE(evaluate(program, {{}, kModelview, kProjection}));
     EXPECT_FALSE(value_of({}, std::span(values, 1)));
     EXPECT_TRUE(is_valid({}));
+}
+
+TEST(PositionProgram, HomogeneousWhereFixedFunctionIsSo) {
+    const PositionStep vertex{Op::attribute, 1, 4, {}}, one{Op::constant, 1, 1, {bits(1)}};
+    const std::span<const float> uniforms[] = {{}};
+    const PositionValues values{uniforms, kModelview, kProjection};
+    EXPECT_TRUE(evaluate(program_of({vertex}), values)->homogeneous());
+    const auto moved = evaluate(program_of({vertex, one, {Op::add, 1, 4, {0, 1}}}), values);
+    EXPECT_FALSE(moved->homogeneous());
+    EXPECT_EQ(moved->constant, (std::array<float, 4>{1, 1, 1, 1}));
+    EXPECT_EQ(moved->matrix(), (Matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 1, 1, 2}));
+}
+
+TEST(PositionProgram, FollowsItsUniforms) {
+    PositionProgram program = program_of({{Op::attribute, 1, 4, {}},
+                                          {Op::uniform, 1, 4, {0}},
+                                          {Op::uniform, 1, 1, {1}},
+                                          {Op::multiply, 1, 4, {0, 2}},
+                                          {Op::add, 1, 4, {3, 1}}});
+    program.uniforms.push_back({"f", 0});
+    LinkedPosition position(program, {6, 2});
+    EXPECT_EQ(position.transform(kModelview, kProjection), nullptr);  // the uniforms have no values
+    const std::uint32_t scale[] = {bits(3)};
+    position.set(2, 1, scale);
+    const std::uint32_t shifts[] = {0, 0, 0, 0, bits(1), bits(2), bits(3), bits(4)};
+    position.set(5, 4, shifts);
+    const auto* transform = position.transform(kModelview, kProjection);
+    ASSERT_NE(transform, nullptr);
+    EXPECT_EQ(transform->constant, (std::array<float, 4>{1, 2, 3, 4}));
+    EXPECT_EQ(transform->linear[5], 3);
+    position.set(7, 4, shifts);  // others
+    EXPECT_EQ(position.transform(kModelview, kProjection)->linear[5], 3);
+    position.set(2, 1, std::span(shifts + 5, 1));
+    EXPECT_EQ(position.transform(kModelview, kProjection)->linear[5], 2);
+    EXPECT_EQ(LinkedPosition().transform(kModelview, kProjection), nullptr);
+}
+
+TEST(PositionProgram, FollowsTheMatricesOfFixedFunction) {
+    LinkedPosition position(
+        {{}, "gl_Vertex", true, {{Op::built_in, 4, 4, {2}}, {Op::attribute, 1, 4, {}}, {Op::product, 1, 4, {0, 1}}}},
+        {});
+    EXPECT_EQ(position.transform(kModelview, kModelview)->linear[12], 10);
+    EXPECT_EQ(position.transform(kModelview, kProjection)->linear[5], 2);
+    EXPECT_EQ(position.transform(kProjection, kProjection)->linear[5], 4);
 }
 
 TEST(PositionProgram, StepsWithoutMeaningAreRefused) {

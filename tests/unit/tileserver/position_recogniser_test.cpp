@@ -72,7 +72,8 @@ std::optional<Mat4> evaluated(const PositionProgram& program) {
         if (step.op == glapi::PositionOp::uniform)
             values[step.operands[0]] = values_of(program.uniforms[step.operands[0]], step.components());
     const std::vector<std::span<const float>> spans(values.begin(), values.end());
-    return evaluate(program, {spans, kModelview, kProjection});
+    const auto transform = evaluate(program, {spans, kModelview, kProjection});
+    return transform ? std::optional(transform->matrix()) : std::nullopt;
 }
 
 /// `expected` is given (x, y, z, 1).
