@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/objects/position_recogniser.h"
 
-#include <glslang/MachineIndependent/localintermediate.h>
-#include <glslang/Public/ResourceLimits.h>
-#include <glslang/Public/ShaderLang.h>
-
-#include <algorithm>
+#include <initializer_list>
 #include <map>
-#include <memory>
-#include <optional>
 #include <set>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "tileserver/objects/position_builder.h"
+#include "tileserver/objects/shader_tree.h"
+#include "tileserver/objects/shader_variables.h"
 
 namespace wall::tileserver {
 namespace {
@@ -26,118 +21,8 @@ using glslang::TIntermBinary;
 using glslang::TIntermTyped;
 using glslang::TOperator;
 
-constexpr int kDeepest = 200;         ///< expressions and calls within each other
-constexpr int kMostNodes = 1 << 16;   ///< of the tree, each as often as it is gone through
-constexpr int kDefaultVersion = 110;  ///< of a shader that names none (GLSL 1.20, 3.3)
-const std::string kPosition = "gl_Position";
-
-// ---- types ----
-
-bool is_plain_float(const glslang::TType& type) { return type.getBasicType() == glslang::EbtFloat && !type.isArray(); }
-
-/// Of no components where it is no number, vector or matrix of floats.
-PositionValue unknown_of(const glslang::TType& type, WhyUnknown why) {
-    if (!is_plain_float(type)) return {};
-    if (type.isMatrix())
-        return {static_cast<unsigned>(type.getMatrixCols()), static_cast<unsigned>(type.getMatrixRows()), why};
-    return {1, static_cast<unsigned>(type.getVectorSize()), why};
-}
-
-bool is_low_precision(const glslang::TType& type) {
-    const auto precision = type.getQualifier().precision;
-    return precision == glslang::EpqLow || precision == glslang::EpqMedium;
-}
-
-// ---- places ----
-
-/// A variable, or a part of one.
-struct Place {
-    std::string variable;       ///< as in Variables
-    std::string path;           ///< the same as OpenGL names a uniform, without `element`
-    std::uint32_t element = 0;  ///< the last index of an array
-    bool indexed = false;       ///< has such an index
-    const glslang::TIntermSymbol* root = nullptr;
-    const glslang::TType* type = nullptr;  ///< of the variable
-    std::vector<unsigned> components;      ///< that are meant, of a variable of floats
-    bool clear = true;                     ///< false: some part of it, known only when the shader runs
-
-    void set_type(const glslang::TType& of) {
-        type = &of;
-        const unsigned size = unknown_of(of, WhyUnknown::not_written).size();
-        components.resize(size);
-        for (unsigned i = 0; i < size; ++i) components[i] = i;
-    }
-};
-
-/// What variables hold. A part of a structure or an array has a name of its own, which begins with the whole's.
-using Variables = std::map<std::string, PositionValue>;
-
-void erase_parts(Variables& variables, const std::string& whole) {
-    const std::string begin = whole + ".";
-    auto at = variables.lower_bound(begin);
-    while (at != variables.end() && at->first.starts_with(begin)) at = variables.erase(at);
-}
-
-/// Nothing: no constant.
-std::optional<unsigned> constant_index(TIntermTyped* node) {
-    const auto* constant = node->getAsConstantUnion();
-    if (constant == nullptr || constant->getConstArray().size() == 0) return std::nullopt;
-    const auto& value = constant->getConstArray()[0];
-    if (value.getType() == glslang::EbtUint) return value.getUConst();
-    if (value.getType() != glslang::EbtInt || value.getIConst() < 0) return std::nullopt;
-    return static_cast<unsigned>(value.getIConst());
-}
-
-/// Which components of `from` an index or a swizzle means, where that is said by constants.
-std::optional<std::vector<unsigned>> selected(TIntermBinary& part) {
-    const glslang::TType& from = part.getLeft()->getType();
-    if (!is_plain_float(from)) return std::nullopt;
-    std::vector<unsigned> out;
-    if (part.getOp() == glslang::EOpVectorSwizzle) {
-        auto* list = part.getRight()->getAsAggregate();
-        if (list == nullptr) return std::nullopt;
-        for (TIntermNode* item : list->getSequence()) {
-            const auto index = constant_index(item->getAsTyped());
-            if (!index || *index >= static_cast<unsigned>(from.getVectorSize())) return std::nullopt;
-            out.push_back(*index);
-        }
-        return out;
-    }
-    const auto index = part.getOp() == glslang::EOpIndexDirect ? constant_index(part.getRight()) : std::nullopt;
-    if (!index) return std::nullopt;
-    const bool matrix = from.isMatrix();
-    const auto count = static_cast<unsigned>(matrix ? from.getMatrixCols() : from.getVectorSize());
-    const auto size = static_cast<unsigned>(matrix ? from.getMatrixRows() : 1);
-    if (*index >= count) return std::nullopt;
-    for (unsigned i = 0; i < size; ++i) out.push_back(*index * size + i);
-    return out;
-}
-
-// ---- names ----
-
-struct BuiltInName {
-    std::string_view name;
-    BuiltInMatrix matrix;
-};
-constexpr BuiltInName kBuiltInNames[] = {
-    {"gl_ModelViewMatrix", BuiltInMatrix::modelview},
-    {"gl_ProjectionMatrix", BuiltInMatrix::projection},
-    {"gl_ModelViewProjectionMatrix", BuiltInMatrix::modelview_projection},
-};
-
-bool is_written(glslang::TStorageQualifier qualifier) {
-    return qualifier == glslang::EvqOut || qualifier == glslang::EvqInOut;
-}
-
-/// Functions of the language. Of those that are not known here it is assumed.
-bool writes_arguments(const glslang::TIntermOperator& call) {
-    const TOperator op = call.getOp();
-    if (op == glslang::EOpModf || op == glslang::EOpFrexp) return true;
-    return op >= glslang::EOpEmitVertex && op != glslang::EOpAny && op != glslang::EOpAll && !call.isConstructor() &&
-           !(call.isTexture() && !call.isSparseTexture());
-}
-
-// ---- going through the shader ----
+constexpr int kDeepest = 200;        ///< expressions and calls within each other
+constexpr int kMostNodes = 1 << 16;  ///< of the tree, each as often as it is gone through
 
 /// How a statement ends. Unclear: by a jump that depends on values.
 enum class Flow { goes_on, returned, unclear };
@@ -146,7 +31,9 @@ class Recogniser {
 public:
     /// `any_precision`: qualifiers of precision have no meaning.
     Recogniser(glslang::TIntermediate& tree, bool any_precision)
-        : any_precision_(any_precision), root_(tree.getTreeRoot() ? tree.getTreeRoot()->getAsAggregate() : nullptr) {
+        : any_precision_(any_precision),
+          root_(tree.getTreeRoot() ? tree.getTreeRoot()->getAsAggregate() : nullptr),
+          variables_(builder_, any_precision) {
         if (root_ == nullptr) return;
         for (TIntermNode* node : root_->getSequence()) {
             auto* part = node->getAsAggregate();
@@ -167,9 +54,7 @@ public:
         if (gave_up_) return {{}, describe(WhyUnknown::too_long)};
         if (has_effects_) return {{}, "the shader does more than place its vertices"};
         RecognisedPosition out;
-        const auto position = variables_.find(kPosition);
-        const auto why = position == variables_.end() ? std::optional(WhyUnknown::not_written)
-                                                      : builder_.finish(position->second, out.program);
+        const auto why = builder_.finish(variables_.position(), out.program);
         if (why) out.reason = describe(*why);
         return out;
     }
@@ -209,11 +94,11 @@ private:
     }
     /// A function with jumps that depend on values may have written anything that it writes.
     Flow execute_body(TIntermAggregate& function) {
-        const Variables before = variables_;
+        const auto before = variables_.values();
         nodes_left_ -= static_cast<int>(before.size() / 8);
         const Flow flow = execute(body_of(function));
         if (flow != Flow::unclear) return flow;
-        variables_ = before;
+        variables_.restore(before);
         forget_written(body_of(function));
         return flow;
     }
@@ -238,43 +123,29 @@ private:
         if (auto* typed = node->getAsTyped()) evaluate(typed);
         return Flow::goes_on;
     }
-    static bool is_list(TOperator op) {
-        return op == glslang::EOpSequence || op == glslang::EOpScope || op == glslang::EOpNull;
-    }
     Flow leave(glslang::TIntermBranch& branch) {
         if (branch.getFlowOp() != glslang::EOpReturn) return Flow::unclear;
         if (branch.getExpression()) result_ = evaluate(branch.getExpression());
         return Flow::returned;
     }
     /// Either side; their values, if they have any, are in result_.
-    template <class Run>
-    Flow select(glslang::TIntermSelection& selection, Run&& run) {
+    template <class Follow>
+    Flow select(glslang::TIntermSelection& selection, Follow&& follow) {
         evaluate(selection.getCondition());
-        Variables before = variables_;
-        const Flow first = run(selection.getTrueBlock());
+        auto before = variables_.values();
+        const Flow first = follow(selection.getTrueBlock());
         const PositionValue first_result = result_;
-        const Variables after_first = std::exchange(variables_, std::move(before));
-        const Flow second = run(selection.getFalseBlock());
+        const auto after_first = variables_.take();
+        variables_.restore(std::move(before));
+        const Flow second = follow(selection.getFalseBlock());
         if (first != second) return Flow::unclear;
         merge(after_first);
-        result_ = merged(first_result, result_);
+        result_ = ShaderVariables::merged(first_result, result_);
         return first;
     }
-    static PositionValue merged(const PositionValue& a, const PositionValue& b) {
-        if (!a.same_shape(b)) return {};
-        PositionValue out = a;
-        for (unsigned i = 0; i < out.size(); ++i)
-            if (!(a[i] == b[i])) out[i] = {-1, static_cast<std::uint8_t>(WhyUnknown::depends_on_flow)};
-        return out;
-    }
-    /// What holds where either this or `other` is so.
-    void merge(const Variables& other) {
+    void merge(const ShaderVariables::Values& other) {
         nodes_left_ -= static_cast<int>(other.size() / 4);
-        for (auto& [name, value] : variables_) {
-            const auto found = other.find(name);
-            value = found == other.end() ? PositionValue() : merged(found->second, value);
-        }
-        for (const auto& [name, value] : other) variables_.try_emplace(name);
+        variables_.merge(other);
     }
 
     // ---- what is not followed ----
@@ -324,23 +195,8 @@ private:
     void forget(TIntermTyped* target) {
         Place place;
         if (target == nullptr || !find_place(target, place)) return;
-        place.clear = false;
-        write(place, {});
-    }
-    /// Whether a `return` lies in a statement, or what is no part of a vertex shader.
-    static bool leaves_function(TIntermNode* node) {
-        class Returns : public glslang::TIntermTraverser {
-        public:
-            bool visitBranch(glslang::TVisit, glslang::TIntermBranch* branch) override {
-                const TOperator op = branch->getFlowOp();
-                found = found || (op != glslang::EOpBreak && op != glslang::EOpContinue && op != glslang::EOpCase &&
-                                  op != glslang::EOpDefault);
-                return true;
-            }
-            bool found = false;
-        } returns;
-        node->traverse(&returns);
-        return returns.found;
+        note_effect(place);
+        variables_.forget(std::move(place));
     }
 
     // ---- variables ----
@@ -350,120 +206,29 @@ private:
         const Visit visit(*this);
         if (!visit) return false;
         if (auto* symbol = node->getAsSymbolNode()) {
-            out.root = symbol;
-            out.path = symbol->getName().c_str();
-            out.variable = std::to_string(symbol->getId());
-            name_built_in(symbol->getQualifier(), out);
-            out.set_type(symbol->getType());
+            out = Place(*symbol);
             return true;
         }
         auto* part = node->getAsBinaryNode();
         if (part == nullptr || !is_part(part->getOp()) || !find_place(part->getLeft(), out)) return false;
-        if (!part->getRight()->getAsConstantUnion() && part->getOp() == glslang::EOpIndexIndirect)
-            forget_written(part->getRight());
-        if (!out.clear) return true;
-        if (is_plain_float(part->getLeft()->getType())) select_components(*part, out);
-        else find_member(*part, out);
+        if (part->getOp() == glslang::EOpIndexIndirect) forget_written(part->getRight());
+        out.narrow(*part);
         return true;
     }
-    static bool is_part(TOperator op) {
-        return op == glslang::EOpIndexDirect || op == glslang::EOpIndexIndirect ||
-               op == glslang::EOpIndexDirectStruct || op == glslang::EOpVectorSwizzle;
-    }
-    void name_built_in(const glslang::TQualifier& qualifier, Place& place) {
-        if (qualifier.builtIn == glslang::EbvPosition) place.variable = kPosition;
-    }
-    static void select_components(TIntermBinary& part, Place& out) {
-        const auto which = selected(part);
-        if (!which) {
-            out.clear = false;
-            return;
-        }
-        std::vector<unsigned> components;
-        for (const unsigned i : *which) components.push_back(out.components[i]);
-        out.components = std::move(components);
-    }
-    void find_member(TIntermBinary& part, Place& out) {
-        const auto index = part.getOp() == glslang::EOpIndexIndirect ? std::nullopt : constant_index(part.getRight());
-        if (!index) {
-            out.clear = false;
-            return;
-        }
-        if (out.indexed) out.path += "[" + std::to_string(out.element) + "]";
-        out.variable += "." + std::to_string(*index);
-        out.indexed = part.getOp() == glslang::EOpIndexDirect;
-        out.element = out.indexed ? *index : 0;
-        const auto* members = out.indexed ? nullptr : part.getLeft()->getType().getStruct();
-        if (members && *index < members->size()) {
-            const glslang::TType& member = *(*members)[*index].type;
-            out.path += std::string(".") + member.getFieldName().c_str();
-            name_built_in(member.getQualifier(), out);
-        }
-        out.set_type(part.getType());
-    }
-
     PositionValue read(TIntermTyped* node) {
         Place place;
-        if (!find_place(node, place)) return {};
-        if (!place.clear) return unknown_of(node->getType(), WhyUnknown::not_affine);
-        return part_of(read_whole(place), place.components, node->getType());
+        return find_place(node, place) ? variables_.read(place, node->getType()) : PositionValue();
     }
-    static PositionValue part_of(const PositionValue& whole, const std::vector<unsigned>& components,
-                                 const glslang::TType& type) {
-        PositionValue out = unknown_of(type, WhyUnknown::not_a_float);
-        if (out.size() != components.size()) return out;
-        for (unsigned i = 0; i < out.size(); ++i)
-            if (components[i] < whole.size()) out[i] = whole[components[i]];
-        return out;
+    void write(TIntermTyped* node, const PositionValue& value) {
+        Place place;
+        if (!find_place(node, place)) return;
+        note_effect(place);
+        variables_.write(place, value);
     }
-    PositionValue read_whole(const Place& place) {
-        const glslang::TType& type = *place.type;
-        if (!is_plain_float(type)) return {};
-        if (!any_precision_ && is_low_precision(type)) return unknown_of(type, WhyUnknown::not_a_float);
-        if (const auto found = variables_.find(place.variable); found != variables_.end()) return found->second;
-        const PositionValue unknown = unknown_of(type, WhyUnknown::not_written);
-        const glslang::TType& root = place.root->getType();
-        const auto storage = root.getQualifier().storage;
-        if (storage == glslang::EvqUniform) return uniform(place, unknown);
-        const bool whole = place.path == place.root->getName().c_str() && !place.indexed;
-        if (storage != glslang::EvqVaryingIn || !whole) return unknown;
-        return type.isMatrix() ? unknown_of(type, WhyUnknown::not_affine)
-                               : builder_.attribute(place.path, unknown.rows());
-    }
-    PositionValue uniform(const Place& place, const PositionValue& unknown) {
-        const auto because = [&](WhyUnknown why) { return PositionValue(unknown.columns(), unknown.rows(), why); };
-        if (place.root->getType().getBasicType() == glslang::EbtBlock) return because(WhyUnknown::in_a_block);
-        if (!place.path.starts_with("gl_"))
-            return builder_.uniform(place.path, place.element, unknown.columns(), unknown.rows());
-        for (const BuiltInName& known : kBuiltInNames) {
-            if (!place.path.starts_with(known.name)) continue;
-            const std::string_view variant = std::string_view(place.path).substr(known.name.size());
-            const PositionValue matrix = builder_.built_in(known.matrix);
-            if (variant.empty()) return matrix;
-            if (variant == "Transpose") return PositionBuilder::transpose(matrix);
-            if (variant == "Inverse") return builder_.inverse(matrix);
-            if (variant == "InverseTranspose") return PositionBuilder::transpose(builder_.inverse(matrix));
-        }
-        return because(WhyUnknown::other_state);
-    }
-
-    void write(const Place& place, const PositionValue& value) {
+    /// A draw that chooses a viewport or a layer cannot be left out where it does not show in this one.
+    void note_effect(const Place& place) {
         const auto built_in = place.root->getQualifier().builtIn;
         has_effects_ = has_effects_ || built_in == glslang::EbvViewportIndex || built_in == glslang::EbvLayer;
-        if (place.type->isStruct() || place.type->isArray()) erase_parts(variables_, place.variable);
-        if (!is_plain_float(*place.type)) return;
-        PositionValue whole = unknown_of(*place.type, WhyUnknown::depends_on_flow);
-        if (place.clear) {
-            if (const auto found = variables_.find(place.variable);
-                found != variables_.end() && found->second.same_shape(whole))
-                whole = found->second;
-            else whole = unknown_of(*place.type, WhyUnknown::not_written);
-            for (unsigned i = 0; i < place.components.size(); ++i)
-                whole[place.components[i]] =
-                    i < value.size() ? value[i]
-                                     : PositionValue::Component{-1, static_cast<std::uint8_t>(WhyUnknown::not_a_float)};
-        }
-        variables_[place.variable] = whole;
     }
 
     // ---- expressions ----
@@ -516,7 +281,7 @@ private:
         if (is_part(op)) return part_value(node);
         const PositionValue left = evaluate(node.getLeft());
         if (op == glslang::EOpLogicalAnd || op == glslang::EOpLogicalOr) {
-            const Variables before = variables_;
+            const auto before = variables_.values();
             evaluate(node.getRight());
             merge(before);
             return {};
@@ -525,22 +290,8 @@ private:
         return op == glslang::EOpComma ? right : operate(op, left, right);
     }
     PositionValue assign(TIntermBinary& node, const PositionValue& value) {
-        Place place;
-        if (find_place(node.getLeft(), place)) write(place, value);
+        write(node.getLeft(), value);
         return value;
-    }
-    static TOperator operator_of(TOperator assignment) {
-        switch (assignment) {
-            case glslang::EOpAddAssign: return glslang::EOpAdd;
-            case glslang::EOpSubAssign: return glslang::EOpSub;
-            case glslang::EOpMulAssign: return glslang::EOpMul;
-            case glslang::EOpDivAssign: return glslang::EOpDiv;
-            case glslang::EOpVectorTimesScalarAssign: return glslang::EOpVectorTimesScalar;
-            case glslang::EOpMatrixTimesScalarAssign: return glslang::EOpMatrixTimesScalar;
-            case glslang::EOpVectorTimesMatrixAssign: return glslang::EOpVectorTimesMatrix;
-            case glslang::EOpMatrixTimesMatrixAssign: return glslang::EOpMatrixTimesMatrix;
-            default: return glslang::EOpNull;
-        }
     }
     PositionValue operate(TOperator op, const PositionValue& a, const PositionValue& b) {
         switch (op) {
@@ -562,7 +313,7 @@ private:
         const PositionValue left = evaluate(node.getLeft());
         const auto which = selected(node);
         if (!which) forget_written(node.getRight());
-        return which ? part_of(left, *which, node.getType()) : PositionValue();
+        return which ? ShaderVariables::part_of(left, *which, node.getType()) : PositionValue();
     }
     /// Whether it is a part of a variable, not of what an expression gives.
     static bool is_place(TIntermTyped* node) {
@@ -589,8 +340,7 @@ private:
     }
     PositionValue step_by(glslang::TIntermUnary& node, const PositionValue& before, float by) {
         const PositionValue after = builder_.each(PositionOp::add, before, number(by));
-        Place place;
-        if (find_place(node.getOperand(), place)) write(place, after);
+        write(node.getOperand(), after);
         const bool gives_before =
             node.getOp() == glslang::EOpPostIncrement || node.getOp() == glslang::EOpPostDecrement;
         return gives_before ? before : after;
@@ -680,79 +430,25 @@ private:
         std::vector<PositionValue> values;
         for (TIntermNode* argument : arguments) values.push_back(evaluate(argument->getAsTyped()));
         for (std::size_t i = 0; i < values.size(); ++i)
-            set_parameter(parameters->getSequence()[i], qualifiers[i] == glslang::EvqOut ? PositionValue() : values[i]);
+            write(parameters->getSequence()[i]->getAsTyped(),
+                  qualifiers[i] == glslang::EvqOut ? PositionValue() : values[i]);
         const PositionValue outer = std::exchange(result_, {});
         const Flow flow = execute_body(*function);
         const PositionValue result = std::exchange(result_, outer);
         for (std::size_t i = 0; i < values.size(); ++i) {
-            Place place;
-            if (!is_written(qualifiers[i]) || !find_place(arguments[i]->getAsTyped(), place)) continue;
-            write(place, read(parameters->getSequence()[i]->getAsTyped()));
+            if (is_written(qualifiers[i]))
+                write(arguments[i]->getAsTyped(), read(parameters->getSequence()[i]->getAsTyped()));
         }
         return flow == Flow::unclear ? unknown_of(node.getType(), WhyUnknown::depends_on_flow) : result;
     }
-    void set_parameter(TIntermNode* parameter, const PositionValue& value) {
-        Place place;
-        if (parameter->getAsTyped() && find_place(parameter->getAsTyped(), place)) write(place, value);
-    }
-
-    bool any_precision_;
+    const bool any_precision_;
     TIntermAggregate* root_;
     std::map<std::string, TIntermAggregate*> functions_;
     PositionBuilder builder_;
-    Variables variables_;
+    ShaderVariables variables_;
     PositionValue result_;  ///< of the function that is gone through, or of one side of a choice
     bool has_effects_ = false, gave_up_ = false;
     int depth_ = 0, nodes_left_ = kMostNodes;
-};
-
-/// What goes through a tree takes a part of the stack for each level, also inside glslang, so the text that comes of
-/// the macros may not be deeper than this. What nests without a brace and a semicolon is bounded by its length.
-constexpr std::size_t kMostStatementBytes = 16 << 10, kMostExpandedBytes = kMostShaderBytes;
-constexpr int kMostBraces = 100, kMostElses = 1000;
-
-bool is_shallow(std::string_view expanded) {
-    std::size_t statement = 0;
-    int braces = 0, elses = 0;
-    for (std::size_t i = 0; i < expanded.size(); ++i) {
-        const char c = expanded[i];
-        braces += c == '{' ? 1 : c == '}' ? -1 : 0;
-        elses += expanded.substr(i, 4) == "else" ? 1 : 0;
-        statement = c == ';' || c == '{' || c == '}' ? 0 : statement + 1;
-        if (statement > kMostStatementBytes || braces > kMostBraces || elses > kMostElses) return false;
-    }
-    return expanded.size() <= kMostExpandedBytes;
-}
-
-bool is_shallow(glslang::TShader& shader) {
-    std::string expanded;
-    glslang::TShader::ForbidIncluder nothing;
-    return shader.preprocess(GetDefaultResources(), kDefaultVersion, ENoProfile, false, false, EShMsgRelaxedErrors,
-                             &expanded, nothing) &&
-           is_shallow(expanded);
-}
-
-/// A program's vertex shaders, parsed and linked; null and a reason, if that did not work.
-class ParsedShaders {
-public:
-    explicit ParsedShaders(const std::vector<const std::string*>& sources) {
-        for (const std::string* source : sources) {
-            auto& shader = *shaders_.emplace_back(std::make_unique<glslang::TShader>(EShLangVertex));
-            const char* text = source->data();
-            const auto length = static_cast<int>(source->size());
-            shader.setStringsWithLengths(&text, &length, 1);
-            if (!is_shallow(shader)) return;
-            if (!shader.parse(GetDefaultResources(), kDefaultVersion, false, EShMsgRelaxedErrors)) return;
-            program_.addShader(&shader);
-        }
-        if (program_.link(EShMsgRelaxedErrors)) tree_ = program_.getIntermediate(EShLangVertex);
-    }
-    glslang::TIntermediate* tree() const { return tree_; }
-
-private:
-    std::vector<std::unique_ptr<glslang::TShader>> shaders_;
-    glslang::TProgram program_;  // goes before its shaders
-    glslang::TIntermediate* tree_ = nullptr;
 };
 
 }  // namespace

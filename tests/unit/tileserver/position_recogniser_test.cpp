@@ -395,6 +395,17 @@ TEST(PositionRecogniser, ShadersThatWriteElsewhere) {
                      .program.known());
 }
 
+TEST(PositionRecogniser, ConditionsOnExtensionsAreTheDriversAffair) {
+    const std::string end = "void main() { gl_Position = ftransform(); }\n";
+    EXPECT_TRUE(recognise("#version 120\n#extension GL_ARB_texture_rectangle : enable\n" + end).program.known());
+    EXPECT_TRUE(recognise("// of GL_ARB_draw_instanced\n/* GL_ARB_x */ #ifdef GL_ES\n#endif\n" + end).program.known());
+    EXPECT_TRUE(recognise("#if __VERSION__ > 100\n" + end + "#endif\n").program.known());
+    EXPECT_FALSE(recognise("#ifdef GL_ARB_draw_instanced\n#endif\n" + end).program.known());
+    EXPECT_FALSE(recognise("#if defined(GL_EXT_gpu_shader4)\n#endif\n" + end).program.known());
+    EXPECT_FALSE(recognise("#define a(x) GL##x\n" + end).program.known());
+    EXPECT_FALSE(recognise("/* never ends " + end).program.known());
+}
+
 TEST(PositionRecogniser, HostileShaders) {
     EXPECT_FALSE(recognise("this is no shader").program.known());
     EXPECT_FALSE(recognise("").program.known());
