@@ -98,7 +98,7 @@ const glstate::Projection& Context::projection() {
 const Placing& Context::placing() {
     const glstate::Projection& fixed_function = projection();
     if (!program) {
-        if (placing_change_ != 0 || placing_ids_ != projection_ids_) placing_ = {true, 0, true, fixed_function};
+        if (placing_change_ != 0 || placing_ids_ != projection_ids_) placing_ = {true, 0, true, fixed_function, true};
         placing_change_ = 0;
         placing_ids_ = projection_ids_;
         return placing_;
@@ -108,13 +108,13 @@ const Placing& Context::placing() {
     if (placing_change_ == executable.last_change && placing_ids_ == projection_ids_) return placing_;
     placing_change_ = executable.last_change;
     placing_ids_ = projection_ids_;
-    placing_ = {false, 0, true, glstate::unknown_projection()};
+    placing_ = {false, 0, true, glstate::unknown_projection(), true};
     const GLint attribute = executable.position_attribute();
     const auto* transform = executable.position().transform(state.matrix.modelview, state.matrix.projection);
     if (transform == nullptr || attribute < 0) return placing_;
     const bool depth = executable.position().program().depth;
     placing_ = {true, static_cast<std::uint32_t>(attribute), transform->homogeneous(),
-                make_projection(fixed_function, *transform, depth)};
+                make_projection(fixed_function, *transform, depth), transform->steady()};
     return placing_;
 }
 

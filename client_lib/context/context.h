@@ -51,7 +51,8 @@ struct Placing {
     std::uint32_t attribute = 0;       ///< generic one that a shader makes the position of; 0: or glVertex's
     bool homogeneous = true;           ///< multiples of a vertex are in the same place
     glstate::Projection projection{};  ///< of (x, y, z, 1); if not known, of one where all may be anywhere
-    bool of_vertices() const { return known && attribute == 0; }
+    bool steady = true;                ///< single triangles have no margin for a shader's rounding
+    bool of_vertices() const { return known && attribute == 0 && steady; }
 };
 
 /// One matrix stack; the top is the element of glstate::State.

@@ -103,57 +103,57 @@ private:
 
 // ---- evaluation ----
 
-/// A value as a function of the attribute. Only vectors depend on it.
-struct Value {
-    std::array<float, kMostComponents> constant{};
-    std::array<std::array<float, 4>, kVectorComponents> slope{};  ///< of each component, to each of x, y, z and w
-};
-
-/// The terms of one component: its slopes, and what it is where the attribute is 0.
+/// One number as a function of the attribute: its slopes to x, y, z and w, and what it is where the attribute is 0.
 struct Component {
     static constexpr std::size_t kConstant = 4;
     std::array<float, 5> terms{};
+    std::array<float, 5> sizes{};  ///< what the terms would be if nothing were negative: rounding errors are of these
 };
 
-Component component(const Value& value, std::size_t i) {
-    Component out{{0, 0, 0, 0, value.constant[i]}};
-    if (i < kVectorComponents) std::ranges::copy(value.slope[i], out.terms.begin());
-    return out;
-}
+/// Of what does not depend on the attribute.
+Component known_component(float value) { return {{0, 0, 0, 0, value}, {0, 0, 0, 0, std::abs(value)}}; }
 
-void put(Value& value, std::size_t i, const Component& c) {
-    value.constant[i] = c.terms[Component::kConstant];
-    if (i < kVectorComponents) std::copy_n(c.terms.begin(), 4, value.slope[i].begin());
-}
+using Value = std::array<Component, kMostComponents>;
 
-template <class F>
-Component combine(const Component& a, const Component& b, F&& f) {
+Component added(const Component& a, const Component& b, float sign) {
     Component out;
-    for (std::size_t i = 0; i < out.terms.size(); ++i) out.terms[i] = f(a.terms[i], b.terms[i]);
+    for (std::size_t i = 0; i < out.terms.size(); ++i) {
+        out.terms[i] = a.terms[i] + sign * b.terms[i];
+        out.sizes[i] = a.sizes[i] + b.sizes[i];
+    }
     return out;
 }
 
 /// One of them does not depend on the vertex, so that its slopes are 0.
 Component times(const Component& a, const Component& b) {
-    Component out{};
-    const float x = a.terms[Component::kConstant], y = b.terms[Component::kConstant];
-    for (std::size_t i = 0; i < Component::kConstant; ++i) out.terms[i] = a.terms[i] * y + x * b.terms[i];
-    out.terms[Component::kConstant] = x * y;
+    constexpr std::size_t kConstant = Component::kConstant;
+    Component out;
+    for (std::size_t i = 0; i < kConstant; ++i) {
+        out.terms[i] = a.terms[i] * b.terms[kConstant] + a.terms[kConstant] * b.terms[i];
+        out.sizes[i] = a.sizes[i] * b.sizes[kConstant] + a.sizes[kConstant] * b.sizes[i];
+    }
+    out.terms[kConstant] = a.terms[kConstant] * b.terms[kConstant];
+    out.sizes[kConstant] = a.sizes[kConstant] * b.sizes[kConstant];
     return out;
 }
 
-Component divided(const Component& a, float by) {
-    Component out = a;
-    for (float& term : out.terms) term /= by;
+Component divided(const Component& a, const Component& b) {
+    const float by = b.terms[Component::kConstant], error = b.sizes[Component::kConstant] / (by * by);
+    Component out;
+    for (std::size_t i = 0; i < out.terms.size(); ++i) {
+        out.terms[i] = a.terms[i] / by;
+        out.sizes[i] = a.sizes[i] * error;
+    }
     return out;
 }
+
+using Square = std::array<std::array<double, 4>, 4>;  ///< by row
 
 /// By Gauss and Jordan with pivots; of a singular matrix it is no numbers.
-std::array<float, kMostComponents> inverse(const std::array<float, kMostComponents>& matrix, std::size_t n) {
+Square inverse(const Square& matrix, std::size_t n) {
     double work[4][8] = {};
     for (std::size_t row = 0; row < n; ++row) {
-        for (std::size_t column = 0; column < n; ++column)
-            work[row][column] = static_cast<double>(matrix[column * n + row]);
+        std::copy_n(matrix[row].begin(), n, work[row]);
         work[row][n + row] = 1;
     }
     for (std::size_t step = 0; step < n; ++step) {
@@ -165,14 +165,34 @@ std::array<float, kMostComponents> inverse(const std::array<float, kMostComponen
         for (double& x : work[step]) x /= by;
         for (std::size_t row = 0; row < n; ++row) {
             const double factor = row == step ? 0 : work[row][step];
-            if (factor == 0) continue;
             for (std::size_t column = 0; column < 2 * n; ++column) work[row][column] -= factor * work[step][column];
         }
     }
-    std::array<float, kMostComponents> out{};
+    Square out{};
+    for (std::size_t row = 0; row < n; ++row) std::copy_n(work[row] + n, n, out[row].begin());
+    return out;
+}
+
+/// An error E of the matrix becomes inverse * E * inverse.
+Value inverse(const Value& matrix, std::size_t n) {
+    Square terms{};
     for (std::size_t row = 0; row < n; ++row)
         for (std::size_t column = 0; column < n; ++column)
-            out[column * n + row] = static_cast<float>(work[row][n + column]);
+            terms[row][column] = static_cast<double>(matrix[column * n + row].terms[Component::kConstant]);
+    const Square result = inverse(terms, n);
+    Value out{};
+    for (std::size_t row = 0; row < n; ++row)
+        for (std::size_t column = 0; column < n; ++column) {
+            double size = 0;
+            for (std::size_t i = 0; i < n; ++i)
+                for (std::size_t k = 0; k < n; ++k)
+                    size += std::abs(result[row][i]) *
+                            static_cast<double>(matrix[k * n + i].sizes[Component::kConstant]) *
+                            std::abs(result[k][column]);
+            Component& component = out[column * n + row];
+            component.terms[Component::kConstant] = static_cast<float>(result[row][column]);
+            component.sizes[Component::kConstant] = static_cast<float>(size);
+        }
     return out;
 }
 
@@ -184,17 +204,22 @@ public:
         if (!program_.known() || given_.uniforms.size() != program_.uniforms.size()) return std::nullopt;
         values_.reserve(program_.steps.size());
         for (const PositionStep& step : program_.steps) {
-            Value value;
+            Value value{};
             if (!find(step, value)) return std::nullopt;
             values_.push_back(value);
         }
         PositionTransform out;
         bool finite = true;
         for (std::size_t row = 0; row < kVectorComponents; ++row) {
-            const Component c = component(values_.back(), row);
-            for (std::size_t column = 0; column < 4; ++column) out.linear[4 * column + row] = c.terms[column];
+            const Component& c = values_.back()[row];
+            for (std::size_t column = 0; column < 4; ++column) {
+                out.linear[4 * column + row] = c.terms[column];
+                out.sizes[4 * column + row] = c.sizes[column];
+            }
             out.constant[row] = c.terms[Component::kConstant];
-            for (const float term : c.terms) finite = finite && std::isfinite(term);
+            out.sizes[12 + row] += c.sizes[Component::kConstant];
+            for (std::size_t i = 0; i < c.terms.size(); ++i)
+                finite = finite && std::isfinite(c.terms[i]) && std::isfinite(c.sizes[i]);
         }
         return finite ? std::optional(out) : std::nullopt;
     }
@@ -203,51 +228,52 @@ private:
     bool find(const PositionStep& step, Value& out) const {
         switch (step.op) {
             case PositionOp::constant:
-                std::ranges::transform(step.operands, out.constant.begin(),
-                                       [](std::uint32_t bits) { return std::bit_cast<float>(bits); });
+                std::ranges::transform(step.operands, out.begin(),
+                                       [](std::uint32_t bits) { return known_component(std::bit_cast<float>(bits)); });
                 break;
             case PositionOp::uniform: {
                 const auto given = given_.uniforms[step.operands[0]];
                 if (given.size() != step.components()) return false;
-                std::ranges::copy(given, out.constant.begin());
+                std::ranges::transform(given, out.begin(), known_component);
                 break;
             }
-            case PositionOp::built_in: out.constant = built_in(static_cast<BuiltInMatrix>(step.operands[0])); break;
-            case PositionOp::attribute: attribute(step, out); break;
+            case PositionOp::built_in: out = built_in(static_cast<BuiltInMatrix>(step.operands[0])); break;
+            case PositionOp::attribute:
+                for (std::size_t i = 0; i < step.rows; ++i) out[i].terms[i] = out[i].sizes[i] = 1;
+                break;
             case PositionOp::pick:
                 for (std::size_t i = 0; i < step.components(); ++i)
-                    put(out, i, component(values_[step.operands[2 * i]], step.operands[2 * i + 1]));
+                    out[i] = values_[step.operands[2 * i]][step.operands[2 * i + 1]];
                 break;
             case PositionOp::product: product(step, out); break;
-            case PositionOp::inverse: out.constant = inverse(values_[step.operands[0]].constant, step.rows); break;
+            case PositionOp::inverse: out = inverse(values_[step.operands[0]], step.rows); break;
             default: each_component(step, out); break;
         }
         return true;
     }
-    static void attribute(const PositionStep& step, Value& out) {
-        for (std::size_t i = 0; i < step.rows; ++i) out.slope[i][i] = 1;
-    }
-    std::array<float, 16> built_in(BuiltInMatrix which) const {
-        std::array<float, 16> out{};
-        if (which == BuiltInMatrix::modelview) std::ranges::copy(given_.modelview, out.begin());
-        if (which == BuiltInMatrix::projection) std::ranges::copy(given_.projection, out.begin());
-        if (which != BuiltInMatrix::modelview_projection) return out;
+    Value built_in(BuiltInMatrix which) const {
+        Value modelview, projection;
+        std::ranges::transform(given_.modelview, modelview.begin(), known_component);
+        std::ranges::transform(given_.projection, projection.begin(), known_component);
+        if (which == BuiltInMatrix::modelview) return modelview;
+        if (which == BuiltInMatrix::projection) return projection;
+        Value out{};
         for (std::size_t column = 0; column < 4; ++column)
             for (std::size_t row = 0; row < 4; ++row)
                 for (std::size_t i = 0; i < 4; ++i)
-                    out[4 * column + row] += given_.projection[4 * i + row] * given_.modelview[4 * column + i];
+                    out[4 * column + row] =
+                        added(out[4 * column + row], times(projection[4 * i + row], modelview[4 * column + i]), 1);
         return out;
     }
     void each_component(const PositionStep& step, Value& out) const {
         const PositionStep &left = program_.steps[step.operands[0]], &right = program_.steps[step.operands[1]];
         const Value &a = values_[step.operands[0]], &b = values_[step.operands[1]];
         for (std::size_t i = 0; i < step.components(); ++i) {
-            const Component x = component(a, left.components() == 1 ? 0 : i),
-                            y = component(b, right.components() == 1 ? 0 : i);
-            if (step.op == PositionOp::add) put(out, i, combine(x, y, std::plus<>()));
-            else if (step.op == PositionOp::subtract) put(out, i, combine(x, y, std::minus<>()));
-            else if (step.op == PositionOp::multiply) put(out, i, times(x, y));
-            else put(out, i, divided(x, y.terms[Component::kConstant]));
+            const Component &x = a[left.components() == 1 ? 0 : i], &y = b[right.components() == 1 ? 0 : i];
+            if (step.op == PositionOp::add) out[i] = added(x, y, 1);
+            else if (step.op == PositionOp::subtract) out[i] = added(x, y, -1);
+            else if (step.op == PositionOp::multiply) out[i] = times(x, y);
+            else out[i] = divided(x, y);
         }
     }
     void product(const PositionStep& step, Value& out) const {
@@ -257,15 +283,11 @@ private:
         const bool row_vector = left.columns == 1;
         const std::size_t inner = row_vector ? left.rows : left.columns, rows = row_vector ? 1 : left.rows;
         for (std::size_t column = 0; column < right.columns; ++column)
-            for (std::size_t row = 0; row < rows; ++row) {
-                Component sum{};
+            for (std::size_t row = 0; row < rows; ++row)
                 for (std::size_t i = 0; i < inner; ++i)
-                    sum = combine(
-                        sum,
-                        times(component(a, row_vector ? i : i * rows + row), component(b, column * right.rows + i)),
-                        std::plus<>());
-                put(out, column * rows + row, sum);
-            }
+                    out[column * rows + row] =
+                        added(out[column * rows + row],
+                              times(a[row_vector ? i : i * rows + row], b[column * right.rows + i]), 1);
     }
 
     const PositionProgram& program_;
@@ -281,6 +303,13 @@ std::array<float, 16> PositionTransform::matrix() const {
     std::array<float, 16> out = linear;
     for (std::size_t row = 0; row < kVectorComponents; ++row) out[12 + row] += constant[row];
     return out;
+}
+
+bool PositionTransform::steady() const {
+    constexpr float kSteady = 64;
+    float largest = 0;
+    for (const float term : matrix()) largest = std::max(largest, std::abs(term));
+    return *std::ranges::max_element(sizes) <= kSteady * largest;
 }
 
 std::optional<PositionTransform> evaluate(const PositionProgram& program, const PositionValues& values) {

@@ -77,6 +77,11 @@ struct PositionValues {
 struct PositionTransform {
     std::array<float, 16> linear{};  ///< column by column
     std::array<float, 4> constant{};
+    /// Column by column, what `matrix()` would be if nothing had a sign: where matrices nearly cancel each other these
+    /// are much larger, and so are the rounding errors of whoever computes it.
+    std::array<float, 16> sizes{};
+    /// They do not nearly cancel each other.
+    bool steady() const;
     /// Multiples of a vertex are the same place, as in fixed function.
     bool homogeneous() const { return constant == std::array<float, 4>{}; }
     /// Of attributes whose w is 1.

@@ -22,6 +22,8 @@ struct Projection {
     float viewport[4]{};     ///< x, y, width, height
     float margin = 1;        ///< pixels: half the line width or point size, and one for rounding
     bool near_plane = true;  ///< clips; not while depths are clamped
+    bool by_shader = false;  ///< which rounds in an order of its own, so that what it makes lies about there
+    Mat4 sizes{};            ///< if by_shader: as of glapi::PositionTransform
 };
 
 Projection make_projection(const State& state);

@@ -87,6 +87,23 @@ TEST(PositionProgram, HomogeneousWhereFixedFunctionIsSo) {
     EXPECT_EQ(moved->matrix(), (Matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 1, 1, 2}));
 }
 
+TEST(PositionProgram, MatricesThatNearlyCancelAreNotSteady) {
+    const auto moved_twice = [](float there, float back) {
+        const PositionProgram program = program_of({{Op::attribute, 1, 4, {}},
+                                                    {Op::constant, 1, 4, {bits(there), 0, 0, 0}},
+                                                    {Op::constant, 1, 4, {bits(back), 0, 0, 0}},
+                                                    {Op::add, 1, 4, {0, 1}},
+                                                    {Op::subtract, 1, 4, {3, 2}}});
+        const std::span<const float> uniforms[] = {{}};
+        return *evaluate(program, {uniforms, kModelview, kProjection});
+    };
+    EXPECT_TRUE(moved_twice(1, 2).steady());
+    EXPECT_EQ(moved_twice(1, 2).sizes[12], 3);
+    EXPECT_TRUE(moved_twice(1e6f, -1e6f).steady());
+    EXPECT_FALSE(moved_twice(1e6f, 1e6f).steady());
+    EXPECT_EQ(moved_twice(1e6f, 1e6f).constant[0], 0);
+}
+
 TEST(PositionProgram, FollowsItsUniforms) {
     PositionProgram program = program_of({{Op::attribute, 1, 4, {}},
                                           {Op::uniform, 1, 4, {0}},

@@ -48,7 +48,8 @@ bool asks_for_extensions(std::string_view source) {
     for (std::size_t i = 0; i < source.size(); ++i) {
         const std::string_view rest = source.substr(i);
         if (rest[0] == '\n') directive = false;
-        if (rest[0] == '#') directive = rest.find("extension") == rest.find_first_not_of(" \t", 1);
+        if (rest[0] == '#')
+            directive = rest.substr(std::min(rest.find_first_not_of(" \t", 1), rest.size())).starts_with("extension");
         if (rest.starts_with("//")) i = std::min(source.find('\n', i), source.size()) - 1;
         else if (rest.starts_with("/*")) i = std::min(source.find("*/", i + 2), source.size() - 2) + 1;
         else if (rest.starts_with("GL_") && !directive && (i == 0 || !is_name(source[i - 1]))) {
