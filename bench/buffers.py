@@ -27,13 +27,13 @@ TILES = ((1, 1), (2, 2))
 # Options of the program, frames, and the least frames a second by those of Mesa, by wall; None: no bar.
 CASES = {
     "static": ([], 40, {(1, 1): 0.95, (2, 2): 0.8}),
-    "static, GLSL": (["--glsl"], 40, {(1, 1): 0.95, (2, 2): None}),
+    "static, GLSL": (["--glsl"], 40, {(1, 1): 0.95, (2, 2): 0.8}),
     "rewritten": (["--rewrite"], 15, {(1, 1): None, (2, 2): None}),
     "100,000 draws": (["--draws", "100000"], 5, {(1, 1): 0.7, (2, 2): None}),
 }
 MOST_BYTES = 200  # of a static mesh, a touched node and frame
 MESH_ELEMENTS = 3 * 1_001_000  # of the large mesh
-MOST_PROCESSED = 1.3  # of a static mesh of fixed function, on 2x2 tiles, by all nodes together
+MOST_PROCESSED = 1.3  # of a static mesh, on 2x2 tiles, by all nodes together
 STEADY = ("state_bytes", "geometry_bytes")
 
 
@@ -102,7 +102,7 @@ def main() -> int:
                 processed = sent["elements"] / MESH_ELEMENTS
                 if not case.startswith("100,000"):
                     print(f"{case:14} {name}  {processed:.2f} times the mesh's elements processed a frame", flush=True)
-                if case == "static" and processed > MOST_PROCESSED:
+                if case.startswith("static") and processed > MOST_PROCESSED:
                     missed.append(f"{case} {name}: {processed:.2f} times its elements, at most {MOST_PROCESSED} wanted")
                 if bar and rate < bar * mesa:
                     missed.append(f"{case} {name}: {rate / mesa:.2f}, at least {bar} wanted")

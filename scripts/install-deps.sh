@@ -17,6 +17,7 @@ demo=(
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libsystemd-dev prometheus-cpp-dev
   liblz4-dev libzstd-dev             # frame codecs
   libssl-dev                         # content hashes
+  glslang-dev                        # the parser of shaders
   libgl1 libegl1 libgl1-mesa-dri libglx-mesa0 libegl-mesa0 libosmesa6
   xvfb xauth procps
   mesa-utils xscreensaver-gl-extra   # glxgears, atlantis

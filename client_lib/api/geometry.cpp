@@ -84,6 +84,7 @@ void pack_vertex3(Packer& packer, float x, float y, float z) {
 void pack_vertex4(Packer& packer, float x, float y, float z, float w) {
     if (w > 0) add_vertex(packer, x / w, y / w, z / w);
     else packer.mark_unbounded();
+    if (w != 1) packer.note_w();
     put_floats(packer, Op::Vertex4f, x, y, z, w);
 }
 

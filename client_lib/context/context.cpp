@@ -17,6 +17,7 @@
 #include "client_lib/context/vertex_inputs.h"
 #include "client_lib/geometry/fold.h"
 #include "client_lib/objects/maps.h"
+#include "client_lib/objects/program.h"
 #include "client_lib/objects/share_group.h"
 #include "client_lib/process/log.h"
 
@@ -76,16 +77,47 @@ void Context::first_use() {
     glstate::assign<glstate::el::read_buffer>(state, 0, buffer);
 }
 
-const glstate::Projection& Context::projection() {
+namespace {
+
+/// Of what a projection depends on.
+std::array<std::uint64_t, 4> projection_ids(const glstate::State& state) {
     using glstate::Category;
-    const std::array<std::uint64_t, 3> ids = {state.ids[static_cast<std::size_t>(Category::matrix)],
-                                              state.ids[static_cast<std::size_t>(Category::window)],
-                                              state.ids[static_cast<std::size_t>(Category::line_point)]};
+    const auto id = [&](Category category) { return state.ids[static_cast<std::size_t>(category)]; };
+    return {id(Category::matrix), id(Category::window), id(Category::line_point), id(Category::transform)};
+}
+
+}  // namespace
+
+const glstate::Projection& Context::projection() {
+    const auto ids = projection_ids(state);
     if (ids != projection_ids_) {
         projection_ = make_projection(state);
         projection_ids_ = ids;
     }
     return projection_;
+}
+
+const Placing& Context::placing() {
+    const glstate::Projection& fixed_function = projection();
+    if (!program) {
+        if (placing_change_ != 0 || placing_ids_ != projection_ids_) placing_ = {true, 0, true, fixed_function, true};
+        placing_change_ = 0;
+        placing_ids_ = projection_ids_;
+        return placing_;
+    }
+    std::lock_guard lock(share_->mutex);
+    Executable& executable = *program->executable;
+    if (placing_change_ == executable.last_change && placing_ids_ == projection_ids_) return placing_;
+    placing_change_ = executable.last_change;
+    placing_ids_ = projection_ids_;
+    placing_ = {false, 0, true, glstate::unknown_projection(), true};
+    const GLint attribute = executable.position_attribute();
+    const auto* transform = executable.position().transform(state.matrix.modelview, state.matrix.projection);
+    if (transform == nullptr || attribute < 0) return placing_;
+    const bool depth = executable.position().program().depth;
+    placing_ = {true, static_cast<std::uint32_t>(attribute), transform->homogeneous(),
+                make_projection(fixed_function, *transform, depth), transform->steady()};
+    return placing_;
 }
 
 void Context::forget_object(ClientName gone) {
@@ -111,12 +143,13 @@ void Context::tell() {
 
 void Context::begin_primitive(GLenum mode) {
     packer.begin(mode);
-    if (program) packer.mark_unbounded();  // its shader puts the vertices anywhere
+    if (program && !placing().of_vertices()) packer.mark_unbounded();
     if (at_once()) table = &tables::inside_begin;
 }
 
 void Context::end_primitive() {
-    if (program) packer.mark_unbounded();  // what it takes for positions may be no numbers at all
+    if (program && !places_packed_vertices())
+        packer.mark_unbounded();  // of what are no positions, they may be no numbers
     packer.end();
     if (table == &tables::inside_begin) table = profile.core ? &tables::core : &tables::immediate;
     if (packer.take_overflow()) {
@@ -124,6 +157,11 @@ void Context::end_primitive() {
         error(GL_OUT_OF_MEMORY);
     }
     if (packer.bytes() > kBlockBytes && !packer.closed()) flush_block();
+}
+
+bool Context::places_packed_vertices() {
+    const Placing& now = placing();
+    return now.of_vertices() && (now.homogeneous || !packer.has_w());
 }
 
 void Context::determine_modelview_form() {
@@ -134,10 +172,15 @@ void Context::determine_modelview_form() {
     modelview_stack.origin = top.origin;
 }
 
-/// Sending a block leaves its attributes in the state; each pass begins with those of before.
+/// If another thread has linked the program anew meanwhile, boxes that were known may not be so any more. Sending a block
+/// leaves its attributes in the state; each pass begins with those of before.
 void Context::submit_geometry() {
-    if (!captures->active && !state.local.rasterizer_discard)
-        return session_->submit_block(draw_source(), packer, projection());
+    const bool known = !program || places_packed_vertices();
+    const auto submit = [&] {
+        const bool somewhere = known && captures->now == nullptr;  // what is captured is captured everywhere
+        session_->submit_block(draw_source(), packer, somewhere ? placing().projection : glstate::unknown_projection());
+    };
+    if (!captures->active && !state.local.rasterizer_discard) return submit();
     const glstate::State before = state;
     draw_in_passes(state, *captures, [&] {
         const auto objects = state.objects;
@@ -146,7 +189,7 @@ void Context::submit_geometry() {
         state = before;
         state.objects = objects;
         value_id = kept_id;
-        session_->submit_block(draw_source(), packer, projection());
+        submit();
     });
     state = before;
     fold_block(packer, state);

@@ -46,6 +46,16 @@ inline constexpr unsigned kVertexAttributes = glstate::el::vertex_attrib::count;
 /// A block larger than this is sent at the next glEnd, so that nodes draw while the program goes on.
 inline constexpr std::size_t kBlockBytes = 256 << 10;
 
+/// Where vertices go on the window, as far as that is known before they are drawn.
+struct Placing {
+    bool known = false;                ///< false: a shader puts them anywhere
+    std::uint32_t attribute = 0;       ///< generic one that a shader makes the position of; 0: or glVertex's
+    bool homogeneous = true;           ///< multiples of a vertex are in the same place
+    glstate::Projection projection{};  ///< of (x, y, z, 1); if not known, of one where all may be anywhere
+    bool steady = true;                ///< single triangles have no margin for a shader's rounding
+    bool of_vertices() const { return known && attribute == 0 && steady; }
+};
+
 /// One matrix stack; the top is the element of glstate::State.
 struct MatrixStack {
     std::vector<FormedMatrix> below;       ///< saved by glPushMatrix, oldest first
@@ -170,6 +180,8 @@ public:
     void attach(std::shared_ptr<ClientSession> session) { session_ = std::move(session); }
     void bind_surfaces(std::shared_ptr<ClientSurface> draw, std::shared_ptr<ClientSurface> read);
     const glstate::Projection& projection();
+    /// Where the vertices that are drawn now go: as `projection()` says, or the program.
+    const Placing& placing();
 
     std::atomic<bool> in_use{false};  ///< current in some thread
 
@@ -180,6 +192,9 @@ public:
 private:
     void for_each_used(const std::function<void(const Object&)>& use) override;
     void submit_block();
+    void submit_geometry();
+    /// Whether the boxes of what is packed tell where a program puts it.
+    bool places_packed_vertices();
     void report_error(GLenum code, const char* where);
     void tell();
     void submit_geometry();
@@ -193,7 +208,10 @@ private:
     bool used_ = false;
     bool lost_ = false;
     glstate::Projection projection_;
-    std::array<std::uint64_t, 3> projection_ids_{};
+    std::array<std::uint64_t, 4> projection_ids_{};
+    Placing placing_;
+    std::uint64_t placing_change_ = 0;  ///< of the program; 0: of none
+    std::array<std::uint64_t, 4> placing_ids_{};
 };
 
 }  // namespace wall::client

@@ -106,13 +106,13 @@ void call_run(Context& c, const ListRun& run) {
     c.determine_modelview_form();
     if (!c.draw_target() || !may_draw(c) || c.draws_nothing) return apply_effects(c.state, run, run.in_context);
     forget_dead_runs(c);
-    // A program's shader puts the vertices anywhere.
-    const bool bounded = !options().broadcast && !c.program;
-    const auto box = bounded ? project(c.projection(), run.box) : std::nullopt;
+    const Placing& placing = c.placing();
+    const bool bounded = !options().broadcast && placing.of_vertices() && placing.homogeneous;
+    const auto box = bounded ? project(placing.projection, run.box) : std::nullopt;
     draw_in_passes(c.state, *c.captures, [&] {
         std::vector<Node*> reached;
         c.session().draw(
-            c.draw_source(), box, needs_of_run(c, run),
+            c.draw_source(), c.captures->now == nullptr ? box : std::nullopt, needs_of_run(c, run),
             [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session().nodes(), node, buffer, run); },
             [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
             [&](Node& node) {

@@ -26,8 +26,18 @@ namespace {
 class NodeDraw {
 public:
     NodeDraw(Context& c, VertexInput& input, const ArrayDraw& draw)
-        : c_(c), input_(input), draw_(draw), range_{draw.mode,  draw.index_type,  place(),
-                                                    draw.count, draw.base_vertex, restart_key(draw)} {}
+        : c_(c),
+          input_(input),
+          draw_(draw),
+          placing_(c.placing()),
+          bounded_(find_bounding_array()),
+          range_{draw.mode,
+                 draw.index_type,
+                 place(),
+                 draw.count,
+                 draw.base_vertex,
+                 restart_key(draw),
+                 static_cast<std::uint32_t>(array_.value_or(0))} {}
 
     /// Before anything else: what the program has written into persistent mappings of what is drawn is a change.
     void find_written();
@@ -38,8 +48,7 @@ public:
         if (!input_.positions()) return suits_without_positions();
         known_ = in_buffers();
         if (known_ == nullptr) return false;
-        if (input_.position_buffer().is_drawn()) know_no_bounds();
-        if (input_.any_drawn()) return true;  // nobody else has it
+        if (input_.any_drawn()) return know_no_bounds(), true;  // nobody else has it
         const bool worth = worth_keeping();
         // In a block of vertices there are no instances, and no numbers.
         return worth || draw_.instances != 1 || (c_.program && c_.program->executable->reads_vertex_numbers());
@@ -49,13 +58,13 @@ public:
         if (!c_.program || indexed() || input_.written_unseen()) return false;
         if (input_.instances() < static_cast<std::uint64_t>(draw_.instances)) return false;
         once_.box.make_unbounded();
-        known_ = &once_;
+        known_ = bounded_ && array_ && !input_.any_drawn() ? &known_bounds() : &once_;
         return std::uint64_t{range_.first} + static_cast<std::uint64_t>(draw_.count) <= input_.elements();
     }
     /// Instead, if the input was made for this draw.
     void know_all_of_it() {
         std::lock_guard lock(c_.share().mutex);
-        if (of_each_vertex()) once_.box = bounds(draw_.indices, {}).box;
+        if (array_ && of_each_vertex(*array_)) once_.box = bounds(draw_.indices, {}).box;
         else once_.box.make_unbounded();
         known_ = &once_;
     }
@@ -75,10 +84,14 @@ private:
     }
     /// More than what most draws are.
     bool special() const { return draw_.instances != 1 || range_.restart != 0; }
-    /// A shader puts the vertices anywhere.
-    bool cut() const { return known_->cut && !c_.program && !special() && !glstate::counts_primitives(c_.state); }
-    /// Not one position for a whole instance.
-    bool of_each_vertex() const { return input_.positions()->divisor == 0; }
+    /// A shader may put the vertices anywhere.
+    bool cut() const {
+        return known_->cut && bounded_ && !special() && c_.captures->now == nullptr &&
+               !glstate::counts_primitives(c_.state);
+    }
+    /// Not one value for a whole instance.
+    bool of_each_vertex(std::size_t array) const { return input_.definition().arrays[array].divisor == 0; }
+    bool find_bounding_array();
     bool in_memory() const { return indexed() && input_.indices() == nullptr; }  ///< the indices
     std::span<const std::byte> indices() const {
         return {static_cast<const std::byte*>(draw_.indices),
@@ -106,16 +119,30 @@ private:
     Context& c_;
     VertexInput& input_;
     const ArrayDraw& draw_;
+    const Placing placing_;
+    std::optional<std::size_t> array_;  ///< that has the positions
+    const bool bounded_;                ///< whether the box around them tells where they are drawn
     DrawnRange range_;
     const RangeBounds* known_ = nullptr;
     RangeBounds once_;  ///< of indices that are not in a buffer: nobody knows whether they are those of before
 };
 
-/// The positions are known to the nodes only.
+/// What places the vertices may be known to the nodes only.
 void NodeDraw::know_no_bounds() {
     once_.box.make_unbounded();
     once_.cut = false;
     known_ = &once_;
+}
+
+bool NodeDraw::find_bounding_array() {
+    array_ = input_.position_array();
+    if (!c_.program) return true;
+    const auto found = placing_.known ? input_.array_of_generic(placing_.attribute) : std::nullopt;
+    if (!found || !of_each_vertex(*found)) return false;
+    const glstate::InputArray& array = input_.definition().arrays[*found];
+    if (array.integer != 0 || array.size == GL_BGRA) return false;
+    array_ = found;
+    return true;
 }
 
 bool NodeDraw::indices_in_buffer() const {
@@ -161,7 +188,7 @@ void NodeDraw::find_written() {
 /// What is known of the draw, if all indices and all elements that they name lie in the buffers; else null.
 const RangeBounds* NodeDraw::in_buffers() {
     const std::uint64_t elements = input_.elements();
-    if (elements == 0 || !of_each_vertex()) return nullptr;
+    if (elements == 0 || !of_each_vertex(*input_.position_array())) return nullptr;
     if (input_.instances() < static_cast<std::uint64_t>(draw_.instances)) return nullptr;
     if (!indexed()) {
         const bool within = std::uint64_t{range_.first} + static_cast<std::uint64_t>(draw_.count) <= elements;
@@ -178,7 +205,8 @@ const RangeBounds* NodeDraw::in_buffers() {
 }
 
 ElementBounds NodeDraw::bounds(const void* indices, const std::optional<glstate::Cut>& cut) const {
-    const BufferReading content = input_.position_buffer().read(input_.positions()->offset);
+    const glstate::InputArray& array = input_.definition().arrays[*array_];
+    const BufferReading content = input_.buffers()[*array_]->read(array.offset);
     ElementRange elements;
     elements.first = draw_.first;
     elements.count = draw_.count;
@@ -186,12 +214,12 @@ ElementBounds NodeDraw::bounds(const void* indices, const std::optional<glstate:
     elements.indices = indices;
     elements.base_vertex = draw_.base_vertex;
     elements.restart = draw_.restart;
-    return bounds_of(array_source(*input_.positions(), content.bytes()), elements, cut);
+    return bounds_of(array_source(array, content.bytes()), elements, cut);
 }
 
 const RangeBounds& NodeDraw::known_bounds() {
     RangeBounds& known = input_.bounds_of(range_);
-    const std::uint64_t positions = input_.position_buffer().latest(),
+    const std::uint64_t positions = input_.buffers()[*array_]->latest(),
                         indices = indexed() ? input_.indices()->latest() : 0;
     if (known.positions == positions && known.indices == indices) return known;
     // Where primitives begin anew the pieces would not be whole ones.
@@ -212,8 +240,8 @@ const RangeBounds& NodeDraw::known_bounds() {
 /// element would come along.
 bool NodeDraw::worth_keeping() {
     const auto nodes = static_cast<std::uint64_t>(count_nodes(c_.draw_target().layers()));
-    // What cannot be bounded would go to all of them.
-    const std::uint64_t copies = c_.program ? nodes : 1;
+    // What cannot be bounded as vertices of a block would go to all of them.
+    const std::uint64_t copies = placing_.of_vertices() ? 1 : nodes;
     bool keep = true;
     const auto& arrays = input_.definition().arrays;
     for (std::size_t i = 0; i < input_.buffers().size(); ++i) {
@@ -241,10 +269,10 @@ void NodeDraw::send() {
     draw_in_passes(c_.state, *c_.captures, [&] { send_once(); });
 }
 
+/// What is captured is captured everywhere.
 void NodeDraw::send_once() {
-    // A program's shader puts the vertices anywhere.
-    const bool bounded = !options().broadcast && !c_.program;
-    const auto box = bounded ? project(c_.projection(), known_->box) : std::nullopt;
+    const bool bounded = !options().broadcast && bounded_ && c_.captures->now == nullptr;
+    const auto box = bounded ? project(placing_.projection, known_->box) : std::nullopt;
     c_.session().draw(
         c_.draw_source(), box, needs(), [&](Node& node, wire::PackBuffer& buffer) { bring_objects(node, buffer); },
         [&](wire::PackBuffer& buffer) { pack(buffer); },

@@ -113,6 +113,7 @@ void Packer::reset() {
     clear();
     primitives_.clear();
     block_box_ = geom::Box{};
+    has_w_ = false;
     last.fill(nullptr);
     materials.clear();
     rare_ = false;

@@ -69,6 +69,9 @@ public:
 
     bool has_geometry() const { return !primitives_.empty(); }
     bool has_rare() const { return rare_; }
+    /// Some vertex has a w other than 1; then the box is around what fixed function makes of it.
+    bool has_w() const { return has_w_; }
+    void note_w() { has_w_ = true; }
     const std::vector<Primitive>& primitives() const { return primitives_; }
     const geom::Box& block_box() const { return block_box_; }
 
@@ -94,6 +97,7 @@ private:
     geom::Box block_box_;
     bool inside_ = false;
     bool rare_ = false;
+    bool has_w_ = false;
     bool closed_ = false;
     bool overflown_ = false;
     std::size_t most_bytes_ = wire::kMaxBlockBytes;

@@ -50,6 +50,7 @@ std::vector<std::byte> final_definition(glapi::ProgramDefinition definition,
     definition.uniforms.clear();
     for (const auto& u : reflection.uniforms)
         if (u.has_location()) definition.uniforms.push_back({u.size, u.name});
+    definition.position = reflection.position;
     definition.blocks.clear();
     for (const auto& b : reflection.blocks) definition.blocks.push_back(b.name);
     for (const auto& o : reflection.outputs) {
@@ -93,8 +94,26 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
     made->geometry = reflection.geometry;
     made->reads_vertex_numbers_ = made->find_attribute("gl_VertexID") != nullptr;
     made->stamp = made->last_change = next_stamp();
+    made->follow_position(std::move(reflection.position));
     made->check_samplers();
     return made;
+}
+
+/// One that takes a uniform or an attribute which is not active is not followed.
+void Executable::follow_position(glapi::PositionProgram position) {
+    std::vector<std::uint32_t> locations;
+    for (const glapi::PositionUniform& wanted : position.uniforms) {
+        const auto found = std::ranges::find(uniforms, wanted.name, &Uniform::name);
+        if (found == uniforms.end() || found->location < 0) return;
+        if (wanted.element >= static_cast<std::uint32_t>(found->size)) return;
+        locations.push_back(static_cast<std::uint32_t>(found->location) + wanted.element);
+    }
+    if (!position.known()) return;
+    position_attribute_ = position.attribute == "gl_Vertex" ? 0 : attribute_location_of(position.attribute);
+    position_ = {std::move(position), std::move(locations)};
+    for (const Uniform& uniform : uniforms)
+        if (uniform.location >= 0)
+            position_.set(static_cast<std::uint32_t>(uniform.location), uniform.type->words(), words_of(uniform));
 }
 
 GLint Executable::location_of(std::string_view text) const {
@@ -167,6 +186,7 @@ void Executable::store(Uniform& uniform, std::uint32_t first, std::span<const st
     std::memcpy(words_.data() + uniform.first + std::size_t{first} * uniform.type->words(), words.data(),
                 words.size_bytes());
     uniform.stamp = last_change = next_stamp();
+    position_.set(static_cast<std::uint32_t>(uniform.location) + first, uniform.type->words(), words);
     if (uniform.type->base == glapi::UniformBase::sampler) check_samplers();
 }
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "client_lib/objects/object.h"
+#include "common/glapi/position_program.h"
 #include "common/glapi/program_format.h"
 #include "common/wire/pack_buffer.h"
 
@@ -94,6 +95,10 @@ public:
     void bind_block(UniformBlock& block, std::uint32_t binding);
     /// Whether it counts vertices by itself (gl_VertexID), so that they must be drawn with their own numbers.
     bool reads_vertex_numbers() const { return reads_vertex_numbers_; }
+    /// The location of the attribute that the position is a function of; -1: that is not known. 0 is also gl_Vertex.
+    GLint position_attribute() const { return position_attribute_; }
+    /// How the position is made of it.
+    glapi::LinkedPosition& position() { return position_; }
 
     /// Texture units that the samplers name, with the texture target of each.
     template <class Use>
@@ -122,12 +127,15 @@ public:
 private:
     const glapi::ActiveAttribute* find_attribute(std::string_view name) const;
     void check_samplers();
+    void follow_position(glapi::PositionProgram position);
 
     std::vector<std::uint32_t> words_;
     std::vector<UniformPlace> places_;  ///< by location
     bool samplers_conflict_ = false;
     bool samples_buffers_ = false;
     bool reads_vertex_numbers_ = false;
+    glapi::LinkedPosition position_;
+    GLint position_attribute_ = -1;
 };
 
 struct Program : GlslObject {

@@ -27,6 +27,14 @@ VertexInput::VertexInput(ClientName own_id, glstate::VertexInputDefinition defin
     }
 }
 
+std::optional<std::size_t> VertexInput::array_of_generic(std::uint32_t number) const {
+    if (number == 0) return positions_;
+    const auto place = glstate::place_of(glstate::Attribute::vertex_attrib + number);
+    for (std::size_t i = 0; i < definition_.arrays.size(); ++i)
+        if (definition_.arrays[i].place == place) return i;
+    return std::nullopt;
+}
+
 std::uint64_t VertexInput::elements() const {
     std::uint64_t count = std::numeric_limits<std::uint64_t>::max();
     for (std::size_t i = 0; i < definition_.arrays.size(); ++i)

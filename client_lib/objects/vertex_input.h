@@ -30,6 +30,7 @@ struct DrawnRange {
     std::int32_t count = 0;
     std::int32_t base_vertex = 0;
     std::uint64_t restart = 0;  ///< 0: there is none; else 2^32 and the index
+    std::uint32_t array = 0;    ///< which of the input's has the positions
     bool operator==(const DrawnRange&) const = default;
 };
 
@@ -53,7 +54,10 @@ public:
     const std::vector<std::shared_ptr<Buffer>>& buffers() const { return buffers_; }
     /// The array of positions; null: it has none.
     const glstate::InputArray* positions() const { return positions_ ? &definition_.arrays[*positions_] : nullptr; }
-    const Buffer& position_buffer() const { return *buffers_[*positions_]; }
+    /// Which array that is.
+    std::optional<std::size_t> position_array() const { return positions_; }
+    /// Which array has the values of a generic attribute; of number 0, that of positions.
+    std::optional<std::size_t> array_of_generic(std::uint32_t number) const;
     /// Stamp of the latest change of itself or of any of its buffers: as long as it stays the same, who has been
     /// brought them lacks nothing of them. The share group's mutex is held.
     std::uint64_t latest_of_all() const {
@@ -112,7 +116,9 @@ private:
             const std::uint64_t low = std::uint64_t{range.first} << 32 | static_cast<std::uint32_t>(range.count);
             const std::uint64_t rest = range.restart << 8 ^ static_cast<std::uint32_t>(range.base_vertex);
             return static_cast<std::size_t>(
-                (low ^ rest * 0xff51afd7ed558ccdu ^ range.index_type << 4 ^ range.mode) * 0x9e3779b97f4a7c15u >> 16);
+                (low ^ rest * 0xff51afd7ed558ccdu ^ range.array << 16 ^ range.index_type << 4 ^ range.mode) *
+                    0x9e3779b97f4a7c15u >>
+                16);
         }
     };
 

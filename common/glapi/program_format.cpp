@@ -33,6 +33,16 @@ public:
     void put(const GeometryStage& stage) {
         for (const std::uint32_t value : {stage.input, stage.output, stage.vertices, stage.invocations}) put(value);
     }
+    void put(const PositionProgram& position) {
+        list(position.uniforms, [&](const PositionUniform& u) { put(u.name), put(u.element); });
+        put(position.attribute);
+        put(position.depth);
+        list(position.steps, [&](const PositionStep& step) {
+            put(static_cast<std::uint32_t>(step.op) | std::uint32_t{step.columns} << 8 |
+                std::uint32_t{step.rows} << 16);
+            put(step.operands);
+        });
+    }
     void put(const std::vector<std::uint32_t>& words) {
         put(static_cast<std::uint32_t>(words.size()));
         append(words.data(), words.size() * sizeof(std::uint32_t));
@@ -81,6 +91,20 @@ public:
         return out;
     }
     BlockPlace place() { return {number(), number(), number(), number(), flag()}; }
+    PositionProgram position() {
+        PositionProgram out;
+        list(out.uniforms, [&] { return PositionUniform{text(), word()}; });
+        out.attribute = text();
+        out.depth = flag();
+        list(out.steps, [&] {
+            const std::uint32_t head = word();
+            if (head >> 24 != 0) in_.fail();
+            return PositionStep{static_cast<PositionOp>(head & 0xff), static_cast<std::uint8_t>(head >> 8),
+                                static_cast<std::uint8_t>(head >> 16), words()};
+        });
+        if (!is_valid(out)) in_.fail();
+        return out;
+    }
     GeometryStage geometry() { return {word(), word(), word(), word()}; }
     bool complete() const { return in_.ok() && in_.remaining() == 0; }
 
@@ -146,6 +170,7 @@ std::vector<std::byte> encode(const ProgramDefinition& definition) {
     to.list(definition.blocks, [&](const std::string& name) { to.put(name); });
     to.list(definition.outputs, [&](const OutputBinding& o) { to.put(o.color), to.put(o.index), to.put(o.name); });
     to.put(definition.feedback);
+    to.put(definition.position);
     return std::move(to.out);
 }
 
@@ -158,6 +183,7 @@ std::optional<ProgramDefinition> decode_definition(std::span<const std::byte> by
     from.list(out.blocks, [&] { return from.text(); });
     from.list(out.outputs, [&] { return OutputBinding{from.word(), from.word(), from.text()}; });
     out.feedback = from.feedback();
+    out.position = from.position();
     return if_complete(from, std::move(out));
 }
 
@@ -180,6 +206,7 @@ std::vector<std::byte> encode(const ProgramReflection& reflection) {
     });
     to.list(reflection.captured, [&](const CapturedVarying& v) { to.put(v.type), to.put(v.size), to.put(v.name); });
     to.put(reflection.geometry);
+    to.put(reflection.position);
     return std::move(to.out);
 }
 
@@ -199,6 +226,7 @@ std::optional<ProgramReflection> decode_reflection(std::span<const std::byte> by
     });
     from.list(out.captured, [&] { return CapturedVarying{from.word(), from.word(), from.text()}; });
     out.geometry = from.geometry();
+    out.position = from.position();
     return if_complete(from, std::move(out));
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common/glapi/gl_types.h"
+#include "common/glapi/position_program.h"
 #include "gen/glapi/texture_targets.gen.h"
 
 namespace wall::glapi {
@@ -59,6 +60,7 @@ struct ProgramDefinition {
     std::vector<std::string> blocks = {};  ///< of uniforms, in the order that gives indices
     std::vector<OutputBinding> outputs = {};
     FeedbackDefinition feedback = {};
+    PositionProgram position = {};  ///< as the node that was asked first found it
 };
 
 /// Where a member of a uniform block lies in it (OpenGL 3.1, 2.11.4); -1 throughout for any other uniform.
@@ -131,6 +133,7 @@ struct ProgramReflection {
     std::vector<ActiveOutput> outputs = {};
     std::vector<CapturedVarying> captured = {};
     GeometryStage geometry = {};
+    PositionProgram position = {};
 };
 
 /// The stages that programs may have, in the order of ActiveBlock::stages.
@@ -144,7 +147,7 @@ struct CompileResult {
 std::vector<std::byte> encode(const ProgramDefinition& definition);
 std::vector<std::byte> encode(const ProgramReflection& reflection);
 std::vector<std::byte> encode(const CompileResult& result);
-/// Nothing if the bytes are not exactly one value.
+/// Nothing if the bytes are not exactly one value, or the steps of a position have no meaning.
 std::optional<ProgramDefinition> decode_definition(std::span<const std::byte> bytes);
 std::optional<ProgramReflection> decode_reflection(std::span<const std::byte> bytes);
 std::optional<CompileResult> decode_compile_result(std::span<const std::byte> bytes);

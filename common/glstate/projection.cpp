@@ -88,6 +88,21 @@ Projection make_projection(const State& state) {
     return p;
 }
 
+Projection make_projection(const Projection& fixed_function, const glapi::PositionTransform& transform, bool depth) {
+    Projection p = fixed_function;
+    p.clip_from_object = transform.matrix();
+    p.near_plane = p.near_plane && depth;
+    p.by_shader = true;
+    p.sizes = transform.sizes;
+    return p;
+}
+
+Projection unknown_projection() {
+    Projection p;
+    p.clip_from_object[12] = 10 * kLargestCoordinate;
+    return p;
+}
+
 namespace {
 
 struct ClipCorners {
@@ -135,15 +150,63 @@ std::optional<PixelRect> rect_in_front(const Projection& p, const ClipCorners& c
                      pixel(1, high[1]) + p.margin};
 }
 
+/// How far what a shader makes of the box's corners may lie from what is computed here, in clip space. Some three
+/// products of matrices, each of sums of four, there and here: 32 roundings.
+std::array<float, 4> shader_errors(const Projection& p, const geom::Box& box) {
+    constexpr float kRoundings = 32 * 0x1p-24f;
+    alignas(16) float low[4], high[4];
+    _mm_store_ps(low, box.min);
+    _mm_store_ps(high, box.max);
+    std::array<float, 4> out{};
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+        const float reach = axis == 3 ? 1 : std::max(std::abs(low[axis]), std::abs(high[axis]));
+        for (std::size_t row = 0; row < 4; ++row) out[row] += kRoundings * reach * p.sizes[4 * axis + row];
+    }
+    return out;
+}
+
+/// The rectangle of a box with these corners, widened by as much. Nothing: a corner may be anywhere.
+std::optional<PixelRect> widen(const Projection& p, const geom::Box& box, const ClipCorners& corners,
+                               const PixelRect& rect) {
+    constexpr float kUsual = 1e-4f;  // of the largest coordinate; what fixed function is taken to be exact at
+    const auto errors = shader_errors(p, box);
+    float nearest = INFINITY, largest = 0;
+    for (const __m128& corner : corners.at) {
+        alignas(16) float clip[4];
+        _mm_store_ps(clip, corner);
+        nearest = std::min(nearest, clip[3]);
+        for (const float c : clip) largest = std::max(largest, std::abs(c));
+    }
+    if (!(nearest > 2 * errors[3])) {  // around the eye, errors in pixels have no bound
+        return *std::max_element(errors.begin(), errors.end()) <= kUsual * largest ? std::optional(rect) : std::nullopt;
+    }
+    PixelRect out = rect;
+    const auto grow = [&](int axis, float& from, float& to) {
+        const float half = p.viewport[2 + axis] / 2, middle = p.viewport[axis] + half;
+        const float reach = std::max(std::abs(from - middle), std::abs(to - middle));
+        const float by = (errors[static_cast<std::size_t>(axis)] * half + reach * errors[3]) / (nearest - errors[3]);
+        from -= by;
+        to += by;
+    };
+    grow(0, out.x0, out.x1);
+    grow(1, out.y0, out.y1);
+    return out;
+}
+
+std::optional<PixelRect> project(const Projection& p, const ClipCorners& clip) {
+    if (const auto rect = rect_in_front(p, clip)) return rect;
+    std::array<WindowVertex, 8> corners;
+    for (unsigned corner = 0; corner < corners.size(); ++corner) corners[corner] = to_window(p, clip.at[corner]);
+    return hull_rect(p, corners);
+}
+
 }  // namespace
 
 std::optional<PixelRect> project(const Projection& p, const geom::Box& box) {
     if (box.unbounded()) return std::nullopt;
     const auto clip = clip_corners(p, box);
-    if (const auto rect = rect_in_front(p, clip)) return rect;
-    std::array<WindowVertex, 8> corners;
-    for (unsigned corner = 0; corner < corners.size(); ++corner) corners[corner] = to_window(p, clip.at[corner]);
-    return hull_rect(p, corners);
+    const auto rect = project(p, clip);
+    return rect && p.by_shader ? widen(p, box, clip, *rect) : rect;
 }
 
 std::optional<PixelRect> hull_rect(const Projection& p, std::span<const WindowVertex> vertices) {

@@ -9,6 +9,7 @@
 
 #include "common/geom/box.h"
 #include "common/geom/pixel_rect.h"
+#include "common/glapi/position_program.h"
 #include "gen/glstate/state.gen.h"
 
 namespace wall::glstate {
@@ -21,9 +22,15 @@ struct Projection {
     float viewport[4]{};     ///< x, y, width, height
     float margin = 1;        ///< pixels: half the line width or point size, and one for rounding
     bool near_plane = true;  ///< clips; not while depths are clamped
+    bool by_shader = false;  ///< which rounds in an order of its own, so that what it makes lies about there
+    Mat4 sizes{};            ///< if by_shader: as of glapi::PositionTransform
 };
 
 Projection make_projection(const State& state);
+/// The same of vertices that a shader places. `depth`: as of its position program.
+Projection make_projection(const Projection& fixed_function, const glapi::PositionTransform& transform, bool depth);
+/// Every box may be anywhere.
+Projection unknown_projection();
 Mat4 multiply(const Mat4& a, const Mat4& b);
 
 /// Where the box can be drawn; nothing if that is unknown. Empty behind the eye.

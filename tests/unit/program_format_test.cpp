@@ -15,13 +15,20 @@ void refuses_prefixes(const std::vector<std::byte>& bytes, Decode&& decode) {
     EXPECT_FALSE(decode(longer));
 }
 
+const PositionProgram kPosition{
+    {{"mvp", 3}},
+    "place",
+    false,
+    {{PositionOp::uniform, 4, 4, {0}}, {PositionOp::attribute, 1, 4, {}}, {PositionOp::product, 1, 4, {0, 1}}}};
+
 TEST(ProgramFormat, Definition) {
     const ProgramDefinition in{{{GL_VERTEX_SHADER, true, "void main() {}"}, {GL_FRAGMENT_SHADER, false, ""}},
                                {{3, "place"}},
                                {{4, "lights"}, {1, "x"}},
                                {"Light", "Place"},
                                {{2, 1, "tint"}},
-                               {GL_SEPARATE_ATTRIBS, {"speed", "gl_Position"}}};
+                               {GL_SEPARATE_ATTRIBS, {"speed", "gl_Position"}},
+                               kPosition};
     const auto bytes = encode(in);
     const auto out = decode_definition(bytes);
     ASSERT_TRUE(out);
@@ -34,6 +41,7 @@ TEST(ProgramFormat, Definition) {
     EXPECT_EQ(out->outputs, in.outputs);
     EXPECT_EQ(out->feedback.mode, GLenum{GL_SEPARATE_ATTRIBS});
     EXPECT_EQ(out->feedback.names, in.feedback.names);
+    EXPECT_EQ(out->position, kPosition);
     refuses_prefixes(bytes, decode_definition);
 }
 
@@ -46,7 +54,8 @@ TEST(ProgramFormat, Reflection) {
                                {{"Light", 64, 3, 2}},
                                {{1, 0, 2, true, "tint"}},
                                {{GL_FLOAT_VEC3, 1, "speed"}},
-                               {GL_TRIANGLES, GL_LINE_STRIP, 12, 1}};
+                               {GL_TRIANGLES, GL_LINE_STRIP, 12, 1},
+                               kPosition};
     const auto bytes = encode(in);
     const auto out = decode_reflection(bytes);
     ASSERT_TRUE(out);
@@ -68,6 +77,17 @@ TEST(ProgramFormat, AbsurdLengthsAreRefused) {
     EXPECT_FALSE(decode_definition(bytes));
     EXPECT_FALSE(decode_reflection(bytes));
     EXPECT_FALSE(decode_compile_result(bytes));
+}
+
+TEST(ProgramFormat, PositionsWithoutMeaningAreRefused) {
+    ProgramReflection in;
+    in.position = kPosition;
+    ASSERT_TRUE(decode_reflection(encode(in)));
+    in.position.steps[2].operands[1] = 2;
+    EXPECT_FALSE(decode_reflection(encode(in)));
+    ProgramDefinition definition;
+    definition.position = in.position;
+    EXPECT_FALSE(decode_definition(encode(definition)));
 }
 
 TEST(ProgramFormat, UniformTypes) {

@@ -57,6 +57,36 @@ TEST(Projection, WhatCannotBeComputedIsUnknown) {
     EXPECT_FALSE(project(perspective(1, 100), box).has_value());
 }
 
+TEST(Projection, OfAShaderHasAMarginForItsRounding) {
+    const Projection fixed = perspective(1, 100);
+    const geom::Box box = box_of({-1, -1, -10}, {1, 1, -5});
+    glapi::PositionTransform transform;
+    transform.linear = fixed.clip_from_object;
+    for (std::size_t i = 0; i < 16; ++i) transform.sizes[i] = std::abs(transform.linear[i]);
+    const auto exact = project(fixed, box), usual = project(make_projection(fixed, transform, true), box);
+    ASSERT_TRUE(exact && usual);
+    EXPECT_LE(usual->x0, exact->x0);
+    EXPECT_GT(usual->x0, exact->x0 - 0.01f);
+    transform.sizes[12] += 1e6f;  // x was moved far away, and back again
+    const auto far = project(make_projection(fixed, transform, true), box);
+    ASSERT_TRUE(far);
+    EXPECT_LT(far->x0, exact->x0 - 10);
+    EXPECT_GT(far->x1, exact->x1 + 10);
+    EXPECT_NEAR(far->y0, exact->y0, 0.01f);
+    EXPECT_FALSE(project(make_projection(fixed, transform, true), box_of({-1, -1, -5}, {1, 1, 5})));
+    transform.sizes[12] = 0;
+    EXPECT_TRUE(project(make_projection(fixed, transform, true), box_of({-1, -1, -5}, {1, 1, 5})));
+    EXPECT_FALSE(project(unknown_projection(), box));
+}
+
+TEST(Projection, WithoutDepthNothingIsClipped) {
+    const Projection fixed = perspective(1, 100);
+    glapi::PositionTransform transform;
+    transform.linear = fixed.clip_from_object;
+    EXPECT_TRUE(make_projection(fixed, transform, true).near_plane);
+    EXPECT_FALSE(make_projection(fixed, transform, false).near_plane);
+}
+
 TEST(Projection, OfABoxIsThatOfItsCorners) {
     const Projection p = perspective(1, 100);
     std::mt19937 random(9);

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "common/glapi/primitive.h"
-#include "common/glstate/projection.h"
 #include "tileserver/objects/buffer.h"
 #include "tileserver/objects/draw_pieces.h"
+#include "tileserver/objects/program.h"
 
 namespace wall::tileserver {
 namespace {
@@ -25,8 +25,16 @@ bool draws_lines(GLenum mode, const glstate::State& state) {
 
 bool ArrayDrawCommands::may_be_cut(GLenum mode) const {
     const glstate::State& state = execution_.context->state;
-    if (state.objects.current_program != 0 || execution_.modes.mode() != GL_RENDER) return false;
+    if (execution_.modes.mode() != GL_RENDER) return false;
     return !state.line_point.line_stipple_enabled || !draws_lines(mode, state);  // its counter runs along the draw
+}
+
+std::optional<glstate::Projection> ArrayDrawCommands::projection() const {
+    const glstate::State& state = execution_.context->state;
+    const glstate::Projection fixed_function = glstate::make_projection(state);
+    const ClientName name(state.objects.current_program);
+    Program* program = name ? execution_.session.objects.find<Program>(name) : nullptr;
+    return program != nullptr ? program->project(fixed_function, state) : fixed_function;
 }
 
 VertexInput* ArrayDrawCommands::begin(ClientName name, GLenum mode, std::int32_t count) {
@@ -54,10 +62,11 @@ void ArrayDrawCommands::find_runs(ClientName name, std::int32_t count, GLenum mo
     const DrawPieces& pieces = **found;
     if ((all + pieces.cut().step - 1) / pieces.cut().step != pieces.boxes().size())
         return execution_.refuse("pieces of another draw");
-    const glstate::Projection projection = glstate::make_projection(execution_.context->state);
+    const auto projection = this->projection();
+    if (!projection) return add(0, all);
     const geom::PixelRect area = block_.target->geometry().window_area();
     const auto wanted = [&](const geom::Box& box) {
-        const auto rect = glstate::project(projection, box);
+        const auto rect = glstate::project(*projection, box);
         return !rect || rect->overlaps(area);
     };
     glstate::for_each_run(pieces.cut(), pieces.boxes(), all, wanted, add);

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "common/glstate/projection.h"
 #include "tileserver/execute/execution.h"
 #include "tileserver/objects/vertex_input.h"
 
@@ -40,8 +41,10 @@ private:
     void count_runs();
     /// Elements of the draw, in runs, that the tile may show, into `firsts_` and `counts_`.
     void find_runs(ClientName pieces, std::int32_t count, GLenum mode);
-    /// Whether vertices go where the matrices of fixed function put them, and all that counts is what a tile shows.
+    /// Whether all that counts is what a tile shows.
     bool may_be_cut(GLenum mode) const;
+    /// Where vertices go; nothing: a shader puts them anywhere.
+    std::optional<glstate::Projection> projection() const;
 
     Execution& execution_;
     OpenBlock& block_;

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "tileserver/objects/position_recogniser.h"
 #include "tileserver/objects/program_build.h"
 #include "tileserver/objects/shader_patch.h"
 
@@ -87,6 +88,27 @@ void Program::find_blocks(const std::vector<std::string>& names) {
     }
 }
 
+/// With the values that the driver begins with. One with a uniform that is not active here is not followed.
+void Program::follow_position(glapi::PositionProgram position, const std::vector<glapi::UniformName>& names) {
+    position_ = {};
+    std::vector<std::uint32_t> locations;
+    for (const glapi::PositionUniform& wanted : position.uniforms) {
+        std::uint32_t location = 0;
+        auto at = names.begin();
+        for (; at != names.end() && at->name != wanted.name; ++at) location += at->size;
+        if (at == names.end() || wanted.element >= at->size || locations_[location + wanted.element] < 0) return;
+        locations.push_back(location + wanted.element);
+    }
+    position_ = {std::move(position), std::move(locations)};
+    for (const glapi::PositionStep& step : position_.program().steps) {
+        if (step.op != glapi::PositionOp::uniform) continue;
+        const std::uint32_t location = position_.locations()[step.operands[0]];
+        std::array<std::uint32_t, 16> words{};
+        driver_.gl().GetUniformfv(name_, locations_[location], reinterpret_cast<GLfloat*>(words.data()));
+        position_.set(location, step.components(), std::span(words).first(step.components()));
+    }
+}
+
 Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, bool wants_reflection) {
     const auto definition = read_definition(bytes);
     if (!definition) return tl::unexpected(definition.error());
@@ -100,6 +122,9 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
         driver_.gl().DeleteProgram(built.driver);
         return encode(reflection);
     }
+    // Once for all nodes: the others are told by the definition.
+    glapi::PositionProgram position = definition->position;
+    if (wants_reflection) position = reflection.position = recognise_position(*definition).program;
     std::vector<glapi::UniformName> names = definition->uniforms;
     std::vector<std::string> blocks = definition->blocks;
     if (!named) {
@@ -111,6 +136,7 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
     name_ = built.driver;
     locations_ = map_locations(name_, names);
     find_blocks(blocks);
+    follow_position(std::move(position), names);
     window_ = driver_.gl().GetUniformLocation(name_, kWindowUniform);
     upper_left_ = built.upper_left;
     whole_centers_ = built.whole_centers;
@@ -130,6 +156,9 @@ Result<void> Program::set_uniform(std::uint32_t location, GLenum type_name, std:
     if (count == 0 || location >= locations_.size() || count > locations_.size() - location)
         return fail("no such location");
     if (values.size() != std::size_t{count} * type->words() * 4) return fail("size does not fit the values");
+    if (type->base == glapi::UniformBase::real)
+        position_.set(location, type->words(),
+                      {reinterpret_cast<const std::uint32_t*>(values.data()), values.size() / sizeof(std::uint32_t)});
     const GLint here = locations_[location];
     if (here < 0) return {};
     if (type->matrix())
@@ -146,6 +175,13 @@ Result<void> Program::bind_block(std::uint32_t block, std::uint32_t binding) {
     block_bindings_[here] = binding;
     driver_.gl().UniformBlockBinding(name_, here, binding);
     return {};
+}
+
+std::optional<glstate::Projection> Program::project(const glstate::Projection& fixed_function,
+                                                    const glstate::State& state) {
+    const auto* transform = position_.transform(state.matrix.modelview, state.matrix.projection);
+    if (transform == nullptr) return std::nullopt;
+    return glstate::make_projection(fixed_function, *transform, position_.program().depth);
 }
 
 void Program::use(const LayerGeometry& layer) {

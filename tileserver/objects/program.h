@@ -4,12 +4,15 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "common/base/result.h"
+#include "common/glapi/position_program.h"
 #include "common/glapi/program_format.h"
+#include "common/glstate/projection.h"
 #include "tileserver/driver/driver.h"
 #include "tileserver/driver/layer.h"
 #include "tileserver/objects/object.h"
@@ -29,6 +32,8 @@ public:
                              std::span<const std::byte> values);
     /// From now on a block takes its uniforms from what is bound there. An error: no such block, no such place.
     Result<void> bind_block(std::uint32_t block, std::uint32_t binding);
+    /// How it places its vertices; nothing: that is not known.
+    std::optional<glstate::Projection> project(const glstate::Projection& fixed_function, const glstate::State& state);
     /// The driver draws with it, in this layer.
     void use(const LayerGeometry& layer);
 
@@ -37,6 +42,7 @@ public:
 
 private:
     std::vector<GLint> map_locations(GLuint program, const std::vector<glapi::UniformName>& names) const;
+    void follow_position(glapi::PositionProgram position, const std::vector<glapi::UniformName>& names);
     void find_blocks(const std::vector<std::string>& names);
     void release();
 
@@ -48,6 +54,7 @@ private:
     GLint window_ = -1;                          // location of kWindowUniform
     bool upper_left_ = false, whole_centers_ = false;
     std::array<float, 4> window_value_{};
+    glapi::LinkedPosition position_;
 };
 
 }  // namespace wall::tileserver

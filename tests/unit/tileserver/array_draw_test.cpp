@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstring>
+#include <utility>
 
+#include "common/glapi/program_format.h"
 #include "common/glstate/pieces.h"
 #include "common/glstate/vertex_input.h"
 #include "tests/unit/tileserver/test_node.h"
@@ -179,6 +181,86 @@ TEST_F(ArrayDrawTest, APieceOffTheTileIsNotDrawn) {
     draw(alone, [&](auto& b) { pack::DrawElements(b, kInput, {}, GL_TRIANGLES, 12, GL_UNSIGNED_SHORT, 0, 0); });
     session_->expect_run(alone);
     EXPECT_EQ(count_different(session_->read(0, kWindow), drawn), 0u);
+}
+
+class PiecesOfAProgram : public ArrayDrawTest {
+protected:
+    static constexpr ClientName kProgram{21};
+    static constexpr RequestId kLink{5};
+
+    /// The program is linked by the driver, and asked about as a client does it.
+    glapi::ProgramReflection link(const char* vertex) {
+        const glapi::ProgramDefinition definition{
+            {{GL_VERTEX_SHADER, true, vertex}, {GL_FRAGMENT_SHADER, true, "void main() { gl_FragColor = gl_Color; }"}},
+            {},
+            {}};
+        Batch batch;
+        pack::ProgramLink(batch.buffer(), kLink, kProgram, encode(definition));
+        session_->expect_run(batch);
+        const auto reflection = glapi::decode_reflection(session_->replies[kLink]);
+        EXPECT_TRUE(reflection && reflection->linked) << (reflection ? reflection->log : "no answer");
+        return reflection.value_or(glapi::ProgramReflection());
+    }
+    /// How many elements are drawn, with boxes of which all but the first lie at (5, 5, 0), and a shift by the shader.
+    std::uint64_t drawn(std::array<float, 4> shift) {
+        Batch batch;
+        if (!std::exchange(defined_, true)) define(batch.buffer());
+        auto pieces = boxes(12);
+        for (std::size_t i = 1; i < pieces.size(); ++i) pieces[i] = {{5, 5, 0}, {5.5f, 5.5f, 0}};
+        pack::DrawPieces(batch.buffer(), kPieces, 12, 0, std::as_bytes(std::span(pieces)));
+        pack::Uniform(batch.buffer(), kProgram, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(shift)));
+        batch.set<el::current_program>(kProgram.value);
+        draw(batch, [&](auto& b) {
+            pack::DrawElements(b, kInput, kPieces, GL_TRIANGLES, grid_.count(), GL_UNSIGNED_SHORT, 0, 0);
+        });
+        const std::uint64_t before = session_->session.work.array_elements;
+        session_->expect_run(batch);
+        return session_->session.work.array_elements - before;
+    }
+
+private:
+    bool defined_ = false;
+};
+
+constexpr const char* kShifting =
+    "uniform vec4 shift; void main() { gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex + shift;\n"
+    "  gl_FrontColor = gl_Color; }";
+
+TEST_F(PiecesOfAProgram, LieWhereItsUniformsPutThem) {
+    const auto all = static_cast<std::uint64_t>(grid_.count());
+    const glapi::ProgramReflection reflection = link(kShifting);
+    EXPECT_EQ(reflection.position.attribute, "gl_Vertex");
+    EXPECT_EQ(drawn({}), 12u);
+    EXPECT_EQ(drawn({-5, -5, 0, 0}), all - 12);
+    EXPECT_EQ(drawn({-50, 0, 0, 0}), 0u);
+    Batch batch;  // and where the matrices do
+    batch.set<el::modelview>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 50, 0, 0, 1});
+    session_->expect_run(batch);
+    EXPECT_EQ(drawn({}), 0u);
+    EXPECT_EQ(drawn({-50, 0, 0, 0}), 12u);
+}
+
+TEST_F(PiecesOfAProgram, AreAllDrawnWhereItPutsThemAnywhere) {
+    link(
+        "uniform vec4 shift; void main() { gl_Position = gl_Vertex * gl_Vertex.w * gl_Vertex.w + shift;\n"
+        "  gl_FrontColor = gl_Color; }");
+    EXPECT_EQ(drawn({}), static_cast<std::uint64_t>(grid_.count()));
+}
+
+TEST_F(PiecesOfAProgram, AreKnownToANodeThatWasNotAsked) {
+    const glapi::ProgramReflection reflection = link(kShifting);
+    glapi::ProgramDefinition definition{{{GL_VERTEX_SHADER, true, kShifting}}, {}, {{1, "shift"}}};
+    const auto link_again = [&] {
+        Batch batch;
+        pack::ProgramLink(batch.buffer(), RequestId(), kProgram, encode(definition));
+        session_->expect_run(batch);
+    };
+    link_again();
+    EXPECT_EQ(drawn({}), static_cast<std::uint64_t>(grid_.count()));
+    definition.position = reflection.position;
+    link_again();
+    EXPECT_EQ(drawn({}), 12u);
+    EXPECT_EQ(drawn({-50, 0, 0, 0}), 0u);
 }
 
 TEST_F(ArrayDrawTest, AChangedBufferIsDrawnAsItIsNow) {

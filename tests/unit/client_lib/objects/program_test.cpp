@@ -54,6 +54,15 @@ TEST(ExecutableTest, OtherNodesGetTheFirstOnesChoices) {
     EXPECT_EQ(sent->attributes[1].index, 5u);
 }
 
+TEST(ExecutableTest, OtherNodesAreToldHowThePositionIsMade) {
+    glapi::ProgramReflection told = reflection();
+    told.position = {{}, "place", true, {{glapi::PositionOp::attribute, 1, 4, {}}}};
+    const auto e = Executable::make({}, told);
+    EXPECT_EQ(glapi::decode_definition(e->definition)->position, told.position);
+    EXPECT_EQ(e->position_attribute(), 5);
+    EXPECT_EQ(Executable::make({}, reflection())->position_attribute(), -1);
+}
+
 TEST(ExecutableTest, StampsTellWhatANodeLacks) {
     Program program(ClientName(1), 1);
     program.executable = Executable::make({}, reflection());

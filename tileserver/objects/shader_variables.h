@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// What a shader's variables hold while it is gone through (position_recogniser.h), gl_Position among them.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tileserver/objects/position_builder.h"
+#include "tileserver/objects/shader_tree.h"
+
+namespace wall::tileserver {
+
+inline constexpr const char* kPosition = "gl_Position";
+
+/// A variable, or a part of one.
+struct Place {
+    std::string variable;       ///< by its number; a part of a structure or an array has its own behind a dot
+    std::string path;           ///< the same as OpenGL names a uniform, without `element`
+    std::uint32_t element = 0;  ///< the last index of an array
+    bool indexed = false;       ///< has such an index
+    const glslang::TIntermSymbol* root = nullptr;
+    const glslang::TType* type = nullptr;  ///< of the variable
+    std::vector<unsigned> components;      ///< that are meant, of a variable of floats
+    bool clear = true;                     ///< false: some part of it, known only when the shader runs
+
+    explicit Place(const glslang::TIntermSymbol& symbol);
+    Place() = default;
+    /// A part of it from now on.
+    void narrow(glslang::TIntermBinary& part);
+
+private:
+    void select(glslang::TIntermBinary& part);
+    void enter(glslang::TIntermBinary& part);
+    void set_type(const glslang::TType& of);
+};
+
+class ShaderVariables {
+public:
+    /// `any_precision`: qualifiers of precision have no meaning. The builder outlives it.
+    ShaderVariables(PositionBuilder& builder, bool any_precision) : builder_(builder), any_precision_(any_precision) {}
+
+    /// Of that type.
+    PositionValue read(const Place& place, const glslang::TType& type);
+    /// A value of another shape: nothing is known of the place.
+    void write(const Place& place, const PositionValue& value);
+    void forget(Place place);
+    PositionValue position() const;
+
+    using Values = std::map<std::string, PositionValue>;
+    const Values& values() const { return values_; }
+    Values take() { return std::move(values_); }
+    void restore(Values values) { values_ = std::move(values); }
+    /// What holds where either these are so or `other`.
+    void merge(const Values& other);
+    static PositionValue merged(const PositionValue& a, const PositionValue& b);
+
+    /// Those components of a value.
+    static PositionValue part_of(const PositionValue& whole, const std::vector<unsigned>& components,
+                                 const glslang::TType& type);
+
+private:
+    PositionValue read_whole(const Place& place);
+    PositionValue uniform(const Place& place, const PositionValue& unknown);
+    void erase_parts(const std::string& whole);
+
+    PositionBuilder& builder_;
+    const bool any_precision_;
+    Values values_;
+};
+
+}  // namespace wall::tileserver
