@@ -7,6 +7,7 @@
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/buffer_use.h"
 #include "client_lib/context/debug_state.h"
+#include "client_lib/context/es_version.h"
 #include "client_lib/context/framebuffer_use.h"
 #include "client_lib/context/list_state.h"
 #include "client_lib/context/query_state.h"
@@ -24,10 +25,19 @@ namespace wall::client {
 constinit thread_local Context* tls_context = nullptr;
 constinit thread_local Packer* tls_packer = nullptr;
 
+namespace {
+
+const GlTable& table_of(const ContextProfile& profile) {
+    if (profile.es != 0) return es_table(profile.es);
+    return profile.core ? tables::core : tables::immediate;
+}
+
+}  // namespace
+
 Context::Context(std::shared_ptr<ShareGroup> share, const ContextProfile& own_profile)
     : id(next_context_id()),
       profile(own_profile),
-      table(profile.core ? &tables::core : &tables::immediate),
+      table(&table_of(profile)),
       lists(std::make_unique<ListState>()),
       attributes(std::make_unique<AttributeStacks>()),
       select(std::make_unique<SelectState>()),
@@ -40,6 +50,7 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextProfile& own_pr
       copies(std::make_unique<ArrayCopies>()),
       queries(std::make_unique<QueryState>()),
       debug(std::make_unique<DebugState>()),
+      at_once_(*table),
       share_(std::move(share)) {
     for (auto& stack : texture_stacks) stack.limit = 10;
     {
@@ -47,11 +58,15 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextProfile& own_pr
         if (!share_->labels) share_->labels = std::make_shared<ObjectLabels>();
     }
     glstate::assign<glstate::el::debug_output>(state, 0, profile.debug);
-    if (!profile.core) return;
-    // What a core profile always has, and the nodes' drivers, which are no core profile, have to be told.
+    if (profile.has_fixed_function()) return;
+    // What such a context always has, and the nodes' drivers, whose contexts have fixed function, have to be told.
     glstate::assign<glstate::el::point_sprite>(state, 0, 1);
     glstate::assign<glstate::el::clamp_vertex_color>(state, 0, GL_FALSE);
     glstate::assign<glstate::el::clamp_fragment_color>(state, 0, GL_FALSE);
+    if (profile.es == 0) return;
+    glstate::assign<glstate::el::program_point_size>(state, 0, 1);
+    glstate::assign<glstate::el::framebuffer_srgb>(state, 0, 1);
+    glstate::assign<glstate::el::texture_cube_map_seamless>(state, 0, 1);
 }
 
 Context::~Context() = default;
@@ -97,13 +112,13 @@ void Context::report_error(GLenum code, const char* where) { debug->log.say(erro
 void Context::begin_primitive(GLenum mode) {
     packer.begin(mode);
     if (program) packer.mark_unbounded();  // its shader puts the vertices anywhere
-    if (table == &tables::immediate) table = &tables::inside_begin;
+    if (at_once()) table = &tables::inside_begin;
 }
 
 void Context::end_primitive() {
     if (program) packer.mark_unbounded();  // what it takes for positions may be no numbers at all
     packer.end();
-    if (table == &tables::inside_begin) table = &tables::immediate;
+    if (table == &tables::inside_begin) table = &at_once_;
     if (packer.take_overflow()) {
         complain_once("one glBegin .. glEnd or draw is larger than can be carried to a node; it was left out", "block");
         error(GL_OUT_OF_MEMORY);

@@ -64,7 +64,7 @@ public:
     glstate::State state;
     const GlTable* table = nullptr;
     /// Commands are executed: not between glBegin and glEnd, and no list is compiled.
-    bool at_once() const { return table == &tables::immediate || table == &tables::core; }
+    bool at_once() const { return table == &at_once_; }
     Packer packer;
 
     template <class E>
@@ -175,6 +175,7 @@ private:
     void report_error(GLenum code, const char* where);
     void first_use();
 
+    const GlTable& at_once_;  ///< its mode while it executes commands
     std::shared_ptr<ClientSession> session_;
     std::shared_ptr<ShareGroup> share_;
     std::shared_ptr<ClientSurface> draw_, read_;

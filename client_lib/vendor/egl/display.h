@@ -47,7 +47,8 @@ struct EglSurface {
 struct EglContext {
     std::shared_ptr<Context> core;
     const Config* config = nullptr;
-    EGLint major = 1;
+    EGLenum api = EGL_OPENGL_API;
+    EGLint major = 1;                        ///< as it was asked for
     std::shared_ptr<EglSurface> draw, read;  ///< while current
     bool current = false;                    ///< in some thread
 };
