@@ -225,7 +225,7 @@ void DiscardFramebufferEXT(Context& c, GLenum target, GLsizei count, const GLenu
 GLenum CheckFramebufferStatus(Context& c, GLenum target) {
     const auto* binding = framebuffer_binding(c, target);
     if (!binding) return c.error(GL_INVALID_ENUM), GLenum{0};
-    if (!*binding) return GL_FRAMEBUFFER_COMPLETE;
+    if (!*binding) return c.has_no_surface() ? GL_FRAMEBUFFER_UNDEFINED : GL_FRAMEBUFFER_COMPLETE;
     std::lock_guard lock(c.share().mutex);
     return (*binding)->status();
 }

@@ -318,7 +318,7 @@ bool get_limit(Context& c, GLenum pname, Out* out) {
 
 const std::uint32_t* flag_of(const Context& c, GLenum cap) {
     const auto* entry = glstate::find_cap(cap);
-    if (!entry) return nullptr;
+    if (!entry || (entry->rule != glstate::IndexRule::none && !c.profile.has_fixed_function())) return nullptr;
     const std::uint32_t id = entry->id + index_of(c, entry->rule) * entry->unit_stride;
     return reinterpret_cast<const std::uint32_t*>(reinterpret_cast<const std::byte*>(&c.state) +
                                                   glstate::element_offset(id));

@@ -21,13 +21,14 @@ GLuint create(Context& c, Args... args) {
     return name;
 }
 
+bool has_stage(const Program& program, GLenum type) {
+    return std::ranges::any_of(program.shaders, [&](const auto& shader) { return shader->type == type; });
+}
+
 /// OpenGL ES has no fixed function in place of a shader (Mesa's words). Null: the program has both.
 const char* lacking_stage(const Program& program) {
-    const auto has = [&](GLenum type) {
-        return std::ranges::any_of(program.shaders, [&](const auto& shader) { return shader->type == type; });
-    };
-    if (!has(GL_VERTEX_SHADER)) return "vertex";
-    return has(GL_FRAGMENT_SHADER) ? nullptr : "fragment";
+    if (!has_stage(program, GL_VERTEX_SHADER)) return "vertex";
+    return has_stage(program, GL_FRAGMENT_SHADER) ? nullptr : "fragment";
 }
 
 /// With the terminating zero; 0 for nothing.
@@ -154,6 +155,7 @@ void AttachShader(Context& c, GLuint program_name, GLuint shader_name) {
     std::lock_guard lock(c.share().mutex);
     if (std::find(program->shaders.begin(), program->shaders.end(), shader) != program->shaders.end())
         return c.error(GL_INVALID_OPERATION);
+    if (c.profile.es != 0 && has_stage(*program, shader->type)) return c.error(GL_INVALID_OPERATION);
     program->shaders.push_back(shader);
     ++shader->users;
 }

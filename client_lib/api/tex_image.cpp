@@ -253,6 +253,7 @@ GLenum adopt_es_pixels(ImageCall& call, const EsImage& image) {
 bool is_of_base(Context& c, const ImageCall& call) {
     const TextureLevel* level = bound_texture(c, call.target)->find_level(face_of(call.target), call.level);
     const GLenum base = call.format == GL_BGRA ? GLenum{GL_RGBA} : call.format;
+    if (blocks_format(level->internal_format) != 0) return true;
     return find_texture_format(level->internal_format)->base == base;
 }
 

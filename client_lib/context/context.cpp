@@ -74,8 +74,10 @@ Context::~Context() = default;
 void Context::bind_surfaces(std::shared_ptr<ClientSurface> draw, std::shared_ptr<ClientSurface> read) {
     draw_ = std::move(draw);
     read_ = std::move(read);
-    if (!used_ && draw_) first_use();
+    if (!used_ && draw_ && !has_no_surface()) first_use();
 }
+
+bool Context::has_no_surface() const { return draw_ && draw_->options.stands_for_none; }
 
 // OpenGL 1.2.1, 2.10.2 and 4.1.2: viewport and scissor start with the size of the first window.
 void Context::first_use() {

@@ -114,6 +114,8 @@ public:
     const Caps& caps() const;
     ShareGroup& share() const { return *share_; }
     const std::shared_ptr<ShareGroup>& share_pointer() const { return share_; }
+    /// It is current without a surface: there is no framebuffer but those that the program makes.
+    bool has_no_surface() const;
     /// What its commands draw to now, and what they read from.
     DrawTarget draw_target() const;
     DrawTarget read_target() const;

@@ -78,7 +78,7 @@ bool reads_vertex_numbers(const Context& c) {
 }
 
 bool may_draw(Context& c) {
-    if (c.framebuffers->draw && !may_draw_to_target(c)) return false;
+    if ((c.framebuffers->draw || c.has_no_surface()) && !may_draw_to_target(c)) return false;
     if (!c.program) return true;
     find_written_uniforms(c);
     std::lock_guard lock(c.share().mutex);

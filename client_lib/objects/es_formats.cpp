@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "common/glapi/block_formats.h"
+
 namespace wall::client {
 namespace {
 
@@ -80,9 +82,15 @@ EsImage es_pixels(GLenum format, GLenum es_type) {
 }
 
 EsImage es_image(GLint internal_format, GLenum format, GLenum type) {
-    if (!is_format(static_cast<GLenum>(internal_format))) return {.error = GL_INVALID_VALUE};
+    const bool blocks = glapi::block_bytes(static_cast<GLenum>(internal_format)) != 0;
+    if (!blocks && !is_format(static_cast<GLenum>(internal_format))) return {.error = GL_INVALID_VALUE};
     EsImage image = es_pixels(format, type);
-    if (image.error == GL_NO_ERROR && static_cast<GLenum>(internal_format) != format)
+    if (blocks) {  // EXT_texture_compression_s3tc: the driver compresses
+        image.internal_format = internal_format;
+        return image;
+    }
+    const bool bgra = internal_format == GL_RGBA && format == GL_BGRA;  // as Mesa, and APPLE_texture_format_BGRA8888
+    if (image.error == GL_NO_ERROR && static_cast<GLenum>(internal_format) != format && !bgra)
         image.error = GL_INVALID_OPERATION;
     return image;
 }
@@ -102,9 +110,12 @@ GLenum es_copy_error(GLenum internal_format, GLenum framebuffer_base) {
     return wanted.colors > there.colors || (wanted.alpha && !there.alpha) ? GL_INVALID_OPERATION : GL_NO_ERROR;
 }
 
+// More than the two pairs that the specification has, as in Mesa.
 bool es_can_read(GLenum format, GLenum type, bool floats) {
-    if (format == GL_BGRA) return type == GL_UNSIGNED_BYTE && !floats;
-    return format == GL_RGBA && (floats ? type == GL_FLOAT || type == GL_HALF_FLOAT : type == GL_UNSIGNED_BYTE);
+    if (es_pixels(format, type).error != GL_NO_ERROR || format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL)
+        return false;
+    const bool to_floats = type == GL_FLOAT || type == GL_HALF_FLOAT;
+    return floats || !to_floats;
 }
 
 }  // namespace wall::client

@@ -34,7 +34,8 @@ bool color_renderable(GLenum base, bool old_bases) {
 
 bool Framebuffer::renderable(unsigned place, const TextureFormat& format) const {
     if (format.compressed()) return false;
-    if (place < kColorAttachments) return color_renderable(format.base, old_bases_);
+    if (place < kColorAttachments)
+        return color_renderable(format.base, old_bases_) && (old_bases_ || format.component_type != GL_FLOAT);
     if (format.base == GL_DEPTH_STENCIL) return true;
     return format.base == (place == kDepth ? GL_DEPTH_COMPONENT : GL_STENCIL_INDEX);
 }

@@ -42,7 +42,7 @@ std::optional<ImageShape> shape_of(const Attachment& attachment);
 
 class Framebuffer final : public Object, public DrawnTarget {
 public:
-    /// `old_bases`: textures of alpha and luminance may be drawn to, as in desktop contexts.
+    /// `old_bases`: textures of alpha and luminance and those of floats may be drawn to, as in desktop contexts.
     explicit Framebuffer(GLuint own_name, bool old_bases = true)
         : Object(next_object_id(), own_name), old_bases_(old_bases) {}
 

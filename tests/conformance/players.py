@@ -50,11 +50,12 @@ class Player:
 
 class MesaPlayer(Player):
     """The X server's own OpenGL, Mesa's llvmpipe: the golden tests' reference, with as many threads as a node here.
-    Without its sRGB extension it offers OpenGL 2.1, as a wall does."""
+    Without its sRGB extension it offers OpenGL 2.1, as a wall does, and told so OpenGL ES 2.0."""
 
     def __init__(self, x: XServer, timeout: float):
         environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", LP_NUM_THREADS="0",
-                                    MESA_EXTENSION_OVERRIDE="-GL_EXT_framebuffer_sRGB")
+                                    MESA_EXTENSION_OVERRIDE="-GL_EXT_framebuffer_sRGB",
+                                    MESA_GLES_VERSION_OVERRIDE="2.0")
         for name in ("__GLX_VENDOR_LIBRARY_NAME", "__EGL_VENDOR_LIBRARY_FILENAMES"):
             environment.pop(name, None)
         super().__init__(environment, timeout)

@@ -90,7 +90,7 @@ def main():
     for name, text in texts.items():
         write_if_changed(args.out / name, text)
     if args.coverage:
-        text = emit_docs.coverage(model.api, model.state, model.ops)
+        text = emit_docs.coverage(model.api, model.state, model.ops, model.es)
         if args.check and (not args.coverage.exists() or args.coverage.read_text() != text):
             sys.exit(f"glgen: {args.coverage} is not current: run `ninja coverage-doc`")
         if not args.check:

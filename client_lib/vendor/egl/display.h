@@ -49,7 +49,8 @@ struct EglContext {
     const Config* config = nullptr;
     EGLenum api = EGL_OPENGL_API;
     EGLint major = 1;                        ///< as it was asked for
-    std::shared_ptr<EglSurface> draw, read;  ///< while current
+    std::shared_ptr<EglSurface> draw, read;  ///< while current; null without one
+    std::shared_ptr<ClientSurface> nothing;  ///< what the core has in place of no surface
     bool current = false;                    ///< in some thread
 };
 

@@ -26,7 +26,8 @@ constexpr const char* kClientExtensions =
     "EGL_EXT_client_extensions EGL_EXT_platform_base EGL_KHR_client_get_all_proc_addresses "
     "EGL_KHR_platform_x11 EGL_EXT_platform_x11 EGL_EXT_platform_xcb EGL_MESA_platform_surfaceless";
 constexpr const char* kClientApis = "OpenGL OpenGL_ES";
-constexpr const char* kDisplayExtensions = "EGL_KHR_create_context EGL_KHR_get_all_proc_addresses";
+constexpr const char* kDisplayExtensions =
+    "EGL_KHR_create_context EGL_KHR_get_all_proc_addresses EGL_KHR_surfaceless_context";
 
 constinit std::atomic<const __EGLapiExports*> glvnd{nullptr};
 constinit std::mutex current_mutex;  // guards EglContext::current
@@ -388,8 +389,9 @@ struct ContextWish {
 
 /// False: one of them is unknown, or none of OpenGL ES.
 bool read_context_flags(EGLAttrib flags, ContextOptions& o) {
-    constexpr EGLAttrib kCommon = EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR | EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
-    constexpr EGLAttrib kDesktop = kCommon | EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR;
+    constexpr EGLAttrib kCommon = EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR;
+    constexpr EGLAttrib kDesktop =
+        kCommon | EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR | EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR;
     o.robust = flags & EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
     o.debug = flags & EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR;
     o.forward_compatible = flags & EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR;
@@ -420,6 +422,8 @@ bool read_context_attribute(const Attribute& attribute, ContextWish& wish) {
 bool is_possible(const ContextWish& wish) {
     const auto& o = wish.options;
     if (o.es) return o.major > 0 && o.minor >= 0;
+    static constexpr int kLastMinor[] = {5, 1, 3, 6};  // of 1.x, 2.x, 3.x, 4.x
+    if (o.major < 1 || o.major > 4 || o.minor < 0 || o.minor > kLastMinor[o.major - 1]) return false;
     const bool has_profiles = o.major * 10 + o.minor >= 32;
     const bool profile = o.core_profile || wish.profile == EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT;
     return (!has_profiles || profile) && (!o.forward_compatible || o.major >= 3);
@@ -428,8 +432,9 @@ bool is_possible(const ContextWish& wish) {
 ContextWish read_context_attributes(const EGLint* list, bool es) {
     ContextWish wish;
     wish.options.es = es;
-    for (const Attribute& attribute : read_list(list))
-        if (!read_context_attribute(attribute, wish)) wish.error = EGL_BAD_ATTRIBUTE;
+    // Nothing behind the first mistake is looked at: there may be no end of the list.
+    for (const EGLint* a = list; a && *a != EGL_NONE && wish.error == EGL_SUCCESS; a += 2)
+        if (!read_context_attribute({a[0], a[1]}, wish)) wish.error = EGL_BAD_ATTRIBUTE;
     auto& o = wish.options;
     o.core_profile = !es && o.major * 10 + o.minor >= 32 && wish.profile == EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT;
     if (wish.error == EGL_SUCCESS && !is_possible(wish)) wish.error = EGL_BAD_MATCH;
@@ -500,6 +505,15 @@ EGLBoolean release() {
     return succeed();
 }
 
+/// EGL_KHR_surfaceless_context.
+std::shared_ptr<ClientSurface> no_surface() {
+    SurfaceOptions options;
+    options.visible = false;
+    options.stands_for_none = true;
+    options.size = {1, 1};
+    return create_surface(std::move(options));
+}
+
 EGLBoolean bind(const std::shared_ptr<EglContext>& context, std::shared_ptr<EglSurface> draw,
                 std::shared_ptr<EglSurface> read) {
     const bool again = context == thread_context();
@@ -508,7 +522,9 @@ EGLBoolean bind(const std::shared_ptr<EglContext>& context, std::shared_ptr<EglS
         if (context->current && !again) return refuse(EGL_BAD_ACCESS);
         context->current = true;
     }
-    if (!client::make_current(context->core, draw->core, read->core)) {
+    if (!draw && !context->nothing) context->nothing = no_surface();
+    if (!client::make_current(context->core, draw ? draw->core : context->nothing,
+                              read ? read->core : context->nothing)) {
         if (!again) {
             std::lock_guard lock(current_mutex);
             context->current = false;
@@ -536,6 +552,7 @@ EGLBoolean make_current_handles(EGLDisplay handle, EGLSurface draw, EGLSurface r
         if (!display) return EGLBoolean{EGL_FALSE};
         const auto context = display->context(context_handle);
         if (!context) return refuse(EGL_BAD_CONTEXT);
+        if (draw == EGL_NO_SURFACE && read == EGL_NO_SURFACE) return egl::bind(context, nullptr, nullptr);
         if (draw == EGL_NO_SURFACE || read == EGL_NO_SURFACE) return refuse(EGL_BAD_MATCH);
         auto to = display->surface(draw), from = display->surface(read);
         if (!to || !from) return refuse(EGL_BAD_SURFACE);

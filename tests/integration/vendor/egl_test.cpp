@@ -155,6 +155,17 @@ TEST_F(EglEs, ContextsAreMadeOfVersionsThatAreOffered) {
     }
 }
 
+TEST_F(EglEs, ContextsMayBeCurrentWithoutASurface) {
+    EGLContext made = context({EGL_CONTEXT_CLIENT_VERSION, 2});
+    EXPECT_TRUE(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, made));
+    EGLint value = 0;
+    EXPECT_TRUE(eglQueryContext(display, made, EGL_RENDER_BUFFER, &value));
+    EXPECT_EQ(value, EGL_NONE);
+    EGLSurface surface = eglCreateWindowSurface(display, config(), make_window(), nullptr);
+    EXPECT_FALSE(eglMakeCurrent(display, surface, EGL_NO_SURFACE, made));
+    EXPECT_EQ(eglGetError(), EGL_BAD_MATCH);
+}
+
 TEST_F(EglEs, DesktopsAttributesAreErrors) {
     constexpr EGLint kVersion = EGL_CONTEXT_CLIENT_VERSION;
     EXPECT_EQ(context({kVersion, 2, EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT}),
@@ -163,6 +174,8 @@ TEST_F(EglEs, DesktopsAttributesAreErrors) {
     EXPECT_EQ(context({kVersion, 2, EGL_CONTEXT_FLAGS_KHR, EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR}),
               EGL_NO_CONTEXT);
     EXPECT_EQ(eglGetError(), EGL_BAD_ATTRIBUTE);
+    const EGLint endless[] = {0x7777, 1};
+    EXPECT_EQ(eglCreateContext(display, config(), EGL_NO_CONTEXT, endless), EGL_NO_CONTEXT);
     EXPECT_NE(context({kVersion, 2, EGL_CONTEXT_FLAGS_KHR, EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR}), EGL_NO_CONTEXT);
 }
 

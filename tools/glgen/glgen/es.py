@@ -20,6 +20,7 @@ class EsModel:
     extensions: list    # of Extension, by name
     registry: object
     commands: object
+    more_words: list    # in every version
     numbers: dict       # short name of a command -> its parameter of type GLenum that is none
 
     def missing(self, version):
@@ -49,6 +50,7 @@ class EsModel:
         named = [(v, name) for v in self.versions for name in self.registry.es_features[v].enums]
         named += [(self.versions[0], name) for e in self.extensions if not e.missing
                   for name in self.registry.es_extensions[e.name].enums]
+        named += [(self.versions[0], name) for name in self.more_words]
         for version, name in named:
             if name in self.registry.bitmasks:
                 continue
@@ -76,5 +78,9 @@ def load(path, registry, commands):
         with file.line("numbers", name):
             params = registry.commands["gl" + name].params
             assert any(p.name == parameter and p.type == "GLenum" for p in params), f"no GLenum {parameter}"
+    for name in file.sections["words"]:
+        with file.line("words", name):
+            assert name in registry.enums, f"no word {name}"
     versions = sorted(v for v in registry.es_features if v[0] >= 2)
-    return EsModel(versions, sorted(extensions, key=lambda e: e.name), registry, commands, file.sections["numbers"])
+    return EsModel(versions, sorted(extensions, key=lambda e: e.name), registry, commands,
+                   list(file.sections["words"]), file.sections["numbers"])

@@ -66,7 +66,7 @@ TEST_F(EsContext, HasNoDesktopWords) {
     EXPECT_EQ(error(), kNone);
     gl().DrawArrays(c, GL_QUADS, 0, 4);
     EXPECT_EQ(error(), kEnum);
-    gl().BindBuffer(c, GL_PIXEL_PACK_BUFFER, 1);
+    gl().BindBuffer(c, GL_UNIFORM_BUFFER, 1);
     EXPECT_EQ(error(), kEnum);
     gl().ActiveTexture(c, GL_TEXTURE0 + 40);
     EXPECT_EQ(error(), kNone) << "more than GL_TEXTURE31";
@@ -144,6 +144,8 @@ TEST_F(EsContext, DrawsToNoLuminance) {
     gl().BindFramebuffer(c, GL_FRAMEBUFFER, 1);
     gl().FramebufferTexture2D(c, GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, 1, 0);
     EXPECT_EQ(image_error(GL_LUMINANCE, GL_LUMINANCE, GL_UNSIGNED_BYTE), kNone);
+    EXPECT_EQ(gl().CheckFramebufferStatus(c, GL_FRAMEBUFFER), GLenum{GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT});
+    EXPECT_EQ(image_error(GL_RGBA, GL_RGBA, GL_FLOAT), kNone);
     EXPECT_EQ(gl().CheckFramebufferStatus(c, GL_FRAMEBUFFER), GLenum{GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT});
     EXPECT_EQ(image_error(GL_RGB, GL_RGB, GL_UNSIGNED_BYTE), kNone);
     EXPECT_EQ(gl().CheckFramebufferStatus(c, GL_FRAMEBUFFER), GLenum{GL_FRAMEBUFFER_COMPLETE});
