@@ -102,6 +102,7 @@ ProcAddress address(Function function) {
 std::shared_ptr<ClientSurface> create_surface(SurfaceOptions options) {
     return std::make_shared<ClientSurface>(std::move(options));
 }
+bool offers_es(int) { return false; }
 std::shared_ptr<Context> create_context(const ContextOptions&) { return std::make_shared<Context>(); }
 bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurface>, std::shared_ptr<ClientSurface>) {
     start_anew();

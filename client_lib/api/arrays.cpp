@@ -127,9 +127,10 @@ bool is_index_type(GLenum type) {
     return type == GL_UNSIGNED_BYTE || type == GL_UNSIGNED_SHORT || type == GL_UNSIGNED_INT;
 }
 
-/// A core profile knows no quads and no polygons, and draws from no arrays but those of an object.
+/// Without fixed function there are no quads and no polygons; a core profile draws from no arrays but those of an
+/// object.
 bool check_mode(Context& c, GLenum mode) {
-    if (!glapi::is_primitive(mode) || (c.profile.core && mode >= GL_QUADS && mode <= GL_POLYGON))
+    if (!glapi::is_primitive(mode) || (!c.profile.has_fixed_function() && mode >= GL_QUADS && mode <= GL_POLYGON))
         return c.error(GL_INVALID_ENUM), false;
     if (c.profile.core && c.state.vertex_arrays.vertex_array_object == 0) return c.error(GL_INVALID_OPERATION), false;
     return !c.at_once() || fits_program(c, mode);

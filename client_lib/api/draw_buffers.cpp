@@ -32,6 +32,15 @@ GLenum attachments_error(const Buffers& buffers) {
     return GL_NO_ERROR;
 }
 
+/// OpenGL ES has a window's one buffer by one name, and each colour has a place of its own (EXT_draw_buffers; OpenGL
+/// ES 3.0, 4.2.1).
+GLenum es_error(const Buffers& buffers, GLsizei count, bool window) {
+    if (window && (count != 1 || (buffers[0] != GL_NONE && buffers[0] != GL_BACK))) return GL_INVALID_OPERATION;
+    for (unsigned i = 0; !window && i < buffers.size(); ++i)
+        if (buffers[i] != GL_NONE && buffers[i] != GL_COLOR_ATTACHMENT0 + i) return GL_INVALID_OPERATION;
+    return GL_NO_ERROR;
+}
+
 }  // namespace
 
 // A window has one fragment colour; those that follow it must go nowhere.
@@ -39,6 +48,12 @@ void DrawBuffers(Context& c, GLsizei count, const GLenum* words) {
     if (count < 0 || count > static_cast<GLsizei>(kColorAttachments)) return c.error(GL_INVALID_VALUE);
     Buffers buffers{};
     std::copy_n(words, count, buffers.begin());
+    if (c.profile.es != 0) {
+        const bool window = c.framebuffers->draw == nullptr;
+        if (const GLenum error = es_error(buffers, count, window)) return c.error(error);
+        const bool single = window && c.draw_target() && !c.draw_target().format().double_buffered;
+        if (window) return DrawBuffer(c, single && buffers[0] == GL_BACK ? GLenum{GL_FRONT} : buffers[0]);
+    }
     if (const auto framebuffer = c.framebuffers->draw) {
         if (const GLenum error = attachments_error(buffers)) return c.error(error);
         return change_framebuffer(c, *framebuffer, [&](Framebuffer& f) { f.set_draw_buffers(buffers); });

@@ -7,6 +7,7 @@
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/debug_state.h"
+#include "client_lib/context/es_version.h"
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/limits.h"
 #include "client_lib/context/lists.h"
@@ -15,7 +16,6 @@
 #include "client_lib/context/query_result.h"
 #include "client_lib/context/select.h"
 #include "client_lib/context/texture_binding.h"
-#include "client_lib/context/version.h"
 #include "client_lib/objects/maps.h"
 #include "common/glstate/elements.h"
 #include "common/glstate/queries.h"
@@ -215,10 +215,10 @@ const Special kSpecials[] = {
     {GL_READ_FRAMEBUFFER_BINDING, 1, [](Context& c, double* out) { *out = name_of(c.framebuffers->read); }},
     {GL_RENDERBUFFER_BINDING, 1, [](Context& c, double* out) { *out = name_of(c.framebuffers->renderbuffer); }},
     {GL_MAX_COLOR_ATTACHMENTS, 1, limited<GL_MAX_COLOR_ATTACHMENTS, glstate::kColorAttachments>},
-    {GL_MAJOR_VERSION, 1, [](Context& c, double* out) { *out = offered_version(c.caps()).major; }},
-    {GL_MINOR_VERSION, 1, [](Context& c, double* out) { *out = offered_version(c.caps()).minor; }},
+    {GL_MAJOR_VERSION, 1, [](Context& c, double* out) { *out = offered_in(c.profile, c.caps()).version.major; }},
+    {GL_MINOR_VERSION, 1, [](Context& c, double* out) { *out = offered_in(c.profile, c.caps()).version.minor; }},
     {GL_NUM_EXTENSIONS, 1,
-     [](Context& c, double* out) { *out = static_cast<double>(offered_extensions(c.caps()).size()); }},
+     [](Context& c, double* out) { *out = static_cast<double>(offered_in(c.profile, c.caps()).extensions.size()); }},
     {GL_DEBUG_LOGGED_MESSAGES, 1,
      [](Context& c, double* out) { *out = static_cast<double>(c.debug->log.logged.size()); }},
     {GL_DEBUG_NEXT_LOGGED_MESSAGE_LENGTH, 1,
@@ -331,7 +331,7 @@ bool get_limit(Context& c, GLenum pname, Out* out) {
 
 const std::uint32_t* flag_of(const Context& c, GLenum cap) {
     const auto* entry = glstate::find_cap(cap);
-    if (!entry) return nullptr;
+    if (!entry || (entry->rule != glstate::IndexRule::none && !c.profile.has_fixed_function())) return nullptr;
     const std::uint32_t id = entry->id + index_of(c, entry->rule) * entry->unit_stride;
     return reinterpret_cast<const std::uint32_t*>(reinterpret_cast<const std::byte*>(&c.state) +
                                                   glstate::element_offset(id));

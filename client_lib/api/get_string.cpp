@@ -4,7 +4,7 @@
 #include <mutex>
 
 #include "client_lib/context/context.h"
-#include "client_lib/context/version.h"
+#include "client_lib/context/es_version.h"
 
 namespace wall::client::api {
 namespace {
@@ -29,16 +29,17 @@ const GLubyte* GetString(Context& c, GLenum name) {
     const Caps& caps = c.caps();
     if (name == GL_VENDOR) return kept("WallGL");
     if (name == GL_RENDERER) return kept("WallGL (" + caps.renderer + ")");
-    if (name == GL_VERSION) return kept(version_string(caps, c.profile));
-    if (name == GL_EXTENSIONS && !c.profile.core) return kept(joined(offered_extensions(caps)));
-    const GlVersion version = offered_version(caps);
-    if (name == GL_SHADING_LANGUAGE_VERSION && version.shading_language) return kept(version.shading_language);
+    const Offered offered = offered_in(c.profile, caps);
+    if (name == GL_VERSION) return kept(offered.version_text);
+    if (name == GL_EXTENSIONS && !c.profile.core) return kept(joined(offered.extensions));
+    if (name == GL_SHADING_LANGUAGE_VERSION && !offered.shading_language_text.empty())
+        return kept(offered.shading_language_text);
     c.error(GL_INVALID_ENUM);
     return nullptr;
 }
 
 const GLubyte* GetStringi(Context& c, GLenum name, GLuint index) {
-    const auto extensions = offered_extensions(c.caps());
+    const auto extensions = offered_in(c.profile, c.caps()).extensions;
     if (name != GL_EXTENSIONS) return c.error(GL_INVALID_ENUM), nullptr;
     if (index >= extensions.size()) return c.error(GL_INVALID_VALUE), nullptr;
     return kept(extensions[index]);

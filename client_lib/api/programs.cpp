@@ -6,6 +6,7 @@
 #include "client_lib/api/program_access.h"
 #include "client_lib/context/capture_use.h"
 #include "client_lib/context/program_use.h"
+#include "client_lib/objects/shader_version.h"
 
 namespace wall::client::api {
 namespace {
@@ -19,6 +20,16 @@ GLuint create(Context& c, Args... args) {
     share.glsl_objects.put(name, object);
     if (object->kind == GlslObject::Kind::program) share.by_id[object->id] = object;
     return name;
+}
+
+bool has_stage(const Program& program, GLenum type) {
+    return std::ranges::any_of(program.shaders, [&](const auto& shader) { return shader->type == type; });
+}
+
+/// OpenGL ES has no fixed function in place of a shader (Mesa's words). Null: the program has both.
+const char* lacking_stage(const Program& program) {
+    if (!has_stage(program, GL_VERTEX_SHADER)) return "vertex";
+    return has_stage(program, GL_FRAGMENT_SHADER) ? nullptr : "fragment";
 }
 
 /// With the terminating zero; 0 for nothing.
@@ -99,11 +110,14 @@ void CompileShader(Context& c, GLuint name) {
     const auto shader = shader_of(c, name);
     if (!shader) return;
     std::lock_guard lock(c.share().mutex);
+    EsSource es;
+    if (c.profile.es != 0) es = es_source(shader->source, c.profile.es);
+    const std::string& source = c.profile.es != 0 ? es.source : shader->source;
     const bool known = shader->state == Shader::State::compiled || shader->state == Shader::State::failed;
-    if (known && shader->compiled_source == shader->source) return;  // it would go as it went
-    shader->compiled_source = shader->source;
-    shader->state = Shader::State::unknown;
-    shader->log.clear();
+    if (known && shader->compiled_source == source) return;  // it would go as it went
+    shader->compiled_source = source;
+    shader->state = es.error.empty() ? Shader::State::unknown : Shader::State::failed;
+    shader->log = std::move(es.error);
 }
 
 void GetShaderiv(Context& c, GLuint name, GLenum pname, GLint* params) {
@@ -157,6 +171,7 @@ void AttachShader(Context& c, GLuint program_name, GLuint shader_name) {
     std::lock_guard lock(c.share().mutex);
     if (std::find(program->shaders.begin(), program->shaders.end(), shader) != program->shaders.end())
         return c.error(GL_INVALID_OPERATION);
+    if (c.profile.es != 0 && has_stage(*program, shader->type)) return c.error(GL_INVALID_OPERATION);
     program->shaders.push_back(shader);
     ++shader->users;
 }
@@ -189,6 +204,12 @@ void LinkProgram(Context& c, GLuint name) {
     bool in_use = false;
     {
         std::lock_guard lock(c.share().mutex);
+        program->to_link.reset();
+        if (const char* lacking = c.profile.es != 0 ? lacking_stage(*program) : nullptr) {
+            program->linked = false;
+            program->log = std::string("error: program lacks a ") + lacking + " shader\n";
+            return;
+        }
         program->validated = false;
         if (c.profile.core && program->shaders.empty()) {  // in others fixed function takes their place
             program->to_link.reset();

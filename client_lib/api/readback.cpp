@@ -5,6 +5,7 @@
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/pixel_store.h"
 #include "client_lib/context/readback.h"
+#include "client_lib/objects/es_formats.h"
 #include "client_lib/objects/pixel_convert.h"
 
 namespace wall::client::api {
@@ -22,6 +23,11 @@ bool source_exists(Context& c, GLenum format) {
             return colors && colors->whole() == glapi::is_integer_format(format);
         }
     }
+}
+
+bool reads_floats(Context& c) {
+    const TextureFormat* colors = read_color_format(c);
+    return colors && colors->component_type == GL_FLOAT;
 }
 
 /// Rows of whole bytes, the first pixel in the highest bit, of one byte a pixel.
@@ -55,8 +61,10 @@ GLenum gathered_type(GLenum format, GLenum type) {
 // What lies outside the window is not written (Mesa's way; OpenGL leaves it undefined).
 void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels) {
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
+    if (c.profile.es != 0) type = desktop_type(type);
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
     if (!may_read_pixels(c)) return;
+    if (c.profile.es != 0 && !es_can_read(format, type, reads_floats(c))) return c.error(GL_INVALID_OPERATION);
     if (!source_exists(c, format)) return c.error(GL_INVALID_OPERATION);
     const PixelBox box = clip_to_window(c, {x, y, width, height});
     if (box.empty()) return;

@@ -10,6 +10,11 @@ namespace {
 
 constexpr GLsizei kUsualSize = 16384;
 
+/// OpenGL ES has storage of sized formats only (OpenGL ES 2.0, 4.4.3), and none that nothing could be drawn to.
+bool is_es_storage(const TextureFormat& format) {
+    return format.base == GL_STENCIL_INDEX || (is_sized(format) && format.use == ImageUse::drawn);
+}
+
 void delete_renderbuffer(Context& c, GLuint name) {
     std::shared_ptr<Renderbuffer> renderbuffer;
     {
@@ -65,7 +70,8 @@ void RenderbufferStorageMultisample(Context& c, GLenum target, GLsizei samples, 
     if (target != GL_RENDERBUFFER) return c.error(GL_INVALID_ENUM);
     const auto renderbuffer = c.framebuffers->renderbuffer;
     if (!renderbuffer) return c.error(GL_INVALID_OPERATION);
-    if (!find_renderbuffer_format(internal_format)) return c.error(GL_INVALID_ENUM);
+    const TextureFormat* format = find_renderbuffer_format(internal_format);
+    if (!format || (c.profile.es != 0 && !is_es_storage(*format))) return c.error(GL_INVALID_ENUM);
     const auto most = static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_RENDERBUFFER_SIZE, kUsualSize));
     if (width < 0 || width > most || height < 0 || height > most) return c.error(GL_INVALID_VALUE);
     const auto most_samples = static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_SAMPLES, kUsualSamples));

@@ -4,18 +4,26 @@
 
 namespace wall::client::api {
 
-// Those of IEEE numbers of 32 bits, whatever precision is asked for: desktop drivers have no others.
+// Those of IEEE numbers of 32 bits, whatever precision is asked for: desktop drivers have no others. In OpenGL ES a
+// driver may take 16 bits for what is not highp, and llvmpipe says so.
 void GetShaderPrecisionFormat(Context& c, GLenum shader, GLenum precision, GLint* range, GLint* digits) {
     if (shader != GL_VERTEX_SHADER && shader != GL_FRAGMENT_SHADER) return c.error(GL_INVALID_ENUM);
+    const bool es = c.profile.es != 0;
     switch (precision) {
         case GL_LOW_FLOAT:
         case GL_MEDIUM_FLOAT:
+            range[0] = range[1] = es ? 15 : 127;
+            *digits = es ? 10 : 23;
+            break;
         case GL_HIGH_FLOAT:
             range[0] = range[1] = 127;
             *digits = 23;
             break;
         case GL_LOW_INT:
         case GL_MEDIUM_INT:
+            range[0] = es ? 15 : 31, range[1] = es ? 14 : 30;
+            *digits = 0;
+            break;
         case GL_HIGH_INT:
             range[0] = 31, range[1] = 30;
             *digits = 0;

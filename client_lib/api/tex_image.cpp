@@ -14,6 +14,7 @@
 #include "client_lib/context/readback.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/texture_image.h"
+#include "client_lib/objects/es_formats.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/s3tc.h"
 #include "client_lib/objects/texture_formats.h"
@@ -248,8 +249,32 @@ void change_level(Context& c, const ImageCall& call, TexelData data) {
     touch(c.share(), *texture);
 }
 
+namespace {
+
+/// Replaces what OpenGL ES has its own words for; the error if it does not have these pixels.
+GLenum adopt_es_pixels(ImageCall& call, const EsImage& image) {
+    call.type = image.type;
+    return image.error;
+}
+
+/// In OpenGL ES what changes a texture has its format.
+bool is_of_base(Context& c, const ImageCall& call) {
+    const TextureLevel* level = bound_texture(c, call.target)->find_level(face_of(call.target), call.level);
+    const GLenum base = call.format == GL_BGRA ? GLenum{GL_RGBA} : call.format;
+    if (blocks_format(level->internal_format) != 0) return true;
+    return find_texture_format(level->internal_format)->base == base;
+}
+
+}  // namespace
+
 void define_image(Context& c, ImageCall call) {
     if (!legal_target(call.dimensions, call.target)) return c.error(GL_INVALID_ENUM);
+    if (c.profile.es != 0) {
+        const EsImage image = es_image(call.internal_format, call.format, call.type);
+        if (call.border != 0) return c.error(GL_INVALID_VALUE);
+        if (const GLenum error = adopt_es_pixels(call, image)) return c.error(error);
+        call.internal_format = image.internal_format;
+    }
     const TextureFormat* internal = format_named(c, call.internal_format);
     const GLenum error = image_error(c, call, internal);
     if (is_proxy(call.target)) {
@@ -297,7 +322,10 @@ GLenum sub_image_error(Context& c, const ImageCall& call) {
 }
 
 void define_sub_image(Context& c, ImageCall call) {
+    if (c.profile.es != 0)
+        if (const GLenum error = adopt_es_pixels(call, es_pixels(call.format, call.type))) return c.error(error);
     if (const GLenum error = sub_image_error(c, call)) return c.error(error);
+    if (c.profile.es != 0 && !is_of_base(c, call)) return c.error(GL_INVALID_OPERATION);
     if (texels(call) == 0 || !find_pixels(c, call) || !call.pixels) return;
     change_level(c, call, unpacked(c, call));
 }
@@ -357,6 +385,13 @@ struct From {
     GLint x, y;
 };
 
+/// The components of the colours that are read from.
+GLenum read_base(Context& c) {
+    if (!c.framebuffers->read && c.read_target()) return c.read_target().format().alpha_bits != 0 ? GL_RGBA : GL_RGB;
+    const TextureFormat* format = read_color_format(c);
+    return format ? format->base : GLenum{GL_NONE};
+}
+
 void copy_image(Context& c, ImageCall call, GLenum internal_format, From from, const char* function) {
     if (is_proxy(call.target) || !legal_target(call.dimensions, call.target)) return c.error(GL_INVALID_ENUM);
     if (call.level < 0 || call.level >= level_count(c, call.target)) return c.error(GL_INVALID_VALUE);
@@ -364,6 +399,10 @@ void copy_image(Context& c, ImageCall call, GLenum internal_format, From from, c
     const TextureFormat* internal = format_named(c, static_cast<GLint>(internal_format));
     if (!internal || internal_format <= 4) return c.error(GL_INVALID_ENUM);
     if (!may_read_pixels(c)) return;
+    if (c.profile.es != 0) {
+        const GLenum error = es_copy_error(internal_format, read_base(c));
+        if (call.border != 0 || error != GL_NO_ERROR) return c.error(error ? error : GLenum{GL_INVALID_VALUE});
+    }
     if (call.width < 0 || call.height < 0) return c.error(GL_INVALID_VALUE);
     call.internal_format = static_cast<GLint>(internal_format);
     from.x += call.border;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "client_lib/context/context.h"
+#include "client_lib/context/es_words.h"
 #include "client_lib/context/forget_objects.h"
 #include "client_lib/context/limits.h"
 #include "client_lib/context/param_commands.h"
@@ -60,6 +61,17 @@ bool of_sampler(GLenum pname) {
         case GL_TEXTURE_COMPARE_FUNC:
         case GL_TEXTURE_MAX_ANISOTROPY_EXT:
         case GL_TEXTURE_SRGB_DECODE_EXT: return true;
+        default: return false;
+    }
+}
+
+/// Parameters that are words, some of which OpenGL ES does not have.
+bool takes_word(GLenum pname) {
+    switch (pname) {
+        case GL_TEXTURE_WRAP_S:
+        case GL_TEXTURE_WRAP_T:
+        case GL_TEXTURE_WRAP_R:
+        case GL_TEXTURE_COMPARE_MODE: return true;
         default: return false;
     }
 }
@@ -250,6 +262,8 @@ void TexParameterfv(Context& c, GLenum target, GLenum pname, const GLfloat* para
     }
     const bool wrap = pname == GL_TEXTURE_WRAP_S || pname == GL_TEXTURE_WRAP_T || pname == GL_TEXTURE_WRAP_R;
     if (is_removed(c, pname) || (wrap && is_removed(c, to_enum(params[0])))) return c.error(GL_INVALID_ENUM);
+    if (c.profile.es != 0 && takes_word(pname) && !is_es_word(c.profile.es, to_enum(params[0])))
+        return c.error(GL_INVALID_ENUM);
     const auto current = bound_texture(c, target);
     const TexParameters before = current ? current->parameters : Texture(ClientName(), 0, info->id).parameters;
     Change change = changed(before, *info, pname, params);

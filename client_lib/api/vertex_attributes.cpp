@@ -4,6 +4,7 @@
 
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/object_name.h"
+#include "client_lib/objects/es_formats.h"
 #include "common/glstate/vertex_input.h"
 
 namespace wall::client::api {
@@ -16,6 +17,12 @@ bool is_integer_type(GLenum type) { return type >= GL_BYTE && type <= GL_UNSIGNE
 bool is_array_type(GLenum type) {
     return is_integer_type(type) || type == GL_FLOAT || type == GL_DOUBLE || type == GL_HALF_FLOAT ||
            type == GL_FIXED || glstate::is_packed(type);
+}
+
+/// What OpenGL ES took over from OpenGL only later (OpenGL ES 2.0, 2.8; 3.0, 2.9).
+bool is_array_type_of(const ContextProfile& profile, GLenum type) {
+    if (profile.es == 0) return true;
+    return type != GL_DOUBLE && (profile.es >= 30 || (type != GL_INT && type != GL_UNSIGNED_INT));
 }
 
 void enable(Context& c, GLuint index, bool enabled) {
@@ -48,7 +55,7 @@ void get(Context& c, GLuint index, GLenum pname, Out* params) {
             *params = static_cast<Out>(object_name(c, glstate::ValueKind::name_buffer, ClientName(array.buffer)));
             break;
         case GL_CURRENT_VERTEX_ATTRIB:
-            if (index == 0) return c.error(GL_INVALID_OPERATION);
+            if (index == 0 && c.profile.has_fixed_function()) return c.error(GL_INVALID_OPERATION);
             c.flush_block();
             for (const float value : c.get<el::vertex_attrib>(index)) *params++ = as<kBits, Out>(value);
             break;
@@ -90,9 +97,10 @@ void define(Context& c, GLuint index, const Given& given) {
 
 void VertexAttribPointer(Context& c, GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride,
                          const void* pointer) {
-    const bool bgra = size == GL_BGRA;
+    const bool es = c.profile.es != 0, bgra = !es && size == GL_BGRA;
+    if (es) type = desktop_type(type);
     if (index >= kVertexAttributes || (!bgra && (size < 1 || size > 4)) || stride < 0) return c.error(GL_INVALID_VALUE);
-    if (!is_array_type(type)) return c.error(GL_INVALID_ENUM);
+    if (!is_array_type(type) || !is_array_type_of(c.profile, type)) return c.error(GL_INVALID_ENUM);
     const bool packed = glstate::is_packed(type);
     if (bgra && ((type != GL_UNSIGNED_BYTE && !packed) || !normalized)) return c.error(GL_INVALID_OPERATION);
     if (packed && !bgra && size != 4) return c.error(GL_INVALID_OPERATION);

@@ -8,6 +8,7 @@
 #include "client_lib/context/buffer_use.h"
 #include "client_lib/context/capture_use.h"
 #include "client_lib/context/debug_state.h"
+#include "client_lib/context/es_version.h"
 #include "client_lib/context/framebuffer_use.h"
 #include "client_lib/context/list_state.h"
 #include "client_lib/context/query_state.h"
@@ -26,10 +27,19 @@ namespace wall::client {
 constinit thread_local Context* tls_context = nullptr;
 constinit thread_local Packer* tls_packer = nullptr;
 
+namespace {
+
+const GlTable& table_of(const ContextProfile& profile) {
+    if (profile.es != 0) return es_table(profile.es);
+    return profile.core ? tables::core : tables::immediate;
+}
+
+}  // namespace
+
 Context::Context(std::shared_ptr<ShareGroup> share, const ContextProfile& own_profile)
     : id(next_context_id()),
       profile(own_profile),
-      table(profile.core ? &tables::core : &tables::immediate),
+      table(&table_of(profile)),
       lists(std::make_unique<ListState>()),
       attributes(std::make_unique<AttributeStacks>()),
       select(std::make_unique<SelectState>()),
@@ -43,6 +53,7 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextProfile& own_pr
       queries(std::make_unique<QueryState>()),
       debug(std::make_unique<DebugState>()),
       captures(std::make_unique<CaptureUse>()),
+      at_once_(*table),
       share_(std::move(share)) {
     for (auto& stack : texture_stacks) stack.limit = 10;
     {
@@ -50,11 +61,15 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextProfile& own_pr
         if (!share_->labels) share_->labels = std::make_shared<ObjectLabels>();
     }
     glstate::assign<glstate::el::debug_output>(state, 0, profile.debug);
-    if (!profile.core) return;
-    // What a core profile always has, and the nodes' drivers, which are no core profile, have to be told.
+    if (profile.has_fixed_function()) return;
+    // What such a context always has, and the nodes' drivers, whose contexts have fixed function, have to be told.
     glstate::assign<glstate::el::point_sprite>(state, 0, 1);
     glstate::assign<glstate::el::clamp_vertex_color>(state, 0, GL_FALSE);
     glstate::assign<glstate::el::clamp_fragment_color>(state, 0, GL_FALSE);
+    if (profile.es == 0) return;
+    glstate::assign<glstate::el::program_point_size>(state, 0, 1);
+    glstate::assign<glstate::el::framebuffer_srgb>(state, 0, 1);
+    glstate::assign<glstate::el::texture_cube_map_seamless>(state, 0, 1);
 }
 
 Context::~Context() = default;
@@ -62,8 +77,10 @@ Context::~Context() = default;
 void Context::bind_surfaces(std::shared_ptr<ClientSurface> draw, std::shared_ptr<ClientSurface> read) {
     draw_ = std::move(draw);
     read_ = std::move(read);
-    if (!used_ && draw_) first_use();
+    if (!used_ && draw_ && !has_no_surface()) first_use();
 }
+
+bool Context::has_no_surface() const { return draw_ && draw_->options.stands_for_none; }
 
 // OpenGL 1.2.1, 2.10.2 and 4.1.2: viewport and scissor start with the size of the first window.
 void Context::first_use() {
@@ -151,7 +168,7 @@ void Context::end_primitive() {
     if (program && !places_packed_vertices())
         packer.mark_unbounded();  // of what are no positions, they may be no numbers
     packer.end();
-    if (table == &tables::inside_begin) table = profile.core ? &tables::core : &tables::immediate;
+    if (table == &tables::inside_begin) table = &at_once_;
     if (packer.take_overflow()) {
         complain_once("one glBegin .. glEnd or draw is larger than can be carried to a node; it was left out", "block");
         error(GL_OUT_OF_MEMORY);
@@ -172,8 +189,8 @@ void Context::determine_modelview_form() {
     modelview_stack.origin = top.origin;
 }
 
-/// If another thread has linked the program anew meanwhile, boxes that were known may not be so any more. Sending a block
-/// leaves its attributes in the state; each pass begins with those of before.
+/// If another thread has linked the program anew meanwhile, boxes that were known may not be so any more. Sending a
+/// block leaves its attributes in the state; each pass begins with those of before.
 void Context::submit_geometry() {
     const bool known = !program || places_packed_vertices();
     const auto submit = [&] {

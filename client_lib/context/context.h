@@ -75,7 +75,7 @@ public:
     glstate::State state;
     const GlTable* table = nullptr;
     /// Commands are executed: not between glBegin and glEnd, and no list is compiled.
-    bool at_once() const { return table == &tables::immediate || table == &tables::core; }
+    bool at_once() const { return table == &at_once_; }
     Packer packer;
 
     template <class E>
@@ -131,6 +131,8 @@ public:
     const Caps& caps() const;
     ShareGroup& share() const { return *share_; }
     const std::shared_ptr<ShareGroup>& share_pointer() const { return share_; }
+    /// It is current without a surface: there is no framebuffer but those that the program makes.
+    bool has_no_surface() const;
     /// What its commands draw to now, and what they read from.
     DrawTarget draw_target() const;
     DrawTarget read_target() const;
@@ -200,6 +202,7 @@ private:
     void submit_geometry();
     void first_use();
 
+    const GlTable& at_once_;  ///< its mode while it executes commands
     std::shared_ptr<ClientSession> session_;
     std::shared_ptr<ShareGroup> share_;
     std::shared_ptr<ClientSurface> draw_, read_;

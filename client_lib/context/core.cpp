@@ -7,6 +7,7 @@
 
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/context.h"
+#include "client_lib/context/es_version.h"
 #include "client_lib/context/forget_objects.h"
 #include "client_lib/context/program_use.h"
 #include "client_lib/context/version.h"
@@ -91,13 +92,18 @@ void end_context(Context* context) {
 
 }  // namespace
 
+bool offers_es(int major) { return is_es_implemented(major, 0); }
+
 // A forward-compatible context is of the core profile, as in Mesa.
 std::shared_ptr<Context> create_context(const ContextOptions& options) {
     const bool core = options.core_profile || options.forward_compatible;
-    if (!is_implemented(options.major, options.minor) || (core && !is_implemented(3, 1))) return nullptr;
+    const unsigned es = options.es ? implemented_es_version() : 0;
+    if (options.es && !is_es_implemented(options.major, options.minor)) return nullptr;
+    if (!options.es && (!is_implemented(options.major, options.minor) || (core && !is_implemented(3, 1))))
+        return nullptr;
     auto share = options.share ? options.share->share_pointer() : std::make_shared<ShareGroup>();
-    const ContextProfile profile{core, options.forward_compatible, options.debug, options.robust,
-                                 options.notifies_of_resets};
+    const ContextProfile profile{core,           options.forward_compatible, options.debug,
+                                 options.robust, options.notifies_of_resets, es};
     return std::shared_ptr<Context>(new Context(std::move(share), profile), end_context);
 }
 
@@ -135,8 +141,8 @@ bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurfac
         return true;
     }
     tls_context = current->context.get();
-    // In a core profile no vertex is packed by itself: all entry points go through the table.
-    tls_packer = current->context->profile.core ? closed_packer() : &current->context->packer;
+    // Without glBegin no vertex is packed by itself: all entry points go through the table.
+    tls_packer = current->context->profile.has_fixed_function() ? &current->context->packer : closed_packer();
     return true;
 }
 

@@ -17,6 +17,7 @@ struct ContextOptions {
     Context* share = nullptr;  ///< same share group as this one
     int major = 1, minor = 0;  ///< least version wanted
     bool core_profile = false;
+    bool es = false;  ///< of OpenGL ES, and so are the versions
     bool debug = false, forward_compatible = false;
     bool robust = false, notifies_of_resets = false;
 };
@@ -24,7 +25,9 @@ struct ContextOptions {
 /// The connection to the wall is made here, at a process's first make_current, never before: children of the
 /// application inherit its environment. An error's text names the address tried and the remedy.
 std::shared_ptr<ClientSurface> create_surface(SurfaceOptions options);
-/// Null if the version or profile is not offered.
+/// Whether contexts of OpenGL ES of this version (1, 2, 3) are offered.
+bool offers_es(int major);
+/// Null if the version or profile is not offered. One of OpenGL ES has the latest version that is.
 std::shared_ptr<Context> create_context(const ContextOptions& options);
 
 /// Makes `context` the calling thread's own with these surfaces (all null: releases). False if the wall cannot be

@@ -8,7 +8,7 @@ namespace wall::client {
 namespace {
 
 bool complete(Context& c, const Framebuffer* framebuffer) {
-    if (!framebuffer) return true;
+    if (!framebuffer) return !c.has_no_surface();
     std::lock_guard lock(c.share().mutex);
     return framebuffer->status() == GL_FRAMEBUFFER_COMPLETE;
 }
@@ -56,7 +56,7 @@ bool may_read_from_target(Context& c) {
 bool may_read_pixels(Context& c) {
     if (!may_read_from_target(c)) return false;
     const auto& framebuffer = c.framebuffers->read;
-    if (!framebuffer) return true;
+    if (!framebuffer) return !c.has_no_surface();
     std::lock_guard lock(c.share().mutex);
     if (framebuffer->samples() != 0) c.error(GL_INVALID_OPERATION);
     return framebuffer->samples() == 0;

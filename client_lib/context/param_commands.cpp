@@ -150,8 +150,8 @@ void get_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLdou
 void set_capability(Context& c, GLenum cap, bool on) {
     if (is_removed(c, cap)) return c.error(GL_INVALID_ENUM);
     const CapRow* row = find_cap_row(cap);
-    if (c.profile.core && row && row->unit_stride != 0) return c.error(GL_INVALID_ENUM);  // fixed function's
-    if (!row && c.profile.core) return c.error(GL_INVALID_ENUM);
+    const bool fixed_function = !row || row->unit_stride != 0;
+    if (fixed_function && !c.profile.has_fixed_function()) return c.error(GL_INVALID_ENUM);
     if (!row)
         return on ? api::EnableClientState(c, cap) : api::DisableClientState(c, cap);  // as GL_EXT_vertex_array had it
     if (row->unit_stride != 0 && !c.fixed_unit()) return lacks_switch(c, row->unit_stride);
@@ -161,7 +161,8 @@ void set_capability(Context& c, GLenum cap, bool on) {
 GLboolean is_capability_set(Context& c, GLenum cap) {
     const auto* entry = is_removed(c, cap) ? nullptr : glstate::find_get(cap);  // client arrays as well
     using enum glstate::ValueKind;
-    const bool fixed_function = entry && c.profile.core && entry->rule != glstate::IndexRule::none;
+    const bool fixed_function =
+        entry && !c.profile.has_fixed_function() && (entry->rule != glstate::IndexRule::none || !find_cap_row(cap));
     if (!entry || fixed_function || (entry->kind != flag && entry->kind != first_bit) || entry->components != 1) {
         c.error(GL_INVALID_ENUM);
         return GL_FALSE;

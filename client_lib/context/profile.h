@@ -12,6 +12,10 @@ struct ContextProfile {
     bool debug = false;
     bool robust = false;
     bool notifies_of_resets = false;  ///< GL_LOSE_CONTEXT_ON_RESET
+    unsigned es = 0;                  ///< of OpenGL ES: its version, times ten; 0: of OpenGL
+
+    /// Whether it has what shaders replaced, glBegin and display lists.
+    bool has_fixed_function() const { return !core && es == 0; }
 
     /// GL_CONTEXT_FLAGS.
     GLbitfield flags() const {

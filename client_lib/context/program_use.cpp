@@ -97,7 +97,7 @@ bool fits_program(Context& c, GLenum mode) {
 }
 
 bool may_draw(Context& c) {
-    if (c.framebuffers->draw && !may_draw_to_target(c)) return false;
+    if ((c.framebuffers->draw || c.has_no_surface()) && !may_draw_to_target(c)) return false;
     if (!c.program) return true;
     find_written_to_read(c);
     std::lock_guard lock(c.share().mutex);

@@ -13,8 +13,6 @@
 namespace wall::client {
 namespace {
 
-constexpr const char* kWallVersion = "WallGL 0.1";
-
 bool implemented(const char* command) {
     return std::none_of(std::begin(kUnsupportedNames), std::end(kUnsupportedNames),
                         [&](const char* name) { return std::strcmp(name, command) == 0; });

@@ -11,6 +11,8 @@
 
 namespace wall::client {
 
+inline constexpr const char* kWallVersion = "WallGL 0.1";
+
 struct GlVersion {
     int major = 1, minor = 1;
     const char* shading_language = nullptr;  ///< null: no shaders

@@ -28,6 +28,7 @@ struct SurfaceFormat {
 struct SurfaceOptions {
     SurfaceFormat format;
     bool visible = true;                                ///< a window; false: pbuffer, pixmap (never placed on the wall)
+    bool stands_for_none = false;                       ///< a context is current without a surface
     Extent size;                                        ///< at creation
     std::function<std::optional<Extent>()> query_size;  ///< window's size now; empty function: it never changes
     std::string title;

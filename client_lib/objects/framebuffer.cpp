@@ -16,28 +16,29 @@ using glstate::kColorAttachments;
 constexpr unsigned kDepth = kColorAttachments, kStencil = kColorAttachments + 1;
 
 /// What may be drawn to as a colour (Mesa: also the bases of old textures, in contexts that have them).
-bool color_renderable(GLenum base) {
+bool color_renderable(GLenum base, bool old_bases) {
     switch (base) {
         case GL_RGBA:
         case GL_RGB:
         case GL_RG:
-        case GL_RED:
+        case GL_RED: return true;
         case GL_ALPHA:
         case GL_LUMINANCE:
         case GL_LUMINANCE_ALPHA:
-        case GL_INTENSITY: return true;
+        case GL_INTENSITY: return old_bases;
         default: return false;
     }
 }
 
-bool renderable(unsigned place, const TextureFormat& format) {
+}  // namespace
+
+bool Framebuffer::renderable(unsigned place, const TextureFormat& format) const {
     if (format.compressed()) return false;
-    if (place < kColorAttachments) return color_renderable(format.base);
+    if (place < kColorAttachments)
+        return color_renderable(format.base, old_bases_) && (old_bases_ || format.component_type != GL_FLOAT);
     if (format.base == GL_DEPTH_STENCIL) return true;
     return format.base == (place == kDepth ? GL_DEPTH_COMPONENT : GL_STENCIL_INDEX);
 }
-
-}  // namespace
 
 const Object* Attachment::object() const {
     if (texture) return texture.get();

@@ -42,7 +42,9 @@ std::optional<ImageShape> shape_of(const Attachment& attachment);
 
 class Framebuffer final : public Object, public DrawnTarget {
 public:
-    explicit Framebuffer(GLuint own_name) : Object(next_object_id(), own_name) {}
+    /// `old_bases`: textures of alpha and luminance and those of floats may be drawn to, as in desktop contexts.
+    explicit Framebuffer(GLuint own_name, bool old_bases = true)
+        : Object(next_object_id(), own_name), old_bases_(old_bases) {}
 
     const Attachment& at(unsigned place) const { return attachments_[place]; }
     /// Places as of glstate::attachment_place().
@@ -80,7 +82,9 @@ private:
     std::optional<ImageShape> named_shape(GLenum buffer) const;
     GLenum attachment_error(unsigned place) const;
     bool mixes_layers() const;
+    bool renderable(unsigned place, const TextureFormat& format) const;
 
+    const bool old_bases_;
     std::array<Attachment, glstate::kAttachmentPoints> attachments_;
     std::array<GLenum, glstate::kColorAttachments> draw_buffers_{GL_COLOR_ATTACHMENT0};
     GLenum read_buffer_ = GL_COLOR_ATTACHMENT0;

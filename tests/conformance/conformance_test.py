@@ -17,7 +17,7 @@ import report  # noqa: E402
 from expectations import load, on_wall  # noqa: E402
 from players import Player, play_all  # noqa: E402
 from results import RANKS, Expected, Outcome, Result, judge, read_result, worse  # noqa: E402
-from suite import Offer, SuiteError, Test, group_of, load_left_out, read_list, read_offer  # noqa: E402
+from suite import Offer, SuiteError, Test, group_of, load_left_out, read_list, read_offer, with_es  # noqa: E402
 
 GLINFO = """GL_RENDERER = WallGL (llvmpipe)
 GL_VERSION = 2.1 WallGL 0.1
@@ -27,6 +27,12 @@ Extensions:
 GL_ARB_shadow
 GL_EXT_texture3D
 GL_SGIS_texture_lodPIGLIT: {"result": "pass" }
+"""
+ES2_INFO = """EGL_CLIENT_APIS: OpenGL OpenGL_ES
+GL_VERSION: OpenGL ES 2.0 WallGL 0.1
+GL_EXTENSIONS:
+    GL_EXT_blend_minmax, GL_OES_element_index_uint
+
 """
 OFFER = Offer((2, 1), (1, 2), frozenset({"arb_shadow", "ext_texture3d", "sgis_texture_lod"}))
 
@@ -178,6 +184,19 @@ class Suite(unittest.TestCase):
             "fast_color_clear@x": "",
         }.items():
             self.assertEqual(group_of(name, OFFER), group, name)
+
+    def test_es_is_told_by_another_program(self):
+        offer = with_es(OFFER, ES2_INFO)
+        self.assertEqual((offer.es, offer.es_extensions),
+                         ((2, 0), frozenset({"ext_blend_minmax", "oes_element_index_uint"})))
+        for name, group in {
+            "spec@!opengl es 1.1@x": "", "spec@!opengl es 2.0@minmax": "OpenGL ES 2.0", "spec@!opengl es 3.0@x": "",
+            "spec@glsl-es-1.00@linker@x": "OpenGL ES 2.0", "spec@glsl-es-3.00@x": "",
+            "spec@oes_element_index_uint@x": "extensions", "spec@arb_shadow@x": "extensions", "spec@oes_x@x": "",
+        }.items():
+            self.assertEqual(group_of(name, offer), group, name)
+        with self.assertRaises(SuiteError):
+            with_es(OFFER, "eglCreateContext failed")
 
     def test_list(self):
         text = "spec@!opengl 1.1@a b ::: ../lib/piglit/bin/draw 'GL_A b' -auto -fbo\nnoise\n"

@@ -21,7 +21,8 @@ import report  # noqa: E402
 from expectations import load, on_wall  # noqa: E402
 from players import MesaPlayer, WallPlayer, play_all  # noqa: E402
 from results import Outcome, judge  # noqa: E402
-from suite import HOME, PROFILES, Offer, SuiteError, Test, all_tests, group_of, load_left_out, read_offer  # noqa: E402
+from suite import HOME, PROFILES, Offer, SuiteError, Test, all_tests, group_of, load_left_out  # noqa: E402
+from suite import read_offer, with_es  # noqa: E402
 from wall import Wall, WallError  # noqa: E402
 from xserver import XServer  # noqa: E402
 
@@ -73,7 +74,8 @@ def read_arguments() -> argparse.Namespace:
 
 
 def offer_of(player: WallPlayer) -> Offer:
-    return read_offer(player.play(Test("glinfo", (str(HOME / "bin" / "glinfo"), "-auto"), "opengl")).output)
+    offer = read_offer(player.play(Test("glinfo", (str(HOME / "bin" / "glinfo"), "-auto"), "opengl")).output)
+    return with_es(offer, player.play(Test("es2_info", ("es2_info",), "opengl")).output)
 
 
 class Selection:

@@ -16,6 +16,8 @@ HOME = Path("/usr/lib/x86_64-linux-gnu/piglit")  # of Debian's package
 PROFILES = ("opengl", "shader", "glslparser")
 OPENGL = re.compile(r"spec@!opengl (\d)\.(\d)(@|$)")
 GLSL = re.compile(r"spec@glsl-(\d)\.(\d)0(@|$)")
+OPENGL_ES = re.compile(r"spec@(?:!opengl es |glsl-es-)(\d)\.(\d)")
+GLSL_ES_1 = (2, 0)  # the version of OpenGL ES that brought GLSL ES 1.00
 
 
 class SuiteError(RuntimeError):
@@ -37,11 +39,13 @@ class LeftOut:
 
 @dataclasses.dataclass(frozen=True)
 class Offer:
-    """What a wall offers, as piglit's glinfo tells."""
+    """What a wall offers, as piglit's glinfo and es2_info of mesa-utils tell."""
 
     opengl: tuple[int, int]
     glsl: tuple[int, int]
     extensions: frozenset[str]
+    es: tuple[int, int] = (0, 0)
+    es_extensions: frozenset[str] = frozenset()
 
 
 def read_offer(text: str) -> Offer:
@@ -55,8 +59,28 @@ def read_offer(text: str) -> Offer:
     return Offer(version("GL_VERSION"), version("GL_SHADING_LANGUAGE_VERSION"), frozenset(map(str.lower, extensions)))
 
 
+def with_es(offer: Offer, text: str) -> Offer:
+    """`text`: es2_info's."""
+    version = re.search(r"^GL_VERSION: OpenGL ES (\d+)\.(\d)", text, re.MULTILINE)
+    if not version:
+        raise SuiteError(f"es2_info tells no version of OpenGL ES:\n{text}")
+    words = re.findall(r"\bGL_([A-Za-z0-9_]+)", text.partition("GL_EXTENSIONS:")[2])
+    return dataclasses.replace(offer, es=(int(version[1]), int(version[2])),
+                               es_extensions=frozenset(map(str.lower, words)))
+
+
+def group_of_es(major: int, minor: int, offer: Offer) -> str:
+    """`major` may be that of GLSL ES, which counts as OpenGL ES does, but for 1.00."""
+    version = GLSL_ES_1 if (major, minor) == (1, 0) else (major, minor)
+    return f"OpenGL ES {version[0]}.{version[1]}" if version <= offer.es else ""
+
+
 def group_of(name: str, offer: Offer) -> str:
     """The group of a test, or nothing if it is about something that is not offered."""
+    if found := OPENGL_ES.match(name):
+        if name.startswith("spec@!opengl es 1"):
+            return ""  # of fixed function
+        return group_of_es(int(found[1]), int(found[2]), offer)
     if found := OPENGL.match(name):
         version = int(found[1]), int(found[2])
         return f"OpenGL {found[1]}.{found[2]}" if version <= offer.opengl else ""
@@ -69,7 +93,8 @@ def group_of(name: str, offer: Offer) -> str:
         return "EGL"
     if name.startswith("shaders@"):
         return "shaders"
-    return "extensions" if name.startswith("spec@") and name.split("@")[1] in offer.extensions else ""
+    offered = offer.extensions | offer.es_extensions
+    return "extensions" if name.startswith("spec@") and name.split("@")[1] in offered else ""
 
 
 def windowed(words: Iterable[str], home: Path = HOME) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools/glgen"))
 
-from glgen import attributes, commands, emit_wire, registry, state, texture_targets, wire  # noqa: E402
+from glgen import attributes, commands, emit_wire, es, registry, state, texture_targets, wire  # noqa: E402
 
 REGISTRY = pathlib.Path(os.environ.get("WALLGL_GL_XML", "/usr/share/khronos-api/gl.xml"))
 PROTO = ROOT / "proto/gl"
@@ -37,6 +37,43 @@ class Registry(unittest.TestCase):
     def test_aliases(self):
         self.assertEqual(self.gl.canonical("glActiveTextureARB"), "glActiveTexture")
         self.assertEqual(self.gl.canonical("glBegin"), "glBegin")
+
+
+class OpenGlEs(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.gl = registry.load(REGISTRY, PROTO / "extensions.xml")
+        cls.commands = commands.load(PROTO / "commands.toml", cls.gl, state.load(PROTO / "state.toml"))
+        cls.es = es.load(PROTO / "es.toml", cls.gl, cls.commands)
+
+    def test_version_2_is_complete(self):
+        self.assertIsNone(self.es.missing((2, 0)))
+        self.assertEqual([e.name for e in self.es.extensions if e.missing], [])
+
+    def test_commands_of_versions_and_extensions(self):
+        slots = self.es.slots((2, 0))
+        self.assertLessEqual({"DrawArrays", "DepthRange", "TexParameterfv", "GenVertexArrays", "MapBuffer"}, slots)
+        self.assertFalse({"Begin", "MatrixMode", "TexImage1D", "UniformBlockBinding"} & slots)
+        self.assertIn("UniformBlockBinding", self.es.slots((3, 0)))
+
+    def test_words_and_since_when(self):
+        words = self.es.words()
+        self.assertEqual(words[self.gl.enums["GL_TEXTURE_CUBE_MAP"]], (2, 0))
+        self.assertEqual(words[self.gl.enums["GL_TEXTURE_2D_ARRAY"]], (3, 0))
+        self.assertEqual(words[self.gl.enums["GL_TEXTURE_3D"]], (2, 0), "an extension's")
+        self.assertNotIn(self.gl.enums["GL_MATRIX_MODE"], words)
+        self.assertNotIn(self.gl.enums["GL_COLOR_BUFFER_BIT"], words, "a bit, which is a word of desktop's as well")
+
+    def test_parameters_that_are_words(self):
+        self.assertEqual(self.es.checked(self.commands.all["glTexParameterf"]), [0, 1])
+        self.assertEqual(self.es.checked(self.commands.all["glActiveTexture"]), [])
+
+    def test_mistakes_have_their_place(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "es.toml"
+            path.write_text('[extensions]\nGL_ARB_shadow = ""\n[words]\n[numbers]\n')
+            with self.assertRaisesRegex(AssertionError, "es.toml:2: GL_ARB_shadow: no extension"):
+                es.load(path, self.gl, self.commands)
 
 
 class Commands(unittest.TestCase):

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from glgen import attributes, commands, registry, state, texture_targets, wire  # noqa: E402
-from glgen import emit_attributes, emit_client, emit_docs, emit_functions, emit_samples  # noqa: E402
+from glgen import attributes, commands, es, registry, state, texture_targets, wire  # noqa: E402
+from glgen import emit_attributes, emit_client, emit_docs, emit_es, emit_functions, emit_samples  # noqa: E402
 from glgen import emit_setters, emit_state, emit_texture_targets, emit_wire  # noqa: E402
 
 DRIVER_EXTRA = ["glFramebufferParameteriMESA", "glGetFramebufferParameterivMESA"]
@@ -31,15 +31,17 @@ class Model:
     attributes: list
     textures: list
     api: commands.Commands
+    es: es.EsModel
 
 
 def load(registry_path, proto):
     gl = registry.load(registry_path, proto / "extensions.xml")
     elements = state.load(proto / "state.toml")
     ops = wire.load(proto / "wire.toml")
+    api = commands.load(proto / "commands.toml", gl, elements)
     return Model(gl, ops, elements, attributes.load(proto / "attributes.toml", ops, elements),
                  texture_targets.load(proto / "texture_targets.toml", gl, elements),
-                 commands.load(proto / "commands.toml", gl, elements))
+                 api, es.load(proto / "es.toml", gl, api))
 
 
 def generate(m):
@@ -60,6 +62,8 @@ def generate(m):
         "client_lib/api.gen.h": emit_client.api_header(m.api, m.state, m.attributes),
         "client_lib/entries.gen.cpp": emit_client.entries_source(m.api, m.gl),
         "client_lib/tables.gen.cpp": emit_client.tables_source(m.api, m.attributes, m.gl),
+        "client_lib/es.gen.h": emit_es.es_header(m.es),
+        "client_lib/es_tables.gen.cpp": emit_es.es_source(m.es),
         "client_lib/state_api.gen.cpp": emit_setters.setters_source(m.api, m.state, m.gl),
     }
 
@@ -86,7 +90,7 @@ def main():
     for name, text in texts.items():
         write_if_changed(args.out / name, text)
     if args.coverage:
-        text = emit_docs.coverage(model.api, model.state, model.ops)
+        text = emit_docs.coverage(model.api, model.state, model.ops, model.es)
         if args.check and (not args.coverage.exists() or args.coverage.read_text() != text):
             sys.exit(f"glgen: {args.coverage} is not current: run `ninja coverage-doc`")
         if not args.check:

@@ -10,9 +10,15 @@
 namespace wall::client::egl {
 namespace {
 
-// Programs name an ES bit and then make a desktop context (xscreensaver), so that all are claimed here; a context that
-// is not offered is refused when it is asked for.
-constexpr EGLint kRenderable = EGL_OPENGL_BIT | EGL_OPENGL_ES_BIT | EGL_OPENGL_ES2_BIT | EGL_OPENGL_ES3_BIT;
+/// What contexts can be made for it.
+EGLint conformant() {
+    return EGL_OPENGL_BIT | (offers_es(1) ? EGL_OPENGL_ES_BIT : 0) | (offers_es(2) ? EGL_OPENGL_ES2_BIT : 0) |
+           (offers_es(3) ? EGL_OPENGL_ES3_BIT : 0);
+}
+
+// Programs name the bit of OpenGL ES 1, which is EGL's default, and then make a desktop context (xscreensaver), so that
+// it is claimed; a context that is not offered is refused when it is asked for.
+EGLint renderable() { return conformant() | EGL_OPENGL_ES_BIT; }
 
 enum class Match { exact, at_least, mask, ignored };
 
@@ -121,7 +127,7 @@ std::optional<EGLint> attribute(const Config& c, EGLint name) {
         case EGL_COLOR_BUFFER_TYPE: return EGL_RGB_BUFFER;
         case EGL_CONFIG_CAVEAT: return EGL_NONE;
         case EGL_CONFIG_ID: return c.id;
-        case EGL_CONFORMANT: return EGL_OPENGL_BIT;
+        case EGL_CONFORMANT: return conformant();
         case EGL_MAX_PBUFFER_WIDTH:
         case EGL_MAX_PBUFFER_HEIGHT: return vendor::kMaxPbufferExtent;
         case EGL_MAX_PBUFFER_PIXELS: return vendor::kMaxPbufferExtent * vendor::kMaxPbufferExtent;
@@ -129,7 +135,7 @@ std::optional<EGLint> attribute(const Config& c, EGLint name) {
         case EGL_NATIVE_RENDERABLE: return c.visual != 0;
         case EGL_NATIVE_VISUAL_ID: return static_cast<EGLint>(c.visual);
         case EGL_NATIVE_VISUAL_TYPE: return c.visual != 0 ? TrueColor : EGL_NONE;
-        case EGL_RENDERABLE_TYPE: return kRenderable;
+        case EGL_RENDERABLE_TYPE: return renderable();
         case EGL_SURFACE_TYPE: return window | EGL_PBUFFER_BIT | EGL_SWAP_BEHAVIOR_PRESERVED_BIT;
         case EGL_TRANSPARENT_TYPE: return EGL_NONE;
         default: break;

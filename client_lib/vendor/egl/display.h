@@ -47,8 +47,10 @@ struct EglSurface {
 struct EglContext {
     std::shared_ptr<Context> core;
     const Config* config = nullptr;
-    EGLint major = 1;
-    std::shared_ptr<EglSurface> draw, read;  ///< while current
+    EGLenum api = EGL_OPENGL_API;
+    EGLint major = 1;                        ///< as it was asked for
+    std::shared_ptr<EglSurface> draw, read;  ///< while current; null without one
+    std::shared_ptr<ClientSurface> nothing;  ///< what the core has in place of no surface
     bool current = false;                    ///< in some thread
 };
 

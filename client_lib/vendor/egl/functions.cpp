@@ -25,7 +25,9 @@ constexpr const char* kVersion = "1.5 WallGL";
 constexpr const char* kClientExtensions =
     "EGL_EXT_client_extensions EGL_EXT_platform_base EGL_KHR_client_get_all_proc_addresses "
     "EGL_KHR_platform_x11 EGL_EXT_platform_x11 EGL_EXT_platform_xcb EGL_MESA_platform_surfaceless";
-constexpr const char* kDisplayExtensions = "EGL_KHR_create_context EGL_KHR_get_all_proc_addresses";
+constexpr const char* kClientApis = "OpenGL OpenGL_ES";
+constexpr const char* kDisplayExtensions =
+    "EGL_KHR_create_context EGL_KHR_get_all_proc_addresses EGL_KHR_surfaceless_context";
 
 constinit std::atomic<const __EGLapiExports*> glvnd{nullptr};
 constinit std::mutex current_mutex;  // guards EglContext::current
@@ -107,7 +109,7 @@ const char* query_string(EGLDisplay handle, EGLint name) {
         case EGL_VENDOR: return succeed(kVendor);
         case EGL_VERSION: return succeed(kVersion);
         case EGL_EXTENSIONS: return succeed(kDisplayExtensions);
-        case EGL_CLIENT_APIS: return succeed("OpenGL");
+        case EGL_CLIENT_APIS: return succeed(kClientApis);
         default: return refuse(EGL_BAD_PARAMETER, static_cast<const char*>(nullptr));
     }
 }
@@ -381,43 +383,75 @@ EGLBoolean swap_interval(EGLDisplay handle, EGLint interval) {
 /// What eglCreateContext asks for, or the error.
 struct ContextWish {
     ContextOptions options;
+    EGLAttrib profile = EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT;
     EGLint error = EGL_SUCCESS;
 };
 
-ContextWish read_context_attributes(const EGLint* list) {
-    ContextWish wish;
+/// False: one of them is unknown, or none of OpenGL ES.
+bool read_context_flags(EGLAttrib flags, ContextOptions& o) {
+    constexpr EGLAttrib kCommon = EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR;
+    constexpr EGLAttrib kDesktop =
+        kCommon | EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR | EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR;
+    o.robust = flags & EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
+    o.debug = flags & EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR;
+    o.forward_compatible = flags & EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR;
+    return (flags & ~(o.es ? kCommon : kDesktop)) == 0;
+}
+
+/// The words of desktop contexts, those of OpenGL ES and those of both (EGL 1.5, 3.7.1.1; EGL_KHR_create_context).
+bool read_context_attribute(const Attribute& attribute, ContextWish& wish) {
     auto& o = wish.options;
-    constexpr EGLint kKnownFlags = EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR | EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR |
-                                   EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
-    EGLAttrib profile = EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT;
-    for (const auto& [name, value] : read_list(list)) {
-        switch (name) {
-            case EGL_CONTEXT_MAJOR_VERSION: o.major = static_cast<int>(value); break;
-            case EGL_CONTEXT_MINOR_VERSION: o.minor = static_cast<int>(value); break;
-            case EGL_CONTEXT_OPENGL_PROFILE_MASK: profile = value; break;
-            case EGL_CONTEXT_OPENGL_DEBUG: o.debug = value; break;
-            case EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE: o.forward_compatible = value; break;
-            case EGL_CONTEXT_FLAGS_KHR:
-                if (value & ~EGLAttrib{kKnownFlags}) wish.error = EGL_BAD_ATTRIBUTE;
-                o.robust = value & EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
-                o.debug = value & EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR;
-                o.forward_compatible = value & EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR;
-                break;
-            case EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY:
-                o.notifies_of_resets = value == EGL_LOSE_CONTEXT_ON_RESET;
-                if (!o.notifies_of_resets && value != EGL_NO_RESET_NOTIFICATION) wish.error = EGL_BAD_ATTRIBUTE;
-                break;
-            case EGL_CONTEXT_OPENGL_ROBUST_ACCESS: o.robust = value; break;
-            case EGL_CONTEXT_PRIORITY_LEVEL_IMG: break;  // hints
-            default: wish.error = EGL_BAD_ATTRIBUTE;
-        }
+    const EGLAttrib value = attribute.value;
+    switch (attribute.name) {
+        case EGL_CONTEXT_MAJOR_VERSION: o.major = static_cast<int>(value); return true;
+        case EGL_CONTEXT_MINOR_VERSION: o.minor = static_cast<int>(value); return true;
+        case EGL_CONTEXT_OPENGL_PROFILE_MASK: wish.profile = value; return !o.es;
+        case EGL_CONTEXT_OPENGL_DEBUG: o.debug = value; return true;
+        case EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE: o.forward_compatible = value; return !o.es;
+        case EGL_CONTEXT_FLAGS_KHR: return read_context_flags(value, o);
+        case EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY:
+            o.notifies_of_resets = value == EGL_LOSE_CONTEXT_ON_RESET;
+            return o.notifies_of_resets || value == EGL_NO_RESET_NOTIFICATION;
+        case EGL_CONTEXT_OPENGL_ROBUST_ACCESS: o.robust = value; return true;
+        case EGL_CONTEXT_PRIORITY_LEVEL_IMG: return true;  // a hint
+        default: return false;
     }
+}
+
+/// Whether what is asked for exists at all: a version, a profile.
+bool is_possible(const ContextWish& wish) {
+    const auto& o = wish.options;
+    if (o.es) return o.major > 0 && o.minor >= 0;
+    static constexpr int kLastMinor[] = {5, 1, 3, 6};  // of 1.x, 2.x, 3.x, 4.x
+    if (o.major < 1 || o.major > 4 || o.minor < 0 || o.minor > kLastMinor[o.major - 1]) return false;
     const bool has_profiles = o.major * 10 + o.minor >= 32;
-    const bool compatible = profile == EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT;
-    o.core_profile = has_profiles && profile == EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT;
-    const bool no_profile = has_profiles && !o.core_profile && !compatible;
-    if (wish.error == EGL_SUCCESS && (no_profile || (o.forward_compatible && o.major < 3))) wish.error = EGL_BAD_MATCH;
+    const bool profile = o.core_profile || wish.profile == EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT;
+    return (!has_profiles || profile) && (!o.forward_compatible || o.major >= 3);
+}
+
+ContextWish read_context_attributes(const EGLint* list, bool es) {
+    ContextWish wish;
+    wish.options.es = es;
+    // Nothing behind the first mistake is looked at: there may be no end of the list.
+    for (const EGLint* a = list; a && *a != EGL_NONE && wish.error == EGL_SUCCESS; a += 2)
+        if (!read_context_attribute({a[0], a[1]}, wish)) wish.error = EGL_BAD_ATTRIBUTE;
+    auto& o = wish.options;
+    o.core_profile = !es && o.major * 10 + o.minor >= 32 && wish.profile == EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT;
+    if (wish.error == EGL_SUCCESS && !is_possible(wish)) wish.error = EGL_BAD_MATCH;
     return wish;
+}
+
+/// The context to share with; null and an error: it is none, or one of another API (EGL 1.5, 3.7.1).
+std::shared_ptr<EglContext> find_sharing(const EglDisplay& display, EGLContext handle, EGLenum api) {
+    auto context = display.context(handle);
+    if (context && context->api == api) return context;
+    return refuse(EGL_BAD_CONTEXT, std::shared_ptr<EglContext>());
+}
+
+EGLContext refuse_version(const ContextOptions& options) {
+    if (options.es && stats().count_unsupported("OpenGL ES context"))
+        log(LogLevel::warn, "unsupported feature=opengl_es_context version=%d.%d", options.major, options.minor);
+    return refuse(EGL_BAD_MATCH, EGL_NO_CONTEXT);
 }
 
 EGLContext create_context_handle(EGLDisplay handle, EGLConfig config_handle, EGLContext share, const EGLint* list) {
@@ -426,20 +460,16 @@ EGLContext create_context_handle(EGLDisplay handle, EGLConfig config_handle, EGL
         if (!display) return EGL_NO_CONTEXT;
         const Config* config = display->config(config_handle);
         if (!config) return refuse(EGL_BAD_CONFIG, EGL_NO_CONTEXT);
-        if (glvnd.load()->getCurrentApi() != EGL_OPENGL_API) {
-            if (stats().count_unsupported("OpenGL ES context"))
-                log(LogLevel::warn, "unsupported feature=opengl_es_context");
-            return refuse(EGL_BAD_MATCH, EGL_NO_CONTEXT);
-        }
-        auto wish = read_context_attributes(list);
+        const EGLenum api = glvnd.load()->getCurrentApi();
+        auto wish = read_context_attributes(list, api == EGL_OPENGL_ES_API);
         if (wish.error != EGL_SUCCESS) return refuse(wish.error, EGL_NO_CONTEXT);
         std::shared_ptr<EglContext> sharing;
-        if (share != EGL_NO_CONTEXT && !(sharing = display->context(share)))
-            return refuse(EGL_BAD_CONTEXT, EGL_NO_CONTEXT);
+        if (share != EGL_NO_CONTEXT && !(sharing = find_sharing(*display, share, api))) return EGL_NO_CONTEXT;
         if (sharing) wish.options.share = sharing->core.get();
         auto core = client::create_context(wish.options);
-        if (!core) return refuse(EGL_BAD_MATCH, EGL_NO_CONTEXT);
+        if (!core) return refuse_version(wish.options);
         auto context = std::make_shared<EglContext>();
+        context->api = api;
         context->core = std::move(core);
         context->config = config;
         context->major = wish.options.major;
@@ -475,6 +505,15 @@ EGLBoolean release() {
     return succeed();
 }
 
+/// EGL_KHR_surfaceless_context.
+std::shared_ptr<ClientSurface> no_surface() {
+    SurfaceOptions options;
+    options.visible = false;
+    options.stands_for_none = true;
+    options.size = {1, 1};
+    return create_surface(std::move(options));
+}
+
 EGLBoolean bind(const std::shared_ptr<EglContext>& context, std::shared_ptr<EglSurface> draw,
                 std::shared_ptr<EglSurface> read) {
     const bool again = context == thread_context();
@@ -483,7 +522,9 @@ EGLBoolean bind(const std::shared_ptr<EglContext>& context, std::shared_ptr<EglS
         if (context->current && !again) return refuse(EGL_BAD_ACCESS);
         context->current = true;
     }
-    if (!client::make_current(context->core, draw->core, read->core)) {
+    if (!draw && !context->nothing) context->nothing = no_surface();
+    if (!client::make_current(context->core, draw ? draw->core : context->nothing,
+                              read ? read->core : context->nothing)) {
         if (!again) {
             std::lock_guard lock(current_mutex);
             context->current = false;
@@ -511,6 +552,7 @@ EGLBoolean make_current_handles(EGLDisplay handle, EGLSurface draw, EGLSurface r
         if (!display) return EGLBoolean{EGL_FALSE};
         const auto context = display->context(context_handle);
         if (!context) return refuse(EGL_BAD_CONTEXT);
+        if (draw == EGL_NO_SURFACE && read == EGL_NO_SURFACE) return egl::bind(context, nullptr, nullptr);
         if (draw == EGL_NO_SURFACE || read == EGL_NO_SURFACE) return refuse(EGL_BAD_MATCH);
         auto to = display->surface(draw), from = display->surface(read);
         if (!to || !from) return refuse(EGL_BAD_SURFACE);
@@ -530,7 +572,7 @@ EGLBoolean query_context(EGLDisplay handle, EGLContext context_handle, EGLint na
         if (!context) return refuse(EGL_BAD_CONTEXT);
         switch (name) {
             case EGL_CONFIG_ID: *value = context->config->id; break;
-            case EGL_CONTEXT_CLIENT_TYPE: *value = EGL_OPENGL_API; break;
+            case EGL_CONTEXT_CLIENT_TYPE: *value = static_cast<EGLint>(context->api); break;
             case EGL_CONTEXT_CLIENT_VERSION: *value = context->major; break;
             case EGL_RENDER_BUFFER:
                 *value = context->draw ? *surface_attribute(*context->draw, EGL_RENDER_BUFFER) : EGL_NONE;

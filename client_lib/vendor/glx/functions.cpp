@@ -27,7 +27,8 @@ constexpr const char* kVendor = "WallGL";
 constexpr const char* kVersion = "1.4";
 constexpr const char* kExtensions =
     "GLX_ARB_create_context GLX_ARB_create_context_profile GLX_ARB_create_context_robustness "
-    "GLX_ARB_get_proc_address GLX_ARB_multisample "
+    "GLX_ARB_get_proc_address GLX_ARB_multisample GLX_EXT_create_context_es_profile "
+    "GLX_EXT_create_context_es2_profile "
     "GLX_EXT_swap_control GLX_EXT_visual_info GLX_EXT_visual_rating GLX_MESA_swap_control GLX_SGI_swap_control "
     "GLX_SGIX_fbconfig ";
 
@@ -177,6 +178,10 @@ bool is_version(int major, int minor) {
     static constexpr int kLastMinor[] = {5, 1, 3, 6};  // of 1.x, 2.x, 3.x, 4.x
     return major >= 1 && major <= 4 && minor >= 0 && minor <= kLastMinor[major - 1];
 }
+bool is_es_version(int major, int minor) {
+    static constexpr int kLastMinor[] = {1, 0, 2};
+    return major >= 1 && major <= 3 && minor >= 0 && minor <= kLastMinor[major - 1];
+}
 
 ContextWish read_context_attributes(const int* attributes) {
     constexpr int kKnownFlags =
@@ -204,11 +209,13 @@ ContextWish read_context_attributes(const int* attributes) {
     o.forward_compatible = flags & GLX_CONTEXT_FORWARD_COMPATIBLE_BIT_ARB;
     o.robust = flags & GLX_CONTEXT_ROBUST_ACCESS_BIT_ARB;
     o.core_profile = version >= 32 && profile == GLX_CONTEXT_CORE_PROFILE_BIT_ARB;
-    if (profile != GLX_CONTEXT_CORE_PROFILE_BIT_ARB && profile != GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB)
-        wish.glx_error = kGLXBadProfileARB;
+    o.es = profile == GLX_CONTEXT_ES2_PROFILE_BIT_EXT;
+    const bool desktop =
+        profile == GLX_CONTEXT_CORE_PROFILE_BIT_ARB || profile == GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB;
+    if (o.es ? !is_es_version(o.major, o.minor) : !desktop) wish.glx_error = kGLXBadProfileARB;
     if (flags & ~kKnownFlags) wish.x_error = BadValue;
     if (unknown_strategy || render_type == GLX_COLOR_INDEX_TYPE || (o.forward_compatible && o.major < 3) ||
-        !is_version(o.major, o.minor))
+        (!o.es && !is_version(o.major, o.minor)))
         wish.x_error = BadMatch;
     else if (render_type != GLX_RGBA_TYPE) wish.x_error = BadValue;
     return wish;

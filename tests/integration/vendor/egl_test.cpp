@@ -125,10 +125,67 @@ TEST_F(Egl, TwoThreadsHaveTheirOwnErrorsAndContexts) {
     EXPECT_EQ(eglGetError(), EGL_SUCCESS);
 }
 
-TEST_F(Egl, EsContextsAreRefused) {
-    eglBindAPI(EGL_OPENGL_ES_API);
-    EXPECT_EQ(eglCreateContext(display, config(), EGL_NO_CONTEXT, nullptr), EGL_NO_CONTEXT);
+class EglEs : public Egl {
+protected:
+    void SetUp() override {
+        Egl::SetUp();
+        eglBindAPI(EGL_OPENGL_ES_API);
+    }
+    EGLContext context(std::vector<EGLint> attributes, EGLContext share = EGL_NO_CONTEXT) {
+        attributes.push_back(EGL_NONE);
+        return eglCreateContext(display, config(), share, attributes.data());
+    }
+};
+
+TEST_F(EglEs, ContextsAreMadeOfVersionsThatAreOffered) {
+    EXPECT_STREQ(eglQueryString(display, EGL_CLIENT_APIS), "OpenGL OpenGL_ES");
+    EXPECT_EQ(attrib(config(), EGL_CONFORMANT), EGL_OPENGL_BIT | EGL_OPENGL_ES2_BIT);
+    EXPECT_FALSE(config({EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT}));
+    EGLContext made = context({EGL_CONTEXT_CLIENT_VERSION, 2});
+    ASSERT_NE(made, EGL_NO_CONTEXT);
+    EXPECT_THAT(last_logged("fake_context"), HasSubstr("version=2.0 core=0 shared=0 es=1"));
+    EGLint value = 0;
+    EXPECT_TRUE(eglQueryContext(display, made, EGL_CONTEXT_CLIENT_TYPE, &value));
+    EXPECT_EQ(value, EGL_OPENGL_ES_API);
+    EXPECT_TRUE(eglQueryContext(display, made, EGL_CONTEXT_CLIENT_VERSION, &value));
+    EXPECT_EQ(value, 2);
+    for (const EGLint version : {3, 0, 7}) {
+        EXPECT_EQ(context({EGL_CONTEXT_CLIENT_VERSION, version}), EGL_NO_CONTEXT);
+        EXPECT_EQ(eglGetError(), EGL_BAD_MATCH) << version;
+    }
+}
+
+TEST_F(EglEs, ContextsMayBeCurrentWithoutASurface) {
+    EGLContext made = context({EGL_CONTEXT_CLIENT_VERSION, 2});
+    EXPECT_TRUE(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, made));
+    EGLint value = 0;
+    EXPECT_TRUE(eglQueryContext(display, made, EGL_RENDER_BUFFER, &value));
+    EXPECT_EQ(value, EGL_NONE);
+    EGLSurface surface = eglCreateWindowSurface(display, config(), make_window(), nullptr);
+    EXPECT_FALSE(eglMakeCurrent(display, surface, EGL_NO_SURFACE, made));
     EXPECT_EQ(eglGetError(), EGL_BAD_MATCH);
+}
+
+TEST_F(EglEs, DesktopsAttributesAreErrors) {
+    constexpr EGLint kVersion = EGL_CONTEXT_CLIENT_VERSION;
+    EXPECT_EQ(context({kVersion, 2, EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT}),
+              EGL_NO_CONTEXT);
+    EXPECT_EQ(eglGetError(), EGL_BAD_ATTRIBUTE);
+    EXPECT_EQ(context({kVersion, 2, EGL_CONTEXT_FLAGS_KHR, EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR}),
+              EGL_NO_CONTEXT);
+    EXPECT_EQ(eglGetError(), EGL_BAD_ATTRIBUTE);
+    const EGLint endless[] = {0x7777, 1};
+    EXPECT_EQ(eglCreateContext(display, config(), EGL_NO_CONTEXT, endless), EGL_NO_CONTEXT);
+    EXPECT_NE(context({kVersion, 2, EGL_CONTEXT_FLAGS_KHR, EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR}), EGL_NO_CONTEXT);
+}
+
+TEST_F(EglEs, ContextsShareWithTheirKindOnly) {
+    EGLContext first = context({EGL_CONTEXT_CLIENT_VERSION, 2});
+    EXPECT_NE(context({EGL_CONTEXT_CLIENT_VERSION, 2}, first), EGL_NO_CONTEXT);
+    EXPECT_THAT(last_logged("fake_context"), HasSubstr("shared=1"));
+    eglBindAPI(EGL_OPENGL_API);
+    EXPECT_EQ(eglCreateContext(display, config(), first, nullptr), EGL_NO_CONTEXT);
+    EXPECT_EQ(eglGetError(), EGL_BAD_CONTEXT);
 }
 
 TEST_F(Egl, WrongHandlesAreErrors) {

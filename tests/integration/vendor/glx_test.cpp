@@ -271,11 +271,14 @@ TEST_F(Glx, WrongUseIsAnXError) {
     const int too_new[] = {GLX_CONTEXT_MAJOR_VERSION_ARB, 4, GLX_CONTEXT_MINOR_VERSION_ARB, 6, None};
     EXPECT_FALSE(create(display, config, nullptr, True, too_new));
     const int es[] = {
-        GLX_CONTEXT_MAJOR_VERSION_ARB, 3, GLX_CONTEXT_MINOR_VERSION_ARB, 2, GLX_CONTEXT_PROFILE_MASK_ARB, 4, None};
-    EXPECT_FALSE(create(display, config, nullptr, True, es));
+        GLX_CONTEXT_MAJOR_VERSION_ARB, 2, GLX_CONTEXT_MINOR_VERSION_ARB, 1, GLX_CONTEXT_PROFILE_MASK_ARB, 4, None};
+    EXPECT_FALSE(create(display, config, nullptr, True, es)) << "there is no OpenGL ES 2.1";
     const int nonsense[] = {0x7777, 1, None};
     EXPECT_FALSE(create(display, config, nullptr, True, nonsense));
     EXPECT_THAT(x_errors, testing::ElementsAre(glx_error + GLXBadFBConfig, glx_error + 13, BadValue));
+    const int es2[] = {GLX_CONTEXT_MAJOR_VERSION_ARB, 2, GLX_CONTEXT_PROFILE_MASK_ARB, 4, None};
+    EXPECT_TRUE(create(display, config, nullptr, True, es2));
+    EXPECT_THAT(last_logged("fake_context"), HasSubstr("version=2.0 core=0 shared=0 es=1"));
     const int plain[] = {GLX_CONTEXT_MAJOR_VERSION_ARB, 2, GLX_CONTEXT_MINOR_VERSION_ARB, 1, None};
     EXPECT_TRUE(create(display, config, context, True, plain));
     EXPECT_THAT(last_logged("fake_context"), HasSubstr("version=2.1 core=0 shared=1"));

@@ -7,7 +7,7 @@ _HOW = {"hand": "by hand", "state": "state element", "param": "state parameters"
         "convert": "as {target}, converted", "as": "as {target}", "later": ""}
 
 
-def coverage(commands, model, ops):
+def coverage(commands, model, ops, es):
     rows = [i for i in commands.unique]
     core = [i for i in rows if i.command.gl or i.command.es]
     extension = [i for i in rows if not (i.command.gl or i.command.es)]
@@ -29,6 +29,7 @@ def coverage(commands, model, ops):
     out.append("| extensions only | " + _counts(extension) + " |\n")
     out.append("| **all** | " + _counts(rows) + " |\n\n"
                f"Another {len(commands.all) - len(rows)} names are aliases of these.\n")
+    out.append(_es(es, commands))
     for level in sorted(levels, key=_order):
         out.append(f"\n## {level}\n\n| command | class | status | how |\n|---|---|---|---|\n")
         out += [_row(i, commands) for i in levels[level]]
@@ -37,6 +38,18 @@ def coverage(commands, model, ops):
     not_yet = f"Not yet ({len(waiting)}): " + ", ".join(f"gl{i.name}" for i in waiting) + "."
     out.append(textwrap.fill(not_yet, 120) + "\n")
     return "".join(out)
+
+
+def _es(es, commands):
+    """What contexts of OpenGL ES have."""
+    out = ["\n## Contexts of OpenGL ES\n\n| version | commands that it brought | not yet |\n|---|---|---|\n"]
+    for version in es.versions:
+        names = es.registry.es_features[version].commands
+        later = sum(commands.all[name].later for name in names)
+        out.append(f"| {version[0]}.{version[1]} | {len(names)} | {later} |\n")
+    names = ", ".join(e.name for e in es.extensions if not e.missing)
+    return "".join(out) + "\n" + textwrap.fill(f"Extensions, where a node's driver has what they ask for: {names}.",
+                                               120, break_on_hyphens=False) + "\n"
 
 
 def _level(i):

@@ -49,11 +49,25 @@ class Command:
 
 
 @dataclass
+class Names:
+    """What a version or an extension has."""
+    commands: set = field(default_factory=set)
+    enums: set = field(default_factory=set)
+
+    def add(self, require):
+        self.commands |= {item.get("name") for item in require.findall("command")}
+        self.enums |= {item.get("name") for item in require.findall("enum")}
+
+
+@dataclass
 class Registry:
     commands: dict  # name -> Command
     enums: dict     # GL_NAME -> int (desktop GL and ES)
     removed: set = field(default_factory=set)       # GL_NAMEs of OpenGL that its core profile does not have
     core_enums: set = field(default_factory=set)    # those that it has
+    es_features: dict = field(default_factory=dict)     # (major, minor) of OpenGL ES -> Names that came with it
+    es_extensions: dict = field(default_factory=dict)   # of OpenGL ES, by name -> Names
+    bitmasks: set = field(default_factory=set)      # GL_NAMEs that are bits of something
 
     def canonical(self, name):
         """Follows aliases to the command that is implemented."""
@@ -111,6 +125,26 @@ def _note_core_profile(gl, root):
     gl.core_enums |= {name for name in core if name not in gl.commands}
 
 
+def _note_es(gl, root):
+    for feature in root.findall("feature"):
+        if feature.get("api") in ("gles1", "gles2"):
+            names = gl.es_features.setdefault(_version(feature.get("number")), Names())
+            for require in feature.findall("require"):
+                names.add(require)
+    for extension in root.find("extensions"):
+        if not {"gles1", "gles2"} & set(extension.get("supported", "").split("|")):
+            continue
+        names = gl.es_extensions.setdefault(extension.get("name"), Names())
+        for require in extension.findall("require"):
+            # What is direct state access in desktop's form no library of OpenGL ES has.
+            desktop = require.get("api") in ("gl", "glcore") or "EXT_direct_state_access" in require.get("comment", "")
+            if not desktop:
+                names.add(require)
+    for block in root.findall("enums"):
+        if block.get("type") == "bitmask":
+            gl.bitmasks |= {item.get("name") for item in block.findall("enum")}
+
+
 def load(path, *more):
     """The registry at `path`, and the files in its format that add to it."""
     gl = Registry({}, {})
@@ -137,6 +171,7 @@ def _add(gl, root):
                 elif api == "gles2":
                     c.es = min(c.es or number, number, key=_version)
     _note_core_profile(gl, root)
+    _note_es(gl, root)
     for extension in root.find("extensions"):
         for require in extension.findall("require"):
             for item in require.findall("command"):

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// What contexts of OpenGL ES offer: as version.h does for OpenGL, by construction out of gl.xml and proto/gl/es.toml.
+// Any thread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "client_lib/context/profile.h"
+#include "client_lib/context/version.h"
+#include "client_lib/link/control_messages.h"
+#include "gen/client_lib/es.gen.h"
+
+namespace wall::client {
+
+/// The latest version of OpenGL ES whose every command is implemented, and what else it asks for, times ten.
+unsigned implemented_es_version();
+/// Whether a context of that version may be asked for: a version that there is, and not later than ours.
+bool is_es_implemented(int major, int minor);
+/// The mode of a context of a version, times ten.
+const GlTable& es_table(unsigned version);
+
+/// What glGetString and its like answer in a context, of OpenGL or OpenGL ES.
+struct Offered {
+    GlVersion version;
+    std::string version_text, shading_language_text;  ///< no text: there are no shaders
+    std::vector<std::string> extensions;
+};
+Offered offered_in(const ContextProfile& profile, const Caps& caps);
+
+}  // namespace wall::client

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""gen/client_lib/es.gen.h, es_tables.gen.cpp: the modes of an OpenGL ES context, its words, versions and extensions."""
+
+from .text import header
+
+_SOURCE = "gl.xml, proto/gl/commands.toml, proto/gl/es.toml"
+_NOTES = "What contexts of OpenGL ES have. Versions are times ten: 20, 30, 31, 32."
+
+
+def es_header(es):
+    return (header(_SOURCE, _NOTES, ["<span>\n", '"gen/client_lib/api.gen.h"\n']) +
+            "namespace wall::client {\n\n"
+            "/// A version of OpenGL ES, and its mode: each command at once; what it does not have is an error, and so "
+            "is a word\n/// that it does not have.\n"
+            "struct EsVersion {\n    int version;\n"
+            "    const char* missing;  ///< a command of it that is not implemented; null: there is none\n"
+            "    const GlTable* table;\n};\n"
+            "extern const std::span<const EsVersion> kEsVersions;  ///< all that there are, in order\n\n"
+            "struct EsExtension {\n    const char* name;\n"
+            "    const char* node_word;  ///< what a node's driver must have for it; empty: nothing\n"
+            "    bool implemented;\n};\n"
+            "extern const std::span<const EsExtension> kEsExtensions;  ///< by name\n\n"
+            "/// A word, and the first version that has it.\n"
+            "struct EsWord {\n    GLenum value;\n    int since;\n};\n"
+            "extern const std::span<const EsWord> kEsWords;  ///< by value\n\n"
+            "}  // namespace wall::client\n")
+
+
+def es_source(es):
+    canonical = es.commands.canonical
+    out = [header(_SOURCE, "The modes of a context of OpenGL ES as tables, and its words.", [], pragma=False),
+           '#include "client_lib/context/es_words.h"\n#include "client_lib/context/context.h"\n'
+           '#include "gen/client_lib/es.gen.h"\n\nnamespace wall::client {\nnamespace {\n\n'
+           "/// A command that OpenGL ES does not have.\n"
+           "template <class Function>\nstruct Refused;\n"
+           "template <class R, class... A>\nstruct Refused<R (*)(Context&, A...)> {\n"
+           "    static R call(Context& c, A...) {\n        c.error(GL_INVALID_OPERATION);\n        return R();\n    }\n"
+           "};\n\n"
+           "/// A command some of whose parameters are words, a bit each.\n"
+           "template <auto kCommand, unsigned kWords, class Function>\nstruct Worded;\n"
+           "template <auto kCommand, unsigned kWords, class R, class... A>\n"
+           "struct Worded<kCommand, kWords, R (*)(Context&, A...)> {\n"
+           "    static R call(Context& c, A... a) {\n"
+           "        if (!are_es_words<kWords>(c.profile.es, a...)) {\n            c.error(GL_INVALID_ENUM);\n"
+           "            return R();\n        }\n        return kCommand(c, a...);\n    }\n};\n\n"]
+    for version in es.versions:
+        slots = es.slots(version)
+        out.append(f"const GlTable kEs{_number(version)} = {{\n"
+                   + "".join(f"    {_entry(es, i) if i.name in slots else _refused(i)},\n" for i in canonical)
+                   + "};\n\n")
+    out.append("const EsVersion kVersionTable[] = {\n"
+               + "".join(f"    {{{_number(v)}, {_text(es.missing(v))}, &kEs{_number(v)}}},\n" for v in es.versions)
+               + "};\n\nconst EsExtension kExtensionTable[] = {\n"
+               + "".join(f'    {{"{e.name}", "{e.node_word}", {str(not e.missing).lower()}}},\n'
+                         for e in es.extensions)
+               + "};\n\nconst EsWord kWordTable[] = {\n"
+               + "".join(f"    {{0x{value:04x}, {_number(since)}}},\n" for value, since in sorted(es.words().items())
+                         if value <= 0xFFFF)
+               + "};\n\n}  // namespace\n\n"
+               "const std::span<const EsVersion> kEsVersions = kVersionTable;\n"
+               "const std::span<const EsExtension> kEsExtensions = kExtensionTable;\n"
+               "const std::span<const EsWord> kEsWords = kWordTable;\n\n}  // namespace wall::client\n")
+    return "".join(out)
+
+
+def _number(version):
+    return version[0] * 10 + version[1]
+
+
+def _text(name):
+    return f'"{name}"' if name else "nullptr"
+
+
+def _refused(i):
+    return f"&Refused<decltype(GlTable::{i.name})>::call"
+
+
+def _entry(es, i):
+    words = sum(1 << place for place in es.checked(i))
+    return f"&Worded<&api::{i.name}, {words}, decltype(GlTable::{i.name})>::call" if words else f"&api::{i.name}"
