@@ -194,7 +194,6 @@ public:
 private:
     void for_each_used(const std::function<void(const Object&)>& use) override;
     void submit_block();
-    void submit_geometry();
     /// Whether the boxes of what is packed tell where a program puts it.
     bool places_packed_vertices();
     void report_error(GLenum code, const char* where);

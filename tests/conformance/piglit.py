@@ -100,7 +100,7 @@ class Selection:
 
 
 def sample(tests: list[Test], of: int, group: Callable[[Test], str]) -> list[Test]:
-    """One of so many tests of each large group, by their names, so that it is the same everywhere; all of the others."""
+    """One of so many tests of each large group, by their names, the same everywhere; all of the others."""
     sizes = collections.Counter(group(test) for test in tests)
     return [test for test in tests
             if sizes[group(test)] <= LARGE_GROUP or zlib.crc32(test.name.encode()) % of == 0]

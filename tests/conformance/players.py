@@ -49,8 +49,8 @@ class Player:
 
 
 class MesaPlayer(Player):
-    """The X server's own OpenGL, Mesa's llvmpipe: the golden tests' reference, with as many threads as a node here. Told
-    so it offers OpenGL ES 2.0, as a wall does."""
+    """The X server's own OpenGL, Mesa's llvmpipe: the golden tests' reference, with as many threads as a node here.
+    Told so it offers OpenGL ES 2.0, as a wall does."""
 
     def __init__(self, x: XServer, timeout: float):
         environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", LP_NUM_THREADS="0", MESA_GLES_VERSION_OVERRIDE="2.0")
