@@ -22,7 +22,4 @@ struct RecognisedPosition {
 /// first shader of a version.
 RecognisedPosition recognise_position(const glapi::ProgramDefinition& definition);
 
-/// Longer ones are not parsed, all vertex shaders of a program together.
-inline constexpr std::size_t kMostShaderBytes = std::size_t{128} << 10;
-
 }  // namespace wall::tileserver

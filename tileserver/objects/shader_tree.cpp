@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <string_view>
 
-#include "tileserver/objects/position_recogniser.h"
-
 namespace wall::tileserver {
 
 using glslang::TIntermBinary;

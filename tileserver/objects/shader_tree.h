@@ -6,6 +6,7 @@
 #include <glslang/MachineIndependent/localintermediate.h>
 #include <glslang/Public/ShaderLang.h>
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,9 @@
 #include "tileserver/objects/position_builder.h"
 
 namespace wall::tileserver {
+
+/// Longer ones are not parsed, all vertex shaders of a program together.
+inline constexpr std::size_t kMostShaderBytes = std::size_t{128} << 10;
 
 /// A program's vertex shaders, parsed and linked.
 class ParsedShaders {

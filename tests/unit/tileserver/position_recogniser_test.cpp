@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tileserver/objects/position_builder.h"
+#include "tileserver/objects/shader_tree.h"
 
 namespace wall::tileserver {
 namespace {
