@@ -31,7 +31,7 @@ build=(
 )
 test=(
   clang-format                       # lint
-  xscreensaver-gl rss-glx glmark2-x11 apitrace apitrace-tracers
+  xscreensaver-gl rss-glx glmark2-x11 glmark2-es2-x11 apitrace apitrace-tracers
   piglit                             # the conformance tests
   ffmpeg                             # decodes what our codecs write, and the other way round
   x11-utils x11-xserver-utils        # xprop, xwininfo; xrandr: monitors of a display that has none

@@ -29,17 +29,16 @@ const GLubyte* GetString(Context& c, GLenum name) {
     const Caps& caps = c.caps();
     if (name == GL_VENDOR) return kept("WallGL");
     if (name == GL_RENDERER) return kept("WallGL (" + caps.renderer + ")");
-    const Offered offered = offered_in(c.profile, caps);
-    if (name == GL_VERSION) return kept(offered.version_text);
-    if (name == GL_EXTENSIONS && !c.profile.core) return kept(joined(offered.extensions));
-    if (name == GL_SHADING_LANGUAGE_VERSION && !offered.shading_language_text.empty())
-        return kept(offered.shading_language_text);
+    if (name == GL_VERSION) return kept(version_text_in(c.profile, caps));
+    if (name == GL_EXTENSIONS && !c.profile.core) return kept(joined(extensions_in(c.profile, caps)));
+    if (name == GL_SHADING_LANGUAGE_VERSION)
+        if (const std::string language = shading_language_in(c.profile, caps); !language.empty()) return kept(language);
     c.error(GL_INVALID_ENUM);
     return nullptr;
 }
 
 const GLubyte* GetStringi(Context& c, GLenum name, GLuint index) {
-    const auto extensions = offered_in(c.profile, c.caps()).extensions;
+    const auto extensions = extensions_in(c.profile, c.caps());
     if (name != GL_EXTENSIONS) return c.error(GL_INVALID_ENUM), nullptr;
     if (index >= extensions.size()) return c.error(GL_INVALID_VALUE), nullptr;
     return kept(extensions[index]);

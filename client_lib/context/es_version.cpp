@@ -77,18 +77,26 @@ bool is_es_word(unsigned version, GLenum word) {
     return since != 0 && since <= version;
 }
 
-Offered offered_in(const ContextProfile& profile, const Caps& caps) {
-    if (profile.es == 0) {
-        const GlVersion version = offered_version(caps);
-        return {version, version_string(caps, profile), version.shading_language ? version.shading_language : "",
-                offered_extensions(caps)};
-    }
-    const Beyond* beyond = beyond_of(static_cast<int>(profile.es));
-    const char* language = beyond ? beyond->shading_language : "";
-    return {{static_cast<int>(profile.es) / 10, static_cast<int>(profile.es) % 10, language},
-            "OpenGL ES " + as_text(profile.es) + " " + kWallVersion,
-            std::string("OpenGL ES GLSL ES ") + language,
-            es_extensions(caps)};
+GlVersion version_in(const ContextProfile& profile, const Caps& caps) {
+    if (profile.es == 0) return offered_version(caps);
+    const auto version = static_cast<int>(profile.es);
+    const Beyond* beyond = beyond_of(version);
+    return {version / 10, version % 10, beyond ? beyond->shading_language : nullptr};
+}
+
+std::string version_text_in(const ContextProfile& profile, const Caps& caps) {
+    if (profile.es == 0) return version_string(caps, profile);
+    return "OpenGL ES " + as_text(profile.es) + " " + kWallVersion;
+}
+
+std::string shading_language_in(const ContextProfile& profile, const Caps& caps) {
+    const char* language = version_in(profile, caps).shading_language;
+    if (!language) return {};
+    return profile.es == 0 ? language : std::string("OpenGL ES GLSL ES ") + language;
+}
+
+std::vector<std::string> extensions_in(const ContextProfile& profile, const Caps& caps) {
+    return profile.es == 0 ? offered_extensions(caps) : es_extensions(caps);
 }
 
 }  // namespace wall::client

@@ -21,11 +21,10 @@ bool is_es_implemented(int major, int minor);
 const GlTable& es_table(unsigned version);
 
 /// What glGetString and its like answer in a context, of OpenGL or OpenGL ES.
-struct Offered {
-    GlVersion version;
-    std::string version_text, shading_language_text;  ///< no text: there are no shaders
-    std::vector<std::string> extensions;
-};
-Offered offered_in(const ContextProfile& profile, const Caps& caps);
+GlVersion version_in(const ContextProfile& profile, const Caps& caps);
+std::string version_text_in(const ContextProfile& profile, const Caps& caps);
+/// Empty: there are no shaders.
+std::string shading_language_in(const ContextProfile& profile, const Caps& caps);
+std::vector<std::string> extensions_in(const ContextProfile& profile, const Caps& caps);
 
 }  // namespace wall::client
