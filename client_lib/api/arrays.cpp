@@ -163,7 +163,7 @@ void draw(Context& c, const ArrayDraw& draw) {
     if (draw_on_nodes(c, draw)) return;
     if (draw_copied(c, draw)) return;
     const bool at_once = c.at_once();
-    if (draw.instances == 1 && !(at_once && reads_vertex_numbers(c))) return draw_inline(c, draw, 0);
+    if (draw.instances == 1 && !(at_once && reads_numbers(c))) return draw_inline(c, draw, 0);
     if (at_once) return draw_staged(c, draw);
     // As Mesa: all that a list knows of instances are the arrays that go on with them.
     for (GLsizei i = 0; i < draw.instances; ++i) draw_inline(c, draw, i);

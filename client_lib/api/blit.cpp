@@ -93,7 +93,7 @@ private:
                 GLenum type) {
         auto pixels = gather_plain(c_, box, format, type, "glBlitFramebuffer");
         std::lock_guard lock(c_.share().mutex);
-        const auto texture = make_texture(c_.share(), 0, glapi::TextureTarget::t2d);
+        const auto texture = make_texture(c_, 0, glapi::TextureTarget::t2d);
         TextureLevel& level = texture->level_at(0, 0);
         level.internal_format = internal_format;
         level.width = box.width;

@@ -218,7 +218,7 @@ void BindTexture(Context& c, GLenum word, GLuint name) {
             auto texture = c.share().textures.find(name);
             if (texture && texture->info.id != target) return c.error(GL_INVALID_OPERATION);
             if (!texture && c.profile.core && !c.share().textures.known(name)) return c.error(GL_INVALID_OPERATION);
-            if (!texture) c.share().textures.put(name, texture = make_texture(c.share(), name, target));
+            if (!texture) c.share().textures.put(name, texture = make_texture(c, name, target));
             texture->global |= plain == nullptr;
             auto& users = texture->bound_by;
             if (std::find(users.begin(), users.end(), c.id) == users.end()) users.push_back(c.id);

@@ -51,7 +51,7 @@ public:
         if (input_.any_drawn()) return know_no_bounds(), true;  // nobody else has it
         const bool worth = worth_keeping();
         // In a block of vertices there are no instances, and no numbers.
-        return worth || draw_.instances != 1 || (c_.program && c_.program->executable->reads_vertex_numbers());
+        return worth || draw_.instances != 1 || (c_.program && c_.program->executable->reads_numbers());
     }
     /// A program may make of gl_VertexID what it likes. In fixed function all vertices have the current attribute then.
     bool suits_without_positions() {

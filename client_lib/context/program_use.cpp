@@ -73,10 +73,10 @@ void use_program(Context& c, std::shared_ptr<Program> program) {
     if (const auto before = std::exchange(c.program, std::move(program))) drop_user(c, before);
 }
 
-bool reads_vertex_numbers(const Context& c) {
+bool reads_numbers(const Context& c) {
     if (!c.program) return false;
     std::lock_guard lock(c.share().mutex);
-    return c.program->executable->reads_vertex_numbers();
+    return c.program->executable->reads_numbers();
 }
 
 bool fits_program(Context& c, GLenum mode) {

@@ -20,7 +20,7 @@ void learn_link_result(Context& c, Program& program);
 void use_program(Context& c, std::shared_ptr<Program> program);
 
 /// Whether the context's program counts vertices by itself: then they must be drawn as elements, with their numbers.
-bool reads_vertex_numbers(const Context& c);
+bool reads_numbers(const Context& c);
 
 /// False, and an error, if the context's framebuffer is not complete, or its program cannot draw as its samplers are
 /// set.

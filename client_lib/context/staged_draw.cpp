@@ -65,7 +65,7 @@ bool StagedDraw::find_elements() {
     drawn.reserve(static_cast<std::size_t>(range.count));
     for (GLsizei i = 0; i < range.count; ++i)
         if (!range.restarts_at(i)) drawn.push_back(range.at(i));
-    if (reads_vertex_numbers(c_) && keep_numbers(drawn)) {
+    if (reads_numbers(c_) && keep_numbers(drawn)) {
         for (GLsizei i = 0; i < range.count; ++i) indices_.push_back(range.restarts_at(i) ? kRestart : range.at(i));
         return true;
     }

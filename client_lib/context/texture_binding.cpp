@@ -35,9 +35,13 @@ std::shared_ptr<Texture> bound_texture(Context& c, GLenum word) {
     return c.share().texture_of(id);
 }
 
-std::shared_ptr<Texture> make_texture(ShareGroup& share, GLuint name, glapi::TextureTarget target) {
+std::shared_ptr<Texture> make_texture(Context& c, GLuint name, glapi::TextureTarget target) {
     auto texture = std::make_shared<Texture>(next_object_id(), name, target);
-    share.by_id[texture->id] = texture;
+    if (c.profile.core) {  // depths are red there, and nothing says so
+        texture->parameters.depth_mode = GL_RED;
+        texture->parameter_changed(GL_DEPTH_TEXTURE_MODE);
+    }
+    c.share().by_id[texture->id] = texture;
     return texture;
 }
 
@@ -52,7 +56,7 @@ std::shared_ptr<Texture> texture_to_change(Context& c, GLenum word) {
     std::shared_ptr<Texture> texture;
     {
         std::lock_guard lock(c.share().mutex);
-        texture = make_texture(c.share(), 0, target);
+        texture = make_texture(c, 0, target);
         c.share().default_textures[target] = texture;
     }
     adopt_default(c, target, texture->id);

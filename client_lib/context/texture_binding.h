@@ -21,7 +21,7 @@ std::shared_ptr<Texture> bound_texture(Context& c, GLenum word);
 /// The same for changing: what was drawn so far is sent off first, and a default texture comes into being.
 std::shared_ptr<Texture> texture_to_change(Context& c, GLenum word);
 /// A new object of the share group. Its mutex is held.
-std::shared_ptr<Texture> make_texture(ShareGroup& share, GLuint name, glapi::TextureTarget target);
+std::shared_ptr<Texture> make_texture(Context& c, GLuint name, glapi::TextureTarget target);
 /// To be called after every change of a texture.
 void touch(ShareGroup& share, Texture& texture);
 

@@ -66,6 +66,9 @@ std::vector<std::byte> final_definition(glapi::ProgramDefinition definition,
 std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition, glapi::ProgramReflection reflection) {
     auto made = std::make_unique<Executable>();
     made->capture_mode = definition.feedback.mode;
+    const bool counts_primitives = std::ranges::any_of(definition.shaders, [](const auto& shader) {
+        return shader.source.find("gl_PrimitiveID") != std::string::npos;  // also in a comment: no harm
+    });
     made->definition = final_definition(std::move(definition), reflection);
     for (auto& active : reflection.uniforms) {
         const auto* type = glapi::find_uniform_type(active.type);
@@ -92,9 +95,10 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
     made->outputs = std::move(reflection.outputs);
     made->captured = std::move(reflection.captured);
     made->geometry = reflection.geometry;
-    made->reads_vertex_numbers_ = made->find_attribute("gl_VertexID") != nullptr;
+    made->reads_numbers_ = counts_primitives || made->find_attribute("gl_VertexID") != nullptr;
     made->stamp = made->last_change = next_stamp();
-    made->follow_position(std::move(reflection.position));
+    // In parts of a draw primitives would have other numbers.
+    if (!counts_primitives) made->follow_position(std::move(reflection.position));
     made->check_samplers();
     return made;
 }

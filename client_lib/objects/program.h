@@ -93,8 +93,9 @@ public:
 
     /// The block takes its uniforms from another place from now on.
     void bind_block(UniformBlock& block, std::uint32_t binding);
-    /// Whether it counts vertices by itself (gl_VertexID), so that they must be drawn with their own numbers.
-    bool reads_vertex_numbers() const { return reads_vertex_numbers_; }
+    /// Whether it counts vertices or primitives by itself (gl_VertexID, gl_PrimitiveID), so that they must be drawn
+    /// with their own numbers.
+    bool reads_numbers() const { return reads_numbers_; }
     /// The location of the attribute that the position is a function of; -1: that is not known. 0 is also gl_Vertex.
     GLint position_attribute() const { return position_attribute_; }
     /// How the position is made of it.
@@ -133,7 +134,7 @@ private:
     std::vector<UniformPlace> places_;  ///< by location
     bool samplers_conflict_ = false;
     bool samples_buffers_ = false;
-    bool reads_vertex_numbers_ = false;
+    bool reads_numbers_ = false;
     glapi::LinkedPosition position_;
     GLint position_attribute_ = -1;
 };

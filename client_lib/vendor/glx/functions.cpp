@@ -26,8 +26,8 @@ using vendor::XConnection;
 constexpr const char* kVendor = "WallGL";
 constexpr const char* kVersion = "1.4";
 constexpr const char* kExtensions =
-    "GLX_ARB_create_context GLX_ARB_create_context_profile GLX_ARB_create_context_robustness "
-    "GLX_ARB_get_proc_address GLX_ARB_multisample GLX_EXT_create_context_es_profile "
+    "GLX_ARB_create_context GLX_ARB_create_context_profile GLX_ARB_get_proc_address GLX_ARB_multisample "
+    "GLX_EXT_create_context_es_profile "
     "GLX_EXT_create_context_es2_profile "
     "GLX_EXT_swap_control GLX_EXT_visual_info GLX_EXT_visual_rating GLX_MESA_swap_control GLX_SGI_swap_control "
     "GLX_SGIX_fbconfig ";
@@ -254,14 +254,15 @@ Bool make_context_current_of(Display* display, GLXDrawable draw, GLXDrawable rea
             send_glx_error(display, GLXBadContext, 0, X_GLXMakeContextCurrent);
             return False;
         }
-        if (draw == None || read == None) {
+        const bool without = draw == None && read == None;  // as of OpenGL 3.0 (GLX_ARB_create_context)
+        if ((draw == None || read == None) && !without) {
             send_x_error(display, BadMatch, 0, X_GLXMakeContextCurrent);
             return False;
         }
         auto& drawables = Drawables::get();
-        auto to = drawables.find_or_adopt(display, draw, *context->config);
+        auto to = without ? nullptr : drawables.find_or_adopt(display, draw, *context->config);
         auto from = read == draw ? to : drawables.find_or_adopt(display, read, *context->config);
-        if (!to || !from) {
+        if (!without && (!to || !from)) {
             send_glx_error(display, GLXBadDrawable, to ? read : draw, X_GLXMakeContextCurrent);
             return False;
         }
