@@ -43,7 +43,8 @@ class Performance:
 def mesa_environment(x: XServer) -> dict[str, str]:
     """For programs that use the X server's own OpenGL, Mesa's llvmpipe."""
     # With its sRGB extension Mesa 22 lets glAccum convert a window's colours to and from sRGB, even while sRGB is off.
-    environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", vblank_mode="0",
+    # (Without it OpenGL 2.1 is all that it offers, unless it is told.)
+    environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", vblank_mode="0", MESA_GL_VERSION_OVERRIDE="4.5COMPAT",
                                 MESA_EXTENSION_OVERRIDE="-GL_EXT_framebuffer_sRGB")
     for name in ("__GLX_VENDOR_LIBRARY_NAME", "__EGL_VENDOR_LIBRARY_FILENAMES"):
         environment.pop(name, None)

@@ -9,6 +9,8 @@ Buffer::Buffer(ObjectAccount& account, Driver& driver) : ObjectOf(account), gl_(
 
 Buffer::~Buffer() {
     driver_.forget_buffer(name_);
+    // Textures and transform feedback of the driver may keep it: without its memory, which nobody accounts for then.
+    gl_.NamedBufferData(name_, 0, nullptr, GL_STATIC_DRAW);
     gl_.DeleteBuffers(1, &name_);
 }
 
