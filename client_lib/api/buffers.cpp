@@ -37,8 +37,7 @@ Buffer* buffer_with(Context& c, GLenum target, GLintptr offset, GLsizeiptr size)
 
 /// What only nodes have of the buffer that is bound there is here afterwards.
 void fetch_bound(Context& c, GLenum target, const char* function) {
-    const auto found = c.buffers->by_id.find(bound_buffer_id(c, target).value_or(ClientName()));
-    if (found != c.buffers->by_id.end()) fetch_captured(c, found->second, function);
+    fetch_captured(c, bound_buffer_id(c, target).value_or(ClientName()), function);
 }
 
 bool is_usage(GLenum usage) {

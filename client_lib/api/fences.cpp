@@ -55,7 +55,8 @@ GLenum ClientWaitSync(Context& c, GLsync handle, GLbitfield flags, GLuint64 time
     if (!sync || (flags & ~GLbitfield{GL_SYNC_FLUSH_COMMANDS_BIT}) != 0)
         return c.error(GL_INVALID_VALUE), GLenum{GL_WAIT_FAILED};
     if (!is_signaled(*sync)) c.flush(false);  // also without the bit: a program that polls would wait for ever
-    // The state when the call was made is asked here, once: a test without time to wait never says "satisfied".
+    // What is signaled before it begins to wait counts as signaled when the call was made: a test without time to wait
+    // never says "satisfied".
     if (is_signaled(*sync)) return GL_ALREADY_SIGNALED;
     if (timeout == 0) return GL_TIMEOUT_EXPIRED;
     const auto limit =

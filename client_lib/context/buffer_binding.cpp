@@ -172,15 +172,6 @@ void let_go_of_all_buffers(Context& c) {
     for (auto& [id, buffer] : named) let_go_of_buffer(c, std::move(buffer));
 }
 
-namespace {
-
-void fetch_captured_of(Context& c, ClientName id, const char* what) {
-    const auto found = c.buffers->by_id.find(id);
-    if (found != c.buffers->by_id.end()) fetch_captured(c, found->second, what);
-}
-
-}  // namespace
-
 void before_writing(Context& c, const Buffer& buffer) {
     c.buffers->transfer = {};
     if (!c.packer.empty() && is_read_buffer(c, buffer.id)) c.flush_block();
@@ -189,7 +180,7 @@ void before_writing(Context& c, const Buffer& buffer) {
 
 BufferReading buffer_content(Context& c, ClientName id, std::uintptr_t offset) {
     if (buffers_were_deleted(c)) let_go_of_deleted_buffers(c);
-    fetch_captured_of(c, id, "vertices");
+    fetch_captured(c, id, "vertices");
     const Buffer* buffer = buffer_of(c, id);
     if (!buffer) return {};
     std::lock_guard lock(c.share().mutex);
@@ -211,7 +202,7 @@ bool may_use(Context& c, const Buffer* buffer, std::uintptr_t offset, std::size_
 const void* unpack_source(Context& c, const void* pointer, std::size_t bytes) {
     const ClientName id(c.state.local.pixel_unpack_buffer);
     if (!id) return pointer;
-    fetch_captured_of(c, id, "pixels");
+    fetch_captured(c, id, "pixels");
     const Buffer* buffer = buffer_of(c, id);
     const auto offset = reinterpret_cast<std::uintptr_t>(pointer);
     c.buffers->transfer = {};

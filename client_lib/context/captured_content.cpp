@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "client_lib/context/ask_one.h"
+#include "client_lib/context/buffer_use.h"
 #include "client_lib/follow/object_sender.h"
 #include "client_lib/objects/share_group.h"
 
@@ -32,6 +33,11 @@ void fetch_captured(Context& c, const std::shared_ptr<Buffer>& buffer, const cha
     }
     std::lock_guard lock(c.share().mutex);
     if (buffer->size() == content.size()) buffer->take_drawn(content);
+}
+
+void fetch_captured(Context& c, ClientName id, const char* function) {
+    const auto found = c.buffers->by_id.find(id);
+    if (found != c.buffers->by_id.end()) fetch_captured(c, found->second, function);
 }
 
 }  // namespace wall::client
