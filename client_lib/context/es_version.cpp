@@ -96,7 +96,7 @@ std::string shading_language_in(const ContextProfile& profile, const Caps& caps)
 }
 
 std::vector<std::string> extensions_in(const ContextProfile& profile, const Caps& caps) {
-    return profile.es == 0 ? offered_extensions(caps) : es_extensions(caps);
+    return profile.es == 0 ? offered_extensions(caps, profile) : es_extensions(caps);
 }
 
 }  // namespace wall::client

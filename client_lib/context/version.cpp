@@ -2,6 +2,7 @@
 #include "client_lib/context/version.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <iterator>
@@ -37,10 +38,16 @@ constexpr Beyond kBeyond[] = {
 /// What no driver need have: it is between the programs and the nodes.
 constexpr const char* kOwnExtensions[] = {"GL_CR_synchronization", "GL_WALLGL_global_texture"};
 
+/// Core profiles do not list extensions of what they have removed (NV_primitive_restart's client state), nor those that
+/// were part of OpenGL before there were profiles: a program would take them for the fixed functions that came along.
+enum class Where : std::uint8_t { everywhere, not_in_core };
+constexpr Where kNotInCore = Where::not_in_core;
+
 /// An extension and a command that it stands or falls with; null: words only.
 struct Extension {
     const char* name;
     const char* command;
+    Where where = Where::everywhere;
 };
 constexpr Extension kExtensions[] = {
     {"GL_ARB_ES2_compatibility", "glGetShaderPrecisionFormat"},
@@ -50,7 +57,7 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_debug_output", "glDebugMessageCallback"},
     {"GL_ARB_depth_buffer_float", nullptr},
     {"GL_ARB_depth_clamp", nullptr},
-    {"GL_ARB_depth_texture", nullptr},
+    {"GL_ARB_depth_texture", nullptr, kNotInCore},
     {"GL_ARB_draw_buffers", "glDrawBuffers"},
     {"GL_ARB_draw_elements_base_vertex", "glDrawElementsInstancedBaseVertex"},
     {"GL_ARB_draw_instanced", "glDrawArraysInstanced"},
@@ -63,12 +70,12 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_half_float_vertex", nullptr},
     {"GL_ARB_instanced_arrays", "glVertexAttribDivisor"},
     {"GL_ARB_map_buffer_range", "glMapBufferRange"},
-    {"GL_ARB_multisample", "glSampleCoverage"},
-    {"GL_ARB_multitexture", "glMultiTexCoord4f"},
-    {"GL_ARB_occlusion_query", "glBeginQuery"},
+    {"GL_ARB_multisample", "glSampleCoverage", kNotInCore},
+    {"GL_ARB_multitexture", "glMultiTexCoord4f", kNotInCore},
+    {"GL_ARB_occlusion_query", "glBeginQuery", kNotInCore},
     {"GL_ARB_occlusion_query2", "glBeginQuery"},
     {"GL_ARB_pixel_buffer_object", "glBindBuffer"},
-    {"GL_ARB_point_parameters", nullptr},
+    {"GL_ARB_point_parameters", nullptr, kNotInCore},
     {"GL_ARB_point_sprite", nullptr},
     {"GL_ARB_provoking_vertex", "glProvokingVertex"},
     {"GL_ARB_shader_bit_encoding", "glUseProgram"},
@@ -76,23 +83,23 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_seamless_cube_map", nullptr},
     {"GL_ARB_shader_objects", "glDeleteObjectARB"},
     {"GL_ARB_shader_texture_lod", "glUseProgram"},
-    {"GL_ARB_shading_language_100", "glUseProgram"},
-    {"GL_ARB_shadow", nullptr},
+    {"GL_ARB_shading_language_100", "glUseProgram", kNotInCore},
+    {"GL_ARB_shadow", nullptr, kNotInCore},
     {"GL_ARB_sync", "glFenceSync"},
-    {"GL_ARB_texture_border_clamp", nullptr},
+    {"GL_ARB_texture_border_clamp", nullptr, kNotInCore},
     {"GL_ARB_texture_buffer_object", "glTexBuffer"},
     {"GL_ARB_texture_buffer_object_rgb32", "glTexBuffer"},
     {"GL_ARB_texture_buffer_range", "glTexBufferRange"},
-    {"GL_ARB_texture_compression", "glCompressedTexImage2D"},
+    {"GL_ARB_texture_compression", "glCompressedTexImage2D", kNotInCore},
     {"GL_ARB_texture_compression_rgtc", "glCompressedTexImage2D"},
-    {"GL_ARB_texture_cube_map", nullptr},
+    {"GL_ARB_texture_cube_map", nullptr, kNotInCore},
     {"GL_ARB_texture_cube_map_array", nullptr},
-    {"GL_ARB_texture_env_add", nullptr},
-    {"GL_ARB_texture_env_combine", nullptr},
-    {"GL_ARB_texture_env_crossbar", nullptr},
-    {"GL_ARB_texture_env_dot3", nullptr},
+    {"GL_ARB_texture_env_add", nullptr, kNotInCore},
+    {"GL_ARB_texture_env_combine", nullptr, kNotInCore},
+    {"GL_ARB_texture_env_crossbar", nullptr, kNotInCore},
+    {"GL_ARB_texture_env_dot3", nullptr, kNotInCore},
     {"GL_ARB_texture_float", nullptr},
-    {"GL_ARB_texture_mirrored_repeat", nullptr},
+    {"GL_ARB_texture_mirrored_repeat", nullptr, kNotInCore},
     {"GL_ARB_texture_multisample", "glGetMultisamplefv"},
     {"GL_ARB_texture_non_power_of_two", nullptr},
     {"GL_ARB_texture_rectangle", nullptr},
@@ -101,58 +108,58 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_texture_storage", "glTexStorage3D"},
     {"GL_ARB_texture_swizzle", nullptr},
     {"GL_ARB_timer_query", "glQueryCounter"},
-    {"GL_ARB_transpose_matrix", nullptr},
+    {"GL_ARB_transpose_matrix", nullptr, kNotInCore},
     {"GL_ARB_uniform_buffer_object", "glUniformBlockBinding"},
     {"GL_ARB_vertex_array_bgra", nullptr},
     {"GL_ARB_vertex_array_object", "glGenVertexArrays"},
     {"GL_ARB_vertex_buffer_object", "glBindBuffer"},
     {"GL_ARB_vertex_shader", "glUseProgram"},
     {"GL_ARB_vertex_type_2_10_10_10_rev", "glVertexP3ui"},
-    {"GL_ARB_window_pos", nullptr},
+    {"GL_ARB_window_pos", nullptr, kNotInCore},
     {"GL_EXT_abgr", nullptr},
-    {"GL_EXT_bgra", nullptr},
-    {"GL_EXT_blend_color", nullptr},
+    {"GL_EXT_bgra", nullptr, kNotInCore},
+    {"GL_EXT_blend_color", nullptr, kNotInCore},
     {"GL_EXT_blend_equation_separate", nullptr},
-    {"GL_EXT_blend_func_separate", nullptr},
-    {"GL_EXT_blend_minmax", nullptr},
-    {"GL_EXT_blend_subtract", nullptr},
-    {"GL_EXT_compiled_vertex_array", "glLockArraysEXT"},
-    {"GL_EXT_copy_texture", nullptr},
+    {"GL_EXT_blend_func_separate", nullptr, kNotInCore},
+    {"GL_EXT_blend_minmax", nullptr, kNotInCore},
+    {"GL_EXT_blend_subtract", nullptr, kNotInCore},
+    {"GL_EXT_compiled_vertex_array", "glLockArraysEXT", kNotInCore},
+    {"GL_EXT_copy_texture", nullptr, kNotInCore},
     {"GL_EXT_draw_buffers2", "glColorMaski"},
-    {"GL_EXT_draw_range_elements", nullptr},
+    {"GL_EXT_draw_range_elements", nullptr, kNotInCore},
     {"GL_EXT_draw_instanced", "glDrawArraysInstanced"},
-    {"GL_EXT_fog_coord", nullptr},
+    {"GL_EXT_fog_coord", nullptr, kNotInCore},
     {"GL_EXT_framebuffer_blit", "glBlitFramebuffer"},
     {"GL_EXT_framebuffer_multisample", "glRenderbufferStorageMultisample"},
     {"GL_EXT_framebuffer_object", "glGenFramebuffers"},
     {"GL_EXT_framebuffer_sRGB", nullptr},
-    {"GL_EXT_multi_draw_arrays", "glMultiDrawElements"},
+    {"GL_EXT_multi_draw_arrays", "glMultiDrawElements", kNotInCore},
     {"GL_EXT_packed_depth_stencil", "glGenFramebuffers"},
     {"GL_EXT_packed_float", nullptr},
-    {"GL_EXT_packed_pixels", nullptr},
+    {"GL_EXT_packed_pixels", nullptr, kNotInCore},
     {"GL_EXT_pixel_buffer_object", "glBindBuffer"},
-    {"GL_EXT_point_parameters", nullptr},
-    {"GL_EXT_polygon_offset", nullptr},
+    {"GL_EXT_point_parameters", nullptr, kNotInCore},
+    {"GL_EXT_polygon_offset", nullptr, kNotInCore},
     {"GL_EXT_provoking_vertex", "glProvokingVertex"},
-    {"GL_EXT_rescale_normal", nullptr},
-    {"GL_EXT_secondary_color", nullptr},
-    {"GL_EXT_separate_specular_color", nullptr},
-    {"GL_EXT_stencil_wrap", nullptr},
-    {"GL_EXT_subtexture", nullptr},
-    {"GL_EXT_texture", nullptr},
-    {"GL_EXT_texture3D", "glTexImage3D"},
+    {"GL_EXT_rescale_normal", nullptr, kNotInCore},
+    {"GL_EXT_secondary_color", nullptr, kNotInCore},
+    {"GL_EXT_separate_specular_color", nullptr, kNotInCore},
+    {"GL_EXT_stencil_wrap", nullptr, kNotInCore},
+    {"GL_EXT_subtexture", nullptr, kNotInCore},
+    {"GL_EXT_texture", nullptr, kNotInCore},
+    {"GL_EXT_texture3D", "glTexImage3D", kNotInCore},
     {"GL_EXT_texture_array", "glFramebufferTextureLayer"},
     {"GL_EXT_texture_compression_rgtc", "glCompressedTexImage2D"},
     {"GL_EXT_texture_compression_s3tc", "glCompressedTexImage2D"},
-    {"GL_EXT_texture_cube_map", nullptr},
-    {"GL_EXT_texture_edge_clamp", nullptr},
-    {"GL_EXT_texture_env_add", nullptr},
-    {"GL_EXT_texture_env_combine", nullptr},
-    {"GL_EXT_texture_env_dot3", nullptr},
+    {"GL_EXT_texture_cube_map", nullptr, kNotInCore},
+    {"GL_EXT_texture_edge_clamp", nullptr, kNotInCore},
+    {"GL_EXT_texture_env_add", nullptr, kNotInCore},
+    {"GL_EXT_texture_env_combine", nullptr, kNotInCore},
+    {"GL_EXT_texture_env_dot3", nullptr, kNotInCore},
     {"GL_EXT_texture_filter_anisotropic", nullptr},
-    {"GL_EXT_texture_lod_bias", nullptr},
-    {"GL_EXT_texture_object", nullptr},
-    {"GL_EXT_texture_rectangle", nullptr},
+    {"GL_EXT_texture_lod_bias", nullptr, kNotInCore},
+    {"GL_EXT_texture_object", nullptr, kNotInCore},
+    {"GL_EXT_texture_rectangle", nullptr, kNotInCore},
     {"GL_EXT_texture_sRGB", nullptr},
     {"GL_EXT_texture_sRGB_decode", nullptr},
     {"GL_EXT_texture_shared_exponent", nullptr},
@@ -160,17 +167,17 @@ constexpr Extension kExtensions[] = {
     {"GL_EXT_texture_swizzle", nullptr},
     {"GL_EXT_timer_query", "glQueryCounter"},
     {"GL_EXT_transform_feedback", "glBindBufferOffsetEXT"},
-    {"GL_EXT_vertex_array", nullptr},
+    {"GL_EXT_vertex_array", nullptr, kNotInCore},
     {"GL_EXT_vertex_array_bgra", nullptr},
     {"GL_KHR_debug", "glDebugMessageCallback"},
-    {"GL_NV_blend_square", nullptr},
+    {"GL_NV_blend_square", nullptr, kNotInCore},
     {"GL_NV_conditional_render", "glBeginConditionalRender"},
-    {"GL_NV_primitive_restart", "glPrimitiveRestartNV"},
-    {"GL_NV_texgen_reflection", nullptr},
-    {"GL_NV_texture_rectangle", nullptr},
-    {"GL_SGIS_generate_mipmap", nullptr},
-    {"GL_SGIS_texture_edge_clamp", nullptr},
-    {"GL_SGIS_texture_lod", nullptr},
+    {"GL_NV_primitive_restart", "glPrimitiveRestartNV", kNotInCore},
+    {"GL_NV_texgen_reflection", nullptr, kNotInCore},
+    {"GL_NV_texture_rectangle", nullptr, kNotInCore},
+    {"GL_SGIS_generate_mipmap", nullptr, kNotInCore},
+    {"GL_SGIS_texture_edge_clamp", nullptr, kNotInCore},
+    {"GL_SGIS_texture_lod", nullptr, kNotInCore},
 };
 
 GlVersion node_version(const Caps& caps) {
@@ -211,12 +218,13 @@ GlVersion offered_version(const Caps& caps) {
     return offered;
 }
 
-std::vector<std::string> offered_extensions(const Caps& caps) {
+std::vector<std::string> offered_extensions(const Caps& caps, const ContextProfile& profile) {
     std::istringstream words(caps.extensions);
     const std::vector<std::string> node{std::istream_iterator<std::string>(words), {}};
     std::vector<std::string> offered(std::begin(kOwnExtensions), std::end(kOwnExtensions));
     for (const Extension& extension : kExtensions)
         if ((!extension.command || implemented(extension.command)) &&
+            (!profile.core || extension.where == Where::everywhere) &&
             std::find(node.begin(), node.end(), extension.name) != node.end())
             offered.emplace_back(extension.name);
     return offered;

@@ -23,7 +23,8 @@ GlVersion implemented_version();
 bool is_implemented(int major, int minor);
 /// The same, but no more than nodes can do. Of the compatibility profile; of the core profile, if it is 3.1 or later.
 GlVersion offered_version(const Caps& caps);
-std::vector<std::string> offered_extensions(const Caps& caps);
+/// Of desktop OpenGL.
+std::vector<std::string> offered_extensions(const Caps& caps, const ContextProfile& profile);
 
 /// glGetString(GL_VERSION).
 std::string version_string(const Caps& caps, const ContextProfile& profile);
