@@ -221,7 +221,7 @@ Vec3 eye_normal(const glstate::State& s) {
 /// One change of value id for all of it.
 void assign(Context& c, const RasterState& raster) {
     c.state.raster = raster;
-    c.state.ids[static_cast<std::size_t>(glstate::Category::raster)] = glstate::next_value_id();
+    c.state.ids.renew(static_cast<std::size_t>(glstate::Category::raster));
 }
 
 /// A valid raster position is a hit while selecting, as a point at the same place would be.

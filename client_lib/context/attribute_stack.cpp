@@ -15,7 +15,7 @@ template <std::size_t C>
 void unify_category(glstate::State& state, const glstate::State& other) {
     if (state.ids[C] == other.ids[C]) return;
     using Elements = typename glstate::CategoryElements<static_cast<glstate::Category>(C)>::list;
-    if (equal_elements(Elements{}, state, other)) state.ids[C] = other.ids[C];
+    if (equal_elements(Elements{}, state, other)) state.ids.take(C, other.ids[C]);
 }
 
 template <std::size_t... C>

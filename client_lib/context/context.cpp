@@ -97,10 +97,11 @@ void Context::first_use() {
 namespace {
 
 /// Of what a projection depends on.
-std::array<std::uint64_t, 4> projection_ids(const glstate::State& state) {
+std::array<std::uint64_t, 5> projection_ids(const glstate::State& state) {
     using glstate::Category;
     const auto id = [&](Category category) { return state.ids[static_cast<std::size_t>(category)]; };
-    return {id(Category::matrix), id(Category::window), id(Category::line_point), id(Category::transform)};
+    return {id(Category::matrix), id(Category::window), id(Category::line_point), id(Category::transform),
+            id(Category::polygon)};
 }
 
 }  // namespace
@@ -201,11 +202,11 @@ void Context::submit_geometry() {
     const glstate::State before = state;
     draw_in_passes(state, *captures, [&] {
         const auto objects = state.objects;
-        auto& value_id = state.ids[static_cast<std::size_t>(glstate::Category::objects)];
-        const auto kept_id = value_id;
+        constexpr auto kObjects = static_cast<std::size_t>(glstate::Category::objects);
+        const auto kept_id = state.ids[kObjects];
         state = before;
         state.objects = objects;
-        value_id = kept_id;
+        state.ids.take(kObjects, kept_id);
         submit();
     });
     state = before;

@@ -210,10 +210,10 @@ private:
     bool used_ = false;
     bool lost_ = false;
     glstate::Projection projection_;
-    std::array<std::uint64_t, 4> projection_ids_{};
+    std::array<std::uint64_t, 5> projection_ids_{};
     Placing placing_;
     std::uint64_t placing_change_ = 0;  ///< of the program; 0: of none
-    std::array<std::uint64_t, 4> placing_ids_{};
+    std::array<std::uint64_t, 5> placing_ids_{};
 };
 
 }  // namespace wall::client

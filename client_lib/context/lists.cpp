@@ -76,8 +76,7 @@ void apply_effects(glstate::State& state, const ListRun& run, const ListRun::Eff
     const auto before = state.current;
     for (const auto& effect : effects.attributes)
         glstate::apply_attribute(state, effect.op, run.content.operand_at(effect.operand));
-    if (!glstate::same(before, state.current))
-        state.ids[static_cast<std::size_t>(Category::current)] = glstate::next_value_id();
+    if (!glstate::same(before, state.current)) state.ids.renew(static_cast<std::size_t>(Category::current));
     for (const auto& m : effects.materials) assign_material(state, m.face, m.pname, m.value);
 }
 

@@ -39,27 +39,30 @@ public:
                  restart_key(draw),
                  static_cast<std::uint32_t>(array_.value_or(0))} {}
 
-    /// Before anything else: what the program has written into persistent mappings of what is drawn is a change.
+    /// Whether nothing has to be found out: it was found to suit before, and no buffer has changed since.
+    bool known_to_suit();
+    /// Before suits(): what the program has written into persistent mappings of what is drawn is a change.
     void find_written();
     /// Whether the nodes can draw it from their buffers and should.
     bool suits() {
         std::lock_guard lock(c_.share().mutex);
-        if (input_.blocked()) return false;  // it changes meanwhile
+        if (input_.facts().blocked) return false;  // it changes meanwhile
         if (!input_.positions()) return suits_without_positions();
         known_ = in_buffers();
         if (known_ == nullptr) return false;
-        if (input_.any_drawn()) return know_no_bounds(), true;  // nobody else has it
+        if (input_.facts().drawn) return know_no_bounds(), true;  // nobody else has it
         const bool worth = worth_keeping();
         // In a block of vertices there are no instances, and no numbers.
         return worth || draw_.instances != 1 || (c_.program && c_.program->executable->reads_numbers());
     }
     /// A program may make of gl_VertexID what it likes. In fixed function all vertices have the current attribute then.
     bool suits_without_positions() {
-        if (!c_.program || indexed() || input_.written_unseen()) return false;
-        if (input_.instances() < static_cast<std::uint64_t>(draw_.instances)) return false;
+        const InputFacts& facts = input_.facts();
+        if (!c_.program || indexed() || facts.written_unseen) return false;
+        if (facts.instances < static_cast<std::uint64_t>(draw_.instances)) return false;
         once_.box.make_unbounded();
-        known_ = bounded_ && array_ && !input_.any_drawn() ? &known_bounds() : &once_;
-        return std::uint64_t{range_.first} + static_cast<std::uint64_t>(draw_.count) <= input_.elements();
+        known_ = bounded_ && array_ && !facts.drawn ? &known_bounds() : &once_;
+        return std::uint64_t{range_.first} + static_cast<std::uint64_t>(draw_.count) <= facts.elements;
     }
     /// Instead, if the input was made for this draw.
     void know_all_of_it() {
@@ -109,9 +112,17 @@ private:
     /// The lowest and the highest element; nothing: they are not in the buffers.
     std::optional<std::pair<std::uint32_t, std::uint32_t>> elements();
     ElementBounds bounds(const void* indices, const std::optional<glstate::Cut>& cut) const;
-    const RangeBounds& known_bounds();
-    bool worth_keeping();
+    RangeBounds& known_bounds();
+    /// What VertexInput::count_drawn() is told.
+    std::uint64_t drawn_elements() const {
+        return static_cast<std::uint64_t>(draw_.count) * static_cast<std::uint64_t>(draw_.instances);
+    }
+    /// What cannot be bounded as vertices of a block would go to all nodes.
+    std::uint64_t copies(std::uint64_t nodes) const { return placing_.of_vertices() ? 1 : nodes; }
+    std::uint64_t nodes() const { return static_cast<std::uint64_t>(count_nodes(c_.draw_target().layers())); }
+    bool worth_keeping() { return input_.count_drawn(drawn_elements(), copies(nodes()), nodes()); }
     Needs needs() const;
+    std::uint64_t latest_of_input() const;
     void bring_objects(Node& node, wire::PackBuffer& buffer) const;
     void pack(wire::PackBuffer& buffer) const;
     void pack_special(wire::PackBuffer& buffer) const;
@@ -119,7 +130,7 @@ private:
     Context& c_;
     VertexInput& input_;
     const ArrayDraw& draw_;
-    const Placing placing_;
+    const Placing& placing_;
     std::optional<std::size_t> array_;  ///< that has the positions
     const bool bounded_;                ///< whether the box around them tells where they are drawn
     DrawnRange range_;
@@ -171,13 +182,13 @@ void NodeDraw::find_written() {
     std::vector<ClientName> changed;
     {
         std::lock_guard lock(c_.share().mutex);
-        if (!input_.written_unseen() || !input_.positions() || input_.elements() == 0) return;
+        if (!input_.facts().written_unseen || !input_.positions() || input_.facts().elements == 0) return;
         if (indexed() && !in_memory() && indices_in_buffer() && input_.indices()->written_unseen()) {
             const std::size_t bytes = glstate::index_bytes(draw_.index_type) * static_cast<std::size_t>(draw_.count);
             if (input_.find_written_indices({range_.first, range_.first + bytes}))
                 changed.push_back(input_.indices()->id);
         }
-        if (const auto drawn = elements(); drawn && drawn->second < input_.elements()) {
+        if (const auto drawn = elements(); drawn && drawn->second < input_.facts().elements) {
             const auto in_arrays = input_.find_written(drawn->first, drawn->second);
             changed.insert(changed.end(), in_arrays.begin(), in_arrays.end());
         }
@@ -187,21 +198,36 @@ void NodeDraw::find_written() {
 
 /// What is known of the draw, if all indices and all elements that they name lie in the buffers; else null.
 const RangeBounds* NodeDraw::in_buffers() {
-    const std::uint64_t elements = input_.elements();
-    if (elements == 0 || !of_each_vertex(*input_.position_array())) return nullptr;
-    if (input_.instances() < static_cast<std::uint64_t>(draw_.instances)) return nullptr;
+    const InputFacts facts = input_.facts();
+    if (facts.elements == 0 || !of_each_vertex(*input_.position_array())) return nullptr;
+    if (facts.instances < static_cast<std::uint64_t>(draw_.instances)) return nullptr;
+    const auto lies_within = [&](RangeBounds& known) {
+        known.found_within = facts.as_of;
+        return &known;
+    };
     if (!indexed()) {
-        const bool within = std::uint64_t{range_.first} + static_cast<std::uint64_t>(draw_.count) <= elements;
-        return within ? &known_bounds() : nullptr;
+        const bool within = std::uint64_t{range_.first} + static_cast<std::uint64_t>(draw_.count) <= facts.elements;
+        return within ? lies_within(known_bounds()) : nullptr;
     }
     if (in_memory()) {
         const ElementBounds of_draw = bounds(draw_.indices, {});
         once_.box = of_draw.box;
-        return of_draw.last < elements ? &once_ : nullptr;
+        return of_draw.last < facts.elements ? &once_ : nullptr;
     }
     if (!indices_in_buffer()) return nullptr;
-    const RangeBounds& known = known_bounds();
-    return known.last_element < elements ? &known : nullptr;
+    RangeBounds& known = known_bounds();
+    return known.last_element < facts.elements ? lies_within(known) : nullptr;
+}
+
+bool NodeDraw::known_to_suit() {
+    if (!input_.settled() || !input_.facts().plain() || in_memory() || !input_.positions()) return false;
+    if (input_.facts().instances < static_cast<std::uint64_t>(draw_.instances)) return false;
+    const RangeBounds& known = input_.bounds_of(range_);
+    if (known.found_within != input_.facts().as_of) return false;
+    known_ = &known;
+    const std::uint64_t reached = nodes();
+    input_.count_drawn_later(drawn_elements(), copies(reached), reached);
+    return true;
 }
 
 ElementBounds NodeDraw::bounds(const void* indices, const std::optional<glstate::Cut>& cut) const {
@@ -217,7 +243,7 @@ ElementBounds NodeDraw::bounds(const void* indices, const std::optional<glstate:
     return bounds_of(array_source(array, content.bytes()), elements, cut);
 }
 
-const RangeBounds& NodeDraw::known_bounds() {
+RangeBounds& NodeDraw::known_bounds() {
     RangeBounds& known = input_.bounds_of(range_);
     const std::uint64_t positions = input_.buffers()[*array_]->latest(),
                         indices = indexed() ? input_.indices()->latest() : 0;
@@ -226,7 +252,7 @@ const RangeBounds& NodeDraw::known_bounds() {
     const auto cut =
         range_.restart == 0 ? glstate::cut_of(draw_.mode, static_cast<std::uint32_t>(draw_.count)) : std::nullopt;
     ElementBounds found = bounds(indexed() ? input_.indices()->data() + range_.first : nullptr, cut);
-    known = {positions, indices, found.box, found.first, found.last, std::move(known.pieces), !found.pieces.empty()};
+    known = {positions, indices, 0, found.box, found.first, found.last, std::move(known.pieces), !found.pieces.empty()};
     if (!known.cut) return known;
     if (!known.pieces) {
         known.pieces = std::make_shared<DrawPieces>();
@@ -234,25 +260,6 @@ const RangeBounds& NodeDraw::known_bounds() {
     }
     known.pieces->define(*cut, std::move(found.pieces));
     return known;
-}
-
-/// Each buffer is charged with what its own arrays would take; that of the indices with all, since without it every
-/// element would come along.
-bool NodeDraw::worth_keeping() {
-    const auto nodes = static_cast<std::uint64_t>(count_nodes(c_.draw_target().layers()));
-    // What cannot be bounded as vertices of a block would go to all of them.
-    const std::uint64_t copies = placing_.of_vertices() ? 1 : nodes;
-    bool keep = true;
-    const auto& arrays = input_.definition().arrays;
-    for (std::size_t i = 0; i < input_.buffers().size(); ++i) {
-        const auto components = i < arrays.size() ? static_cast<std::uint64_t>(glstate::components(arrays[i].size)) : 0;
-        const std::uint64_t bytes = components != 0
-                                        ? (1 + sizeof(float) * components) * static_cast<std::uint64_t>(draw_.count)
-                                        : input_.inline_bytes(draw_.count);
-        input_.buffers()[i]->churn.drawn(bytes * copies * static_cast<std::uint64_t>(draw_.instances), nodes);
-        keep = keep && input_.buffers()[i]->churn.keep();
-    }
-    return keep;
 }
 
 /// The current value of an attribute that has an array is not looked at.
@@ -272,23 +279,29 @@ void NodeDraw::send() {
 /// What is captured is captured everywhere.
 void NodeDraw::send_once() {
     const bool bounded = !options().broadcast && bounded_ && c_.captures->now == nullptr;
-    const auto box = bounded ? project(placing_.projection, known_->box) : std::nullopt;
+    const auto box = bounded ? project(placing_.projection, known_->box, draw_.mode) : std::nullopt;
     c_.session().draw(
         c_.draw_source(), box, needs(), [&](Node& node, wire::PackBuffer& buffer) { bring_objects(node, buffer); },
         [&](wire::PackBuffer& buffer) { pack(buffer); },
         [&](Node& node) {  // kept commands draw with them, too
-            std::lock_guard lock(c_.share().mutex);
-            const std::uint64_t latest = input_.latest_of_all();
+            const std::uint64_t latest = latest_of_input();
             if (!cut() && node.brought.has(input_.id, latest)) return;
+            std::lock_guard lock(c_.share().mutex);
             for_each_object([&](const Object& object) { node.object_stamps[object.id] = object.latest(); });
             node.brought.note(input_.id, latest);
         });
 }
 
-void NodeDraw::bring_objects(Node& node, wire::PackBuffer& buffer) const {
+std::uint64_t NodeDraw::latest_of_input() const {
+    if (input_.settled()) return input_.facts().latest;
     std::lock_guard lock(c_.share().mutex);
-    const std::uint64_t latest = input_.latest_of_all();
+    return input_.facts().latest;
+}
+
+void NodeDraw::bring_objects(Node& node, wire::PackBuffer& buffer) const {
+    const std::uint64_t latest = latest_of_input();
     if (!cut() && node.brought.has(input_.id, latest)) return;
+    std::lock_guard lock(c_.share().mutex);
     ObjectSender sender(c_.session().nodes(), node, buffer);
     for_each_object([&](const Object& object) { sender.send(object); });
     node.brought.note(input_.id, latest);
@@ -342,11 +355,14 @@ bool draw_on_nodes(Context& c, const ArrayDraw& draw) {
 bool draw_if_worth(Context& c, VertexInput& input, const ArrayDraw& draw) {
     c.flush_block();
     if (input.has_too_many_ranges()) forget_ranges(c, input);
-    if (draw.index_type != 0 && input.indices())
+    const bool settled = input.settled() && input.facts().plain();
+    if (!settled && draw.index_type != 0 && input.indices())
         fetch_captured(c, input.shared_indices(), "glDrawElements");  // the highest is looked for
     NodeDraw on_nodes(c, input, draw);
-    on_nodes.find_written();
-    if (!on_nodes.suits()) return false;
+    if (!settled || !on_nodes.known_to_suit()) {
+        on_nodes.find_written();
+        if (!on_nodes.suits()) return false;
+    }
     on_nodes.send();
     return true;
 }

@@ -20,19 +20,18 @@ PixelBox common_part(const PixelBox& a, const geom::Rect& b) {
 /// While it lives the context's pixel transfer is neutral.
 class NeutralTransfer {
 public:
-    explicit NeutralTransfer(Context& c) : state_(c.state), saved_(c.state.pixel_transfer), id_(id()) {
+    explicit NeutralTransfer(Context& c) : state_(c.state), saved_(c.state.pixel_transfer), id_(state_.ids[kCategory]) {
         state_.pixel_transfer = {};
-        id() = glstate::State{}.ids[kCategory];
+        state_.ids.take(kCategory, glstate::State{}.ids[kCategory]);
     }
     ~NeutralTransfer() {
         state_.pixel_transfer = saved_;
-        id() = id_;
+        state_.ids.take(kCategory, id_);
     }
     NeutralTransfer(const NeutralTransfer&) = delete;
 
 private:
     static constexpr auto kCategory = static_cast<std::size_t>(glstate::Category::pixel_transfer);
-    std::uint64_t& id() { return state_.ids[kCategory]; }
     glstate::State& state_;
     glstate::PixelTransferState saved_;
     std::uint64_t id_;

@@ -18,7 +18,7 @@ VertexArrayObjects::Arrays VertexArrayObjects::arrays_of(const glstate::State& s
 
 void VertexArrayObjects::load(glstate::State& state, const Arrays& arrays) {
     state.vertex_arrays = arrays.arrays;
-    state.ids[kArrays] = arrays.values;
+    state.ids.take(kArrays, arrays.values);
 }
 
 void VertexArrayObjects::bind(glstate::State& state, GLuint name) {

@@ -91,7 +91,11 @@ VertexInputs::Latest& VertexInputs::place_of(std::uint64_t arrays, bool indexed)
 }
 
 VertexInput* VertexInputs::find(const glstate::State& state, const BufferUse& use, ShareGroup& share, bool indexed) {
-    return define(state, indexed, looked_for_) ? of(looked_for_, use, share) : nullptr;
+    if (!define(state, indexed, looked_for_)) return nullptr;
+    // Frames are drawn like the ones before, mesh after mesh: a look at the successor instead of one for the name.
+    VertexInput*& successor = before_ ? before_->successor : before_;
+    if (!successor || !(successor->definition() == looked_for_)) successor = of(looked_for_, use, share);
+    return before_ = successor;
 }
 
 VertexInput* VertexInputs::of(const glstate::VertexInputDefinition& definition, const BufferUse& use,
@@ -119,6 +123,8 @@ std::vector<std::shared_ptr<VertexInput>> VertexInputs::take(Goes&& goes) {
         out.push_back(std::move(entry.second));
         return true;
     });
+    before_ = nullptr;
+    for (auto& [definition, input] : known_) input->successor = nullptr;
     for (Latest& latest : latest_) latest = {};
     for (auto& remembered : remembered_) remembered.clear();
     return out;

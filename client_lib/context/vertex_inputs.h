@@ -51,6 +51,7 @@ private:
     std::unordered_map<glstate::VertexInputDefinition, std::shared_ptr<VertexInput>, Hash> known_;
     Latest latest_[2];                           ///< without and with indices
     std::vector<Latest> remembered_[2];          ///< the same; empty until a vertex array object is drawn with
+    VertexInput* before_ = nullptr;              ///< found last
     glstate::VertexInputDefinition looked_for_;  ///< its memory is used again
     std::uint64_t uses_ = 0;
 };

@@ -14,11 +14,6 @@ namespace {
 
 using glstate::Category;
 
-template <Category kCategory>
-std::uint64_t& value_id(glstate::State& state) {
-    return state.ids[static_cast<std::size_t>(kCategory)];
-}
-
 /// A primitive smaller than this costs less sent whole to one node more than taken apart.
 constexpr std::size_t kSmallPrimitiveBytes = 192;
 /// Vertices between two runs of one strip that cost no more than ending it and starting anew.
@@ -71,7 +66,7 @@ void BlockSender::send_apart() {
     scratch_.shares.assign(followers_.nodes.size(), Share{});
     BlockWalk walk(packer_, {}, packer_.mark(), {});
     for (const Primitive& primitive : packer_.primitives()) {
-        const auto rect = project(projection_, primitive.box);
+        const auto rect = project(projection_, primitive.box, primitive.mode);
         nodes_touched(source_.draw.layers(), rect, scratch_.touched);
         if (scratch_.touched.empty()) continue;
         walk.go_to(primitive.first);
@@ -90,7 +85,7 @@ void BlockSender::send_apart() {
             glstate::apply_attribute(mirror, share.sent.op[i], packer_.operand_at(share.sent.offset[i]));
             changed = true;
         }
-        if (changed) value_id<Category::current>(mirror) = glstate::next_value_id();
+        if (changed) mirror.ids.renew(static_cast<std::size_t>(Category::current));
     }
     fold({});
 }

@@ -22,8 +22,7 @@ bool fold_attributes(const Packer& packer, glstate::State& state) {
 }  // namespace
 
 void fold_block(const Packer& packer, glstate::State& state) {
-    if (fold_attributes(packer, state))
-        state.ids[static_cast<std::size_t>(Category::current)] = glstate::next_value_id();
+    if (fold_attributes(packer, state)) state.ids.renew(static_cast<std::size_t>(Category::current));
     for (const MaterialChange& material : packer.materials)
         assign_material(state, material.face, material.pname, material.value);
 }

@@ -77,8 +77,8 @@ void unify_id(glstate::State& mirror, const glstate::State& state, Category cate
         if (category == Category::current) return glstate::same(mirror.current, state.current);
         return category == Category::material && glstate::same(mirror.material, state.material);
     };
-    auto& id = mirror.ids[static_cast<std::size_t>(category)];
-    id = same_values() ? state.ids[static_cast<std::size_t>(category)] : glstate::next_value_id();
+    const auto c = static_cast<std::size_t>(category);
+    mirror.ids.take(c, same_values() ? state.ids[c] : glstate::next_value_id());
 }
 
 }  // namespace wall::client

@@ -66,7 +66,7 @@ void diff_current(glstate::State& mirror, const glstate::State& state, const Nee
     if (mirror.ids[kCurrent] == state.ids[kCurrent]) return;
     using List = glstate::CategoryElements<glstate::Category::current>::list;
     const bool equal = detail::diff_attributes(List{}, mirror, state, needs, sink);
-    mirror.ids[kCurrent] = equal ? state.ids[kCurrent] : glstate::next_value_id();
+    mirror.ids.take(kCurrent, equal ? state.ids[kCurrent] : glstate::next_value_id());
 }
 
 }  // namespace wall::client

@@ -19,6 +19,7 @@ void Buffer::define(const void* data, std::size_t bytes, GLenum usage) {
     drawn_ = false;
     zeros_ = data == nullptr;
     stamp_ = next_stamp();
+    count_change();
     changes_.reset(stamp_);
     if (!data) return;  // what is going to be written counts then, and nothing else of it travels
     changes_.add({0, bytes}, stamp_);
@@ -43,6 +44,7 @@ std::byte* Buffer::begin_writing() {
 
 void Buffer::wrote(ByteRange range) {
     stamp_ = next_stamp();
+    count_change();
     zeros_ = false;
     changes_.add(range, stamp_);
     churn.changed(range.size());
@@ -50,6 +52,7 @@ void Buffer::wrote(ByteRange range) {
 
 void Buffer::note_drawn() {
     stamp_ = next_stamp();
+    count_change();
     drawn_ = true;
     zeros_ = false;
 }
@@ -59,6 +62,7 @@ void Buffer::take_drawn(std::span<const std::byte> content) {
     leave_to_readers();
     std::ranges::copy(content, memory_->bytes.begin());
     drawn_ = false;
+    count_change();
     changes_.add({0, content.size()}, stamp_);
 }
 
@@ -87,6 +91,7 @@ std::byte* Buffer::map(const BufferMapping& mapping) {
     std::byte* const bytes = mapping.writes() ? begin_writing() : memory_->bytes.data();
     if (mapping.writes() && !mapping.tells()) pages_.begin(memory_->bytes, mapping.range, zeros_);
     mapping_ = mapping;
+    count_change();
     access = mapping.access;
     return bytes + mapping.range.begin;
 }
@@ -94,6 +99,7 @@ std::byte* Buffer::map(const BufferMapping& mapping) {
 void Buffer::unmap() {
     if (mapping_->writes() && !mapping_->tells()) find_written(mapping_->range);
     mapping_.reset();
+    count_change();
     pages_ = {};
 }
 

@@ -74,6 +74,10 @@ class Buffer final : public Object {
 public:
     Buffer(ClientName own_id, GLuint own_name) : Object(own_id, own_name) {}
 
+    /// How often anything that can be asked of any buffer of the process has changed: while it stays the same, so do
+    /// all answers. Any thread.
+    static std::uint64_t changes() { return all_changes.load(std::memory_order_acquire); }
+
     std::size_t size() const { return memory_->bytes.size(); }
     /// For reading; it is another place after a change.
     const std::byte* data() const { return memory_->bytes.data(); }
@@ -129,7 +133,9 @@ public:
 
 private:
     void leave_to_readers();
+    static void count_change() { all_changes.fetch_add(1, std::memory_order_release); }
 
+    static inline std::atomic<std::uint64_t> all_changes{1};
     std::shared_ptr<BufferMemory> memory_ = std::make_shared<BufferMemory>();
     GLenum usage_ = GL_STATIC_DRAW;
     GLbitfield storage_flags_ = GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_DYNAMIC_STORAGE_BIT;

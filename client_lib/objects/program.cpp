@@ -165,9 +165,21 @@ const glapi::ActiveAttribute* Executable::find_attribute(std::string_view name) 
     return found == attributes.end() ? nullptr : &*found;
 }
 
+/// An element of an array lies behind those before it, and a matrix takes a location for each column (OpenGL 3.2,
+/// 2.11.3).
 GLint Executable::attribute_location_of(std::string_view name) const {
-    const auto* found = find_attribute(name);
-    return found ? found->location : -1;
+    if (const auto* found = find_attribute(name)) return found->location;
+    const auto wanted = parse_element(name);
+    if (!wanted) return -1;
+    for (const glapi::ActiveAttribute& attribute : attributes) {
+        const auto own = parse_element(attribute.name);
+        if (!own || own->name != wanted->name || attribute.location < 0 || wanted->element >= attribute.size) continue;
+        if (wanted->indexed && attribute.size == 1 && !own->indexed) continue;
+        const auto* type = glapi::find_uniform_type(attribute.type);
+        const std::uint32_t columns = type != nullptr && type->matrix() ? type->columns : 1;
+        return attribute.location + static_cast<GLint>(wanted->element * columns);
+    }
+    return -1;
 }
 
 const UniformPlace* Executable::place_of(GLint location) const {

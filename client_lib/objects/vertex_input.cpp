@@ -35,6 +35,32 @@ std::optional<std::size_t> VertexInput::array_of_generic(std::uint32_t number) c
     return std::nullopt;
 }
 
+void VertexInput::settle() {
+    const std::uint64_t as_of = Buffer::changes();
+    const bool kept = count_drawn(uncounted_.elements, 1, uncounted_.nodes);
+    uncounted_ = {};
+    facts_ = {.as_of = as_of, .latest = stamp_, .elements = elements(), .instances = instances(), .kept = kept};
+    for (const auto& buffer : buffers_) {
+        facts_.latest = std::max(facts_.latest, buffer->latest());
+        facts_.drawn |= buffer->is_drawn();
+        facts_.blocked |= buffer->blocked();
+        facts_.written_unseen |= buffer->written_unseen();
+    }
+}
+
+bool VertexInput::count_drawn(std::uint64_t elements, std::uint64_t copies, std::uint64_t nodes) {
+    bool keep = true;
+    for (std::size_t i = 0; i < buffers_.size(); ++i) {
+        const bool is_array = i < definition_.arrays.size();
+        const auto components =
+            is_array ? static_cast<std::uint64_t>(glstate::components(definition_.arrays[i].size)) : 0;
+        const std::uint64_t bytes = components != 0 ? 1 + sizeof(float) * components : inline_bytes_;
+        if (elements != 0) buffers_[i]->churn.drawn(bytes * elements * copies, nodes);
+        keep = keep && buffers_[i]->churn.keep();
+    }
+    return keep;
+}
+
 std::uint64_t VertexInput::elements() const {
     std::uint64_t count = std::numeric_limits<std::uint64_t>::max();
     for (std::size_t i = 0; i < definition_.arrays.size(); ++i)

@@ -37,11 +37,28 @@ struct DrawnRange {
 /// What is known of a range, as of the stamps of the buffers that it depends on.
 struct RangeBounds {
     std::uint64_t positions = 0, indices = 0;  ///< stamps
+    std::uint64_t found_within = 0;            ///< Buffer::changes() when all of it was found to lie in the buffers
     geom::Box box;                             ///< of the positions
     std::uint32_t first_element = 0;           ///< the lowest
     std::uint32_t last_element = 0;            ///< the highest
     std::shared_ptr<DrawPieces> pieces;        ///< null: it has never been worth while
     bool cut = false;                          ///< whether it is drawn in them
+};
+
+/// What the buffers of an input are, all together.
+struct InputFacts {
+    std::uint64_t as_of = 0;   ///< Buffer::changes(); 0: never looked at
+    std::uint64_t latest = 0;  ///< stamp of the latest change of the input or any buffer: as long as it stays the same,
+                               ///< who has been brought them lacks nothing of them
+    std::uint64_t elements = 0;   ///< that lie in all of the buffers; of those arrays that go on from vertex to vertex
+    std::uint64_t instances = 0;  ///< the same of the other arrays
+    bool drawn = false;           ///< only nodes have the content of one
+    bool blocked = false;         ///< one is mapped so that no command may use it
+    bool written_unseen = false;  ///< one is mapped so that the program may write into it at any time
+    bool kept = false;            ///< all are worth keeping on the nodes
+
+    /// What most are: nothing has to be looked at before a draw.
+    bool plain() const { return kept && !drawn && !blocked && !written_unseen; }
 };
 
 class VertexInput : public Object {
@@ -58,41 +75,29 @@ public:
     std::optional<std::size_t> position_array() const { return positions_; }
     /// Which array has the values of a generic attribute; of number 0, that of positions.
     std::optional<std::size_t> array_of_generic(std::uint32_t number) const;
-    /// Stamp of the latest change of itself or of any of its buffers: as long as it stays the same, who has been
-    /// brought them lacks nothing of them. The share group's mutex is held.
-    std::uint64_t latest_of_all() const {
-        std::uint64_t latest = stamp_;
-        for (const auto& buffer : buffers_) latest = std::max(latest, buffer->latest());
-        return latest;
+    /// Whether facts() are known as they are now.
+    bool settled() const { return facts_.as_of == Buffer::changes(); }
+    /// The share group's mutex is held, unless it is settled.
+    const InputFacts& facts() {
+        if (!settled()) settle();
+        return facts_;
     }
     /// Null: none.
     const Buffer* indices() const { return definition_.indices ? buffers_.back().get() : nullptr; }
     const std::shared_ptr<Buffer>& shared_indices() const { return buffers_.back(); }
-    /// Whether only nodes have the content of a buffer. The share group's mutex is held, here and below.
-    bool any_drawn() const {
-        return std::ranges::any_of(buffers_, [](const auto& buffer) { return buffer->is_drawn(); });
-    }
-    /// Whether a buffer is mapped so that no command may use it.
-    bool blocked() const {
-        return std::ranges::any_of(buffers_, [](const auto& buffer) { return buffer->blocked(); });
-    }
-    bool written_unseen() const {
-        return std::ranges::any_of(buffers_, [](const auto& buffer) { return buffer->written_unseen(); });
+    /// A draw of so many elements, which without buffers would travel to `nodes` nodes, `copies` times in all. Whether
+    /// the buffers are worth keeping on the nodes: each is charged with what its own arrays would take; that of the
+    /// indices with all, since without it every element would come along. The share group's mutex is held.
+    bool count_drawn(std::uint64_t elements, std::uint64_t copies, std::uint64_t nodes);
+    /// The same where the facts say that they are kept: it is counted when anything has changed. Without the mutex.
+    void count_drawn_later(std::uint64_t elements, std::uint64_t copies, std::uint64_t nodes) {
+        uncounted_.elements += elements * copies;
+        uncounted_.nodes = std::max(uncounted_.nodes, nodes);
     }
     /// Buffer::find_written() of what the arrays have of these elements; the buffers in which something was found.
     std::vector<ClientName> find_written(std::uint32_t first, std::uint32_t last);
     /// The same of a range of the indices.
     bool find_written_indices(ByteRange range) { return buffers_.back()->find_written(range); }
-    /// What its elements take, each with all of its arrays, in a block of geometry.
-    std::uint64_t inline_bytes(std::int32_t elements) const {
-        return inline_bytes_ * static_cast<std::uint64_t>(elements);
-    }
-    /// How many elements lie in all of its buffers, as large as they are now; of those arrays that go on from vertex to
-    /// vertex. The share group's mutex is held.
-    std::uint64_t elements() const;
-    /// The same of instances and the other arrays.
-    std::uint64_t instances() const;
-
     std::uint64_t latest() const override { return stamp_; }
     void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
                       const std::function<void()>& packed) const override;
@@ -108,7 +113,8 @@ public:
     /// Forgets all ranges; their pieces, which nodes may know.
     std::vector<std::shared_ptr<DrawPieces>> take_pieces();
 
-    std::uint64_t last_use = 0;  ///< of VertexInputs' own counting
+    std::uint64_t last_use = 0;        ///< of VertexInputs' own counting
+    VertexInput* successor = nullptr;  ///< the one that was drawn with after it; VertexInputs' own
 
 private:
     struct RangeHash {
@@ -122,10 +128,18 @@ private:
         }
     };
 
+    void settle();
+    std::uint64_t elements() const;
+    std::uint64_t instances() const;
+
+    InputFacts facts_;
+    struct {
+        std::uint64_t elements = 0, nodes = 0;
+    } uncounted_;
     glstate::VertexInputDefinition definition_;
     std::vector<std::shared_ptr<Buffer>> buffers_;
     std::optional<std::size_t> positions_;  ///< among the arrays
-    std::uint64_t inline_bytes_ = 0;        ///< of one element
+    std::uint64_t inline_bytes_ = 0;        ///< what one element takes in a block of geometry
     std::uint64_t stamp_ = next_stamp();
     std::unordered_map<DrawnRange, RangeBounds, RangeHash> ranges_;
     std::pair<const DrawnRange, RangeBounds>* latest_ = nullptr;  ///< the range asked for last; most have only one

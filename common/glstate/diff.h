@@ -8,7 +8,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
@@ -23,12 +22,6 @@ constexpr CategoryMask mask_of(Category c) { return CategoryMask{1} << static_ca
 inline constexpr CategoryMask kSentCategories = (CategoryMask{1} << kSentCategoryCount) - 1;
 /// What a tile's layer changes: applied per tile.
 inline constexpr CategoryMask kLayerCategories = mask_of(Category::window) | mask_of(Category::raster);
-
-/// A fresh value id; unique in the process.
-inline std::uint64_t next_value_id() {
-    static std::atomic<std::uint64_t> last{1};
-    return last.fetch_add(1, std::memory_order_relaxed) + 1;
-}
 
 /// Equal as bytes: NaN equals itself, -0 differs from 0.
 template <class T>
@@ -79,7 +72,7 @@ template <class E>
 bool assign(State& s, unsigned i, const typename E::type& v) {
     if (same(E::ref(static_cast<const State&>(s), i), v)) return false;
     store<E>(s, i, v);
-    s.ids[static_cast<unsigned>(E::category)] = next_value_id();
+    s.ids.renew(static_cast<std::size_t>(E::category));
     return true;
 }
 
@@ -120,11 +113,11 @@ void diff_if_wanted(State& from, To& to, Sink& sink) {
         const bool differs = diff_list(typename CategoryElements<static_cast<Category>(C)>::list{}, from, to, sink);
         if constexpr (!std::is_const_v<To>) {
             if (!differs) {
-                to.ids[C] = from.ids[C];
+                to.ids.take(C, from.ids[C]);
                 return;
             }
         }
-        from.ids[C] = to.ids[C];
+        from.ids.take(C, to.ids[C]);
     }
 }
 
@@ -180,7 +173,7 @@ void diff_and_unify(State& from, State& to, Sink&& sink) {
 /// Two states hold equal values in these categories; from now on by the same ids.
 inline void unify_ids(CategoryMask categories, State& a, const State& b) {
     for (std::size_t c = 0; c < kCategoryCount; ++c)
-        if ((categories >> c & 1) != 0) a.ids[c] = b.ids[c];
+        if ((categories >> c & 1) != 0) a.ids.take(c, b.ids[c]);
 }
 
 /// diff() with the categories chosen at run time.

@@ -13,7 +13,7 @@ bool apply(State& state, std::uint32_t id, std::span<const std::byte> value) {
     if (std::memcmp(at, value.data(), value.size()) == 0) return true;
     if (id == el::color_material::id || id == el::color_material_enabled::id) adopt_current_color(state);
     std::memcpy(at, value.data(), value.size());
-    state.ids[static_cast<unsigned>(element_info(id).category)] = next_value_id();
+    state.ids.renew(static_cast<std::size_t>(element_info(id).category));
     return true;
 }
 

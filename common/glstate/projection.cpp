@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/glapi/primitive.h"
+
 namespace wall::glstate {
 namespace {
 
@@ -83,7 +85,11 @@ Projection make_projection(const State& state) {
     const auto& lp = state.line_point;
     const bool attenuated = lp.point_distance_attenuation != glstate::Vec3{1, 0, 0};
     const float point = attenuated || lp.program_point_size ? lp.point_size_max : lp.point_size;
-    p.margin = 1 + std::max(lp.line_width, point) / 2;
+    p.reaches = {1 + point / 2, 1 + lp.line_width / 2, 1};
+    for (const GLenum drawn_as : state.polygon.polygon_mode)
+        if (drawn_as != GL_FILL)
+            p.reaches.polygons = std::max(p.reaches.polygons, drawn_as == GL_LINE ? p.reaches.lines : p.reaches.points);
+    p.margin = std::max(p.reaches.lines, p.reaches.points);
     p.near_plane = !state.transform.depth_clamp;
     return p;
 }
@@ -207,6 +213,22 @@ std::optional<PixelRect> project(const Projection& p, const geom::Box& box) {
     const auto clip = clip_corners(p, box);
     const auto rect = project(p, clip);
     return rect && p.by_shader ? widen(p, box, clip, *rect) : rect;
+}
+
+std::optional<PixelRect> project(const Projection& p, const geom::Box& box, GLenum mode) {
+    auto rect = project(p, box);
+    if (!rect) return rect;
+    const float less = p.margin - p.reaches.of(mode);
+    return PixelRect{rect->x0 + less, rect->y0 + less, rect->x1 - less, rect->y1 - less};
+}
+
+float Reaches::of(GLenum mode) const {
+    switch (glapi::single_primitive(mode)) {
+        case GL_POINTS: return points;
+        case GL_LINES:
+        case GL_LINES_ADJACENCY: return lines;
+        default: return polygons;
+    }
 }
 
 std::optional<PixelRect> hull_rect(const Projection& p, std::span<const WindowVertex> vertices) {

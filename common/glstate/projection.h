@@ -16,11 +16,19 @@ namespace wall::glstate {
 
 using geom::PixelRect;
 
+/// How far fragments lie from the vertices' hull at most, by what the primitives are: half the line width or point
+/// size, and one for rounding; pixels. Polygons may be drawn as lines or points.
+struct Reaches {
+    float points = 1, lines = 1, polygons = 1;
+    float of(GLenum mode) const;
+};
+
 /// The transformation of object space to window pixels, and how far rasterization may reach beyond the vertices.
 struct Projection {
     Mat4 clip_from_object{};
-    float viewport[4]{};     ///< x, y, width, height
-    float margin = 1;        ///< pixels: half the line width or point size, and one for rounding
+    float viewport[4]{};  ///< x, y, width, height
+    float margin = 1;     ///< pixels: the most of the reaches
+    Reaches reaches;
     bool near_plane = true;  ///< clips; not while depths are clamped
     bool by_shader = false;  ///< which rounds in an order of its own, so that what it makes lies about there
     Mat4 sizes{};            ///< if by_shader: as of glapi::PositionTransform
@@ -35,6 +43,8 @@ Mat4 multiply(const Mat4& a, const Mat4& b);
 
 /// Where the box can be drawn; nothing if that is unknown. Empty behind the eye.
 std::optional<PixelRect> project(const Projection& projection, const geom::Box& box);
+/// The same of primitives of one mode. A shader's point size is known by its limit only, which triangles do not reach.
+std::optional<PixelRect> project(const Projection& projection, const geom::Box& box, GLenum mode);
 
 struct WindowVertex {
     std::array<float, 4> clip;

@@ -160,5 +160,24 @@ TEST(Projection, MapsClipSpaceToTheViewport) {
     EXPECT_EQ(rect->y1, 76);
 }
 
+TEST(Projection, OnlyPointsReachAsFarAsAShaderMayMakeThem) {
+    State state;
+    state.window.viewport = {0, 0, 100, 100};
+    state.line_point.program_point_size = 1;
+    state.line_point.point_size_max = 60;
+    state.line_point.line_width = 8;
+    geom::Box box;
+    box.add(_mm_set_ps(0, 0, 0, 0));
+    const auto reach = [&](GLenum mode) { return 50 - project(make_projection(state), box, mode)->x0; };
+    EXPECT_EQ(reach(GL_POINTS), 31);
+    EXPECT_EQ(reach(GL_LINE_STRIP), 5);
+    EXPECT_EQ(reach(GL_TRIANGLES), 1);
+    EXPECT_EQ(reach(GL_POLYGON), 1);
+    state.polygon.polygon_mode[1] = GL_LINE;
+    EXPECT_EQ(reach(GL_TRIANGLES), 5);
+    state.polygon.polygon_mode[0] = GL_POINT;
+    EXPECT_EQ(reach(GL_TRIANGLE_STRIP), 31);
+}
+
 }  // namespace
 }  // namespace wall::glstate

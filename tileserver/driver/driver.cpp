@@ -66,7 +66,7 @@ void diff_by_unit(glstate::ElementList<E...>, glstate::State& from, glstate::Sta
         std::size_t element = 0;
         ((any |= different[element++] && i < E::count && glstate::detail::diff_value<E>(from, to, i, driver)), ...);
     }
-    (any ? from : to).ids[kId] = (any ? to : from).ids[kId];
+    (any ? from : to).ids.take(kId, (any ? to : from).ids[kId]);
 }
 template <glstate::Category C>
 void diff_by_unit(glstate::State& from, glstate::State& to, Driver& driver) {
@@ -220,11 +220,11 @@ void Driver::bind_each_sampler(const SamplerBindings& wanted) {
 
 void Driver::bind_window(RenderTarget& target, glstate::State& state) {
     if (glstate::same(mirror.window, state.window)) {
-        state.ids[kWindow] = mirror.ids[kWindow];
+        state.ids.take(kWindow, mirror.ids[kWindow]);
         if (target_ == &target) return;
     }
     mirror.window = state.window;
-    mirror.ids[kWindow] = state.ids[kWindow];
+    mirror.ids.take(kWindow, state.ids[kWindow]);
     target_ = &target;
     target.bind(glstate::el::draw_buffer::ref(state), glstate::el::read_buffer::ref(state));
     const WindowValues wanted = window_values(target.geometry(), state);

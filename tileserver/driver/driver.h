@@ -54,6 +54,11 @@ struct TextureBindings {
     TextureNames names{};
 };
 
+/// The versions of what a driver held and of a state when the driver had been brought to that state; 0: never.
+struct FollowedState {
+    std::uint64_t driver = 0, state = 0;
+};
+
 /// The state of a driver context goes through here, never around it.
 class Driver : private glstate::DriverEmit<Gl> {
 public:
@@ -74,6 +79,13 @@ public:
     void sync(glstate::State& state) {
         if (!glstate::same_ids<kSynced>(mirror, state)) sync_values(state);
     }
+    /// Whether this state was followed before, and neither it nor what the driver holds has changed since: then all of
+    /// sync() and sync_current() is done. Two numbers instead of a comparison of each category.
+    bool holds(const FollowedState& followed, const glstate::State& state) const {
+        return followed.driver != 0 && followed.driver == mirror.ids.version() && followed.state == state.ids.version();
+    }
+    /// After sync() and sync_current(), in that order.
+    FollowedState followed(glstate::State& state) { return {mirror.ids.named_version(), state.ids.named_version()}; }
     /// The current attributes; the last thing before geometry, so that Mesa packs them with its vertices. Behind them
     /// any other change would make it set up each as an array of its own.
     void sync_current(glstate::State& state) { glstate::diff_and_unify<kCurrentMask>(mirror, state, *this); }

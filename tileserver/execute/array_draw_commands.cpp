@@ -66,7 +66,7 @@ void ArrayDrawCommands::find_runs(ClientName name, std::int32_t count, GLenum mo
     if (!projection) return add(0, all);
     const geom::PixelRect area = block_.target->geometry().window_area();
     const auto wanted = [&](const geom::Box& box) {
-        const auto rect = glstate::project(*projection, box);
+        const auto rect = glstate::project(*projection, box, mode);
         return !rect || rect->overlaps(area);
     };
     glstate::for_each_run(pieces.cut(), pieces.boxes(), all, wanted, add);

@@ -45,6 +45,7 @@ struct SoftContext {
     SoftMaps maps;
     BoundTextures textures;
     BoundSamplers samplers;
+    FollowedState followed;
 };
 
 class SessionReplica {

@@ -105,7 +105,8 @@ bool count_and_capture(RenderNode& node, SessionReplica& session, const glstate:
 }  // namespace
 
 bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, RenderTarget& target, Counted counted) {
-    node.driver.sync(context.state);
+    const bool held = node.driver.holds(context.followed, context.state);
+    if (!held) node.driver.sync(context.state);
     if (context.textures.state_id != textures_id(context) ||
         context.textures.version != session.objects.version(Texture::kKind))
         look_up_textures(session, context);
@@ -117,7 +118,10 @@ bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, 
     node.maps.sync_evaluators(node.driver, context.maps);
     node.driver.bind_target(target, context.state);
     use_program(node, session, context.state, target.geometry());
-    node.driver.sync_current(context.state);
+    if (!held) {
+        node.driver.sync_current(context.state);
+        context.followed = node.driver.followed(context.state);
+    }
     return count_and_capture(node, session, context.state, target.geometry(), counted);
 }
 

@@ -30,7 +30,8 @@ def _mask(groups, bits):
 def state_header(model):
     out = [header("proto/gl/state.toml", STATE_NOTES, []),
            '#include <array>\n#include <cstddef>\n#include <cstdint>\n#include <type_traits>\n\n'
-           '#include "common/glapi/gl_types.h"\n#include "common/glstate/values.h"\n\nnamespace wall::glstate {\n\n']
+           '#include "common/glapi/gl_types.h"\n#include "common/glstate/value_ids.h"\n'
+           '#include "common/glstate/values.h"\n\nnamespace wall::glstate {\n\n']
     names = [c.name for c in model.categories]
     out.append("enum class Category : std::uint8_t {\n" + "".join(f"    {n},\n" for n in names) + "    kCount\n};\n")
     out.append(f"inline constexpr std::size_t kCategoryCount = {len(names)};\n")
@@ -50,8 +51,7 @@ def state_header(model):
     out += [_category_struct(c) for c in model.categories]
     out.append("/// Standard layout; copied and compared by category. Never holds pointers of its own.\n"
                "struct State {\n"
-               "    std::array<std::uint64_t, kCategoryCount> ids = filled<std::array<std::uint64_t, "
-               "kCategoryCount>>(1);  ///< value ids; 1: defaults\n")
+               "    ValueIds<kCategoryCount> ids;\n")
     out += [f"    {c.struct} {c.name};\n" for c in model.categories]
     out.append("};\nstatic_assert(std::is_standard_layout_v<State>);\n\nnamespace el {\n\n")
     out += [_tag(e, c) for c in model.categories for e in c.elements]

@@ -2,6 +2,8 @@
 // Which name a context's arrays have among the nodes.
 #include "client_lib/context/vertex_inputs.h"
 
+#include <map>
+
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/forget_objects.h"
 #include "tests/unit/client_lib/context_fixture.h"
@@ -54,7 +56,7 @@ TEST_F(VertexInputsTest, SaysWhereTheArraysLie) {
     EXPECT_EQ(found->positions()->offset, 48u);
     EXPECT_EQ(found->positions()->stride, 24);
     EXPECT_EQ(found->indices()->name, names[1]);
-    EXPECT_EQ(found->elements(), (1200u - 48 - 12) / 24 + 1) << "of the array that ends first";
+    EXPECT_EQ(found->facts().elements, (1200u - 48 - 12) / 24 + 1) << "of the array that ends first";
     EXPECT_NE(input(false), found) << "without indices it is another";
 }
 
@@ -68,6 +70,62 @@ TEST_F(VertexInputsTest, NothingInTheProgramsMemoryHasOne) {
     EXPECT_NE(input(), nullptr) << "it is not enabled";
     gl().EnableClientState(c, GL_COLOR_ARRAY);
     EXPECT_EQ(input(), nullptr);
+}
+
+TEST_F(VertexInputsTest, AreFoundInAnyOrder) {
+    const std::uintptr_t offsets[] = {0, 24, 48, 72};
+    std::map<std::uintptr_t, VertexInput*> found;
+    for (const std::uintptr_t offset : offsets) {
+        positions_at(names[0], offset);
+        found[offset] = input();
+    }
+    for (const std::size_t i : {0, 1, 2, 3, 0, 1, 2, 3, 3, 0, 2, 1, 0, 3, 1, 2}) {
+        positions_at(names[0], offsets[i]);
+        EXPECT_EQ(input(), found[offsets[i]]) << i;
+    }
+    positions_at(names[1], 0);
+    VertexInput* const of_other = input();
+    gl().DeleteBuffers(c, 1, &names[0]);  // those before and after it are gone
+    positions_at(names[1], 24);
+    EXPECT_NE(input(), of_other);
+    positions_at(names[1], 0);
+    EXPECT_EQ(input(), of_other);
+}
+
+TEST_F(VertexInputsTest, FactsAreThoseOfTheBuffersAsTheyAre) {
+    positions_at(names[0], 0);
+    VertexInput* const found = input();
+    const InputFacts before = found->facts();
+    EXPECT_TRUE(found->settled());
+    EXPECT_TRUE(before.plain());
+    EXPECT_EQ(before.elements, 50u);
+    gl().BufferSubData(c, GL_ARRAY_BUFFER, 0, 4, "abc");
+    EXPECT_FALSE(found->settled());
+    EXPECT_GT(found->facts().latest, before.latest);
+    gl().BufferData(c, GL_ARRAY_BUFFER, 240, nullptr, GL_STATIC_DRAW);
+    EXPECT_EQ(found->facts().elements, 10u);
+    ASSERT_TRUE(gl().MapBuffer(c, GL_ARRAY_BUFFER, GL_WRITE_ONLY));
+    EXPECT_TRUE(found->facts().blocked);
+    EXPECT_FALSE(found->facts().plain());
+    gl().UnmapBuffer(c, GL_ARRAY_BUFFER);
+    EXPECT_TRUE(found->facts().plain());
+    const std::size_t bytes = 240;
+    gl().BufferStorage(c, GL_ARRAY_BUFFER, bytes, nullptr, GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT);
+    ASSERT_TRUE(gl().MapBufferRange(c, GL_ARRAY_BUFFER, 0, bytes, GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT));
+    EXPECT_TRUE(found->facts().written_unseen);
+}
+
+TEST_F(VertexInputsTest, DrawsThatAreCountedLaterAreCounted) {
+    positions_at(names[0], 0);
+    VertexInput* const found = input();
+    ASSERT_TRUE(found->facts().kept);
+    Churn& churn = c.buffers->by_id.at(ClientName(c.state.local.array_buffer))->churn;
+    churn.changed(1000);
+    found->count_drawn_later(10, 1, 1);  // 13 bytes an element: far less than what was written
+    gl().BufferSubData(c, GL_ARRAY_BUFFER, 0, 4, "abc");
+    EXPECT_TRUE(found->facts().kept) << "counted here, judged by the next change";
+    gl().BufferSubData(c, GL_ARRAY_BUFFER, 0, 4, "abc");
+    EXPECT_FALSE(found->facts().kept);
 }
 
 TEST_F(VertexInputsTest, ADeletedBufferTakesItsInputsAlong) {

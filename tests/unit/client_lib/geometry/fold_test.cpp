@@ -60,7 +60,7 @@ TEST_F(Fold, AMirrorThatRanTheBlockHasTheSameAndIsKnownToHaveIt) {
 
 TEST_F(Fold, AMirrorThatWasBehindBeforeTheBlockStaysDifferent) {
     state.current.normal = {0, 1, 0};
-    state.ids[static_cast<std::size_t>(Category::current)] = glstate::next_value_id();
+    state.ids.renew(static_cast<std::size_t>(Category::current));
     color(0.5f);
     fold_block(packer, state);
     fold_block(packer, mirror, state);

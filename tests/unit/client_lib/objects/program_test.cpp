@@ -19,7 +19,7 @@ glapi::ProgramReflection reflection() {
                   {GL_FLOAT_VEC3, 1, false, false, "color", {0, 0, 0}},
                   {GL_FLOAT, 3, false, true, "weights", {1, 2, 3}},
                   {GL_SAMPLER_2D, 2, false, true, "images", {0, 0}}};
-    r.attributes = {{GL_FLOAT_VEC4, 1, 5, "place"}};
+    r.attributes = {{GL_FLOAT_VEC4, 1, 5, "place"}, {GL_FLOAT_MAT3, 2, 6, "corners"}, {GL_INT, 1, -1, "gl_VertexID"}};
     return r;
 }
 
@@ -36,6 +36,12 @@ TEST(ExecutableTest, LocationsAreDense) {
         EXPECT_EQ(e->location_of(none), -1) << none;
     EXPECT_EQ(e->attribute_location_of("place"), 5);
     EXPECT_EQ(e->attribute_location_of("places"), -1);
+    EXPECT_EQ(e->attribute_location_of("place[0]"), -1) << "it is no array";
+    EXPECT_EQ(e->attribute_location_of("corners"), 6);
+    EXPECT_EQ(e->attribute_location_of("corners[0]"), 6);
+    EXPECT_EQ(e->attribute_location_of("corners[1]"), 9) << "behind three columns";
+    EXPECT_EQ(e->attribute_location_of("corners[2]"), -1);
+    EXPECT_EQ(e->attribute_location_of("gl_VertexID"), -1);
     EXPECT_EQ(e->place_of(6), nullptr);
     EXPECT_EQ(e->place_of(-1), nullptr);
 }
@@ -49,9 +55,10 @@ TEST(ExecutableTest, OtherNodesGetTheFirstOnesChoices) {
     ASSERT_EQ(sent->uniforms.size(), 3u);
     EXPECT_EQ(sent->uniforms[1].name, "weights");
     EXPECT_EQ(sent->uniforms[1].size, 3u);
-    ASSERT_EQ(sent->attributes.size(), 2u);
+    ASSERT_EQ(sent->attributes.size(), 3u);
     EXPECT_EQ(sent->attributes[1].name, "place");
     EXPECT_EQ(sent->attributes[1].index, 5u);
+    EXPECT_EQ(sent->attributes[2].name, "corners");
 }
 
 TEST(ExecutableTest, OtherNodesAreToldHowThePositionIsMade) {

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// The soft context switch: whatever happened before, the driver holds what the context wants.
+#include "tileserver/session/soft_switch.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <optional>
+#include <random>
+
+#include "gen/glstate/samples.gen.h"
+#include "tests/unit/tileserver/test_node.h"
+
+namespace wall::tileserver::test {
+namespace {
+
+constexpr int kWidth = 64, kHeight = 48;
+
+class SoftSwitch : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (!node_.usable()) GTEST_SKIP() << "no EGL";
+        node_.node->tiles = {{0, {0, 0, kWidth, kHeight}}};
+        session_.emplace(*node_.node, SessionId(1));
+        session_->open_surface(kWidth, kHeight, {0, 0, kWidth, kHeight});
+        for (const std::size_t i : {1, 2})  // all draw to the same window
+            context(i).state = context(0).state;
+    }
+    SoftContext& context(std::size_t i) {
+        return session_->session.context(ContextId(static_cast<std::uint32_t>(i + 1)));
+    }
+    bool switch_to_context(std::size_t i) {
+        RenderTarget& target = *session_->session.surface(SurfaceId(1))->layer(0);
+        return switch_to(*node_.node, session_->session, context(i), target, {true, true});
+    }
+    /// What glGetFloatv says of the current colour and of the fog's.
+    std::array<glstate::Vec4, 2> held() const {
+        std::array<glstate::Vec4, 2> values{};
+        node_.driver->gl().GetFloatv(GL_CURRENT_COLOR, values[0].data());
+        node_.driver->gl().GetFloatv(GL_FOG_COLOR, values[1].data());
+        return values;
+    }
+    std::array<glstate::Vec4, 2> wanted(std::size_t i) {
+        const glstate::State& state = context(i).state;
+        return {el::color::ref(state), el::fog_color::ref(state)};
+    }
+    Driver& driver() { return *node_.driver; }
+
+    TestNode node_;
+    std::optional<TestSession> session_;
+};
+
+TEST_F(SoftSwitch, OfEqualContextsIsHeldAfterOneTurn) {
+    for (std::size_t turn = 0; turn < 4; ++turn) {
+        EXPECT_EQ(driver().holds(context(turn % 2).followed, context(turn % 2).state), turn > 1) << turn;
+        ASSERT_TRUE(switch_to_context(turn % 2));
+    }
+}
+
+TEST_F(SoftSwitch, AValueThatOneContextHasSetIsToldAndTakenBack) {
+    glstate::assign<el::fog_color>(context(1).state, 0, {0.25f, 0.5f, 0.75f, 1});
+    for (std::size_t turn = 0; turn < 4; ++turn) {
+        ASSERT_TRUE(switch_to_context(turn % 2));
+        EXPECT_EQ(held(), wanted(turn % 2)) << turn;
+    }
+}
+
+TEST_F(SoftSwitch, WhatDrawingLeftInTheDriverIsSeen) {
+    ASSERT_TRUE(switch_to_context(0));
+    ASSERT_TRUE(switch_to_context(0));
+    driver().gl().Color4f(0.5f, 0.25f, 0, 1);  // as of a vertex of a block, whose trail is folded into the mirror
+    glstate::assign<el::color>(driver().mirror, 0, {0.5f, 0.25f, 0, 1});
+    ASSERT_TRUE(switch_to_context(0));
+    EXPECT_EQ(held(), wanted(0));
+}
+
+TEST_F(SoftSwitch, ACopiedStateIsThatOfItsOriginal) {
+    glstate::assign<el::fog_color>(context(0).state, 0, {1, 0.5f, 0.25f, 0});
+    ASSERT_TRUE(switch_to_context(0));
+    ASSERT_TRUE(switch_to_context(1));
+    context(1).state = context(0).state;
+    ASSERT_TRUE(switch_to_context(1));
+    EXPECT_EQ(held(), wanted(1));
+}
+
+TEST_F(SoftSwitch, HoldsAfterAnyHistory) {
+    std::mt19937 random(1);
+    const auto below = [&](unsigned n) { return static_cast<unsigned>(random()) % n; };
+    for (unsigned step = 0; step < 2000; ++step) {
+        const unsigned who = below(3);
+        glstate::State& state = context(who).state;
+        switch (below(6)) {
+            case 0: glstate::assign<el::color>(state, 0, glstate::Samples<el::color>::values[below(3)]); break;
+            case 1: glstate::assign<el::fog_color>(state, 0, glstate::Samples<el::fog_color>::values[below(3)]); break;
+            case 2: state = context(below(3)).state; break;
+            case 3:  // only who knows that they are equal says so
+                if (glstate::same(state.current, driver().mirror.current) &&
+                    glstate::same(state.material, driver().mirror.material))
+                    driver().unify_attributes(state);
+                break;
+            case 4: {
+                const glstate::Vec4 color = glstate::Samples<el::color>::values[below(3)];
+                driver().gl().Color4fv(color.data());
+                glstate::assign<el::color>(driver().mirror, 0, color);
+                break;
+            }
+            default: break;
+        }
+        const unsigned next = below(3);
+        ASSERT_TRUE(switch_to_context(next));
+        ASSERT_EQ(held(), wanted(next)) << step;
+    }
+}
+
+}  // namespace
+}  // namespace wall::tileserver::test
