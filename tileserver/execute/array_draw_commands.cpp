@@ -95,13 +95,13 @@ bool ArrayDrawCommands::has_elements(VertexInput& input, std::int32_t first, std
     return false;
 }
 
-bool ArrayDrawCommands::has_indices(const VertexInput& input, std::int32_t count, GLenum type, std::uint32_t offset) {
-    const auto indices = execution_.session.objects.get<Buffer>(input.indices());
-    if (!indices) return execution_.refuse(indices.error().message), false;
+bool ArrayDrawCommands::has_indices(VertexInput& input, std::int32_t count, GLenum type, std::uint32_t offset) {
+    const auto bytes = input.index_bytes(execution_.session.objects);
+    if (!bytes) return execution_.refuse("the buffer of the input's indices is not there"), false;
     const std::size_t one = glstate::index_bytes(type);
     if (one == 0 || offset % one != 0) return execution_.refuse("no such indices"), false;
     // Another thread of the program may have made the buffer smaller since the client has looked.
-    if (offset + static_cast<std::uint64_t>(count) * one <= (*indices)->size()) return true;
+    if (offset + static_cast<std::uint64_t>(count) * one <= *bytes) return true;
     ++execution_.session.work.gl_errors;
     return false;
 }
@@ -117,7 +117,7 @@ std::optional<std::int32_t> ArrayDrawCommands::count_indices(GLenum type, std::s
 
 void ArrayDrawCommands::DrawElements(ClientName name, ClientName pieces, GLenum mode, std::int32_t count, GLenum type,
                                      std::uint32_t offset, std::int32_t base_vertex) {
-    const VertexInput* input = begin(name, mode, count);
+    VertexInput* input = begin(name, mode, count);
     if (input == nullptr || !has_indices(*input, count, type, offset)) return;
     find_runs(pieces, count, mode);
     count_runs();

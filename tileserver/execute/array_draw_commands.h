@@ -31,7 +31,7 @@ public:
     /// Whether elements in a row lie in the input's buffers. False: refused, or not to be drawn.
     bool has_elements(VertexInput& input, std::int32_t first, std::int32_t count);
     /// Whether the indices lie in the input's buffer. False: refused, or not to be drawn.
-    bool has_indices(const VertexInput& input, std::int32_t count, GLenum type, std::uint32_t offset);
+    bool has_indices(VertexInput& input, std::int32_t count, GLenum type, std::uint32_t offset);
     /// How many indices there are in memory; nothing: refused.
     std::optional<std::int32_t> count_indices(GLenum type, std::span<const std::byte> indices);
     /// The driver is given so many.

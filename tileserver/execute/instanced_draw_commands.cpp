@@ -51,7 +51,7 @@ void InstancedDrawCommands::DrawElementsInstanced(ClientName name, GLenum mode, 
                                                   std::uint32_t offset, std::int32_t base_vertex,
                                                   std::int32_t instances, std::uint32_t restart,
                                                   std::uint32_t restart_index) {
-    const VertexInput* input = begin(name, mode, count, instances);
+    VertexInput* input = begin(name, mode, count, instances);
     if (input == nullptr || !draws_.has_indices(*input, count, type, offset)) return;
     const Restart restarts(execution_.gl, restart, restart_index);
     execution_.gl.DrawElementsInstancedBaseVertex(

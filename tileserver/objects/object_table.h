@@ -9,6 +9,7 @@
 #include <string>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "common/base/ids.h"
 #include "common/base/result.h"
@@ -43,8 +44,8 @@ public:
     template <class T>
     T* find(ObjectKey key) const {
         if (key.is_default() && !has_defaults_) return nullptr;
-        const auto at = objects_.find(key);
-        return at != objects_.end() && at->second->kind() == T::kKind ? static_cast<T*>(at->second.get()) : nullptr;
+        ObjectReplica* const found = find_any(key);
+        return found != nullptr && found->kind() == T::kKind ? static_cast<T*>(found) : nullptr;
     }
     /// Null: there is none. An error: it is of another kind.
     template <class T>
@@ -71,7 +72,9 @@ public:
     }
     /// Of whatever kind, if there is one.
     void erase(ClientName name) {
-        if (name) objects_.erase(name);
+        if (!name) return;
+        place_of(name) = {};
+        objects_.erase(name);
     }
 
     /// As long as it stays the same, all lookups of a kind find objects of the same driver names.
@@ -86,6 +89,22 @@ private:
     struct Hash {
         std::size_t operator()(ObjectKey key) const { return std::hash<std::uint64_t>{}(key.value()); }
     };
+    /// What was found lately: a client's ids grow by one, so the objects that it draws with one after the other have a
+    /// place each.
+    struct Place {
+        std::uint64_t key = 0;  ///< 0: none
+        ObjectReplica* object = nullptr;
+    };
+    static constexpr std::size_t kPlaces = 2048;
+    Place& place_of(ObjectKey key) const { return places_[key.value() % kPlaces]; }
+    ObjectReplica* find_any(ObjectKey key) const {
+        Place& place = place_of(key);
+        if (place.key == key.value() && place.object != nullptr) return place.object;
+        const auto at = objects_.find(key);
+        if (at == objects_.end()) return nullptr;
+        place = {key.value(), at->second.get()};
+        return place.object;
+    }
     Result<void> has_room_for(ObjectKey key) const;
     tl::unexpected<Error> another_kind(ObjectKey key, ObjectKind wanted) const;
     static tl::unexpected<Error> none(ObjectKey key, ObjectKind wanted);
@@ -93,6 +112,7 @@ private:
     bool has_defaults_ = false;  // few sessions have any, and most names in a state are 0
     ObjectAccount account_;      // before the objects, which use it to the end
     std::unordered_map<ObjectKey, std::unique_ptr<ObjectReplica>, Hash> objects_;
+    mutable std::vector<Place> places_ = std::vector<Place>(kPlaces);
 };
 
 }  // namespace wall::tileserver

@@ -80,17 +80,19 @@ bool VertexInput::define(const glstate::VertexInputDefinition& definition, std::
     return driver_.drain_errors() == 0;
 }
 
-std::uint64_t VertexInput::elements(const ObjectTable& objects) {
+const VertexInput::Facts& VertexInput::facts(const ObjectTable& objects) {
     const std::uint64_t version = objects.version(ObjectKind::buffer);
-    if (buffers_ == version) return elements_;
+    if (buffers_ == version) return facts_;
     buffers_ = version;
-    elements_ = kMostWithoutArrays;
+    facts_ = {.elements = kMostWithoutArrays, .index_bytes = std::nullopt};
     for (const InputArray& array : definition_.arrays) {
         if (array.divisor != 0) continue;
         const Buffer* buffer = objects.find<Buffer>(array.buffer);
-        elements_ = std::min(elements_, buffer != nullptr ? array.elements_in(buffer->size()) : 0);
+        facts_.elements = std::min(facts_.elements, buffer != nullptr ? array.elements_in(buffer->size()) : 0);
     }
-    return elements_;
+    const Buffer* indices = definition_.indices ? objects.find<Buffer>(definition_.indices) : nullptr;
+    if (indices != nullptr) facts_.index_bytes = indices->size();
+    return facts_;
 }
 
 }  // namespace wall::tileserver

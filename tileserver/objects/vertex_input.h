@@ -28,14 +28,23 @@ public:
     ClientName indices() const { return definition_.indices; }
     /// How many elements lie in all buffers of arrays that go on from vertex to vertex, as large as they are now: a
     /// draw must not read behind them.
-    std::uint64_t elements(const ObjectTable& objects);
+    std::uint64_t elements(const ObjectTable& objects) { return facts(objects).elements; }
+    /// How large the buffer of the indices is, bytes; nothing: the input has none, or it is gone.
+    std::optional<std::size_t> index_bytes(const ObjectTable& objects) { return facts(objects).index_bytes; }
 
 private:
+    struct Facts {
+        std::uint64_t elements = 0;
+        std::optional<std::size_t> index_bytes;
+    };
+    /// Looked up again when a buffer of the session has changed its size.
+    const Facts& facts(const ObjectTable& objects);
+
     Driver& driver_;
     GLuint name_ = 0;
     glstate::VertexInputDefinition definition_;
-    std::uint64_t elements_ = 0;
-    std::optional<std::uint64_t> buffers_;  ///< the version of the table's buffers that elements_ is of
+    Facts facts_;
+    std::optional<std::uint64_t> buffers_;  ///< the version of the table's buffers that facts_ is of
 };
 
 }  // namespace wall::tileserver
