@@ -6,8 +6,9 @@
 // window, a thousand times that to fill). So a stream that has used up its budget waits for the driver (RenderThread
 // does that and says how long it took), and its budget becomes the part of kTurn that its commands take of their whole
 // cost. Budgets begin small, since nobody knows yet, and grow by steps. While no other stream is active one waits less
-// often. A turn that could not be cut, such as one long call of the driver, is made up for: the stream then waits for
-// as long, if others are active.
+// often, and only for what it had told when it waited last, so that the driver draws while more is told. A turn that
+// could not be cut, such as one long call of the driver, is made up for: the stream then waits for as long, if others
+// are active.
 #pragma once
 
 #include <algorithm>

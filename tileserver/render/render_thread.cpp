@@ -12,6 +12,7 @@
 
 #include "common/wire/batch.h"
 #include "tileserver/execute/executor.h"
+#include "tileserver/render/driver_wait.h"
 #include "tileserver/render/pace.h"
 #include "tileserver/render/tile_watches.h"
 
@@ -96,7 +97,8 @@ public:
             Work& work = session_.work;
             work.decode += now - start - (work.render - render_before);
             if (pace_.spend(now - start, contended)) {
-                loop_.driver_.gl().Finish();
+                if (contended) driver_wait_.finish();
+                else driver_wait_.finish_before();
                 const auto before = std::exchange(now, Clock::now());
                 pace_.finished(now - before, now);
                 work.render += now - before;
@@ -155,6 +157,7 @@ public:
         SessionReplica session_;
         Executor executor_;
         Pace pace_;
+        DriverWait driver_wait_{loop_.driver_.gl()};
         Clock::time_point last_run_{};
         bool failed_ = false, closed_ = false;
     };
