@@ -6,9 +6,9 @@
 // window, a thousand times that to fill). So a stream that has used up its budget waits for the driver (RenderThread
 // does that and says how long it took), and its budget becomes the part of kTurn that its commands take of their whole
 // cost. Budgets begin small, since nobody knows yet, and grow by steps. While no other stream is active one waits less
-// often, and only for what it had told when it waited last, so that the driver draws while more is told. A turn that
-// could not be cut, such as one long call of the driver, is made up for: the stream then waits for as long, if others
-// are active.
+// often, and if the driver keeps up only for what it had told when it waited last, so that the driver draws while more
+// is told. A turn that could not be cut, such as one long call of the driver, is made up for: the stream then waits for
+// as long, if others are active.
 #pragma once
 
 #include <algorithm>
@@ -36,11 +36,16 @@ public:
         spent_ += spent;
         return spent_ >= (contended ? budget_ : alone_);
     }
-    /// All that the stream has told the driver is done; that took `waited` beyond what it has spent.
+    /// Whether the driver has lately needed no longer for what it was told than the stream to tell it. Known only when
+    /// the budget has grown: the first turns may be anything, such as a shader that is compiled.
+    bool driver_keeps_up() const { return keeps_up_; }
+    /// All that the stream has told the driver is done, or all that it had told the last time; that took `waited`
+    /// beyond what it has spent.
     void finished(Clock::duration waited, Clock::time_point now) {
         const auto whole = spent_ + waited;
         const auto share =
             static_cast<double>(spent_.count()) / static_cast<double>(std::max<Clock::rep>(1, whole.count()));
+        keeps_up_ = waited <= spent_ && alone_ >= kGrown;
         budget_ = std::min(part(kTurn, share), kStep * budget_);
         alone_ = std::min(part(kAlone, share), kStep * alone_);
         spent_ = {};
@@ -48,6 +53,7 @@ public:
     }
 
 private:
+    static constexpr Clock::duration kGrown = kAlone / 8;
     static constexpr Clock::duration kShortest = std::chrono::microseconds(10);
     static Clock::duration part(Clock::duration of, double share) {
         return std::clamp<Clock::duration>(std::chrono::duration_cast<Clock::duration>(of * share), kShortest, of);
@@ -55,6 +61,7 @@ private:
     Clock::duration budget_ = kFirst, alone_ = kFirst;
     Clock::duration spent_{}, turn_{};  // since the driver was waited for; in the last turn
     Clock::time_point not_before_{};
+    bool keeps_up_ = false;
 };
 
 }  // namespace wall::tileserver

@@ -97,7 +97,7 @@ public:
             Work& work = session_.work;
             work.decode += now - start - (work.render - render_before);
             if (pace_.spend(now - start, contended)) {
-                if (contended) driver_wait_.finish();
+                if (contended || !pace_.driver_keeps_up()) driver_wait_.finish();
                 else driver_wait_.finish_before();
                 const auto before = std::exchange(now, Clock::now());
                 pace_.finished(now - before, now);

@@ -67,6 +67,24 @@ TEST(PaceTest, AloneItWaitsForTheDriverLessOften) {
     EXPECT_TRUE(pace.spend(Pace::kAlone / 100, false));
 }
 
+TEST(PaceTest, ADriverKeepsUpThatIsDoneSoonAfterItWasTold) {
+    Pace pace;
+    const auto turn = [&](Clock::duration spent, Clock::duration waited) {
+        pace.spend(spent, false);
+        pace.finished(waited, {});
+    };
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_FALSE(pace.driver_keeps_up()) << "nobody knows yet";
+        turn(10ms, 5ms);
+    }
+    turn(10ms, 5ms);
+    EXPECT_TRUE(pace.driver_keeps_up());
+    turn(1ms, 100ms);
+    EXPECT_FALSE(pace.driver_keeps_up());
+    turn(10ms, 10ms);
+    EXPECT_FALSE(pace.driver_keeps_up()) << "of a small budget";
+}
+
 TEST(PaceTest, ALongTurnIsMadeUpFor) {
     Pace pace;
     const Clock::time_point now{1h};
