@@ -148,6 +148,15 @@ TEST_F(Es3Context, KeepsBlocksOfEtc2) {
     EXPECT_EQ(error(), kOperation);
 }
 
+TEST_F(Es3Context, NodesAreToldOfTheLastLevelOfStorage) {
+    gl().BindTexture(c, GL_TEXTURE_2D, 1);
+    gl().TexStorage2D(c, GL_TEXTURE_2D, 2, GL_RGBA8, 16, 16);
+    EXPECT_EQ(error(), kNone);
+    const auto texture = c.share().textures.find(1);
+    EXPECT_TRUE(std::ranges::any_of(texture->parameter_stamps,
+                                    [](const auto& known) { return known.first == GL_TEXTURE_MAX_LEVEL; }));
+}
+
 TEST_F(Es3Context, ListsItsBlockFormats) {
     const Caps caps{.extensions = "GL_ARB_ES3_compatibility GL_EXT_texture_compression_s3tc"};
     const auto formats = listed_block_formats(c.profile, caps);
