@@ -50,14 +50,18 @@ std::shared_ptr<Texture> texture_with(Context& c, GLuint name, GLint level) {
 
 bool lies_inside(GLint at, GLsizei size, GLint all) { return at >= 0 && size >= 0 && std::int64_t{at} + size <= all; }
 
-/// A range of a buffer that may go, or the `whole` of it.
+/// A range of a buffer that may go, or the `whole` of it; nothing of what is mapped may.
 void invalidate_buffer(Context& c, GLuint name, GLintptr offset, GLsizeiptr length, bool whole) {
     std::lock_guard lock(c.share().mutex);
     const auto buffer = name == 0 ? nullptr : c.share().buffers.find(name);
     if (!buffer) return c.error(GL_INVALID_VALUE);
     const auto have = static_cast<GLsizeiptr>(buffer->size());
-    if (!whole && (offset < 0 || length < 0 || offset > have || length > have - offset)) c.error(GL_INVALID_VALUE);
-    else if (buffer->blocked()) c.error(GL_INVALID_OPERATION);
+    if (!whole && (offset < 0 || length < 0 || offset > have || length > have - offset))
+        return c.error(GL_INVALID_VALUE);
+    if (!buffer->blocked()) return;
+    const ByteRange mapped = buffer->mapping()->range;
+    const auto begin = static_cast<std::size_t>(offset), end = begin + static_cast<std::size_t>(length);
+    if (whole || (begin < mapped.end && end > mapped.begin)) c.error(GL_INVALID_OPERATION);
 }
 
 }  // namespace
