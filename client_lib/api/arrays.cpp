@@ -7,6 +7,7 @@
 #include "client_lib/context/array_copies.h"
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/buffer_binding.h"
+#include "client_lib/context/capture_use.h"
 #include "client_lib/context/client_arrays.h"
 #include "client_lib/context/copied_draw.h"
 #include "client_lib/context/debug_state.h"
@@ -173,15 +174,25 @@ void draw_range(Context& c, GLenum mode, GLint first, GLsizei count, GLsizei ins
     draw(c, {.mode = mode, .first = first, .count = count, .instances = instances});
 }
 
+/// The index at which primitives begin anew, if there is one: the program's, or the last of the type, which goes first
+/// (OpenGL 4.6, 10.3.6).
+std::optional<GLuint> restart_index(const Context& c, GLenum type) {
+    const auto& local = c.state.local;
+    if (local.primitive_restart_fixed_index) {
+        const unsigned unused_bits = type == GL_UNSIGNED_BYTE ? 24 : type == GL_UNSIGNED_SHORT ? 16 : 0;
+        return ~GLuint{0} >> unused_bits;
+    }
+    return local.primitive_restart ? std::optional(local.primitive_restart_index) : std::nullopt;
+}
+
 void draw_indices(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices, GLint base_vertex = 0,
                   GLsizei instances = 1) {
-    const auto& local = c.state.local;
     draw(c, {.mode = mode,
              .count = count,
              .index_type = type,
              .indices = indices,
              .base_vertex = base_vertex,
-             .restart = local.primitive_restart ? std::optional(local.primitive_restart_index) : std::nullopt,
+             .restart = restart_index(c, type),
              .instances = instances});
 }
 
@@ -189,6 +200,7 @@ bool check_indices(Context& c, GLenum mode, GLsizei count, GLenum type, GLsizei 
     if (count < 0 || instances < 0) return c.error(GL_INVALID_VALUE), false;
     if (!check_mode(c, mode)) return false;
     if (!is_index_type(type)) return c.error(GL_INVALID_ENUM), false;
+    if (c.profile.es == 30 && c.captures->active) return c.error(GL_INVALID_OPERATION), false;  // 2.15.2
     return true;
 }
 

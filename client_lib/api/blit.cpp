@@ -16,6 +16,7 @@ namespace {
 struct Corners {
     GLint x0, y0, x1, y1;
 
+    bool operator==(const Corners&) const = default;
     bool empty() const { return x0 == x1 || y0 == y1; }
     PixelBox box() const { return {std::min(x0, x1), std::min(y0, y1), std::abs(x1 - x0), std::abs(y1 - y0)}; }
 };
@@ -54,6 +55,42 @@ GLenum whole_error(Context& c, GLbitfield mask, GLenum filter) {
     const TextureFormat &from = *read_color_format(c), &to = *draw_color_format(c);
     if (!from.whole() && !to.whole()) return GL_NO_ERROR;
     return from.component_type != to.component_type || filter == GL_LINEAR ? GL_INVALID_OPERATION : GL_NO_ERROR;
+}
+
+/// What the two read and drawn images at a buffer are; null: there is none, or it is the window's.
+const Attachment* attached(const std::shared_ptr<Framebuffer>& framebuffer, GLenum point) {
+    const auto place = framebuffer ? glstate::attachment_place(point) : std::nullopt;
+    return place && framebuffer->at(*place).present() ? &framebuffer->at(*place) : nullptr;
+}
+
+/// Whether colours of the image that is read go to that image.
+bool draws_to_itself(const FramebufferUse& use) {
+    if (!use.read || !use.draw) return !use.read && !use.draw;
+    const Attachment* from = attached(use.read, use.read->read_buffer());
+    return from && std::ranges::any_of(use.draw->draw_buffers(), [&](GLenum buffer) {
+               const Attachment* to = attached(use.draw, buffer);
+               return to && *to == *from;
+           });
+}
+
+bool same_bits(const ComponentBits& a, const ComponentBits& b) { return a.depth == b.depth && a.stencil == b.stencil; }
+
+/// Depth and stencil are copied between images of one format only.
+bool depths_differ(const FramebufferUse& use, GLbitfield mask) {
+    if (!use.read || !use.draw || (mask & (GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT)) == 0) return false;
+    const auto shape = (mask & GL_DEPTH_BUFFER_BIT) ? &Framebuffer::depth_shape : &Framebuffer::stencil_shape;
+    const auto from = (*use.read.*shape)(), to = (*use.draw.*shape)();
+    return from && to &&
+           (from->format->component_type != to->format->component_type || !same_bits(from->bits, to->bits));
+}
+
+/// What OpenGL ES forbids beyond that (OpenGL ES 3.0.6, 4.3.3).
+GLenum es_error(Context& c, const Corners& from, const Corners& to, GLbitfield mask) {
+    const FramebufferUse& use = *c.framebuffers;
+    if (samples_of(c, use.draw) != 0 || (samples_of(c, use.read) != 0 && from != to)) return GL_INVALID_OPERATION;
+    std::lock_guard lock(c.share().mutex);
+    if ((mask & GL_COLOR_BUFFER_BIT) && draws_to_itself(use)) return GL_INVALID_OPERATION;
+    return depths_differ(use, mask) ? GL_INVALID_OPERATION : GL_NO_ERROR;
 }
 
 /// A part of the window as a framebuffer object of its own, while it lives the one that is read from.
@@ -138,6 +175,8 @@ void BlitFramebuffer(Context& c, GLint from_x0, GLint from_y0, GLint from_x1, GL
     if (const GLenum error = multisample_error(c, from, to)) return c.error(error);
     mask = common_buffers(c, mask);
     if (const GLenum error = whole_error(c, mask, filter)) return c.error(error);
+    if (const GLenum error = c.profile.es != 0 ? es_error(c, from, to, mask) : GLenum{GL_NO_ERROR})
+        return c.error(error);
     if (mask == 0 || from.empty() || to.empty()) return;
     c.flush_block();
     if (c.framebuffers->read) return blit(c, from, to, mask, filter);

@@ -203,23 +203,12 @@ void BindFramebuffer(Context& c, GLenum target, GLuint name) {
     auto framebuffer = names.find(name);
     if (!framebuffer) {
         if (c.profile.core && !names.known(name)) return c.error(GL_INVALID_OPERATION);
-        framebuffer = std::make_shared<Framebuffer>(name, c.profile.es == 0);
+        framebuffer = std::make_shared<Framebuffer>(name, c.profile.es);
         names.put(name, framebuffer);
         std::lock_guard lock(c.share().mutex);
         c.share().by_id[framebuffer->id] = framebuffer;
     }
     bind_framebuffer(c, target, std::move(framebuffer));
-}
-
-// A hint, which nothing is made of: what is drawn again needs no clearing.
-void DiscardFramebufferEXT(Context& c, GLenum target, GLsizei count, const GLenum* points) {
-    if (!framebuffer_binding(c, target)) return c.error(GL_INVALID_ENUM);
-    if (count < 0) return c.error(GL_INVALID_VALUE);
-    const bool window = !*framebuffer_binding(c, target);
-    for (GLsizei i = 0; i < count; ++i) {
-        const bool buffer = points[i] == GL_COLOR || points[i] == GL_DEPTH || points[i] == GL_STENCIL;
-        if (window ? !buffer : !glstate::attachment_place(points[i])) return c.error(GL_INVALID_ENUM);
-    }
 }
 
 GLenum CheckFramebufferStatus(Context& c, GLenum target) {

@@ -16,6 +16,7 @@
 #include "client_lib/context/query_result.h"
 #include "client_lib/context/select.h"
 #include "client_lib/context/texture_binding.h"
+#include "client_lib/objects/es_formats.h"
 #include "client_lib/objects/maps.h"
 #include "common/glstate/elements.h"
 #include "common/glstate/queries.h"
@@ -93,6 +94,13 @@ void part_of_buffer(Context& c, double* out) {
     *out = kName == GL_TEXTURE_BUFFER_FORMAT_ARB ? part.internal_format : part.buffer ? part.buffer->name : 0;
 }
 
+/// What glReadPixels gives besides what it always does, out of what is read from.
+template <GLenum PixelKind::*kWord>
+void color_read(Context& c, double* out) {
+    if (const TextureFormat* colors = read_color_format(c)) *out = es_read_kind(*colors).*kWord;
+    else c.error(GL_INVALID_OPERATION);
+}
+
 /// Calls `use` with the active unit if it has a matrix.
 template <class Use>
 void of_texture_matrix(Context& c, Use&& use) {
@@ -100,6 +108,7 @@ void of_texture_matrix(Context& c, Use&& use) {
     else c.error(GL_INVALID_OPERATION);
 }
 
+constexpr GLenum kGpuDisjoint = 0x8FBB;  // of GL_EXT_disjoint_timer_query, which only OpenGL ES has
 constexpr int kUniformBuffers = glstate::el::uniform_buffer::count;
 
 const Special kSpecials[] = {
@@ -178,13 +187,9 @@ const Special kSpecials[] = {
     {GL_NUM_SHADER_BINARY_FORMATS, 1, constant<0>},
     {GL_SHADER_BINARY_FORMATS, 0, constant<0>},
     {GL_NUM_PROGRAM_BINARY_FORMATS, 1, constant<0>},
-    // For general use: RGBA of DXT1 has but one bit of alpha.
-    {GL_NUM_COMPRESSED_TEXTURE_FORMATS, 1, constant<3>},
-    {GL_COMPRESSED_TEXTURE_FORMATS, 3,
-     [](Context&, double* out) {
-         out[0] = GL_COMPRESSED_RGB_S3TC_DXT1_EXT, out[1] = GL_COMPRESSED_RGBA_S3TC_DXT3_EXT,
-         out[2] = GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
-     }},
+    {GL_PROGRAM_BINARY_FORMATS, 0, constant<0>},
+    {GL_NUM_COMPRESSED_TEXTURE_FORMATS, 1,
+     [](Context& c, double* out) { *out = static_cast<double>(listed_block_formats(c.profile, c.caps()).size()); }},
     {GL_MAX_VERTEX_ATTRIBS, 1, limited<GL_MAX_VERTEX_ATTRIBS, kVertexAttributes>},
     {GL_MAX_UNIFORM_BUFFER_BINDINGS, 1, limited<GL_MAX_UNIFORM_BUFFER_BINDINGS, kUniformBuffers>},
     {GL_MAX_COMBINED_UNIFORM_BLOCKS, 1, limited<GL_MAX_COMBINED_UNIFORM_BLOCKS, kUniformBuffers>},
@@ -234,8 +239,9 @@ const Special kSpecials[] = {
     {GL_TIMESTAMP, 1, [](Context&, double* out) { *out = static_cast<double>(timestamp(Fence::Clock::now())); }},
     {GL_CONTEXT_FLAGS, 1, [](Context& c, double* out) { *out = c.profile.flags(); }},
     {GL_CONTEXT_PROFILE_MASK, 1, [](Context& c, double* out) { *out = c.profile.mask(); }},
-    {GL_IMPLEMENTATION_COLOR_READ_FORMAT, 1, constant<GL_RGBA>},
-    {GL_IMPLEMENTATION_COLOR_READ_TYPE, 1, constant<GL_UNSIGNED_BYTE>},
+    {GL_IMPLEMENTATION_COLOR_READ_FORMAT, 1, color_read<&PixelKind::format>},
+    {GL_IMPLEMENTATION_COLOR_READ_TYPE, 1, color_read<&PixelKind::type>},
+    {kGpuDisjoint, 1, constant<0>},
 };
 
 /// Reals become integers by rounding, and anything but zero is true (OpenGL 1.2.1, 6.1.2).
@@ -340,6 +346,10 @@ const std::uint32_t* flag_of(const Context& c, GLenum cap) {
 template <class Out>
 void get(Context& c, GLenum pname, Out* out) {
     if (is_removed(c, pname)) return c.error(GL_INVALID_ENUM);
+    if (pname == GL_COMPRESSED_TEXTURE_FORMATS) {
+        for (const GLenum format : listed_block_formats(c.profile, c.caps())) *out++ = converted<Out>(format);
+        return;
+    }
     if (get_of_framebuffer(c, pname, out)) return;
     if (const auto* entry = glstate::find_get(pname))
         return answered_clamped(c, pname) ? get_clamped(c, *entry, out) : get_element(c, *entry, out);

@@ -256,6 +256,8 @@ void GetProgramiv(Context& c, GLuint name, GLenum pname, GLint* params) {
         case GL_VALIDATE_STATUS: *params = program->validated; break;
         case GL_INFO_LOG_LENGTH: *params = text_length(program->log); break;
         case GL_ATTACHED_SHADERS: *params = static_cast<GLint>(program->shaders.size()); break;
+        case GL_PROGRAM_BINARY_RETRIEVABLE_HINT: *params = program->binary_hint; break;
+        case GL_PROGRAM_BINARY_LENGTH: *params = 0; break;
         case GL_ACTIVE_UNIFORMS:
         case GL_ACTIVE_UNIFORM_MAX_LENGTH:
         case GL_TRANSFORM_FEEDBACK_VARYINGS:

@@ -71,7 +71,8 @@ std::shared_ptr<QueryObject> begun_anew(Context& c, GLuint name, const Target& t
     auto query = c.queries->names.find(name);
     if (query && (is_current(c, *query) || query->target != target.target))
         return c.error(GL_INVALID_OPERATION), nullptr;
-    if (!query && c.profile.core && !c.queries->names.known(name)) return c.error(GL_INVALID_OPERATION), nullptr;
+    if (!query && !c.profile.has_fixed_function() && !c.queries->names.known(name))
+        return c.error(GL_INVALID_OPERATION), nullptr;
     if (!query) c.queries->names.put(name, query = std::make_shared<QueryObject>());
     forget(c, *query);
     *query = {};

@@ -25,9 +25,21 @@ bool source_exists(Context& c, GLenum format) {
     }
 }
 
-bool reads_floats(Context& c) {
-    const TextureFormat* colors = read_color_format(c);
-    return colors && colors->component_type == GL_FLOAT;
+/// Of the depth that is read from. Null: there is none.
+const TextureFormat* read_depth_format(Context& c) {
+    static constexpr TextureFormat kWindow{.base = GL_DEPTH_STENCIL, .component_type = GL_UNSIGNED_NORMALIZED};
+    if (!c.framebuffers->read) return &kWindow;
+    std::lock_guard lock(c.share().mutex);
+    const auto shape = c.framebuffers->read->depth_shape();
+    return shape ? shape->format : nullptr;
+}
+
+/// What of a framebuffer OpenGL ES gives out.
+bool may_read_kind(Context& c, GLenum format, GLenum type) {
+    const bool depth = format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL;
+    if (format == GL_STENCIL_INDEX) return type == GL_UNSIGNED_BYTE;
+    const TextureFormat* from = depth ? read_depth_format(c) : read_color_format(c);
+    return from && es_can_read(format, type, *from);
 }
 
 /// Rows of whole bytes, the first pixel in the highest bit, of one byte a pixel.
@@ -62,9 +74,11 @@ GLenum gathered_type(GLenum format, GLenum type) {
 void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels) {
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
     if (c.profile.es != 0) type = desktop_type(type);
+    if (c.profile.es != 0 && format == GL_DEPTH_COMPONENT && type == GL_UNSIGNED_INT_24_8)
+        type = GL_UNSIGNED_INT;  // GL_NV_read_depth: the same 24 bits, and nothing said of the others
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
     if (!may_read_pixels(c)) return;
-    if (c.profile.es != 0 && !es_can_read(format, type, reads_floats(c))) return c.error(GL_INVALID_OPERATION);
+    if (c.profile.es != 0 && !may_read_kind(c, format, type)) return c.error(GL_INVALID_OPERATION);
     if (!source_exists(c, format)) return c.error(GL_INVALID_OPERATION);
     const PixelBox box = clip_to_window(c, {x, y, width, height});
     if (box.empty()) return;

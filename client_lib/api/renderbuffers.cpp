@@ -3,6 +3,7 @@
 #include "client_lib/context/forget_objects.h"
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/limits.h"
+#include "client_lib/objects/es_formats.h"
 #include "client_lib/objects/renderbuffer.h"
 
 namespace wall::client::api {
@@ -11,8 +12,14 @@ namespace {
 constexpr GLsizei kUsualSize = 16384;
 
 /// OpenGL ES has storage of sized formats only (OpenGL ES 2.0, 4.4.3), and none that nothing could be drawn to.
-bool is_es_storage(const TextureFormat& format) {
-    return format.base == GL_STENCIL_INDEX || (is_sized(format) && format.use == ImageUse::drawn);
+bool is_es_storage(unsigned version, const TextureFormat& format) {
+    return (format.base == GL_STENCIL_INDEX || is_sized(format)) && es_is_drawn(version, format.answer);
+}
+
+/// Whole numbers have one sample a pixel in OpenGL ES 3.0 (4.4.2).
+GLsizei most_samples_of(Context& c, const TextureFormat& format) {
+    if (c.profile.es == 30 && format.whole()) return 0;
+    return static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_SAMPLES, kUsualSamples));
 }
 
 void delete_renderbuffer(Context& c, GLuint name) {
@@ -71,11 +78,12 @@ void RenderbufferStorageMultisample(Context& c, GLenum target, GLsizei samples, 
     const auto renderbuffer = c.framebuffers->renderbuffer;
     if (!renderbuffer) return c.error(GL_INVALID_OPERATION);
     const TextureFormat* format = find_renderbuffer_format(internal_format);
-    if (!format || (c.profile.es != 0 && !is_es_storage(*format))) return c.error(GL_INVALID_ENUM);
+    if (!format || (c.profile.es != 0 && !is_es_storage(c.profile.es, *format))) return c.error(GL_INVALID_ENUM);
     const auto most = static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_RENDERBUFFER_SIZE, kUsualSize));
     if (width < 0 || width > most || height < 0 || height > most) return c.error(GL_INVALID_VALUE);
-    const auto most_samples = static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_SAMPLES, kUsualSamples));
-    if (samples < 0 || samples > most_samples) return c.error(GL_INVALID_VALUE);
+    const GLsizei most_samples = most_samples_of(c, *format);
+    if (samples < 0) return c.error(GL_INVALID_VALUE);
+    if (samples > most_samples) return c.error(GL_INVALID_OPERATION);  // GL_ARB_internalformat_query
     c.flush_block();
     c.before_change(renderbuffer->id);
     std::lock_guard lock(c.share().mutex);

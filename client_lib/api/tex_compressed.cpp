@@ -122,6 +122,23 @@ GLint blocks_format(GLint internal_format) {
     return format && block_bytes(format->answer) != 0 ? format->answer : 0;
 }
 
+void store_empty_blocks(Context& c, const ImageCall& call) {
+    const api::Image image{.target = call.target,
+                           .level = call.level,
+                           .format = call.internal_format,
+                           .width = call.width,
+                           .height = call.height,
+                           .depth = call.depth};
+    const auto texture = texture_to_change(c, call.target);
+    std::lock_guard lock(c.share().mutex);
+    TextureLevel& level = texture->level_at(face_of(call.target), call.level);
+    level = api::described(image);
+    level.pixels.resize(api::all_bytes(image));
+    level.content = LevelContent::stored;
+    level.stamp = next_stamp();
+    touch(c.share(), *texture);
+}
+
 void compress_as_driver(Context& c, GLenum target, GLint number, const char* function) {
     const auto texture = bound_texture(c, target);
     api::Image image{.target = target, .level = number};

@@ -6,6 +6,8 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <optional>
+#include <utility>
 
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/limits.h"
@@ -44,6 +46,11 @@ bool formats_agree(const TextureFormat& internal, GLenum format) {
     return internal.whole() == glapi::is_integer_format(format);
 }
 
+/// Whether nodes make its texels of pixels; a format of blocks may be one that they only take as such.
+bool is_compressed_online(const TextureFormat& internal) {
+    return !glapi::is_etc2(static_cast<GLenum>(internal.internal_format));
+}
+
 GLint most_layers(Context& c) { return static_cast<GLint>(limit_of(c.caps(), GL_MAX_ARRAY_TEXTURE_LAYERS, 2048)); }
 
 }  // namespace
@@ -78,6 +85,7 @@ GLenum image_error(Context& c, const ImageCall& call, const TextureFormat* inter
     if (const GLenum error = glapi::format_type_error(call.format, call.type)) return error;
     if (!internal) return GL_INVALID_VALUE;
     if (!formats_agree(*internal, call.format)) return GL_INVALID_OPERATION;
+    if (!is_compressed_online(*internal)) return GL_INVALID_OPERATION;
     const bool volume = glapi::spatial_dimensions_of(info_of(call)) == 3;
     if (depth_like(internal->base) && volume) return GL_INVALID_OPERATION;
     return GL_NO_ERROR;
@@ -202,9 +210,22 @@ GLint level_count(Context& c, GLenum target) {
     return info.mipmaps ? std::bit_width(static_cast<unsigned>(largest_size(c, info))) : 1;
 }
 
+namespace {
+
+/// In OpenGL ES depths of formats with a size are red (OpenGL ES 3.0.6, 3.8.15), others gray (OES_depth_texture).
+void set_depth_mode(Texture& texture, const ImageCall& call) {
+    const TextureFormat* format = find_texture_format(call.internal_format);
+    const GLenum mode = call.unsized_depth ? GL_LUMINANCE : GL_RED;
+    if (!format || !depth_like(format->base) || std::exchange(texture.parameters.depth_mode, mode) == mode) return;
+    texture.parameter_changed(GL_DEPTH_TEXTURE_MODE);
+}
+
+}  // namespace
+
 void store_level(Context& c, const ImageCall& call, TexelData data) {
     const auto texture = texture_to_change(c, call.target);
     std::lock_guard lock(c.share().mutex);
+    if (c.profile.es != 0) set_depth_mode(*texture, call);
     TextureLevel& level = texture->level_at(face_of(call.target), call.level);
     level = TextureLevel{};
     level.internal_format = call.internal_format;
@@ -257,12 +278,11 @@ GLenum adopt_es_pixels(ImageCall& call, const EsImage& image) {
     return image.error;
 }
 
-/// In OpenGL ES what changes a texture has its format.
-bool is_of_base(Context& c, const ImageCall& call) {
-    const TextureLevel* level = bound_texture(c, call.target)->find_level(face_of(call.target), call.level);
-    const GLenum base = call.format == GL_BGRA ? GLenum{GL_RGBA} : call.format;
-    if (blocks_format(level->internal_format) != 0) return true;
-    return find_texture_format(level->internal_format)->base == base;
+/// Of what is to change a texture in OpenGL ES; nothing: there is no texture or image to change.
+std::optional<EsImage> pixels_to_change(Context& c, const ImageCall& call) {
+    const auto texture = target_word(call.target) ? bound_texture(c, call.target) : nullptr;
+    const TextureLevel* level = texture ? texture->find_level(face_of(call.target), call.level) : nullptr;
+    return level ? std::optional(es_pixels(level->internal_format, call.format, call.type)) : std::nullopt;
 }
 
 }  // namespace
@@ -273,6 +293,7 @@ void define_image(Context& c, ImageCall call) {
         const EsImage image = es_image(call.internal_format, call.format, call.type);
         if (call.border != 0) return c.error(GL_INVALID_VALUE);
         if (const GLenum error = adopt_es_pixels(call, image)) return c.error(error);
+        call.unsized_depth = depth_like(static_cast<GLenum>(call.internal_format));
         call.internal_format = image.internal_format;
     }
     const TextureFormat* internal = format_named(c, call.internal_format);
@@ -318,14 +339,17 @@ GLenum sub_image_error(Context& c, const ImageCall& call) {
         return GL_INVALID_VALUE;
     if (blocks_format(level->internal_format) != 0 && !whole_blocks(call, *level)) return GL_INVALID_OPERATION;
     const TextureFormat* internal = find_texture_format(level->internal_format);
+    if (internal && !is_compressed_online(*internal)) return GL_INVALID_OPERATION;
     return internal && formats_agree(*internal, call.format) ? GL_NO_ERROR : GL_INVALID_OPERATION;
 }
 
 void define_sub_image(Context& c, ImageCall call) {
-    if (c.profile.es != 0)
-        if (const GLenum error = adopt_es_pixels(call, es_pixels(call.format, call.type))) return c.error(error);
+    if (c.profile.es != 0) {
+        const auto pixels = pixels_to_change(c, call);
+        if (!pixels) call.type = desktop_type(call.type);
+        else if (const GLenum error = adopt_es_pixels(call, *pixels)) return c.error(error);
+    }
     if (const GLenum error = sub_image_error(c, call)) return c.error(error);
-    if (c.profile.es != 0 && !is_of_base(c, call)) return c.error(GL_INVALID_OPERATION);
     if (texels(call) == 0 || !find_pixels(c, call) || !call.pixels) return;
     change_level(c, call, unpacked(c, call));
 }
@@ -398,9 +422,12 @@ void copy_image(Context& c, ImageCall call, GLenum internal_format, From from, c
     if (call.border < 0 || call.border > most_border(c, call)) return c.error(GL_INVALID_VALUE);
     const TextureFormat* internal = format_named(c, static_cast<GLint>(internal_format));
     if (!internal || internal_format <= 4) return c.error(GL_INVALID_ENUM);
+    if (!is_compressed_online(*internal)) return c.error(GL_INVALID_OPERATION);
     if (!may_read_pixels(c)) return;
     if (c.profile.es != 0) {
-        const GLenum error = es_copy_error(internal_format, read_base(c));
+        const TextureFormat* colors = read_color_format(c);
+        const GLenum none = GL_INVALID_OPERATION,
+                     error = colors ? es_copy_error(internal_format, *colors, read_base(c)) : none;
         if (call.border != 0 || error != GL_NO_ERROR) return c.error(error ? error : GLenum{GL_INVALID_VALUE});
     }
     if (call.width < 0 || call.height < 0) return c.error(GL_INVALID_VALUE);

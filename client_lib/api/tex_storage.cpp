@@ -7,6 +7,7 @@
 #include "client_lib/context/texture_image.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/texture_formats.h"
+#include "common/glapi/block_formats.h"
 
 namespace wall::client::api {
 namespace {
@@ -52,6 +53,10 @@ void define_storage(Context& c, ImageCall call, GLsizei levels) {
     if (!format || !is_sized(*format)) return c.error(GL_INVALID_ENUM);
     if (call.width < 1 || call.height < 1 || call.depth < 1 || levels < 1) return c.error(GL_INVALID_VALUE);
     if (levels > level_count(c, call.target) || levels > most_levels(call)) return c.error(GL_INVALID_OPERATION);
+    if (format->compressed() && !target_word(call.target)->info->blocks) return c.error(GL_INVALID_OPERATION);
+    const bool depth = format->base == GL_DEPTH_COMPONENT || format->base == GL_DEPTH_STENCIL,
+               volume = glapi::spatial_dimensions_of(*target_word(call.target)->info) == 3;
+    if (depth && volume) return c.error(GL_INVALID_OPERATION);
     const PixelKind kind = exact_pixels(*format, format->bits);
     call.format = kind.format, call.type = kind.type;
     if (is_proxy(call.target)) return define_proxy(c, call, levels, legal_size(c, call));
@@ -63,10 +68,13 @@ void define_storage(Context& c, ImageCall call, GLsizei levels) {
         for (unsigned face = 0; face < glapi::face_count(info); ++face) {
             ImageCall image = call;
             image.target = glapi::image_target(info, face);
-            store_level(c, image, {call.format, call.type, {}});
+            if (glapi::is_etc2(static_cast<GLenum>(call.internal_format))) store_empty_blocks(c, image);
+            else store_level(c, image, {call.format, call.type, {}});
         }
     std::lock_guard lock(c.share().mutex);
     texture->immutable_levels = static_cast<std::uint32_t>(levels);
+    texture->parameter_changed(GL_TEXTURE_MAX_LEVEL);  // nodes' textures end with their last level by it
+    touch(c.share(), *texture);
 }
 
 }  // namespace

@@ -12,7 +12,9 @@
 #include "client_lib/context/param_commands.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/follow/session.h"
+#include "client_lib/objects/es_formats.h"
 #include "client_lib/objects/texture_formats.h"
+#include "common/glapi/block_formats.h"
 
 namespace wall::client::api {
 namespace {
@@ -79,10 +81,15 @@ bool takes_word(GLenum pname) {
 bool valid_compare(GLenum func) { return func >= GL_NEVER && func <= GL_ALWAYS; }
 
 /// Whole numbers, depths and stencils are not averaged (Mesa's _mesa_is_valid_generate_texture_mipmap_internalformat
-/// lets all else).
-bool may_have_mipmaps(const TextureLevel& base) {
+/// lets all else), nor are blocks that drivers only read. `es`: in OpenGL ES sized formats are only if they are drawn
+/// to (OpenGL ES 3.0.6, 3.8.10).
+bool may_have_mipmaps(const TextureLevel& base, unsigned es) {
     const TextureFormat* format = find_texture_format(base.internal_format);
-    return format && !format->whole() && format->base != GL_DEPTH_STENCIL && format->base != GL_STENCIL_INDEX;
+    if (!format || format->whole() || format->base == GL_DEPTH_STENCIL || format->base == GL_STENCIL_INDEX)
+        return false;
+    if (glapi::is_etc2(static_cast<GLenum>(base.internal_format))) return false;
+    return es == 0 || !is_sized(*format) ||
+           (format->base != GL_DEPTH_COMPONENT && es_is_drawn(es, base.internal_format));
 }
 
 /// What glTexParameter asks for, checked: an error, or the parameters with the new value.
@@ -301,7 +308,7 @@ void GenerateMipmap(Context& c, GLenum target) {
     if (!info || !info->mipmaps) return c.error(GL_INVALID_ENUM);
     const auto current = bound_texture(c, target);
     const TextureLevel* base = current ? current->find_level(0, current->parameters.base_level) : nullptr;
-    if (!base || !may_have_mipmaps(*base)) return c.error(GL_INVALID_OPERATION);
+    if (!base || !may_have_mipmaps(*base, c.profile.es)) return c.error(GL_INVALID_OPERATION);
     const auto texture = texture_to_change(c, target);
     std::lock_guard lock(c.share().mutex);
     texture->mipmaps_generated();

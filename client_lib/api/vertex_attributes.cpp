@@ -63,10 +63,13 @@ void get(Context& c, GLuint index, GLenum pname, Out* params) {
     }
 }
 
-/// A core profile has arrays in buffers and in array objects only.
+/// A core profile has arrays in buffers and in array objects only; OpenGL ES has array objects of buffers only (OpenGL
+/// ES 3.0.6, 2.9).
 bool may_point(const Context& c, const void* pointer) {
-    if (!c.profile.core) return true;
-    return c.state.vertex_arrays.vertex_array_object != 0 && (c.state.local.array_buffer != 0 || pointer == nullptr);
+    const bool in_object = c.state.vertex_arrays.vertex_array_object != 0,
+               of_buffer = c.state.local.array_buffer != 0 || pointer == nullptr;
+    if (c.profile.es != 0) return !in_object || of_buffer;
+    return !c.profile.core || (in_object && of_buffer);
 }
 
 }  // namespace

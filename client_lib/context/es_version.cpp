@@ -3,28 +3,26 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <iterator>
 #include <sstream>
+#include <string_view>
 
 #include "client_lib/context/es_words.h"
 
 namespace wall::client {
 namespace {
 
-/// What a version asks for besides its commands, as far as it is known to be missing, and its shading language.
+/// What a version asks for besides its commands; one without a line is not offered.
 struct Beyond {
     int version;
     const char* shading_language;
-    bool met;
+    const char* node_word;  ///< what a node's driver must have for it
 };
 constexpr Beyond kBeyond[] = {
-    {20, "1.00", true}, {30, "3.00", false},  // images in the blocks of ETC2 and EAC
+    {20, "1.00", "GL_ARB_ES2_compatibility"},
+    {30, "3.00", "GL_ARB_ES3_compatibility"},
 };
-
-const Beyond* beyond_of(int version) {
-    const auto* found = std::ranges::find(kBeyond, version, &Beyond::version);
-    return found == std::end(kBeyond) ? nullptr : found;
-}
 
 /// Of each word, the first version that has it; 0: none.
 const std::array<std::uint8_t, 0x10000>& first_versions() {
@@ -36,26 +34,43 @@ const std::array<std::uint8_t, 0x10000>& first_versions() {
     return *table;
 }
 
+/// The words of a driver's extensions.
+class NodeWords {
+public:
+    explicit NodeWords(const Caps& caps) {
+        std::istringstream words(caps.extensions);
+        words_.assign(std::istream_iterator<std::string>(words), {});
+    }
+    bool have(std::string_view word) const { return std::ranges::find(words_, word) != words_.end(); }
+
+private:
+    std::vector<std::string> words_;
+};
+
 std::vector<std::string> es_extensions(const Caps& caps) {
-    std::istringstream words(caps.extensions);
-    const std::vector<std::string> node{std::istream_iterator<std::string>(words), {}};
+    const NodeWords node(caps);
     std::vector<std::string> offered;
     for (const EsExtension& extension : kEsExtensions)
-        if (extension.implemented &&
-            (*extension.node_word == '\0' || std::ranges::find(node, extension.node_word) != node.end()))
+        if (extension.implemented && (*extension.node_word == '\0' || node.have(extension.node_word)))
             offered.emplace_back(extension.name);
     return offered;
 }
 
-std::string as_text(unsigned version) { return std::to_string(version / 10) + "." + std::to_string(version % 10); }
+/// The last version up to a context's that a node's driver can do; the first one is never missing.
+const Beyond& offered_beyond(unsigned version, const Caps& caps) {
+    const NodeWords node(caps);
+    const Beyond* offered = kBeyond;
+    for (const Beyond& beyond : kBeyond)
+        if (static_cast<unsigned>(beyond.version) <= version && node.have(beyond.node_word)) offered = &beyond;
+    return *offered;
+}
 
 }  // namespace
 
 unsigned implemented_es_version() {
     unsigned offered = 0;
     for (const EsVersion& each : kEsVersions) {
-        const Beyond* beyond = beyond_of(each.version);
-        if (each.missing || !beyond || !beyond->met) break;
+        if (each.missing || std::ranges::find(kBeyond, each.version, &Beyond::version) == std::end(kBeyond)) break;
         offered = static_cast<unsigned>(each.version);
     }
     return offered;
@@ -79,20 +94,38 @@ bool is_es_word(unsigned version, GLenum word) {
 
 GlVersion version_in(const ContextProfile& profile, const Caps& caps) {
     if (profile.es == 0) return offered_version(caps);
-    const auto version = static_cast<int>(profile.es);
-    const Beyond* beyond = beyond_of(version);
-    return {version / 10, version % 10, beyond ? beyond->shading_language : nullptr};
+    const Beyond& beyond = offered_beyond(profile.es, caps);
+    return {beyond.version / 10, beyond.version % 10, beyond.shading_language};
 }
 
 std::string version_text_in(const ContextProfile& profile, const Caps& caps) {
     if (profile.es == 0) return version_string(caps, profile);
-    return "OpenGL ES " + as_text(profile.es) + " " + kWallVersion;
+    const GlVersion version = version_in(profile, caps);
+    return "OpenGL ES " + std::to_string(version.major) + "." + std::to_string(version.minor) + " " + kWallVersion;
 }
 
 std::string shading_language_in(const ContextProfile& profile, const Caps& caps) {
     const char* language = version_in(profile, caps).shading_language;
     if (!language) return {};
     return profile.es == 0 ? language : std::string("OpenGL ES GLSL ES ") + language;
+}
+
+std::vector<GLenum> listed_block_formats(const ContextProfile& profile, const Caps& caps) {
+    const NodeWords node(caps);
+    std::vector<GLenum> formats;
+    const auto add = [&](const char* node_word, std::initializer_list<GLenum> more) {
+        if (node.have(node_word)) formats.insert(formats.end(), more);
+    };
+    add("GL_EXT_texture_compression_s3tc",
+        {GL_COMPRESSED_RGB_S3TC_DXT1_EXT, GL_COMPRESSED_RGBA_S3TC_DXT3_EXT, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT});
+    if (profile.es != 0) add("GL_EXT_texture_compression_s3tc", {GL_COMPRESSED_RGBA_S3TC_DXT1_EXT});
+    add("GL_ARB_ES3_compatibility",
+        {GL_COMPRESSED_RGB8_ETC2, GL_COMPRESSED_RGBA8_ETC2_EAC, GL_COMPRESSED_R11_EAC, GL_COMPRESSED_RG11_EAC,
+         GL_COMPRESSED_SIGNED_R11_EAC, GL_COMPRESSED_SIGNED_RG11_EAC, GL_COMPRESSED_RGB8_PUNCHTHROUGH_ALPHA1_ETC2});
+    if (profile.es != 0)
+        add("GL_ARB_ES3_compatibility", {GL_COMPRESSED_SRGB8_ETC2, GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC,
+                                         GL_COMPRESSED_SRGB8_PUNCHTHROUGH_ALPHA1_ETC2});
+    return formats;
 }
 
 std::vector<std::string> extensions_in(const ContextProfile& profile, const Caps& caps) {

@@ -26,5 +26,8 @@ std::string version_text_in(const ContextProfile& profile, const Caps& caps);
 /// Empty: there are no shaders.
 std::string shading_language_in(const ContextProfile& profile, const Caps& caps);
 std::vector<std::string> extensions_in(const ContextProfile& profile, const Caps& caps);
+/// GL_COMPRESSED_TEXTURE_FORMATS: in OpenGL only those for general use (of RGBA in DXT1 one bit is alpha), in OpenGL ES
+/// all, where the nodes' drivers have what they are of.
+std::vector<GLenum> listed_block_formats(const ContextProfile& profile, const Caps& caps);
 
 }  // namespace wall::client

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <vector>
 
 #include "client_lib/link/control_messages.h"
 #include "common/glapi/gl_types.h"
@@ -27,6 +28,14 @@ inline std::uint32_t rounded_samples(GLsizei samples, GLsizei most) {
     if (samples == 0) return 0;
     return most <= kUsualSamples ? static_cast<std::uint32_t>(most)
                                  : std::bit_ceil(static_cast<std::uint32_t>(samples));
+}
+
+/// The numbers of samples that it has, the largest first.
+inline std::vector<GLsizei> sample_counts(GLsizei most) {
+    std::vector<GLsizei> counts;
+    for (GLsizei samples = most; samples > 1 && (counts.empty() || most > kUsualSamples); samples /= 2)
+        counts.push_back(samples);
+    return counts;
 }
 
 }  // namespace wall::client

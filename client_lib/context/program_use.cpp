@@ -91,7 +91,10 @@ bool fits_program(Context& c, GLenum mode) {
             single = glapi::single_primitive(stage.output);
         }
     }
-    if (c.captures->active) fits = fits && single == c.captures->active->mode();
+    if (c.captures->active) {
+        if (c.profile.es == 30) single = mode;  // not even lines in a row (OpenGL ES 3.0.6, 2.15.2)
+        fits = fits && single == c.captures->active->mode();
+    }
     if (!fits) c.error(GL_INVALID_OPERATION);
     return fits;
 }

@@ -21,6 +21,7 @@ struct ImageCall {
     GLenum format = 0, type = 0;
     const void* pixels = nullptr;
     glapi::PixelStore store;
+    bool unsized_depth = false;  ///< of OpenGL ES: it is one, and its size was left open
 };
 
 /// Tight pixels in client memory.
@@ -50,7 +51,10 @@ GLenum sub_image_error(Context& c, const ImageCall& call);
 void store_level(Context& c, const ImageCall& call, TexelData data);
 void change_level(Context& c, const ImageCall& call, TexelData data);
 
-// ---- S3TC (api/tex_compressed.cpp) ----
+// ---- blocks (api/tex_compressed.cpp) ----
+
+/// store_level() of blocks that are zeros, of a format that nodes take no pixels for.
+void store_empty_blocks(Context& c, const ImageCall& call);
 
 /// What an image of this internal format is compressed to; 0: to nothing that is known here.
 GLint blocks_format(GLint internal_format);

@@ -51,6 +51,7 @@ struct Extension {
 };
 constexpr Extension kExtensions[] = {
     {"GL_ARB_ES2_compatibility", "glGetShaderPrecisionFormat"},
+    {"GL_ARB_ES3_compatibility", "glCompressedTexImage3D"},
     {"GL_ARB_buffer_storage", "glBufferStorage"},
     {"GL_ARB_conditional_render_inverted", "glBeginConditionalRender"},
     {"GL_ARB_copy_buffer", "glCopyBufferSubData"},
@@ -66,9 +67,12 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_fragment_shader", "glUseProgram"},
     {"GL_ARB_framebuffer_object", "glGenFramebuffers"},
     {"GL_ARB_framebuffer_sRGB", nullptr},
+    {"GL_ARB_get_program_binary", "glProgramBinary"},
     {"GL_ARB_half_float_pixel", nullptr},
     {"GL_ARB_half_float_vertex", nullptr},
     {"GL_ARB_instanced_arrays", "glVertexAttribDivisor"},
+    {"GL_ARB_internalformat_query", "glGetInternalformativ"},
+    {"GL_ARB_invalidate_subdata", "glInvalidateFramebuffer"},
     {"GL_ARB_map_buffer_range", "glMapBufferRange"},
     {"GL_ARB_multisample", "glSampleCoverage", kNotInCore},
     {"GL_ARB_multitexture", "glMultiTexCoord4f", kNotInCore},

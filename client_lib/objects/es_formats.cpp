@@ -5,52 +5,28 @@
 #include <iterator>
 
 #include "common/glapi/block_formats.h"
+#include "gen/client_lib/es_images.gen.h"
 
 namespace wall::client {
 namespace {
 
-/// Pixels of a texture whose internal format is `format`.
-struct Row {
-    GLenum format, type;
-    GLint desktop_format;
-};
-constexpr Row kRows[] = {
-    {GL_RGBA, GL_UNSIGNED_BYTE, GL_RGBA},
-    {GL_RGBA, GL_UNSIGNED_SHORT_4_4_4_4, GL_RGBA},
-    {GL_RGBA, GL_UNSIGNED_SHORT_5_5_5_1, GL_RGBA},
-    {GL_RGBA, GL_FLOAT, GL_RGBA32F},
-    {GL_RGBA, GL_HALF_FLOAT, GL_RGBA16F},
-    {GL_RGB, GL_UNSIGNED_BYTE, GL_RGB},
-    {GL_RGB, GL_UNSIGNED_SHORT_5_6_5, GL_RGB},
-    {GL_RGB, GL_FLOAT, GL_RGB32F},
-    {GL_RGB, GL_HALF_FLOAT, GL_RGB16F},
-    {GL_LUMINANCE_ALPHA, GL_UNSIGNED_BYTE, GL_LUMINANCE_ALPHA},
-    {GL_LUMINANCE_ALPHA, GL_FLOAT, GL_LUMINANCE_ALPHA32F_ARB},
-    {GL_LUMINANCE_ALPHA, GL_HALF_FLOAT, GL_LUMINANCE_ALPHA16F_ARB},
-    {GL_LUMINANCE, GL_UNSIGNED_BYTE, GL_LUMINANCE},
-    {GL_LUMINANCE, GL_FLOAT, GL_LUMINANCE32F_ARB},
-    {GL_LUMINANCE, GL_HALF_FLOAT, GL_LUMINANCE16F_ARB},
-    {GL_ALPHA, GL_UNSIGNED_BYTE, GL_ALPHA},
-    {GL_ALPHA, GL_FLOAT, GL_ALPHA32F_ARB},
-    {GL_ALPHA, GL_HALF_FLOAT, GL_ALPHA16F_ARB},
-    {GL_BGRA, GL_UNSIGNED_BYTE, GL_RGBA},  // EXT_texture_format_BGRA8888
-    {GL_RED, GL_UNSIGNED_BYTE, GL_RED},    // EXT_texture_rg
-    {GL_RED, GL_FLOAT, GL_R32F},
-    {GL_RED, GL_HALF_FLOAT, GL_R16F},
-    {GL_RG, GL_UNSIGNED_BYTE, GL_RG},
-    {GL_RG, GL_FLOAT, GL_RG32F},
-    {GL_RG, GL_HALF_FLOAT, GL_RG16F},
-    {GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT, GL_DEPTH_COMPONENT},  // OES_depth_texture
-    {GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, GL_DEPTH_COMPONENT},
-    {GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, GL_DEPTH24_STENCIL8},  // OES_packed_depth_stencil
-};
+template <class Member>
+bool any_has(Member EsImageRow::*member, Member value) {
+    return std::ranges::any_of(kEsImages, [&](const EsImageRow& row) { return row.*member == value; });
+}
 
-bool is_format(GLenum format) {
-    return std::ranges::any_of(kRows, [&](const Row& row) { return row.format == format; });
+/// The first row with these pixels that `fits`; without one the error.
+template <class Fits>
+EsImage find_image(GLenum format, GLenum es_type, Fits&& fits) {
+    const GLenum type = desktop_type(es_type);
+    if (!any_has(&EsImageRow::format, format) || !any_has(&EsImageRow::type, type)) return {.error = GL_INVALID_ENUM};
+    const auto* row = std::ranges::find_if(
+        kEsImages, [&](const EsImageRow& each) { return each.format == format && each.type == type && fits(each); });
+    if (row == std::end(kEsImages)) return {.error = GL_INVALID_OPERATION};
+    return {GL_NO_ERROR, row->desktop_format, type};
 }
-bool is_type(GLenum type) {
-    return std::ranges::any_of(kRows, [&](const Row& row) { return row.type == type; });
-}
+
+bool is_of_blocks(GLint internal_format) { return glapi::block_bytes(static_cast<GLenum>(internal_format)) != 0; }
 
 /// Which of red, green and blue; alpha.
 struct Components {
@@ -68,54 +44,78 @@ Components components_of(GLenum base) {
     }
 }
 
+/// A component that both have has other bits in one than in the other.
+bool differs_in_bits(const ComponentBits& a, const ComponentBits& b) {
+    const auto differ = [](unsigned one, unsigned other) { return one != 0 && other != 0 && one != other; };
+    return differ(a.red, b.red) || differ(a.green, b.green) || differ(a.blue, b.blue) || differ(a.alpha, b.alpha);
+}
+
+bool is_float_depth(const TextureFormat& format) { return format.component_type == GL_FLOAT; }
+
 }  // namespace
 
 GLenum desktop_type(GLenum type) { return type == kHalfFloatOes ? GLenum{GL_HALF_FLOAT} : type; }
 
-EsImage es_pixels(GLenum format, GLenum es_type) {
-    const GLenum type = desktop_type(es_type);
-    if (!is_format(format) || !is_type(type)) return {.error = GL_INVALID_ENUM};
-    const auto* row =
-        std::ranges::find_if(kRows, [&](const Row& each) { return each.format == format && each.type == type; });
-    if (row == std::end(kRows)) return {.error = GL_INVALID_OPERATION};
-    return {GL_NO_ERROR, row->desktop_format, type};
-}
-
 EsImage es_image(GLint internal_format, GLenum format, GLenum type) {
-    const bool blocks = glapi::block_bytes(static_cast<GLenum>(internal_format)) != 0;
-    if (!blocks && !is_format(static_cast<GLenum>(internal_format))) return {.error = GL_INVALID_VALUE};
-    EsImage image = es_pixels(format, type);
-    if (blocks) {  // EXT_texture_compression_s3tc: the driver compresses
+    if (is_of_blocks(internal_format)) {  // EXT_texture_compression_s3tc: the driver compresses
+        EsImage image = find_image(format, type, [](const EsImageRow&) { return true; });
         image.internal_format = internal_format;
         return image;
     }
-    const bool bgra = internal_format == GL_RGBA && format == GL_BGRA;  // as Mesa, and APPLE_texture_format_BGRA8888
-    if (image.error == GL_NO_ERROR && static_cast<GLenum>(internal_format) != format && !bgra)
-        image.error = GL_INVALID_OPERATION;
-    return image;
+    const auto word = static_cast<GLenum>(internal_format);
+    if (!any_has(&EsImageRow::internal_format, word)) return {.error = GL_INVALID_VALUE};
+    return find_image(format, type, [&](const EsImageRow& row) { return row.internal_format == word; });
 }
 
-GLenum es_copy_error(GLenum internal_format, GLenum framebuffer_base) {
-    switch (internal_format) {
-        case GL_ALPHA:
-        case GL_LUMINANCE:
-        case GL_LUMINANCE_ALPHA:
-        case GL_RED:
-        case GL_RG:
-        case GL_RGB:
-        case GL_RGBA: break;
-        default: return GL_INVALID_ENUM;
+EsImage es_pixels(GLint internal_format, GLenum format, GLenum type) {
+    const bool blocks = is_of_blocks(internal_format);
+    return find_image(format, type,
+                      [&](const EsImageRow& row) { return blocks || row.desktop_format == internal_format; });
+}
+
+bool es_is_drawn(unsigned version, GLint internal_format) {
+    return std::ranges::any_of(kEsDrawn, [&](const EsDrawnRow& row) {
+        return row.internal_format == static_cast<GLenum>(internal_format) && row.since <= version;
+    });
+}
+
+// Of formats without sizes nothing but the components is looked at.
+GLenum es_copy_error(GLenum internal_format, const TextureFormat& from, GLenum base) {
+    const TextureFormat* to = find_texture_format(static_cast<GLint>(internal_format));
+    if (!to || !any_has(&EsImageRow::internal_format, internal_format)) return GL_INVALID_ENUM;
+    const bool colors = to->base != GL_DEPTH_COMPONENT && to->base != GL_DEPTH_STENCIL;
+    const Components wanted = components_of(to->base), there = components_of(base);
+    if (!colors || internal_format == GL_RGB9_E5) return GL_INVALID_OPERATION;
+    if (wanted.colors > there.colors || (wanted.alpha && !there.alpha)) return GL_INVALID_OPERATION;
+    if (!is_sized(*to)) return GL_NO_ERROR;
+    const bool converted = to->component_type != from.component_type || to->srgb != from.srgb;
+    return converted || differs_in_bits(to->bits, from.bits) ? GL_INVALID_OPERATION : GL_NO_ERROR;
+}
+
+PixelKind es_read_kind(const TextureFormat& from) {
+    if (from.whole()) return {GL_RGBA_INTEGER, from.component_type};
+    if (from.component_type == GL_FLOAT)
+        return {GL_RGBA, from.bits.red == 16 ? GLenum{GL_HALF_FLOAT} : GLenum{GL_FLOAT}};
+    if (from.component_type == GL_SIGNED_NORMALIZED) return {GL_RGBA, GL_BYTE};
+    if (from.internal_format == GL_RGB10_A2) return {GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV};
+    return {GL_RGBA, GL_UNSIGNED_BYTE};
+}
+
+bool es_can_read(GLenum format, GLenum type, const TextureFormat& from) {
+    const PixelKind kind = es_read_kind(from);
+    switch (format) {
+        case GL_DEPTH_COMPONENT:
+            return is_float_depth(from) ? type == GL_FLOAT : type == GL_UNSIGNED_SHORT || type == GL_UNSIGNED_INT;
+        case GL_DEPTH_STENCIL:
+            return type == (is_float_depth(from) ? GL_FLOAT_32_UNSIGNED_INT_24_8_REV : GL_UNSIGNED_INT_24_8);
+        case GL_STENCIL_INDEX: return type == GL_UNSIGNED_BYTE;
+        case GL_BGRA: return type == GL_UNSIGNED_BYTE && kind.format == GL_RGBA;
+        default: break;
     }
-    const Components wanted = components_of(internal_format), there = components_of(framebuffer_base);
-    return wanted.colors > there.colors || (wanted.alpha && !there.alpha) ? GL_INVALID_OPERATION : GL_NO_ERROR;
-}
-
-// More than the two pairs that the specification has, as in Mesa.
-bool es_can_read(GLenum format, GLenum type, bool floats) {
-    if (es_pixels(format, type).error != GL_NO_ERROR || format == GL_DEPTH_COMPONENT || format == GL_DEPTH_STENCIL)
-        return false;
-    const bool to_floats = type == GL_FLOAT || type == GL_HALF_FLOAT;
-    return floats || !to_floats;
+    if (format == kind.format && type == kind.type) return true;
+    if (format != GL_RGBA) return false;
+    return (type == GL_UNSIGNED_BYTE && from.component_type == GL_UNSIGNED_NORMALIZED) ||
+           (type == GL_FLOAT && from.component_type == GL_FLOAT);
 }
 
 }  // namespace wall::client

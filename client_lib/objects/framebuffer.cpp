@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "client_lib/objects/es_formats.h"
 #include "gen/glapi/wire.gen.h"
 
 namespace wall::client {
@@ -15,17 +16,17 @@ using glstate::kColorAttachments;
 
 constexpr unsigned kDepth = kColorAttachments, kStencil = kColorAttachments + 1;
 
-/// What may be drawn to as a colour (Mesa: also the bases of old textures, in contexts that have them).
-bool color_renderable(GLenum base, bool old_bases) {
+/// What may be drawn to as a colour (Mesa: also the bases of old textures).
+bool color_renderable(GLenum base) {
     switch (base) {
         case GL_RGBA:
         case GL_RGB:
         case GL_RG:
-        case GL_RED: return true;
+        case GL_RED:
         case GL_ALPHA:
         case GL_LUMINANCE:
         case GL_LUMINANCE_ALPHA:
-        case GL_INTENSITY: return old_bases;
+        case GL_INTENSITY: return true;
         default: return false;
     }
 }
@@ -33,9 +34,8 @@ bool color_renderable(GLenum base, bool old_bases) {
 }  // namespace
 
 bool Framebuffer::renderable(unsigned place, const TextureFormat& format) const {
-    if (format.compressed()) return false;
-    if (place < kColorAttachments)
-        return color_renderable(format.base, old_bases_) && (old_bases_ || format.component_type != GL_FLOAT);
+    if (format.compressed() || (es_ != 0 && !es_is_drawn(es_, format.internal_format))) return false;
+    if (place < kColorAttachments) return color_renderable(format.base);
     if (format.base == GL_DEPTH_STENCIL) return true;
     return format.base == (place == kDepth ? GL_DEPTH_COMPONENT : GL_STENCIL_INDEX);
 }

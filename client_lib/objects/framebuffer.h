@@ -42,9 +42,8 @@ std::optional<ImageShape> shape_of(const Attachment& attachment);
 
 class Framebuffer final : public Object, public DrawnTarget {
 public:
-    /// `old_bases`: textures of alpha and luminance and those of floats may be drawn to, as in desktop contexts.
-    explicit Framebuffer(GLuint own_name, bool old_bases = true)
-        : Object(next_object_id(), own_name), old_bases_(old_bases) {}
+    /// `es`: the version of OpenGL ES, times ten, which says what may be drawn to; 0: of OpenGL.
+    explicit Framebuffer(GLuint own_name, unsigned es = 0) : Object(next_object_id(), own_name), es_(es) {}
 
     const Attachment& at(unsigned place) const { return attachments_[place]; }
     /// Places as of glstate::attachment_place().
@@ -84,7 +83,7 @@ private:
     bool mixes_layers() const;
     bool renderable(unsigned place, const TextureFormat& format) const;
 
-    const bool old_bases_;
+    const unsigned es_;
     std::array<Attachment, glstate::kAttachmentPoints> attachments_;
     std::array<GLenum, glstate::kColorAttachments> draw_buffers_{GL_COLOR_ATTACHMENT0};
     GLenum read_buffer_ = GL_COLOR_ATTACHMENT0;

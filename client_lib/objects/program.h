@@ -148,6 +148,7 @@ struct Program : GlslObject {
     std::optional<glapi::ProgramDefinition> to_link;  ///< glLinkProgram was called, nobody has asked yet how it went
     bool linked = false;                              ///< GL_LINK_STATUS
     bool validated = false;                           ///< GL_VALIDATE_STATUS
+    bool binary_hint = false;                         ///< GL_PROGRAM_BINARY_RETRIEVABLE_HINT, of which nothing follows
     std::string log;
     /// Of the last glLinkProgram that succeeded.
     std::unique_ptr<Executable> executable;

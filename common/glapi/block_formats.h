@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sizes of compressed images: the S3TC formats (EXT_texture_compression_s3tc, EXT_texture_sRGB) and RGTC (OpenGL 3.0,
-// appendix C), which both ends hold against what they are given. Pure.
+// Sizes of compressed images: the S3TC formats (EXT_texture_compression_s3tc, EXT_texture_sRGB), RGTC (OpenGL 3.0,
+// appendix C), ETC2 and EAC (OpenGL 4.3, appendix C), which both ends hold against what they are given. Pure.
 #pragma once
 
 #include <cstddef>
@@ -20,15 +20,30 @@ constexpr std::size_t block_bytes(GLenum format) {
         case GL_COMPRESSED_SRGB_S3TC_DXT1_EXT:
         case GL_COMPRESSED_SRGB_ALPHA_S3TC_DXT1_EXT:
         case GL_COMPRESSED_RED_RGTC1:
-        case GL_COMPRESSED_SIGNED_RED_RGTC1: return 8;
+        case GL_COMPRESSED_SIGNED_RED_RGTC1:
+        case GL_COMPRESSED_R11_EAC:
+        case GL_COMPRESSED_SIGNED_R11_EAC:
+        case GL_COMPRESSED_RGB8_ETC2:
+        case GL_COMPRESSED_SRGB8_ETC2:
+        case GL_COMPRESSED_RGB8_PUNCHTHROUGH_ALPHA1_ETC2:
+        case GL_COMPRESSED_SRGB8_PUNCHTHROUGH_ALPHA1_ETC2: return 8;
         case GL_COMPRESSED_RGBA_S3TC_DXT3_EXT:
         case GL_COMPRESSED_RGBA_S3TC_DXT5_EXT:
         case GL_COMPRESSED_SRGB_ALPHA_S3TC_DXT3_EXT:
         case GL_COMPRESSED_SRGB_ALPHA_S3TC_DXT5_EXT:
         case GL_COMPRESSED_RG_RGTC2:
-        case GL_COMPRESSED_SIGNED_RG_RGTC2: return 16;
+        case GL_COMPRESSED_SIGNED_RG_RGTC2:
+        case GL_COMPRESSED_RG11_EAC:
+        case GL_COMPRESSED_SIGNED_RG11_EAC:
+        case GL_COMPRESSED_RGBA8_ETC2_EAC:
+        case GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC: return 16;
         default: return 0;
     }
+}
+
+/// Of the blocks of ETC2 and EAC, which drivers read and do not make.
+constexpr bool is_etc2(GLenum format) {
+    return format >= GL_COMPRESSED_R11_EAC && format <= GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC;
 }
 
 /// Bytes of an image, neither side negative; 0: not one of the formats, or nothing in it.

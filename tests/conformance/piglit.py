@@ -148,7 +148,8 @@ def run(options: argparse.Namespace) -> bool:
             print("\n".join(f"{test.name}\n    {' '.join(test.command)}" for test in selection.tests))
             return True
         start = time.monotonic()
-        outcomes = list(play(player, MesaPlayer(x, options.timeout), selection, expected, options.jobs))
+        mesa = MesaPlayer(x, options.timeout, selection.offer.es)
+        outcomes = list(play(player, mesa, selection, expected, options.jobs))
         described = report.Run(name, time.monotonic() - start, dict(selection.left_out), player.aftermath())
     judgement = judge(outcomes, expected, [test.name for test in tests])
     print(report.write(options.report, described, judgement, expected), end="")

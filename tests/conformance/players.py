@@ -50,10 +50,11 @@ class Player:
 
 class MesaPlayer(Player):
     """The X server's own OpenGL, Mesa's llvmpipe: the golden tests' reference, with as many threads as a node here.
-    Told so it offers OpenGL ES 2.0, as a wall does."""
+    Told so it offers the version of OpenGL ES that the wall does."""
 
-    def __init__(self, x: XServer, timeout: float):
-        environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", LP_NUM_THREADS="0", MESA_GLES_VERSION_OVERRIDE="2.0")
+    def __init__(self, x: XServer, timeout: float, es: tuple[int, int]):
+        environment = x.environment(LIBGL_ALWAYS_SOFTWARE="1", LP_NUM_THREADS="0",
+                                    MESA_GLES_VERSION_OVERRIDE=f"{es[0]}.{es[1]}")
         for name in ("__GLX_VENDOR_LIBRARY_NAME", "__EGL_VENDOR_LIBRARY_FILENAMES"):
             environment.pop(name, None)
         super().__init__(environment, timeout)

@@ -68,12 +68,27 @@ class OpenGlEs(unittest.TestCase):
         self.assertEqual(self.es.checked(self.commands.all["glTexParameterf"]), [0, 1])
         self.assertEqual(self.es.checked(self.commands.all["glActiveTexture"]), [])
 
+    def test_images_and_what_is_drawn_to(self):
+        self.assertIn(es.Image("GL_RGBA", "GL_RGBA", "GL_FLOAT", "GL_RGBA32F"), self.es.images)
+        self.assertIn(es.Image("GL_RGBA8", "GL_BGRA", "GL_UNSIGNED_BYTE", "GL_RGBA8"), self.es.images)
+        self.assertEqual((self.es.drawn["GL_RGBA4"], self.es.drawn["GL_R32F"]), ((2, 0), (3, 0)))
+        self.assertNotIn("GL_RGB9_E5", self.es.drawn)
+
     def test_mistakes_have_their_place(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "es.toml"
-            path.write_text('[extensions]\nGL_ARB_shadow = ""\n[words]\n[numbers]\n')
-            with self.assertRaisesRegex(AssertionError, "es.toml:2: GL_ARB_shadow: no extension"):
-                es.load(path, self.gl, self.commands)
+        empty = {name: "" for name in ("extensions", "words", "images", "drawn", "numbers")}
+        for section, line, why in (("extensions", 'GL_ARB_shadow = ""', "GL_ARB_shadow: no extension"),
+                                   ("images", 'GL_R8 = "GL_RED"', "GL_R8: GL_RED has no type"),
+                                   ("images", 'GL_R8 = "GL_RED GL_BYTES"', "GL_R8: no word GL_BYTES"),
+                                   ("drawn", '"2.5" = "GL_R8"', "2.5: no version 2.5"),
+                                   ("drawn", '"3.0" = "GL_R8 GL_R8"', "3.0: GL_R8 is there already")):
+            with tempfile.TemporaryDirectory() as folder, self.subTest(line):
+                path = pathlib.Path(folder) / "es.toml"
+                texts = empty | {section: line + "\n"}
+                text = "".join(f"[{name}]\n{text}" for name, text in texts.items())
+                path.write_text(text)
+                number = text[:text.index(line)].count("\n") + 1
+                with self.assertRaisesRegex(AssertionError, f"es.toml:{number}: {why}"):
+                    es.load(path, self.gl, self.commands)
 
 
 class Commands(unittest.TestCase):

@@ -13,12 +13,8 @@ namespace wall::test {
 
 class MesaContext {
 public:
-    /// Null if there is no Mesa here, or it does not offer what is needed.
+    /// Null if there is no Mesa here, or it does not offer what is needed. Of OpenGL 4.5, compatibility profile.
     static std::unique_ptr<MesaContext> open() {
-        ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-        const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
-        if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API))
-            return nullptr;
         const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
                                      4,
                                      EGL_CONTEXT_MINOR_VERSION,
@@ -26,10 +22,13 @@ public:
                                      EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                      EGL_CONTEXT_OPENGL_COMPATIBILITY_PROFILE_BIT,
                                      EGL_NONE};
-        const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
-        if (context == EGL_NO_CONTEXT || !eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
-            return nullptr;
-        return std::unique_ptr<MesaContext>(new MesaContext(display, context));
+        return open(EGL_OPENGL_API, attributes);
+    }
+    /// The same of OpenGL ES 3.0.
+    static std::unique_ptr<MesaContext> open_es() {
+        ::setenv("MESA_GLES_VERSION_OVERRIDE", "3.0", 1);
+        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
+        return open(EGL_OPENGL_ES_API, attributes);
     }
     ~MesaContext() {
         eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
@@ -39,6 +38,15 @@ public:
     glapi::GlFunctions gl;
 
 private:
+    static std::unique_ptr<MesaContext> open(EGLenum api, const EGLint* attributes) {
+        ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+        const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
+        if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr) || !eglBindAPI(api)) return nullptr;
+        const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+        if (context == EGL_NO_CONTEXT || !eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
+            return nullptr;
+        return std::unique_ptr<MesaContext>(new MesaContext(display, context));
+    }
     MesaContext(EGLDisplay display, EGLContext context) : display_(display), context_(context) {
         gl.load([](const char* name) { return reinterpret_cast<void*>(eglGetProcAddress(name)); });
     }

@@ -63,6 +63,7 @@ def generate(m):
         "client_lib/entries.gen.cpp": emit_client.entries_source(m.api, m.gl),
         "client_lib/tables.gen.cpp": emit_client.tables_source(m.api, m.attributes, m.gl),
         "client_lib/es.gen.h": emit_es.es_header(m.es),
+        "client_lib/es_images.gen.h": emit_es.images_header(m.es),
         "client_lib/es_tables.gen.cpp": emit_es.es_source(m.es),
         "client_lib/state_api.gen.cpp": emit_setters.setters_source(m.api, m.state, m.gl),
     }

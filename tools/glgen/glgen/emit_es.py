@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""gen/client_lib/es.gen.h, es_tables.gen.cpp: the modes of an OpenGL ES context, its words, versions and extensions."""
+"""gen/client_lib/es.gen.h, es_tables.gen.cpp: the modes of an OpenGL ES context, its words, versions and extensions.
+gen/client_lib/es_images.gen.h: what its images may be."""
 
 from .text import header
 
@@ -23,6 +24,22 @@ def es_header(es):
             "/// A word, and the first version that has it.\n"
             "struct EsWord {\n    GLenum value;\n    int since;\n};\n"
             "extern const std::span<const EsWord> kEsWords;  ///< by value\n\n"
+            "}  // namespace wall::client\n")
+
+
+def images_header(es):
+    images = "".join(f"    {{{i.internal}, {i.format}, {i.type}, {i.told}}},\n" for i in es.images)
+    drawn = "".join(f"    {{{word}, {_number(since)}}},\n" for word, since in es.drawn.items())
+    return (header("gl.xml, proto/gl/es.toml", "What images of OpenGL ES may be made of, and which may be drawn to.",
+                   ['"common/glapi/gl_types.h"\n']) +
+            "namespace wall::client {\n\n"
+            "/// An image of a texture, as a program describes it.\n"
+            "struct EsImageRow {\n    GLenum internal_format, format, type;\n"
+            "    GLint desktop_format;  ///< the internal format that OpenGL has for it\n};\n"
+            f"inline constexpr EsImageRow kEsImages[] = {{\n{images}}};\n\n"
+            "/// An internal format, as OpenGL names it, that images are drawn to from that version on (times ten).\n"
+            "struct EsDrawnRow {\n    GLenum internal_format;\n    unsigned since;\n};\n"
+            f"inline constexpr EsDrawnRow kEsDrawn[] = {{\n{drawn}}};\n\n"
             "}  // namespace wall::client\n")
 
 

@@ -14,6 +14,15 @@ class Extension:
     missing: str | None     # one of them that is not implemented
 
 
+@dataclass(frozen=True)
+class Image:
+    """A texture's image, as a program describes it."""
+    internal: str
+    format: str
+    type: str
+    told: str           # the internal format that OpenGL has for it
+
+
 @dataclass
 class EsModel:
     versions: list      # (major, minor), in order
@@ -22,6 +31,8 @@ class EsModel:
     commands: object
     more_words: list    # in every version
     numbers: dict       # short name of a command -> its parameter of type GLenum that is none
+    images: list        # of Image
+    drawn: dict         # internal format that may be drawn to -> the version that brought it
 
     def missing(self, version):
         """A command of exactly this version that is not implemented; None: there is none."""
@@ -83,4 +94,38 @@ def load(path, registry, commands):
             assert name in registry.enums, f"no word {name}"
     versions = sorted(v for v in registry.es_features if v[0] >= 2)
     return EsModel(versions, sorted(extensions, key=lambda e: e.name), registry, commands,
-                   list(file.sections["words"]), file.sections["numbers"])
+                   list(file.sections["words"]), file.sections["numbers"], _images(file, registry),
+                   _drawn(file, registry, versions))
+
+
+def _known(registry, words):
+    for word in words:
+        assert word in registry.enums, f"no word {word}"
+
+
+def _images(file, registry):
+    images = []
+    for internal, text in file.sections["images"].items():
+        with file.line("images", internal):
+            for part in text.split(","):
+                form, *types = part.split()
+                assert types, f"{form} has no type"
+                for word in types:
+                    kind, _, told = word.partition(":")
+                    images.append(Image(internal, form, kind, told or internal))
+                    _known(registry, (internal, form, kind, told or internal))
+            assert len(set(images)) == len(images), "the same image twice"
+    return images
+
+
+def _drawn(file, registry, versions):
+    drawn = {}
+    for version, text in file.sections["drawn"].items():
+        with file.line("drawn", version):
+            since = tuple(int(x) for x in version.split("."))
+            assert since in versions, f"no version {version} of OpenGL ES"
+            _known(registry, text.split())
+            for word in text.split():
+                assert word not in drawn, f"{word} is there already"
+                drawn[word] = since
+    return drawn
