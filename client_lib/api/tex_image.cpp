@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "client_lib/context/copied_texels.h"
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/limits.h"
 #include "client_lib/context/param_commands.h"
@@ -439,6 +440,10 @@ void copy_image(Context& c, ImageCall call, GLenum internal_format, From from, c
     if (is_immutable(c, call.target)) return c.error(GL_INVALID_OPERATION);
     if (!may_copy(c, *internal)) return c.error(GL_INVALID_OPERATION);
     set_copied_format(c, call, *internal);
+    if (can_copy_on_nodes(c, call, *internal, stored_bits(*internal, call.format, call.type), from.x, from.y)) {
+        store_level(c, call, {call.format, call.type, {}});
+        return copy_on_nodes(c, call, from.x, from.y);
+    }
     call.pixels = "";  // there will be some
     store_level(c, call, copied(c, call, from.x, from.y, function));
 }
@@ -452,6 +457,8 @@ void copy_sub_image(Context& c, ImageCall call, From from, const char* function)
     if (const GLenum error = sub_image_error(c, call)) return c.error(error);
     if (!may_copy(c, *internal)) return c.error(GL_INVALID_OPERATION);
     if (texels(call) == 0) return;
+    if (can_copy_on_nodes(c, call, *internal, stored_bits(*internal, level->format, level->type), from.x, from.y))
+        return copy_on_nodes(c, call, from.x, from.y);
     change_level(c, call, copied(c, call, from.x, from.y, function));
 }
 

@@ -123,6 +123,72 @@ SCENE(framebuffer, 4) {  // a picture in a texture, drawn anew in every frame, w
     say_error("framebuffer");
 }
 
+SCENE(framebuffer_copy, 3) {  // what is drawn is copied to textures: as a whole, in part, to faces, and upon each other
+    struct Copied {
+        GLint format;
+        GLuint framebuffer, whole, part;
+    };
+    static std::array<Copied, 3> all{};
+    static GLuint cube, other;
+    if (frame == 0) {
+        const std::array<GLint, 3> formats{GL_RGBA8, GL_RGBA16F, GL_RGB10_A2};
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const GLuint drawn = make_texture(formats[i], GL_RGBA, GL_UNSIGNED_BYTE);
+            all[i].format = formats[i];
+            all[i].framebuffer = make_framebuffer();
+            glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, drawn, 0);
+            glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
+                                      make_renderbuffer(GL_DEPTH_COMPONENT24));
+            all[i].whole = make_texture(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4);
+            all[i].part = make_texture(formats[i], GL_RGBA, GL_UNSIGNED_BYTE);
+            const auto image = random_image(std::size_t{kSize} * kSize * 4);
+            glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, image.data());
+        }
+        other = make_framebuffer();
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, all[1].part, 0);
+        glGenTextures(1, &cube);
+    }
+    glEnable(GL_SCISSOR_TEST);  // of what is drawn, not of what is copied
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Copied& each = all[i];
+        glBindFramebuffer(GL_FRAMEBUFFER, each.framebuffer);
+        glScissor(0, 0, kSize, kSize);
+        draw_picture(frame + static_cast<int>(i));
+        glScissor(10, 10, 20, 20);
+        glBindTexture(GL_TEXTURE_2D, each.whole);
+        glCopyTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLenum>(each.format), 0, 0, kSize, kSize, 0);
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, other);
+        glBindTexture(GL_TEXTURE_2D, each.part);
+        glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 8 * (frame + 1), 4, 40, 30, 64, 80);
+        if (frame == 1) {  // upon what was copied
+            const auto image = random_image(std::size_t{16} * 16 * 4);
+            glTexSubImage2D(GL_TEXTURE_2D, 0, 30, 30, 16, 16, GL_RGBA, GL_UNSIGNED_BYTE, image.data());
+        }
+    }
+    glDisable(GL_SCISSOR_TEST);
+    glBindFramebuffer(GL_FRAMEBUFFER, all[0].framebuffer);
+    glBindTexture(GL_TEXTURE_CUBE_MAP, cube);
+    for (GLenum face = 0; face < 6; ++face)
+        glCopyTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, face == 5 ? GL_RGB : GL_RGBA,
+                         static_cast<GLint>(8 * face), 0, 64, 64, 0);
+    glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, canvas.width, canvas.height);
+    clear(0.1f, 0.1f, 0.1f);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        show(all[i].whole, static_cast<int>(2 * i), 4, 2);
+        show(all[i].part, static_cast<int>(2 * i + 1), 4, 2);
+    }
+    std::vector<GLubyte> texels(std::size_t{64} * 64 * 4);
+    for (GLenum face = 0; face < 6; ++face) {
+        glGetTexImage(GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+        unsigned sum = 0;
+        for (const GLubyte value : texels) sum = sum * 31 + value;
+        say("face %u: %08x", face, sum);
+    }
+    say_error("copies");
+}
+
 SCENE(framebuffer_blit, 2) {  // frame 1: scaled and upside down; samples are resolved
     static GLuint framebuffer, multisampled;
     if (frame == 0) {
