@@ -25,7 +25,7 @@ sys.path.insert(0, str(HERE.parent / "support"))
 
 import compare  # noqa: E402
 from expectations import Check, Outcome, judge, load  # noqa: E402
-from stages import MesaStage, MovedStage, Performance, References, WallStage  # noqa: E402
+from stages import MesaStage, MovedStage, Performance, Rect, References, WallStage  # noqa: E402
 from subjects import WINDOW, Subject, load_recordings, load_scenes  # noqa: E402
 from wall import build_folder  # noqa: E402
 from xserver import XServer  # noqa: E402
@@ -142,6 +142,10 @@ class Played:
         return plain, self._parts.play(subject) if self._parts else None
 
 
+def whole_window(window: tuple[int, int]) -> list[Rect]:
+    return [(0, 0, *window)]
+
+
 def play_all(subjects: list[Subject], expected: Collection[Check], options: argparse.Namespace) -> Iterator[Outcome]:
     tiles = options.tiles
     with contextlib.ExitStack() as stack:
@@ -149,12 +153,13 @@ def play_all(subjects: list[Subject], expected: Collection[Check], options: argp
             return stack.enter_context(XServer())
 
         if tiles == "mesa":
-            stage, parts = MesaStage(x_server()), [(0, 0, *WINDOW)]
+            stage, count = MesaStage(x_server()), 1
         else:
             stage = stack.enter_context(WallStage(x_server(), tuple(map(int, tiles.split("x"))), options.backend))
-            parts = stage.parts() if tiles != "1x1" else []
-        servers = [x_server() for _ in parts or [()]]
-        moved = MovedStage(parts, build_folder(), servers) if parts else None
+            count = len(stage.parts(WINDOW))
+        servers = [x_server() for _ in range(count)]
+        parts_of_window = whole_window if tiles == "mesa" else stage.parts
+        moved = MovedStage(parts_of_window, build_folder(), servers) if tiles != "1x1" else None
         played = Played(subjects, MesaStage(servers[0]), moved, References(options.references), keep=tiles == "mesa")
         for subject, plain, in_parts in played:
             start = time.monotonic()

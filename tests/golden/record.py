@@ -7,39 +7,85 @@ record.py [NAME...]     (without names: all; needs apitrace and the recorded pro
 """
 from __future__ import annotations
 
+import re
 import signal
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 sys.path[:0] = [str(Path(__file__).resolve().parent), str(Path(__file__).resolve().parents[1] / "support")]
-from subjects import Recording, load_recordings, play_through, signal_group  # noqa: E402
+from subjects import HERE, Recording, load_recordings, play_through, signal_group  # noqa: E402
 from xserver import XServer  # noqa: E402
 
-RUN_SECONDS = 3
-SCREEN = (800, 600)  # programs that choose their own size take half the screen
+END_SECONDS = 3  # that a program may take to end
 
 
 def record(recording: Recording, environment: dict[str, str]) -> None:
     with tempfile.TemporaryDirectory() as folder:
         whole, first = Path(folder) / "whole.trace", Path(folder) / "first.trace"
-        _trace(recording, whole, dict(environment, HOME=folder))
-        subprocess.run(["apitrace", "trim", f"--frames=0-{recording.frames - 1}", "-o", first, whole], check=True,
+        home = Path(folder) / "home"
+        home.mkdir()
+        for name, text in recording.files.items():
+            (home / name).parent.mkdir(parents=True, exist_ok=True)
+            (home / name).write_text(text)
+        _trace(recording, whole, dict(environment, HOME=str(home), USER="root", SDL_AUDIODRIVER="dummy",
+                                      ALSOFT_DRIVERS="null", **recording.needs))
+        subprocess.run([*_cut(recording), "-o", first, whole], check=True, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL)
+        shown = Path(folder) / "shown.trace"
+        subprocess.run(["apitrace", "trim", f"--calls={calls_of_shown(_dump(first))}", "-o", shown, first], check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        subprocess.run(["apitrace", "repack", "-b", first, recording.path], check=True)
+        subprocess.run(["apitrace", "repack", "-b", shown, recording.path], check=True)
+
+
+def _dump(trace: Path) -> str:
+    return subprocess.run(["apitrace", "dump", "--color=never", trace], check=True, capture_output=True,
+                          text=True, errors="replace").stdout
+
+
+def calls_of_shown(dump: str) -> str:
+    """The calls of a trace, as ranges, without those that are made while a window is current that never swaps: SDL and
+    Qt ask such a window what OpenGL there is, and destroy it, which a replay does not. The other window would be the
+    second one then."""
+    swapping = set(re.findall(r"^\d+ (?:glX|egl)SwapBuffers\(dpy = \w+, (?:drawable|surface) = (\w+)", dump, re.M))
+    pbuffers = set(re.findall(r"^\d+ (?:glX|egl)CreatePbuffer\w*\(.*\) = (\w+)$", dump, re.M))
+    kept, dropping, last = [], False, -1
+    for number, name, rest in re.findall(r"^(\d+) (\w+)\((.*)", dump, re.M):
+        if current := re.match(r"(?:glX|egl)Make(?:Context)?Current$", name) and re.search(r"dra\w* = (\w+)", rest):
+            dropping = current[1] not in swapping | pbuffers | {"0", "NULL", "EGL_NO_SURFACE"}
+        if not dropping:
+            if kept and last == int(number) - 1:
+                kept[-1][1] = int(number)
+            else:
+                kept.append([int(number), int(number)])
+            last = int(number)
+    return ",".join(f"{first}-{end}" for first, end in kept)
+
+
+def _cut(recording: Recording) -> list[str]:
+    """The first frames; or later ones, before which a frame has what they need."""
+    if recording.cut:
+        return ["gltrim", f"--frames={recording.cut}-{recording.cut + recording.frames - 2}"]
+    return ["apitrace", "trim", f"--frames=0-{recording.frames - 1}"]
 
 
 def _trace(recording: Recording, to: Path, environment: dict[str, str]) -> None:
     """Interrupts the program after a while; some end only when killed."""
-    process = subprocess.Popen(["apitrace", "trace", f"--api={recording.api}", "-o", to, *recording.command],
+    folders = {"here": HERE / "recordings", "live": HERE.parents[1] / "bench" / "live"}
+    command = [word.format(**folders) for word in recording.command]
+    process = subprocess.Popen(["apitrace", "trace", f"--api={recording.api}", "-o", to, *command],
                                env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                start_new_session=True)
-    for sign in (None, signal.SIGINT, signal.SIGKILL):
+    for key in recording.keys:
+        time.sleep(1)
+        subprocess.run(["xdotool", "key", key], env=environment, check=False)
+    for sign, seconds in ((None, recording.seconds), (signal.SIGINT, END_SECONDS), (signal.SIGKILL, END_SECONDS)):
         if sign:
             signal_group(process, sign)
         try:
-            process.wait(RUN_SECONDS)
+            process.wait(seconds)
             break
         except subprocess.TimeoutExpired:
             continue
@@ -56,10 +102,10 @@ def unstable_frames(recording: Recording, environment: dict[str, str]) -> list[i
 def main() -> int:
     wanted = sys.argv[1:]
     bad = 0
-    with XServer(SCREEN) as x:
-        for recording in load_recordings():
-            if wanted and recording.name not in wanted:
-                continue
+    for recording in load_recordings():
+        if wanted and recording.name not in wanted:
+            continue
+        with XServer(recording.screen) as x:
             record(recording, x.environment())
             unstable = unstable_frames(recording, x.environment())
             bad += bool(unstable)

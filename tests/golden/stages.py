@@ -7,7 +7,7 @@ import dataclasses
 import json
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import cv2
@@ -68,26 +68,34 @@ class MesaStage:
 
 
 class MovedStage:
-    """Plain Mesa, drawing a window in parts: for each of `tiles` one process with everything moved so that the tile's
-    left top pixel is that of its window (moved/). That is what a tile of a wall does, so a wall's picture is the same.
-    Each process has an X server of its own, since Mesa reads a front buffer back from the screen."""
+    """Plain Mesa, drawing a window in parts: for each of the tiles that `tiles_of` gives for a window's size one
+    process with everything moved so that the tile's left top pixel is that of its window (moved/). That is what a tile
+    of a wall does, so a wall's picture is the same. Each process has an X server of its own, since Mesa reads a front
+    buffer back from the screen: there are as many `servers` as tiles, or more."""
 
-    def __init__(self, tiles: list[Rect], build: Path, servers: list[XServer]):
-        self._tiles = tiles
-        self._words = ";".join(",".join(map(str, numbers)) for numbers in (WINDOW, *tiles))
+    def __init__(self, tiles_of: Callable[[tuple[int, int]], list[Rect]], build: Path, servers: list[XServer]):
+        self._tiles_of, self._servers = tiles_of, servers
         library = build / "tests" / "moved"
-        vendor = {"__GLX_VENDOR_LIBRARY_NAME": "moved", "__EGL_VENDOR_LIBRARY_FILENAMES": str(library / "moved.json"),
-                  "LD_LIBRARY_PATH": str(library), "GOLDEN_TILES": self._words}
-        self._environments = [mesa_environment(server) | vendor | {"GOLDEN_TILE": str(i)}
-                              for i, server in enumerate(servers[:len(tiles)])]
+        self._vendor = {"__GLX_VENDOR_LIBRARY_NAME": "moved",
+                        "__EGL_VENDOR_LIBRARY_FILENAMES": str(library / "moved.json"),
+                        "LD_LIBRARY_PATH": str(library),
+                        # Shaders get the declaration of a uniform before their #extension.
+                        "allow_glsl_extension_directive_midshader": "true"}
+
+    def _environments(self, window: tuple[int, int], share: str) -> list[dict[str, str]]:
+        tiles = self._tiles_of(window)
+        words = ";".join(",".join(map(str, numbers)) for numbers in (window, *tiles))
+        return [mesa_environment(server) | self._vendor | {"GOLDEN_TILES": words, "GOLDEN_TILE": str(i),
+                                                           "GOLDEN_SHARE": share}
+                for i, server in zip(range(len(tiles)), self._servers, strict=False)]
 
     def play(self, subject: Subject) -> Performance:
         """The frames are those of all tiles put together; text and exit code are the first tile's. Another tile's
         process that fails is a problem."""
         given = Performance()
         with tempfile.NamedTemporaryFile(prefix="golden-share-") as share:
-            plays = [Play(subject, dict(environment, GOLDEN_SHARE=share.name), unseen=i > 0)
-                     for i, environment in enumerate(self._environments)]
+            plays = [Play(subject, environment, unseen=i > 0)
+                     for i, environment in enumerate(self._environments(subject.window, share.name))]
             for frame in plays[0].frames():
                 given.read.append(frame)
                 plays[0].go_on()
@@ -136,17 +144,17 @@ def parts_of(window: Rect, tiles: tuple[int, int], tile_size: tuple[int, int]) -
 
 
 class WallStage:
-    """A wall of `tiles`, just large enough for the subjects' window. On one tile the window fills it; on several it
-    lies where tile borders cut it at odd places."""
+    """A wall of `tiles`, just large enough for a subject's window: another one for windows of another size. On one tile
+    the window fills it; on several it lies where tile borders cut it at odd places."""
 
     SLACK = {(1, 1): (0, 0), (2, 2): (12, 10), (3, 2): (20, 14)}  # pixels of the wall beside the window
 
     def __init__(self, x: XServer, tiles: tuple[int, int], backend: str = "egl"):
         slack = self.SLACK.get(tiles, (16, 16))
-        size = [-(-(WINDOW[i] + slack[i]) // tiles[i]) for i in (0, 1)]
-        self._x = x
+        self._x, self._tiles, self._backend, self._slack = x, tiles, backend, slack
         self._origin = (slack[0] // 3, slack[1] // 2)
-        self._wall = Wall(tiles=tiles, tile_size=tuple(size), backend=backend, swap_timeout_ms=10000, name="golden")
+        self._window = WINDOW
+        self._wall = self._wall_for(WINDOW)
 
     def __enter__(self) -> "WallStage":
         self._wall.__enter__()
@@ -155,14 +163,29 @@ class WallStage:
     def __exit__(self, *_) -> None:
         self._wall.__exit__(*_)
 
-    def parts(self) -> list[Rect]:
-        return parts_of((*self._origin, *WINDOW), self._wall.tiles, self._wall.tile_size)
+    def _tile_size(self, window: tuple[int, int]) -> tuple[int, int]:
+        return -(-(window[0] + self._slack[0]) // self._tiles[0]), -(-(window[1] + self._slack[1]) // self._tiles[1])
+
+    def _wall_for(self, window: tuple[int, int]) -> Wall:
+        return Wall(tiles=self._tiles, tile_size=self._tile_size(window), backend=self._backend, swap_timeout_ms=10000,
+                    name="golden")
+
+    def _fit(self, window: tuple[int, int]) -> None:
+        if window == self._window:
+            return
+        self._wall.stop()
+        self._window, self._wall = window, self._wall_for(window)
+        self._wall.__enter__()
+
+    def parts(self, window: tuple[int, int]) -> list[Rect]:
+        return parts_of((*self._origin, *window), self._tiles, self._tile_size(window))
 
     def play(self, subject: Subject) -> Performance:
         given = Performance()
+        self._fit(subject.window)
         with tempfile.TemporaryDirectory() as folder:
             stats = Path(folder) / "stats.json"
-            rect = None if self._wall.tiles == (1, 1) else (*self._origin, *WINDOW)
+            rect = None if self._tiles == (1, 1) else (*self._origin, *subject.window)
             prefix = self._wall.wallrun(rect=rect, name=subject.name)
             play = Play(subject, self._x.environment(WALLGL_STATS=str(stats), vblank_mode="0"), prefix)
             session = _Session(self._wall, play.pid)
@@ -181,7 +204,7 @@ class WallStage:
         try:
             session.wait_shown(number + 1 if subject.swaps else 0, wait_a_moment=not subject.swaps)
             x, y, width, height = session.rect()
-            if (width, height) != WINDOW:
+            if (width, height) != subject.window:
                 given.problems.append(f"frame {number}: the window covers {width}x{height} of the wall")
             picture = decode_png(self._wall.screenshot())
             given.shown[number] = picture[y:y + height, x:x + width]

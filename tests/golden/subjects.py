@@ -18,7 +18,7 @@ from typing import IO
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-WINDOW = (400, 300)  # of every subject
+WINDOW = (400, 300)  # of a subject that does not say otherwise
 WARM_UP = 1  # frames of a recording that are not compared
 FRAME_LIMIT_BYTES = 64 << 20
 MOST_FRAMES = 1000  # of any subject
@@ -28,13 +28,25 @@ _PNM = re.compile(rb"P6\n(?:#[^\n]*\n)*(\d+) (\d+)\n255\n")
 
 @dataclasses.dataclass(frozen=True)
 class Recording:
-    """A program's first frames, as apitrace recorded them. `api` is "gl" (GLX) or "egl"."""
+    """A program's first frames, as apitrace recorded them. `api` is "gl" (GLX) or "egl". What record.py needs besides:
+    `needs` (of its environment), `files` (path in the home folder: text), `keys` (pressed one a second), `screen`
+    (pixels of the X server), `seconds` that the program runs, and `cut`, the first frame of those that are kept with
+    what they need."""
 
     name: str
     api: str
     command: list[str]
     frames: int
     covers: str
+    window: tuple[int, int] = WINDOW
+    core: bool = False  # it asks for a core profile, which Mesa refuses while it is told to offer the other one
+    first: int = WARM_UP  # frames before it are not compared
+    needs: dict[str, str] = dataclasses.field(default_factory=dict)
+    files: dict[str, str] = dataclasses.field(default_factory=dict)
+    keys: list[str] = dataclasses.field(default_factory=list)
+    screen: tuple[int, int] = (800, 600)  # programs that choose their own size take half of it
+    seconds: float = 3
+    cut: int = 0
 
     kind = "recording"
 
@@ -44,12 +56,12 @@ class Recording:
 
     @property
     def compared(self) -> range:
-        return range(WARM_UP, self.frames)
+        return range(self.first, self.frames)
 
     @property
     def shown(self) -> range:
         """Frames that can be looked at on the wall: after the last one the replay ends at once."""
-        return range(WARM_UP, self.frames - 1)
+        return range(self.first, self.frames - 1)
 
     swaps = True
 
@@ -59,7 +71,8 @@ class Recording:
         return ["eglretrace" if self.api == "egl" else "glretrace", "-b", "-s", "-", str(self.path)]
 
     def environment(self) -> dict[str, str]:
-        return {"WAFFLE_PLATFORM": "x11_egl"} if self.api == "egl" else {}
+        platform = {"WAFFLE_PLATFORM": "x11_egl"} if self.api == "egl" else {}
+        return platform | ({"MESA_GL_VERSION_OVERRIDE": "4.5"} if self.core else {})
 
 
 @dataclasses.dataclass(frozen=True)
@@ -72,6 +85,7 @@ class Scene:
     program: Path
 
     kind = "scene"
+    window = WINDOW
 
     @property
     def compared(self) -> range:
@@ -91,6 +105,8 @@ Subject = Recording | Scene
 
 def load_recordings(path: Path = HERE / "recordings.toml") -> list[Recording]:
     table = tomllib.loads(path.read_text())
+    for fields in table.values():
+        fields |= {name: tuple(fields[name]) for name in ("window", "screen") if name in fields}
     return [Recording(name, **fields) for name, fields in table.items()]
 
 

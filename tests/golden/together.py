@@ -107,7 +107,8 @@ def on_mesa(recordings: dict[str, Recording]) -> dict[str, np.ndarray]:
     with contextlib.ExitStack() as stack:
         servers = [stack.enter_context(XServer()) for _ in range(TILES[0] * TILES[1])]
         for name, frame, corner in CAST:
-            stage = MovedStage(parts_of((*corner, *WINDOW), TILES, TILE_SIZE), build_folder(), servers)
+            parts = parts_of((*corner, *WINDOW), TILES, TILE_SIZE)
+            stage = MovedStage(lambda _, parts=parts: parts, build_folder(), servers)
             given = stage.play(recordings[name])
             if given.problems or given.exit_code != 0:
                 raise RuntimeError(f"{name} on Mesa: exit code {given.exit_code}, {given.problems}: {given.errors}")

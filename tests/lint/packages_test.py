@@ -12,6 +12,7 @@ from programs import started_by_python, started_by_shell
 
 BUILD = Path(os.environ.get("WALLGL_BUILD", ROOT / "build" / "release"))
 NODE = {"node", "nodejs", "npm", "npx"}  # may come from elsewhere (scripts/install-deps.sh)
+OPTIONAL = {"mpirun", "xdotool"}  # where they are missing, what needs them is left out
 NOT_STARTED = {"clang", "man", "time", "view"}  # words of our scripts that happen to be names of programs, too
 
 
@@ -30,7 +31,7 @@ def programs(files: list[Path]) -> set[Path]:
     names = set()
     for file in files:
         names |= (started_by_python if file.suffix == ".py" else started_by_shell)(file.read_text())
-    found = (shutil.which(name, path="/usr/sbin:/usr/bin:/sbin:/bin") for name in names - NODE - NOT_STARTED)
+    found = (shutil.which(name, path="/usr/sbin:/usr/bin:/sbin:/bin") for name in names - NODE - OPTIONAL - NOT_STARTED)
     return {Path(path) for path in found if path}
 
 

@@ -75,17 +75,34 @@ void GetDoublev(GLenum name, GLdouble* values) {
     answer_in_window_pixels(name, values);
 }
 
-bool g_moves_fragments = false;  ///< a shader does
+bool g_moves_fragments = false;                 ///< a shader does
+constexpr const char* kMoved = "golden_moved";  ///< the uniform by which it does
+
+/// Tells the current program how far gl_FragCoord is moved in what is drawn to.
+void tell_program() {
+    const int program = g_moves_fragments ? integer(GL_CURRENT_PROGRAM) : 0;
+    const GLint location = program != 0 ? mesa().GetUniformLocation(static_cast<GLuint>(program), kMoved) : -1;
+    if (location >= 0) mesa().Uniform4f(location, static_cast<GLfloat>(dx()), static_cast<GLfloat>(dy()), 0.0F, 0.0F);
+}
+
+void UseProgram(GLuint program) {
+    mesa().UseProgram(program);
+    tell_program();
+}
+void LinkProgram(GLuint program) {
+    mesa().LinkProgram(program);
+    tell_program();
+}
 
 /// What is drawn into a framebuffer object stays where it is: positions are set anew.
 void BindFramebuffer(GLenum target, GLuint framebuffer) {
-    if (framebuffer != 0 && g_moves_fragments) stop("gl_FragCoord and framebuffer objects");
     std::array<GLint, 4> viewport{}, scissor{};
     GetIntegerv(GL_VIEWPORT, viewport.data());
     GetIntegerv(GL_SCISSOR_BOX, scissor.data());
     mesa().BindFramebuffer(target, framebuffer);
     Viewport(viewport[0], viewport[1], viewport[2], viewport[3]);
     Scissor(scissor[0], scissor[1], scissor[2], scissor[3]);
+    tell_program();
 }
 
 void BlitFramebuffer(GLint from_x0, GLint from_y0, GLint from_x1, GLint from_y1, GLint to_x0, GLint to_y0, GLint to_x1,
@@ -93,6 +110,23 @@ void BlitFramebuffer(GLint from_x0, GLint from_y0, GLint from_x1, GLint from_y1,
     if (reads_from_window()) stop("glBlitFramebuffer out of a window");
     mesa().BlitFramebuffer(from_x0, from_y0, from_x1, from_y1, to_x0 + dx(), to_y0 + dy(), to_x1 + dx(), to_y1 + dy(),
                            mask, filter);
+}
+
+/// Whether only the depth or w of gl_FragCoord is taken, by the text that follows its name.
+bool takes_no_place(std::string_view after) {
+    if (!after.starts_with('.')) return false;
+    const std::string_view taken = after.substr(1, after.find_first_not_of("xyzwrgbastpq", 1) - 1);
+    return taken.find_first_not_of("zwbapq") == taken.npos;
+}
+
+/// The uniform's declaration, behind #version, which must be first. (Mesa is told that #extension may follow.)
+void declare_moved(std::string& source) {
+    const bool es =
+        std::string_view(reinterpret_cast<const char*>(mesa().GetString(GL_VERSION))).starts_with("OpenGL ES");
+    const std::size_t version = source.find("#version");
+    const std::size_t at = version == source.npos ? 0 : source.find('\n', version) + 1;
+    if (at == 0 && version != source.npos) stop("#version without an end of its line");
+    source.insert(at, std::string(es ? "uniform highp vec4 " : "uniform vec4 ") + kMoved + ";\n");
 }
 
 /// gl_FragCoord of the window, out of that of this process.
@@ -103,12 +137,16 @@ void ShaderSource(GLuint shader, GLsizei count, const GLchar* const* strings, co
                                                                         : std::strlen(strings[i]));
     constexpr std::string_view kName = "gl_FragCoord";
     if (source.find("origin_upper_left") != source.npos) stop("origin_upper_left");
-    const std::string moved = "(gl_FragCoord - vec4(" + std::to_string(place().dx()) + ".0, " +
-                              std::to_string(place().dy()) + ".0, 0.0, 0.0))";
-    for (std::size_t at = 0; (at = source.find(kName, at)) != source.npos; at += moved.size()) {
-        g_moves_fragments = true;
-        source.replace(at, kName.size(), moved);
+    const std::string moved = std::string("(gl_FragCoord - ") + kMoved + ")";
+    bool moves = false;
+    for (std::size_t at = 0; (at = source.find(kName, at)) != source.npos;) {
+        const bool stays = takes_no_place(std::string_view(source).substr(at + kName.size()));
+        if (!stays) source.replace(at, kName.size(), moved);
+        at += stays ? kName.size() : moved.size();
+        moves = moves || !stays;
     }
+    if (moves) declare_moved(source);
+    g_moves_fragments = g_moves_fragments || moves;
     const GLchar* whole = source.c_str();
     mesa().ShaderSource(shader, 1, &whole, nullptr);
 }
@@ -126,9 +164,9 @@ Replacement with(std::string_view name, Function* function) {
     return {name, reinterpret_cast<void (*)()>(function)};
 }
 
-constexpr std::array<std::string_view, 9> kNeverStart = {
-    "glViewportIndexed",   "glViewportArray", "glScissorIndexed",      "glScissorArray", "glBlitNamed",
-    "glCopyTexSubImage3D", "glReadnPixels",   "glCopyTextureSubImage", "glProgramString"};
+constexpr std::array<std::string_view, 10> kNeverStart = {
+    "glViewportIndexed",   "glViewportArray", "glScissorIndexed",      "glScissorArray",  "glBlitNamed",
+    "glCopyTexSubImage3D", "glReadnPixels",   "glCopyTextureSubImage", "glProgramString", "glUseProgramStages"};
 
 /// The name without what marks it as an extension's.
 std::string_view core_name(std::string_view name) {
@@ -184,6 +222,9 @@ void* replacement(std::string_view name) {
         with("glGetFloatv", GetFloatv),
         with("glGetDoublev", GetDoublev),
         with("glShaderSource", ShaderSource),
+        with("glUseProgram", UseProgram),
+        with("glUseProgramObject", UseProgram),
+        with("glLinkProgram", LinkProgram),
         with("glReadPixels", ReadPixels),
         with("glCopyPixels", CopyPixels),
         with("glCopyTexImage1D", CopyTexImage1D),

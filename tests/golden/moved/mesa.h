@@ -33,6 +33,11 @@ struct Mesa {
     decltype(&glGetFloatv) GetFloatv = find("glGetFloatv");
     decltype(&glGetDoublev) GetDoublev = find("glGetDoublev");
     decltype(&glShaderSource) ShaderSource = find("glShaderSource");
+    decltype(&glUseProgram) UseProgram = find("glUseProgram");
+    decltype(&glLinkProgram) LinkProgram = find("glLinkProgram");
+    decltype(&glGetUniformLocation) GetUniformLocation = find("glGetUniformLocation");
+    decltype(&glUniform4f) Uniform4f = find("glUniform4f");
+    decltype(&glGetString) GetString = find("glGetString");
     decltype(&glReadPixels) ReadPixels = find("glReadPixels");
     decltype(&glDrawPixels) DrawPixels = find("glDrawPixels");
     decltype(&glBitmap) Bitmap = find("glBitmap");
