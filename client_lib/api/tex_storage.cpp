@@ -64,6 +64,7 @@ void define_storage(Context& c, ImageCall call, GLsizei levels) {
     if (!texture || texture->is_default() || texture->immutable_levels != 0) return c.error(GL_INVALID_OPERATION);
     if (!legal_size(c, call)) return c.error(GL_INVALID_VALUE);
     const glapi::TextureTargetInfo& info = texture->info;
+    const bool ends_early = levels < most_levels(call);
     for (GLsizei i = 0; i < levels; ++i, halve(call))
         for (unsigned face = 0; face < glapi::face_count(info); ++face) {
             ImageCall image = call;
@@ -73,6 +74,7 @@ void define_storage(Context& c, ImageCall call, GLsizei levels) {
         }
     std::lock_guard lock(c.share().mutex);
     texture->immutable_levels = static_cast<std::uint32_t>(levels);
+    if (!ends_early) return;
     texture->parameter_changed(GL_TEXTURE_MAX_LEVEL);  // nodes' textures end with their last level by it
     touch(c.share(), *texture);
 }
