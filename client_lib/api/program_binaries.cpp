@@ -30,7 +30,7 @@ void ProgramParameteri(Context& c, GLuint name, GLenum pname, GLint value) {
     if (pname != GL_PROGRAM_BINARY_RETRIEVABLE_HINT) return c.error(GL_INVALID_ENUM);
     if (value != GL_FALSE && value != GL_TRUE) return c.error(GL_INVALID_VALUE);
     std::lock_guard lock(c.share().mutex);
-    program->binary_hint = value != GL_FALSE;
+    program->next_binary_hint = value != GL_FALSE;
 }
 
 }  // namespace wall::client::api

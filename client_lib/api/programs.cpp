@@ -205,6 +205,7 @@ void LinkProgram(Context& c, GLuint name) {
     {
         std::lock_guard lock(c.share().mutex);
         program->to_link.reset();
+        program->binary_hint = program->next_binary_hint;
         if (const char* lacking = c.profile.es != 0 ? lacking_stage(*program) : nullptr) {
             program->linked = false;
             program->log = std::string("error: program lacks a ") + lacking + " shader\n";

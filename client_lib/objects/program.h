@@ -148,7 +148,8 @@ struct Program : GlslObject {
     std::optional<glapi::ProgramDefinition> to_link;  ///< glLinkProgram was called, nobody has asked yet how it went
     bool linked = false;                              ///< GL_LINK_STATUS
     bool validated = false;                           ///< GL_VALIDATE_STATUS
-    bool binary_hint = false;                         ///< GL_PROGRAM_BINARY_RETRIEVABLE_HINT, of which nothing follows
+    /// GL_PROGRAM_BINARY_RETRIEVABLE_HINT, of which nothing follows: as told for the next linking, and by the last one.
+    bool next_binary_hint = false, binary_hint = false;
     std::string log;
     /// Of the last glLinkProgram that succeeded.
     std::unique_ptr<Executable> executable;

@@ -49,7 +49,10 @@ TEST_F(Es3Context, TakesNoBinaries) {
     const GLuint program = gl().CreateProgram(c);
     gl().ProgramParameteri(c, program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
     EXPECT_EQ(error(), kNone);
-    GLint hint = 0, length = -1;
+    GLint hint = 7, length = -1;
+    gl().GetProgramiv(c, program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, &hint);
+    EXPECT_EQ(hint, GL_FALSE) << "it has not been linked since";
+    gl().LinkProgram(c, program);
     gl().GetProgramiv(c, program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, &hint);
     gl().GetProgramiv(c, program, GL_PROGRAM_BINARY_LENGTH, &length);
     EXPECT_EQ(hint, GL_TRUE);
