@@ -22,10 +22,9 @@ void wait_for_nodes(const FrameWait& wait, ClientSurface& surface, bool whole_fr
     struct Waited {
         Node& node;
         std::shared_ptr<NodeStream> stream;
-        std::uint32_t frame;
-        NodeProgress progress;
     };
     std::vector<Waited> waited;
+    std::vector<NodeProgress> progress;  // of each
     bool all_slow = true;
     {
         std::lock_guard lock(wait.mutex);
@@ -34,29 +33,29 @@ void wait_for_nodes(const FrameWait& wait, ClientSurface& surface, bool whole_fr
             if (!node.alive()) continue;
             const auto left = node.left_out.find(surface.id);
             const bool left_out = left != node.left_out.end();
-            waited.push_back({node,
-                              node.stream,
-                              left_out ? left->second : surface.frame - (kFramesInFlight - 1),
-                              {.left_out = left_out}});
+            waited.push_back({node, node.stream});
+            progress.push_back(
+                {.frame = left_out ? left->second : surface.frame - (kFramesInFlight - 1), .left_out = left_out});
             all_slow = all_slow && node.slow;
         }
     }
     const auto deadline = std::chrono::steady_clock::now() + wait.limit;
-    bool someone_done = false;
-    for (Waited& w : waited) {
+    for (std::size_t i = 0; i < waited.size(); ++i) {
         const auto left =
             std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
-        const bool patient = all_slow || !w.node.slow;
-        w.progress.done = w.stream->wait_swap(surface.id, w.frame, patient && left > 0 ? static_cast<int>(left) : 0);
-        w.progress.queued_bytes = w.stream->queued_bytes();
-        someone_done = someone_done || w.progress.done;
+        const auto& [node, stream] = waited[i];
+        const bool patient = (all_slow || !node.slow) && left > 0;
+        progress[i].done = stream->wait_swap(surface.id, progress[i].frame, patient ? static_cast<int>(left) : 0);
+        progress[i].queued_bytes = stream->queued_bytes();
     }
+    const std::uint32_t newest = newest_done(progress);
     std::lock_guard lock(wait.mutex);
-    for (Waited& w : waited) {
-        if (w.node.stream != w.stream) continue;  // another incarnation meanwhile
-        w.node.slow = !w.progress.done;
-        if (!leave_out(w.progress, someone_done, whole_frames)) w.node.left_out.erase(surface.id);
-        else w.node.left_out.try_emplace(surface.id, surface.frame);
+    for (std::size_t i = 0; i < waited.size(); ++i) {
+        const auto& [node, stream] = waited[i];
+        if (node.stream != stream) continue;  // another incarnation meanwhile
+        node.slow = !progress[i].done;
+        if (!leave_out(progress[i], newest, whole_frames)) node.left_out.erase(surface.id);
+        else node.left_out.try_emplace(surface.id, surface.frame);
     }
 }
 

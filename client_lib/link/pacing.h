@@ -5,8 +5,10 @@
 // program nor the other nodes wait for it. Pure.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace wall::client {
 
@@ -17,17 +19,27 @@ inline constexpr std::uint32_t kFramesInFlight = 2;
 inline constexpr std::size_t kMaxLateBytes = 8u << 20;
 
 struct NodeProgress {
-    bool done = false;      ///< drew in time what was waited for
-    bool left_out = false;  ///< already
+    std::uint32_t frame = 0;  ///< that was waited for
+    bool done = false;        ///< drew it in time
+    bool left_out = false;    ///< already
     std::size_t queued_bytes = 0;
 };
 
-/// `others_done`: another node of the surface was in time, so it is not that all are held or slow alike.
+/// The newest frame that a node of the surface has drawn in time; 0 = none has.
+constexpr std::uint32_t newest_done(std::span<const NodeProgress> nodes) {
+    std::uint32_t newest = 0;
+    for (const NodeProgress& node : nodes)
+        if (node.done) newest = std::max(newest, node.frame);
+    return newest;
+}
+
+/// `newest`: what newest_done() says of all. A node is late alone only if another has drawn the same frame or a later
+/// one: otherwise all are held or slow alike, even if one has just drawn an old frame with which it comes back.
 /// `whole_frames`: frames start by clearing everything, so that one may be missed. A frame that builds on the one
 /// before is kept for a late node as long as its queue allows.
-constexpr bool leave_out(const NodeProgress& node, bool others_done, bool whole_frames) {
+constexpr bool leave_out(const NodeProgress& node, std::uint32_t newest, bool whole_frames) {
     if (node.done) return false;
-    return node.left_out || (others_done && whole_frames) || node.queued_bytes > kMaxLateBytes;
+    return node.left_out || (newest >= node.frame && whole_frames) || node.queued_bytes > kMaxLateBytes;
 }
 
 }  // namespace wall::client
