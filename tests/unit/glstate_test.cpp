@@ -282,10 +282,10 @@ TEST(Groups, HoldWhatTheSpecificationSays) {
     };
     using Names = std::vector<std::string>;
     EXPECT_EQ(names(GL_DEPTH_BUFFER_BIT), (Names{"depth_test", "depth_func", "depth_mask", "clear_depth"}));
-    EXPECT_EQ(names(GL_VIEWPORT_BIT), (Names{"depth_range", "viewport"}));
+    EXPECT_EQ(names(GL_VIEWPORT_BIT), (Names{"depth_range", "depth_range_rest", "viewport", "viewport_rest"}));
     EXPECT_EQ(names(GL_LINE_BIT), (Names{"line_smooth", "line_stipple_enabled", "line_width", "line_stipple"}));
     EXPECT_EQ(names(GL_LIST_BIT), (Names{"list_base"}));
-    EXPECT_EQ(names(GL_SCISSOR_BIT), (Names{"scissor", "scissor_enabled"}));
+    EXPECT_EQ(names(GL_SCISSOR_BIT), (Names{"scissor", "scissor_rest", "scissor_enabled"}));
     EXPECT_EQ(names(GL_ACCUM_BUFFER_BIT), (Names{"clear_accum"}));
     EXPECT_EQ(names(GL_POLYGON_STIPPLE_BIT), (Names{"polygon_stipple"}));
     const auto enables = names(GL_ENABLE_BIT);

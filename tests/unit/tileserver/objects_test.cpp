@@ -445,6 +445,10 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
          [](Batch& b, ClientName id) {
              pack::SamplerParameter(b.buffer(), id, GL_TEXTURE_LOD_BIAS, GL_FLOAT, 0, 0, 0, 0);
          }},
+        {ObjectKind::pipeline,
+         [](Batch& b, ClientName id) {
+             pack::Pipeline(b.buffer(), id, std::as_bytes(std::span(std::array<std::uint32_t, 5>{})));
+         }},
         {ObjectKind::capture,
          [](Batch& b, ClientName id) { pack::Capture(b.buffer(), id, GL_POINTS, std::as_bytes(std::span(part))); }},
     }};
