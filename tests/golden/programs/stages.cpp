@@ -91,12 +91,13 @@ SCENE(tessellated_patches, 4) {
         "  gl_TessLevelInner[0] = level; gl_TessLevelInner[1] = level + 1.0; }";
     const auto evaluation = [](const char* layout) {
         return std::string("#version 400\nlayout(") + layout +
-               ") in; out vec3 tone; void main() { vec2 at = gl_TessCoord.xy; tone = vec3(at, 0.5);\n"
+               ") in; flat out vec3 tone; void main() { vec2 at = gl_TessCoord.xy; tone = vec3(at, 0.5);\n"
                "  vec4 p = mix(mix(gl_in[0].gl_Position, gl_in[1].gl_Position, at.x),\n"
                "               mix(gl_in[3].gl_Position, gl_in[2].gl_Position, at.x), at.y);\n"
                "  gl_Position = p + vec4(0.05 * sin(6.0 * p.y), 0.05 * sin(7.0 * p.x), 0, 0); }";
     };
-    constexpr const char* kTone = "#version 400\nin vec3 tone; out vec4 color; void main() { color = vec4(tone, 1); }";
+    constexpr const char* kTone =
+        "#version 400\nflat in vec3 tone; out vec4 color; void main() { color = vec4(tone, 1); }";
     static GLuint programs[4], places;
     if (frame == 0) {
         constexpr const char* kLayouts[] = {"quads, equal_spacing", "quads, fractional_odd_spacing, cw",
