@@ -122,7 +122,11 @@ function(wall_test name)
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
   endif()
-  set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 120)
+  set(limit 120)  # seconds; each at least three times what the slowest one takes
+  if(WALLGL_SANITIZE)
+    set(limit 360)
+  endif()
+  set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${limit})
   # `unit_tests`, `integration_tests`, ...: all programs of a label, for builds that want only those.
   foreach(label ${ARG_LABELS})
     if(NOT TARGET ${label}_tests)

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs what is missing, builds, and runs every test: scripts/test.sh [STAGE...], stages as listed below.
-# Ends with CTest's own summary of each stage; exit code 1 if anything failed. Two run only when they are named:
-# conformance-all takes hours; fresh does everything once more on a clean Debian 12 (scripts/fresh.sh).
+# Ends with CTest's own summary of each stage; exit code 1 if anything failed. Three run only when they are named:
+# golden-all and conformance-all, of which the usual run takes samples (a quarter of an hour, hours), and fresh, which
+# does everything once more on a clean Debian 12 (scripts/fresh.sh).
 set -uo pipefail
 cd "$(dirname "$0")/.."
-readonly all_stages=(release golden conformance asan tsan fuzz) on_request=(conformance-all fresh)
+readonly all_stages=(release golden conformance asan tsan fuzz) on_request=(golden-all conformance-all fresh)
 readonly summaries="build/test-summaries"
 begin=$SECONDS
 failed=()
@@ -34,6 +35,18 @@ stage_golden() {
   say "golden tests: programs on plain Mesa and on walls, frame by frame; the status page in a browser"
   build release || { failed+=(golden); return; }
   run golden release -L 'golden|browser'
+}
+
+stage_golden-all() {
+  say "golden tests: all recordings on each wall"
+  build release || { failed+=(golden-all); return; }
+  local wall
+  for wall in mesa 1x1 2x2 3x2; do
+    WALLGL_BUILD="$PWD/build/release" tests/golden/golden.py --tiles "$wall" \
+      --report "build/release/test-output/golden-all-$wall" \
+      --references build/release/test-output/golden-references || failed+=("golden-all ($wall)")
+  done
+  WALLGL_BUILD="$PWD/build/release" tests/golden/healing.py --all || failed+=("golden-all (healing)")
 }
 
 stage_conformance() {

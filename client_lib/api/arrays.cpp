@@ -4,8 +4,10 @@
 #include <iterator>
 #include <optional>
 
+#include "client_lib/api/array_draws.h"
 #include "client_lib/context/array_copies.h"
 #include "client_lib/context/attribute_stack.h"
+#include "client_lib/context/based_instances.h"
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/capture_use.h"
 #include "client_lib/context/client_arrays.h"
@@ -128,6 +130,8 @@ bool is_index_type(GLenum type) {
     return type == GL_UNSIGNED_BYTE || type == GL_UNSIGNED_SHORT || type == GL_UNSIGNED_INT;
 }
 
+}  // namespace
+
 /// Without fixed function there are no quads and no polygons; a core profile draws from no arrays but those of an
 /// object.
 bool check_mode(Context& c, GLenum mode) {
@@ -135,6 +139,19 @@ bool check_mode(Context& c, GLenum mode) {
         return c.error(GL_INVALID_ENUM), false;
     if (c.profile.core && c.state.vertex_arrays.vertex_array_object == 0) return c.error(GL_INVALID_OPERATION), false;
     return !c.at_once() || fits_program(c, mode);
+}
+
+namespace {
+
+/// The index at which primitives begin anew, if there is one: the program's, or the last of the type, which goes first
+/// (OpenGL 4.6, 10.3.6).
+std::optional<GLuint> restart_index(const Context& c, GLenum type) {
+    const auto& local = c.state.local;
+    if (local.primitive_restart_fixed_index) {
+        const unsigned unused_bits = type == GL_UNSIGNED_BYTE ? 24 : type == GL_UNSIGNED_SHORT ? 16 : 0;
+        return ~GLuint{0} >> unused_bits;
+    }
+    return local.primitive_restart ? std::optional(local.primitive_restart_index) : std::nullopt;
 }
 
 /// Draws one instance into the block or the list.
@@ -158,9 +175,13 @@ void draw_inline(Context& c, const ArrayDraw& draw, GLsizei instance) {
     if (elements.indices) draw_elements(c, draw.mode, elements);
 }
 
+}  // namespace
+
 void draw(Context& c, const ArrayDraw& draw) {
     const auto elements = static_cast<std::uint64_t>(draw.count) * static_cast<std::uint64_t>(draw.instances);
     if (draw.instances > 1 && elements > wire::kMostInstancedElements) return c.error(GL_OUT_OF_MEMORY);
+    std::optional<BasedInstances> based;
+    if (draw.base_instance != 0) based.emplace(c.state, draw.base_instance);
     if (draw_on_nodes(c, draw)) return;
     if (draw_copied(c, draw)) return;
     const bool at_once = c.at_once();
@@ -170,38 +191,33 @@ void draw(Context& c, const ArrayDraw& draw) {
     for (GLsizei i = 0; i < draw.instances; ++i) draw_inline(c, draw, i);
 }
 
+void draw_indexed(Context& c, ArrayDraw with_indices) {
+    with_indices.restart = restart_index(c, with_indices.index_type);
+    draw(c, with_indices);
+}
+
+bool check_indices(Context& c, GLenum mode, GLsizei count, GLenum type, GLsizei instances) {
+    if (count < 0 || instances < 0) return c.error(GL_INVALID_VALUE), false;
+    if (!check_mode(c, mode)) return false;
+    if (!is_index_type(type)) return c.error(GL_INVALID_ENUM), false;
+    if (c.profile.es == 30 && c.captures->captures()) return c.error(GL_INVALID_OPERATION), false;  // 2.15.2
+    return true;
+}
+
+namespace {
+
 void draw_range(Context& c, GLenum mode, GLint first, GLsizei count, GLsizei instances = 1) {
     draw(c, {.mode = mode, .first = first, .count = count, .instances = instances});
 }
 
-/// The index at which primitives begin anew, if there is one: the program's, or the last of the type, which goes first
-/// (OpenGL 4.6, 10.3.6).
-std::optional<GLuint> restart_index(const Context& c, GLenum type) {
-    const auto& local = c.state.local;
-    if (local.primitive_restart_fixed_index) {
-        const unsigned unused_bits = type == GL_UNSIGNED_BYTE ? 24 : type == GL_UNSIGNED_SHORT ? 16 : 0;
-        return ~GLuint{0} >> unused_bits;
-    }
-    return local.primitive_restart ? std::optional(local.primitive_restart_index) : std::nullopt;
-}
-
 void draw_indices(Context& c, GLenum mode, GLsizei count, GLenum type, const void* indices, GLint base_vertex = 0,
                   GLsizei instances = 1) {
-    draw(c, {.mode = mode,
-             .count = count,
-             .index_type = type,
-             .indices = indices,
-             .base_vertex = base_vertex,
-             .restart = restart_index(c, type),
-             .instances = instances});
-}
-
-bool check_indices(Context& c, GLenum mode, GLsizei count, GLenum type, GLsizei instances = 1) {
-    if (count < 0 || instances < 0) return c.error(GL_INVALID_VALUE), false;
-    if (!check_mode(c, mode)) return false;
-    if (!is_index_type(type)) return c.error(GL_INVALID_ENUM), false;
-    if (c.profile.es == 30 && c.captures->active) return c.error(GL_INVALID_OPERATION), false;  // 2.15.2
-    return true;
+    draw_indexed(c, {.mode = mode,
+                     .count = count,
+                     .index_type = type,
+                     .indices = indices,
+                     .base_vertex = base_vertex,
+                     .instances = instances});
 }
 
 template <class Named>
@@ -309,6 +325,28 @@ void DrawElementsInstancedBaseVertex(Context& c, GLenum mode, GLsizei count, GLe
                                      GLsizei instances, GLint base_vertex) {
     if (check_indices(c, mode, count, type, instances))
         draw_indices(c, mode, count, type, indices, base_vertex, instances);
+}
+
+void DrawArraysInstancedBaseInstance(Context& c, GLenum mode, GLint first, GLsizei count, GLsizei instances,
+                                     GLuint base_instance) {
+    if (first < 0 || count < 0 || instances < 0) return c.error(GL_INVALID_VALUE);
+    if (!c.at_once()) return c.error(GL_INVALID_OPERATION);
+    if (check_mode(c, mode))
+        draw(c, {.mode = mode, .first = first, .count = count, .instances = instances, .base_instance = base_instance});
+}
+
+void DrawElementsInstancedBaseVertexBaseInstance(Context& c, GLenum mode, GLsizei count, GLenum type,
+                                                 const void* indices, GLsizei instances, GLint base_vertex,
+                                                 GLuint base_instance) {
+    if (!c.at_once()) return c.error(GL_INVALID_OPERATION);
+    if (check_indices(c, mode, count, type, instances))
+        draw_indexed(c, {.mode = mode,
+                         .count = count,
+                         .index_type = type,
+                         .indices = indices,
+                         .base_vertex = base_vertex,
+                         .instances = instances,
+                         .base_instance = base_instance});
 }
 
 void DrawRangeElements(Context& c, GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type,

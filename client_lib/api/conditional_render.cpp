@@ -39,7 +39,7 @@ void BeginConditionalRender(Context& c, GLuint name, GLenum word) {
     if (!c.queries->names.known(name)) return c.error(GL_INVALID_VALUE);
     const auto query = c.queries->names.find(name);
     if (!query || query->slot != QuerySlot::samples) return c.error(GL_INVALID_OPERATION);
-    if (query == c.queries->current[static_cast<std::size_t>(QuerySlot::samples)]) return c.error(GL_INVALID_OPERATION);
+    if (query == c.queries->current(QuerySlot::samples, 0)) return c.error(GL_INVALID_OPERATION);
     c.flush_block();
     c.queries->conditional = true;
     if (!mode->waits && !is_available(c, *query)) return;

@@ -18,6 +18,8 @@
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/objects/es_formats.h"
 #include "client_lib/objects/maps.h"
+#include "client_lib/objects/program_pipeline.h"
+#include "common/glstate/draw_buffers.h"
 #include "common/glstate/elements.h"
 #include "common/glstate/queries.h"
 
@@ -118,6 +120,8 @@ const Special kSpecials[] = {
      [](Context& c, double* out) {
          of_texture_matrix(c, [&](unsigned unit) { *out = depth_of(c.texture_stacks[unit]); });
      }},
+    {GL_PROGRAM_PIPELINE_BINDING, 1,
+     [](Context& c, double* out) { *out = c.pipelines->bound ? c.pipelines->bound->pipeline : 0; }},
     {GL_MAX_MODELVIEW_STACK_DEPTH, 1, [](Context& c, double* out) { *out = c.modelview_stack.limit; }},
     {GL_MAX_PROJECTION_STACK_DEPTH, 1, [](Context& c, double* out) { *out = c.projection_stack.limit; }},
     {GL_MAX_TEXTURE_STACK_DEPTH, 1, [](Context& c, double* out) { *out = c.texture_stacks[0].limit; }},
@@ -195,6 +199,13 @@ const Special kSpecials[] = {
     {GL_MAX_COMBINED_UNIFORM_BLOCKS, 1, limited<GL_MAX_COMBINED_UNIFORM_BLOCKS, kUniformBuffers>},
     {GL_MAX_TRANSFORM_FEEDBACK_SEPARATE_ATTRIBS, 1,
      limited<GL_MAX_TRANSFORM_FEEDBACK_SEPARATE_ATTRIBS, glstate::el::feedback_buffer::count>},
+    {GL_MAX_TRANSFORM_FEEDBACK_BUFFERS, 1,
+     limited<GL_MAX_TRANSFORM_FEEDBACK_BUFFERS, glstate::el::feedback_buffer::count>},
+    {GL_MAX_VIEWPORTS, 1, limited<GL_MAX_VIEWPORTS, glstate::kViewports>},
+    {GL_MAX_VERTEX_STREAMS, 1, limited<GL_MAX_VERTEX_STREAMS, glstate::el::captured_query::count>},
+    {GL_MAX_TESS_CONTROL_TEXTURE_IMAGE_UNITS, 1, limited<GL_MAX_TESS_CONTROL_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
+    {GL_MAX_TESS_EVALUATION_TEXTURE_IMAGE_UNITS, 1,
+     limited<GL_MAX_TESS_EVALUATION_TEXTURE_IMAGE_UNITS, kTextureImageUnits>},
     {GL_MAX_ELEMENTS_VERTICES, 1, constant<3000>},
     {GL_MAX_ELEMENTS_INDICES, 1, constant<3000>},
 

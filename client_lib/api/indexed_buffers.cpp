@@ -18,7 +18,7 @@ namespace el = glstate::el;
 GLenum error_of_place(Context& c, GLenum target, GLuint index) {
     if (target == GL_UNIFORM_BUFFER) return index < el::uniform_buffer::count ? GL_NO_ERROR : GL_INVALID_VALUE;
     if (target != GL_TRANSFORM_FEEDBACK_BUFFER) return GL_INVALID_ENUM;
-    if (c.captures->active) return GL_INVALID_OPERATION;
+    if (c.captures->bound().active) return GL_INVALID_OPERATION;
     return index < kCaptureBuffers ? GL_NO_ERROR : GL_INVALID_VALUE;
 }
 

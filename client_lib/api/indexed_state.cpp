@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 // State of single draw buffers and other indexed binding points (OpenGL 3.0, 4.1.8 and 4.2.2; EXT_draw_buffers2).
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 #include "client_lib/api/indexed_buffers.h"
 #include "client_lib/context/context.h"
+#include "client_lib/context/indexed_values.h"
 #include "client_lib/context/limits.h"
 #include "common/glstate/draw_buffers.h"
 
@@ -14,11 +18,17 @@ namespace {
 
 namespace el = glstate::el;
 
-GLuint draw_buffers(Context& c) {
-    constexpr auto kMost = static_cast<double>(glstate::kDrawBuffers);
-    if (!c.attached()) return glstate::kDrawBuffers;
-    return static_cast<GLuint>(std::min(kMost, limit_of(c.caps(), GL_MAX_DRAW_BUFFERS, kMost)));
+GLuint draw_buffers(Context& c) { return draw_buffers_of(c); }
+
+/// A field of how a draw buffer blends.
+template <class E, class R, auto kField>
+void blending(Context& c, GLuint index, double* out) {
+    *out = glstate::value_at<E, R>(c.state, index).*kField;
 }
+template <auto kField>
+constexpr auto kFunction = blending<el::blend_func, el::blend_func_rest, kField>;
+template <auto kField>
+constexpr auto kEquation = blending<el::blend_equation, el::blend_equation_rest, kField>;
 
 /// A word that has a value for each index. What comes with bindings of buffers is a line here.
 struct IndexedWord {
@@ -26,35 +36,63 @@ struct IndexedWord {
     bool cap;             ///< of glEnablei
     unsigned components;  ///< at most 4
     GLuint (*count)(Context&);
-    void (*read)(Context&, GLuint index, std::int64_t* out);
+    void (*read)(Context&, GLuint index, double* out);
 };
 
 /// Of the compute shaders that nodes can run; the nodes' limit.
 template <GLenum kWord>
-void work_groups(Context& c, GLuint index, std::int64_t* out) {
-    *out = c.attached() ? static_cast<std::int64_t>(limit_of(c.caps(), kWord, 0, index)) : 0;
+void work_groups(Context& c, GLuint index, double* out) {
+    *out = c.attached() ? limit_of(c.caps(), kWord, 0, index) : 0;
 }
 GLuint dimensions(Context&) { return 3; }
 
 /// Of the buffers at indexed targets.
 template <GLenum kWord>
-void buffer_value(Context& c, GLuint index, std::int64_t* out) {
+void buffer_value(Context& c, GLuint index, double* out) {
     GLint64 value = 0;
     get_indexed_buffer(c, kWord, index, value);
-    *out = value;
+    *out = static_cast<double>(value);  // no buffer is so large that it would be rounded
 }
 GLuint uniform_buffers(Context&) { return el::uniform_buffer::count; }
 GLuint feedback_buffers(Context&) { return el::feedback_buffer::count; }
 
 GLuint mask_words(Context&) { return 1; }
 
+GLuint viewports(Context& c) { return viewports_of(c); }
+
+void viewport_at(Context& c, GLuint i, double* out) {
+    const glstate::Viewport& v = glstate::value_at<el::viewport, el::viewport_rest>(c.state, i);
+    std::ranges::copy(std::array<double, 4>{v.x, v.y, v.width, v.height}, out);
+}
+void scissor_at(Context& c, GLuint i, double* out) {
+    const glstate::Scissor& v = glstate::value_at<el::scissor, el::scissor_rest>(c.state, i);
+    std::ranges::copy(std::array{double(v.x), double(v.y), double(v.width), double(v.height)}, out);
+}
+void depth_range_at(Context& c, GLuint i, double* out) {
+    const glstate::DepthRange& v = glstate::value_at<el::depth_range, el::depth_range_rest>(c.state, i);
+    out[0] = v.near_value, out[1] = v.far_value;
+}
+
 const IndexedWord kWords[] = {
+    {GL_SCISSOR_TEST, true, 1, viewports,
+     [](Context& c, GLuint i, double* out) { *out = c.state.window.scissor_enabled >> i & 1; }},
+    {GL_VIEWPORT, false, 4, viewports, viewport_at},
+    {GL_SCISSOR_BOX, false, 4, viewports, scissor_at},
+    {GL_DEPTH_RANGE, false, 2, viewports, depth_range_at},
     {GL_BLEND, true, 1, draw_buffers,
-     [](Context& c, GLuint i, std::int64_t* out) { *out = c.state.color_buffer.blend_enabled >> i & 1; }},
+     [](Context& c, GLuint i, double* out) { *out = c.state.color_buffer.blend_enabled >> i & 1; }},
     {GL_COLOR_WRITEMASK, false, 4, draw_buffers,
-     [](Context& c, GLuint i, std::int64_t* out) { std::ranges::copy(glstate::written_channels(c.state, i), out); }},
+     [](Context& c, GLuint i, double* out) { std::ranges::copy(glstate::written_channels(c.state, i), out); }},
+    {GL_BLEND_SRC_RGB, false, 1, draw_buffers, kFunction<&glstate::BlendFunc::src_rgb>},
+    {GL_BLEND_DST_RGB, false, 1, draw_buffers, kFunction<&glstate::BlendFunc::dst_rgb>},
+    {GL_BLEND_SRC_ALPHA, false, 1, draw_buffers, kFunction<&glstate::BlendFunc::src_alpha>},
+    {GL_BLEND_DST_ALPHA, false, 1, draw_buffers, kFunction<&glstate::BlendFunc::dst_alpha>},
+    {GL_BLEND_SRC, false, 1, draw_buffers, kFunction<&glstate::BlendFunc::src_rgb>},
+    {GL_BLEND_DST, false, 1, draw_buffers, kFunction<&glstate::BlendFunc::dst_rgb>},
+    {GL_BLEND_EQUATION_RGB, false, 1, draw_buffers, kEquation<&glstate::BlendEquation::rgb>},
+    {GL_BLEND_EQUATION_ALPHA, false, 1, draw_buffers, kEquation<&glstate::BlendEquation::alpha>},
     {GL_SAMPLE_MASK_VALUE, false, 1, mask_words,
-     [](Context& c, GLuint, std::int64_t* out) { *out = c.get<el::sample_mask>(); }},
+     [](Context& c, GLuint, double* out) { *out = c.get<el::sample_mask>(); }},
     {GL_UNIFORM_BUFFER_BINDING, false, 1, uniform_buffers, buffer_value<GL_UNIFORM_BUFFER_BINDING>},
     {GL_UNIFORM_BUFFER_START, false, 1, uniform_buffers, buffer_value<GL_UNIFORM_BUFFER_START>},
     {GL_UNIFORM_BUFFER_SIZE, false, 1, uniform_buffers, buffer_value<GL_UNIFORM_BUFFER_SIZE>},
@@ -78,17 +116,19 @@ template <class Out>
 void get(Context& c, GLenum word, GLuint index, Out* out) {
     const IndexedWord* found = find_word(c, word, index, false);
     if (!found) return;
-    std::int64_t values[4] = {};
+    double values[4] = {};
     found->read(c, index, values);
     for (unsigned k = 0; k < found->components; ++k) {
         if constexpr (std::is_same_v<Out, GLboolean>) out[k] = values[k] != 0;
-        else out[k] = static_cast<Out>(values[k]);
+        else if constexpr (std::is_floating_point_v<Out>) out[k] = static_cast<Out>(values[k]);
+        else out[k] = static_cast<Out>(std::llround(values[k]));
     }
 }
 
 void enable(Context& c, GLenum cap, GLuint index, bool on) {
     if (!find_word(c, cap, index, true)) return;
-    c.set<el::blend_enabled>(0, glstate::with_bit(c.get<el::blend_enabled>(), index, on));
+    if (cap == GL_BLEND) c.set<el::blend_enabled>(0, glstate::with_bit(c.get<el::blend_enabled>(), index, on));
+    else c.set<el::scissor_enabled>(0, glstate::with_bit(c.get<el::scissor_enabled>(), index, on));
 }
 
 }  // namespace
@@ -98,7 +138,7 @@ void Disablei(Context& c, GLenum target, GLuint index) { enable(c, target, index
 
 GLboolean IsEnabledi(Context& c, GLenum target, GLuint index) {
     const IndexedWord* found = find_word(c, target, index, true);
-    std::int64_t value = 0;
+    double value = 0;
     if (found) found->read(c, index, &value);
     return value != 0;
 }
@@ -113,6 +153,8 @@ void ColorMaski(Context& c, GLuint index, GLboolean red, GLboolean green, GLbool
 
 void GetBooleani_v(Context& c, GLenum target, GLuint index, GLboolean* data) { get(c, target, index, data); }
 void GetIntegeri_v(Context& c, GLenum target, GLuint index, GLint* data) { get(c, target, index, data); }
+void GetFloati_v(Context& c, GLenum target, GLuint index, GLfloat* data) { get(c, target, index, data); }
+void GetDoublei_v(Context& c, GLenum target, GLuint index, GLdouble* data) { get(c, target, index, data); }
 void GetInteger64i_v(Context& c, GLenum target, GLuint index, GLint64* data) { get(c, target, index, data); }
 
 }  // namespace wall::client::api

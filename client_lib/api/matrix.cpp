@@ -132,12 +132,4 @@ void Ortho(Context& c, GLdouble left, GLdouble right, GLdouble bottom, GLdouble 
     change_matrix(c, [&](FormedMatrix& matrix) { ortho(matrix, l, r, b, t, n, f); });
 }
 
-void Viewport(Context& c, GLint x, GLint y, GLsizei width, GLsizei height) {
-    if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
-    const auto most = [&](std::size_t i) {
-        return static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_VIEWPORT_DIMS, 16384, i));
-    };
-    c.set<el::viewport>(0, {x, y, std::min(width, most(0)), std::min(height, most(1))});
-}
-
 }  // namespace wall::client::api

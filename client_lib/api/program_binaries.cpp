@@ -24,13 +24,4 @@ void ProgramBinary(Context& c, GLuint name, GLenum, const void*, GLsizei length)
     c.error(GL_INVALID_ENUM);
 }
 
-void ProgramParameteri(Context& c, GLuint name, GLenum pname, GLint value) {
-    const auto program = program_of(c, name);
-    if (!program) return;
-    if (pname != GL_PROGRAM_BINARY_RETRIEVABLE_HINT) return c.error(GL_INVALID_ENUM);
-    if (value != GL_FALSE && value != GL_TRUE) return c.error(GL_INVALID_VALUE);
-    std::lock_guard lock(c.share().mutex);
-    program->next_binary_hint = value != GL_FALSE;
-}
-
 }  // namespace wall::client::api

@@ -2,10 +2,12 @@
 // Shaders and programs (OpenGL 2.1, 2.15 and 6.1.14): names are given here, one node is asked how compiling and linking
 // went, and all queries are answered from the shadow.
 #include <algorithm>
+#include <optional>
 
 #include "client_lib/api/program_access.h"
 #include "client_lib/context/capture_use.h"
 #include "client_lib/context/program_use.h"
+#include "client_lib/objects/program_pipeline.h"
 #include "client_lib/objects/shader_version.h"
 
 namespace wall::client::api {
@@ -70,6 +72,31 @@ GLuint glapi::GeometryStage::*field_of_geometry_stage(GLenum pname) {
         case GL_GEOMETRY_SHADER_INVOCATIONS: return &glapi::GeometryStage::invocations;
         default: return nullptr;
     }
+}
+
+/// Null: no such word of evaluation shaders.
+GLuint glapi::TessellationStage::*field_of_evaluation_stage(GLenum pname) {
+    switch (pname) {
+        case GL_TESS_GEN_MODE: return &glapi::TessellationStage::mode;
+        case GL_TESS_GEN_SPACING: return &glapi::TessellationStage::spacing;
+        case GL_TESS_GEN_VERTEX_ORDER: return &glapi::TessellationStage::order;
+        case GL_TESS_GEN_POINT_MODE: return &glapi::TessellationStage::point_mode;
+        default: return nullptr;
+    }
+}
+
+/// Of the stages between that of vertices and that of fragments. False: no such word; nothing: the program has no such
+/// stage.
+bool answer_stage(const Executable* executable, GLenum pname, std::optional<GLuint>& value) {
+    const auto of_geometry = field_of_geometry_stage(pname);
+    const auto of_evaluation = field_of_evaluation_stage(pname);
+    if (!of_geometry && !of_evaluation && pname != GL_TESS_CONTROL_OUTPUT_VERTICES) return false;
+    if (!executable) return true;
+    const glapi::TessellationStage& tessellation = executable->tessellation;
+    if (of_geometry && executable->geometry.exists()) value = executable->geometry.*of_geometry;
+    if (of_evaluation && tessellation.exists()) value = tessellation.*of_evaluation;
+    if (!of_geometry && !of_evaluation && tessellation.vertices != 0) value = tessellation.vertices;
+    return true;
 }
 
 }  // namespace
@@ -199,7 +226,7 @@ void BindAttribLocation(Context& c, GLuint name, GLuint index, const GLchar* att
 void LinkProgram(Context& c, GLuint name) {
     const auto program = program_of(c, name);
     if (!program) return;
-    if (c.captures->program == program) return c.error(GL_INVALID_OPERATION);
+    if (c.captures->uses(*program)) return c.error(GL_INVALID_OPERATION);
     c.flush_block();
     bool in_use = false;
     {
@@ -232,12 +259,15 @@ void ValidateProgram(Context& c, GLuint name) {
 }
 
 void UseProgram(Context& c, GLuint name) {
-    if (c.captures->active) return c.error(GL_INVALID_OPERATION);
-    if (name == 0) return use_program(c, nullptr);
-    const auto program = linked_program(c, name);
-    if (!program) return;
-    if (!program->linked) return c.error(GL_INVALID_OPERATION);
-    use_program(c, program);
+    if (c.captures->captures()) return c.error(GL_INVALID_OPERATION);
+    std::shared_ptr<Program> program;
+    if (name != 0) {
+        program = linked_program(c, name);
+        if (!program) return;
+        if (!program->linked) return c.error(GL_INVALID_OPERATION);
+    }
+    c.pipelines->used = program;
+    use_program(c, program ? program : c.pipelines->bound);
 }
 
 void GetProgramiv(Context& c, GLuint name, GLenum pname, GLint* params) {
@@ -245,14 +275,14 @@ void GetProgramiv(Context& c, GLuint name, GLenum pname, GLint* params) {
     if (!program) return;
     if (pname != GL_DELETE_STATUS && pname != GL_ATTACHED_SHADERS) learn_link_result(c, *program);
     std::lock_guard lock(c.share().mutex);
-    if (const auto field = field_of_geometry_stage(pname)) {
-        const Executable* executable = active(*program);
-        if (!executable || !executable->geometry.exists()) return c.error(GL_INVALID_OPERATION);
-        *params = static_cast<GLint>(executable->geometry.*field);
+    if (std::optional<GLuint> value; answer_stage(active(*program), pname, value)) {
+        if (!value) return c.error(GL_INVALID_OPERATION);
+        *params = static_cast<GLint>(*value);
         return;
     }
     switch (pname) {
         case GL_DELETE_STATUS: *params = program->deleted; break;
+        case GL_PROGRAM_SEPARABLE: *params = program->separable; break;
         case GL_LINK_STATUS: *params = program->linked; break;
         case GL_VALIDATE_STATUS: *params = program->validated; break;
         case GL_INFO_LOG_LENGTH: *params = text_length(program->log); break;
@@ -277,6 +307,15 @@ void GetProgramInfoLog(Context& c, GLuint name, GLsizei room, GLsizei* length, G
     if (!program) return;
     std::lock_guard lock(c.share().mutex);
     give_text(c, program->log, room, length, out);
+}
+
+void ProgramParameteri(Context& c, GLuint name, GLenum pname, GLint value) {
+    const auto program = program_of(c, name);
+    if (!program) return;
+    if (pname != GL_PROGRAM_SEPARABLE && pname != GL_PROGRAM_BINARY_RETRIEVABLE_HINT) return c.error(GL_INVALID_ENUM);
+    if (value != GL_FALSE && value != GL_TRUE) return c.error(GL_INVALID_VALUE);
+    std::lock_guard lock(c.share().mutex);
+    (pname == GL_PROGRAM_SEPARABLE ? program->separable : program->next_binary_hint) = value != GL_FALSE;
 }
 
 void GetAttachedShaders(Context& c, GLuint name, GLsizei room, GLsizei* count, GLuint* shaders) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "client_lib/context/captured_draw.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/query_result.h"
 #include "client_lib/context/query_state.h"
@@ -46,21 +47,27 @@ void forget(Context& c, const QueryObject& query) {
 }
 
 /// What is counted from here on counts for it; null: for none.
-void make_current(Context& c, QuerySlot slot, std::shared_ptr<QueryObject> query) {
+void make_current(Context& c, QuerySlot slot, GLuint stream, std::shared_ptr<QueryObject> query) {
     const std::uint32_t id = query ? query->id.value : 0;
     if (slot == QuerySlot::samples) c.set<el::occlusion_query>(0, id);
-    if (slot == QuerySlot::primitives) c.set<el::primitives_query>(0, id);
-    if (slot == QuerySlot::captured) c.set<el::captured_query>(0, id);
+    if (slot == QuerySlot::primitives) c.set<el::primitives_query>(stream, id);
+    if (slot == QuerySlot::captured) c.set<el::captured_query>(stream, id);
     if (slot == QuerySlot::time) c.flush_block();
-    c.queries->current[static_cast<std::size_t>(slot)] = std::move(query);
+    c.queries->current(slot, stream) = std::move(query);
 }
 
 bool is_current(const Context& c, const QueryObject& query) {
-    return query.slot != QuerySlot::none && c.queries->current[static_cast<std::size_t>(query.slot)].get() == &query;
+    return query.slot != QuerySlot::none && c.queries->current(query.slot, query.stream).get() == &query;
+}
+
+/// The streams that there may be a query of the target for. False, and an error: there is none of this number.
+bool check_stream(Context& c, const Target& target, GLuint stream) {
+    if (stream < (by_stream(target.slot) ? vertex_streams(c) : 1)) return true;
+    return c.error(GL_INVALID_VALUE), false;
 }
 
 void end(Context& c, const std::shared_ptr<QueryObject>& query) {
-    make_current(c, query->slot, nullptr);
+    make_current(c, query->slot, query->stream, nullptr);
     query->place = ++c.queries->ended;
     if (query->slot == QuerySlot::time) query->ended = c.session().fence();
 }
@@ -113,20 +120,21 @@ void DeleteQueries(Context& c, GLsizei count, const GLuint* names) {
 
 GLboolean IsQuery(Context& c, GLuint name) { return name != 0 && c.queries->names.find(name) != nullptr; }
 
-void BeginQuery(Context& c, GLenum word, GLuint name) {
+void BeginQueryIndexed(Context& c, GLenum word, GLuint stream, GLuint name) {
     const Target* target = find_target(c, word, true);
-    if (!target) return;
-    if (c.queries->current[static_cast<std::size_t>(target->slot)]) return c.error(GL_INVALID_OPERATION);
+    if (!target || !check_stream(c, *target, stream)) return;
+    if (c.queries->current(target->slot, stream)) return c.error(GL_INVALID_OPERATION);
     const auto query = begun_anew(c, name, *target);
     if (!query) return;
-    make_current(c, target->slot, query);
+    query->stream = stream;
+    make_current(c, target->slot, stream, query);
     if (target->slot == QuerySlot::time) query->begun = c.session().fence();
 }
 
-void EndQuery(Context& c, GLenum word) {
+void EndQueryIndexed(Context& c, GLenum word, GLuint stream) {
     const Target* target = find_target(c, word, true);
-    if (!target) return;
-    const auto query = c.queries->current[static_cast<std::size_t>(target->slot)];
+    if (!target || !check_stream(c, *target, stream)) return;
+    const auto query = c.queries->current(target->slot, stream);
     if (!query || query->target != word) return c.error(GL_INVALID_OPERATION);
     end(c, query);
 }
@@ -140,11 +148,10 @@ void QueryCounter(Context& c, GLuint name, GLenum word) {
     query->ended = c.session().fence();
 }
 
-void GetQueryiv(Context& c, GLenum word, GLenum pname, GLint* params) {
+void GetQueryIndexediv(Context& c, GLenum word, GLuint stream, GLenum pname, GLint* params) {
     const Target* target = find_target(c, word, false);
-    if (!target) return;
-    const auto current =
-        target->slot == QuerySlot::none ? nullptr : c.queries->current[static_cast<std::size_t>(target->slot)];
+    if (!target || !check_stream(c, *target, stream)) return;
+    const auto current = target->slot == QuerySlot::none ? nullptr : c.queries->current(target->slot, stream);
     if (pname == GL_CURRENT_QUERY) *params = current && current->target == word ? static_cast<GLint>(current->name) : 0;
     else if (pname == GL_QUERY_COUNTER_BITS) *params = target->bits;
     else c.error(GL_INVALID_ENUM);

@@ -23,11 +23,14 @@ GLsizei most_samples(Context& c, const TextureFormat& format) {
     return static_cast<GLsizei>(limit_of(c.caps(), limit, kUsualSamples));
 }
 
-void define_samples(Context& c, const ImageCall& call, GLsizei samples, GLboolean fixed_places) {
-    if (samples < 1) return c.error(GL_INVALID_VALUE);
+/// `for_good`: as glTexStorage does.
+void define_samples(Context& c, const ImageCall& call, GLsizei samples, GLboolean fixed_places, bool for_good) {
+    if (samples < 1 || (for_good && (call.width < 1 || call.height < 1 || call.depth < 1)))
+        return c.error(GL_INVALID_VALUE);
     const auto* info = image_target_of(call.target);
     if (!info || !info->samples || glapi::dimensions_of(*info) != call.dimensions) return c.error(GL_INVALID_ENUM);
     const TextureFormat* format = find_texture_format(call.internal_format);
+    if (for_good && (!format || !is_sized(*format))) return c.error(GL_INVALID_ENUM);
     if (!renderable(format)) return c.error(GL_INVALID_OPERATION);
     const GLsizei most = most_samples(c, *format);
     const bool allowed = samples <= most, fits = legal_size(c, call);
@@ -45,8 +48,10 @@ void define_samples(Context& c, const ImageCall& call, GLsizei samples, GLboolea
     if (!allowed || is_immutable(c, call.target)) return c.error(GL_INVALID_OPERATION);
     if (!fits) return c.error(GL_INVALID_VALUE);
     const auto texture = texture_to_change(c, call.target);
+    if (for_good && texture->is_default()) return c.error(GL_INVALID_OPERATION);
     std::lock_guard lock(c.share().mutex);
     texture->level_at(0, 0) = level;
+    if (for_good) texture->immutable_levels = 1;
     touch(c.share(), *texture);
 }
 
@@ -57,7 +62,7 @@ void TexImage2DMultisample(Context& c, GLenum target, GLsizei samples, GLenum in
     ImageCall call;
     call.dimensions = 2, call.target = target, call.internal_format = static_cast<GLint>(internal);
     call.width = width, call.height = height;
-    define_samples(c, call, samples, fixed_places);
+    define_samples(c, call, samples, fixed_places, false);
 }
 
 void TexImage3DMultisample(Context& c, GLenum target, GLsizei samples, GLenum internal, GLsizei width, GLsizei height,
@@ -65,7 +70,23 @@ void TexImage3DMultisample(Context& c, GLenum target, GLsizei samples, GLenum in
     ImageCall call;
     call.dimensions = 3, call.target = target, call.internal_format = static_cast<GLint>(internal);
     call.width = width, call.height = height, call.depth = depth;
-    define_samples(c, call, samples, fixed_places);
+    define_samples(c, call, samples, fixed_places, false);
+}
+
+void TexStorage2DMultisample(Context& c, GLenum target, GLsizei samples, GLenum internal, GLsizei width, GLsizei height,
+                             GLboolean fixed_places) {
+    ImageCall call;
+    call.dimensions = 2, call.target = target, call.internal_format = static_cast<GLint>(internal);
+    call.width = width, call.height = height;
+    define_samples(c, call, samples, fixed_places, true);
+}
+
+void TexStorage3DMultisample(Context& c, GLenum target, GLsizei samples, GLenum internal, GLsizei width, GLsizei height,
+                             GLsizei depth, GLboolean fixed_places) {
+    ImageCall call;
+    call.dimensions = 3, call.target = target, call.internal_format = static_cast<GLint>(internal);
+    call.width = width, call.height = height, call.depth = depth;
+    define_samples(c, call, samples, fixed_places, true);
 }
 
 }  // namespace wall::client::api

@@ -105,6 +105,8 @@ void GetActiveUniformBlockiv(Context& c, GLuint name, GLuint index, GLenum pname
             case GL_UNIFORM_BLOCK_REFERENCED_BY_VERTEX_SHADER: active_in(GL_VERTEX_SHADER); break;
             case GL_UNIFORM_BLOCK_REFERENCED_BY_FRAGMENT_SHADER: active_in(GL_FRAGMENT_SHADER); break;
             case GL_UNIFORM_BLOCK_REFERENCED_BY_GEOMETRY_SHADER: active_in(GL_GEOMETRY_SHADER); break;
+            case GL_UNIFORM_BLOCK_REFERENCED_BY_TESS_CONTROL_SHADER: active_in(GL_TESS_CONTROL_SHADER); break;
+            case GL_UNIFORM_BLOCK_REFERENCED_BY_TESS_EVALUATION_SHADER: active_in(GL_TESS_EVALUATION_SHADER); break;
             default: c.error(GL_INVALID_ENUM);
         }
     });

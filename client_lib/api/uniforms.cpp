@@ -8,8 +8,11 @@
 #include <type_traits>
 #include <vector>
 
+#include "client_lib/api/program_access.h"
+#include "client_lib/api/uniform_values.h"
 #include "client_lib/context/param_commands.h"
 #include "client_lib/context/program_use.h"
+#include "client_lib/objects/program_pipeline.h"
 
 namespace wall::client::api {
 namespace {
@@ -17,22 +20,9 @@ namespace {
 using glapi::UniformBase;
 using glapi::UniformType;
 
-template <class T>
-constexpr UniformBase kBaseOf = std::is_same_v<T, GLfloat> ? UniformBase::real
-                                : std::is_same_v<T, GLint> ? UniformBase::integer
-                                                           : UniformBase::unsigned_integer;
-
-/// What a glUniform command brings.
-struct Given {
-    UniformBase base;
-    unsigned columns, rows;
-    std::span<const std::uint32_t> words;
-    unsigned words_each() const { return columns * rows; }
-};
-
 bool accepts(const UniformType& type, const Given& given) {
     if (type.columns != given.columns || type.rows != given.rows) return false;
-    if (type.base == UniformBase::boolean) return true;
+    if (type.base == UniformBase::boolean) return given.base != UniformBase::double_real;
     if (type.base == UniformBase::sampler) return given.base == UniformBase::integer;
     return type.base == given.base;
 }
@@ -49,9 +39,9 @@ bool names_units(std::span<const std::uint32_t> words) {
 }
 
 /// The error to raise, or none. Geometry that is still packed is sent with the values it was drawn with.
-GLenum store(Context& c, GLint location, GLsizei count, const Given& given) {
+GLenum store(Context& c, Program& program, GLint location, GLsizei count, const Given& given) {
     std::unique_lock lock(c.share().mutex);
-    Executable& executable = *c.program->executable;
+    Executable& executable = *program.executable;
     const UniformPlace* place = executable.place_of(location);
     if (!place) return GL_INVALID_OPERATION;
     Uniform& uniform = executable.uniforms[place->uniform];
@@ -67,65 +57,36 @@ GLenum store(Context& c, GLint location, GLsizei count, const Given& given) {
     if (!c.packer.empty()) {
         lock.unlock();
         c.flush_block();
-        return store(c, location, count, given);
+        return store(c, program, location, count, given);
     }
     executable.store(uniform, place->element, words);
     c.share().last_change = executable.last_change;
     return GL_NO_ERROR;
 }
 
-void set(Context& c, GLint location, GLsizei count, const Given& given) {
-    if (count < 0) return c.error(GL_INVALID_VALUE);
-    if (!c.program) return c.error(GL_INVALID_OPERATION);
-    if (location == -1) return;
-    if (const GLenum error = store(c, location, count, given); error != GL_NO_ERROR) c.error(error);
-}
-
-template <unsigned kRows, class T>
-void set_vectors(Context& c, GLint location, GLsizei count, const T* values) {
-    const std::size_t words = count > 0 && values ? static_cast<std::size_t>(count) * kRows : 0;
-    set(c, location, count, {kBaseOf<T>, 1, kRows, {reinterpret_cast<const std::uint32_t*>(values), words}});
-}
-
-template <class T, class... More>
-void set_one(Context& c, GLint location, T first, More... more) {
-    const T values[] = {first, more...};
-    set_vectors<1 + sizeof...(More)>(c, location, 1, values);
-}
-
-template <unsigned kColumns, unsigned kRows>
-void set_matrices(Context& c, GLint location, GLsizei count, GLboolean transpose, const GLfloat* values) {
-    const std::size_t words = count > 0 && values ? static_cast<std::size_t>(count) * kColumns * kRows : 0;
-    std::vector<GLfloat> turned;
-    if (transpose && words != 0) {
-        turned.resize(words);
-        for (std::size_t i = 0; i < words; ++i) {
-            const std::size_t matrix = i - i % (kColumns * kRows), column = i % (kColumns * kRows) / kRows,
-                              row = i % kRows;
-            turned[i] = values[matrix + row * kColumns + column];
-        }
-        values = turned.data();
-    }
-    set(c, location, count,
-        {UniformBase::real, kColumns, kRows, {reinterpret_cast<const std::uint32_t*>(values), words}});
-}
-
 /// The nearest that there is (OpenGL 4.5, 2.2.2).
-GLuint rounded_unsigned(GLfloat value) {
-    constexpr GLfloat kBehind = 4294967296.0f;
+template <class Real>
+GLuint rounded_unsigned(Real value) {
+    constexpr auto kBehind = static_cast<Real>(4294967296.0);
     if (!(value > 0)) return 0;
     return value >= kBehind ? ~GLuint{0} : static_cast<GLuint>(std::round(value));
 }
 
+template <class Out, class Real>
+Out converted_real(const std::uint32_t* words) {
+    Real value;
+    std::memcpy(&value, words, sizeof value);
+    if constexpr (std::is_same_v<Out, GLint>) return rounded_param(static_cast<GLfloat>(value));
+    else if constexpr (std::is_same_v<Out, GLuint>) return rounded_unsigned(value);
+    else return static_cast<Out>(value);
+}
+
+/// The component that begins there.
 template <class Out>
-Out converted(UniformBase base, std::uint32_t word) {
-    if (base == UniformBase::real) {
-        GLfloat value;
-        std::memcpy(&value, &word, sizeof value);
-        if constexpr (std::is_same_v<Out, GLint>) return rounded_param(value);
-        else if constexpr (std::is_same_v<Out, GLuint>) return rounded_unsigned(value);
-        else return value;
-    }
+Out converted(UniformBase base, const std::uint32_t* words) {
+    if (base == UniformBase::real) return converted_real<Out, GLfloat>(words);
+    if (base == UniformBase::double_real) return converted_real<Out, GLdouble>(words);
+    const std::uint32_t word = *words;
     if (base == UniformBase::unsigned_integer) return static_cast<Out>(word);
     if constexpr (std::is_same_v<Out, GLuint>) return static_cast<GLuint>(std::max(static_cast<GLint>(word), 0));
     return static_cast<Out>(static_cast<GLint>(word));
@@ -146,75 +107,177 @@ void get(Context& c, GLuint name, GLint location, Out* out) {
     const UniformPlace* place = program.linked ? program.executable->place_of(location) : nullptr;
     if (!place) return c.error(GL_INVALID_OPERATION);
     const Uniform& uniform = program.executable->uniforms[place->uniform];
-    const unsigned words = uniform.type->words();
-    for (const std::uint32_t word :
-         program.executable->words_of(uniform).subspan(std::size_t{place->element} * words, words))
-        *out++ = converted<Out>(uniform.type->base, word);
+    const unsigned words = uniform.type->words(), each = words / uniform.type->components();
+    const auto element = program.executable->words_of(uniform).subspan(std::size_t{place->element} * words, words);
+    for (unsigned i = 0; i < words; i += each) *out++ = converted<Out>(uniform.type->base, &element[i]);
 }
 
 }  // namespace
 
-void Uniform1f(Context& c, GLint location, GLfloat x) { set_one(c, location, x); }
-void Uniform2f(Context& c, GLint location, GLfloat x, GLfloat y) { set_one(c, location, x, y); }
-void Uniform3f(Context& c, GLint location, GLfloat x, GLfloat y, GLfloat z) { set_one(c, location, x, y, z); }
+std::shared_ptr<Program> uniform_target(Context& c) {
+    const bool of_pipeline = c.program && c.program == c.pipelines->bound;
+    auto program = of_pipeline ? c.pipelines->bound->active : c.program;
+    if (!program) c.error(GL_INVALID_OPERATION);
+    return program;
+}
+
+std::shared_ptr<Program> uniform_target(Context& c, GLuint name) {
+    auto program = linked_program(c, name);
+    if (!program || program->linked) return program;
+    return c.error(GL_INVALID_OPERATION), nullptr;
+}
+
+void set_uniform(Context& c, const std::shared_ptr<Program>& program, GLint location, GLsizei count,
+                 const Given& given) {
+    if (!program) return;
+    if (count < 0) return c.error(GL_INVALID_VALUE);
+    if (location == -1) return;
+    if (const GLenum error = store(c, *program, location, count, given); error != GL_NO_ERROR) c.error(error);
+}
+
+void Uniform1f(Context& c, GLint location, GLfloat x) { set_one(c, uniform_target(c), location, x); }
+void Uniform2f(Context& c, GLint location, GLfloat x, GLfloat y) { set_one(c, uniform_target(c), location, x, y); }
+void Uniform3f(Context& c, GLint location, GLfloat x, GLfloat y, GLfloat z) {
+    set_one(c, uniform_target(c), location, x, y, z);
+}
 void Uniform4f(Context& c, GLint location, GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
-    set_one(c, location, x, y, z, w);
+    set_one(c, uniform_target(c), location, x, y, z, w);
 }
-void Uniform1i(Context& c, GLint location, GLint x) { set_one(c, location, x); }
-void Uniform2i(Context& c, GLint location, GLint x, GLint y) { set_one(c, location, x, y); }
-void Uniform3i(Context& c, GLint location, GLint x, GLint y, GLint z) { set_one(c, location, x, y, z); }
-void Uniform4i(Context& c, GLint location, GLint x, GLint y, GLint z, GLint w) { set_one(c, location, x, y, z, w); }
+void Uniform1i(Context& c, GLint location, GLint x) { set_one(c, uniform_target(c), location, x); }
+void Uniform2i(Context& c, GLint location, GLint x, GLint y) { set_one(c, uniform_target(c), location, x, y); }
+void Uniform3i(Context& c, GLint location, GLint x, GLint y, GLint z) {
+    set_one(c, uniform_target(c), location, x, y, z);
+}
+void Uniform4i(Context& c, GLint location, GLint x, GLint y, GLint z, GLint w) {
+    set_one(c, uniform_target(c), location, x, y, z, w);
+}
 
-void Uniform1fv(Context& c, GLint location, GLsizei count, const GLfloat* v) { set_vectors<1>(c, location, count, v); }
-void Uniform2fv(Context& c, GLint location, GLsizei count, const GLfloat* v) { set_vectors<2>(c, location, count, v); }
-void Uniform3fv(Context& c, GLint location, GLsizei count, const GLfloat* v) { set_vectors<3>(c, location, count, v); }
-void Uniform4fv(Context& c, GLint location, GLsizei count, const GLfloat* v) { set_vectors<4>(c, location, count, v); }
-void Uniform1iv(Context& c, GLint location, GLsizei count, const GLint* v) { set_vectors<1>(c, location, count, v); }
-void Uniform2iv(Context& c, GLint location, GLsizei count, const GLint* v) { set_vectors<2>(c, location, count, v); }
-void Uniform3iv(Context& c, GLint location, GLsizei count, const GLint* v) { set_vectors<3>(c, location, count, v); }
-void Uniform4iv(Context& c, GLint location, GLsizei count, const GLint* v) { set_vectors<4>(c, location, count, v); }
+void Uniform1fv(Context& c, GLint location, GLsizei count, const GLfloat* v) {
+    set_vectors<1>(c, uniform_target(c), location, count, v);
+}
+void Uniform2fv(Context& c, GLint location, GLsizei count, const GLfloat* v) {
+    set_vectors<2>(c, uniform_target(c), location, count, v);
+}
+void Uniform3fv(Context& c, GLint location, GLsizei count, const GLfloat* v) {
+    set_vectors<3>(c, uniform_target(c), location, count, v);
+}
+void Uniform4fv(Context& c, GLint location, GLsizei count, const GLfloat* v) {
+    set_vectors<4>(c, uniform_target(c), location, count, v);
+}
+void Uniform1iv(Context& c, GLint location, GLsizei count, const GLint* v) {
+    set_vectors<1>(c, uniform_target(c), location, count, v);
+}
+void Uniform2iv(Context& c, GLint location, GLsizei count, const GLint* v) {
+    set_vectors<2>(c, uniform_target(c), location, count, v);
+}
+void Uniform3iv(Context& c, GLint location, GLsizei count, const GLint* v) {
+    set_vectors<3>(c, uniform_target(c), location, count, v);
+}
+void Uniform4iv(Context& c, GLint location, GLsizei count, const GLint* v) {
+    set_vectors<4>(c, uniform_target(c), location, count, v);
+}
 
-void Uniform1ui(Context& c, GLint location, GLuint x) { set_one(c, location, x); }
-void Uniform2ui(Context& c, GLint location, GLuint x, GLuint y) { set_one(c, location, x, y); }
-void Uniform3ui(Context& c, GLint location, GLuint x, GLuint y, GLuint z) { set_one(c, location, x, y, z); }
+void Uniform1ui(Context& c, GLint location, GLuint x) { set_one(c, uniform_target(c), location, x); }
+void Uniform2ui(Context& c, GLint location, GLuint x, GLuint y) { set_one(c, uniform_target(c), location, x, y); }
+void Uniform3ui(Context& c, GLint location, GLuint x, GLuint y, GLuint z) {
+    set_one(c, uniform_target(c), location, x, y, z);
+}
 void Uniform4ui(Context& c, GLint location, GLuint x, GLuint y, GLuint z, GLuint w) {
-    set_one(c, location, x, y, z, w);
+    set_one(c, uniform_target(c), location, x, y, z, w);
 }
-void Uniform1uiv(Context& c, GLint location, GLsizei count, const GLuint* v) { set_vectors<1>(c, location, count, v); }
-void Uniform2uiv(Context& c, GLint location, GLsizei count, const GLuint* v) { set_vectors<2>(c, location, count, v); }
-void Uniform3uiv(Context& c, GLint location, GLsizei count, const GLuint* v) { set_vectors<3>(c, location, count, v); }
-void Uniform4uiv(Context& c, GLint location, GLsizei count, const GLuint* v) { set_vectors<4>(c, location, count, v); }
+void Uniform1uiv(Context& c, GLint location, GLsizei count, const GLuint* v) {
+    set_vectors<1>(c, uniform_target(c), location, count, v);
+}
+void Uniform2uiv(Context& c, GLint location, GLsizei count, const GLuint* v) {
+    set_vectors<2>(c, uniform_target(c), location, count, v);
+}
+void Uniform3uiv(Context& c, GLint location, GLsizei count, const GLuint* v) {
+    set_vectors<3>(c, uniform_target(c), location, count, v);
+}
+void Uniform4uiv(Context& c, GLint location, GLsizei count, const GLuint* v) {
+    set_vectors<4>(c, uniform_target(c), location, count, v);
+}
 
 void UniformMatrix2fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
-    set_matrices<2, 2>(c, l, n, t, v);
+    set_matrices<2, 2>(c, uniform_target(c), l, n, t, v);
 }
 void UniformMatrix3fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
-    set_matrices<3, 3>(c, l, n, t, v);
+    set_matrices<3, 3>(c, uniform_target(c), l, n, t, v);
 }
 void UniformMatrix4fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
-    set_matrices<4, 4>(c, l, n, t, v);
+    set_matrices<4, 4>(c, uniform_target(c), l, n, t, v);
 }
 void UniformMatrix2x3fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
-    set_matrices<2, 3>(c, l, n, t, v);
+    set_matrices<2, 3>(c, uniform_target(c), l, n, t, v);
 }
 void UniformMatrix3x2fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
-    set_matrices<3, 2>(c, l, n, t, v);
+    set_matrices<3, 2>(c, uniform_target(c), l, n, t, v);
 }
 void UniformMatrix2x4fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
-    set_matrices<2, 4>(c, l, n, t, v);
+    set_matrices<2, 4>(c, uniform_target(c), l, n, t, v);
 }
 void UniformMatrix4x2fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
-    set_matrices<4, 2>(c, l, n, t, v);
+    set_matrices<4, 2>(c, uniform_target(c), l, n, t, v);
 }
 void UniformMatrix3x4fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
-    set_matrices<3, 4>(c, l, n, t, v);
+    set_matrices<3, 4>(c, uniform_target(c), l, n, t, v);
 }
 void UniformMatrix4x3fv(Context& c, GLint l, GLsizei n, GLboolean t, const GLfloat* v) {
-    set_matrices<4, 3>(c, l, n, t, v);
+    set_matrices<4, 3>(c, uniform_target(c), l, n, t, v);
+}
+
+void Uniform1d(Context& c, GLint location, GLdouble x) { set_one(c, uniform_target(c), location, x); }
+void Uniform2d(Context& c, GLint location, GLdouble x, GLdouble y) { set_one(c, uniform_target(c), location, x, y); }
+void Uniform3d(Context& c, GLint location, GLdouble x, GLdouble y, GLdouble z) {
+    set_one(c, uniform_target(c), location, x, y, z);
+}
+void Uniform4d(Context& c, GLint location, GLdouble x, GLdouble y, GLdouble z, GLdouble w) {
+    set_one(c, uniform_target(c), location, x, y, z, w);
+}
+void Uniform1dv(Context& c, GLint location, GLsizei count, const GLdouble* v) {
+    set_vectors<1>(c, uniform_target(c), location, count, v);
+}
+void Uniform2dv(Context& c, GLint location, GLsizei count, const GLdouble* v) {
+    set_vectors<2>(c, uniform_target(c), location, count, v);
+}
+void Uniform3dv(Context& c, GLint location, GLsizei count, const GLdouble* v) {
+    set_vectors<3>(c, uniform_target(c), location, count, v);
+}
+void Uniform4dv(Context& c, GLint location, GLsizei count, const GLdouble* v) {
+    set_vectors<4>(c, uniform_target(c), location, count, v);
+}
+
+void UniformMatrix2dv(Context& c, GLint l, GLsizei n, GLboolean t, const GLdouble* v) {
+    set_matrices<2, 2>(c, uniform_target(c), l, n, t, v);
+}
+void UniformMatrix3dv(Context& c, GLint l, GLsizei n, GLboolean t, const GLdouble* v) {
+    set_matrices<3, 3>(c, uniform_target(c), l, n, t, v);
+}
+void UniformMatrix4dv(Context& c, GLint l, GLsizei n, GLboolean t, const GLdouble* v) {
+    set_matrices<4, 4>(c, uniform_target(c), l, n, t, v);
+}
+void UniformMatrix2x3dv(Context& c, GLint l, GLsizei n, GLboolean t, const GLdouble* v) {
+    set_matrices<2, 3>(c, uniform_target(c), l, n, t, v);
+}
+void UniformMatrix3x2dv(Context& c, GLint l, GLsizei n, GLboolean t, const GLdouble* v) {
+    set_matrices<3, 2>(c, uniform_target(c), l, n, t, v);
+}
+void UniformMatrix2x4dv(Context& c, GLint l, GLsizei n, GLboolean t, const GLdouble* v) {
+    set_matrices<2, 4>(c, uniform_target(c), l, n, t, v);
+}
+void UniformMatrix4x2dv(Context& c, GLint l, GLsizei n, GLboolean t, const GLdouble* v) {
+    set_matrices<4, 2>(c, uniform_target(c), l, n, t, v);
+}
+void UniformMatrix3x4dv(Context& c, GLint l, GLsizei n, GLboolean t, const GLdouble* v) {
+    set_matrices<3, 4>(c, uniform_target(c), l, n, t, v);
+}
+void UniformMatrix4x3dv(Context& c, GLint l, GLsizei n, GLboolean t, const GLdouble* v) {
+    set_matrices<4, 3>(c, uniform_target(c), l, n, t, v);
 }
 
 void GetUniformfv(Context& c, GLuint program, GLint location, GLfloat* params) { get(c, program, location, params); }
 void GetUniformuiv(Context& c, GLuint program, GLint location, GLuint* params) { get(c, program, location, params); }
 void GetUniformiv(Context& c, GLuint program, GLint location, GLint* params) { get(c, program, location, params); }
+void GetUniformdv(Context& c, GLuint program, GLint location, GLdouble* params) { get(c, program, location, params); }
 
 }  // namespace wall::client::api

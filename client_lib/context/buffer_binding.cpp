@@ -8,6 +8,7 @@
 
 #include "client_lib/context/array_copies.h"
 #include "client_lib/context/attribute_stack.h"
+#include "client_lib/context/capture_use.h"
 #include "client_lib/context/captured_content.h"
 #include "client_lib/context/forget_objects.h"
 #include "client_lib/context/indexed_buffers.h"
@@ -23,7 +24,8 @@ namespace {
 
 constexpr GLenum kTargets[] = {GL_ARRAY_BUFFER,        GL_ELEMENT_ARRAY_BUFFER,      GL_PIXEL_PACK_BUFFER,
                                GL_PIXEL_UNPACK_BUFFER, GL_COPY_READ_BUFFER,          GL_COPY_WRITE_BUFFER,
-                               GL_UNIFORM_BUFFER,      GL_TRANSFORM_FEEDBACK_BUFFER, GL_TEXTURE_BUFFER};
+                               GL_UNIFORM_BUFFER,      GL_TRANSFORM_FEEDBACK_BUFFER, GL_TEXTURE_BUFFER,
+                               GL_DRAW_INDIRECT_BUFFER};
 
 /// Calls use.operator()<E>() with the binding's element; false: no such target.
 template <class Use>
@@ -38,6 +40,7 @@ bool with_binding(GLenum target, Use&& use) {
         case GL_UNIFORM_BUFFER: return use.template operator()<el::bound_uniform_buffer>(), true;
         case GL_TEXTURE_BUFFER: return use.template operator()<el::bound_texture_buffer>(), true;
         case GL_TRANSFORM_FEEDBACK_BUFFER: return use.template operator()<el::bound_feedback_buffer>(), true;
+        case GL_DRAW_INDIRECT_BUFFER: return use.template operator()<el::draw_indirect_buffer>(), true;
         case GL_PIXEL_UNPACK_BUFFER: return use.template operator()<el::pixel_unpack_buffer>(), true;
         default: return false;
     }
@@ -83,7 +86,7 @@ void add_named(const glstate::State& state, std::vector<std::uint32_t>& ids) {
     const auto& local = state.local;
     ids.insert(ids.end(), {local.array_buffer, local.pixel_pack_buffer, local.pixel_unpack_buffer,
                            local.copy_read_buffer, local.copy_write_buffer, local.bound_uniform_buffer,
-                           local.bound_feedback_buffer, local.bound_texture_buffer});
+                           local.bound_feedback_buffer, local.bound_texture_buffer, local.draw_indirect_buffer});
     for (const glstate::BufferRange& range : local.feedback_buffer) ids.push_back(range.buffer);
     for (const glstate::BufferRange& range : state.uniform_buffers.uniform_buffer) ids.push_back(range.buffer);
     add_named_by_arrays(state, ids);
@@ -93,6 +96,11 @@ void add_named(const glstate::State& state, std::vector<std::uint32_t>& ids) {
 std::vector<std::uint32_t> named_buffers(const Context& c) {
     std::vector<std::uint32_t> ids;
     add_named(c.state, ids);
+    c.captures->for_each_object([&](const FeedbackObject& object) {
+        for (const glstate::BufferRange& range : object.buffers) ids.push_back(range.buffer);
+        if (!object.active) return;
+        for (const CapturedPart& part : object.active->parts()) ids.push_back(part.buffer->id.value);
+    });
     for (const auto& saved : c.attributes->client) add_named(saved->state, ids);
     glstate::State looked_at;
     c.vertex_array_objects->for_each_kept([&](const glstate::VertexArraysState& arrays) {

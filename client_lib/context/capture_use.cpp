@@ -1,15 +1,35 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/context/capture_use.h"
 
+#include <algorithm>
+
 #include "common/glstate/diff.h"
 
 namespace wall::client {
 
 namespace el = glstate::el;
 
+namespace {
+
+using StreamQueries = std::array<std::uint32_t, kVertexStreams>;
+
+template <class E>
+void set_queries(glstate::State& state, const StreamQueries& queries) {
+    for (unsigned stream = 0; stream < kVertexStreams; ++stream) glstate::assign<E>(state, stream, queries[stream]);
+}
+
+}  // namespace
+
+bool CaptureUse::uses(const Program& program) const {
+    bool used = false;
+    for_each_object([&](const FeedbackObject& object) { used = used || object.program.get() == &program; });
+    return used;
+}
+
 Capture* captured_by(const glstate::State& state, CaptureUse& use) {
-    if (use.active) return use.active.get();
-    if (el::primitives_query::ref(state) == 0) return nullptr;
+    if (Capture* active = use.captures()) return active;
+    if (std::ranges::none_of(state.objects.primitives_query, [](std::uint32_t query) { return query != 0; }))
+        return nullptr;
     if (!use.counter) use.counter = std::make_shared<Capture>(GL_POINTS, std::vector<CapturedPart>());
     return use.counter.get();
 }
@@ -25,14 +45,14 @@ CapturePass::~CapturePass() {
 }
 
 SeenPass::SeenPass(glstate::State& state)
-    : state_(state), primitives_(el::primitives_query::ref(state)), captured_(el::captured_query::ref(state)) {
-    glstate::assign<el::primitives_query>(state_, 0, 0u);
-    glstate::assign<el::captured_query>(state_, 0, 0u);
+    : state_(state), primitives_(state.objects.primitives_query), captured_(state.objects.captured_query) {
+    set_queries<el::primitives_query>(state_, {});
+    set_queries<el::captured_query>(state_, {});
 }
 
 SeenPass::~SeenPass() {
-    glstate::assign<el::primitives_query>(state_, 0, primitives_);
-    glstate::assign<el::captured_query>(state_, 0, captured_);
+    set_queries<el::primitives_query>(state_, primitives_);
+    set_queries<el::captured_query>(state_, captured_);
 }
 
 }  // namespace wall::client

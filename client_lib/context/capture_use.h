@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Transform feedback of a context (OpenGL 3.0, 2.15): while it is active every draw is made twice, captured on every
-// node and then as usual. The context's thread.
+// Transform feedback of a context (OpenGL 4.0, 2.17): while it is active and not paused every draw is made twice,
+// captured on every node and then as usual. The objects are the context's own; no node knows them, but what was
+// captured last with each. The context's thread.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <utility>
 
 #include "client_lib/objects/capture.h"
 #include "client_lib/objects/program.h"
+#include "client_lib/objects/share_group.h"
 #include "gen/glstate/state.gen.h"
 
 namespace wall::client {
@@ -16,11 +19,42 @@ namespace wall::client {
 /// Buffers that values may go to at once.
 inline constexpr unsigned kCaptureBuffers = glstate::el::feedback_buffer::count;
 
-struct CaptureUse {
-    std::shared_ptr<Capture> active;   ///< null: none
+/// A transform feedback object.
+struct FeedbackObject {
+    std::shared_ptr<Capture> active;   ///< between glBeginTransformFeedback and its end; else null
     std::shared_ptr<Program> program;  ///< whose varyings they are
+    bool paused = false;
+    std::shared_ptr<Capture> ended;  ///< the latest one that is over; null: there was none
+    /// Its places for buffers, while it is not bound: then they are those of the state.
+    std::array<glstate::BufferRange, kCaptureBuffers> buffers{};
+};
+
+class CaptureUse {
+public:
+    NameTable<FeedbackObject> names;
     Capture* now = nullptr;            ///< what is sent now is for it
     std::shared_ptr<Capture> counter;  ///< of primitives that are not seen; null: not needed yet
+
+    /// That commands are about now; of name 0, if no other.
+    FeedbackObject& bound() { return *bound_; }
+    const FeedbackObject& bound() const { return *bound_; }
+    /// Null: no such object.
+    std::shared_ptr<FeedbackObject> find(GLuint name) const { return name == 0 ? unnamed_ : names.find(name); }
+    void bind(std::shared_ptr<FeedbackObject> object) { bound_ = std::move(object); }
+    /// What is drawn now is captured for it; null: for none.
+    Capture* captures() const { return bound_->paused ? nullptr : bound_->active.get(); }
+    /// Calls look(object) with all of them.
+    template <class Look>
+    void for_each_object(Look&& look) const {
+        look(std::as_const(*unnamed_));
+        names.for_each(look);
+    }
+    /// Whether an object, bound or not, goes on with that program.
+    bool uses(const Program& program) const;
+
+private:
+    const std::shared_ptr<FeedbackObject> unnamed_ = std::make_shared<FeedbackObject>();
+    std::shared_ptr<FeedbackObject> bound_ = unnamed_;
 };
 
 /// Sets a context's state up for what is captured, and back.
@@ -44,7 +78,7 @@ public:
 
 private:
     glstate::State& state_;
-    const std::uint32_t primitives_, captured_;
+    const std::array<std::uint32_t, kVertexStreams> primitives_, captured_;
 };
 
 /// What a draw has to be made for besides what is seen: what is captured, or a count of primitives; null: nothing.
@@ -54,7 +88,7 @@ Capture* captured_by(const glstate::State& state, CaptureUse& use);
 template <class Draw>
 void draw_in_passes(glstate::State& state, CaptureUse& use, Draw&& draw) {
     const bool seen = state.local.rasterizer_discard == 0;
-    if (!use.active && seen) return draw();
+    if (!use.captures() && seen) return draw();
     if (Capture* capture = captured_by(state, use)) {
         const CapturePass pass(state, use, *capture);
         draw();

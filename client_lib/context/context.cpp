@@ -19,6 +19,7 @@
 #include "client_lib/geometry/fold.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/program.h"
+#include "client_lib/objects/program_pipeline.h"
 #include "client_lib/objects/share_group.h"
 #include "client_lib/process/log.h"
 
@@ -50,6 +51,7 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextProfile& own_pr
       vertex_array_objects(std::make_unique<VertexArrayObjects>()),
       staging(std::make_unique<StagingBuffers>()),
       copies(std::make_unique<ArrayCopies>()),
+      pipelines(std::make_unique<PipelineUse>()),
       queries(std::make_unique<QueryState>()),
       debug(std::make_unique<DebugState>()),
       captures(std::make_unique<CaptureUse>()),
@@ -87,7 +89,7 @@ void Context::first_use() {
     used_ = true;
     const auto width = static_cast<std::int32_t>(draw_->layout.width),
                height = static_cast<std::int32_t>(draw_->layout.height);
-    glstate::assign<glstate::el::viewport>(state, 0, {0, 0, width, height});
+    glstate::assign<glstate::el::viewport>(state, 0, {0, 0, static_cast<float>(width), static_cast<float>(height)});
     glstate::assign<glstate::el::scissor>(state, 0, {0, 0, width, height});
     const GLenum buffer = draw_->options.format.double_buffered ? GL_BACK : GL_FRONT;
     glstate::assign<glstate::el::draw_buffer>(state, 0, buffer);
@@ -198,7 +200,7 @@ void Context::submit_geometry() {
         const bool somewhere = known && captures->now == nullptr;  // what is captured is captured everywhere
         session_->submit_block(draw_source(), packer, somewhere ? placing().projection : glstate::unknown_projection());
     };
-    if (!captures->active && !state.local.rasterizer_discard) return submit();
+    if (!captures->captures() && !state.local.rasterizer_discard) return submit();
     const glstate::State before = state;
     draw_in_passes(state, *captures, [&] {
         const auto objects = state.objects;

@@ -31,6 +31,7 @@ struct ListState;          // list_state.h: display list being compiled, call ne
 struct AttributeStacks;    // attribute_stack.h
 struct SelectState;        // select.h: feedback and selection
 struct Program;            // objects/program.h
+struct PipelineUse;        // objects/program_pipeline.h
 struct QueryState;         // query_state.h
 struct ContextMaps;        // objects/maps.h: evaluator and pixel maps
 struct BufferUse;          // buffer_use.h
@@ -40,7 +41,7 @@ class VertexArrayObjects;  // vertex_array_objects.h
 class ArrayCopies;         // array_copies.h
 struct StagingBuffers;     // staging_buffers.h
 struct FramebufferUse;     // framebuffer_use.h
-struct CaptureUse;         // capture_use.h: transform feedback
+class CaptureUse;          // capture_use.h: transform feedback
 
 inline constexpr unsigned kVertexAttributes = glstate::el::vertex_attrib::count;
 /// A block larger than this is sent at the next glEnd, so that nodes draw while the program goes on.
@@ -159,6 +160,7 @@ public:
     std::unique_ptr<StagingBuffers> staging;
     std::unique_ptr<ArrayCopies> copies;
     std::shared_ptr<Program> program;  ///< drawn with; null: fixed function
+    std::unique_ptr<PipelineUse> pipelines;
     std::unique_ptr<QueryState> queries;
     std::unique_ptr<DebugState> debug;
     std::unique_ptr<CaptureUse> captures;

@@ -9,6 +9,7 @@
 #include "client_lib/context/context.h"
 #include "client_lib/context/es_version.h"
 #include "client_lib/context/forget_objects.h"
+#include "client_lib/context/let_go.h"
 #include "client_lib/context/program_use.h"
 #include "client_lib/context/version.h"
 #include "client_lib/context/vertex_inputs.h"
@@ -82,6 +83,7 @@ void end_context(Context* context) {
         let_go_of_all_buffers(*context);
         if (context->attached()) {
             if (context->program) use_program(*context, nullptr);
+            let_go_of_own_objects(*context);
             context->session().destroy_context(context->id);
         }
     } catch (...) {

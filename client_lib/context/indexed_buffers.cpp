@@ -25,11 +25,13 @@ void unbind(Context& c, ClientName id) {
 void for_each_read_buffer(const Context& c, const std::function<void(const std::shared_ptr<Buffer>&)>& use) {
     if (!c.program || !c.program->executable->reads_buffers()) return;
     const Executable& executable = *c.program->executable;
-    for (const UniformBlock& block : executable.blocks) {
-        if (block.binding >= el::uniform_buffer::count) continue;
-        const auto found = c.buffers->by_id.find(ClientName(c.get<el::uniform_buffer>(block.binding).buffer));
-        if (found != c.buffers->by_id.end()) use(found->second);
-    }
+    executable.for_each_part([&](const Executable& part) {
+        for (const UniformBlock& block : part.blocks) {
+            if (block.binding >= el::uniform_buffer::count) continue;
+            const auto found = c.buffers->by_id.find(ClientName(c.get<el::uniform_buffer>(block.binding).buffer));
+            if (found != c.buffers->by_id.end()) use(found->second);
+        }
+    });
     executable.for_each_sampler([&](std::uint32_t unit, glapi::TextureTarget target) {
         if (target != glapi::TextureTarget::buffer || unit >= kTextureImageUnits) return;
         const auto found = c.share().by_id.find(bound_id(c, unit, target));

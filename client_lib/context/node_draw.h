@@ -22,6 +22,7 @@ struct ArrayDraw {
     GLint base_vertex = 0;          ///< is added to indices
     std::optional<GLuint> restart;  ///< an index at which the primitive begins anew
     GLsizei instances = 1;
+    GLuint base_instance = 0;  ///< the first one; of draw() only (api/array_draws.h)
 };
 
 /// False: nothing was done, and the draw must be made from the arrays as they are in memory (draw_elements), because

@@ -7,6 +7,7 @@
 #include "client_lib/context/capture_use.h"
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/indexed_buffers.h"
+#include "client_lib/objects/program_pipeline.h"
 #include "client_lib/process/log.h"
 #include "common/glapi/primitive.h"
 
@@ -19,8 +20,10 @@ void take_link_result(Program& program, glapi::ProgramDefinition definition, gla
     program.log = std::move(reflection.log);
     program.linked = reflection.linked;
     if (!reflection.linked) return;
+    const bool separable = definition.separable;
     auto executable = Executable::make(std::move(definition), std::move(reflection));
     program.linked = executable != nullptr;
+    if (executable) program.linked_separable = separable;
     if (executable) program.executable = std::move(executable);
     else program.log = "the program has a uniform of a type that is not supported\n";
 }
@@ -60,6 +63,7 @@ void learn_link_result(Context& c, Program& program) {
     if (!reflection) reflection.emplace().log = kNoAnswer;
     take_link_result(program, std::move(*definition), std::move(*reflection));
     if (program.linked) answer->node->object_stamps[program.id] = program.executable->stamp;
+    if (c.pipelines->bound && c.pipelines->bound->is_outdated()) c.pipelines->bound->combine();
     c.share().last_change = next_stamp();
 }
 
@@ -67,7 +71,10 @@ void use_program(Context& c, std::shared_ptr<Program> program) {
     c.flush_block();
     {
         std::lock_guard lock(c.share().mutex);
-        if (program) ++program->users;
+        if (program) {
+            ++program->users;
+            program->executable->reset_subroutines();
+        }
     }
     c.set<glstate::el::current_program>(0, program ? program->id.value : 0);
     if (const auto before = std::exchange(c.program, std::move(program))) drop_user(c, before);
@@ -79,22 +86,28 @@ bool reads_numbers(const Context& c) {
     return c.program->executable->reads_numbers();
 }
 
+namespace {
+
+/// Whether single primitives of a kind go through the shaders; `single` is what comes out.
+bool go_through(const Executable& executable, GLenum& single) {
+    const glapi::TessellationStage& tessellation = executable.tessellation;
+    const glapi::GeometryStage& geometry = executable.geometry;
+    if ((single == GL_PATCHES) != tessellation.exists()) return false;
+    if (tessellation.exists()) single = tessellation.output();
+    if (!geometry.exists()) return true;
+    return std::exchange(single, glapi::single_primitive(geometry.output)) == geometry.input;
+}
+
+}  // namespace
+
 bool fits_program(Context& c, GLenum mode) {
-    if (!c.program) return true;
     GLenum single = glapi::single_primitive(mode);
-    bool fits = true;
-    {
+    bool fits = single != GL_PATCHES;
+    if (c.program) {
         std::lock_guard lock(c.share().mutex);
-        const glapi::GeometryStage& stage = c.program->executable->geometry;
-        if (stage.exists()) {
-            fits = single == stage.input;
-            single = glapi::single_primitive(stage.output);
-        }
+        fits = go_through(*c.program->executable, single);
     }
-    if (c.captures->active) {
-        if (c.profile.es == 30) single = mode;  // not even lines in a row (OpenGL ES 3.0.6, 2.15.2)
-        fits = fits && single == c.captures->active->mode();
-    }
+    if (const Capture* capture = c.captures->captures()) fits = fits && single == capture->mode();
     if (!fits) c.error(GL_INVALID_OPERATION);
     return fits;
 }

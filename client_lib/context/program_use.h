@@ -26,8 +26,8 @@ bool reads_numbers(const Context& c);
 /// set.
 bool may_draw(Context& c);
 
-/// Whether primitives of that mode can go through the context's program, to its geometry shader and to transform
-/// feedback. False, and an error.
+/// Whether primitives of that mode can go through the context's program, to its tessellation and geometry shaders
+/// and to transform feedback. False, and an error.
 bool fits_program(Context& c, GLenum mode);
 
 /// One user less; the object goes if it was to be deleted and nothing else uses it.

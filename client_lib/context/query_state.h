@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "client_lib/follow/fence.h"
+#include "client_lib/objects/capture.h"
 #include "client_lib/objects/share_group.h"
 
 namespace wall::client {
@@ -20,12 +21,14 @@ enum class QuerySlot : std::uint8_t {
     time,        ///< GL_TIME_ELAPSED
     none,        ///< GL_TIMESTAMP, which is a moment
 };
-inline constexpr std::size_t kQuerySlots = 4;
+/// Of primitives there may be one for each stream of vertices.
+inline constexpr bool by_stream(QuerySlot slot) { return slot == QuerySlot::primitives || slot == QuerySlot::captured; }
 
 struct QueryObject {
     GLuint name = 0;
     GLenum target = 0;
     QuerySlot slot = QuerySlot::samples;
+    GLuint stream = 0;
     ClientName id;  ///< on the wire; another one for each glBeginQuery
     bool answered = false;
     std::uint64_t result = 0;
@@ -38,10 +41,17 @@ struct QueryObject {
 
 struct QueryState {
     NameTable<QueryObject> names;
-    std::array<std::shared_ptr<QueryObject>, kQuerySlots> current;
+    /// Of a slot and a stream; null: none.
+    std::shared_ptr<QueryObject>& current(QuerySlot slot, GLuint stream) {
+        return current_[static_cast<std::size_t>(slot)][by_stream(slot) ? stream : 0];
+    }
     std::uint64_t ended = 0;    ///< queries so far
     std::uint64_t reached = 0;  ///< as many of them are known to be over on the nodes, which go in order
     bool conditional = false;   ///< between glBeginConditionalRender and glEndConditionalRender
+
+private:
+    static constexpr std::size_t kSlots = 4;
+    std::array<std::array<std::shared_ptr<QueryObject>, kVertexStreams>, kSlots> current_;
 };
 
 }  // namespace wall::client

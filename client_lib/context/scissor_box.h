@@ -11,7 +11,7 @@ namespace wall::client {
 
 /// In window pixels; nothing: there is no limit.
 inline std::optional<geom::PixelRect> scissor_box(const glstate::State& state) {
-    if (!state.window.scissor_enabled) return std::nullopt;
+    if ((state.window.scissor_enabled & 1) == 0) return std::nullopt;
     const auto& box = state.window.scissor;
     return geom::PixelRect{static_cast<float>(box.x), static_cast<float>(box.y), static_cast<float>(box.x + box.width),
                            static_cast<float>(box.y + box.height)};

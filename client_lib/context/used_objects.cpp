@@ -66,6 +66,7 @@ void for_each_used(Context& context, const Use& use) {
     if (context.captures->now) context.captures->now->for_each_used(use);
     for_each_enabled(context.state, use_bound);
     if (!context.program) return;
+    for (const auto& part : context.program->executable->parts) use(*part);
     use(*context.program);
     for_each_read_buffer(context, [&](const auto& buffer) { use(*buffer); });  // before textures that are made of them
     for_each_sampled(context.state, *context.program->executable, use_bound);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/objects/capture.h"
 
+#include <array>
 #include <utility>
 
 #include "gen/glapi/wire.gen.h"
@@ -15,11 +16,31 @@ Capture::Capture(GLenum mode, std::vector<CapturedPart> parts)
     framebuffer_->attach(0, std::move(color));
 }
 
-void Capture::pack_changes(std::uint64_t, wire::PackBuffer& buffer, const std::function<void()>& packed) const {
+void Capture::end() {
+    ended_ = true;
+    stamp_ = next_stamp();
+}
+
+/// A node that comes behind the end gets the counts alone; where nothing was drawn, they are 0.
+void Capture::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed) const {
+    if (ended_ && known != 0) return glapi::pack::CaptureEnd(buffer, id);
+    if (ended_ && drawn_) return;
+    if (ended_) {
+        const std::array<std::uint64_t, kVertexStreams> nothing{};
+        return glapi::pack::CaptureCounted(buffer, id, std::as_bytes(std::span(nothing)));
+    }
     std::vector<glstate::BufferRange> ranges;
     for (const CapturedPart& part : parts_) ranges.push_back({part.buffer->id.value, part.offset, part.bytes});
     glapi::pack::Capture(buffer, id, mode_, std::as_bytes(std::span(ranges)));
     packed();
+}
+
+void Capture::pack_drawn(const AskHolder& ask, wire::PackBuffer& buffer, const std::function<void()>&) const {
+    const auto counts =
+        ask([&](wire::PackBuffer& batch, RequestId request) { glapi::pack::CaptureCounts(batch, request, id); });
+    const std::array<std::uint64_t, kVertexStreams> nothing{};
+    if (counts && counts->size() == sizeof nothing) glapi::pack::CaptureCounted(buffer, id, *counts);
+    else glapi::pack::CaptureCounted(buffer, id, std::as_bytes(std::span(nothing)));
 }
 
 void Capture::for_each_image(const std::function<void(const Object&)>& use) const {
@@ -27,6 +48,7 @@ void Capture::for_each_image(const std::function<void(const Object&)>& use) cons
 }
 
 void Capture::note_drawn() {
+    drawn_ = true;
     for (const CapturedPart& part : parts_) part.buffer->note_drawn();
 }
 

@@ -12,7 +12,8 @@
 namespace wall::client {
 namespace {
 
-constexpr std::uint32_t kMaxUniformElements = 1 << 16;  // of one array
+constexpr std::uint32_t kMaxUniformElements = 1 << 16;       // of one array
+constexpr std::uint32_t kMostSubroutineLocations = 1 << 16;  // of a stage
 
 /// "name[3]" taken apart; without an index, element 0.
 struct ElementName {
@@ -36,6 +37,18 @@ std::optional<ElementName> parse_element(std::string_view text) {
 bool consistent(const glapi::ActiveUniform& u, const glapi::UniformType* type) {
     if (!type || u.size == 0 || u.size > kMaxUniformElements) return false;
     return !u.has_location() || u.initial.size() == std::size_t{u.size} * type->words();
+}
+
+/// What the variables of a stage name when a program comes into use.
+std::vector<std::uint32_t> first_functions(const glapi::SubroutineStage& stage) {
+    std::vector<std::uint32_t> out(stage.locations);
+    for (const glapi::SubroutineUniform& uniform : stage.uniforms) {
+        if (uniform.location < 0 || uniform.compatible.empty()) continue;
+        const auto first = static_cast<std::size_t>(uniform.location);
+        for (std::size_t at = first; at < std::min(first + uniform.size, out.size()); ++at)
+            out[at] = uniform.compatible.front();
+    }
+    return out;
 }
 
 /// With the driver's choice of locations, so that all nodes make the same one.
@@ -66,6 +79,10 @@ std::vector<std::byte> final_definition(glapi::ProgramDefinition definition,
 std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition, glapi::ProgramReflection reflection) {
     auto made = std::make_unique<Executable>();
     made->capture_mode = definition.feedback.mode;
+    for (std::size_t i = 0; i < std::size(glapi::kShaderStages); ++i)
+        if (std::ranges::find(definition.shaders, glapi::kShaderStages[i], &glapi::ShaderSource::type) !=
+            definition.shaders.end())
+            made->stages |= 1u << i;
     const bool counts_primitives = std::ranges::any_of(definition.shaders, [](const auto& shader) {
         return shader.source.find("gl_PrimitiveID") != std::string::npos;  // also in a comment: no harm
     });
@@ -95,6 +112,12 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
     made->outputs = std::move(reflection.outputs);
     made->captured = std::move(reflection.captured);
     made->geometry = reflection.geometry;
+    made->tessellation = reflection.tessellation;
+    for (auto& stage : reflection.subroutines) {
+        if (stage.locations > kMostSubroutineLocations) return nullptr;
+        made->subroutines.push_back({std::move(stage), {}, 0});
+        made->subroutines.back().chosen = first_functions(made->subroutines.back());
+    }
     made->reads_numbers_ = counts_primitives || made->find_attribute("gl_VertexID") != nullptr;
     made->stamp = made->last_change = next_stamp();
     // In parts of a draw primitives would have other numbers.
@@ -211,13 +234,62 @@ void Executable::bind_block(UniformBlock& block, std::uint32_t binding) {
     block.stamp = last_change = next_stamp();
 }
 
+Subroutines* Executable::subroutines_of(GLenum stage) {
+    const auto found = std::ranges::find(subroutines, stage, &Subroutines::stage);
+    return found == subroutines.end() ? nullptr : &*found;
+}
+
+void Executable::choose(Subroutines& stage, std::span<const std::uint32_t> indices) {
+    if (std::ranges::equal(stage.chosen, indices)) return;
+    stage.chosen.assign(indices.begin(), indices.end());
+    stage.stamp = last_change = next_stamp();
+}
+
+void Executable::reset_subroutines() {
+    for (Subroutines& stage : subroutines) choose(stage, first_functions(stage));
+}
+
 void Executable::check_samplers() {
-    std::map<std::uint32_t, glapi::TextureTarget> targets;  // by unit
-    samplers_conflict_ = false;
-    for_each_sampler([&](std::uint32_t unit, glapi::TextureTarget target) {
-        samplers_conflict_ |= targets.emplace(unit, target).first->second != target;
+    samplers_conflict_ = parts_conflict();
+    for_each_sampler([&](std::uint32_t, glapi::TextureTarget target) {
         samples_buffers_ |= target == glapi::TextureTarget::buffer;
     });
+}
+
+bool Executable::parts_conflict() const {
+    std::map<std::uint32_t, glapi::TextureTarget> targets;  // by unit
+    bool conflict = false;
+    for_each_sampler([&](std::uint32_t unit, glapi::TextureTarget target) {
+        conflict |= targets.emplace(unit, target).first->second != target;
+    });
+    return conflict;
+}
+
+bool Executable::reads_buffers() const {
+    bool reads = false;
+    for_each_part([&](const Executable& part) { reads = reads || !part.blocks.empty() || part.samples_buffers_; });
+    return reads;
+}
+
+void Executable::for_each_combined(const std::function<void(const Executable&)>& use) const {
+    for (const auto& part : parts) use(*part->executable);
+}
+
+/// What leaves the last stage before that of fragments is captured; the first takes attributes.
+std::unique_ptr<Executable> Executable::combine(const std::vector<std::shared_ptr<Program>>& parts) {
+    auto made = std::make_unique<Executable>();
+    made->parts = parts;
+    made->stamp = made->last_change = next_stamp();
+    for (const auto& program : parts) {
+        const Executable& part = *program->executable;
+        made->stages |= part.stages;
+        made->reads_numbers_ = made->reads_numbers_ || part.reads_numbers_;
+        if (part.geometry.exists()) made->geometry = part.geometry;
+        if (part.tessellation.exists()) made->tessellation = part.tessellation;
+        if (made->captured.empty()) made->captured = part.captured, made->capture_mode = part.capture_mode;
+        if ((part.stages & 1) != 0) made->attributes = part.attributes;
+    }
+    return made;
 }
 
 glapi::ProgramDefinition Program::definition() const {
@@ -227,6 +299,7 @@ glapi::ProgramDefinition Program::definition() const {
     for (const auto& [bound, index] : attribute_bindings) out.attributes.push_back({index, bound});
     out.outputs = output_bindings;
     out.feedback = feedback;
+    out.separable = separable;
     return out;
 }
 
@@ -246,6 +319,12 @@ void pack_blocks(const Program& program, std::uint64_t known, wire::PackBuffer& 
             glapi::pack::UniformBlock(buffer, program.id, static_cast<std::uint32_t>(i), blocks[i].binding);
 }
 
+void pack_subroutines(const Program& program, std::uint64_t known, wire::PackBuffer& buffer) {
+    for (const Subroutines& stage : program.executable->subroutines)
+        if (stage.stamp > known)
+            glapi::pack::Subroutines(buffer, program.id, stage.stage, std::as_bytes(std::span(stage.chosen)));
+}
+
 }  // namespace
 
 void Program::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const std::function<void()>& packed) const {
@@ -257,6 +336,7 @@ void Program::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const 
     for (const Uniform& uniform : executable->uniforms)
         if (uniform.stamp > known) pack_uniform(*this, uniform, buffer);
     pack_blocks(*this, known, buffer);
+    pack_subroutines(*this, known, buffer);
 }
 
 void Program::pack_values(std::uint64_t known, wire::PackBuffer& buffer) const {
@@ -264,6 +344,7 @@ void Program::pack_values(std::uint64_t known, wire::PackBuffer& buffer) const {
     for (const Uniform& uniform : executable->uniforms)
         if (uniform.location >= 0) pack_uniform(*this, uniform, buffer);
     pack_blocks(*this, 0, buffer);
+    pack_subroutines(*this, 0, buffer);
 }
 
 }  // namespace wall::client

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -68,6 +69,14 @@ struct UniformBlock : glapi::ActiveBlock {
     std::uint64_t stamp = 0;  ///< of the latest glUniformBlockBinding; 0: as the shader says
 };
 
+struct Program;
+
+/// Functions that variables name, of one stage.
+struct Subroutines : glapi::SubroutineStage {
+    std::vector<std::uint32_t> chosen;  ///< by location: the function's index
+    std::uint64_t stamp = 0;            ///< of the latest change; 0: as when a program comes into use
+};
+
 /// A program that was linked, with its uniforms' values.
 class Executable {
 public:
@@ -93,6 +102,11 @@ public:
 
     /// The block takes its uniforms from another place from now on.
     void bind_block(UniformBlock& block, std::uint32_t binding);
+    /// Null: that stage has none.
+    Subroutines* subroutines_of(GLenum stage);
+    void choose(Subroutines& stage, std::span<const std::uint32_t> indices);
+    /// All as when a program comes into use: the first function that may be named.
+    void reset_subroutines();
     /// Whether it counts vertices or primitives by itself (gl_VertexID, gl_PrimitiveID), so that they must be drawn
     /// with their own numbers.
     bool reads_numbers() const { return reads_numbers_; }
@@ -104,15 +118,29 @@ public:
     /// Texture units that the samplers name, with the texture target of each.
     template <class Use>
     void for_each_sampler(Use&& use) const {
-        for (const Uniform& uniform : uniforms)
-            if (uniform.type->base == glapi::UniformBase::sampler)
-                for (const std::uint32_t unit : words_of(uniform)) use(unit, uniform.type->texture_target);
+        for_each_part([&](const Executable& part) {
+            for (const Uniform& uniform : part.uniforms)
+                if (uniform.type->base == glapi::UniformBase::sampler)
+                    for (const std::uint32_t unit : part.words_of(uniform)) use(unit, uniform.type->texture_target);
+        });
     }
 
     /// Whether drawing takes values from buffers, by blocks of uniforms or by textures.
-    bool reads_buffers() const { return !blocks.empty() || samples_buffers_; }
+    bool reads_buffers() const;
     /// Samplers of different targets name one unit: nothing may be drawn (OpenGL 2.1, 2.15.4).
-    bool samplers_conflict() const { return samplers_conflict_; }
+    bool samplers_conflict() const { return parts.empty() ? samplers_conflict_ : parts_conflict(); }
+
+    // ---- of several programs that are drawn with together (program_pipeline.h) ----
+    /// One made of them, a stage or more each; it has no uniforms and no blocks of its own.
+    static std::unique_ptr<Executable> combine(const std::vector<std::shared_ptr<Program>>& parts);
+    /// Calls `use(executable)` with itself, or with each of its parts.
+    template <class Use>
+    void for_each_part(Use&& use) const {
+        if (parts.empty()) return use(*this);
+        for_each_combined(use);
+    }
+    std::vector<std::shared_ptr<Program>> parts;
+    std::uint32_t stages = 0;  ///< that it has, a bit for each of glapi::kShaderStages
 
     std::uint64_t stamp = 0;        ///< of linking
     std::uint64_t last_change = 0;  ///< of a uniform, or `stamp`
@@ -124,10 +152,14 @@ public:
     std::vector<glapi::CapturedVarying> captured;  ///< by transform feedback
     GLenum capture_mode = GL_INTERLEAVED_ATTRIBS;
     glapi::GeometryStage geometry;
+    glapi::TessellationStage tessellation;
+    std::vector<Subroutines> subroutines;  ///< of the stages that have any
 
 private:
     const glapi::ActiveAttribute* find_attribute(std::string_view name) const;
     void check_samplers();
+    bool parts_conflict() const;
+    void for_each_combined(const std::function<void(const Executable&)>& use) const;
     void follow_position(glapi::PositionProgram position);
 
     std::vector<std::uint32_t> words_;
@@ -146,6 +178,8 @@ struct Program : GlslObject {
     std::vector<glapi::OutputBinding> output_bindings;
     glapi::FeedbackDefinition feedback;
     std::optional<glapi::ProgramDefinition> to_link;  ///< glLinkProgram was called, nobody has asked yet how it went
+    bool separable = false;                           ///< GL_PROGRAM_SEPARABLE, for the next glLinkProgram
+    bool linked_separable = false;                    ///< the same as of the last one that succeeded
     bool linked = false;                              ///< GL_LINK_STATUS
     bool validated = false;                           ///< GL_VALIDATE_STATUS
     /// GL_PROGRAM_BINARY_RETRIEVABLE_HINT, of which nothing follows: as told for the next linking, and by the last one.

@@ -6,13 +6,16 @@
 
 namespace wall::glapi {
 
-/// Whether glBegin and draws take it; those with adjacency are for geometry shaders.
-constexpr bool is_primitive(GLenum mode) { return mode <= GL_TRIANGLE_STRIP_ADJACENCY; }
+/// Whether glBegin and draws take it; those with adjacency are for geometry shaders, patches for
+/// tessellation.
+constexpr bool is_primitive(GLenum mode) { return mode <= GL_PATCHES; }
+static_assert(GL_PATCHES == GL_TRIANGLE_STRIP_ADJACENCY + 1);
 
-/// What single primitives a mode is made of: GL_POINTS, GL_LINES, GL_TRIANGLES, or those with adjacency.
+/// What single primitives a mode is made of: GL_POINTS, GL_LINES, GL_TRIANGLES, those with adjacency, or GL_PATCHES.
 constexpr GLenum single_primitive(GLenum mode) {
     switch (mode) {
         case GL_POINTS:
+        case GL_PATCHES:
         case GL_LINES_ADJACENCY:
         case GL_TRIANGLES_ADJACENCY: return mode;
         case GL_LINES:

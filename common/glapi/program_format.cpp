@@ -33,6 +33,23 @@ public:
     void put(const GeometryStage& stage) {
         for (const std::uint32_t value : {stage.input, stage.output, stage.vertices, stage.invocations}) put(value);
     }
+    void put(const TessellationStage& stage) {
+        for (const std::uint32_t value : {stage.vertices, stage.mode, stage.spacing, stage.order, stage.point_mode})
+            put(value);
+    }
+    void put(const SubroutineUniform& uniform) {
+        put(uniform.name);
+        put(uniform.size);
+        put(uniform.array);
+        put(static_cast<std::uint32_t>(uniform.location));
+        put(uniform.compatible);
+    }
+    void put(const SubroutineStage& stage) {
+        put(stage.stage);
+        list(stage.functions, [&](const std::string& name) { put(name); });
+        list(stage.uniforms, [&](const SubroutineUniform& uniform) { put(uniform); });
+        put(stage.locations);
+    }
     void put(const PositionProgram& position) {
         list(position.uniforms, [&](const PositionUniform& u) { put(u.name), put(u.element); });
         put(position.attribute);
@@ -106,6 +123,14 @@ public:
         return out;
     }
     GeometryStage geometry() { return {word(), word(), word(), word()}; }
+    TessellationStage tessellation() { return {word(), word(), word(), word(), word()}; }
+    SubroutineStage subroutine_stage() {
+        SubroutineStage out{word(), {}, {}, 0};
+        list(out.functions, [&] { return text(); });
+        list(out.uniforms, [&] { return SubroutineUniform{text(), word(), flag(), number(), words()}; });
+        out.locations = word();
+        return out;
+    }
     bool complete() const { return in_.ok() && in_.remaining() == 0; }
 
 private:
@@ -123,6 +148,7 @@ constexpr auto kInteger = UniformBase::integer;
 constexpr auto kUnsigned = UniformBase::unsigned_integer;
 constexpr auto kBoolean = UniformBase::boolean;
 constexpr auto kSampler = UniformBase::sampler;
+constexpr auto kDouble = UniformBase::double_real;
 
 constexpr auto kNumberTypes = std::to_array<UniformType>({
     {GL_FLOAT, kReal, 1, 1, {}},
@@ -150,6 +176,19 @@ constexpr auto kNumberTypes = std::to_array<UniformType>({
     {GL_FLOAT_MAT3x4, kReal, 3, 4, {}},
     {GL_FLOAT_MAT4x2, kReal, 4, 2, {}},
     {GL_FLOAT_MAT4x3, kReal, 4, 3, {}},
+    {GL_DOUBLE, kDouble, 1, 1, {}},
+    {GL_DOUBLE_VEC2, kDouble, 1, 2, {}},
+    {GL_DOUBLE_VEC3, kDouble, 1, 3, {}},
+    {GL_DOUBLE_VEC4, kDouble, 1, 4, {}},
+    {GL_DOUBLE_MAT2, kDouble, 2, 2, {}},
+    {GL_DOUBLE_MAT3, kDouble, 3, 3, {}},
+    {GL_DOUBLE_MAT4, kDouble, 4, 4, {}},
+    {GL_DOUBLE_MAT2x3, kDouble, 2, 3, {}},
+    {GL_DOUBLE_MAT2x4, kDouble, 2, 4, {}},
+    {GL_DOUBLE_MAT3x2, kDouble, 3, 2, {}},
+    {GL_DOUBLE_MAT3x4, kDouble, 3, 4, {}},
+    {GL_DOUBLE_MAT4x2, kDouble, 4, 2, {}},
+    {GL_DOUBLE_MAT4x3, kDouble, 4, 3, {}},
 });
 
 constexpr auto kUniformTypes = [] {
@@ -171,6 +210,7 @@ std::vector<std::byte> encode(const ProgramDefinition& definition) {
     to.list(definition.outputs, [&](const OutputBinding& o) { to.put(o.color), to.put(o.index), to.put(o.name); });
     to.put(definition.feedback);
     to.put(definition.position);
+    to.put(definition.separable);
     return std::move(to.out);
 }
 
@@ -184,6 +224,7 @@ std::optional<ProgramDefinition> decode_definition(std::span<const std::byte> by
     from.list(out.outputs, [&] { return OutputBinding{from.word(), from.word(), from.text()}; });
     out.feedback = from.feedback();
     out.position = from.position();
+    out.separable = from.flag();
     return if_complete(from, std::move(out));
 }
 
@@ -206,6 +247,8 @@ std::vector<std::byte> encode(const ProgramReflection& reflection) {
     });
     to.list(reflection.captured, [&](const CapturedVarying& v) { to.put(v.type), to.put(v.size), to.put(v.name); });
     to.put(reflection.geometry);
+    to.put(reflection.tessellation);
+    to.list(reflection.subroutines, [&](const SubroutineStage& stage) { to.put(stage); });
     to.put(reflection.position);
     return std::move(to.out);
 }
@@ -226,6 +269,8 @@ std::optional<ProgramReflection> decode_reflection(std::span<const std::byte> by
     });
     from.list(out.captured, [&] { return CapturedVarying{from.word(), from.word(), from.text()}; });
     out.geometry = from.geometry();
+    out.tessellation = from.tessellation();
+    from.list(out.subroutines, [&] { return from.subroutine_stage(); });
     out.position = from.position();
     return if_complete(from, std::move(out));
 }

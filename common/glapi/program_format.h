@@ -61,6 +61,7 @@ struct ProgramDefinition {
     std::vector<OutputBinding> outputs = {};
     FeedbackDefinition feedback = {};
     PositionProgram position = {};  ///< as the node that was asked first found it
+    bool separable = false;         ///< it may be one of several that are drawn with together
 };
 
 /// Where a member of a uniform block lies in it (OpenGL 3.1, 2.11.4); -1 throughout for any other uniform.
@@ -124,6 +125,35 @@ struct GeometryStage {
     bool operator==(const GeometryStage&) const = default;
 };
 
+/// Of tessellation shaders; 0 throughout: there are none.
+struct TessellationStage {
+    std::uint32_t vertices = 0;     ///< of a patch, that the control shader makes; 0: there is no control shader
+    GLenum mode = 0;                ///< GL_TRIANGLES, GL_QUADS or GL_ISOLINES; 0: there is no evaluation shader
+    GLenum spacing = 0, order = 0;  ///< of the vertices
+    std::uint32_t point_mode = 0;   ///< not 0: it makes points
+    bool exists() const { return mode != 0; }
+    /// What single primitives it makes.
+    GLenum output() const { return point_mode != 0 ? GL_POINTS : mode == GL_ISOLINES ? GL_LINES : GL_TRIANGLES; }
+    bool operator==(const TessellationStage&) const = default;
+};
+
+/// A variable that names one of several functions (OpenGL 4.0, 2.11.5).
+struct SubroutineUniform {
+    std::string name;        ///< without "[0]"
+    std::uint32_t size = 1;  ///< elements, in a row of locations
+    bool array = false;
+    std::int32_t location = -1;
+    std::vector<std::uint32_t> compatible;  ///< indices of the functions that it may name
+};
+
+/// What a stage has of them.
+struct SubroutineStage {
+    GLenum stage = 0;
+    std::vector<std::string> functions;  ///< in the order that gives indices
+    std::vector<SubroutineUniform> uniforms;
+    std::uint32_t locations = 0;
+};
+
 struct ProgramReflection {
     bool linked = false;
     std::string log;
@@ -133,11 +163,14 @@ struct ProgramReflection {
     std::vector<ActiveOutput> outputs = {};
     std::vector<CapturedVarying> captured = {};
     GeometryStage geometry = {};
+    TessellationStage tessellation = {};
+    std::vector<SubroutineStage> subroutines = {};  ///< of stages that have functions
     PositionProgram position = {};
 };
 
 /// The stages that programs may have, in the order of ActiveBlock::stages.
-inline constexpr GLenum kShaderStages[] = {GL_VERTEX_SHADER, GL_FRAGMENT_SHADER, GL_GEOMETRY_SHADER};
+inline constexpr GLenum kShaderStages[] = {GL_VERTEX_SHADER, GL_FRAGMENT_SHADER, GL_GEOMETRY_SHADER,
+                                           GL_TESS_CONTROL_SHADER, GL_TESS_EVALUATION_SHADER};
 
 struct CompileResult {
     bool compiled = false;
@@ -154,15 +187,17 @@ std::optional<CompileResult> decode_compile_result(std::span<const std::byte> by
 
 // ---- uniform types ----
 
-enum class UniformBase : std::uint8_t { real, integer, unsigned_integer, boolean, sampler };
+enum class UniformBase : std::uint8_t { real, integer, unsigned_integer, boolean, sampler, double_real };
 
-/// A type of GLSL up to 3.30 that a uniform may have; a vector has one column. Every component is a 4-byte word.
+/// A type of GLSL up to 4.00 that a uniform may have; a vector has one column. Every component is a 4-byte word, of
+/// doubles two, the lower one first.
 struct UniformType {
     GLenum type;
     UniformBase base;
     std::uint8_t columns, rows;
     TextureTarget texture_target;  ///< of a sampler
-    unsigned words() const { return unsigned{columns} * rows; }
+    unsigned components() const { return unsigned{columns} * rows; }
+    unsigned words() const { return components() * (base == UniformBase::double_real ? 2 : 1); }
     bool matrix() const { return columns > 1; }
 };
 

@@ -2,6 +2,7 @@
 // What a state says of single draw buffers: elements with a bit for each of them (`bits` in proto/gl/state.toml). Pure.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "gen/glstate/state.gen.h"
@@ -10,6 +11,8 @@ namespace wall::glstate {
 
 /// That elements have a bit for.
 inline constexpr unsigned kDrawBuffers = 8;
+/// Viewports, each with a scissor box and a depth range, of which a geometry shader may choose one.
+inline constexpr unsigned kViewports = 1 + el::viewport_rest::count;
 
 /// Whether red, green, blue and alpha of that draw buffer are written.
 inline std::array<bool, 4> written_channels(const State& state, unsigned buffer) {
@@ -31,7 +34,8 @@ inline std::uint32_t with_bit(std::uint32_t bits, unsigned buffer, bool on) {
 
 /// Whether a query counts primitives, which then go to all tiles as they are, so that each node sees all of them.
 inline bool counts_primitives(const State& state) {
-    return state.objects.primitives_query != 0 || state.objects.captured_query != 0;
+    const auto counts = [](const auto& queries) { return std::ranges::any_of(queries, [](auto q) { return q != 0; }); };
+    return counts(state.objects.primitives_query) || counts(state.objects.captured_query);
 }
 
 }  // namespace wall::glstate

@@ -80,8 +80,8 @@ Projection make_projection(const State& state) {
     Projection p;
     p.clip_from_object = multiply(state.matrix.projection, state.matrix.modelview);
     const auto& v = state.window.viewport;
-    const int viewport[4] = {v.x, v.y, v.width, v.height};
-    for (int i = 0; i < 4; ++i) p.viewport[i] = static_cast<float>(viewport[i]);
+    const float viewport[4] = {v.x, v.y, v.width, v.height};
+    std::copy_n(viewport, 4, p.viewport);
     const auto& lp = state.line_point;
     const bool attenuated = lp.point_distance_attenuation != glstate::Vec3{1, 0, 0};
     const float point = attenuated || lp.program_point_size ? lp.point_size_max : lp.point_size;

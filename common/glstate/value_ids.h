@@ -22,9 +22,9 @@ inline std::uint64_t next_value_id() {
     return next++;
 }
 
-/// The ids of one state. Those of a category are equal only where its values are; 1: the defaults. The version tells
-/// whether anything has changed since the last look: states (and copies of one) of the same version have the same ids,
-/// others may have them. One thread at a time.
+/// The ids of one state. Those of a category are equal only where its values are; 1: the defaults. The version names
+/// what a follower of the state must hold, as far as it follows: whatever has the same version needs nothing to be told.
+/// One thread at a time.
 template <std::size_t Count>
 class ValueIds {
 public:
@@ -37,17 +37,22 @@ public:
         each_[category] = named;
         version_ = kNoVersion;
     }
-    /// 0: changed, and not named since.
-    std::uint64_t version() const { return version_; }
-    std::uint64_t named_version() {
-        if (version_ == kNoVersion) version_ = next_value_id();
-        return version_;
+    /// This state has been brought to what the other one wants. If that changed nothing, the other one wants the same as
+    /// the one before.
+    void follow(ValueIds& other) {
+        if (version_ != kNoVersion) {
+            other.version_ = version_;
+            return;
+        }
+        if (other.version_ == kNoVersion) other.version_ = next_value_id();
+        version_ = other.version_;
     }
+    bool follows(const ValueIds& other) const { return version_ != kNoVersion && version_ == other.version_; }
     /// By the ids alone.
     bool operator==(const ValueIds& other) const { return each_ == other.each_; }
 
 private:
-    static constexpr std::uint64_t kNoVersion = 0;
+    static constexpr std::uint64_t kNoVersion = 0;  // changed, and not followed since
     std::array<std::uint64_t, Count> each_ = filled<std::array<std::uint64_t, Count>>(1);
     std::uint64_t version_ = 1;
 };

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -15,6 +16,10 @@ using Vec3 = std::array<float, 3>;
 using Vec4 = std::array<float, 4>;
 using Mat4 = std::array<float, 16>;  ///< column major
 using Words32 = std::array<std::uint32_t, 32>;
+
+/// Numbers of which all bits are set (indexed_values.h).
+inline constexpr float kAllBits = std::bit_cast<float>(~std::uint32_t{0});
+inline constexpr double kAllBits64 = std::bit_cast<double>(~std::uint64_t{0});
 
 inline constexpr Mat4 kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 

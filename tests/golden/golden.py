@@ -6,7 +6,8 @@ Mesa draws each tile's part, everything moved by the tile's place in the window 
 what the scenes' queries answered, that no query waited for an answer of the wall, and that the moved reference matches
 the plain one.
 
-golden.py --tiles CxR|mesa [--only NAME]... [--backend egl|osmesa] [--report FOLDER] [--references FOLDER]
+golden.py --tiles CxR|mesa [--only NAME]... [--sample K/N] [--backend egl|osmesa] [--report FOLDER]
+          [--references FOLDER]
     mesa instead of a wall compares Mesa with itself: it checks these tests, and writes the references.
 """
 from __future__ import annotations
@@ -178,6 +179,16 @@ def play_all(subjects: list[Subject], expected: Collection[Check], options: argp
             yield from outcomes
 
 
+def sample(subjects: list[Subject], which: str) -> list[Subject]:
+    """Of recordings the Kth of every N, `which` being "K/N"; of scenes all, since each is about something else."""
+    number, of = map(int, which.split("/"))
+    if not 1 <= number <= of:
+        raise ValueError(f"{which}: expected K/N with K from 1 to N")
+    recordings = [subject for subject in subjects if subject.kind == "recording"]
+    return [subject for subject in subjects
+            if subject.kind != "recording" or recordings.index(subject) % of == number - 1]
+
+
 def most_telling(failures: list[Outcome]) -> list[Outcome]:
     """Of a subject that gave no pictures, only the failures that are not about pictures: they say why."""
     return [outcome for outcome in failures if outcome.detail != NO_PICTURE] or failures
@@ -186,6 +197,7 @@ def most_telling(failures: list[Outcome]) -> list[Outcome]:
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     arguments.add_argument("--tiles", default="mesa")
+    arguments.add_argument("--sample", default="1/1", metavar="K/N", help="of recordings only the Kth of every N")
     arguments.add_argument("--backend", default="egl", choices=["egl", "osmesa"])
     arguments.add_argument("--only", action="append", default=[], help="recording or scene; may be given again")
     arguments.add_argument("--report", type=Path, default=Path("test-output/golden"),
@@ -196,7 +208,11 @@ def main() -> int:
     unknown = set(options.only) - {subject.name for subject in subjects}
     if unknown:
         arguments.error(f"no recording or scene {', '.join(sorted(unknown))}")
-    chosen = [subject for subject in subjects if not options.only or subject.name in options.only]
+    try:
+        sampled = sample(subjects, options.sample)
+    except ValueError as error:
+        arguments.error(str(error))
+    chosen = [subject for subject in subjects if subject.name in options.only] or sampled
     expected = load(HERE / "expectations.toml")
     judgement = judge(play_all(chosen, expected, options), expected)
     for outcome in most_telling(judgement.failures):

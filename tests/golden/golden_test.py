@@ -10,7 +10,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from expectations import Check, Expected, Outcome, judge, load  # noqa: E402
-from golden import Comparison, either  # noqa: E402
+from golden import Comparison, either, sample  # noqa: E402
 from stages import Performance, parts_of  # noqa: E402
 from subjects import Recording, Scene, load_recordings, read_frame  # noqa: E402
 
@@ -200,6 +200,21 @@ class Subjects(unittest.TestCase):
                             + picture.tobytes()[:-1])
         self.assertTrue((read_frame(stream) == picture).all())
         self.assertIsNone(read_frame(stream))  # cut off
+
+
+class Sampled(unittest.TestCase):
+    SUBJECTS = [*load_recordings()[:7], Scene("it", 3, True, Path())]
+
+    def test_each_recording_is_in_one_sample_and_scenes_in_all(self):
+        samples = [sample(self.SUBJECTS, f"{number}/3") for number in (1, 2, 3)]
+        self.assertEqual([len(subjects) for subjects in samples], [4, 3, 3])
+        self.assertEqual(sum(samples, []).count(self.SUBJECTS[-1]), 3)
+        self.assertEqual({subject.name for subject in sum(samples, [])}, {subject.name for subject in self.SUBJECTS})
+        self.assertEqual(sample(self.SUBJECTS, "1/1"), self.SUBJECTS)
+
+    def test_a_sample_that_there_is_not_is_refused(self):
+        for which in ("0/3", "4/3", "3"):
+            self.assertRaises(ValueError, sample, self.SUBJECTS, which)
 
 
 if __name__ == "__main__":

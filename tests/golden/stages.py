@@ -13,7 +13,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from subjects import WINDOW, Play, Subject
+from subjects import WINDOW, Play, Recording, Subject
 from wall import Wall, WallError
 from xserver import XServer
 
@@ -149,9 +149,10 @@ class WallStage:
 
     SLACK = {(1, 1): (0, 0), (2, 2): (12, 10), (3, 2): (20, 14)}  # pixels of the wall beside the window
 
-    def __init__(self, x: XServer, tiles: tuple[int, int], backend: str = "egl"):
+    def __init__(self, x: XServer, tiles: tuple[int, int], backend: str = "egl", swap_timeout_ms: int = 10000):
         slack = self.SLACK.get(tiles, (16, 16))
         self._x, self._tiles, self._backend, self._slack = x, tiles, backend, slack
+        self._swap_timeout_ms = swap_timeout_ms
         self._origin = (slack[0] // 3, slack[1] // 2)
         self._window = WINDOW
         self._wall = self._wall_for(WINDOW)
@@ -167,8 +168,8 @@ class WallStage:
         return -(-(window[0] + self._slack[0]) // self._tiles[0]), -(-(window[1] + self._slack[1]) // self._tiles[1])
 
     def _wall_for(self, window: tuple[int, int]) -> Wall:
-        return Wall(tiles=self._tiles, tile_size=self._tile_size(window), backend=self._backend, swap_timeout_ms=10000,
-                    name="golden")
+        return Wall(tiles=self._tiles, tile_size=self._tile_size(window), backend=self._backend,
+                    swap_timeout_ms=self._swap_timeout_ms, name="golden")
 
     def _fit(self, window: tuple[int, int]) -> None:
         if window == self._window:
@@ -177,8 +178,24 @@ class WallStage:
         self._window, self._wall = window, self._wall_for(window)
         self._wall.__enter__()
 
+    @property
+    def tiles(self) -> tuple[int, int]:
+        return self._tiles
+
     def parts(self, window: tuple[int, int]) -> list[Rect]:
         return parts_of((*self._origin, *window), self._tiles, self._tile_size(window))
+
+    @contextlib.contextmanager
+    def looping(self, recording: Recording) -> Iterator[tuple[Wall, Play, Rect]]:
+        """Draws the recording's last frame over and over, at (x, y, width, height) of the wall."""
+        self._fit(recording.window)
+        rect = (*self._origin, *recording.window)
+        prefix = self._wall.wallrun(rect=rect, name=recording.name)
+        play = Play(recording.looping(), self._x.environment(vblank_mode="0"), prefix, unseen=True)
+        try:
+            yield self._wall, play, rect
+        finally:
+            play.end()
 
     def play(self, subject: Subject) -> Performance:
         given = Performance()

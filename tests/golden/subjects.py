@@ -47,6 +47,7 @@ class Recording:
     screen: tuple[int, int] = (800, 600)  # programs that choose their own size take half of it
     seconds: float = 3
     cut: int = 0
+    loops: bool = False  # see looping()
 
     kind = "recording"
 
@@ -68,7 +69,12 @@ class Recording:
     def argv(self) -> list[str]:
         """Replays it, with each frame written to standard output just before its swap. -b leaves out the glGetError
         that would follow each call."""
-        return ["eglretrace" if self.api == "egl" else "glretrace", "-b", "-s", "-", str(self.path)]
+        what = ["--loop=-1"] if self.loops else ["-s", "-"]
+        return ["eglretrace" if self.api == "egl" else "glretrace", "-b", *what, str(self.path)]
+
+    def looping(self) -> Recording:
+        """Never ends: goes on with its last frame. It gives no frames."""
+        return dataclasses.replace(self, loops=True)
 
     def environment(self) -> dict[str, str]:
         platform = {"WAFFLE_PLATFORM": "x11_egl"} if self.api == "egl" else {}
@@ -179,6 +185,14 @@ class Play:
     @property
     def pid(self) -> int:
         return self._process.pid
+
+    def alive(self) -> bool:
+        return self._process.poll() is None
+
+    def end(self) -> None:
+        """Of one that would not end by itself."""
+        signal_group(self._process, signal.SIGKILL)
+        self._process.communicate()
 
     def finish(self, seconds: float = 30) -> tuple[int, str]:
         """Exit code and standard error; kills what does not end in time."""

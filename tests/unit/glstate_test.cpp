@@ -82,6 +82,46 @@ void scramble(State& state, std::mt19937& random, unsigned percent) {
     });
 }
 
+TEST(State, IsFollowedUntilItOrItsFollowerChanges) {
+    State driver, a, b;
+    glstate::assign<el::fog_density>(a, 0, 0.5f);
+    glstate::assign<el::fog_density>(b, 0, 0.25f);
+    RecordingSink sink;
+    const auto bring_to = [&](State& state) {
+        glstate::diff_and_unify(driver, state, sink);
+        driver.ids.follow(state.ids);
+    };
+    EXPECT_TRUE(driver.ids.follows(State().ids)) << "both begin with the same values";
+    EXPECT_FALSE(driver.ids.follows(a.ids));
+    bring_to(a);
+    EXPECT_TRUE(driver.ids.follows(a.ids));
+    EXPECT_FALSE(driver.ids.follows(b.ids));
+    bring_to(b);
+    EXPECT_FALSE(driver.ids.follows(a.ids)) << "another has come between";
+    bring_to(a);
+    glstate::assign<el::fog_density>(driver, 0, 1.0f);
+    EXPECT_FALSE(driver.ids.follows(a.ids));
+    bring_to(a);
+    glstate::assign<el::fog_density>(a, 0, 1.0f);
+    EXPECT_FALSE(driver.ids.follows(a.ids));
+}
+
+TEST(State, ThatWantsNothingElseIsFollowedAsWell) {
+    State driver, a, b;
+    for (State* state : {&a, &b}) glstate::assign<el::fog_density>(*state, 0, 0.5f);
+    RecordingSink sink;
+    for (State* state : {&a, &b}) {
+        EXPECT_FALSE(driver.ids.follows(state->ids));
+        glstate::diff_and_unify(driver, *state, sink);
+        driver.ids.follow(state->ids);
+    }
+    EXPECT_TRUE(driver.ids.follows(a.ids));
+    EXPECT_TRUE(driver.ids.follows(b.ids));
+    glstate::assign<el::fog_density>(a, 0, 0.5f);
+    EXPECT_FALSE(driver.ids.follows(a.ids)) << "by ids: nobody has compared the values yet";
+    EXPECT_TRUE(driver.ids.follows(b.ids));
+}
+
 TEST(State, EqualValuesAreUnifiedAtTheFirstComparison) {
     State driver, a, b;
     for (State* state : {&a, &b}) {
@@ -282,10 +322,10 @@ TEST(Groups, HoldWhatTheSpecificationSays) {
     };
     using Names = std::vector<std::string>;
     EXPECT_EQ(names(GL_DEPTH_BUFFER_BIT), (Names{"depth_test", "depth_func", "depth_mask", "clear_depth"}));
-    EXPECT_EQ(names(GL_VIEWPORT_BIT), (Names{"depth_range", "viewport"}));
+    EXPECT_EQ(names(GL_VIEWPORT_BIT), (Names{"depth_range", "depth_range_rest", "viewport", "viewport_rest"}));
     EXPECT_EQ(names(GL_LINE_BIT), (Names{"line_smooth", "line_stipple_enabled", "line_width", "line_stipple"}));
     EXPECT_EQ(names(GL_LIST_BIT), (Names{"list_base"}));
-    EXPECT_EQ(names(GL_SCISSOR_BIT), (Names{"scissor", "scissor_enabled"}));
+    EXPECT_EQ(names(GL_SCISSOR_BIT), (Names{"scissor", "scissor_rest", "scissor_enabled"}));
     EXPECT_EQ(names(GL_ACCUM_BUFFER_BIT), (Names{"clear_accum"}));
     EXPECT_EQ(names(GL_POLYGON_STIPPLE_BIT), (Names{"polygon_stipple"}));
     const auto enables = names(GL_ENABLE_BIT);

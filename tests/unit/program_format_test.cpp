@@ -55,6 +55,8 @@ TEST(ProgramFormat, Reflection) {
                                {{1, 0, 2, true, "tint"}},
                                {{GL_FLOAT_VEC3, 1, "speed"}},
                                {GL_TRIANGLES, GL_LINE_STRIP, 12, 1},
+                               {4, GL_QUADS, GL_EQUAL, GL_CCW, 1},
+                               {{GL_VERTEX_SHADER, {"red", "blue"}, {{"tone", 3, true, 0, {1, 0}}}, 3}},
                                kPosition};
     const auto bytes = encode(in);
     const auto out = decode_reflection(bytes);
@@ -69,6 +71,11 @@ TEST(ProgramFormat, Reflection) {
     EXPECT_EQ(out->outputs[0].location, 1);
     EXPECT_EQ(out->captured[0].name, "speed");
     EXPECT_EQ(out->geometry, in.geometry);
+    EXPECT_EQ(out->tessellation, in.tessellation);
+    ASSERT_EQ(out->subroutines.size(), 1u);
+    EXPECT_EQ(out->subroutines[0].functions, in.subroutines[0].functions);
+    EXPECT_EQ(out->subroutines[0].uniforms[0].compatible, in.subroutines[0].uniforms[0].compatible);
+    EXPECT_EQ(out->subroutines[0].locations, 3u);
     refuses_prefixes(bytes, decode_reflection);
 }
 
@@ -92,6 +99,7 @@ TEST(ProgramFormat, PositionsWithoutMeaningAreRefused) {
 
 TEST(ProgramFormat, UniformTypes) {
     EXPECT_EQ(find_uniform_type(GL_FLOAT_MAT2x3)->words(), 6u);
+    EXPECT_EQ(find_uniform_type(GL_DOUBLE_MAT2x3)->words(), 12u);
     EXPECT_EQ(find_uniform_type(GL_SAMPLER_CUBE)->texture_target, TextureTarget::cube_map);
     EXPECT_EQ(find_uniform_type(GL_RGBA), nullptr);
 }

@@ -86,10 +86,9 @@ void change_all(Layer& layer, const Box& area, Change&& change) {
 
 Box accum_area(const Layer& layer, const glstate::State& state) {
     const geom::Rect all{0, 0, layer.width(), layer.height()};
-    if (glstate::el::scissor_enabled::ref(state) == 0) return {0, 0, all.width, all.height};
-    const auto values = window_values(layer.geometry(), state);
-    const auto cut =
-        geom::intersect(all, {values.scissor.x, values.scissor.y, values.scissor.width, values.scissor.height});
+    if ((glstate::el::scissor_enabled::ref(state) & 1) == 0) return {0, 0, all.width, all.height};
+    const WindowValues::IntBox box = window_values(layer.geometry(), state).scissors.front();
+    const auto cut = geom::intersect(all, {box.x, box.y, box.width, box.height});
     return {cut.x, cut.y, cut.width, cut.height};
 }
 

@@ -2,10 +2,14 @@
 #include "tileserver/driver/driver.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <string_view>
 #include <utility>
 
+#include "common/glstate/draw_buffers.h"
+#include "common/glstate/indexed_values.h"
 #include "common/glstate/modelview.h"
 
 namespace wall::tileserver {
@@ -141,8 +145,39 @@ void Driver::sync_values(glstate::State& state) {
         diff_by_unit<glstate::Category::texture_gen>(mirror, state, *this);
         glstate::diff_and_unify<kSynced>(mirror, state, *this);
     }
+    apply_indexed();
     if (std::exchange(modelview_changed_, false))
         modelview_has_origin_ = glstate::load_modelview(gl_, mirror, modelview_has_origin_);
+}
+
+void Driver::apply_indexed() {
+    namespace el = glstate::el;
+    if (std::exchange(blend_func_changed_, false)) {
+        const auto of = [&](unsigned i) -> const glstate::BlendFunc& {
+            return glstate::value_at<el::blend_func, el::blend_func_rest>(mirror, i);
+        };
+        const glstate::BlendFunc& all = of(0);
+        if (glstate::none_has_its_own<el::blend_func_rest>(mirror))
+            gl_.BlendFuncSeparate(all.src_rgb, all.dst_rgb, all.src_alpha, all.dst_alpha);
+        else
+            for (unsigned i = 0; i < glstate::kDrawBuffers; ++i)
+                gl_.BlendFuncSeparatei(i, of(i).src_rgb, of(i).dst_rgb, of(i).src_alpha, of(i).dst_alpha);
+    }
+    if (std::exchange(depth_range_changed_, false)) {
+        std::array<glstate::DepthRange, glstate::kViewports> ranges;
+        for (unsigned i = 0; i < ranges.size(); ++i)
+            ranges[i] = glstate::value_at<el::depth_range, el::depth_range_rest>(mirror, i);
+        if (glstate::none_has_its_own<el::depth_range_rest>(mirror))
+            gl_.DepthRange(ranges[0].near_value, ranges[0].far_value);
+        else gl_.DepthRangeArrayv(0, static_cast<GLsizei>(ranges.size()), &ranges[0].near_value);
+    }
+    if (!std::exchange(blend_equation_changed_, false)) return;
+    const auto of = [&](unsigned i) -> const glstate::BlendEquation& {
+        return glstate::value_at<el::blend_equation, el::blend_equation_rest>(mirror, i);
+    };
+    if (glstate::none_has_its_own<el::blend_equation_rest>(mirror)) gl_.BlendEquationSeparate(of(0).rgb, of(0).alpha);
+    else
+        for (unsigned i = 0; i < glstate::kDrawBuffers; ++i) gl_.BlendEquationSeparatei(i, of(i).rgb, of(i).alpha);
 }
 
 void Driver::sync_pixel_transfer(const glstate::State& state) {
@@ -228,26 +263,54 @@ void Driver::bind_window(RenderTarget& target, glstate::State& state) {
     target_ = &target;
     target.bind(glstate::el::draw_buffer::ref(state), glstate::el::read_buffer::ref(state));
     const WindowValues wanted = window_values(target.geometry(), state);
-    apply_viewport(wanted, target.geometry().scaled());
-    if (wanted.scissor_enabled != window_.scissor_enabled)
-        wanted.scissor_enabled ? gl_.Enable(GL_SCISSOR_TEST) : gl_.Disable(GL_SCISSOR_TEST);
-    if (wanted.scissor != window_.scissor)
-        gl_.Scissor(wanted.scissor.x, wanted.scissor.y, wanted.scissor.width, wanted.scissor.height);
+    apply_viewports(wanted);
+    apply_scissors(wanted);
     if (wanted.stipple != window_.stipple) gl_.PolygonStipple(reinterpret_cast<const GLubyte*>(wanted.stipple.data()));
     if (wanted.pixel_zoom != window_.pixel_zoom) gl_.PixelZoom(wanted.pixel_zoom[0], wanted.pixel_zoom[1]);
     window_ = wanted;
 }
 
-void Driver::apply_viewport(const WindowValues& values, bool scaled) {
-    if (values.viewport == window_.viewport && scaled == viewport_scaled_) return;
-    const auto& v = values.viewport;
-    viewport_scaled_ = scaled;
-    if (scaled) gl_.ViewportIndexedf(0, v.x, v.y, v.width, v.height);
-    else gl_.Viewport(whole(v.x), whole(v.y), whole(v.width), whole(v.height));
+namespace {
+
+template <class Boxes>
+bool all_alike(const Boxes& boxes) {
+    return std::ranges::all_of(boxes, [&](const auto& box) { return box == boxes.front(); });
+}
+
+bool is_whole(const WindowValues::Box& box) {
+    return std::ranges::all_of(std::array{box.x, box.y, box.width, box.height},
+                               [](float value) { return std::floor(value) == value; });
+}
+
+}  // namespace
+
+/// Older commands are for all of them.
+void Driver::apply_viewports(const WindowValues& values) {
+    if (values.viewports == window_.viewports) return;
+    const WindowValues::Box& first = values.viewports.front();
+    if (all_alike(values.viewports) && is_whole(first))
+        return gl_.Viewport(whole(first.x), whole(first.y), whole(first.width), whole(first.height));
+    static_assert(sizeof(WindowValues::Box) == 4 * sizeof(GLfloat));
+    gl_.ViewportArrayv(0, static_cast<GLsizei>(WindowValues::kViewports), &first.x);
+}
+
+void Driver::apply_scissors(const WindowValues& values) {
+    constexpr std::uint32_t kAll = (1u << WindowValues::kViewports) - 1;
+    if (values.scissor_enabled != window_.scissor_enabled) {
+        const bool all = (values.scissor_enabled & kAll) == kAll;
+        all ? gl_.Enable(GL_SCISSOR_TEST) : gl_.Disable(GL_SCISSOR_TEST);
+        for (GLuint i = 0; i < WindowValues::kViewports && !all; ++i)
+            if ((values.scissor_enabled >> i & 1) != 0) gl_.Enablei(GL_SCISSOR_TEST, i);
+    }
+    if (values.scissors == window_.scissors) return;
+    const WindowValues::IntBox& first = values.scissors.front();
+    static_assert(sizeof(WindowValues::IntBox) == 4 * sizeof(GLint));
+    if (all_alike(values.scissors)) gl_.Scissor(first.x, first.y, first.width, first.height);
+    else gl_.ScissorArrayv(0, static_cast<GLsizei>(WindowValues::kViewports), &first.x);
 }
 
 void Driver::disable_scissor() {
-    if (std::exchange(window_.scissor_enabled, false)) gl_.Disable(GL_SCISSOR_TEST);
+    if (std::exchange(window_.scissor_enabled, 0) != 0) gl_.Disable(GL_SCISSOR_TEST);
     target_ = nullptr;
 }
 

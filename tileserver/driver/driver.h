@@ -34,6 +34,8 @@ using TextureNames = std::array<std::array<GLuint, kTextureTargets>, kTextureUni
 /// What a query of the driver counts.
 enum class QueryTarget : std::uint8_t { samples, primitives, captured };
 inline constexpr std::size_t kQueryTargets = 3;
+/// Streams of vertices that a geometry shader may make; primitives are counted of each.
+inline constexpr unsigned kVertexStreams = glstate::el::captured_query::count;
 inline GLenum gl_query_target(QueryTarget target) {
     constexpr std::array<GLenum, kQueryTargets> kTargets = {GL_SAMPLES_PASSED, GL_PRIMITIVES_GENERATED,
                                                             GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN};
@@ -52,11 +54,6 @@ struct SamplerBindings {
 struct TextureBindings {
     std::uint64_t id = 0;
     TextureNames names{};
-};
-
-/// The versions of what a driver held and of a state when the driver had been brought to that state; 0: never.
-struct FollowedState {
-    std::uint64_t driver = 0, state = 0;
 };
 
 /// The state of a driver context goes through here, never around it.
@@ -79,13 +76,11 @@ public:
     void sync(glstate::State& state) {
         if (!glstate::same_ids<kSynced>(mirror, state)) sync_values(state);
     }
-    /// Whether this state was followed before, and neither it nor what the driver holds has changed since: then all of
-    /// sync() and sync_current() is done. Two numbers instead of a comparison of each category.
-    bool holds(const FollowedState& followed, const glstate::State& state) const {
-        return followed.driver != 0 && followed.driver == mirror.ids.version() && followed.state == state.ids.version();
-    }
+    /// Whether this state was followed last, and neither it nor what the driver holds has changed since: then all of
+    /// sync() and sync_current() is done. One number instead of a comparison of each category.
+    bool holds(const glstate::State& state) const { return mirror.ids.follows(state.ids); }
     /// After sync() and sync_current(), in that order.
-    FollowedState followed(glstate::State& state) { return {mirror.ids.named_version(), state.ids.named_version()}; }
+    void follow(glstate::State& state) { mirror.ids.follow(state.ids); }
     /// The current attributes; the last thing before geometry, so that Mesa packs them with its vertices. Behind them
     /// any other change would make it set up each as an array of its own.
     void sync_current(glstate::State& state) { glstate::diff_and_unify<kCurrentMask>(mirror, state, *this); }
@@ -121,20 +116,32 @@ public:
     void forget_texture(GLuint texture);
     /// A program of the driver; 0: fixed function.
     void use_program(GLuint program) {
+        if (pipeline_ != 0) gl_.BindProgramPipeline(pipeline_ = 0);
         if (program_ != program) gl_.UseProgram(program_ = program);
+    }
+    /// Several programs of the driver, a stage or more each.
+    void use_pipeline(GLuint pipeline) {
+        if (program_ != 0) gl_.UseProgram(program_ = 0);
+        if (pipeline_ != pipeline) gl_.BindProgramPipeline(pipeline_ = pipeline);
+    }
+    /// Before it is deleted.
+    void forget_pipeline(GLuint pipeline) {
+        if (pipeline_ == pipeline) use_program(0);
     }
     /// Before a program is deleted.
     void forget_program(GLuint program) {
         if (program_ == program) use_program(0);
     }
-    /// Counts for a query of the driver until end_queries(): one of each target.
-    void begin_query(QueryTarget target, GLuint query) {
-        gl_.BeginQuery(gl_query_target(target), queries_[static_cast<std::size_t>(target)] = query);
+    /// Counts for a query of the driver until end_queries(): one of each target and stream; samples are of stream 0.
+    void begin_query(QueryTarget target, unsigned stream, GLuint query) {
+        gl_.BeginQueryIndexed(gl_query_target(target), stream, queries_of(target)[stream] = query);
     }
     /// Of whatever counts.
     void end_queries() {
-        for (std::size_t i = 0; i < kQueryTargets; ++i)
-            if (std::exchange(queries_[i], 0) != 0) gl_.EndQuery(gl_query_target(static_cast<QueryTarget>(i)));
+        for (std::size_t i = 0; i < queries_.size(); ++i)
+            if (std::exchange(queries_[i], 0) != 0)
+                gl_.EndQueryIndexed(gl_query_target(static_cast<QueryTarget>(i / kVertexStreams)),
+                                    static_cast<GLuint>(i % kVertexStreams));
     }
     void delete_query(GLuint query) {
         if (std::ranges::count(queries_, query) != 0) end_queries();
@@ -210,12 +217,24 @@ private:
     void emit(Gl& gl, glstate::el::modelview_form, unsigned, const glstate::ModelviewForm& v);
     void emit(Gl& gl, glstate::el::projection, unsigned, const glstate::Mat4& v);
     void emit(Gl& gl, glstate::el::texture_matrix, unsigned i, const glstate::Mat4& v);
+    // Several elements make up what draw buffers have; the driver is told when all of them are known.
+    void emit(Gl&, glstate::el::blend_func, unsigned, const glstate::BlendFunc&) { blend_func_changed_ = true; }
+    void emit(Gl&, glstate::el::depth_range, unsigned, const glstate::DepthRange&) { depth_range_changed_ = true; }
+    void emit(Gl&, glstate::el::depth_range_rest, unsigned, const glstate::DepthRange&) { depth_range_changed_ = true; }
+    void emit(Gl&, glstate::el::blend_func_rest, unsigned, const glstate::BlendFunc&) { blend_func_changed_ = true; }
+    void emit(Gl&, glstate::el::blend_equation, unsigned, const glstate::BlendEquation&) {
+        blend_equation_changed_ = true;
+    }
+    void emit(Gl&, glstate::el::blend_equation_rest, unsigned, const glstate::BlendEquation&) {
+        blend_equation_changed_ = true;
+    }
     void emit(Gl& gl, glstate::el::sample_mask, unsigned, std::uint32_t v) { gl.SampleMaski(0, v); }
     void emit(Gl& gl, glstate::el::clip_plane, unsigned i, const glstate::Vec4& v);
     void emit(Gl& gl, glstate::el::light_position, unsigned i, const glstate::Vec4& v);
     void emit(Gl& gl, glstate::el::light_spot_direction, unsigned i, const glstate::Vec3& v);
     void emit(Gl& gl, glstate::el::tex_gen_eye_plane, unsigned i, const glstate::Vec4& v);
-    void apply_viewport(const WindowValues& values, bool scaled);
+    void apply_viewports(const WindowValues& values);
+    void apply_scissors(const WindowValues& values);
 
     void stop_tracking(const glstate::State& state);
     void sync_values(glstate::State& state);
@@ -223,6 +242,12 @@ private:
     void bind_all(const TextureBindings& wanted);
     void bind_texture(unsigned unit, TextureTarget target, GLuint texture);
     void bind_each_sampler(const SamplerBindings& wanted);
+
+    GLuint* queries_of(QueryTarget target) {
+        return queries_.data() + static_cast<std::size_t>(target) * kVertexStreams;
+    }
+    /// What draw buffers and viewports have each for itself, as far as it has changed.
+    void apply_indexed();
 
     static constexpr auto kWindow = static_cast<std::size_t>(glstate::Category::window);
     static constexpr glstate::CategoryMask kCurrentMask = glstate::mask_of(glstate::Category::current);
@@ -239,19 +264,19 @@ private:
     Gl gl_;
     const glstate::State defaults_;
     bool flip_y_ = false;
-    bool modelview_changed_ = false;     // since it was loaded
-    bool modelview_has_origin_ = false;  // what was loaded
+    bool modelview_changed_ = false;  // since it was loaded
+    bool blend_func_changed_ = false, blend_equation_changed_ = false, depth_range_changed_ = false;  // the same
+    bool modelview_has_origin_ = false;                                                               // what was loaded
     TextureBindings bound_textures_;
-    SamplerBindings samplers_;                     // that the driver has bound
-    GLuint program_ = 0;                           // that the driver draws with
-    std::array<GLuint, kQueryTargets> queries_{};  // that count
+    SamplerBindings samplers_;                                      // that the driver has bound
+    GLuint program_ = 0, pipeline_ = 0;                             // that the driver draws with: one of them
+    std::array<GLuint, kQueryTargets * kVertexStreams> queries_{};  // that count
     GLuint vertex_array_ = 0;
     bool discarding_ = false, capturing_ = false;
     std::array<glstate::BufferRange, glstate::el::uniform_buffer::count> uniform_buffers_{};  // the driver's names
     std::uint32_t uniform_buffer_alignment_ = 1;
     RenderTarget* target_ = nullptr;  // whose window values are in the driver
-    bool viewport_scaled_ = false;
-    WindowValues window_;  // what the driver holds
+    WindowValues window_;             // what the driver holds
     bool bitmap_held_ = false;
 };
 

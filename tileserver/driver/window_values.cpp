@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "common/glstate/indexed_values.h"
+
 namespace wall::tileserver {
 namespace {
 
@@ -19,6 +21,13 @@ std::array<std::uint32_t, 32> rotate_stipple(const std::array<std::uint32_t, 32>
         out[row] = __builtin_bswap32(std::rotl(left_first, dx & 31));
     }
     return out;
+}
+
+/// Null: the first one's.
+template <class R>
+const typename R::type* own_value(const glstate::State& state, unsigned index) {
+    const typename R::type& value = R::ref(state, index - 1);
+    return glstate::same(value, glstate::as_the_first<typename R::type>()) ? nullptr : &value;
 }
 
 /// Rounds an edge; saturates where a program gave an absurd rectangle.
@@ -43,18 +52,35 @@ WindowValues::IntBox layer_box(const LayerGeometry& g, const WindowValues::IntBo
     return {low.x, low.y, std::max(high.x - low.x, 0), std::max(high.y - low.y, 0)};
 }
 
-WindowValues window_values(const LayerGeometry& g, const glstate::State& state) {
-    WindowValues out;
-    const auto& viewport = glstate::el::viewport::ref(state);
+namespace {
+
+/// What is no number, or absurd, is 0.
+float sane(double value) { return std::abs(value) <= 1e9 ? static_cast<float>(value) : 0; }
+
+WindowValues::Box viewport_of(const LayerGeometry& g, const glstate::Viewport& viewport) {
     const auto at = layer_point(g, viewport.x, viewport.y);
-    out.viewport = {static_cast<float>(at.x), static_cast<float>(at.y),
-                    static_cast<float>(viewport.width * g.scale_x()),
-                    static_cast<float>(viewport.height * g.scale_y())};
-    const auto& scissor = glstate::el::scissor::ref(state);
-    out.scissor = layer_box(g, {scissor.x, scissor.y, scissor.width, scissor.height});
-    out.scissor_enabled = glstate::el::scissor_enabled::ref(state) != 0;
-    out.stipple = rotate_stipple(glstate::el::polygon_stipple::ref(state), g.offset_x(), g.offset_y());
-    const auto& zoom = glstate::el::pixel_zoom::ref(state);
+    return {sane(at.x), sane(at.y), sane(viewport.width * g.scale_x()), sane(viewport.height * g.scale_y())};
+}
+
+WindowValues::IntBox scissor_of(const LayerGeometry& g, const glstate::Scissor& scissor) {
+    return layer_box(g, {scissor.x, scissor.y, scissor.width, scissor.height});
+}
+
+}  // namespace
+
+WindowValues window_values(const LayerGeometry& g, const glstate::State& state) {
+    namespace el = glstate::el;
+    WindowValues out;
+    out.viewports.fill(viewport_of(g, el::viewport::ref(state)));
+    out.scissors.fill(scissor_of(g, el::scissor::ref(state)));
+    if (!glstate::none_has_its_own<el::viewport_rest>(state) || !glstate::none_has_its_own<el::scissor_rest>(state))
+        for (unsigned i = 1; i < WindowValues::kViewports; ++i) {
+            if (const auto* own = own_value<el::viewport_rest>(state, i)) out.viewports[i] = viewport_of(g, *own);
+            if (const auto* own = own_value<el::scissor_rest>(state, i)) out.scissors[i] = scissor_of(g, *own);
+        }
+    out.scissor_enabled = el::scissor_enabled::ref(state);
+    out.stipple = rotate_stipple(el::polygon_stipple::ref(state), g.offset_x(), g.offset_y());
+    const auto& zoom = el::pixel_zoom::ref(state);
     out.pixel_zoom = {static_cast<float>(zoom.x * g.scale_x()), static_cast<float>(zoom.y * g.scale_y())};
     return out;
 }

@@ -20,9 +20,11 @@ struct WindowValues {
         std::int32_t x = 0, y = 0, width = 0, height = 0;
         bool operator==(const IntBox&) const = default;
     };
-    Box viewport;    ///< layer pixels, y up
-    IntBox scissor;  ///< layer pixels, y up
-    bool scissor_enabled = false;
+    static constexpr std::size_t kViewports = 1 + glstate::el::viewport_rest::count;
+    /// Layer pixels, y up, like the scissor boxes; of each that shaders may choose.
+    std::array<Box, kViewports> viewports{};
+    std::array<IntBox, kViewports> scissors{};
+    std::uint32_t scissor_enabled = 0;        ///< a bit for each
     std::array<std::uint32_t, 32> stipple{};  ///< row 0 at the bottom, first pixel in the highest bit of the first byte
     std::array<float, 2> pixel_zoom{1, 1};
 };

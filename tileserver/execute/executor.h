@@ -21,6 +21,7 @@
 #include "tileserver/execute/block_execution.h"
 #include "tileserver/execute/buffer_commands.h"
 #include "tileserver/execute/capture_commands.h"
+#include "tileserver/execute/captured_draw_commands.h"
 #include "tileserver/execute/content_question.h"
 #include "tileserver/execute/draw_commands.h"
 #include "tileserver/execute/draw_pieces_commands.h"
@@ -30,6 +31,7 @@
 #include "tileserver/execute/instanced_draw_commands.h"
 #include "tileserver/execute/map_commands.h"
 #include "tileserver/execute/object_commands.h"
+#include "tileserver/execute/pipeline_commands.h"
 #include "tileserver/execute/program_commands.h"
 #include "tileserver/execute/query_commands.h"
 #include "tileserver/execute/read_commands.h"
@@ -81,8 +83,12 @@ public:
     TextureCommands texture{execution_, question_};
     RunCommands run{execution_, geometry.block(), question_, [this](glapi::DrawingRun& r) { return r.run(*this); }};
     ProgramCommands program{execution_};
+    ProgramCommands& subroutine = program;
+    PipelineCommands pipeline{execution_};
     BufferCommands buffer{execution_};
     CaptureCommands capture{execution_};
+    CaptureCommands& capture_end = capture;
+    CapturedDrawCommands captured_draw{execution_, array_draw, instanced_draw};
     VertexInputCommands vertex_input{execution_};
     DrawPiecesCommands draw_pieces{execution_};
     RenderbufferCommands renderbuffer{execution_};

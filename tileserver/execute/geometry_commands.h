@@ -79,7 +79,7 @@ public:
         if (block_.draws) gl_.TexCoord4f(s, t, r, q);
     }
     void MultiTexCoord4f(std::uint32_t unit, float s, float t, float r, float q) {
-        if (unit >= kTextureUnits) return execution_.refuse("no such texture unit");
+        if (unit >= glstate::el::texcoord::count) return execution_.refuse("no such texture coordinates");
         block_.trail.set(Attribute::texcoord + unit, s, t, r, q);
         if (block_.draws) gl_.MultiTexCoord4f(GL_TEXTURE0 + unit, s, t, r, q);
     }

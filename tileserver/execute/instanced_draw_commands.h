@@ -24,10 +24,11 @@ public:
                               std::int32_t instances, std::uint32_t restart, std::uint32_t restart_index,
                               std::span<const std::byte> indices);
 
-private:
-    /// Null: nothing is to be drawn, perhaps because it was refused.
+    /// The checks that draws of several instances have in common. Null: nothing is to be drawn, perhaps because it was
+    /// refused.
     VertexInput* begin(ClientName input, GLenum mode, std::int32_t count, std::int32_t instances);
 
+private:
     Execution& execution_;
     ArrayDrawCommands& draws_;
 };

@@ -24,11 +24,20 @@ enum class ObjectKind : std::uint8_t {
     framebuffer,
     sampler,
     capture,
+    pipeline,
 };
-inline constexpr std::array kObjectKindNames = {
-    "texture",           "program",     "run",          "query",       "buffer",
-    "vertex input",      "piece table", "renderbuffer", "framebuffer", "sampler",
-    "transform feedback"};
+inline constexpr std::array kObjectKindNames = {"texture",
+                                                "program",
+                                                "run",
+                                                "query",
+                                                "buffer",
+                                                "vertex input",
+                                                "piece table",
+                                                "renderbuffer",
+                                                "framebuffer",
+                                                "sampler",
+                                                "transform feedback",
+                                                "pipeline"};
 inline constexpr std::size_t kObjectKinds = kObjectKindNames.size();
 
 // What one session may have on a node, of all kinds together: they fill the same memory, and no kind knows what is

@@ -2,6 +2,7 @@
 #include "tileserver/objects/program.h"
 
 #include <algorithm>
+#include <cstring>
 #include <string>
 #include <utility>
 
@@ -24,6 +25,28 @@ void set_matrix(const Gl& gl, GLuint program, GLint location, GLsizei count, con
         {gl.ProgramUniformMatrix4x2fv, gl.ProgramUniformMatrix4x3fv, gl.ProgramUniformMatrix4fv},
     };
     calls[type.columns - 2][type.rows - 2](program, location, count, GL_FALSE, v);
+}
+
+void set_matrix(const Gl& gl, GLuint program, GLint location, GLsizei count, const glapi::UniformType& type,
+                const GLdouble* v) {
+    using Call = decltype(gl.ProgramUniformMatrix2dv);
+    const Call calls[3][3] = {
+        {gl.ProgramUniformMatrix2dv, gl.ProgramUniformMatrix2x3dv, gl.ProgramUniformMatrix2x4dv},
+        {gl.ProgramUniformMatrix3x2dv, gl.ProgramUniformMatrix3dv, gl.ProgramUniformMatrix3x4dv},
+        {gl.ProgramUniformMatrix4x2dv, gl.ProgramUniformMatrix4x3dv, gl.ProgramUniformMatrix4dv},
+    };
+    calls[type.columns - 2][type.rows - 2](program, location, count, GL_FALSE, v);
+}
+
+/// `bytes` are aligned to 4.
+void set_doubles(const Gl& gl, GLuint program, GLint location, GLsizei count, const glapi::UniformType& type,
+                 std::span<const std::byte> bytes) {
+    std::vector<GLdouble> values(bytes.size() / sizeof(GLdouble));
+    std::memcpy(values.data(), bytes.data(), values.size() * sizeof(GLdouble));
+    if (type.matrix()) return set_matrix(gl, program, location, count, type, values.data());
+    const decltype(gl.ProgramUniform1dv) calls[] = {gl.ProgramUniform1dv, gl.ProgramUniform2dv, gl.ProgramUniform3dv,
+                                                    gl.ProgramUniform4dv};
+    calls[type.rows - 1](program, location, count, values.data());
 }
 
 void set_vector(const Gl& gl, GLuint program, GLint location, GLsizei count, const glapi::UniformType& type,
@@ -136,6 +159,7 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
     name_ = built.driver;
     locations_ = map_locations(name_, names);
     find_blocks(blocks);
+    find_subroutines();
     follow_position(std::move(position), names);
     window_ = driver_.gl().GetUniformLocation(name_, kWindowUniform);
     upper_left_ = built.upper_left;
@@ -161,7 +185,9 @@ Result<void> Program::set_uniform(std::uint32_t location, GLenum type_name, std:
                       {reinterpret_cast<const std::uint32_t*>(values.data()), values.size() / sizeof(std::uint32_t)});
     const GLint here = locations_[location];
     if (here < 0) return {};
-    if (type->matrix())
+    if (type->base == glapi::UniformBase::double_real)
+        set_doubles(driver_.gl(), name_, here, static_cast<GLsizei>(count), *type, values);
+    else if (type->matrix())
         set_matrix(driver_.gl(), name_, here, static_cast<GLsizei>(count), *type,
                    reinterpret_cast<const GLfloat*>(values.data()));
     else set_vector(driver_.gl(), name_, here, static_cast<GLsizei>(count), *type, values.data());
@@ -177,6 +203,27 @@ Result<void> Program::bind_block(std::uint32_t block, std::uint32_t binding) {
     return {};
 }
 
+void Program::find_subroutines() {
+    subroutines_.clear();
+    for (const GLenum stage : glapi::kShaderStages) {
+        GLint uniforms = 0, locations = 0;  // of a stage that is not there Mesa tells no locations
+        driver_.gl().GetProgramStageiv(name_, stage, GL_ACTIVE_SUBROUTINE_UNIFORMS, &uniforms);
+        if (uniforms > 0)
+            driver_.gl().GetProgramStageiv(name_, stage, GL_ACTIVE_SUBROUTINE_UNIFORM_LOCATIONS, &locations);
+        if (locations > 0) subroutines_.push_back({stage, static_cast<std::size_t>(locations), {}});
+    }
+}
+
+/// Whether functions of these numbers are there, and may be named, the driver looks.
+Result<void> Program::set_subroutines(GLenum stage, std::span<const std::byte> bytes) {
+    const auto found = std::ranges::find(subroutines_, stage, &Subroutines::stage);
+    if (found == subroutines_.end()) return {};  // the driver has removed them
+    if (bytes.size() != found->locations * sizeof(GLuint)) return fail("not a function for each location");
+    found->indices.resize(found->locations);
+    std::memcpy(found->indices.data(), bytes.data(), bytes.size());
+    return {};
+}
+
 std::optional<glstate::Projection> Program::project(const glstate::Projection& fixed_function,
                                                     const glstate::State& state) {
     const auto* transform = position_.transform(state.matrix.modelview, state.matrix.projection);
@@ -184,8 +231,11 @@ std::optional<glstate::Projection> Program::project(const glstate::Projection& f
     return glstate::make_projection(fixed_function, *transform, position_.program().depth);
 }
 
-void Program::use(const LayerGeometry& layer) {
-    driver_.use_program(name_);
+void Program::prepare(const LayerGeometry& layer) {
+    for (const Subroutines& each : subroutines_)  // the driver forgets them with every glUseProgram
+        if (!each.indices.empty())
+            driver_.gl().UniformSubroutinesuiv(each.stage, static_cast<GLsizei>(each.indices.size()),
+                                               each.indices.data());
     if (window_ < 0) return;
     const auto value = window_of(layer, upper_left_, whole_centers_);
     if (std::exchange(window_value_, value) != value) driver_.gl().ProgramUniform4fv(name_, window_, 1, value.data());

@@ -32,10 +32,19 @@ public:
                              std::span<const std::byte> values);
     /// From now on a block takes its uniforms from what is bound there. An error: no such block, no such place.
     Result<void> bind_block(std::uint32_t block, std::uint32_t binding);
+    /// Which functions the variables of a stage name from now on: u32 for each location. An error: no such stage, or
+    /// not as many as it has locations.
+    Result<void> set_subroutines(GLenum stage, std::span<const std::byte> indices);
     /// How it places its vertices; nothing: that is not known.
     std::optional<glstate::Projection> project(const glstate::Projection& fixed_function, const glstate::State& state);
     /// The driver draws with it, in this layer.
-    void use(const LayerGeometry& layer);
+    void use(const LayerGeometry& layer) {
+        driver_.use_program(name_);
+        prepare(layer);
+    }
+    /// The same where it is one of several that the driver draws with.
+    void prepare(const LayerGeometry& layer);
+    GLuint name() const { return name_; }  ///< the driver's; 0: it was never linked
 
     /// Where each of the blocks that are active here takes its uniforms from (glstate::el::uniform_buffer).
     const std::vector<std::uint32_t>& block_bindings() const { return block_bindings_; }
@@ -44,6 +53,7 @@ private:
     std::vector<GLint> map_locations(GLuint program, const std::vector<glapi::UniformName>& names) const;
     void follow_position(glapi::PositionProgram position, const std::vector<glapi::UniformName>& names);
     void find_blocks(const std::vector<std::string>& names);
+    void find_subroutines();
     void release();
 
     Driver& driver_;
@@ -51,7 +61,14 @@ private:
     std::vector<GLint> locations_;  // by the client's location; -1: not active here
     std::vector<GLuint> blocks_;    // by the client's index: the driver's; GL_INVALID_INDEX: not active here
     std::vector<std::uint32_t> block_bindings_;  // by the driver's
-    GLint window_ = -1;                          // location of kWindowUniform
+    /// Functions by the locations of a stage that has such variables.
+    struct Subroutines {
+        GLenum stage = 0;
+        std::size_t locations = 0;
+        std::vector<GLuint> indices;  // empty: as the driver chooses
+    };
+    std::vector<Subroutines> subroutines_;
+    GLint window_ = -1;  // location of kWindowUniform
     bool upper_left_ = false, whole_centers_ = false;
     std::array<float, 4> window_value_{};
     glapi::LinkedPosition position_;

@@ -83,6 +83,7 @@ BuiltProgram build_program(const Gl& gl, const glapi::ProgramDefinition& definit
     for (const auto& output : definition.outputs)
         gl.BindFragDataLocationIndexed(built.driver, output.color, output.index, output.name.c_str());
     capture(gl, built.driver, definition.feedback);
+    if (definition.separable) gl.ProgramParameteri(built.driver, GL_PROGRAM_SEPARABLE, GL_TRUE);
     gl.LinkProgram(built.driver);
     for (const GLuint shader : shaders) {
         gl.DetachShader(built.driver, shader);

@@ -30,6 +30,9 @@ BuiltProgram build_program(const Gl& gl, const glapi::ProgramDefinition& definit
 /// How linking went, and what is active if it went well; kWindowUniform is not told.
 glapi::ProgramReflection reflect_program(const Gl& gl, GLuint program, const glapi::ProgramDefinition& definition);
 
+/// The functions of each stage that variables may name, and those variables.
+void read_subroutines(const Gl& gl, GLuint program, glapi::ProgramReflection& out);
+
 /// The driver's location of one element of a uniform; -1: it is not active.
 GLint element_location(const Gl& gl, GLuint program, const std::string& name, std::uint32_t element);
 

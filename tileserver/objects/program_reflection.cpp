@@ -2,6 +2,7 @@
 // What linking told about a program.
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <iterator>
 #include <utility>
 
@@ -14,16 +15,24 @@ namespace {
 
 using glapi::BlockPlace;
 
+void read_doubles(const Gl& gl, GLuint program, GLint location, std::array<std::uint32_t, 32>& words) {
+    std::array<GLdouble, 16> values{};
+    gl.GetUniformdv(program, location, values.data());
+    static_assert(sizeof values == sizeof words);
+    std::memcpy(words.data(), values.data(), sizeof values);
+}
+
 void read_initial(const Gl& gl, GLuint program, glapi::ActiveUniform& uniform) {
     const auto* type = glapi::find_uniform_type(uniform.type);
     if (type == nullptr) return;
-    std::array<std::uint32_t, 16> words;
+    std::array<std::uint32_t, 32> words;
     for (std::uint32_t i = 0; i < uniform.size; ++i) {
         words.fill(0);
         const GLint location = element_location(gl, program, uniform.name, i);
         if (location >= 0) {
             if (type->base == glapi::UniformBase::real)
                 gl.GetUniformfv(program, location, reinterpret_cast<GLfloat*>(words.data()));
+            else if (type->base == glapi::UniformBase::double_real) read_doubles(gl, program, location, words);
             else if (type->base == glapi::UniformBase::unsigned_integer)
                 gl.GetUniformuiv(program, location, words.data());
             else gl.GetUniformiv(program, location, reinterpret_cast<GLint*>(words.data()));
@@ -95,10 +104,11 @@ void read_attributes(const Gl& gl, GLuint program, glapi::ProgramReflection& out
 }
 
 void read_blocks(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
-    static_assert(std::size(glapi::kShaderStages) == 3);
-    constexpr GLenum kReferenced[] = {GL_UNIFORM_BLOCK_REFERENCED_BY_VERTEX_SHADER,
-                                      GL_UNIFORM_BLOCK_REFERENCED_BY_FRAGMENT_SHADER,
-                                      GL_UNIFORM_BLOCK_REFERENCED_BY_GEOMETRY_SHADER};
+    constexpr GLenum kReferenced[] = {
+        GL_UNIFORM_BLOCK_REFERENCED_BY_VERTEX_SHADER, GL_UNIFORM_BLOCK_REFERENCED_BY_FRAGMENT_SHADER,
+        GL_UNIFORM_BLOCK_REFERENCED_BY_GEOMETRY_SHADER, GL_UNIFORM_BLOCK_REFERENCED_BY_TESS_CONTROL_SHADER,
+        GL_UNIFORM_BLOCK_REFERENCED_BY_TESS_EVALUATION_SHADER};
+    static_assert(std::size(kReferenced) == std::size(glapi::kShaderStages));
     GLint count = 0, longest = 0;
     gl.GetProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &count);
     gl.GetProgramiv(program, GL_ACTIVE_UNIFORM_BLOCK_MAX_NAME_LENGTH, &longest);
@@ -157,13 +167,25 @@ void read_captured(const Gl& gl, GLuint program, glapi::ProgramReflection& out) 
     }
 }
 
-/// It has one.
-void read_geometry_stage(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
+/// Of the stages between that of vertices and that of fragments.
+void read_stages(const Gl& gl, GLuint program, const glapi::ProgramDefinition& definition,
+                 glapi::ProgramReflection& out) {
     const auto ask = [&](GLenum what) {
         GLint value = 0;
         gl.GetProgramiv(program, what, &value);
         return static_cast<std::uint32_t>(value);
     };
+    const auto has = [&](GLenum type) {
+        return std::ranges::find(definition.shaders, type, &glapi::ShaderSource::type) != definition.shaders.end();
+    };
+    if (has(GL_TESS_CONTROL_SHADER)) out.tessellation.vertices = ask(GL_TESS_CONTROL_OUTPUT_VERTICES);
+    if (has(GL_TESS_EVALUATION_SHADER)) {
+        out.tessellation.mode = ask(GL_TESS_GEN_MODE);
+        out.tessellation.spacing = ask(GL_TESS_GEN_SPACING);
+        out.tessellation.order = ask(GL_TESS_GEN_VERTEX_ORDER);
+        out.tessellation.point_mode = ask(GL_TESS_GEN_POINT_MODE);
+    }
+    if (!has(GL_GEOMETRY_SHADER)) return;
     out.geometry = {ask(GL_GEOMETRY_INPUT_TYPE), ask(GL_GEOMETRY_OUTPUT_TYPE), ask(GL_GEOMETRY_VERTICES_OUT),
                     ask(GL_GEOMETRY_SHADER_INVOCATIONS)};
 }
@@ -188,8 +210,8 @@ glapi::ProgramReflection reflect_program(const Gl& gl, GLuint program, const gla
     read_blocks(gl, program, out);
     read_outputs(gl, program, out);
     read_captured(gl, program, out);
-    const auto is_geometry = [](const auto& shader) { return shader.type == GL_GEOMETRY_SHADER; };
-    if (std::ranges::any_of(definition.shaders, is_geometry)) read_geometry_stage(gl, program, out);
+    read_stages(gl, program, definition, out);
+    read_subroutines(gl, program, out);
     return out;
 }
 

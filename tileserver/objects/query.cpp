@@ -2,6 +2,7 @@
 #include "tileserver/objects/query.h"
 
 #include <cmath>
+#include <utility>
 
 namespace wall::tileserver {
 namespace {
@@ -11,30 +12,19 @@ constexpr std::uint64_t kPartBytes = 1024;  // of the driver's memory, by estima
 
 }  // namespace
 
-Query::~Query() {
-    for (const Part& part : parts_) driver_.delete_query(part.driver);
-}
-
-bool Query::begin(double scale) {
+void QuerySum::add(std::shared_ptr<const DriverQuery> query, double scale) {
     if (parts_.size() >= kMaxParts) collect();
-    Part part{0, scale};
-    driver_.gl().GenQueries(1, &part.driver);
-    driver_.begin_query(target_, part.driver);
-    parts_.push_back(part);
-    return has_content(parts_.size() * kPartBytes);
+    parts_.push_back({std::move(query), scale});
 }
 
-void Query::collect() {
-    for (const Part& part : parts_) {
-        GLuint64 samples = 0;
-        driver_.gl().GetQueryObjectui64v(part.driver, GL_QUERY_RESULT, &samples);
-        driver_.delete_query(part.driver);
-        sum_ += static_cast<double>(samples) / part.scale;
-    }
+std::uint64_t QuerySum::bytes() const { return parts_.size() * kPartBytes; }
+
+void QuerySum::collect() {
+    for (const Part& part : parts_) sum_ += static_cast<double>(part.query->result()) / part.scale;
     parts_.clear();
 }
 
-std::uint64_t Query::result() {
+std::uint64_t QuerySum::result() {
     collect();
     return static_cast<std::uint64_t>(std::llround(sum_));
 }

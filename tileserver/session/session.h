@@ -45,7 +45,6 @@ struct SoftContext {
     SoftMaps maps;
     BoundTextures textures;
     BoundSamplers samplers;
-    FollowedState followed;
 };
 
 class SessionReplica {

@@ -2,10 +2,15 @@
 #include "tileserver/session/soft_switch.h"
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
+#include <span>
 
+#include "common/glstate/draw_buffers.h"
 #include "gen/glstate/texture_elements.gen.h"
 #include "tileserver/objects/buffer.h"
 #include "tileserver/objects/capture.h"
+#include "tileserver/objects/pipeline.h"
 #include "tileserver/objects/program.h"
 #include "tileserver/objects/query.h"
 #include "tileserver/objects/sampler.h"
@@ -28,6 +33,10 @@ GLuint driver_name(const SessionReplica& session, ClientName name, TextureTarget
     return texture != nullptr && texture->target() == target ? texture->content().name() : 0;
 }
 
+/// Of which most often none is used; whether one is takes a few operations of the processor's.
+constexpr unsigned kUnitsAtOnce = 16;
+static_assert(kTextureUnits % kUnitsAtOnce == 0);
+
 void look_up_textures(SessionReplica& session, SoftContext& context) {
     BoundTextures& bound = context.textures;
     TextureNames found{};
@@ -35,8 +44,13 @@ void look_up_textures(SessionReplica& session, SoftContext& context) {
         const auto kind = static_cast<TextureTarget>(target);
         const auto& names = context.state.textures.*glstate::kTextureBindings[target];
         const GLuint otherwise = driver_name(session, ClientName(), kind);
-        for (unsigned unit = 0; unit < kTextureUnits; ++unit)
-            found[unit][target] = names[unit] == 0 ? otherwise : driver_name(session, ClientName(names[unit]), kind);
+        for (unsigned first = 0; first < kTextureUnits; first += kUnitsAtOnce) {
+            const auto some = std::span(names).subspan(first).template first<kUnitsAtOnce>();
+            if (otherwise == 0 && std::accumulate(some.begin(), some.end(), 0u, std::bit_or<>()) == 0) continue;
+            for (unsigned unit = first; unit < first + kUnitsAtOnce; ++unit)
+                found[unit][target] =
+                    names[unit] == 0 ? otherwise : driver_name(session, ClientName(names[unit]), kind);
+        }
     }
     if (found != bound.bindings.names) bound.bindings = {found == TextureNames{} ? 0 : glstate::next_value_id(), found};
     bound.state_id = textures_id(context);
@@ -67,45 +81,79 @@ void look_up_samplers(SessionReplica& session, SoftContext& context) {
     bound.version = session.objects.version(Sampler::kKind);
 }
 
-/// None, and what is no program: fixed function.
+/// None, and what is neither a program nor several: fixed function.
 void use_program(RenderNode& node, SessionReplica& session, const glstate::State& state, const LayerGeometry& layer) {
     const ClientName name(glstate::el::current_program::ref(state));
-    Program* program = name ? session.objects.find<Program>(name) : nullptr;
-    if (program == nullptr) return node.driver.use_program(0);
-    program->use(layer);
-    for (const std::uint32_t place : program->block_bindings())
-        node.driver.bind_uniform_buffer(place,
-                                        found_range(node, session, glstate::el::uniform_buffer::ref(state, place)));
+    const auto bind_blocks = [&](const Program& program) {
+        for (const std::uint32_t place : program.block_bindings())
+            node.driver.bind_uniform_buffer(place,
+                                            found_range(node, session, glstate::el::uniform_buffer::ref(state, place)));
+    };
+    if (Program* program = name ? session.objects.find<Program>(name) : nullptr) {
+        program->use(layer);
+        bind_blocks(*program);
+    } else if (Pipeline* pipeline = name ? session.objects.find<Pipeline>(name) : nullptr) {
+        pipeline->use(session.objects, layer, bind_blocks);
+    } else {
+        node.driver.use_program(0);
+    }
 }
 
-/// `scale`: as of Query::begin(). True without a query of that name.
-bool count(RenderNode& node, SessionReplica& session, ClientName name, QueryTarget target, double scale) {
-    if (!name) return true;
-    auto query = session.objects.make<Query>(name, node.driver, target);
-    return query && (*query)->target() == target && (*query)->begin(scale);
+/// What a context counts and captures while it draws to a target.
+class Counting {
+public:
+    Counting(RenderNode& node, SessionReplica& session, Capture* capture)
+        : node_(node), session_(session), capture_(capture) {}
+
+    /// `scale`: as of Query::begin(). False: there is no such query, or the session may have no more.
+    template <class E>
+    bool count(E, const glstate::State& state, QueryTarget target, double scale) {
+        for (unsigned stream = 0; stream < E::count; ++stream)
+            if (!count(ClientName(E::ref(state, stream)), target, stream, scale)) return false;
+        return true;
+    }
+
+private:
+    bool count(ClientName name, QueryTarget target, unsigned stream, double scale) {
+        if (!name) return true;
+        const auto query = session_.objects.make<Query>(name, node_.driver, target, stream);
+        if (!query || (*query)->target() != target || (*query)->stream() != stream) return false;
+        // The driver counts for one at a time.
+        if (target == QueryTarget::captured && capture_ != nullptr && capture_->counting(stream))
+            return (*query)->begin(capture_->counting(stream), scale);
+        return (*query)->begin(scale);
+    }
+
+    RenderNode& node_;
+    SessionReplica& session_;
+    Capture* const capture_;
+};
+
+bool counts_or_captures(const glstate::State& state) {
+    return (glstate::el::occlusion_query::ref(state) | glstate::el::capture::ref(state)) != 0 ||
+           glstate::counts_primitives(state);
 }
 
 /// Last, since it takes part in no other state.
 bool count_and_capture(RenderNode& node, SessionReplica& session, const glstate::State& state,
                        const LayerGeometry& layer, Counted counted) {
     namespace el = glstate::el;
-    const ClientName capture(el::capture::ref(state));
-    if ((el::occlusion_query::ref(state) | el::primitives_query::ref(state) | el::captured_query::ref(state) |
-         capture.value) == 0)
-        return true;
-    if (Capture* found = capture ? session.objects.find<Capture>(capture) : nullptr) found->go_on(session.objects);
-    const auto one = [&]<class E>(E, bool wanted, QueryTarget target, double scale) {
-        return !wanted || count(node, session, ClientName(E::ref(state)), target, scale);
-    };
-    return one(el::occlusion_query{}, counted.samples, QueryTarget::samples, layer.scale_x() * layer.scale_y()) &&
-           one(el::primitives_query{}, counted.primitives, QueryTarget::primitives, 1) &&
-           one(el::captured_query{}, counted.primitives, QueryTarget::captured, 1);
+    if (!counts_or_captures(state)) return true;
+    const ClientName name(el::capture::ref(state));
+    Capture* capture = name ? session.objects.find<Capture>(name) : nullptr;
+    if (capture != nullptr && !capture->go_on(session.objects)) return false;
+    Counting counting(node, session, capture);
+    if (counted.samples &&
+        !counting.count(el::occlusion_query{}, state, QueryTarget::samples, layer.scale_x() * layer.scale_y()))
+        return false;
+    return !counted.primitives || (counting.count(el::primitives_query{}, state, QueryTarget::primitives, 1) &&
+                                   counting.count(el::captured_query{}, state, QueryTarget::captured, 1));
 }
 
 }  // namespace
 
 bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, RenderTarget& target, Counted counted) {
-    const bool held = node.driver.holds(context.followed, context.state);
+    const bool held = node.driver.holds(context.state);
     if (!held) node.driver.sync(context.state);
     if (context.textures.state_id != textures_id(context) ||
         context.textures.version != session.objects.version(Texture::kKind))
@@ -120,7 +168,7 @@ bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, 
     use_program(node, session, context.state, target.geometry());
     if (!held) {
         node.driver.sync_current(context.state);
-        context.followed = node.driver.followed(context.state);
+        node.driver.follow(context.state);
     }
     return count_and_capture(node, session, context.state, target.geometry(), counted);
 }

@@ -56,8 +56,15 @@ Options parse(int argc, char** argv) {
     return options;
 }
 
-/// The buffer as it is, whatever pixel transfer the scene has left.
+std::vector<unsigned char> read_pixels(Size size) {
+    std::vector<unsigned char> rgba(static_cast<std::size_t>(size.width * size.height * 4));
+    glReadPixels(0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    return rgba;
+}
+
+/// The buffer as it is, whatever pixel transfer the scene has left; one of OpenGL ES leaves none.
 std::vector<unsigned char> read_frame(const Scene& scene, Size size) {
+    if (scene.needs.es) return read_pixels(size);
     glPushAttrib(GL_PIXEL_MODE_BIT);
     glPushClientAttrib(GL_CLIENT_PIXEL_STORE_BIT);
     for (const GLenum name :
@@ -68,8 +75,7 @@ std::vector<unsigned char> read_frame(const Scene& scene, Size size) {
     for (const GLenum name : {GL_RED_BIAS, GL_GREEN_BIAS, GL_BLUE_BIAS, GL_ALPHA_BIAS}) glPixelTransferf(name, 0);
     glPixelTransferi(GL_MAP_COLOR, 0);
     if (scene.needs.read) glReadBuffer(scene.needs.read);
-    std::vector<unsigned char> rgba(static_cast<std::size_t>(size.width * size.height * 4));
-    glReadPixels(0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    auto rgba = read_pixels(size);
     glPopClientAttrib();
     glPopAttrib();
     return rgba;
@@ -99,7 +105,8 @@ bool swaps(const Scene& scene) { return scene.needs.double_buffered && !scene.ne
 
 void run(const Scene& scene, const Options& options) {
     const Size size;
-    const auto window = scene.needs.egl ? Window::by_egl(size, scene.needs) : Window::by_glx(size, scene.needs);
+    const auto window =
+        scene.needs.egl || scene.needs.es ? Window::by_egl(size, scene.needs) : Window::by_glx(size, scene.needs);
     for (int frame = 0; frame < options.frames.value_or(scene.frames); ++frame) {
         restart_random();
         scene.draw(frame, size);

@@ -20,6 +20,7 @@ struct Size {
 struct Needs {
     bool double_buffered = true;
     bool egl = false;
+    bool es = false;  ///< a context of OpenGL ES 3.0, by EGL
     GLenum read = 0;  ///< buffer to read the frame from; 0: the one that is drawn to by default
 };
 

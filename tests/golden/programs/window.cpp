@@ -96,7 +96,7 @@ private:
 
 class EglWindow : public XWindow {
 public:
-    EglWindow(Size size, const Needs&) {
+    EglWindow(Size size, const Needs& needs) {
         egl_ = must(eglGetDisplay(reinterpret_cast<EGLNativeDisplayType>(display_)), "open an EGL display");
         must(eglInitialize(egl_, nullptr, nullptr), "initialize EGL");
         const EGLint wanted[] = {EGL_RED_SIZE,
@@ -112,7 +112,7 @@ public:
                                  EGL_STENCIL_SIZE,
                                  8,
                                  EGL_RENDERABLE_TYPE,
-                                 EGL_OPENGL_BIT,
+                                 needs.es ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_BIT,
                                  EGL_NONE};
         EGLConfig config{};
         EGLint count = 0, id = 0;
@@ -124,9 +124,10 @@ public:
         XVisualInfo* visual = must(XGetVisualInfo(display_, VisualIDMask, &like, &visuals), "find its visual");
         open(size, visual->visual, visual->depth);
         XFree(visual);
-        must(eglBindAPI(EGL_OPENGL_API), "bind OpenGL");
+        must(eglBindAPI(needs.es ? EGL_OPENGL_ES_API : EGL_OPENGL_API), "bind OpenGL");
         surface_ = must(eglCreateWindowSurface(egl_, config, window_, nullptr), "create a surface");
-        context_ = must(eglCreateContext(egl_, config, EGL_NO_CONTEXT, nullptr), "create a context");
+        const EGLint es3[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
+        context_ = must(eglCreateContext(egl_, config, EGL_NO_CONTEXT, needs.es ? es3 : nullptr), "create a context");
         must(eglMakeCurrent(egl_, surface_, surface_, context_), "make the context current");
     }
     ~EglWindow() override {

@@ -390,7 +390,7 @@ TEST_F(ArrayDrawTest, RefusesPiecesOfAnotherDraw) {
                 HasSubstr("there is no piece table"));
 }
 TEST_F(ArrayDrawTest, RefusesModesThatThereAreNot) {
-    EXPECT_THAT(refusal([&](auto& b) { pack::DrawArrays(b, kInput, {}, GL_TRIANGLE_STRIP_ADJACENCY + 1, 0, 3); }),
+    EXPECT_THAT(refusal([&](auto& b) { pack::DrawArrays(b, kInput, {}, GL_PATCHES + 1, 0, 3); }),
                 HasSubstr("no such primitive"));
 }
 TEST_F(ArrayDrawTest, RefusesToWriteBehindABuffersEnd) {

@@ -7,6 +7,7 @@
 
 #include "common/glapi/program_format.h"
 #include "common/glstate/framebuffer.h"
+#include "common/glstate/vertex_input.h"
 #include "tests/unit/tileserver/test_node.h"
 
 namespace wall::tileserver {
@@ -19,7 +20,7 @@ using test::TestSession;
 namespace el = glstate::el;
 namespace pack = glapi::pack;
 
-constexpr ClientName kProgram(1), kBuffer(2), kCapture(3), kImage(4), kTarget(5);
+constexpr ClientName kProgram(1), kBuffer(2), kCapture(3), kImage(4), kTarget(5), kInput(6), kQuery(7);
 constexpr std::uint32_t kBytes = 256;
 
 class CaptureTest : public ::testing::Test {
@@ -83,9 +84,95 @@ protected:
         return xs;
     }
 
+    /// As the node answers; empty: it does not know.
+    static std::vector<std::uint64_t> counts(TestSession& session, ClientName capture = kCapture) {
+        Batch batch;
+        pack::CaptureCounts(batch.buffer(), RequestId(8), capture);
+        session.expect_run(batch);
+        const auto& bytes = session.replies[RequestId(8)];
+        std::vector<std::uint64_t> out(bytes.size() / sizeof(std::uint64_t));
+        if (!bytes.empty()) std::memcpy(out.data(), bytes.data(), bytes.size());
+        return out;
+    }
+    /// What was captured, as points of 8 pixels in the window.
+    static Batch captured_points(ClientName capture, std::uint32_t stream = 0) {
+        Batch batch;
+        glstate::VertexInputDefinition input{
+            {}, {{.place = glstate::kPositionArray, .buffer = kBuffer, .type = GL_FLOAT, .size = 3}}};
+        pack::VertexInput(batch.buffer(), kInput, glstate::encode(input));
+        batch.set<el::color>({0, 1, 0, 1}).set<el::point_size>(8);
+        batch.block(1, [&](auto& b) {
+            pack::Clear(b, GL_COLOR_BUFFER_BIT);
+            pack::DrawCaptured(b, kInput, capture, GL_POINTS, stream, 1);
+        });
+        return batch;
+    }
+
     TestNode node_;
     std::optional<TestSession> first_, second_;
 };
+
+TEST_F(CaptureTest, BehindItsEndItTellsHowManyThereWere) {
+    first_->expect_run(points({1, 2}));
+    EXPECT_TRUE(counts(*first_).empty()) << "it goes on";
+    first_->expect_run(points({3}));
+    Batch end;
+    pack::CaptureEnd(end.buffer(), kCapture);
+    first_->expect_run(end);
+    EXPECT_EQ(counts(*first_), (std::vector<std::uint64_t>{3, 0, 0, 0}));
+    first_->expect_run(points({4}));
+    EXPECT_EQ(counts(*first_).at(0), 3u) << "it is over";
+    EXPECT_EQ(captured(*first_, 4).back(), 0.f);
+    EXPECT_TRUE(counts(*first_, ClientName(99)).empty());
+}
+
+TEST_F(CaptureTest, AQueryCountsTheSame) {
+    Batch query;
+    query.set<el::captured_query>(kQuery.value);
+    first_->expect_run(query);
+    first_->expect_run(points({1, 2, 3}));
+    Batch ask;
+    ask.set<el::captured_query>(0);
+    pack::QueryResult(ask.buffer(), RequestId(9), kQuery);
+    pack::CaptureEnd(ask.buffer(), kCapture);
+    first_->expect_run(ask);
+    std::uint64_t counted = 0;
+    ASSERT_EQ(first_->replies[RequestId(9)].size(), sizeof counted);
+    std::memcpy(&counted, first_->replies[RequestId(9)].data(), sizeof counted);
+    EXPECT_EQ(counted, 3u);
+    EXPECT_EQ(counts(*first_).at(0), 3u);
+}
+
+TEST_F(CaptureTest, AsManyAreDrawnAsWereCaptured) {
+    first_->expect_run(points({0.01f, 0.02f}));
+    Batch end;
+    pack::CaptureEnd(end.buffer(), kCapture);
+    first_->expect_run(end);
+    first_->expect_run(captured_points(kCapture));
+    EXPECT_EQ(first_->read(0, {3, 3, 1, 1}), (Pixels{0, 255, 0, 255}));
+    EXPECT_EQ(first_->session.work.gl_errors, 0u);
+    EXPECT_FALSE(first_->run(captured_points(kCapture, kVertexStreams))) << "no such stream";
+}
+
+TEST_F(CaptureTest, ANodeThatCameLateDrawsAsManyAsAnotherHasCounted) {
+    const auto say = [](std::uint64_t count) {
+        Batch batch;
+        const std::array<std::uint64_t, kVertexStreams> all{count};
+        pack::CaptureCounted(batch.buffer(), ClientName(20), std::as_bytes(std::span(all)));
+        return batch;
+    };
+    first_->expect_run(say(1));
+    EXPECT_EQ(counts(*first_, ClientName(20)).at(0), 1u);
+    first_->expect_run(captured_points(ClientName(20)));
+    EXPECT_EQ(first_->read(0, {3, 3, 1, 1}), (Pixels{0, 255, 0, 255}));
+    EXPECT_FALSE(first_->run(say(2))) << "defined once";
+    std::optional<TestSession> third;
+    open(third, 3);
+    third->expect_run(say(~std::uint64_t{0}));
+    third->expect_run(captured_points(ClientName(20)));
+    EXPECT_EQ(third->read(0, {3, 3, 1, 1}), (Pixels{0, 0, 0, 255})) << "more than there are in the buffer";
+    EXPECT_FALSE(third->run(captured_points(kCapture))) << "one that goes on";
+}
 
 TEST_F(CaptureTest, ValuesGoToTheBuffer) {
     first_->expect_run(points({0.25f, -0.5f}));

@@ -752,6 +752,9 @@ TEST_F(ExecutorTest, BadStreamsAreRefusedWithAReason) {
                 ::testing::HasSubstr("Begin"));
     EXPECT_THAT(reason([](Batch& b) { b.block(1, [](auto& p) { pack::End(p); }); }), ::testing::HasSubstr("End"));
     EXPECT_THAT(reason([](Batch& b) { pack::Clear(b.buffer(), 1); }), ::testing::HasSubstr("Clear"));
+    for (const std::uint32_t unit : {8u, 47u, 95u, ~0u})
+        EXPECT_THAT(reason([&](Batch& b) { b.block(1, [&](auto& p) { pack::MultiTexCoord4f(p, unit, 0, 0, 0, 1); }); }),
+                    ::testing::HasSubstr("no such texture coordinates"));
     EXPECT_THAT(reason([](Batch& b) {
                     b.block(1, [](auto& p) { pack::DrawPixels(p, 100, 100, GL_RGBA, GL_UNSIGNED_BYTE, {}); });
                 }),

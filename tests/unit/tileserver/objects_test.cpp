@@ -415,7 +415,7 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
     static constexpr std::array<float, 4> values{};
     using Say = std::function<void(Batch&, ClientName)>;
     static constexpr std::array<std::uint32_t, 3> part{9, 0, 0};
-    const std::array<std::pair<ObjectKind, Say>, 11> makes = {{
+    const std::array<std::pair<ObjectKind, Say>, 12> makes = {{
         {ObjectKind::texture,
          [](Batch& b, ClientName id) {
              pack::TexParameter(b.buffer(), id, GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST, 0, 0, 0);
@@ -447,8 +447,13 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
          }},
         {ObjectKind::capture,
          [](Batch& b, ClientName id) { pack::Capture(b.buffer(), id, GL_POINTS, std::as_bytes(std::span(part))); }},
+        {ObjectKind::pipeline,
+         [](Batch& b, ClientName id) {
+             static constexpr std::array<std::uint32_t, 5> kNone{};
+             pack::Pipeline(b.buffer(), id, std::as_bytes(std::span(kNone)));
+         }},
     }};
-    const std::array<Say, 11> uses = {
+    const std::array<Say, 12> uses = {
         makes[0].second,
         [&](Batch& b, ClientName id) {
             pack::Uniform(b.buffer(), id, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(values)));
@@ -462,6 +467,7 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
         makes[8].second,
         makes[9].second,
         makes[10].second,
+        makes[11].second,
     };
     static_assert(makes.size() == kObjectKinds, "a new kind is tried, too");
     for (std::size_t is = 0; is < kObjectKinds; ++is) {

@@ -25,7 +25,7 @@ void TestSession::open_surface(int window_width, int window_height, const geom::
                        static_cast<std::uint32_t>(window_height), rect.x, rect.y,
                        static_cast<std::uint32_t>(rect.width), static_cast<std::uint32_t>(rect.height), 0);
     pack::Bind(batch.buffer(), SurfaceId(1), SurfaceId(1));
-    batch.set<el::viewport>({0, 0, window_width, window_height});
+    batch.set<el::viewport>({0, 0, static_cast<float>(window_width), static_cast<float>(window_height)});
     batch.set<el::scissor>({0, 0, window_width, window_height});
     expect_run(batch);
 }

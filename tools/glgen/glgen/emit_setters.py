@@ -10,7 +10,7 @@ def setters_source(commands, model, registry):
     out = [header("proto/gl/state.toml and proto/gl/commands.toml",
                   "Commands that set one element of the state, or read parameters.", [], pragma=False),
            '#include <array>\n\n#include "client_lib/context/context.h"\n'
-           '#include "client_lib/context/param_commands.h"\n'
+           '#include "client_lib/context/indexed_values.h"\n#include "client_lib/context/param_commands.h"\n'
            '#include "gen/client_lib/api.gen.h"\n\n'
            "namespace wall::client {\n\nnamespace el = glstate::el;\nusing namespace glstate;  // value types\n\n"
            "namespace {\n\n"]
@@ -33,6 +33,7 @@ def _body(commands, model, registry):
                "const std::span<const CapRow> kCapRows = kCapTable;\n\n"
                "namespace api {\n\n")
     by_set = {e.set: e for e in model.elements if e.set}
+    by_set |= {e.set + "i": e for e in model.elements if e.rest}
     for i in commands.canonical:
         if i.way == "state":
             out.append(_setter(i, by_set[i.name]))
@@ -94,7 +95,8 @@ def _component(e, f, expression, given):
 def _setter(i, e):
     params = list(i.command.params)
     lines, index = [], "0"
-    if e.index == "face":
+    one_buffer = e.rest and i.name == e.set + "i"
+    if e.index == "face" or one_buffer:
         params.pop(0)
     order = e.args.split() if e.args else [f.name for f in e.fields]
     fields = {f.name: f for f in e.fields}
@@ -115,6 +117,11 @@ def _setter(i, e):
         lines.insert(0, f"if (!is_face({face})) return c.error(GL_INVALID_ENUM);")
         lines += [f"for (unsigned i = 0; i < 2; ++i)",
                   f"    if (names_face({face}, i)) c.set<el::{e.name}>(i, {value});"]
+    elif one_buffer:
+        lines.insert(0, f"if ({face} >= draw_buffers_of(c)) return c.error(GL_INVALID_VALUE);")
+        lines.append(f"set_at<el::{e.name}, el::{e.rest}>(c, {face}, {value});")
+    elif e.rest:
+        lines.append(f"set_everywhere<el::{e.name}, el::{e.rest}>(c, {value});")
     else:
         lines.append(f"c.set<el::{e.name}>({index}, {value});")
     declared = ", ".join(["Context& c"] + [f"{p.type} {p.name}" for p in i.command.params])

@@ -146,7 +146,7 @@ class Element:
 
 
 _OPTIONAL = {"cap", "get", "set", "param", "emit", "hand", "norm", "valid", "min", "max", "above", "below", "clamp",
-             "args", "or", "invalid", "bits", "forward_max"}
+             "args", "or", "invalid", "bits", "forward_max", "rest"}
 _KEYS = _OPTIONAL | {"name", "type", "fields", "value", "default", "defaults", "count", "index", "groups",
                      "client_groups"}
 

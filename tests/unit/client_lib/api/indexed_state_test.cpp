@@ -35,6 +35,31 @@ TEST_F(IndexedState, AWordForAllBuffersSetsEachOfThem) {
     EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
 }
 
+TEST_F(IndexedState, BlendingIsOfSingleBuffers) {
+    const auto of = [&](GLenum word, GLuint buffer) {
+        GLint value = -1;
+        gl().GetIntegeri_v(c, word, buffer, &value);
+        return static_cast<GLenum>(value);
+    };
+    gl().BlendFuncSeparatei(c, 1, GL_ZERO, GL_ZERO, GL_ZERO, GL_ZERO);
+    EXPECT_EQ(of(GL_BLEND_SRC_RGB, 0), GLenum{GL_ONE});
+    EXPECT_EQ(of(GL_BLEND_SRC_RGB, 1), GLenum{GL_ZERO});
+    gl().BlendFuncSeparatei(c, 0, GL_DST_COLOR, GL_ZERO, GL_ONE, GL_ONE);
+    EXPECT_EQ(of(GL_BLEND_SRC_RGB, 0), GLenum{GL_DST_COLOR});
+    EXPECT_EQ(of(GL_BLEND_SRC_RGB, 1), GLenum{GL_ZERO});
+    EXPECT_EQ(of(GL_BLEND_SRC_RGB, 2), GLenum{GL_ONE}) << "as it was for all";
+    gl().BlendFuncSeparate(c, GL_ONE, GL_ONE, GL_ONE, GL_ONE);
+    for (GLuint i = 0; i < 8; ++i) EXPECT_EQ(of(GL_BLEND_DST_ALPHA, i), GLenum{GL_ONE}) << i;
+    gl().BlendEquationSeparatei(c, 7, GL_MIN, GL_MAX);
+    EXPECT_EQ(of(GL_BLEND_EQUATION_ALPHA, 7), GLenum{GL_MAX});
+    EXPECT_EQ(of(GL_BLEND_EQUATION_RGB, 6), GLenum{GL_FUNC_ADD});
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().BlendEquationSeparatei(c, 8, GL_MIN, GL_MAX);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+    gl().BlendEquationSeparatei(c, 0, GL_ONE, GL_MAX);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
+}
+
 TEST_F(IndexedState, ColorMasksAreOfSingleBuffers) {
     gl().ColorMaski(c, 2, 0, 1, 0, 1);
     EXPECT_EQ(mask_of(2), (std::array<GLboolean, 4>{0, 1, 0, 1}));

@@ -12,12 +12,12 @@ protected:
         gl().GenQueries(c, 3, names);
     }
     GLenum error_of_begin(GLenum target, GLuint name) {
-        gl().BeginQuery(c, target, name);
+        gl().BeginQueryIndexed(c, target, 0, name);
         return error();
     }
     GLint current(GLenum target) {
         GLint name = -1;
-        gl().GetQueryiv(c, target, GL_CURRENT_QUERY, &name);
+        gl().GetQueryIndexediv(c, target, 0, GL_CURRENT_QUERY, &name);
         return name;
     }
     GLuint names[3] = {};
@@ -29,21 +29,40 @@ TEST_F(Queries, OneAboutSamplesIsCurrentAtATime) {
     EXPECT_EQ(error_of_begin(GL_PRIMITIVES_GENERATED, names[1]), GLenum{GL_NO_ERROR});
     EXPECT_EQ(current(GL_ANY_SAMPLES_PASSED), static_cast<GLint>(names[0]));
     EXPECT_EQ(current(GL_SAMPLES_PASSED), 0);
-    gl().EndQuery(c, GL_SAMPLES_PASSED);
+    gl().EndQueryIndexed(c, GL_SAMPLES_PASSED, 0);
     EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "of another target";
-    gl().EndQuery(c, GL_ANY_SAMPLES_PASSED);
-    gl().EndQuery(c, GL_PRIMITIVES_GENERATED);
+    gl().EndQueryIndexed(c, GL_ANY_SAMPLES_PASSED, 0);
+    gl().EndQueryIndexed(c, GL_PRIMITIVES_GENERATED, 0);
     EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
     EXPECT_EQ(error_of_begin(GL_PRIMITIVES_GENERATED, names[0]), GLenum{GL_INVALID_OPERATION}) << "has a target";
     EXPECT_EQ(error_of_begin(GL_TIMESTAMP, names[2]), GLenum{GL_INVALID_ENUM});
     EXPECT_EQ(error_of_begin(GL_SAMPLES_PASSED, 0), GLenum{GL_INVALID_OPERATION});
 }
 
+TEST_F(Queries, PrimitivesAreCountedOfEachStream) {
+    gl().BeginQueryIndexed(c, GL_PRIMITIVES_GENERATED, 1, names[0]);
+    gl().BeginQueryIndexed(c, GL_PRIMITIVES_GENERATED, 3, names[1]);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    EXPECT_EQ(c.state.objects.primitives_query[0], 0u);
+    EXPECT_NE(c.state.objects.primitives_query[1], 0u);
+    GLint name = -1;
+    gl().GetQueryIndexediv(c, GL_PRIMITIVES_GENERATED, 3, GL_CURRENT_QUERY, &name);
+    EXPECT_EQ(name, static_cast<GLint>(names[1]));
+    gl().EndQueryIndexed(c, GL_PRIMITIVES_GENERATED, 0);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "none of this stream";
+    gl().EndQueryIndexed(c, GL_PRIMITIVES_GENERATED, 1);
+    EXPECT_EQ(c.state.objects.primitives_query[1], 0u);
+    gl().BeginQueryIndexed(c, GL_PRIMITIVES_GENERATED, 4, names[2]);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+    gl().BeginQueryIndexed(c, GL_SAMPLES_PASSED, 1, names[2]);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+}
+
 TEST_F(Queries, CountersHaveTheirBits) {
     GLint bits = 0;
-    gl().GetQueryiv(c, GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
+    gl().GetQueryIndexediv(c, GL_TIMESTAMP, 0, GL_QUERY_COUNTER_BITS, &bits);
     EXPECT_EQ(bits, 64);
-    gl().GetQueryiv(c, GL_ANY_SAMPLES_PASSED, GL_QUERY_COUNTER_BITS, &bits);
+    gl().GetQueryIndexediv(c, GL_ANY_SAMPLES_PASSED, 0, GL_QUERY_COUNTER_BITS, &bits);
     EXPECT_EQ(bits, 1);
 }
 
@@ -56,7 +75,7 @@ TEST_F(Queries, AConditionIsAQueryThatHasEnded) {
     EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
     gl().BeginConditionalRender(c, names[0], GL_QUERY_WAIT);
     EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "it was never begun";
-    gl().BeginQuery(c, GL_SAMPLES_PASSED, names[0]);
+    gl().BeginQueryIndexed(c, GL_SAMPLES_PASSED, 0, names[0]);
     gl().BeginConditionalRender(c, names[0], GL_FOG);
     EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
     gl().BeginConditionalRender(c, names[0], GL_QUERY_WAIT);

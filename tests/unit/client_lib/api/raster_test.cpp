@@ -22,7 +22,9 @@ protected:
     struct Ours {
         Context& c;
         void Viewport(GLint x, GLint y, GLsizei w, GLsizei h) const {
-            glstate::assign<glstate::el::viewport>(c.state, 0, {x, y, w, h});
+            glstate::assign<glstate::el::viewport>(
+                c.state, 0,
+                {static_cast<float>(x), static_cast<float>(y), static_cast<float>(w), static_cast<float>(h)});
         }
         void MatrixMode(GLenum m) const { c.table->MatrixMode(c, m); }
         void LoadIdentity() const { c.table->LoadIdentity(c); }

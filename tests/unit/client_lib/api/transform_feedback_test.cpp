@@ -56,7 +56,7 @@ TEST_F(TransformFeedbackTest, ItBeginsWithAProgramAndItsBuffers) {
     EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
     gl().BindBufferBase(c, GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
     EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
-    EXPECT_EQ(c.captures->active->parts().size(), 2u);
+    EXPECT_EQ(c.captures->bound().active->parts().size(), 2u);
     gl().EndTransformFeedback(c);
     EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
 }
@@ -143,8 +143,8 @@ TEST_F(TransformFeedbackTest, WhileItDrawsForTheBuffersTheirNodesNeedThem) {
     int passes = 0, captures = 0;
     draw_in_passes(c.state, *c.captures, [&] {
         ++passes;
-        captures +=
-            c.captures->now == c.captures->active.get() && c.state.objects.capture == c.captures->active->id.value;
+        captures += c.captures->now == c.captures->bound().active.get() &&
+                    c.state.objects.capture == c.captures->bound().active->id.value;
     });
     EXPECT_EQ(passes, 2);
     EXPECT_EQ(captures, 1);
@@ -153,6 +153,93 @@ TEST_F(TransformFeedbackTest, WhileItDrawsForTheBuffersTheirNodesNeedThem) {
     EXPECT_EQ(passes, 3);
     gl().EndTransformFeedback(c);
     EXPECT_EQ(c.state.objects.capture, 0u);
+}
+
+TEST_F(TransformFeedbackTest, ObjectsHaveBuffersAndWhatGoesOn) {
+    GLuint objects[2] = {};
+    gl().GenTransformFeedbacks(c, 2, objects);
+    EXPECT_FALSE(gl().IsTransformFeedback(c, objects[0])) << "it was never bound";
+    gl().UseProgram(c, name_);
+    gl().BindTransformFeedback(c, GL_TRANSFORM_FEEDBACK, objects[0]);
+    EXPECT_TRUE(gl().IsTransformFeedback(c, objects[0]));
+    bind(0);
+    bind(1);
+    gl().BindTransformFeedback(c, GL_TRANSFORM_FEEDBACK, objects[1]);
+    GLint64 value = -1;
+    get_indexed_buffer(c, GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, 0, value);
+    EXPECT_EQ(value, 0);
+    gl().BindTransformFeedback(c, GL_TRANSFORM_FEEDBACK, objects[0]);
+    get_indexed_buffer(c, GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, 0, value);
+    EXPECT_EQ(value, buffers_[0]);
+    gl().BeginTransformFeedback(c, GL_POINTS);
+    gl().BindTransformFeedback(c, GL_TRANSFORM_FEEDBACK, objects[1]);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "one that goes on stays bound";
+    gl().ResumeTransformFeedback(c);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().PauseTransformFeedback(c);
+    EXPECT_EQ(c.captures->captures(), nullptr);
+    GLint paused = 0;
+    gl().GetIntegerv(c, GL_TRANSFORM_FEEDBACK_BUFFER_PAUSED, &paused);
+    EXPECT_EQ(paused, 1);
+    gl().UseProgram(c, 0);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR}) << "while it is paused";
+    gl().ResumeTransformFeedback(c);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "another program";
+    gl().BindTransformFeedback(c, GL_TRANSFORM_FEEDBACK, 0);
+    gl().GetIntegerv(c, GL_TRANSFORM_FEEDBACK_BUFFER_PAUSED, &paused);
+    EXPECT_EQ(paused, 0);
+    gl().LinkProgram(c, name_);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "an object goes on with it";
+    gl().DeleteTransformFeedbacks(c, 2, objects);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().BindTransformFeedback(c, GL_TRANSFORM_FEEDBACK, objects[0]);
+    gl().EndTransformFeedback(c);
+    gl().DeleteTransformFeedbacks(c, 2, objects);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    GLint bound = -1;
+    gl().GetIntegerv(c, GL_TRANSFORM_FEEDBACK_BINDING, &bound);
+    EXPECT_EQ(bound, 0);
+    gl().BindTransformFeedback(c, GL_TRANSFORM_FEEDBACK, objects[0]);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+}
+
+TEST_F(TransformFeedbackTest, AsManyAreDrawnAsWereCaptured) {
+    gl().DrawTransformFeedbackStreamInstanced(c, GL_POINTS, 0, 0, 1);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "nothing has ended yet";
+    gl().UseProgram(c, name_);
+    bind(0);
+    bind(1);
+    gl().BeginTransformFeedback(c, GL_POINTS);
+    const ClientName id = c.captures->bound().active->id;
+    gl().EndTransformFeedback(c);
+    gl().DrawTransformFeedbackStreamInstanced(c, GL_POINTS, 0, 0, 1);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().DrawTransformFeedbackStreamInstanced(c, GL_POINTS, 0, kVertexStreams, 1);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+    gl().DrawTransformFeedbackStreamInstanced(c, GL_POINTS, 7, 0, 1);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+    EXPECT_TRUE(share->by_id.contains(id)) << "the nodes know it";
+    gl().BeginTransformFeedback(c, GL_POINTS);
+    gl().EndTransformFeedback(c);
+    EXPECT_FALSE(share->by_id.contains(id)) << "there is a newer one";
+}
+
+TEST_F(TransformFeedbackTest, ALateNodeIsToldTheCounts) {
+    Capture capture(GL_POINTS, {});
+    wire::PackBuffer before, behind, late;
+    capture.pack_changes(0, before, no_limit);
+    EXPECT_EQ(before.commands(), 1u);
+    const auto known = capture.latest();
+    capture.end();
+    EXPECT_FALSE(capture.is_drawn()) << "nothing was captured";
+    capture.pack_changes(known, behind, no_limit);
+    EXPECT_EQ(behind.commands(), 1u);
+    capture.note_drawn();
+    ASSERT_TRUE(capture.is_drawn());
+    capture.pack_changes(0, late, no_limit);
+    EXPECT_EQ(late.commands(), 0u);
+    capture.pack_drawn([](const auto&) { return std::vector<std::byte>(8 * kVertexStreams); }, late, no_limit);
+    EXPECT_EQ(late.commands(), 1u);
 }
 
 }  // namespace

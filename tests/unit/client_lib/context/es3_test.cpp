@@ -199,13 +199,13 @@ TEST_F(Es3Context, HasObjectsOfBuffersOnly) {
 }
 
 TEST_F(Es3Context, CountsForGeneratedNamesOnly) {
-    gl().BeginQuery(c, GL_ANY_SAMPLES_PASSED_CONSERVATIVE, 77);
+    gl().BeginQueryIndexed(c, GL_ANY_SAMPLES_PASSED_CONSERVATIVE, 0, 77);
     EXPECT_EQ(error(), kOperation);
     GLuint name = 0;
     gl().GenQueries(c, 1, &name);
-    gl().BeginQuery(c, GL_ANY_SAMPLES_PASSED_CONSERVATIVE, name);
+    gl().BeginQueryIndexed(c, GL_ANY_SAMPLES_PASSED_CONSERVATIVE, 0, name);
     EXPECT_EQ(error(), kNone);
-    gl().BeginQuery(c, GL_SAMPLES_PASSED, name);
+    gl().BeginQueryIndexed(c, GL_SAMPLES_PASSED, 0, name);
     EXPECT_EQ(error(), kEnum);
 }
 

@@ -67,7 +67,7 @@ TEST_F(CoreProfile, TakesGeneratedNamesOnly) {
     EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
     gl().BindBuffer(c, GL_ARRAY_BUFFER, 7);
     EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
-    gl().BeginQuery(c, GL_SAMPLES_PASSED, 7);
+    gl().BeginQueryIndexed(c, GL_SAMPLES_PASSED, 0, 7);
     EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
     gl().BindFramebuffer(c, GL_FRAMEBUFFER, 7);
     EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
