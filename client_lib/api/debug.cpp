@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "client_lib/context/capture_use.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/debug_state.h"
 #include "client_lib/context/fence_object.h"
@@ -16,6 +17,7 @@
 #include "client_lib/context/lists.h"
 #include "client_lib/context/query_state.h"
 #include "client_lib/context/vertex_array_objects.h"
+#include "client_lib/objects/program_pipeline.h"
 #include "client_lib/objects/share_group.h"
 
 namespace wall::client::api {
@@ -71,8 +73,8 @@ std::optional<Labelled> find_object(Context& c, GLenum kind, GLuint name) {
         case GL_VERTEX_ARRAY:
             if (c.vertex_array_objects->exists(name)) return Labelled{nullptr, &c.debug->labels};
             break;
-        case GL_PROGRAM_PIPELINE:
-        case GL_TRANSFORM_FEEDBACK: break;
+        case GL_PROGRAM_PIPELINE: object = c.pipelines->names.find(name), labels = &c.debug->labels; break;
+        case GL_TRANSFORM_FEEDBACK: object = c.captures->names.find(name), labels = &c.debug->labels; break;
         default: return c.error(GL_INVALID_ENUM), std::nullopt;
     }
     if (!object) return c.error(GL_INVALID_VALUE), std::nullopt;

@@ -5,10 +5,10 @@
 #include <array>
 #include <initializer_list>
 #include <iterator>
-#include <sstream>
 #include <string_view>
 
 #include "client_lib/context/es_words.h"
+#include "client_lib/context/node_words.h"
 
 namespace wall::client {
 namespace {
@@ -33,19 +33,6 @@ const std::array<std::uint8_t, 0x10000>& first_versions() {
     }();
     return *table;
 }
-
-/// The words of a driver's extensions.
-class NodeWords {
-public:
-    explicit NodeWords(const Caps& caps) {
-        std::istringstream words(caps.extensions);
-        words_.assign(std::istream_iterator<std::string>(words), {});
-    }
-    bool have(std::string_view word) const { return std::ranges::find(words_, word) != words_.end(); }
-
-private:
-    std::vector<std::string> words_;
-};
 
 std::vector<std::string> es_extensions(const Caps& caps) {
     const NodeWords node(caps);

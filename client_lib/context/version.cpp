@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <cstring>
 #include <iterator>
-#include <sstream>
 
+#include "client_lib/context/node_words.h"
 #include "client_lib/context/texture_units.h"
 #include "gen/client_lib/api.gen.h"
 
@@ -241,13 +241,11 @@ GlVersion offered_version(const Caps& caps) {
 }
 
 std::vector<std::string> offered_extensions(const Caps& caps, const ContextProfile& profile) {
-    std::istringstream words(caps.extensions);
-    const std::vector<std::string> node{std::istream_iterator<std::string>(words), {}};
+    const NodeWords node(caps);
     std::vector<std::string> offered(std::begin(kOwnExtensions), std::end(kOwnExtensions));
     for (const Extension& extension : kExtensions)
         if ((!extension.command || implemented(extension.command)) &&
-            (!profile.core || extension.where == Where::everywhere) &&
-            std::find(node.begin(), node.end(), extension.name) != node.end())
+            (!profile.core || extension.where == Where::everywhere) && node.have(extension.name))
             offered.emplace_back(extension.name);
     return offered;
 }

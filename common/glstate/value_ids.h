@@ -23,8 +23,8 @@ inline std::uint64_t next_value_id() {
 }
 
 /// The ids of one state. Those of a category are equal only where its values are; 1: the defaults. The version names
-/// what a follower of the state must hold, as far as it follows: whatever has the same version needs nothing to be told.
-/// One thread at a time.
+/// what a follower of the state must hold, as far as it follows: one of the same version needs nothing to be told. One
+/// thread at a time.
 template <std::size_t Count>
 class ValueIds {
 public:
@@ -37,8 +37,8 @@ public:
         each_[category] = named;
         version_ = kNoVersion;
     }
-    /// This state has been brought to what the other one wants. If that changed nothing, the other one wants the same as
-    /// the one before.
+    /// This state has been brought to what the other one wants. If that changed nothing, the other one wants the same
+    /// as the one before.
     void follow(ValueIds& other) {
         if (version_ != kNoVersion) {
             other.version_ = version_;

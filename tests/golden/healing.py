@@ -28,10 +28,10 @@ from wall import Wall, WallError  # noqa: E402
 from xserver import XServer  # noqa: E402
 
 # Targets that are drawn once or each frame, many objects, meshes in buffers, uniform blocks, core profiles.
-SAMPLE = ("paraview", "quick", "openarena2", "glmark2_desktop", "glmark2_terrain", "es_refract", "es_shadow", "pymol")
+SAMPLE = "paraview quick openarena2 glmark2_desktop glmark2_terrain es_refract es_shadow pymol".split()
 SETTLED = 5  # frames of the loop that are not looked at
-STANDS_STILL = 20.0  # seconds until the window shows the same picture twice
-RIGHT_AGAIN = 20.0  # seconds from a node's start until the wall is right; about 1 where the machine does nothing else
+STANDS_STILL = 30.0  # seconds until the window shows the same picture twice
+RIGHT_AGAIN = 30.0  # seconds from a node's start until the wall is right; 1 to 4 where the machine does nothing else
 MOST_COLORS = 8  # a picture of fewer is no witness
 
 

@@ -50,7 +50,15 @@ protected:
     std::optional<TestSession> session_;
 };
 
+TEST_F(SoftSwitch, OfContextsAsTheyBeginIsHeldFromTheFirstOn) {
+    for (std::size_t turn = 0; turn < 4; ++turn) {
+        EXPECT_EQ(driver().holds(context(turn % 2).state), turn > 0) << turn;
+        ASSERT_TRUE(switch_to_context(turn % 2));
+    }
+}
+
 TEST_F(SoftSwitch, OfEqualContextsIsHeldAfterOneTurn) {
+    for (std::size_t i : {0, 1}) glstate::assign<el::fog_color>(context(i).state, 0, {0.25f, 0.5f, 0.75f, 1});
     for (std::size_t turn = 0; turn < 4; ++turn) {
         EXPECT_EQ(driver().holds(context(turn % 2).state), turn > 1) << turn;
         ASSERT_TRUE(switch_to_context(turn % 2));

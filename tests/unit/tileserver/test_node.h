@@ -6,6 +6,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "common/base/assert.h"
@@ -50,6 +51,17 @@ private:
     wire::PackBuffer buffer_;
 };
 
+/// What a session was fed in context 1, but for its window, as an input of fuzz_executor. At the end it is written to
+/// the folder that WALLGL_SEEDS names, if it does, as TEST-N (docs/how-to-extend.md).
+class Seed {
+public:
+    ~Seed();
+    void add(std::span<const std::byte> payload);
+
+private:
+    std::vector<std::byte> opcodes_, operands_;
+};
+
 class TestSession : public SessionOutput {
 public:
     TestSession(RenderNode& node, SessionId id, ParallelGroup* group = nullptr, Rank rank = 0)
@@ -57,7 +69,11 @@ public:
     void reply(RequestId request, std::vector<std::byte> answer) override { replies[request] = std::move(answer); }
     void frame_rendered(SurfaceId surface, std::uint32_t frame) override { frames.push_back({surface.value, frame}); }
 
-    Result<void> run(const Batch& batch) { return executor.run_batch(batch.payload()); }
+    Result<void> run(const Batch& batch) {
+        const auto payload = batch.payload();
+        seed.add(payload);
+        return executor.run_batch(payload);
+    }
     void expect_run(const Batch& batch) {
         const auto done = run(batch);
         EXPECT_TRUE(done) << done.error().message;
@@ -73,6 +89,7 @@ public:
     std::vector<std::pair<std::uint32_t, std::uint32_t>> frames;
     SessionReplica session;
     Executor executor;
+    Seed seed;
 };
 
 class TestNode {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/unit/client_lib/context_fixture.h"
@@ -140,6 +141,23 @@ TEST_F(DebugOutput, LabelsGoWithTheirObjects) {
     EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
     gl().ObjectLabel(c, GL_FOG, sampler, -1, "none");
     EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
+}
+
+TEST_F(DebugOutput, LabelsAreOfWhatTheContextHasForItself) {
+    GLuint feedback = 0, pipeline = 0;
+    gl().GenTransformFeedbacks(c, 1, &feedback);
+    gl().GenProgramPipelines(c, 1, &pipeline);
+    gl().ObjectLabel(c, GL_TRANSFORM_FEEDBACK, feedback, -1, "only a name so far");
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+    gl().BindTransformFeedback(c, GL_TRANSFORM_FEEDBACK, feedback);
+    gl().BindProgramPipeline(c, pipeline);
+    for (const auto& [kind, name] : {std::pair{GL_TRANSFORM_FEEDBACK, feedback}, {GL_PROGRAM_PIPELINE, pipeline}}) {
+        gl().ObjectLabel(c, static_cast<GLenum>(kind), name, -1, "mine");
+        GLchar text[32] = {};
+        gl().GetObjectLabel(c, static_cast<GLenum>(kind), name, sizeof text, nullptr, text);
+        EXPECT_STREQ(text, "mine");
+    }
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
 }
 
 }  // namespace
