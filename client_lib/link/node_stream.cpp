@@ -14,6 +14,7 @@
 #include <cstring>
 
 #include "common/base/address.h"
+#include "common/base/connect_within.h"
 #include "common/wire/limits.h"
 #include "common/wire/padding.h"
 
@@ -43,14 +44,9 @@ bool poll_for(int fd, short events, Clock::time_point deadline) {
 Result<UniqueFd> start_connect(const SocketAddress& to, const std::string& text, Clock::time_point deadline) {
     UniqueFd fd(::socket(to.family(), SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     if (!fd) return fail("cannot make a socket: " + std::string(std::strerror(errno)));
-    if (::connect(fd.get(), to.get(), to.length) != 0) {
-        if (errno != EINPROGRESS) return fail("cannot connect to " + text + ": " + std::strerror(errno));
-        if (!poll_for(fd.get(), POLLOUT, deadline)) return fail("no answer from " + text);
-        int error = 0;
-        socklen_t length = sizeof error;
-        ::getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &error, &length);
-        if (error != 0) return fail("cannot connect to " + text + ": " + std::strerror(error));
-    }
+    const int error = connect_within(fd.get(), to.get(), to.length, deadline);
+    if (error == ETIMEDOUT) return fail("no answer from " + text);
+    if (error != 0) return fail("cannot connect to " + text + ": " + std::strerror(error));
     return fd;
 }
 

@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
-#include <poll.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -12,6 +11,8 @@
 
 #include <cerrno>
 #include <cstring>
+
+#include "common/base/connect_within.h"
 
 namespace wall::net {
 namespace {
@@ -62,16 +63,9 @@ Result<UniqueFd> connect_to(const Address& address, std::chrono::milliseconds ti
     if (!to) return tl::unexpected(to.error());
     auto fd = open_socket(address, *to, SOCK_NONBLOCK);
     if (!fd) return fd;
-    if (::connect(fd->get(), to->get(), to->length) != 0) {
-        if (errno != EINPROGRESS) return system_error(address, "cannot connect", errno);
-        pollfd wait{fd->get(), POLLOUT, 0};
-        if (::poll(&wait, 1, static_cast<int>(timeout.count())) <= 0)
-            return fail(address.text() + ": cannot connect: no answer");
-        int error = 0;
-        socklen_t size = sizeof error;
-        ::getsockopt(fd->get(), SOL_SOCKET, SO_ERROR, &error, &size);
-        if (error != 0) return system_error(address, "cannot connect", error);
-    }
+    const int error = connect_within(fd->get(), to->get(), to->length, std::chrono::steady_clock::now() + timeout);
+    if (error == ETIMEDOUT) return fail(address.text() + ": cannot connect: no answer");
+    if (error != 0) return system_error(address, "cannot connect", error);
     ::fcntl(fd->get(), F_SETFL, ::fcntl(fd->get(), F_GETFL) & ~O_NONBLOCK);
     return fd;
 }

@@ -94,9 +94,10 @@ Box accum_area(const Layer& layer, const glstate::State& state) {
 
 void clear_accum(Layer& layer, const Box& area, const glstate::Vec4& value) {
     std::array<std::int16_t, 4> cleared{};
-    for (std::size_t i = 0; i < 4; ++i)
-        cleared[i] =
-            static_cast<std::int16_t>((static_cast<int>(65535.0f * std::clamp(value[i], -1.0f, 1.0f)) - 1) / 2);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const float sane = std::isnan(value[i]) ? 0.0f : std::clamp(value[i], -1.0f, 1.0f);
+        cleared[i] = static_cast<std::int16_t>((static_cast<int>(65535.0f * sane) - 1) / 2);
+    }
     for_each_row(layer, area, [&](std::int16_t* accum, std::size_t) {
         for (std::size_t i = 0; i < static_cast<std::size_t>(area.width) * 4; ++i) accum[i] = cleared[i % 4];
     });

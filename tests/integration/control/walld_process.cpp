@@ -9,7 +9,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -48,12 +47,6 @@ std::string content(const std::string& path) {
 
 }  // namespace
 
-TemporaryFolder::TemporaryFolder() {
-    char path[] = "/tmp/wallgl-test-XXXXXX";
-    path_ = ::mkdtemp(path);
-}
-TemporaryFolder::~TemporaryFolder() { std::filesystem::remove_all(path_); }
-
 Walld::Walld(const std::string& more) {
     const bool own_control = more.find("[control]") != std::string::npos;
     std::ofstream(folder_.file("wall.toml"))
@@ -91,7 +84,9 @@ bool Walld::ready() {
 
 net::ControlClient Walld::connect() {
     if (!ready()) throw std::runtime_error("walld does not get ready: " + content(folder_.file("log")));
-    return *net::ControlClient::connect(address(), kSoon);
+    auto client = net::ControlClient::connect(address(), kSoon);
+    if (!client) throw std::runtime_error(client.error().message);
+    return *std::move(client);
 }
 
 std::string Walld::http_get(const std::string& path) const {

@@ -10,21 +10,11 @@
 
 #include "common/base/ids.h"
 #include "common/net/control_client.h"
+#include "tests/support/temporary_folder.h"
 
 namespace wall::test {
 
 inline constexpr std::chrono::seconds kSoon{10};  ///< an answer that is not there by then will not come
-
-class TemporaryFolder {
-public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    std::string file(const std::string& name) const { return path_ + "/" + name; }
-
-private:
-    std::string path_;
-};
 
 struct Ended {
     int exit_code = -1;  ///< -1: not by itself

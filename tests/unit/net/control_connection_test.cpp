@@ -10,19 +10,12 @@
 #include <filesystem>
 
 #include "common/net/sockets.h"
+#include "tests/support/temporary_folder.h"
 
 namespace wall::net {
 namespace {
 
-class TemporaryFolder {
-public:
-    TemporaryFolder() { ::mkdtemp(path_.data()); }
-    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-    Address socket() const { return {.path = path_ + "/socket"}; }
-
-private:
-    std::string path_ = "/tmp/wallgl-net-XXXXXX";
-};
+Address socket_in(const test::TemporaryFolder& folder) { return {.path = folder.file("socket")}; }
 
 /// Answers every Rendered with a Present of the same frame until the peer closes.
 asio::awaitable<void> echo_once(Listener& listener, std::optional<Peer>& peer) {
@@ -71,19 +64,19 @@ void round_trip(const Address& address) {
 }
 
 TEST(ControlConnection, CarriesMessagesOverUnixSockets) {
-    const TemporaryFolder folder;
-    round_trip(folder.socket());
-    EXPECT_FALSE(std::filesystem::exists(folder.socket().path)) << "the listener removes its socket";
+    const test::TemporaryFolder folder;
+    round_trip(socket_in(folder));
+    EXPECT_FALSE(std::filesystem::exists(socket_in(folder).path)) << "the listener removes its socket";
 }
 
 TEST(ControlConnection, CarriesMessagesOverTcpAndKnowsThePeersUser) { round_trip(*Address::parse("127.0.0.1:0")); }
 
 TEST(Sockets, ReplaceAStaleSocketButNotALiveOne) {
-    const TemporaryFolder folder;
-    { const auto dead = listen_on(folder.socket()); }
-    const auto live = listen_on(folder.socket());
+    const test::TemporaryFolder folder;
+    { const auto dead = listen_on(socket_in(folder)); }
+    const auto live = listen_on(socket_in(folder));
     ASSERT_TRUE(live) << live.error().message;
-    EXPECT_FALSE(listen_on(folder.socket()));
+    EXPECT_FALSE(listen_on(socket_in(folder)));
 }
 
 TEST(Sockets, AnErrorNamesTheAddress) {

@@ -9,13 +9,18 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <thread>
+#include <vector>
 
 #include "common/base/trusted_server.h"
+#include "tests/support/temporary_folder.h"
 
 namespace wall::net {
 namespace {
 
+using std::chrono::milliseconds;
 using std::chrono::seconds;
+using test::TemporaryFolder;
 
 class TcpPeer : public ::testing::Test {
 protected:
@@ -49,6 +54,35 @@ TEST_F(TcpPeer, ThatHasClosedItsSocketIsNobodyRatherThanRoot) {
     connect().reset();
     const auto accepted = accept();
     EXPECT_FALSE(peer_of(accepted.get()));
+}
+
+/// A Unix socket whose queue is full, of programs that all start at once.
+class FullQueue : public ::testing::Test {
+protected:
+    void SetUp() override {
+        ASSERT_EQ(::listen(listener_.get(), 1), 0);  // fewer than before
+        while (auto more = connect_to(address_, milliseconds(1))) waiting_.push_back(*std::move(more));
+    }
+    const TemporaryFolder folder_;
+    const Address address_ = *Address::parse("unix:" + folder_.file("socket"));
+    UniqueFd listener_ = std::move(*listen_on(address_));
+    std::vector<UniqueFd> waiting_;
+};
+
+TEST_F(FullQueue, IsWaitedFor) {
+    std::thread accepts([&] {
+        ::usleep(50'000);
+        UniqueFd(::accept(listener_.get(), nullptr, nullptr)).reset();
+    });
+    EXPECT_TRUE(connect_to(address_, seconds(5)));
+    accepts.join();
+}
+
+TEST_F(FullQueue, IsWaitedForNoLongerThanTold) {
+    const auto connected = connect_to(address_, milliseconds(30));
+    ASSERT_FALSE(connected);
+    EXPECT_NE(connected.error().message.find("cannot connect: no answer"), std::string::npos)
+        << connected.error().message;
 }
 
 TEST(Listening, IsForThisMachineOnlyWhoeverAsks) {
