@@ -2,8 +2,8 @@
 // What a state says of single draw buffers: elements with a bit for each of them (`bits` in proto/gl/state.toml). Pure.
 #pragma once
 
-#include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "gen/glstate/state.gen.h"
 
@@ -34,8 +34,10 @@ inline std::uint32_t with_bit(std::uint32_t bits, unsigned buffer, bool on) {
 
 /// Whether a query counts primitives, which then go to all tiles as they are, so that each node sees all of them.
 inline bool counts_primitives(const State& state) {
-    const auto counts = [](const auto& queries) { return std::ranges::any_of(queries, [](auto q) { return q != 0; }); };
-    return counts(state.objects.primitives_query) || counts(state.objects.captured_query);
+    std::uint32_t any = 0;  // without a branch: each switch between contexts asks
+    for (const std::uint32_t query : state.objects.primitives_query) any |= query;
+    for (const std::uint32_t query : state.objects.captured_query) any |= query;
+    return any != 0;
 }
 
 }  // namespace wall::glstate
