@@ -50,7 +50,7 @@ class Clip(Recording):
 
 
 def record(command: list[str], seconds: float, folder: Path, x: XServer) -> Clip:
-    clip = Clip(Path(command[0]).name, "egl", command, 0, "", folder / "clip.trace")
+    clip = Clip(Path(command[0]).name, "egl", command, frames=0, covers="", file=folder / "clip.trace")
     process = subprocess.Popen(["apitrace", "trace", f"--api={clip.api}", "-o", clip.path, *command],
                                env=x.environment(),
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
