@@ -122,7 +122,7 @@ function(wall_test name)
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
   endif()
-  set(limit 120)  # seconds; each at least three times what the slowest one takes
+  set(limit 120)  # seconds; at least twice what the slowest one takes, sanitized four times
   if(WALLGL_SANITIZE)
     set(limit 360)
   endif()

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Installs what is missing, builds, and runs every test: scripts/test.sh [STAGE...], stages as listed below.
 # Ends with CTest's own summary of each stage; exit code 1 if anything failed. Three run only when they are named:
-# golden-all and conformance-all, of which the usual run takes samples (a quarter of an hour, hours), and fresh, which
+# golden-all and conformance-all, of which the usual run takes samples (more than ten minutes, hours), and fresh, which
 # does everything once more on a clean Debian 12 (scripts/fresh.sh).
 set -uo pipefail
 cd "$(dirname "$0")/.."

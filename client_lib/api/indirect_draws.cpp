@@ -39,19 +39,20 @@ std::vector<Command> read_commands(Context& c, Commands wanted) {
     if (wanted.place % sizeof(GLuint) != 0 || wanted.count < 0 || wanted.stride < 0 || wanted.stride % 4 != 0)
         return refuse(GL_INVALID_VALUE);
     const std::size_t step = wanted.stride != 0 ? static_cast<std::size_t>(wanted.stride) : sizeof(Command);
-    std::vector<Command> commands(static_cast<std::size_t>(wanted.count));
-    if (commands.empty()) return commands;
+    const auto count = static_cast<std::size_t>(wanted.count);
+    if (count == 0) return {};
     fetch_captured(c, id, "glDraw*Indirect");
     std::lock_guard lock(c.share().mutex);
     const Buffer* buffer = id ? buffer_of(c, id) : nullptr;
     const auto* from = reinterpret_cast<const std::byte*>(wanted.place);
     if (id) {
-        const std::uint64_t bytes = step * (commands.size() - 1) + sizeof(Command);
+        const std::uint64_t bytes = std::uint64_t{step} * (count - 1) + sizeof(Command);
         if (!buffer || buffer->blocked() || bytes > buffer->size() || wanted.place > buffer->size() - bytes)
             return refuse(GL_INVALID_OPERATION);
         from = buffer->data() + wanted.place;
     }
-    for (std::size_t i = 0; i < commands.size(); ++i) std::memcpy(&commands[i], from + i * step, sizeof(Command));
+    std::vector<Command> commands(count);
+    for (std::size_t i = 0; i < count; ++i) std::memcpy(&commands[i], from + i * step, sizeof(Command));
     return commands;
 }
 

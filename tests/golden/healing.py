@@ -31,7 +31,7 @@ from xserver import XServer  # noqa: E402
 SAMPLE = "paraview quick openarena2 glmark2_desktop glmark2_terrain es_refract es_shadow pymol".split()
 SETTLED = 5  # frames of the loop that are not looked at
 STANDS_STILL = 30.0  # seconds until the window shows the same picture twice
-RIGHT_AGAIN = 30.0  # seconds from a node's start until the wall is right; 1 to 4 where the machine does nothing else
+RIGHT_AGAIN = 30.0  # seconds from a node's start until the wall is right; 1 to 9 on a busy machine
 MOST_COLORS = 8  # a picture of fewer is no witness
 
 

@@ -183,5 +183,18 @@ TEST_F(BuffersTest, ADeletedBufferLeavesItsTargets) {
     EXPECT_EQ(bound, 0);
 }
 
+TEST_F(BuffersTest, DrawsWhoseArgumentsAreNotAllThereAreRefused) {
+    GLuint name = 0;
+    gl().GenBuffers(c, 1, &name);
+    gl().BindBuffer(c, GL_DRAW_INDIRECT_BUFFER, name);
+    gl().BufferData(c, GL_DRAW_INDIRECT_BUFFER, 20, nullptr, GL_STATIC_DRAW);
+    for (const GLsizei draws : {2, 0x7fffffff}) {
+        gl().MultiDrawArraysIndirect(c, GL_TRIANGLES, nullptr, draws, 0);
+        EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << draws;
+    }
+    gl().MultiDrawArraysIndirect(c, GL_TRIANGLES, nullptr, 0, 0);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+}
+
 }  // namespace
 }  // namespace wall::client
