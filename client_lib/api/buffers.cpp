@@ -287,7 +287,8 @@ void CopyBufferSubData(Context& c, GLenum from_target, GLenum to_target, GLintpt
     to->write({first, first + static_cast<std::size_t>(size)}, reading.bytes().data());
 }
 
-// What the program writes into a persistent mapping is looked for whenever it is used, so there is nothing to do.
+// What the program writes into a persistent mapping is looked for whenever it is used. What shaders write is seen by
+// whatever comes behind a block, so that one ends here.
 void MemoryBarrier(Context& c, GLbitfield barriers) {
     constexpr GLbitfield kKnown =
         GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT |
@@ -295,7 +296,16 @@ void MemoryBarrier(Context& c, GLbitfield barriers) {
         GL_PIXEL_BUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
         GL_FRAMEBUFFER_BARRIER_BIT | GL_TRANSFORM_FEEDBACK_BARRIER_BIT | GL_ATOMIC_COUNTER_BARRIER_BIT |
         GL_SHADER_STORAGE_BARRIER_BIT | GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT | GL_QUERY_BUFFER_BARRIER_BIT;
-    if (barriers != GL_ALL_BARRIER_BITS && (barriers & ~kKnown)) c.error(GL_INVALID_VALUE);
+    if (barriers != GL_ALL_BARRIER_BITS && (barriers & ~kKnown)) return c.error(GL_INVALID_VALUE);
+    c.flush_block();
+}
+
+void MemoryBarrierByRegion(Context& c, GLbitfield barriers) {
+    constexpr GLbitfield kKnown = GL_ATOMIC_COUNTER_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
+                                  GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                                  GL_TEXTURE_FETCH_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT;
+    if (barriers != GL_ALL_BARRIER_BITS && (barriers & ~kKnown)) return c.error(GL_INVALID_VALUE);
+    c.flush_block();
 }
 
 namespace {

@@ -112,6 +112,9 @@ void of_texture_matrix(Context& c, Use&& use) {
 
 constexpr GLenum kGpuDisjoint = 0x8FBB;  // of GL_EXT_disjoint_timer_query, which only OpenGL ES has
 constexpr int kUniformBuffers = glstate::el::uniform_buffer::count;
+constexpr int kImageUnits = glstate::el::image_unit::count;
+constexpr int kStorageBuffers = glstate::el::storage_buffer::count;
+constexpr int kCounterBuffers = glstate::el::counter_buffer::count;
 
 const Special kSpecials[] = {
     {GL_MODELVIEW_STACK_DEPTH, 1, [](Context& c, double* out) { *out = depth_of(c.modelview_stack); }},
@@ -196,6 +199,9 @@ const Special kSpecials[] = {
      [](Context& c, double* out) { *out = static_cast<double>(listed_block_formats(c.profile, c.caps()).size()); }},
     {GL_MAX_VERTEX_ATTRIBS, 1, limited<GL_MAX_VERTEX_ATTRIBS, kVertexAttributes>},
     {GL_MAX_UNIFORM_BUFFER_BINDINGS, 1, limited<GL_MAX_UNIFORM_BUFFER_BINDINGS, kUniformBuffers>},
+    {GL_MAX_IMAGE_UNITS, 1, limited<GL_MAX_IMAGE_UNITS, kImageUnits>},
+    {GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, 1, limited<GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, kStorageBuffers>},
+    {GL_MAX_ATOMIC_COUNTER_BUFFER_BINDINGS, 1, limited<GL_MAX_ATOMIC_COUNTER_BUFFER_BINDINGS, kCounterBuffers>},
     {GL_MAX_COMBINED_UNIFORM_BLOCKS, 1, limited<GL_MAX_COMBINED_UNIFORM_BLOCKS, kUniformBuffers>},
     {GL_MAX_TRANSFORM_FEEDBACK_SEPARATE_ATTRIBS, 1,
      limited<GL_MAX_TRANSFORM_FEEDBACK_SEPARATE_ATTRIBS, glstate::el::feedback_buffer::count>},

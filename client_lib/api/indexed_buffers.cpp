@@ -7,6 +7,7 @@
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/capture_use.h"
 #include "client_lib/context/limits.h"
+#include "client_lib/context/memory_use.h"
 #include "client_lib/context/object_name.h"
 
 namespace wall::client::api {
@@ -17,6 +18,8 @@ namespace el = glstate::el;
 /// The error of binding a part to a place of a target, whatever the buffer.
 GLenum error_of_place(Context& c, GLenum target, GLuint index) {
     if (target == GL_UNIFORM_BUFFER) return index < el::uniform_buffer::count ? GL_NO_ERROR : GL_INVALID_VALUE;
+    if (target == GL_SHADER_STORAGE_BUFFER) return index < el::storage_buffer::count ? GL_NO_ERROR : GL_INVALID_VALUE;
+    if (target == GL_ATOMIC_COUNTER_BUFFER) return index < el::counter_buffer::count ? GL_NO_ERROR : GL_INVALID_VALUE;
     if (target != GL_TRANSFORM_FEEDBACK_BUFFER) return GL_INVALID_ENUM;
     if (c.captures->bound().active) return GL_INVALID_OPERATION;
     return index < kCaptureBuffers ? GL_NO_ERROR : GL_INVALID_VALUE;
@@ -24,15 +27,19 @@ GLenum error_of_place(Context& c, GLenum target, GLuint index) {
 
 /// Bytes that a part begins at a multiple of.
 GLintptr alignment_of(Context& c, GLenum target) {
-    if (target == GL_TRANSFORM_FEEDBACK_BUFFER) return 4;
+    if (target == GL_TRANSFORM_FEEDBACK_BUFFER || target == GL_ATOMIC_COUNTER_BUFFER) return 4;
     if (!c.attached()) return 1;
-    return std::max<GLintptr>(
-        static_cast<GLintptr>(limit_of(c.session().caps(), GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, 1)), 1);
+    const GLenum limit = target == GL_UNIFORM_BUFFER ? GLenum{GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT}
+                                                     : GLenum{GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT};
+    return std::max<GLintptr>(static_cast<GLintptr>(limit_of(c.session().caps(), limit, 1)), 1);
 }
 
 void set(Context& c, GLenum target, GLuint index, const glstate::BufferRange& range) {
-    if (target == GL_UNIFORM_BUFFER) c.set<el::uniform_buffer>(index, range);
-    else c.set<el::feedback_buffer>(index, range);
+    if (target == GL_UNIFORM_BUFFER) return c.set<el::uniform_buffer>(index, range);
+    if (target == GL_TRANSFORM_FEEDBACK_BUFFER) return c.set<el::feedback_buffer>(index, range);
+    c.memory->any = true;
+    if (target == GL_SHADER_STORAGE_BUFFER) c.set<el::storage_buffer>(index, range);
+    else c.set<el::counter_buffer>(index, range);
 }
 
 /// `bytes` 0: as far as the buffer goes.
@@ -96,7 +103,13 @@ bool get_indexed_buffer(Context& c, GLenum pname, GLuint index, GLint64& value) 
     constexpr Words kUniform{GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE};
     constexpr Words kFeedback{GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, GL_TRANSFORM_FEEDBACK_BUFFER_START,
                               GL_TRANSFORM_FEEDBACK_BUFFER_SIZE};
-    return answer<el::uniform_buffer>(c, kUniform, pname, index, value) ||
+    constexpr Words kStorage{GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START,
+                             GL_SHADER_STORAGE_BUFFER_SIZE};
+    constexpr Words kCounters{GL_ATOMIC_COUNTER_BUFFER_BINDING, GL_ATOMIC_COUNTER_BUFFER_START,
+                              GL_ATOMIC_COUNTER_BUFFER_SIZE};
+    return answer<el::storage_buffer>(c, kStorage, pname, index, value) ||
+           answer<el::counter_buffer>(c, kCounters, pname, index, value) ||
+           answer<el::uniform_buffer>(c, kUniform, pname, index, value) ||
            answer<el::feedback_buffer>(c, kFeedback, pname, index, value);
 }
 

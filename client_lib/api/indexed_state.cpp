@@ -11,6 +11,7 @@
 #include "client_lib/context/context.h"
 #include "client_lib/context/indexed_values.h"
 #include "client_lib/context/limits.h"
+#include "client_lib/context/object_name.h"
 #include "common/glstate/draw_buffers.h"
 
 namespace wall::client::api {
@@ -54,6 +55,13 @@ void buffer_value(Context& c, GLuint index, double* out) {
     *out = static_cast<double>(value);  // no buffer is so large that it would be rounded
 }
 GLuint uniform_buffers(Context&) { return el::uniform_buffer::count; }
+GLuint storage_buffers(Context&) { return el::storage_buffer::count; }
+GLuint counter_buffers(Context&) { return el::counter_buffer::count; }
+GLuint image_units(Context&) { return el::image_unit::count; }
+template <auto kField>
+void image_value(Context& c, GLuint unit, double* out) {
+    *out = c.get<el::image_unit>(unit).*kField;
+}
 GLuint feedback_buffers(Context&) { return el::feedback_buffer::count; }
 
 GLuint mask_words(Context&) { return 1; }
@@ -96,6 +104,21 @@ const IndexedWord kWords[] = {
     {GL_UNIFORM_BUFFER_BINDING, false, 1, uniform_buffers, buffer_value<GL_UNIFORM_BUFFER_BINDING>},
     {GL_UNIFORM_BUFFER_START, false, 1, uniform_buffers, buffer_value<GL_UNIFORM_BUFFER_START>},
     {GL_UNIFORM_BUFFER_SIZE, false, 1, uniform_buffers, buffer_value<GL_UNIFORM_BUFFER_SIZE>},
+    {GL_SHADER_STORAGE_BUFFER_BINDING, false, 1, storage_buffers, buffer_value<GL_SHADER_STORAGE_BUFFER_BINDING>},
+    {GL_SHADER_STORAGE_BUFFER_START, false, 1, storage_buffers, buffer_value<GL_SHADER_STORAGE_BUFFER_START>},
+    {GL_SHADER_STORAGE_BUFFER_SIZE, false, 1, storage_buffers, buffer_value<GL_SHADER_STORAGE_BUFFER_SIZE>},
+    {GL_ATOMIC_COUNTER_BUFFER_BINDING, false, 1, counter_buffers, buffer_value<GL_ATOMIC_COUNTER_BUFFER_BINDING>},
+    {GL_ATOMIC_COUNTER_BUFFER_START, false, 1, counter_buffers, buffer_value<GL_ATOMIC_COUNTER_BUFFER_START>},
+    {GL_ATOMIC_COUNTER_BUFFER_SIZE, false, 1, counter_buffers, buffer_value<GL_ATOMIC_COUNTER_BUFFER_SIZE>},
+    {GL_IMAGE_BINDING_NAME, false, 1, image_units,
+     [](Context& c, GLuint unit, double* out) {
+         *out = object_name(c, glstate::ValueKind::name_texture, ClientName(c.get<el::image_unit>(unit).texture));
+     }},
+    {GL_IMAGE_BINDING_LEVEL, false, 1, image_units, image_value<&glstate::ImageUnit::level>},
+    {GL_IMAGE_BINDING_LAYERED, false, 1, image_units, image_value<&glstate::ImageUnit::layered>},
+    {GL_IMAGE_BINDING_LAYER, false, 1, image_units, image_value<&glstate::ImageUnit::layer>},
+    {GL_IMAGE_BINDING_ACCESS, false, 1, image_units, image_value<&glstate::ImageUnit::access>},
+    {GL_IMAGE_BINDING_FORMAT, false, 1, image_units, image_value<&glstate::ImageUnit::format>},
     {GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, false, 1, feedback_buffers,
      buffer_value<GL_TRANSFORM_FEEDBACK_BUFFER_BINDING>},
     {GL_TRANSFORM_FEEDBACK_BUFFER_START, false, 1, feedback_buffers, buffer_value<GL_TRANSFORM_FEEDBACK_BUFFER_START>},

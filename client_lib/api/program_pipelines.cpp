@@ -14,8 +14,8 @@ namespace wall::client::api {
 namespace {
 
 /// In the order of glapi::kShaderStages.
-constexpr GLbitfield kBits[] = {GL_VERTEX_SHADER_BIT, GL_FRAGMENT_SHADER_BIT, GL_GEOMETRY_SHADER_BIT,
-                                GL_TESS_CONTROL_SHADER_BIT, GL_TESS_EVALUATION_SHADER_BIT};
+constexpr GLbitfield kBits[] = {GL_VERTEX_SHADER_BIT,       GL_FRAGMENT_SHADER_BIT,        GL_GEOMETRY_SHADER_BIT,
+                                GL_TESS_CONTROL_SHADER_BIT, GL_TESS_EVALUATION_SHADER_BIT, GL_COMPUTE_SHADER_BIT};
 static_assert(std::size(kBits) == ProgramPipeline::kStages);
 
 bool are_stages(GLbitfield bits) {

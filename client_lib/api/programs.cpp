@@ -56,6 +56,7 @@ GLint active_value(const Program& program, GLenum pname) {
         case GL_TRANSFORM_FEEDBACK_BUFFER_MODE: return static_cast<GLint>(executable->capture_mode);
         case GL_TRANSFORM_FEEDBACK_VARYING_MAX_LENGTH:
             return longest_name(executable->captured, [](const glapi::CapturedVarying& v) { return v.name; });
+        case GL_ACTIVE_ATOMIC_COUNTER_BUFFERS: return static_cast<GLint>(executable->counter_buffers.size());
         case GL_ACTIVE_UNIFORM_BLOCKS: return static_cast<GLint>(executable->blocks.size());
         case GL_ACTIVE_UNIFORM_BLOCK_MAX_NAME_LENGTH:
             return longest_name(executable->blocks, [](const UniformBlock& b) { return b.name; });
@@ -280,6 +281,12 @@ void GetProgramiv(Context& c, GLuint name, GLenum pname, GLint* params) {
         *params = static_cast<GLint>(*value);
         return;
     }
+    if (pname == GL_COMPUTE_WORK_GROUP_SIZE) {
+        const Executable* executable = active(*program);
+        if (!executable || !executable->computes()) return c.error(GL_INVALID_OPERATION);
+        std::ranges::copy(executable->group_size, params);
+        return;
+    }
     switch (pname) {
         case GL_DELETE_STATUS: *params = program->deleted; break;
         case GL_PROGRAM_SEPARABLE: *params = program->separable; break;
@@ -295,6 +302,7 @@ void GetProgramiv(Context& c, GLuint name, GLenum pname, GLint* params) {
         case GL_TRANSFORM_FEEDBACK_BUFFER_MODE:
         case GL_TRANSFORM_FEEDBACK_VARYING_MAX_LENGTH:
         case GL_ACTIVE_UNIFORM_BLOCKS:
+        case GL_ACTIVE_ATOMIC_COUNTER_BUFFERS:
         case GL_ACTIVE_UNIFORM_BLOCK_MAX_NAME_LENGTH:
         case GL_ACTIVE_ATTRIBUTES:
         case GL_ACTIVE_ATTRIBUTE_MAX_LENGTH: *params = active_value(*program, pname); break;

@@ -154,6 +154,8 @@ void get_parameter(Context& c, GLenum target, GLenum pname, Out* out) {
     const std::uint32_t immutable = texture ? texture->immutable_levels : 0;
     if (pname == GL_TEXTURE_IMMUTABLE_FORMAT) return void(*out = static_cast<Out>(immutable != 0));
     if (pname == GL_TEXTURE_IMMUTABLE_LEVELS) return void(*out = static_cast<Out>(immutable));
+    if (pname == GL_IMAGE_FORMAT_COMPATIBILITY_TYPE)
+        return void(*out = static_cast<Out>(GL_IMAGE_FORMAT_COMPATIBILITY_BY_SIZE));
     const unsigned count = parameter_size(pname);
     if (count == 0) return c.error(GL_INVALID_ENUM);
     const auto value =

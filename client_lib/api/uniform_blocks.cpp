@@ -35,10 +35,17 @@ void for_each_member(const Executable& executable, GLuint block, Use&& use) {
         if (executable.uniforms[i].place.block == static_cast<GLint>(block)) use(static_cast<GLint>(i));
 }
 
+/// The same for the atomic counters in a buffer.
+template <class Use>
+void for_each_counter(const Executable& executable, GLuint buffer, Use&& use) {
+    for (std::size_t i = 0; i < executable.uniforms.size(); ++i)
+        if (executable.uniforms[i].counter_buffer == static_cast<GLint>(buffer)) use(static_cast<GLint>(i));
+}
+
 /// Whether a stage of the kind takes part.
-bool is_active_in(const UniformBlock& block, GLenum stage) {
+bool is_active_in(std::uint32_t stages, GLenum stage) {
     for (std::size_t i = 0; i < std::size(glapi::kShaderStages); ++i)
-        if (glapi::kShaderStages[i] == stage) return (block.stages >> i & 1) != 0;
+        if (glapi::kShaderStages[i] == stage) return (stages >> i & 1) != 0;
     return false;
 }
 
@@ -52,6 +59,7 @@ bool get_of_uniform(const Uniform& uniform, GLenum pname, GLint& out) {
         case GL_UNIFORM_OFFSET: out = uniform.place.offset; return true;
         case GL_UNIFORM_ARRAY_STRIDE: out = uniform.place.array_stride; return true;
         case GL_UNIFORM_MATRIX_STRIDE: out = uniform.place.matrix_stride; return true;
+        case GL_UNIFORM_ATOMIC_COUNTER_BUFFER_INDEX: out = uniform.counter_buffer; return true;
         case GL_UNIFORM_IS_ROW_MAJOR: out = uniform.place.row_major; return true;
         default: return false;
     }
@@ -67,16 +75,21 @@ GLuint GetUniformBlockIndex(Context& c, GLuint name, const GLchar* block) {
     return index;
 }
 
-void UniformBlockBinding(Context& c, GLuint name, GLuint index, GLuint binding) {
+namespace {
+
+/// Of the executable's `blocks`, for which there are so many places.
+template <class Blocks>
+void bind_block(Context& c, GLuint name, GLuint index, GLuint binding, Blocks Executable::*blocks, GLuint places) {
     const auto program = linked_program(c, name);
     if (!program) return;
     const auto bind = [&] {
         Executable* executable = program->linked ? program->executable.get() : nullptr;
-        if (!executable || index >= executable->blocks.size()) return c.error(GL_INVALID_VALUE), true;
-        if (binding >= glstate::el::uniform_buffer::count) return c.error(GL_INVALID_VALUE), true;
-        if (executable->blocks[index].binding == binding) return true;
+        if (!executable || index >= (executable->*blocks).size()) return c.error(GL_INVALID_VALUE), true;
+        if (binding >= places) return c.error(GL_INVALID_VALUE), true;
+        auto& block = (executable->*blocks)[index];
+        if (block.binding == binding) return true;
         if (!c.packer.empty()) return false;  // it is sent with the binding that it was drawn with
-        executable->bind_block(executable->blocks[index], binding);
+        executable->bind_block(block, binding);
         c.share().last_change = executable->last_change;
         return true;
     };
@@ -88,9 +101,47 @@ void UniformBlockBinding(Context& c, GLuint name, GLuint index, GLuint binding) 
     bind();
 }
 
+}  // namespace
+
+void UniformBlockBinding(Context& c, GLuint name, GLuint index, GLuint binding) {
+    bind_block(c, name, index, binding, &Executable::blocks, glstate::el::uniform_buffer::count);
+}
+
+void ShaderStorageBlockBinding(Context& c, GLuint name, GLuint index, GLuint binding) {
+    bind_block(c, name, index, binding, &Executable::storage_blocks, glstate::el::storage_buffer::count);
+}
+
+void GetActiveAtomicCounterBufferiv(Context& c, GLuint name, GLuint index, GLenum pname, GLint* params) {
+    with_executable(c, name, [&](const Executable& executable) {
+        if (index >= executable.counter_buffers.size()) return c.error(GL_INVALID_VALUE);
+        const glapi::ActiveCounterBuffer& buffer = executable.counter_buffers[index];
+        const auto active_in = [&](GLenum stage) { *params = is_active_in(buffer.stages, stage); };
+        switch (pname) {
+            case GL_ATOMIC_COUNTER_BUFFER_BINDING: *params = static_cast<GLint>(buffer.binding); break;
+            case GL_ATOMIC_COUNTER_BUFFER_DATA_SIZE: *params = static_cast<GLint>(buffer.bytes); break;
+            case GL_ATOMIC_COUNTER_BUFFER_ACTIVE_ATOMIC_COUNTERS:
+                *params = 0;
+                for_each_counter(executable, index, [&](GLint) { ++*params; });
+                break;
+            case GL_ATOMIC_COUNTER_BUFFER_ACTIVE_ATOMIC_COUNTER_INDICES:
+                for_each_counter(executable, index, [&](GLint uniform) { *params++ = uniform; });
+                break;
+            case GL_ATOMIC_COUNTER_BUFFER_REFERENCED_BY_VERTEX_SHADER: active_in(GL_VERTEX_SHADER); break;
+            case GL_ATOMIC_COUNTER_BUFFER_REFERENCED_BY_FRAGMENT_SHADER: active_in(GL_FRAGMENT_SHADER); break;
+            case GL_ATOMIC_COUNTER_BUFFER_REFERENCED_BY_GEOMETRY_SHADER: active_in(GL_GEOMETRY_SHADER); break;
+            case GL_ATOMIC_COUNTER_BUFFER_REFERENCED_BY_TESS_CONTROL_SHADER: active_in(GL_TESS_CONTROL_SHADER); break;
+            case GL_ATOMIC_COUNTER_BUFFER_REFERENCED_BY_TESS_EVALUATION_SHADER:
+                active_in(GL_TESS_EVALUATION_SHADER);
+                break;
+            case GL_ATOMIC_COUNTER_BUFFER_REFERENCED_BY_COMPUTE_SHADER: active_in(GL_COMPUTE_SHADER); break;
+            default: c.error(GL_INVALID_ENUM);
+        }
+    });
+}
+
 void GetActiveUniformBlockiv(Context& c, GLuint name, GLuint index, GLenum pname, GLint* params) {
     with_block(c, name, index, [&](const Executable& executable, const UniformBlock& block) {
-        const auto active_in = [&](GLenum stage) { *params = is_active_in(block, stage); };
+        const auto active_in = [&](GLenum stage) { *params = is_active_in(block.stages, stage); };
         switch (pname) {
             case GL_UNIFORM_BLOCK_BINDING: *params = static_cast<GLint>(block.binding); break;
             case GL_UNIFORM_BLOCK_DATA_SIZE: *params = static_cast<GLint>(block.bytes); break;
@@ -106,6 +157,7 @@ void GetActiveUniformBlockiv(Context& c, GLuint name, GLuint index, GLenum pname
             case GL_UNIFORM_BLOCK_REFERENCED_BY_FRAGMENT_SHADER: active_in(GL_FRAGMENT_SHADER); break;
             case GL_UNIFORM_BLOCK_REFERENCED_BY_GEOMETRY_SHADER: active_in(GL_GEOMETRY_SHADER); break;
             case GL_UNIFORM_BLOCK_REFERENCED_BY_TESS_CONTROL_SHADER: active_in(GL_TESS_CONTROL_SHADER); break;
+            case GL_UNIFORM_BLOCK_REFERENCED_BY_COMPUTE_SHADER: active_in(GL_COMPUTE_SHADER); break;
             case GL_UNIFORM_BLOCK_REFERENCED_BY_TESS_EVALUATION_SHADER: active_in(GL_TESS_EVALUATION_SHADER); break;
             default: c.error(GL_INVALID_ENUM);
         }

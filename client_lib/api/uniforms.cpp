@@ -23,7 +23,7 @@ using glapi::UniformType;
 bool accepts(const UniformType& type, const Given& given) {
     if (type.columns != given.columns || type.rows != given.rows) return false;
     if (type.base == UniformBase::boolean) return given.base != UniformBase::double_real;
-    if (type.base == UniformBase::sampler) return given.base == UniformBase::integer;
+    if (type.base == UniformBase::sampler || type.base == UniformBase::image) return given.base == UniformBase::integer;
     return type.base == given.base;
 }
 
@@ -34,8 +34,8 @@ std::vector<std::uint32_t> as_booleans(const Given& given, std::size_t words) {
     return out;
 }
 
-bool names_units(std::span<const std::uint32_t> words) {
-    return std::all_of(words.begin(), words.end(), [](std::uint32_t unit) { return unit < kTextureImageUnits; });
+bool names_units(std::span<const std::uint32_t> words, std::uint32_t units) {
+    return std::all_of(words.begin(), words.end(), [=](std::uint32_t unit) { return unit < units; });
 }
 
 /// The error to raise, or none. Geometry that is still packed is sent with the values it was drawn with.
@@ -52,7 +52,9 @@ GLenum store(Context& c, Program& program, GLint location, GLsizei count, const 
     std::span<const std::uint32_t> words = given.words.first(elements * given.words_each());
     std::vector<std::uint32_t> booleans;
     if (uniform.type->base == UniformBase::boolean) words = booleans = as_booleans(given, words.size());
-    if (uniform.type->base == UniformBase::sampler && !names_units(words)) return GL_INVALID_VALUE;
+    if (uniform.type->base == UniformBase::sampler && !names_units(words, kTextureImageUnits)) return GL_INVALID_VALUE;
+    if (uniform.type->base == UniformBase::image && !names_units(words, glstate::el::image_unit::count))
+        return GL_INVALID_VALUE;
     if (executable.holds(uniform, place->element, words)) return GL_NO_ERROR;
     if (!c.packer.empty()) {
         lock.unlock();

@@ -22,10 +22,19 @@ namespace wall::client {
 
 namespace {
 
-constexpr GLenum kTargets[] = {GL_ARRAY_BUFFER,        GL_ELEMENT_ARRAY_BUFFER,      GL_PIXEL_PACK_BUFFER,
-                               GL_PIXEL_UNPACK_BUFFER, GL_COPY_READ_BUFFER,          GL_COPY_WRITE_BUFFER,
-                               GL_UNIFORM_BUFFER,      GL_TRANSFORM_FEEDBACK_BUFFER, GL_TEXTURE_BUFFER,
-                               GL_DRAW_INDIRECT_BUFFER};
+constexpr GLenum kTargets[] = {GL_ARRAY_BUFFER,
+                               GL_ELEMENT_ARRAY_BUFFER,
+                               GL_PIXEL_PACK_BUFFER,
+                               GL_PIXEL_UNPACK_BUFFER,
+                               GL_COPY_READ_BUFFER,
+                               GL_COPY_WRITE_BUFFER,
+                               GL_UNIFORM_BUFFER,
+                               GL_TRANSFORM_FEEDBACK_BUFFER,
+                               GL_TEXTURE_BUFFER,
+                               GL_DRAW_INDIRECT_BUFFER,
+                               GL_SHADER_STORAGE_BUFFER,
+                               GL_ATOMIC_COUNTER_BUFFER,
+                               GL_DISPATCH_INDIRECT_BUFFER};
 
 /// Calls use.operator()<E>() with the binding's element; false: no such target.
 template <class Use>
@@ -41,6 +50,9 @@ bool with_binding(GLenum target, Use&& use) {
         case GL_TEXTURE_BUFFER: return use.template operator()<el::bound_texture_buffer>(), true;
         case GL_TRANSFORM_FEEDBACK_BUFFER: return use.template operator()<el::bound_feedback_buffer>(), true;
         case GL_DRAW_INDIRECT_BUFFER: return use.template operator()<el::draw_indirect_buffer>(), true;
+        case GL_SHADER_STORAGE_BUFFER: return use.template operator()<el::bound_storage_buffer>(), true;
+        case GL_ATOMIC_COUNTER_BUFFER: return use.template operator()<el::bound_counter_buffer>(), true;
+        case GL_DISPATCH_INDIRECT_BUFFER: return use.template operator()<el::dispatch_indirect_buffer>(), true;
         case GL_PIXEL_UNPACK_BUFFER: return use.template operator()<el::pixel_unpack_buffer>(), true;
         default: return false;
     }
@@ -86,7 +98,10 @@ void add_named(const glstate::State& state, std::vector<std::uint32_t>& ids) {
     const auto& local = state.local;
     ids.insert(ids.end(), {local.array_buffer, local.pixel_pack_buffer, local.pixel_unpack_buffer,
                            local.copy_read_buffer, local.copy_write_buffer, local.bound_uniform_buffer,
-                           local.bound_feedback_buffer, local.bound_texture_buffer, local.draw_indirect_buffer});
+                           local.bound_feedback_buffer, local.bound_texture_buffer, local.draw_indirect_buffer,
+                           local.bound_storage_buffer, local.bound_counter_buffer, local.dispatch_indirect_buffer});
+    for (const glstate::BufferRange& range : state.shader_memory.storage_buffer) ids.push_back(range.buffer);
+    for (const glstate::BufferRange& range : state.shader_memory.counter_buffer) ids.push_back(range.buffer);
     for (const glstate::BufferRange& range : local.feedback_buffer) ids.push_back(range.buffer);
     for (const glstate::BufferRange& range : state.uniform_buffers.uniform_buffer) ids.push_back(range.buffer);
     add_named_by_arrays(state, ids);

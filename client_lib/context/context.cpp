@@ -11,6 +11,7 @@
 #include "client_lib/context/es_version.h"
 #include "client_lib/context/framebuffer_use.h"
 #include "client_lib/context/list_state.h"
+#include "client_lib/context/memory_use.h"
 #include "client_lib/context/query_state.h"
 #include "client_lib/context/select.h"
 #include "client_lib/context/staging_buffers.h"
@@ -55,6 +56,7 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextProfile& own_pr
       queries(std::make_unique<QueryState>()),
       debug(std::make_unique<DebugState>()),
       captures(std::make_unique<CaptureUse>()),
+      memory(std::make_unique<MemoryUse>()),
       at_once_(*table),
       share_(std::move(share)) {
     for (auto& stack : texture_stacks) stack.limit = 10;

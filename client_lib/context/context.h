@@ -42,6 +42,7 @@ class ArrayCopies;         // array_copies.h
 struct StagingBuffers;     // staging_buffers.h
 struct FramebufferUse;     // framebuffer_use.h
 class CaptureUse;          // capture_use.h: transform feedback
+struct MemoryUse;          // memory_use.h: what shaders write
 
 inline constexpr unsigned kVertexAttributes = glstate::el::vertex_attrib::count;
 /// A block larger than this is sent at the next glEnd, so that nodes draw while the program goes on.
@@ -164,6 +165,7 @@ public:
     std::unique_ptr<QueryState> queries;
     std::unique_ptr<DebugState> debug;
     std::unique_ptr<CaptureUse> captures;
+    std::unique_ptr<MemoryUse> memory;
 
     /// Before an object that was drawn with changes or goes: by its id.
     void before_change(ClientName changing_id) {
@@ -176,6 +178,9 @@ public:
     /// glBegin and glEnd after their checks.
     void begin_primitive(GLenum mode);
     void end_primitive();
+
+    /// Before a draw of what is seen: where its program may write memory, all nodes draw all of the window.
+    void before_writing_draw();
 
     /// A driver looks at the modelview matrix when it draws.
     void determine_modelview_form();
@@ -195,6 +200,9 @@ public:
 
 private:
     void for_each_used(const std::function<void(const Object&)>& use) override;
+    bool writes() override;
+    void for_each_written(const std::function<void(const Object&)>& use) override;
+    void note_written() override;
     void submit_block();
     /// Whether the boxes of what is packed tell where a program puts it.
     bool places_packed_vertices();

@@ -5,13 +5,17 @@
 #include "client_lib/context/capture_use.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/framebuffer_use.h"
+#include "client_lib/context/memory_use.h"
 #include "client_lib/context/select.h"
+#include "client_lib/context/shader_memory.h"
 #include "client_lib/context/used_objects.h"
+#include "client_lib/process/log.h"
 
 namespace wall::client {
 
 DrawTarget Context::draw_target() const {
     if (!draw_) return {};
+    if (memory->now) return DrawTarget(*memory->now, session_->nodes().everywhere());
     if (captures->now) return DrawTarget(*captures->now, session_->nodes().everywhere());
     if (framebuffers->draw && !select->layer) return DrawTarget(*framebuffers->draw, session_->nodes().everywhere());
     return select->layer ? DrawTarget(*draw_, *select->layer) : DrawTarget(*draw_);
@@ -23,6 +27,22 @@ DrawTarget Context::read_target() const {
 }
 
 void Context::for_each_used(const std::function<void(const Object&)>& use) { client::for_each_used(*this, use); }
+
+/// All nodes must run all of it, once each; in tiles each would run its own part, and what lies over several twice.
+void Context::before_writing_draw() {
+    if (!draw_ || framebuffers->draw || select->layer || !writes_memory(*this)) return;
+    if (draw_->whole) return;
+    flush_block();
+    if (!session_->draw_whole(*draw_))
+        complain_once("shaders that write memory draw to a window of a parallel program: what they write may differ",
+                      "shader writes");
+}
+
+bool Context::writes() { return writes_memory(*this); }
+
+void Context::for_each_written(const std::function<void(const Object&)>& use) { client::for_each_written(*this, use); }
+
+void Context::note_written() { client::note_written(*this); }
 
 DrawSource Context::draw_source() { return {id, state, draw_target(), read_target(), use_stamp(*this), *this, share_}; }
 

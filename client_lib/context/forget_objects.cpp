@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "client_lib/context/framebuffer_binding.h"
+#include "client_lib/context/shader_memory.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/objects/share_group.h"
 
@@ -51,6 +52,7 @@ void forget_texture(Context& c, const std::shared_ptr<Texture>& texture) {
         }
         set_bound_id(c, unit, target, id);
     }
+    unbind_images(c, texture->id);
     texture->orphan = true;
     detach_from_bound(c, *texture);
     if (is_attached(c, *texture)) return;

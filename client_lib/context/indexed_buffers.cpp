@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "client_lib/context/buffer_use.h"
+#include "client_lib/context/shader_memory.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/objects/program.h"
 #include "client_lib/objects/share_group.h"
@@ -32,6 +33,7 @@ void for_each_read_buffer(const Context& c, const std::function<void(const std::
             if (found != c.buffers->by_id.end()) use(found->second);
         }
     });
+    for_each_touched_buffer(c, use);
     executable.for_each_sampler([&](std::uint32_t unit, glapi::TextureTarget target) {
         if (target != glapi::TextureTarget::buffer || unit >= kTextureImageUnits) return;
         const auto found = c.share().by_id.find(bound_id(c, unit, target));
@@ -80,6 +82,8 @@ void find_written_to_read(Context& c) {
 void unbind_indexed(Context& c, ClientName id) {
     unbind<el::uniform_buffer>(c, id);
     unbind<el::feedback_buffer>(c, id);
+    unbind<el::storage_buffer>(c, id);
+    unbind<el::counter_buffer>(c, id);
 }
 
 }  // namespace wall::client

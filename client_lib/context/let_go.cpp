@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "client_lib/context/memory_use.h"
 #include "client_lib/context/program_use.h"
 
 namespace wall::client {
@@ -47,6 +48,9 @@ void let_go_of_own_objects(Context& c) {
     };
     let_go(*c.captures->find(0));
     c.captures->names.for_each(let_go);
+    if (c.memory->target)
+        for (const ClientName id : c.memory->target->ids()) c.forget_object(id);
+    c.memory->target.reset();
     c.pipelines->names.for_each([&](ProgramPipeline& pipeline) { forget_pipeline(c, pipeline); });
 }
 

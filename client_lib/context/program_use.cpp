@@ -116,6 +116,7 @@ bool may_draw(Context& c) {
     if ((c.framebuffers->draw || c.has_no_surface()) && !may_draw_to_target(c)) return false;
     if (!c.program) return true;
     find_written_to_read(c);
+    c.before_writing_draw();
     std::lock_guard lock(c.share().mutex);
     if (!c.program->executable->samplers_conflict()) return true;
     c.error(GL_INVALID_OPERATION);

@@ -93,6 +93,7 @@ std::vector<std::byte> gather_pixels(Context& c, const PixelBox& box, GLenum for
             layers.push_back(layer);
             parts.push_back({part.x, part.y + y, part.width, std::min(rows, part.height - y)});
         }
+        if (target.alike()) break;
     }
     const auto answers = c.session().ask_all(c.draw_source(), layers, function,
                                              [&](wire::PackBuffer& buffer, RequestId request, std::size_t i) {

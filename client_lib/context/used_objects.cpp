@@ -5,6 +5,8 @@
 #include "client_lib/context/context.h"
 #include "client_lib/context/framebuffer_use.h"
 #include "client_lib/context/indexed_buffers.h"
+#include "client_lib/context/memory_use.h"
+#include "client_lib/context/shader_memory.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/share_group.h"
 #include "gen/glstate/texture_elements.gen.h"
@@ -64,11 +66,13 @@ void for_each_used(Context& context, const Use& use) {
     for (const std::uint32_t sampler : context.state.objects.sampler_binding)
         if (sampler != 0) use_bound(ClientName(sampler));
     if (context.captures->now) context.captures->now->for_each_used(use);
+    if (context.memory->now) context.memory->now->for_each_used(use);
     for_each_enabled(context.state, use_bound);
     if (!context.program) return;
     for (const auto& part : context.program->executable->parts) use(*part);
     use(*context.program);
     for_each_read_buffer(context, [&](const auto& buffer) { use(*buffer); });  // before textures that are made of them
+    for_each_touched(context, use);
     for_each_sampled(context.state, *context.program->executable, use_bound);
 }
 
@@ -80,6 +84,7 @@ UseStamp use_stamp(const Context& context) {
             .objects = ids[static_cast<std::size_t>(Category::objects)],
             .uniform_buffers = ids[static_cast<std::size_t>(Category::uniform_buffers)],
             .read_buffers = latest_of_read_buffers(context),
+            .shader_memory = ids[static_cast<std::size_t>(Category::shader_memory)],
             .targets = context.framebuffers->stamp,
             .shared = context.share().last_change.load(std::memory_order_acquire),
             .maps = context.maps->stamp};

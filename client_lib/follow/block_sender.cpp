@@ -25,7 +25,8 @@ void BlockSender::run() {
     if (!packer_.has_geometry() || !source_.draw) return fold({});
     if (source_.draw.layers().empty() && !source_.draw.with_hidden_part()) return fold({});
     before_drawing(followers_, source_);
-    const bool everywhere = options().broadcast || glstate::counts_primitives(source_.state);
+    const bool everywhere =
+        options().broadcast || glstate::counts_primitives(source_.state) || source_.objects.writes();
     const auto box = everywhere ? std::nullopt : project(projection_, packer_.block_box());
     kept_ = followers_.hidden.begin_keeping(source_, box);
     if (options().count_ideal) scratch_.ideal.count(source_, packer_, projection_);
@@ -37,7 +38,7 @@ void BlockSender::run() {
     const bool whole = packer_.has_rare() || everywhere || single || source_.draw.of_objects();
     if (nodes.size() <= 1 || whole) send_whole(nodes);
     else send_apart();
-    source_.draw.note_content(*source_.share);
+    note_content(source_);
 }
 
 void BlockSender::pack_whole(wire::PackBuffer& buffer, std::uint64_t slots) const {

@@ -21,6 +21,13 @@ public:
     /// twice. The session's mutex is held, the share group's is taken.
     virtual void for_each_used(const std::function<void(const Object&)>& use) = 0;
 
+    /// Whether the draw may write memory that its shaders address: then every node must do all of it, once.
+    virtual bool writes() { return false; }
+    /// Calls `use` with each object that it may write so. The share group's mutex is held.
+    virtual void for_each_written(const std::function<void(const Object&)>& /*use*/) {}
+    /// What these hold is on the nodes only from now on. The share group's mutex is held.
+    virtual void note_written() {}
+
 protected:
     ~UsedObjects() = default;
 };

@@ -14,6 +14,7 @@ namespace {
 /// What a node is told of the layer of the whole window.
 std::uint32_t whole_window_of(const Node& node, const ClientSurface& surface) {
     if (surface.layout.offscreen) return wire::kOnlyWholeWindow;
+    if (surface.whole) return wire::kShownWholeWindow;
     return surface.hidden && surface.hidden->layer.node == node.index ? wire::kAlsoWholeWindow : wire::kTilesOnly;
 }
 
@@ -55,7 +56,9 @@ void DrawTarget::note_content(ShareGroup& share) const {
 
 /// All draw the same, so one counts: the first that does.
 bool DrawTarget::counts_samples_on(const Node& node) const {
-    return !objects_ || everywhere_->empty() || everywhere_->front().node == node.index;
+    if (!objects_ && (!surface_ || !surface_->whole)) return true;
+    const auto same = layers();
+    return same.empty() || same.front().node == node.index;
 }
 
 void bind_targets(Node& node, Mirror& mirror, const DrawTarget& draw, const DrawTarget& read) {

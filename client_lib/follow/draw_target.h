@@ -31,6 +31,8 @@ public:
         : objects_(&objects), everywhere_(&everywhere) {}
 
     explicit operator bool() const { return surface_ != nullptr || objects_ != nullptr; }
+    /// All nodes hold the same of it.
+    bool alike() const { return objects_ != nullptr || (surface_ != nullptr && only_ == nullptr && surface_->whole); }
     /// Not a window or pixel buffer: it is made of objects, and all nodes hold the same of it.
     bool of_objects() const { return objects_ != nullptr; }
 

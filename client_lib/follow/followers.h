@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstring>
+#include <mutex>
 #include <optional>
 
 #include "client_lib/follow/draw_source.h"
@@ -41,8 +42,18 @@ inline void end_block(wire::PackBuffer& buffer, const OpenBlock& block) {
 /// Before the first node is told of a draw: all that it goes to have what only others have, as it is now; and what
 /// somebody keeps is done with the images that are drawn to.
 inline void before_drawing(const Followers& followers, const DrawSource& source) {
-    if (source.draw.of_objects()) followers.hidden.before_drawing_to(source);
-    if (source.share->has_drawn.load(std::memory_order_relaxed)) bring_drawn(followers.nodes, source);
+    const bool writes = source.objects.writes();
+    if (source.draw.of_objects() || writes) followers.hidden.before_drawing_to(source);
+    if (writes || source.share->has_drawn.load(std::memory_order_relaxed)) bring_drawn(followers.nodes, source);
+}
+
+/// Something was drawn on all nodes that it goes to.
+inline void note_content(const DrawSource& source) {
+    source.draw.note_content(*source.share);
+    if (!source.objects.writes()) return;
+    std::lock_guard lock(source.share->mutex);
+    source.objects.note_written();
+    source.share->has_drawn.store(true, std::memory_order_relaxed);
 }
 
 /// Runs `pack(buffer)` inside a Block on every layer of the draw target that the box `touched` touches (nothing:
@@ -51,7 +62,8 @@ template <class Before, class Pack, class After>
 void draw_on(const Followers& followers, const DrawSource& source, const std::optional<PixelRect>& touched,
              const Needs& needs, Before&& before, Pack&& pack, After&& after) {
     if (!source.draw) return;
-    const auto box = glstate::counts_primitives(source.state) ? std::nullopt : touched;
+    const bool everywhere = glstate::counts_primitives(source.state) || source.objects.writes();
+    const auto box = everywhere ? std::nullopt : touched;
     before_drawing(followers, source);
     const auto pack_block = [&](wire::PackBuffer& buffer, std::uint64_t slots) {
         const OpenBlock block = begin_block(buffer, slots);
@@ -75,7 +87,7 @@ void draw_on(const Followers& followers, const DrawSource& source, const std::op
         count(node, NodeCounter::geometry_bytes, buffer.bytes() - bytes);
         after(node);
     }
-    source.draw.note_content(*source.share);
+    note_content(source);
 }
 
 }  // namespace wall::client

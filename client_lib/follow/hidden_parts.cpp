@@ -233,7 +233,9 @@ void HiddenParts::before_drawing_to(const DrawSource& source) {
     std::vector<ClientName> images;
     {
         std::lock_guard lock(source.share->mutex);
-        source.draw.for_each_image([&](const Object& image) { images.push_back(image.id); });
+        const auto note = [&](const Object& image) { images.push_back(image.id); };
+        source.draw.for_each_image(note);
+        source.objects.for_each_written(note);
     }
     for (const ClientName image : images) before_object_changes(image);
 }

@@ -22,9 +22,11 @@ bool may_be_asked(const Node& node) { return node.answers() && !node.slow && !no
 /// What is drawn now the node does not draw.
 void lose_images(Node& node, const DrawSource& source) {
     std::lock_guard lock(source.share->mutex);
-    source.draw.for_each_image([&](const Object& image) {
+    const auto lose = [&](const Object& image) {
         if (const auto known = node.object_stamps.find(image.id); known != node.object_stamps.end()) known->second = 0;
-    });
+    };
+    source.draw.for_each_image(lose);
+    source.objects.for_each_written(lose);
     for (auto& [context, mirror] : node.mirrors) mirror.used = {};
 }
 
@@ -87,7 +89,7 @@ void bring_drawn(Nodes& nodes, const DrawSource& source) {
         Node& node = nodes[layer];
         if (!node.alive()) continue;
         if (!source.draw.goes_to(node)) {
-            if (source.draw.of_objects()) lose_images(node, source);
+            if (source.draw.of_objects() || source.objects.writes()) lose_images(node, source);
             continue;
         }
         if (node.mirrors[source.id].used == source.used) continue;

@@ -154,6 +154,10 @@ void ClientSession::begin_frame(ClientSurface& surface) {
     surfaces_.begin_frame(surface);
 }
 
+bool ClientSession::draw_whole(ClientSurface& surface) {
+    return packing([&] { return surfaces_.draw_whole(surface); });
+}
+
 void ClientSession::swap(ContextId context, ClientSurface& surface) {
     bool whole_frames = false;
     {

@@ -30,6 +30,7 @@ public:
     SurfaceLayout layout;
     std::uint32_t frame = 0;             ///< of the last swap
     bool opened = false;                 ///< walld knows it
+    bool whole = false;                  ///< every node draws all of it, and tiles show parts of that
     bool drawn = false;                  ///< something was drawn since the last swap
     std::optional<Placement> next;       ///< from walld, for a frame that begins
     bool cleared = false;                ///< all of its back buffer, since the last swap

@@ -77,6 +77,8 @@ void Surfaces::apply_layout(ClientSurface& surface, const Placement& placement) 
     layout.layers.clear();
     ++layout.version;
     layout.offscreen = !surface.options.visible;
+    if (!layout.offscreen) layout.rect = placement.rect;
+    if (surface.whole) return lay_whole(surface);
     if (layout.offscreen) {
         layout.rect = {0, 0, static_cast<int>(layout.width), static_cast<int>(layout.height)};
         for (auto& node : nodes_) {
@@ -94,9 +96,32 @@ void Surfaces::apply_layout(ClientSurface& surface, const Placement& placement) 
     hidden_.lay(surface, tiles_);
 }
 
+/// A layer of the window's size on every node; those of nodes that are not there are not drawn in.
+void Surfaces::lay_whole(ClientSurface& surface) {
+    SurfaceLayout& layout = surface.layout;
+    if (layout.offscreen) layout.rect = {0, 0, static_cast<int>(layout.width), static_cast<int>(layout.height)};
+    surface.hidden.reset();
+    layout.layers.clear();
+    for (auto& node : nodes_)
+        if (node->alive()) layout.layers.push_back(whole_window(layout.width, layout.height, node->index));
+}
+
+bool Surfaces::draw_whole(ClientSurface& surface) {
+    if (surface.whole) return true;
+    const auto alive = std::ranges::count_if(nodes_, [](const auto& node) { return node->alive(); });
+    const auto& layers = surface.layout.layers;
+    if (alive == 1 && layers.size() == 1 && !surface.hidden) return true;  // that one does
+    if (common(surface)) return false;
+    surface.whole = true;
+    ++surface.layout.version;
+    lay_whole(surface);
+    return true;
+}
+
 void Surfaces::place_off_wall() {
     for (auto& [id, surface] : open_)
-        if (!surface->layout.offscreen) hidden_.lay(*surface, tiles_);
+        if (surface->whole) lay_whole(*surface);
+        else if (!surface->layout.offscreen) hidden_.lay(*surface, tiles_);
     for (auto& [id, surface] : open_) {
         const auto& layers = surface->layout.layers;
         if (surface->layout.offscreen && (layers.empty() || !nodes_[layers.front()].alive()))

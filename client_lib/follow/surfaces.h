@@ -31,6 +31,8 @@ public:
     void take(const Placement& placement);
     /// Adopts what came, where a frame begins; also the window's size.
     void begin_frame(ClientSurface& surface);
+    /// Every node draws all of it from now on. False: it cannot be so, since a parallel program has it.
+    bool draw_whole(ClientSurface& surface);
     /// The same for surfaces that are between two frames.
     void adopt_placements();
     /// A node came or went: pixel buffers whose node is gone go to another one, and so do those that had none; so do
@@ -43,6 +45,7 @@ public:
     bool common(const ClientSurface& surface) const { return group_ && surface.options.visible; }
 
 private:
+    void lay_whole(ClientSurface& surface);
     void apply_layout(ClientSurface& surface, const Placement& placement);
     void adopt_placement(ClientSurface& surface);
     void adopt_agreed(ClientSurface& surface);

@@ -17,7 +17,7 @@ using glstate::mask_of;
 /// Never read by vertices: other drawing commands bring them up to date.
 constexpr CategoryMask kNotForGeometry = mask_of(Category::pixel_transfer) | mask_of(Category::accumulation) |
                                          mask_of(Category::raster) | mask_of(Category::evaluator) |
-                                         mask_of(Category::uniform_buffers);
+                                         mask_of(Category::uniform_buffers) | mask_of(Category::shader_memory);
 /// Read only while lighting is on.
 constexpr CategoryMask kLit = mask_of(Category::material) | mask_of(Category::lights);
 

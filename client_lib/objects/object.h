@@ -77,6 +77,7 @@ inline void no_limit() {}
 struct UseStamp {
     std::uint64_t texture_units = 0, textures = 0, objects = 0;
     std::uint64_t uniform_buffers = 0, read_buffers = 0;  ///< of the places for uniforms, of all that the program reads
+    std::uint64_t shader_memory = 0;                      ///< of images and of buffers that shaders may write
     std::uint64_t targets = 0;                            ///< of the context's framebuffer bindings
     std::uint64_t shared = 0;                             ///< of all objects of the share group
     std::uint64_t maps = 0;                               ///< of the context's own

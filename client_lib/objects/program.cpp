@@ -66,6 +66,8 @@ std::vector<std::byte> final_definition(glapi::ProgramDefinition definition,
     definition.position = reflection.position;
     definition.blocks.clear();
     for (const auto& b : reflection.blocks) definition.blocks.push_back(b.name);
+    definition.storage_blocks.clear();
+    for (const auto& b : reflection.storage_blocks) definition.storage_blocks.push_back(b.name);
     for (const auto& o : reflection.outputs) {
         std::erase_if(definition.outputs, [&](const glapi::OutputBinding& b) { return b.name == o.name; });
         definition.outputs.push_back(
@@ -96,6 +98,9 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
         uniform.size = static_cast<GLint>(active.size);
         uniform.array = active.array;
         uniform.place = active.place;
+        uniform.counter_buffer = active.counter_buffer;
+        if (active.counter_buffer >= static_cast<std::int32_t>(reflection.counter_buffers.size())) return nullptr;
+        made->has_images_ = made->has_images_ || type->base == glapi::UniformBase::image;
         if (active.in_block() && static_cast<std::size_t>(active.place.block) >= reflection.blocks.size())
             return nullptr;
         if (active.has_location()) {
@@ -108,6 +113,9 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
         made->uniforms.push_back(std::move(uniform));
     }
     for (auto& block : reflection.blocks) made->blocks.push_back({std::move(block), 0});
+    for (auto& block : reflection.storage_blocks) made->storage_blocks.push_back({std::move(block), 0});
+    made->counter_buffers = std::move(reflection.counter_buffers);
+    made->group_size = reflection.group_size;
     made->attributes = std::move(reflection.attributes);
     made->outputs = std::move(reflection.outputs);
     made->captured = std::move(reflection.captured);
@@ -121,7 +129,7 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
     made->reads_numbers_ = counts_primitives || made->find_attribute("gl_VertexID") != nullptr;
     made->stamp = made->last_change = next_stamp();
     // In parts of a draw primitives would have other numbers.
-    if (!counts_primitives) made->follow_position(std::move(reflection.position));
+    if (!counts_primitives && !made->touches_memory()) made->follow_position(std::move(reflection.position));
     made->check_samplers();
     return made;
 }
@@ -163,12 +171,23 @@ std::optional<GLuint> Executable::uniform_index_of(std::string_view text) const 
     return std::nullopt;
 }
 
+namespace {
+
 /// An array's name is that of its first block (OpenGL 3.1, 2.11.4).
-std::optional<GLuint> Executable::block_index_of(std::string_view name) const {
+template <class Blocks>
+std::optional<GLuint> index_of(const Blocks& blocks, std::string_view name) {
     const std::string first = std::string(name) + "[0]";
     for (std::size_t i = 0; i < blocks.size(); ++i)
         if (blocks[i].name == name || blocks[i].name == first) return static_cast<GLuint>(i);
     return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<GLuint> Executable::block_index_of(std::string_view name) const { return index_of(blocks, name); }
+
+std::optional<GLuint> Executable::storage_block_index_of(std::string_view name) const {
+    return index_of(storage_blocks, name);
 }
 
 const glapi::ActiveOutput* Executable::output_of(std::string_view text, GLint& element) const {
@@ -234,6 +253,19 @@ void Executable::bind_block(UniformBlock& block, std::uint32_t binding) {
     block.stamp = last_change = next_stamp();
 }
 
+void Executable::bind_block(StorageBlock& block, std::uint32_t binding) {
+    block.binding = binding;
+    block.stamp = last_change = next_stamp();
+}
+
+bool Executable::touches_memory() const {
+    bool touches = false;
+    for_each_part([&](const Executable& part) {
+        touches = touches || part.has_images_ || !part.storage_blocks.empty() || !part.counter_buffers.empty();
+    });
+    return touches;
+}
+
 Subroutines* Executable::subroutines_of(GLenum stage) {
     const auto found = std::ranges::find(subroutines, stage, &Subroutines::stage);
     return found == subroutines.end() ? nullptr : &*found;
@@ -268,7 +300,7 @@ bool Executable::parts_conflict() const {
 bool Executable::reads_buffers() const {
     bool reads = false;
     for_each_part([&](const Executable& part) { reads = reads || !part.blocks.empty() || part.samples_buffers_; });
-    return reads;
+    return reads || touches_memory();
 }
 
 void Executable::for_each_combined(const std::function<void(const Executable&)>& use) const {
@@ -287,6 +319,7 @@ std::unique_ptr<Executable> Executable::combine(const std::vector<std::shared_pt
         if (part.geometry.exists()) made->geometry = part.geometry;
         if (part.tessellation.exists()) made->tessellation = part.tessellation;
         if (made->captured.empty()) made->captured = part.captured, made->capture_mode = part.capture_mode;
+        if (part.computes()) made->group_size = part.group_size;
         if ((part.stages & 1) != 0) made->attributes = part.attributes;
     }
     return made;
@@ -317,6 +350,10 @@ void pack_blocks(const Program& program, std::uint64_t known, wire::PackBuffer& 
     for (std::size_t i = 0; i < blocks.size(); ++i)
         if (blocks[i].stamp > known)
             glapi::pack::UniformBlock(buffer, program.id, static_cast<std::uint32_t>(i), blocks[i].binding);
+    const auto& storage = program.executable->storage_blocks;
+    for (std::size_t i = 0; i < storage.size(); ++i)
+        if (storage[i].stamp > known)
+            glapi::pack::StorageBlock(buffer, program.id, static_cast<std::uint32_t>(i), storage[i].binding);
 }
 
 void pack_subroutines(const Program& program, std::uint64_t known, wire::PackBuffer& buffer) {

@@ -6,6 +6,7 @@
 // Guarded by the share group's mutex.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -53,6 +54,7 @@ struct Uniform {
     GLint size = 1;
     GLint location = -1;  ///< -1: built into GLSL, or in a block
     bool array = false;
+    GLint counter_buffer = -1;  ///< of an atomic counter: index in Executable::counter_buffers
     glapi::BlockPlace place = {};
     std::size_t first = 0;    ///< of its words in Executable::words
     std::uint64_t stamp = 0;  ///< of the latest change; 0: as the shader says
@@ -67,6 +69,11 @@ struct UniformPlace {
 /// A block of uniforms, which takes their values from a part of a buffer.
 struct UniformBlock : glapi::ActiveBlock {
     std::uint64_t stamp = 0;  ///< of the latest glUniformBlockBinding; 0: as the shader says
+};
+
+/// A block of variables in a part of a buffer that shaders may write.
+struct StorageBlock : glapi::ActiveStorageBlock {
+    std::uint64_t stamp = 0;  ///< of the latest glShaderStorageBlockBinding; 0: as the shader says
 };
 
 struct Program;
@@ -89,6 +96,7 @@ public:
     /// Index of a uniform ("name" or "name[0]") or block; nothing: there is no such one.
     std::optional<GLuint> uniform_index_of(std::string_view name) const;
     std::optional<GLuint> block_index_of(std::string_view name) const;
+    std::optional<GLuint> storage_block_index_of(std::string_view name) const;
     /// The colour that an output ("name", "name[3]") is; null: there is no such one. `element` is added to its
     /// location.
     const glapi::ActiveOutput* output_of(std::string_view name, GLint& element) const;
@@ -102,6 +110,7 @@ public:
 
     /// The block takes its uniforms from another place from now on.
     void bind_block(UniformBlock& block, std::uint32_t binding);
+    void bind_block(StorageBlock& block, std::uint32_t binding);
     /// Null: that stage has none.
     Subroutines* subroutines_of(GLenum stage);
     void choose(Subroutines& stage, std::span<const std::uint32_t> indices);
@@ -125,6 +134,20 @@ public:
         });
     }
 
+    /// Image units that it names.
+    template <class Use>
+    void for_each_image_unit(Use&& use) const {
+        for_each_part([&](const Executable& part) {
+            for (const Uniform& uniform : part.uniforms)
+                if (uniform.type->base == glapi::UniformBase::image)
+                    for (const std::uint32_t unit : part.words_of(uniform)) use(unit);
+        });
+    }
+    /// Whether it reads or writes memory at places that it addresses.
+    bool touches_memory() const;
+    /// It has a compute shader.
+    bool computes() const { return group_size[0] != 0; }
+
     /// Whether drawing takes values from buffers, by blocks of uniforms or by textures.
     bool reads_buffers() const;
     /// Samplers of different targets name one unit: nothing may be drawn (OpenGL 2.1, 2.15.4).
@@ -147,6 +170,9 @@ public:
     std::vector<std::byte> definition;
     std::vector<Uniform> uniforms;
     std::vector<UniformBlock> blocks;
+    std::vector<StorageBlock> storage_blocks;
+    std::vector<glapi::ActiveCounterBuffer> counter_buffers;
+    std::array<std::uint32_t, 3> group_size{};  ///< of the compute shader; 0 throughout: there is none
     std::vector<glapi::ActiveAttribute> attributes;
     std::vector<glapi::ActiveOutput> outputs;
     std::vector<glapi::CapturedVarying> captured;  ///< by transform feedback
@@ -165,7 +191,7 @@ private:
     std::vector<std::uint32_t> words_;
     std::vector<UniformPlace> places_;  ///< by location
     bool samplers_conflict_ = false;
-    bool samples_buffers_ = false;
+    bool samples_buffers_ = false, has_images_ = false;
     bool reads_numbers_ = false;
     glapi::LinkedPosition position_;
     GLint position_attribute_ = -1;

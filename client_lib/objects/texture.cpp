@@ -256,6 +256,15 @@ void TextureLevel::note_drawn() {
     changes.clear();
 }
 
+void Texture::note_written(GLint level, bool layered, GLint layer) {
+    if (part.buffer) part.buffer->note_drawn();
+    for (unsigned face = 0; face < glapi::face_count(info); ++face) {
+        TextureLevel* const image = find_level(face, level);
+        const bool meant = layered || glapi::face_count(info) == 1 || static_cast<GLint>(face) == layer;
+        if (image != nullptr && meant) image->note_drawn();
+    }
+}
+
 const TextureLevel* Texture::find_level(unsigned face, GLint level) const {
     return const_cast<Texture*>(this)->find_level(face, level);
 }

@@ -112,6 +112,8 @@ struct Texture : Object {
     bool only_on_nodes(const TextureLevel& level) const {
         return level.content == LevelContent::drawn || (level.content == LevelContent::generated && is_drawn());
     }
+    /// Shaders have written to an image of it: to all layers of a level, or to one.
+    void note_written(GLint level, bool layered, GLint layer);
     TextureLevel& level_at(unsigned face, GLint level);
     void parameter_changed(GLenum pname);
     /// The base level got new pixels and the parameter is set, or glGenerateMipmap.

@@ -192,10 +192,14 @@ constexpr auto kNumberTypes = std::to_array<UniformType>({
 });
 
 constexpr auto kUniformTypes = [] {
-    std::array<UniformType, kNumberTypes.size() + kSamplerTypes.size()> all{};
-    std::ranges::transform(kSamplerTypes, std::ranges::copy(kNumberTypes, all.begin()).out, [](const SamplerType& s) {
-        return UniformType{s.type, kSampler, 1, 1, s.target};
-    });
+    std::array<UniformType, kNumberTypes.size() + kSamplerTypes.size() + kImageTypes.size() + 1> all{};
+    const auto as = [](UniformBase base) {
+        return [base](const SamplerType& s) { return UniformType{s.type, base, 1, 1, s.target}; };
+    };
+    auto next = std::ranges::copy(kNumberTypes, all.begin()).out;
+    next = std::ranges::transform(kSamplerTypes, next, as(kSampler)).out;
+    next = std::ranges::transform(kImageTypes, next, as(UniformBase::image)).out;
+    *next = {GL_UNSIGNED_INT_ATOMIC_COUNTER, UniformBase::counter, 1, 1, {}};
     return all;
 }();
 
@@ -211,6 +215,7 @@ std::vector<std::byte> encode(const ProgramDefinition& definition) {
     to.put(definition.feedback);
     to.put(definition.position);
     to.put(definition.separable);
+    to.list(definition.storage_blocks, [&](const std::string& name) { to.put(name); });
     return std::move(to.out);
 }
 
@@ -225,6 +230,7 @@ std::optional<ProgramDefinition> decode_definition(std::span<const std::byte> by
     out.feedback = from.feedback();
     out.position = from.position();
     out.separable = from.flag();
+    from.list(out.storage_blocks, [&] { return from.text(); });
     return if_complete(from, std::move(out));
 }
 
@@ -234,7 +240,7 @@ std::vector<std::byte> encode(const ProgramReflection& reflection) {
     to.put(reflection.log);
     to.list(reflection.uniforms, [&](const ActiveUniform& u) {
         to.put(u.type), to.put(u.size), to.put(u.built_in), to.put(u.array), to.put(u.name), to.put(u.initial),
-            to.put(u.place);
+            to.put(u.place), to.put(static_cast<std::uint32_t>(u.counter_buffer));
     });
     to.list(reflection.attributes, [&](const ActiveAttribute& a) {
         to.put(a.type), to.put(a.size), to.put(static_cast<std::uint32_t>(a.location)), to.put(a.name);
@@ -250,6 +256,12 @@ std::vector<std::byte> encode(const ProgramReflection& reflection) {
     to.put(reflection.tessellation);
     to.list(reflection.subroutines, [&](const SubroutineStage& stage) { to.put(stage); });
     to.put(reflection.position);
+    to.list(reflection.storage_blocks, [&](const ActiveStorageBlock& b) {
+        to.put(b.name), to.put(b.bytes), to.put(b.binding), to.put(b.stages), to.put(b.written);
+    });
+    to.list(reflection.counter_buffers,
+            [&](const ActiveCounterBuffer& b) { to.put(b.binding), to.put(b.bytes), to.put(b.stages); });
+    for (const std::uint32_t size : reflection.group_size) to.put(size);
     return std::move(to.out);
 }
 
@@ -259,8 +271,8 @@ std::optional<ProgramReflection> decode_reflection(std::span<const std::byte> by
     out.linked = from.flag();
     out.log = from.text();
     from.list(out.uniforms, [&] {
-        return ActiveUniform{from.word(), from.word(),  from.flag(), from.flag(),
-                             from.text(), from.words(), from.place()};
+        return ActiveUniform{from.word(), from.word(),  from.flag(),  from.flag(),
+                             from.text(), from.words(), from.place(), from.number()};
     });
     from.list(out.attributes, [&] { return ActiveAttribute{from.word(), from.word(), from.number(), from.text()}; });
     from.list(out.blocks, [&] { return ActiveBlock{from.text(), from.word(), from.word(), from.word()}; });
@@ -272,6 +284,11 @@ std::optional<ProgramReflection> decode_reflection(std::span<const std::byte> by
     out.tessellation = from.tessellation();
     from.list(out.subroutines, [&] { return from.subroutine_stage(); });
     out.position = from.position();
+    from.list(out.storage_blocks, [&] {
+        return ActiveStorageBlock{{from.text(), from.word(), from.word(), from.word()}, from.flag()};
+    });
+    from.list(out.counter_buffers, [&] { return ActiveCounterBuffer{from.word(), from.word(), from.word()}; });
+    for (std::uint32_t& size : out.group_size) size = from.word();
     return if_complete(from, std::move(out));
 }
 

@@ -7,6 +7,7 @@
 // element, from 0. A node maps them to its driver's.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -60,11 +61,13 @@ struct ProgramDefinition {
     std::vector<std::string> blocks = {};  ///< of uniforms, in the order that gives indices
     std::vector<OutputBinding> outputs = {};
     FeedbackDefinition feedback = {};
-    PositionProgram position = {};  ///< as the node that was asked first found it
-    bool separable = false;         ///< it may be one of several that are drawn with together
+    PositionProgram position = {};                 ///< as the node that was asked first found it
+    bool separable = false;                        ///< it may be one of several that are drawn with together
+    std::vector<std::string> storage_blocks = {};  ///< in the order that gives indices
 };
 
-/// Where a member of a uniform block lies in it (OpenGL 3.1, 2.11.4); -1 throughout for any other uniform.
+/// Where a member of a uniform block lies in it (OpenGL 3.1, 2.11.4), or an atomic counter in its buffer, which is no
+/// block; -1 throughout for any other uniform.
 struct BlockPlace {
     std::int32_t block = -1;   ///< index
     std::int32_t offset = -1;  ///< bytes, like the strides; -1: no array, no matrix
@@ -81,8 +84,9 @@ struct ActiveUniform {
     std::string name;                    ///< without "[0]"
     std::vector<std::uint32_t> initial;  ///< words of all elements: uniform_words() each; of a block's members none
     BlockPlace place = {};
+    std::int32_t counter_buffer = -1;  ///< of an atomic counter: index in ProgramReflection::counter_buffers
     bool in_block() const { return place.block >= 0; }
-    bool has_location() const { return !built_in && !in_block(); }
+    bool has_location() const { return !built_in && !in_block() && counter_buffer < 0; }
 };
 
 struct ActiveAttribute {
@@ -98,6 +102,18 @@ struct ActiveBlock {
     std::uint32_t bytes = 0;    ///< that a buffer for it must have
     std::uint32_t binding = 0;  ///< as the shader says
     std::uint32_t stages = 0;   ///< that it is active in, a bit for each of kShaderStages
+};
+
+/// A block of variables that lie in a buffer, which shaders may write (OpenGL 4.3, 7.8).
+struct ActiveStorageBlock : ActiveBlock {
+    bool written = true;  ///< its shaders do not all say that they only read it
+};
+
+/// A buffer that atomic counters lie in (OpenGL 4.2, 2.14.7).
+struct ActiveCounterBuffer {
+    std::uint32_t binding = 0;
+    std::uint32_t bytes = 0;   ///< that a buffer for it must have
+    std::uint32_t stages = 0;  ///< that it is active in, a bit for each of kShaderStages
 };
 
 /// A colour that the fragment shader writes.
@@ -166,11 +182,14 @@ struct ProgramReflection {
     TessellationStage tessellation = {};
     std::vector<SubroutineStage> subroutines = {};  ///< of stages that have functions
     PositionProgram position = {};
+    std::vector<ActiveStorageBlock> storage_blocks = {};
+    std::vector<ActiveCounterBuffer> counter_buffers = {};
+    std::array<std::uint32_t, 3> group_size = {};  ///< of the compute shader; 0 throughout: there is none
 };
 
 /// The stages that programs may have, in the order of ActiveBlock::stages.
-inline constexpr GLenum kShaderStages[] = {GL_VERTEX_SHADER, GL_FRAGMENT_SHADER, GL_GEOMETRY_SHADER,
-                                           GL_TESS_CONTROL_SHADER, GL_TESS_EVALUATION_SHADER};
+inline constexpr GLenum kShaderStages[] = {GL_VERTEX_SHADER,       GL_FRAGMENT_SHADER,        GL_GEOMETRY_SHADER,
+                                           GL_TESS_CONTROL_SHADER, GL_TESS_EVALUATION_SHADER, GL_COMPUTE_SHADER};
 
 struct CompileResult {
     bool compiled = false;
@@ -187,15 +206,24 @@ std::optional<CompileResult> decode_compile_result(std::span<const std::byte> by
 
 // ---- uniform types ----
 
-enum class UniformBase : std::uint8_t { real, integer, unsigned_integer, boolean, sampler, double_real };
+enum class UniformBase : std::uint8_t {
+    real,
+    integer,
+    unsigned_integer,
+    boolean,
+    sampler,
+    double_real,
+    image,
+    counter
+};
 
-/// A type of GLSL up to 4.00 that a uniform may have; a vector has one column. Every component is a 4-byte word, of
+/// A type of GLSL up to 4.30 that a uniform may have; a vector has one column. Every component is a 4-byte word, of
 /// doubles two, the lower one first.
 struct UniformType {
     GLenum type;
     UniformBase base;
     std::uint8_t columns, rows;
-    TextureTarget texture_target;  ///< of a sampler
+    TextureTarget texture_target;  ///< of a sampler or an image
     unsigned components() const { return unsigned{columns} * rows; }
     unsigned words() const { return components() * (base == UniformBase::double_real ? 2 : 1); }
     bool matrix() const { return columns > 1; }

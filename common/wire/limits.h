@@ -16,6 +16,8 @@ inline constexpr std::uint32_t kMaxBlockBytes =
     kMaxBatchPayload - (64u << 20);  ///< of a block or of one command; the rest of its batch has room beside it
 inline constexpr std::uint64_t kMostInstancedElements =
     std::uint64_t{1} << 31;  ///< elements of all instances of a draw: nothing can interrupt a driver within one
+inline constexpr std::uint64_t kMostInvocations = std::uint64_t{1}
+                                                  << 31;      ///< of a compute shader in one dispatch: as for a draw
 inline constexpr std::uint32_t kMaxTilesPerNode = 64;         ///< a tile mask is 64 bits
 inline constexpr std::uint32_t kOffscreenSlot = 63;           ///< tile slot of a surface that is on no tile
 inline constexpr std::uint32_t kMaxSurfaceExtent = 1u << 15;  ///< pixels a side of a surface or a layer

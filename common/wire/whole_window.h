@@ -9,7 +9,8 @@
 namespace wall::wire {
 
 inline constexpr std::uint32_t kTilesOnly = 0;
-inline constexpr std::uint32_t kOnlyWholeWindow = 1;  ///< one of the window's size in kOffscreenSlot, none on tiles
-inline constexpr std::uint32_t kAlsoWholeWindow = 2;  ///< that one besides those on tiles, as soon as it is drawn on
+inline constexpr std::uint32_t kOnlyWholeWindow = 1;   ///< one of the window's size in kOffscreenSlot, none on tiles
+inline constexpr std::uint32_t kAlsoWholeWindow = 2;   ///< that one besides those on tiles, as soon as it is drawn on
+inline constexpr std::uint32_t kShownWholeWindow = 3;  ///< only that one, of which tiles show parts
 
 }  // namespace wall::wire

@@ -122,7 +122,7 @@ struct HandlerByGroup : glapi::Handler {
     } surface{*this};
     glapi::NullHandler draw, array_draw, instanced_draw, captured_draw, buffer, capture, capture_end, vertex_input,
         draw_pieces, renderbuffer, framebuffer, sampler, texture_buffer, texture_drawn, blit, read, object, texture,
-        run, program, pipeline, subroutine, query, map, sync;
+        run, program, pipeline, subroutine, storage, dispatch, query, map, sync;
 
     std::uint64_t begin_block(std::uint64_t tiles, std::size_t) { return tiles; }
     void begin_tile(unsigned) {}

@@ -28,7 +28,9 @@ TEST(ProgramFormat, Definition) {
                                {"Light", "Place"},
                                {{2, 1, "tint"}},
                                {GL_SEPARATE_ATTRIBS, {"speed", "gl_Position"}},
-                               kPosition};
+                               kPosition,
+                               true,
+                               {"Sums", "List[0]"}};
     const auto bytes = encode(in);
     const auto out = decode_definition(bytes);
     ASSERT_TRUE(out);
@@ -42,6 +44,8 @@ TEST(ProgramFormat, Definition) {
     EXPECT_EQ(out->feedback.mode, GLenum{GL_SEPARATE_ATTRIBS});
     EXPECT_EQ(out->feedback.names, in.feedback.names);
     EXPECT_EQ(out->position, kPosition);
+    EXPECT_TRUE(out->separable);
+    EXPECT_EQ(out->storage_blocks, in.storage_blocks);
     refuses_prefixes(bytes, decode_definition);
 }
 
@@ -49,7 +53,8 @@ TEST(ProgramFormat, Reflection) {
     const ProgramReflection in{true,
                                "fine",
                                {{GL_FLOAT_VEC2, 2, false, true, "uv", {1, 2, 3, 4}},
-                                {GL_FLOAT_MAT2, 1, false, false, "m", {}, {0, 32, -1, 16, true}}},
+                                {GL_FLOAT_MAT2, 1, false, false, "m", {}, {0, 32, -1, 16, true}},
+                                {GL_UNSIGNED_INT_ATOMIC_COUNTER, 1, false, false, "hits", {}, {-1, 8, 0, 0, false}, 1}},
                                {{GL_FLOAT, 1, -1, "gl_Vertex"}},
                                {{"Light", 64, 3, 2}},
                                {{1, 0, 2, true, "tint"}},
@@ -57,7 +62,10 @@ TEST(ProgramFormat, Reflection) {
                                {GL_TRIANGLES, GL_LINE_STRIP, 12, 1},
                                {4, GL_QUADS, GL_EQUAL, GL_CCW, 1},
                                {{GL_VERTEX_SHADER, {"red", "blue"}, {{"tone", 3, true, 0, {1, 0}}}, 3}},
-                               kPosition};
+                               kPosition,
+                               {{{"Sums", 16, 5, 32}, false}},
+                               {{1, 4, 2}, {7, 12, 33}},
+                               {8, 4, 2}};
     const auto bytes = encode(in);
     const auto out = decode_reflection(bytes);
     ASSERT_TRUE(out);
@@ -76,6 +84,16 @@ TEST(ProgramFormat, Reflection) {
     EXPECT_EQ(out->subroutines[0].functions, in.subroutines[0].functions);
     EXPECT_EQ(out->subroutines[0].uniforms[0].compatible, in.subroutines[0].uniforms[0].compatible);
     EXPECT_EQ(out->subroutines[0].locations, 3u);
+    EXPECT_EQ(out->uniforms[0].counter_buffer, -1);
+    EXPECT_EQ(out->uniforms[2].counter_buffer, 1);
+    EXPECT_FALSE(out->uniforms[2].has_location());
+    ASSERT_EQ(out->storage_blocks.size(), 1u);
+    EXPECT_EQ(out->storage_blocks[0].name, "Sums");
+    EXPECT_EQ(out->storage_blocks[0].stages, 32u);
+    EXPECT_FALSE(out->storage_blocks[0].written);
+    ASSERT_EQ(out->counter_buffers.size(), 2u);
+    EXPECT_EQ(out->counter_buffers[1].bytes, 12u);
+    EXPECT_EQ(out->group_size, in.group_size);
     refuses_prefixes(bytes, decode_reflection);
 }
 
@@ -101,6 +119,9 @@ TEST(ProgramFormat, UniformTypes) {
     EXPECT_EQ(find_uniform_type(GL_FLOAT_MAT2x3)->words(), 6u);
     EXPECT_EQ(find_uniform_type(GL_DOUBLE_MAT2x3)->words(), 12u);
     EXPECT_EQ(find_uniform_type(GL_SAMPLER_CUBE)->texture_target, TextureTarget::cube_map);
+    EXPECT_EQ(find_uniform_type(GL_UNSIGNED_INT_IMAGE_2D_ARRAY)->base, UniformBase::image);
+    EXPECT_EQ(find_uniform_type(GL_IMAGE_BUFFER)->texture_target, TextureTarget::buffer);
+    EXPECT_EQ(find_uniform_type(GL_UNSIGNED_INT_ATOMIC_COUNTER)->base, UniformBase::counter);
     EXPECT_EQ(find_uniform_type(GL_RGBA), nullptr);
 }
 

@@ -97,6 +97,8 @@ Driver::Driver(const Gl& gl) : gl_(gl), flip_y_(has_extension(gl, "GL_MESA_frame
     }
     gl_.Disable(GL_SCISSOR_TEST);
     GLint alignment = 1;
+    gl_.GetIntegerv(GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT, &alignment);
+    storage_buffer_alignment_ = static_cast<std::uint32_t>(std::max(alignment, 1));
     gl_.GetIntegerv(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, &alignment);
     uniform_buffer_alignment_ = static_cast<std::uint32_t>(std::max(alignment, 1));
     drain_errors();
@@ -243,6 +245,8 @@ void Driver::forget_texture(GLuint texture) {
     for (auto& unit_bindings : bound_textures_.names)
         for (GLuint& bound : unit_bindings)
             if (bound == texture) bound = 0, bound_textures_.id = glstate::next_value_id();
+    for (glstate::ImageUnit& image : images_)  // the driver unbinds them, too
+        if (image.texture == texture) image = {};
 }
 
 void Driver::bind_each_sampler(const SamplerBindings& wanted) {

@@ -150,11 +150,7 @@ public:
     /// Part of a buffer of the driver, for blocks of uniforms; buffer 0: nothing. It lies within the buffer, and
     /// begins where the driver allows it.
     void bind_uniform_buffer(unsigned place, const glstate::BufferRange& wanted) {
-        glstate::BufferRange& bound = uniform_buffers_[place];
-        if (glstate::same(bound, wanted)) return;
-        bound = wanted;
-        if (bound.buffer == 0) gl_.BindBufferBase(GL_UNIFORM_BUFFER, place, 0);
-        else gl_.BindBufferRange(GL_UNIFORM_BUFFER, place, bound.buffer, bound.offset, bound.size);
+        bind_buffer_part(GL_UNIFORM_BUFFER, uniform_buffers_[place], place, wanted);
     }
     /// Bytes that such a part may begin at a multiple of.
     std::uint32_t uniform_buffer_alignment() const { return uniform_buffer_alignment_; }
@@ -164,8 +160,36 @@ public:
         for (unsigned place = 0; place < uniform_buffers_.size(); ++place)
             if (uniform_buffers_[place].buffer == buffer) bind_uniform_buffer(place, {});
     }
+    /// The same for blocks of storage.
+    void bind_storage_buffer(unsigned place, const glstate::BufferRange& wanted) {
+        bind_buffer_part(GL_SHADER_STORAGE_BUFFER, storage_buffers_[place], place, wanted);
+    }
+    /// For atomic counters; the part begins at a multiple of 4 bytes.
+    void bind_counter_buffer(unsigned place, const glstate::BufferRange& wanted) {
+        bind_buffer_part(GL_ATOMIC_COUNTER_BUFFER, counter_buffers_[place], place, wanted);
+    }
+    /// Bytes that a part for a block of storage may begin at a multiple of.
+    std::uint32_t storage_buffer_alignment() const { return storage_buffer_alignment_; }
+    /// An image of a texture of the driver; texture 0: nothing. The driver takes its level, layer, access and format.
+    void bind_image(unsigned unit, const glstate::ImageUnit& wanted) {
+        glstate::ImageUnit& bound = images_[unit];
+        if (glstate::same(bound, wanted)) return;
+        bound = wanted;
+        gl_.BindImageTexture(unit, bound.texture, bound.level, static_cast<GLboolean>(bound.layered), bound.layer,
+                             bound.access, bound.format);
+    }
+    /// What is drawn now reads or writes memory at places that it addresses, until settle_memory().
+    void touches_memory() { touches_memory_ = true; }
+    /// Whatever comes next sees what was written.
+    void settle_memory() {
+        if (std::exchange(touches_memory_, false)) gl_.MemoryBarrier(GL_ALL_BARRIER_BITS);
+    }
     /// The driver unbinds a deleted buffer by itself.
     void forget_buffer(GLuint buffer) {
+        for (glstate::BufferRange& bound : storage_buffers_)
+            if (bound.buffer == buffer) bound = {};
+        for (glstate::BufferRange& bound : counter_buffers_)
+            if (bound.buffer == buffer) bound = {};
         for (glstate::BufferRange& bound : uniform_buffers_)
             if (bound.buffer == buffer) bound = {};
     }
@@ -243,6 +267,13 @@ private:
     void bind_texture(unsigned unit, TextureTarget target, GLuint texture);
     void bind_each_sampler(const SamplerBindings& wanted);
 
+    void bind_buffer_part(GLenum target, glstate::BufferRange& bound, unsigned place,
+                          const glstate::BufferRange& wanted) const {
+        if (glstate::same(bound, wanted)) return;
+        bound = wanted;
+        if (bound.buffer == 0) gl_.BindBufferBase(target, place, 0);
+        else gl_.BindBufferRange(target, place, bound.buffer, bound.offset, bound.size);
+    }
     GLuint* queries_of(QueryTarget target) {
         return queries_.data() + static_cast<std::size_t>(target) * kVertexStreams;
     }
@@ -259,7 +290,7 @@ private:
     static constexpr glstate::CategoryMask kSynced =
         glstate::kSentCategories & ~kCurrentMask & ~glstate::kLayerCategories &
         ~glstate::mask_of(glstate::Category::textures) & ~glstate::mask_of(glstate::Category::objects) &
-        ~glstate::mask_of(glstate::Category::uniform_buffers);
+        ~glstate::mask_of(glstate::Category::uniform_buffers) & ~glstate::mask_of(glstate::Category::shader_memory);
 
     Gl gl_;
     const glstate::State defaults_;
@@ -274,7 +305,11 @@ private:
     GLuint vertex_array_ = 0;
     bool discarding_ = false, capturing_ = false;
     std::array<glstate::BufferRange, glstate::el::uniform_buffer::count> uniform_buffers_{};  // the driver's names
-    std::uint32_t uniform_buffer_alignment_ = 1;
+    std::array<glstate::BufferRange, glstate::el::storage_buffer::count> storage_buffers_{};  // the same
+    std::array<glstate::BufferRange, glstate::el::counter_buffer::count> counter_buffers_{};  // the same
+    std::array<glstate::ImageUnit, glstate::el::image_unit::count> images_{};                 // the same
+    bool touches_memory_ = false;
+    std::uint32_t uniform_buffer_alignment_ = 1, storage_buffer_alignment_ = 1;
     RenderTarget* target_ = nullptr;  // whose window values are in the driver
     WindowValues window_;             // what the driver holds
     bool bitmap_held_ = false;

@@ -49,9 +49,11 @@ void BlockExecution::find_target() {
     block_.draws = block_.target != nullptr && block_.target->complete();
 }
 
-/// Of a window partly off the wall, its tiles' samples count.
+/// Of a window partly off the wall, its tiles' samples count; of what several nodes draw alike, those of one.
 bool BlockExecution::counts_samples() const {
-    if (block_.layer == nullptr) return execution_.context->counts_samples;
+    const bool whole = block_.slot == wire::kOffscreenSlot && block_.layer != nullptr &&
+                       !execution_.draw_surface->where().whole_window;
+    if (block_.layer == nullptr || whole) return execution_.context->counts_samples;
     return block_.slot != wire::kOffscreenSlot || !execution_.draw_surface->on_tiles();
 }
 
@@ -71,6 +73,7 @@ void BlockExecution::finish_tile() {
     }
     execution_.node.driver.end_queries();
     execution_.node.driver.stop_capturing();
+    execution_.node.driver.settle_memory();
     if (block_.draws) block_.trail.fold_into(execution_.node.driver.mirror);
 }
 
@@ -103,6 +106,7 @@ void BlockExecution::pause() {
     if (block_.in_begin) execution_.gl.End();
     execution_.node.driver.end_queries();
     execution_.node.driver.stop_capturing();
+    execution_.node.driver.settle_memory();
     block_.trail.fold_into(execution_.node.driver.mirror);
 }
 

@@ -23,6 +23,7 @@
 #include "tileserver/execute/capture_commands.h"
 #include "tileserver/execute/captured_draw_commands.h"
 #include "tileserver/execute/content_question.h"
+#include "tileserver/execute/dispatch_commands.h"
 #include "tileserver/execute/draw_commands.h"
 #include "tileserver/execute/draw_pieces_commands.h"
 #include "tileserver/execute/execution.h"
@@ -84,6 +85,8 @@ public:
     RunCommands run{execution_, geometry.block(), question_, [this](glapi::DrawingRun& r) { return r.run(*this); }};
     ProgramCommands program{execution_};
     ProgramCommands& subroutine = program;
+    ProgramCommands& storage = program;
+    DispatchCommands dispatch{execution_, geometry.block()};
     PipelineCommands pipeline{execution_};
     BufferCommands buffer{execution_};
     CaptureCommands capture{execution_};

@@ -36,6 +36,12 @@ void ProgramCommands::UniformBlock(ClientName program, std::uint32_t block, std:
     if (auto done = (*found)->bind_block(block, binding); !done) execution_.refuse(done.error().message);
 }
 
+void ProgramCommands::StorageBlock(ClientName program, std::uint32_t block, std::uint32_t binding) {
+    const auto found = execution_.session.objects.get<Program>(program);
+    if (!found) return execution_.refuse(found.error().message);
+    if (auto done = (*found)->bind_storage_block(block, binding); !done) execution_.refuse(done.error().message);
+}
+
 void ProgramCommands::Subroutines(ClientName program, GLenum stage, std::span<const std::byte> indices) {
     const auto found = execution_.session.objects.get<Program>(program);
     if (!found) return execution_.refuse(found.error().message);

@@ -19,6 +19,7 @@ public:
     void UniformBlock(ClientName program, std::uint32_t block, std::uint32_t binding);
     void Uniform(ClientName program, std::uint32_t location, GLenum type, std::uint32_t count,
                  std::span<const std::byte> values);
+    void StorageBlock(ClientName program, std::uint32_t block, std::uint32_t binding);
     void Subroutines(ClientName program, GLenum stage, std::span<const std::byte> indices);
 
 private:

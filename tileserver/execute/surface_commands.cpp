@@ -39,14 +39,15 @@ void SurfaceCommands::SurfacePlace(SurfaceId id, std::uint32_t layout_version, s
     if (x < -kFarthest || x > kFarthest || y < -kFarthest || y > kFarthest)
         return execution_.refuse("far off any canvas");
     if (window_width == 0 || window_height == 0) return execution_.refuse("an empty window");
-    if (offscreen > wire::kAlsoWholeWindow) return execution_.refuse("no such kind of place");
+    if (offscreen > wire::kShownWholeWindow) return execution_.refuse("no such kind of place");
     const geom::Rect rect{x, y, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
     const tileserver::SurfacePlace place{layout_version,
                                          window_width,
                                          window_height,
                                          rect,
                                          offscreen == wire::kOnlyWholeWindow,
-                                         offscreen == wire::kAlsoWholeWindow};
+                                         offscreen == wire::kAlsoWholeWindow,
+                                         offscreen == wire::kShownWholeWindow};
     if (execution_.session.shares(id) && surface->where().window_width != 0) {
         if (surface->where() == place) return;
         if (layout_version <= surface->where().layout_version)

@@ -6,9 +6,9 @@
 namespace wall::tileserver {
 namespace {
 
-constexpr std::array<GLbitfield, Pipeline::kStages> kBits = {GL_VERTEX_SHADER_BIT, GL_FRAGMENT_SHADER_BIT,
-                                                             GL_GEOMETRY_SHADER_BIT, GL_TESS_CONTROL_SHADER_BIT,
-                                                             GL_TESS_EVALUATION_SHADER_BIT};
+constexpr std::array<GLbitfield, Pipeline::kStages> kBits = {GL_VERTEX_SHADER_BIT,          GL_FRAGMENT_SHADER_BIT,
+                                                             GL_GEOMETRY_SHADER_BIT,        GL_TESS_CONTROL_SHADER_BIT,
+                                                             GL_TESS_EVALUATION_SHADER_BIT, GL_COMPUTE_SHADER_BIT};
 
 }  // namespace
 

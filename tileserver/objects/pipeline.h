@@ -37,6 +37,13 @@ public:
         }
     }
 
+    /// Calls `each(program)` with every program of it.
+    template <class Each>
+    void for_each_program(const ObjectTable& objects, Each&& each) const {
+        for (const ClientName name : programs_)
+            if (const Program* program = name ? objects.find<Program>(name) : nullptr) each(*program);
+    }
+
 private:
     void find_programs(const ObjectTable& objects);
 

@@ -111,6 +111,66 @@ void Program::find_blocks(const std::vector<std::string>& names) {
     }
 }
 
+namespace {
+
+/// Calls use(index) for each active resource of a kind.
+template <class Use>
+void for_each_resource(const Gl& gl, GLuint program, GLenum kind, Use&& use) {
+    GLint count = 0;
+    gl.GetProgramInterfaceiv(program, kind, GL_ACTIVE_RESOURCES, &count);
+    for (GLint i = 0; i < count; ++i) use(static_cast<GLuint>(i));
+}
+
+GLint resource_value(const Gl& gl, GLuint program, GLenum kind, GLuint index, GLenum what) {
+    GLint value = 0;
+    gl.GetProgramResourceiv(program, kind, index, 1, &what, 1, nullptr, &value);
+    return value;
+}
+
+}  // namespace
+
+/// As find_blocks().
+void Program::find_storage_blocks(const std::vector<std::string>& names) {
+    const Gl& gl = driver_.gl();
+    storage_blocks_.clear();
+    for (const std::string& name : names)
+        storage_blocks_.push_back(gl.GetProgramResourceIndex(name_, GL_SHADER_STORAGE_BLOCK, name.c_str()));
+    storage_bindings_.clear();
+    for_each_resource(gl, name_, GL_SHADER_STORAGE_BLOCK, [&](GLuint i) {
+        const GLint binding = resource_value(gl, name_, GL_SHADER_STORAGE_BLOCK, i, GL_BUFFER_BINDING);
+        constexpr auto kLast = static_cast<GLint>(glstate::el::storage_buffer::count - 1);
+        if (binding > kLast) gl.ShaderStorageBlockBinding(name_, i, static_cast<GLuint>(kLast));
+        storage_bindings_.push_back(static_cast<std::uint32_t>(std::clamp(binding, 0, kLast)));
+    });
+}
+
+/// Behind the last place nothing is ever bound.
+void Program::find_counters() {
+    const Gl& gl = driver_.gl();
+    counter_bindings_.clear();
+    for_each_resource(gl, name_, GL_ATOMIC_COUNTER_BUFFER, [&](GLuint i) {
+        const GLint binding = resource_value(gl, name_, GL_ATOMIC_COUNTER_BUFFER, i, GL_BUFFER_BINDING);
+        if (binding >= 0 && binding < static_cast<GLint>(glstate::el::counter_buffer::count))
+            counter_bindings_.push_back(static_cast<std::uint32_t>(binding));
+    });
+}
+
+void Program::find_images() {
+    has_images_ = false;
+    for_each_resource(driver_.gl(), name_, GL_UNIFORM, [&](GLuint i) {
+        const auto* type =
+            glapi::find_uniform_type(static_cast<GLenum>(resource_value(driver_.gl(), name_, GL_UNIFORM, i, GL_TYPE)));
+        has_images_ = has_images_ || (type != nullptr && type->base == glapi::UniformBase::image);
+    });
+}
+
+void Program::find_group() {
+    std::array<GLint, 3> size{};
+    if (computes_) driver_.gl().GetProgramiv(name_, GL_COMPUTE_WORK_GROUP_SIZE, size.data());
+    group_invocations_ = 1;
+    for (const GLint each : size) group_invocations_ *= static_cast<std::uint64_t>(std::max(each, 0));
+}
+
 /// With the values that the driver begins with. One with a uniform that is not active here is not followed.
 void Program::follow_position(glapi::PositionProgram position, const std::vector<glapi::UniformName>& names) {
     position_ = {};
@@ -139,7 +199,8 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
     GLint linked = 0;
     driver_.gl().GetProgramiv(built.driver, GL_LINK_STATUS, &linked);
     glapi::ProgramReflection reflection;
-    const bool named = !definition->uniforms.empty() || !definition->blocks.empty();
+    const bool named =
+        !definition->uniforms.empty() || !definition->blocks.empty() || !definition->storage_blocks.empty();
     if (wants_reflection || !named) reflection = reflect_program(driver_.gl(), built.driver, *definition);
     if (linked == 0) {
         driver_.gl().DeleteProgram(built.driver);
@@ -149,16 +210,23 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
     glapi::PositionProgram position = definition->position;
     if (wants_reflection) position = reflection.position = recognise_position(*definition).program;
     std::vector<glapi::UniformName> names = definition->uniforms;
-    std::vector<std::string> blocks = definition->blocks;
+    std::vector<std::string> blocks = definition->blocks, storage_blocks = definition->storage_blocks;
     if (!named) {
         for (const auto& uniform : reflection.uniforms)
             if (uniform.has_location()) names.push_back({uniform.size, uniform.name});
         for (const auto& block : reflection.blocks) blocks.push_back(block.name);
+        for (const auto& block : reflection.storage_blocks) storage_blocks.push_back(block.name);
     }
     release();
     name_ = built.driver;
+    computes_ = std::ranges::find(definition->shaders, GLenum{GL_COMPUTE_SHADER}, &glapi::ShaderSource::type) !=
+                definition->shaders.end();
     locations_ = map_locations(name_, names);
     find_blocks(blocks);
+    find_storage_blocks(storage_blocks);
+    find_counters();
+    find_images();
+    find_group();
     find_subroutines();
     follow_position(std::move(position), names);
     window_ = driver_.gl().GetUniformLocation(name_, kWindowUniform);
@@ -200,6 +268,16 @@ Result<void> Program::bind_block(std::uint32_t block, std::uint32_t binding) {
     if (here == GL_INVALID_INDEX) return {};
     block_bindings_[here] = binding;
     driver_.gl().UniformBlockBinding(name_, here, binding);
+    return {};
+}
+
+Result<void> Program::bind_storage_block(std::uint32_t block, std::uint32_t binding) {
+    if (block >= storage_blocks_.size() || binding >= glstate::el::storage_buffer::count)
+        return fail("no such block of storage");
+    const GLuint here = storage_blocks_[block];
+    if (here >= storage_bindings_.size()) return {};
+    storage_bindings_[here] = binding;
+    driver_.gl().ShaderStorageBlockBinding(name_, here, binding);
     return {};
 }
 

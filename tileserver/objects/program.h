@@ -32,6 +32,8 @@ public:
                              std::span<const std::byte> values);
     /// From now on a block takes its uniforms from what is bound there. An error: no such block, no such place.
     Result<void> bind_block(std::uint32_t block, std::uint32_t binding);
+    /// The same of a block of storage.
+    Result<void> bind_storage_block(std::uint32_t block, std::uint32_t binding);
     /// Which functions the variables of a stage name from now on: u32 for each location. An error: no such stage, or
     /// not as many as it has locations.
     Result<void> set_subroutines(GLenum stage, std::span<const std::byte> indices);
@@ -49,10 +51,23 @@ public:
     /// Where each of the blocks that are active here takes its uniforms from (glstate::el::uniform_buffer).
     const std::vector<std::uint32_t>& block_bindings() const { return block_bindings_; }
 
+    /// Where each of its blocks of storage lies (glstate::el::storage_buffer), and its atomic counters do.
+    const std::vector<std::uint32_t>& storage_bindings() const { return storage_bindings_; }
+    const std::vector<std::uint32_t>& counter_bindings() const { return counter_bindings_; }
+    bool has_images() const { return has_images_; }
+    /// It reads or writes memory at places that it addresses.
+    bool touches_memory() const { return has_images_ || !storage_bindings_.empty() || !counter_bindings_.empty(); }
+    /// How many run in a group of its compute shader; 0: it has none.
+    std::uint64_t group_invocations() const { return group_invocations_; }
+
 private:
     std::vector<GLint> map_locations(GLuint program, const std::vector<glapi::UniformName>& names) const;
     void follow_position(glapi::PositionProgram position, const std::vector<glapi::UniformName>& names);
     void find_blocks(const std::vector<std::string>& names);
+    void find_storage_blocks(const std::vector<std::string>& names);
+    void find_counters();
+    void find_images();
+    void find_group();
     void find_subroutines();
     void release();
 
@@ -60,7 +75,11 @@ private:
     GLuint name_ = 0;               // the driver's; 0: fixed function
     std::vector<GLint> locations_;  // by the client's location; -1: not active here
     std::vector<GLuint> blocks_;    // by the client's index: the driver's; GL_INVALID_INDEX: not active here
-    std::vector<std::uint32_t> block_bindings_;  // by the driver's
+    std::vector<std::uint32_t> block_bindings_;                       // by the driver's
+    std::vector<GLuint> storage_blocks_;                              // as blocks_
+    std::vector<std::uint32_t> storage_bindings_, counter_bindings_;  // by the driver's index
+    bool has_images_ = false, computes_ = false;
+    std::uint64_t group_invocations_ = 0;
     /// Functions by the locations of a stage that has such variables.
     struct Subroutines {
         GLenum stage = 0;

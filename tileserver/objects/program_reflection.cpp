@@ -9,6 +9,7 @@
 #include "tileserver/objects/info_log.h"
 #include "tileserver/objects/program_build.h"
 #include "tileserver/objects/shader_patch.h"
+#include "tileserver/objects/storage_access.h"
 
 namespace wall::tileserver {
 namespace {
@@ -53,6 +54,19 @@ BlockPlace read_place(const Gl& gl, GLuint program, GLuint uniform) {
             ask(GL_UNIFORM_IS_ROW_MAJOR) == GL_TRUE};
 }
 
+/// Where an atomic counter lies.
+void read_counter(const Gl& gl, GLuint program, GLuint uniform, glapi::ActiveUniform& counter) {
+    const auto ask = [&](GLenum what) {
+        GLint value = -1;
+        gl.GetActiveUniformsiv(program, 1, &uniform, what, &value);
+        return value;
+    };
+    counter.counter_buffer = ask(GL_UNIFORM_ATOMIC_COUNTER_BUFFER_INDEX);
+    counter.place.offset = ask(GL_UNIFORM_OFFSET);
+    counter.place.array_stride = ask(GL_UNIFORM_ARRAY_STRIDE);
+    counter.place.matrix_stride = 0;
+}
+
 /// "name[0]" is told as an array of that name.
 bool take_array_suffix(std::string& name) {
     if (!name.ends_with("[0]")) return false;
@@ -77,8 +91,9 @@ void read_uniforms(const Gl& gl, GLuint program, glapi::ProgramReflection& out) 
         uniform.array = take_array_suffix(uniform.name) || size > 1;
         uniform.built_in = uniform.name.starts_with("gl_");
         uniform.place = read_place(gl, program, static_cast<GLuint>(i));
+        if (type == GL_UNSIGNED_INT_ATOMIC_COUNTER) read_counter(gl, program, static_cast<GLuint>(i), uniform);
         if (uniform.has_location()) {
-            if (gl.GetUniformLocation(program, uniform.name.c_str()) < 0) continue;  // an atomic counter
+            if (gl.GetUniformLocation(program, uniform.name.c_str()) < 0) continue;
             read_initial(gl, program, uniform);
         }
         out.uniforms.push_back(std::move(uniform));
@@ -105,9 +120,9 @@ void read_attributes(const Gl& gl, GLuint program, glapi::ProgramReflection& out
 
 void read_blocks(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
     constexpr GLenum kReferenced[] = {
-        GL_UNIFORM_BLOCK_REFERENCED_BY_VERTEX_SHADER, GL_UNIFORM_BLOCK_REFERENCED_BY_FRAGMENT_SHADER,
-        GL_UNIFORM_BLOCK_REFERENCED_BY_GEOMETRY_SHADER, GL_UNIFORM_BLOCK_REFERENCED_BY_TESS_CONTROL_SHADER,
-        GL_UNIFORM_BLOCK_REFERENCED_BY_TESS_EVALUATION_SHADER};
+        GL_UNIFORM_BLOCK_REFERENCED_BY_VERTEX_SHADER,          GL_UNIFORM_BLOCK_REFERENCED_BY_FRAGMENT_SHADER,
+        GL_UNIFORM_BLOCK_REFERENCED_BY_GEOMETRY_SHADER,        GL_UNIFORM_BLOCK_REFERENCED_BY_TESS_CONTROL_SHADER,
+        GL_UNIFORM_BLOCK_REFERENCED_BY_TESS_EVALUATION_SHADER, GL_UNIFORM_BLOCK_REFERENCED_BY_COMPUTE_SHADER};
     static_assert(std::size(kReferenced) == std::size(glapi::kShaderStages));
     GLint count = 0, longest = 0;
     gl.GetProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &count);
@@ -127,6 +142,65 @@ void read_blocks(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
             if (ask(kReferenced[stage]) != 0) block.stages |= 1u << stage;
         out.blocks.push_back(std::move(block));
     }
+}
+
+/// Words that ask whether each of kShaderStages refers to a resource.
+constexpr GLenum kReferring[] = {GL_REFERENCED_BY_VERTEX_SHADER,          GL_REFERENCED_BY_FRAGMENT_SHADER,
+                                 GL_REFERENCED_BY_GEOMETRY_SHADER,        GL_REFERENCED_BY_TESS_CONTROL_SHADER,
+                                 GL_REFERENCED_BY_TESS_EVALUATION_SHADER, GL_REFERENCED_BY_COMPUTE_SHADER};
+static_assert(std::size(kReferring) == std::size(glapi::kShaderStages));
+
+/// What is told of a buffer that shaders write to.
+struct WrittenBuffer {
+    std::uint32_t binding = 0, bytes = 0, stages = 0;
+};
+
+WrittenBuffer read_written(const Gl& gl, GLuint program, GLenum kind, GLuint index) {
+    std::array<GLenum, 2 + std::size(kReferring)> asked{GL_BUFFER_BINDING, GL_BUFFER_DATA_SIZE};
+    std::ranges::copy(kReferring, asked.begin() + 2);
+    std::array<GLint, asked.size()> answers{};
+    gl.GetProgramResourceiv(program, kind, index, static_cast<GLsizei>(asked.size()), asked.data(),
+                            static_cast<GLsizei>(answers.size()), nullptr, answers.data());
+    WrittenBuffer out{static_cast<std::uint32_t>(answers[0]), static_cast<std::uint32_t>(answers[1]), 0};
+    for (std::size_t stage = 0; stage < std::size(kReferring); ++stage)
+        if (answers[2 + stage] != 0) out.stages |= 1u << stage;
+    return out;
+}
+
+GLuint count_of(const Gl& gl, GLuint program, GLenum kind) {
+    GLint count = 0;
+    gl.GetProgramInterfaceiv(program, kind, GL_ACTIVE_RESOURCES, &count);
+    return static_cast<GLuint>(std::max(count, 0));
+}
+
+void read_storage_blocks(const Gl& gl, GLuint program, const glapi::ProgramDefinition& definition,
+                         glapi::ProgramReflection& out) {
+    GLint longest = 0;
+    gl.GetProgramInterfaceiv(program, GL_SHADER_STORAGE_BLOCK, GL_MAX_NAME_LENGTH, &longest);
+    std::string name(static_cast<std::size_t>(std::max(longest, 1)), '\0');
+    for (GLuint i = 0; i < count_of(gl, program, GL_SHADER_STORAGE_BLOCK); ++i) {
+        GLsizei length = 0;
+        gl.GetProgramResourceName(program, GL_SHADER_STORAGE_BLOCK, i, static_cast<GLsizei>(name.size()), &length,
+                                  name.data());
+        const WrittenBuffer read = read_written(gl, program, GL_SHADER_STORAGE_BLOCK, i);
+        glapi::ActiveStorageBlock block{
+            {name.substr(0, static_cast<std::size_t>(length)), read.bytes, read.binding, read.stages}, true};
+        block.written = !is_only_read(definition, block.name);
+        out.storage_blocks.push_back(std::move(block));
+    }
+}
+
+void read_counter_buffers(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
+    for (GLuint i = 0; i < count_of(gl, program, GL_ATOMIC_COUNTER_BUFFER); ++i) {
+        const WrittenBuffer read = read_written(gl, program, GL_ATOMIC_COUNTER_BUFFER, i);
+        out.counter_buffers.push_back({read.binding, read.bytes, read.stages});
+    }
+}
+
+void read_group_size(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
+    std::array<GLint, 3> size{};
+    gl.GetProgramiv(program, GL_COMPUTE_WORK_GROUP_SIZE, size.data());
+    std::ranges::copy(size, out.group_size.begin());
 }
 
 /// What the last stage gives away is the driver's output of the program: colours, if that is a fragment shader.
@@ -185,6 +259,7 @@ void read_stages(const Gl& gl, GLuint program, const glapi::ProgramDefinition& d
         out.tessellation.order = ask(GL_TESS_GEN_VERTEX_ORDER);
         out.tessellation.point_mode = ask(GL_TESS_GEN_POINT_MODE);
     }
+    if (has(GL_COMPUTE_SHADER)) read_group_size(gl, program, out);
     if (!has(GL_GEOMETRY_SHADER)) return;
     out.geometry = {ask(GL_GEOMETRY_INPUT_TYPE), ask(GL_GEOMETRY_OUTPUT_TYPE), ask(GL_GEOMETRY_VERTICES_OUT),
                     ask(GL_GEOMETRY_SHADER_INVOCATIONS)};
@@ -212,6 +287,8 @@ glapi::ProgramReflection reflect_program(const Gl& gl, GLuint program, const gla
     read_captured(gl, program, out);
     read_stages(gl, program, definition, out);
     read_subroutines(gl, program, out);
+    read_storage_blocks(gl, program, definition, out);
+    read_counter_buffers(gl, program, out);
     return out;
 }
 

@@ -89,6 +89,8 @@ void Compositor::compose(TileTarget& target, std::uint32_t slot, const StackEntr
         const SurfaceReplica* surface = find_(entry);
         const Layer* layer = surface != nullptr ? surface->shown_layer(slot) : nullptr;
         if (layer != nullptr) draw_layer(target, *layer);
+        else if (const Layer* whole = surface != nullptr ? surface->shown_whole_layer() : nullptr)
+            draw_whole(target, *whole, surface->where().rect);
     }
 }
 
@@ -101,6 +103,19 @@ void Compositor::draw_layer(const TileTarget& target, const Layer& layer) {
     const std::int32_t first = layer.top_row_first() ? 0 : area.height, last = area.height - first;
     gl_.BlitNamedFramebuffer(source_, target.framebuffer, 0, first, area.width, last, x, y, x + area.width,
                              y + area.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    gl_.NamedFramebufferTexture(source_, GL_COLOR_ATTACHMENT0, 0, 0);
+}
+
+void Compositor::draw_whole(const TileTarget& target, const Layer& layer, const geom::Rect& place) {
+    if (!geom::overlaps(target.rect, place)) return;
+    if (source_ == 0) gl_.CreateFramebuffers(1, &source_);
+    gl_.NamedFramebufferTexture(source_, GL_COLOR_ATTACHMENT0, layer.front(), 0);
+    const geom::Rect& area = layer.geometry().area;
+    const std::int32_t x = place.x - target.rect.x, y = place.y - target.rect.y;
+    const std::int32_t first = layer.top_row_first() ? 0 : area.height, last = area.height - first;
+    const bool same_size = area.width == place.width && area.height == place.height;
+    gl_.BlitNamedFramebuffer(source_, target.framebuffer, 0, first, area.width, last, x, y, x + place.width,
+                             y + place.height, GL_COLOR_BUFFER_BIT, same_size ? GL_NEAREST : GL_LINEAR);
     gl_.NamedFramebufferTexture(source_, GL_COLOR_ATTACHMENT0, 0, 0);
 }
 

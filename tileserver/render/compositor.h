@@ -89,6 +89,8 @@ private:
     const Tile* tile(std::uint32_t slot) const;
     TileTarget& target(const Tile& tile);
     void compose(TileTarget& target, std::uint32_t slot, const StackEntry& only);
+    /// Scaled to where the window lies.
+    void draw_whole(const TileTarget& target, const Layer& layer, const geom::Rect& place);
     void draw_layer(const TileTarget& target, const Layer& layer);
     TileTarget make_target(const geom::Rect& rect) const;
     TileTarget scaled(const TileTarget& picture, geom::Rect part, std::int32_t width, std::int32_t height) const;

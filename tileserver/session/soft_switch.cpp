@@ -15,6 +15,7 @@
 #include "tileserver/objects/query.h"
 #include "tileserver/objects/sampler.h"
 #include "tileserver/objects/texture.h"
+#include "tileserver/session/shader_memory.h"
 
 namespace wall::tileserver {
 namespace {
@@ -88,6 +89,7 @@ void use_program(RenderNode& node, SessionReplica& session, const glstate::State
         for (const std::uint32_t place : program.block_bindings())
             node.driver.bind_uniform_buffer(place,
                                             found_range(node, session, glstate::el::uniform_buffer::ref(state, place)));
+        bind_memory(node, session, state, program);
     };
     if (Program* program = name ? session.objects.find<Program>(name) : nullptr) {
         program->use(layer);
@@ -153,6 +155,7 @@ bool count_and_capture(RenderNode& node, SessionReplica& session, const glstate:
 }  // namespace
 
 bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, RenderTarget& target, Counted counted) {
+    if (!own_written_textures(node, session, context.state)) return false;
     const bool held = node.driver.holds(context.state);
     if (!held) node.driver.sync(context.state);
     if (context.textures.state_id != textures_id(context) ||

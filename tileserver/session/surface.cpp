@@ -34,12 +34,15 @@ void SurfaceReplica::forget_older() {
 bool SurfaceReplica::place(const SurfacePlace& place, const std::vector<Tile>& tiles) {
     const bool same_size = place.window_width == place_.window_width && place.window_height == place_.window_height;
     place_ = place;
-    if (!place.whole_window || !same_size) layers_[wire::kOffscreenSlot].reset();
+    if (!(place.whole_window || place.shown_whole) || !same_size) layers_[wire::kOffscreenSlot].reset();
     std::bitset<wire::kMaxTilesPerNode> wanted;
-    bool affordable = true;
+    bool affordable = !place.shown_whole || layers_[wire::kOffscreenSlot] || gather_whole();
+    reaches_tiles_ = false;
     for (const Tile& tile : tiles) {
         const geom::Rect area = place.offscreen ? geom::Rect{} : geom::intersect(place.rect, tile.rect);
         if (area.empty() || tile.slot >= wire::kOffscreenSlot) continue;
+        reaches_tiles_ = true;
+        if (place.shown_whole) continue;
         const LayerGeometry geometry{place.rect, area, place.window_width, place.window_height};
         wanted.set(tile.slot);
         const Layer* now = layers_[tile.slot].get();
@@ -49,6 +52,16 @@ bool SurfaceReplica::place(const SurfacePlace& place, const std::vector<Tile>& t
     for (std::uint32_t slot = 0; slot < wire::kOffscreenSlot; ++slot)
         if (!wanted[slot] && layers_[slot]) replace(slot, nullptr);
     return affordable;
+}
+
+/// At another scale they begin with nothing.
+bool SurfaceReplica::gather_whole() {
+    Layer* whole = layer(wire::kOffscreenSlot);
+    if (whole == nullptr) return false;
+    for (std::uint32_t slot = 0; slot < wire::kOffscreenSlot; ++slot)
+        if (const Layer* tile = layers_[slot].get(); tile != nullptr && !tile->geometry().scaled())
+            whole->take_content(*tile);
+    return true;
 }
 
 const Layer* SurfaceReplica::shown_layer(std::uint32_t slot) const {
@@ -66,6 +79,7 @@ Layer* SurfaceReplica::layer(std::uint32_t slot) {
 }
 
 bool SurfaceReplica::on_tiles() const {
+    if (place_.shown_whole) return reaches_tiles_;
     return std::any_of(layers_.begin(), layers_.begin() + wire::kOffscreenSlot,
                        [](const auto& layer) { return layer != nullptr; });
 }

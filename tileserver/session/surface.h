@@ -34,6 +34,7 @@ struct SurfacePlace {
     geom::Rect rect;            ///< canvas pixels that the whole window covers
     bool offscreen = false;     ///< on no tile
     bool whole_window = false;  ///< the layer of the whole window stays, if there is one
+    bool shown_whole = false;   ///< there is only that layer, and tiles show parts of it
     bool operator==(const SurfacePlace&) const = default;
 };
 
@@ -54,6 +55,9 @@ public:
     /// What the wall shows on the tile, if anything.
     const Layer* shown_layer(std::uint32_t slot) const;
 
+    /// The layer of the whole window, if tiles show parts of it; where shown_layer() gives one, that comes first.
+    const Layer* shown_whole_layer() const { return place_.shown_whole ? layer(wire::kOffscreenSlot) : nullptr; }
+
     const SurfaceFormat& format() const { return format_; }
     const SurfacePlace& where() const { return place_; }
     bool on_tiles() const;
@@ -72,6 +76,8 @@ private:
 
     /// With the content of `older`, if there is one. Null: over the budget.
     std::unique_ptr<Layer> make_layer(const LayerGeometry& geometry, const Layer* older);
+    /// The layer of the whole window gets what the tiles' layers hold. False: over the budget.
+    bool gather_whole();
     void replace(std::uint32_t slot, std::unique_ptr<Layer> layer);
     void forget_older();
 
@@ -84,6 +90,7 @@ private:
     std::optional<std::uint32_t> waiting_;
     std::uint32_t shown_ = 0;
     bool shown_once_ = false;
+    bool reaches_tiles_ = false;  ///< the place has something in common with a tile
 
     // Of a move that is not shown yet.
     Layers older_;                                  ///< that are shown, where they are others

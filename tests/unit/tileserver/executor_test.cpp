@@ -646,7 +646,7 @@ TEST_F(ExecutorTest, TheLayerOfTheWholeWindowStaysWhenTheWindowMovesOffTheWall) 
     EXPECT_EQ(session.read(wire::kOffscreenSlot, {0, 0, 1, 1})[0], 0) << "on the wall it is not needed";
     Batch wrong;
     pack::SurfacePlace(wrong.buffer(), SurfaceId(1), 3, kWidth, kHeight, 0, 0, kWidth, kHeight,
-                       wire::kAlsoWholeWindow + 1);
+                       wire::kShownWholeWindow + 1);
     EXPECT_FALSE(session.run(wrong));
 }
 

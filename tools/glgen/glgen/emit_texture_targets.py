@@ -49,6 +49,10 @@ def targets_header(targets):
                "inline constexpr auto kSamplerTypes = std::to_array<SamplerType>({\n")
     out += [f"    {{{type_}, TextureTarget::{t.constant}}},\n"
             for t in targets for type_ in t.samplers]
+    out.append("});\n\n/// The same of types that read and write single texels of one.\n"
+               "inline constexpr auto kImageTypes = std::to_array<SamplerType>({\n")
+    out += [f"    {{{type_.replace('SAMPLER', 'IMAGE')}, TextureTarget::{t.constant}}},\n"
+            for t in targets for type_ in t.samplers if not type_.endswith("_SHADOW")]
     out.append("});\n\n}  // namespace wall::glapi\n")
     return "".join(out)
 
