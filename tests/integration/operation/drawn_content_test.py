@@ -64,6 +64,15 @@ class DrawnContent(unittest.TestCase):
             took = self.assert_shown(expected)
             print(f"{name} is right {took:.1f} s after its start", flush=True)
 
+    def test_what_compute_shaders_wrote(self) -> None:
+        self.start("--by", "computing")
+        expected = self.picture()
+        self.assertGreater(len(numpy.unique(expected.reshape(-1, 3), axis=0)), 50, "a picture of many colours")
+        for name in self.wall.node_names[1:]:
+            self.kill(name)
+            self.wall.start_node(name)
+            self.assert_shown(expected)
+
     def test_all_but_one_at_once(self) -> None:
         self.start()
         expected = self.picture()

@@ -3,11 +3,13 @@
 // only the nodes have. Also a second texture that it changes in part from memory after it was drawn, mipmaps, and a
 // renderbuffer.
 //
-// drawn_once [--size WxH] [--anew-at N]   --anew-at: draws the picture again in frame N
+// drawn_once [--size WxH] [--anew-at N] [--by SHADERS]   --anew-at: draws the picture again in frame N; --by computing:
+// a compute shader makes it, with numbers from a buffer that another has written
 #include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -92,23 +94,79 @@ void show_renderbuffer(GLuint framebuffer) {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
 }
 
+GLuint compute_program(const char* source) {
+    const GLuint program = glCreateProgram(), shader = glCreateShader(GL_COMPUTE_SHADER);
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    glAttachShader(program, shader);
+    glLinkProgram(program);
+    return program;
+}
+
+/// The numbers are written anew in every frame from those of the frame before, the picture only when it is wanted.
+class Computing {
+public:
+    void count() {
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, numbers_);
+        glUseProgram(counting_);
+        glDispatchCompute(1, 1, 1);
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+        glUseProgram(0);
+    }
+    void draw(GLuint texture) {
+        count();
+        glUseProgram(drawing_);
+        glBindImageTexture(0, texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
+        glDispatchCompute(kTexels / 16, kTexels / 16, 1);
+        glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+        glUseProgram(0);
+        glBindTexture(GL_TEXTURE_2D, texture);
+        glGenerateMipmap(GL_TEXTURE_2D);
+    }
+
+private:
+    static GLuint make_numbers() {
+        GLuint name = 0;
+        glGenBuffers(1, &name);
+        glBindBuffer(GL_SHADER_STORAGE_BUFFER, name);
+        glBufferData(GL_SHADER_STORAGE_BUFFER, 64 * sizeof(GLuint), nullptr, GL_DYNAMIC_COPY);
+        return name;
+    }
+    const GLuint numbers_ = make_numbers();
+    const GLuint counting_ = compute_program(
+        "#version 430\nlayout(local_size_x = 64) in; layout(std430, binding = 0) buffer Numbers { uint n[]; };\n"
+        "void main() { uint i = gl_LocalInvocationIndex; n[i] = (i * 2654435761u) >> 24; }");
+    const GLuint drawing_ = compute_program(
+        "#version 430\nlayout(local_size_x = 16, local_size_y = 16) in;\n"
+        "layout(std430, binding = 0) readonly buffer Numbers { uint n[]; };\n"
+        "layout(rgba8, binding = 0) writeonly uniform image2D picture;\n"
+        "void main() { uvec2 at = gl_GlobalInvocationID.xy; uint i = (at.x / 32u + 8u * (at.y / 32u)) % 64u;\n"
+        "  imageStore(picture, ivec2(at), vec4(float(n[i]) / 255.0, vec2(at) / 256.0, 1.0)); }");
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
     golden::Size size{400, 300};
     int anew_at = -1;
+    bool by_computing = false;
     for (int i = 1; i + 1 < argc; i += 2) {
         if (std::string(argv[i]) == "--size") std::sscanf(argv[i + 1], "%dx%d", &size.width, &size.height);
+        if (std::string(argv[i]) == "--by") by_computing = std::string(argv[i + 1]) == "computing";
         if (std::string(argv[i]) == "--anew-at") anew_at = std::atoi(argv[i + 1]);
     }
     const auto window = golden::Window::by_glx(size, {});
     GLuint framebuffer = 0;
     glGenFramebuffers(1, &framebuffer);
     const GLuint whole = make_texture(), changed = make_texture(), renderbuffer = make_renderbuffer();
+    std::optional<Computing> computing;
+    if (by_computing) computing.emplace();
     for (int frame = 0;; ++frame) {
+        if (computing) computing->count();
         if (frame == 0 || frame == anew_at) {
-            draw_picture(framebuffer, whole);
-            draw_picture(framebuffer, changed);
+            for (const GLuint texture : {whole, changed})
+                if (computing) computing->draw(texture);
+                else draw_picture(framebuffer, texture);
             change_part(changed);
             glBindFramebuffer(GL_FRAMEBUFFER, renderbuffer);
             draw_squares();
