@@ -154,6 +154,13 @@ std::optional<GLuint> restart_index(const Context& c, GLenum type) {
     return local.primitive_restart ? std::optional(local.primitive_restart_index) : std::nullopt;
 }
 
+/// A block of vertices has no doubles.
+bool has_arrays_of_doubles(const Context& c) {
+    return std::ranges::any_of(c.state.vertex_arrays.attrib_array, [](const ClientArray& array) {
+        return array.enabled && array.reaches_as == glstate::kAsDoubles;
+    });
+}
+
 /// Draws one instance into the block or the list.
 void draw_inline(Context& c, const ArrayDraw& draw, GLsizei instance) {
     ElementRange elements{.first = draw.first,
@@ -182,9 +189,11 @@ void draw(Context& c, const ArrayDraw& draw) {
     if (draw.instances > 1 && elements > wire::kMostInstancedElements) return c.error(GL_OUT_OF_MEMORY);
     std::optional<BasedInstances> based;
     if (draw.base_instance != 0) based.emplace(c.state, draw.base_instance);
+    const bool at_once = c.at_once();
+    if (at_once && constant_doubles(c) != 0) return draw_staged(c, draw);
     if (draw_on_nodes(c, draw)) return;
     if (draw_copied(c, draw)) return;
-    const bool at_once = c.at_once();
+    if (at_once && has_arrays_of_doubles(c)) return draw_staged(c, draw);
     if (draw.instances == 1 && !(at_once && reads_numbers(c))) return draw_inline(c, draw, 0);
     if (at_once) return draw_staged(c, draw);
     // As Mesa: all that a list knows of instances are the arrays that go on with them.
@@ -410,6 +419,8 @@ void PushClientAttrib(Context& c, GLbitfield mask) {
     auto& stack = c.attributes->client;
     if (stack.size() >= kAttributeStackLimit) return c.error(GL_STACK_OVERFLOW);
     stack.push_back(std::make_unique<SavedAttributes>(SavedAttributes{mask, c.state, {}}));
+    if (const auto& bindings = c.vertex_array_objects->bindings; bindings && (mask & GL_CLIENT_VERTEX_ARRAY_BIT))
+        stack.back()->bindings = std::make_unique<VertexBindings>(*bindings);
 }
 
 void PopClientAttrib(Context& c) {
@@ -421,8 +432,12 @@ void PopClientAttrib(Context& c) {
     if (mask & GL_CLIENT_VERTEX_ARRAY_BIT) {
         const GLuint object = saved->state.vertex_arrays.vertex_array_object;
         // A deleted one does not come back (GL_ARB_vertex_array_object, issue 3); there is nowhere to put the arrays.
-        if (c.vertex_array_objects->may_be_bound(object)) c.vertex_array_objects->bind(c.state, object);
-        else mask &= ~GLbitfield{GL_CLIENT_VERTEX_ARRAY_BIT};
+        if (c.vertex_array_objects->may_be_bound(object)) {
+            c.vertex_array_objects->bind(c.state, object);
+            c.vertex_array_objects->bindings = std::move(saved->bindings);
+        } else {
+            mask &= ~GLbitfield{GL_CLIENT_VERTEX_ARRAY_BIT};
+        }
     }
     glstate::for_each_in_client_group(
         mask, [&]<class E>(unsigned i) { c.set<E>(i, E::ref(std::as_const(saved->state), i)); });

@@ -3,6 +3,7 @@
 // driver's. What an evaluated vertex touches is not computed: it goes to every tile.
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "client_lib/context/context.h"
 #include "client_lib/objects/maps.h"
@@ -90,12 +91,17 @@ Out answer(float value) {
     else return static_cast<Out>(value);
 }
 
+/// `room`: bytes that there are for it; nothing: the program did not say.
 template <class Out>
-void get_map(Context& c, GLenum target, GLenum query, Out* out) {
+void get_map(Context& c, GLenum target, GLenum query, Out* out, std::optional<GLsizei> room = std::nullopt) {
     const EvaluatorMap* one = c.maps->find1(target);
     const EvaluatorMap* two = one ? nullptr : c.maps->find2(target);
     const EvaluatorMap* map = one ? one : two;
     if (!map) return c.error(GL_INVALID_ENUM);
+    const std::size_t axes = two ? 2 : 1;
+    const std::size_t values = query == GL_COEFF ? map->points.size() : query == GL_ORDER ? axes : 2 * axes;
+    if (room && (*room < 0 || static_cast<std::size_t>(*room) < values * sizeof(Out)))
+        return c.error(GL_INVALID_OPERATION);
     const auto put = [&](float value) { *out++ = answer<Out>(value); };
     switch (query) {
         case GL_COEFF:
@@ -140,6 +146,13 @@ void Map2d(Context& c, GLenum target, GLdouble u1, GLdouble u2, GLint ustride, G
 void GetMapfv(Context& c, GLenum target, GLenum query, GLfloat* v) { get_map(c, target, query, v); }
 void GetMapdv(Context& c, GLenum target, GLenum query, GLdouble* v) { get_map(c, target, query, v); }
 void GetMapiv(Context& c, GLenum target, GLenum query, GLint* v) { get_map(c, target, query, v); }
+void GetnMapfv(Context& c, GLenum target, GLenum query, GLsizei room, GLfloat* v) {
+    get_map(c, target, query, v, room);
+}
+void GetnMapdv(Context& c, GLenum target, GLenum query, GLsizei room, GLdouble* v) {
+    get_map(c, target, query, v, room);
+}
+void GetnMapiv(Context& c, GLenum target, GLenum query, GLsizei room, GLint* v) { get_map(c, target, query, v, room); }
 
 void EvalCoord1f(Context& c, GLfloat u) { pack(c, Op::EvalCoord1f, u); }
 void EvalCoord2f(Context& c, GLfloat u, GLfloat v) { pack(c, Op::EvalCoord2f, u, v); }

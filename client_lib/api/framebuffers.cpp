@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Framebuffer objects: names, binding, attachments, status (OpenGL 4.6, 9.2 and 9.4). The order of the checks is Mesa's
 // (fbobject.c).
+#include <algorithm>
 #include <array>
+#include <iterator>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -248,6 +251,79 @@ void FramebufferRenderbuffer(Context& c, GLenum target, GLenum point, GLenum ren
     if (name != 0 && !attachment.renderbuffer) return c.error(GL_INVALID_OPERATION);
     const auto places = places_of(c, point);
     if (!places.empty()) attach(c, *framebuffer, places, attachment);
+}
+
+// ---- without attachments (GL_ARB_framebuffer_no_attachments; OpenGL 4.3, 9.2.1) ----
+
+namespace {
+
+/// A parameter, the most that it may be, and where it is kept.
+struct DefaultParameter {
+    GLenum word;
+    std::uint32_t most;
+    std::uint32_t glstate::FramebufferDefaults::*field;
+};
+constexpr DefaultParameter kDefaultParameters[] = {
+    {GL_FRAMEBUFFER_DEFAULT_WIDTH, glstate::kMostDefaultSize, &glstate::FramebufferDefaults::width},
+    {GL_FRAMEBUFFER_DEFAULT_HEIGHT, glstate::kMostDefaultSize, &glstate::FramebufferDefaults::height},
+    {GL_FRAMEBUFFER_DEFAULT_LAYERS, glstate::kMostDefaultLayers, &glstate::FramebufferDefaults::layers},
+    {GL_FRAMEBUFFER_DEFAULT_SAMPLES, glstate::kMostDefaultSamples, &glstate::FramebufferDefaults::samples},
+    {GL_FRAMEBUFFER_DEFAULT_FIXED_SAMPLE_LOCATIONS, ~std::uint32_t{0}, &glstate::FramebufferDefaults::fixed_places},
+};
+const DefaultParameter* find_default(GLenum word) {
+    const auto* found = std::ranges::find(kDefaultParameters, word, &DefaultParameter::word);
+    return found != std::end(kDefaultParameters) ? found : nullptr;
+}
+
+/// Of a window as well.
+std::optional<GLint> visual_value(Context& c, GLenum word) {
+    switch (word) {
+        case GL_DOUBLEBUFFER: return c.draw_target() && c.draw_target().format().double_buffered;
+        case GL_STEREO: return 0;
+        case GL_SAMPLES:
+        case GL_SAMPLE_BUFFERS: {
+            GLint value = 0;
+            GetIntegerv(c, word, &value);
+            return value;
+        }
+        case GL_IMPLEMENTATION_COLOR_READ_FORMAT:
+        case GL_IMPLEMENTATION_COLOR_READ_TYPE: {
+            GLint value = 0;
+            GetIntegerv(c, word, &value);
+            return value;
+        }
+        default: return std::nullopt;
+    }
+}
+
+}  // namespace
+
+void FramebufferParameteri(Context& c, GLenum target, GLenum pname, GLint param) {
+    const auto* binding = framebuffer_binding(c, target);
+    const DefaultParameter* parameter = find_default(pname);
+    if (!binding || !parameter) return c.error(GL_INVALID_ENUM);
+    const auto framebuffer = *binding;
+    if (!framebuffer) return c.error(GL_INVALID_OPERATION);
+    if (param < 0 && parameter->most != ~std::uint32_t{0}) return c.error(GL_INVALID_VALUE);
+    auto value = static_cast<std::uint32_t>(param);
+    if (value > parameter->most) return c.error(GL_INVALID_VALUE);
+    if (pname == GL_FRAMEBUFFER_DEFAULT_FIXED_SAMPLE_LOCATIONS) value = value != 0;
+    glstate::FramebufferDefaults defaults = framebuffer->defaults();
+    defaults.*parameter->field = value;
+    change_framebuffer(c, *framebuffer, [&](Framebuffer& f) { f.set_defaults(defaults); });
+}
+
+void GetFramebufferParameteriv(Context& c, GLenum target, GLenum pname, GLint* param) {
+    const auto* binding = framebuffer_binding(c, target);
+    if (!binding) return c.error(GL_INVALID_ENUM);
+    if (const DefaultParameter* parameter = find_default(pname)) {
+        if (!*binding) return c.error(GL_INVALID_OPERATION);
+        *param = static_cast<GLint>((*binding)->defaults().*parameter->field);
+    } else if (const auto value = visual_value(c, pname)) {
+        *param = *value;
+    } else {
+        c.error(GL_INVALID_ENUM);
+    }
 }
 
 void GetFramebufferAttachmentParameteriv(Context& c, GLenum target, GLenum point, GLenum pname, GLint* value) {

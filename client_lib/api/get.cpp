@@ -16,6 +16,7 @@
 #include "client_lib/context/query_result.h"
 #include "client_lib/context/select.h"
 #include "client_lib/context/texture_binding.h"
+#include "client_lib/context/vertex_bindings.h"
 #include "client_lib/objects/es_formats.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/program_pipeline.h"
@@ -197,6 +198,14 @@ const Special kSpecials[] = {
     {GL_PROGRAM_BINARY_FORMATS, 0, constant<0>},
     {GL_NUM_COMPRESSED_TEXTURE_FORMATS, 1,
      [](Context& c, double* out) { *out = static_cast<double>(listed_block_formats(c.profile, c.caps()).size()); }},
+    {GL_CONTEXT_RELEASE_BEHAVIOR, 1, [](Context&, double* out) { *out = GL_CONTEXT_RELEASE_BEHAVIOR_FLUSH; }},
+    {GL_MAX_FRAMEBUFFER_WIDTH, 1, limited<GL_MAX_FRAMEBUFFER_WIDTH, glstate::kMostDefaultSize>},
+    {GL_MAX_FRAMEBUFFER_HEIGHT, 1, limited<GL_MAX_FRAMEBUFFER_HEIGHT, glstate::kMostDefaultSize>},
+    {GL_MAX_FRAMEBUFFER_LAYERS, 1, limited<GL_MAX_FRAMEBUFFER_LAYERS, glstate::kMostDefaultLayers>},
+    {GL_MAX_FRAMEBUFFER_SAMPLES, 1, limited<GL_MAX_FRAMEBUFFER_SAMPLES, 4>},
+    {GL_MAX_VERTEX_ATTRIB_RELATIVE_OFFSET, 1, [](Context&, double* out) { *out = kFarthestAttribute; }},
+    {GL_MAX_VERTEX_ATTRIB_BINDINGS, 1, [](Context&, double* out) { *out = kVertexBindings; }},
+    {GL_MAX_VERTEX_ATTRIB_STRIDE, 1, [](Context&, double* out) { *out = kLongestStride; }},
     {GL_MAX_VERTEX_ATTRIBS, 1, limited<GL_MAX_VERTEX_ATTRIBS, kVertexAttributes>},
     {GL_MAX_UNIFORM_BUFFER_BINDINGS, 1, limited<GL_MAX_UNIFORM_BUFFER_BINDINGS, kUniformBuffers>},
     {GL_MAX_IMAGE_UNITS, 1, limited<GL_MAX_IMAGE_UNITS, kImageUnits>},

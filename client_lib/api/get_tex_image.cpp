@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: MIT
-// glGetTexImage (OpenGL 1.2.1, 6.1.4), answered from the shadow as the nodes' driver would, or by a node.
+// glGetTexImage (OpenGL 1.2.1, 6.1.4) and glGetTextureSubImage (OpenGL 4.5, 8.11.4), answered from the shadow as the
+// nodes' driver would, or by a node.
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "client_lib/context/drawn_texels.h"
+#include "client_lib/context/named_objects.h"
 #include "client_lib/context/pixel_store.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/texture_image.h"
@@ -146,33 +153,139 @@ std::vector<std::byte> color_texels(Context& c, const Request& request, GLenum f
     return from_rgba(format, type, texels);  // luminance is red here, unlike in glReadPixels
 }
 
-}  // namespace
+/// Pixels that were asked for, without gaps.
+struct Texels {
+    glapi::ImageSize size;
+    std::vector<std::byte> tight;
+};
 
-void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum type, void* pixels) {
+/// Of one image of a texture, which is bound to its target. Nothing: there is no such image, or there is an error.
+std::optional<Texels> texels_of(Context& c, const std::shared_ptr<Texture>& texture, GLenum image, GLint number,
+                                const MemoryImage& wanted) {
+    const GLenum format = wanted.format, type = wanted.type;
+    compress_as_driver(c, image, number, "glGetTexImage");
+    const auto drawn = drawn_texels(c, texture, face_of(image), number, "glGetTexImage");
+    std::lock_guard lock(c.share().mutex);
+    const TextureLevel* level = texture->find_level(face_of(image), number);
+    const TextureFormat* internal = level ? find_texture_format(level->internal_format) : nullptr;
+    if (!internal) return std::nullopt;
+    if (!readable(*internal, format)) return c.error(GL_INVALID_OPERATION), std::nullopt;
+    const Request request{*level, drawn ? &*drawn : nullptr, *internal};
+    return Texels{{level->width, level->height, level->depth, texture->info.images},
+                  internal->whole() ? whole_texels(request, format, type) : color_texels(c, request, format, type)};
+}
+
+/// Into the program's memory, which has room for `room` bytes; nothing: it did not say.
+void give(Context& c, const Texels& texels, GLenum format, GLenum type, std::optional<GLsizei> room, void* pixels) {
+    const bool in_memory = c.state.local.pixel_pack_buffer == 0;
+    if (room && in_memory) {
+        const std::size_t needed = glapi::memory_bytes(pack_store(c.state), texels.size, format, type);
+        if (*room < 0 || needed > static_cast<std::size_t>(*room)) return c.error(GL_INVALID_OPERATION);
+    }
+    if (const PackTarget to = image_target(c, {texels.size, format, type}, pixels))
+        glapi::pack_image(pack_store(c.state), texels.size, format, type, texels.tight, to.get());
+}
+
+/// Whether a level can be read so at all; else there is an error.
+bool check_level(Context& c, GLenum target, GLint number, GLenum format, GLenum type) {
+    if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE), false;
+    if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error), false;
+    const bool colors = format != GL_COLOR_INDEX && format != GL_STENCIL_INDEX;
+    if (!colors) c.error(GL_INVALID_ENUM);
+    return colors;
+}
+
+void get_image(Context& c, GLenum target, GLint number, const MemoryImage& wanted, std::optional<GLsizei> room,
+               void* pixels) {
     const auto* info = image_target_of(target);
     if (!info || info->images == 0 || is_proxy(target)) return c.error(GL_INVALID_ENUM);
-    if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE);
-    if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
-    if (format == GL_COLOR_INDEX || format == GL_STENCIL_INDEX) return c.error(GL_INVALID_ENUM);
+    if (!check_level(c, target, number, wanted.format, wanted.type)) return;
     const auto texture = bound_texture(c, target);
     if (!texture) return;
     c.flush_block();  // it may draw to the texture
-    compress_as_driver(c, target, number, "glGetTexImage");
-    const auto drawn = drawn_texels(c, texture, face_of(target), number, "glGetTexImage");
-    std::vector<std::byte> tight;
-    glapi::ImageSize size;
-    {
-        std::lock_guard lock(c.share().mutex);
-        const TextureLevel* level = texture->find_level(face_of(target), number);
-        const TextureFormat* internal = level ? find_texture_format(level->internal_format) : nullptr;
-        if (!internal) return;
-        if (!readable(*internal, format)) return c.error(GL_INVALID_OPERATION);
-        size = {level->width, level->height, level->depth, info->images};
-        const Request request{*level, drawn ? &*drawn : nullptr, *internal};
-        tight = internal->whole() ? whole_texels(request, format, type) : color_texels(c, request, format, type);
+    if (const auto texels = texels_of(c, texture, target, number, wanted))
+        give(c, *texels, wanted.format, wanted.type, room, pixels);
+}
+
+/// A part of a level; of a cube map, the faces are slices.
+struct Part {
+    GLint x, y, z;
+    GLsizei width, height, depth;
+};
+
+bool lies_in(const Part& part, const glapi::ImageSize& size) {
+    const auto inside = [](GLint at, GLsizei count, GLint all) {
+        return at >= 0 && count >= 0 && std::int64_t{at} + count <= all;
+    };
+    return inside(part.x, part.width, size.width) && inside(part.y, part.height, size.height) &&
+           inside(part.z, part.depth, size.depth);
+}
+
+Texels cut_out(const Texels& all, const Part& part, const glapi::PixelLayout& layout) {
+    Texels out{{part.width, part.height, part.depth, all.size.dimensions}, {}};
+    const std::size_t row = glapi::row_bytes(layout, all.size.width), bytes = glapi::row_bytes(layout, part.width);
+    out.tight.reserve(bytes * static_cast<std::size_t>(part.height) * static_cast<std::size_t>(part.depth));
+    for (GLint z = part.z; z < part.z + part.depth; ++z)
+        for (GLint y = part.y; y < part.y + part.height; ++y) {
+            const auto line =
+                static_cast<std::size_t>(z) * static_cast<std::size_t>(all.size.height) + static_cast<std::size_t>(y);
+            const std::byte* at = all.tight.data() + line * row + layout.pixel_bytes * static_cast<std::size_t>(part.x);
+            out.tight.insert(out.tight.end(), at, at + bytes);
+        }
+    return out;
+}
+
+/// A level of a texture by name, all faces behind one another; a cube map must have all six, and alike.
+std::optional<Texels> level_of(Context& c, const NamedTexture& named, GLint number, const MemoryImage& wanted) {
+    const glapi::TextureTargetInfo& info = named.texture()->info;
+    if (info.samples || info.images == 0) return c.error(GL_INVALID_OPERATION), std::nullopt;
+    if (!check_level(c, info.target, number, wanted.format, wanted.type)) return std::nullopt;
+    if (info.first_face == 0) return texels_of(c, named.texture(), info.target, number, wanted);
+    std::optional<Texels> all;
+    for (unsigned face = 0; face < glapi::kCubeFaces; ++face) {
+        auto one = texels_of(c, named.texture(), glapi::image_target(info, face), number, wanted);
+        const bool alike =
+            one && (!all || (one->size.width == all->size.width && one->size.height == all->size.height));
+        if (!alike) return c.error(GL_INVALID_OPERATION), std::nullopt;
+        if (!all) {
+            all = std::move(one);
+            all->size.dimensions = 3;
+            continue;
+        }
+        all->tight.insert(all->tight.end(), one->tight.begin(), one->tight.end());
+        ++all->size.depth;
     }
-    if (const PackTarget to = image_target(c, {size, format, type}, pixels))
-        glapi::pack_image(pack_store(c.state), size, format, type, tight, to.get());
+    return all;
+}
+
+}  // namespace
+
+void GetTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum type, void* pixels) {
+    get_image(c, target, number, {{}, format, type}, std::nullopt, pixels);
+}
+
+void GetnTexImage(Context& c, GLenum target, GLint number, GLenum format, GLenum type, GLsizei room, void* pixels) {
+    get_image(c, target, number, {{}, format, type}, room, pixels);
+}
+
+void GetTextureImage(Context& c, GLuint name, GLint number, GLenum format, GLenum type, GLsizei room, void* pixels) {
+    const NamedTexture named(c, name);
+    if (!named) return;
+    if (const auto texels = level_of(c, named, number, {{}, format, type}))
+        give(c, *texels, format, type, room, pixels);
+}
+
+void GetTextureSubImage(Context& c, GLuint name, GLint number, GLint x, GLint y, GLint z, GLsizei width, GLsizei height,
+                        GLsizei depth, GLenum format, GLenum type, GLsizei room, void* pixels) {
+    const NamedTexture named(c, name);
+    if (!named) return;
+    const auto texels = level_of(c, named, number, {{}, format, type});
+    if (!texels) return;
+    const Part part{x, y, z, width, height, depth};
+    if (!lies_in(part, texels->size)) return c.error(GL_INVALID_VALUE);
+    const auto layout = glapi::pixel_layout(format, type);
+    if (!layout || layout->bitmap || width == 0 || height == 0 || depth == 0) return;
+    give(c, cut_out(*texels, part, *layout), format, type, room, pixels);
 }
 
 }  // namespace wall::client::api

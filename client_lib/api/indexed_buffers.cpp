@@ -9,6 +9,7 @@
 #include "client_lib/context/limits.h"
 #include "client_lib/context/memory_use.h"
 #include "client_lib/context/object_name.h"
+#include "client_lib/objects/share_group.h"
 
 namespace wall::client::api {
 namespace {
@@ -42,14 +43,23 @@ void set(Context& c, GLenum target, GLuint index, const glstate::BufferRange& ra
     else c.set<el::counter_buffer>(index, range);
 }
 
+/// Whether a part may begin there and be as large, whatever the buffer.
+bool fits_place(Context& c, GLenum target, GLintptr offset, GLsizeiptr bytes) {
+    if (offset < 0 || bytes <= 0 || offset % alignment_of(c, target) != 0) return false;
+    return target != GL_TRANSFORM_FEEDBACK_BUFFER || bytes % 4 == 0;
+}
+
+/// No buffer is as large: what begins behind its end is nothing, and what ends there is all of the rest.
+std::uint32_t cut(std::uint64_t value) {
+    static constexpr std::uint64_t kMost = ~std::uint32_t{0};
+    return static_cast<std::uint32_t>(std::min(value, kMost));
+}
+
 /// `bytes` 0: as far as the buffer goes.
 void bind(Context& c, GLenum target, GLuint index, GLuint name, std::uint64_t offset, std::uint64_t bytes) {
     BindBuffer(c, target, name);
     const ClientName id = bound_buffer_id(c, target).value_or(ClientName());
     if (!id) return set(c, target, index, {});
-    // No buffer is as large: what begins behind its end is nothing, and what ends there is all of the rest.
-    static constexpr std::uint64_t kMost = ~std::uint32_t{0};
-    const auto cut = [](std::uint64_t value) { return static_cast<std::uint32_t>(std::min(value, kMost)); };
     set(c, target, index, {id.value, cut(offset), cut(bytes)});
 }
 
@@ -63,9 +73,59 @@ void BindBufferBase(Context& c, GLenum target, GLuint index, GLuint name) {
 void BindBufferRange(Context& c, GLenum target, GLuint index, GLuint name, GLintptr offset, GLsizeiptr bytes) {
     if (const GLenum error = error_of_place(c, target, index)) return c.error(error);
     if (name == 0) return bind(c, target, index, 0, 0, 0);
-    if (offset < 0 || bytes <= 0 || offset % alignment_of(c, target) != 0) return c.error(GL_INVALID_VALUE);
-    if (target == GL_TRANSFORM_FEEDBACK_BUFFER && bytes % 4 != 0) return c.error(GL_INVALID_VALUE);
+    if (!fits_place(c, target, offset, bytes)) return c.error(GL_INVALID_VALUE);
     bind(c, target, index, name, static_cast<std::uint64_t>(offset), static_cast<std::uint64_t>(bytes));
+}
+
+namespace {
+
+/// Of glBindBuffersBase and glBindBuffersRange: whether so many places are there; else GL_INVALID_OPERATION.
+bool check_places(Context& c, GLenum target, GLuint first, GLsizei count) {
+    if (count < 0) return c.error(GL_INVALID_VALUE), false;
+    if (const GLenum error = error_of_place(c, target, 0)) return c.error(error), false;
+    if (count == 0) return true;
+    const std::uint64_t last = std::uint64_t{first} + static_cast<std::uint64_t>(count) - 1;
+    const bool there = last <= ~GLuint{0} && error_of_place(c, target, static_cast<GLuint>(last)) == GL_NO_ERROR;
+    if (!there) c.error(GL_INVALID_OPERATION);
+    return there;
+}
+
+/// One of several: what is bound besides to the target itself stays. False: there is no such buffer.
+bool bind_one(Context& c, GLenum target, GLuint index, GLuint name, GLintptr offset, GLsizeiptr bytes) {
+    if (name == 0) return set(c, target, index, {}), true;
+    std::shared_ptr<Buffer> buffer;
+    {
+        std::lock_guard lock(c.share().mutex);
+        buffer = c.share().buffers.find(name);
+    }
+    if (!buffer) return false;
+    const ClientName id = buffer->id;
+    c.buffers->by_id.try_emplace(id, std::move(buffer));
+    set(c, target, index, {id.value, cut(static_cast<std::uint64_t>(offset)), cut(static_cast<std::uint64_t>(bytes))});
+    return true;
+}
+
+}  // namespace
+
+// What is wrong with one leaves the others alone (OpenGL 4.4, 6.1.1).
+void BindBuffersBase(Context& c, GLenum target, GLuint first, GLsizei count, const GLuint* names) {
+    if (!check_places(c, target, first, count)) return;
+    for (GLuint i = 0; i < static_cast<GLuint>(count); ++i)
+        if (!bind_one(c, target, first + i, names ? names[i] : 0, 0, 0)) c.error(GL_INVALID_OPERATION);
+}
+
+void BindBuffersRange(Context& c, GLenum target, GLuint first, GLsizei count, const GLuint* names,
+                      const GLintptr* offsets, const GLsizeiptr* sizes) {
+    if (!check_places(c, target, first, count)) return;
+    for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
+        const GLuint name = names ? names[i] : 0;
+        if (name != 0 && !fits_place(c, target, offsets[i], sizes[i])) {
+            c.error(GL_INVALID_VALUE);
+            continue;
+        }
+        const bool bound = bind_one(c, target, first + i, name, name ? offsets[i] : 0, name ? sizes[i] : 0);
+        if (!bound) c.error(GL_INVALID_OPERATION);
+    }
 }
 
 /// GL_EXT_transform_feedback's own.

@@ -12,6 +12,8 @@
 #include "client_lib/context/indexed_values.h"
 #include "client_lib/context/limits.h"
 #include "client_lib/context/object_name.h"
+#include "client_lib/context/vertex_array_objects.h"
+#include "client_lib/context/vertex_bindings.h"
 #include "common/glstate/draw_buffers.h"
 
 namespace wall::client::api {
@@ -63,6 +65,19 @@ void image_value(Context& c, GLuint unit, double* out) {
     *out = c.get<el::image_unit>(unit).*kField;
 }
 GLuint feedback_buffers(Context&) { return el::feedback_buffer::count; }
+
+/// Of the places for buffers of the bound vertex array object.
+template <auto kField>
+void binding_value(Context& c, GLuint index, double* out) {
+    const auto* own = c.vertex_array_objects->bindings.get();
+    const VertexBindings bindings = own ? *own : bindings_of(c.state.vertex_arrays);
+    *out = static_cast<double>(bindings.bindings[index].*kField);
+}
+void bound_buffer(Context& c, GLuint index, double* out) {
+    binding_value<&VertexBinding::buffer>(c, index, out);
+    *out = object_name(c, glstate::ValueKind::name_buffer, ClientName(static_cast<std::uint32_t>(*out)));
+}
+GLuint vertex_bindings(Context&) { return kVertexBindings; }
 
 GLuint mask_words(Context&) { return 1; }
 
@@ -123,6 +138,10 @@ const IndexedWord kWords[] = {
      buffer_value<GL_TRANSFORM_FEEDBACK_BUFFER_BINDING>},
     {GL_TRANSFORM_FEEDBACK_BUFFER_START, false, 1, feedback_buffers, buffer_value<GL_TRANSFORM_FEEDBACK_BUFFER_START>},
     {GL_TRANSFORM_FEEDBACK_BUFFER_SIZE, false, 1, feedback_buffers, buffer_value<GL_TRANSFORM_FEEDBACK_BUFFER_SIZE>},
+    {GL_VERTEX_BINDING_OFFSET, false, 1, vertex_bindings, binding_value<&VertexBinding::offset>},
+    {GL_VERTEX_BINDING_STRIDE, false, 1, vertex_bindings, binding_value<&VertexBinding::stride>},
+    {GL_VERTEX_BINDING_DIVISOR, false, 1, vertex_bindings, binding_value<&VertexBinding::divisor>},
+    {GL_VERTEX_BINDING_BUFFER, false, 1, vertex_bindings, bound_buffer},
     {GL_MAX_COMPUTE_WORK_GROUP_COUNT, false, 1, dimensions, work_groups<GL_MAX_COMPUTE_WORK_GROUP_COUNT>},
     {GL_MAX_COMPUTE_WORK_GROUP_SIZE, false, 1, dimensions, work_groups<GL_MAX_COMPUTE_WORK_GROUP_SIZE>},
 };

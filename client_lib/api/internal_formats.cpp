@@ -50,4 +50,9 @@ void GetInternalformativ(Context& c, GLenum target, GLenum internal_format, GLen
     get(c, target, internal_format, pname, room, params);
 }
 
+void GetInternalformati64v(Context& c, GLenum target, GLenum internal_format, GLenum pname, GLsizei room,
+                           GLint64* params) {
+    get(c, target, internal_format, pname, room, params);
+}
+
 }  // namespace wall::client::api

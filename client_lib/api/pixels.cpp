@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/framebuffer_binding.h"
@@ -106,11 +107,18 @@ void pixel_map(Context& c, GLenum map, GLsizei size, const In* values, double sc
     set_pixel_map(c, map, std::move(table));
 }
 
+/// Whether the program's memory has room for so many bytes; a buffer says so by itself, and so does what has not said.
+bool has_room(const Context& c, std::optional<GLsizei> room, std::size_t bytes) {
+    if (!room || c.state.local.pixel_pack_buffer != 0) return true;
+    return *room >= 0 && static_cast<std::size_t>(*room) >= bytes;
+}
+
 template <class Out>
-void get_pixel_map(Context& c, GLenum map, Out* out, double scale) {
+void get_pixel_map(Context& c, GLenum map, Out* out, double scale, std::optional<GLsizei> room = std::nullopt) {
     if (!is_pixel_map(map)) return c.error(GL_INVALID_ENUM);
     constexpr double kRounding = std::is_same_v<Out, GLushort> ? 0.5 : 0.0;  // Mesa rounds these only
     const auto values = c.maps->pixel.of(map);
+    if (!has_room(c, room, values.size() * sizeof(Out))) return c.error(GL_INVALID_OPERATION);
     const PackTarget target = pack_target(c, out, values.size() * sizeof(Out));
     if (!target) return;
     auto* to = static_cast<std::byte*>(target.get());
@@ -256,6 +264,14 @@ void GetPixelMapfv(Context& c, GLenum map, GLfloat* values) { get_pixel_map(c, m
 void GetPixelMapuiv(Context& c, GLenum map, GLuint* values) { get_pixel_map(c, map, values, 4294967295.0); }
 void GetPixelMapusv(Context& c, GLenum map, GLushort* values) { get_pixel_map(c, map, values, 65535.0); }
 
+void GetnPixelMapfv(Context& c, GLenum map, GLsizei room, GLfloat* values) { get_pixel_map(c, map, values, 1.0, room); }
+void GetnPixelMapuiv(Context& c, GLenum map, GLsizei room, GLuint* values) {
+    get_pixel_map(c, map, values, 4294967295.0, room);
+}
+void GetnPixelMapusv(Context& c, GLenum map, GLsizei room, GLushort* values) {
+    get_pixel_map(c, map, values, 65535.0, room);
+}
+
 // A word a row, the bottom one first; its first byte in memory has the leftmost pixels, the first in the highest bit.
 void PolygonStipple(Context& c, const GLubyte* mask) {
     const void* from = image_source(c, {{32, 32}, GL_COLOR_INDEX, GL_BITMAP}, mask);
@@ -272,6 +288,12 @@ void GetPolygonStipple(Context& c, GLubyte* mask) {
     const glstate::Words32& words = c.state.window.polygon_stipple;
     glapi::pack_image(pack_store(c.state), {32, 32}, GL_COLOR_INDEX, GL_BITMAP, std::as_bytes(std::span(words)),
                       to.get());
+}
+
+void GetnPolygonStipple(Context& c, GLsizei room, GLubyte* mask) {
+    const std::size_t needed = glapi::memory_bytes(pack_store(c.state), {32, 32}, GL_COLOR_INDEX, GL_BITMAP);
+    if (!has_room(c, room, needed)) return c.error(GL_INVALID_OPERATION);
+    GetPolygonStipple(c, mask);
 }
 
 void DrawBuffer(Context& c, GLenum buffer) {

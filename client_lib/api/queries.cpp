@@ -5,10 +5,13 @@
 #include <limits>
 #include <optional>
 
+#include "client_lib/api/query_targets.h"
+#include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/captured_draw.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/query_result.h"
 #include "client_lib/context/query_state.h"
+#include "client_lib/objects/share_group.h"
 
 namespace wall::client::api {
 namespace {
@@ -30,6 +33,15 @@ constexpr Target kTargets[] = {
     {GL_TIME_ELAPSED, QuerySlot::time, 64},
     {GL_TIMESTAMP, QuerySlot::none, 64},
 };
+
+}  // namespace
+
+std::optional<QuerySlot> slot_of_query(GLenum target) {
+    const auto* found = std::ranges::find(kTargets, target, &Target::target);
+    return found != std::end(kTargets) ? std::optional(found->slot) : std::nullopt;
+}
+
+namespace {
 
 /// Null, and the error is set: there is none of that name.
 const Target* find_target(Context& c, GLenum target, bool begins) {
@@ -90,14 +102,56 @@ std::shared_ptr<QueryObject> begun_anew(Context& c, GLuint name, const Target& t
     return query;
 }
 
+/// What is asked for of a query; nothing: there is an error, or it is not known yet and need not be.
+template <class Out>
+std::optional<Out> answer(Context& c, GLuint name, GLenum pname) {
+    const auto query = c.queries->names.find(name);
+    if (!query || is_current(c, *query)) return c.error(GL_INVALID_OPERATION), std::nullopt;
+    constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<Out>::max());
+    switch (pname) {
+        case GL_QUERY_RESULT_NO_WAIT:
+            if (!is_available(c, *query)) return std::nullopt;
+            [[fallthrough]];
+        case GL_QUERY_RESULT: return static_cast<Out>(std::min(result_of(c, *query), kMost));
+        case GL_QUERY_RESULT_AVAILABLE: return static_cast<Out>(is_available(c, *query));
+        case GL_QUERY_TARGET: return static_cast<Out>(query->target);
+        default: return c.error(GL_INVALID_ENUM), std::nullopt;
+    }
+}
+
+/// Into a buffer (GL_ARB_query_buffer_object). The content is here, so that the program waits as if it had asked.
+template <class Out>
+void get_into(Context& c, ClientName buffer_id, GLuint name, GLenum pname, GLintptr offset) {
+    Buffer* buffer = buffer_of(c, buffer_id);
+    if (!buffer) return c.error(GL_INVALID_OPERATION);
+    if (offset < 0) return c.error(GL_INVALID_VALUE);
+    const auto first = static_cast<std::size_t>(offset);
+    const auto value = answer<Out>(c, name, pname);
+    if (!value) return;
+    before_writing(c, *buffer);
+    std::lock_guard lock(c.share().mutex);
+    if (buffer->blocked() || first > buffer->size() || sizeof(Out) > buffer->size() - first)
+        return c.error(GL_INVALID_OPERATION);
+    buffer->write({first, first + sizeof(Out)}, &*value);
+}
+
 template <class Out>
 void get(Context& c, GLuint name, GLenum pname, Out* params) {
-    const auto query = c.queries->names.find(name);
-    if (!query || is_current(c, *query)) return c.error(GL_INVALID_OPERATION);
-    constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<Out>::max());
-    if (pname == GL_QUERY_RESULT) *params = static_cast<Out>(std::min(result_of(c, *query), kMost));
-    else if (pname == GL_QUERY_RESULT_AVAILABLE) *params = is_available(c, *query);
-    else c.error(GL_INVALID_ENUM);
+    if (const ClientName buffer(c.state.local.query_buffer); buffer)
+        return get_into<Out>(c, buffer, name, pname, reinterpret_cast<GLintptr>(params));
+    if (const auto value = answer<Out>(c, name, pname)) *params = *value;
+}
+
+template <class Out>
+void get_into_named(Context& c, GLuint name, GLuint buffer_name, GLenum pname, GLintptr offset) {
+    std::shared_ptr<Buffer> buffer;
+    {
+        std::lock_guard lock(c.share().mutex);
+        if (buffer_name != 0) buffer = c.share().buffers.find(buffer_name);
+    }
+    if (!buffer) return c.error(GL_INVALID_OPERATION);
+    c.buffers->by_id.try_emplace(buffer->id, buffer);
+    get_into<Out>(c, buffer->id, name, pname, offset);
 }
 
 }  // namespace
@@ -161,5 +215,18 @@ void GetQueryObjectiv(Context& c, GLuint name, GLenum pname, GLint* params) { ge
 void GetQueryObjectuiv(Context& c, GLuint name, GLenum pname, GLuint* params) { get(c, name, pname, params); }
 void GetQueryObjecti64v(Context& c, GLuint name, GLenum pname, GLint64* params) { get(c, name, pname, params); }
 void GetQueryObjectui64v(Context& c, GLuint name, GLenum pname, GLuint64* params) { get(c, name, pname, params); }
+
+void GetQueryBufferObjectiv(Context& c, GLuint name, GLuint buffer, GLenum pname, GLintptr offset) {
+    get_into_named<GLint>(c, name, buffer, pname, offset);
+}
+void GetQueryBufferObjectuiv(Context& c, GLuint name, GLuint buffer, GLenum pname, GLintptr offset) {
+    get_into_named<GLuint>(c, name, buffer, pname, offset);
+}
+void GetQueryBufferObjecti64v(Context& c, GLuint name, GLuint buffer, GLenum pname, GLintptr offset) {
+    get_into_named<GLint64>(c, name, buffer, pname, offset);
+}
+void GetQueryBufferObjectui64v(Context& c, GLuint name, GLuint buffer, GLenum pname, GLintptr offset) {
+    get_into_named<GLuint64>(c, name, buffer, pname, offset);
+}
 
 }  // namespace wall::client::api

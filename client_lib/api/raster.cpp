@@ -35,7 +35,8 @@ Vec4 clamped(Vec4 color) {
 // ---- visibility ----
 
 bool in_view_volume(const glstate::State& s, const Vec4& clip) {
-    if (!s.transform.depth_clamp && (clip[2] > clip[3] || clip[2] < -clip[3])) return false;
+    const float nearest = s.transform.clip_control.depth == GL_ZERO_TO_ONE ? 0 : -clip[3];
+    if (!s.transform.depth_clamp && (clip[2] > clip[3] || clip[2] < nearest)) return false;
     return !(clip[0] > clip[3] || clip[0] < -clip[3] || clip[1] > clip[3] || clip[1] < -clip[3]);
 }
 
@@ -193,10 +194,13 @@ void set_window_position(const glstate::State& s, const Vec4& clip, RasterState&
     const auto& range = s.transform.depth_range;
     const float d = clip[3] == 0.0f ? 1.0f : 1.0f / clip[3];
     const float half_width = 0.5f * static_cast<float>(v.width), half_height = 0.5f * static_cast<float>(v.height);
-    const auto z_scale = static_cast<float>(0.5 * (range.far_value - range.near_value));
-    const auto z_offset = static_cast<float>(0.5 * (range.far_value + range.near_value));
+    const bool from_zero = s.transform.clip_control.depth == GL_ZERO_TO_ONE;
+    const double depths = range.far_value - range.near_value;
+    const auto z_scale = static_cast<float>(from_zero ? depths : 0.5 * depths);
+    const auto z_offset = static_cast<float>(from_zero ? range.near_value : 0.5 * (range.far_value + range.near_value));
+    const float up = s.transform.clip_control.origin == GL_LOWER_LEFT ? 1.0f : -1.0f;
     raster.raster_position = {clip[0] * d * half_width + (half_width + static_cast<float>(v.x)),
-                              clip[1] * d * half_height + (half_height + static_cast<float>(v.y)),
+                              up * clip[1] * d * half_height + (half_height + static_cast<float>(v.y)),
                               clip[2] * d * z_scale + z_offset, clip[3]};
     if (s.transform.depth_clamp) {
         const auto [low, high] = std::minmax(static_cast<float>(range.near_value), static_cast<float>(range.far_value));

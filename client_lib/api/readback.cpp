@@ -97,4 +97,17 @@ void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
     glapi::pack_image(store, {box.width, box.height}, format, type, tight, to.get());
 }
 
+void ReadnPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, GLsizei room,
+                 void* pixels) {
+    const bool plausible = width >= 0 && height >= 0 && glapi::format_type_error(format, type) == GL_NO_ERROR;
+    if (plausible && c.state.local.pixel_pack_buffer == 0) {
+        const std::size_t needed = glapi::memory_bytes(pack_store(c.state), {width, height}, format, type);
+        if (room < 0 || needed > static_cast<std::size_t>(room)) return c.error(GL_INVALID_OPERATION);
+    }
+    ReadPixels(c, x, y, width, height, format, type, pixels);
+}
+
+// What happens to a node's GPU is the node's: the program's context goes on.
+GLenum GetGraphicsResetStatus(Context&) { return GL_NO_ERROR; }
+
 }  // namespace wall::client::api

@@ -4,9 +4,13 @@
 // driver makes of it. Formats for one and three dimensions there are none.
 #include <algorithm>
 #include <cstring>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "client_lib/context/ask_one.h"
 #include "client_lib/context/buffer_binding.h"
+#include "client_lib/context/named_objects.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/texture_image.h"
 #include "client_lib/objects/maps.h"
@@ -258,15 +262,111 @@ void CompressedTexSubImage3D(Context& c, GLenum target, GLint level, GLint x, GL
     define_sub_blocks(c, {target, level, static_cast<GLint>(format), width, height, depth, bytes, 3}, {x, y, z}, data);
 }
 
-void GetCompressedTexImage(Context& c, GLenum target, GLint number, void* pixels) {
-    if (is_proxy(target) || !image_target_of(target)) return c.error(GL_INVALID_ENUM);
-    if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE);
+namespace {
+
+/// The blocks of one image of what is bound. Null, and an error: there are none.
+const TextureLevel* blocks_of(Context& c, GLenum target, GLint number) {
+    if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE), nullptr;
     compress_as_driver(c, target, number, "glGetCompressedTexImage");
     const auto texture = bound_texture(c, target);
     const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
-    if (!level || !level->compressed) return c.error(GL_INVALID_OPERATION);
-    if (const PackTarget to = pack_target(c, pixels, level->pixels.size()))
-        std::memcpy(to.get(), level->pixels.data(), level->pixels.size());
+    if (level && level->compressed) return level;
+    c.error(GL_INVALID_OPERATION);
+    return nullptr;
+}
+
+/// Into the program's memory, which has room for `room` bytes; nothing: it did not say.
+void give(Context& c, std::span<const std::byte> blocks, std::optional<GLsizei> room, void* pixels) {
+    if (room && c.state.local.pixel_pack_buffer == 0 && (*room < 0 || blocks.size() > static_cast<std::size_t>(*room)))
+        return c.error(GL_INVALID_OPERATION);
+    if (const PackTarget to = pack_target(c, pixels, blocks.size()))
+        std::memcpy(to.get(), blocks.data(), blocks.size());
+}
+
+void get_blocks(Context& c, GLenum target, GLint number, std::optional<GLsizei> room, void* pixels) {
+    if (is_proxy(target) || !image_target_of(target)) return c.error(GL_INVALID_ENUM);
+    if (const TextureLevel* level = blocks_of(c, target, number)) give(c, level->pixels, room, pixels);
+}
+
+struct BlockPart {
+    GLint x, y, z;
+    GLsizei width, height, depth;
+};
+
+/// Whole blocks, but at the level's end.
+bool are_whole_blocks(const BlockPart& part, const TextureLevel& level) {
+    return is_whole_blocks(part.x, part.width, level.width) && is_whole_blocks(part.y, part.height, level.height);
+}
+
+void append(std::vector<std::byte>& out, const TextureLevel& level, const BlockPart& part, GLint slice) {
+    const auto bytes_of = [&](GLsizei width, GLsizei height) {
+        return blocks_bytes(level.internal_format, width, height);
+    };
+    const std::size_t block = bytes_of(kBlockSide, kBlockSide), row = bytes_of(level.width, kBlockSide);
+    const std::size_t wanted = bytes_of(part.width, kBlockSide);
+    const std::byte* at = level.pixels.data() + bytes_of(level.width, level.height) * static_cast<std::size_t>(slice);
+    for (GLint y = part.y; y < part.y + part.height; y += kBlockSide) {
+        const std::byte* from =
+            at + row * static_cast<std::size_t>(y / kBlockSide) + block * static_cast<std::size_t>(part.x / kBlockSide);
+        out.insert(out.end(), from, from + wanted);
+    }
+}
+
+/// Whether all blocks of a level are there.
+bool has_all_blocks(const TextureLevel& level) {
+    return level.pixels.size() >=
+           blocks_bytes(level.internal_format, level.width, level.height) * static_cast<std::size_t>(level.depth);
+}
+
+/// Faces that are not alike are no cube.
+bool are_alike(const TextureLevel& a, const TextureLevel& b) {
+    return a.width == b.width && a.height == b.height && a.internal_format == b.internal_format;
+}
+
+/// Of a texture by name; the faces of a cube map are slices.
+void get_named_blocks(Context& c, GLuint name, GLint number, const std::optional<BlockPart>& wanted, GLsizei room,
+                      void* pixels) {
+    const NamedTexture named(c, name);
+    if (!named) return;
+    const glapi::TextureTargetInfo& info = named.texture()->info;
+    if (info.images == 0 || info.samples) return c.error(GL_INVALID_OPERATION);
+    const bool cube = info.first_face != 0;
+    const TextureLevel* const first = blocks_of(c, cube ? info.first_face : info.target, number);
+    if (!first) return;
+    const TextureLevel* level = first;
+    const GLint slices = cube ? static_cast<GLint>(glapi::kCubeFaces) : level->depth;
+    const BlockPart part = wanted.value_or(BlockPart{0, 0, 0, level->width, level->height, slices});
+    const auto inside = [](GLint at, GLsizei count, GLint all) {
+        return at >= 0 && count >= 0 && std::int64_t{at} + count <= all;
+    };
+    if (!inside(part.x, part.width, level->width) || !inside(part.y, part.height, level->height) ||
+        !inside(part.z, part.depth, slices))
+        return c.error(GL_INVALID_VALUE);
+    if (!are_whole_blocks(part, *level)) return c.error(GL_INVALID_VALUE);
+    std::vector<std::byte> blocks;
+    for (GLint z = part.z; z < part.z + part.depth; ++z) {
+        if (cube) level = blocks_of(c, glapi::image_target(info, static_cast<unsigned>(z)), number);
+        if (!level) return;
+        if (!are_alike(*level, *first) || !has_all_blocks(*level)) return c.error(GL_INVALID_OPERATION);
+        append(blocks, *level, part, cube ? 0 : z);
+    }
+    give(c, blocks, room, pixels);
+}
+
+}  // namespace
+
+void GetCompressedTexImage(Context& c, GLenum target, GLint number, void* pixels) {
+    get_blocks(c, target, number, std::nullopt, pixels);
+}
+void GetnCompressedTexImage(Context& c, GLenum target, GLint number, GLsizei room, void* pixels) {
+    get_blocks(c, target, number, room, pixels);
+}
+void GetCompressedTextureImage(Context& c, GLuint name, GLint number, GLsizei room, void* pixels) {
+    get_named_blocks(c, name, number, std::nullopt, room, pixels);
+}
+void GetCompressedTextureSubImage(Context& c, GLuint name, GLint number, GLint x, GLint y, GLint z, GLsizei width,
+                                  GLsizei height, GLsizei depth, GLsizei room, void* pixels) {
+    get_named_blocks(c, name, number, BlockPart{x, y, z, width, height, depth}, room, pixels);
 }
 
 // No format is for them.

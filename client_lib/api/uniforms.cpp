@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -94,8 +95,9 @@ Out converted(UniformBase base, const std::uint32_t* words) {
     return static_cast<Out>(static_cast<GLint>(word));
 }
 
+/// `room`: bytes that there are for it; nothing: the program did not say.
 template <class Out>
-void get(Context& c, GLuint name, GLint location, Out* out) {
+void get(Context& c, GLuint name, GLint location, Out* out, std::optional<GLsizei> room = std::nullopt) {
     std::shared_ptr<GlslObject> object;
     {
         std::lock_guard lock(c.share().mutex);
@@ -111,6 +113,8 @@ void get(Context& c, GLuint name, GLint location, Out* out) {
     const Uniform& uniform = program.executable->uniforms[place->uniform];
     const unsigned words = uniform.type->words(), each = words / uniform.type->components();
     const auto element = program.executable->words_of(uniform).subspan(std::size_t{place->element} * words, words);
+    if (room && (*room < 0 || static_cast<std::size_t>(*room) < words / each * sizeof(Out)))
+        return c.error(GL_INVALID_OPERATION);
     for (unsigned i = 0; i < words; i += each) *out++ = converted<Out>(uniform.type->base, &element[i]);
 }
 
@@ -281,5 +285,18 @@ void GetUniformfv(Context& c, GLuint program, GLint location, GLfloat* params) {
 void GetUniformuiv(Context& c, GLuint program, GLint location, GLuint* params) { get(c, program, location, params); }
 void GetUniformiv(Context& c, GLuint program, GLint location, GLint* params) { get(c, program, location, params); }
 void GetUniformdv(Context& c, GLuint program, GLint location, GLdouble* params) { get(c, program, location, params); }
+
+void GetnUniformfv(Context& c, GLuint program, GLint location, GLsizei room, GLfloat* params) {
+    get(c, program, location, params, room);
+}
+void GetnUniformiv(Context& c, GLuint program, GLint location, GLsizei room, GLint* params) {
+    get(c, program, location, params, room);
+}
+void GetnUniformuiv(Context& c, GLuint program, GLint location, GLsizei room, GLuint* params) {
+    get(c, program, location, params, room);
+}
+void GetnUniformdv(Context& c, GLuint program, GLint location, GLsizei room, GLdouble* params) {
+    get(c, program, location, params, room);
+}
 
 }  // namespace wall::client::api

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "client_lib/context/vertex_bindings.h"
 #include "client_lib/objects/texture.h"
 #include "common/glapi/gl_types.h"
 #include "gen/glstate/state.gen.h"
@@ -24,7 +25,8 @@ struct SavedTexture {
 struct SavedAttributes {
     GLbitfield mask = 0;
     glstate::State state;
-    std::vector<SavedTexture> textures;  ///< of GL_TEXTURE_BIT
+    std::vector<SavedTexture> textures;             ///< of GL_TEXTURE_BIT
+    std::unique_ptr<VertexBindings> bindings = {};  ///< of GL_CLIENT_VERTEX_ARRAY_BIT; null: the arrays have their own
 };
 
 struct AttributeStacks {

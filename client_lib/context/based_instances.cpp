@@ -26,7 +26,8 @@ std::uint64_t moved(const glstate::ClientArray& array, std::uint32_t base) {
 BasedInstances::BasedInstances(glstate::State& state, std::uint32_t base)
     : state_(state), arrays_(state.vertex_arrays), values_(state.ids[kArrays]) {
     for (glstate::ClientArray& array : state_.vertex_arrays.attrib_array)
-        if (array.enabled && array.divisor != 0) array.pointer = moved(array, base);
+        if (array.enabled && array.divisor != 0 && array.divisor != glstate::kNeverSteps)
+            array.pointer = moved(array, base);
     state_.ids.renew(kArrays);
 }
 

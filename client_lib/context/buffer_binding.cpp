@@ -34,7 +34,8 @@ constexpr GLenum kTargets[] = {GL_ARRAY_BUFFER,
                                GL_DRAW_INDIRECT_BUFFER,
                                GL_SHADER_STORAGE_BUFFER,
                                GL_ATOMIC_COUNTER_BUFFER,
-                               GL_DISPATCH_INDIRECT_BUFFER};
+                               GL_DISPATCH_INDIRECT_BUFFER,
+                               GL_QUERY_BUFFER};
 
 /// Calls use.operator()<E>() with the binding's element; false: no such target.
 template <class Use>
@@ -49,6 +50,7 @@ bool with_binding(GLenum target, Use&& use) {
         case GL_UNIFORM_BUFFER: return use.template operator()<el::bound_uniform_buffer>(), true;
         case GL_TEXTURE_BUFFER: return use.template operator()<el::bound_texture_buffer>(), true;
         case GL_TRANSFORM_FEEDBACK_BUFFER: return use.template operator()<el::bound_feedback_buffer>(), true;
+        case GL_QUERY_BUFFER: return use.template operator()<el::query_buffer>(), true;
         case GL_DRAW_INDIRECT_BUFFER: return use.template operator()<el::draw_indirect_buffer>(), true;
         case GL_SHADER_STORAGE_BUFFER: return use.template operator()<el::bound_storage_buffer>(), true;
         case GL_ATOMIC_COUNTER_BUFFER: return use.template operator()<el::bound_counter_buffer>(), true;
@@ -94,12 +96,17 @@ void add_named_by_arrays(const glstate::State& state, std::vector<std::uint32_t>
     for_each_array([&]<class E>(unsigned i) { add(E::ref(state, i).buffer); });
 }
 
+void add_named_by_bindings(const VertexBindings* bindings, std::vector<std::uint32_t>& ids) {
+    for (unsigned i = 0; bindings && i < kVertexBindings; ++i) ids.push_back(bindings->bindings[i].buffer);
+}
+
 void add_named(const glstate::State& state, std::vector<std::uint32_t>& ids) {
     const auto& local = state.local;
     ids.insert(ids.end(), {local.array_buffer, local.pixel_pack_buffer, local.pixel_unpack_buffer,
                            local.copy_read_buffer, local.copy_write_buffer, local.bound_uniform_buffer,
                            local.bound_feedback_buffer, local.bound_texture_buffer, local.draw_indirect_buffer,
-                           local.bound_storage_buffer, local.bound_counter_buffer, local.dispatch_indirect_buffer});
+                           local.bound_storage_buffer, local.bound_counter_buffer, local.dispatch_indirect_buffer,
+                           local.query_buffer});
     for (const glstate::BufferRange& range : state.shader_memory.storage_buffer) ids.push_back(range.buffer);
     for (const glstate::BufferRange& range : state.shader_memory.counter_buffer) ids.push_back(range.buffer);
     for (const glstate::BufferRange& range : local.feedback_buffer) ids.push_back(range.buffer);
@@ -116,12 +123,18 @@ std::vector<std::uint32_t> named_buffers(const Context& c) {
         if (!object.active) return;
         for (const CapturedPart& part : object.active->parts()) ids.push_back(part.buffer->id.value);
     });
-    for (const auto& saved : c.attributes->client) add_named(saved->state, ids);
+    for (const auto& saved : c.attributes->client) {
+        add_named(saved->state, ids);
+        add_named_by_bindings(saved->bindings.get(), ids);
+    }
     glstate::State looked_at;
-    c.vertex_array_objects->for_each_kept([&](const glstate::VertexArraysState& arrays) {
-        looked_at.vertex_arrays = arrays;
-        add_named_by_arrays(looked_at, ids);
-    });
+    add_named_by_bindings(c.vertex_array_objects->bindings.get(), ids);
+    c.vertex_array_objects->for_each_kept(
+        [&](const glstate::VertexArraysState& arrays, const VertexBindings* bindings) {
+            looked_at.vertex_arrays = arrays;
+            add_named_by_arrays(looked_at, ids);
+            add_named_by_bindings(bindings, ids);
+        });
     std::ranges::sort(ids);
     return ids;
 }
@@ -177,6 +190,9 @@ void let_go_of_own_buffer(Context& c, std::shared_ptr<Buffer> buffer) {
         array.buffer = nothing.value;
         c.set<E>(i, array);
     });
+    if (const auto& bindings = c.vertex_array_objects->bindings)
+        for (VertexBinding& binding : bindings->bindings)
+            if (binding.buffer == id.value) binding.buffer = nothing.value;
     if (names_buffer(c, id)) c.buffers->holds_deleted = true;
     else let_go_of_buffer(c, std::move(buffer));
 }

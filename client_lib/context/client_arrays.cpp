@@ -9,6 +9,7 @@
 #include "client_lib/context/lists.h"
 #include "client_lib/context/program_use.h"
 #include "client_lib/geometry/block_walk.h"
+#include "client_lib/objects/small_floats.h"
 #include "common/glapi/convert.h"
 #include "common/glapi/packed_vertex.h"
 
@@ -59,6 +60,12 @@ void load_values(const std::byte* from, GLint size, float* out) {
         out[i] = to_float<T, kConversion>(load_one<T>(from + static_cast<std::size_t>(i) * sizeof(T)));
 }
 
+/// Three of eleven and ten bits (GL_ARB_vertex_type_10f_11f_11f_rev).
+void load_short_floats(const std::byte* from, GLint size, float* out) {
+    const Rgb values = from_short_floats(load_one<GLuint>(from));
+    std::copy_n(values.begin(), size, out);
+}
+
 void load_halves(const std::byte* from, GLint size, float* out) {
     for (GLint i = 0; i < size; ++i)
         out[i] = glapi::half_to_float(load_one<std::uint16_t>(from + static_cast<std::size_t>(i) * 2));
@@ -104,6 +111,7 @@ Load loader_of(GLenum type, Conversion conversion) {
         case GL_UNSIGNED_INT: return loader<GLuint>(conversion);
         case GL_DOUBLE: return loader<GLdouble>(Conversion::none);
         case GL_HALF_FLOAT: return &load_halves;
+        case GL_UNSIGNED_INT_10F_11F_11F_REV: return &load_short_floats;
         case GL_FIXED: return &load_fixed;
         case GL_INT_2_10_10_10_REV: return packed_loader<GL_INT_2_10_10_10_REV>(conversion);
         case GL_UNSIGNED_INT_2_10_10_10_REV: return packed_loader<GL_UNSIGNED_INT_2_10_10_10_REV>(conversion);
@@ -347,8 +355,8 @@ void walk(const ElementRange& elements, Each&& each, Restart&& restart) {
 
 namespace {
 
-Conversion conversion_of(std::uint32_t integer, std::uint32_t normalized, Conversion of_normalized) {
-    if (integer != 0) return Conversion::integer;
+Conversion conversion_of(std::uint32_t reaches_as, std::uint32_t normalized, Conversion of_normalized) {
+    if (reaches_as == glstate::kAsIntegers) return Conversion::integer;
     return normalized != 0 ? of_normalized : Conversion::none;
 }
 
@@ -363,9 +371,9 @@ ArraySource array_source(const glstate::InputArray& array, std::span<const std::
             .count = content.size() < bytes ? 0 : (content.size() - bytes) / array.step() + 1,
             .size = glstate::components(array.size),
             .type = array.type,
-            .integer = array.integer != 0,
+            .integer = array.reaches_as == glstate::kAsIntegers,
             .bgra = array.size == GL_BGRA,
-            .load = loader_of(array.type, conversion_of(array.integer, array.normalized, Conversion::fetch))};
+            .load = loader_of(array.type, conversion_of(array.reaches_as, array.normalized, Conversion::fetch))};
 }
 
 ArraySet::ArraySet(Context& c, bool by_command, GLsizei instance) : by_command_(by_command), instance_(instance) {
@@ -398,7 +406,7 @@ void ArraySet::add(Context& c, Attribute attribute, const glstate::ClientArray& 
         step = 0;
     }
     const Conversion conversion =
-        conversion_of(array.integer, array.normalized, by_command_ ? Conversion::command : Conversion::fetch);
+        conversion_of(array.reaches_as, array.normalized, by_command_ ? Conversion::command : Conversion::fetch);
     sources_[count_++] = {.attribute = attribute,
                           .by_command = by_command_,
                           .base = base,
@@ -406,7 +414,7 @@ void ArraySet::add(Context& c, Attribute attribute, const glstate::ClientArray& 
                           .count = count,
                           .size = glstate::components(array.size),
                           .type = array.type,
-                          .integer = array.integer != 0,
+                          .integer = array.reaches_as == glstate::kAsIntegers,
                           .bgra = array.size == GL_BGRA,
                           .load = loader_of(array.type, conversion)};
 }

@@ -103,7 +103,7 @@ void CopiedDraw::add(std::uint32_t place, const ClientArray& array) {
                             .size = array.size,
                             .normalized = array.normalized,
                             .divisor = array.divisor,
-                            .integer = array.integer}};
+                            .reaches_as = array.reaches_as}};
     if (array.buffer == 0) {
         placed.pointer = static_cast<std::uintptr_t>(array.pointer);
         placed.input.stride = static_cast<std::int32_t>(placed.input.step());

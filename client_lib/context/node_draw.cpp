@@ -52,8 +52,9 @@ public:
         if (known_ == nullptr) return false;
         if (input_.facts().drawn) return know_no_bounds(), true;  // nobody else has it
         const bool worth = worth_keeping();
-        // In a block of vertices there are no instances, and no numbers.
-        return worth || draw_.instances != 1 || (c_.program && c_.program->executable->reads_numbers());
+        // In a block of vertices there are no instances, no numbers, and no doubles.
+        return worth || draw_.instances != 1 || input_.has_doubles() ||
+               (c_.program && c_.program->executable->reads_numbers());
     }
     /// A program may make of gl_VertexID what it likes. In fixed function all vertices have the current attribute then.
     bool suits_without_positions() {
@@ -151,7 +152,7 @@ bool NodeDraw::find_bounding_array() {
     const auto found = placing_.known ? input_.array_of_generic(placing_.attribute) : std::nullopt;
     if (!found || !of_each_vertex(*found)) return false;
     const glstate::InputArray& array = input_.definition().arrays[*found];
-    if (array.integer != 0 || array.size == GL_BGRA) return false;
+    if (array.reaches_as != glstate::kAsFloats || array.size == GL_BGRA) return false;
     array_ = found;
     return true;
 }

@@ -86,6 +86,13 @@ bool reads_numbers(const Context& c) {
     return c.program->executable->reads_numbers();
 }
 
+std::uint32_t constant_doubles(const Context& c) {
+    std::uint32_t doubles = c.program ? c.program->executable->double_attributes() : 0;
+    for (unsigned i = 0; doubles != 0 && i < kVertexAttributes; ++i)
+        if (c.get<glstate::el::attrib_array>(i).enabled) doubles &= ~(1u << i);
+    return doubles;
+}
+
 namespace {
 
 /// Whether single primitives of a kind go through the shaders; `single` is what comes out.

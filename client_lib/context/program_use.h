@@ -22,6 +22,10 @@ void use_program(Context& c, std::shared_ptr<Program> program);
 /// Whether the context's program counts vertices by itself: then they must be drawn as elements, with their numbers.
 bool reads_numbers(const Context& c);
 
+/// Generic attributes that the context's program takes as doubles and that have no array, a bit for each: no command of
+/// the stream sets such values, so that they come as arrays.
+std::uint32_t constant_doubles(const Context& c);
+
 /// False, and an error, if the context's framebuffer is not complete, or its program cannot draw as its samplers are
 /// set.
 bool may_draw(Context& c);

@@ -35,6 +35,7 @@ private:
     bool keep_numbers(const std::vector<GLuint>& drawn);
     void stage(std::uint32_t place, const ClientArray& array);
     void stage_constant_position();
+    void stage_constant_doubles();
     Buffer& buffer_at(std::uint32_t place);
     void add(const InputArray& input, const std::vector<std::byte>& content);
 
@@ -123,7 +124,7 @@ void StagedDraw::stage(std::uint32_t place, const ClientArray& array) {
                            .size = array.size,
                            .normalized = array.normalized,
                            .divisor = array.divisor,
-                           .integer = array.integer};
+                           .reaches_as = array.reaches_as};
     const std::size_t bytes = input.element_bytes();
     const std::size_t stride = array.stride ? static_cast<std::size_t>(array.stride) : bytes;
     const auto pointer = static_cast<std::uintptr_t>(array.pointer);
@@ -156,6 +157,22 @@ void StagedDraw::stage_constant_position() {
     add({.place = glstate::kPositionArray}, content);
 }
 
+/// Values that are the same for all vertices, as doubles.
+void StagedDraw::stage_constant_doubles() {
+    const std::uint32_t doubles = constant_doubles(c_);
+    for (std::uint32_t i = 0; i < kVertexAttributes; ++i) {
+        if ((doubles >> i & 1) == 0) continue;
+        const auto& value = c_.get<glstate::el::attrib_doubles>(i);
+        std::vector<std::byte> content(sizeof value);
+        std::memcpy(content.data(), &value, sizeof value);
+        add({.place = static_cast<std::uint32_t>(glstate::place_of(Attribute::vertex_attrib + i)),
+             .type = GL_DOUBLE,
+             .divisor = glstate::kNeverSteps,
+             .reaches_as = glstate::kAsDoubles},
+            content);
+    }
+}
+
 void StagedDraw::run() {
     c_.flush_block();  // the current attributes are in `state` after it
     if (!find_elements()) return;
@@ -164,6 +181,7 @@ void StagedDraw::run() {
         stage(static_cast<std::uint32_t>(glstate::place_of(attribute)), array);
     });
     if (!arrays.attrib_array[0].enabled) stage(glstate::kPositionArray, arrays.vertex_array);
+    stage_constant_doubles();
     const auto is_position = [](const InputArray& array) {
         return array.place == glstate::kPositionArray || array.place == glstate::place_of(Attribute::vertex_attrib);
     };

@@ -12,28 +12,29 @@ constexpr auto kArrays = static_cast<std::size_t>(glstate::Category::vertex_arra
 
 }  // namespace
 
-VertexArrayObjects::Arrays VertexArrayObjects::arrays_of(const glstate::State& state) {
-    return {state.vertex_arrays, state.ids[kArrays]};
+VertexArrayObjects::Arrays VertexArrayObjects::take(const glstate::State& state) {
+    return {state.vertex_arrays, state.ids[kArrays], std::move(bindings)};
 }
 
-void VertexArrayObjects::load(glstate::State& state, const Arrays& arrays) {
+void VertexArrayObjects::load(glstate::State& state, Arrays arrays) {
     state.vertex_arrays = arrays.arrays;
     state.ids.take(kArrays, arrays.values);
+    bindings = std::move(arrays.bindings);
 }
 
 void VertexArrayObjects::bind(glstate::State& state, GLuint name) {
     const GLuint bound = state.vertex_arrays.vertex_array_object;
     if (bound == name) return;
     if (bound == 0) {
-        unnamed_ = arrays_of(state);
+        unnamed_ = take(state);
     } else {
-        names_.find(bound)->arrays = std::make_unique<Arrays>(arrays_of(state));
+        names_.find(bound)->arrays = std::make_unique<Arrays>(take(state));
         ++kept_;
     }
     if (name == 0) return load(state, *std::exchange(unnamed_, std::nullopt));
     const auto known = names_.find(name);
     if (known) {
-        load(state, *known->arrays);
+        load(state, std::move(*known->arrays));
         known->arrays.reset();
         --kept_;
         return;
@@ -42,7 +43,7 @@ void VertexArrayObjects::bind(glstate::State& state, GLuint name) {
     Arrays fresh;
     fresh.arrays.vertex_array_object = name;
     fresh.values = glstate::next_value_id();
-    load(state, fresh);
+    load(state, std::move(fresh));
 }
 
 bool VertexArrayObjects::erase(glstate::State& state, GLuint name) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "client_lib/context/vertex_bindings.h"
 #include "client_lib/objects/share_group.h"
 #include "common/glapi/gl_types.h"
 #include "gen/glstate/state.gen.h"
@@ -27,14 +28,17 @@ public:
     /// If it is bound, 0 is bound instead. False: there is none of that name.
     bool erase(glstate::State& state, GLuint name);
 
+    /// How the attributes of the bound one are bound to buffers; null: each array is in the one that it was set with.
+    std::unique_ptr<VertexBindings> bindings;
+
     std::size_t size() const { return kept_; }  ///< that are not bound
-    /// Calls look(arrays) with those of each object that is not bound.
+    /// Calls look(arrays, bindings) with those of each object that is not bound; bindings may be null.
     template <class Look>
     void for_each_kept(Look&& look) const {
-        if (unnamed_) look(unnamed_->arrays);
+        if (unnamed_) look(unnamed_->arrays, unnamed_->bindings.get());
         if (kept_ == 0) return;
         names_.for_each([&](const Kept& kept) {
-            if (kept.arrays) look(kept.arrays->arrays);
+            if (kept.arrays) look(kept.arrays->arrays, kept.arrays->bindings.get());
         });
     }
 
@@ -43,12 +47,13 @@ private:
     struct Arrays {
         glstate::VertexArraysState arrays;
         std::uint64_t values = 0;
+        std::unique_ptr<VertexBindings> bindings;
     };
     struct Kept {
         std::unique_ptr<Arrays> arrays;  ///< null while it is bound
     };
-    static Arrays arrays_of(const glstate::State& state);
-    static void load(glstate::State& state, const Arrays& arrays);
+    Arrays take(const glstate::State& state);
+    void load(glstate::State& state, Arrays arrays);
 
     NameTable<Kept> names_;
     std::optional<Arrays> unnamed_;  ///< of name 0, while it is not bound

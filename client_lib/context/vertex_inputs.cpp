@@ -24,7 +24,7 @@ std::optional<InputArray> input_array(std::uint32_t place, const ClientArray& ar
                       .size = array.size,
                       .normalized = array.normalized,
                       .divisor = array.divisor,
-                      .integer = array.integer};
+                      .reaches_as = array.reaches_as};
 }
 
 /// False: not all arrays are in buffers.

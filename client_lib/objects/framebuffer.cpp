@@ -79,6 +79,10 @@ void Framebuffer::set_read_buffer(GLenum buffer) {
     if (std::exchange(read_buffer_, buffer) != buffer) stamp_ = next_stamp();
 }
 
+void Framebuffer::set_defaults(const glstate::FramebufferDefaults& defaults) {
+    if (std::exchange(defaults_, defaults) != defaults) stamp_ = next_stamp();
+}
+
 GLenum Framebuffer::attachment_error(unsigned place) const {
     const Attachment& attachment = attachments_[place];
     if (!attachment.present()) return GL_NO_ERROR;
@@ -110,7 +114,8 @@ GLenum Framebuffer::status() const {
     }
     if (mixes_layers()) return GL_FRAMEBUFFER_INCOMPLETE_LAYER_TARGETS;
     if (!same_samples) return GL_FRAMEBUFFER_INCOMPLETE_MULTISAMPLE;
-    if (!samples) return GL_FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT;
+    if (!samples && (defaults_.width == 0 || defaults_.height == 0))
+        return GL_FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT;
     const Attachment &depth = attachments_[kDepth], &stencil = attachments_[kStencil];
     if (depth.present() && stencil.present() && depth.object() != stencil.object()) return GL_FRAMEBUFFER_UNSUPPORTED;
     return GL_FRAMEBUFFER_COMPLETE;
@@ -130,18 +135,18 @@ std::optional<ImageShape> Framebuffer::draw_shape() const {
 std::uint32_t Framebuffer::samples() const {
     for (const Attachment& attachment : attachments_)
         if (const auto shape = shape_of(attachment)) return shape->samples;
-    return 0;
+    return defaults_.samples;
 }
 
-std::uint32_t Framebuffer::size(std::uint32_t ImageShape::*side) const {
+std::optional<std::uint32_t> Framebuffer::size(std::uint32_t ImageShape::*side) const {
     std::uint32_t smallest = std::numeric_limits<std::uint32_t>::max();
     for (const Attachment& attachment : attachments_)
         if (const auto shape = shape_of(attachment)) smallest = std::min(smallest, (*shape).*side);
-    return smallest == std::numeric_limits<std::uint32_t>::max() ? 0 : smallest;
+    return smallest == std::numeric_limits<std::uint32_t>::max() ? std::nullopt : std::optional(smallest);
 }
 
 void Framebuffer::pack_changes(std::uint64_t, wire::PackBuffer& buffer, const std::function<void()>& packed) const {
-    glstate::FramebufferDefinition definition{draw_buffers_, read_buffer_, {}};
+    glstate::FramebufferDefinition definition{draw_buffers_, read_buffer_, defaults_, {}};
     for (unsigned place = 0; place < kAttachmentPoints; ++place) {
         const Attachment& attachment = attachments_[place];
         if (!attachment.present()) continue;

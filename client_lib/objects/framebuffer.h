@@ -53,6 +53,9 @@ public:
     GLenum read_buffer() const { return read_buffer_; }
     void set_read_buffer(GLenum buffer);
 
+    const glstate::FramebufferDefaults& defaults() const { return defaults_; }
+    void set_defaults(const glstate::FramebufferDefaults& defaults);
+
     /// GL_FRAMEBUFFER_COMPLETE, or why not, as Mesa decides it (OpenGL 4.6, 9.4.2; what GL_ARB_framebuffer_object and
     /// GL_ARB_ES2_compatibility say). The share group's mutex is held.
     GLenum status() const;
@@ -71,13 +74,13 @@ public:
                       const std::function<void()>& packed) const override;
 
     ClientName target_id() const override { return id; }
-    std::uint32_t width() const override { return size(&ImageShape::width); }
-    std::uint32_t height() const override { return size(&ImageShape::height); }
+    std::uint32_t width() const override { return size(&ImageShape::width).value_or(defaults_.width); }
+    std::uint32_t height() const override { return size(&ImageShape::height).value_or(defaults_.height); }
     void for_each_image(const std::function<void(const Object&)>& use) const override;
     void note_drawn() override;
 
 private:
-    std::uint32_t size(std::uint32_t ImageShape::*side) const;
+    std::optional<std::uint32_t> size(std::uint32_t ImageShape::*side) const;
     std::optional<ImageShape> named_shape(GLenum buffer) const;
     GLenum attachment_error(unsigned place) const;
     bool mixes_layers() const;
@@ -87,6 +90,7 @@ private:
     std::array<Attachment, glstate::kAttachmentPoints> attachments_;
     std::array<GLenum, glstate::kColorAttachments> draw_buffers_{GL_COLOR_ATTACHMENT0};
     GLenum read_buffer_ = GL_COLOR_ATTACHMENT0;
+    glstate::FramebufferDefaults defaults_;
     std::uint64_t stamp_ = next_stamp();
 };
 

@@ -78,6 +78,23 @@ std::vector<std::byte> final_definition(glapi::ProgramDefinition definition,
 
 }  // namespace
 
+namespace {
+
+/// A bit for each location. Each column of a matrix and each element of an array has one.
+std::uint32_t taken_as_doubles(const std::vector<glapi::ActiveAttribute>& attributes) {
+    std::uint32_t out = 0;
+    for (const glapi::ActiveAttribute& attribute : attributes) {
+        const auto* type = glapi::find_uniform_type(attribute.type);
+        if (type == nullptr || type->base != glapi::UniformBase::double_real || attribute.location < 0) continue;
+        const std::uint64_t locations = std::uint64_t{attribute.size} * type->columns;
+        for (std::uint64_t i = 0; i < locations && static_cast<std::uint64_t>(attribute.location) + i < 32; ++i)
+            out |= 1u << (static_cast<unsigned>(attribute.location) + i);
+    }
+    return out;
+}
+
+}  // namespace
+
 std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition, glapi::ProgramReflection reflection) {
     auto made = std::make_unique<Executable>();
     made->capture_mode = definition.feedback.mode;
@@ -117,6 +134,7 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
     made->counter_buffers = std::move(reflection.counter_buffers);
     made->group_size = reflection.group_size;
     made->attributes = std::move(reflection.attributes);
+    made->double_attributes_ = taken_as_doubles(made->attributes);
     made->outputs = std::move(reflection.outputs);
     made->captured = std::move(reflection.captured);
     made->geometry = reflection.geometry;
@@ -320,7 +338,10 @@ std::unique_ptr<Executable> Executable::combine(const std::vector<std::shared_pt
         if (part.tessellation.exists()) made->tessellation = part.tessellation;
         if (made->captured.empty()) made->captured = part.captured, made->capture_mode = part.capture_mode;
         if (part.computes()) made->group_size = part.group_size;
-        if ((part.stages & 1) != 0) made->attributes = part.attributes;
+        if ((part.stages & 1) != 0) {
+            made->attributes = part.attributes;
+            made->double_attributes_ = part.double_attributes_;
+        }
     }
     return made;
 }

@@ -119,6 +119,8 @@ public:
     /// Whether it counts vertices or primitives by itself (gl_VertexID, gl_PrimitiveID), so that they must be drawn
     /// with their own numbers.
     bool reads_numbers() const { return reads_numbers_; }
+    /// The generic attributes that its vertex shader takes as doubles, a bit for each.
+    std::uint32_t double_attributes() const { return double_attributes_; }
     /// The location of the attribute that the position is a function of; -1: that is not known. 0 is also gl_Vertex.
     GLint position_attribute() const { return position_attribute_; }
     /// How the position is made of it.
@@ -193,6 +195,7 @@ private:
     bool samplers_conflict_ = false;
     bool samples_buffers_ = false, has_images_ = false;
     bool reads_numbers_ = false;
+    std::uint32_t double_attributes_ = 0;
     glapi::LinkedPosition position_;
     GLint position_attribute_ = -1;
 };

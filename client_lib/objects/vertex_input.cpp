@@ -24,6 +24,7 @@ VertexInput::VertexInput(ClientName own_id, glstate::VertexInputDefinition defin
         const glstate::InputArray& array = definition_.arrays[i];
         inline_bytes_ += 1 + sizeof(float) * static_cast<std::uint64_t>(glstate::components(array.size));
         if (!positions_ && holds_positions(array)) positions_ = i;
+        has_doubles_ = has_doubles_ || array.reaches_as == glstate::kAsDoubles;
     }
 }
 

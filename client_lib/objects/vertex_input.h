@@ -82,6 +82,8 @@ public:
         if (!settled()) settle();
         return facts_;
     }
+    /// Whether a shader takes doubles from it, which no block of vertices has.
+    bool has_doubles() const { return has_doubles_; }
     /// Null: none.
     const Buffer* indices() const { return definition_.indices ? buffers_.back().get() : nullptr; }
     const std::shared_ptr<Buffer>& shared_indices() const { return buffers_.back(); }
@@ -139,7 +141,8 @@ private:
     glstate::VertexInputDefinition definition_;
     std::vector<std::shared_ptr<Buffer>> buffers_;
     std::optional<std::size_t> positions_;  ///< among the arrays
-    std::uint64_t inline_bytes_ = 0;        ///< what one element takes in a block of geometry
+    bool has_doubles_ = false;
+    std::uint64_t inline_bytes_ = 0;  ///< what one element takes in a block of geometry
     std::uint64_t stamp_ = next_stamp();
     std::unordered_map<DrawnRange, RangeBounds, RangeHash> ranges_;
     std::pair<const DrawnRange, RangeBounds>* latest_ = nullptr;  ///< the range asked for last; most have only one

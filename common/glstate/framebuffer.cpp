@@ -30,6 +30,14 @@ bool plausible(const FramebufferAttachment& attachment, std::bitset<kAttachmentP
     return word->has_images() && attachment.layer >= 0 && attachment.layer < kMostLayers;
 }
 
+bool plausible(const FramebufferDefaults& defaults) {
+    return defaults.width <= kMostDefaultSize && defaults.height <= kMostDefaultSize &&
+           defaults.layers <= kMostDefaultLayers && defaults.samples <= kMostDefaultSamples &&
+           defaults.fixed_places <= 1;
+}
+
+constexpr std::size_t kDefaultWords = sizeof(FramebufferDefaults) / sizeof(std::uint32_t);
+
 }  // namespace
 
 std::optional<unsigned> attachment_place(GLenum point) {
@@ -46,10 +54,11 @@ GLenum attachment_point(unsigned place) {
 
 std::vector<std::byte> encode(const FramebufferDefinition& definition) {
     const std::size_t attachments = definition.attachments.size() * sizeof(FramebufferAttachment);
-    std::array<std::uint32_t, kColorAttachments + 2> head{};
+    std::array<std::uint32_t, kColorAttachments + 2 + kDefaultWords> head{};
     std::ranges::copy(definition.draw_buffers, head.begin());
     head[kColorAttachments] = definition.read_buffer;
-    head[kColorAttachments + 1] = static_cast<std::uint32_t>(definition.attachments.size());
+    std::memcpy(&head[kColorAttachments + 1], &definition.defaults, sizeof definition.defaults);
+    head.back() = static_cast<std::uint32_t>(definition.attachments.size());
     std::vector<std::byte> out(sizeof head + attachments);
     std::memcpy(out.data(), head.data(), sizeof head);
     if (attachments != 0) std::memcpy(out.data() + sizeof head, definition.attachments.data(), attachments);
@@ -61,9 +70,14 @@ std::optional<FramebufferDefinition> decode_framebuffer(std::span<const std::byt
     FramebufferDefinition out;
     for (GLenum& buffer : out.draw_buffers) buffer = in.get<std::uint32_t>();
     out.read_buffer = in.get<std::uint32_t>();
+    FramebufferDefaults& defaults = out.defaults;
+    for (std::uint32_t* word :
+         {&defaults.width, &defaults.height, &defaults.layers, &defaults.samples, &defaults.fixed_places})
+        *word = in.get<std::uint32_t>();
     const std::size_t count = in.get<std::uint32_t>();
-    if (!in.ok() || !std::ranges::all_of(out.draw_buffers, names_color) || !names_color(out.read_buffer) ||
-        count > kAttachmentPoints || in.remaining() != count * sizeof(FramebufferAttachment))
+    if (!in.ok() || !plausible(defaults) || !std::ranges::all_of(out.draw_buffers, names_color) ||
+        !names_color(out.read_buffer) || count > kAttachmentPoints ||
+        in.remaining() != count * sizeof(FramebufferAttachment))
         return std::nullopt;
     std::bitset<kAttachmentPoints> taken;
     for (std::size_t i = 0; i < count; ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A framebuffer object as it travels (wire.toml, Framebuffer): which images it draws to and reads from (OpenGL 4.6,
-// section 9.2). What travels is the draw buffers, the read buffer, the number of attachments, and five words for each.
-// Pure.
+// section 9.2). What travels is the draw buffers, the read buffer, what it is without attachments, the number of
+// attachments, and five words for each. Pure.
 #pragma once
 
 #include <array>
@@ -40,9 +40,19 @@ struct FramebufferAttachment {
 };
 static_assert(sizeof(FramebufferAttachment) == 5 * sizeof(std::uint32_t));
 
+/// What it is while nothing is attached (OpenGL 4.3, 9.2.1); a width or height of 0: nothing.
+struct FramebufferDefaults {
+    std::uint32_t width = 0, height = 0, layers = 0, samples = 0;
+    std::uint32_t fixed_places = 0;  ///< of the samples: 1, the same in all pixels
+    bool operator==(const FramebufferDefaults&) const = default;
+};
+static_assert(sizeof(FramebufferDefaults) == 5 * sizeof(std::uint32_t));
+inline constexpr std::uint32_t kMostDefaultSize = 1 << 14, kMostDefaultLayers = 1 << 11, kMostDefaultSamples = 32;
+
 struct FramebufferDefinition {
     std::array<GLenum, kColorAttachments> draw_buffers{GL_COLOR_ATTACHMENT0};  ///< by fragment colour
     GLenum read_buffer = GL_COLOR_ATTACHMENT0;
+    FramebufferDefaults defaults;
     std::vector<FramebufferAttachment> attachments;  ///< at most one for each point
     bool operator==(const FramebufferDefinition&) const = default;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/glapi/primitive.h"
 
@@ -25,7 +26,7 @@ WindowVertex to_window(const Projection& p, __m128 clip) {
     _mm_storeu_ps(v.clip.data(), clip);
     v.in_front = v.clip[3] > kSmallestW;
     v.x = p.viewport[0] + (v.clip[0] / v.clip[3] + 1) * 0.5f * p.viewport[2];
-    v.y = p.viewport[1] + (v.clip[1] / v.clip[3] + 1) * 0.5f * p.viewport[3];
+    v.y = p.viewport[1] + (p.y_up * v.clip[1] / v.clip[3] + 1) * 0.5f * p.viewport[3];
     return v;
 }
 
@@ -82,6 +83,8 @@ Projection make_projection(const State& state) {
     const auto& v = state.window.viewport;
     const float viewport[4] = {v.x, v.y, v.width, v.height};
     std::copy_n(viewport, 4, p.viewport);
+    p.y_up = state.transform.clip_control.origin == GL_LOWER_LEFT ? 1.0f : -1.0f;
+    p.near_is_zero = state.transform.clip_control.depth == GL_ZERO_TO_ONE;
     const auto& lp = state.line_point;
     const bool attenuated = lp.point_distance_attenuation != glstate::Vec3{1, 0, 0};
     const float point = attenuated || lp.program_point_size ? lp.point_size_max : lp.point_size;
@@ -152,6 +155,7 @@ std::optional<PixelRect> rect_in_front(const Projection& p, const ClipCorners& c
     const auto pixel = [&](int axis, float device) {
         return p.viewport[axis] + (device + 1) * 0.5f * p.viewport[2 + axis];
     };
+    if (p.y_up < 0) low[1] = -std::exchange(high[1], -low[1]);
     return PixelRect{pixel(0, low[0]) - p.margin, pixel(1, low[1]) - p.margin, pixel(0, high[0]) + p.margin,
                      pixel(1, high[1]) + p.margin};
 }
@@ -245,7 +249,9 @@ std::optional<PixelRect> hull_rect(const Projection& p, std::span<const WindowVe
         const float slack = largest * kRounding;
         rect.reset();
         if (p.near_plane)
-            rect = clipped_rect(p, vertices, [&](const WindowVertex& v) { return v.clip[2] + v.clip[3] + slack; });
+            rect = clipped_rect(p, vertices, [&](const WindowVertex& v) {
+                return v.clip[2] + (p.near_is_zero ? 0.0f : v.clip[3]) + slack;
+            });
         if (!rect) rect = clipped_rect(p, vertices, [](const WindowVertex& v) { return v.clip[3] - 2 * kSmallestW; });
         if (!rect) return std::nullopt;
     }

@@ -29,9 +29,11 @@ struct Projection {
     float viewport[4]{};  ///< x, y, width, height
     float margin = 1;     ///< pixels: the most of the reaches
     Reaches reaches;
-    bool near_plane = true;  ///< clips; not while depths are clamped
-    bool by_shader = false;  ///< which rounds in an order of its own, so that what it makes lies about there
-    Mat4 sizes{};            ///< if by_shader: as of glapi::PositionTransform
+    bool near_plane = true;     ///< clips; not while depths are clamped
+    bool near_is_zero = false;  ///< it is where z is 0, not where z is -w (glClipControl)
+    float y_up = 1;             ///< -1: the window's y goes down while that of clip space goes up (glClipControl)
+    bool by_shader = false;     ///< which rounds in an order of its own, so that what it makes lies about there
+    Mat4 sizes{};               ///< if by_shader: as of glapi::PositionTransform
 };
 
 Projection make_projection(const State& state);

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "common/wire/operand_reader.h"
+#include "gen/glstate/state.gen.h"
 
 namespace wall::glstate {
 namespace {
@@ -16,14 +17,23 @@ bool is_integer(GLenum type) { return type >= GL_BYTE && type <= GL_UNSIGNED_INT
 
 bool has_plausible_size(const InputArray& array) {
     if (array.size == GL_BGRA) return array.type == GL_UNSIGNED_BYTE || is_packed(array.type);
+    if (array.type == GL_UNSIGNED_INT_10F_11F_11F_REV) return array.size == 3;
     return array.size >= 1 && array.size <= kMostComponents;
+}
+
+/// Fixed function has no doubles.
+bool is_generic(std::uint32_t place) {
+    const auto first = static_cast<std::uint32_t>(place_of(Attribute::vertex_attrib));
+    return place >= first && place - first < el::attrib_array::count;
 }
 
 /// Each place may have one array.
 bool plausible(const InputArray& array, std::bitset<kInputPlaces>& taken) {
     if (array.place >= kInputPlaces || taken[array.place]) return false;
     taken.set(array.place);
-    if (array.normalized > 1 || array.integer > 1 || (array.integer != 0 && !is_integer(array.type))) return false;
+    if (array.normalized > 1 || array.reaches_as > kAsDoubles) return false;
+    if (array.reaches_as == kAsIntegers && !is_integer(array.type)) return false;
+    if (array.reaches_as == kAsDoubles && (array.type != GL_DOUBLE || !is_generic(array.place))) return false;
     return array.buffer && array.stride >= 0 && component_bytes(array.type) != 0 && has_plausible_size(array);
 }
 
@@ -47,6 +57,7 @@ std::size_t component_bytes(GLenum type) {
         case GL_UNSIGNED_INT:
         case GL_INT_2_10_10_10_REV:
         case GL_UNSIGNED_INT_2_10_10_10_REV:
+        case GL_UNSIGNED_INT_10F_11F_11F_REV:
         case GL_FIXED:
         case GL_FLOAT: return 4;
         case GL_DOUBLE: return 8;

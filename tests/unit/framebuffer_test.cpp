@@ -11,6 +11,7 @@ FramebufferDefinition some_framebuffer() {
     FramebufferDefinition out;
     out.draw_buffers = {GL_COLOR_ATTACHMENT1, GL_NONE, GL_COLOR_ATTACHMENT0};
     out.read_buffer = GL_COLOR_ATTACHMENT1;
+    out.defaults = {64, 32, 3, 4, 1};
     out.attachments = {{GL_COLOR_ATTACHMENT0, ClientName(7), GL_TEXTURE_2D, 3, 0},
                        {GL_COLOR_ATTACHMENT1, ClientName(8), GL_TEXTURE_3D, 0, 5},
                        {GL_DEPTH_ATTACHMENT, ClientName(9), GL_RENDERBUFFER, 0, 0},
@@ -46,6 +47,9 @@ TEST(Framebuffer, RefusesWhatNoCommandCanSay) {
     EXPECT_TRUE(refused([](auto& f) { f.attachments[0].level = -1; }));
     EXPECT_TRUE(refused([](auto& f) { f.attachments[1].layer = -2; }));
     EXPECT_TRUE(refused([](auto& f) { f.attachments[2].level = 1; })) << "of a renderbuffer";
+    EXPECT_TRUE(refused([](auto& f) { f.defaults.width = kMostDefaultSize + 1; }));
+    EXPECT_TRUE(refused([](auto& f) { f.defaults.samples = kMostDefaultSamples + 1; }));
+    EXPECT_TRUE(refused([](auto& f) { f.defaults.fixed_places = 2; }));
     EXPECT_FALSE(refused([](auto&) {}));
 }
 

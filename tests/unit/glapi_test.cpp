@@ -120,9 +120,9 @@ struct HandlerByGroup : glapi::Handler {
         explicit Surface(glapi::Refusal& all) : refusal(all) {}
         void Swap(SurfaceId, std::uint32_t) { refusal.refuse("not now"); }
     } surface{*this};
-    glapi::NullHandler draw, array_draw, instanced_draw, captured_draw, buffer, capture, capture_end, vertex_input,
-        draw_pieces, renderbuffer, framebuffer, sampler, texture_buffer, texture_drawn, blit, read, object, texture,
-        run, program, pipeline, subroutine, storage, dispatch, query, map, sync;
+    glapi::NullHandler draw, array_draw, instanced_draw, captured_draw, texture_barrier, buffer, capture, capture_end,
+        vertex_input, draw_pieces, renderbuffer, framebuffer, sampler, texture_buffer, texture_drawn, blit, read,
+        object, texture, run, program, pipeline, subroutine, storage, dispatch, query, map, sync;
 
     std::uint64_t begin_block(std::uint64_t tiles, std::size_t) { return tiles; }
     void begin_tile(unsigned) {}

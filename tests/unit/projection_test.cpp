@@ -33,6 +33,21 @@ TEST(Projection, ABoxBehindTheEyeIsNowhere) {
     EXPECT_FALSE(rect->overlaps({-1e9f, -1e9f, 1e9f, 1e9f}));
 }
 
+TEST(Projection, ClipSpaceMayBeUpsideDown) {
+    Projection p = perspective(1, 100);
+    const geom::Box box = box_of({-0.5f, 0.25f, -10}, {-0.25f, 0.5f, -2});
+    const auto upright = project(p, box);
+    p.y_up = -1;
+    const auto turned = project(p, box);
+    ASSERT_TRUE(upright && turned);
+    EXPECT_NEAR(turned->y0, 100 - upright->y1, 0.01);
+    EXPECT_NEAR(turned->y1, 100 - upright->y0, 0.01);
+    EXPECT_NEAR(turned->x0, upright->x0, 0.01);
+    const auto through = project(p, box_of({-0.5f, 0.25f, -10}, {-0.25f, 0.5f, 10}));
+    ASSERT_TRUE(through.has_value());
+    EXPECT_NEAR(through->y1, 50 - 1.25 + 1, 0.01);
+}
+
 TEST(Projection, ABoxThroughTheNearPlaneIsBoundedByWhatIsInFront) {
     const auto rect = project(perspective(1, 100), box_of({-0.5f, 0.25f, -10}, {-0.25f, 0.5f, 10}));
     ASSERT_TRUE(rect.has_value());

@@ -44,7 +44,11 @@ TEST(VertexInput, RefusesWhatNoCommandCanSay) {
     EXPECT_TRUE(refused([](InputArray& a) { a.size = 5; }));
     EXPECT_TRUE(refused([](InputArray& a) { a.size = GL_BGRA, a.type = GL_SHORT; }));
     EXPECT_TRUE(refused([](InputArray& a) { a.normalized = 2; }));
-    EXPECT_TRUE(refused([](InputArray& a) { a.integer = 1, a.type = GL_FLOAT; }));
+    EXPECT_TRUE(refused([](InputArray& a) { a.reaches_as = kAsIntegers, a.type = GL_FLOAT; }));
+    EXPECT_TRUE(refused([](InputArray& a) { a.reaches_as = kAsDoubles, a.type = GL_FLOAT; }));
+    EXPECT_TRUE(refused([](InputArray& a) { a.reaches_as = kAsDoubles, a.type = GL_DOUBLE; })) << "not a generic one";
+    EXPECT_TRUE(refused([](InputArray& a) { a.reaches_as = kAsDoubles + 1; }));
+    EXPECT_TRUE(refused([](InputArray& a) { a.type = GL_UNSIGNED_INT_10F_11F_11F_REV, a.size = 4; }));
     EXPECT_FALSE(refused([](InputArray&) {}));
 }
 

@@ -42,6 +42,7 @@
 #include "tileserver/execute/stream_commands.h"
 #include "tileserver/execute/surface_commands.h"
 #include "tileserver/execute/sync_commands.h"
+#include "tileserver/execute/texture_barrier_commands.h"
 #include "tileserver/execute/texture_buffer_commands.h"
 #include "tileserver/execute/texture_commands.h"
 #include "tileserver/execute/texture_drawn_commands.h"
@@ -100,6 +101,7 @@ public:
     SamplerCommands sampler{execution_};
     TextureBufferCommands texture_buffer{execution_};
     BlitCommands blit{execution_, geometry.block()};
+    TextureBarrierCommands texture_barrier{execution_, geometry.block()};
     QueryCommands query{execution_};
     MapCommands map{execution_};
     SyncCommands sync{execution_};

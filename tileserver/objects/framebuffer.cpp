@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 #include "tileserver/objects/renderbuffer.h"
 #include "tileserver/objects/texture.h"
@@ -35,6 +36,7 @@ Result<void> Framebuffer::update(const ObjectTable& objects, SharedContents& sha
     gl_.NamedFramebufferDrawBuffers(framebuffer_, static_cast<GLsizei>(definition_.draw_buffers.size()),
                                     definition_.draw_buffers.data());
     gl_.NamedFramebufferReadBuffer(framebuffer_, definition_.read_buffer);
+    set_defaults();
     complete_ = gl_.CheckNamedFramebufferStatus(framebuffer_, GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
     find_size();
     driver_.forget_target();
@@ -42,6 +44,19 @@ Result<void> Framebuffer::update(const ObjectTable& objects, SharedContents& sha
     textures_ = objects.version(ObjectKind::texture);
     renderbuffers_ = objects.version(ObjectKind::renderbuffer);
     return {};
+}
+
+void Framebuffer::set_defaults() {
+    const glstate::FramebufferDefaults& defaults = definition_.defaults;
+    const std::array<std::pair<GLenum, std::uint32_t>, 5> values{{
+        {GL_FRAMEBUFFER_DEFAULT_WIDTH, defaults.width},
+        {GL_FRAMEBUFFER_DEFAULT_HEIGHT, defaults.height},
+        {GL_FRAMEBUFFER_DEFAULT_LAYERS, defaults.layers},
+        {GL_FRAMEBUFFER_DEFAULT_SAMPLES, defaults.samples},
+        {GL_FRAMEBUFFER_DEFAULT_FIXED_SAMPLE_LOCATIONS, defaults.fixed_places},
+    }};
+    for (const auto& [word, value] : values)
+        gl_.NamedFramebufferParameteri(framebuffer_, word, static_cast<GLint>(value));
 }
 
 void Framebuffer::detach_all() {
@@ -106,6 +121,8 @@ void Framebuffer::find_size() {
         }
         size = {std::min(size[0], image[0]), std::min(size[1], image[1])};
     }
+    if (definition_.attachments.empty())
+        size = {static_cast<GLint>(definition_.defaults.width), static_cast<GLint>(definition_.defaults.height)};
     const bool any = size[0] != std::numeric_limits<GLint>::max();
     geometry_ = any ? plain_geometry(size[0], size[1]) : LayerGeometry{};
     complete_ = complete_ && any && size[0] > 0 && size[1] > 0;

@@ -28,6 +28,7 @@ public:
     void bind(GLenum draw_buffer, GLenum read_buffer) override;
 
 private:
+    void set_defaults();
     void detach_all();
     Result<void> attach(const glstate::FramebufferAttachment& attachment, const ObjectTable& objects,
                         SharedContents& shared);

@@ -48,7 +48,10 @@ bool define_numbered_array(const Gl& gl, const InputArray& array, const void* at
     if (generic < 0) return false;
     const auto index = static_cast<GLuint>(generic);
     gl.EnableVertexAttribArray(index);
-    if (array.integer != 0) gl.VertexAttribIPointer(index, array.size, array.type, array.stride, at);
+    if (array.reaches_as == glstate::kAsIntegers)
+        gl.VertexAttribIPointer(index, array.size, array.type, array.stride, at);
+    else if (array.reaches_as == glstate::kAsDoubles)
+        gl.VertexAttribLPointer(index, array.size, array.type, array.stride, at);
     else gl.VertexAttribPointer(index, array.size, array.type, array.normalized != 0, array.stride, at);
     if (array.divisor != 0) gl.VertexAttribDivisor(index, array.divisor);
     return true;

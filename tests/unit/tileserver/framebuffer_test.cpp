@@ -95,6 +95,42 @@ TEST_F(FramebufferTest, WhatIsDrawnIsReadAndSampled) {
     EXPECT_EQ(at(kSize - 3, 3), kGreen);
 }
 
+TEST_F(FramebufferTest, NothingNeedBeAttached) {
+    Batch batch;
+    glstate::FramebufferDefinition definition;
+    definition.defaults = {8, 8, 0, 0, 0};
+    pack::Framebuffer(batch.buffer(), kFramebuffer, encode(definition));
+    pack::BindTargets(batch.buffer(), kFramebuffer, kFramebuffer, 1);
+    batch.block(1, [](auto& b) {
+        pack::Begin(b, GL_POINTS);
+        pack::Vertex2f(b, 0, 0);
+        pack::End(b);
+        pack::TextureBarrier(b);
+    });
+    session_->expect_run(batch);
+    EXPECT_THAT(refusal([](wire::PackBuffer& b) {
+                    glstate::FramebufferDefinition absurd;
+                    absurd.defaults.width = ~std::uint32_t{0};
+                    pack::Framebuffer(b, kFramebuffer, encode(absurd));
+                }),
+                ::testing::Not(::testing::IsEmpty()));
+}
+
+TEST_F(FramebufferTest, ClipSpaceMayEndAtTheWindowsUpperEdge) {
+    Batch batch;
+    clear(batch, {0, 1, 0, 1});
+    batch.set<el::clip_control>({GL_UPPER_LEFT, GL_ZERO_TO_ONE}).set<el::color>({1, 0, 0, 1});
+    batch.block(1, [](auto& b) {
+        pack::Begin(b, GL_QUADS);
+        for (const auto& [x, y] : {std::pair{-1.f, -1.f}, {0.f, -1.f}, {0.f, 0.f}, {-1.f, 0.f}})
+            pack::Vertex2f(b, x, y);
+        pack::End(b);
+    });
+    session_->expect_run(batch);
+    EXPECT_EQ(at(3, kSize - 3), kRed);
+    EXPECT_EQ(at(3, 3), kGreen);
+}
+
 TEST_F(FramebufferTest, TheWindowIsLeftAlone) {
     Batch window;
     clear(window, {0, 1, 0, 1});

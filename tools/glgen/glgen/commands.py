@@ -8,8 +8,11 @@ from . import data
 
 CLASSES = ("primitive", "state", "object", "query", "special")
 LISTED = {"primitive": True, "state": True, "special": True, "object": False, "query": False}
-WAYS = ("hand", "state", "param", "caps", "convert", "as", "later")
-FLAGS = {"inside", "list", "nolist", "record", "hot", "norm", "bits", "packed"}
+WAYS = ("hand", "state", "param", "caps", "convert", "as", "named", "later")
+# named: which object is bound while it is done -> the class of client_lib/context/named_objects.h that binds it
+NAMED = {"buffer": "NamedBuffer", "texture": "NamedTexture", "image": "NamedImage", "framebuffer": "NamedFramebuffer",
+         "renderbuffer": "NamedRenderbuffer", "array": "NamedVertexArray"}
+FLAGS = {"inside", "list", "nolist", "record", "hot", "norm", "bits", "packed"} | NAMED.keys()
 
 
 @dataclass
@@ -17,7 +20,7 @@ class Implementation:
     command: object         # registry.Command
     cls: str                # one of CLASSES
     way: str                # one of WAYS
-    target: str = ""        # convert, as: short name of the command that does it
+    target: str = ""        # convert, as, named: short name of the command that does it
     args: tuple = ()        # as: its arguments
     flags: frozenset = frozenset()
     explicit: bool = True   # has a line
@@ -34,6 +37,13 @@ class Implementation:
     @property
     def in_list(self):
         return "list" in self.flags or (LISTED[self.cls] and "nolist" not in self.flags)
+
+    @property
+    def binder(self):
+        """named: the class that binds its object."""
+        found = [NAMED[f] for f in self.flags if f in NAMED]
+        assert len(found) == 1, f"{self.place}: {self.name}: one of {', '.join(NAMED)} is named"
+        return found[0]
 
     @property
     def status(self):

@@ -4,7 +4,8 @@
 import textwrap
 
 _HOW = {"hand": "by hand", "state": "state element", "param": "state parameters", "caps": "state words",
-        "convert": "as {target}, converted", "as": "as {target}", "later": ""}
+        "convert": "as {target}, converted", "as": "as {target}", "named": "as {target}, of a named object",
+        "later": ""}
 
 
 def coverage(commands, model, ops, es):

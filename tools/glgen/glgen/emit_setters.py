@@ -10,8 +10,8 @@ def setters_source(commands, model, registry):
     out = [header("proto/gl/state.toml and proto/gl/commands.toml",
                   "Commands that set one element of the state, or read parameters.", [], pragma=False),
            '#include <array>\n\n#include "client_lib/context/context.h"\n'
-           '#include "client_lib/context/indexed_values.h"\n#include "client_lib/context/param_commands.h"\n'
-           '#include "gen/client_lib/api.gen.h"\n\n'
+           '#include "client_lib/context/indexed_values.h"\n#include "client_lib/context/named_objects.h"\n'
+           '#include "client_lib/context/param_commands.h"\n#include "gen/client_lib/api.gen.h"\n\n'
            "namespace wall::client {\n\nnamespace el = glstate::el;\nusing namespace glstate;  // value types\n\n"
            "namespace {\n\n"]
     body = _body(commands, model, registry)
@@ -41,6 +41,8 @@ def _body(commands, model, registry):
             out.append(_param_command(i, commands))
         elif i.way == "caps":
             out.append(_caps_command(i))
+        elif i.way == "named":
+            out.append(_named_command(i, registry))
     out.append("}  // namespace api\n}  // namespace wall::client\n")
     return "".join(out)
 
@@ -204,6 +206,19 @@ def _param_command(i, commands):
     if form.endswith("v"):
         return f"void {i.name}({declared}) {{\n    {give}{value});\n}}\n"
     return f"void {i.name}({declared}) {{\n    {give}&{value});\n}}\n"
+
+
+def _named_command(i, registry):
+    """The object of its first parameter is bound, the command about what is bound done, and all bound as before."""
+    declared = ", ".join(["Context& c"] + [f"{p.type} {p.name}".replace("* ", "*") for p in i.command.params])
+    names = [p.name for p in i.command.params]
+    target = registry.commands["gl" + i.target]
+    with_target = len(target.params) == len(names)
+    assert with_target or len(target.params) == len(names) - 1, f"{i.place}: {i.target} takes other parameters"
+    args = ", ".join(["c"] + (["named.target()"] if with_target else []) + names[1:])
+    give, none = ("", "return;") if i.command.returns == "void" else ("return ", "return {};")
+    return (f"{i.command.returns} {i.name}({declared}) {{\n    const {i.binder} named(c, {names[0]});\n"
+            f"    if (!named) {none}\n    {give}{i.target}({args});\n}}\n")
 
 
 def _caps_command(i):
