@@ -5,10 +5,9 @@
 #include <array>
 #include <cstdlib>
 
-#include "client_lib/context/forget_objects.h"
 #include "client_lib/context/framebuffer_binding.h"
-#include "client_lib/context/readback.h"
-#include "client_lib/context/texture_binding.h"
+#include "client_lib/context/gathered_window.h"
+#include "client_lib/objects/share_group.h"
 
 namespace wall::client::api {
 namespace {
@@ -93,70 +92,8 @@ GLenum es_error(Context& c, const Corners& from, const Corners& to, GLbitfield m
     return depths_differ(use, mask) ? GL_INVALID_OPERATION : GL_NO_ERROR;
 }
 
-/// A part of the window as a framebuffer object of its own, while it lives the one that is read from.
-class GatheredWindow {
-public:
-    GatheredWindow(Context& c, const PixelBox& box, GLbitfield mask) : c_(c) {
-        const auto made = std::make_shared<Framebuffer>(0);
-        if (mask & GL_COLOR_BUFFER_BIT) attach(*made, 0, box, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE);
-        if (mask & (GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT)) attach_depth(*made, box);
-        {
-            std::lock_guard lock(c_.share().mutex);
-            c_.share().by_id[made->id] = made;
-        }
-        bind_framebuffer(c_, GL_READ_FRAMEBUFFER, made);
-    }
-    ~GatheredWindow() {
-        const auto made = c_.framebuffers->read;
-        bind_framebuffer(c_, GL_READ_FRAMEBUFFER, nullptr);
-        c_.forget_object(made->id);
-        {
-            std::lock_guard lock(c_.share().mutex);
-            c_.share().by_id.erase(made->id);
-        }
-        for (const auto& texture : textures_) forget_texture(c_, texture);
-    }
-    GatheredWindow(const GatheredWindow&) = delete;
-
-private:
-    void attach_depth(Framebuffer& to, const PixelBox& box) {
-        const bool stencil = has_stencil(c_, true);
-        if (stencil)
-            attach(to, glstate::kColorAttachments, box, GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8);
-        else attach(to, glstate::kColorAttachments, box, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT);
-        if (stencil) to.attach(glstate::kColorAttachments + 1, to.at(glstate::kColorAttachments));
-    }
-    void attach(Framebuffer& to, unsigned place, const PixelBox& box, GLint internal_format, GLenum format,
-                GLenum type) {
-        auto pixels = gather_plain(c_, box, format, type, "glBlitFramebuffer");
-        std::lock_guard lock(c_.share().mutex);
-        const auto texture = make_texture(c_, 0, glapi::TextureTarget::t2d);
-        TextureLevel& level = texture->level_at(0, 0);
-        level.internal_format = internal_format;
-        level.width = box.width;
-        level.height = box.height;
-        level.depth = 1;
-        level.format = level.data_format = format;
-        level.type = level.data_type = type;
-        level.content = LevelContent::stored;
-        level.pixels = std::move(pixels);
-        level.stamp = next_stamp();
-        touch(c_.share(), *texture);
-        to.attach(place, {.texture = texture, .target = GL_TEXTURE_2D});
-        textures_.push_back(texture);
-    }
-
-    Context& c_;
-    std::vector<std::shared_ptr<Texture>> textures_;
-};
-
 void blit(Context& c, const Corners& from, const Corners& to, GLbitfield mask, GLenum filter) {
-    constexpr float kMargin = 1;  // where a scaled window rounds
-    const PixelBox box = to.box();
-    const PixelRect touched{static_cast<float>(box.x) - kMargin, static_cast<float>(box.y) - kMargin,
-                            static_cast<float>(box.x + box.width) + kMargin,
-                            static_cast<float>(box.y + box.height) + kMargin};
-    c.draw(touched, needs_of_clear(), [&](wire::PackBuffer& buffer) {
+    c.draw(touched_by_blit(to.box()), needs_of_clear(), [&](wire::PackBuffer& buffer) {
         glapi::pack::Blit(buffer, from.x0, from.y0, from.x1, from.y1, to.x0, to.y0, to.x1, to.y1, mask, filter);
     });
 }
@@ -183,7 +120,7 @@ void BlitFramebuffer(Context& c, GLint from_x0, GLint from_y0, GLint from_x1, GL
     // What lies outside of the window is not written; outside of what was gathered of it neither.
     const PixelBox inside = clip_to_window(c, from.box());
     if (inside.empty()) return;
-    const GatheredWindow gathered(c, inside, mask);
+    const GatheredWindow gathered(c, inside, mask, "glBlitFramebuffer");
     blit(c, {from.x0 - inside.x, from.y0 - inside.y, from.x1 - inside.x, from.y1 - inside.y}, to, mask, filter);
 }
 

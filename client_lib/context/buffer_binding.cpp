@@ -102,11 +102,11 @@ void add_named_by_bindings(const VertexBindings* bindings, std::vector<std::uint
 
 void add_named(const glstate::State& state, std::vector<std::uint32_t>& ids) {
     const auto& local = state.local;
-    ids.insert(ids.end(), {local.array_buffer, local.pixel_pack_buffer, local.pixel_unpack_buffer,
-                           local.copy_read_buffer, local.copy_write_buffer, local.bound_uniform_buffer,
-                           local.bound_feedback_buffer, local.bound_texture_buffer, local.draw_indirect_buffer,
-                           local.bound_storage_buffer, local.bound_counter_buffer, local.dispatch_indirect_buffer,
-                           local.query_buffer});
+    ids.insert(ids.end(),
+               {local.array_buffer, local.pixel_pack_buffer, local.pixel_unpack_buffer, local.copy_read_buffer,
+                local.copy_write_buffer, local.bound_uniform_buffer, local.bound_feedback_buffer,
+                local.bound_texture_buffer, local.draw_indirect_buffer, local.bound_storage_buffer,
+                local.bound_counter_buffer, local.dispatch_indirect_buffer, local.query_buffer});
     for (const glstate::BufferRange& range : state.shader_memory.storage_buffer) ids.push_back(range.buffer);
     for (const glstate::BufferRange& range : state.shader_memory.counter_buffer) ids.push_back(range.buffer);
     for (const glstate::BufferRange& range : local.feedback_buffer) ids.push_back(range.buffer);

@@ -135,6 +135,8 @@ public:
     const std::shared_ptr<ShareGroup>& share_pointer() const { return share_; }
     /// It is current without a surface: there is no framebuffer but those that the program makes.
     bool has_no_surface() const;
+    /// The window that is read from is the one that is drawn to.
+    bool reads_drawn_surface() const { return draw_ == read_; }
     /// What its commands draw to now, and what they read from.
     DrawTarget draw_target() const;
     DrawTarget read_target() const;

@@ -5,6 +5,7 @@
 #include "client_lib/context/capture_use.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/framebuffer_use.h"
+#include "client_lib/context/gathered_window.h"
 #include "client_lib/context/memory_use.h"
 #include "client_lib/context/select.h"
 #include "client_lib/context/shader_memory.h"
@@ -31,9 +32,7 @@ void Context::for_each_used(const std::function<void(const Object&)>& use) { cli
 /// All nodes must run all of it, once each; in tiles each would run its own part, and what lies over several twice.
 void Context::before_writing_draw() {
     if (!draw_ || framebuffers->draw || select->layer || !writes_memory(*this)) return;
-    if (draw_->whole) return;
-    flush_block();
-    if (!session_->draw_whole(*draw_))
+    if (!turn_whole(*this, *draw_))
         complain_once("shaders that write memory draw to a window of a parallel program: what they write may differ",
                       "shader writes");
 }

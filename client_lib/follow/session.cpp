@@ -154,8 +154,13 @@ void ClientSession::begin_frame(ClientSurface& surface) {
     surfaces_.begin_frame(surface);
 }
 
-bool ClientSession::draw_whole(ClientSurface& surface) {
-    return packing([&] { return surfaces_.draw_whole(surface); });
+Wholeness ClientSession::wholeness(const ClientSurface& surface) {
+    std::lock_guard lock(mutex_);
+    return surfaces_.wholeness(surface);
+}
+
+void ClientSession::draw_whole(ClientSurface& surface) {
+    packing([&] { surfaces_.draw_whole(surface); });
 }
 
 void ClientSession::swap(ContextId context, ClientSurface& surface) {

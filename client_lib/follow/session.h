@@ -42,8 +42,9 @@ public:
     /// Adopts what changed since the last frame: placements, nodes that came or went, the window's size. Called where
     /// a frame begins, so that culling and drawing of one frame agree on one layout.
     void begin_frame(ClientSurface& surface);
-    /// Before it is drawn to by what writes memory: every node draws all of it from now on. False: that cannot be.
-    bool draw_whole(ClientSurface& surface);
+    Wholeness wholeness(const ClientSurface& surface);
+    /// Every node draws all of it from now on; it may be so.
+    void draw_whole(ClientSurface& surface);
     /// Ends a frame on every node that shows the surface. `context`: the current one; 0: none.
     void swap(ContextId context, ClientSurface& surface);
 

@@ -21,6 +21,9 @@ struct HiddenPart;  // hidden_part.h
 /// Of a window: in a parallel program the same in all members, which open their windows in the same order; 0: too many.
 SurfaceId next_window_id();
 
+/// Whether every node draws all of a window: one node alone does so anyway, and of a parallel program's none can.
+enum class Wholeness : std::uint8_t { is, may_be, cannot_be };
+
 class ClientSurface {
 public:
     ClientSurface(SurfaceId own_id, SurfaceOptions own_options);

@@ -106,16 +106,17 @@ void Surfaces::lay_whole(ClientSurface& surface) {
         if (node->alive()) layout.layers.push_back(whole_window(layout.width, layout.height, node->index));
 }
 
-bool Surfaces::draw_whole(ClientSurface& surface) {
-    if (surface.whole) return true;
+Wholeness Surfaces::wholeness(const ClientSurface& surface) const {
+    if (surface.whole) return Wholeness::is;
     const auto alive = std::ranges::count_if(nodes_, [](const auto& node) { return node->alive(); });
-    const auto& layers = surface.layout.layers;
-    if (alive == 1 && layers.size() == 1 && !surface.hidden) return true;  // that one does
-    if (common(surface)) return false;
+    if (alive == 1 && surface.layout.layers.size() == 1 && !surface.hidden) return Wholeness::is;
+    return common(surface) ? Wholeness::cannot_be : Wholeness::may_be;
+}
+
+void Surfaces::draw_whole(ClientSurface& surface) {
     surface.whole = true;
     ++surface.layout.version;
     lay_whole(surface);
-    return true;
 }
 
 void Surfaces::place_off_wall() {

@@ -31,8 +31,9 @@ public:
     void take(const Placement& placement);
     /// Adopts what came, where a frame begins; also the window's size.
     void begin_frame(ClientSurface& surface);
-    /// Every node draws all of it from now on. False: it cannot be so, since a parallel program has it.
-    bool draw_whole(ClientSurface& surface);
+    Wholeness wholeness(const ClientSurface& surface) const;
+    /// Every node draws all of it from now on; it may be so.
+    void draw_whole(ClientSurface& surface);
     /// The same for surfaces that are between two frames.
     void adopt_placements();
     /// A node came or went: pixel buffers whose node is gone go to another one, and so do those that had none; so do

@@ -204,10 +204,6 @@ std::optional<GLuint> index_of(const Blocks& blocks, std::string_view name) {
 
 std::optional<GLuint> Executable::block_index_of(std::string_view name) const { return index_of(blocks, name); }
 
-std::optional<GLuint> Executable::storage_block_index_of(std::string_view name) const {
-    return index_of(storage_blocks, name);
-}
-
 const glapi::ActiveOutput* Executable::output_of(std::string_view text, GLint& element) const {
     const auto wanted = parse_element(text);
     if (!wanted) return nullptr;

@@ -133,14 +133,17 @@ class Played:
     def again(self, subject: Subject) -> tuple[Performance, Performance | None]:
         """Plays them a second time; between two steps of the iteration."""
         def play() -> tuple[Performance, Performance | None]:
-            return self._whole.play(subject), self._parts.play(subject) if self._parts else None
+            return self._whole.play(subject), self._play_moved(subject)
         return self._beside.submit(play).result()  # not beside another play: they have the displays in common
 
     def _play(self, subject: Subject) -> tuple[Performance, Performance | None]:
         plain = (None if self._keep else self._kept.find(subject)) or self._whole.play(subject)
         if self._keep:
             self._kept.keep(subject, plain)
-        return plain, self._parts.play(subject) if self._parts else None
+        return plain, self._play_moved(subject)
+
+    def _play_moved(self, subject: Subject) -> Performance | None:
+        return self._parts.play(subject) if self._parts and not subject.whole else None
 
 
 def whole_window(window: tuple[int, int]) -> list[Rect]:

@@ -28,7 +28,7 @@ class Compared(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
         self.reference, self.moved, self.given = performance(), performance(), performance()
 
-    def wrong(self, tiles="1x1", subject=Scene("it", 3, True, Path())):
+    def wrong(self, tiles="1x1", subject=Scene("it", 3, True, False, Path())):
         report, moved = Path(self.folder.name), None if tiles == "1x1" else self.moved
         outcomes = Comparison(subject, tiles, self.reference, moved, self.given, report).outcomes()
         return sorted((o.check.view, o.check.frame) for o in outcomes if not o.good)
@@ -203,7 +203,7 @@ class Subjects(unittest.TestCase):
 
 
 class Sampled(unittest.TestCase):
-    SUBJECTS = [*load_recordings()[:7], Scene("it", 3, True, Path())]
+    SUBJECTS = [*load_recordings()[:7], Scene("it", 3, True, False, Path())]
 
     def test_each_recording_is_in_one_sample_and_scenes_in_all(self):
         samples = [sample(self.SUBJECTS, f"{number}/3") for number in (1, 2, 3)]

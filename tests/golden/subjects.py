@@ -65,6 +65,7 @@ class Recording:
         return range(self.first, self.frames - 1)
 
     swaps = True
+    whole = False
 
     def argv(self) -> list[str]:
         """Replays it, with each frame written to standard output just before its swap. -b leaves out the glGetError
@@ -88,6 +89,7 @@ class Scene:
     name: str
     frames: int
     swaps: bool
+    whole: bool  # every node draws all of its window
     program: Path
 
     kind = "scene"
@@ -117,10 +119,11 @@ def load_recordings(path: Path = HERE / "recordings.toml") -> list[Recording]:
 
 
 def load_scenes(program: Path) -> list[Scene]:
-    """The program lists its scenes itself: a line `NAME FRAMES swaps|flushes` each."""
+    """The program lists its scenes itself: a line `NAME FRAMES swaps|flushes tiles|whole` each."""
     lines = subprocess.run([program, "--list"], check=True, capture_output=True, text=True).stdout.split("\n")
     words = [line.split() for line in lines if line]
-    return [Scene(name, int(frames), shows == "swaps", program) for name, frames, shows in words]
+    return [Scene(name, int(frames), shows == "swaps", drawn == "whole", program)
+            for name, frames, shows, drawn in words]
 
 
 def read_frame(stream: IO[bytes]) -> np.ndarray | None:

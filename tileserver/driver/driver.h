@@ -93,6 +93,12 @@ public:
     void bind_target(RenderTarget& target, glstate::State& state) {
         if (target_ != &target || mirror.ids[kWindow] != state.ids[kWindow]) bind_window(target, state);
     }
+    /// Whether bind_target(), bind_textures(), bind_samplers() and use_program(0) would find nothing to do.
+    bool has_bound(const RenderTarget& target, const glstate::State& state, const TextureBindings& textures,
+                   const SamplerBindings& samplers) const {
+        return target_ == &target && mirror.ids[kWindow] == state.ids[kWindow] && bound_textures_.id == textures.id &&
+               samplers_.stamp == samplers.stamp && program_ == 0 && pipeline_ == 0;
+    }
     /// Another framebuffer was bound, or a target is gone.
     void forget_target() { target_ = nullptr; }
     void bind_textures(const TextureBindings& wanted) {
@@ -180,9 +186,12 @@ public:
     }
     /// What is drawn now reads or writes memory at places that it addresses, until settle_memory().
     void touches_memory() { touches_memory_ = true; }
-    /// Whatever comes next sees what was written.
+    /// Whatever comes next sees what was written. (Mesa 22.3 gathers glBegin .. glEnd, and draws them before another
+    /// program is used, but not before a barrier.)
     void settle_memory() {
-        if (std::exchange(touches_memory_, false)) gl_.MemoryBarrier(GL_ALL_BARRIER_BITS);
+        if (!std::exchange(touches_memory_, false)) return;
+        use_program(0);
+        gl_.MemoryBarrier(GL_ALL_BARRIER_BITS);
     }
     /// The driver unbinds a deleted buffer by itself.
     void forget_buffer(GLuint buffer) {

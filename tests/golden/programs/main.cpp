@@ -3,7 +3,7 @@
 //   draws a scene and writes each frame to standard output as PNM, just before it is shown; lines of results go to
 //   standard error behind "= ". --pause waits for a line on standard input after each frame. --raw also appends each
 //   frame as RGBA bytes, bottom row first, to FILE. --read-from: frames before that one are not read.
-// golden_scenes --list                                     prints NAME FRAMES swaps|flushes of each scene.
+// golden_scenes --list                                     prints NAME FRAMES swaps|flushes tiles|whole of each scene.
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
@@ -128,7 +128,8 @@ int main(int argc, char** argv) {
     std::sort(all.begin(), all.end(), [](const Scene& a, const Scene& b) { return a.name < b.name; });
     if (options.list) {
         for (const Scene& scene : all)
-            std::printf("%s %d %s\n", scene.name.c_str(), scene.frames, swaps(scene) ? "swaps" : "flushes");
+            std::printf("%s %d %s %s\n", scene.name.c_str(), scene.frames, swaps(scene) ? "swaps" : "flushes",
+                        scene.needs.whole ? "whole" : "tiles");
         return 0;
     }
     const auto found = std::find_if(all.begin(), all.end(), [&](const Scene& s) { return s.name == options.scene; });

@@ -59,12 +59,17 @@ void say_words(const char* what, GLenum target, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) say("%s %zu: %u", what, i, words[i]);
 }
 
-/// The texture over all of the window.
+/// The texture over all of the window; moved a little, so that no pixel's centre lies between two texels.
 void show(GLuint texture) {
     glUseProgram(0);
     glBindTexture(GL_TEXTURE_2D, texture);
     glEnable(GL_TEXTURE_2D);
+    glMatrixMode(GL_TEXTURE);
+    glLoadIdentity();
+    glTranslatef(0.0003f, 0.0003f, 0);
     unit_square();
+    glLoadIdentity();
+    glMatrixMode(GL_MODELVIEW);
     glDisable(GL_TEXTURE_2D);
 }
 
@@ -202,7 +207,7 @@ SCENE(counted_fragments, 2) {
 }
 
 /// The same with fragments of the window, which depth hides in part; something was drawn before in the same frame.
-SCENE(window_fragments, 3) {
+SCENE(window_fragments, 3, {.whole = true}) {
     clear(0.1f, 0.2f, 0.1f);
     static GLuint program, counters, seen;
     if (frame == 0) {
@@ -212,11 +217,11 @@ SCENE(window_fragments, 3) {
                            "layout(binding = 0) uniform atomic_uint all;\n"
                            "layout(rgba8, binding = 0) writeonly uniform image2D seen; out vec4 color;\n"
                            "void main() { atomicCounterIncrement(all);\n"
-                           "  imageStore(seen, ivec2(gl_FragCoord.xy) * 256 / ivec2(400, 300),\n"
+                           "  imageStore(seen, ivec2(gl_FragCoord.xy),\n"
                            "             vec4(fract(gl_FragCoord.xy / 40.0), 0.5, 1.0));\n"
                            "  color = vec4(fract(gl_FragCoord.xy / 100.0), 0.3, 1.0); }"}});
         counters = buffer_of(GL_ATOMIC_COUNTER_BUFFER, {0});
-        seen = texture_of(GL_RGBA8);
+        seen = texture_of(GL_RGBA8, 400, 300);
         glBindImageTexture(0, seen, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
         glBindBufferBase(GL_ATOMIC_COUNTER_BUFFER, 0, counters);
     }

@@ -22,6 +22,8 @@ struct Needs {
     bool egl = false;
     bool es = false;  ///< a context of OpenGL ES 3.0, by EGL
     GLenum read = 0;  ///< buffer to read the frame from; 0: the one that is drawn to by default
+    /// Its shaders write memory while they draw to the window: a tile shows a part of what the whole window would.
+    bool whole = false;
 };
 
 struct Scene {

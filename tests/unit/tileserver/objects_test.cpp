@@ -449,7 +449,7 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
          [](Batch& b, ClientName id) { pack::Capture(b.buffer(), id, GL_POINTS, std::as_bytes(std::span(part))); }},
         {ObjectKind::pipeline,
          [](Batch& b, ClientName id) {
-             static constexpr std::array<std::uint32_t, 5> kNone{};
+             static constexpr std::array<std::uint32_t, std::size(glapi::kShaderStages)> kNone{};
              pack::Pipeline(b.buffer(), id, std::as_bytes(std::span(kNone)));
          }},
     }};

@@ -188,7 +188,7 @@ protected:
         session_->expect_run(batch);
     }
     void define(ClientName vertex, ClientName fragment) {
-        const std::array<std::uint32_t, 5> programs{vertex.value, fragment.value};
+        const std::array<std::uint32_t, std::size(glapi::kShaderStages)> programs{vertex.value, fragment.value};
         Batch batch;
         pack::Pipeline(batch.buffer(), kPipeline, std::as_bytes(std::span(programs)));
         session_->expect_run(batch);
