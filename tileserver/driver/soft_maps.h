@@ -36,8 +36,10 @@ struct SoftMaps {
 class MapMirror {
 public:
     void sync_evaluators(Driver& driver, const SoftMaps& maps) {
-        if (maps.any_evaluator || !evaluators_initial_) tell_evaluators(driver, maps);
+        if (!has_initial_evaluators(maps)) tell_evaluators(driver, maps);
     }
+    /// The driver's and these.
+    bool has_initial_evaluators(const SoftMaps& maps) const { return !maps.any_evaluator && evaluators_initial_; }
     void sync_pixel_maps(const Gl& gl, const SoftMaps& maps);
 
 private:

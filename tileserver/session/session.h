@@ -34,6 +34,7 @@ struct BoundTextures {
 struct BoundSamplers {
     std::uint64_t values = 0, version = 0;  ///< value id of the category `objects`, ObjectTable::version()
     SamplerBindings bindings;
+    bool only_samplers = false;  ///< that category names nothing else: no program, no query, no capture
 };
 
 struct SoftContext {

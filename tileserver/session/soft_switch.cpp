@@ -69,6 +69,11 @@ glstate::BufferRange found_range(const RenderNode& node, const SessionReplica& s
     return {buffer->name(), wanted.offset, wanted.size != 0 ? std::min(wanted.size, rest) : rest};
 }
 
+bool counts_or_captures(const glstate::State& state) {
+    return (glstate::el::occlusion_query::ref(state) | glstate::el::capture::ref(state)) != 0 ||
+           glstate::counts_primitives(state);
+}
+
 void look_up_samplers(SessionReplica& session, SoftContext& context) {
     BoundSamplers& bound = context.samplers;
     SamplerNames found{};
@@ -80,6 +85,7 @@ void look_up_samplers(SessionReplica& session, SoftContext& context) {
     if (found != bound.bindings.names) bound.bindings = {found == SamplerNames{} ? 0 : glstate::next_value_id(), found};
     bound.values = objects_id(context);
     bound.version = session.objects.version(Sampler::kKind);
+    bound.only_samplers = glstate::el::current_program::ref(context.state) == 0 && !counts_or_captures(context.state);
 }
 
 /// None, and what is neither a program nor several: fixed function.
@@ -131,11 +137,6 @@ private:
     Capture* const capture_;
 };
 
-bool counts_or_captures(const glstate::State& state) {
-    return (glstate::el::occlusion_query::ref(state) | glstate::el::capture::ref(state)) != 0 ||
-           glstate::counts_primitives(state);
-}
-
 /// Last, since it takes part in no other state.
 bool count_and_capture(RenderNode& node, SessionReplica& session, const glstate::State& state,
                        const LayerGeometry& layer, Counted counted) {
@@ -154,17 +155,14 @@ bool count_and_capture(RenderNode& node, SessionReplica& session, const glstate:
 
 }  // namespace
 
-bool switch_to(RenderNode& node, SessionReplica& session, SoftContext& context, RenderTarget& target, Counted counted) {
+bool bring_driver_to(RenderNode& node, SessionReplica& session, SoftContext& context, RenderTarget& target,
+                     Counted counted) {
     if (!own_written_textures(node, session, context.state)) return false;
     const bool held = node.driver.holds(context.state);
     if (!held) node.driver.sync(context.state);
-    if (context.textures.state_id != textures_id(context) ||
-        context.textures.version != session.objects.version(Texture::kKind))
-        look_up_textures(session, context);
+    if (!textures_are_known(session, context)) look_up_textures(session, context);
     node.driver.bind_textures(context.textures.bindings);
-    if (context.samplers.values != objects_id(context) ||
-        context.samplers.version != session.objects.version(Sampler::kKind))
-        look_up_samplers(session, context);
+    if (!samplers_are_known(session, context)) look_up_samplers(session, context);
     node.driver.bind_samplers(context.samplers.bindings);
     node.maps.sync_evaluators(node.driver, context.maps);
     node.driver.bind_target(target, context.state);
