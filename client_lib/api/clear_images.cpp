@@ -88,7 +88,7 @@ void clear_buffer(Context& c, GLenum target, GLenum internal, GLintptr offset, s
     const auto id = bound_buffer_id(c, target);
     if (!id) return c.error(GL_INVALID_ENUM);
     Buffer* buffer = buffer_of(c, *id);
-    if (!buffer) return c.error(GL_INVALID_OPERATION);
+    if (!buffer) return c.error(GL_INVALID_VALUE);  // as the extension says, and Mesa
     const auto* to = std::ranges::find(kBufferFormats, internal, &BufferFormat::internal);
     if (to == std::end(kBufferFormats)) return c.error(GL_INVALID_ENUM);
     if (glapi::is_integer_format(format) != glapi::is_integer_format(to->format)) return c.error(GL_INVALID_OPERATION);
@@ -103,14 +103,13 @@ void clear_buffer(Context& c, GLenum target, GLenum internal, GLintptr offset, s
     if (offset < 0 || offset > have || size.value_or(0) < 0 || size.value_or(0) > have - offset)
         return c.error(GL_INVALID_VALUE);
     const GLsizeiptr bytes = size.value_or(have);
-    if (offset % step != 0 || (size && bytes % step != 0)) return c.error(GL_INVALID_VALUE);
-    if (buffer->blocked()) return c.error(GL_INVALID_OPERATION);
-    const auto whole = static_cast<std::size_t>(bytes / step * step);
-    if (whole == 0) return;
-    std::vector<std::byte> content(whole);
-    for (std::size_t at = 0; at < whole; at += texel.size()) std::memcpy(&content[at], texel.data(), texel.size());
-    const auto first = static_cast<std::size_t>(offset);
-    buffer->write({first, first + whole}, content.data());
+    if (offset % step != 0 || bytes % step != 0) return c.error(GL_INVALID_VALUE);
+    const auto first = static_cast<std::size_t>(offset), all = static_cast<std::size_t>(bytes);
+    if (buffer->blocked({first, first + all})) return c.error(GL_INVALID_OPERATION);
+    if (all == 0) return;
+    std::vector<std::byte> content(all);
+    for (std::size_t at = 0; at < all; at += texel.size()) std::memcpy(&content[at], texel.data(), texel.size());
+    buffer->write({first, first + all}, content.data());
 }
 
 // ---- textures ----
@@ -166,9 +165,12 @@ void clear_texture(Context& c, GLuint name, GLint number, const std::optional<Pa
     if (!internal || internal->compressed()) return c.error(GL_INVALID_OPERATION);
     const GLint slices = cube ? static_cast<GLint>(glapi::kCubeFaces) : level->depth;
     const Part part = wanted.value_or(Part{0, 0, 0, level->width, level->height, slices});
-    if (part.width < 0 || part.height < 0) return c.error(GL_INVALID_VALUE);
-    if (part.z < 0 || part.depth < 0 || part.z > slices || part.depth > slices - part.z)
-        return c.error(GL_INVALID_VALUE);
+    const auto inside = [](GLint at, GLsizei count, GLint all) {
+        return at >= 0 && count >= 0 && std::int64_t{at} + count <= all;
+    };
+    if (!inside(part.x, part.width, level->width) || !inside(part.y, part.height, level->height) ||
+        !inside(part.z, part.depth, slices))
+        return c.error(GL_INVALID_OPERATION);
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
     const FromMemory from_memory(c);
     if (!cube) return fill(c, info.target, number, part, format, type, data);

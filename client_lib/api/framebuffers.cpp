@@ -257,18 +257,24 @@ void FramebufferRenderbuffer(Context& c, GLenum target, GLenum point, GLenum ren
 
 namespace {
 
-/// A parameter, the most that it may be, and where it is kept.
+/// A parameter, the most that it may be, here and by what nodes say, and where it is kept.
 struct DefaultParameter {
     GLenum word;
     std::uint32_t most;
+    GLenum limit;
     std::uint32_t glstate::FramebufferDefaults::*field;
 };
 constexpr DefaultParameter kDefaultParameters[] = {
-    {GL_FRAMEBUFFER_DEFAULT_WIDTH, glstate::kMostDefaultSize, &glstate::FramebufferDefaults::width},
-    {GL_FRAMEBUFFER_DEFAULT_HEIGHT, glstate::kMostDefaultSize, &glstate::FramebufferDefaults::height},
-    {GL_FRAMEBUFFER_DEFAULT_LAYERS, glstate::kMostDefaultLayers, &glstate::FramebufferDefaults::layers},
-    {GL_FRAMEBUFFER_DEFAULT_SAMPLES, glstate::kMostDefaultSamples, &glstate::FramebufferDefaults::samples},
-    {GL_FRAMEBUFFER_DEFAULT_FIXED_SAMPLE_LOCATIONS, ~std::uint32_t{0}, &glstate::FramebufferDefaults::fixed_places},
+    {GL_FRAMEBUFFER_DEFAULT_WIDTH, glstate::kMostDefaultSize, GL_MAX_FRAMEBUFFER_WIDTH,
+     &glstate::FramebufferDefaults::width},
+    {GL_FRAMEBUFFER_DEFAULT_HEIGHT, glstate::kMostDefaultSize, GL_MAX_FRAMEBUFFER_HEIGHT,
+     &glstate::FramebufferDefaults::height},
+    {GL_FRAMEBUFFER_DEFAULT_LAYERS, glstate::kMostDefaultLayers, GL_MAX_FRAMEBUFFER_LAYERS,
+     &glstate::FramebufferDefaults::layers},
+    {GL_FRAMEBUFFER_DEFAULT_SAMPLES, glstate::kMostDefaultSamples, GL_MAX_FRAMEBUFFER_SAMPLES,
+     &glstate::FramebufferDefaults::samples},
+    {GL_FRAMEBUFFER_DEFAULT_FIXED_SAMPLE_LOCATIONS, ~std::uint32_t{0}, GL_NONE,
+     &glstate::FramebufferDefaults::fixed_places},
 };
 const DefaultParameter* find_default(GLenum word) {
     const auto* found = std::ranges::find(kDefaultParameters, word, &DefaultParameter::word);
@@ -306,7 +312,8 @@ void FramebufferParameteri(Context& c, GLenum target, GLenum pname, GLint param)
     if (!framebuffer) return c.error(GL_INVALID_OPERATION);
     if (param < 0 && parameter->most != ~std::uint32_t{0}) return c.error(GL_INVALID_VALUE);
     auto value = static_cast<std::uint32_t>(param);
-    if (value > parameter->most) return c.error(GL_INVALID_VALUE);
+    if (value > parameter->most || value > limit_of(c.caps(), parameter->limit, parameter->most))
+        return c.error(GL_INVALID_VALUE);
     if (pname == GL_FRAMEBUFFER_DEFAULT_FIXED_SAMPLE_LOCATIONS) value = value != 0;
     glstate::FramebufferDefaults defaults = framebuffer->defaults();
     defaults.*parameter->field = value;

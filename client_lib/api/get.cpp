@@ -43,7 +43,9 @@ double samples_of(Context& c) {
     const auto& framebuffer = c.framebuffers->draw;
     if (!framebuffer) return format_of(c).samples;
     std::lock_guard lock(c.share().mutex);
-    return framebuffer->samples();
+    const auto samples = static_cast<GLsizei>(framebuffer->samples());
+    return rounded_samples(samples,
+                           static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_FRAMEBUFFER_SAMPLES, kUsualSamples)));
 }
 
 template <class T>

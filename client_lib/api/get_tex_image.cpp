@@ -159,7 +159,8 @@ struct Texels {
     std::vector<std::byte> tight;
 };
 
-/// Of one image of a texture, which is bound to its target. Nothing: there is no such image, or there is an error.
+/// Of one image of a texture, which is bound to its target; one that is not there has no size. Nothing: there is an
+/// error.
 std::optional<Texels> texels_of(Context& c, const std::shared_ptr<Texture>& texture, GLenum image, GLint number,
                                 const MemoryImage& wanted) {
     const GLenum format = wanted.format, type = wanted.type;
@@ -168,7 +169,7 @@ std::optional<Texels> texels_of(Context& c, const std::shared_ptr<Texture>& text
     std::lock_guard lock(c.share().mutex);
     const TextureLevel* level = texture->find_level(face_of(image), number);
     const TextureFormat* internal = level ? find_texture_format(level->internal_format) : nullptr;
-    if (!internal) return std::nullopt;
+    if (!internal) return Texels{{0, 0, 0, texture->info.images}, {}};
     if (!readable(*internal, format)) return c.error(GL_INVALID_OPERATION), std::nullopt;
     const Request request{*level, drawn ? &*drawn : nullptr, *internal};
     return Texels{{level->width, level->height, level->depth, texture->info.images},
@@ -182,6 +183,7 @@ void give(Context& c, const Texels& texels, GLenum format, GLenum type, std::opt
         const std::size_t needed = glapi::memory_bytes(pack_store(c.state), texels.size, format, type);
         if (*room < 0 || needed > static_cast<std::size_t>(*room)) return c.error(GL_INVALID_OPERATION);
     }
+    if (texels.tight.empty()) return;
     if (const PackTarget to = image_target(c, {texels.size, format, type}, pixels))
         glapi::pack_image(pack_store(c.state), texels.size, format, type, texels.tight, to.get());
 }
@@ -244,8 +246,8 @@ std::optional<Texels> level_of(Context& c, const NamedTexture& named, GLint numb
     std::optional<Texels> all;
     for (unsigned face = 0; face < glapi::kCubeFaces; ++face) {
         auto one = texels_of(c, named.texture(), glapi::image_target(info, face), number, wanted);
-        const bool alike =
-            one && (!all || (one->size.width == all->size.width && one->size.height == all->size.height));
+        const bool alike = one && one->size.width > 0 &&
+                           (!all || (one->size.width == all->size.width && one->size.height == all->size.height));
         if (!alike) return c.error(GL_INVALID_OPERATION), std::nullopt;
         if (!all) {
             all = std::move(one);

@@ -28,7 +28,7 @@ void define_samples(Context& c, const ImageCall& call, GLsizei samples, GLboolea
     if (samples < 1 || (for_good && (call.width < 1 || call.height < 1 || call.depth < 1)))
         return c.error(GL_INVALID_VALUE);
     const auto* info = image_target_of(call.target);
-    if (!info || !info->samples || glapi::dimensions_of(*info) != call.dimensions) return c.error(GL_INVALID_ENUM);
+    if (!info || !info->samples || glapi::dimensions_of(*info) != call.dimensions) return c.error(c.target_error);
     const TextureFormat* format = find_texture_format(call.internal_format);
     if (for_good && (!format || !is_sized(*format))) return c.error(GL_INVALID_ENUM);
     if (!renderable(format)) return c.error(GL_INVALID_OPERATION);

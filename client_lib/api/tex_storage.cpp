@@ -48,7 +48,7 @@ void define_proxy(Context& c, ImageCall call, GLsizei levels, bool fits) {
 }
 
 void define_storage(Context& c, ImageCall call, GLsizei levels) {
-    if (!legal_target(call)) return c.error(GL_INVALID_ENUM);
+    if (!legal_target(call)) return c.error(c.target_error);
     const TextureFormat* format = find_texture_format(call.internal_format);
     if (!format || !is_sized(*format)) return c.error(GL_INVALID_ENUM);
     if (call.width < 1 || call.height < 1 || call.depth < 1 || levels < 1) return c.error(GL_INVALID_VALUE);

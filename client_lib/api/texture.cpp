@@ -106,7 +106,6 @@ Change changed(const TexParameters& old, const glapi::TextureTargetInfo& target,
     const auto check = [&](bool good, GLenum error) {
         if (!good && out.error == GL_NO_ERROR) out.error = error;
     };
-    if (target.samples) check(!of_sampler(pname), GL_INVALID_ENUM);
     switch (pname) {
         case GL_TEXTURE_MIN_FILTER: p.min_filter = word, check(valid_min_filter(target, word), GL_INVALID_ENUM); break;
         case GL_TEXTURE_MAG_FILTER:
@@ -175,7 +174,7 @@ void store_parameters(Context& c, GLenum target, GLenum pname, const TexParamete
 template <class Whole>
 void set_whole_border(Context& c, GLenum target, const Whole* params) {
     const auto* info = target_of(target);
-    if (!info || info->samples || info->id == glapi::TextureTarget::buffer) return c.error(GL_INVALID_ENUM);
+    if (!info || info->samples || info->id == glapi::TextureTarget::buffer) return c.error(c.target_error);
     const auto current = bound_texture(c, target);
     const TexParameters before = current ? current->parameters : Texture(ClientName(), 0, info->id).parameters;
     TexParameters after = before;
@@ -260,7 +259,8 @@ void PrioritizeTextures(Context& c, GLsizei n, const GLuint* names, const GLfloa
 
 void TexParameterfv(Context& c, GLenum target, GLenum pname, const GLfloat* params) {
     const auto* info = target_of(target);
-    if (!info || info->id == glapi::TextureTarget::buffer) return c.error(GL_INVALID_ENUM);
+    if (!info || info->id == glapi::TextureTarget::buffer) return c.error(c.target_error);
+    if (info->samples && of_sampler(pname)) return c.error(c.target_error);
     if (pname == GL_TEXTURE_SWIZZLE_RGBA) {
         if (!std::all_of(params, params + 4, [](GLfloat word) { return valid_swizzle(to_enum(word)); }))
             return c.error(GL_INVALID_ENUM);

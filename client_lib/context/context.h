@@ -168,6 +168,8 @@ public:
     std::unique_ptr<DebugState> debug;
     std::unique_ptr<CaptureUse> captures;
     std::unique_ptr<MemoryUse> memory;
+    /// Of a target that a command does not work on; where the texture was named, that is no word of the call.
+    GLenum target_error = GL_INVALID_ENUM;
 
     /// Before an object that was drawn with changes or goes: by its id.
     void before_change(ClientName changing_id) {

@@ -44,6 +44,7 @@ NamedBuffer::~NamedBuffer() { c_.state.local.copy_write_buffer = before_; }
 NamedTexture::NamedTexture(Context& c, GLuint name)
     : c_(c), texture_(shared_object(c, c.share().textures, name)), unit_(c.active_texture()) {
     if (!texture_) return;
+    c.target_error = GL_INVALID_OPERATION;
     before_ = bound_id(c, unit_, texture_->info.id);
     id_before_ = c.state.ids[kTextures];
     set_bound_id(c, unit_, texture_->info.id, texture_->id);
@@ -51,6 +52,7 @@ NamedTexture::NamedTexture(Context& c, GLuint name)
 }
 
 NamedTexture::~NamedTexture() {
+    c_.target_error = GL_INVALID_ENUM;
     if (!texture_ || before_ == texture_->id) return;
     const bool only_this = c_.state.ids[kTextures] == id_meanwhile_;
     set_bound_id(c_, unit_, texture_->info.id, before_);

@@ -55,6 +55,7 @@ void Buffer::note_drawn() {
     count_change();
     drawn_ = true;
     zeros_ = false;
+    changes_.seal();
 }
 
 /// The nodes that are told of later changes have it.

@@ -98,6 +98,10 @@ public:
     const std::optional<BufferMapping>& mapping() const { return mapping_; }
     /// By which no command may use the buffer.
     bool blocked() const { return mapping_ && !mapping_->persistent(); }
+    /// The same of commands that only use a part.
+    bool blocked(ByteRange part) const {
+        return blocked() && part.begin < mapping_->range.end && mapping_->range.begin < part.end;
+    }
     /// What is written into it is seen by whoever uses the buffer afterwards: find_written() comes first.
     bool written_unseen() const {
         return mapping_ && mapping_->persistent() && mapping_->writes() && !mapping_->tells();

@@ -29,6 +29,15 @@ public:
     void reset(std::uint64_t stamp) {
         all_ = stamp;
         ranges_.clear();
+        sealed_ = {};
+    }
+    /// What changed until now does not become newer by a neighbour: others have written beside it since.
+    void seal() {
+        for (const Range& range : ranges_)
+            sealed_ = sealed_.bytes.size() == 0
+                          ? range
+                          : Range{join(sealed_.bytes, range.bytes), std::max(sealed_.stamp, range.stamp)};
+        ranges_.clear();
     }
     void add(ByteRange range, std::uint64_t stamp) {
         if (range.size() == 0) return;
@@ -51,6 +60,7 @@ public:
         std::vector<ByteRange> newer;
         for (const Range& range : ranges_)
             if (range.stamp > known) newer.push_back(range.bytes);
+        if (sealed_.stamp > known) newer.push_back(sealed_.bytes);
         std::ranges::sort(newer, {}, &ByteRange::begin);
         for (std::size_t i = 0; i < newer.size();) {
             ByteRange whole = newer[i];
@@ -82,6 +92,7 @@ private:
 
     std::uint64_t all_ = 0;
     std::vector<Range> ranges_;
+    Range sealed_;  // all of what is older, which only those are told that know nothing of it
 };
 
 }  // namespace wall::client

@@ -75,6 +75,30 @@ TEST_F(NamedObjectsTest, OneValueFillsABuffer) {
     EXPECT_EQ(got, (std::array<GLubyte, 8>{}));
 }
 
+TEST_F(NamedObjectsTest, OneValueFillsWhatIsNotMapped) {
+    GLuint name = 0;
+    gl().CreateBuffers(c, 1, &name);
+    gl().NamedBufferData(c, name, 6, nullptr, GL_STATIC_DRAW);
+    gl().ClearNamedBufferData(c, name, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE}) << "no whole number of texels";
+    gl().MapNamedBufferRange(c, name, 0, 2, GL_MAP_READ_BIT);
+    const GLubyte seven = 7;
+    gl().ClearNamedBufferSubData(c, name, GL_R8UI, 2, 4, GL_RED_INTEGER, GL_UNSIGNED_BYTE, &seven);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().ClearNamedBufferSubData(c, name, GL_R8UI, 1, 2, GL_RED_INTEGER, GL_UNSIGNED_BYTE, &seven);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+}
+
+TEST_F(NamedObjectsTest, ATargetIsTheTexturesOwnFault) {
+    const GLuint cube = texture(GL_TEXTURE_CUBE_MAP), samples = texture(GL_TEXTURE_2D_MULTISAMPLE);
+    gl().TextureStorage3D(c, cube, 1, GL_RGBA8, 4, 4, 6);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().TextureParameteri(c, samples, GL_TEXTURE_WRAP_S, GL_REPEAT);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().TexStorage3D(c, GL_TEXTURE_CUBE_MAP, 1, GL_RGBA8, 4, 4, 6);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
+}
+
 TEST_F(NamedObjectsTest, ATextureChangesWhereItIsNotBound) {
     const GLuint name = texture(GL_TEXTURE_2D), other = texture(GL_TEXTURE_2D);
     gl().BindTexture(c, GL_TEXTURE_2D, other);

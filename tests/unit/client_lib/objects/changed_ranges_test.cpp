@@ -57,6 +57,23 @@ TEST(ChangedRanges, WhatIsLargeIsNotSentAgainForASmallChangeInIt) {
 }
 
 // Whatever is written in whatever order, a follower that was told at some time is told at least what it lacks.
+TEST(ChangedRanges, WhatIsSealedDoesNotBecomeNewerByANeighbour) {
+    ChangedRanges ranges;
+    ranges.reset(1);
+    ranges.add({0, 100}, 2);
+    ranges.add({500, 600}, 3);
+    ranges.seal();
+    ranges.add({0, 50}, 4);
+    EXPECT_EQ(since(ranges, 3), (Ranges{{0, 50}}));
+    EXPECT_EQ(since(ranges, 1), (Ranges{{0, 600}}));
+    ranges.seal();
+    EXPECT_EQ(since(ranges, 4), Ranges{});
+    ranges.add({40, 60}, 5);
+    EXPECT_EQ(since(ranges, 4), (Ranges{{40, 60}}));
+    ranges.reset(6);
+    EXPECT_EQ(since(ranges, 0), Ranges{});
+}
+
 TEST(ChangedRanges, NothingIsForgotten) {
     constexpr std::size_t kBytes = 100000;
     std::mt19937 random(7);
