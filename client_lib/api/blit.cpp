@@ -112,7 +112,7 @@ void BlitFramebuffer(Context& c, GLint from_x0, GLint from_y0, GLint from_x1, GL
     if (const GLenum error = multisample_error(c, from, to)) return c.error(error);
     mask = common_buffers(c, mask);
     if (const GLenum error = whole_error(c, mask, filter)) return c.error(error);
-    if (const GLenum error = c.profile.es != 0 ? es_error(c, from, to, mask) : GLenum{GL_NO_ERROR})
+    if (const GLenum error = c.profile.is_es() ? es_error(c, from, to, mask) : GLenum{GL_NO_ERROR})
         return c.error(error);
     if (mask == 0 || from.empty() || to.empty()) return;
     c.flush_block();

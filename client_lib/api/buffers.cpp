@@ -99,7 +99,7 @@ void BindBuffer(Context& c, GLenum target, GLuint name) {
     auto buffer = share.buffers.find(name);
     if (!buffer) {
         buffer = std::make_shared<Buffer>(next_object_id(), name);
-        if (c.profile.es != 0) buffer->access = GL_MAP_WRITE_BIT;  // OES_mapbuffer has no other
+        if (c.profile.is_es()) buffer->access = GL_MAP_WRITE_BIT;  // OES_mapbuffer has no other
         share.buffers.put(name, buffer);
         share.by_id[buffer->id] = buffer;
     }

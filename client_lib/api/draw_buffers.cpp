@@ -48,7 +48,7 @@ void DrawBuffers(Context& c, GLsizei count, const GLenum* words) {
     if (count < 0 || count > static_cast<GLsizei>(kColorAttachments)) return c.error(GL_INVALID_VALUE);
     Buffers buffers{};
     std::copy_n(words, count, buffers.begin());
-    if (c.profile.es != 0) {
+    if (c.profile.is_es()) {
         const bool window = c.framebuffers->draw == nullptr;
         if (const GLenum error = es_error(buffers, count, window)) return c.error(error);
         const bool single = window && c.draw_target() && !c.draw_target().format().double_buffered;

@@ -54,7 +54,7 @@ void BindImageTexture(Context& c, GLuint unit, GLuint name, GLint level, GLboole
     if (!glapi::is_image_access(access) || !glapi::is_image_unit_format(format)) return c.error(GL_INVALID_VALUE);
     const auto texture = name != 0 ? texture_of(c, name) : nullptr;
     if (name != 0 && !texture) return c.error(GL_INVALID_VALUE);
-    if (texture && c.profile.es != 0 && texture->immutable_levels == 0 &&
+    if (texture && c.profile.is_es() && texture->immutable_levels == 0 &&
         texture->info.id != glapi::TextureTarget::buffer)
         return c.error(GL_INVALID_OPERATION);
     bind(c, unit, texture, {0, level, layered != GL_FALSE, layer, access, format});

@@ -33,7 +33,7 @@ struct Commands {
 template <class Command>
 std::vector<Command> read_commands(Context& c, Commands wanted) {
     const ClientName id(c.state.local.draw_indirect_buffer);
-    const bool anywhere = !c.profile.core && c.profile.es == 0;
+    const bool anywhere = !c.profile.core && !c.profile.is_es();
     const auto refuse = [&](GLenum error) { return c.error(error), std::vector<Command>(); };
     if (!c.at_once() || (!id && !anywhere)) return refuse(GL_INVALID_OPERATION);
     if (wanted.place % sizeof(GLuint) != 0 || wanted.count < 0 || wanted.stride < 0 || wanted.stride % 4 != 0)

@@ -18,14 +18,14 @@ namespace {
 bool has_samples(const Context& c, GLenum target) {
     if (target == GL_RENDERBUFFER) return true;
     const auto* info = target_of(target);
-    return c.profile.es == 0 && info && info->samples;
+    return !c.profile.is_es() && info && info->samples;
 }
 
 /// Null: images of that format are not drawn to.
 const TextureFormat* drawn_format(const Context& c, GLenum internal_format) {
     const TextureFormat* format = find_renderbuffer_format(internal_format);
     if (!format || is_removed(c, internal_format)) return nullptr;
-    return c.profile.es == 0 || es_is_drawn(c.profile.es, format->answer) ? format : nullptr;
+    return !c.profile.is_es() || es_is_drawn(c.profile.es, format->answer) ? format : nullptr;
 }
 
 std::vector<GLsizei> samples_of(Context& c, const TextureFormat& format) {

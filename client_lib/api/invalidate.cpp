@@ -14,7 +14,7 @@ namespace {
 /// A buffer of a window by the name that these commands have for it.
 bool is_window_buffer(const Context& c, GLenum word) {
     if (word == GL_COLOR || word == GL_DEPTH || word == GL_STENCIL) return true;
-    if (c.profile.es != 0) return false;
+    if (c.profile.is_es()) return false;
     if (word >= GL_FRONT_LEFT && word <= GL_BACK_RIGHT) return true;
     return !c.profile.core && (word == GL_ACCUM || (word >= GL_AUX0 && word <= GL_AUX3));
 }

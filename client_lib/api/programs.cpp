@@ -139,8 +139,8 @@ void CompileShader(Context& c, GLuint name) {
     if (!shader) return;
     std::lock_guard lock(c.share().mutex);
     EsSource es;
-    if (c.profile.es != 0) es = es_source(shader->source, c.profile.es);
-    const std::string& source = c.profile.es != 0 ? es.source : shader->source;
+    if (c.profile.is_es()) es = es_source(shader->source, c.profile.es);
+    const std::string& source = c.profile.is_es() ? es.source : shader->source;
     const bool known = shader->state == Shader::State::compiled || shader->state == Shader::State::failed;
     if (known && shader->compiled_source == source) return;  // it would go as it went
     shader->compiled_source = source;
@@ -199,7 +199,7 @@ void AttachShader(Context& c, GLuint program_name, GLuint shader_name) {
     std::lock_guard lock(c.share().mutex);
     if (std::find(program->shaders.begin(), program->shaders.end(), shader) != program->shaders.end())
         return c.error(GL_INVALID_OPERATION);
-    if (c.profile.es != 0 && has_stage(*program, shader->type)) return c.error(GL_INVALID_OPERATION);
+    if (c.profile.is_es() && has_stage(*program, shader->type)) return c.error(GL_INVALID_OPERATION);
     program->shaders.push_back(shader);
     ++shader->users;
 }
@@ -234,7 +234,7 @@ void LinkProgram(Context& c, GLuint name) {
         std::lock_guard lock(c.share().mutex);
         program->to_link.reset();
         program->binary_hint = program->next_binary_hint;
-        if (const char* lacking = c.profile.es != 0 ? lacking_stage(*program) : nullptr) {
+        if (const char* lacking = c.profile.is_es() ? lacking_stage(*program) : nullptr) {
             program->linked = false;
             program->log = std::string("error: program lacks a ") + lacking + " shader\n";
             return;

@@ -73,12 +73,12 @@ GLenum gathered_type(GLenum format, GLenum type) {
 // What lies outside the window is not written (Mesa's way; OpenGL leaves it undefined).
 void ReadPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels) {
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
-    if (c.profile.es != 0) type = desktop_type(type);
-    if (c.profile.es != 0 && format == GL_DEPTH_COMPONENT && type == GL_UNSIGNED_INT_24_8)
+    if (c.profile.is_es()) type = desktop_type(type);
+    if (c.profile.is_es() && format == GL_DEPTH_COMPONENT && type == GL_UNSIGNED_INT_24_8)
         type = GL_UNSIGNED_INT;  // GL_NV_read_depth: the same 24 bits, and nothing said of the others
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
     if (!may_read_pixels(c)) return;
-    if (c.profile.es != 0 && !may_read_kind(c, format, type)) return c.error(GL_INVALID_OPERATION);
+    if (c.profile.is_es() && !may_read_kind(c, format, type)) return c.error(GL_INVALID_OPERATION);
     if (!source_exists(c, format)) return c.error(GL_INVALID_OPERATION);
     const PixelBox box = clip_to_window(c, {x, y, width, height});
     if (box.empty()) return;

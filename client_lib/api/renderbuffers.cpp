@@ -78,7 +78,7 @@ void RenderbufferStorageMultisample(Context& c, GLenum target, GLsizei samples, 
     const auto renderbuffer = c.framebuffers->renderbuffer;
     if (!renderbuffer) return c.error(GL_INVALID_OPERATION);
     const TextureFormat* format = find_renderbuffer_format(internal_format);
-    if (!format || (c.profile.es != 0 && !is_es_storage(c.profile.es, *format))) return c.error(GL_INVALID_ENUM);
+    if (!format || (c.profile.is_es() && !is_es_storage(c.profile.es, *format))) return c.error(GL_INVALID_ENUM);
     const auto most = static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_RENDERBUFFER_SIZE, kUsualSize));
     if (width < 0 || width > most || height < 0 || height > most) return c.error(GL_INVALID_VALUE);
     const GLsizei most_samples = most_samples_of(c, *format);

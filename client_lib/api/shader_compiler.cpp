@@ -8,7 +8,7 @@ namespace wall::client::api {
 // driver may take 16 bits for what is not highp, and llvmpipe says so.
 void GetShaderPrecisionFormat(Context& c, GLenum shader, GLenum precision, GLint* range, GLint* digits) {
     if (shader != GL_VERTEX_SHADER && shader != GL_FRAGMENT_SHADER) return c.error(GL_INVALID_ENUM);
-    const bool es = c.profile.es != 0;
+    const bool es = c.profile.is_es();
     switch (precision) {
         case GL_LOW_FLOAT:
         case GL_MEDIUM_FLOAT:

@@ -47,7 +47,7 @@ bool is_array_type(GLenum type) {
 
 /// What OpenGL ES took over from OpenGL only later (OpenGL ES 2.0, 2.8; 3.0, 2.9).
 bool is_array_type_of(const ContextProfile& profile, GLenum type) {
-    if (profile.es == 0) return true;
+    if (!profile.is_es()) return true;
     if (type == GL_UNSIGNED_INT_10F_11F_11F_REV) return false;
     return type != GL_DOUBLE && (profile.es >= 30 || (type != GL_INT && type != GL_UNSIGNED_INT));
 }
@@ -100,7 +100,7 @@ void get(Context& c, GLuint index, GLenum pname, Out* params) {
 bool may_point(const Context& c, const void* pointer) {
     const bool in_object = c.state.vertex_arrays.vertex_array_object != 0,
                of_buffer = c.state.local.array_buffer != 0 || pointer == nullptr;
-    if (c.profile.es != 0) return !in_object || of_buffer;
+    if (c.profile.is_es()) return !in_object || of_buffer;
     return !c.profile.core || (in_object && of_buffer);
 }
 
@@ -132,7 +132,7 @@ void define(Context& c, GLuint index, const Given& given) {
 
 /// The error of a format of floats, or of integers that become such (OpenGL 4.6, 10.3.2).
 GLenum error_of_format(const Context& c, GLint size, GLenum type, bool normalized) {
-    const bool bgra = c.profile.es == 0 && size == GL_BGRA;
+    const bool bgra = !c.profile.is_es() && size == GL_BGRA;
     if (!bgra && (size < 1 || size > 4)) return GL_INVALID_VALUE;
     if (!is_array_type(type) || !is_array_type_of(c.profile, type)) return GL_INVALID_ENUM;
     const bool packed = glstate::is_packed(type);
@@ -152,7 +152,7 @@ GLenum error_of_doubles(GLint size, GLenum type) {
 
 /// Nothing but an array object has bindings in a core profile, and in OpenGL ES.
 bool may_bind(Context& c) {
-    const bool may = c.state.vertex_arrays.vertex_array_object != 0 || (!c.profile.core && c.profile.es == 0);
+    const bool may = c.state.vertex_arrays.vertex_array_object != 0 || (!c.profile.core && !c.profile.is_es());
     if (!may) c.error(GL_INVALID_OPERATION);
     return may;
 }
@@ -208,7 +208,7 @@ void bind_at(Context& c, GLuint place, ClientName buffer, GLintptr offset, GLsiz
 
 void VertexAttribPointer(Context& c, GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride,
                          const void* pointer) {
-    if (c.profile.es != 0) type = desktop_type(type);
+    if (c.profile.is_es()) type = desktop_type(type);
     if (index >= kVertexAttributes || stride < 0) return c.error(GL_INVALID_VALUE);
     if (const GLenum error = error_of_format(c, size, type, normalized != GL_FALSE)) return c.error(error);
     if (!may_point(c, pointer)) return c.error(GL_INVALID_OPERATION);

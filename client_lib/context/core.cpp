@@ -144,7 +144,7 @@ bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurfac
     }
     tls_context = current->context.get();
     // Without glBegin no vertex is packed by itself: all entry points go through the table.
-    tls_packer = current->context->profile.has_fixed_function() ? &current->context->packer : closed_packer();
+    tls_packer = current->context->profile.has_begin() ? &current->context->packer : closed_packer();
     return true;
 }
 

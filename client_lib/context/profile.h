@@ -14,8 +14,11 @@ struct ContextProfile {
     bool notifies_of_resets = false;  ///< GL_LOSE_CONTEXT_ON_RESET
     unsigned es = 0;                  ///< of OpenGL ES: its version, times ten; 0: of OpenGL
 
-    /// Whether it has what shaders replaced, glBegin and display lists.
-    bool has_fixed_function() const { return !core && es == 0; }
+    bool is_es() const { return es != 0; }
+    /// Whether it has what shaders replaced: matrices, lights, texture environments and the arrays for them.
+    bool has_fixed_function() const { return has_begin(); }
+    /// Whether vertices are given one by one, and commands go into display lists.
+    bool has_begin() const { return !core && !is_es(); }
 
     /// GL_CONTEXT_FLAGS.
     GLbitfield flags() const {
