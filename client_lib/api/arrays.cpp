@@ -30,9 +30,10 @@ using glstate::ClientArray;
 
 // ---- defining ----
 
-/// Types that a pointer command takes, as bits: those from GL_BYTE on, and the packed ones.
+/// Types that a pointer command takes, as bits: those from GL_BYTE on, the packed ones, and fixed point.
 constexpr unsigned type_bit(GLenum type) {
     if (glstate::is_packed(type)) return 1u << 16;
+    if (type == GL_FIXED) return 1u << 17;
     return type >= GL_BYTE && type <= GL_HALF_FLOAT ? 1u << (type - GL_BYTE) : 0;
 }
 constexpr unsigned kReal = type_bit(GL_FLOAT) | type_bit(GL_DOUBLE) | type_bit(GL_HALF_FLOAT);
@@ -41,12 +42,20 @@ constexpr unsigned kIndices =
     type_bit(GL_UNSIGNED_BYTE) | type_bit(GL_SHORT) | type_bit(GL_INT) | type_bit(GL_FLOAT) | type_bit(GL_DOUBLE);
 constexpr unsigned kAny =
     kSigned | type_bit(GL_BYTE) | type_bit(GL_UNSIGNED_BYTE) | type_bit(GL_UNSIGNED_SHORT) | type_bit(GL_UNSIGNED_INT);
+// Of OpenGL ES 1.1 (2.8, table 2.4; GL_OES_byte_coordinates).
+constexpr unsigned kRealOfEs1 = type_bit(GL_FLOAT) | type_bit(GL_FIXED);
+constexpr unsigned kSignedOfEs1 = kRealOfEs1 | type_bit(GL_BYTE) | type_bit(GL_SHORT);
+constexpr unsigned kColorsOfEs1 = kRealOfEs1 | type_bit(GL_UNSIGNED_BYTE);
 
 struct Allowed {
     GLint min_size, max_size;
     unsigned types;
     bool bgra = false;  ///< for a size (GL_ARB_vertex_array_bgra)
 };
+
+const Allowed& allowed_in(const Context& c, const Allowed& desktop, const Allowed& es1) {
+    return c.profile.is_es1() ? es1 : desktop;
+}
 
 struct Given {
     GLint size;
@@ -95,6 +104,9 @@ void enable(Context& c, GLenum cap, bool on) {
         case GL_FOG_COORD_ARRAY: return enable<el::fog_coord_array>(c, 0, on);
         case GL_SECONDARY_COLOR_ARRAY: return enable<el::secondary_color_array>(c, 0, on);
         case GL_PRIMITIVE_RESTART_NV: return c.set<el::primitive_restart>(0, on);
+        case GL_POINT_SIZE_ARRAY_OES:
+            if (c.profile.is_es1()) return enable<el::point_size_array>(c, 0, on);
+            [[fallthrough]];
         default: return c.error(GL_INVALID_ENUM);
     }
 }
@@ -161,6 +173,18 @@ bool has_arrays_of_doubles(const Context& c) {
     });
 }
 
+/// Types that only OpenGL ES 1.1 has for an array of fixed function: a node's driver, of OpenGL, refuses them.
+bool has_arrays_of_es1(const Context& c) {
+    const auto& arrays = c.state.vertex_arrays;
+    const auto of_bytes = [](const ClientArray& array) { return array.enabled && array.type == GL_BYTE; };
+    bool found = arrays.vertex_array.enabled && arrays.vertex_array.type == GL_FIXED;
+    found = found || of_bytes(arrays.vertex_array) || std::ranges::any_of(arrays.texcoord_array, of_bytes);
+    glstate::for_each_attribute_array(c.state, [&](glstate::Attribute, const ClientArray& array) {
+        found = found || (array.enabled && array.type == GL_FIXED);
+    });
+    return found;
+}
+
 /// Draws one instance into the block or the list.
 void draw_inline(Context& c, const ArrayDraw& draw, GLsizei instance) {
     ElementRange elements{.first = draw.first,
@@ -185,11 +209,16 @@ void draw_inline(Context& c, const ArrayDraw& draw, GLsizei instance) {
 }  // namespace
 
 void draw(Context& c, const ArrayDraw& draw) {
+    if (!c.profile.is_es1() || !draw_by_sizes(c, draw)) draw_of_one_size(c, draw);
+}
+
+void draw_of_one_size(Context& c, const ArrayDraw& draw) {
     const auto elements = static_cast<std::uint64_t>(draw.count) * static_cast<std::uint64_t>(draw.instances);
     if (draw.instances > 1 && elements > wire::kMostInstancedElements) return c.error(GL_OUT_OF_MEMORY);
     std::optional<BasedInstances> based;
     if (draw.base_instance != 0) based.emplace(c.state, draw.base_instance);
     const bool at_once = c.at_once();
+    if (c.profile.is_es1() && has_arrays_of_es1(c)) return draw_inline(c, draw, 0);
     if (at_once && constant_doubles(c) != 0) return draw_staged(c, draw);
     if (draw_on_nodes(c, draw)) return;
     if (draw_copied(c, draw)) return;
@@ -237,13 +266,15 @@ const void* pointer_of(const Named& array) {
 }  // namespace
 
 void VertexPointer(Context& c, GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    define<el::vertex_array>(c, 0, {2, 4, kSigned}, {size, type, stride, pointer});
+    define<el::vertex_array>(c, 0, allowed_in(c, {2, 4, kSigned}, {2, 4, kSignedOfEs1}), {size, type, stride, pointer});
 }
 void NormalPointer(Context& c, GLenum type, GLsizei stride, const void* pointer) {
-    define<el::normal_array>(c, 0, {3, 3, kSigned | type_bit(GL_BYTE)}, {3, type, stride, pointer});
+    const Allowed allowed = allowed_in(c, {3, 3, kSigned | type_bit(GL_BYTE)}, {3, 3, kSignedOfEs1});
+    define<el::normal_array>(c, 0, allowed, {3, type, stride, pointer});
 }
 void ColorPointer(Context& c, GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    define<el::color_array>(c, 0, {3, 4, kAny, true}, {size, type, stride, pointer});
+    const Allowed allowed = allowed_in(c, {3, 4, kAny, true}, {4, 4, kColorsOfEs1, true});
+    define<el::color_array>(c, 0, allowed, {size, type, stride, pointer});
 }
 void SecondaryColorPointer(Context& c, GLint size, GLenum type, GLsizei stride, const void* pointer) {
     define<el::secondary_color_array>(c, 0, {3, 3, kAny, true}, {size, type, stride, pointer});
@@ -258,7 +289,11 @@ void EdgeFlagPointer(Context& c, GLsizei stride, const void* pointer) {
     define<el::edge_flag_array>(c, 0, {1, 1, type_bit(GL_UNSIGNED_BYTE)}, {1, GL_UNSIGNED_BYTE, stride, pointer});
 }
 void TexCoordPointer(Context& c, GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    define<el::texcoord_array>(c, client_unit(c), {1, 4, kSigned}, {size, type, stride, pointer});
+    const Allowed allowed = allowed_in(c, {1, 4, kSigned}, {2, 4, kSignedOfEs1});
+    define<el::texcoord_array>(c, client_unit(c), allowed, {size, type, stride, pointer});
+}
+void PointSizePointerOES(Context& c, GLenum type, GLsizei stride, const void* pointer) {
+    define<el::point_size_array>(c, 0, {1, 1, kRealOfEs1}, {1, type, stride, pointer});
 }
 
 void EnableClientState(Context& c, GLenum cap) { enable(c, cap, true); }
@@ -408,6 +443,7 @@ void GetPointerv(Context& c, GLenum pname, void** params) {
         case GL_FOG_COORD_ARRAY_POINTER: return answer(pointer_of(l.fog_coord_array));
         case GL_SECONDARY_COLOR_ARRAY_POINTER: return answer(pointer_of(l.secondary_color_array));
         case GL_FEEDBACK_BUFFER_POINTER: return answer(c.select->feedback_buffer);
+        case GL_POINT_SIZE_ARRAY_POINTER_OES: return answer(pointer_of(l.point_size_array));
         case GL_DEBUG_CALLBACK_FUNCTION: return void(*params = reinterpret_cast<void*>(c.debug->log.callback));
         case GL_DEBUG_CALLBACK_USER_PARAM: return answer(c.debug->log.user);
         case GL_SELECTION_BUFFER_POINTER: return answer(c.select->select_buffer);

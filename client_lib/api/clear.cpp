@@ -77,9 +77,8 @@ void clear_values(Context& c, GLenum buffer, GLint drawbuffer, GLenum type, GLen
 namespace api {
 
 void Clear(Context& c, GLbitfield mask) {
-    constexpr GLbitfield kKnown =
-        GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT | GL_ACCUM_BUFFER_BIT;
-    if (mask & ~kKnown) return c.error(GL_INVALID_VALUE);
+    constexpr GLbitfield kKnown = GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
+    if (mask & ~(c.profile.is_es() ? kKnown : kKnown | GL_ACCUM_BUFFER_BIT)) return c.error(GL_INVALID_VALUE);
     if (!may_draw_to_target(c) || mask == 0) return;
     clear(c, mask, [&](wire::PackBuffer& buffer) { glapi::pack::Clear(buffer, mask); });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // glGet* and the like, answered from the context's shadow; none of them asks a node.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -20,6 +21,7 @@
 #include "client_lib/objects/es_formats.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/program_pipeline.h"
+#include "common/glapi/convert.h"
 #include "common/glstate/draw_buffers.h"
 #include "common/glstate/elements.h"
 #include "common/glstate/queries.h"
@@ -111,6 +113,13 @@ template <class Use>
 void of_texture_matrix(Context& c, Use&& use) {
     if (c.fixed_unit()) use(c.active_texture());
     else c.error(GL_INVALID_OPERATION);
+}
+
+/// Of the array that only OpenGL ES 1.1 has.
+template <auto kField>
+void of_point_sizes(Context& c, double* out) {
+    if (c.profile.is_es1()) *out = static_cast<double>(c.state.vertex_arrays.point_size_array.*kField);
+    else c.error(GL_INVALID_ENUM);
 }
 
 constexpr GLenum kGpuDisjoint = 0x8FBB;  // of GL_EXT_disjoint_timer_query, which only OpenGL ES has
@@ -270,6 +279,15 @@ const Special kSpecials[] = {
     {GL_IMPLEMENTATION_COLOR_READ_FORMAT, 1, color_read<&PixelKind::format>},
     {GL_IMPLEMENTATION_COLOR_READ_TYPE, 1, color_read<&PixelKind::type>},
     {kGpuDisjoint, 1, constant<0>},
+    {GL_POINT_SIZE_ARRAY_OES, 1, of_point_sizes<&glstate::ClientArray::enabled>},
+    {GL_POINT_SIZE_ARRAY_TYPE_OES, 1, of_point_sizes<&glstate::ClientArray::type>},
+    {GL_POINT_SIZE_ARRAY_STRIDE_OES, 1, of_point_sizes<&glstate::ClientArray::stride>},
+    {GL_POINT_SIZE_ARRAY_BUFFER_BINDING_OES, 1,
+     [](Context& c, double* out) {
+         if (!c.profile.is_es1()) return c.error(GL_INVALID_ENUM);
+         const ClientName buffer(c.state.vertex_arrays.point_size_array.buffer);
+         *out = object_name(c, glstate::ValueKind::name_buffer, buffer);
+     }},
 };
 
 /// Reals become integers by rounding, and anything but zero is true (OpenGL 1.2.1, 6.1.2).
@@ -392,6 +410,16 @@ void GetIntegerv(Context& c, GLenum pname, GLint* params) { get(c, pname, params
 void GetFloatv(Context& c, GLenum pname, GLfloat* params) { get(c, pname, params); }
 void GetInteger64v(Context& c, GLenum pname, GLint64* data) { get(c, pname, data); }
 void GetDoublev(Context& c, GLenum pname, GLdouble* params) { get(c, pname, params); }
+
+/// Numbers, words and colours alike have sixteen bits behind the point.
+void GetFixedv(Context& c, GLenum pname, GLfixed* params) {
+    constexpr auto kNothing = std::numeric_limits<double>::quiet_NaN();
+    std::array<double, 64> values;
+    values.fill(kNothing);
+    get(c, pname, values.data());
+    const auto behind = std::ranges::find_if(values, [](double value) { return std::isnan(value); });
+    std::transform(values.begin(), behind, params, glapi::to_fixed);
+}
 
 GLenum GetError(Context& c) { return c.take_error(); }
 

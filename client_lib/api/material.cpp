@@ -35,7 +35,8 @@ void set_material(Context& c, GLenum face, GLenum pname, const glstate::Vec4& va
 }  // namespace
 
 void Materialfv(Context& c, GLenum face, GLenum pname, const GLfloat* params) {
-    if (!valid_material(face, pname)) return c.error(GL_INVALID_ENUM);
+    const bool both = face == GL_FRONT_AND_BACK || !c.profile.is_es1();  // OpenGL ES 1.1, 2.12.2
+    if (!both || !valid_material(face, pname)) return c.error(GL_INVALID_ENUM);
     glstate::Vec4 value{};
     for (unsigned i = 0; i < components_of(pname); ++i) value[i] = params[i];
     if (pname == GL_SHININESS && !(value[0] >= 0 && value[0] <= kLargestShininess)) return c.error(GL_INVALID_VALUE);

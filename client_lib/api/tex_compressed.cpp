@@ -14,6 +14,7 @@
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/texture_image.h"
 #include "client_lib/objects/maps.h"
+#include "client_lib/objects/palette_image.h"
 #include "client_lib/objects/s3tc.h"
 #include "client_lib/objects/texture_formats.h"
 
@@ -243,10 +244,56 @@ void define_sub_blocks(Context& c, const Image& part, const Place& at, const voi
     touch(c.share(), *changed);
 }
 
+/// What OpenGL has for a format that only OpenGL ES names: decoders of ETC2 read ETC1 (OpenGL 4.3, C.1.1).
+GLenum format_of_blocks(const Context& c, GLenum internal) {
+    return internal == GL_ETC1_RGB8_OES && c.profile.is_es() ? GLenum{GL_COMPRESSED_RGB8_ETC2} : internal;
+}
+
+/// The arguments of glCompressedTexImage2D that palettes are given by.
+struct PaletteImage {
+    GLenum target;
+    GLsizei width, height, bytes;
+    const void* data;
+};
+
+/// Levels of it are images of texels from then on, as in Mesa. `last`: 0, or the number of the last level, negative.
+void define_palette_images(Context& c, const PaletteFormat& format, const PaletteImage& image, GLint last,
+                           GLint border) {
+    const auto* from = static_cast<const std::byte*>(image.data);
+    if (image.target != GL_TEXTURE_2D) return c.error(GL_INVALID_ENUM);
+    const GLint levels = level_count(c, image.target);
+    if (last > 0 || last <= -levels || image.width < 0 || image.height < 0 || border != 0)
+        return c.error(GL_INVALID_VALUE);
+    ImageCall call;
+    call.target = image.target, call.width = image.width, call.height = image.height, call.depth = 1;
+    const auto count = static_cast<unsigned>(-last) + 1;
+    if (!legal_size(c, call) || image.bytes < 0 ||
+        static_cast<std::size_t>(image.bytes) != palette_image_bytes(format, image.width, image.height, count))
+        return c.error(GL_INVALID_VALUE);
+    for (unsigned level = 0; level < count; ++level) {
+        call.level = static_cast<GLint>(level);
+        call.width = size_of_level(image.width, level), call.height = size_of_level(image.height, level);
+        call.format = format.colors.format, call.type = format.colors.type;
+        call.internal_format = static_cast<GLint>(call.format);
+        call.store.alignment = 1;
+        std::vector<std::byte> texels;
+        if (from)
+            texels =
+                palette_texels(format, image.width, image.height, level, {from, static_cast<std::size_t>(image.bytes)});
+        call.pixels = from ? texels.data() : nullptr;
+        define_image(c, call);
+    }
+}
+
 }  // namespace
 
 void CompressedTexImage2D(Context& c, GLenum target, GLint level, GLenum internal, GLsizei width, GLsizei height,
                           GLint border, GLsizei bytes, const void* data) {
+    if (const auto palette = c.profile.is_es1() ? palette_format(internal) : std::nullopt) {
+        const PaletteImage image{target, width, height, bytes, data};
+        return define_palette_images(c, *palette, image, level, border);
+    }
+    internal = format_of_blocks(c, internal);
     define_blocks(c, {target, level, static_cast<GLint>(internal), width, height, 1, bytes, 2}, border, data);
 }
 void CompressedTexImage3D(Context& c, GLenum target, GLint level, GLenum internal, GLsizei width, GLsizei height,
@@ -255,6 +302,7 @@ void CompressedTexImage3D(Context& c, GLenum target, GLint level, GLenum interna
 }
 void CompressedTexSubImage2D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height,
                              GLenum format, GLsizei bytes, const void* data) {
+    format = format_of_blocks(c, format);
     define_sub_blocks(c, {target, level, static_cast<GLint>(format), width, height, 1, bytes, 2}, {x, y, 0}, data);
 }
 void CompressedTexSubImage3D(Context& c, GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width,

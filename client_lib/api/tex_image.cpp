@@ -226,7 +226,7 @@ void set_depth_mode(Texture& texture, const ImageCall& call) {
 void store_level(Context& c, const ImageCall& call, TexelData data) {
     const auto texture = texture_to_change(c, call.target);
     std::lock_guard lock(c.share().mutex);
-    if (c.profile.es != 0) set_depth_mode(*texture, call);
+    if (c.profile.is_es()) set_depth_mode(*texture, call);
     TextureLevel& level = texture->level_at(face_of(call.target), call.level);
     level = TextureLevel{};
     level.internal_format = call.internal_format;
@@ -283,15 +283,16 @@ GLenum adopt_es_pixels(ImageCall& call, const EsImage& image) {
 std::optional<EsImage> pixels_to_change(Context& c, const ImageCall& call) {
     const auto texture = target_word(call.target) ? bound_texture(c, call.target) : nullptr;
     const TextureLevel* level = texture ? texture->find_level(face_of(call.target), call.level) : nullptr;
-    return level ? std::optional(es_pixels(level->internal_format, call.format, call.type)) : std::nullopt;
+    return level ? std::optional(es_pixels(c.profile.es, level->internal_format, call.format, call.type))
+                 : std::nullopt;
 }
 
 }  // namespace
 
 void define_image(Context& c, ImageCall call) {
     if (!legal_target(call.dimensions, call.target)) return c.error(GL_INVALID_ENUM);
-    if (c.profile.es != 0) {
-        const EsImage image = es_image(call.internal_format, call.format, call.type);
+    if (c.profile.is_es()) {
+        const EsImage image = es_image(c.profile.es, call.internal_format, call.format, call.type);
         if (call.border != 0) return c.error(GL_INVALID_VALUE);
         if (const GLenum error = adopt_es_pixels(call, image)) return c.error(error);
         call.unsized_depth = depth_like(static_cast<GLenum>(call.internal_format));
@@ -345,7 +346,7 @@ GLenum sub_image_error(Context& c, const ImageCall& call) {
 }
 
 void define_sub_image(Context& c, ImageCall call) {
-    if (c.profile.es != 0) {
+    if (c.profile.is_es()) {
         const auto pixels = pixels_to_change(c, call);
         if (!pixels) call.type = desktop_type(call.type);
         else if (const GLenum error = adopt_es_pixels(call, *pixels)) return c.error(error);
@@ -425,10 +426,10 @@ void copy_image(Context& c, ImageCall call, GLenum internal_format, From from, c
     if (!internal || internal_format <= 4) return c.error(GL_INVALID_ENUM);
     if (!is_compressed_online(*internal)) return c.error(GL_INVALID_OPERATION);
     if (!may_read_pixels(c)) return;
-    if (c.profile.es != 0) {
+    if (c.profile.is_es()) {
         const TextureFormat* colors = read_color_format(c);
         const GLenum none = GL_INVALID_OPERATION,
-                     error = colors ? es_copy_error(internal_format, *colors, read_base(c)) : none;
+                     error = colors ? es_copy_error(c.profile.es, internal_format, *colors, read_base(c)) : none;
         if (call.border != 0 || error != GL_NO_ERROR) return c.error(error ? error : GLenum{GL_INVALID_VALUE});
     }
     if (call.width < 0 || call.height < 0) return c.error(GL_INVALID_VALUE);

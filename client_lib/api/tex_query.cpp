@@ -105,7 +105,8 @@ void get_level(Context& c, GLenum target, GLint number, GLenum pname, Out* out) 
 unsigned parameter_size(GLenum pname) {
     switch (pname) {
         case GL_TEXTURE_BORDER_COLOR:
-        case GL_TEXTURE_SWIZZLE_RGBA: return 4;
+        case GL_TEXTURE_SWIZZLE_RGBA:
+        case GL_TEXTURE_CROP_RECT_OES: return 4;
         case GL_TEXTURE_MIN_FILTER:
         case GL_TEXTURE_MAG_FILTER:
         case GL_TEXTURE_WRAP_S:
@@ -157,7 +158,7 @@ void get_parameter(Context& c, GLenum target, GLenum pname, Out* out) {
     if (pname == GL_IMAGE_FORMAT_COMPATIBILITY_TYPE)
         return void(*out = static_cast<Out>(GL_IMAGE_FORMAT_COMPATIBILITY_BY_SIZE));
     const unsigned count = parameter_size(pname);
-    if (count == 0) return c.error(GL_INVALID_ENUM);
+    if (count == 0 || (pname == GL_TEXTURE_CROP_RECT_OES && !c.profile.is_es1())) return c.error(GL_INVALID_ENUM);
     const auto value =
         pname == GL_TEXTURE_RESIDENT
             ? std::array<float, 4>{1}

@@ -137,6 +137,9 @@ Change changed(const TexParameters& old, const glapi::TextureTargetInfo& target,
         case GL_TEXTURE_MAX_ANISOTROPY_EXT:
             p.max_anisotropy = std::min(params[0], 16.0f), check(params[0] >= 1, GL_INVALID_VALUE);
             break;
+        case GL_TEXTURE_CROP_RECT_OES:
+            std::transform(params, params + 4, p.crop_rectangle.begin(), [](GLfloat side) { return to_int(side); });
+            break;
         case GL_TEXTURE_COMPARE_MODE:
             p.compare_mode = word, check(word == GL_NONE || word == GL_COMPARE_R_TO_TEXTURE, GL_INVALID_ENUM);
             break;
@@ -163,7 +166,8 @@ void store_parameters(Context& c, GLenum target, GLenum pname, const TexParamete
     const auto texture = texture_to_change(c, target);
     std::lock_guard lock(c.share().mutex);
     texture->parameters = after;
-    if (pname == GL_GENERATE_MIPMAP || pname == GL_TEXTURE_PRIORITY) return;  // nodes are told when it happens; never
+    // Nodes are told of the first when it happens, of the others never.
+    if (pname == GL_GENERATE_MIPMAP || pname == GL_TEXTURE_PRIORITY || pname == GL_TEXTURE_CROP_RECT_OES) return;
     texture->parameter_changed(pname);
     // Of storage for good, nodes are told of the last level that the first one allows.
     if (pname == GL_TEXTURE_BASE_LEVEL && texture->immutable_levels != 0)
@@ -268,8 +272,9 @@ void TexParameterfv(Context& c, GLenum target, GLenum pname, const GLfloat* para
         return;
     }
     const bool wrap = pname == GL_TEXTURE_WRAP_S || pname == GL_TEXTURE_WRAP_T || pname == GL_TEXTURE_WRAP_R;
+    if (pname == GL_TEXTURE_CROP_RECT_OES && !c.profile.is_es1()) return c.error(GL_INVALID_ENUM);
     if (is_removed(c, pname) || (wrap && is_removed(c, to_enum(params[0])))) return c.error(GL_INVALID_ENUM);
-    if (c.profile.es != 0 && takes_word(pname) && !is_es_word(c.profile.es, to_enum(params[0])))
+    if (c.profile.is_es() && takes_word(pname) && !is_es_word(c.profile.es, to_enum(params[0])))
         return c.error(GL_INVALID_ENUM);
     const auto current = bound_texture(c, target);
     const TexParameters before = current ? current->parameters : Texture(ClientName(), 0, info->id).parameters;

@@ -76,10 +76,9 @@ void load_packed(const std::byte* from, GLint size, float* out) {
     glapi::unpack_2_10_10_10(kType, load_one<GLuint>(from), kFraction, static_cast<unsigned>(size), out);
 }
 
-/// Sixteen bits before and behind the point.
 void load_fixed(const std::byte* from, GLint count, GLfloat* out) {
     for (GLint i = 0; i < count; ++i)
-        out[i] = static_cast<float>(load_one<GLfixed>(from + static_cast<std::size_t>(i) * sizeof(GLfixed))) / 65536.0f;
+        out[i] = glapi::from_fixed(load_one<GLfixed>(from + static_cast<std::size_t>(i) * sizeof(GLfixed)));
 }
 
 template <GLenum kType>

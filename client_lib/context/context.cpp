@@ -32,7 +32,7 @@ constinit thread_local Packer* tls_packer = nullptr;
 namespace {
 
 const GlTable& table_of(const ContextProfile& profile) {
-    if (profile.es != 0) return es_table(profile.es);
+    if (profile.is_es()) return es_table(profile.es);
     return profile.core ? tables::core : tables::immediate;
 }
 
@@ -65,15 +65,25 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextProfile& own_pr
         if (!share_->labels) share_->labels = std::make_shared<ObjectLabels>();
     }
     glstate::assign<glstate::el::debug_output>(state, 0, profile.debug);
+    set_first_state();
+}
+
+// What such a context always has or begins with, and the nodes' drivers, whose contexts are of OpenGL's compatibility
+// profile, have to be told.
+void Context::set_first_state() {
+    namespace el = glstate::el;
+    if (profile.has_begin()) return;
+    glstate::assign<el::clamp_vertex_color>(state, 0, GL_FALSE);
+    glstate::assign<el::clamp_fragment_color>(state, 0, GL_FALSE);
+    if (profile.is_es()) glstate::assign<el::framebuffer_srgb>(state, 0, 1);
+    if (profile.is_es1())  // GL_OES_texture_cube_map
+        for (unsigned i = 0; i < el::tex_gen_mode::count; ++i)
+            glstate::assign<el::tex_gen_mode>(state, i, GL_REFLECTION_MAP);
     if (profile.has_fixed_function()) return;
-    // What such a context always has, and the nodes' drivers, whose contexts have fixed function, have to be told.
-    glstate::assign<glstate::el::point_sprite>(state, 0, 1);
-    glstate::assign<glstate::el::clamp_vertex_color>(state, 0, GL_FALSE);
-    glstate::assign<glstate::el::clamp_fragment_color>(state, 0, GL_FALSE);
-    if (profile.es == 0) return;
-    glstate::assign<glstate::el::program_point_size>(state, 0, 1);
-    glstate::assign<glstate::el::framebuffer_srgb>(state, 0, 1);
-    glstate::assign<glstate::el::texture_cube_map_seamless>(state, 0, 1);
+    glstate::assign<el::point_sprite>(state, 0, 1);
+    if (!profile.is_es()) return;
+    glstate::assign<el::program_point_size>(state, 0, 1);
+    glstate::assign<el::texture_cube_map_seamless>(state, 0, 1);
 }
 
 Context::~Context() = default;

@@ -207,6 +207,7 @@ private:
     bool writes() override;
     void for_each_written(const std::function<void(const Object&)>& use) override;
     void note_written() override;
+    void set_first_state();
     void submit_block();
     /// Whether the boxes of what is packed tell where a program puts it.
     bool places_packed_vertices();

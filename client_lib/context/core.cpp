@@ -94,13 +94,13 @@ void end_context(Context* context) {
 
 }  // namespace
 
-bool offers_es(int major) { return is_es_implemented(major, 0); }
+bool offers_es(int major) { return es_version_for(major, 0) != 0; }
 
 // A forward-compatible context is of the core profile, as in Mesa.
 std::shared_ptr<Context> create_context(const ContextOptions& options) {
     const bool core = options.core_profile || options.forward_compatible;
-    const unsigned es = options.es ? implemented_es_version() : 0;
-    if (options.es && !is_es_implemented(options.major, options.minor)) return nullptr;
+    const unsigned es = options.es ? es_version_for(options.major, options.minor) : 0;
+    if (options.es && es == 0) return nullptr;
     if (!options.es && (!is_implemented(options.major, options.minor) || (core && !is_implemented(3, 1))))
         return nullptr;
     auto share = options.share ? options.share->share_pointer() : std::make_shared<ShareGroup>();

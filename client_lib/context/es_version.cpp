@@ -16,39 +16,52 @@ namespace {
 /// What a version asks for besides its commands; one without a line is not offered.
 struct Beyond {
     int version;
-    const char* shading_language;
-    const char* node_word;  ///< what a node's driver must have for it
+    const char* shading_language;  ///< null: it has none
+    const char* node_word;         ///< what a node's driver must have for it; empty: nothing
 };
 constexpr Beyond kBeyond[] = {
+    {11, nullptr, ""},
     {20, "1.00", "GL_ARB_ES2_compatibility"},
     {30, "3.00", "GL_ARB_ES3_compatibility"},
 };
 
-/// Of each word, the first version that has it; 0: none.
-const std::array<std::uint8_t, 0x10000>& first_versions() {
+struct WordVersions {
+    std::uint8_t since : 7;  ///< the first one of those with shaders; 0: none
+    std::uint8_t first : 1;  ///< whether OpenGL ES 1.1 has it
+};
+static_assert(sizeof(WordVersions) == 1);
+
+const std::array<WordVersions, 0x10000>& word_versions() {
     static const auto* table = [] {
-        auto* made = new std::array<std::uint8_t, 0x10000>{};  // never destroyed: programs draw in exit handlers
-        for (const EsWord& word : kEsWords) (*made)[word.value] = static_cast<std::uint8_t>(word.since);
+        auto* made = new std::array<WordVersions, 0x10000>{};  // never destroyed: programs draw in exit handlers
+        for (const EsWord& word : kEsWords)
+            (*made)[word.value] = {static_cast<std::uint8_t>(word.since & 0x7F), word.first};
         return made;
     }();
     return *table;
 }
 
-std::vector<std::string> es_extensions(const Caps& caps) {
+bool has_word(const NodeWords& node, const char* word) { return *word == '\0' || node.have(word); }
+
+std::vector<std::string> es_extensions(unsigned version, const Caps& caps) {
     const NodeWords node(caps);
     std::vector<std::string> offered;
     for (const EsExtension& extension : kEsExtensions)
-        if (extension.implemented && (*extension.node_word == '\0' || node.have(extension.node_word)))
+        if (extension.implemented && (is_first_es(version) ? extension.first : extension.later) &&
+            has_word(node, extension.node_word))
             offered.emplace_back(extension.name);
     return offered;
 }
 
-/// The last version up to a context's that a node's driver can do; the first one is never missing.
+/// The last version of a context's kind, up to its own, that a node's driver can do; the first one is never missing.
 const Beyond& offered_beyond(unsigned version, const Caps& caps) {
     const NodeWords node(caps);
-    const Beyond* offered = kBeyond;
-    for (const Beyond& beyond : kBeyond)
-        if (static_cast<unsigned>(beyond.version) <= version && node.have(beyond.node_word)) offered = &beyond;
+    const Beyond* offered = nullptr;
+    for (const Beyond& beyond : kBeyond) {
+        const auto number = static_cast<unsigned>(beyond.version);
+        if (is_first_es(number) != is_first_es(version) || number > version) continue;
+        if (!offered || has_word(node, beyond.node_word)) offered = &beyond;
+    }
     return *offered;
 }
 
@@ -63,38 +76,44 @@ unsigned implemented_es_version() {
     return offered;
 }
 
-bool is_es_implemented(int major, int minor) {
+// OpenGL ES 1.1 does for 1.0 (EGL 1.5, 3.7.1.1).
+unsigned es_version_for(int major, int minor) {
+    if (major == 1 && minor == 0) minor = 1;
     const auto known = std::ranges::any_of(
         kEsVersions, [&](const EsVersion& each) { return each.version == major * 10 + minor && minor < 10; });
-    return known && static_cast<unsigned>(major * 10 + minor) <= implemented_es_version();
+    const unsigned latest = implemented_es_version(), wanted = static_cast<unsigned>(major * 10 + minor);
+    if (!known || wanted > latest) return 0;
+    return is_first_es(wanted) ? wanted : latest;
 }
 
 const GlTable& es_table(unsigned version) {
     const auto found = std::ranges::find(kEsVersions, static_cast<int>(version), &EsVersion::version);
-    return found == kEsVersions.end() ? *kEsVersions.front().table : *found->table;
+    return found == kEsVersions.end() ? *kEsVersions.back().table : *found->table;
 }
 
 bool is_es_word(unsigned version, GLenum word) {
-    const unsigned since = word < first_versions().size() ? first_versions()[word] : 0u;
-    return since != 0 && since <= version;
+    if (word >= word_versions().size()) return false;
+    const auto [since, first] = word_versions()[word];
+    return is_first_es(version) ? first != 0 : since != 0 && since <= version;
 }
 
 GlVersion version_in(const ContextProfile& profile, const Caps& caps) {
-    if (profile.es == 0) return offered_version(caps);
+    if (!profile.is_es()) return offered_version(caps);
     const Beyond& beyond = offered_beyond(profile.es, caps);
     return {beyond.version / 10, beyond.version % 10, beyond.shading_language};
 }
 
 std::string version_text_in(const ContextProfile& profile, const Caps& caps) {
-    if (profile.es == 0) return version_string(caps, profile);
+    if (!profile.is_es()) return version_string(caps, profile);
     const GlVersion version = version_in(profile, caps);
-    return "OpenGL ES " + std::to_string(version.major) + "." + std::to_string(version.minor) + " " + kWallVersion;
+    const char* kind = profile.is_es1() ? "OpenGL ES-CM " : "OpenGL ES ";  // OpenGL ES 1.1, 6.1.4
+    return kind + std::to_string(version.major) + "." + std::to_string(version.minor) + " " + kWallVersion;
 }
 
 std::string shading_language_in(const ContextProfile& profile, const Caps& caps) {
     const char* language = version_in(profile, caps).shading_language;
     if (!language) return {};
-    return profile.es == 0 ? language : std::string("OpenGL ES GLSL ES ") + language;
+    return !profile.is_es() ? language : std::string("OpenGL ES GLSL ES ") + language;
 }
 
 std::vector<GLenum> listed_block_formats(const ContextProfile& profile, const Caps& caps) {
@@ -105,18 +124,24 @@ std::vector<GLenum> listed_block_formats(const ContextProfile& profile, const Ca
     };
     add("GL_EXT_texture_compression_s3tc",
         {GL_COMPRESSED_RGB_S3TC_DXT1_EXT, GL_COMPRESSED_RGBA_S3TC_DXT3_EXT, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT});
-    if (profile.es != 0) add("GL_EXT_texture_compression_s3tc", {GL_COMPRESSED_RGBA_S3TC_DXT1_EXT});
+    if (profile.is_es()) add("GL_EXT_texture_compression_s3tc", {GL_COMPRESSED_RGBA_S3TC_DXT1_EXT});
+    if (profile.is_es()) add("GL_ARB_ES3_compatibility", {GL_ETC1_RGB8_OES});
+    if (profile.is_es1()) {
+        for (GLenum format = GL_PALETTE4_RGB8_OES; format <= GL_PALETTE8_RGB5_A1_OES; ++format)
+            formats.push_back(format);
+        return formats;
+    }
     add("GL_ARB_ES3_compatibility",
         {GL_COMPRESSED_RGB8_ETC2, GL_COMPRESSED_RGBA8_ETC2_EAC, GL_COMPRESSED_R11_EAC, GL_COMPRESSED_RG11_EAC,
          GL_COMPRESSED_SIGNED_R11_EAC, GL_COMPRESSED_SIGNED_RG11_EAC, GL_COMPRESSED_RGB8_PUNCHTHROUGH_ALPHA1_ETC2});
-    if (profile.es != 0)
+    if (profile.is_es())
         add("GL_ARB_ES3_compatibility", {GL_COMPRESSED_SRGB8_ETC2, GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC,
                                          GL_COMPRESSED_SRGB8_PUNCHTHROUGH_ALPHA1_ETC2});
     return formats;
 }
 
 std::vector<std::string> extensions_in(const ContextProfile& profile, const Caps& caps) {
-    return profile.es == 0 ? offered_extensions(caps, profile) : es_extensions(caps);
+    return !profile.is_es() ? offered_extensions(caps, profile) : es_extensions(profile.es, caps);
 }
 
 }  // namespace wall::client

@@ -15,8 +15,9 @@ namespace wall::client {
 
 /// The latest version of OpenGL ES whose every command is implemented, and what else it asks for, times ten.
 unsigned implemented_es_version();
-/// Whether a context of that version may be asked for: a version that there is, and not later than ours.
-bool is_es_implemented(int major, int minor);
+/// The version, times ten, of a context that was asked for: the latest of those with shaders for each of them, 1.1 for
+/// the first ones. 0: no such version, or later than ours.
+unsigned es_version_for(int major, int minor);
 /// The mode of a context of a version, times ten.
 const GlTable& es_table(unsigned version);
 

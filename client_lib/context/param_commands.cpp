@@ -24,16 +24,28 @@ const ParamRow* find_row(ParamFamily family, std::optional<GLenum> target, GLenu
     return nullptr;
 }
 
-/// The element's index that a command's first argument means; nothing: it means none.
-std::optional<unsigned> index_of(const Context& c, ParamFamily family, GLenum lead) {
-    const auto below = [](unsigned i, unsigned count) { return i < count ? std::optional(i) : std::nullopt; };
+/// Indices of an element, in a row.
+struct Indices {
+    unsigned first = 0, count = 1;
+};
+
+constexpr unsigned kCoordinates = 4, kCubeCoordinates = 3;
+
+/// Of the active unit. GL_OES_texture_cube_map has a word for all that are for cube maps, and none for single ones.
+std::optional<Indices> coordinates_of(const Context& c, GLenum lead) {
+    const unsigned first = c.active_texture() * kCoordinates;
+    if (lead == GL_TEXTURE_GEN_STR_OES && c.profile.is_es()) return Indices{first, kCubeCoordinates};
+    return lead - GL_S < kCoordinates ? std::optional(Indices{first + (lead - GL_S)}) : std::nullopt;
+}
+
+/// The element's indices that a command's first argument means; nothing: it means none.
+std::optional<Indices> indices_of(const Context& c, ParamFamily family, GLenum lead) {
+    const auto below = [](unsigned i, unsigned count) { return i < count ? std::optional(Indices{i}) : std::nullopt; };
     if (family == ParamFamily::Light) return below(lead - GL_LIGHT0, el::light_ambient::count);
-    if (family == ParamFamily::TexEnv) return c.active_texture();
+    if (family == ParamFamily::TexEnv) return Indices{c.active_texture()};
     if (family == ParamFamily::Material)
-        return lead == GL_FRONT ? std::optional(0u) : lead == GL_BACK ? std::optional(1u) : std::nullopt;
-    if (family != ParamFamily::TexGen) return 0;
-    const auto coordinate = below(lead - GL_S, 4);
-    return coordinate ? std::optional(c.active_texture() * 4 + *coordinate) : std::nullopt;
+        return lead == GL_FRONT ? below(0, 2) : lead == GL_BACK ? below(1, 2) : std::nullopt;
+    return family == ParamFamily::TexGen ? coordinates_of(c, lead) : Indices{};
 }
 
 GLenum target_of(ParamFamily family, GLenum lead) { return family == ParamFamily::TexEnv ? lead : 0; }
@@ -58,12 +70,12 @@ bool lacks_unit(Context& c, ParamFamily family, GLenum lead) {
 template <class T>
 void set_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, const T* values) {
     if (lacks_unit(c, family, lead)) return;
-    const auto index = index_of(c, family, lead);
+    const auto indices = indices_of(c, family, lead);
     const ParamRow* row = find_row(family, target_of(family, lead), pname);
-    if (!index || !row || !row->set || is_removed(c, pname)) return c.error(GL_INVALID_ENUM);
+    if (!indices || !row || !row->set || is_removed(c, pname)) return c.error(GL_INVALID_ENUM);
     double v[4] = {};
     std::copy_n(values, row->components, v);
-    row->set(c, *index, v);
+    for (unsigned i = 0; i < indices->count; ++i) row->set(c, indices->first + i, v);
 }
 
 /// Material parameters that follow the current colour get it.
@@ -79,17 +91,20 @@ void get_truncated(const Context& c, std::uint32_t id, unsigned components, GLin
     std::transform(real, real + components, values, [](GLfloat v) { return to_int(v); });
 }
 
+/// False: nothing is answered.
 template <class T>
-void get_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, T* values) {
-    if (lacks_unit(c, family, lead)) return;
-    const auto index = index_of(c, family, lead);
+bool get_any(Context& c, ParamFamily family, GLenum lead, GLenum pname, T* values) {
+    if (lacks_unit(c, family, lead)) return false;
+    const auto indices = indices_of(c, family, lead);
     const auto* entry = glstate::find_param(family, target_of(family, lead), pname);
-    if (!index || !entry) return c.error(GL_INVALID_ENUM);
+    if (!indices || !entry) return c.error(GL_INVALID_ENUM), false;
+    const std::uint32_t id = entry->id + indices->first;
     if (family == ParamFamily::Material) adopt_current_color(c);
     if constexpr (std::is_same_v<T, GLint>)
         if (entry->kind == glstate::ValueKind::real && family != ParamFamily::Material)
-            return get_truncated(c, entry->id + *index, entry->components, values);
-    glstate::read_components(c.state, entry->id + *index, 0, entry->kind, entry->components, values);
+            return get_truncated(c, id, entry->components, values), true;
+    glstate::read_components(c.state, id, 0, entry->kind, entry->components, values);
+    return true;
 }
 
 /// Of a unit without fixed function. As in Mesa, only that of generated coordinates is an error.
@@ -125,6 +140,17 @@ void convert_params(ParamFamily family, GLenum pname, const GLint* from, GLfloat
 void convert_params(ParamFamily family, GLenum pname, const GLdouble* from, GLfloat* to) {
     convert(family, pname, from, to);
 }
+void convert_fixed(ParamFamily family, GLenum pname, const GLfixed* from, GLfloat* to) {
+    const ParamRow* row = find_row(family, std::nullopt, pname);
+    if (!row) return;
+    for (unsigned k = 0; k < row->components; ++k)
+        to[k] = row->word ? static_cast<GLfloat>(from[k]) : glapi::from_fixed(from[k]);
+}
+void convert_to_fixed(ParamFamily family, GLenum pname, const GLfloat* from, GLfixed* to) {
+    const ParamRow* row = find_row(family, std::nullopt, pname);
+    if (!row) return;
+    for (unsigned k = 0; k < row->components; ++k) to[k] = row->word ? to_int(from[k]) : glapi::to_fixed(from[k]);
+}
 GLint rounded_param(GLfloat value) { return to_int(std::round(value)); }
 
 void set_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, const GLfloat* values) {
@@ -147,8 +173,17 @@ void get_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLdou
     get_any(c, family, lead, pname, values);
 }
 
+void get_fixed_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLfixed* values) {
+    GLfloat read[4] = {};
+    if (get_any(c, family, lead, pname, read)) convert_to_fixed(family, pname, read, values);
+}
+
 void set_capability(Context& c, GLenum cap, bool on) {
     if (is_removed(c, cap)) return c.error(GL_INVALID_ENUM);
+    if (cap == GL_TEXTURE_GEN_STR_OES && c.profile.is_es()) {
+        for (unsigned i = 0; i < kCubeCoordinates; ++i) set_capability(c, GL_TEXTURE_GEN_S + i, on);
+        return;
+    }
     const CapRow* row = find_cap_row(cap);
     const bool fixed_function = !row || row->unit_stride != 0;
     if (fixed_function && !c.profile.has_fixed_function()) return c.error(GL_INVALID_ENUM);
@@ -159,6 +194,9 @@ void set_capability(Context& c, GLenum cap, bool on) {
 }
 
 GLboolean is_capability_set(Context& c, GLenum cap) {
+    if (cap == GL_TEXTURE_GEN_STR_OES && c.profile.is_es()) return is_capability_set(c, GL_TEXTURE_GEN_S);
+    if (cap == GL_POINT_SIZE_ARRAY_OES && c.profile.is_es1())
+        return static_cast<GLboolean>(c.state.vertex_arrays.point_size_array.enabled);
     const auto* entry = is_removed(c, cap) ? nullptr : glstate::find_get(cap);  // client arrays as well
     using enum glstate::ValueKind;
     const bool fixed_function =
@@ -197,7 +235,8 @@ void set_tex_gen_mode(Context& c, unsigned i, const double* v) {
     const bool linear = mode == GL_OBJECT_LINEAR || mode == GL_EYE_LINEAR;
     const bool sphere = mode == GL_SPHERE_MAP && coordinate < 2;
     const bool cube = (mode == GL_NORMAL_MAP || mode == GL_REFLECTION_MAP) && coordinate < 3;
-    if (!linear && !sphere && !cube) return c.error(GL_INVALID_ENUM);
+    const bool only_cube = c.profile.is_es();
+    if (!cube && (only_cube || (!linear && !sphere))) return c.error(GL_INVALID_ENUM);
     c.set<el::tex_gen_mode>(i, mode);
 }
 

@@ -26,6 +26,7 @@ struct ParamRow {
     GLenum pname;   ///< kAnyParam: all that have no row
     std::uint8_t components;
     bool normalized;                                     ///< integers map to [-1, 1]
+    bool word;                                           ///< a word or a switch, no number
     void (*set)(Context&, unsigned i, const double* v);  ///< null: the command is written by hand
 };
 extern const std::span<const ParamRow> kParamRows;  ///< by family
@@ -51,6 +52,10 @@ bool refuses_one_value(const Context& c, ParamFamily family, GLenum pname);
 void convert_params(ParamFamily family, GLenum pname, const GLint* from, GLfloat* to);
 void convert_params(ParamFamily family, GLenum pname, const GLdouble* from, GLfloat* to);
 GLint rounded_param(GLfloat value);
+/// The same of fixed point, which words and switches are given without (OpenGL ES 1.1, 2.3).
+void convert_fixed(ParamFamily family, GLenum pname, const GLfixed* from, GLfloat* to);
+/// The other way round.
+void convert_to_fixed(ParamFamily family, GLenum pname, const GLfloat* from, GLfixed* to);
 
 /// glX*v(lead, pname, values); raises the error itself. lead: light, target or coordinate; 0 where there is none.
 void set_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, const GLfloat* values);
@@ -61,6 +66,7 @@ void set_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, const
 void get_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLfloat* values);
 void get_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLint* values);
 void get_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLdouble* values);
+void get_fixed_params(Context& c, ParamFamily family, GLenum lead, GLenum pname, GLfixed* values);
 
 void set_capability(Context& c, GLenum cap, bool on);
 GLboolean is_capability_set(Context& c, GLenum cap);

@@ -2,6 +2,7 @@
 // What a context was made as: the profile, and what the program asked for beside it. It never changes.
 #pragma once
 
+#include "client_lib/objects/es_kind.h"
 #include "common/glapi/gl_types.h"
 
 namespace wall::client {
@@ -15,8 +16,10 @@ struct ContextProfile {
     unsigned es = 0;                  ///< of OpenGL ES: its version, times ten; 0: of OpenGL
 
     bool is_es() const { return es != 0; }
+    /// Of the first OpenGL ES, which has fixed function and no shaders; the later ones have shaders only.
+    bool is_es1() const { return is_first_es(es); }
     /// Whether it has what shaders replaced: matrices, lights, texture environments and the arrays for them.
-    bool has_fixed_function() const { return has_begin(); }
+    bool has_fixed_function() const { return is_es() ? is_es1() : !core; }
     /// Whether vertices are given one by one, and commands go into display lists.
     bool has_begin() const { return !core && !is_es(); }
 

@@ -25,8 +25,11 @@ void set_bound_id(Context& c, unsigned unit, glapi::TextureTarget target, Client
 }
 
 std::shared_ptr<Texture> bound_texture(Context& c, GLenum word) {
-    const glapi::TextureTarget target = target_word(word)->info->id;
-    const ClientName id = bound_id(c, c.active_texture(), target);
+    return bound_texture_of(c, c.active_texture(), target_word(word)->info->id);
+}
+
+std::shared_ptr<Texture> bound_texture_of(Context& c, unsigned unit, glapi::TextureTarget target) {
+    const ClientName id = bound_id(c, unit, target);
     std::lock_guard lock(c.share().mutex);
     if (!id) {
         const auto found = c.share().default_textures.find(target);

@@ -18,6 +18,7 @@ void set_bound_id(Context& c, unsigned unit, glapi::TextureTarget target, Client
 /// The object that the active unit has at a target for reading: null means the default texture without content. The
 /// word (of the target, a face or a proxy) has been checked.
 std::shared_ptr<Texture> bound_texture(Context& c, GLenum word);
+std::shared_ptr<Texture> bound_texture_of(Context& c, unsigned unit, glapi::TextureTarget target);
 /// The same for changing: what was drawn so far is sent off first, and a default texture comes into being.
 std::shared_ptr<Texture> texture_to_change(Context& c, GLenum word);
 /// A new object of the share group. Its mutex is held.

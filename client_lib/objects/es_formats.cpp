@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "client_lib/objects/es_kind.h"
 #include "common/glapi/block_formats.h"
 #include "gen/client_lib/es_images.gen.h"
 
@@ -15,13 +16,23 @@ bool any_has(Member EsImageRow::*member, Member value) {
     return std::ranges::any_of(kEsImages, [&](const EsImageRow& row) { return row.*member == value; });
 }
 
-/// The first row with these pixels that `fits`; without one the error.
+/// Of OpenGL ES 1.1, or of the later versions.
+bool is_of(const EsImageRow& row, unsigned version) { return row.first == is_first_es(version); }
+
+bool has_format(unsigned version, GLenum internal_format) {
+    return std::ranges::any_of(kEsImages, [&](const EsImageRow& row) {
+        return is_of(row, version) && row.internal_format == internal_format;
+    });
+}
+
+/// The first row of a version with these pixels that `fits`; without one the error.
 template <class Fits>
-EsImage find_image(GLenum format, GLenum es_type, Fits&& fits) {
+EsImage find_image(unsigned version, GLenum format, GLenum es_type, Fits&& fits) {
     const GLenum type = desktop_type(es_type);
     if (!any_has(&EsImageRow::format, format) || !any_has(&EsImageRow::type, type)) return {.error = GL_INVALID_ENUM};
-    const auto* row = std::ranges::find_if(
-        kEsImages, [&](const EsImageRow& each) { return each.format == format && each.type == type && fits(each); });
+    const auto* row = std::ranges::find_if(kEsImages, [&](const EsImageRow& each) {
+        return is_of(each, version) && each.format == format && each.type == type && fits(each);
+    });
     if (row == std::end(kEsImages)) return {.error = GL_INVALID_OPERATION};
     return {GL_NO_ERROR, row->desktop_format, type};
 }
@@ -56,33 +67,34 @@ bool is_float_depth(const TextureFormat& format) { return format.component_type 
 
 GLenum desktop_type(GLenum type) { return type == kHalfFloatOes ? GLenum{GL_HALF_FLOAT} : type; }
 
-EsImage es_image(GLint internal_format, GLenum format, GLenum type) {
+EsImage es_image(unsigned version, GLint internal_format, GLenum format, GLenum type) {
     if (is_of_blocks(internal_format)) {  // EXT_texture_compression_s3tc: the driver compresses
-        EsImage image = find_image(format, type, [](const EsImageRow&) { return true; });
+        EsImage image = find_image(version, format, type, [](const EsImageRow&) { return true; });
         image.internal_format = internal_format;
         return image;
     }
     const auto word = static_cast<GLenum>(internal_format);
-    if (!any_has(&EsImageRow::internal_format, word)) return {.error = GL_INVALID_VALUE};
-    return find_image(format, type, [&](const EsImageRow& row) { return row.internal_format == word; });
+    if (!has_format(version, word)) return {.error = GL_INVALID_VALUE};
+    return find_image(version, format, type, [&](const EsImageRow& row) { return row.internal_format == word; });
 }
 
-EsImage es_pixels(GLint internal_format, GLenum format, GLenum type) {
+EsImage es_pixels(unsigned version, GLint internal_format, GLenum format, GLenum type) {
     const bool blocks = is_of_blocks(internal_format);
-    return find_image(format, type,
+    return find_image(version, format, type,
                       [&](const EsImageRow& row) { return blocks || row.desktop_format == internal_format; });
 }
 
 bool es_is_drawn(unsigned version, GLint internal_format) {
     return std::ranges::any_of(kEsDrawn, [&](const EsDrawnRow& row) {
-        return row.internal_format == static_cast<GLenum>(internal_format) && row.since <= version;
+        return row.internal_format == static_cast<GLenum>(internal_format) &&
+               row.since <= std::max(version, kFirstShaderEs);
     });
 }
 
 // Of formats without sizes nothing but the components is looked at.
-GLenum es_copy_error(GLenum internal_format, const TextureFormat& from, GLenum base) {
+GLenum es_copy_error(unsigned version, GLenum internal_format, const TextureFormat& from, GLenum base) {
     const TextureFormat* to = find_texture_format(static_cast<GLint>(internal_format));
-    if (!to || !any_has(&EsImageRow::internal_format, internal_format)) return GL_INVALID_ENUM;
+    if (!to || !has_format(version, internal_format)) return GL_INVALID_ENUM;
     const bool colors = to->base != GL_DEPTH_COMPONENT && to->base != GL_DEPTH_STENCIL;
     const Components wanted = components_of(to->base), there = components_of(base);
     if (!colors || internal_format == GL_RGB9_E5) return GL_INVALID_OPERATION;

@@ -18,19 +18,20 @@ struct EsImage {
     GLenum type = 0;            ///< the same
 };
 
-/// Of glTexImage.
-EsImage es_image(GLint internal_format, GLenum format, GLenum type);
+/// Of glTexImage, in a version, times ten.
+EsImage es_image(unsigned version, GLint internal_format, GLenum format, GLenum type);
 /// Of glTexSubImage; `internal_format` is the texture's own, of desktop OpenGL.
-EsImage es_pixels(GLint internal_format, GLenum format, GLenum type);
+EsImage es_pixels(unsigned version, GLint internal_format, GLenum format, GLenum type);
 /// GL_HALF_FLOAT for the other word that OpenGL ES 2.0 has for it.
 GLenum desktop_type(GLenum type);
 
-/// Whether images of a format (as desktop OpenGL names it) may be drawn to in a version, times ten.
+/// Whether images of a format (as desktop OpenGL names it) may be drawn to in a version, times ten: in the first ones
+/// the same.
 bool es_is_drawn(unsigned version, GLint internal_format);
 
 /// Of glCopyTexImage out of colours of a format, with `base` for their components (OpenGL ES 3.0.6, 3.8.5):
 /// GL_INVALID_ENUM, or GL_INVALID_OPERATION where they lack a component or would be converted.
-GLenum es_copy_error(GLenum internal_format, const TextureFormat& from, GLenum base);
+GLenum es_copy_error(unsigned version, GLenum internal_format, const TextureFormat& from, GLenum base);
 
 /// What glReadPixels gives out of colours of a format besides what every context has: GL_IMPLEMENTATION_COLOR_READ_*.
 PixelKind es_read_kind(const TextureFormat& from);

@@ -348,6 +348,11 @@ std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname) {
             return all;
         }
         case GL_TEXTURE_SRGB_DECODE_EXT: return one(p.srgb_decode);
+        case GL_TEXTURE_CROP_RECT_OES: {
+            std::array<float, 4> all;
+            std::ranges::transform(p.crop_rectangle, all.begin(), [](GLint side) { return static_cast<float>(side); });
+            return all;
+        }
         default: return one(p.generate_mipmap ? 1 : 0);
     }
 }

@@ -67,6 +67,7 @@ struct TexParameters {
     GLint base_level = 0, max_level = 1000;
     GLenum compare_mode = GL_NONE, compare_func = GL_LEQUAL, depth_mode = GL_LUMINANCE;
     bool generate_mipmap = false;
+    std::array<GLint, 4> crop_rectangle{};  ///< of GL_OES_draw_texture: texels; nodes are not told
 };
 
 struct Texture : Object {

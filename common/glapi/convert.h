@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Integers as fractions: the whole range maps to [0, 1] or [-1, 1] (OpenGL 1.2.1 table 2.6), computed as Mesa does, to
-// the last bit. Pure.
+// the last bit; numbers with sixteen bits behind the point (OpenGL ES 1.1, 2.3). Pure.
 #pragma once
 
 #include <bit>
+#include <limits>
 #include <type_traits>
 
 #include "common/glapi/gl_types.h"
@@ -26,5 +27,16 @@ inline GLfloat to_fraction(GLuint v) { return static_cast<GLfloat>(static_cast<G
 inline GLfloat to_fraction(GLint v) { return (2.0f * static_cast<GLfloat>(v) + 1.0f) * (1.0f / 4294967295.0f); }
 inline GLfloat to_fraction(GLfloat v) { return v; }
 inline GLfloat to_fraction(GLdouble v) { return static_cast<GLfloat>(v); }
+
+inline constexpr GLfloat kFixedOne = 65536.0f;
+
+inline GLfloat from_fixed(GLfixed v) { return static_cast<GLfloat>(v) / kFixedOne; }
+/// What is behind the last bit is dropped; the nearest that there is of what is too large or too small, 0 of no number.
+inline GLfixed to_fixed(GLdouble v) {
+    constexpr GLdouble kMost = std::numeric_limits<GLfixed>::max(), kLeast = std::numeric_limits<GLfixed>::min();
+    const GLdouble bits = v * static_cast<GLdouble>(kFixedOne);
+    if (bits != bits) return 0;
+    return static_cast<GLfixed>(bits > kMost ? kMost : bits < kLeast ? kLeast : bits);
+}
 
 }  // namespace wall::glapi

@@ -64,6 +64,25 @@ class OpenGlEs(unittest.TestCase):
         self.assertNotIn(self.gl.enums["GL_MATRIX_MODE"], words)
         self.assertNotIn(self.gl.enums["GL_COLOR_BUFFER_BIT"], words, "a bit, which is a word of desktop's as well")
 
+    def test_the_first_version_is_of_another_kind(self):
+        self.assertEqual(self.es.versions[:2], [(1, 1), (2, 0)])
+        self.assertIsNone(self.es.missing((1, 1)))
+        first, second = self.es.slots((1, 1)), self.es.slots((2, 0))
+        self.assertLessEqual({"MatrixMode", "Lightfv", "Frustum", "DrawTexfOES", "BindFramebuffer"}, first)
+        self.assertFalse({"UseProgram", "VertexAttribPointer", "Begin"} & first)
+        self.assertFalse({"MatrixMode", "DrawTexfOES"} & second)
+        words = self.es.words("gles1")
+        self.assertIn(self.gl.enums["GL_MATRIX_MODE"], words)
+        self.assertNotIn(self.gl.enums["GL_VERTEX_SHADER"], words)
+        self.assertNotIn("GL_OES_standard_derivatives", [e.name for e in self.es.offered("gles1")])
+        self.assertNotIn("GL_OES_compressed_paletted_texture", [e.name for e in self.es.offered("gles2")])
+
+    def test_names_of_the_first_version_s_extensions(self):
+        names = self.commands.all
+        self.assertIs(names["glBindFramebufferOES"], names["glBindFramebuffer"])
+        self.assertIs(names["glSampleCoveragexOES"], names["glSampleCoveragex"])
+        self.assertEqual(self.commands.family_of("TexGenxvOES"), ("TexGen", "xv"))
+
     def test_parameters_that_are_words(self):
         self.assertEqual(self.es.checked(self.commands.all["glTexParameterf"]), [0, 1])
         self.assertEqual(self.es.checked(self.commands.all["glActiveTexture"]), [])
@@ -75,7 +94,8 @@ class OpenGlEs(unittest.TestCase):
         self.assertNotIn("GL_RGB9_E5", self.es.drawn)
 
     def test_mistakes_have_their_place(self):
-        empty = {name: "" for name in ("extensions", "words", "images", "drawn", "numbers")}
+        empty = {name: "" for name in ("extensions", "extensions_1", "words", "words_1", "images", "images_1", "drawn",
+                                       "numbers")}
         for section, line, why in (("extensions", 'GL_ARB_shadow = ""', "GL_ARB_shadow: no extension"),
                                    ("images", 'GL_R8 = "GL_RED"', "GL_R8: GL_RED has no type"),
                                    ("images", 'GL_R8 = "GL_RED GL_BYTES"', "GL_R8: no word GL_BYTES"),

@@ -30,6 +30,11 @@ public:
         const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
         return open(EGL_OPENGL_ES_API, attributes);
     }
+    /// The same of OpenGL ES 1.1.
+    static std::unique_ptr<MesaContext> open_es1() {
+        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 1, EGL_NONE};
+        return open(EGL_OPENGL_ES_API, attributes);
+    }
     ~MesaContext() {
         eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         eglDestroyContext(display_, context_);

@@ -16,10 +16,6 @@ EGLint conformant() {
            (offers_es(3) ? EGL_OPENGL_ES3_BIT : 0);
 }
 
-// Programs name the bit of OpenGL ES 1, which is EGL's default, and then make a desktop context (xscreensaver), so that
-// it is claimed; a context that is not offered is refused when it is asked for.
-EGLint renderable() { return conformant() | EGL_OPENGL_ES_BIT; }
-
 enum class Match { exact, at_least, mask, ignored };
 
 struct Criterion {
@@ -135,7 +131,7 @@ std::optional<EGLint> attribute(const Config& c, EGLint name) {
         case EGL_NATIVE_RENDERABLE: return c.visual != 0;
         case EGL_NATIVE_VISUAL_ID: return static_cast<EGLint>(c.visual);
         case EGL_NATIVE_VISUAL_TYPE: return c.visual != 0 ? TrueColor : EGL_NONE;
-        case EGL_RENDERABLE_TYPE: return renderable();
+        case EGL_RENDERABLE_TYPE: return conformant();
         case EGL_SURFACE_TYPE: return window | EGL_PBUFFER_BIT | EGL_SWAP_BEHAVIOR_PRESERVED_BIT;
         case EGL_TRANSPARENT_TYPE: return EGL_NONE;
         default: break;

@@ -12,7 +12,7 @@
 namespace golden {
 namespace {
 
-constexpr Needs kEs{.es = true};
+constexpr Needs kEs{.es = 3};
 
 GLuint shader_of(GLenum type, const char* text) {
     const std::string source = std::string("#version 300 es\nprecision highp float;\nprecision highp int;\n") + text;

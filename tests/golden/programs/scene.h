@@ -20,7 +20,7 @@ struct Size {
 struct Needs {
     bool double_buffered = true;
     bool egl = false;
-    bool es = false;  ///< a context of OpenGL ES 3.0, by EGL
+    int es = 0;       ///< a context of that version of OpenGL ES, by EGL
     GLenum read = 0;  ///< buffer to read the frame from; 0: the one that is drawn to by default
     /// Its shaders write memory while they draw to the window: a tile shows a part of what the whole window would.
     bool whole = false;

@@ -94,6 +94,11 @@ private:
     GLXContext context_;
 };
 
+EGLint renderable(const Needs& needs) {
+    if (needs.es == 0) return EGL_OPENGL_BIT;
+    return needs.es == 1 ? EGL_OPENGL_ES_BIT : EGL_OPENGL_ES3_BIT;
+}
+
 class EglWindow : public XWindow {
 public:
     EglWindow(Size size, const Needs& needs) {
@@ -112,7 +117,7 @@ public:
                                  EGL_STENCIL_SIZE,
                                  8,
                                  EGL_RENDERABLE_TYPE,
-                                 needs.es ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_BIT,
+                                 renderable(needs),
                                  EGL_NONE};
         EGLConfig config{};
         EGLint count = 0, id = 0;
@@ -126,8 +131,9 @@ public:
         XFree(visual);
         must(eglBindAPI(needs.es ? EGL_OPENGL_ES_API : EGL_OPENGL_API), "bind OpenGL");
         surface_ = must(eglCreateWindowSurface(egl_, config, window_, nullptr), "create a surface");
-        const EGLint es3[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
-        context_ = must(eglCreateContext(egl_, config, EGL_NO_CONTEXT, needs.es ? es3 : nullptr), "create a context");
+        const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, needs.es, EGL_NONE};
+        context_ =
+            must(eglCreateContext(egl_, config, EGL_NO_CONTEXT, needs.es ? version : nullptr), "create a context");
         must(eglMakeCurrent(egl_, surface_, surface_, context_), "make the context current");
     }
     ~EglWindow() override {

@@ -139,7 +139,7 @@ protected:
 
 TEST_F(EglEs, ContextsAreMadeOfVersionsThatAreOffered) {
     EXPECT_STREQ(eglQueryString(display, EGL_CLIENT_APIS), "OpenGL OpenGL_ES");
-    EXPECT_EQ(attrib(config(), EGL_CONFORMANT), EGL_OPENGL_BIT | EGL_OPENGL_ES2_BIT);
+    EXPECT_EQ(attrib(config(), EGL_CONFORMANT), EGL_OPENGL_BIT | EGL_OPENGL_ES_BIT | EGL_OPENGL_ES2_BIT);
     EXPECT_FALSE(config({EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT}));
     EGLContext made = context({EGL_CONTEXT_CLIENT_VERSION, 2});
     ASSERT_NE(made, EGL_NO_CONTEXT);
@@ -152,6 +152,17 @@ TEST_F(EglEs, ContextsAreMadeOfVersionsThatAreOffered) {
     for (const EGLint version : {3, 0, 7}) {
         EXPECT_EQ(context({EGL_CONTEXT_CLIENT_VERSION, version}), EGL_NO_CONTEXT);
         EXPECT_EQ(eglGetError(), EGL_BAD_MATCH) << version;
+    }
+}
+
+TEST_F(EglEs, TheFirstVersionIsWhatNobodyAskedFor) {
+    for (const std::vector<EGLint>& attributes : {std::vector<EGLint>{}, {EGL_CONTEXT_CLIENT_VERSION, 1}}) {
+        EGLContext made = context(attributes);
+        ASSERT_NE(made, EGL_NO_CONTEXT);
+        EXPECT_THAT(last_logged("fake_context"), HasSubstr("version=1.0 core=0 shared=0 es=1"));
+        EGLint value = 0;
+        EXPECT_TRUE(eglQueryContext(display, made, EGL_CONTEXT_CLIENT_VERSION, &value));
+        EXPECT_EQ(value, 1);
     }
 }
 

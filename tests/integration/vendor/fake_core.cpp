@@ -72,12 +72,12 @@ std::shared_ptr<ClientSurface> create_surface(SurfaceOptions options) {
     return std::make_shared<ClientSurface>(std::move(options));
 }
 
-bool offers_es(int major) { return major == 2; }
+bool offers_es(int major) { return major == 1 || major == 2; }
 
 std::shared_ptr<Context> create_context(const ContextOptions& options) {
     log(LogLevel::info, "fake_context version=%d.%d core=%d shared=%d es=%d", options.major, options.minor,
         options.core_profile, options.share != nullptr, options.es);
-    if (options.core_profile || options.major > 2 || (options.es && options.major != 2)) return nullptr;
+    if (options.core_profile || options.major > 2 || (options.es && !offers_es(options.major))) return nullptr;
     auto context = std::make_shared<Context>();
     context->options = options;
     return context;

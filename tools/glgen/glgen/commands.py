@@ -77,10 +77,10 @@ class Commands:
         return True
 
     def family_of(self, name):
-        """Fogiv -> (Fog, iv)."""
+        """Fogiv -> (Fog, iv), TexGenxOES -> (TexGen, x)."""
         for family in sorted(self.families, key=len, reverse=True):
             if name.startswith(family):
-                form = name[len(family):] or "plain"
+                form = name[len(family):].removesuffix("OES") or "plain"
                 if form in self.families[family]["types"].split():
                     return family, form
         raise AssertionError(f"{name}: no family in state.toml has this form")

@@ -249,7 +249,8 @@ def entries_source(commands, registry):
            '#include "client_lib/api/unsupported.h"\n#include "common/glapi/convert.h"\n'
            '#include "common/glapi/packed_vertex.h"\n'
            '#include "gen/client_lib/api.gen.h"\n\n'
-           "namespace wall::client {\nnamespace {\n\nusing glapi::to_bits;\nusing glapi::to_fraction;\n\n"]
+           "namespace wall::client {\nnamespace {\n\n"
+           "using glapi::from_fixed;\nusing glapi::to_bits;\nusing glapi::to_fraction;\n\n"]
     for i in commands.unique:
         if not i.later and "hot" not in i.flags:
             out.append(_entry(i, commands, registry))
@@ -292,7 +293,7 @@ def _entry(i, commands, registry):
 def _target_args(i, registry):
     target = registry.commands["gl" + i.target]
     if i.way == "as":
-        return [_converted(p.type, a, ()) for p, a in zip(target.params, i.args)]
+        return [_converted(p.type, a, "", ()) for p, a in zip(target.params, i.args)]
     return _convert_args(i, target)
 
 
@@ -326,7 +327,12 @@ def _packed_entry(i, registry):
             "return c->error(GL_INVALID_ENUM);", _call(i, i.target, lead + floats)]
 
 
-def _converted(wanted, expression, flags):
+_FIXED = ("GLfixed", "GLclampx")    # sixteen bits behind the point
+
+
+def _converted(wanted, expression, given, flags):
+    if given in _FIXED:
+        return f"from_fixed({expression})"
     if "bits" in flags:
         return f"to_bits({expression})"
     if "norm" in flags:
@@ -352,7 +358,7 @@ def _convert_args(i, target):
         elif given[n][1] == p.type:
             out.append(given[n][0])
         else:
-            out.append(_converted(p.type, given[n][0], i.flags))
+            out.append(_converted(p.type, *given[n], i.flags))
     return out
 
 
@@ -363,6 +369,8 @@ def _param_entry(i, commands):
     pname, value = i.command.params[-2].name, i.command.params[-1].name
     table = f"c->table->{family}{keys['form']}"
     args = ", ".join(["*c"] + lead + [pname])
+    if form in ("x", "xv"):
+        return _fixed_param_entry(family, form, pname, value, f"{table}({args}, v);")
     if keys["form"] == "f":
         return [f"{table}({args}, static_cast<GLfloat>({value}));"]
     if keys["form"] == "i":
@@ -377,3 +385,13 @@ def _param_entry(i, commands):
     if keys.get("strict"):
         refusal = [f"if (refuses_one_value(*c, ParamFamily::{family}, {pname})) return c->error(GL_INVALID_ENUM);"]
     return [f"const GLfloat v[4] = {{static_cast<GLfloat>({value})}};", *refusal, f"{table}({args}, v);"]
+
+
+def _fixed_param_entry(family, form, pname, value, call):
+    """Words are given as they are, all else with sixteen bits behind the point. One value is given for one only."""
+    given = value if form == "xv" else "given"
+    lines = ["GLfloat v[4] = {};", f"convert_fixed(ParamFamily::{family}, {pname}, {given}, v);", call]
+    if form == "xv":
+        return lines
+    return [f"const GLfixed given[4] = {{{value}}};",
+            f"if (param_components(ParamFamily::{family}, {pname}) > 1) return c->error(GL_INVALID_ENUM);", *lines]

@@ -48,9 +48,11 @@ def _es(es, commands):
         names = es.registry.es_features[version].commands
         later = sum(commands.all[name].later for name in names)
         out.append(f"| {version[0]}.{version[1]} | {len(names)} | {later} |\n")
-    names = ", ".join(e.name for e in es.extensions if not e.missing)
-    return "".join(out) + "\n" + textwrap.fill(f"Extensions, where a node's driver has what they ask for: {names}.",
-                                               120, break_on_hyphens=False) + "\n"
+    for api, of in (("gles1", "of 1.1"), ("gles2", "of the others")):
+        names = ", ".join(e.name for e in es.offered(api))
+        text = f"Extensions {of}, where a node's driver has what they ask for: {names}."
+        out.append("\n" + textwrap.fill(text, 120, break_on_hyphens=False) + "\n")
+    return "".join(out)
 
 
 def _level(i):

@@ -5,7 +5,7 @@ gen/client_lib/es_images.gen.h: what its images may be."""
 from .text import header
 
 _SOURCE = "gl.xml, proto/gl/commands.toml, proto/gl/es.toml"
-_NOTES = "What contexts of OpenGL ES have. Versions are times ten: 20, 30, 31, 32."
+_NOTES = "What contexts of OpenGL ES have. Versions are times ten: 11, 20, 30, 31, 32."
 
 
 def es_header(es):
@@ -19,23 +19,26 @@ def es_header(es):
             "extern const std::span<const EsVersion> kEsVersions;  ///< all that there are, in order\n\n"
             "struct EsExtension {\n    const char* name;\n"
             "    const char* node_word;  ///< what a node's driver must have for it; empty: nothing\n"
-            "    bool implemented;\n};\n"
+            "    bool implemented;\n"
+            "    bool first, later;  ///< whether contexts of OpenGL ES 1.1 have it; those of the others\n};\n"
             "extern const std::span<const EsExtension> kEsExtensions;  ///< by name\n\n"
-            "/// A word, and the first version that has it.\n"
-            "struct EsWord {\n    GLenum value;\n    int since;\n};\n"
+            "/// A word, and the first version from 2.0 on that has it.\n"
+            "struct EsWord {\n    GLenum value;\n    int since;   ///< 0: none\n"
+            "    bool first;  ///< whether OpenGL ES 1.1 has it\n};\n"
             "extern const std::span<const EsWord> kEsWords;  ///< by value\n\n"
             "}  // namespace wall::client\n")
 
 
 def images_header(es):
-    images = "".join(f"    {{{i.internal}, {i.format}, {i.type}, {i.told}}},\n" for i in es.images)
+    images = "".join(f"    {{{i.internal}, {i.format}, {i.type}, {i.told}, {_flag(i.first)}}},\n" for i in es.images)
     drawn = "".join(f"    {{{word}, {_number(since)}}},\n" for word, since in es.drawn.items())
     return (header("gl.xml, proto/gl/es.toml", "What images of OpenGL ES may be made of, and which may be drawn to.",
                    ['"common/glapi/gl_types.h"\n']) +
             "namespace wall::client {\n\n"
             "/// An image of a texture, as a program describes it.\n"
             "struct EsImageRow {\n    GLenum internal_format, format, type;\n"
-            "    GLint desktop_format;  ///< the internal format that OpenGL has for it\n};\n"
+            "    GLint desktop_format;  ///< the internal format that OpenGL has for it\n"
+            "    bool first;            ///< of OpenGL ES 1.1, not of the later versions\n};\n"
             f"inline constexpr EsImageRow kEsImages[] = {{\n{images}}};\n\n"
             "/// An internal format, as OpenGL names it, that images are drawn to from that version on (times ten).\n"
             "struct EsDrawnRow {\n    GLenum internal_format;\n    unsigned since;\n};\n"
@@ -68,16 +71,25 @@ def es_source(es):
     out.append("const EsVersion kVersionTable[] = {\n"
                + "".join(f"    {{{_number(v)}, {_text(es.missing(v))}, &kEs{_number(v)}}},\n" for v in es.versions)
                + "};\n\nconst EsExtension kExtensionTable[] = {\n"
-               + "".join(f'    {{"{e.name}", "{e.node_word}", {str(not e.missing).lower()}}},\n'
-                         for e in es.extensions)
-               + "};\n\nconst EsWord kWordTable[] = {\n"
-               + "".join(f"    {{0x{value:04x}, {_number(since)}}},\n" for value, since in sorted(es.words().items())
-                         if value <= 0xFFFF)
+               + "".join(f'    {{"{e.name}", "{e.node_word}", {_flag(not e.missing)}, {_flag("gles1" in e.apis)}, '
+                         f'{_flag("gles2" in e.apis)}}},\n' for e in es.extensions)
+               + "};\n\nconst EsWord kWordTable[] = {\n" + _word_rows(es)
                + "};\n\n}  // namespace\n\n"
                "const std::span<const EsVersion> kEsVersions = kVersionTable;\n"
                "const std::span<const EsExtension> kEsExtensions = kExtensionTable;\n"
                "const std::span<const EsWord> kEsWords = kWordTable;\n\n}  // namespace wall::client\n")
     return "".join(out)
+
+
+def _word_rows(es):
+    first, later = es.words("gles1"), es.words("gles2")
+    rows = [(value, _number(later[value]) if value in later else 0, value in first)
+            for value in sorted(first.keys() | later.keys()) if value <= 0xFFFF]
+    return "".join(f"    {{0x{value:04x}, {since}, {_flag(in_first)}}},\n" for value, since, in_first in rows)
+
+
+def _flag(value):
+    return "true" if value else "false"
 
 
 def _number(version):

@@ -166,16 +166,17 @@ def _param_rows(model, registry):
         by_hand = model.families[e.family].get("hand")
         setter = "nullptr" if by_hand else f"&hand::set_{e.name}" if e.hand else f"&set_{e.name}"
         norm = "true" if value_kind(e, f) == "normalized" else "false"
-        rows.append((e.family, e.param_target or "0", e.pname, f.components, norm, setter))
+        word = "true" if f.type in ("enum", "flag") else "false"
+        rows.append((e.family, e.param_target or "0", e.pname, f.components, norm, word, setter))
     for family, keys in model.families.items():
         for pname, shape in keys.get("shape", {}).items():
             parts = shape.split()
             rows.append((family, "0", "kAnyParam" if pname == "*" else pname, int(parts[0]),
-                         "true" if "norm" in parts else "false", "nullptr"))
+                         *("true" if word in parts else "false" for word in ("norm", "word")), "nullptr"))
     rows.sort(key=lambda r: (r[0], r[2] == "kAnyParam"))
     out = f"\nconst std::array<ParamRow, {len(rows)}> kParamTable = {{{{\n"
-    for family, target, pname, n, norm, setter in rows:
-        out += f"    {{ParamFamily::{family}, {target}, {pname}, {n}, {norm}, {setter}}},\n"
+    for family, target, pname, n, norm, word, setter in rows:
+        out += f"    {{ParamFamily::{family}, {target}, {pname}, {n}, {norm}, {word}, {setter}}},\n"
     return out + "}};\n\n"
 
 
@@ -195,10 +196,11 @@ def _param_command(i, commands):
     declared = ", ".join(["Context& c"] + [f"{p.type} {p.name}" for p in i.command.params])
     names = [p.name for p in i.command.params]
     if i.cls == "query":
-        family, _ = commands.family_of(i.name[3:])
+        family, form = commands.family_of(i.name[3:])
         lead = names[0] if len(names) == 3 else "0"
+        get = "get_fixed_params" if form == "xv" else "get_params"
         return (f"void {i.name}({declared}) {{\n"
-                f"    get_params(c, ParamFamily::{family}, {lead}, {names[-2]}, {names[-1]});\n}}\n")
+                f"    {get}(c, ParamFamily::{family}, {lead}, {names[-2]}, {names[-1]});\n}}\n")
     family, form = commands.family_of(i.name)
     lead = names[0] if len(names) == 3 else "0"
     value = names[-1]

@@ -53,6 +53,7 @@ class Names:
     """What a version or an extension has."""
     commands: set = field(default_factory=set)
     enums: set = field(default_factory=set)
+    apis: set = field(default_factory=set)      # of an extension of OpenGL ES: "gles1", "gles2"
 
     def add(self, require):
         self.commands |= {item.get("name") for item in require.findall("command")}
@@ -125,16 +126,24 @@ def _note_core_profile(gl, root):
     gl.core_enums |= {name for name in core if name not in gl.commands}
 
 
+def _es_version(feature):
+    """The registry calls OpenGL ES 1.1 by the number of 1.0, whose commands it has all."""
+    number = _version(feature.get("number"))
+    return (1, 1) if number == (1, 0) else number
+
+
 def _note_es(gl, root):
     for feature in root.findall("feature"):
         if feature.get("api") in ("gles1", "gles2"):
-            names = gl.es_features.setdefault(_version(feature.get("number")), Names())
+            names = gl.es_features.setdefault(_es_version(feature), Names())
             for require in feature.findall("require"):
                 names.add(require)
     for extension in root.find("extensions"):
-        if not {"gles1", "gles2"} & set(extension.get("supported", "").split("|")):
+        apis = {"gles1", "gles2"} & set(extension.get("supported", "").split("|"))
+        if not apis:
             continue
         names = gl.es_extensions.setdefault(extension.get("name"), Names())
+        names.apis |= apis
         for require in extension.findall("require"):
             # What is direct state access in desktop's form no library of OpenGL ES has.
             desktop = require.get("api") in ("gl", "glcore") or "EXT_direct_state_access" in require.get("comment", "")
@@ -150,7 +159,25 @@ def load(path, *more):
     gl = Registry({}, {})
     for each in (path, *more):
         _add(gl, ET.parse(each).getroot())
+    _name_es_1_commands(gl)
     return gl
+
+
+_SAME_TYPES = {"GLclampx": "GLfixed", "GLclampf": "GLfloat"}
+
+
+def _signature(command):
+    return [command.returns] + [_SAME_TYPES.get(p.type, p.type) for p in command.params]
+
+
+def _name_es_1_commands(gl):
+    """Extensions of OpenGL ES 1 have commands that only their OES tells from those of a version; the registry does not
+    say that they are other names of them."""
+    for extension in gl.es_extensions.values():
+        for name in extension.commands if "gles1" in extension.apis else ():
+            command, plain = gl.commands[name], gl.commands.get(name.removesuffix("OES"))
+            if plain and plain is not command and not command.alias and _signature(command) == _signature(plain):
+                command.alias = plain.name
 
 
 def _add(gl, root):
@@ -168,7 +195,8 @@ def _add(gl, root):
                 c = commands[item.get("name")]
                 if api == "gl":
                     c.gl = min(c.gl or number, number, key=_version)
-                elif api == "gles2":
+                else:
+                    number = ".".join(map(str, _es_version(feature)))
                     c.es = min(c.es or number, number, key=_version)
     _note_core_profile(gl, root)
     _note_es(gl, root)

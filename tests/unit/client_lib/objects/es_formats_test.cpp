@@ -17,16 +17,19 @@ constexpr GLenum kNone = GL_NO_ERROR, kEnum = GL_INVALID_ENUM, kValue = GL_INVAL
 
 const TextureFormat& format(GLint internal) { return *find_texture_format(internal); }
 
-std::set<GLenum> all_of(GLenum EsImageRow::*member) {
+/// In a version, times ten.
+std::set<GLenum> all_of(unsigned version, GLenum EsImageRow::*member) {
     std::set<GLenum> values;
-    for (const EsImageRow& row : kEsImages) values.insert(row.*member);
+    for (const EsImageRow& row : kEsImages)
+        if (row.first == (version == 11)) values.insert(row.*member);
     return values;
 }
 
-class AgainstMesa : public testing::Test {
+class AgainstMesa : public testing::TestWithParam<unsigned> {
 protected:
     void SetUp() override {
-        if (!mesa_) GTEST_SKIP() << "no Mesa that offers OpenGL ES 3";
+        mesa_ = GetParam() == 11 ? test::MesaContext::open_es1() : test::MesaContext::open_es();
+        if (!mesa_) GTEST_SKIP() << "no Mesa that offers it";
     }
     const glapi::GlFunctions& gl() const { return mesa_->gl; }
     /// A texture of one texel; the error.
@@ -51,7 +54,7 @@ protected:
     void forget() { gl().DeleteTextures(1, &texture_); }
 
 private:
-    std::unique_ptr<test::MesaContext> mesa_ = test::MesaContext::open_es();
+    std::unique_ptr<test::MesaContext> mesa_;
     GLuint texture_ = 0;
 };
 
@@ -67,21 +70,23 @@ bool is_otherwise_on_mesa(GLenum internal, GLenum pixels, GLenum type) {
     return internal == GL_BGRA || (type == GL_HALF_FLOAT && !is_sized(internal));
 }
 
-TEST_F(AgainstMesa, ImagesAreMadeOfTheSamePixels) {
-    for (const GLenum internal : all_of(&EsImageRow::internal_format))
-        for (const GLenum pixels : all_of(&EsImageRow::format))
-            for (const GLenum type : all_of(&EsImageRow::type)) {
+TEST_P(AgainstMesa, ImagesAreMadeOfTheSamePixels) {
+    const unsigned version = GetParam();
+    for (const GLenum internal : all_of(version, &EsImageRow::internal_format))
+        for (const GLenum pixels : all_of(version, &EsImageRow::format))
+            for (const GLenum type : all_of(version, &EsImageRow::type)) {
                 if (is_otherwise_on_mesa(internal, pixels, type)) continue;
                 const GLenum mesa = define(internal, pixels, type);
                 forget();
-                const EsImage ours = es_image(static_cast<GLint>(internal), pixels, type);
+                const EsImage ours = es_image(version, static_cast<GLint>(internal), pixels, type);
                 EXPECT_EQ(ours.error == kNone, mesa == kNone)
                     << std::hex << internal << " of " << pixels << " " << type << ": " << ours.error << " " << mesa;
             }
 }
 
-TEST_F(AgainstMesa, TheSameIsDrawnTo) {
+TEST_P(AgainstMesa, TheSameIsDrawnTo) {
     for (const EsImageRow& row : kEsImages) {
+        if (row.first || GetParam() == 11) continue;
         const GLenum base = format(row.desktop_format).base;
         const GLenum point =
             base == GL_DEPTH_COMPONENT || base == GL_DEPTH_STENCIL ? GL_DEPTH_ATTACHMENT : GL_COLOR_ATTACHMENT0;
@@ -95,41 +100,54 @@ TEST_F(AgainstMesa, TheSameIsDrawnTo) {
     }
 }
 
+INSTANTIATE_TEST_SUITE_P(Versions, AgainstMesa, testing::Values(11u, 30u));
+
+TEST(EsFormats, TheFirstVersionHasOthers) {
+    EXPECT_EQ(es_image(11, GL_RGBA, GL_RGBA, GL_UNSIGNED_BYTE).error, kNone);
+    EXPECT_EQ(es_image(11, GL_LUMINANCE8, GL_LUMINANCE, GL_UNSIGNED_BYTE).error, kNone);
+    EXPECT_EQ(es_image(11, GL_RGBA, GL_RGBA, GL_FLOAT).error, kOperation);
+    EXPECT_EQ(es_image(11, GL_R8, GL_RED, GL_UNSIGNED_BYTE).error, kValue);
+    EXPECT_EQ(es_image(30, GL_LUMINANCE8, GL_LUMINANCE, GL_UNSIGNED_BYTE).error, kValue);
+    EXPECT_TRUE(es_is_drawn(11, GL_RGBA4));
+    EXPECT_FALSE(es_is_drawn(11, GL_R8));
+}
+
 TEST(EsFormats, ImagesHaveTheirOwnErrors) {
-    EXPECT_EQ(es_image(GL_RGBA, GL_RGBA, GL_UNSIGNED_BYTE).error, kNone);
-    EXPECT_EQ(es_image(GL_RGBA16, GL_RGBA, GL_UNSIGNED_BYTE).error, kValue);
-    EXPECT_EQ(es_image(GL_RGBA, GL_COLOR_INDEX, GL_UNSIGNED_BYTE).error, kEnum);
-    EXPECT_EQ(es_image(GL_RGBA, GL_RGBA, GL_DOUBLE).error, kEnum);
-    EXPECT_EQ(es_image(GL_RGBA, GL_RGB, GL_UNSIGNED_BYTE).error, kOperation);
-    EXPECT_EQ(es_image(GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, GL_RGBA, GL_UNSIGNED_BYTE).error, kNone);
+    EXPECT_EQ(es_image(30, GL_RGBA, GL_RGBA, GL_UNSIGNED_BYTE).error, kNone);
+    EXPECT_EQ(es_image(30, GL_RGBA16, GL_RGBA, GL_UNSIGNED_BYTE).error, kValue);
+    EXPECT_EQ(es_image(30, GL_RGBA, GL_COLOR_INDEX, GL_UNSIGNED_BYTE).error, kEnum);
+    EXPECT_EQ(es_image(30, GL_RGBA, GL_RGBA, GL_DOUBLE).error, kEnum);
+    EXPECT_EQ(es_image(30, GL_RGBA, GL_RGB, GL_UNSIGNED_BYTE).error, kOperation);
+    EXPECT_EQ(es_image(30, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, GL_RGBA, GL_UNSIGNED_BYTE).error, kNone);
 }
 
 TEST(EsFormats, ImagesAreToldAsOpenGlHasThem) {
-    EXPECT_EQ(es_image(GL_RGBA, GL_RGBA, kHalfFloatOes).internal_format, GL_RGBA16F);
-    EXPECT_EQ(es_image(GL_RGBA, GL_RGBA, kHalfFloatOes).type, GLenum{GL_HALF_FLOAT});
-    EXPECT_EQ(es_image(GL_BGRA, GL_BGRA, GL_UNSIGNED_BYTE).internal_format, GL_RGBA);
-    EXPECT_EQ(es_image(GL_DEPTH_STENCIL, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8).internal_format, GL_DEPTH24_STENCIL8);
-    EXPECT_EQ(es_image(GL_RG8UI, GL_RG_INTEGER, GL_UNSIGNED_BYTE).internal_format, GL_RG8UI);
+    EXPECT_EQ(es_image(30, GL_RGBA, GL_RGBA, kHalfFloatOes).internal_format, GL_RGBA16F);
+    EXPECT_EQ(es_image(30, GL_RGBA, GL_RGBA, kHalfFloatOes).type, GLenum{GL_HALF_FLOAT});
+    EXPECT_EQ(es_image(30, GL_BGRA, GL_BGRA, GL_UNSIGNED_BYTE).internal_format, GL_RGBA);
+    EXPECT_EQ(es_image(30, GL_DEPTH_STENCIL, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8).internal_format,
+              GL_DEPTH24_STENCIL8);
+    EXPECT_EQ(es_image(30, GL_RG8UI, GL_RG_INTEGER, GL_UNSIGNED_BYTE).internal_format, GL_RG8UI);
 }
 
 TEST(EsFormats, TexturesAreChangedByWhatTheyAreMadeOf) {
-    EXPECT_EQ(es_pixels(GL_RGBA32F, GL_RGBA, GL_FLOAT).error, kNone);
-    EXPECT_EQ(es_pixels(GL_RGBA32F, GL_RGBA, GL_UNSIGNED_BYTE).error, kOperation);
-    EXPECT_EQ(es_pixels(GL_RGB, GL_RGBA, GL_UNSIGNED_BYTE).error, kOperation);
-    EXPECT_EQ(es_pixels(GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE).error, kNone);
+    EXPECT_EQ(es_pixels(30, GL_RGBA32F, GL_RGBA, GL_FLOAT).error, kNone);
+    EXPECT_EQ(es_pixels(30, GL_RGBA32F, GL_RGBA, GL_UNSIGNED_BYTE).error, kOperation);
+    EXPECT_EQ(es_pixels(30, GL_RGB, GL_RGBA, GL_UNSIGNED_BYTE).error, kOperation);
+    EXPECT_EQ(es_pixels(30, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE).error, kNone);
 }
 
 TEST(EsFormats, CopiesLackNothingAndConvertNothing) {
     const TextureFormat& bytes = format(GL_RGBA8);
-    EXPECT_EQ(es_copy_error(GL_RGB, bytes, GL_RGBA), kNone);
-    EXPECT_EQ(es_copy_error(GL_LUMINANCE, bytes, GL_RGB), kNone);
-    EXPECT_EQ(es_copy_error(GL_ALPHA, bytes, GL_RGB), kOperation);
-    EXPECT_EQ(es_copy_error(GL_RGB8, bytes, GL_RGBA), kNone);
-    EXPECT_EQ(es_copy_error(GL_RGBA4, bytes, GL_RGBA), kOperation) << "of other sizes";
-    EXPECT_EQ(es_copy_error(GL_SRGB8_ALPHA8, bytes, GL_RGBA), kOperation);
-    EXPECT_EQ(es_copy_error(GL_RGBA8UI, bytes, GL_RGBA), kOperation);
-    EXPECT_EQ(es_copy_error(GL_DEPTH_COMPONENT, bytes, GL_RGBA), kOperation);
-    EXPECT_EQ(es_copy_error(GL_RGBA16, bytes, GL_RGBA), kEnum);
+    EXPECT_EQ(es_copy_error(30, GL_RGB, bytes, GL_RGBA), kNone);
+    EXPECT_EQ(es_copy_error(30, GL_LUMINANCE, bytes, GL_RGB), kNone);
+    EXPECT_EQ(es_copy_error(30, GL_ALPHA, bytes, GL_RGB), kOperation);
+    EXPECT_EQ(es_copy_error(30, GL_RGB8, bytes, GL_RGBA), kNone);
+    EXPECT_EQ(es_copy_error(30, GL_RGBA4, bytes, GL_RGBA), kOperation) << "of other sizes";
+    EXPECT_EQ(es_copy_error(30, GL_SRGB8_ALPHA8, bytes, GL_RGBA), kOperation);
+    EXPECT_EQ(es_copy_error(30, GL_RGBA8UI, bytes, GL_RGBA), kOperation);
+    EXPECT_EQ(es_copy_error(30, GL_DEPTH_COMPONENT, bytes, GL_RGBA), kOperation);
+    EXPECT_EQ(es_copy_error(30, GL_RGBA16, bytes, GL_RGBA), kEnum);
 }
 
 TEST(EsFormats, ReadsWhatTheColoursAre) {
