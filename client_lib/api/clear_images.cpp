@@ -7,12 +7,15 @@
 #include <cstring>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/captured_content.h"
+#include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/named_objects.h"
+#include "client_lib/context/own_framebuffer.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/texture_image.h"
 #include "client_lib/objects/pixel_convert.h"
@@ -22,6 +25,8 @@
 
 namespace wall::client::api {
 namespace {
+
+namespace el = glstate::el;
 
 // ---- buffers ----
 
@@ -120,6 +125,14 @@ struct Part {
     GLsizei width, height, depth;
 };
 
+/// Of one texel of depth and stencil.
+GLint stencil_of(GLenum type, std::span<const std::byte> texel) {
+    std::uint32_t word = 0;
+    const std::size_t at = type == GL_FLOAT_32_UNSIGNED_INT_24_8_REV ? sizeof word : 0;
+    if (texel.size() >= at + sizeof word) std::memcpy(&word, &texel[at], sizeof word);
+    return static_cast<GLint>(word & 0xff);
+}
+
 /// Pixels come from memory, whatever is bound for others.
 class FromMemory {
 public:
@@ -151,13 +164,50 @@ void fill(Context& c, GLenum image, GLint number, const Part& part, GLenum forma
     define_sub_image(c, call);
 }
 
+/// What a texture of several samples a texel holds was drawn, so it is cleared as what is drawn to. Slice by slice.
+void clear_samples(Context& c, const std::shared_ptr<Texture>& texture, const TextureFormat& internal, const Part& part,
+                   GLenum format, GLenum type, const void* data) {
+    const auto tight = data ? glapi::unpack_image({.alignment = 1}, kOneTexel, format, type, data)
+                            : std::vector<std::byte>(glapi::image_bytes(format, type, 1, 1, 1).value_or(0));
+    const bool stencil = internal.base == GL_DEPTH_STENCIL, depth = stencil || internal.base == GL_DEPTH_COMPONENT;
+    const unsigned place = depth ? glstate::kColorAttachments : 0;
+    const Instead<el::scissor_enabled> in_part(c, 1);
+    const Instead<el::scissor> box(c, {part.x, part.y, part.width, part.height});
+    const Instead<el::color_mask> colors(c, {255, 255, 255, 255});
+    const Instead<el::depth_mask> depths(c, 1);
+    const Instead<el::stencil_mask> stencils(c, 0xff);
+    const Instead<el::rasterizer_discard> drawn(c, 0);
+    OwnFramebuffer framebuffer(c, GL_DRAW_FRAMEBUFFER);
+    framebuffer.bind();
+    for (GLint z = part.z; z < part.z + part.depth; ++z) {
+        const Attachment slice{.texture = texture, .target = texture->info.target, .layer = z};
+        change_framebuffer(c, *framebuffer, [&](Framebuffer& to) {
+            to.attach(place, slice);
+            if (stencil) to.attach(place + 1, slice);
+        });
+        if (internal.whole()) {
+            const Whole value = to_whole(format, type, tight, 1)[0];
+            std::array<GLuint, 4> words;
+            std::ranges::transform(value, words.begin(), [](std::int64_t n) { return static_cast<GLuint>(n); });
+            if (internal.component_type == GL_INT)
+                ClearBufferiv(c, GL_COLOR, 0, reinterpret_cast<GLint*>(words.data()));
+            else ClearBufferuiv(c, GL_COLOR, 0, words.data());
+            continue;
+        }
+        const Rgba value = to_rgba(format, type, tight, 1)[0];
+        if (!depth) ClearBufferfv(c, GL_COLOR, 0, value.data());
+        else if (!stencil) ClearBufferfv(c, GL_DEPTH, 0, value.data());
+        else ClearBufferfi(c, GL_DEPTH_STENCIL, 0, value[0], stencil_of(type, tight));
+    }
+}
+
 void clear_texture(Context& c, GLuint name, GLint number, const std::optional<Part>& wanted, GLenum format, GLenum type,
                    const void* data) {
     if (name == 0) return c.error(GL_INVALID_OPERATION);
     const NamedTexture named(c, name);
     if (!named) return;
     const glapi::TextureTargetInfo& info = named.texture()->info;
-    if (info.images == 0 || info.samples) return c.error(GL_INVALID_OPERATION);
+    if (info.id == glapi::TextureTarget::buffer) return c.error(GL_INVALID_OPERATION);
     const bool cube = info.first_face != 0;
     const TextureLevel* level = named.texture()->find_level(0, number);
     if (!level || !level->defined() || number < 0) return c.error(GL_INVALID_OPERATION);
@@ -172,6 +222,10 @@ void clear_texture(Context& c, GLuint name, GLint number, const std::optional<Pa
         !inside(part.z, part.depth, slices))
         return c.error(GL_INVALID_OPERATION);
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
+    const bool depth = internal->base == GL_DEPTH_COMPONENT || internal->base == GL_DEPTH_STENCIL;
+    if (depth ? format != internal->base : !are_colors(format)) return c.error(GL_INVALID_OPERATION);
+    if (glapi::is_integer_format(format) != internal->whole()) return c.error(GL_INVALID_OPERATION);
+    if (info.samples) return clear_samples(c, named.texture(), *internal, part, format, type, data);
     const FromMemory from_memory(c);
     if (!cube) return fill(c, info.target, number, part, format, type, data);
     for (GLint face = part.z; face < part.z + part.depth; ++face)

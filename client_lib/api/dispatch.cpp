@@ -11,6 +11,7 @@
 #include "client_lib/context/context.h"
 #include "client_lib/context/indexed_buffers.h"
 #include "client_lib/context/limits.h"
+#include "client_lib/context/list_state.h"
 #include "client_lib/context/memory_use.h"
 #include "client_lib/objects/program.h"
 #include "client_lib/objects/share_group.h"
@@ -103,8 +104,9 @@ void DispatchCompute(Context& c, GLuint x, GLuint y, GLuint z) {
     run(c, {x, y, z}, in_each);
 }
 
-// More groups than there may be are not defined there; they are left out.
+// More groups than there may be are not defined there; they are left out. In a list it is an error, as in Mesa.
 void DispatchComputeIndirect(Context& c, GLintptr offset) {
+    if (c.lists->name != 0) return c.error(GL_INVALID_OPERATION);
     const std::uint64_t in_each = group_of(c);
     if (in_each == 0) return;
     const auto groups = indirect_groups(c, offset);

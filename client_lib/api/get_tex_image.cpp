@@ -38,42 +38,53 @@ void rebase(GLenum base, std::array<Number, 4>& p) {
     }
 }
 
-/// `to_bytes`: five and six bits become eight by repeating their highest, not by rounding (Mesa's format_utils).
-float quantized(float value, unsigned bits, bool to_bytes) {
+/// How Mesa 22.3 makes texels of the program's.
+struct Rounding {
+    bool to_bytes;  ///< on the way to the program
+    bool packed;    ///< from floats of all four components, which cuts floats of 16 bits, and takes a half upwards
+};
+
+/// Five and six bits become bytes by repeating their highest, not by rounding (Mesa's format_utils); eight have a way
+/// of their own.
+float quantized(float value, unsigned bits, const Rounding& rounding) {
     if (bits == 0 || bits > 16) return value;
     const auto most = static_cast<float>((1u << bits) - 1);
-    const auto number = static_cast<unsigned>(std::lrint(std::clamp(value, 0.0f, 1.0f) * most));
-    if (to_bytes && (bits == 5 || bits == 6))
+    const float scaled = std::clamp(value, 0.0f, 1.0f) * most;
+    const auto number = static_cast<unsigned>(rounding.packed && bits != 8 ? std::lround(scaled) : std::lrint(scaled));
+    if (rounding.to_bytes && (bits == 5 || bits == 6))
         return static_cast<float>(number << (8 - bits) | number >> (2 * bits - 8)) / 255.0f;
     return static_cast<float>(number) * (1.0f / most);
 }
 
-float quantized_signed(float value, unsigned bits) {
+float quantized_signed(float value, unsigned bits, const Rounding& rounding) {
     if (bits == 0 || bits > 16) return value;
     const auto most = static_cast<float>((1u << (bits - 1)) - 1);
-    return std::rint(std::clamp(value, -1.0f, 1.0f) * most) * (1.0f / most);
+    const float scaled = std::clamp(value, -1.0f, 1.0f) * most;
+    return (rounding.packed ? std::round(scaled) : std::rint(scaled)) * (1.0f / most);
 }
 
 /// What floats of a format keep of theirs.
-void quantize_floats(const TextureFormat& format, unsigned bits, Rgba& p) {
+void quantize_floats(const TextureFormat& format, unsigned bits, const Rounding& rounding, Rgba& p) {
     const bool one_exponent = format.internal_format == GL_RGB9_E5;
     if (one_exponent || format.internal_format == GL_R11F_G11F_B10F) {
         const Rgb kept = one_exponent ? from_shared_exponent(to_shared_exponent({p[0], p[1], p[2]}))
                                       : from_short_floats(to_short_floats({p[0], p[1], p[2]}));
         p = {kept[0], kept[1], kept[2], p[3]};
     } else if (bits == 16) {
-        for (float& component : p) component = half_to_float(float_to_half_cut(component));
+        for (float& component : p)
+            component = half_to_float(rounding.packed ? float_to_half_cut(component) : float_to_half(component));
     }
 }
 
 /// To the precision that the driver keeps.
-void quantize(const TextureFormat& format, const ComponentBits& bits, bool to_bytes, Rgba& p) {
+void quantize(const TextureFormat& format, const ComponentBits& bits, const Rounding& rounding, Rgba& p) {
     const unsigned red = bits.red ? bits.red : bits.luminance ? bits.luminance : bits.intensity;
-    if (format.component_type == GL_FLOAT) return quantize_floats(format, std::max<unsigned>(red, bits.alpha), p);
+    if (format.component_type == GL_FLOAT)
+        return quantize_floats(format, std::max<unsigned>(red, bits.alpha), rounding, p);
     const bool is_signed = format.component_type == GL_SIGNED_NORMALIZED;
     const unsigned sizes[4] = {red, bits.green, bits.blue, bits.alpha};
     for (unsigned i = 0; i < 4; ++i)
-        p[i] = is_signed ? quantized_signed(p[i], sizes[i]) : quantized(p[i], sizes[i], to_bytes);
+        p[i] = is_signed ? quantized_signed(p[i], sizes[i], rounding) : quantized(p[i], sizes[i], rounding);
 }
 
 bool readable(const TextureFormat& internal, GLenum format) {
@@ -143,9 +154,11 @@ std::vector<std::byte> color_texels(Context& c, const Request& request, GLenum f
                       : level_texels(level);
     if (format != GL_DEPTH_COMPONENT && format != GL_DEPTH_STENCIL) {
         const ComponentBits bits = stored_bits(request.internal, level.format, level.type);
-        const bool to_bytes = type == GL_UNSIGNED_BYTE && format != GL_LUMINANCE && format != GL_LUMINANCE_ALPHA;
+        const Rounding rounding{
+            .to_bytes = type == GL_UNSIGNED_BYTE && format != GL_LUMINANCE && format != GL_LUMINANCE_ALPHA,
+            .packed = level.data_format == GL_RGBA && level.data_type == GL_FLOAT};
         for (Rgba& texel : texels) {
-            if (!level.compressed) quantize(request.internal, bits, to_bytes, texel);
+            if (!level.compressed) quantize(request.internal, bits, rounding, texel);
             rebase(request.internal.base, texel);
         }
         if (transfer_matters(c.state, format)) transfer_colors(c.state, c.maps->pixel, texels);

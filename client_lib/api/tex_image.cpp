@@ -328,7 +328,7 @@ bool whole_blocks(const ImageCall& part, const TextureLevel& level) {
 }
 
 GLenum sub_image_error(Context& c, const ImageCall& call) {
-    if (is_proxy(call.target) || !legal_target(call.dimensions, call.target)) return GL_INVALID_ENUM;
+    if (is_proxy(call.target) || !legal_target(call.dimensions, call.target)) return c.target_error;
     if (call.level < 0 || call.level >= level_count(c, call.target)) return GL_INVALID_VALUE;
     if (call.width < 0 || call.height < 0 || call.depth < 0) return GL_INVALID_VALUE;
     if (const GLenum error = glapi::format_type_error(call.format, call.type)) return error;
@@ -419,7 +419,7 @@ GLenum read_base(Context& c) {
 }
 
 void copy_image(Context& c, ImageCall call, GLenum internal_format, From from, const char* function) {
-    if (is_proxy(call.target) || !legal_target(call.dimensions, call.target)) return c.error(GL_INVALID_ENUM);
+    if (is_proxy(call.target) || !legal_target(call.dimensions, call.target)) return c.error(c.target_error);
     if (call.level < 0 || call.level >= level_count(c, call.target)) return c.error(GL_INVALID_VALUE);
     if (call.border < 0 || call.border > most_border(c, call)) return c.error(GL_INVALID_VALUE);
     const TextureFormat* internal = format_named(c, static_cast<GLint>(internal_format));

@@ -15,25 +15,14 @@ namespace wall::client {
 namespace el = glstate::el;
 
 GatheredWindow::GatheredWindow(Context& c, const PixelBox& box, GLbitfield mask, const char* function)
-    : c_(c), function_(function), before_(c.framebuffers->read) {
-    const auto made = std::make_shared<Framebuffer>(0);
-    if (mask & GL_COLOR_BUFFER_BIT) attach(*made, 0, box, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE);
-    if (mask & (GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT)) attach_depth(*made, box);
-    {
-        std::lock_guard lock(c_.share().mutex);
-        c_.share().by_id[made->id] = made;
-    }
-    bind_framebuffer(c_, GL_READ_FRAMEBUFFER, made);
+    : c_(c), function_(function), made_(std::in_place, c, GLenum{GL_READ_FRAMEBUFFER}) {
+    if (mask & GL_COLOR_BUFFER_BIT) attach(**made_, 0, box, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE);
+    if (mask & (GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT)) attach_depth(**made_, box);
+    made_->bind();
 }
 
 GatheredWindow::~GatheredWindow() {
-    const auto made = c_.framebuffers->read;
-    bind_framebuffer(c_, GL_READ_FRAMEBUFFER, std::move(before_));
-    c_.forget_object(made->id);
-    {
-        std::lock_guard lock(c_.share().mutex);
-        c_.share().by_id.erase(made->id);
-    }
+    made_.reset();
     for (const auto& texture : textures_) forget_texture(c_, texture);
 }
 
@@ -70,23 +59,6 @@ PixelRect touched_by_blit(const PixelBox& box) {
     return {static_cast<float>(box.x) - kMargin, static_cast<float>(box.y) - kMargin,
             static_cast<float>(box.x + box.width) + kMargin, static_cast<float>(box.y + box.height) + kMargin};
 }
-
-namespace {
-
-/// While it lives, an element of the state has another value.
-template <class E>
-class Instead {
-public:
-    Instead(Context& c, const typename E::type& value) : c_(c), before_(c.get<E>()) { c_.set<E>(0, value); }
-    ~Instead() { c_.set<E>(0, before_); }
-    Instead(const Instead&) = delete;
-
-private:
-    Context& c_;
-    const typename E::type before_;
-};
-
-}  // namespace
 
 bool turn_whole(Context& c, ClientSurface& window) {
     switch (c.session().wholeness(window)) {

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "client_lib/context/context.h"
+#include "client_lib/context/own_framebuffer.h"
 #include "client_lib/context/readback.h"
-#include "client_lib/objects/framebuffer.h"
 #include "client_lib/objects/texture.h"
 
 namespace wall::client {
@@ -27,8 +28,8 @@ private:
 
     Context& c_;
     const char* const function_;
-    std::shared_ptr<Framebuffer> before_;
     std::vector<std::shared_ptr<Texture>> textures_;
+    std::optional<OwnFramebuffer> made_;
 };
 
 /// What a blit to a box may touch: where a scaled window rounds, a little more.
