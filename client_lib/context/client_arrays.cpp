@@ -76,9 +76,11 @@ void load_packed(const std::byte* from, GLint size, float* out) {
     glapi::unpack_2_10_10_10(kType, load_one<GLuint>(from), kFraction, static_cast<unsigned>(size), out);
 }
 
+/// Fixed point, as llvmpipe fetches it: for it, 1 is 2^16 - 1.
 void load_fixed(const std::byte* from, GLint count, GLfloat* out) {
+    constexpr auto kLastBit = static_cast<float>(1.0 / 65535);
     for (GLint i = 0; i < count; ++i)
-        out[i] = glapi::from_fixed(load_one<GLfixed>(from + static_cast<std::size_t>(i) * sizeof(GLfixed)));
+        out[i] = static_cast<float>(load_one<GLfixed>(from + static_cast<std::size_t>(i) * sizeof(GLfixed))) * kLastBit;
 }
 
 template <GLenum kType>

@@ -25,6 +25,10 @@ void Viewport(GLint x, GLint y, GLsizei width, GLsizei height) { mesa().Viewport
 
 void Scissor(GLint x, GLint y, GLsizei width, GLsizei height) { mesa().Scissor(x + dx(), y + dy(), width, height); }
 
+void DrawTexfOES(GLfloat x, GLfloat y, GLfloat z, GLfloat width, GLfloat height) {
+    mesa().DrawTexfOES(x + static_cast<GLfloat>(dx()), y + static_cast<GLfloat>(dy()), z, width, height);
+}
+
 void PolygonStipple(const GLubyte* mask) {
     if (integer(GL_UNPACK_ROW_LENGTH) != 0 || integer(GL_UNPACK_SKIP_ROWS) != 0 ||
         integer(GL_UNPACK_SKIP_PIXELS) != 0 || integer(GL_UNPACK_LSB_FIRST) != 0 || integer(GL_UNPACK_ALIGNMENT) > 4)
@@ -191,7 +195,11 @@ int integer(GLenum name) {
 }
 
 bool draws_to_window() { return integer(GL_DRAW_FRAMEBUFFER_BINDING) == 0; }
-bool reads_from_window() { return integer(GL_READ_FRAMEBUFFER_BINDING) == 0; }
+bool reads_from_window() { return is_es1() ? draws_to_window() : integer(GL_READ_FRAMEBUFFER_BINDING) == 0; }
+bool is_es1() {
+    const auto* version = reinterpret_cast<const char*>(mesa().GetString(GL_VERSION));
+    return version != nullptr && std::strncmp(version, "OpenGL ES-CM", 12) == 0;
+}
 
 void use(Lookup lookup) { g_lookup = lookup; }
 
@@ -199,6 +207,7 @@ void* replacement(std::string_view name) {
     static const std::array replacements = {
         with("glViewport", Viewport),
         with("glScissor", Scissor),
+        with("glDrawTexfOES", DrawTexfOES),
         with("glPolygonStipple", PolygonStipple),
         with("glWindowPos2s", WindowPos2<GLshort>),
         with("glWindowPos2i", WindowPos2<GLint>),

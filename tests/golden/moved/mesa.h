@@ -21,6 +21,7 @@ Found find(const char* name);
 struct Mesa {
     decltype(&glViewport) Viewport = find("glViewport");
     decltype(&glScissor) Scissor = find("glScissor");
+    void (*DrawTexfOES)(GLfloat, GLfloat, GLfloat, GLfloat, GLfloat) = find("glDrawTexfOES");
     decltype(&glWindowPos3d) WindowPos3d = find("glWindowPos3d");
     decltype(&glBindFramebuffer) BindFramebuffer = find("glBindFramebuffer");
     decltype(&glBlitFramebuffer) BlitFramebuffer = find("glBlitFramebuffer");
@@ -55,6 +56,9 @@ const Mesa& mesa();
 /// Whether the program draws to (reads from) its window, and not to a framebuffer object, where nothing is moved.
 bool draws_to_window();
 bool reads_from_window();
+
+/// Whether the context is of OpenGL ES 1.1.
+bool is_es1();
 
 /// The value of a state variable, as Mesa has it.
 int integer(GLenum name);

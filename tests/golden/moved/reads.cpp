@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstring>
 #include <vector>
 
 #include "tests/golden/moved/place.h"
@@ -141,6 +142,16 @@ void copy_to_texture(const char* function, const Box& area, Load&& load) {
     load(static_cast<const void*>(gather(area, GL_RGBA, GL_UNSIGNED_BYTE).data()));
 }
 
+/// A part of an image of `stride` bytes a row that begins at `to`, whose pixels have `bytes`.
+void read_rows(const Box& part, GLenum format, GLenum type, std::byte* to, std::size_t stride, std::size_t bytes) {
+    const std::size_t row = static_cast<std::size_t>(part.width) * bytes;
+    std::vector<std::byte> line(row + 8);  // the alignment
+    for (int y = 0; y < part.height; ++y, to += stride) {
+        mesa().ReadPixels(part.x + place().dx(), part.y + y + place().dy(), part.width, 1, format, type, line.data());
+        std::memcpy(to, line.data(), row);
+    }
+}
+
 }  // namespace
 
 /// Mesa packs this tile's part to where it belongs in the program's memory; the other tiles' parts are copied there.
@@ -148,6 +159,18 @@ void ReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, 
     const std::size_t bytes = pixel_bytes(format, type);
     if (bytes == 0 || width <= 0 || height <= 0 || !reads_from_window())
         return mesa().ReadPixels(x, y, width, height, format, type, data);
+    if (is_es1()) {  // has rows as long as the image, and nothing is skipped
+        const auto unit = static_cast<std::size_t>(integer(GL_PACK_ALIGNMENT));
+        const std::size_t stride = (bytes * static_cast<std::size_t>(width) + unit - 1) / unit * unit;
+        const Box all{x, y, width, height}, own = intersect(all, place().part());
+        auto* first = static_cast<std::byte*>(data);
+        if (!own.empty())
+            read_rows(
+                own, format, type,
+                first + stride * static_cast<std::size_t>(own.y - y) + bytes * static_cast<std::size_t>(own.x - x),
+                stride, bytes);
+        return exchange({first, stride, bytes}, all);
+    }
     if (integer(GL_PIXEL_PACK_BUFFER_BINDING) != 0) stop("glReadPixels into a buffer object");
     const int row_length = integer(GL_PACK_ROW_LENGTH), skip_pixels = integer(GL_PACK_SKIP_PIXELS),
               skip_rows = integer(GL_PACK_SKIP_ROWS), alignment = integer(GL_PACK_ALIGNMENT);

@@ -183,7 +183,7 @@ SCENE(es1_points, 2, kEs1) {
     glEnable(GL_TEXTURE_2D);
     glEnable(GL_DEPTH_TEST);
     glColor4ub(255, 255, 255, 255);
-    rectangle(1, {0, 0, 16, 16}, 20, 30, 120, 90);
+    rectangle(1, {0, 0, 16, 16}, 20, 30, 112, 96);
     rectangle(2, {2, 1, 5, 6}, 150, 60, 160, 200);
     rectangle(1, {16, 4, -16, 8}, 300, 20, 64, 64);
     pixels(canvas);

@@ -163,7 +163,7 @@ TEST_F(Es3Context, NodesAreToldOfTheLastLevelOfStorage) {
 TEST_F(Es3Context, ListsItsBlockFormats) {
     const Caps caps{.extensions = "GL_ARB_ES3_compatibility GL_EXT_texture_compression_s3tc"};
     const auto formats = listed_block_formats(c.profile, caps);
-    EXPECT_EQ(formats.size(), 14u);
+    EXPECT_EQ(formats.size(), 15u);
     EXPECT_EQ(std::ranges::count(formats, GLenum{GL_COMPRESSED_SRGB8_ETC2}), 1);
     EXPECT_EQ(listed_block_formats({}, caps).size(), 10u);
     EXPECT_TRUE(listed_block_formats(c.profile, {}).empty());
