@@ -18,6 +18,7 @@
 #include "client_lib/context/select.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/vertex_bindings.h"
+#include "client_lib/objects/buffer.h"
 #include "client_lib/objects/es_formats.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/program_pipeline.h"
@@ -219,6 +220,9 @@ const Special kSpecials[] = {
     {GL_MAX_VERTEX_ATTRIB_STRIDE, 1, [](Context&, double* out) { *out = kLongestStride; }},
     {GL_MAX_VERTEX_ATTRIBS, 1, limited<GL_MAX_VERTEX_ATTRIBS, kVertexAttributes>},
     {GL_MAX_UNIFORM_BUFFER_BINDINGS, 1, limited<GL_MAX_UNIFORM_BUFFER_BINDINGS, kUniformBuffers>},
+    {GL_MIN_MAP_BUFFER_ALIGNMENT, 1, constant<int{kMapAlignment}>},
+    {GL_NUM_SHADING_LANGUAGE_VERSIONS, 1,
+     [](Context& c, double* out) { *out = static_cast<double>(shading_languages_in(c.profile, c.caps()).size()); }},
     {GL_MAX_IMAGE_UNITS, 1, limited<GL_MAX_IMAGE_UNITS, kImageUnits>},
     {GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, 1, limited<GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, kStorageBuffers>},
     {GL_MAX_ATOMIC_COUNTER_BUFFER_BINDINGS, 1, limited<GL_MAX_ATOMIC_COUNTER_BUFFER_BINDINGS, kCounterBuffers>},

@@ -38,10 +38,11 @@ const GLubyte* GetString(Context& c, GLenum name) {
 }
 
 const GLubyte* GetStringi(Context& c, GLenum name, GLuint index) {
-    const auto extensions = extensions_in(c.profile, c.caps());
-    if (name != GL_EXTENSIONS) return c.error(GL_INVALID_ENUM), nullptr;
-    if (index >= extensions.size()) return c.error(GL_INVALID_VALUE), nullptr;
-    return kept(extensions[index]);
+    if (name != GL_EXTENSIONS && name != GL_SHADING_LANGUAGE_VERSION) return c.error(GL_INVALID_ENUM), nullptr;
+    const auto words =
+        name == GL_EXTENSIONS ? extensions_in(c.profile, c.caps()) : shading_languages_in(c.profile, c.caps());
+    if (index >= words.size()) return c.error(GL_INVALID_VALUE), nullptr;
+    return kept(words[index]);
 }
 
 }  // namespace wall::client::api

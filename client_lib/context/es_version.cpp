@@ -116,6 +116,18 @@ std::string shading_language_in(const ContextProfile& profile, const Caps& caps)
     return !profile.is_es() ? language : std::string("OpenGL ES GLSL ES ") + language;
 }
 
+std::vector<std::string> shading_languages_in(const ContextProfile& profile, const Caps& caps) {
+    std::vector<std::string> out;
+    if (profile.es == 0) out = shading_languages(caps, profile);
+    for (const Beyond& beyond : kBeyond) {
+        const bool has = profile.es != 0 ? static_cast<unsigned>(beyond.version) <= profile.es
+                                         : static_cast<unsigned>(beyond.version) <= implemented_es_version();
+        if (has && NodeWords(caps).have(beyond.node_word))
+            out.push_back(beyond.version == 20 ? "100" : std::to_string(beyond.version * 10) + " es");
+    }
+    return out;
+}
+
 std::vector<GLenum> listed_block_formats(const ContextProfile& profile, const Caps& caps) {
     const NodeWords node(caps);
     std::vector<GLenum> formats;

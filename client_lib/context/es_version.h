@@ -26,6 +26,8 @@ GlVersion version_in(const ContextProfile& profile, const Caps& caps);
 std::string version_text_in(const ContextProfile& profile, const Caps& caps);
 /// Empty: there are no shaders.
 std::string shading_language_in(const ContextProfile& profile, const Caps& caps);
+/// What GL_NUM_SHADING_LANGUAGE_VERSIONS counts, in the words of #version (OpenGL 4.3, 22.2).
+std::vector<std::string> shading_languages_in(const ContextProfile& profile, const Caps& caps);
 std::vector<std::string> extensions_in(const ContextProfile& profile, const Caps& caps);
 /// GL_COMPRESSED_TEXTURE_FORMATS: in OpenGL only those for general use (of RGBA in DXT1 one bit is alpha), in OpenGL ES
 /// all, where the nodes' drivers have what they are of.

@@ -19,6 +19,10 @@ bool implemented(const char* command) {
                         [&](const char* name) { return std::strcmp(name, command) == 0; });
 }
 
+// What later versions ask for besides commands, that is not there yet.
+constexpr bool kHasBptc = false;          ///< GL_ARB_texture_compression_bptc
+constexpr bool kHasBlockStorage = false;  ///< GL_ARB_compressed_texture_pixel_storage
+
 /// What a version asks for besides its commands, as far as it is known to be missing, and its shading language.
 struct Beyond {
     int major, minor;
@@ -34,6 +38,8 @@ constexpr Beyond kBeyond[] = {
     {3, 3, "3.30", true},
     {4, 0, "4.00", kTextureImageUnits >= 80},
     {4, 1, "4.10", true},
+    {4, 2, "4.20", kHasBptc&& kHasBlockStorage},
+    {4, 3, "4.30", true},
 };
 
 /// What no driver need have: it is between the programs and the nodes.
@@ -51,6 +57,8 @@ struct Extension {
     Where where = Where::everywhere;
 };
 constexpr Extension kExtensions[] = {
+    {"GL_ARB_arrays_of_arrays", "glUseProgram"},
+    {"GL_ARB_cull_distance", "glUseProgram"},
     {"GL_ARB_ES2_compatibility", "glGetShaderPrecisionFormat"},
     {"GL_ARB_ES3_compatibility", "glCompressedTexImage3D"},
     {"GL_ARB_base_instance", "glDrawArraysInstancedBaseInstance"},
@@ -75,6 +83,7 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_draw_instanced", "glDrawArraysInstanced"},
     {"GL_ARB_explicit_attrib_location", "glBindFragDataLocation"},
     {"GL_ARB_fragment_coord_conventions", nullptr},
+    {"GL_ARB_fragment_layer_viewport", "glViewportArrayv"},
     {"GL_ARB_fragment_shader", "glUseProgram"},
     {"GL_ARB_framebuffer_no_attachments", "glFramebufferParameteri"},
     {"GL_ARB_framebuffer_object", "glGenFramebuffers"},
@@ -87,7 +96,9 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_half_float_vertex", nullptr},
     {"GL_ARB_instanced_arrays", "glVertexAttribDivisor"},
     {"GL_ARB_internalformat_query", "glGetInternalformativ"},
+    {"GL_ARB_internalformat_query2", "glGetInternalformati64v"},
     {"GL_ARB_invalidate_subdata", "glInvalidateFramebuffer"},
+    {"GL_ARB_map_buffer_alignment", "glMapBuffer"},
     {"GL_ARB_map_buffer_range", "glMapBufferRange"},
     {"GL_ARB_multi_bind", "glBindVertexBuffers"},
     {"GL_ARB_multi_draw_indirect", "glMultiDrawArraysIndirect"},
@@ -109,10 +120,13 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_shader_image_load_store", "glBindImageTexture"},
     {"GL_ARB_shader_image_size", "glBindImageTexture"},
     {"GL_ARB_shader_objects", "glDeleteObjectARB"},
+    {"GL_ARB_shader_precision", "glUseProgram"},
     {"GL_ARB_shader_storage_buffer_object", "glShaderStorageBlockBinding"},
     {"GL_ARB_shader_subroutine", "glUniformSubroutinesuiv"},
+    {"GL_ARB_shader_texture_image_samples", "glUseProgram"},
     {"GL_ARB_shader_texture_lod", "glUseProgram"},
     {"GL_ARB_shading_language_100", "glUseProgram", kNotInCore},
+    {"GL_ARB_shading_language_420pack", "glUseProgram"},
     {"GL_ARB_shading_language_packing", "glUseProgram"},
     {"GL_ARB_shadow", nullptr, kNotInCore},
     {"GL_ARB_sync", "glFenceSync"},
@@ -142,6 +156,7 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_texture_rg", nullptr},
     {"GL_ARB_texture_rgb10_a2ui", nullptr},
     {"GL_ARB_texture_storage", "glTexStorage3D"},
+    {"GL_ARB_texture_storage_multisample", "glTexStorage3DMultisample"},
     {"GL_ARB_texture_swizzle", nullptr},
     {"GL_ARB_timer_query", "glQueryCounter"},
     {"GL_ARB_transform_feedback2", "glDrawTransformFeedback"},
@@ -271,6 +286,20 @@ std::vector<std::string> offered_extensions(const Caps& caps, const ContextProfi
             (!profile.core || extension.where == Where::everywhere) && node.have(extension.name))
             offered.emplace_back(extension.name);
     return offered;
+}
+
+std::vector<std::string> shading_languages(const Caps& caps, const ContextProfile& profile) {
+    const GlVersion offered = offered_version(caps), first = profile.core ? GlVersion{3, 1} : GlVersion{2, 0};
+    std::vector<std::string> out;
+    for (const Beyond& beyond : kBeyond) {
+        const GlVersion version{beyond.major, beyond.minor, nullptr};
+        if (!at_most(first, version) || !at_most(version, offered)) continue;
+        std::string digits = beyond.shading_language;
+        std::erase(digits, '.');
+        if (digits == "110") digits.clear();  // without a #version
+        out.insert(out.begin(), std::move(digits));
+    }
+    return out;
 }
 
 std::string version_string(const Caps& caps, const ContextProfile& profile) {

@@ -26,6 +26,9 @@ GlVersion offered_version(const Caps& caps);
 /// Of desktop OpenGL.
 std::vector<std::string> offered_extensions(const Caps& caps, const ContextProfile& profile);
 
+/// The shading languages of OpenGL, as numbers behind #version, the latest first; in a core profile from 140 on.
+std::vector<std::string> shading_languages(const Caps& caps, const ContextProfile& profile);
+
 /// glGetString(GL_VERSION).
 std::string version_string(const Caps& caps, const ContextProfile& profile);
 

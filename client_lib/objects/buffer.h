@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <optional>
 #include <span>
 #include <utility>
@@ -22,9 +23,26 @@
 
 namespace wall::client {
 
+/// GL_MIN_MAP_BUFFER_ALIGNMENT: where a buffer's memory begins.
+inline constexpr std::size_t kMapAlignment = 64;
+
+/// Of bytes that begin there.
+template <class T>
+struct MapAllocator {
+    using value_type = T;
+    MapAllocator() = default;
+    template <class U>
+    MapAllocator(const MapAllocator<U>&) {}
+    T* allocate(std::size_t count) {
+        return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t(kMapAlignment)));
+    }
+    void deallocate(T* memory, std::size_t) { ::operator delete(memory, std::align_val_t(kMapAlignment)); }
+    bool operator==(const MapAllocator&) const = default;
+};
+
 /// The memory of a buffer object. While somebody reads it a change goes into a copy.
 struct BufferMemory {
-    std::vector<std::byte> bytes;
+    std::vector<std::byte, MapAllocator<std::byte>> bytes;
     std::atomic<unsigned> readings{0};
 };
 

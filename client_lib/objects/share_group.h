@@ -95,6 +95,8 @@ struct ShareGroup {
     }
     /// Name 0 of each target, made when it first gets content; until then a binding of it is id 0.
     std::map<glapi::TextureTarget, std::shared_ptr<Texture>> default_textures;
+    /// By target and internal format: what a node's driver said for each of glapi::kFormatWords.
+    std::map<std::pair<GLenum, GLenum>, std::vector<GLint64>> format_answers;
 
     std::atomic<std::uint64_t> buffer_deletions{0};  ///< so far
 

@@ -27,6 +27,7 @@
 #include "tileserver/execute/draw_commands.h"
 #include "tileserver/execute/draw_pieces_commands.h"
 #include "tileserver/execute/execution.h"
+#include "tileserver/execute/format_commands.h"
 #include "tileserver/execute/framebuffer_commands.h"
 #include "tileserver/execute/geometry_commands.h"
 #include "tileserver/execute/instanced_draw_commands.h"
@@ -96,6 +97,7 @@ public:
     VertexInputCommands vertex_input{execution_};
     DrawPiecesCommands draw_pieces{execution_};
     RenderbufferCommands renderbuffer{execution_};
+    FormatCommands format{execution_};
     FramebufferCommands framebuffer{execution_};
     TextureDrawnCommands texture_drawn{execution_};
     SamplerCommands sampler{execution_};

@@ -3,7 +3,10 @@
 #include "client_lib/context/profile.h"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
+#include "client_lib/context/es_version.h"
 #include "client_lib/context/version.h"
 #include "tests/unit/client_lib/context_fixture.h"
 
@@ -83,6 +86,20 @@ TEST_F(CoreProfile, IsWhatItSays) {
     gl().LineWidth(c, 2);
     EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
     EXPECT_TRUE(c.state.line_point.point_sprite);
+}
+
+TEST(Versions, HaveShadingLanguages) {
+    Caps caps;
+    caps.version = "3.3 (Compatibility Profile) Mesa";
+    ContextProfile profile;
+    const std::vector<std::string> all{"330", "150", "140", "130", "120", ""};
+    EXPECT_EQ(shading_languages_in(profile, caps), all);
+    caps.extensions = "GL_ARB_ES2_compatibility GL_ARB_ES3_compatibility";
+    EXPECT_EQ(shading_languages_in(profile, caps).back(), "300 es");
+    profile.core = true;
+    EXPECT_EQ(shading_languages_in(profile, caps), (std::vector<std::string>{"330", "150", "140", "100", "300 es"}));
+    profile.es = 20;
+    EXPECT_EQ(shading_languages_in(profile, caps), std::vector<std::string>{"100"});
 }
 
 TEST(Versions, AreOfferedWithAllTheirCommands) {
