@@ -23,6 +23,7 @@
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/program_pipeline.h"
 #include "common/glapi/convert.h"
+#include "common/glapi/program_format.h"
 #include "common/glstate/draw_buffers.h"
 #include "common/glstate/elements.h"
 #include "common/glstate/queries.h"
@@ -220,6 +221,7 @@ const Special kSpecials[] = {
     {GL_MAX_VERTEX_ATTRIB_STRIDE, 1, [](Context&, double* out) { *out = kLongestStride; }},
     {GL_MAX_VERTEX_ATTRIBS, 1, limited<GL_MAX_VERTEX_ATTRIBS, kVertexAttributes>},
     {GL_MAX_UNIFORM_BUFFER_BINDINGS, 1, limited<GL_MAX_UNIFORM_BUFFER_BINDINGS, kUniformBuffers>},
+    {GL_MAX_UNIFORM_LOCATIONS, 1, limited<GL_MAX_UNIFORM_LOCATIONS, int{glapi::kMostUniformLocations}>},
     {GL_MIN_MAP_BUFFER_ALIGNMENT, 1, constant<int{kMapAlignment}>},
     {GL_NUM_SHADING_LANGUAGE_VERSIONS, 1,
      [](Context& c, double* out) { *out = static_cast<double>(shading_languages_in(c.profile, c.caps()).size()); }},

@@ -26,8 +26,9 @@ bool with_output(Context& c, GLuint name, const GLchar* output, Give&& give) {
     if (!executable) return c.error(GL_INVALID_OPERATION), false;
     GLint element = 0;
     const auto* found = output ? executable->output_of(output, element) : nullptr;
-    if (found) give(*found, element);
-    return found != nullptr;
+    if (!found || !found->color()) return false;
+    give(*found, element);
+    return true;
 }
 
 }  // namespace

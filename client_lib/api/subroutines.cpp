@@ -68,13 +68,18 @@ Executable& executable_of(const Program& program, GLenum stage) {
     return found == parts.end() ? *program.executable : *(*found)->executable;
 }
 
+bool has_function(const Subroutines& stage, GLuint index) {
+    if (stage.indices.empty()) return index < stage.functions.size();
+    return std::ranges::find(stage.indices, index) != stage.indices.end();
+}
+
 /// The error of naming these functions; none: it may be done.
 GLenum error_of(const Subroutines& stage, std::span<const GLuint> indices) {
     if (indices.size() != stage.locations) return GL_INVALID_VALUE;
     for (std::size_t i = 0; i < indices.size(); ++i) {
         const auto* uniform = at_location(stage, i);
         if (!uniform) continue;
-        if (indices[i] >= stage.functions.size()) return GL_INVALID_VALUE;
+        if (!has_function(stage, indices[i])) return GL_INVALID_VALUE;
         if (std::ranges::find(uniform->compatible, indices[i]) == uniform->compatible.end())
             return GL_INVALID_OPERATION;
     }
@@ -116,7 +121,7 @@ GLuint GetSubroutineIndex(Context& c, GLuint program, GLenum stage, const GLchar
     GLuint index = GL_INVALID_INDEX;
     with_stage(c, program, stage, [&](const Subroutines& found) {
         const auto at = std::ranges::find(found.functions, name);
-        if (at != found.functions.end()) index = static_cast<GLuint>(at - found.functions.begin());
+        if (at != found.functions.end()) index = found.index_of(static_cast<std::size_t>(at - found.functions.begin()));
     });
     return index;
 }

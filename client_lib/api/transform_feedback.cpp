@@ -17,8 +17,12 @@ namespace {
 
 namespace el = glstate::el;
 
-/// One for each varying, or one for all.
+/// One for each varying, or one for all, or those that shaders name (xfb_buffer).
 std::size_t buffers_of(const Executable& executable) {
+    std::size_t named = 0;
+    for (const glapi::CaptureBuffer& each : executable.capture_buffers)
+        named = std::max(named, std::size_t{each.binding} + 1);
+    if (named != 0) return named;
     if (executable.capture_mode == GL_SEPARATE_ATTRIBS) return executable.captured.size();
     return static_cast<std::size_t>(
                std::ranges::count(executable.captured, "gl_NextBuffer", &glapi::CapturedVarying::name)) +

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "client_lib/api/program_access.h"
+#include "client_lib/objects/program_interfaces.h"
 #include "client_lib/objects/share_group.h"
 
 namespace wall::client::api {
@@ -28,14 +29,7 @@ void with_block(Context& c, GLuint name, GLuint index, Use&& use) {
     });
 }
 
-/// Calls use(uniform index) for those in a block.
-template <class Use>
-void for_each_member(const Executable& executable, GLuint block, Use&& use) {
-    for (std::size_t i = 0; i < executable.uniforms.size(); ++i)
-        if (executable.uniforms[i].place.block == static_cast<GLint>(block)) use(static_cast<GLint>(i));
-}
-
-/// The same for the atomic counters in a buffer.
+/// Calls use(uniform index) for the atomic counters in a buffer.
 template <class Use>
 void for_each_counter(const Executable& executable, GLuint buffer, Use&& use) {
     for (std::size_t i = 0; i < executable.uniforms.size(); ++i)
@@ -148,10 +142,11 @@ void GetActiveUniformBlockiv(Context& c, GLuint name, GLuint index, GLenum pname
             case GL_UNIFORM_BLOCK_NAME_LENGTH: *params = static_cast<GLint>(block.name.size() + 1); break;
             case GL_UNIFORM_BLOCK_ACTIVE_UNIFORMS:
                 *params = 0;
-                for_each_member(executable, index, [&](GLint) { ++*params; });
+                for_each_member(executable.uniforms, executable.blocks, index, [&](GLint) { ++*params; });
                 break;
             case GL_UNIFORM_BLOCK_ACTIVE_UNIFORM_INDICES:
-                for_each_member(executable, index, [&](GLint uniform) { *params++ = uniform; });
+                for_each_member(executable.uniforms, executable.blocks, index,
+                                [&](GLint uniform) { *params++ = uniform; });
                 break;
             case GL_UNIFORM_BLOCK_REFERENCED_BY_VERTEX_SHADER: active_in(GL_VERTEX_SHADER); break;
             case GL_UNIFORM_BLOCK_REFERENCED_BY_FRAGMENT_SHADER: active_in(GL_FRAGMENT_SHADER); break;

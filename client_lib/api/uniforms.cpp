@@ -44,7 +44,7 @@ GLenum store(Context& c, Program& program, GLint location, GLsizei count, const 
     std::unique_lock lock(c.share().mutex);
     Executable& executable = *program.executable;
     const UniformPlace* place = executable.place_of(location);
-    if (!place) return GL_INVALID_OPERATION;
+    if (!place) return executable.ignores(location) ? GL_NO_ERROR : GL_INVALID_OPERATION;
     Uniform& uniform = executable.uniforms[place->uniform];
     if ((count > 1 && !uniform.array) || !accepts(*uniform.type, given)) return GL_INVALID_OPERATION;
     const std::size_t elements =

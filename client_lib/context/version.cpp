@@ -59,6 +59,7 @@ struct Extension {
 constexpr Extension kExtensions[] = {
     {"GL_ARB_arrays_of_arrays", "glUseProgram"},
     {"GL_ARB_cull_distance", "glUseProgram"},
+    {"GL_ARB_enhanced_layouts", "glGetProgramResourceiv"},
     {"GL_ARB_ES2_compatibility", "glGetShaderPrecisionFormat"},
     {"GL_ARB_ES3_compatibility", "glCompressedTexImage3D"},
     {"GL_ARB_base_instance", "glDrawArraysInstancedBaseInstance"},
@@ -82,6 +83,7 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_draw_indirect", "glDrawArraysIndirect"},
     {"GL_ARB_draw_instanced", "glDrawArraysInstanced"},
     {"GL_ARB_explicit_attrib_location", "glBindFragDataLocation"},
+    {"GL_ARB_explicit_uniform_location", "glUniform1f"},
     {"GL_ARB_fragment_coord_conventions", nullptr},
     {"GL_ARB_fragment_layer_viewport", "glViewportArrayv"},
     {"GL_ARB_fragment_shader", "glUseProgram"},
@@ -109,6 +111,7 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_pixel_buffer_object", "glBindBuffer"},
     {"GL_ARB_point_parameters", nullptr, kNotInCore},
     {"GL_ARB_point_sprite", nullptr},
+    {"GL_ARB_program_interface_query", "glGetProgramResourceiv"},
     {"GL_ARB_provoking_vertex", "glProvokingVertex"},
     {"GL_ARB_query_buffer_object", "glGetQueryObjectiv"},
     {"GL_ARB_sample_shading", "glMinSampleShading"},

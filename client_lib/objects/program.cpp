@@ -39,6 +39,27 @@ bool consistent(const glapi::ActiveUniform& u, const glapi::UniformType* type) {
     return !u.has_location() || u.initial.size() == std::size_t{u.size} * type->words();
 }
 
+/// Whether what others count in is there.
+bool consistent(const glapi::ProgramReflection& reflection) {
+    const auto below = [](std::int32_t index, std::size_t count) {
+        return index >= 0 && static_cast<std::size_t>(index) < count;
+    };
+    return std::ranges::all_of(reflection.buffer_variables,
+                               [&](const glapi::BufferVariable& v) {
+                                   return below(v.place.block, reflection.storage_blocks.size());
+                               }) &&
+           std::ranges::all_of(reflection.captured, [&](const glapi::CapturedVarying& v) {
+               return v.buffer == -1 || below(v.buffer, reflection.capture_buffers.size());
+           });
+}
+
+/// Programs without shaders are fixed function.
+bool takes_attributes(const glapi::ProgramDefinition& definition) {
+    const auto& shaders = definition.shaders;
+    return shaders.empty() ||
+           std::ranges::find(shaders, GLenum{GL_VERTEX_SHADER}, &glapi::ShaderSource::type) != shaders.end();
+}
+
 /// What the variables of a stage name when a program comes into use.
 std::vector<std::uint32_t> first_functions(const glapi::SubroutineStage& stage) {
     std::vector<std::uint32_t> out(stage.locations);
@@ -52,23 +73,22 @@ std::vector<std::uint32_t> first_functions(const glapi::SubroutineStage& stage) 
 }
 
 /// With the driver's choice of locations, so that all nodes make the same one.
-std::vector<std::byte> final_definition(glapi::ProgramDefinition definition,
-                                        const glapi::ProgramReflection& reflection) {
+std::vector<std::byte> final_definition(glapi::ProgramDefinition definition, const glapi::ProgramReflection& reflection,
+                                        std::vector<glapi::UniformName> uniforms) {
     for (const auto& attribute : reflection.attributes) {
-        if (attribute.location < 0) continue;
+        if (attribute.location < 0 || !takes_attributes(definition)) continue;
         const auto named = [&](const glapi::AttributeBinding& b) { return b.name == attribute.name; };
         std::erase_if(definition.attributes, named);
         definition.attributes.push_back({static_cast<std::uint32_t>(attribute.location), attribute.name});
     }
-    definition.uniforms.clear();
-    for (const auto& u : reflection.uniforms)
-        if (u.has_location()) definition.uniforms.push_back({u.size, u.name});
+    definition.uniforms = std::move(uniforms);
     definition.position = reflection.position;
     definition.blocks.clear();
     for (const auto& b : reflection.blocks) definition.blocks.push_back(b.name);
     definition.storage_blocks.clear();
     for (const auto& b : reflection.storage_blocks) definition.storage_blocks.push_back(b.name);
     for (const auto& o : reflection.outputs) {
+        if (!o.color()) continue;
         std::erase_if(definition.outputs, [&](const glapi::OutputBinding& b) { return b.name == o.name; });
         definition.outputs.push_back(
             {static_cast<std::uint32_t>(o.location), static_cast<std::uint32_t>(o.index), o.name});
@@ -93,6 +113,29 @@ std::uint32_t taken_as_doubles(const std::vector<glapi::ActiveAttribute>& attrib
     return out;
 }
 
+/// Null: none.
+const glapi::ActiveAttribute* find_input(const std::vector<glapi::ActiveAttribute>& inputs, std::string_view name) {
+    const auto found = std::ranges::find(inputs, name, &glapi::ActiveAttribute::name);
+    return found == inputs.end() ? nullptr : &*found;
+}
+
+/// An element of an array lies behind those before it, and a matrix takes a location for each column (OpenGL 3.2,
+/// 2.11.3).
+GLint location_in(const std::vector<glapi::ActiveAttribute>& inputs, std::string_view name) {
+    if (const auto* found = find_input(inputs, name)) return found->location;
+    const auto wanted = parse_element(name);
+    if (!wanted) return -1;
+    for (const glapi::ActiveAttribute& input : inputs) {
+        const auto own = parse_element(input.name);
+        if (!own || own->name != wanted->name || input.location < 0 || wanted->element >= input.size) continue;
+        if (wanted->indexed && input.size == 1 && !own->indexed) continue;
+        const auto* type = glapi::find_uniform_type(input.type);
+        const std::uint32_t columns = type != nullptr && type->matrix() ? type->columns : 1;
+        return input.location + static_cast<GLint>(wanted->element * columns);
+    }
+    return -1;
+}
+
 }  // namespace
 
 std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition, glapi::ProgramReflection reflection) {
@@ -105,35 +148,46 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
     const bool counts_primitives = std::ranges::any_of(definition.shaders, [](const auto& shader) {
         return shader.source.find("gl_PrimitiveID") != std::string::npos;  // also in a comment: no harm
     });
-    made->definition = final_definition(std::move(definition), reflection);
+    auto names = glapi::number_uniforms(reflection.uniforms);
+    if (!names || !consistent(reflection)) return nullptr;
+    for (const glapi::UniformName& name : *names)
+        made->places_.resize(std::max<std::size_t>(made->places_.size(), name.location + name.size));
+    auto numbered = names->begin();
+    const bool has_attributes = takes_attributes(definition);
     for (auto& active : reflection.uniforms) {
         const auto* type = glapi::find_uniform_type(active.type);
         if (!consistent(active, type)) return nullptr;
         Uniform uniform;
-        uniform.name = std::move(active.name);
+        uniform.name = active.name;
         uniform.type = type;
         uniform.size = static_cast<GLint>(active.size);
         uniform.array = active.array;
         uniform.place = active.place;
+        uniform.stages = active.stages;
         uniform.counter_buffer = active.counter_buffer;
         if (active.counter_buffer >= static_cast<std::int32_t>(reflection.counter_buffers.size())) return nullptr;
         made->has_images_ = made->has_images_ || type->base == glapi::UniformBase::image;
         if (active.in_block() && static_cast<std::size_t>(active.place.block) >= reflection.blocks.size())
             return nullptr;
         if (active.has_location()) {
-            uniform.location = static_cast<GLint>(made->places_.size());
+            const std::uint32_t location = (numbered++)->location;
+            uniform.location = static_cast<GLint>(location);
             uniform.first = made->words_.size();
             made->words_.insert(made->words_.end(), active.initial.begin(), active.initial.end());
             const auto index = static_cast<std::uint32_t>(made->uniforms.size());
-            for (std::uint32_t i = 0; i < active.size; ++i) made->places_.push_back({index, i});
+            for (std::uint32_t i = 0; i < active.size; ++i) made->places_[location + i] = {index, i};
         }
         made->uniforms.push_back(std::move(uniform));
     }
+    made->definition = final_definition(std::move(definition), reflection, *std::move(names));
     for (auto& block : reflection.blocks) made->blocks.push_back({std::move(block), 0});
     for (auto& block : reflection.storage_blocks) made->storage_blocks.push_back({std::move(block), 0});
     made->counter_buffers = std::move(reflection.counter_buffers);
     made->group_size = reflection.group_size;
-    made->attributes = std::move(reflection.attributes);
+    (has_attributes ? made->attributes : made->inputs) = std::move(reflection.attributes);
+    made->buffer_variables = std::move(reflection.buffer_variables);
+    made->capture_buffers = std::move(reflection.capture_buffers);
+    made->unused_locations_ = std::move(reflection.unused_locations);
     made->double_attributes_ = taken_as_doubles(made->attributes);
     made->outputs = std::move(reflection.outputs);
     made->captured = std::move(reflection.captured);
@@ -144,7 +198,7 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
         made->subroutines.push_back({std::move(stage), {}, 0});
         made->subroutines.back().chosen = first_functions(made->subroutines.back());
     }
-    made->reads_numbers_ = counts_primitives || made->find_attribute("gl_VertexID") != nullptr;
+    made->reads_numbers_ = counts_primitives || find_input(made->attributes, "gl_VertexID") != nullptr;
     made->stamp = made->last_change = next_stamp();
     // In parts of a draw primitives would have other numbers.
     if (!counts_primitives && !made->touches_memory()) made->follow_position(std::move(reflection.position));
@@ -170,6 +224,9 @@ void Executable::follow_position(glapi::PositionProgram position) {
 }
 
 GLint Executable::location_of(std::string_view text) const {
+    // Of arrays of arrays, "name[1]" is both an element and an array.
+    for (const Uniform& uniform : uniforms)
+        if (uniform.name == text) return uniform.location;
     const auto wanted = parse_element(text);
     if (!wanted) return -1;
     for (const Uniform& uniform : uniforms) {
@@ -182,6 +239,8 @@ GLint Executable::location_of(std::string_view text) const {
 }
 
 std::optional<GLuint> Executable::uniform_index_of(std::string_view text) const {
+    const auto exact = std::ranges::find(uniforms, text, &Uniform::name);
+    if (exact != uniforms.end()) return static_cast<GLuint>(exact - uniforms.begin());
     const auto wanted = parse_element(text);
     if (!wanted || wanted->element != 0) return std::nullopt;
     for (std::size_t i = 0; i < uniforms.size(); ++i)
@@ -216,32 +275,19 @@ const glapi::ActiveOutput* Executable::output_of(std::string_view text, GLint& e
     return nullptr;
 }
 
-const glapi::ActiveAttribute* Executable::find_attribute(std::string_view name) const {
-    const auto found = std::ranges::find(attributes, name, &glapi::ActiveAttribute::name);
-    return found == attributes.end() ? nullptr : &*found;
-}
+GLint Executable::attribute_location_of(std::string_view name) const { return location_in(attributes, name); }
 
-/// An element of an array lies behind those before it, and a matrix takes a location for each column (OpenGL 3.2,
-/// 2.11.3).
-GLint Executable::attribute_location_of(std::string_view name) const {
-    if (const auto* found = find_attribute(name)) return found->location;
-    const auto wanted = parse_element(name);
-    if (!wanted) return -1;
-    for (const glapi::ActiveAttribute& attribute : attributes) {
-        const auto own = parse_element(attribute.name);
-        if (!own || own->name != wanted->name || attribute.location < 0 || wanted->element >= attribute.size) continue;
-        if (wanted->indexed && attribute.size == 1 && !own->indexed) continue;
-        const auto* type = glapi::find_uniform_type(attribute.type);
-        const std::uint32_t columns = type != nullptr && type->matrix() ? type->columns : 1;
-        return attribute.location + static_cast<GLint>(wanted->element * columns);
-    }
-    return -1;
-}
+GLint Executable::input_location_of(std::string_view name) const { return location_in(taken(), name); }
 
 const UniformPlace* Executable::place_of(GLint location) const {
-    return location < 0 || static_cast<std::size_t>(location) >= places_.size()
-               ? nullptr
-               : &places_[static_cast<std::size_t>(location)];
+    if (location < 0 || static_cast<std::size_t>(location) >= places_.size()) return nullptr;
+    const UniformPlace& place = places_[static_cast<std::size_t>(location)];
+    return place.uniform == UniformPlace::kNone ? nullptr : &place;
+}
+
+bool Executable::ignores(GLint location) const {
+    return location >= 0 &&
+           std::ranges::find(unused_locations_, static_cast<std::uint32_t>(location)) != unused_locations_.end();
 }
 
 std::span<const std::uint32_t> Executable::words_of(const Uniform& uniform) const {
@@ -332,7 +378,11 @@ std::unique_ptr<Executable> Executable::combine(const std::vector<std::shared_pt
         made->reads_numbers_ = made->reads_numbers_ || part.reads_numbers_;
         if (part.geometry.exists()) made->geometry = part.geometry;
         if (part.tessellation.exists()) made->tessellation = part.tessellation;
-        if (made->captured.empty()) made->captured = part.captured, made->capture_mode = part.capture_mode;
+        if (made->captured.empty()) {
+            made->captured = part.captured;
+            made->capture_buffers = part.capture_buffers;
+            made->capture_mode = part.capture_mode;
+        }
         if (part.computes()) made->group_size = part.group_size;
         if ((part.stages & 1) != 0) {
             made->attributes = part.attributes;

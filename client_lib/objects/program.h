@@ -56,13 +56,15 @@ struct Uniform {
     bool array = false;
     GLint counter_buffer = -1;  ///< of an atomic counter: index in Executable::counter_buffers
     glapi::BlockPlace place = {};
-    std::size_t first = 0;    ///< of its words in Executable::words
-    std::uint64_t stamp = 0;  ///< of the latest change; 0: as the shader says
+    std::uint32_t stages = 0;  ///< that it is active in, a bit for each of glapi::kShaderStages
+    std::size_t first = 0;     ///< of its words in Executable::words
+    std::uint64_t stamp = 0;   ///< of the latest change; 0: as the shader says
     std::string full_name() const { return array ? name + "[0]" : name; }
 };
 
 struct UniformPlace {
-    std::uint32_t uniform = 0;  ///< index in Executable::uniforms
+    static constexpr std::uint32_t kNone = ~0u;
+    std::uint32_t uniform = kNone;  ///< index in Executable::uniforms; kNone: there is none at this location
     std::uint32_t element = 0;
 };
 
@@ -93,14 +95,22 @@ public:
     /// Location of "name", "name[3]"; -1: no such uniform.
     GLint location_of(std::string_view name) const;
     GLint attribute_location_of(std::string_view name) const;
+    /// The same of taken().
+    GLint input_location_of(std::string_view name) const;
     /// Index of a uniform ("name" or "name[0]") or block; nothing: there is no such one.
     std::optional<GLuint> uniform_index_of(std::string_view name) const;
     std::optional<GLuint> block_index_of(std::string_view name) const;
-    /// The colour that an output ("name", "name[3]") is; null: there is no such one. `element` is added to its
-    /// location.
+    std::optional<GLuint> storage_block_index_of(std::string_view name) const;
+    /// What the last stage gives away by that name ("name", "name[3]"); null: there is no such one. `element` is added
+    /// to its location.
     const glapi::ActiveOutput* output_of(std::string_view name, GLint& element) const;
     /// Null: no such location.
     const UniformPlace* place_of(GLint location) const;
+    /// Whether a shader gives the location to a uniform that is not active: setting it does nothing.
+    bool ignores(GLint location) const;
+    /// What the first stage takes: vertex attributes or, where the program has no vertex shader, another stage's
+    /// inputs.
+    const std::vector<glapi::ActiveAttribute>& taken() const { return inputs.empty() ? attributes : inputs; }
 
     /// False if these are the values that it has. `words` is a whole number of elements, from element `first` on.
     bool holds(const Uniform& uniform, std::uint32_t first, std::span<const std::uint32_t> words) const;
@@ -173,17 +183,19 @@ public:
     std::vector<UniformBlock> blocks;
     std::vector<StorageBlock> storage_blocks;
     std::vector<glapi::ActiveCounterBuffer> counter_buffers;
-    std::array<std::uint32_t, 3> group_size{};  ///< of the compute shader; 0 throughout: there is none
-    std::vector<glapi::ActiveAttribute> attributes;
-    std::vector<glapi::ActiveOutput> outputs;
+    std::array<std::uint32_t, 3> group_size{};       ///< of the compute shader; 0 throughout: there is none
+    std::vector<glapi::ActiveAttribute> attributes;  ///< of vertices
+    std::vector<glapi::ActiveAttribute> inputs;      ///< of the first stage, where that is another one
+    std::vector<glapi::ActiveOutput> outputs;        ///< of the last stage
+    std::vector<glapi::BufferVariable> buffer_variables;
     std::vector<glapi::CapturedVarying> captured;  ///< by transform feedback
+    std::vector<glapi::CaptureBuffer> capture_buffers;
     GLenum capture_mode = GL_INTERLEAVED_ATTRIBS;
     glapi::GeometryStage geometry;
     glapi::TessellationStage tessellation;
     std::vector<Subroutines> subroutines;  ///< of the stages that have any
 
 private:
-    const glapi::ActiveAttribute* find_attribute(std::string_view name) const;
     void check_samplers();
     bool parts_conflict() const;
     void for_each_combined(const std::function<void(const Executable&)>& use) const;
@@ -191,6 +203,7 @@ private:
 
     std::vector<std::uint32_t> words_;
     std::vector<UniformPlace> places_;  ///< by location
+    std::vector<std::uint32_t> unused_locations_;
     bool samplers_conflict_ = false;
     bool samples_buffers_ = false, has_images_ = false;
     bool reads_numbers_ = false;

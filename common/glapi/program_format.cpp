@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "common/wire/operand_reader.h"
 #include "common/wire/padding.h"
@@ -16,6 +17,8 @@ public:
     std::vector<std::byte> out;
 
     void put(std::uint32_t value) { append(&value, sizeof value); }
+    void put(std::int32_t value) { append(&value, sizeof value); }
+    void put(bool value) { put(std::uint32_t{value}); }
     void put(const std::string& text) {
         put(static_cast<std::uint32_t>(text.size()));
         append(text.data(), text.size());
@@ -27,8 +30,18 @@ public:
     }
     void put(const BlockPlace& place) {
         for (const std::int32_t value : {place.block, place.offset, place.array_stride, place.matrix_stride})
-            put(static_cast<std::uint32_t>(value));
+            put(value);
         put(place.row_major);
+    }
+    void put(const BufferVariable& variable) {
+        put(variable.type);
+        put(variable.size);
+        put(variable.array);
+        put(variable.name);
+        put(variable.place);
+        put(variable.top_size);
+        put(variable.top_stride);
+        put(variable.stages);
     }
     void put(const GeometryStage& stage) {
         for (const std::uint32_t value : {stage.input, stage.output, stage.vertices, stage.invocations}) put(value);
@@ -41,7 +54,7 @@ public:
         put(uniform.name);
         put(uniform.size);
         put(uniform.array);
-        put(static_cast<std::uint32_t>(uniform.location));
+        put(uniform.location);
         put(uniform.compatible);
     }
     void put(const SubroutineStage& stage) {
@@ -49,6 +62,7 @@ public:
         list(stage.functions, [&](const std::string& name) { put(name); });
         list(stage.uniforms, [&](const SubroutineUniform& uniform) { put(uniform); });
         put(stage.locations);
+        put(stage.indices);
     }
     void put(const PositionProgram& position) {
         list(position.uniforms, [&](const PositionUniform& u) { put(u.name), put(u.element); });
@@ -125,10 +139,12 @@ public:
     GeometryStage geometry() { return {word(), word(), word(), word()}; }
     TessellationStage tessellation() { return {word(), word(), word(), word(), word()}; }
     SubroutineStage subroutine_stage() {
-        SubroutineStage out{word(), {}, {}, 0};
+        SubroutineStage out{word(), {}, {}, 0, {}};
         list(out.functions, [&] { return text(); });
         list(out.uniforms, [&] { return SubroutineUniform{text(), word(), flag(), number(), words()}; });
         out.locations = word();
+        out.indices = words();
+        if (!out.indices.empty() && out.indices.size() != out.functions.size()) in_.fail();
         return out;
     }
     bool complete() const { return in_.ok() && in_.remaining() == 0; }
@@ -209,7 +225,7 @@ std::vector<std::byte> encode(const ProgramDefinition& definition) {
     Writer to;
     to.list(definition.shaders, [&](const ShaderSource& s) { to.put(s.type), to.put(s.compiled), to.put(s.source); });
     to.list(definition.attributes, [&](const AttributeBinding& a) { to.put(a.index), to.put(a.name); });
-    to.list(definition.uniforms, [&](const UniformName& u) { to.put(u.size), to.put(u.name); });
+    to.list(definition.uniforms, [&](const UniformName& u) { to.put(u.size), to.put(u.name), to.put(u.location); });
     to.list(definition.blocks, [&](const std::string& name) { to.put(name); });
     to.list(definition.outputs, [&](const OutputBinding& o) { to.put(o.color), to.put(o.index), to.put(o.name); });
     to.put(definition.feedback);
@@ -224,7 +240,7 @@ std::optional<ProgramDefinition> decode_definition(std::span<const std::byte> by
     ProgramDefinition out;
     from.list(out.shaders, [&] { return ShaderSource{from.word(), from.flag(), from.text()}; });
     from.list(out.attributes, [&] { return AttributeBinding{from.word(), from.text()}; });
-    from.list(out.uniforms, [&] { return UniformName{from.word(), from.text()}; });
+    from.list(out.uniforms, [&] { return UniformName{from.word(), from.text(), from.word()}; });
     from.list(out.blocks, [&] { return from.text(); });
     from.list(out.outputs, [&] { return OutputBinding{from.word(), from.word(), from.text()}; });
     out.feedback = from.feedback();
@@ -240,18 +256,21 @@ std::vector<std::byte> encode(const ProgramReflection& reflection) {
     to.put(reflection.log);
     to.list(reflection.uniforms, [&](const ActiveUniform& u) {
         to.put(u.type), to.put(u.size), to.put(u.built_in), to.put(u.array), to.put(u.name), to.put(u.initial),
-            to.put(u.place), to.put(static_cast<std::uint32_t>(u.counter_buffer));
+            to.put(u.place), to.put(u.counter_buffer), to.put(u.location), to.put(u.stages);
     });
     to.list(reflection.attributes, [&](const ActiveAttribute& a) {
-        to.put(a.type), to.put(a.size), to.put(static_cast<std::uint32_t>(a.location)), to.put(a.name);
+        to.put(a.type), to.put(a.size), to.put(a.location), to.put(a.name), to.put(a.stages), to.put(a.patch),
+            to.put(a.component);
     });
     to.list(reflection.blocks,
             [&](const ActiveBlock& b) { to.put(b.name), to.put(b.bytes), to.put(b.binding), to.put(b.stages); });
     to.list(reflection.outputs, [&](const ActiveOutput& o) {
-        to.put(static_cast<std::uint32_t>(o.location)), to.put(static_cast<std::uint32_t>(o.index)), to.put(o.size),
-            to.put(o.array), to.put(o.name);
+        to.put(o.location), to.put(o.index), to.put(o.size), to.put(o.array), to.put(o.name), to.put(o.type),
+            to.put(o.stages), to.put(o.patch), to.put(o.component);
     });
-    to.list(reflection.captured, [&](const CapturedVarying& v) { to.put(v.type), to.put(v.size), to.put(v.name); });
+    to.list(reflection.captured, [&](const CapturedVarying& v) {
+        to.put(v.type), to.put(v.size), to.put(v.name), to.put(v.offset), to.put(v.buffer);
+    });
     to.put(reflection.geometry);
     to.put(reflection.tessellation);
     to.list(reflection.subroutines, [&](const SubroutineStage& stage) { to.put(stage); });
@@ -262,6 +281,9 @@ std::vector<std::byte> encode(const ProgramReflection& reflection) {
     to.list(reflection.counter_buffers,
             [&](const ActiveCounterBuffer& b) { to.put(b.binding), to.put(b.bytes), to.put(b.stages); });
     for (const std::uint32_t size : reflection.group_size) to.put(size);
+    to.list(reflection.buffer_variables, [&](const BufferVariable& v) { to.put(v); });
+    to.list(reflection.capture_buffers, [&](const CaptureBuffer& b) { to.put(b.binding), to.put(b.stride); });
+    to.put(reflection.unused_locations);
     return std::move(to.out);
 }
 
@@ -271,15 +293,21 @@ std::optional<ProgramReflection> decode_reflection(std::span<const std::byte> by
     out.linked = from.flag();
     out.log = from.text();
     from.list(out.uniforms, [&] {
-        return ActiveUniform{from.word(), from.word(),  from.flag(),  from.flag(),
-                             from.text(), from.words(), from.place(), from.number()};
+        return ActiveUniform{from.word(),  from.word(),  from.flag(),   from.flag(),   from.text(),
+                             from.words(), from.place(), from.number(), from.number(), from.word()};
     });
-    from.list(out.attributes, [&] { return ActiveAttribute{from.word(), from.word(), from.number(), from.text()}; });
+    from.list(out.attributes, [&] {
+        return ActiveAttribute{from.word(), from.word(), from.number(), from.text(),
+                               from.word(), from.flag(), from.word()};
+    });
     from.list(out.blocks, [&] { return ActiveBlock{from.text(), from.word(), from.word(), from.word()}; });
     from.list(out.outputs, [&] {
-        return ActiveOutput{from.number(), from.number(), from.word(), from.flag(), from.text()};
+        return ActiveOutput{from.number(), from.number(), from.word(), from.flag(), from.text(),
+                            from.word(),   from.word(),   from.flag(), from.word()};
     });
-    from.list(out.captured, [&] { return CapturedVarying{from.word(), from.word(), from.text()}; });
+    from.list(out.captured, [&] {
+        return CapturedVarying{from.word(), from.word(), from.text(), from.word(), from.number()};
+    });
     out.geometry = from.geometry();
     out.tessellation = from.tessellation();
     from.list(out.subroutines, [&] { return from.subroutine_stage(); });
@@ -289,7 +317,37 @@ std::optional<ProgramReflection> decode_reflection(std::span<const std::byte> by
     });
     from.list(out.counter_buffers, [&] { return ActiveCounterBuffer{from.word(), from.word(), from.word()}; });
     for (std::uint32_t& size : out.group_size) size = from.word();
+    from.list(out.buffer_variables, [&] {
+        return BufferVariable{from.word(),  from.word(), from.flag(), from.text(),
+                              from.place(), from.word(), from.word(), from.word()};
+    });
+    from.list(out.capture_buffers, [&] { return CaptureBuffer{from.word(), from.word()}; });
+    out.unused_locations = from.words();
     return if_complete(from, std::move(out));
+}
+
+std::optional<std::vector<UniformName>> number_uniforms(const std::vector<ActiveUniform>& uniforms) {
+    std::vector<UniformName> out;
+    std::vector<bool> taken;
+    const auto take = [&](std::uint64_t location, std::uint64_t size) {
+        if (location + size > kMostUniformLocations) return false;
+        taken.resize(std::max<std::size_t>(taken.size(), location + size));
+        for (std::uint64_t at = location; at < location + size; ++at) {
+            if (taken[at]) return false;
+            taken[at] = true;
+        }
+        return true;
+    };
+    const auto has_one = [](const ActiveUniform& u) { return u.has_location() && u.location >= 0; };
+    for (const ActiveUniform& u : uniforms)
+        if (has_one(u) && !take(static_cast<std::uint64_t>(u.location), u.size)) return std::nullopt;
+    for (const ActiveUniform& u : uniforms) {
+        if (!u.has_location()) continue;
+        const std::size_t location = u.location >= 0 ? static_cast<std::size_t>(u.location) : taken.size();
+        if (u.location < 0 && !take(location, u.size)) return std::nullopt;
+        out.push_back({u.size, u.name, static_cast<std::uint32_t>(location)});
+    }
+    return out;
 }
 
 std::vector<std::byte> encode(const CompileResult& result) {

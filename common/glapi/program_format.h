@@ -3,8 +3,8 @@
 // Both are sequences of u32 and of strings (u32 count, bytes, padding to 4), in the order of the members here; a list
 // is its length and then its items. Pure.
 //
-// A client gives its own numbers to uniform locations: those of the uniforms in `uniforms`' order, one for each
-// element, from 0. A node maps them to its driver's.
+// A client's uniform locations are those that the shaders say or the driver of the node that was asked first chose
+// (number_uniforms). A node maps them to its own driver's.
 #pragma once
 
 #include <array>
@@ -32,10 +32,12 @@ struct AttributeBinding {
     std::string name;
 };
 
-/// Names and lengths, in the order that gives locations.
+/// Which location each has at the client.
 struct UniformName {
-    std::uint32_t size = 1;  ///< elements; 1 if no array
-    std::string name;        ///< without "[0]"
+    std::uint32_t size = 1;      ///< elements; 1 if no array
+    std::string name;            ///< without "[0]"
+    std::uint32_t location = 0;  ///< of its first element; the others' follow
+    bool operator==(const UniformName&) const = default;
 };
 
 /// glBindFragDataLocationIndexed.
@@ -85,15 +87,21 @@ struct ActiveUniform {
     std::vector<std::uint32_t> initial;  ///< words of all elements: uniform_words() each; of a block's members none
     BlockPlace place = {};
     std::int32_t counter_buffer = -1;  ///< of an atomic counter: index in ProgramReflection::counter_buffers
+    std::int32_t location = -1;        ///< of its first element, the others' follow; -1: the client chooses
+    std::uint32_t stages = 0;          ///< that it is active in, a bit for each of kShaderStages
     bool in_block() const { return place.block >= 0; }
     bool has_location() const { return !built_in && !in_block() && counter_buffer < 0; }
 };
 
+/// What the first stage takes: vertex attributes, if that is the vertex shader.
 struct ActiveAttribute {
     GLenum type = 0;
     std::uint32_t size = 1;
     std::int32_t location = -1;
-    std::string name;
+    std::string name;             ///< of an array with "[0]"
+    std::uint32_t stages = 0;     ///< a bit for each of kShaderStages
+    bool patch = false;           ///< one for all vertices of a patch
+    std::uint32_t component = 0;  ///< of the location, that it begins with (GL_ARB_enhanced_layouts)
 };
 
 /// A block of uniforms.
@@ -116,13 +124,30 @@ struct ActiveCounterBuffer {
     std::uint32_t stages = 0;  ///< that it is active in, a bit for each of kShaderStages
 };
 
-/// A colour that the fragment shader writes.
+/// A variable of a block that lies in a buffer which shaders may write (OpenGL 4.3, 7.3.1).
+struct BufferVariable {
+    GLenum type = 0;
+    std::uint32_t size = 1;  ///< elements; 0: as many as the buffer has room for
+    bool array = false;
+    std::string name;       ///< without "[0]"
+    BlockPlace place = {};  ///< `block` counts in ProgramReflection::storage_blocks
+    /// Of the block's member that it is a part of: elements, and bytes from one to the next; 1 and 0 of no array.
+    std::uint32_t top_size = 1, top_stride = 0;
+    std::uint32_t stages = 0;  ///< that it is active in, a bit for each of kShaderStages
+};
+
+/// What the last stage gives away: colours, if that is the fragment shader.
 struct ActiveOutput {
     std::int32_t location = -1;
-    std::int32_t index = 0;
+    std::int32_t index = 0;  ///< of the two colours that blending may take; -1: it is no colour
     std::uint32_t size = 1;  ///< elements
     bool array = false;
     std::string name;  ///< without "[0]"
+    GLenum type = 0;
+    std::uint32_t stages = 0;     ///< a bit for each of kShaderStages
+    bool patch = false;           ///< one for all vertices of a patch
+    std::uint32_t component = 0;  ///< of the location, that it begins with
+    bool color() const { return location >= 0 && index >= 0; }
 };
 
 /// What transform feedback captures of a vertex.
@@ -130,6 +155,15 @@ struct CapturedVarying {
     GLenum type = 0;
     std::uint32_t size = 1;
     std::string name;
+    std::uint32_t offset = 0;  ///< bytes, in what its buffer has of a vertex
+    std::int32_t buffer = -1;  ///< index in ProgramReflection::capture_buffers; -1: gl_NextBuffer
+};
+
+/// A buffer that transform feedback writes to.
+struct CaptureBuffer {
+    std::uint32_t binding = 0;
+    std::uint32_t stride = 0;  ///< bytes from one vertex to the next
+    bool operator==(const CaptureBuffer&) const = default;
 };
 
 /// Of a geometry shader; 0 throughout: there is none.
@@ -165,9 +199,13 @@ struct SubroutineUniform {
 /// What a stage has of them.
 struct SubroutineStage {
     GLenum stage = 0;
-    std::vector<std::string> functions;  ///< in the order that gives indices
+    std::vector<std::string> functions;
     std::vector<SubroutineUniform> uniforms;
     std::uint32_t locations = 0;
+    std::vector<std::uint32_t> indices = {};  ///< of the functions; empty: 0 and so on
+    std::uint32_t index_of(std::size_t function) const {
+        return indices.empty() ? static_cast<std::uint32_t>(function) : indices[function];
+    }
 };
 
 struct ProgramReflection {
@@ -185,11 +223,23 @@ struct ProgramReflection {
     std::vector<ActiveStorageBlock> storage_blocks = {};
     std::vector<ActiveCounterBuffer> counter_buffers = {};
     std::array<std::uint32_t, 3> group_size = {};  ///< of the compute shader; 0 throughout: there is none
+    std::vector<BufferVariable> buffer_variables = {};
+    std::vector<CaptureBuffer> capture_buffers = {};
+    /// That shaders give to uniforms which are not active, as far as they were looked for: nothing happens when such a
+    /// one is set (GL_ARB_explicit_uniform_location).
+    std::vector<std::uint32_t> unused_locations = {};
 };
 
 /// The stages that programs may have, in the order of ActiveBlock::stages.
 inline constexpr GLenum kShaderStages[] = {GL_VERTEX_SHADER,       GL_FRAGMENT_SHADER,        GL_GEOMETRY_SHADER,
                                            GL_TESS_CONTROL_SHADER, GL_TESS_EVALUATION_SHADER, GL_COMPUTE_SHADER};
+
+/// That a program may have, as locations (elements) of uniforms.
+inline constexpr std::uint32_t kMostUniformLocations = 1 << 18;
+
+/// The locations of those that have one, in their order: those that were told, and for the others free ones behind
+/// all of these. Nothing: two have one in common, or one lies behind kMostUniformLocations.
+std::optional<std::vector<UniformName>> number_uniforms(const std::vector<ActiveUniform>& uniforms);
 
 struct CompileResult {
     bool compiled = false;

@@ -88,9 +88,11 @@ void Program::release() {
 
 std::vector<GLint> Program::map_locations(GLuint program, const std::vector<glapi::UniformName>& names) const {
     std::vector<GLint> out;
-    for (const auto& uniform : names)
+    for (const auto& uniform : names) {
+        out.resize(std::max<std::size_t>(out.size(), uniform.location + uniform.size), -1);
         for (std::uint32_t i = 0; i < uniform.size; ++i)
-            out.push_back(element_location(driver_.gl(), program, uniform.name, i));
+            out[uniform.location + i] = element_location(driver_.gl(), program, uniform.name, i);
+    }
     return out;
 }
 
@@ -176,11 +178,9 @@ void Program::follow_position(glapi::PositionProgram position, const std::vector
     position_ = {};
     std::vector<std::uint32_t> locations;
     for (const glapi::PositionUniform& wanted : position.uniforms) {
-        std::uint32_t location = 0;
-        auto at = names.begin();
-        for (; at != names.end() && at->name != wanted.name; ++at) location += at->size;
-        if (at == names.end() || wanted.element >= at->size || locations_[location + wanted.element] < 0) return;
-        locations.push_back(location + wanted.element);
+        const auto at = std::ranges::find(names, wanted.name, &glapi::UniformName::name);
+        if (at == names.end() || wanted.element >= at->size || locations_[at->location + wanted.element] < 0) return;
+        locations.push_back(at->location + wanted.element);
     }
     position_ = {std::move(position), std::move(locations)};
     for (const glapi::PositionStep& step : position_.program().steps) {
@@ -212,8 +212,12 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
     std::vector<glapi::UniformName> names = definition->uniforms;
     std::vector<std::string> blocks = definition->blocks, storage_blocks = definition->storage_blocks;
     if (!named) {
-        for (const auto& uniform : reflection.uniforms)
-            if (uniform.has_location()) names.push_back({uniform.size, uniform.name});
+        auto numbered = glapi::number_uniforms(reflection.uniforms);
+        if (!numbered) {
+            driver_.gl().DeleteProgram(built.driver);
+            return fail("more uniforms than a program may have");
+        }
+        names = *std::move(numbered);
         for (const auto& block : reflection.blocks) blocks.push_back(block.name);
         for (const auto& block : reflection.storage_blocks) storage_blocks.push_back(block.name);
     }

@@ -11,8 +11,6 @@
 namespace wall::tileserver {
 namespace {
 
-constexpr std::size_t kMaxProgramLocations = 1 << 18;  // elements of all uniforms of a program
-
 std::string_view text(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
@@ -65,9 +63,12 @@ Result<glapi::ProgramDefinition> read_definition(std::span<const std::byte> byte
     if (!definition) return fail("bad program definition");
     for (const auto& shader : definition->shaders)
         if (!is_shader_type(shader.type)) return fail("no such kind of shader");
-    std::size_t locations = 0;
-    for (const auto& uniform : definition->uniforms)
-        if ((locations += uniform.size) > kMaxProgramLocations) return fail("too many uniforms");
+    std::uint64_t locations = 0;
+    for (const auto& uniform : definition->uniforms) {
+        locations += uniform.size;
+        const std::uint64_t behind = std::uint64_t{uniform.location} + uniform.size;
+        if (std::max(behind, locations) > glapi::kMostUniformLocations) return fail("too many uniforms");
+    }
     return *std::move(definition);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,15 @@ glapi::ProgramReflection reflect_program(const Gl& gl, GLuint program, const gla
 
 /// The functions of each stage that variables may name, and those variables.
 void read_subroutines(const Gl& gl, GLuint program, glapi::ProgramReflection& out);
+
+/// What goes into the program and comes out of it, is captured, and lies in buffers that shaders may write.
+void read_interfaces(const Gl& gl, GLuint program, const glapi::ProgramDefinition& definition,
+                     glapi::ProgramReflection& out);
+/// Those that a uniform is active in, a bit for each of glapi::kShaderStages. `index` is the driver's.
+std::uint32_t uniform_stages(const Gl& gl, GLuint program, GLuint index);
+
+/// "name[0]" is told as an array of that name: true, and the name without it.
+bool take_array_suffix(std::string& name);
 
 /// The driver's location of one element of a uniform; -1: it is not active.
 GLint element_location(const Gl& gl, GLuint program, const std::string& name, std::uint32_t element);

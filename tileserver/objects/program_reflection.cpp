@@ -9,12 +9,18 @@
 #include "tileserver/objects/info_log.h"
 #include "tileserver/objects/program_build.h"
 #include "tileserver/objects/shader_patch.h"
-#include "tileserver/objects/storage_access.h"
 
 namespace wall::tileserver {
 namespace {
 
 using glapi::BlockPlace;
+
+/// Whether there were any.
+bool take_errors(const Gl& gl) {
+    int errors = 0;
+    while (errors < 64 && gl.GetError() != GL_NO_ERROR) ++errors;
+    return errors != 0;
+}
 
 void read_doubles(const Gl& gl, GLuint program, GLint location, std::array<std::uint32_t, 32>& words) {
     std::array<GLdouble, 16> values{};
@@ -23,13 +29,25 @@ void read_doubles(const Gl& gl, GLuint program, GLint location, std::array<std::
     std::memcpy(words.data(), values.data(), sizeof values);
 }
 
-void read_initial(const Gl& gl, GLuint program, glapi::ActiveUniform& uniform) {
+std::vector<GLint> element_locations(const Gl& gl, GLuint program, const std::string& name, std::uint32_t elements) {
+    std::vector<GLint> out;
+    for (std::uint32_t i = 0; i < std::max(elements, 1u); ++i) out.push_back(element_location(gl, program, name, i));
+    return out;
+}
+
+/// Whether each lies behind the one before it, as the client's do.
+bool is_row(const std::vector<GLint>& locations) {
+    for (std::size_t i = 1; i < locations.size(); ++i)
+        if (locations[i] != locations[0] + static_cast<GLint>(i)) return false;
+    return true;
+}
+
+void read_initial(const Gl& gl, GLuint program, const std::vector<GLint>& locations, glapi::ActiveUniform& uniform) {
     const auto* type = glapi::find_uniform_type(uniform.type);
     if (type == nullptr) return;
     std::array<std::uint32_t, 32> words;
-    for (std::uint32_t i = 0; i < uniform.size; ++i) {
+    for (const GLint location : locations) {
         words.fill(0);
-        const GLint location = element_location(gl, program, uniform.name, i);
         if (location >= 0) {
             if (type->base == glapi::UniformBase::real)
                 gl.GetUniformfv(program, location, reinterpret_cast<GLfloat*>(words.data()));
@@ -67,13 +85,6 @@ void read_counter(const Gl& gl, GLuint program, GLuint uniform, glapi::ActiveUni
     counter.place.matrix_stride = 0;
 }
 
-/// "name[0]" is told as an array of that name.
-bool take_array_suffix(std::string& name) {
-    if (!name.ends_with("[0]")) return false;
-    name.resize(name.size() - 3);
-    return true;
-}
-
 void read_uniforms(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
     GLint count = 0, longest = 0;
     gl.GetProgramiv(program, GL_ACTIVE_UNIFORMS, &count);
@@ -91,30 +102,15 @@ void read_uniforms(const Gl& gl, GLuint program, glapi::ProgramReflection& out) 
         uniform.array = take_array_suffix(uniform.name) || size > 1;
         uniform.built_in = uniform.name.starts_with("gl_");
         uniform.place = read_place(gl, program, static_cast<GLuint>(i));
+        uniform.stages = uniform_stages(gl, program, static_cast<GLuint>(i));
         if (type == GL_UNSIGNED_INT_ATOMIC_COUNTER) read_counter(gl, program, static_cast<GLuint>(i), uniform);
         if (uniform.has_location()) {
-            if (gl.GetUniformLocation(program, uniform.name.c_str()) < 0) continue;
-            read_initial(gl, program, uniform);
+            const std::vector<GLint> locations = element_locations(gl, program, uniform.name, uniform.size);
+            if (locations.front() < 0) continue;
+            if (is_row(locations)) uniform.location = locations.front();
+            read_initial(gl, program, locations, uniform);
         }
         out.uniforms.push_back(std::move(uniform));
-    }
-}
-
-void read_attributes(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
-    GLint count = 0, longest = 0;
-    gl.GetProgramiv(program, GL_ACTIVE_ATTRIBUTES, &count);
-    gl.GetProgramiv(program, GL_ACTIVE_ATTRIBUTE_MAX_LENGTH, &longest);
-    std::string name(static_cast<std::size_t>(std::max(longest, 1)), '\0');
-    for (GLint i = 0; i < count; ++i) {
-        GLsizei length = 0;
-        GLint size = 0;
-        GLenum type = 0;
-        gl.GetActiveAttrib(program, static_cast<GLuint>(i), static_cast<GLsizei>(name.size()), &length, &size, &type,
-                           name.data());
-        glapi::ActiveAttribute attribute{type, static_cast<std::uint32_t>(size), -1,
-                                         name.substr(0, static_cast<std::size_t>(length))};
-        attribute.location = gl.GetAttribLocation(program, attribute.name.c_str());
-        out.attributes.push_back(std::move(attribute));
     }
 }
 
@@ -144,100 +140,42 @@ void read_blocks(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
     }
 }
 
-/// Words that ask whether each of kShaderStages refers to a resource.
-constexpr GLenum kReferring[] = {GL_REFERENCED_BY_VERTEX_SHADER,          GL_REFERENCED_BY_FRAGMENT_SHADER,
-                                 GL_REFERENCED_BY_GEOMETRY_SHADER,        GL_REFERENCED_BY_TESS_CONTROL_SHADER,
-                                 GL_REFERENCED_BY_TESS_EVALUATION_SHADER, GL_REFERENCED_BY_COMPUTE_SHADER};
-static_assert(std::size(kReferring) == std::size(glapi::kShaderStages));
-
-/// What is told of a buffer that shaders write to.
-struct WrittenBuffer {
-    std::uint32_t binding = 0, bytes = 0, stages = 0;
-};
-
-WrittenBuffer read_written(const Gl& gl, GLuint program, GLenum kind, GLuint index) {
-    std::array<GLenum, 2 + std::size(kReferring)> asked{GL_BUFFER_BINDING, GL_BUFFER_DATA_SIZE};
-    std::ranges::copy(kReferring, asked.begin() + 2);
-    std::array<GLint, asked.size()> answers{};
-    gl.GetProgramResourceiv(program, kind, index, static_cast<GLsizei>(asked.size()), asked.data(),
-                            static_cast<GLsizei>(answers.size()), nullptr, answers.data());
-    WrittenBuffer out{static_cast<std::uint32_t>(answers[0]), static_cast<std::uint32_t>(answers[1]), 0};
-    for (std::size_t stage = 0; stage < std::size(kReferring); ++stage)
-        if (answers[2 + stage] != 0) out.stages |= 1u << stage;
-    return out;
-}
-
-GLuint count_of(const Gl& gl, GLuint program, GLenum kind) {
-    GLint count = 0;
-    gl.GetProgramInterfaceiv(program, kind, GL_ACTIVE_RESOURCES, &count);
-    return static_cast<GLuint>(std::max(count, 0));
-}
-
-void read_storage_blocks(const Gl& gl, GLuint program, const glapi::ProgramDefinition& definition,
-                         glapi::ProgramReflection& out) {
-    GLint longest = 0;
-    gl.GetProgramInterfaceiv(program, GL_SHADER_STORAGE_BLOCK, GL_MAX_NAME_LENGTH, &longest);
-    std::string name(static_cast<std::size_t>(std::max(longest, 1)), '\0');
-    for (GLuint i = 0; i < count_of(gl, program, GL_SHADER_STORAGE_BLOCK); ++i) {
-        GLsizei length = 0;
-        gl.GetProgramResourceName(program, GL_SHADER_STORAGE_BLOCK, i, static_cast<GLsizei>(name.size()), &length,
-                                  name.data());
-        const WrittenBuffer read = read_written(gl, program, GL_SHADER_STORAGE_BLOCK, i);
-        glapi::ActiveStorageBlock block{
-            {name.substr(0, static_cast<std::size_t>(length)), read.bytes, read.binding, read.stages}, true};
-        block.written = !is_only_read(definition, block.name);
-        out.storage_blocks.push_back(std::move(block));
-    }
-}
-
-void read_counter_buffers(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
-    for (GLuint i = 0; i < count_of(gl, program, GL_ATOMIC_COUNTER_BUFFER); ++i) {
-        const WrittenBuffer read = read_written(gl, program, GL_ATOMIC_COUNTER_BUFFER, i);
-        out.counter_buffers.push_back({read.binding, read.bytes, read.stages});
-    }
-}
-
 void read_group_size(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
     std::array<GLint, 3> size{};
     gl.GetProgramiv(program, GL_COMPUTE_WORK_GROUP_SIZE, size.data());
     std::ranges::copy(size, out.group_size.begin());
 }
 
-/// What the last stage gives away is the driver's output of the program: colours, if that is a fragment shader.
-void read_outputs(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
-    GLint count = 0, longest = 0;
-    gl.GetProgramInterfaceiv(program, GL_PROGRAM_OUTPUT, GL_ACTIVE_RESOURCES, &count);
-    gl.GetProgramInterfaceiv(program, GL_PROGRAM_OUTPUT, GL_MAX_NAME_LENGTH, &longest);
-    std::string name(static_cast<std::size_t>(std::max(longest, 1)), '\0');
-    constexpr GLenum kAsked[] = {GL_REFERENCED_BY_FRAGMENT_SHADER, GL_LOCATION, GL_LOCATION_INDEX, GL_ARRAY_SIZE};
-    for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
-        GLsizei length = 0;
-        std::array<GLint, std::size(kAsked)> answers{};
-        gl.GetProgramResourceName(program, GL_PROGRAM_OUTPUT, i, static_cast<GLsizei>(name.size()), &length,
-                                  name.data());
-        gl.GetProgramResourceiv(program, GL_PROGRAM_OUTPUT, i, std::size(kAsked), kAsked,
-                                static_cast<GLsizei>(answers.size()), nullptr, answers.data());
-        if (answers[0] == 0 || answers[1] < 0) continue;
-        glapi::ActiveOutput output{answers[1], std::max(answers[2], 0),
-                                   static_cast<std::uint32_t>(std::max(answers[3], 1)), false,
-                                   name.substr(0, static_cast<std::size_t>(length))};
-        output.array = take_array_suffix(output.name);
-        out.outputs.push_back(std::move(output));
-    }
+/// A shader may give a uniform a location and not use it.
+bool gives_locations(const glapi::ProgramDefinition& definition) {
+    return std::ranges::any_of(definition.shaders, [](const glapi::ShaderSource& shader) {
+        return shader.source.find("location") != std::string::npos &&
+               shader.source.find("uniform") != std::string::npos;
+    });
 }
 
-void read_captured(const Gl& gl, GLuint program, glapi::ProgramReflection& out) {
-    GLint count = 0, longest = 0;
-    gl.GetProgramiv(program, GL_TRANSFORM_FEEDBACK_VARYINGS, &count);
-    gl.GetProgramiv(program, GL_TRANSFORM_FEEDBACK_VARYING_MAX_LENGTH, &longest);
-    std::string name(static_cast<std::size_t>(std::max(longest, 1)), '\0');
-    for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
-        GLsizei length = 0, size = 0;
-        GLenum type = 0;
-        gl.GetTransformFeedbackVarying(program, i, static_cast<GLsizei>(name.size()), &length, &size, &type,
-                                       name.data());
-        out.captured.push_back(
-            {type, static_cast<std::uint32_t>(size), name.substr(0, static_cast<std::size_t>(length))});
+/// No driver lists them: a value is set where no active uniform is, which is an error but at such a location. They are
+/// looked for below OpenGL's least GL_MAX_UNIFORM_LOCATIONS.
+void find_unused_locations(const Gl& gl, GLuint program, const glapi::ProgramDefinition& definition,
+                           glapi::ProgramReflection& out) {
+    constexpr std::uint32_t kLookedFor = 1024;
+    if (!gives_locations(definition)) return;
+    std::array<bool, kLookedFor> active{};
+    for (const glapi::ActiveUniform& uniform : out.uniforms) {
+        if (!uniform.has_location()) continue;
+        if (uniform.location < 0) return;
+        for (std::uint64_t i = 0; i < uniform.size; ++i)
+            if (const std::uint64_t at = static_cast<std::uint64_t>(uniform.location) + i; at < kLookedFor)
+                active[at] = true;
+    }
+    if (const GLint window = gl.GetUniformLocation(program, kWindowUniform);
+        window >= 0 && window < static_cast<GLint>(kLookedFor))
+        active[static_cast<std::size_t>(window)] = true;
+    take_errors(gl);
+    for (std::uint32_t i = 0; i < kLookedFor; ++i) {
+        if (active[i]) continue;
+        gl.ProgramUniform1i(program, static_cast<GLint>(i), 0);
+        if (!take_errors(gl)) out.unused_locations.push_back(i);
     }
 }
 
@@ -268,7 +206,8 @@ void read_stages(const Gl& gl, GLuint program, const glapi::ProgramDefinition& d
 }  // namespace
 
 GLint element_location(const Gl& gl, GLuint program, const std::string& name, std::uint32_t element) {
-    if (element == 0) return gl.GetUniformLocation(program, name.c_str());
+    const GLint first = element == 0 ? gl.GetUniformLocation(program, name.c_str()) : -1;
+    if (first >= 0) return first;  // of an array of arrays the name alone may be none
     return gl.GetUniformLocation(program, (name + "[" + std::to_string(element) + "]").c_str());
 }
 
@@ -281,14 +220,11 @@ glapi::ProgramReflection reflect_program(const Gl& gl, GLuint program, const gla
                        [&](GLsizei n, GLsizei* w, GLchar* to) { gl.GetProgramInfoLog(program, n, w, to); });
     if (!out.linked) return out;
     read_uniforms(gl, program, out);
-    read_attributes(gl, program, out);
     read_blocks(gl, program, out);
-    read_outputs(gl, program, out);
-    read_captured(gl, program, out);
     read_stages(gl, program, definition, out);
     read_subroutines(gl, program, out);
-    read_storage_blocks(gl, program, definition, out);
-    read_counter_buffers(gl, program, out);
+    read_interfaces(gl, program, definition, out);
+    find_unused_locations(gl, program, definition, out);
     return out;
 }
 

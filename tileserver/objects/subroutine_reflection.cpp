@@ -60,11 +60,13 @@ void read_subroutines(const Gl& gl, GLuint program, glapi::ProgramReflection& ou
         const std::uint32_t functions = questions.ask(GL_ACTIVE_SUBROUTINES),
                             uniforms = questions.ask(GL_ACTIVE_SUBROUTINE_UNIFORMS);
         if (functions == 0 && uniforms == 0) continue;
-        glapi::SubroutineStage found{stage, {}, {}, questions.ask(GL_ACTIVE_SUBROUTINE_UNIFORM_LOCATIONS)};
+        glapi::SubroutineStage found{stage, {}, {}, questions.ask(GL_ACTIVE_SUBROUTINE_UNIFORM_LOCATIONS), {}};
         const std::uint32_t longest = questions.ask(GL_ACTIVE_SUBROUTINE_MAX_LENGTH),
                             longest_uniform = questions.ask(GL_ACTIVE_SUBROUTINE_UNIFORM_MAX_LENGTH);
-        for (GLuint i = 0; i < functions; ++i)
+        for (GLuint i = 0; i < functions; ++i) {
             found.functions.push_back(questions.name(gl.GetActiveSubroutineName, i, longest));
+            found.indices.push_back(gl.GetSubroutineIndex(program, stage, found.functions.back().c_str()));
+        }
         for (GLuint i = 0; i < uniforms; ++i) found.uniforms.push_back(read_uniform(questions, i, longest_uniform));
         out.subroutines.push_back(std::move(found));
     }

@@ -218,6 +218,116 @@ TEST_F(ProgramsTest, ReflectsWhatCameWithOpenGL3) {
     EXPECT_EQ(find(r.uniforms, "color").initial.size(), 0u);
 }
 
+template <class All>
+auto named(const All& all, const std::string& name) {
+    for (const auto& one : all)
+        if (one.name == name) return one;
+    ADD_FAILURE() << name;
+    return std::decay_t<decltype(all[0])>{};
+}
+
+TEST_F(ProgramsTest, LocationsOfUniformsAreThoseOfTheShader) {
+    const char* fragment =
+        "#version 430\nlayout(location = 9) uniform float one; layout(location = 20) uniform vec2 many[3];\n"
+        "layout(location = 3) uniform vec4 unused[2]; uniform float other; uniform int last; out vec4 color;\n"
+        "void main() { color = vec4(one + other, many[0] + many[2], gl_FragCoord.x * float(last)); }";
+    glapi::ProgramDefinition definition = with_fragment(fragment);
+    const auto r = link(1, definition);
+    ASSERT_TRUE(r.linked) << r.log;
+    EXPECT_EQ(named(r.uniforms, "one").location, 9);
+    EXPECT_EQ(named(r.uniforms, "many").location, 20);
+    EXPECT_EQ(named(r.uniforms, "one").stages, 2u);
+    EXPECT_GE(named(r.uniforms, "other").location, 0);
+    EXPECT_EQ(r.unused_locations, (std::vector<std::uint32_t>{3, 4}));
+    EXPECT_TRUE(set(1, 9, GL_FLOAT, 1, {1}));
+    EXPECT_TRUE(set(1, 21, GL_FLOAT_VEC2, 2, {1, 1, 1, 1}));
+    EXPECT_TRUE(set(1, 5, GL_FLOAT, 1, {1})) << "there is nothing";
+    EXPECT_FALSE(set(1, 23, GL_FLOAT, 1, {1}));
+    const auto numbered = glapi::number_uniforms(r.uniforms);
+    ASSERT_TRUE(numbered);
+    definition.uniforms = *numbered;  // as another node gets it
+    ASSERT_TRUE(link(2, definition).linked);
+    EXPECT_TRUE(set(2, 9, GL_FLOAT, 1, {1}));
+}
+
+TEST_F(ProgramsTest, RefusesLocationsFarAway) {
+    glapi::ProgramDefinition definition = with_fragment("void main() { gl_FragColor = vec4(1.0); }");
+    definition.uniforms = {{1, "far", glapi::kMostUniformLocations}};
+    EXPECT_FALSE(program(1).link(encode(definition), false));
+    definition.uniforms = {{~0u, "long", ~0u}};
+    EXPECT_FALSE(program(1).link(encode(definition), false));
+    definition.uniforms = {{1, "last", glapi::kMostUniformLocations - 1}};
+    EXPECT_TRUE(program(1).link(encode(definition), false));
+}
+
+TEST_F(ProgramsTest, ReflectsWhatLiesInBuffers) {
+    const char* fragment =
+        "#version 430\nstruct Item { float weight; vec2 at[2]; };\n"
+        "layout(std430, binding = 3) buffer Items { int total; Item items[]; } all[2];\n"
+        "layout(binding = 1, offset = 4) uniform atomic_uint hits; out vec4 color;\n"
+        "void main() { color = vec4(all[0].items[1].at[1], all[1].items[2].weight, "
+        "float(atomicCounterIncrement(hits)));"
+        " all[1].total = 3; }";
+    const auto r = link(1, with_fragment(fragment));
+    ASSERT_TRUE(r.linked) << r.log;
+    ASSERT_EQ(r.storage_blocks.size(), 2u);
+    EXPECT_EQ(r.storage_blocks[0].name, "Items[0]");
+    const auto at = named(r.buffer_variables, "Items.items[0].at");
+    EXPECT_EQ(at.type, GLenum{GL_FLOAT_VEC2});
+    EXPECT_EQ(at.size, 2u);
+    EXPECT_TRUE(at.array);
+    EXPECT_EQ(at.top_size, 0u) << "as long as the buffer";
+    EXPECT_EQ(at.top_stride, 24u);
+    EXPECT_EQ(at.place.offset, 16);
+    EXPECT_EQ(at.place.array_stride, 8);
+    EXPECT_EQ(at.stages, 2u);
+    EXPECT_EQ(named(r.buffer_variables, "Items.total").top_size, 1u);
+    ASSERT_EQ(r.counter_buffers.size(), 1u);
+    EXPECT_EQ(r.counter_buffers[0].binding, 1u);
+    EXPECT_EQ(named(r.uniforms, "hits").place.offset, 4);
+}
+
+TEST_F(ProgramsTest, ReflectsWhatGoesThroughSeparablePrograms) {
+    glapi::ProgramDefinition fragments;
+    fragments.shaders = {{GL_FRAGMENT_SHADER, true,
+                          "#version 430\nlayout(location = 2) in vec3 speed; layout(location = 1) out vec4 tint;\n"
+                          "void main() { tint = vec4(speed, 1.0); }"}};
+    fragments.separable = true;
+    const auto r = link(1, fragments);
+    ASSERT_TRUE(r.linked) << r.log;
+    EXPECT_EQ(named(r.attributes, "speed").location, 2);
+    EXPECT_EQ(named(r.attributes, "speed").stages, 2u);
+    EXPECT_EQ(named(r.outputs, "tint").location, 1);
+    EXPECT_TRUE(named(r.outputs, "tint").color());
+    EXPECT_EQ(named(r.outputs, "tint").type, GLenum{GL_FLOAT_VEC4});
+
+    glapi::ProgramDefinition vertices;
+    vertices.shaders = {{GL_VERTEX_SHADER, true,
+                         "#version 430\nin vec4 place; layout(location = 2) out vec3 speed; out gl_PerVertex { vec4 "
+                         "gl_Position; };\nvoid main() { speed = place.xyz; gl_Position = place; }"}};
+    vertices.separable = true;
+    const auto v = link(2, vertices);
+    ASSERT_TRUE(v.linked) << v.log;
+    EXPECT_EQ(named(v.outputs, "speed").location, 2);
+    EXPECT_FALSE(named(v.outputs, "speed").color());
+    EXPECT_EQ(named(v.outputs, "speed").stages, 1u);
+}
+
+TEST_F(ProgramsTest, ReflectsWhereVaryingsAreCaptured) {
+    glapi::ProgramDefinition definition;
+    definition.shaders = {{GL_VERTEX_SHADER, true,
+                           "#version 440\nlayout(xfb_buffer = 0, xfb_stride = 32) out; in vec4 place;\n"
+                           "layout(xfb_offset = 16) out vec3 speed;\nlayout(xfb_offset = 4) out float heat;\n"
+                           "void main() { speed = place.xyz; heat = place.w; gl_Position = place; }"}};
+    const auto r = link(1, definition);
+    ASSERT_TRUE(r.linked) << r.log;
+    ASSERT_EQ(r.capture_buffers.size(), 1u);
+    EXPECT_EQ(r.capture_buffers[0], (glapi::CaptureBuffer{0, 32}));
+    EXPECT_EQ(named(r.captured, "speed").offset, 16u);
+    EXPECT_EQ(named(r.captured, "heat").offset, 4u);
+    EXPECT_EQ(named(r.captured, "heat").buffer, 0);
+}
+
 TEST_F(ProgramsTest, AProgramThatDoesNotLinkLeavesTheEarlierOne) {
     EXPECT_TRUE(link(1, with_fragment("void main() { gl_FragColor = vec4(1.0); }")).linked);
     const auto failed = link(1, with_fragment("void main() { gl_FragColor = undefined(); }"));
@@ -230,7 +340,7 @@ TEST_F(ProgramsTest, AProgramThatDoesNotLinkLeavesTheEarlierOne) {
 TEST_F(ProgramsTest, UniformsGoByTheClientsLocations) {
     glapi::ProgramDefinition definition = with_fragment(
         "uniform vec3 low; uniform float high[2];\nvoid main() { gl_FragColor = vec4(low.x, high[0], high[1], 1.0); }");
-    definition.uniforms = {{2, "high"}, {1, "gone"}, {1, "low"}};  // another node listed them so
+    definition.uniforms = {{2, "high", 0}, {1, "gone", 2}, {1, "low", 3}};  // another node listed them so
     ASSERT_TRUE(link(1, definition).linked);
     EXPECT_TRUE(set(1, 0, GL_FLOAT, 2, {0.2f, 0.4f}));
     EXPECT_TRUE(set(1, 1, GL_FLOAT, 1, {0.6f}));

@@ -117,7 +117,8 @@ TEST_F(StagesTest, DoublesAndFunctions) {
     const auto reflection = link(kNumbers);
     ASSERT_EQ(reflection.uniforms.size(), 2u);
     const bool first = reflection.uniforms[0].name == "number";
-    EXPECT_EQ(reflection.uniforms[first ? 0 : 1].initial.size(), 4u);
+    const glapi::ActiveUniform &number = reflection.uniforms[first ? 0 : 1], &more = reflection.uniforms[first ? 1 : 0];
+    EXPECT_EQ(number.initial.size(), 4u);
     ASSERT_EQ(reflection.subroutines.size(), 1u);
     const glapi::SubroutineStage& stage = reflection.subroutines[0];
     EXPECT_EQ(stage.stage, GLenum{GL_FRAGMENT_SHADER});
@@ -126,8 +127,8 @@ TEST_F(StagesTest, DoublesAndFunctions) {
     EXPECT_EQ(stage.uniforms[0].name, "tone");
     EXPECT_EQ(stage.uniforms[0].compatible.size(), 2u);
     ASSERT_EQ(stage.locations, 1u);
-    set_doubles(GL_DOUBLE_VEC2, first ? 0 : 1, {0.2, 0.1});
-    set_doubles(GL_DOUBLE_MAT2x3, first ? 1 : 0, {1, 2, 3, 4, 5, 6});
+    set_doubles(GL_DOUBLE_VEC2, static_cast<std::uint32_t>(number.location), {0.2, 0.1});
+    set_doubles(GL_DOUBLE_MAT2x3, static_cast<std::uint32_t>(more.location), {1, 2, 3, 4, 5, 6});
     for (std::uint32_t i = 0; i < 2; ++i) {
         Batch choose;
         pack::Subroutines(choose.buffer(), kProgram, GL_FRAGMENT_SHADER, std::as_bytes(std::span(&i, 1)));

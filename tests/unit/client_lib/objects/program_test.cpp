@@ -2,6 +2,7 @@
 // Programs and buffers as the client keeps them: what needs no node.
 #include "client_lib/objects/program.h"
 
+#include <cstdint>
 #include <cstring>
 
 #include "client_lib/context/buffer_binding.h"
@@ -44,6 +45,56 @@ TEST(ExecutableTest, LocationsAreDense) {
     EXPECT_EQ(e->attribute_location_of("gl_VertexID"), -1);
     EXPECT_EQ(e->place_of(6), nullptr);
     EXPECT_EQ(e->place_of(-1), nullptr);
+}
+
+TEST(ExecutableTest, LocationsAreThoseOfTheShaders) {
+    auto told = reflection();
+    told.uniforms[1].location = 40;
+    told.uniforms[2].location = 3;
+    told.unused_locations = {7, 9};
+    const auto e = Executable::make({}, told);
+    ASSERT_TRUE(e);
+    EXPECT_EQ(e->location_of("color"), 40);
+    EXPECT_EQ(e->location_of("weights[2]"), 5);
+    EXPECT_EQ(e->location_of("images"), 41) << "behind all others";
+    EXPECT_EQ(e->place_of(0), nullptr);
+    EXPECT_EQ(e->place_of(39), nullptr);
+    ASSERT_TRUE(e->place_of(5));
+    EXPECT_EQ(e->place_of(5)->uniform, 2u);
+    EXPECT_EQ(e->place_of(5)->element, 2u);
+    EXPECT_TRUE(e->ignores(9));
+    EXPECT_FALSE(e->ignores(8));
+    EXPECT_FALSE(e->ignores(-1));
+    EXPECT_EQ(glapi::decode_definition(e->definition)->uniforms[0], (glapi::UniformName{1, "color", 40}));
+    told.uniforms[3].location = 4;
+    EXPECT_FALSE(Executable::make({}, told)) << "weights[1] has it";
+}
+
+TEST(ExecutableTest, AnArrayOfArraysHasOneForEachInnerOne) {
+    glapi::ProgramReflection told;
+    told.linked = true;
+    told.uniforms = {{GL_FLOAT, 2, false, true, "a[0]", {0, 0}}, {GL_FLOAT, 2, false, true, "a[1]", {0, 0}}};
+    const auto e = Executable::make({}, told);
+    ASSERT_TRUE(e);
+    EXPECT_EQ(e->location_of("a[0]"), 0);
+    EXPECT_EQ(e->location_of("a[1]"), 2);
+    EXPECT_EQ(e->location_of("a[1][1]"), 3);
+    EXPECT_EQ(e->location_of("a[2]"), -1);
+    EXPECT_EQ(e->location_of("a"), -1);
+    EXPECT_EQ(e->uniform_index_of("a[1]"), 1u);
+    EXPECT_EQ(e->uniform_index_of("a[1][0]"), 1u);
+}
+
+TEST(ExecutableTest, InputsOfOtherStagesAreNoAttributes) {
+    glapi::ProgramDefinition definition;
+    definition.shaders = {{GL_FRAGMENT_SHADER, true, ""}};
+    const auto e = Executable::make(definition, reflection());
+    ASSERT_TRUE(e);
+    EXPECT_TRUE(e->attributes.empty());
+    EXPECT_EQ(e->taken().size(), 3u);
+    EXPECT_EQ(e->attribute_location_of("place"), -1);
+    EXPECT_EQ(e->input_location_of("place"), 5);
+    EXPECT_TRUE(glapi::decode_definition(e->definition)->attributes.empty());
 }
 
 TEST(ExecutableTest, OtherNodesGetTheFirstOnesChoices) {
@@ -101,6 +152,17 @@ TEST(ExecutableTest, RefusesAnAnswerThatContradictsItself) {
     bad = reflection();
     bad.uniforms[1].type = 0x1234;
     EXPECT_FALSE(Executable::make({}, std::move(bad)));
+    bad = reflection();
+    bad.buffer_variables = {{GL_FLOAT, 1, false, "x", {0, 0, 0, 0, false}}};
+    EXPECT_FALSE(Executable::make({}, bad)) << "there is no such block";
+    bad.storage_blocks = {{{"Block", 16, 0, 1}, true}};
+    EXPECT_TRUE(Executable::make({}, bad));
+    bad.buffer_variables[0].place.block = -1;
+    EXPECT_FALSE(Executable::make({}, bad));
+    bad = reflection();
+    bad.captured = {{GL_FLOAT, 1, "x", 0, 1}};
+    bad.capture_buffers = {{0, 4}};
+    EXPECT_FALSE(Executable::make({}, bad)) << "there is no such buffer";
 }
 
 // ---- the API ----
@@ -188,6 +250,20 @@ TEST_F(ProgramTest, UniformsKeepTheirTypes) {
     EXPECT_EQ(initial, 1);
 }
 
+TEST_F(ProgramTest, LocationsOfUniformsThatAreNotActiveAreIgnored) {
+    Program& program = use();
+    auto told = reflection();
+    told.unused_locations = {9};
+    program.executable = Executable::make({}, told);
+    gl().Uniform1f(c, 9, 1);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().Uniform1f(c, 10, 1);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    GLfloat got = 0;
+    gl().GetUniformfv(c, name_, 9, &got);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+}
+
 TEST_F(ProgramTest, AnEqualValueIsNoChange) {
     Program& program = use();
     gl().Uniform3f(c, 0, 1, 2, 3);
@@ -239,6 +315,10 @@ TEST_F(BufferTest, MappedMemoryIsTheContent) {
     gl().BufferData(c, GL_ARRAY_BUFFER, 4, nullptr, GL_DYNAMIC_DRAW);
     auto* memory = static_cast<char*>(gl().MapBuffer(c, GL_ARRAY_BUFFER, GL_WRITE_ONLY));
     ASSERT_TRUE(memory);
+    GLint alignment = 0;
+    gl().GetIntegerv(c, GL_MIN_MAP_BUFFER_ALIGNMENT, &alignment);
+    EXPECT_EQ(alignment, 64);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory) % 64, 0u);
     std::memcpy(memory, "wxyz", 4);
     EXPECT_EQ(gl().MapBuffer(c, GL_ARRAY_BUFFER, GL_WRITE_ONLY), nullptr);
     EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
