@@ -13,6 +13,7 @@
 #include "client_lib/context/limits.h"
 #include "client_lib/context/list_state.h"
 #include "client_lib/context/memory_use.h"
+#include "client_lib/context/program_use.h"
 #include "client_lib/objects/program.h"
 #include "client_lib/objects/share_group.h"
 #include "client_lib/process/log.h"
@@ -37,12 +38,11 @@ private:
     MemoryUse& use_;
 };
 
-/// Invocations in a group; 0, and an error: there is no compute shader, or its samplers contradict each other.
+/// Invocations in a group; 0, and an error: there is no compute shader, or it cannot run (may_run).
 std::uint64_t group_of(Context& c) {
     std::lock_guard lock(c.share().mutex);
     const Executable* executable = c.program ? c.program->executable.get() : nullptr;
-    if (!executable || !executable->computes() || executable->samplers_conflict())
-        return c.error(GL_INVALID_OPERATION), 0;
+    if (!executable || !executable->computes() || !may_run(c)) return c.error(GL_INVALID_OPERATION), 0;
     std::uint64_t invocations = 1;
     for (const std::uint32_t size : executable->group_size) invocations *= size;
     return invocations;

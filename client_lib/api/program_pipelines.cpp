@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string>
 
 #include "client_lib/api/program_access.h"
 #include "client_lib/context/capture_use.h"
@@ -73,14 +74,12 @@ void bind(Context& c, std::shared_ptr<ProgramPipeline> pipeline) {
     if (!c.pipelines->used) use_program(c, c.pipelines->bound);
 }
 
-/// Whether the stages fit together (OpenGL 4.1, 2.14.11): each program has all of its own.
-bool is_valid(const ProgramPipeline& pipeline) {
-    for (const auto& part : pipeline.executable->parts) {
-        if (!part->linked || !part->linked_separable) return false;
-        for (std::size_t i = 0; i < std::size(kBits); ++i)
-            if ((part->executable->stages >> i & 1) != 0 && pipeline.programs[i] != part) return false;
-    }
-    return !pipeline.executable->parts.empty() && !pipeline.executable->samplers_conflict();
+/// Why it is not valid (OpenGL 4.5, 11.1.3.11), for its info log; empty: it is.
+std::string fault_of(const ProgramPipeline& pipeline) {
+    if (!pipeline.fault().empty()) return "error: " + pipeline.fault() + "\n";
+    if (pipeline.executable->parts.empty()) return "error: there is no program\n";
+    if (!pipeline.executable->samplers_conflict()) return {};
+    return "error: samplers of different types name one texture unit\n";
 }
 
 GLint name_of(const std::shared_ptr<Program>& program) { return program ? static_cast<GLint>(program->name) : 0; }
@@ -168,7 +167,9 @@ void ValidateProgramPipeline(Context& c, GLuint name) {
     const auto pipeline = pipeline_of(c, name);
     if (!pipeline) return;
     std::lock_guard lock(c.share().mutex);
-    pipeline->validated = is_valid(*pipeline);
+    if (pipeline->is_outdated()) pipeline->combine();
+    pipeline->log = fault_of(*pipeline);
+    pipeline->validated = pipeline->log.empty();
 }
 
 void GetProgramPipelineiv(Context& c, GLuint name, GLenum pname, GLint* params) {
@@ -182,15 +183,18 @@ void GetProgramPipelineiv(Context& c, GLuint name, GLenum pname, GLint* params) 
     switch (pname) {
         case GL_ACTIVE_PROGRAM: *params = name_of(pipeline->active); break;
         case GL_VALIDATE_STATUS: *params = pipeline->validated; break;
-        case GL_INFO_LOG_LENGTH: *params = 0; break;  // there is nothing to say
+        case GL_INFO_LOG_LENGTH:
+            *params = pipeline->log.empty() ? 0 : static_cast<GLint>(pipeline->log.size() + 1);
+            break;
         default: c.error(GL_INVALID_ENUM);
     }
 }
 
 void GetProgramPipelineInfoLog(Context& c, GLuint name, GLsizei room, GLsizei* length, GLchar* out) {
-    auto& names = c.pipelines->names;
+    const auto& names = c.pipelines->names;
     if (name == 0 || !names.known(name)) return c.error(GL_INVALID_VALUE);
-    give_text(c, {}, room, length, out);
+    const auto pipeline = names.find(name);
+    give_text(c, pipeline ? pipeline->log : std::string(), room, length, out);
 }
 
 }  // namespace wall::client::api

@@ -28,8 +28,10 @@ bool has_stage(const Program& program, GLenum type) {
     return std::ranges::any_of(program.shaders, [&](const auto& shader) { return shader->type == type; });
 }
 
-/// OpenGL ES has no fixed function in place of a shader (Mesa's words). Null: the program has both.
+/// OpenGL ES has no fixed function in place of a shader (Mesa's words). Null: the program has both, or needs none of
+/// them (OpenGL ES 3.1, 7.3).
 const char* lacking_stage(const Program& program) {
+    if (program.separable || has_stage(program, GL_COMPUTE_SHADER)) return nullptr;
     if (!has_stage(program, GL_VERTEX_SHADER)) return "vertex";
     return has_stage(program, GL_FRAGMENT_SHADER) ? nullptr : "fragment";
 }

@@ -119,13 +119,20 @@ bool fits_program(Context& c, GLenum mode) {
     return fits;
 }
 
+bool may_run(const Context& c) {
+    if (!c.program) return true;
+    const auto& pipeline = c.pipelines->bound;
+    if (c.program == pipeline && !pipeline->fault().empty()) return false;
+    return !c.program->executable->samplers_conflict();
+}
+
 bool may_draw(Context& c) {
     if ((c.framebuffers->draw || c.has_no_surface()) && !may_draw_to_target(c)) return false;
     if (!c.program) return true;
     find_written_to_read(c);
     c.before_writing_draw();
     std::lock_guard lock(c.share().mutex);
-    if (!c.program->executable->samplers_conflict()) return true;
+    if (may_run(c)) return true;
     c.error(GL_INVALID_OPERATION);
     return false;
 }

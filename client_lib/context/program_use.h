@@ -26,9 +26,12 @@ bool reads_numbers(const Context& c);
 /// the stream sets such values, so that they come as arrays.
 std::uint32_t constant_doubles(const Context& c);
 
-/// False, and an error, if the context's framebuffer is not complete, or its program cannot draw as its samplers are
-/// set.
+/// False, and an error, if the context's framebuffer is not complete, or its program cannot run (may_run).
 bool may_draw(Context& c);
+
+/// Whether the context's program can run as its samplers are set and, if it is a pipeline, its programs can run
+/// together. The share group's mutex is held.
+bool may_run(const Context& c);
 
 /// Whether primitives of that mode can go through the context's program, to its tessellation and geometry shaders
 /// and to transform feedback. False, and an error.

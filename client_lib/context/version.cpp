@@ -115,6 +115,7 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_provoking_vertex", "glProvokingVertex"},
     {"GL_ARB_query_buffer_object", "glGetQueryObjectiv"},
     {"GL_ARB_sample_shading", "glMinSampleShading"},
+    {"GL_ARB_separate_shader_objects", "glUseProgramStages"},
     {"GL_ARB_shader_atomic_counter_ops", "glGetActiveAtomicCounterBufferiv"},
     {"GL_ARB_shader_atomic_counters", "glGetActiveAtomicCounterBufferiv"},
     {"GL_ARB_shader_bit_encoding", "glUseProgram"},

@@ -2,6 +2,8 @@
 #include "client_lib/objects/program_pipeline.h"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "gen/glapi/wire.gen.h"
 
@@ -19,7 +21,43 @@ std::vector<std::shared_ptr<Program>> ProgramPipeline::parts() const {
     return out;
 }
 
-void ProgramPipeline::combine() { executable = Executable::combine(parts()); }
+void ProgramPipeline::combine() {
+    executable = Executable::combine(parts());
+    fault_ = find_fault();
+}
+
+namespace {
+
+// Indices of glapi::kShaderStages.
+constexpr std::size_t kVertex = 0, kFragment = 1, kGeometry = 2, kControl = 3, kEvaluation = 4;
+constexpr std::size_t kInOrder[] = {kVertex, kControl, kEvaluation, kGeometry, kFragment};
+
+/// Whether a program has stages before and behind one that another program has.
+template <class Programs>
+bool is_interrupted(const Programs& programs) {
+    std::vector<const Program*> in_order;
+    for (const std::size_t stage : kInOrder)
+        if (programs[stage] && (in_order.empty() || in_order.back() != programs[stage].get()))
+            in_order.push_back(programs[stage].get());
+    std::ranges::sort(in_order);
+    return std::ranges::adjacent_find(in_order) != in_order.end();
+}
+
+}  // namespace
+
+std::string ProgramPipeline::find_fault() const {
+    for (const auto& part : executable->parts) {
+        const std::string name = "program " + std::to_string(part->name);
+        if (!part->linked_separable) return name + " was linked again without GL_PROGRAM_SEPARABLE";
+        for (std::size_t i = 0; i < kStages; ++i)
+            if ((part->executable->stages >> i & 1) != 0 && programs[i] != part)
+                return name + " is not used for all of its stages";
+    }
+    if (is_interrupted(programs)) return "a program has stages before and behind one of another program";
+    if (!programs[kVertex] && (programs[kControl] || programs[kEvaluation] || programs[kGeometry]))
+        return "no program has a vertex shader";
+    return {};
+}
 
 bool ProgramPipeline::is_outdated() const {
     return std::ranges::any_of(executable->parts,

@@ -7,6 +7,7 @@
 #include <array>
 #include <iterator>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "client_lib/objects/program.h"
@@ -26,6 +27,8 @@ struct ProgramPipeline final : Program {
 
     /// After `programs` or what one of them was linked from has changed.
     void combine();
+    /// Why its programs cannot run together (OpenGL 4.5, 11.1.3.11), whatever their samplers name; empty: they can.
+    const std::string& fault() const { return fault_; }
     /// Whether one of its programs was linked again since.
     bool is_outdated() const;
     /// Its programs, each once.
@@ -36,6 +39,11 @@ struct ProgramPipeline final : Program {
     void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
                       const std::function<void()>& packed) const override;
     void pack_values(std::uint64_t, wire::PackBuffer&) const override {}
+
+private:
+    std::string find_fault() const;
+
+    std::string fault_;
 };
 
 /// Those of a context.

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Program pipelines, subroutines and doubles without a wall: what is drawn with, whose uniforms are set, the errors.
 #include <array>
+#include <mutex>
+#include <utility>
+#include <vector>
 
+#include "client_lib/context/program_use.h"
 #include "client_lib/objects/program_pipeline.h"
 #include "tests/unit/client_lib/context_fixture.h"
 
@@ -11,19 +15,44 @@ namespace {
 class ProgramPipelines : public ContextTest {
 protected:
     /// As if a node had linked it.
-    GLuint make(GLenum stage, GLenum uniform = GL_FLOAT) {
+    GLuint make(GLenum stage, GLenum uniform = GL_FLOAT) { return make(std::vector{stage}, uniform); }
+    GLuint make(const std::vector<GLenum>& stages, GLenum uniform = GL_FLOAT) {
         const GLuint name = gl().CreateProgram(c);
         const auto program = of(name);
         glapi::ProgramDefinition definition;
-        definition.shaders = {{stage, true, ""}};
+        for (const GLenum stage : stages) definition.shaders.push_back({stage, true, ""});
         glapi::ProgramReflection reflection;
         reflection.linked = true;
         const auto* type = glapi::find_uniform_type(uniform);
         reflection.uniforms = {{uniform, 1, false, false, "level", std::vector<std::uint32_t>(type->words()), {}}};
-        reflection.subroutines = {{stage, {"red", "blue"}, {{"tone", 2, true, 0, {1, 0}}}, 2}};
+        reflection.subroutines = {{stages[0], {"red", "blue"}, {{"tone", 2, true, 0, {1, 0}}}, 2}};
         program->executable = Executable::make(definition, reflection);
         program->linked = program->linked_separable = true;
         return name;
+    }
+    /// Of programs for stages; bound.
+    GLuint bind(const std::vector<std::pair<GLbitfield, GLuint>>& programs) {
+        GLuint pipeline = 0;
+        gl().GenProgramPipelines(c, 1, &pipeline);
+        for (const auto& [stages, program] : programs) gl().UseProgramStages(c, pipeline, stages, program);
+        gl().BindProgramPipeline(c, pipeline);
+        return pipeline;
+    }
+    bool is_valid(GLuint pipeline) {
+        gl().ValidateProgramPipeline(c, pipeline);
+        GLint valid = -1, length = -1;
+        gl().GetProgramPipelineiv(c, pipeline, GL_VALIDATE_STATUS, &valid);
+        gl().GetProgramPipelineiv(c, pipeline, GL_INFO_LOG_LENGTH, &length);
+        GLchar log[200] = "";
+        GLsizei written = 0;
+        gl().GetProgramPipelineInfoLog(c, pipeline, sizeof log, &written, log);
+        EXPECT_EQ(length, written == 0 ? 0 : written + 1);
+        EXPECT_EQ(valid != 0, written == 0) << log;
+        return valid != 0;
+    }
+    bool may_run() {
+        std::lock_guard lock(c.share().mutex);
+        return client::may_run(c);
     }
     std::shared_ptr<Program> of(GLuint name) {
         return std::static_pointer_cast<Program>(share->glsl_objects.find(name));
@@ -83,6 +112,64 @@ TEST_F(ProgramPipelines, WhatDoesNotFitIsRefused) {
     EXPECT_TRUE(of(vertex)->definition().separable);
 }
 
+TEST_F(ProgramPipelines, AProgramIsUsedForAllOfItsStages) {
+    const GLuint both = make({GL_VERTEX_SHADER, GL_FRAGMENT_SHADER}), fragment = make(GL_FRAGMENT_SHADER);
+    EXPECT_TRUE(is_valid(bind({{GL_ALL_SHADER_BITS, both}})));
+    EXPECT_TRUE(may_run());
+    const GLuint mixed = bind({{GL_ALL_SHADER_BITS, both}, {GL_FRAGMENT_SHADER_BIT, fragment}});
+    EXPECT_FALSE(is_valid(mixed));
+    EXPECT_FALSE(may_run());
+    gl().UseProgram(c, fragment);
+    EXPECT_TRUE(may_run()) << "the pipeline is not drawn with";
+    gl().UseProgram(c, 0);
+    gl().UseProgramStages(c, mixed, GL_VERTEX_SHADER_BIT, make(GL_VERTEX_SHADER));
+    EXPECT_TRUE(is_valid(mixed));
+    EXPECT_TRUE(may_run());
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+}
+
+TEST_F(ProgramPipelines, NoProgramHasStagesOnBothSidesOfAnother) {
+    const GLuint outer = make({GL_VERTEX_SHADER, GL_FRAGMENT_SHADER}), inner = make(GL_GEOMETRY_SHADER),
+                 compute = make(GL_COMPUTE_SHADER);
+    const GLuint pipeline = bind({{GL_VERTEX_SHADER_BIT | GL_FRAGMENT_SHADER_BIT, outer}});
+    gl().UseProgramStages(c, pipeline, GL_COMPUTE_SHADER_BIT, compute);
+    EXPECT_TRUE(is_valid(pipeline)) << "the compute shader lies beside them";
+    gl().UseProgramStages(c, pipeline, GL_GEOMETRY_SHADER_BIT, inner);
+    EXPECT_FALSE(is_valid(pipeline));
+    EXPECT_FALSE(may_run());
+    gl().UseProgramStages(c, pipeline, GL_GEOMETRY_SHADER_BIT, 0);
+    EXPECT_TRUE(is_valid(pipeline));
+}
+
+TEST_F(ProgramPipelines, StagesBehindVerticesNeedAVertexShader) {
+    const GLuint pipeline = bind({{GL_GEOMETRY_SHADER_BIT, make(GL_GEOMETRY_SHADER)}});
+    EXPECT_FALSE(is_valid(pipeline));
+    EXPECT_FALSE(may_run());
+    gl().UseProgramStages(c, pipeline, GL_VERTEX_SHADER_BIT, make(GL_VERTEX_SHADER));
+    EXPECT_TRUE(is_valid(pipeline));
+    EXPECT_FALSE(is_valid(bind({}))) << "it has none at all";
+}
+
+TEST_F(ProgramPipelines, AProgramStaysSeparable) {
+    const GLuint vertex = make(GL_VERTEX_SHADER);
+    const GLuint pipeline = bind({{GL_VERTEX_SHADER_BIT, vertex}});
+    EXPECT_TRUE(is_valid(pipeline));
+    of(vertex)->linked_separable = false;  // linked again
+    of(vertex)->executable->stamp = next_stamp();
+    EXPECT_FALSE(is_valid(pipeline));
+    EXPECT_FALSE(may_run());
+}
+
+TEST_F(ProgramPipelines, SamplersOfAllProgramsAgree) {
+    const GLuint vertex = make(GL_VERTEX_SHADER, GL_SAMPLER_2D), fragment = make(GL_FRAGMENT_SHADER, GL_SAMPLER_3D);
+    const GLuint pipeline = bind({{GL_VERTEX_SHADER_BIT, vertex}, {GL_FRAGMENT_SHADER_BIT, fragment}});
+    EXPECT_FALSE(is_valid(pipeline));
+    EXPECT_FALSE(may_run());
+    gl().ProgramUniform1i(c, fragment, 0, 1);
+    EXPECT_TRUE(is_valid(pipeline));
+    EXPECT_TRUE(may_run());
+}
+
 TEST_F(ProgramPipelines, UniformsAreThoseOfTheActiveProgram) {
     const GLuint vertex = make(GL_VERTEX_SHADER), fragment = make(GL_FRAGMENT_SHADER, GL_DOUBLE_VEC2);
     GLuint pipeline = 0;
@@ -126,6 +213,23 @@ TEST_F(ProgramPipelines, FunctionsBeginAnewWithTheProgram) {
     EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
     const GLuint beyond[] = {0, 2};
     gl().UniformSubroutinesuiv(c, GL_VERTEX_SHADER, 2, beyond);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+}
+
+TEST_F(ProgramPipelines, FunctionsMayHaveNumbersOfTheShader) {
+    const GLuint vertex = make(GL_VERTEX_SHADER);
+    auto& stage = of(vertex)->executable->subroutines[0];
+    stage.indices = {7, 3};
+    stage.uniforms[0].compatible = {7};
+    gl().UseProgram(c, vertex);
+    EXPECT_EQ(gl().GetSubroutineIndex(c, vertex, GL_VERTEX_SHADER, "blue"), 3u);
+    EXPECT_EQ(gl().GetProgramResourceIndex(c, vertex, GL_VERTEX_SUBROUTINE, "red"), 7u);
+    const GLuint red[] = {7, 7}, blue[] = {7, 3}, none[] = {7, 1};
+    gl().UniformSubroutinesuiv(c, GL_VERTEX_SHADER, 2, red);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().UniformSubroutinesuiv(c, GL_VERTEX_SHADER, 2, blue);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "it fits another variable";
+    gl().UniformSubroutinesuiv(c, GL_VERTEX_SHADER, 2, none);
     EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
 }
 
