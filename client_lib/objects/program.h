@@ -100,7 +100,6 @@ public:
     /// Index of a uniform ("name" or "name[0]") or block; nothing: there is no such one.
     std::optional<GLuint> uniform_index_of(std::string_view name) const;
     std::optional<GLuint> block_index_of(std::string_view name) const;
-    std::optional<GLuint> storage_block_index_of(std::string_view name) const;
     /// What the last stage gives away by that name ("name", "name[3]"); null: there is no such one. `element` is added
     /// to its location.
     const glapi::ActiveOutput* output_of(std::string_view name, GLint& element) const;

@@ -47,11 +47,11 @@ bool is_interrupted(const Programs& programs) {
 
 std::string ProgramPipeline::find_fault() const {
     for (const auto& part : executable->parts) {
-        const std::string name = "program " + std::to_string(part->name);
-        if (!part->linked_separable) return name + " was linked again without GL_PROGRAM_SEPARABLE";
+        const std::string called = "program " + std::to_string(part->name);
+        if (!part->linked_separable) return called + " was linked again without GL_PROGRAM_SEPARABLE";
         for (std::size_t i = 0; i < kStages; ++i)
             if ((part->executable->stages >> i & 1) != 0 && programs[i] != part)
-                return name + " is not used for all of its stages";
+                return called + " is not used for all of its stages";
     }
     if (is_interrupted(programs)) return "a program has stages before and behind one of another program";
     if (!programs[kVertex] && (programs[kControl] || programs[kEvaluation] || programs[kGeometry]))
