@@ -91,7 +91,9 @@ bool readable(const TextureFormat& internal, GLenum format) {
     const bool depth = internal.base == GL_DEPTH_COMPONENT || internal.base == GL_DEPTH_STENCIL;
     if (format == GL_DEPTH_COMPONENT) return depth;
     if (format == GL_DEPTH_STENCIL) return internal.base == GL_DEPTH_STENCIL;
-    return format != GL_STENCIL_INDEX && !depth && internal.whole() == glapi::is_integer_format(format);
+    if (format == GL_STENCIL_INDEX) return internal.base == GL_STENCIL_INDEX || internal.base == GL_DEPTH_STENCIL;
+    if (internal.base == GL_STENCIL_INDEX) return false;
+    return !depth && internal.whole() == glapi::is_integer_format(format);
 }
 
 std::size_t count_texels(const TextureLevel& level) {
@@ -152,7 +154,11 @@ std::vector<std::byte> color_texels(Context& c, const Request& request, GLenum f
     auto texels = request.drawn
                       ? to_rgba(request.drawn->format, request.drawn->type, request.drawn->bytes, count_texels(level))
                       : level_texels(level);
-    if (format != GL_DEPTH_COMPONENT && format != GL_DEPTH_STENCIL) {
+    if (format == GL_STENCIL_INDEX) {
+        const GLenum came_as = request.drawn ? request.drawn->format : level.data_format;
+        for (Rgba& texel : texels)
+            if (came_as != GL_STENCIL_INDEX) texel[0] = came_as == GL_DEPTH_STENCIL ? texel[1] : 0;
+    } else if (format != GL_DEPTH_COMPONENT && format != GL_DEPTH_STENCIL) {
         const ComponentBits bits = stored_bits(request.internal, level.format, level.type);
         const Rounding rounding{
             .to_bytes = type == GL_UNSIGNED_BYTE && format != GL_LUMINANCE && format != GL_LUMINANCE_ALPHA,
@@ -205,9 +211,8 @@ void give(Context& c, const Texels& texels, GLenum format, GLenum type, std::opt
 bool check_level(Context& c, GLenum target, GLint number, GLenum format, GLenum type) {
     if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE), false;
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error), false;
-    const bool colors = format != GL_COLOR_INDEX && format != GL_STENCIL_INDEX;
-    if (!colors) c.error(GL_INVALID_ENUM);
-    return colors;
+    if (format == GL_COLOR_INDEX) c.error(GL_INVALID_ENUM);
+    return format != GL_COLOR_INDEX;
 }
 
 void get_image(Context& c, GLenum target, GLint number, const MemoryImage& wanted, std::optional<GLsizei> room,

@@ -17,6 +17,7 @@
 #include "client_lib/objects/palette_image.h"
 #include "client_lib/objects/s3tc.h"
 #include "client_lib/objects/texture_formats.h"
+#include "client_lib/objects/texture_view.h"
 
 namespace wall::client::api {
 namespace {
@@ -145,12 +146,15 @@ void store_empty_blocks(Context& c, const ImageCall& call) {
 }
 
 void compress_as_driver(Context& c, GLenum target, GLint number, const char* function) {
-    const auto texture = bound_texture(c, target);
-    api::Image image{.target = target, .level = number};
+    if (const auto texture = bound_texture(c, target)) keep_as_blocks(c, *texture, face_of(target), number, function);
+}
+
+void keep_as_blocks(Context& c, Texture& texture, unsigned face, GLint number, const char* function) {
+    api::Image image{.target = glapi::image_target(texture.info, face), .level = number};
     TexelData data;
     {
         std::lock_guard lock(c.share().mutex);
-        const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
+        const TextureLevel* level = texture.find_level(face, number);
         if (!level || level->compressed || level->content == LevelContent::generated || level->width == 0 ||
             level->height == 0)
             return;
@@ -168,12 +172,33 @@ void compress_as_driver(Context& c, GLenum target, GLint number, const char* fun
     if (!blocks) return;
     c.flush_block();
     std::lock_guard lock(c.share().mutex);
-    TextureLevel& level = *texture->find_level(face_of(target), number);
+    TextureLevel& level = *texture.find_level(face, number);
     level = api::described(image);
     level.pixels = std::move(*blocks);
     level.content = LevelContent::stored;
     level.stamp = next_stamp();
-    touch(c.share(), *texture);
+    touch(c.share(), texture);
+}
+
+void put_blocks(ShareGroup& share, Texture& texture, unsigned face, GLint number, const TexBox& box,
+                std::span<const std::byte> blocks) {
+    const auto parts = kept_parts(texture, face, number, box);
+    const std::size_t bytes = blocks.size() / parts.size();
+    Texture& keeper = keeper_of(texture);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const TexBox& to = parts[i].box;
+        TextureLevel* const level = keeper.find_level(parts[i].face, parts[i].level);
+        if (!level || !level->compressed) continue;
+        const api::Image part{.target = 0,
+                              .level = parts[i].level,
+                              .format = level->internal_format,
+                              .width = to.width,
+                              .height = to.height,
+                              .depth = to.depth};
+        api::copy_blocks(*level, part, {to.x, to.y, to.z}, blocks.subspan(i * bytes, bytes).data());
+        level->stamp = next_stamp();
+    }
+    touch(share, keeper);
 }
 
 bool change_blocks(Context& c, const ImageCall& call, const TexelData& data) {
@@ -187,10 +212,10 @@ bool change_blocks(Context& c, const ImageCall& call, const TexelData& data) {
                           .depth = call.depth};
     const auto blocks = api::compressed(c, part, data, "glTexSubImage2D");
     if (!blocks) return false;
+    if (texture->view.origin) c.before_change(texture->view.origin->id);
     std::lock_guard lock(c.share().mutex);
-    TextureLevel& level = *texture->find_level(face_of(call.target), call.level);
-    api::copy_blocks(level, part, {call.x, call.y, call.z}, blocks->data());
-    level.stamp = next_stamp();
+    put_blocks(c.share(), *texture, face_of(call.target), call.level,
+               {call.x, call.y, call.z, call.width, call.height, call.depth, 0}, *blocks);
     generate_if_asked(*texture, call.level);
     touch(c.share(), *texture);
     return true;
@@ -236,10 +261,10 @@ void define_sub_blocks(Context& c, const Image& part, const Place& at, const voi
     const auto* from = static_cast<const std::byte*>(unpack_source(c, data, static_cast<std::size_t>(part.bytes)));
     if (!from || part.bytes == 0) return;
     const auto changed = texture_to_change(c, part.target);
+    if (changed->view.origin) c.before_change(changed->view.origin->id);
     std::lock_guard lock(c.share().mutex);
-    TextureLevel& to = *changed->find_level(face_of(part.target), part.level);
-    copy_blocks(to, part, at, from);
-    to.stamp = next_stamp();
+    put_blocks(c.share(), *changed, face_of(part.target), part.level,
+               {at.x, at.y, at.z, part.width, part.height, part.depth, 0}, {from, all_bytes(part)});
     generate_if_asked(*changed, part.level);
     touch(c.share(), *changed);
 }
@@ -317,6 +342,10 @@ const TextureLevel* blocks_of(Context& c, GLenum target, GLint number) {
     if (number < 0 || number >= level_count(c, target)) return c.error(GL_INVALID_VALUE), nullptr;
     compress_as_driver(c, target, number, "glGetCompressedTexImage");
     const auto texture = bound_texture(c, target);
+    if (texture) {
+        std::lock_guard lock(c.share().mutex);
+        refresh_view(*texture, face_of(target), number);
+    }
     const TextureLevel* level = texture ? texture->find_level(face_of(target), number) : nullptr;
     if (level && level->compressed) return level;
     c.error(GL_INVALID_OPERATION);

@@ -21,6 +21,8 @@
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/s3tc.h"
 #include "client_lib/objects/texture_formats.h"
+#include "client_lib/objects/texture_view.h"
+#include "client_lib/objects/view_formats.h"
 
 namespace wall::client {
 namespace {
@@ -110,6 +112,11 @@ std::size_t texels(const ImageCall& call) {
            static_cast<std::size_t>(call.depth);
 }
 
+std::size_t texels_in(const TexBox& box) {
+    return static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height) *
+           static_cast<std::size_t>(box.depth);
+}
+
 /// More than nodes hold in one level.
 bool too_large(const ImageCall& call) { return texels(call) > kMostTexels; }
 
@@ -162,6 +169,7 @@ void convert(TexelData& data, std::size_t count, GLenum format, GLenum type) {
 
 /// One that holds all that a level may have, whatever it came as.
 PixelKind common_kind(const TextureLevel& level, const TexelData& data) {
+    if (level.data_format == GL_STENCIL_INDEX) return {GL_STENCIL_INDEX, GL_UNSIGNED_BYTE};
     if (depth_like(level.data_format)) return {GL_DEPTH_COMPONENT, GL_FLOAT};
     if (glapi::is_integer_format(level.data_format)) return exact_pixels(level);
     const bool bytes = eight_bits(level.data_format, level.data_type) && eight_bits(data.format, data.type);
@@ -203,6 +211,7 @@ bool is_immutable(Context& c, GLenum target) {
 }
 
 void generate_if_asked(Texture& texture, GLint level) {
+    if (texture.view.origin) return;  // which keeps the texels; it is not asked
     if (texture.parameters.generate_mipmap && level == texture.parameters.base_level) texture.mipmaps_generated();
 }
 
@@ -251,9 +260,26 @@ void change_level(Context& c, const ImageCall& call, TexelData data) {
         if (!change_blocks(c, call, data)) c.error(GL_OUT_OF_MEMORY);
         return;
     }
+    if (texture->view.origin) c.before_change(texture->view.origin->id);
     std::lock_guard lock(c.share().mutex);
-    TextureLevel& level = *texture->find_level(face_of(call.target), call.level);
-    if (texture->only_on_nodes(level)) level.content = LevelContent::drawn;
+    put_texels(c.share(), *texture, face_of(call.target), call.level,
+               {call.x, call.y, call.z, call.width, call.height, call.depth, 0}, std::move(data));
+    generate_if_asked(*texture, call.level);
+    touch(c.share(), *texture);
+}
+
+void before_texels_change(Context& c, const Texture& texture) {
+    c.flush_block();
+    c.before_change(texture.id);
+    if (texture.view.origin) c.before_change(texture.view.origin->id);
+}
+
+namespace {
+
+/// Of a texture that keeps its texels itself.
+void put_own_texels(Texture& texture, unsigned face, GLint number, TexBox box, TexelData data) {
+    TextureLevel& level = *texture.find_level(face, number);
+    if (texture.only_on_nodes(level)) level.content = LevelContent::drawn;
     const bool partial = level.content == LevelContent::drawn;
     if (partial ? level.pixels.empty() : level.content != LevelContent::stored) {
         const auto whole = glapi::image_bytes(data.format, data.type, level.width, level.height, level.depth);
@@ -263,12 +289,39 @@ void change_level(Context& c, const ImageCall& call, TexelData data) {
         if (level.content == LevelContent::generated) level.stamp = next_stamp();
         if (!partial) level.content = LevelContent::stored;
     }
-    unify(level, data, texels(call));
-    const TexBox box{call.x, call.y, call.z, call.width, call.height, call.depth, next_stamp()};
+    unify(level, data, texels_in(box));
+    box.stamp = next_stamp();
     copy_box(level, box, data.bytes);
     level.note_change(box);
-    generate_if_asked(*texture, call.level);
-    touch(c.share(), *texture);
+}
+
+/// Pixels of a view's format as those that are the same memory in its origin's.
+TexelData as_kept(GLint seen, GLint kept, TexelData data, std::size_t count) {
+    if (seen == kept) return data;
+    const PixelKind as = find_view_format(seen)->texels, of = find_view_format(kept)->texels;
+    return {of.format, of.type, converted_texels({data.format, data.type}, std::move(data.bytes), count, as)};
+}
+
+}  // namespace
+
+void put_texels(ShareGroup& share, Texture& texture, unsigned face, GLint number, const TexBox& box, TexelData data) {
+    if (!texture.view.origin) {
+        put_own_texels(texture, face, number, box, std::move(data));
+        return touch(share, texture);
+    }
+    Texture& origin = *texture.view.origin;
+    const auto parts = kept_parts(texture, face, number, box);
+    const std::size_t bytes = data.bytes.size() / parts.size();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const TextureLevel* kept = origin.find_level(parts[i].face, parts[i].level);
+        if (!kept) continue;
+        const auto from = data.bytes.begin() + static_cast<std::ptrdiff_t>(i * bytes);
+        TexelData part{data.format, data.type, {from, from + static_cast<std::ptrdiff_t>(bytes)}};
+        put_own_texels(origin, parts[i].face, parts[i].level, parts[i].box,
+                       as_kept(texture.find_level(face, number)->internal_format, kept->internal_format,
+                               std::move(part), texels_in(parts[i].box)));
+    }
+    touch(share, origin);
 }
 
 namespace {

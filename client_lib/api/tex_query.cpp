@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "client_lib/context/param_commands.h"
 #include "client_lib/context/texture_binding.h"
@@ -122,6 +123,7 @@ unsigned parameter_size(GLenum pname) {
         case GL_TEXTURE_COMPARE_MODE:
         case GL_TEXTURE_COMPARE_FUNC:
         case GL_DEPTH_TEXTURE_MODE:
+        case GL_DEPTH_STENCIL_TEXTURE_MODE:
         case GL_TEXTURE_SWIZZLE_R:
         case GL_TEXTURE_SWIZZLE_G:
         case GL_TEXTURE_SWIZZLE_B:
@@ -147,6 +149,18 @@ void get_whole_border(Context& c, GLenum target, Whole* out) {
     std::ranges::copy(std::bit_cast<std::array<Whole, 4>>(border), out);
 }
 
+/// Which part of a storage the texture is; nothing: the word asks for something else. Null: a texture without content.
+std::optional<std::uint32_t> view_value(const Texture* texture, GLenum pname) {
+    const Texture::View view = texture ? texture->view : Texture::View();
+    switch (pname) {
+        case GL_TEXTURE_VIEW_MIN_LEVEL: return view.first_level;
+        case GL_TEXTURE_VIEW_NUM_LEVELS: return view.levels;
+        case GL_TEXTURE_VIEW_MIN_LAYER: return view.first_layer;
+        case GL_TEXTURE_VIEW_NUM_LAYERS: return view.layers;
+        default: return std::nullopt;
+    }
+}
+
 template <class Out>
 void get_parameter(Context& c, GLenum target, GLenum pname, Out* out) {
     const auto* info = target_of(target);
@@ -155,6 +169,7 @@ void get_parameter(Context& c, GLenum target, GLenum pname, Out* out) {
     const std::uint32_t immutable = texture ? texture->immutable_levels : 0;
     if (pname == GL_TEXTURE_IMMUTABLE_FORMAT) return void(*out = static_cast<Out>(immutable != 0));
     if (pname == GL_TEXTURE_IMMUTABLE_LEVELS) return void(*out = static_cast<Out>(immutable));
+    if (const auto part = view_value(texture.get(), pname)) return void(*out = static_cast<Out>(*part));
     if (pname == GL_IMAGE_FORMAT_COMPATIBILITY_TYPE)
         return void(*out = static_cast<Out>(GL_IMAGE_FORMAT_COMPATIBILITY_BY_SIZE));
     const unsigned count = parameter_size(pname);

@@ -6,6 +6,7 @@
 #include "client_lib/context/texture_image.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/texture_formats.h"
+#include "client_lib/objects/texture_view.h"
 
 namespace wall::client::api {
 namespace {
@@ -51,7 +52,10 @@ void define_samples(Context& c, const ImageCall& call, GLsizei samples, GLboolea
     if (for_good && texture->is_default()) return c.error(GL_INVALID_OPERATION);
     std::lock_guard lock(c.share().mutex);
     texture->level_at(0, 0) = level;
-    if (for_good) texture->immutable_levels = 1;
+    if (for_good) {
+        texture->immutable_levels = texture->view.levels = 1;
+        texture->view.layers = layer_count(*texture);
+    }
     touch(c.share(), *texture);
 }
 

@@ -7,6 +7,7 @@
 #include "client_lib/context/texture_image.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/texture_formats.h"
+#include "client_lib/objects/texture_view.h"
 #include "common/glapi/block_formats.h"
 
 namespace wall::client::api {
@@ -73,7 +74,8 @@ void define_storage(Context& c, ImageCall call, GLsizei levels) {
             else store_level(c, image, {call.format, call.type, {}});
         }
     std::lock_guard lock(c.share().mutex);
-    texture->immutable_levels = static_cast<std::uint32_t>(levels);
+    texture->immutable_levels = texture->view.levels = static_cast<std::uint32_t>(levels);
+    texture->view.layers = layer_count(*texture);
     if (!ends_early) return;
     texture->parameter_changed(GL_TEXTURE_MAX_LEVEL);  // nodes' textures end with their last level by it
     touch(c.share(), *texture);

@@ -8,6 +8,7 @@
 #include "client_lib/context/context.h"
 #include "client_lib/context/es_words.h"
 #include "client_lib/context/forget_objects.h"
+#include "client_lib/context/image_work.h"
 #include "client_lib/context/limits.h"
 #include "client_lib/context/param_commands.h"
 #include "client_lib/context/texture_binding.h"
@@ -147,6 +148,9 @@ Change changed(const TexParameters& old, const glapi::TextureTargetInfo& target,
         case GL_DEPTH_TEXTURE_MODE:
             p.depth_mode = word,
             check(word == GL_LUMINANCE || word == GL_INTENSITY || word == GL_ALPHA || word == GL_RED, GL_INVALID_ENUM);
+            break;
+        case GL_DEPTH_STENCIL_TEXTURE_MODE:
+            p.depth_stencil_mode = word, check(word == GL_DEPTH_COMPONENT || word == GL_STENCIL_INDEX, GL_INVALID_ENUM);
             break;
         default: out.error = GL_INVALID_ENUM;
     }
@@ -315,6 +319,7 @@ void GenerateMipmap(Context& c, GLenum target) {
     const TextureLevel* base = current ? current->find_level(0, current->parameters.base_level) : nullptr;
     if (!base || !may_have_mipmaps(*base, c.profile.es)) return c.error(GL_INVALID_OPERATION);
     const auto texture = texture_to_change(c, target);
+    if (texture->view.origin) return make_view_mipmaps(c, texture);
     std::lock_guard lock(c.share().mutex);
     texture->mipmaps_generated();
     c.share().last_change.store(texture->stamp, std::memory_order_release);

@@ -7,6 +7,7 @@
 #include "client_lib/context/ask_one.h"
 #include "client_lib/follow/object_sender.h"
 #include "client_lib/objects/s3tc.h"
+#include "client_lib/objects/texture_view.h"
 
 namespace wall::client {
 
@@ -24,6 +25,7 @@ std::optional<TexelData> drawn_texels(Context& c, const std::shared_ptr<Texture>
     TextureLevel shape;  // without its pixels
     {
         std::lock_guard lock(c.share().mutex);
+        refresh_view(*texture, face, number);
         const TextureLevel* level = texture->find_level(face, number);
         if (!level || (!texture->only_on_nodes(*level) && !nodes_know_better(*level))) return std::nullopt;
         shape.internal_format = level->internal_format;

@@ -18,6 +18,13 @@ void forget(Context& c, ClientName id) {
     c.share().by_id.erase(id);
 }
 
+/// Its origin has one view less, and may have been waiting for that.
+void forget_view(Context& c, const Texture& view) {
+    const auto& origin = view.view.origin;
+    if (!origin || --origin->views != 0) return;
+    if (origin->orphan) forget_texture(c, origin);
+}
+
 }  // namespace
 
 void forget_ranges(Context& c, VertexInput& input) {
@@ -55,10 +62,11 @@ void forget_texture(Context& c, const std::shared_ptr<Texture>& texture) {
     unbind_images(c, texture->id);
     texture->orphan = true;
     detach_from_bound(c, *texture);
-    if (is_attached(c, *texture)) return;
+    if (is_attached(c, *texture) || texture->views != 0) return;
     // Another context of the group may still have it bound; then it lives on without a name.
     if (texture->bound_by.size() > 1 || (!texture->bound_by.empty() && texture->bound_by[0] != c.id)) return;
     forget(c, texture->id);
+    forget_view(c, *texture);
     if (auto buffer = std::exchange(texture->part.buffer, nullptr)) forget_unused(c, std::move(buffer));
 }
 

@@ -18,7 +18,7 @@ void forget_ranges(Context& c, VertexInput& input);
 void forget_inputs(Context& c, const std::vector<std::shared_ptr<VertexInput>>& inputs);
 
 /// Its name is gone: it leaves this context's bindings and the framebuffers that are bound, and the nodes, unless
-/// another context or a framebuffer has it.
+/// another context, a framebuffer or a view has it.
 void forget_texture(Context& c, const std::shared_ptr<Texture>& texture);
 /// A buffer that no context names any more: it goes with the last use of it if its name is gone. With that the nodes
 /// are told.

@@ -32,10 +32,18 @@ private:
     std::shared_ptr<Framebuffer> framebuffer_ = std::make_shared<Framebuffer>(0);
 };
 
+/// What every node does with images at once, whatever is drawn with: copies of texels, mipmaps of a view.
+struct ImageWork {
+    std::vector<std::shared_ptr<const Object>> used;
+    const Object* written = nullptr;   ///< one of them, or what keeps its texels
+    std::function<void()> note_drawn;  ///< the share group's mutex is held
+};
+
 struct MemoryUse {
     bool any = false;                        ///< something was ever bound
     std::unique_ptr<DispatchTarget> target;  ///< null: nothing was dispatched yet
     DispatchTarget* now = nullptr;           ///< what is sent now is for it
+    const ImageWork* work = nullptr;         ///< and is this, not what the context's program does
 };
 
 }  // namespace wall::client

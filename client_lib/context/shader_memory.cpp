@@ -57,25 +57,27 @@ void for_each_touched_buffer(const Context& c, const std::function<void(const st
     });
 }
 
-void for_each_touched(const Context& c, const std::function<void(Object&)>& use) {
+void for_each_touched(const Context& c, const std::function<void(const Object&)>& use) {
     if (!touches_memory(c)) return;
     for_each_touched_buffer(c, [&](const auto& buffer) { use(*buffer); });
     for_each_image(c, [&](const glstate::ImageUnit&, Texture& texture) { use(texture); });
 }
 
-void for_each_written(const Context& c, const std::function<void(Object&)>& use) {
+void for_each_written(const Context& c, const std::function<void(const Object&)>& use) {
+    if (c.memory->work) return use(*c.memory->work->written);
     if (!touches_memory(c)) return;
     for_each_block_buffer(c, [&](const auto& buffer, bool written) {
         if (written) use(*buffer);
     });
     for_each_image(c, [&](const glstate::ImageUnit& image, Texture& texture) {
         if (image.access == GL_READ_ONLY) return;
-        use(texture);
+        use_with_base(texture, use);
         if (texture.part.buffer) use(*texture.part.buffer);
     });
 }
 
 bool writes_memory(const Context& c) {
+    if (c.memory->work) return true;
     if (!c.program || !c.memory->any) return false;
     std::lock_guard lock(c.share().mutex);
     bool writes = false;
@@ -84,6 +86,7 @@ bool writes_memory(const Context& c) {
 }
 
 void note_written(const Context& c) {
+    if (c.memory->work) return c.memory->work->note_drawn();
     for_each_block_buffer(c, [&](const auto& buffer, bool written) {
         if (written) buffer->note_drawn();
     });

@@ -13,8 +13,8 @@ namespace wall::client {
 bool writes_memory(const Context& c);
 /// Calls `use` with the objects that its program may read or write so, and with those that it may write. The share
 /// group's mutex is held.
-void for_each_touched(const Context& c, const std::function<void(Object&)>& use);
-void for_each_written(const Context& c, const std::function<void(Object&)>& use);
+void for_each_touched(const Context& c, const std::function<void(const Object&)>& use);
+void for_each_written(const Context& c, const std::function<void(const Object&)>& use);
 /// What was written is on the nodes only. The share group's mutex is held.
 void note_written(const Context& c);
 

@@ -87,12 +87,13 @@ std::vector<SavedTexture> bound_texture_parameters(Context& c) {
 }
 
 void restore_texture_parameters(Context& c, const std::vector<SavedTexture>& saved) {
-    constexpr GLenum kSent[] = {
-        GL_TEXTURE_BORDER_COLOR, GL_TEXTURE_MIN_FILTER,   GL_TEXTURE_MAG_FILTER, GL_TEXTURE_WRAP_S,
-        GL_TEXTURE_WRAP_T,       GL_TEXTURE_WRAP_R,       GL_TEXTURE_MIN_LOD,    GL_TEXTURE_MAX_LOD,
-        GL_TEXTURE_LOD_BIAS,     GL_TEXTURE_BASE_LEVEL,   GL_TEXTURE_MAX_LEVEL,  GL_TEXTURE_MAX_ANISOTROPY_EXT,
-        GL_TEXTURE_COMPARE_MODE, GL_TEXTURE_COMPARE_FUNC, GL_DEPTH_TEXTURE_MODE, GL_TEXTURE_SWIZZLE_R,
-        GL_TEXTURE_SWIZZLE_G,    GL_TEXTURE_SWIZZLE_B,    GL_TEXTURE_SWIZZLE_A,  GL_TEXTURE_SRGB_DECODE_EXT};
+    constexpr GLenum kSent[] = {GL_TEXTURE_BORDER_COLOR, GL_TEXTURE_MIN_FILTER,      GL_TEXTURE_MAG_FILTER,
+                                GL_TEXTURE_WRAP_S,       GL_TEXTURE_WRAP_T,          GL_TEXTURE_WRAP_R,
+                                GL_TEXTURE_MIN_LOD,      GL_TEXTURE_MAX_LOD,         GL_TEXTURE_LOD_BIAS,
+                                GL_TEXTURE_BASE_LEVEL,   GL_TEXTURE_MAX_LEVEL,       GL_TEXTURE_MAX_ANISOTROPY_EXT,
+                                GL_TEXTURE_COMPARE_MODE, GL_TEXTURE_COMPARE_FUNC,    GL_DEPTH_TEXTURE_MODE,
+                                GL_TEXTURE_SWIZZLE_R,    GL_TEXTURE_SWIZZLE_G,       GL_TEXTURE_SWIZZLE_B,
+                                GL_TEXTURE_SWIZZLE_A,    GL_TEXTURE_SRGB_DECODE_EXT, GL_DEPTH_STENCIL_TEXTURE_MODE};
     if (saved.empty()) return;
     c.flush_block();
     const auto differs = [&](const TexParameters& a, const TexParameters& b) {

@@ -2,6 +2,8 @@
 // The calls that define a texture's images, as values (api/tex_image.cpp). The application's thread.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "client_lib/context/context.h"
@@ -51,7 +53,19 @@ GLenum sub_image_error(Context& c, const ImageCall& call);
 void store_level(Context& c, const ImageCall& call, TexelData data);
 void change_level(Context& c, const ImageCall& call, TexelData data);
 
+/// Tight pixels, as they are to be stored, in place of a box of an image (`face`, `level`) that is not kept as blocks;
+/// of a view, where they are kept. What was drawn has been sent off. The share group's mutex is held.
+void put_texels(ShareGroup& share, Texture& texture, unsigned face, GLint level, const TexBox& box, TexelData data);
+/// Before an object is changed that is named and not bound: what was drawn so far is sent off. No mutex is held.
+void before_texels_change(Context& c, const Texture& texture);
+
 // ---- blocks (api/tex_compressed.cpp) ----
+
+/// put_texels() of whole blocks, of an image that is kept as such.
+void put_blocks(ShareGroup& share, Texture& texture, unsigned face, GLint level, const TexBox& box,
+                std::span<const std::byte> blocks);
+/// Images of such a format that no pixels were made blocks of yet are kept as blocks from now on.
+void keep_as_blocks(Context& c, Texture& texture, unsigned face, GLint level, const char* function);
 
 /// store_level() of blocks that are zeros, of a format that nodes take no pixels for.
 void store_empty_blocks(Context& c, const ImageCall& call);

@@ -50,7 +50,8 @@ void for_each_sampled(const glstate::State& state, const Executable& executable,
 
 }  // namespace
 
-void for_each_used(Context& context, const Use& use) {
+void for_each_used(Context& context, const Use& use_one) {
+    const Use use = [&](const Object& object) { use_with_base(object, use_one); };
     ShareGroup& share = context.share();
     context.maps->for_each(use);
     std::lock_guard lock(share.mutex);
@@ -67,6 +68,8 @@ void for_each_used(Context& context, const Use& use) {
         if (sampler != 0) use_bound(ClientName(sampler));
     if (context.captures->now) context.captures->now->for_each_used(use);
     if (context.memory->now) context.memory->now->for_each_used(use);
+    if (context.memory->work)
+        for (const auto& object : context.memory->work->used) use(*object);
     for_each_enabled(context.state, use_bound);
     if (!context.program) return;
     for (const auto& part : context.program->executable->parts) use(*part);
@@ -79,15 +82,16 @@ void for_each_used(Context& context, const Use& use) {
 UseStamp use_stamp(const Context& context) {
     using glstate::Category;
     const auto& ids = context.state.ids;
-    return {.texture_units = ids[static_cast<std::size_t>(Category::texture_units)],
-            .textures = ids[static_cast<std::size_t>(Category::textures)],
-            .objects = ids[static_cast<std::size_t>(Category::objects)],
-            .uniform_buffers = ids[static_cast<std::size_t>(Category::uniform_buffers)],
-            .read_buffers = latest_of_read_buffers(context),
-            .shader_memory = ids[static_cast<std::size_t>(Category::shader_memory)],
-            .targets = context.framebuffers->stamp,
-            .shared = context.share().last_change.load(std::memory_order_acquire),
-            .maps = context.maps->stamp};
+    return {
+        .texture_units = ids[static_cast<std::size_t>(Category::texture_units)],
+        .textures = ids[static_cast<std::size_t>(Category::textures)],
+        .objects = ids[static_cast<std::size_t>(Category::objects)],
+        .uniform_buffers = ids[static_cast<std::size_t>(Category::uniform_buffers)],
+        .read_buffers = latest_of_read_buffers(context),
+        .shader_memory = context.memory->work ? next_stamp() : ids[static_cast<std::size_t>(Category::shader_memory)],
+        .targets = context.framebuffers->stamp,
+        .shared = context.share().last_change.load(std::memory_order_acquire),
+        .maps = context.maps->stamp};
 }
 
 }  // namespace wall::client

@@ -33,6 +33,7 @@ void lose_images(Node& node, const DrawSource& source) {
 }  // namespace
 
 void ObjectSender::send(const Object& object) {
+    if (const Object* base = object.rests_on()) send(*base);
     const std::uint64_t latest = object.latest();
     if (latest == 0) return;
     const std::uint64_t known = std::exchange(node_.object_stamps[object.id], latest);

@@ -161,16 +161,16 @@ void Framebuffer::pack_changes(std::uint64_t, wire::PackBuffer& buffer, const st
 
 void Framebuffer::for_each_image(const std::function<void(const Object&)>& use) const {
     for (const Attachment& attachment : attachments_)
-        if (attachment.present()) use(*attachment.object());
+        if (attachment.present()) use_with_base(*attachment.object(), use);
 }
 
 void Framebuffer::note_drawn() {
     for (const Attachment& attachment : attachments_) {
         if (attachment.renderbuffer) attachment.renderbuffer->note_drawn();
-        if (TextureLevel* image = attachment.image()) image->note_drawn();
+        if (attachment.texture) attachment.texture->note_drawn(face_of(attachment.target), attachment.level);
         if (!attachment.layered) continue;
         for (unsigned face = 1; face < glapi::face_count(attachment.texture->info); ++face)
-            if (TextureLevel* image = attachment.texture->find_level(face, attachment.level)) image->note_drawn();
+            attachment.texture->note_drawn(face, attachment.level);
     }
 }
 

@@ -37,6 +37,8 @@ public:
     const ClientName id;  ///< on the wire, in state elements and in Node::object_stamps
     const GLuint name;    ///< the application's; 0: it has none
 
+    /// What a node must have before it can have this one; null: nothing.
+    virtual const Object* rests_on() const { return nullptr; }
     /// Stamp of the latest change; 0: there is nothing that a node would lack.
     virtual std::uint64_t latest() const = 0;
     /// Packs everything that changed since `known` (0: the node has nothing). `packed` is called after every command
@@ -68,6 +70,13 @@ public:
     /// Behind an object whose question was answered with no: others can have it now. False: its definition says so.
     virtual bool pack_shared(wire::PackBuffer& /*buffer*/) const { return false; }
 };
+
+/// Calls `use` with an object, behind what that rests on.
+template <class Use>
+void use_with_base(const Object& object, Use&& use) {
+    if (const Object* base = object.rests_on()) use(*base);
+    use(object);
+}
 
 /// When nobody wants to hear of the commands that are packed.
 inline void no_limit() {}

@@ -52,12 +52,17 @@ public:
     TextureDiff(const Texture& texture, Sink& sink) : texture_(texture), sink_(sink) {}
 
     void run(std::uint64_t known);
+    void parameters(std::uint64_t known) {
+        for (const auto& [pname, stamp] : texture_.parameter_stamps)
+            if (stamp > known) current_parameter(pname);
+    }
 
 private:
     void current_parameter(GLenum pname) {
         any_ = true;
         auto v = parameter_value(texture_.parameters, pname);
-        if (pname == GL_TEXTURE_MAX_LEVEL && texture_.immutable_levels != 0) v[0] = static_cast<float>(last_level());
+        if (pname == GL_TEXTURE_MAX_LEVEL && texture_.immutable_levels != 0 && !texture_.view.origin)
+            v[0] = static_cast<float>(last_level());
         if (pname == GL_TEXTURE_BORDER_COLOR && texture_.parameters.border_whole) {
             const auto w = std::bit_cast<std::array<std::int32_t, 4>>(v);
             return sink_.TexBorderWhole(texture_.info.target, w[0], w[1], w[2], w[3]);
@@ -84,8 +89,7 @@ private:
 
 template <class Sink>
 void TextureDiff<Sink>::run(std::uint64_t known) {
-    for (const auto& [pname, stamp] : texture_.parameter_stamps)
-        if (stamp > known) current_parameter(pname);
+    parameters(known);
     const GLint base = texture_.generated_base;
     for (unsigned face = 0; face < glapi::face_count(texture_.info); ++face) level(face, base, known);
     if (texture_.generated_stamp > known) mipmaps();
@@ -124,6 +128,11 @@ void TextureDiff<Sink>::define(unsigned face, GLint number, const TextureLevel& 
     if (level.compressed) {
         return sink_.TexCompressed(target, number, internal, level.width, level.height, level.depth,
                                    std::span<const std::byte>(level.pixels));
+    }
+    if (texture_.storage_stamp != 0) {  // which is there
+        if (level.content == LevelContent::stored)
+            box(face, number, level, {0, 0, 0, level.width, level.height, level.depth, 0});
+        return;
     }
     if (level.samples != 0)
         return sink_.TexImageSamples(target, level.samples, internal, level.width, level.height, level.depth,
@@ -261,8 +270,22 @@ void Texture::note_written(GLint level, bool layered, GLint layer) {
     for (unsigned face = 0; face < glapi::face_count(info); ++face) {
         TextureLevel* const image = find_level(face, level);
         const bool meant = layered || glapi::face_count(info) == 1 || static_cast<GLint>(face) == layer;
-        if (image != nullptr && meant) image->note_drawn();
+        if (image != nullptr && meant) note_drawn(face, level);
     }
+}
+
+// Of an origin whose layers are faces, all that the view has count: nodes hold each of them.
+void Texture::note_drawn(unsigned face, GLint level) {
+    if (!view.origin) {
+        if (TextureLevel* const image = find_level(face, level)) image->note_drawn();
+        return;
+    }
+    const GLint kept = level + static_cast<GLint>(view.first_level);
+    const bool faced = view.origin->info.first_face != 0;
+    const std::uint32_t first = info.first_face != 0 ? view.first_layer + face : view.first_layer,
+                        count = info.first_face != 0 ? 1 : view.layers;
+    for (std::uint32_t layer = first; layer < (faced ? first + count : first + 1); ++layer)
+        view.origin->note_drawn(faced ? layer : 0, kept);
 }
 
 const TextureLevel* Texture::find_level(unsigned face, GLint level) const {
@@ -338,6 +361,7 @@ std::array<float, 4> parameter_value(const TexParameters& p, GLenum pname) {
         case GL_TEXTURE_COMPARE_MODE: return one(p.compare_mode);
         case GL_TEXTURE_COMPARE_FUNC: return one(p.compare_func);
         case GL_DEPTH_TEXTURE_MODE: return one(p.depth_mode);
+        case GL_DEPTH_STENCIL_TEXTURE_MODE: return one(p.depth_stencil_mode);
         case GL_TEXTURE_SWIZZLE_R:
         case GL_TEXTURE_SWIZZLE_G:
         case GL_TEXTURE_SWIZZLE_B:
@@ -363,6 +387,17 @@ bool same_parameter(const TexParameters& a, const TexParameters& b, GLenum pname
            (pname != GL_TEXTURE_BORDER_COLOR || a.border_whole == b.border_whole);
 }
 
+namespace {
+
+void pack_storage(const Texture& texture, wire::PackBuffer& buffer) {
+    const TextureLevel& first = texture.faces[0][0];
+    glapi::pack::TexStorage(buffer, texture.id, texture.info.target, texture.immutable_levels,
+                            static_cast<GLenum>(first.internal_format), first.width, first.height, first.depth,
+                            first.samples, first.fixed_places ? 1u : 0u);
+}
+
+}  // namespace
+
 std::uint32_t Texture::BufferPart::size() const {
     if (!buffer || offset >= buffer->size()) return 0;
     const auto rest = static_cast<std::uint32_t>(buffer->size() - offset);
@@ -376,10 +411,20 @@ void Texture::pack_changes(std::uint64_t known, wire::PackBuffer& buffer, const 
         return packed();
     }
     TexturePacker packer{id, buffer, packed};
+    if (view.origin) {
+        if (view.stamp > known)
+            glapi::pack::TexView(buffer, id, view.origin->id, info.target,
+                                 static_cast<GLenum>(faces[0][0].internal_format), view.first_level, view.levels,
+                                 view.first_layer, view.layers);
+        return TextureDiff(*this, packer).parameters(known);
+    }
+    if (storage_stamp > known) pack_storage(*this, buffer);
     TextureDiff(*this, packer).run(known);
 }
 
+// What a view holds while it is read is the origin's.
 bool Texture::is_drawn() const {
+    if (view.origin) return false;
     return std::ranges::any_of(faces, [](const auto& face) {
         return std::ranges::any_of(face, [](const auto& l) { return l.content == LevelContent::drawn; });
     });
@@ -411,7 +456,11 @@ PixelKind exact_pixels(const TextureLevel& level) {
                   : PixelKind{GL_RGBA, GL_UNSIGNED_BYTE};
 }
 
-bool Texture::worth_asking() const { return !is_drawn() && (global || content_bytes(*this) >= kLeastShared); }
+// A node's content of one name is one texture; what views share is not given to others.
+bool Texture::worth_asking() const {
+    if (view.origin || storage_stamp != 0) return false;
+    return !is_drawn() && (global || content_bytes(*this) >= kLeastShared);
+}
 
 void Texture::pack_question(wire::PackBuffer& buffer, RequestId request) const {
     glapi::pack::ShareTexture(buffer, request, id, info.target, global ? 1 : 0, content_key(*this));

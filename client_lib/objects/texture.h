@@ -66,6 +66,7 @@ struct TexParameters {
     GLenum wrap_s = GL_REPEAT, wrap_t = GL_REPEAT, wrap_r = GL_REPEAT;
     GLint base_level = 0, max_level = 1000;
     GLenum compare_mode = GL_NONE, compare_func = GL_LEQUAL, depth_mode = GL_LUMINANCE;
+    GLenum depth_stencil_mode = GL_DEPTH_COMPONENT;
     bool generate_mipmap = false;
     std::array<GLint, 4> crop_rectangle{};  ///< of GL_OES_draw_texture: texels; nodes are not told
 };
@@ -74,6 +75,7 @@ struct Texture : Object {
     Texture(ClientName own_id, GLuint own_name, glapi::TextureTarget own_target);
     const glapi::TextureTargetInfo& info;  ///< of its target
 
+    const Object* rests_on() const override { return view.origin.get(); }
     std::uint64_t latest() const override { return stamp; }
     void pack_changes(std::uint64_t known, wire::PackBuffer& buffer,
                       const std::function<void()>& packed) const override;
@@ -104,7 +106,18 @@ struct Texture : Object {
     } part;
 
     std::uint32_t immutable_levels = 0;  ///< glTexStorage gave it so many, for good; 0: it did not
-    bool orphan = false;                 ///< its name is gone; it goes with the last framebuffer that has it
+
+    /// Of storage for good, which part of it the texture is (OpenGL 4.5, 8.18); layers are a cube map's faces, too.
+    struct View {
+        /// Whose storage it is, which has an own one; null: its own. Its images hold texels only while they are read
+        /// (objects/texture_view.h).
+        std::shared_ptr<Texture> origin;
+        std::uint32_t first_level = 0, levels = 0, first_layer = 0, layers = 0;
+        std::uint64_t stamp = 0;  ///< of the definition
+    } view;
+    std::uint32_t views = 0;          ///< textures that it is the origin of
+    std::uint64_t storage_stamp = 0;  ///< since when nodes keep its levels as one storage, for views; 0: they do not
+    bool orphan = false;              ///< its name is gone; it goes with the last framebuffer that has it
 
     bool is_default() const { return name == 0; }
     TextureLevel* find_level(unsigned face, GLint level);
@@ -113,6 +126,8 @@ struct Texture : Object {
     bool only_on_nodes(const TextureLevel& level) const {
         return level.content == LevelContent::drawn || (level.content == LevelContent::generated && is_drawn());
     }
+    /// An image was drawn to, wherever its texels are kept.
+    void note_drawn(unsigned face, GLint level);
     /// Shaders have written to an image of it: to all layers of a level, or to one.
     void note_written(GLint level, bool layered, GLint layer);
     TextureLevel& level_at(unsigned face, GLint level);

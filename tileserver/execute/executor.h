@@ -30,6 +30,7 @@
 #include "tileserver/execute/format_commands.h"
 #include "tileserver/execute/framebuffer_commands.h"
 #include "tileserver/execute/geometry_commands.h"
+#include "tileserver/execute/image_copy_commands.h"
 #include "tileserver/execute/instanced_draw_commands.h"
 #include "tileserver/execute/map_commands.h"
 #include "tileserver/execute/object_commands.h"
@@ -84,11 +85,13 @@ public:
     ReadCommands read{execution_};
     ObjectCommands object{execution_};
     TextureCommands texture{execution_, question_};
+    TextureCommands& texture_view = texture;
     RunCommands run{execution_, geometry.block(), question_, [this](glapi::DrawingRun& r) { return r.run(*this); }};
     ProgramCommands program{execution_};
     ProgramCommands& subroutine = program;
     ProgramCommands& storage = program;
     DispatchCommands dispatch{execution_, geometry.block()};
+    ImageCopyCommands image_copy{execution_, geometry.block()};
     PipelineCommands pipeline{execution_};
     BufferCommands buffer{execution_};
     CaptureCommands capture{execution_};

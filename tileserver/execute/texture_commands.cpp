@@ -116,7 +116,8 @@ void TextureCommands::TexCompressed(ClientName name, GLenum target, std::int32_t
         return execution_.refuse("more texture memory than a session may have");
     if (auto* hash = texture->hash()) hash->TexCompressed(target, level, internal_format, width, height, depth, blocks);
     define_image(*texture, target, level, {internal_format, 0, 0, true}, [&] {
-        upload_blocks(execution_.gl, texture->target(), target, level, internal_format, {width, height, depth}, blocks);
+        const auto upload = texture->content().storage() ? upload_stored_blocks : upload_blocks;
+        upload(execution_.gl, texture->target(), target, level, internal_format, {width, height, depth}, blocks);
     });
 }
 

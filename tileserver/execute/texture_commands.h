@@ -33,6 +33,11 @@ public:
     void ShareTexture(RequestId request, ClientName texture, GLenum target, std::uint32_t own_name,
                       std::span<const std::byte> key);
     void TexShared(ClientName texture);
+    // Group [texture_view] (texture_view_commands.cpp): storage for good, which textures may be parts of.
+    void TexStorage(ClientName texture, GLenum target, std::uint32_t levels, GLenum internal_format, std::int32_t width,
+                    std::int32_t height, std::int32_t depth, std::uint32_t samples, std::uint32_t fixed_places);
+    void TexView(ClientName texture, ClientName origin, GLenum target, GLenum internal_format,
+                 std::uint32_t first_level, std::uint32_t levels, std::uint32_t first_layer, std::uint32_t layers);
     void Compress(RequestId request, GLenum internal_format, std::int32_t width, std::int32_t height, GLenum format,
                   GLenum type, std::span<const std::byte> pixels);
 

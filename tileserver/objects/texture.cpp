@@ -20,6 +20,17 @@ bool Texture::own(SharedContents& shared) {
     return true;
 }
 
+bool Texture::store(const TextureContent::Storage& storage) {
+    content_->store(storage);
+    renamed();
+    return has_content(content_->bytes());
+}
+
+bool Texture::show(Driver& driver, const Texture& origin, const TextureContent::Part& part) {
+    if (content_->shows(*origin.content_, part)) return true;
+    return adopt(std::make_shared<TextureContent>(driver, target(), *origin.content_, part));
+}
+
 bool Texture::affords_image(GLenum image_target, std::int32_t level, std::uint64_t bytes) const {
     return affords(bytes, content_->image_bytes(image_target, level));
 }

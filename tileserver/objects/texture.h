@@ -30,6 +30,10 @@ public:
     [[nodiscard]] bool adopt(std::shared_ptr<TextureContent> content);
     /// Before it changes: what other sessions hold stays as it is, and nobody new is given it. False: as adopt().
     [[nodiscard]] bool own(SharedContents& shared);
+    /// All its levels as one storage (TextureContent::store). False: as adopt().
+    [[nodiscard]] bool store(const TextureContent::Storage& storage);
+    /// It is that part of a texture that has storage, from now on. False: as adopt().
+    [[nodiscard]] bool show(Driver& driver, const Texture& origin, const TextureContent::Part& part);
     /// Whether the session may have `bytes` for that image, instead of what it has for it now.
     bool affords_image(GLenum image_target, std::int32_t level, std::uint64_t bytes) const;
     /// Notes what the driver has of one image after a definition (TextureContent::note_image). False: as adopt().

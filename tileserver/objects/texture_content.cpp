@@ -5,12 +5,21 @@
 #include <vector>
 
 #include "common/glapi/image.h"
+#include "common/glapi/texture_target.h"
 
 namespace wall::tileserver {
 
 TextureContent::TextureContent(Driver& driver, TextureTarget target)
     : SharedContent(kKind), driver_(driver), target_(target) {
     driver.gl().CreateTextures(gl_target(target), 1, &name_);
+}
+
+// The driver gives a target to none but a new name.
+TextureContent::TextureContent(Driver& driver, TextureTarget target, const TextureContent& origin, const Part& part)
+    : SharedContent(kKind), driver_(driver), target_(target), part_(part), origin_(origin.name_) {
+    driver.gl().GenTextures(1, &name_);
+    driver.gl().TextureView(name_, gl_target(target), origin.name_, part.internal_format, part.first_level, part.levels,
+                            part.first_layer, part.layers);
 }
 
 TextureContent::~TextureContent() {
@@ -75,7 +84,6 @@ std::uint64_t TextureContent::image_bytes(GLenum image_target, std::int32_t leve
 // Through the processor's memory, image by image, in the format of the definition: glCopyImageSubData would refuse
 // incomplete textures. (glGetnTexImage of Mesa 22.3 writes nothing, and reports nothing.)
 std::shared_ptr<TextureContent> TextureContent::copy() const {
-    const Gl& gl = driver_.gl();
     auto made = std::make_shared<TextureContent>(driver_, target_);
     made->images_ = images_;
     made->parameters_ = parameters_;
@@ -83,8 +91,7 @@ std::shared_ptr<TextureContent> TextureContent::copy() const {
     made->bytes_ = bytes_;
     driver_.neutral_pixel_transfer();
     driver_.bind_texture_to_edit(target_, made->name_);
-    for (const auto& [pname, value] : parameters_) gl.TexParameterfv(gl_target(target_), pname, value.data());
-    if (whole_border_) gl.TexParameterIiv(gl_target(target_), GL_TEXTURE_BORDER_COLOR, whole_border_->data());
+    set_parameters(made->name_);
     const std::int32_t base_level = made_ ? made_->base : 0;
     for (const auto& [where, image] : images_)
         if (where.second == base_level) copy_image(where.first, where.second, image.format, *made);
@@ -93,6 +100,73 @@ std::shared_ptr<TextureContent> TextureContent::copy() const {
     for (const auto& [where, image] : images_)
         if (where.second != base_level) copy_image(where.first, where.second, image.format, *made);
     return made;
+}
+
+void TextureContent::set_parameters(GLuint name) const {
+    for (const auto& [pname, value] : parameters_) driver_.gl().TextureParameterfv(name, pname, value.data());
+    if (whole_border_) driver_.gl().TextureParameterIiv(name, GL_TEXTURE_BORDER_COLOR, whole_border_->data());
+}
+
+GLuint TextureContent::Storage::layers(TextureTarget target) const {
+    const glapi::TextureTargetInfo& info = glapi::info_of(target);
+    if (info.first_face != 0) return glapi::kCubeFaces;
+    if (info.layers == 0) return 1;
+    return static_cast<GLuint>(glapi::spatial_dimensions_of(info) == 1 ? extent.height : extent.depth);
+}
+
+bool TextureContent::make_storage(GLuint name, const Storage& s) const {
+    const Gl& gl = driver_.gl();
+    const auto& [width, height, depth] = s.extent;
+    const auto fixed = static_cast<GLboolean>(s.fixed_places);
+    const unsigned dimensions = glapi::dimensions_of(glapi::info_of(target_));
+    driver_.drain_errors();
+    if (s.samples != 0 && dimensions == 3)
+        gl.TextureStorage3DMultisample(name, s.samples, s.internal_format, width, height, depth, fixed);
+    else if (s.samples != 0) gl.TextureStorage2DMultisample(name, s.samples, s.internal_format, width, height, fixed);
+    else if (dimensions == 1) gl.TextureStorage1D(name, s.levels, s.internal_format, width);
+    else if (dimensions == 2) gl.TextureStorage2D(name, s.levels, s.internal_format, width, height);
+    else gl.TextureStorage3D(name, s.levels, s.internal_format, width, height, depth);
+    return driver_.drain_errors() == 0;
+}
+
+// The driver takes an incomplete texture for none; what is left of this one is only its images.
+void TextureContent::copy_levels(GLuint to) const {
+    const Gl& gl = driver_.gl();
+    const GLenum target = gl_target(target_);
+    if (glapi::info_of(target_).mipmaps) {
+        gl.TextureParameteri(name_, GL_TEXTURE_BASE_LEVEL, 0);
+        gl.TextureParameteri(name_, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    }
+    const bool rows = glapi::spatial_dimensions_of(glapi::info_of(target_)) == 1;
+    driver_.bind_texture_to_edit(target_, name_);
+    for (const auto& [where, image] : images_) {
+        const auto& [image_target, level] = where;
+        const ImageExtent extent = driver_image(gl, image_target, level).extent;
+        const auto face = static_cast<GLint>(glapi::find_target_word(image_target)->face);
+        gl.CopyImageSubData(name_, target, level, 0, 0, face, to, target, level, 0, 0, face, extent.width,
+                            rows ? 1 : extent.height, rows ? extent.height : extent.depth);
+    }
+}
+
+void TextureContent::store(const Storage& storage) {
+    if (storage_ || part_) return;
+    const Gl& gl = driver_.gl();
+    GLuint name = 0;
+    gl.CreateTextures(gl_target(target_), 1, &name);
+    if (!make_storage(name, storage)) return gl.DeleteTextures(1, &name);
+    copy_levels(name);
+    set_parameters(name);
+    driver_.forget_texture(name_);
+    gl.DeleteTextures(1, &name_);
+    name_ = name;
+    storage_ = storage;
+    const ImageFormat format{storage.internal_format, GL_RGBA, GL_UNSIGNED_BYTE, false};
+    driver_.bind_texture_to_edit(target_, name_);
+    for (GLint level = 0; level < storage.levels; ++level)
+        for (unsigned face = 0; face < glapi::face_count(glapi::info_of(target_)); ++face) {
+            const GLenum image = glapi::image_target(glapi::info_of(target_), face);
+            note_image(image, level, images_.contains({image, level}) ? nullptr : &format);
+        }
 }
 
 void TextureContent::make_mipmaps(std::int32_t base, std::int32_t last) {
@@ -139,6 +213,17 @@ void upload_blocks(const Gl& gl, TextureTarget target, GLenum image_target, GLin
     else
         gl.CompressedTexImage2D(image_target, level, internal_format, extent.width, extent.height, 0, bytes,
                                 blocks.data());
+}
+
+void upload_stored_blocks(const Gl& gl, TextureTarget target, GLenum image_target, GLint level, GLenum internal_format,
+                          const ImageExtent& extent, std::span<const std::byte> blocks) {
+    const auto bytes = static_cast<GLsizei>(blocks.size());
+    if (is_3d(target))
+        gl.CompressedTexSubImage3D(image_target, level, 0, 0, 0, extent.width, extent.height, extent.depth,
+                                   internal_format, bytes, blocks.data());
+    else
+        gl.CompressedTexSubImage2D(image_target, level, 0, 0, extent.width, extent.height, internal_format, bytes,
+                                   blocks.data());
 }
 
 void upload_image(const Gl& gl, TextureTarget target, GLenum image_target, GLint level,

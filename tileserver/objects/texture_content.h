@@ -22,6 +22,13 @@ public:
     static constexpr ObjectKind kKind = ObjectKind::texture;
 
     TextureContent(Driver& driver, TextureTarget target);
+    /// Of a texture that is a part of what another one has storage of: levels and layers (cube maps' faces are such).
+    struct Part {
+        GLenum internal_format = 0;
+        GLuint first_level = 0, levels = 0, first_layer = 0, layers = 0;
+        bool operator==(const Part&) const = default;
+    };
+    TextureContent(Driver& driver, TextureTarget target, const TextureContent& origin, const Part& part);
     ~TextureContent() override;
 
     GLuint name() const { return name_; }
@@ -47,6 +54,24 @@ public:
     /// Makes the levels behind one of it, `last` at most, whichever levels the parameters let be sampled.
     void make_mipmaps(std::int32_t base, std::int32_t last);
 
+    /// All levels, for good; of cube maps `depth` is 1, of others it counts layers, too.
+    struct Storage {
+        GLenum internal_format = 0;
+        GLsizei levels = 0, samples = 0;  ///< samples 0: one a texel
+        ImageExtent extent;
+        bool fixed_places = false;
+        GLuint layers(TextureTarget target) const;
+    };
+    /// Such storage in place of the images that there are, which are copied into it; a driver that refuses it leaves
+    /// all as it is. Once only.
+    void store(const Storage& storage);
+    /// Nothing: it has no such storage, or it is a part of another one's.
+    const std::optional<Storage>& storage() const { return storage_; }
+    /// Whether it is that part of that texture.
+    bool shows(const TextureContent& origin, const Part& part) const {
+        return part_ && origin_ == origin.name_ && *part_ == part;
+    }
+
     /// The same texture again, copied by the driver.
     std::shared_ptr<TextureContent> copy() const;
 
@@ -57,6 +82,9 @@ private:
         ImageFormat format;
         std::uint64_t bytes = 0;  ///< estimate
     };
+    bool make_storage(GLuint name, const Storage& storage) const;
+    void copy_levels(GLuint to) const;
+    void set_parameters(GLuint name) const;
     void copy_image(GLenum image_target, std::int32_t level, const ImageFormat& format, const TextureContent& to) const;
 
     Driver& driver_;
@@ -69,6 +97,9 @@ private:
         std::int32_t base, last;
     };
     std::optional<Mipmaps> made_;  // the latest that the driver made
+    std::optional<Storage> storage_;
+    std::optional<Part> part_;
+    GLuint origin_ = 0;  // the driver's texture that it is that part of
     std::uint64_t bytes_ = 0;
 };
 
@@ -77,6 +108,9 @@ void upload_image(const Gl& gl, TextureTarget target, GLenum image_target, GLint
                   const TextureContent::ImageFormat& format, const ImageExtent& extent, const void* pixels,
                   GLint border = 0);
 
+/// The same of a compressed one; of storage for good, whose image is there.
+void upload_stored_blocks(const Gl& gl, TextureTarget target, GLenum image_target, GLint level, GLenum internal_format,
+                          const ImageExtent& extent, std::span<const std::byte> blocks);
 /// The same of a compressed one.
 void upload_blocks(const Gl& gl, TextureTarget target, GLenum image_target, GLint level, GLenum internal_format,
                    const ImageExtent& extent, std::span<const std::byte> blocks);
