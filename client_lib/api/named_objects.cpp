@@ -16,6 +16,7 @@
 #include "client_lib/context/param_commands.h"
 #include "client_lib/context/pixel_store.h"
 #include "client_lib/context/vertex_array_objects.h"
+#include "client_lib/objects/block_store.h"
 #include "client_lib/objects/share_group.h"
 #include "common/glapi/image.h"
 
@@ -116,9 +117,15 @@ void CompressedTextureSubImage3D(Context& c, GLuint name, GLint level, GLint x, 
     if (!is_cube(named))
         return CompressedTexSubImage3D(c, named.target(), level, x, y, z, width, height, depth, format, bytes, data);
     const GLsizei face_bytes = depth > 0 ? bytes / depth : 0;
+    const glapi::PixelStore store = unpack_store(c.state);
+    if (const GLenum error = block_store_error(store, 3)) return c.error(error);
+    const auto blocks = static_cast<GLint>(format);
     for_each_face(c, named.texture()->info, {level, x, y, z, width, height, depth}, [&](GLenum face, GLint slice) {
-        CompressedTexSubImage2D(c, face, level, x, y, width, height, format, face_bytes,
-                                moved(data, static_cast<std::size_t>(face_bytes) * static_cast<std::size_t>(slice)));
+        std::size_t begin = 0;
+        if (width > 0 && height > 0)
+            begin = block_slice_offset(store, {blocks, {width, height, depth, 3}}, slice) -
+                    block_slice_offset(store, {blocks, {width, height, 1, 2}}, 0);
+        CompressedTexSubImage2D(c, face, level, x, y, width, height, format, face_bytes, moved(data, begin));
     });
 }
 

@@ -6,13 +6,16 @@
 #include <cstring>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "client_lib/context/ask_one.h"
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/named_objects.h"
+#include "client_lib/context/pixel_store.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/texture_image.h"
+#include "client_lib/objects/block_store.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/palette_image.h"
 #include "client_lib/objects/s3tc.h"
@@ -39,8 +42,8 @@ struct Place {
 GLenum target_error(const Image& image) {
     const auto* info = image_target_of(image.target);
     if (block_bytes(image.format) == 0 || !info || info->images != image.dimensions) return GL_INVALID_ENUM;
-    if (glapi::spatial_dimensions_of(*info) == 3) return GL_INVALID_OPERATION;
-    return info->blocks ? GL_NO_ERROR : GLenum{GL_INVALID_ENUM};
+    if (glapi::may_have_blocks(*info, static_cast<GLenum>(image.format))) return GL_NO_ERROR;
+    return glapi::spatial_dimensions_of(*info) == 3 ? GL_INVALID_OPERATION : GL_INVALID_ENUM;
 }
 
 std::size_t all_bytes(const Image& image) {
@@ -57,6 +60,19 @@ GLenum image_error(Context& c, const Image& image, GLint border) {
     if (!legal_size(c, call)) return GL_INVALID_VALUE;
     return image.bytes < 0 || static_cast<std::size_t>(image.bytes) != all_bytes(image) ? GL_INVALID_VALUE
                                                                                         : GL_NO_ERROR;
+}
+
+/// What a program gives or is given.
+BlockImage in_memory(const Image& image) {
+    return {image.format, {image.width, image.height, image.depth, image.dimensions}};
+}
+
+/// The blocks that a program gives, without gaps; empty, and maybe an error: there are none.
+std::vector<std::byte> given_blocks(Context& c, const Image& image, const void* data) {
+    const glapi::PixelStore store = unpack_store(c.state);
+    const BlockImage blocks = in_memory(image);
+    const auto* from = static_cast<const std::byte*>(unpack_source(c, data, block_memory_bytes(store, blocks)));
+    return from ? unpack_blocks(store, blocks, from) : std::vector<std::byte>();
 }
 
 TextureLevel described(const Image& image) {
@@ -234,15 +250,16 @@ void define_blocks(Context& c, const Image& image, GLint border, const void* dat
     }
     if (error != GL_NO_ERROR) return c.error(error);
     if (is_immutable(c, image.target)) return c.error(GL_INVALID_OPERATION);
+    if (const GLenum wrong = block_store_error(unpack_store(c.state), image.dimensions)) return c.error(wrong);
     const auto bytes = static_cast<std::size_t>(image.bytes);
-    const auto* from = static_cast<const std::byte*>(unpack_source(c, data, bytes));
-    if (!from && c.state.local.pixel_unpack_buffer) return;
+    auto blocks = given_blocks(c, image, data);
+    if (blocks.size() != bytes && c.state.local.pixel_unpack_buffer) return;
     const auto texture = texture_to_change(c, image.target);
     std::lock_guard lock(c.share().mutex);
     TextureLevel& level = texture->level_at(face_of(image.target), image.level);
     level = described(image);
+    level.pixels = std::move(blocks);
     level.pixels.resize(bytes);
-    if (from) std::copy(from, from + bytes, level.pixels.begin());
     level.content = LevelContent::stored;
     level.stamp = next_stamp();
     generate_if_asked(*texture, image.level);
@@ -258,13 +275,14 @@ void define_sub_blocks(Context& c, const Image& part, const Place& at, const voi
     const TextureLevel* level = texture ? texture->find_level(face_of(part.target), part.level) : nullptr;
     if (const GLenum error = level ? sub_image_error(*level, part, at) : GLenum{GL_INVALID_OPERATION})
         return c.error(error);
-    const auto* from = static_cast<const std::byte*>(unpack_source(c, data, static_cast<std::size_t>(part.bytes)));
-    if (!from || part.bytes == 0) return;
+    if (const GLenum wrong = block_store_error(unpack_store(c.state), part.dimensions)) return c.error(wrong);
+    const auto blocks = given_blocks(c, part, data);
+    if (blocks.empty()) return;
     const auto changed = texture_to_change(c, part.target);
     if (changed->view.origin) c.before_change(changed->view.origin->id);
     std::lock_guard lock(c.share().mutex);
     put_blocks(c.share(), *changed, face_of(part.target), part.level,
-               {at.x, at.y, at.z, part.width, part.height, part.depth, 0}, {from, all_bytes(part)});
+               {at.x, at.y, at.z, part.width, part.height, part.depth, 0}, blocks);
     generate_if_asked(*changed, part.level);
     touch(c.share(), *changed);
 }
@@ -352,17 +370,31 @@ const TextureLevel* blocks_of(Context& c, GLenum target, GLint number) {
     return nullptr;
 }
 
-/// Into the program's memory, which has room for `room` bytes; nothing: it did not say.
-void give(Context& c, std::span<const std::byte> blocks, std::optional<GLsizei> room, void* pixels) {
-    if (room && c.state.local.pixel_pack_buffer == 0 && (*room < 0 || blocks.size() > static_cast<std::size_t>(*room)))
+/// Whether all blocks of a level are there.
+bool has_all_blocks(const TextureLevel& level) {
+    return level.pixels.size() >=
+           blocks_bytes(level.internal_format, level.width, level.height) * static_cast<std::size_t>(level.depth);
+}
+
+/// Into the program's memory, which has room for `room` bytes; nothing: it did not say. `blocks` are all of the image.
+void give(Context& c, const BlockImage& image, std::span<const std::byte> blocks, std::optional<GLsizei> room,
+          void* pixels) {
+    const glapi::PixelStore store = pack_store(c.state);
+    if (const GLenum error = block_store_error(store, image.size.dimensions)) return c.error(error);
+    const std::size_t reach = block_memory_bytes(store, image);
+    if (room && c.state.local.pixel_pack_buffer == 0 && (*room < 0 || reach > static_cast<std::size_t>(*room)))
         return c.error(GL_INVALID_OPERATION);
-    if (const PackTarget to = pack_target(c, pixels, blocks.size()))
-        std::memcpy(to.get(), blocks.data(), blocks.size());
+    if (const PackTarget to = pack_target(c, pixels, reach))
+        pack_blocks(store, image, blocks, static_cast<std::byte*>(to.get()));
 }
 
 void get_blocks(Context& c, GLenum target, GLint number, std::optional<GLsizei> room, void* pixels) {
-    if (is_proxy(target) || !image_target_of(target)) return c.error(GL_INVALID_ENUM);
-    if (const TextureLevel* level = blocks_of(c, target, number)) give(c, level->pixels, room, pixels);
+    const auto* info = image_target_of(target);
+    if (is_proxy(target) || !info) return c.error(GL_INVALID_ENUM);
+    const TextureLevel* level = blocks_of(c, target, number);
+    if (!level || !has_all_blocks(*level)) return;
+    give(c, {level->internal_format, {level->width, level->height, level->depth, info->images}}, level->pixels, room,
+         pixels);
 }
 
 struct BlockPart {
@@ -387,12 +419,6 @@ void append(std::vector<std::byte>& out, const TextureLevel& level, const BlockP
             at + row * static_cast<std::size_t>(y / kBlockSide) + block * static_cast<std::size_t>(part.x / kBlockSide);
         out.insert(out.end(), from, from + wanted);
     }
-}
-
-/// Whether all blocks of a level are there.
-bool has_all_blocks(const TextureLevel& level) {
-    return level.pixels.size() >=
-           blocks_bytes(level.internal_format, level.width, level.height) * static_cast<std::size_t>(level.depth);
 }
 
 /// Faces that are not alike are no cube.
@@ -427,7 +453,8 @@ void get_named_blocks(Context& c, GLuint name, GLint number, const std::optional
         if (!are_alike(*level, *first) || !has_all_blocks(*level)) return c.error(GL_INVALID_OPERATION);
         append(blocks, *level, part, cube ? 0 : z);
     }
-    give(c, blocks, room, pixels);
+    const unsigned dimensions = cube ? 3u : info.images;
+    give(c, {first->internal_format, {part.width, part.height, part.depth, dimensions}}, blocks, room, pixels);
 }
 
 }  // namespace

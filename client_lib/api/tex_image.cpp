@@ -23,6 +23,7 @@
 #include "client_lib/objects/texture_formats.h"
 #include "client_lib/objects/texture_view.h"
 #include "client_lib/objects/view_formats.h"
+#include "common/glapi/block_formats.h"
 
 namespace wall::client {
 namespace {
@@ -91,6 +92,8 @@ GLenum image_error(Context& c, const ImageCall& call, const TextureFormat* inter
     if (!is_compressed_online(*internal)) return GL_INVALID_OPERATION;
     const bool volume = glapi::spatial_dimensions_of(info_of(call)) == 3;
     if (depth_like(internal->base) && volume) return GL_INVALID_OPERATION;
+    const auto blocks = static_cast<GLenum>(internal->internal_format);  // not what a driver chooses
+    if (volume && glapi::block_bytes(blocks) != 0 && !glapi::is_for_volumes(blocks)) return GL_INVALID_OPERATION;
     return GL_NO_ERROR;
 }
 

@@ -54,7 +54,9 @@ void define_storage(Context& c, ImageCall call, GLsizei levels) {
     if (!format || !is_sized(*format)) return c.error(GL_INVALID_ENUM);
     if (call.width < 1 || call.height < 1 || call.depth < 1 || levels < 1) return c.error(GL_INVALID_VALUE);
     if (levels > level_count(c, call.target) || levels > most_levels(call)) return c.error(GL_INVALID_OPERATION);
-    if (format->compressed() && !target_word(call.target)->info->blocks) return c.error(GL_INVALID_OPERATION);
+    if (format->compressed() &&
+        !glapi::may_have_blocks(*target_word(call.target)->info, static_cast<GLenum>(format->answer)))
+        return c.error(GL_INVALID_OPERATION);
     const bool depth = format->base == GL_DEPTH_COMPONENT || format->base == GL_DEPTH_STENCIL,
                volume = glapi::spatial_dimensions_of(*target_word(call.target)->info) == 3;
     if (depth && volume) return c.error(GL_INVALID_OPERATION);

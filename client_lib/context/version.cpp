@@ -19,10 +19,6 @@ bool implemented(const char* command) {
                         [&](const char* name) { return std::strcmp(name, command) == 0; });
 }
 
-// What later versions ask for besides commands, that is not there yet.
-constexpr bool kHasBptc = false;          ///< GL_ARB_texture_compression_bptc
-constexpr bool kHasBlockStorage = false;  ///< GL_ARB_compressed_texture_pixel_storage
-
 /// What a version asks for besides its commands, as far as it is known to be missing, and its shading language.
 struct Beyond {
     int major, minor;
@@ -38,7 +34,7 @@ constexpr Beyond kBeyond[] = {
     {3, 3, "3.30", true},
     {4, 0, "4.00", kTextureImageUnits >= 80},
     {4, 1, "4.10", true},
-    {4, 2, "4.20", kHasBptc&& kHasBlockStorage},
+    {4, 2, "4.20", true},
     {4, 3, "4.30", true},
 };
 
@@ -67,6 +63,7 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_clear_buffer_object", "glClearBufferSubData"},
     {"GL_ARB_clear_texture", "glClearTexSubImage"},
     {"GL_ARB_clip_control", "glClipControl"},
+    {"GL_ARB_compressed_texture_pixel_storage", "glCompressedTexImage2D"},
     {"GL_ARB_compute_shader", "glDispatchCompute"},
     {"GL_ARB_conditional_render_inverted", "glBeginConditionalRender"},
     {"GL_ARB_conservative_depth", nullptr},
@@ -143,6 +140,7 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_texture_buffer_object_rgb32", "glTexBuffer"},
     {"GL_ARB_texture_buffer_range", "glTexBufferRange"},
     {"GL_ARB_texture_compression", "glCompressedTexImage2D", kNotInCore},
+    {"GL_ARB_texture_compression_bptc", "glCompressedTexImage2D"},
     {"GL_ARB_texture_compression_rgtc", "glCompressedTexImage2D"},
     {"GL_ARB_texture_cube_map", nullptr, kNotInCore},
     {"GL_ARB_texture_cube_map_array", nullptr},

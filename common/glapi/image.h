@@ -21,6 +21,8 @@ struct PixelStore {
     std::int32_t row_length = 0, image_height = 0;
     std::int32_t skip_pixels = 0, skip_rows = 0, skip_images = 0;
     std::int32_t alignment = 4;
+    std::int32_t block_width = 0, block_height = 0, block_depth = 0;  ///< texels; of images in compressed blocks
+    std::int32_t block_bytes = 0;
 };
 
 /// Components of a format (GL_RGBA: 4); 0: no such format.

@@ -111,7 +111,8 @@ void TextureCommands::TexCompressed(ClientName name, GLenum target, std::int32_t
         return execution_.refuse("size does not fit the blocks");
     Texture* texture = bind_to_edit(name, target);
     if (texture == nullptr) return;
-    if (!glapi::info_of(texture->target()).blocks) return execution_.refuse("no such target");
+    if (!glapi::may_have_blocks(glapi::info_of(texture->target()), internal_format))
+        return execution_.refuse("no such target");
     if (!texture->affords_image(target, level, blocks.size()))
         return execution_.refuse("more texture memory than a session may have");
     if (auto* hash = texture->hash()) hash->TexCompressed(target, level, internal_format, width, height, depth, blocks);

@@ -398,6 +398,88 @@ TEST_F(TextureApiTest, ArraysHaveLayers) {
     EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
 }
 
+TEST_F(TextureApiTest, VolumesHaveBlocksOfBptcOnly) {
+    std::vector<std::byte> blocks(2 * 1 * 16 * 3);
+    for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i] = static_cast<std::byte>(i);
+    const auto bytes = static_cast<GLsizei>(blocks.size());
+    gl().BindTexture(c, GL_TEXTURE_3D, 1);
+    for (const GLenum format : {GL_COMPRESSED_RGBA_BPTC_UNORM, GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM,
+                                GL_COMPRESSED_RGB_BPTC_SIGNED_FLOAT, GL_COMPRESSED_RGB_BPTC_UNSIGNED_FLOAT}) {
+        gl().CompressedTexImage3D(c, GL_TEXTURE_3D, 0, format, 8, 3, 3, 0, bytes, blocks.data());
+        EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+        gl().CompressedTexImage3D(c, GL_TEXTURE_3D, 0, format, 8, 3, 3, 0, bytes / 2, blocks.data());
+        EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE}) << "16 bytes a block";
+    }
+    EXPECT_EQ(sent(*c.share().textures.find(1), 0), Names{"TexCompressed"});
+    std::vector<std::byte> read(blocks.size());
+    gl().GetCompressedTexImage(c, GL_TEXTURE_3D, 0, read.data());
+    EXPECT_EQ(read, blocks);
+    gl().TexImage3D(c, GL_TEXTURE_3D, 0, GL_COMPRESSED_RGBA_BPTC_UNORM, 4, 4, 2, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().TexImage3D(c, GL_TEXTURE_3D, 0, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, 4, 4, 2, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                    nullptr);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().TexStorage3D(c, GL_TEXTURE_3D, 1, GL_COMPRESSED_RED_RGTC1, 8, 8, 3);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().TexStorage3D(c, GL_TEXTURE_3D, 1, GL_COMPRESSED_RGBA_BPTC_UNORM, 8, 8, 3);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+}
+
+TEST_F(TextureApiTest, BlocksLieInMemoryAsPixelStoreSays) {
+    std::vector<std::byte> memory(4 * 3 * 8);  // three rows of four blocks
+    for (std::size_t i = 0; i < memory.size(); ++i) memory[i] = static_cast<std::byte>(i);
+    const GLenum format = GL_COMPRESSED_RED_RGTC1;
+    gl().BindTexture(c, GL_TEXTURE_2D, 1);
+    gl().PixelStorei(c, GL_UNPACK_ROW_LENGTH, 16);
+    gl().PixelStorei(c, GL_UNPACK_SKIP_PIXELS, 4);
+    gl().PixelStorei(c, GL_UNPACK_SKIP_ROWS, 4);
+    std::vector<std::byte> read(4 * 8);
+    gl().CompressedTexImage2D(c, GL_TEXTURE_2D, 0, format, 8, 8, 0, 32, memory.data());
+    gl().GetCompressedTexImage(c, GL_TEXTURE_2D, 0, read.data());
+    EXPECT_EQ(read[31], std::byte{31}) << "without the size of a block they mean nothing";
+    gl().PixelStorei(c, GL_UNPACK_COMPRESSED_BLOCK_SIZE, 8);
+    gl().PixelStorei(c, GL_UNPACK_COMPRESSED_BLOCK_WIDTH, 4);
+    gl().PixelStorei(c, GL_UNPACK_COMPRESSED_BLOCK_HEIGHT, 4);
+    gl().PixelStorei(c, GL_UNPACK_COMPRESSED_BLOCK_DEPTH, 1);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().PixelStorei(c, GL_UNPACK_COMPRESSED_BLOCK_DEPTH, -1);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+    GLint height = 0;
+    gl().GetIntegerv(c, GL_UNPACK_COMPRESSED_BLOCK_HEIGHT, &height);
+    EXPECT_EQ(height, 4);
+    gl().CompressedTexImage2D(c, GL_TEXTURE_2D, 0, format, 8, 8, 0, 32, memory.data());
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    gl().GetCompressedTexImage(c, GL_TEXTURE_2D, 0, read.data());
+    EXPECT_EQ(read.front(), std::byte{40});
+    EXPECT_EQ(read[16], std::byte{72});
+    gl().CompressedTexSubImage2D(c, GL_TEXTURE_2D, 0, 4, 4, 4, 4, format, 8, memory.data());
+    gl().GetCompressedTexImage(c, GL_TEXTURE_2D, 0, read.data());
+    EXPECT_EQ(read[24], std::byte{40});
+    gl().PixelStorei(c, GL_UNPACK_SKIP_PIXELS, 2);
+    gl().CompressedTexSubImage2D(c, GL_TEXTURE_2D, 0, 4, 4, 4, 4, format, 8, memory.data());
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION}) << "half a block";
+    gl().CompressedTexImage2D(c, GL_TEXTURE_2D, 0, format, 8, 8, 0, 32, memory.data());
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().PushClientAttrib(c, GL_CLIENT_PIXEL_STORE_BIT);
+    gl().PixelStorei(c, GL_PACK_ROW_LENGTH, 12);
+    gl().PixelStorei(c, GL_PACK_SKIP_PIXELS, 4);
+    gl().PixelStorei(c, GL_PACK_COMPRESSED_BLOCK_SIZE, 8);
+    gl().PixelStorei(c, GL_PACK_COMPRESSED_BLOCK_WIDTH, 4);
+    std::vector<std::byte> wide(2 * 3 * 8, std::byte{255});
+    gl().GetnCompressedTexImage(c, GL_TEXTURE_2D, 0, 47, wide.data());
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+    gl().GetnCompressedTexImage(c, GL_TEXTURE_2D, 0, 48, wide.data());
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+    EXPECT_EQ(wide[7], std::byte{255});
+    EXPECT_EQ(wide[8], read[0]);
+    EXPECT_EQ(wide[24], std::byte{255});
+    EXPECT_EQ(wide[32], read[16]);
+    gl().PopClientAttrib(c);
+    GLint size = -1;
+    gl().GetIntegerv(c, GL_PACK_COMPRESSED_BLOCK_SIZE, &size);
+    EXPECT_EQ(size, 0);
+}
+
 TEST_F(TextureApiTest, WholeNumbersKeepEveryBit) {
     gl().BindTexture(c, GL_TEXTURE_2D, 1);
     const std::array<GLuint, 4> texels{0xffffffff, 0x80000001, 3, 0x01234567};
