@@ -198,7 +198,8 @@ SCENE(texture_views, 4) {
     say_error("of another size");
 }
 
-/// Stencil values that were drawn are looked up by a shader, of a texture of both and of one of its own.
+/// Stencil values that were drawn are looked up by a shader, of a texture of both and of one of its own; beside where
+/// no pixel's centre lies between two texels.
 SCENE(stencil_textures, 2) {
     clear(0.1f, 0.2f, 0.2f);
     static GLuint both, alone, program;
@@ -211,7 +212,8 @@ SCENE(stencil_textures, 2) {
         glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kSize, kSize, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, values.data());
         program = program_of(
             "#version 130\nuniform usampler2D values; in vec2 at; out vec4 color;\n"
-            "void main() { float v = float(texture(values, at).r) / 255.0; color = vec4(v, 1.0 - v, 0.3, 1.0); }");
+            "void main() { float v = float(texture(values, at + 0.0003).r) / 255.0; color = vec4(v, 1.0 - v, 0.3, "
+            "1.0); }");
     }
     GLuint framebuffer = 0;
     glGenFramebuffers(1, &framebuffer);

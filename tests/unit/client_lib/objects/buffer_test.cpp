@@ -175,5 +175,12 @@ TEST_F(BufferContentTest, AnyLargeOneTravelsInSeveralCommands) {
     EXPECT_EQ(commands, 4);
 }
 
+TEST(Buffer, BeginsWhereMappingsMay) {
+    MapAllocator<std::byte> allocator;
+    std::byte* const memory = allocator.allocate(3);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory) % kMapAlignment, 0u);
+    allocator.deallocate(memory, 3);
+}
+
 }  // namespace
 }  // namespace wall::client

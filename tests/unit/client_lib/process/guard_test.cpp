@@ -31,6 +31,15 @@ void* allocate(std::size_t size) {
 
 }  // namespace
 
+void* operator new(std::size_t size, std::align_val_t alignment) {
+    std::free(allocate(size));  // or it fails
+    const auto unit = static_cast<std::size_t>(alignment);
+    void* memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit);
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 void* operator new(std::size_t size) { return allocate(size); }
 void* operator new[](std::size_t size) { return allocate(size); }
 void operator delete(void* memory) noexcept { std::free(memory); }
