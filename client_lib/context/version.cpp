@@ -19,6 +19,11 @@ bool implemented(const char* command) {
                         [&](const char* name) { return std::strcmp(name, command) == 0; });
 }
 
+/// GL_ARB_internalformat_query2 is not listed yet: for some formats nodes answer what the client does not take (RGB9_E5
+/// with several samples) or takes otherwise (the sizes of generic compressed formats). Nor is
+/// GL_ARB_separate_shader_objects: validation finds a conflict of samplers that another program has resolved.
+constexpr bool kAnswersOfFormats = false;
+
 /// What a version asks for besides its commands, as far as it is known to be missing, and its shading language.
 struct Beyond {
     int major, minor;
@@ -35,7 +40,7 @@ constexpr Beyond kBeyond[] = {
     {4, 0, "4.00", kTextureImageUnits >= 80},
     {4, 1, "4.10", true},
     {4, 2, "4.20", true},
-    {4, 3, "4.30", true},
+    {4, 3, "4.30", kAnswersOfFormats},
 };
 
 /// What no driver need have: it is between the programs and the nodes.
@@ -96,7 +101,6 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_half_float_vertex", nullptr},
     {"GL_ARB_instanced_arrays", "glVertexAttribDivisor"},
     {"GL_ARB_internalformat_query", "glGetInternalformativ"},
-    {"GL_ARB_internalformat_query2", "glGetInternalformati64v"},
     {"GL_ARB_invalidate_subdata", "glInvalidateFramebuffer"},
     {"GL_ARB_map_buffer_alignment", "glMapBuffer"},
     {"GL_ARB_map_buffer_range", "glMapBufferRange"},
@@ -113,7 +117,6 @@ constexpr Extension kExtensions[] = {
     {"GL_ARB_provoking_vertex", "glProvokingVertex"},
     {"GL_ARB_query_buffer_object", "glGetQueryObjectiv"},
     {"GL_ARB_sample_shading", "glMinSampleShading"},
-    {"GL_ARB_separate_shader_objects", "glUseProgramStages"},
     {"GL_ARB_shader_atomic_counter_ops", "glGetActiveAtomicCounterBufferiv"},
     {"GL_ARB_shader_atomic_counters", "glGetActiveAtomicCounterBufferiv"},
     {"GL_ARB_shader_bit_encoding", "glUseProgram"},
