@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -50,9 +51,11 @@ void get_samples(Context& c, const TextureFormat* format, GLenum pname, GLsizei 
 
 /// The client takes images of that format for the target; what it does not know, nodes are not asked about.
 bool is_known(const Context& c, GLenum target, GLenum internal_format) {
-    if (is_removed(c, internal_format)) return false;
-    return target == GL_RENDERBUFFER ? find_renderbuffer_format(internal_format) != nullptr
-                                     : find_texture_format(static_cast<GLint>(internal_format)) != nullptr;
+    if (has_samples(c, target)) {
+        const TextureFormat* format = drawn_format(c, internal_format);
+        return format && (target == GL_RENDERBUFFER || format->use == ImageUse::drawn);
+    }
+    return !is_removed(c, internal_format) && find_texture_format(static_cast<GLint>(internal_format)) != nullptr;
 }
 
 /// What the nodes' drivers say, each asked once.
@@ -75,6 +78,26 @@ GLint64 answer_of(Context& c, GLenum target, GLenum internal_format, std::size_t
     return c.share().format_answers.insert_or_assign(key, std::move(values)).first->second[word];
 }
 
+/// What glGetTexLevelParameter says of a compressed format, whose blocks have no bits for each component: nodes may
+/// have taken another one for a generic format. Nothing: the word is not one of these.
+std::optional<GLint64> bits_of_blocks(GLenum internal_format, GLenum word) {
+    const TextureFormat* format = find_texture_format(static_cast<GLint>(internal_format));
+    if (!format || !format->compressed()) return {};
+    switch (word) {
+        case GL_INTERNALFORMAT_RED_SIZE: return format->bits.red;
+        case GL_INTERNALFORMAT_GREEN_SIZE: return format->bits.green;
+        case GL_INTERNALFORMAT_BLUE_SIZE: return format->bits.blue;
+        case GL_INTERNALFORMAT_ALPHA_SIZE: return format->bits.alpha;
+        default: return {};
+    }
+}
+
+GLint64 answer_to(Context& c, GLenum target, GLenum internal_format, std::size_t word) {
+    const GLint64 answer = answer_of(c, target, internal_format, word);
+    if (answer == 0) return 0;  // not for this target, or no such component
+    return bits_of_blocks(internal_format, glapi::kFormatWords[word]).value_or(answer);
+}
+
 /// What every version of OpenGL 4 answers: nothing that is not supported is an error (GL_ARB_internalformat_query2).
 template <class Out>
 void get_any(Context& c, GLenum target, GLenum internal_format, GLenum pname, GLsizei room, Out* params) {
@@ -90,7 +113,7 @@ void get_any(Context& c, GLenum target, GLenum internal_format, GLenum pname, GL
     }
     const auto index = static_cast<std::size_t>(word - glapi::kFormatWords.begin());
     constexpr GLint64 kMost = std::numeric_limits<Out>::max();
-    if (room > 0) *params = static_cast<Out>(std::min(answer_of(c, target, internal_format, index), kMost));
+    if (room > 0) *params = static_cast<Out>(std::min(answer_to(c, target, internal_format, index), kMost));
 }
 
 template <class Out>

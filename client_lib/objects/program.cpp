@@ -296,8 +296,12 @@ std::span<const std::uint32_t> Executable::words_of(const Uniform& uniform) cons
 }
 
 bool Executable::holds(const Uniform& uniform, std::uint32_t first, std::span<const std::uint32_t> words) const {
-    return std::memcmp(words_.data() + uniform.first + std::size_t{first} * uniform.type->words(), words.data(),
-                       words.size_bytes()) == 0;
+    const std::size_t begin = uniform.first + std::size_t{first} * uniform.type->words();
+    if (std::memcmp(words_.data() + begin, words.data(), words.size_bytes()) != 0) return false;
+    if (uniform.type->base != glapi::UniformBase::sampler) return true;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        if (!was_given(begin + i)) return false;
+    return true;
 }
 
 void Executable::store(Uniform& uniform, std::uint32_t first, std::span<const std::uint32_t> words) {
@@ -305,7 +309,10 @@ void Executable::store(Uniform& uniform, std::uint32_t first, std::span<const st
                 words.size_bytes());
     uniform.stamp = last_change = next_stamp();
     position_.set(static_cast<std::uint32_t>(uniform.location) + first, uniform.type->words(), words);
-    if (uniform.type->base == glapi::UniformBase::sampler) check_samplers();
+    if (uniform.type->base != glapi::UniformBase::sampler) return;
+    given_.resize(words_.size());
+    std::fill_n(given_.begin() + static_cast<std::ptrdiff_t>(uniform.first + first), words.size(), true);
+    check_samplers();
 }
 
 void Executable::bind_block(UniformBlock& block, std::uint32_t binding) {
@@ -351,8 +358,16 @@ void Executable::check_samplers() {
 bool Executable::parts_conflict() const {
     std::map<std::uint32_t, glapi::TextureTarget> targets;  // by unit
     bool conflict = false;
-    for_each_sampler([&](std::uint32_t unit, glapi::TextureTarget target) {
-        conflict |= targets.emplace(unit, target).first->second != target;
+    for_each_part([&](const Executable& part) {
+        for (const Uniform& uniform : part.uniforms) {
+            if (uniform.type->base != glapi::UniformBase::sampler) continue;
+            const auto units = part.words_of(uniform);
+            for (std::size_t i = 0; i < units.size(); ++i) {
+                if (uniform.array && !part.was_given(uniform.first + i)) continue;
+                const glapi::TextureTarget target = uniform.type->texture_target;
+                conflict |= targets.emplace(units[i], target).first->second != target;
+            }
+        }
     });
     return conflict;
 }

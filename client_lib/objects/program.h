@@ -197,10 +197,14 @@ public:
 private:
     void check_samplers();
     bool parts_conflict() const;
+    /// Whether the program has set that word of a sampler. Which elements of an array its shaders read is not known
+    /// here; those that it never set are taken for unused, as drivers find them to be.
+    bool was_given(std::size_t word) const { return word < given_.size() && given_[word]; }
     void for_each_combined(const std::function<void(const Executable&)>& use) const;
     void follow_position(glapi::PositionProgram position);
 
     std::vector<std::uint32_t> words_;
+    std::vector<bool> given_;  ///< which of them are samplers that the program has set; shorter: the rest are not
     std::vector<UniformPlace> places_;  ///< by location
     std::vector<std::uint32_t> unused_locations_;
     bool samplers_conflict_ = false;

@@ -48,6 +48,22 @@ TEST_F(InternalFormats, ThatTheClientDoesNotKnowCanDoNothing) {
     EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
 }
 
+TEST_F(InternalFormats, BlocksHaveTheBitsThatLevelsOfTexturesSay) {
+    answer(GL_TEXTURE_2D, GL_COMPRESSED_RGB);
+    EXPECT_EQ(of(GL_TEXTURE_2D, GL_COMPRESSED_RGB, GL_INTERNALFORMAT_GREEN_SIZE), 4);
+    EXPECT_EQ(of(GL_TEXTURE_2D, GL_COMPRESSED_RGB, GL_INTERNALFORMAT_GREEN_TYPE),
+              place_of(GL_INTERNALFORMAT_GREEN_TYPE));
+    share->format_answers[{GL_TEXTURE_2D, GL_COMPRESSED_RGB}].assign(glapi::kFormatWords.size(), 0);
+    EXPECT_EQ(of(GL_TEXTURE_2D, GL_COMPRESSED_RGB, GL_INTERNALFORMAT_GREEN_SIZE), 0) << "the node has none";
+}
+
+TEST_F(InternalFormats, WhatIsOnlySampledHasNoTexturesOfSeveralSamples) {
+    answer(GL_TEXTURE_2D, GL_RGB9_E5);
+    answer(GL_TEXTURE_2D_MULTISAMPLE, GL_RGB9_E5);
+    EXPECT_EQ(of(GL_TEXTURE_2D, GL_RGB9_E5, GL_INTERNALFORMAT_RED_SIZE), place_of(GL_INTERNALFORMAT_RED_SIZE));
+    EXPECT_EQ(of(GL_TEXTURE_2D_MULTISAMPLE, GL_RGB9_E5, GL_INTERNALFORMAT_RED_SIZE), 0);
+}
+
 TEST_F(InternalFormats, WordsThatAreNoneAreErrors) {
     EXPECT_EQ(of(GL_TEXTURE_2D, GL_RGBA8, GL_TEXTURE_WIDTH), -99);
     EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});

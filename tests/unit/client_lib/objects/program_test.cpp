@@ -70,6 +70,28 @@ TEST(ExecutableTest, LocationsAreThoseOfTheShaders) {
     EXPECT_FALSE(Executable::make({}, told)) << "weights[1] has it";
 }
 
+TEST(ExecutableTest, ElementsOfSamplerArraysThatWereNeverSetDoNotConflict) {
+    auto told = reflection();
+    told.uniforms.push_back({GL_SAMPLER_3D, 2, false, true, "volumes", {0, 0}});
+    const auto e = Executable::make({}, told);
+    ASSERT_TRUE(e);
+    EXPECT_FALSE(e->samplers_conflict()) << "all are unit 0, and perhaps none is read";
+    const auto set = [&](std::size_t uniform, std::uint32_t element, std::uint32_t unit) {
+        e->store(e->uniforms[uniform], element, std::span(&unit, 1));
+    };
+    set(3, 1, 1);
+    set(4, 1, 1);
+    EXPECT_TRUE(e->samplers_conflict());
+    set(4, 1, 2);
+    EXPECT_FALSE(e->samplers_conflict());
+    const std::uint32_t first_unit = 0;
+    EXPECT_FALSE(e->holds(e->uniforms[3], 0, std::span(&first_unit, 1))) << "it was never set";
+    set(3, 0, 0);
+    EXPECT_TRUE(e->holds(e->uniforms[3], 0, std::span(&first_unit, 1)));
+    set(4, 0, 0);
+    EXPECT_TRUE(e->samplers_conflict());
+}
+
 TEST(ExecutableTest, AnArrayOfArraysHasOneForEachInnerOne) {
     glapi::ProgramReflection told;
     told.linked = true;
