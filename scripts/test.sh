@@ -59,11 +59,11 @@ stage_conformance-all() {
   say "conformance tests: all that the walls offer, also what the usual run takes samples of"
   build release || { failed+=(conformance-all); return; }
   local wall
-  for wall in "1x1 1280x1024" "4x3 144x150"; do
-    # shellcheck disable=SC2086  # two words
+  for wall in "1x1 1280x1024" "4x3 144x150" "1x1 1280x1024 --fbo" "4x3 144x150 --fbo"; do
+    # shellcheck disable=SC2086  # two or three words
     set -- $wall
-    WALLGL_BUILD="$PWD/build/release" tests/conformance/piglit.py --tiles "$1" --tile-size "$2" \
-      --report "build/release/test-output/conformance-all-$1" || failed+=("conformance-all ($1)")
+    WALLGL_BUILD="$PWD/build/release" tests/conformance/piglit.py --tiles "$1" --tile-size "$2" ${3:+"$3"} \
+      --report "build/release/test-output/conformance-all-$1${3:-}" || failed+=("conformance-all ($1${3:+ $3})")
   done
 }
 

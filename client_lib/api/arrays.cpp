@@ -8,6 +8,7 @@
 #include "client_lib/context/array_copies.h"
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/based_instances.h"
+#include "client_lib/context/bound_arrays.h"
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/capture_use.h"
 #include "client_lib/context/client_arrays.h"
@@ -67,7 +68,7 @@ struct Given {
 template <class E>
 void define(Context& c, unsigned i, const Allowed& allowed, const Given& given) {
     if (!(allowed.types & type_bit(given.type))) return c.error(GL_INVALID_ENUM);
-    if (given.stride < 0) return c.error(GL_INVALID_VALUE);
+    if (!is_stride(c, given.stride)) return c.error(GL_INVALID_VALUE);
     const bool packed = glstate::is_packed(given.type);
     if (allowed.bgra && given.size == GL_BGRA) {
         if (!packed && given.type != GL_UNSIGNED_BYTE) return c.error(GL_INVALID_OPERATION);
@@ -238,7 +239,8 @@ bool check_indices(Context& c, GLenum mode, GLsizei count, GLenum type, GLsizei 
     if (count < 0 || instances < 0) return c.error(GL_INVALID_VALUE), false;
     if (!check_mode(c, mode)) return false;
     if (!is_index_type(type)) return c.error(GL_INVALID_ENUM), false;
-    if (c.profile.es == 30 && c.captures->captures()) return c.error(GL_INVALID_OPERATION), false;  // 2.15.2
+    // OpenGL ES 3.0.6, 2.15.2; not where geometry shaders are (GL_EXT_geometry_shader).
+    if (c.profile.is_es() && c.profile.es < 31 && c.captures->captures()) return c.error(GL_INVALID_OPERATION), false;
     return true;
 }
 

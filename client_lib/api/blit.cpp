@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // glBlitFramebuffer (OpenGL 4.6, 18.3.1). Every node copies by itself out of a framebuffer object, which all of them
-// hold. Out of a window, of which each holds a part, the pixels are gathered first and given to the nodes as one.
+// hold, and out of a window that all of them hold as a whole. Out of one of which each holds a part, the pixels are
+// gathered first and given to the nodes as one.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <mutex>
+#include <optional>
 
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/gathered_window.h"
@@ -27,11 +30,6 @@ bool is_absurd(const Corners& c) {
                                [](GLint v) { return v < -kFarthest || v > kFarthest; });
 }
 
-std::uint32_t samples_of(Context& c, const std::shared_ptr<Framebuffer>& framebuffer) {
-    std::lock_guard lock(c.share().mutex);
-    return framebuffer ? framebuffer->samples() : 0;
-}
-
 /// Buffers of `mask` that both have.
 GLbitfield common_buffers(Context& c, GLbitfield mask) {
     if (!read_color_format(c) || !draw_color_format(c)) mask &= ~GLbitfield{GL_COLOR_BUFFER_BIT};
@@ -41,11 +39,10 @@ GLbitfield common_buffers(Context& c, GLbitfield mask) {
 }
 
 GLenum multisample_error(Context& c, const Corners& from, const Corners& to) {
-    const FramebufferUse& use = *c.framebuffers;
-    const std::uint32_t read = samples_of(c, use.read), draw = samples_of(c, use.draw);
+    const std::uint32_t read = samples_read(c), draw = samples_drawn(c);
     if (read != 0 && draw != 0 && read != draw) return GL_INVALID_OPERATION;
     const bool same_size = from.box().width == to.box().width && from.box().height == to.box().height;
-    return read != 0 && !same_size ? GL_INVALID_OPERATION : GL_NO_ERROR;
+    return (read != 0 || draw != 0) && !same_size ? GL_INVALID_OPERATION : GL_NO_ERROR;
 }
 
 /// Whole numbers go to the same kind of them, and nothing lies between two of them.
@@ -72,24 +69,37 @@ bool draws_to_itself(const FramebufferUse& use) {
            });
 }
 
-bool same_bits(const ComponentBits& a, const ComponentBits& b) { return a.depth == b.depth && a.stencil == b.stencil; }
+/// What depth and stencil values are kept in.
+struct DepthFormat {
+    GLenum type = GL_UNSIGNED_NORMALIZED;
+    unsigned depth = 0, stencil = 0;  ///< bits
+};
 
-/// Depth and stencil are copied between images of one format only.
-bool depths_differ(const FramebufferUse& use, GLbitfield mask) {
-    if (!use.read || !use.draw || (mask & (GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT)) == 0) return false;
+/// Of the image that has depth, or stencil values; or of the window.
+DepthFormat depth_format(Context& c, const std::shared_ptr<Framebuffer>& framebuffer, const DrawTarget& window,
+                         std::optional<ImageShape> (Framebuffer::*shape)() const) {
+    if (!framebuffer) return {.depth = window.format().depth_bits, .stencil = window.format().stencil_bits};
+    std::lock_guard lock(c.share().mutex);
+    const auto image = (*framebuffer.*shape)();
+    return image ? DepthFormat{image->format->component_type, image->bits.depth, image->bits.stencil} : DepthFormat{};
+}
+
+/// Depth and stencil values are copied between images of one format only; what one of them lacks is not copied.
+bool depths_differ(Context& c, GLbitfield mask) {
+    if ((mask & (GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT)) == 0) return false;
     const auto shape = (mask & GL_DEPTH_BUFFER_BIT) ? &Framebuffer::depth_shape : &Framebuffer::stencil_shape;
-    const auto from = (*use.read.*shape)(), to = (*use.draw.*shape)();
-    return from && to &&
-           (from->format->component_type != to->format->component_type || !same_bits(from->bits, to->bits));
+    const DepthFormat from = depth_format(c, c.framebuffers->read, c.read_target(), shape),
+                      to = depth_format(c, c.framebuffers->draw, c.draw_target(), shape);
+    const bool depths = from.depth != 0 && to.depth != 0, stencils = from.stencil != 0 && to.stencil != 0;
+    return (depths && (from.depth != to.depth || from.type != to.type)) || (stencils && from.stencil != to.stencil);
 }
 
 /// What OpenGL ES forbids beyond that (OpenGL ES 3.0.6, 4.3.3).
 GLenum es_error(Context& c, const Corners& from, const Corners& to, GLbitfield mask) {
     const FramebufferUse& use = *c.framebuffers;
-    if (samples_of(c, use.draw) != 0 || (samples_of(c, use.read) != 0 && from != to)) return GL_INVALID_OPERATION;
+    if (samples_drawn(c) != 0 || (samples_read(c) != 0 && from != to)) return GL_INVALID_OPERATION;
     std::lock_guard lock(c.share().mutex);
-    if ((mask & GL_COLOR_BUFFER_BIT) && draws_to_itself(use)) return GL_INVALID_OPERATION;
-    return depths_differ(use, mask) ? GL_INVALID_OPERATION : GL_NO_ERROR;
+    return (mask & GL_COLOR_BUFFER_BIT) && draws_to_itself(use) ? GL_INVALID_OPERATION : GL_NO_ERROR;
 }
 
 void blit(Context& c, const Corners& from, const Corners& to, GLbitfield mask, GLenum filter) {
@@ -112,11 +122,12 @@ void BlitFramebuffer(Context& c, GLint from_x0, GLint from_y0, GLint from_x1, GL
     if (const GLenum error = multisample_error(c, from, to)) return c.error(error);
     mask = common_buffers(c, mask);
     if (const GLenum error = whole_error(c, mask, filter)) return c.error(error);
+    if (depths_differ(c, mask)) return c.error(GL_INVALID_OPERATION);
     if (const GLenum error = c.profile.is_es() ? es_error(c, from, to, mask) : GLenum{GL_NO_ERROR})
         return c.error(error);
     if (mask == 0 || from.empty() || to.empty()) return;
     c.flush_block();
-    if (c.framebuffers->read) return blit(c, from, to, mask, filter);
+    if (c.framebuffers->read || can_copy_out_of_window(c)) return blit(c, from, to, mask, filter);
     // What lies outside of the window is not written; outside of what was gathered of it neither.
     const PixelBox inside = clip_to_window(c, from.box());
     if (inside.empty()) return;

@@ -161,7 +161,7 @@ void fill(Context& c, GLenum image, GLint number, const Part& part, GLenum forma
     call.format = format, call.type = type;
     call.pixels = pixels.data();
     call.store.alignment = 1;
-    define_sub_image(c, call);
+    change_sub_image(c, call);
 }
 
 /// What a texture of several samples a texel holds was drawn, so it is cleared as what is drawn to. Slice by slice.
@@ -222,8 +222,8 @@ void clear_texture(Context& c, GLuint name, GLint number, const std::optional<Pa
         !inside(part.z, part.depth, slices))
         return c.error(GL_INVALID_OPERATION);
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
-    const bool depth = internal->base == GL_DEPTH_COMPONENT || internal->base == GL_DEPTH_STENCIL;
-    if (depth ? format != internal->base : !are_colors(format)) return c.error(GL_INVALID_OPERATION);
+    if (are_colors(internal->base) ? !are_colors(format) : format != internal->base)
+        return c.error(GL_INVALID_OPERATION);
     if (glapi::is_integer_format(format) != internal->whole()) return c.error(GL_INVALID_OPERATION);
     if (info.samples) return clear_samples(c, named.texture(), *internal, part, format, type, data);
     const FromMemory from_memory(c);

@@ -35,7 +35,8 @@ struct Side {
     GLsizei width = 0, height = 0, layers = 0;  ///< 0: there is no such image
 
     bool is_blocks() const { return blocks_format(internal_format) != 0; }
-    GLsizei unit() const { return is_blocks() ? kBlockSide : 1; }  ///< texels a side that go together
+    /// Texels that go together.
+    glapi::BlockSize unit() const { return is_blocks() ? block_size(internal_format) : glapi::BlockSize{1, 1}; }
 };
 
 const glapi::TextureTargetInfo* copied_target(GLenum word) {
@@ -97,23 +98,24 @@ bool lies_inside(const Side& side, const WorkedSize& size) {
 
 /// Of the part that is copied from; it may end with the image.
 bool is_aligned(const Side& from, const WorkedSize& size) {
-    const GLsizei unit = from.unit();
-    const auto fits = [&](GLint at, GLsizei count, GLsizei all) {
-        return at % unit == 0 && (count % unit == 0 || std::int64_t{at} + count == all);
-    };
-    return fits(from.image.x, size.width, from.width) && fits(from.image.y, size.height, from.height);
+    const glapi::BlockSize unit = from.unit();
+    return is_whole_blocks(from.image.x, size.width, from.width, unit.width) &&
+           is_whole_blocks(from.image.y, size.height, from.height, unit.height);
 }
 
 /// What the part becomes in the other image: blocks count for as many texels there as they are made of here.
 WorkedSize size_in(const Side& to, const Side& from, const WorkedSize& size) {
-    const auto scaled = [&](GLsizei texels) {
-        return static_cast<GLsizei>(std::int64_t{texels} * to.unit() / from.unit());
+    const auto scaled = [](GLsizei texels, GLsizei by, GLsizei of) {
+        return static_cast<GLsizei>(std::int64_t{texels} * by / of);
     };
-    return {scaled(size.width), scaled(size.height), size.depth};
+    const glapi::BlockSize here = from.unit(), there = to.unit();
+    return {scaled(size.width, there.width, here.width), scaled(size.height, there.height, here.height), size.depth};
 }
 
 GLenum part_error(const Side& from, const Side& to, const WorkedSize& size) {
-    if (!is_aligned(from, size) || to.image.x % to.unit() != 0 || to.image.y % to.unit() != 0) return GL_INVALID_VALUE;
+    const glapi::BlockSize unit = to.unit();
+    if (!is_aligned(from, size) || to.image.x % unit.width != 0 || to.image.y % unit.height != 0)
+        return GL_INVALID_VALUE;
     if (!lies_inside(from, size) || !lies_inside(to, size_in(to, from, size))) return GL_INVALID_VALUE;
     return GL_NO_ERROR;
 }

@@ -44,10 +44,8 @@ const SurfaceFormat& format_of(Context& c) {
 }
 
 double samples_of(Context& c) {
-    const auto& framebuffer = c.framebuffers->draw;
-    if (!framebuffer) return format_of(c).samples;
-    std::lock_guard lock(c.share().mutex);
-    const auto samples = static_cast<GLsizei>(framebuffer->samples());
+    const auto samples = static_cast<GLsizei>(samples_drawn(c));
+    if (!c.framebuffers->draw) return samples;
     return rounded_samples(samples,
                            static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_FRAMEBUFFER_SAMPLES, kUsualSamples)));
 }
@@ -281,6 +279,12 @@ const Special kSpecials[] = {
     {GL_MAX_LABEL_LENGTH, 1, constant<static_cast<int>(ObjectLabels::kMostText)>},
     {GL_TIMESTAMP, 1, [](Context&, double* out) { *out = static_cast<double>(timestamp(Fence::Clock::now())); }},
     {GL_CONTEXT_FLAGS, 1, [](Context& c, double* out) { *out = c.profile.flags(); }},
+    {GL_FRAGMENT_SHADER_DISCARDS_SAMPLES_EXT, 1, constant<1>},
+    {GL_CONTEXT_ROBUST_ACCESS, 1, [](Context& c, double* out) { *out = c.profile.robust; }},
+    {GL_RESET_NOTIFICATION_STRATEGY, 1,
+     [](Context& c, double* out) {
+         *out = c.profile.notifies_of_resets ? GL_LOSE_CONTEXT_ON_RESET : GL_NO_RESET_NOTIFICATION;
+     }},
     {GL_CONTEXT_PROFILE_MASK, 1, [](Context& c, double* out) { *out = c.profile.mask(); }},
     {GL_IMPLEMENTATION_COLOR_READ_FORMAT, 1, color_read<&PixelKind::format>},
     {GL_IMPLEMENTATION_COLOR_READ_TYPE, 1, color_read<&PixelKind::type>},

@@ -64,6 +64,12 @@ template <auto kField>
 void image_value(Context& c, GLuint unit, double* out) {
     *out = c.get<el::image_unit>(unit).*kField;
 }
+/// Of a unit that was never bound OpenGL ES says another one (OpenGL ES 3.1, table 20.32).
+void image_format(Context& c, GLuint unit, double* out) {
+    const glstate::ImageUnit& image = c.get<el::image_unit>(unit);
+    const bool untouched = glstate::same(image, glstate::ImageUnit{0, 0, 0, 0, GL_READ_ONLY, GL_R8});
+    *out = c.profile.is_es() && untouched ? GLenum{GL_R32UI} : image.format;
+}
 GLuint feedback_buffers(Context&) { return el::feedback_buffer::count; }
 
 /// Of the places for buffers of the bound vertex array object.
@@ -133,7 +139,7 @@ const IndexedWord kWords[] = {
     {GL_IMAGE_BINDING_LAYERED, false, 1, image_units, image_value<&glstate::ImageUnit::layered>},
     {GL_IMAGE_BINDING_LAYER, false, 1, image_units, image_value<&glstate::ImageUnit::layer>},
     {GL_IMAGE_BINDING_ACCESS, false, 1, image_units, image_value<&glstate::ImageUnit::access>},
-    {GL_IMAGE_BINDING_FORMAT, false, 1, image_units, image_value<&glstate::ImageUnit::format>},
+    {GL_IMAGE_BINDING_FORMAT, false, 1, image_units, image_format},
     {GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, false, 1, feedback_buffers,
      buffer_value<GL_TRANSFORM_FEEDBACK_BUFFER_BINDING>},
     {GL_TRANSFORM_FEEDBACK_BUFFER_START, false, 1, feedback_buffers, buffer_value<GL_TRANSFORM_FEEDBACK_BUFFER_START>},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Draws whose arguments lie in a buffer (OpenGL 4.3, 10.4). The client has the buffer's content, reads them and draws;
 // what only nodes have of it, because transform feedback wrote it, is fetched first.
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -28,6 +29,15 @@ struct Commands {
     GLsizei count, stride;
 };
 
+/// In OpenGL ES everything that is drawn comes from buffers, by a vertex array object (OpenGL ES 3.1, 10.5).
+bool is_all_in_buffers(const Context& c) {
+    if (!c.profile.is_es()) return true;
+    const auto& arrays = c.state.vertex_arrays;
+    return arrays.vertex_array_object != 0 && std::ranges::none_of(arrays.attrib_array, [](const auto& array) {
+               return array.enabled && array.buffer == 0;
+           });
+}
+
 /// What lies there in the buffer of commands, or, where there is none and it may be so, in memory. Nothing, and an
 /// error: not all of it is in the buffer, which may also be mapped.
 template <class Command>
@@ -35,7 +45,7 @@ std::vector<Command> read_commands(Context& c, Commands wanted) {
     const ClientName id(c.state.local.draw_indirect_buffer);
     const bool anywhere = !c.profile.core && !c.profile.is_es();
     const auto refuse = [&](GLenum error) { return c.error(error), std::vector<Command>(); };
-    if (!c.at_once() || (!id && !anywhere)) return refuse(GL_INVALID_OPERATION);
+    if (!c.at_once() || (!id && !anywhere) || !is_all_in_buffers(c)) return refuse(GL_INVALID_OPERATION);
     if (wanted.place % sizeof(GLuint) != 0 || wanted.count < 0 || wanted.stride < 0 || wanted.stride % 4 != 0)
         return refuse(GL_INVALID_VALUE);
     const std::size_t step = wanted.stride != 0 ? static_cast<std::size_t>(wanted.stride) : sizeof(Command);

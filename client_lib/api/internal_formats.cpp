@@ -11,6 +11,7 @@
 
 #include "client_lib/context/ask_one.h"
 #include "client_lib/context/context.h"
+#include "client_lib/context/es_words.h"
 #include "client_lib/context/limits.h"
 #include "client_lib/context/param_commands.h"
 #include "client_lib/objects/es_formats.h"
@@ -22,22 +23,31 @@
 namespace wall::client::api {
 namespace {
 
-/// Of what has several samples. OpenGL ES 3.0 knows renderbuffers only.
+/// Of what has several samples: before OpenGL ES 3.1 there are only renderbuffers.
 bool has_samples(const Context& c, GLenum target) {
     if (target == GL_RENDERBUFFER) return true;
     const auto* info = target_of(target);
-    return !c.profile.is_es() && info && info->samples;
+    return info && info->samples && (!c.profile.is_es() || is_es_word(c.profile.es, target));
+}
+
+/// Of formats without a size OpenGL ES says so of those that glTexImage has for colours (OpenGL ES 3.2, 20.3.1).
+bool is_said_to_be_drawn(GLenum internal_format, const TextureFormat& format) {
+    if (internal_format == GL_RGB || internal_format == GL_RGBA) return true;
+    return internal_format != GL_STENCIL_INDEX && (format.base == GL_STENCIL_INDEX || is_sized(format));
 }
 
 /// Null: images of that format are not drawn to.
 const TextureFormat* drawn_format(const Context& c, GLenum internal_format) {
     const TextureFormat* format = find_renderbuffer_format(internal_format);
     if (!format || is_removed(c, internal_format)) return nullptr;
-    return !c.profile.is_es() || es_is_drawn(c.profile.es, format->answer) ? format : nullptr;
+    if (!c.profile.is_es()) return format;
+    return is_said_to_be_drawn(internal_format, *format) && es_is_drawn(c.profile.es, format->answer) ? format
+                                                                                                      : nullptr;
 }
 
 std::vector<GLsizei> samples_of(Context& c, const TextureFormat& format) {
-    if (c.profile.es == 30 && format.whole()) return {};
+    if (!has_samples_of_integers(c.profile) && format.whole()) return {};
+    if (c.profile.is_es() && format.base != GL_STENCIL_INDEX && !is_sized(format)) return {};
     return sample_counts(static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_SAMPLES, kUsualSamples)));
 }
 

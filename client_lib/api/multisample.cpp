@@ -8,16 +8,6 @@
 #include "client_lib/context/framebuffer_binding.h"
 
 namespace wall::client::api {
-namespace {
-
-std::uint32_t samples_drawn(Context& c) {
-    const auto& framebuffer = c.framebuffers->draw;
-    std::lock_guard lock(c.share().mutex);
-    return framebuffer ? framebuffer->samples() : 0;
-}
-
-}  // namespace
-
 // There are no more than 32 samples, which one word has.
 void SampleMaski(Context& c, GLuint word, GLbitfield mask) {
     if (word != 0) return c.error(GL_INVALID_VALUE);
@@ -29,7 +19,7 @@ void GetMultisamplefv(Context& c, GLenum pname, GLuint index, GLfloat* position)
     const std::uint32_t samples = samples_drawn(c);
     if (index >= samples) return c.error(GL_INVALID_VALUE);
     const auto answer = ask_one_node(c, "glGetMultisamplefv", [&](wire::PackBuffer& buffer, RequestId request) {
-        glapi::pack::SamplePosition(buffer, request, samples, index);
+        glapi::pack::SamplePosition(buffer, request, samples, index, c.framebuffers->draw == nullptr);
     });
     std::array<GLfloat, 2> place{0.5f, 0.5f};
     if (answer && answer->bytes.size() == sizeof place) std::memcpy(place.data(), answer->bytes.data(), sizeof place);

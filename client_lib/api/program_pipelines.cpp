@@ -31,7 +31,7 @@ std::shared_ptr<ProgramPipeline> pipeline_of(Context& c, GLuint name) {
     if (name == 0 || !names.known(name)) return c.error(GL_INVALID_OPERATION), nullptr;
     auto found = names.find(name);
     if (found) return found;
-    names.put(name, found = std::make_shared<ProgramPipeline>(name));
+    names.put(name, found = std::make_shared<ProgramPipeline>(name, c.profile.is_es()));
     std::lock_guard lock(c.share().mutex);
     c.share().by_id[found->id] = found;
     return found;

@@ -12,13 +12,13 @@ namespace {
 constexpr GLsizei kUsualSize = 16384;
 
 /// OpenGL ES has storage of sized formats only (OpenGL ES 2.0, 4.4.3), and none that nothing could be drawn to.
-bool is_es_storage(unsigned version, const TextureFormat& format) {
+bool is_es_storage(unsigned version, GLenum internal_format, const TextureFormat& format) {
+    if (internal_format == GL_STENCIL_INDEX) return false;
     return (format.base == GL_STENCIL_INDEX || is_sized(format)) && es_is_drawn(version, format.answer);
 }
 
-/// Whole numbers have one sample a pixel in OpenGL ES 3.0 (4.4.2).
 GLsizei most_samples_of(Context& c, const TextureFormat& format) {
-    if (c.profile.es == 30 && format.whole()) return 0;
+    if (!has_samples_of_integers(c.profile) && format.whole()) return 0;
     return static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_SAMPLES, kUsualSamples));
 }
 
@@ -78,7 +78,8 @@ void RenderbufferStorageMultisample(Context& c, GLenum target, GLsizei samples, 
     const auto renderbuffer = c.framebuffers->renderbuffer;
     if (!renderbuffer) return c.error(GL_INVALID_OPERATION);
     const TextureFormat* format = find_renderbuffer_format(internal_format);
-    if (!format || (c.profile.is_es() && !is_es_storage(c.profile.es, *format))) return c.error(GL_INVALID_ENUM);
+    if (!format || (c.profile.is_es() && !is_es_storage(c.profile.es, internal_format, *format)))
+        return c.error(GL_INVALID_ENUM);
     const auto most = static_cast<GLsizei>(limit_of(c.caps(), GL_MAX_RENDERBUFFER_SIZE, kUsualSize));
     if (width < 0 || width > most || height < 0 || height > most) return c.error(GL_INVALID_VALUE);
     const GLsizei most_samples = most_samples_of(c, *format);

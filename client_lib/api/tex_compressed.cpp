@@ -93,20 +93,23 @@ GLenum sub_image_error(const TextureLevel& level, const Image& part, const Place
     if (!inside(at.x, part.width, level.width) || !inside(at.y, part.height, level.height) ||
         !inside(at.z, part.depth, level.depth))
         return GL_INVALID_VALUE;
-    if (!is_whole_blocks(at.x, part.width, level.width) || !is_whole_blocks(at.y, part.height, level.height))
+    const auto block = block_size(part.format);
+    if (!is_whole_blocks(at.x, part.width, level.width, block.width) ||
+        !is_whole_blocks(at.y, part.height, level.height, block.height))
         return GL_INVALID_OPERATION;
     return static_cast<std::size_t>(part.bytes) == all_bytes(part) ? GL_NO_ERROR : GL_INVALID_VALUE;
 }
 
 void copy_blocks(TextureLevel& level, const Image& part, const Place& at, const std::byte* from) {
     const std::size_t slice = blocks_bytes(level.internal_format, level.width, level.height),
-                      row = blocks_bytes(level.internal_format, level.width, kBlockSide),
-                      part_row = blocks_bytes(part.format, part.width, kBlockSide);
-    const std::size_t left = blocks_bytes(part.format, at.x, kBlockSide);
+                      row = row_of_blocks_bytes(level.internal_format, level.width),
+                      part_row = row_of_blocks_bytes(part.format, part.width);
+    const std::size_t left = row_of_blocks_bytes(part.format, at.x);
+    const GLsizei side = block_size(part.format).height;
     for (GLsizei z = 0; z < part.depth; ++z)
-        for (GLsizei done = 0; done < part.height; done += kBlockSide, from += part_row)
+        for (GLsizei done = 0; done < part.height; done += side, from += part_row)
             std::memcpy(level.pixels.data() + static_cast<std::size_t>(at.z + z) * slice +
-                            static_cast<std::size_t>((at.y + done) / kBlockSide) * row + left,
+                            static_cast<std::size_t>((at.y + done) / side) * row + left,
                         from, part_row);
 }
 
@@ -404,21 +407,14 @@ struct BlockPart {
 
 /// Whole blocks, but at the level's end.
 bool are_whole_blocks(const BlockPart& part, const TextureLevel& level) {
-    return is_whole_blocks(part.x, part.width, level.width) && is_whole_blocks(part.y, part.height, level.height);
+    const auto block = block_size(level.internal_format);
+    return is_whole_blocks(part.x, part.width, level.width, block.width) &&
+           is_whole_blocks(part.y, part.height, level.height, block.height);
 }
 
 void append(std::vector<std::byte>& out, const TextureLevel& level, const BlockPart& part, GLint slice) {
-    const auto bytes_of = [&](GLsizei width, GLsizei height) {
-        return blocks_bytes(level.internal_format, width, height);
-    };
-    const std::size_t block = bytes_of(kBlockSide, kBlockSide), row = bytes_of(level.width, kBlockSide);
-    const std::size_t wanted = bytes_of(part.width, kBlockSide);
-    const std::byte* at = level.pixels.data() + bytes_of(level.width, level.height) * static_cast<std::size_t>(slice);
-    for (GLint y = part.y; y < part.y + part.height; y += kBlockSide) {
-        const std::byte* from =
-            at + row * static_cast<std::size_t>(y / kBlockSide) + block * static_cast<std::size_t>(part.x / kBlockSide);
-        out.insert(out.end(), from, from + wanted);
-    }
+    const auto blocks = cut_blocks(level, {part.x, part.y, slice, part.width, part.height, 1, 0});
+    out.insert(out.end(), blocks.begin(), blocks.end());
 }
 
 /// Faces that are not alike are no cube.

@@ -52,7 +52,7 @@ bool formats_agree(const TextureFormat& internal, GLenum format) {
 
 /// Whether nodes make its texels of pixels; a format of blocks may be one that they only take as such.
 bool is_compressed_online(const TextureFormat& internal) {
-    return !glapi::is_etc2(static_cast<GLenum>(internal.internal_format));
+    return !glapi::is_only_given(static_cast<GLenum>(internal.internal_format));
 }
 
 GLint most_layers(Context& c) { return static_cast<GLint>(limit_of(c.caps(), GL_MAX_ARRAY_TEXTURE_LAYERS, 2048)); }
@@ -91,7 +91,7 @@ GLenum image_error(Context& c, const ImageCall& call, const TextureFormat* inter
     if (!formats_agree(*internal, call.format)) return GL_INVALID_OPERATION;
     if (!is_compressed_online(*internal)) return GL_INVALID_OPERATION;
     const bool volume = glapi::spatial_dimensions_of(info_of(call)) == 3;
-    if (depth_like(internal->base) && volume) return GL_INVALID_OPERATION;
+    if (volume && (depth_like(internal->base) || internal->base == GL_STENCIL_INDEX)) return GL_INVALID_OPERATION;
     const auto blocks = static_cast<GLenum>(internal->internal_format);  // not what a driver chooses
     if (volume && glapi::block_bytes(blocks) != 0 && !glapi::is_for_volumes(blocks)) return GL_INVALID_OPERATION;
     return GL_NO_ERROR;
@@ -380,7 +380,9 @@ void define_image(Context& c, ImageCall call) {
 
 /// Of an image that the nodes compress.
 bool whole_blocks(const ImageCall& part, const TextureLevel& level) {
-    return is_whole_blocks(part.x, part.width, level.width) && is_whole_blocks(part.y, part.height, level.height);
+    const auto block = block_size(level.internal_format);
+    return is_whole_blocks(part.x, part.width, level.width, block.width) &&
+           is_whole_blocks(part.y, part.height, level.height, block.height);
 }
 
 GLenum sub_image_error(Context& c, const ImageCall& call) {
@@ -407,6 +409,10 @@ void define_sub_image(Context& c, ImageCall call) {
         if (!pixels) call.type = desktop_type(call.type);
         else if (const GLenum error = adopt_es_pixels(call, *pixels)) return c.error(error);
     }
+    change_sub_image(c, call);
+}
+
+void change_sub_image(Context& c, ImageCall call) {
     if (const GLenum error = sub_image_error(c, call)) return c.error(error);
     if (texels(call) == 0 || !find_pixels(c, call) || !call.pixels) return;
     change_level(c, call, unpacked(c, call));
@@ -505,6 +511,17 @@ void copy_image(Context& c, ImageCall call, GLenum internal_format, From from, c
     store_level(c, call, copied(c, call, from.x, from.y, function));
 }
 
+/// Texels that would come from outside of what is read from stay as they are, as Mesa has it (OpenGL 4.6, 18.2.1 says
+/// nothing of them).
+void clip_copy(Context& c, ImageCall& call, From& from) {
+    const PixelBox inside = clip_to_window(c, {from.x, from.y, call.width, call.height});
+    call.x += inside.x - from.x;
+    call.y += inside.y - from.y;
+    call.width = std::max(inside.width, 0);
+    call.height = std::max(inside.height, 0);
+    from = {inside.x, inside.y};
+}
+
 void copy_sub_image(Context& c, ImageCall call, From from, const char* function) {
     const auto texture = target_word(call.target) ? bound_texture(c, call.target) : nullptr;
     const TextureLevel* level = texture ? texture->find_level(face_of(call.target), call.level) : nullptr;
@@ -513,6 +530,7 @@ void copy_sub_image(Context& c, ImageCall call, From from, const char* function)
     if (!may_read_pixels(c)) return;
     if (const GLenum error = sub_image_error(c, call)) return c.error(error);
     if (!may_copy(c, *internal)) return c.error(GL_INVALID_OPERATION);
+    clip_copy(c, call, from);
     if (texels(call) == 0) return;
     if (can_copy_on_nodes(c, call, *internal, stored_bits(*internal, level->format, level->type), from.x, from.y))
         return copy_on_nodes(c, call, from.x, from.y);

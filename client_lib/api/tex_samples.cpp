@@ -4,6 +4,7 @@
 #include "client_lib/context/limits.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/context/texture_image.h"
+#include "client_lib/objects/es_formats.h"
 #include "client_lib/objects/maps.h"
 #include "client_lib/objects/texture_formats.h"
 #include "client_lib/objects/texture_view.h"
@@ -12,8 +13,9 @@ namespace wall::client::api {
 namespace {
 
 /// What several samples may be kept of.
-bool renderable(const TextureFormat* format) {
-    return format && format->use == ImageUse::drawn && format->internal_format > 4;
+bool renderable(const Context& c, const TextureFormat* format) {
+    if (!format || format->use != ImageUse::drawn || format->internal_format <= 4) return false;
+    return !c.profile.is_es() || es_is_drawn(c.profile.es, format->answer);
 }
 
 GLsizei most_samples(Context& c, const TextureFormat& format) {
@@ -32,7 +34,8 @@ void define_samples(Context& c, const ImageCall& call, GLsizei samples, GLboolea
     if (!info || !info->samples || glapi::dimensions_of(*info) != call.dimensions) return c.error(c.target_error);
     const TextureFormat* format = find_texture_format(call.internal_format);
     if (for_good && (!format || !is_sized(*format))) return c.error(GL_INVALID_ENUM);
-    if (!renderable(format)) return c.error(GL_INVALID_OPERATION);
+    // OpenGL ES 3.1, 8.8; OpenGL 4.5, 8.8.
+    if (!renderable(c, format)) return c.error(c.profile.is_es() ? GL_INVALID_ENUM : GL_INVALID_OPERATION);
     const GLsizei most = most_samples(c, *format);
     const bool allowed = samples <= most, fits = legal_size(c, call);
     TextureLevel level;

@@ -57,7 +57,8 @@ void define_storage(Context& c, ImageCall call, GLsizei levels) {
     if (format->compressed() &&
         !glapi::may_have_blocks(*target_word(call.target)->info, static_cast<GLenum>(format->answer)))
         return c.error(GL_INVALID_OPERATION);
-    const bool depth = format->base == GL_DEPTH_COMPONENT || format->base == GL_DEPTH_STENCIL,
+    const bool depth = format->base == GL_DEPTH_COMPONENT || format->base == GL_DEPTH_STENCIL ||
+                       format->base == GL_STENCIL_INDEX,
                volume = glapi::spatial_dimensions_of(*target_word(call.target)->info) == 3;
     if (depth && volume) return c.error(GL_INVALID_OPERATION);
     const PixelKind kind = exact_pixels(*format, format->bits);
@@ -72,7 +73,7 @@ void define_storage(Context& c, ImageCall call, GLsizei levels) {
         for (unsigned face = 0; face < glapi::face_count(info); ++face) {
             ImageCall image = call;
             image.target = glapi::image_target(info, face);
-            if (glapi::is_etc2(static_cast<GLenum>(call.internal_format))) store_empty_blocks(c, image);
+            if (glapi::is_only_given(static_cast<GLenum>(call.internal_format))) store_empty_blocks(c, image);
             else store_level(c, image, {call.format, call.type, {}});
         }
     std::lock_guard lock(c.share().mutex);

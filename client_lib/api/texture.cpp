@@ -88,7 +88,7 @@ bool may_have_mipmaps(const TextureLevel& base, unsigned es) {
     const TextureFormat* format = find_texture_format(base.internal_format);
     if (!format || format->whole() || format->base == GL_DEPTH_STENCIL || format->base == GL_STENCIL_INDEX)
         return false;
-    if (glapi::is_etc2(static_cast<GLenum>(base.internal_format))) return false;
+    if (glapi::is_only_given(static_cast<GLenum>(base.internal_format))) return false;
     return es == 0 || !is_sized(*format) ||
            (format->base != GL_DEPTH_COMPONENT && es_is_drawn(es, base.internal_format));
 }

@@ -209,21 +209,21 @@ void bind_at(Context& c, GLuint place, ClientName buffer, GLintptr offset, GLsiz
 void VertexAttribPointer(Context& c, GLuint index, GLint size, GLenum type, GLboolean normalized, GLsizei stride,
                          const void* pointer) {
     if (c.profile.is_es()) type = desktop_type(type);
-    if (index >= kVertexAttributes || stride < 0) return c.error(GL_INVALID_VALUE);
+    if (index >= kVertexAttributes || !is_stride(c, stride)) return c.error(GL_INVALID_VALUE);
     if (const GLenum error = error_of_format(c, size, type, normalized != GL_FALSE)) return c.error(error);
     if (!may_point(c, pointer)) return c.error(GL_INVALID_OPERATION);
     define(c, index, {size, type, stride, pointer, normalized != GL_FALSE, glstate::kAsFloats});
 }
 
 void VertexAttribIPointer(Context& c, GLuint index, GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    if (index >= kVertexAttributes || stride < 0) return c.error(GL_INVALID_VALUE);
+    if (index >= kVertexAttributes || !is_stride(c, stride)) return c.error(GL_INVALID_VALUE);
     if (const GLenum error = error_of_integers(size, type)) return c.error(error);
     if (!may_point(c, pointer)) return c.error(GL_INVALID_OPERATION);
     define(c, index, {size, type, stride, pointer, false, glstate::kAsIntegers});
 }
 
 void VertexAttribLPointer(Context& c, GLuint index, GLint size, GLenum type, GLsizei stride, const void* pointer) {
-    if (index >= kVertexAttributes || stride < 0) return c.error(GL_INVALID_VALUE);
+    if (index >= kVertexAttributes || !is_stride(c, stride)) return c.error(GL_INVALID_VALUE);
     if (const GLenum error = error_of_doubles(size, type)) return c.error(error);
     if (!may_point(c, pointer)) return c.error(GL_INVALID_OPERATION);
     define(c, index, {size, type, stride, pointer, false, glstate::kAsDoubles});

@@ -77,6 +77,13 @@ void DepthRangeArrayv(Context& c, GLuint first, GLsizei count, const GLdouble* v
         set_at<el::depth_range, el::depth_range_rest>(c, first + i, clamped(v[0], v[1]));
 }
 
+// Only in OpenGL ES (GL_OES_viewport_array).
+void DepthRangeArrayfvOES(Context& c, GLuint first, GLsizei count, const GLfloat* v) {
+    if (!check(c, first, count)) return;
+    for (GLuint i = 0; i < static_cast<GLuint>(count); ++i, v += 2)
+        set_at<el::depth_range, el::depth_range_rest>(c, first + i, clamped(v[0], v[1]));
+}
+
 void DepthRangeIndexed(Context& c, GLuint index, GLdouble near, GLdouble far) {
     const GLdouble v[] = {near, far};
     DepthRangeArrayv(c, index, 1, v);

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "client_lib/context/es_version.h"
 #include "client_lib/context/vertex_array_objects.h"
 
 namespace wall::client {
@@ -35,6 +36,12 @@ void bind_as_array(Context& c, unsigned attribute) {
     bindings.bindings[attribute] = binding_of(array);
     bindings.bindings[attribute].divisor = divisor;
     set_arrays_of(c, attribute);
+}
+
+bool is_stride(const Context& c, GLsizei stride) {
+    if (stride <= kLongestStride) return stride >= 0;
+    const auto [major, minor, language] = version_in(c.profile, c.caps());
+    return stride <= longest_stride_of_pointers(c.profile.is_es(), major, minor);
 }
 
 }  // namespace wall::client

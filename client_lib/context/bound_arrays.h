@@ -16,5 +16,7 @@ void set_bound_array(Context& c, unsigned attribute, const glstate::ClientArray&
 void set_arrays_of(Context& c, unsigned place);
 /// After glVertexAttribPointer has set an attribute's array: it has its own place again, which is as the array says.
 void bind_as_array(Context& c, unsigned attribute);
+/// Whether an array that is set by a pointer may have it in the context's version.
+bool is_stride(const Context& c, GLsizei stride);
 
 }  // namespace wall::client

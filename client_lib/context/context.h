@@ -137,6 +137,8 @@ public:
     bool has_no_surface() const;
     /// The window that is read from is the one that is drawn to.
     bool reads_drawn_surface() const { return draw_ == read_; }
+    /// Where no framebuffer object is read from; null: nothing is.
+    ClientSurface* read_surface() const { return read_.get(); }
     /// What its commands draw to now, and what they read from.
     DrawTarget draw_target() const;
     DrawTarget read_target() const;

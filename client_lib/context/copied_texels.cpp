@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "client_lib/context/framebuffer_binding.h"
+#include "client_lib/context/gathered_window.h"
 #include "client_lib/context/query_state.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/objects/pixel_convert.h"
@@ -20,17 +21,36 @@ bool is_flat(const ImageCall& call) {
     return call.dimensions == 2 && glapi::spatial_dimensions_of(info) == 2 && info.layers == 0;
 }
 
+/// Alpha may be left away, and is one where it was.
+bool same_colors(const ImageShape& from, const TextureFormat& to, ComponentBits bits) {
+    constexpr auto kAlphaAside = [](GLenum base) { return base == GL_RGBA ? GLenum{GL_RGB} : base; };
+    if (kAlphaAside(from.format->base) != kAlphaAside(to.base)) return false;
+    if (bits.alpha == 0 || from.bits.alpha == 0) bits.alpha = from.bits.alpha;
+    return std::memcmp(&from.bits, &bits, sizeof bits) == 0;
+}
+
 /// Texels go over as they are: neither curves nor missing components come between.
 bool same_texels(const ImageShape& from, const TextureFormat& to, const ComponentBits& bits) {
-    const TextureFormat& format = *from.format;
-    return to.use == ImageUse::drawn && !to.srgb && !format.srgb && format.base == to.base &&
-           format.component_type == to.component_type && std::memcmp(&from.bits, &bits, sizeof bits) == 0 &&
-           bits.depth == 0 && bits.stencil == 0 && bits.luminance == 0 && bits.intensity == 0;
+    return to.use == ImageUse::drawn && !to.srgb && !from.format->srgb && same_colors(from, to, bits) &&
+           from.format->component_type == to.component_type && bits.depth == 0 && bits.stencil == 0 &&
+           bits.luminance == 0 && bits.intensity == 0;
 }
 
 bool inside(const ImageCall& call, GLint x, GLint y, const ImageShape& from) {
     return x >= 0 && y >= 0 && std::int64_t{x} + call.width <= from.width &&
            std::int64_t{y} + call.height <= from.height;
+}
+
+/// What is read from, if every node has all of it. Of a window's samples pixels are made.
+std::optional<ImageShape> source_shape(Context& c) {
+    if (const auto& read = c.framebuffers->read) {
+        std::lock_guard lock(c.share().mutex);
+        return read->read_shape();
+    }
+    if (!can_copy_out_of_window(c)) return std::nullopt;
+    const DrawTarget window = c.read_target();
+    const TextureFormat* format = find_texture_format(window.format().alpha_bits != 0 ? GL_RGBA8 : GL_RGB8);
+    return ImageShape{window.size().width, window.size().height, 0, format, format->bits};
 }
 
 bool has_attached(const Framebuffer& framebuffer, const Object* image) {
@@ -75,16 +95,15 @@ private:
 
 bool can_copy_on_nodes(Context& c, const ImageCall& call, const TextureFormat& to, const ComponentBits& bits, GLint x,
                        GLint y) {
-    const auto& read = c.framebuffers->read;
-    if (!read || !is_flat(call) || call.width == 0 || call.height == 0) return false;
+    if (!is_flat(call) || call.width == 0 || call.height == 0) return false;
     if (transfer_matters(c.state, call.format) || c.queries->conditional) return false;
-    if (c.get<glstate::el::rasterizer_discard>()) return false;
+    if (c.get<glstate::el::rasterizer_discard>() || c.state.local.render_mode != GL_RENDER) return false;
     const auto texture = bound_texture(c, call.target);
     if (texture && texture->parameters.generate_mipmap) return false;
-    std::lock_guard lock(c.share().mutex);
-    const auto from = read->read_shape();
-    return from && from->samples == 0 && inside(call, x, y, *from) && same_texels(*from, to, bits) &&
-           !has_attached(*read, texture.get());
+    const auto& read = c.framebuffers->read;
+    if (read && has_attached(*read, texture.get())) return false;
+    const auto from = source_shape(c);
+    return from && from->samples == 0 && inside(call, x, y, *from) && same_texels(*from, to, bits);
 }
 
 void copy_on_nodes(Context& c, const ImageCall& call, GLint x, GLint y) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// glCopyTexImage and glCopyTexSubImage out of a framebuffer object, which every node has: each copies by itself, and
-// what it has copied is drawn content (docs/framebuffers.md). The application's thread.
+// glCopyTexImage and glCopyTexSubImage out of a framebuffer object or window of which every node has all: each copies
+// by itself, and what it has copied is drawn content (docs/framebuffers.md). The application's thread.
 #pragma once
 
 #include "client_lib/context/texture_image.h"

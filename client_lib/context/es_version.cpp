@@ -23,6 +23,8 @@ constexpr Beyond kBeyond[] = {
     {11, nullptr, ""},
     {20, "1.00", "GL_ARB_ES2_compatibility"},
     {30, "3.00", "GL_ARB_ES3_compatibility"},
+    {31, "3.10", "GL_ARB_ES3_1_compatibility"},
+    {32, "3.20", "GL_ARB_ES3_2_compatibility"},
 };
 
 struct WordVersions {
@@ -146,9 +148,18 @@ std::vector<GLenum> listed_block_formats(const ContextProfile& profile, const Ca
     add("GL_ARB_ES3_compatibility",
         {GL_COMPRESSED_RGB8_ETC2, GL_COMPRESSED_RGBA8_ETC2_EAC, GL_COMPRESSED_R11_EAC, GL_COMPRESSED_RG11_EAC,
          GL_COMPRESSED_SIGNED_R11_EAC, GL_COMPRESSED_SIGNED_RG11_EAC, GL_COMPRESSED_RGB8_PUNCHTHROUGH_ALPHA1_ETC2});
-    if (profile.is_es())
-        add("GL_ARB_ES3_compatibility", {GL_COMPRESSED_SRGB8_ETC2, GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC,
-                                         GL_COMPRESSED_SRGB8_PUNCHTHROUGH_ALPHA1_ETC2});
+    if (!profile.is_es()) return formats;
+    add("GL_ARB_ES3_compatibility",
+        {GL_COMPRESSED_SRGB8_ETC2, GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC, GL_COMPRESSED_SRGB8_PUNCHTHROUGH_ALPHA1_ETC2});
+    add("GL_ARB_texture_compression_rgtc", {GL_COMPRESSED_RED_RGTC1, GL_COMPRESSED_SIGNED_RED_RGTC1,
+                                            GL_COMPRESSED_RG_RGTC2, GL_COMPRESSED_SIGNED_RG_RGTC2});
+    add("GL_ARB_texture_compression_bptc",
+        {GL_COMPRESSED_RGBA_BPTC_UNORM, GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM, GL_COMPRESSED_RGB_BPTC_SIGNED_FLOAT,
+         GL_COMPRESSED_RGB_BPTC_UNSIGNED_FLOAT});
+    if (!node.have("GL_KHR_texture_compression_astc_ldr")) return formats;
+    for (GLenum size = 0; size <= GL_COMPRESSED_RGBA_ASTC_12x12_KHR - GL_COMPRESSED_RGBA_ASTC_4x4_KHR; ++size)
+        for (const GLenum first : {GL_COMPRESSED_RGBA_ASTC_4x4_KHR, GL_COMPRESSED_SRGB8_ALPHA8_ASTC_4x4_KHR})
+            formats.push_back(first + size);
     return formats;
 }
 

@@ -13,6 +13,12 @@ bool complete(Context& c, const Framebuffer* framebuffer) {
     return framebuffer->status() == GL_FRAMEBUFFER_COMPLETE;
 }
 
+std::uint32_t samples_of(Context& c, const std::shared_ptr<Framebuffer>& framebuffer, const DrawTarget& window) {
+    if (!framebuffer) return window ? window.format().samples : 0;
+    std::lock_guard lock(c.share().mutex);
+    return framebuffer->samples();
+}
+
 /// Of the framebuffer that is drawn to or read from; nothing: it has none.
 template <class Shape>
 std::optional<ImageShape> shape(Context& c, const Framebuffer& framebuffer, Shape&& shape) {
@@ -61,6 +67,9 @@ bool may_read_pixels(Context& c) {
     if (framebuffer->samples() != 0) c.error(GL_INVALID_OPERATION);
     return framebuffer->samples() == 0;
 }
+
+std::uint32_t samples_drawn(Context& c) { return samples_of(c, c.framebuffers->draw, c.draw_target()); }
+std::uint32_t samples_read(Context& c) { return samples_of(c, c.framebuffers->read, c.read_target()); }
 
 void detach_from_bound(Context& c, const Object& image) {
     const FramebufferUse& use = *c.framebuffers;

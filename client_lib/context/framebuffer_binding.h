@@ -3,6 +3,7 @@
 // application's thread.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 
@@ -32,6 +33,10 @@ bool may_draw_to_target(Context& c);
 bool may_read_from_target(Context& c);
 /// The same for single pixels, which one with several samples a pixel does not have: GL_INVALID_OPERATION.
 bool may_read_pixels(Context& c);
+
+/// Samples of each pixel of what is drawn to (read from), a window as well; 0: one, and it is not multisampled.
+std::uint32_t samples_drawn(Context& c);
+std::uint32_t samples_read(Context& c);
 
 /// An object that is deleted leaves the framebuffers that are bound (OpenGL 4.6, 9.2.8).
 void detach_from_bound(Context& c, const Object& image);

@@ -87,4 +87,13 @@ bool turn_whole(Context& c, ClientSurface& window) {
     return true;
 }
 
+bool can_copy_out_of_window(Context& c) {
+    ClientSurface* const window = c.read_surface();
+    if (window == nullptr || c.state.local.render_mode != GL_RENDER) return false;
+    CopyHabit& habit = window->copies;
+    habit.note(window->frame);
+    if (habit.copies_much() && c.reads_drawn_surface() && !c.framebuffers->draw) turn_whole(c, *window);
+    return habit.copies() && c.session().everywhere(*window);
+}
+
 }  // namespace wall::client

@@ -39,4 +39,8 @@ PixelRect touched_by_blit(const PixelBox& box);
 /// where it has no other). False: it is a parallel program's, which cannot be so.
 bool turn_whole(Context& c, ClientSurface& window);
 
+/// A copy out of the window that is read from, since no framebuffer object is: whether every node has all of it and
+/// may copy by itself. That becomes so where a program makes many copies in every frame (copy_habit.h).
+bool can_copy_out_of_window(Context& c);
+
 }  // namespace wall::client

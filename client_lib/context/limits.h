@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "client_lib/context/profile.h"
 #include "client_lib/link/control_messages.h"
 #include "common/glapi/gl_types.h"
 
@@ -22,6 +23,9 @@ inline double limit_of(const Caps& caps, GLenum name, double otherwise, std::siz
 
 /// Samples of a texel where no node says how many there may be.
 inline constexpr GLsizei kUsualSamples = 4;
+
+/// Whole numbers have one sample a pixel in OpenGL ES 3.0 (4.4.2).
+inline bool has_samples_of_integers(const ContextProfile& profile) { return !profile.is_es() || profile.es > 30; }
 
 /// What a driver makes of a number of samples that it may not have, `most` being its largest.
 inline std::uint32_t rounded_samples(GLsizei samples, GLsizei most) {

@@ -19,6 +19,7 @@ public:
     DispatchTarget();
 
     ClientName target_id() const override { return framebuffer_->id; }
+    std::uint64_t stamp() const { return stamp_; }  ///< when it was made
     std::uint32_t width() const override { return 1; }
     std::uint32_t height() const override { return 1; }
     void for_each_image(const std::function<void(const Object&)>&) const override {}
@@ -28,6 +29,7 @@ public:
     std::vector<ClientName> ids() const { return {framebuffer_->id, renderbuffer_->id}; }
 
 private:
+    const std::uint64_t stamp_ = next_stamp();
     std::shared_ptr<Renderbuffer> renderbuffer_ = std::make_shared<Renderbuffer>(0);
     std::shared_ptr<Framebuffer> framebuffer_ = std::make_shared<Framebuffer>(0);
 };

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/context/program_use.h"
 
+#include <algorithm>
+#include <iterator>
+#include <ranges>
 #include <utility>
 
 #include "client_lib/context/ask_one.h"
 #include "client_lib/context/capture_use.h"
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/indexed_buffers.h"
+#include "client_lib/objects/blend_support.h"
 #include "client_lib/objects/program_pipeline.h"
 #include "client_lib/process/log.h"
 #include "common/glapi/primitive.h"
@@ -126,8 +130,28 @@ bool may_run(const Context& c) {
     return !c.program->executable->samplers_conflict();
 }
 
+namespace {
+
+/// An advanced equation wants one colour alone, and a fragment shader that says that it goes with it
+/// (GL_KHR_blend_equation_advanced; OpenGL ES 3.2, 15.1.5.1).
+bool may_blend(const Context& c) {
+    const auto& state = c.state.color_buffer;
+    const std::uint32_t bit = state.blend_enabled == 0 ? 0 : advanced_equation_bit(state.blend_equation.rgb);
+    if (bit == 0) return true;
+    const auto& framebuffer = c.framebuffers->draw;
+    const bool single = framebuffer ? std::ranges::count(framebuffer->draw_buffers() | std::views::drop(1), GL_NONE) ==
+                                          std::ssize(framebuffer->draw_buffers()) - 1
+                                    : c.get<glstate::el::draw_buffer>() != GL_FRONT_AND_BACK;
+    if (!single || !c.program) return false;
+    std::lock_guard lock(c.share().mutex);
+    return (c.program->executable->blend_support & bit) != 0;
+}
+
+}  // namespace
+
 bool may_draw(Context& c) {
     if ((c.framebuffers->draw || c.has_no_surface()) && !may_draw_to_target(c)) return false;
+    if (!may_blend(c)) return c.error(GL_INVALID_OPERATION), false;
     if (!c.program) return true;
     find_written_to_read(c);
     c.before_writing_draw();

@@ -26,7 +26,8 @@ bool reads_numbers(const Context& c);
 /// the stream sets such values, so that they come as arrays.
 std::uint32_t constant_doubles(const Context& c);
 
-/// False, and an error, if the context's framebuffer is not complete, or its program cannot run (may_run).
+/// False, and an error, if the context's framebuffer is not complete, its program cannot run (may_run), or an advanced
+/// equation of blending does not go with it.
 bool may_draw(Context& c);
 
 /// Whether the context's program can run as its samplers are set and, if it is a pipeline, its programs can run

@@ -47,6 +47,8 @@ bool legal_size(Context& c, const ImageCall& call);
 /// glTexImage and glTexSubImage with their checks.
 void define_image(Context& c, ImageCall call);
 void define_sub_image(Context& c, ImageCall call);
+/// The same of pixels that are not held against what OpenGL ES takes of a program (glClearTexImage).
+void change_sub_image(Context& c, ImageCall call);
 GLenum sub_image_error(Context& c, const ImageCall& call);
 
 /// The same after the checks, with pixels as they are to be stored.

@@ -89,7 +89,7 @@ UseStamp use_stamp(const Context& context) {
         .uniform_buffers = ids[static_cast<std::size_t>(Category::uniform_buffers)],
         .read_buffers = latest_of_read_buffers(context),
         .shader_memory = context.memory->work ? next_stamp() : ids[static_cast<std::size_t>(Category::shader_memory)],
-        .targets = context.framebuffers->stamp,
+        .targets = context.memory->now ? context.memory->now->stamp() : context.framebuffers->stamp,
         .shared = context.share().last_change.load(std::memory_order_acquire),
         .maps = context.maps->stamp};
 }

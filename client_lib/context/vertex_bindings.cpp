@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/context/vertex_bindings.h"
 
+#include <limits>
+#include <utility>
+
 #include "common/glstate/vertex_input.h"
 
 namespace wall::client {
 
 using glstate::ClientArray;
+
+std::int32_t longest_stride_of_pointers(bool es, int major, int minor) {
+    const std::pair first = es ? std::pair(3, 1) : std::pair(4, 4);
+    return std::pair(major, minor) < first ? std::numeric_limits<std::int32_t>::max() : kLongestStride;
+}
 
 VertexBinding binding_of(const ClientArray& array) {
     const auto tight = static_cast<std::int32_t>(glstate::element_bytes(array.type, array.size));

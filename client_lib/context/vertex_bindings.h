@@ -18,6 +18,8 @@ inline constexpr unsigned kVertexBindings = glstate::el::attrib_array::count;
 
 inline constexpr std::uint32_t kFarthestAttribute = 2047;  ///< bytes behind the beginning of an element, at most
 inline constexpr std::int32_t kLongestStride = 2048;       ///< bytes from one element to the next, at most
+/// The same of arrays that are set by pointers: the older versions know no limit (OpenGL 4.4, 10.3.1; ES 3.1, 10.3.1).
+std::int32_t longest_stride_of_pointers(bool es, int major, int minor);
 
 /// What an attribute takes its values from. How they lie there (size, type, ...) stands in its array.
 struct AttributeBinding {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <utility>
 
 #include "client_lib/follow/hidden_part.h"
 #include "client_lib/geometry/fold.h"
@@ -18,6 +20,13 @@ using glstate::Category;
 constexpr std::size_t kSmallPrimitiveBytes = 192;
 /// Vertices between two runs of one strip that cost no more than ending it and starting anew.
 constexpr std::int64_t kGapVertices = 2;
+
+bool same_attribute(const glstate::State& a, const glstate::State& b, Attribute attribute) {
+    std::array<std::byte, glstate::kMostAttributeBytes> of_a, of_b;
+    const glapi::Op op = glstate::write_attribute(a, attribute, of_a.data());
+    return op == glstate::write_attribute(b, attribute, of_b.data()) &&
+           std::memcmp(of_a.data(), of_b.data(), operand_bytes_of(op)) == 0;
+}
 
 }  // namespace
 
@@ -53,14 +62,64 @@ void BlockSender::send_whole(const NodeMasks& nodes) {
     for (const auto& [index, slots] : nodes) {
         Node& node = followers_.nodes[index];
         if (!source_.draw.goes_to(node)) continue;
-        auto& buffer = followers_.updater.prepare(node, source_, needs_);
+        Needs needs = needs_;
+        const LeadingAttributes leading = take_leading(node, needs);
+        auto& buffer = followers_.updater.prepare(node, source_, needs);
         const std::size_t before = buffer.bytes();
-        pack_whole(buffer, slots);
+        const auto block = begin_block(buffer, slots);
+        pack_leading(node, buffer, leading);
+        buffer.append(packer_, {}, packer_.mark());
+        end_block(buffer, block);
         count(node, NodeCounter::geometry_bytes, buffer.bytes() - before);
         count(node, NodeCounter::blocks, 1);
         reached.push_back(&node);
     }
     fold(reached);
+}
+
+/// `seen()`: the attributes that the first piece of a share sees. What the block has set by then is packed with it, and
+/// need not be current on the node before.
+template <class Seen>
+BlockSender::Share& BlockSender::share_of(NodeIndex index, Seen&& seen) {
+    Share& share = scratch_.shares[index.value];
+    if (share.node) return share;
+    share.node = &followers_.nodes[index];
+    if (!source_.draw.goes_to(*share.node)) return share;
+    Needs needs = needs_;
+    const AttributePlaces& places = seen();
+    for (std::size_t i = 0; i < kAttributes; ++i)
+        if (places.offset[i] != AttributePlaces::kNone) needs.spare(static_cast<Attribute>(i));
+    share.leading = take_leading(*share.node, needs);
+    share.buffer = &followers_.updater.prepare(*share.node, source_, needs);
+    return share;
+}
+
+/// Those that the node lacks, out of `needs`.
+LeadingAttributes BlockSender::take_leading(Node& node, Needs& needs) const {
+    LeadingAttributes leading;
+    const glstate::State& mirror = node.mirrors[source_.id].state;
+    constexpr auto kCurrent = static_cast<std::size_t>(Category::current);
+    if (mirror.ids[kCurrent] == source_.state.ids[kCurrent]) return leading;
+    for (const Attribute attribute : LeadingAttributes::kKinds) {
+        if (needs.waits(attribute) || same_attribute(mirror, source_.state, attribute)) continue;
+        leading.add(attribute);
+        needs.spare(attribute);
+    }
+    return leading;
+}
+
+void BlockSender::pack_leading(Node& node, wire::PackBuffer& buffer, LeadingAttributes leading) const {
+    for (const Attribute attribute : LeadingAttributes::kKinds)
+        if (leading.has(attribute)) pack_current(node, buffer, attribute);
+}
+
+/// As the context has it, for the node to have it, too.
+void BlockSender::pack_current(Node& node, wire::PackBuffer& buffer, Attribute attribute) const {
+    std::array<std::byte, glstate::kMostAttributeBytes> operand;
+    const glapi::Op op = glstate::write_attribute(source_.state, attribute, operand.data());
+    const std::size_t bytes = operand_bytes_of(op);
+    std::memcpy(buffer.append(static_cast<std::uint8_t>(op), bytes), operand.data(), bytes);
+    glstate::apply_attribute(node.mirrors[source_.id].state, op, operand.data());
 }
 
 void BlockSender::send_apart() {
@@ -94,7 +153,7 @@ void BlockSender::send_apart() {
 /// `walk` goes over the primitive.
 void BlockSender::send_primitive(const Primitive& primitive, BlockWalk& walk) {
     for (const auto& [index, slots] : scratch_.touched) {
-        Share& share = share_of(index);
+        Share& share = share_of(index, [&]() -> const AttributePlaces& { return walk.places(); });
         if (!share.buffer) continue;
         open_block(share, slots);
         pack_attributes(share, walk.places());
@@ -125,8 +184,9 @@ void BlockSender::divide(const Primitive& primitive, const AttributePlaces& befo
         nodes_touched(scratch_.candidates, window_rect(topology, vertices, v, projection_), scratch_.touched_part);
         const auto first = static_cast<std::int64_t>(v / topology.alignment * topology.alignment),
                    last = static_cast<std::int64_t>(v + topology.size - 1);
+        const auto seen = [&] { return vertices.attributes(topology.fan ? 0 : static_cast<std::size_t>(first)); };
         for (const auto& [index, slots] : scratch_.touched_part)
-            if (Share& share = share_of(index); share.buffer) add_to_run(share, primitive, first, last, slots);
+            if (Share& share = share_of(index, seen); share.buffer) add_to_run(share, primitive, first, last, slots);
     }
     for (Share& share : scratch_.shares)
         if (share.run_first >= 0) finish_run(share, primitive);
@@ -170,20 +230,12 @@ void BlockSender::begin_part(Share& share, const Primitive& primitive) {
     count(*share.node, NodeCounter::geometry_bytes, share.buffer->bytes() - before);
 }
 
-BlockSender::Share& BlockSender::share_of(NodeIndex index) {
-    Share& share = scratch_.shares[index.value];
-    if (!share.node) {
-        share.node = &followers_.nodes[index];
-        if (source_.draw.goes_to(*share.node)) share.buffer = &followers_.updater.prepare(*share.node, source_, needs_);
-    }
-    return share;
-}
-
 void BlockSender::open_block(Share& share, std::uint64_t mask) {
     if (share.mask == mask) return;
     close_block(share);
     const std::size_t before = share.buffer->bytes();
     share.block = begin_block(*share.buffer, mask);
+    pack_leading(*share.node, *share.buffer, std::exchange(share.leading, {}));
     count(*share.node, NodeCounter::geometry_bytes, share.buffer->bytes() - before);
     count(*share.node, NodeCounter::blocks, 1);
     share.mask = mask;
@@ -214,12 +266,9 @@ void BlockSender::pack_attributes(Share& share, const AttributePlaces& wanted) {
 
 // A fan's hub, repeated for a later run, sees the attributes of before the block.
 void BlockSender::restore_attribute(Share& share, Attribute attribute) {
-    std::array<std::byte, glstate::kMostAttributeBytes> operand;
-    const glapi::Op op = glstate::write_attribute(source_.state, attribute, operand.data());
-    const std::size_t bytes = operand_bytes_of(op);
-    std::memcpy(share.buffer->append(static_cast<std::uint8_t>(op), bytes), operand.data(), bytes);
-    glstate::apply_attribute(share.node->mirrors[source_.id].state, op, operand.data());
-    count(*share.node, NodeCounter::geometry_bytes, bytes + 1);
+    const std::size_t before = share.buffer->bytes();
+    pack_current(*share.node, *share.buffer, attribute);
+    count(*share.node, NodeCounter::geometry_bytes, share.buffer->bytes() - before);
     share.sent.offset[place_of(attribute)] = AttributePlaces::kNone;
 }
 

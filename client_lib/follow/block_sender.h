@@ -6,6 +6,8 @@
 // front of it. The session's mutex is held.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "client_lib/follow/draw_source.h"
@@ -15,12 +17,25 @@
 
 namespace wall::client {
 
+/// Current attributes that a block begins with on a node that lacks them. They are what programs leave set from block
+/// to block, and as commands of geometry shorter than as values of state.
+class LeadingAttributes {
+public:
+    static constexpr std::array kKinds{Attribute::color, Attribute::normal, Attribute::texcoord};
+    void add(Attribute attribute) { bits_ |= 1u << static_cast<unsigned>(attribute); }
+    bool has(Attribute attribute) const { return bits_ >> static_cast<unsigned>(attribute) & 1; }
+
+private:
+    std::uint32_t bits_ = 0;
+};
+
 /// One node's share of a block that is taken apart.
 struct NodeShare {
     Node* node = nullptr;
     wire::PackBuffer* buffer = nullptr;
     std::uint64_t mask = 0;  ///< of the open Block; 0: none is open
     OpenBlock block;
+    LeadingAttributes leading;                   ///< that its first Block is to begin with
     AttributePlaces sent;                        ///< what the node got of this block's attributes
     std::int64_t run_first = -1, run_last = -1;  ///< pending run of vertices of the primitive being divided
     std::uint64_t run_mask = 0;
@@ -60,7 +75,11 @@ private:
                     std::uint64_t mask);
     void finish_run(Share& share, const Primitive& primitive);
 
-    Share& share_of(NodeIndex node);
+    template <class Seen>
+    Share& share_of(NodeIndex node, Seen&& seen);
+    LeadingAttributes take_leading(Node& node, Needs& needs) const;
+    void pack_leading(Node& node, wire::PackBuffer& buffer, LeadingAttributes leading) const;
+    void pack_current(Node& node, wire::PackBuffer& buffer, Attribute attribute) const;
     void open_block(Share& share, std::uint64_t mask);
     void close_block(Share& share);
     void pack_attributes(Share& share, const AttributePlaces& wanted);

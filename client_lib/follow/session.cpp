@@ -159,6 +159,11 @@ Wholeness ClientSession::wholeness(const ClientSurface& surface) {
     return surfaces_.wholeness(surface);
 }
 
+bool ClientSession::everywhere(const ClientSurface& surface) {
+    std::lock_guard lock(mutex_);
+    return surfaces_.everywhere(surface);
+}
+
 void ClientSession::draw_whole(ClientSurface& surface) {
     packing([&] { surfaces_.draw_whole(surface); });
 }

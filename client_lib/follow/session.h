@@ -43,6 +43,8 @@ public:
     /// a frame begins, so that culling and drawing of one frame agree on one layout.
     void begin_frame(ClientSurface& surface);
     Wholeness wholeness(const ClientSurface& surface);
+    /// Every node has all of its pixels, at the window's own resolution.
+    bool everywhere(const ClientSurface& surface);
     /// Every node draws all of it from now on; it may be so.
     void draw_whole(ClientSurface& surface);
     /// Ends a frame on every node that shows the surface. `context`: the current one; 0: none.

@@ -9,6 +9,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "client_lib/follow/copy_habit.h"
 #include "client_lib/follow/surface_options.h"
 #include "client_lib/geometry/target_layers.h"
 #include "client_lib/link/control_messages.h"
@@ -38,6 +39,7 @@ public:
     std::optional<Placement> next;       ///< from walld, for a frame that begins
     bool cleared = false;                ///< all of its back buffer, since the last swap
     bool depth_images = false;           ///< depth or stencil was drawn as an image
+    CopyHabit copies;                    ///< out of it
     std::unique_ptr<HiddenPart> hidden;  ///< what no tile shows; null: nothing
     // In a parallel program.
     std::deque<Placement> coming;  ///< for frames that have not begun, in order

@@ -113,6 +113,14 @@ Wholeness Surfaces::wholeness(const ClientSurface& surface) const {
     return common(surface) ? Wholeness::cannot_be : Wholeness::may_be;
 }
 
+bool Surfaces::everywhere(const ClientSurface& surface) const {
+    if (surface.whole) return true;
+    const SurfaceLayout& layout = surface.layout;
+    const int width = static_cast<int>(layout.width), height = static_cast<int>(layout.height);
+    return wholeness(surface) == Wholeness::is && layout.rect.width == width && layout.rect.height == height &&
+           layout.layers.front().pixels == geom::Rect{0, 0, width, height};
+}
+
 void Surfaces::draw_whole(ClientSurface& surface) {
     surface.whole = true;
     ++surface.layout.version;

@@ -32,6 +32,8 @@ public:
     /// Adopts what came, where a frame begins; also the window's size.
     void begin_frame(ClientSurface& surface);
     Wholeness wholeness(const ClientSurface& surface) const;
+    /// Every node has all of its pixels, at the window's own resolution.
+    bool everywhere(const ClientSurface& surface) const;
     /// Every node draws all of it from now on; it may be so.
     void draw_whole(ClientSurface& surface);
     /// The same for surfaces that are between two frames.

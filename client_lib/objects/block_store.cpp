@@ -28,8 +28,8 @@ struct Rows {
 Rows rows_of(const glapi::PixelStore& store, const BlockImage& image) {
     const unsigned counted = counted_dimensions(store, image.size.dimensions);
     Rows rows{};
-    rows.wanted = rows.step = blocks_bytes(image.format, image.size.width, kBlockSide);
-    rows.count = blocks_in(image.size.height, kBlockSide);
+    rows.wanted = rows.step = row_of_blocks_bytes(image.format, image.size.width);
+    rows.count = blocks_in(image.size.height, block_size(image.format).height);
     const auto block = static_cast<std::size_t>(store.block_bytes);
     if (counted > 0 && store.row_length > 0) rows.step = block * blocks_in(store.row_length, store.block_width);
     rows.image_step =

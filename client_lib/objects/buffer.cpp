@@ -4,13 +4,30 @@
 #include <algorithm>
 #include <cstring>
 
+#include "client_lib/objects/differences.h"
 #include "gen/glapi/wire.gen.h"
 
 namespace wall::client {
 
+namespace {
+
+std::size_t differing_bytes(const std::byte* a, const std::byte* b, std::size_t size) {
+    std::size_t out = 0;
+    for_each_difference(a, b, size, [&](ByteRange range) { out += range.size(); });
+    return out;
+}
+
+}  // namespace
+
+bool Buffer::has_all_before() const { return stamp_ != 0 && !mapping_ && !drawn_; }
+
 void Buffer::define(const void* data, std::size_t bytes, GLenum usage) {
-    if (memory_->readings.load(std::memory_order_acquire) != 0) memory_ = std::make_shared<BufferMemory>();
     const auto* first = static_cast<const std::byte*>(data);
+    // Where most is new, other memory is better: a driver need not wait for who still reads the one before.
+    if (first && bytes == size() && usage == usage_ && has_all_before() &&
+        differing_bytes(memory_->bytes.data(), first, bytes) <= bytes / 2)
+        return write({0, bytes}, data);
+    if (memory_->readings.load(std::memory_order_acquire) != 0) memory_ = std::make_shared<BufferMemory>();
     if (data) memory_->bytes.assign(first, first + bytes);
     else memory_->bytes.assign(bytes, std::byte{0});
     if (stamp_ == 0 || usage != usage_) churn.expect(usage);
@@ -33,8 +50,15 @@ void Buffer::define_storage(const void* data, std::size_t bytes, GLbitfield flag
 }
 
 void Buffer::write(ByteRange range, const void* data) {
-    std::memcpy(begin_writing() + range.begin, data, range.size());
-    wrote(range);
+    const auto* source = static_cast<const std::byte*>(data);
+    const auto copy = [&](ByteRange part) {  // of `range`, of what is given
+        std::memcpy(begin_writing() + range.begin + part.begin, source + part.begin, part.size());
+        wrote({range.begin + part.begin, range.begin + part.end});
+    };
+    if (!has_all_before()) return copy({0, range.size()});
+    // From its start on each time: for those who read, begin_writing() may make other memory.
+    const std::shared_ptr<BufferMemory> before = memory_;
+    for_each_difference(before->bytes.data() + range.begin, source, range.size(), copy);
 }
 
 std::byte* Buffer::begin_writing() {

@@ -102,11 +102,12 @@ public:
     BufferReading read(std::size_t offset = 0) const { return {memory_, offset}; }
 
     // ---- changes ----
-    /// New memory; without `data` it is zeros, here and on the nodes. What was mapped is not any more.
+    /// New memory; without `data` it is zeros, here and on the nodes. What was mapped is not any more. Where size and
+    /// usage stay, and most of the content, it is only written into.
     void define(const void* data, std::size_t bytes, GLenum usage);
     /// The same for good, with the flags of glBufferStorage.
     void define_storage(const void* data, std::size_t bytes, GLbitfield flags);
-    /// `range` lies within it.
+    /// `range` lies within it. What is there already does not count as a change.
     void write(ByteRange range, const void* data);
     /// What a pixel command writes into; what was written is told by wrote().
     std::byte* begin_writing();
@@ -154,6 +155,8 @@ public:
     Churn churn;
 
 private:
+    /// Whether `memory_` has what the nodes know of it, and nothing else.
+    bool has_all_before() const;
     void leave_to_readers();
     static void count_change() { all_changes.fetch_add(1, std::memory_order_release); }
 

@@ -63,6 +63,15 @@ bool differs_in_bits(const ComponentBits& a, const ComponentBits& b) {
 
 bool is_float_depth(const TextureFormat& format) { return format.component_type == GL_FLOAT; }
 
+/// Of components of so many bits.
+GLenum type_of_words(GLenum component_type, unsigned bits) {
+    if (component_type == GL_FLOAT) return bits == 16 ? GL_HALF_FLOAT : GL_FLOAT;
+    const bool is_signed = component_type == GL_INT || component_type == GL_SIGNED_NORMALIZED;
+    if (bits == 32) return is_signed ? GL_INT : GL_UNSIGNED_INT;
+    if (bits == 16) return is_signed ? GL_SHORT : GL_UNSIGNED_SHORT;
+    return is_signed ? GL_BYTE : GL_UNSIGNED_BYTE;
+}
+
 }  // namespace
 
 GLenum desktop_type(GLenum type) { return type == kHalfFloatOes ? GLenum{GL_HALF_FLOAT} : type; }
@@ -105,12 +114,26 @@ GLenum es_copy_error(unsigned version, GLenum internal_format, const TextureForm
 }
 
 PixelKind es_read_kind(const TextureFormat& from) {
+    switch (from.internal_format) {
+        case GL_RGB565: return {GL_RGB, GL_UNSIGNED_SHORT_5_6_5};
+        case GL_RGBA4: return {GL_RGBA, GL_UNSIGNED_SHORT_4_4_4_4};
+        case GL_RGB10_A2: return {GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV};
+        case GL_RGB10_A2UI: return {GL_RGBA_INTEGER, GL_UNSIGNED_INT_2_10_10_10_REV};
+        case GL_R11F_G11F_B10F: return {GL_RGB, GL_UNSIGNED_INT_10F_11F_11F_REV};
+        default: break;
+    }
+    const bool words_of_two = from.component_type == GL_SIGNED_NORMALIZED || from.internal_format == GL_RG16;
+    const bool one = from.base == GL_RED, two = from.base == GL_RG && !words_of_two;  // as Mesa
+    const GLenum words = type_of_words(from.component_type, from.bits.red);
+    if (from.whole())
+        return {one ? GLenum{GL_RED_INTEGER} : two ? GLenum{GL_RG_INTEGER} : GLenum{GL_RGBA_INTEGER}, words};
+    return {one ? GLenum{GL_RED} : two ? GLenum{GL_RG} : GLenum{GL_RGBA}, words};
+}
+
+/// What every context gives of colours (OpenGL ES 3.2, 16.1.2).
+PixelKind always_read(const TextureFormat& from) {
     if (from.whole()) return {GL_RGBA_INTEGER, from.component_type};
-    if (from.component_type == GL_FLOAT)
-        return {GL_RGBA, from.bits.red == 16 ? GLenum{GL_HALF_FLOAT} : GLenum{GL_FLOAT}};
-    if (from.component_type == GL_SIGNED_NORMALIZED) return {GL_RGBA, GL_BYTE};
-    if (from.internal_format == GL_RGB10_A2) return {GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV};
-    return {GL_RGBA, GL_UNSIGNED_BYTE};
+    return {GL_RGBA, from.component_type == GL_FLOAT ? GLenum{GL_FLOAT} : GLenum{GL_UNSIGNED_BYTE}};
 }
 
 bool es_can_read(GLenum format, GLenum type, const TextureFormat& from) {
@@ -124,10 +147,10 @@ bool es_can_read(GLenum format, GLenum type, const TextureFormat& from) {
         case GL_BGRA: return type == GL_UNSIGNED_BYTE && kind.format == GL_RGBA;
         default: break;
     }
-    if (format == kind.format && type == kind.type) return true;
-    if (format != GL_RGBA) return false;
-    return (type == GL_UNSIGNED_BYTE && from.component_type == GL_UNSIGNED_NORMALIZED) ||
-           (type == GL_FLOAT && from.component_type == GL_FLOAT);
+    const auto is = [&](const PixelKind& given) { return format == given.format && type == given.type; };
+    const bool normalized = !from.whole() && from.component_type != GL_FLOAT;
+    return is(kind) || (normalized && is({GL_RGBA, type_of_words(from.component_type, from.bits.red)})) ||
+           (from.component_type != GL_SIGNED_NORMALIZED && is(always_read(from)));
 }
 
 }  // namespace wall::client

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <map>
 
+#include "client_lib/objects/blend_support.h"
 #include "client_lib/objects/texture.h"
 #include "gen/glapi/wire.gen.h"
 
@@ -145,6 +146,8 @@ std::unique_ptr<Executable> Executable::make(glapi::ProgramDefinition definition
         if (std::ranges::find(definition.shaders, glapi::kShaderStages[i], &glapi::ShaderSource::type) !=
             definition.shaders.end())
             made->stages |= 1u << i;
+    for (const auto& shader : definition.shaders)
+        if (shader.type == GL_FRAGMENT_SHADER) made->blend_support |= blend_support_of(shader.source);
     const bool counts_primitives = std::ranges::any_of(definition.shaders, [](const auto& shader) {
         return shader.source.find("gl_PrimitiveID") != std::string::npos;  // also in a comment: no harm
     });
@@ -390,6 +393,7 @@ std::unique_ptr<Executable> Executable::combine(const std::vector<std::shared_pt
     for (const auto& program : parts) {
         const Executable& part = *program->executable;
         made->stages |= part.stages;
+        made->blend_support |= part.blend_support;
         made->reads_numbers_ = made->reads_numbers_ || part.reads_numbers_;
         if (part.geometry.exists()) made->geometry = part.geometry;
         if (part.tessellation.exists()) made->tessellation = part.tessellation;

@@ -173,7 +173,8 @@ public:
         for_each_combined(use);
     }
     std::vector<std::shared_ptr<Program>> parts;
-    std::uint32_t stages = 0;  ///< that it has, a bit for each of glapi::kShaderStages
+    std::uint32_t stages = 0;         ///< that it has, a bit for each of glapi::kShaderStages
+    std::uint32_t blend_support = 0;  ///< of its fragment shader (blend_support.h)
 
     std::uint64_t stamp = 0;        ///< of linking
     std::uint64_t last_change = 0;  ///< of a uniform, or `stamp`

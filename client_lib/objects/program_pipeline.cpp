@@ -3,13 +3,15 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gen/glapi/wire.gen.h"
 
 namespace wall::client {
 
-ProgramPipeline::ProgramPipeline(GLuint pipeline_name) : Program(next_object_id(), 0), pipeline(pipeline_name) {
+ProgramPipeline::ProgramPipeline(GLuint pipeline_name, bool exact)
+    : Program(next_object_id(), 0), pipeline(pipeline_name), exact_(exact) {
     linked = true;
     combine();
 }
@@ -43,6 +45,47 @@ bool is_interrupted(const Programs& programs) {
     return std::ranges::adjacent_find(in_order) != in_order.end();
 }
 
+/// "name" of "name[0]".
+std::string_view bare(std::string_view name) { return name.ends_with("[0]") ? name.substr(0, name.size() - 3) : name; }
+
+bool is_built_in(std::string_view name) { return name.starts_with("gl_"); }
+
+/// Whether an input takes an output: by the location that both have of their shaders (others have none between
+/// stages) or by the name.
+bool matches(const glapi::ActiveAttribute& input, const glapi::ActiveOutput& output) {
+    const bool located = input.location >= 0 && output.location >= 0;
+    const bool met = located ? input.location == output.location : bare(input.name) == output.name;
+    return met && input.type == output.type && input.patch == output.patch;
+}
+
+/// Whether each input of a program has its output of the one before, and each output its input (OpenGL ES 3.1, 7.4.1).
+bool interfaces_match(const Executable& before, const Executable& behind) {
+    std::vector<bool> taken(before.outputs.size());
+    for (const auto& input : behind.taken()) {
+        if (is_built_in(input.name)) continue;
+        const auto found =
+            std::ranges::find_if(before.outputs, [&](const auto& output) { return matches(input, output); });
+        if (found == before.outputs.end()) return false;
+        taken[static_cast<std::size_t>(found - before.outputs.begin())] = true;
+    }
+    for (std::size_t i = 0; i < taken.size(); ++i)
+        if (!taken[i] && !is_built_in(before.outputs[i].name)) return false;
+    return true;
+}
+
+/// Of all programs that follow each other.
+template <class Programs>
+bool all_interfaces_match(const Programs& programs) {
+    const Program* before = nullptr;
+    for (const std::size_t stage : kInOrder) {
+        const Program* behind = programs[stage].get();
+        if (!behind || behind == before) continue;
+        if (before && !interfaces_match(*before->executable, *behind->executable)) return false;
+        before = behind;
+    }
+    return true;
+}
+
 }  // namespace
 
 std::string ProgramPipeline::find_fault() const {
@@ -56,6 +99,7 @@ std::string ProgramPipeline::find_fault() const {
     if (is_interrupted(programs)) return "a program has stages before and behind one of another program";
     if (!programs[kVertex] && (programs[kControl] || programs[kEvaluation] || programs[kGeometry]))
         return "no program has a vertex shader";
+    if (exact_ && !all_interfaces_match(programs)) return "a program takes other variables than the one before gives";
     return {};
 }
 

@@ -18,7 +18,8 @@ namespace wall::client {
 struct ProgramPipeline final : Program {
     static constexpr std::size_t kStages = std::size(glapi::kShaderStages);
 
-    explicit ProgramPipeline(GLuint pipeline_name);
+    /// `exact`: what a program takes and what the one before it gives away must be the same (OpenGL ES 3.1, 7.4.1).
+    ProgramPipeline(GLuint pipeline_name, bool exact);
 
     const GLuint pipeline;  ///< its name; as a program it has none
     /// In the order of glapi::kShaderStages; null: none.
@@ -43,6 +44,7 @@ struct ProgramPipeline final : Program {
 private:
     std::string find_fault() const;
 
+    const bool exact_;
     std::string fault_;
 };
 

@@ -12,16 +12,24 @@ namespace wall::client {
 
 using glapi::kBlockSide;
 
-/// Whether a part (first texel, texels, in one direction) of an image is made of blocks; it may end with the image.
-constexpr bool is_whole_blocks(std::int32_t at, std::int32_t size, std::int32_t all) {
-    return at % kBlockSide == 0 && (size % kBlockSide == 0 || at + size == all);
+/// Whether a part (first texel, texels, in one direction) of an image is made of blocks of so many texels; it may end
+/// with the image.
+constexpr bool is_whole_blocks(std::int32_t at, std::int32_t size, std::int32_t all, std::int32_t side) {
+    return at % side == 0 && (size % side == 0 || std::int64_t{at} + size == all);
 }
-/// glapi::block_bytes and blocks_bytes of an internal format as programs give it.
+/// glapi::block_size, block_bytes and blocks_bytes of an internal format as programs give it.
+constexpr glapi::BlockSize block_size(GLint internal_format) {
+    return glapi::block_size(static_cast<GLenum>(internal_format));
+}
 constexpr std::size_t block_bytes(GLint internal_format) {
     return glapi::block_bytes(static_cast<GLenum>(internal_format));
 }
 constexpr std::size_t blocks_bytes(GLint internal_format, std::int32_t width, std::int32_t height) {
     return glapi::blocks_bytes(static_cast<GLenum>(internal_format), width, height);
+}
+/// Bytes of a row of blocks.
+constexpr std::size_t row_of_blocks_bytes(GLint internal_format, std::int32_t width) {
+    return blocks_bytes(internal_format, width, 1);
 }
 /// Whether decode_s3tc() knows it.
 bool is_s3tc(GLint internal_format);

@@ -11,6 +11,11 @@ namespace {
 // stencil; the type of the components of the first of them.
 using enum ImageUse;
 constexpr GLenum kUnsigned = GL_UNSIGNED_NORMALIZED, kSigned = GL_SIGNED_NORMALIZED;
+constexpr TextureFormat astc(GLint format) {
+    const bool srgb = format >= GL_COMPRESSED_SRGB8_ALPHA8_ASTC_4x4_KHR;
+    const std::uint8_t bits = srgb ? 8 : 16;
+    return {format, GL_RGBA, format, {bits, bits, bits, bits, 0, 0, 0, 0}, kUnsigned, blocks, srgb};
+}
 constexpr TextureFormat kFormats[] = {
     {1, GL_LUMINANCE, 1, {0, 0, 0, 0, 8, 0, 0, 0}, kUnsigned, drawn},
     {2, GL_LUMINANCE_ALPHA, 2, {0, 0, 0, 8, 8, 0, 0, 0}, kUnsigned, drawn},
@@ -336,6 +341,34 @@ constexpr TextureFormat kFormats[] = {
      kUnsigned,
      blocks,
      true},
+    astc(GL_COMPRESSED_RGBA_ASTC_4x4_KHR),
+    astc(GL_COMPRESSED_RGBA_ASTC_5x4_KHR),
+    astc(GL_COMPRESSED_RGBA_ASTC_5x5_KHR),
+    astc(GL_COMPRESSED_RGBA_ASTC_6x5_KHR),
+    astc(GL_COMPRESSED_RGBA_ASTC_6x6_KHR),
+    astc(GL_COMPRESSED_RGBA_ASTC_8x5_KHR),
+    astc(GL_COMPRESSED_RGBA_ASTC_8x6_KHR),
+    astc(GL_COMPRESSED_RGBA_ASTC_8x8_KHR),
+    astc(GL_COMPRESSED_RGBA_ASTC_10x5_KHR),
+    astc(GL_COMPRESSED_RGBA_ASTC_10x6_KHR),
+    astc(GL_COMPRESSED_RGBA_ASTC_10x8_KHR),
+    astc(GL_COMPRESSED_RGBA_ASTC_10x10_KHR),
+    astc(GL_COMPRESSED_RGBA_ASTC_12x10_KHR),
+    astc(GL_COMPRESSED_RGBA_ASTC_12x12_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_4x4_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_5x4_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_5x5_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_6x5_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_6x6_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_8x5_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_8x6_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_8x8_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_10x5_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_10x6_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_10x8_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_10x10_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_12x10_KHR),
+    astc(GL_COMPRESSED_SRGB8_ALPHA8_ASTC_12x12_KHR),
     {GL_ALPHA8_SNORM, GL_ALPHA, GL_ALPHA8_SNORM, {0, 0, 0, 8, 0, 0, 0, 0}, kSigned, drawn},
     {GL_ALPHA_SNORM, GL_ALPHA, GL_ALPHA_SNORM, {0, 0, 0, 8, 0, 0, 0, 0}, kSigned, drawn},
     {GL_LUMINANCE8_SNORM, GL_LUMINANCE, GL_LUMINANCE8_SNORM, {0, 0, 0, 0, 8, 0, 0, 0}, kSigned, drawn},

@@ -215,16 +215,15 @@ std::vector<std::byte> cut_texels(const TextureLevel& level, const TexBox& box, 
 }
 
 std::vector<std::byte> cut_blocks(const TextureLevel& level, const TexBox& box) {
-    const auto bytes_of = [&](std::int32_t width, std::int32_t height) {
-        return blocks_bytes(level.internal_format, width, height);
-    };
-    const std::size_t row = bytes_of(level.width, kBlockSide), wanted = bytes_of(box.width, kBlockSide);
+    const auto row_of = [&](std::int32_t width) { return row_of_blocks_bytes(level.internal_format, width); };
+    const std::size_t slice = blocks_bytes(level.internal_format, level.width, level.height);
+    const std::size_t row = row_of(level.width), wanted = row_of(box.width);
+    const std::int32_t side = block_size(level.internal_format).height;
     std::vector<std::byte> out;
     for (std::int32_t z = box.z; z < box.z + box.depth; ++z)
-        for (std::int32_t y = box.y; y < box.y + box.height; y += kBlockSide) {
-            const std::byte* at = level.pixels.data() +
-                                  bytes_of(level.width, level.height) * static_cast<std::size_t>(z) +
-                                  row * static_cast<std::size_t>(y / kBlockSide) + bytes_of(box.x, kBlockSide);
+        for (std::int32_t y = box.y; y < box.y + box.height; y += side) {
+            const std::byte* at = level.pixels.data() + slice * static_cast<std::size_t>(z) +
+                                  row * static_cast<std::size_t>(y / side) + row_of(box.x);
             out.insert(out.end(), at, at + wanted);
         }
     return out;

@@ -84,7 +84,7 @@ constexpr ViewFormat kViewFormats[] = {
 /// Of the texels that blocks of a compressed format are as large as; nothing: it is none, or has no such row.
 std::optional<ViewClass> texels_like_blocks(GLint internal_format, bool es) {
     const auto word = static_cast<GLenum>(internal_format);
-    if (glapi::is_etc2(word) && !es) return std::nullopt;
+    if (glapi::is_only_given(word) && !es) return std::nullopt;
     switch (glapi::block_bytes(word)) {
         case 8: return bits_64;
         case 16: return bits_128;

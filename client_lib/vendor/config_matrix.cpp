@@ -6,7 +6,10 @@
 
 namespace wall::client::vendor {
 
-std::vector<SurfaceFormat> format_matrix(bool with_alpha_only, bool with_single_and_accum) {
+namespace {
+
+/// Where pixels have several samples there is no accumulation buffer.
+std::vector<SurfaceFormat> formats_of(std::uint8_t samples, bool with_alpha_only, bool with_single_and_accum) {
     const std::vector<bool> flags{true, false};
     std::vector<SurfaceFormat> formats;
     for (const bool alpha : flags)
@@ -16,16 +19,28 @@ std::vector<SurfaceFormat> format_matrix(bool with_alpha_only, bool with_single_
                     for (const bool accum : flags) {
                         if (with_alpha_only && !alpha) continue;
                         if (!with_single_and_accum && (!double_buffered || accum)) continue;
+                        if (samples != 0 && accum) continue;
                         SurfaceFormat format;
                         format.alpha_bits = alpha ? 8 : 0;
                         format.double_buffered = double_buffered;
                         format.depth_bits = depth ? 24 : 0;
                         format.stencil_bits = stencil ? 8 : 0;
                         format.accum_bits = accum ? 16 : 0;
+                        format.samples = samples;
                         formats.push_back(format);
                     }
     std::stable_sort(formats.begin(), formats.end(),
                      [](const auto& a, const auto& b) { return a.alpha_bits < b.alpha_bits; });
+    return formats;
+}
+
+}  // namespace
+
+std::vector<SurfaceFormat> format_matrix(bool with_alpha_only, bool with_single_and_accum) {
+    std::vector<SurfaceFormat> formats;
+    for (const std::uint8_t samples : {std::uint8_t{0}, kWindowSamples})
+        for (const SurfaceFormat& format : formats_of(samples, with_alpha_only, with_single_and_accum))
+            formats.push_back(format);
     return formats;
 }
 

@@ -5,6 +5,7 @@
 
 #include <X11/Xutil.h>
 
+#include <cstdint>
 #include <vector>
 
 #include "client_lib/context/core.h"
@@ -13,7 +14,12 @@ namespace wall::client::vendor {
 
 inline constexpr int kMaxPbufferExtent = 8192;  // pixels a side
 
-/// {alpha} x {depth} x {stencil} x {double, single} x {accumulation}, the one that most programs want first.
+/// Samples of a pixel where a configuration has them: so many every driver of OpenGL 3.0 and later has (OpenGL 4.6,
+/// table 23.69, MAX_SAMPLES), and the configurations are told before any node is known.
+inline constexpr std::uint8_t kWindowSamples = 4;
+
+/// {samples} x {alpha} x {depth} x {stencil} x {double, single} x {accumulation}, the one that most programs want
+/// first. Those with samples have no accumulation buffer, as Mesa's.
 std::vector<SurfaceFormat> format_matrix(bool with_alpha_only, bool with_single_and_accum);
 
 /// The X visuals of a screen that can carry 8 bits per channel.

@@ -57,6 +57,11 @@ struct Input {
     std::byte* previous_row(const Block& block, std::uint32_t y) const {
         return previous.row(block.y + y) + 4 * std::size_t{block.x};
     }
+    void keep(const Block& block) const {
+        // memmove: of memcpy, with so narrow a range of sizes, GCC makes a `rep movs`, a quarter of all the time.
+        for (std::uint32_t y = 0; y < block.height; ++y)
+            std::memmove(previous_row(block, y), row(block, y), 4 * std::size_t{block.width});
+    }
 };
 
 void residuals(const Input& in, const Block& block, std::uint32_t y, Mode mode, std::uint32_t* out) {
@@ -185,8 +190,7 @@ void plan_slice(const Input& in, std::uint32_t number, Slice& slice) {
         auto mode = static_cast<std::uint8_t>(Mode::unchanged);
         if (in.key || !is_unchanged(in, block)) {
             mode = is_flat(in, block) ? static_cast<std::uint8_t>(Mode::flat) : plan_coded(in, block, slice);
-            for (std::uint32_t y = 0; y < block.height; ++y)
-                std::memcpy(in.previous_row(block, y), in.row(block, y), 4 * std::size_t{block.width});
+            in.keep(block);
             slice.changed = true;
         }
         slice.blocks.push_back({mode, slice.tokens_used});

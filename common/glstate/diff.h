@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
@@ -81,7 +82,9 @@ namespace detail {
 // Each tells whether anything differed.
 template <class E, class Sink>
 bool diff_value(State& from, const State& to, unsigned i, Sink& sink) {
-    if (same(E::ref(static_cast<const State&>(from), i), E::ref(to, i)) || follows_color<E>(to, i)) return false;
+    if (same(E::ref(static_cast<const State&>(from), i), E::ref(to, i))) [[likely]]
+        return false;
+    if (follows_color<E>(to, i)) return false;
     const typename E::type v = E::ref(to, i);
     store<E>(from, i, v);
     sink.template set<E>(i, v);
@@ -92,7 +95,7 @@ template <class E, class Sink>
 bool diff_element(State& from, const State& to, Sink& sink) {
     if constexpr (E::count > 1) {
         if (std::memcmp(&E::ref(static_cast<const State&>(from), 0), &E::ref(to, 0),
-                        sizeof(typename E::type) * E::count) == 0)
+                        sizeof(typename E::type) * E::count) == 0) [[likely]]
             return false;
     }
     bool differs = false;
@@ -105,25 +108,40 @@ bool diff_list(ElementList<E...>, State& from, const State& to, Sink& sink) {
     return (static_cast<unsigned>(diff_element<E>(from, to, sink)) | ... | 0u) != 0;
 }
 
-// Where To is State, equal categories get one value id, that of `from`.
-template <CategoryMask Mask, std::size_t C, class To, class Sink>
-void diff_if_wanted(State& from, To& to, Sink& sink) {
-    if constexpr ((Mask >> C & 1) != 0) {
-        if (from.ids[C] == to.ids[C]) return;
-        const bool differs = diff_list(typename CategoryElements<static_cast<Category>(C)>::list{}, from, to, sink);
-        if constexpr (!std::is_const_v<To>) {
-            if (!differs) {
-                to.ids.take(C, from.ids[C]);
-                return;
-            }
+// Where To is State, equal categories get one value id, that of `from`. Out of line: what a difference runs through is
+// then only the code of what may differ, and a processor between two scenes of llvmpipe's has to fetch all of it.
+template <std::size_t C, class To, class Sink>
+[[gnu::noinline]] void diff_of(State& from, To& to, Sink& sink) {
+    const bool differs = diff_list(typename CategoryElements<static_cast<Category>(C)>::list{}, from, to, sink);
+    if constexpr (!std::is_const_v<To>) {
+        if (!differs) {
+            to.ids.take(C, from.ids[C]);
+            return;
         }
-        from.ids.take(C, to.ids[C]);
     }
+    from.ids.take(C, to.ids[C]);
 }
 
+/// Those of `wanted` whose value ids differ.
+inline CategoryMask differing(CategoryMask wanted, const State& a, const State& b) {
+    CategoryMask out = 0;
+    for (std::size_t c = 0; c < kCategoryCount; ++c) out |= CategoryMask{a.ids[c] != b.ids[c]} << c;
+    return out & wanted;
+}
+
+// The function of category C, none where Mask does not have it.
+template <CategoryMask Mask, std::size_t C, class To, class Sink>
+constexpr auto diff_function() -> void (*)(State&, To&, Sink&) {
+    if constexpr ((Mask >> C & 1) != 0) return diff_of<C, To, Sink>;
+    else return nullptr;
+}
+
+// Mask: those that `wanted` may have.
 template <CategoryMask Mask, class To, class Sink, std::size_t... C>
-void diff_categories(State& from, To& to, Sink& sink, std::index_sequence<C...>) {
-    (diff_if_wanted<Mask, C>(from, to, sink), ...);
+void diff_categories(CategoryMask wanted, State& from, To& to, Sink& sink, std::index_sequence<C...>) {
+    static constexpr std::array kFunctions = {diff_function<Mask, C, To, Sink>()...};
+    for (CategoryMask rest = differing(wanted & Mask, from, to); rest != 0; rest &= rest - 1)
+        kFunctions[static_cast<std::size_t>(std::countr_zero(rest))](from, to, sink);
 }
 
 using TwoIds [[gnu::vector_size(16)]] = std::uint64_t;
@@ -151,7 +169,7 @@ bool same_pairs(const State& a, const State& b, std::index_sequence<Pair...>) {
 /// changed.
 template <CategoryMask Mask = kSentCategories, class Sink>
 void diff(State& from, const State& to, Sink&& sink) {
-    detail::diff_categories<Mask>(from, to, sink, std::make_index_sequence<kCategoryCount>{});
+    detail::diff_categories<Mask>(Mask, from, to, sink, std::make_index_sequence<kCategoryCount>{});
 }
 
 /// Whether all categories of Mask have the same value ids: no branch until the end, two categories an instruction.
@@ -167,7 +185,7 @@ bool same_ids(const State& a, const State& b) {
 template <CategoryMask Mask = kSentCategories, class Sink>
 void diff_and_unify(State& from, State& to, Sink&& sink) {
     if (same_ids<Mask>(from, to)) return;
-    detail::diff_categories<Mask>(from, to, sink, std::make_index_sequence<kCategoryCount>{});
+    detail::diff_categories<Mask>(Mask, from, to, sink, std::make_index_sequence<kCategoryCount>{});
 }
 
 /// Two states hold equal values in these categories; from now on by the same ids.
@@ -179,15 +197,13 @@ inline void unify_ids(CategoryMask categories, State& a, const State& b) {
 /// diff() with the categories chosen at run time.
 template <class Sink>
 void diff(CategoryMask wanted, State& from, const State& to, Sink&& sink) {
-    const auto each = [&]<std::size_t... C>(std::index_sequence<C...>) {
-        ((wanted >> C & 1 ? detail::diff_if_wanted<kSentCategories, C>(from, to, sink) : void()), ...);
-    };
-    each(std::make_index_sequence<kCategoryCount>{});
+    detail::diff_categories<kSentCategories>(wanted, from, to, sink, std::make_index_sequence<kCategoryCount>{});
 }
 
 template <Category C, class Sink>
 void diff_category(State& from, const State& to, Sink&& sink) {
-    detail::diff_if_wanted<mask_of(C), static_cast<std::size_t>(C)>(from, to, sink);
+    constexpr auto kId = static_cast<std::size_t>(C);
+    if (from.ids[kId] != to.ids[kId]) detail::diff_of<kId>(from, to, sink);
 }
 
 namespace detail {

@@ -25,8 +25,10 @@ struct ModelviewOrigin {
     ModelviewForm form;
 };
 
+inline constexpr std::uint32_t kNoTag = 0;  ///< of a form that was never told: it belongs to no matrix
+
 /// MurmurHash3 of the values, a lane for each column, so that their multiplications overlap: it is taken at each switch
-/// between contexts.
+/// between contexts with such an origin. Never kNoTag.
 inline std::uint32_t modelview_tag(const Mat4& m) {
     std::array<std::uint32_t, 16> words;
     std::memcpy(words.data(), m.data(), sizeof m);
@@ -38,11 +40,14 @@ inline std::uint32_t modelview_tag(const Mat4& m) {
     for (std::size_t row = 0; row < 4; ++row)
         for (std::size_t column = 0; column < 4; ++column)
             lanes[column] = mixed(lanes[column], words[column * 4 + row]);
-    return mixed(mixed(mixed(lanes[0], lanes[1]), lanes[2]), lanes[3]);
+    const std::uint32_t tag = mixed(mixed(mixed(lanes[0], lanes[1]), lanes[2]), lanes[3]);
+    return tag != kNoTag ? tag : 1;
 }
 
 /// Does `form` belong to the matrix?
-inline bool is_origin_of(const ModelviewForm& form, const Mat4& m) { return form.tag == modelview_tag(m); }
+inline bool is_origin_of(const ModelviewForm& form, const Mat4& m) {
+    return form.tag != kNoTag && form.tag == modelview_tag(m);
+}
 
 namespace detail {
 

@@ -17,7 +17,8 @@ import report  # noqa: E402
 from expectations import load, on_wall  # noqa: E402
 from players import Player, play_all  # noqa: E402
 from results import RANKS, Expected, Outcome, Result, judge, read_result, worse  # noqa: E402
-from suite import Offer, SuiteError, Test, group_of, load_left_out, read_list, read_offer, with_es  # noqa: E402
+from suite import Offer, SuiteError, Test, group_of, in_framebuffer, load_left_out  # noqa: E402
+from suite import read_list, read_offer, with_es  # noqa: E402
 
 GLINFO = """GL_RENDERER = WallGL (llvmpipe)
 GL_VERSION = 2.1 WallGL 0.1
@@ -198,10 +199,22 @@ class Suite(unittest.TestCase):
         with self.assertRaises(SuiteError):
             with_es(OFFER, "eglCreateContext failed")
 
+    def test_groups_by_other_names_than_their_extensions(self):
+        for words, group in {"khr_texture_compression_astc_ldr": "extensions", "khr_debug": ""}.items():
+            offer = Offer((4, 5), (4, 5), frozenset({words}))
+            self.assertEqual(group_of("spec@khr_texture_compression_astc@basic-gl", offer), group)
+
     def test_list(self):
         text = "spec@!opengl 1.1@a b ::: ../lib/piglit/bin/draw 'GL_A b' -auto -fbo\nnoise\n"
-        self.assertEqual(read_list(text, "opengl", Path("/p")),
-                         [Test("spec@!opengl 1.1@a b", ("/p/bin/draw", "GL_A b", "-auto"), "opengl")])
+        listed = read_list(text, "opengl", Path("/p"))
+        self.assertEqual(listed, [Test("spec@!opengl 1.1@a b", ("/p/bin/draw", "GL_A b", "-auto"), "opengl", True)])
+        self.assertEqual(in_framebuffer(listed[0]).command, ("/p/bin/draw", "GL_A b", "-auto", "-fbo"))
+
+    def test_only_what_piglit_draws_into_framebuffers(self):
+        text = "glx@a ::: bin/a -auto\nspec@!opengl 1.1@b ::: bin/b -auto -fbo\n"
+        chosen = piglit.Selection(read_list(text, "opengl"), OFFER, piglit.read_arguments(["--fbo"]))
+        self.assertEqual([(test.name, test.command[1:]) for test in chosen.tests],
+                         [("spec@!opengl 1.1@b", ("-auto", "-fbo"))])
 
     def test_left_out_needs_a_reason(self):
         with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:

@@ -21,8 +21,8 @@ import report  # noqa: E402
 from expectations import load, on_wall  # noqa: E402
 from players import MesaPlayer, WallPlayer, play_all  # noqa: E402
 from results import Outcome, judge  # noqa: E402
-from suite import HOME, PROFILES, Offer, SuiteError, Test, all_tests, group_of, load_left_out  # noqa: E402
-from suite import read_offer, with_es  # noqa: E402
+from suite import HOME, PROFILES, Offer, SuiteError, Test, all_tests, group_of, in_framebuffer  # noqa: E402
+from suite import load_left_out, read_offer, with_es  # noqa: E402
 from wall import Wall, WallError  # noqa: E402
 from xserver import XServer  # noqa: E402
 
@@ -30,10 +30,12 @@ PROGRESS = 10.0  # seconds between two lines of progress
 LARGE_GROUP = 300  # tests; its like are generated, hundreds of a kind
 HELP = """\
 Selected are the tests about what the wall offers: its OpenGL and GLSL versions and extensions, GLX and EGL. They draw
-into windows. A test that is skipped asks for something that is not offered: that is no failure.
+into windows, with --fbo into framebuffer objects. A test that is skipped asks for something that is not offered: that
+is no failure.
 
     piglit.py                                   everything, on one tile
     piglit.py --tiles 4x3 --tile-size 144x150   on twelve tiles so small that windows cross their borders
+    piglit.py --fbo                             into framebuffer objects what piglit itself would draw there
     piglit.py --filter 'texwrap|copy-pixels'    tests whose name has this
     piglit.py --filter 'pbo$' --list            which these are, and how each is started by hand
 
@@ -50,7 +52,7 @@ def pair(text: str) -> tuple[int, int]:
     return int(found[1]), int(found[2])
 
 
-def read_arguments() -> argparse.Namespace:
+def read_arguments(given: list[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, epilog=HELP,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tiles", type=pair, default=(1, 1), metavar="CxR",
@@ -65,12 +67,14 @@ def read_arguments() -> argparse.Namespace:
     parser.add_argument("--all", action="store_true", help="also what selection.toml leaves out")
     parser.add_argument("--sample", type=int, default=1, metavar="N",
                         help=f"of groups of more than {LARGE_GROUP} tests only one of N, always the same; default all")
+    parser.add_argument("--fbo", action="store_true",
+                        help="tests that can, draw into framebuffer objects; the others are left out")
     parser.add_argument("--list", action="store_true", help="only print the tests")
     parser.add_argument("-j", "--jobs", type=int, default=2, help="tests at a time; default 2")
-    parser.add_argument("--timeout", type=float, default=60.0, metavar="S",
-                        help="seconds until a test is ended; default 60")
+    parser.add_argument("--timeout", type=float, default=120.0, metavar="S",
+                        help="seconds until a test is ended; default 120")
     parser.add_argument("--report", type=Path, default=Path("test-output/conformance"), help="folder for the report")
-    return parser.parse_args()
+    return parser.parse_args(given)
 
 
 def offer_of(player: WallPlayer) -> Offer:
@@ -88,13 +92,13 @@ class Selection:
         self.tests: list[Test] = []
         for test in sorted(tests, key=lambda test: PROFILES.index(test.profile)):
             if (not group_of(test.name, offer) or not options.filter.search(test.name)
-                    or test.profile not in (options.profile or PROFILES)):
+                    or test.profile not in (options.profile or PROFILES) or (options.fbo and not test.offscreen)):
                 continue
             reason = next((each.reason for each in left_out if each.pattern.search(test.name)), "")
             if reason:
                 self.left_out[reason] += 1
             else:
-                self.tests.append(test)
+                self.tests.append(in_framebuffer(test) if options.fbo else test)
         if options.sample > 1:
             self.tests = sample(self.tests, options.sample, lambda test: group_of(test.name, offer))
 
@@ -137,7 +141,7 @@ def play(wall: WallPlayer, mesa: MesaPlayer, selection: Selection, expected: Col
 
 def run(options: argparse.Namespace) -> bool:
     tests = all_tests()
-    name = "{}x{} of {}x{}".format(*options.tiles, *options.tile_size)
+    name = "{}x{} of {}x{}".format(*options.tiles, *options.tile_size) + (", -fbo" if options.fbo else "")
     expected = on_wall(load(HERE / "expectations.toml"), name)
     with XServer() as x, Wall(tiles=options.tiles, tile_size=options.tile_size, name="conformance",
                               swap_timeout_ms=10000,

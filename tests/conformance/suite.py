@@ -17,7 +17,9 @@ PROFILES = ("opengl", "shader", "glslparser")
 OPENGL = re.compile(r"spec@!opengl (\d)\.(\d)(@|$)")
 GLSL = re.compile(r"spec@glsl-(\d)\.(\d)0(@|$)")
 OPENGL_ES = re.compile(r"spec@(?:!opengl es |glsl-es-)(\d)\.(\d)")
+OFFSCREEN = "-fbo"
 GLSL_ES_1 = (2, 0)  # the version of OpenGL ES that brought GLSL ES 1.00
+OTHER_NAMES = {"khr_texture_compression_astc": "khr_texture_compression_astc_ldr"}  # piglit's of extensions
 
 
 class SuiteError(RuntimeError):
@@ -29,6 +31,7 @@ class Test:
     name: str
     command: tuple[str, ...]
     profile: str
+    offscreen: bool = False  # piglit itself would run it with -fbo
 
 
 @dataclasses.dataclass(frozen=True)
@@ -93,20 +96,28 @@ def group_of(name: str, offer: Offer) -> str:
         return "EGL"
     if name.startswith("shaders@"):
         return "shaders"
+    if not name.startswith("spec@"):
+        return ""
+    extension = name.split("@")[1]
     offered = offer.extensions | offer.es_extensions
-    return "extensions" if name.startswith("spec@") and name.split("@")[1] in offered else ""
+    return "extensions" if OTHER_NAMES.get(extension, extension) in offered else ""
 
 
-def windowed(words: Iterable[str], home: Path = HOME) -> tuple[str, ...]:
-    """A test's command line without -fbo: a window is what a wall is about."""
-    program, *arguments = (word for word in words if word != "-fbo")
-    return (str(home / "bin" / Path(program).name), *arguments)
+def read_test(name: str, words: list[str], profile: str, home: Path = HOME) -> Test:
+    """A test's command line without -fbo: a window is what a wall is about first."""
+    program, *arguments = (word for word in words if word != OFFSCREEN)
+    return Test(name, (str(home / "bin" / Path(program).name), *arguments), profile, OFFSCREEN in words)
+
+
+def in_framebuffer(test: Test) -> Test:
+    """The test that draws into a framebuffer object instead of its window."""
+    return dataclasses.replace(test, command=(*test.command, OFFSCREEN))
 
 
 def read_list(text: str, profile: str, home: Path = HOME) -> list[Test]:
     """`text`: lines of `piglit print-cmd`."""
     pairs = (line.split(" ::: ", 1) for line in text.splitlines() if " ::: " in line)
-    return [Test(name, windowed(shlex.split(command), home), profile) for name, command in pairs]
+    return [read_test(name, shlex.split(command), profile, home) for name, command in pairs]
 
 
 def load_left_out(path: Path) -> list[LeftOut]:

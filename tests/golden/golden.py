@@ -34,7 +34,7 @@ from xserver import XServer  # noqa: E402
 # Functions that must be answered without a round trip, whatever the program.
 LOCAL_ANSWERS = ("glGet", "glIs", "glAreTexturesResident", "glGenLists", "glGenTextures", "glCheck")
 # Those of them whose answer only a node has.
-REMOTE_ANSWERS = ("glGetBufferSubData", "glGetTexImage", "glGetQueryObject")
+REMOTE_ANSWERS = ("glGetBufferSubData", "glGetMultisample", "glGetTexImage", "glGetQueryObject")
 NO_PICTURE = "no picture"
 
 

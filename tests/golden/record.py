@@ -13,18 +13,20 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from pathlib import Path
 
 sys.path[:0] = [str(Path(__file__).resolve().parent), str(Path(__file__).resolve().parents[1] / "support")]
 from subjects import HERE, Recording, load_recordings, play_through, signal_group  # noqa: E402
 from xserver import XServer  # noqa: E402
 
+_SWAP = r"^\d+ (?:glX|egl)SwapBuffers\(dpy = \w+, (?:drawable|surface) = (\w+)"
 END_SECONDS = 3  # that a program may take to end
 
 
 def record(recording: Recording, environment: dict[str, str]) -> None:
     with tempfile.TemporaryDirectory() as folder:
-        whole, first = Path(folder) / "whole.trace", Path(folder) / "first.trace"
+        whole, shown, first = (Path(folder) / f"{name}.trace" for name in ("whole", "shown", "first"))
         home = Path(folder) / "home"
         home.mkdir()
         for name, text in recording.files.items():
@@ -32,12 +34,10 @@ def record(recording: Recording, environment: dict[str, str]) -> None:
             (home / name).write_text(text)
         _trace(recording, whole, dict(environment, HOME=str(home), USER="root", SDL_AUDIODRIVER="dummy",
                                       ALSOFT_DRIVERS="null", **recording.needs))
-        subprocess.run([*_cut(recording), "-o", first, whole], check=True, stdout=subprocess.DEVNULL,
-                       stderr=subprocess.DEVNULL)
-        shown = Path(folder) / "shown.trace"
-        subprocess.run(["apitrace", "trim", f"--calls={calls_of_shown(_dump(first))}", "-o", shown, first], check=True,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        subprocess.run(["apitrace", "repack", "-b", shown, recording.path], check=True)
+        calls = f"--calls={calls_of_shown(_dump(whole), recording.most_image_bytes)}"
+        for command in (["apitrace", "trim", calls, "-o", shown, whole], [*_cut(recording), "-o", first, shown]):
+            subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.run(["apitrace", "repack", "-b", first, recording.path], check=True)
 
 
 def _dump(trace: Path) -> str:
@@ -45,17 +45,23 @@ def _dump(trace: Path) -> str:
                           text=True, errors="replace").stdout
 
 
-def calls_of_shown(dump: str) -> str:
+def calls_of_shown(dump: str, most_image_bytes: int = 0) -> str:
     """The calls of a trace, as ranges, without those that are made while a window is current that never swaps: SDL and
     Qt ask such a window what OpenGL there is, and destroy it, which a replay does not. The other window would be the
-    second one then."""
-    swapping = set(re.findall(r"^\d+ (?:glX|egl)SwapBuffers\(dpy = \w+, (?:drawable|surface) = (\w+)", dump, re.M))
+    second one then. Frames are those of the window that swaps most: swaps of another one (Blender has one of a single
+    pixel for a context that draws to framebuffer objects) are left out, too. So are images of textures of more than
+    `most_image_bytes`, if that is not 0."""
+    swaps = re.findall(_SWAP, dump, re.M)
+    swapping, frames = set(swaps), Counter(swaps).most_common(1)[0][0] if swaps else ""
     pbuffers = set(re.findall(r"^\d+ (?:glX|egl)CreatePbuffer\w*\(.*\) = (\w+)$", dump, re.M))
     kept, dropping, last = [], False, -1
-    for number, name, rest in re.findall(r"^(\d+) (\w+)\((.*)", dump, re.M):
+    for number, name, rest in re.findall(r"^(\d+) (\w+)(\(.*)", dump, re.M):
         if current := re.match(r"(?:glX|egl)Make(?:Context)?Current$", name) and re.search(r"dra\w* = (\w+)", rest):
             dropping = current[1] not in swapping | pbuffers | {"0", "NULL", "EGL_NO_SURFACE"}
-        if not dropping:
+        swapped = re.match(_SWAP, f"{number} {name}{rest}")
+        image = most_image_bytes and re.match(r"glTexImage\dD", name) and re.search(r"blob\((\d+)\)", rest)
+        large = image and int(image[1]) > most_image_bytes
+        if not dropping and not large and (not swapped or swapped[1] == frames):
             if kept and last == int(number) - 1:
                 kept[-1][1] = int(number)
             else:

@@ -39,7 +39,7 @@ class Recording:
     frames: int
     covers: str
     window: tuple[int, int] = WINDOW
-    core: bool = False  # it asks for a core profile, which Mesa refuses while it is told to offer the other one
+    core: bool = False  # it asks for a core profile, which Mesa refuses while told to offer the other, and may use sRGB
     first: int = WARM_UP  # frames before it are not compared
     needs: dict[str, str] = dataclasses.field(default_factory=dict)
     files: dict[str, str] = dataclasses.field(default_factory=dict)
@@ -47,6 +47,7 @@ class Recording:
     screen: tuple[int, int] = (800, 600)  # programs that choose their own size take half of it
     seconds: float = 3
     cut: int = 0
+    most_image_bytes: int = 0  # larger images of textures are left out, so that the recording stays small; 0: none is
     loops: bool = False  # see looping()
 
     kind = "recording"
@@ -79,7 +80,8 @@ class Recording:
 
     def environment(self) -> dict[str, str]:
         platform = {"WAFFLE_PLATFORM": "x11_egl"} if self.api == "egl" else {}
-        return platform | ({"MESA_GL_VERSION_OVERRIDE": "4.5"} if self.core else {})
+        core = {"MESA_GL_VERSION_OVERRIDE": "4.5", "MESA_EXTENSION_OVERRIDE": ""}
+        return platform | (core if self.core else {})
 
 
 @dataclasses.dataclass(frozen=True)

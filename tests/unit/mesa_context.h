@@ -24,10 +24,9 @@ public:
                                      EGL_NONE};
         return open(EGL_OPENGL_API, attributes);
     }
-    /// The same of OpenGL ES 3.0.
+    /// The same of OpenGL ES 3.2.
     static std::unique_ptr<MesaContext> open_es() {
-        ::setenv("MESA_GLES_VERSION_OVERRIDE", "3.0", 1);
-        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
+        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 2, EGL_NONE};
         return open(EGL_OPENGL_ES_API, attributes);
     }
     /// The same of OpenGL ES 1.1.

@@ -60,9 +60,9 @@ constexpr glstate::CategoryMask kEyeCategories = glstate::mask_of(glstate::el::c
 /// diff of a category whose elements have a value for each texture unit, unit by unit: element by element the driver
 /// would be told another active unit before nearly each value.
 template <glstate::Category C, class... E>
-void diff_by_unit(glstate::ElementList<E...>, glstate::State& from, glstate::State& to, Driver& driver) {
+[[gnu::noinline]] void diff_by_unit(glstate::ElementList<E...>, glstate::State& from, glstate::State& to,
+                                    Driver& driver) {
     constexpr auto kId = static_cast<std::size_t>(C);
-    if (from.ids[kId] == to.ids[kId]) return;
     const std::array different = {std::memcmp(&E::ref(std::as_const(from), 0), &E::ref(std::as_const(to), 0),
                                               sizeof(typename E::type) * E::count) != 0 ...};
     bool any = false;
@@ -74,7 +74,8 @@ void diff_by_unit(glstate::ElementList<E...>, glstate::State& from, glstate::Sta
 }
 template <glstate::Category C>
 void diff_by_unit(glstate::State& from, glstate::State& to, Driver& driver) {
-    diff_by_unit<C>(typename glstate::CategoryElements<C>::list{}, from, to, driver);
+    constexpr auto kId = static_cast<std::size_t>(C);
+    if (from.ids[kId] != to.ids[kId]) diff_by_unit<C>(typename glstate::CategoryElements<C>::list{}, from, to, driver);
 }
 
 }  // namespace
@@ -177,9 +178,15 @@ void Driver::apply_indexed() {
     const auto of = [&](unsigned i) -> const glstate::BlendEquation& {
         return glstate::value_at<el::blend_equation, el::blend_equation_rest>(mirror, i);
     };
-    if (glstate::none_has_its_own<el::blend_equation_rest>(mirror)) gl_.BlendEquationSeparate(of(0).rgb, of(0).alpha);
-    else
-        for (unsigned i = 0; i < glstate::kDrawBuffers; ++i) gl_.BlendEquationSeparatei(i, of(i).rgb, of(i).alpha);
+    // Advanced equations are those of both, which only the commands for both take (GL_KHR_blend_equation_advanced).
+    if (glstate::none_has_its_own<el::blend_equation_rest>(mirror)) {
+        if (of(0).rgb == of(0).alpha) gl_.BlendEquation(of(0).rgb);
+        else gl_.BlendEquationSeparate(of(0).rgb, of(0).alpha);
+        return;
+    }
+    for (unsigned i = 0; i < glstate::kDrawBuffers; ++i)
+        if (of(i).rgb == of(i).alpha) gl_.BlendEquationi(i, of(i).rgb);
+        else gl_.BlendEquationSeparatei(i, of(i).rgb, of(i).alpha);
 }
 
 void Driver::sync_pixel_transfer(const glstate::State& state) {

@@ -2,7 +2,10 @@
 #include "tileserver/driver/layer.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
+
+#include "common/glapi/texture_target.h"
 
 namespace wall::tileserver {
 namespace {
@@ -23,22 +26,49 @@ std::pair<GLenum, GLenum> attachments(GLenum buffer, bool double_buffered) {
     }
 }
 
+GLenum target_of(std::uint32_t samples) {
+    using glapi::TextureTarget;
+    return glapi::info_of(samples != 0 ? TextureTarget::t2d_multisample : TextureTarget::t2d).target;
+}
+
+/// A window starts all zero.
+void clear_texture(const Gl& gl, GLuint texture, GLenum format) {
+    const bool color = format != GL_DEPTH24_STENCIL8;
+    gl.ClearTexImage(texture, 0, color ? GL_RGBA : GL_DEPTH_STENCIL, color ? GL_UNSIGNED_BYTE : GL_UNSIGNED_INT_24_8,
+                     nullptr);
+}
+
+/// Copies one texture's pixels to another of the same size, whose pixels have another number of samples: as many pixels
+/// are made of samples, or samples of pixels. The first scissor takes part in a blit, and is off meanwhile.
+void convert_samples(const Gl& gl, GLuint from, GLuint to, std::int32_t width, std::int32_t height) {
+    std::array<GLuint, 2> framebuffers{};
+    gl.CreateFramebuffers(2, framebuffers.data());
+    gl.NamedFramebufferTexture(framebuffers[0], GL_COLOR_ATTACHMENT0, from, 0);
+    gl.NamedFramebufferTexture(framebuffers[1], GL_COLOR_ATTACHMENT0, to, 0);
+    const bool scissor = gl.IsEnabledi(GL_SCISSOR_TEST, 0) == GL_TRUE;
+    if (scissor) gl.Disablei(GL_SCISSOR_TEST, 0);
+    gl.BlitNamedFramebuffer(framebuffers[0], framebuffers[1], 0, 0, width, height, 0, 0, width, height,
+                            GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    if (scissor) gl.Enablei(GL_SCISSOR_TEST, 0);
+    gl.DeleteFramebuffers(2, framebuffers.data());
+}
+
 }  // namespace
 
 Layer::Layer(const Gl& gl, bool flip_y, const LayerGeometry& geometry, const LayerFormat& format, PixelBudget& budget)
     : gl_(gl), budget_(budget), format_(format), flip_y_(flip_y) {
     geometry_ = geometry;
-    budget_.left -= pixels();
-    const GLenum color = format.alpha ? GL_RGBA8 : GL_RGB8;
-    front_ = make_texture(color);
+    budget_.left -= pixels_taken(geometry_, format_);
+    front_ = make_texture(color_format(), 0);
     if (format.double_buffered) {
-        back_ = make_texture(color);
-        ready_ = make_texture(color);
+        back_ = make_texture(color_format(), format.samples);
+        ready_ = make_texture(color_format(), 0);
     }
-    if (format.depth || format.stencil) depth_stencil_ = make_texture(GL_DEPTH24_STENCIL8);
+    if (format.depth || format.stencil) depth_stencil_ = make_texture(GL_DEPTH24_STENCIL8, format.samples);
     gl_.CreateFramebuffers(1, &framebuffer_);
-    attach(kBack, format.double_buffered ? back_ : front_);
-    if (format.double_buffered) attach(kFront, front_);
+    if (format.double_buffered) attach(kBack, back_);
+    if (format.samples == 0) attach(format.double_buffered ? kFront : kBack, front_);
+    else if (!format.double_buffered) need_front_samples();
     if (format.depth) attach(GL_DEPTH_ATTACHMENT, depth_stencil_);
     if (format.stencil) attach(GL_STENCIL_ATTACHMENT, depth_stencil_);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
@@ -47,25 +77,62 @@ Layer::Layer(const Gl& gl, bool flip_y, const LayerGeometry& geometry, const Lay
 }
 
 Layer::~Layer() {
-    budget_.left += pixels();
-    const std::array textures = {front_, back_, ready_, depth_stencil_};
+    budget_.left += pixels_taken(geometry_, format_);
+    const std::array textures = {front_, back_, ready_, depth_stencil_, front_samples_};
     gl_.DeleteFramebuffers(1, &framebuffer_);
     gl_.DeleteTextures(static_cast<GLsizei>(textures.size()), textures.data());
 }
 
-GLuint Layer::make_texture(GLenum format) {
+GLuint Layer::make_texture(GLenum format, std::uint32_t samples) const {
     GLuint texture = 0;
-    gl_.CreateTextures(GL_TEXTURE_2D, 1, &texture);
-    gl_.TextureStorage2D(texture, 1, format, width(), height());
-    const bool color = format != GL_DEPTH24_STENCIL8;  // a window starts all zero
-    gl_.ClearTexImage(texture, 0, color ? GL_RGBA : GL_DEPTH_STENCIL, color ? GL_UNSIGNED_BYTE : GL_UNSIGNED_INT_24_8,
-                      nullptr);
+    gl_.CreateTextures(target_of(samples), 1, &texture);
+    if (samples != 0)
+        gl_.TextureStorage2DMultisample(texture, static_cast<GLsizei>(samples), format, width(), height(), GL_TRUE);
+    else gl_.TextureStorage2D(texture, 1, format, width(), height());
+    clear_texture(gl_, texture, format);
     return texture;
 }
 
 void Layer::attach(GLenum point, GLuint texture) { gl_.NamedFramebufferTexture(framebuffer_, point, texture, 0); }
 
+bool Layer::draws_to_front() const {
+    const auto [first, second] = attachments(draw_buffer_, format_.double_buffered);
+    return !format_.double_buffered ? first != GL_NONE : first == kFront || second == kFront;
+}
+
+void Layer::need_front_samples() {
+    if (front_samples_ != 0) return;
+    front_samples_ = make_texture(color_format(), format_.samples);
+    if (format_.double_buffered) convert_samples(gl_, program_front(), front_samples_, width(), height());
+    attach(format_.double_buffered ? kFront : kBack, front_samples_);
+}
+
+void Layer::drop_front_samples() {
+    if (front_samples_ == 0) return;
+    attach(kFront, 0);
+    gl_.DeleteTextures(1, &front_samples_);
+    front_samples_ = 0;
+    front_drawn_ = false;
+}
+
+void Layer::settle_front() const {
+    if (front_samples_ == 0 || !(front_drawn_ || draws_to_front())) return;
+    convert_samples(gl_, front_samples_, program_front(), width(), height());
+    front_drawn_ = false;
+}
+
+GLuint Layer::front() const {
+    if (!frame_waits_) settle_front();
+    return front_;
+}
+
 void Layer::bind(GLenum draw_buffer, GLenum read_buffer) {
+    if (draws_to_front()) front_drawn_ = true;
+    if (format_.samples != 0 && format_.double_buffered)
+        for (const GLenum buffer : {draw_buffer, read_buffer}) {
+            const auto [first, second] = attachments(buffer, true);
+            if (first == kFront || second == kFront) need_front_samples();
+        }
     gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     if (std::exchange(draw_buffer_, draw_buffer) != draw_buffer) {
         const auto [first, second] = attachments(draw_buffer, format_.double_buffered);
@@ -109,7 +176,7 @@ void Layer::write_texture(GLuint texture, const geom::Rect& area, std::vector<st
     gl_.TextureSubImage2D(texture, 0, area.x, y, area.width, area.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
 }
 
-void Layer::copy(GLuint from, const Layer& source, GLuint to) const {
+void Layer::copy(GLuint from, const Layer& source, GLuint to, GLenum target) const {
     // Where the two areas overlap on the canvas, placed within each texture.
     const geom::Rect common = geom::intersect(geometry_.area, source.geometry_.area);
     if (common.empty()) return;
@@ -118,15 +185,21 @@ void Layer::copy(GLuint from, const Layer& source, GLuint to) const {
         return flip_y_ ? common.y - area.y : area.bottom() - common.bottom();
     };
     gl_.Flush();  // Mesa 22.3 leaves vertices of glBegin/glEnd that it still holds out of the copy
-    gl_.CopyImageSubData(from, GL_TEXTURE_2D, 0, common.x - source.geometry_.area.x, row(source), 0, to, GL_TEXTURE_2D,
-                         0, common.x - geometry_.area.x, row(*this), 0, common.width, common.height, 1);
+    gl_.CopyImageSubData(from, target, 0, common.x - source.geometry_.area.x, row(source), 0, to, target, 0,
+                         common.x - geometry_.area.x, row(*this), 0, common.width, common.height, 1);
 }
 
 void Layer::finish_frame() {
     if (!format_.double_buffered) return;
-    copy(back_, *this, ready_);
+    if (format_.samples != 0) {
+        settle_front();
+        drop_front_samples();
+        convert_samples(gl_, back_, ready_, width(), height());
+    } else {
+        copy(back_, *this, ready_);
+    }
     frame_waits_ = true;
-    attach(kFront, program_front());
+    if (format_.samples == 0) attach(kFront, program_front());
 }
 
 void Layer::show_frame() {
@@ -139,14 +212,18 @@ void Layer::take_content(const Layer& older) {
     const geom::Rect place = mine.area;
     mine.area.x += older.geometry_.surface.x - mine.surface.x;
     mine.area.y += older.geometry_.surface.bottom() - mine.surface.bottom();
+    const GLenum drawn_to = target_of(format_.samples);
+    older.settle_front();
     copy(older.front_, older, front_);
     if (format_.double_buffered && older.format_.double_buffered) {
-        copy(older.back_, older, back_);
+        copy(older.back_, older, back_, drawn_to);
         copy(older.ready_, older, ready_);
         frame_waits_ = older.frame_waits_;
-        attach(kFront, program_front());
+        if (format_.samples == 0) attach(kFront, program_front());
+    } else if (format_.samples != 0 && !format_.double_buffered) {
+        copy(older.front_samples_, older, front_samples_, drawn_to);
     }
-    if (depth_stencil_ != 0 && older.depth_stencil_ != 0) copy(older.depth_stencil_, older, depth_stencil_);
+    if (depth_stencil_ != 0 && older.depth_stencil_ != 0) copy(older.depth_stencil_, older, depth_stencil_, drawn_to);
     mine.area = place;
 }
 

@@ -4,9 +4,12 @@
 //
 // Where the driver has GL_MESA_framebuffer_flip_y the top row comes first in memory, as in a window of Mesa, so that
 // its rasterizer yields the same pixels as for a window. Elsewhere the bottom row comes first.
+//
+// Where a pixel has several samples, what is drawn to has them, and what is shown has been made of them: the back
+// buffer at the end of a frame, the front buffer when somebody looks at it (OpenGL 4.6, 14.3.1 and 17.4.2).
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -19,13 +22,17 @@ namespace wall::tileserver {
 struct LayerFormat {
     bool double_buffered = true;
     bool alpha = false, depth = true, stencil = true;
+    std::uint32_t samples = 0;  ///< of a pixel; 0: it has no sample buffers
     bool operator==(const LayerFormat&) const = default;
 };
 
-/// Pixels that a session's layers may still take.
+/// Pixels that a session's layers may still take; one with several samples counts as often.
 struct PixelBudget {
     std::int64_t left = 0;
 };
+inline std::int64_t pixels_taken(const LayerGeometry& geometry, const LayerFormat& format) {
+    return std::int64_t{geometry.area.width} * geometry.area.height * std::max(format.samples, 1u);
+}
 
 class Layer final : public RenderTarget {
 public:
@@ -33,8 +40,8 @@ public:
     Layer(const Gl& gl, bool flip_y, const LayerGeometry& geometry, const LayerFormat& format, PixelBudget& budget);
     ~Layer();
 
-    std::int64_t pixels() const { return std::int64_t{width()} * height(); }
     bool top_row_first() const { return flip_y_; }
+    std::uint32_t samples() const { return format_.samples; }
 
     void bind(GLenum draw_buffer, GLenum read_buffer) override;
     /// End of a frame: a copy of the back buffer waits to be shown. Nothing for a single-buffered surface.
@@ -42,14 +49,15 @@ public:
     /// The waiting frame becomes the front buffer.
     void show_frame();
     bool frame_waits() const { return frame_waits_; }
-    /// The texture that is shown: the front buffer.
-    GLuint front() const { return front_; }
-    /// Takes over the common pixels of a layer of the same surface at an older place of the same scale.
+    /// The texture that is shown: the front buffer, as it is now. It has one sample a pixel.
+    GLuint front() const;
+    /// Takes over the common pixels of a layer of the same surface, and so format, at an older place of the same scale.
     void take_content(const Layer& older);
 
     /// Textures of the buffers that are drawn to since bind().
     std::vector<GLuint> draw_textures() const;
-    /// A rectangle of a colour texture as RGBA bytes, bottom row first. Pixel transfer must be neutral.
+    /// A rectangle of a colour texture of one sample a pixel as RGBA bytes, bottom row first. Pixel transfer must be
+    /// neutral.
     void read_texture(GLuint texture, const geom::Rect& area, std::vector<std::uint8_t>& pixels) const;
     void write_texture(GLuint texture, const geom::Rect& area, std::vector<std::uint8_t>& pixels);
 
@@ -59,15 +67,24 @@ public:
 private:
     /// To the program the frame that it ended last is the front buffer, shown or not.
     GLuint program_front() const { return frame_waits_ ? ready_ : front_; }
-    GLuint make_texture(GLenum format);
+    GLuint make_texture(GLenum format, std::uint32_t samples) const;
     void attach(GLenum point, GLuint texture);
-    void copy(GLuint from, const Layer& source, GLuint to) const;
+    void copy(GLuint from, const Layer& source, GLuint to, GLenum target = GL_TEXTURE_2D) const;
+    GLenum color_format() const { return format_.alpha ? GL_RGBA8 : GL_RGB8; }
+    bool draws_to_front() const;
+    /// A front buffer that is drawn to or read from: it has samples only then.
+    void need_front_samples();
+    void drop_front_samples();
+    /// What was drawn to the front buffer's samples becomes its picture.
+    void settle_front() const;
 
     const Gl& gl_;
     PixelBudget& budget_;
     LayerFormat format_;
     bool flip_y_, frame_waits_ = false;
-    GLuint front_ = 0, back_ = 0, ready_ = 0, depth_stencil_ = 0;           // textures; 0: none
+    GLuint front_ = 0, back_ = 0, ready_ = 0, depth_stencil_ = 0;  // textures; 0: none
+    GLuint front_samples_ = 0;          // what is drawn to the front buffer, where pixels have several; 0: none
+    mutable bool front_drawn_ = false;  // its picture is older than its samples
     GLenum draw_buffer_ = GL_INVALID_ENUM, read_buffer_ = GL_INVALID_ENUM;  // bound last
 };
 

@@ -14,8 +14,7 @@ void BlitCommands::Blit(std::int32_t from_x0, std::int32_t from_y0, std::int32_t
     if ((mask & ~kBuffers) != 0 || (filter != GL_NEAREST && filter != GL_LINEAR))
         return execution_.refuse("no such buffer or filter");
     if (!block_.draws) return;
-    Framebuffer* from = execution_.updated(
-        execution_.session.objects.find<tileserver::Framebuffer>(execution_.context->read_framebuffer));
+    const RenderTarget* from = source();
     if (from == nullptr) return;
     const LayerGeometry& g = block_.target->geometry();
     const LayerEdge left = layer_edge(g, to_x0, to_y0), right = layer_edge(g, to_x1, to_y1);
@@ -23,6 +22,20 @@ void BlitCommands::Blit(std::int32_t from_x0, std::int32_t from_y0, std::int32_t
                                        from_y1, left.x, left.y, right.x, right.y, mask, filter);
     // Updating may have bound others.
     execution_.node.driver.forget_target();
+}
+
+/// The framebuffer that is read from; or the window, if one layer here has all of it. Null: neither is there.
+const RenderTarget* BlitCommands::source() {
+    const SoftContext& context = *execution_.context;
+    if (context.read_framebuffer)
+        return execution_.updated(execution_.session.objects.find<tileserver::Framebuffer>(context.read_framebuffer));
+    SurfaceReplica* window = execution_.session.surface(context.read);
+    Layer* layer = window != nullptr ? window->whole_layer() : nullptr;
+    if (layer == nullptr || !layer->complete()) return nullptr;
+    // Its buffer that is read from is chosen where it is bound.
+    for (RenderTarget* target : {static_cast<RenderTarget*>(layer), block_.target})
+        execution_.node.driver.bind_target(*target, execution_.context->state);
+    return layer;
 }
 
 }  // namespace wall::tileserver

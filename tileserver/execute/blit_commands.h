@@ -18,6 +18,8 @@ public:
               GLenum filter);
 
 private:
+    const RenderTarget* source();
+
     Execution& execution_;
     OpenBlock& block_;
 };

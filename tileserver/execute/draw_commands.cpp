@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "common/glstate/draw_buffers.h"
@@ -33,6 +34,26 @@ std::vector<GLubyte> scale_bitmap(std::span<const std::byte> bits, std::int32_t 
         }
     }
     return out;
+}
+
+/// Gives all samples of a part of a layer the stencil values of the first ones: Mesa 22.3 writes no others by
+/// glDrawPixels.
+void spread_stencil(const Gl& gl, const Layer& layer, const LayerPoint& from, const LayerPoint& to) {
+    const auto x0 = static_cast<GLint>(std::lround(std::clamp<double>(std::min(from.x, to.x), 0, layer.width()))),
+               y0 = static_cast<GLint>(std::lround(std::clamp<double>(std::min(from.y, to.y), 0, layer.height()))),
+               x1 = static_cast<GLint>(std::lround(std::clamp<double>(std::max(from.x, to.x), 0, layer.width()))),
+               y1 = static_cast<GLint>(std::lround(std::clamp<double>(std::max(from.y, to.y), 0, layer.height())));
+    if (x0 >= x1 || y0 >= y1) return;
+    GLuint image = 0, framebuffer = 0;
+    gl.CreateRenderbuffers(1, &image);
+    gl.NamedRenderbufferStorage(image, GL_DEPTH24_STENCIL8, layer.width(), layer.height());
+    gl.CreateFramebuffers(1, &framebuffer);
+    gl.NamedFramebufferRenderbuffer(framebuffer, GL_STENCIL_ATTACHMENT, GL_RENDERBUFFER, image);
+    for (const auto& [source, target] :
+         {std::pair{layer.framebuffer(), framebuffer}, {framebuffer, layer.framebuffer()}})
+        gl.BlitNamedFramebuffer(source, target, x0, y0, x1, y1, x0, y0, x1, y1, GL_STENCIL_BUFFER_BIT, GL_NEAREST);
+    gl.DeleteFramebuffers(1, &framebuffer);
+    gl.DeleteRenderbuffers(1, &image);
 }
 
 /// Whether the values of a buffer may be given in a type.
@@ -148,7 +169,15 @@ void DrawCommands::DrawPixels(std::int32_t width, std::int32_t height, GLenum fo
     if (!outside_begin() || !image_fits(execution_, format, type, {width, height, 1}, pixels)) return;
     if (!block_.draws || width == 0 || height == 0) return;
     execution_.node.maps.sync_pixel_maps(execution_.gl, execution_.context->maps);
-    at_raster_position([&] { execution_.gl.DrawPixels(width, height, format, type, pixels.data()); });
+    at_raster_position([&] {
+        execution_.gl.DrawPixels(width, height, format, type, pixels.data());
+        if (block_.layer == nullptr || block_.layer->samples() == 0 || format != GL_STENCIL_INDEX) return;
+        const LayerGeometry& g = block_.layer->geometry();
+        const auto& zoom = glstate::el::pixel_zoom::ref(execution_.context->state);
+        const float x = block_.raster[0], y = block_.raster[1];
+        spread_stencil(execution_.gl, *block_.layer, layer_point(g, x, y),
+                       layer_point(g, x + static_cast<float>(width) * zoom.x, y + static_cast<float>(height) * zoom.y));
+    });
 }
 
 void DrawCommands::Bitmap(std::int32_t width, std::int32_t height, float xorig, float yorig, float xmove, float ymove,

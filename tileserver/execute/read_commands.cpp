@@ -13,24 +13,50 @@
 namespace wall::tileserver {
 namespace {
 
-/// A copy of a part of a scaled layer at the window's own resolution.
-std::unique_ptr<Layer> window_copy(Driver& driver, const Layer& layer, const SurfaceFormat& format,
-                                   const WindowValues::IntBox& window, PixelBudget& budget) {
-    const geom::Rect size{0, 0, window.width, window.height};
-    LayerFormat copy_format = format.layer;
-    copy_format.double_buffered = false;
-    auto copy = std::make_unique<Layer>(
-        driver.gl(), driver.flip_y(),
-        LayerGeometry{size, size, static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height)},
-        copy_format, budget);
-    copy->bind(GL_FRONT, GL_FRONT);
-    const auto from = layer_box(layer.geometry(), window);
+/// The buffers that pixels of a format are read from.
+GLbitfield buffers_of(GLenum format) {
+    switch (format) {
+        case GL_DEPTH_COMPONENT: return GL_DEPTH_BUFFER_BIT;
+        case GL_STENCIL_INDEX: return GL_STENCIL_BUFFER_BIT;
+        case GL_DEPTH_STENCIL: return GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT;
+        default: return GL_COLOR_BUFFER_BIT;
+    }
+}
+
+/// What copies of parts of layers are made with, and must not outlive.
+struct Copies {
+    Driver& driver;
+    LayerFormat format;
+    GLbitfield buffers;
+    PixelBudget budget{};
+
+    /// `buffers` of the part in pixels of that size, bound.
+    std::unique_ptr<Layer> copy(const Layer& layer, const WindowValues::IntBox& from, std::int32_t width,
+                                std::int32_t height);
+};
+
+std::unique_ptr<Layer> Copies::copy(const Layer& layer, const WindowValues::IntBox& from, std::int32_t width,
+                                    std::int32_t height) {
+    format.double_buffered = false;
+    format.depth = format.depth && (buffers & GL_DEPTH_BUFFER_BIT) != 0;
+    format.stencil = format.stencil && (buffers & GL_STENCIL_BUFFER_BIT) != 0;
+    format.samples = 0;
+    auto made = std::make_unique<Layer>(driver.gl(), driver.flip_y(), plain_geometry(width, height), format, budget);
+    made->bind(GL_FRONT, GL_FRONT);
     driver.disable_scissor();
-    const GLbitfield buffers = GL_COLOR_BUFFER_BIT | (copy_format.depth ? GL_DEPTH_BUFFER_BIT : 0u) |
-                               (copy_format.stencil ? GL_STENCIL_BUFFER_BIT : 0u);
-    driver.gl().BlitNamedFramebuffer(layer.framebuffer(), copy->framebuffer(), from.x, from.y, from.x + from.width,
-                                     from.y + from.height, 0, 0, size.width, size.height, buffers, GL_NEAREST);
-    return copy;
+    driver.gl().BlitNamedFramebuffer(layer.framebuffer(), made->framebuffer(), from.x, from.y, from.x + from.width,
+                                     from.y + from.height, 0, 0, width, height, buffers, GL_NEAREST);
+    return made;
+}
+
+/// A part of a layer that cannot be read as it is: at the window's own resolution, and of one sample a pixel. Samples
+/// become pixels first, as nothing is scaled meanwhile (OpenGL 4.6, 18.3.1).
+std::unique_ptr<Layer> window_copy(Copies& copies, const Layer& layer, const WindowValues::IntBox& window) {
+    const auto from = layer_box(layer.geometry(), window);
+    if (layer.samples() == 0) return copies.copy(layer, from, window.width, window.height);
+    auto pixels = copies.copy(layer, from, from.width, from.height);
+    if (!layer.geometry().scaled()) return pixels;
+    return copies.copy(*pixels, {0, 0, from.width, from.height}, window.width, window.height);
 }
 
 }  // namespace
@@ -57,9 +83,9 @@ void ReadCommands::ReadPixels(RequestId request, std::uint32_t slot, std::int32_
         execution_.node.maps.sync_pixel_maps(execution_.gl, execution_.context->maps);
         driver.forget_target();
         driver.bind_target(*layer, execution_.context->state);
-        if (layer->geometry().scaled()) {
-            PixelBudget budget;  // gone with the answer
-            const auto copy = window_copy(driver, *layer, surface->format(), {x, y, width, height}, budget);
+        if (layer->geometry().scaled() || layer->samples() != 0) {
+            Copies copies{driver, surface->format().layer, buffers_of(format)};
+            const auto copy = window_copy(copies, *layer, {x, y, width, height});
             execution_.gl.ReadPixels(0, 0, width, height, format, type, answer.data());
             driver.forget_target();
         } else {
@@ -85,7 +111,8 @@ void ReadCommands::read_framebuffer(ClientName name, const WindowValues::IntBox&
 }
 
 // The driver says it of a framebuffer that has so many.
-void ReadCommands::SamplePosition(RequestId request, std::uint32_t samples, std::uint32_t index) {
+void ReadCommands::SamplePosition(RequestId request, std::uint32_t samples, std::uint32_t index,
+                                  std::uint32_t of_window) {
     constexpr std::uint32_t kMostSamples = 64;
     if (samples < 1 || samples > kMostSamples || index >= samples) return execution_.refuse("no such sample");
     const Gl& gl = execution_.gl;
@@ -96,6 +123,8 @@ void ReadCommands::SamplePosition(RequestId request, std::uint32_t samples, std:
     gl.NamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, texture, 0);
     execution_.node.driver.forget_target();
     gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    if (of_window != 0 && execution_.node.driver.flip_y())  // as its layers
+        gl.FramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_FLIP_Y_MESA, 1);
     std::array<GLfloat, 2> position{};
     gl.GetMultisamplefv(GL_SAMPLE_POSITION, index, position.data());
     gl.DeleteFramebuffers(1, &framebuffer);

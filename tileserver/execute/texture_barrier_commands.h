@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Group [texture_barrier]: a program draws to a texture that it samples as well (GL_ARB_texture_barrier). Render
-// thread.
+// Group [texture_barrier]: a program draws to a texture that it samples as well (GL_ARB_texture_barrier), or to what
+// its fragment shaders or advanced blending read (GL_KHR_blend_equation_advanced). Render thread.
 #pragma once
 
 #include "tileserver/execute/execution.h"
@@ -15,6 +15,10 @@ public:
     void TextureBarrier() {
         if (block_.in_begin) return execution_.refuse("between Begin and End");
         if (block_.draws) execution_.gl.TextureBarrier();
+    }
+    void BlendBarrier() {
+        if (block_.in_begin) return execution_.refuse("between Begin and End");
+        if (block_.draws && execution_.gl.BlendBarrierKHR) execution_.gl.BlendBarrierKHR();
     }
 
 private:

@@ -199,6 +199,9 @@ constexpr LimitRow kLimits[] = {
     {GL_MAX_COMBINED_CLIP_AND_CULL_DISTANCES, 1},
     {GL_NUM_SHADING_LANGUAGE_VERSIONS, 1},
     {GL_CONTEXT_RELEASE_BEHAVIOR, 1},
+    // OpenGL ES 3.2 (GL_ARB_ES3_2_compatibility)
+    {GL_MULTISAMPLE_LINE_WIDTH_RANGE_ARB, 2},
+    {GL_MULTISAMPLE_LINE_WIDTH_GRANULARITY_ARB, 1},
 };
 
 constexpr std::size_t kMaxFormats = 512;

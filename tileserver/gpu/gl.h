@@ -26,6 +26,10 @@ struct Gl : glapi::GlFunctions {
         GlFunctions::CreateTextures(target, n, names);
         objects->textures += named(n, names);
     }
+    void GenTextures(GLsizei n, GLuint* names) const {
+        GlFunctions::GenTextures(n, names);
+        objects->textures += named(n, names);
+    }
     void DeleteTextures(GLsizei n, const GLuint* names) const {
         objects->textures -= named(n, names);
         GlFunctions::DeleteTextures(n, names);
@@ -105,6 +109,15 @@ struct Gl : glapi::GlFunctions {
         if (name != 0) --objects->shaders;
         GlFunctions::DeleteShader(name);
     }
+
+    // These would give names that nobody counts.
+    void GenBuffers(GLsizei, GLuint*) const = delete;
+    void GenFramebuffers(GLsizei, GLuint*) const = delete;
+    void GenRenderbuffers(GLsizei, GLuint*) const = delete;
+    void GenVertexArrays(GLsizei, GLuint*) const = delete;
+    void GenSamplers(GLsizei, GLuint*) const = delete;
+    void CreateQueries(GLenum, GLsizei, GLuint*) const = delete;
+    GLuint CreateShaderProgramv(GLenum, GLsizei, const GLchar* const*) const = delete;
 
     std::shared_ptr<DriverObjects> objects = std::make_shared<DriverObjects>();
 

@@ -7,7 +7,7 @@
 namespace wall::tileserver {
 
 std::unique_ptr<Layer> SurfaceReplica::make_layer(const LayerGeometry& geometry, const Layer* older) {
-    const auto pixels = std::int64_t{geometry.area.width} * geometry.area.height;
+    const auto pixels = pixels_taken(geometry, format_.layer);
     if (pixels > budget_.left) forget_older();
     if (pixels > budget_.left) return nullptr;
     auto layer = std::make_unique<Layer>(gl_, flip_y_, geometry, format_.layer, budget_);
@@ -76,6 +76,15 @@ Layer* SurfaceReplica::layer(std::uint32_t slot) {
         layer = make_layer({window, window, place_.window_width, place_.window_height}, nullptr);
     }
     return layer.get();
+}
+
+Layer* SurfaceReplica::whole_layer() {
+    if (place_.offscreen || place_.shown_whole) return layer(wire::kOffscreenSlot);
+    for (std::uint32_t slot = 0; slot < wire::kOffscreenSlot; ++slot)
+        if (Layer* tile = layers_[slot].get();
+            tile != nullptr && tile->geometry().area == tile->geometry().surface && !tile->geometry().scaled())
+            return tile;
+    return nullptr;
 }
 
 bool SurfaceReplica::on_tiles() const {

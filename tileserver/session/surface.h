@@ -52,6 +52,9 @@ public:
     Layer* layer(std::uint32_t slot);
     const Layer* layer(std::uint32_t slot) const { return layers_[slot].get(); }
 
+    /// The layer that has all of the window's pixels as they are; null: none here does.
+    Layer* whole_layer();
+
     /// What the wall shows on the tile, if anything.
     const Layer* shown_layer(std::uint32_t slot) const;
 

@@ -96,13 +96,17 @@ bool fits(const Config& config, const Wish& wish) {
 }
 
 /// Sorts by this key, smaller first.
-std::array<EGLint, 5> rank(const Config& config, const Wish& wish) {
+std::array<EGLint, 6> rank(const Config& config, const Wish& wish) {
     EGLint color_bits = 0;
     for (const EGLint name : {EGL_RED_SIZE, EGL_GREEN_SIZE, EGL_BLUE_SIZE, EGL_ALPHA_SIZE}) {
         const EGLint asked = wish[index_of(name)];
         if (asked != 0 && asked != EGL_DONT_CARE) color_bits += *attribute(config, name);
     }
-    return {-color_bits, *attribute(config, EGL_BUFFER_SIZE), config.format.depth_bits, config.format.stencil_bits,
+    return {-color_bits,
+            *attribute(config, EGL_BUFFER_SIZE),
+            config.format.samples,
+            config.format.depth_bits,
+            config.format.stencil_bits,
             config.id};
 }
 

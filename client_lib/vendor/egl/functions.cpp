@@ -27,7 +27,8 @@ constexpr const char* kClientExtensions =
     "EGL_KHR_platform_x11 EGL_EXT_platform_x11 EGL_EXT_platform_xcb EGL_MESA_platform_surfaceless";
 constexpr const char* kClientApis = "OpenGL OpenGL_ES";
 constexpr const char* kDisplayExtensions =
-    "EGL_KHR_create_context EGL_KHR_get_all_proc_addresses EGL_KHR_surfaceless_context";
+    "EGL_EXT_create_context_robustness EGL_KHR_create_context EGL_KHR_get_all_proc_addresses "
+    "EGL_KHR_no_config_context EGL_KHR_surfaceless_context";
 
 constinit std::atomic<const __EGLapiExports*> glvnd{nullptr};
 constinit std::mutex current_mutex;  // guards EglContext::current
@@ -398,7 +399,8 @@ bool read_context_flags(EGLAttrib flags, ContextOptions& o) {
     return (flags & ~(o.es ? kCommon : kDesktop)) == 0;
 }
 
-/// The words of desktop contexts, those of OpenGL ES and those of both (EGL 1.5, 3.7.1.1; EGL_KHR_create_context).
+/// The words of desktop contexts, those of OpenGL ES and those of both (EGL 1.5, 3.7.1.1; EGL_KHR_create_context,
+/// EGL_EXT_create_context_robustness).
 bool read_context_attribute(const Attribute& attribute, ContextWish& wish) {
     auto& o = wish.options;
     const EGLAttrib value = attribute.value;
@@ -410,9 +412,11 @@ bool read_context_attribute(const Attribute& attribute, ContextWish& wish) {
         case EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE: o.forward_compatible = value; return !o.es;
         case EGL_CONTEXT_FLAGS_KHR: return read_context_flags(value, o);
         case EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY:
+        case EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT:
             o.notifies_of_resets = value == EGL_LOSE_CONTEXT_ON_RESET;
             return o.notifies_of_resets || value == EGL_NO_RESET_NOTIFICATION;
-        case EGL_CONTEXT_OPENGL_ROBUST_ACCESS: o.robust = value; return true;
+        case EGL_CONTEXT_OPENGL_ROBUST_ACCESS:
+        case EGL_CONTEXT_OPENGL_ROBUST_ACCESS_EXT: o.robust = value; return true;
         case EGL_CONTEXT_PRIORITY_LEVEL_IMG: return true;  // a hint
         default: return false;
     }
@@ -459,7 +463,7 @@ EGLContext create_context_handle(EGLDisplay handle, EGLConfig config_handle, EGL
         auto* display = display_of(handle);
         if (!display) return EGL_NO_CONTEXT;
         const Config* config = display->config(config_handle);
-        if (!config) return refuse(EGL_BAD_CONFIG, EGL_NO_CONTEXT);
+        if (!config && config_handle != EGL_NO_CONFIG_KHR) return refuse(EGL_BAD_CONFIG, EGL_NO_CONTEXT);
         const EGLenum api = glvnd.load()->getCurrentApi();
         auto wish = read_context_attributes(list, api == EGL_OPENGL_ES_API);
         if (wish.error != EGL_SUCCESS) return refuse(wish.error, EGL_NO_CONTEXT);
@@ -571,7 +575,7 @@ EGLBoolean query_context(EGLDisplay handle, EGLContext context_handle, EGLint na
         const auto context = display->context(context_handle);
         if (!context) return refuse(EGL_BAD_CONTEXT);
         switch (name) {
-            case EGL_CONFIG_ID: *value = context->config->id; break;
+            case EGL_CONFIG_ID: *value = context->config ? context->config->id : 0; break;
             case EGL_CONTEXT_CLIENT_TYPE: *value = static_cast<EGLint>(context->api); break;
             case EGL_CONTEXT_CLIENT_VERSION: *value = context->major; break;
             case EGL_RENDER_BUFFER:

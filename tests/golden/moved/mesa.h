@@ -25,6 +25,16 @@ struct Mesa {
     decltype(&glWindowPos3d) WindowPos3d = find("glWindowPos3d");
     decltype(&glBindFramebuffer) BindFramebuffer = find("glBindFramebuffer");
     decltype(&glBlitFramebuffer) BlitFramebuffer = find("glBlitFramebuffer");
+    decltype(&glGenFramebuffers) GenFramebuffers = find("glGenFramebuffers");
+    decltype(&glDeleteFramebuffers) DeleteFramebuffers = find("glDeleteFramebuffers");
+    decltype(&glFramebufferRenderbuffer) FramebufferRenderbuffer = find("glFramebufferRenderbuffer");
+    decltype(&glGenRenderbuffers) GenRenderbuffers = find("glGenRenderbuffers");
+    decltype(&glDeleteRenderbuffers) DeleteRenderbuffers = find("glDeleteRenderbuffers");
+    decltype(&glBindRenderbuffer) BindRenderbuffer = find("glBindRenderbuffer");
+    decltype(&glRenderbufferStorage) RenderbufferStorage = find("glRenderbufferStorage");
+    decltype(&glIsEnabled) IsEnabled = find("glIsEnabled");
+    decltype(&glEnable) Enable = find("glEnable");
+    decltype(&glDisable) Disable = find("glDisable");
     decltype(&glCopyTexImage1D) CopyTexImage1D = find("glCopyTexImage1D");
     decltype(&glCopyTexImage2D) CopyTexImage2D = find("glCopyTexImage2D");
     decltype(&glCopyTexSubImage1D) CopyTexSubImage1D = find("glCopyTexSubImage1D");

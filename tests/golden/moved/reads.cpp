@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/golden/moved/place.h"
+#include "tests/golden/moved/resolved.h"
 #include "tests/golden/moved/share.h"
 
 namespace golden::moved {
@@ -179,7 +180,9 @@ void ReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, 
         mesa().PixelStorei(GL_PACK_ROW_LENGTH, row_length != 0 ? row_length : width);
         mesa().PixelStorei(GL_PACK_SKIP_PIXELS, skip_pixels + part.x - x);
         mesa().PixelStorei(GL_PACK_SKIP_ROWS, skip_rows + part.y - y);
-        mesa().ReadPixels(part.x + place().dx(), part.y + place().dy(), part.width, part.height, format, type, data);
+        const int left = part.x + place().dx(), bottom = part.y + place().dy();
+        const Resolved resolved(left + part.width, bottom + part.height, format);
+        mesa().ReadPixels(left, bottom, part.width, part.height, format, type, data);
         mesa().PixelStorei(GL_PACK_ROW_LENGTH, row_length);
         mesa().PixelStorei(GL_PACK_SKIP_PIXELS, skip_pixels);
         mesa().PixelStorei(GL_PACK_SKIP_ROWS, skip_rows);

@@ -62,6 +62,20 @@ std::vector<unsigned char> read_pixels(Size size) {
     return rgba;
 }
 
+/// What is made of a window's samples, by way of a texture: Mesa 22.3's glReadPixels gives the first one of each pixel.
+std::vector<unsigned char> read_samples(Size size) {
+    std::vector<unsigned char> rgba(static_cast<std::size_t>(size.width * size.height * 4));
+    glPushAttrib(GL_TEXTURE_BIT);
+    GLuint texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 0, 0, size.width, size.height, 0);
+    glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    glPopAttrib();
+    glDeleteTextures(1, &texture);
+    return rgba;
+}
+
 /// The buffer as it is, whatever pixel transfer the scene has left; one of OpenGL ES leaves none.
 std::vector<unsigned char> read_frame(const Scene& scene, Size size) {
     if (scene.needs.es) return read_pixels(size);
@@ -75,7 +89,7 @@ std::vector<unsigned char> read_frame(const Scene& scene, Size size) {
     for (const GLenum name : {GL_RED_BIAS, GL_GREEN_BIAS, GL_BLUE_BIAS, GL_ALPHA_BIAS}) glPixelTransferf(name, 0);
     glPixelTransferi(GL_MAP_COLOR, 0);
     if (scene.needs.read) glReadBuffer(scene.needs.read);
-    auto rgba = read_pixels(size);
+    auto rgba = scene.needs.samples ? read_samples(size) : read_pixels(size);
     glPopClientAttrib();
     glPopAttrib();
     return rgba;

@@ -21,6 +21,7 @@ struct Needs {
     bool double_buffered = true;
     bool egl = false;
     int es = 0;       ///< a context of that version of OpenGL ES, by EGL
+    int samples = 0;  ///< of a pixel, of which pixels are made before a frame is read; there is no accumulation buffer
     GLenum read = 0;  ///< buffer to read the frame from; 0: the one that is drawn to by default
     /// Its shaders write memory while they draw to the window: a tile shows a part of what the whole window would.
     bool whole = false;

@@ -45,6 +45,7 @@ protected:
 class GlxWindow : public XWindow {
 public:
     GlxWindow(Size size, const Needs& needs) {
+        const int accum = needs.samples ? 0 : 16;
         const int wanted[] = {GLX_RENDER_TYPE,
                               GLX_RGBA_BIT,
                               GLX_DRAWABLE_TYPE,
@@ -64,13 +65,15 @@ public:
                               GLX_STENCIL_SIZE,
                               8,
                               GLX_ACCUM_RED_SIZE,
-                              16,
+                              accum,
                               GLX_ACCUM_GREEN_SIZE,
-                              16,
+                              accum,
                               GLX_ACCUM_BLUE_SIZE,
-                              16,
+                              accum,
                               GLX_ACCUM_ALPHA_SIZE,
-                              16,
+                              accum,
+                              GLX_SAMPLES,
+                              needs.samples,
                               GLX_DOUBLEBUFFER,
                               needs.double_buffered ? True : False,
                               None};
@@ -116,6 +119,8 @@ public:
                                  24,
                                  EGL_STENCIL_SIZE,
                                  8,
+                                 EGL_SAMPLES,
+                                 needs.samples,
                                  EGL_RENDERABLE_TYPE,
                                  renderable(needs),
                                  EGL_NONE};

@@ -49,7 +49,7 @@ class Es(unittest.TestCase):
     def test_a_context_says_what_it_is(self) -> None:
         told = subprocess.run(self.wall.wallrun("es2_info"), env=self.x.environment(), capture_output=True, text=True,
                               timeout=60, check=True).stdout
-        self.assertIn("GL_VERSION: OpenGL ES 3.0 WallGL", told)
+        self.assertIn("GL_VERSION: OpenGL ES 3.2 WallGL", told)
         self.assertIn("EGL_CLIENT_APIS: OpenGL OpenGL_ES", told)
         self.assertIn("GL_OES_element_index_uint", told)
         self.assertNotIn("GL_ARB_", told)

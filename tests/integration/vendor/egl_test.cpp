@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <xcb/xcb.h>
 
+#include <algorithm>
 #include <set>
 #include <thread>
 
@@ -60,15 +61,21 @@ TEST_F(Egl, ConfigurationsAreAMatrix) {
     ASSERT_TRUE(eglGetConfigs(display, all.data(), 100, &count));
     std::set<std::vector<EGLint>> kinds;
     for (EGLint i = 0; i < count; ++i)
-        kinds.insert(
-            {attrib(all[i], EGL_ALPHA_SIZE), attrib(all[i], EGL_DEPTH_SIZE), attrib(all[i], EGL_STENCIL_SIZE)});
-    EXPECT_EQ(kinds.size(), 8u);
+        kinds.insert({attrib(all[i], EGL_ALPHA_SIZE), attrib(all[i], EGL_DEPTH_SIZE), attrib(all[i], EGL_STENCIL_SIZE),
+                      attrib(all[i], EGL_SAMPLES)});
+    EXPECT_EQ(kinds.size(), 16u);
     EGLConfig plain = config();
     EXPECT_EQ(attrib(plain, EGL_STENCIL_SIZE), 0);
     EXPECT_EQ(attrib(plain, EGL_DEPTH_SIZE), 0);
     EXPECT_EQ(attrib(config({EGL_DEPTH_SIZE, 16, EGL_ALPHA_SIZE, 1}), EGL_ALPHA_SIZE), 8);
     EXPECT_TRUE(config({EGL_RENDERABLE_TYPE, EGL_OPENGL_ES_BIT | EGL_OPENGL_BIT}));
-    EXPECT_FALSE(config({EGL_SAMPLES, 4}));
+    EXPECT_EQ(attrib(plain, EGL_SAMPLES), 0);
+    EXPECT_EQ(attrib(plain, EGL_SAMPLE_BUFFERS), 0);
+    EGLConfig several = config({EGL_SAMPLES, 2, EGL_DEPTH_SIZE, 1});
+    EXPECT_EQ(attrib(several, EGL_SAMPLES), 4);
+    EXPECT_EQ(attrib(several, EGL_SAMPLE_BUFFERS), 1);
+    EXPECT_TRUE(config({EGL_SAMPLE_BUFFERS, 1, EGL_ALPHA_SIZE, 8, EGL_SURFACE_TYPE, EGL_PBUFFER_BIT}));
+    EXPECT_FALSE(config({EGL_SAMPLES, 8}));
     EGLint value = 0;
     EXPECT_FALSE(eglGetConfigAttrib(display, reinterpret_cast<EGLConfig>(0x1234), EGL_DEPTH_SIZE, &value));
     EXPECT_EQ(eglGetError(), EGL_BAD_CONFIG);
@@ -96,6 +103,25 @@ TEST_F(Egl, DrawsFramesIntoAWindow) {
     EXPECT_TRUE(eglDestroySurface(display, surface));
     EXPECT_FALSE(eglSwapBuffers(display, surface));
     EXPECT_EQ(eglGetError(), EGL_BAD_SURFACE);
+}
+
+TEST_F(Egl, SamplesCountBeforeTheDepthBuffer) {
+    std::vector<EGLConfig> all(100);
+    EGLint count = 0;
+    const EGLint none[] = {EGL_NONE};
+    ASSERT_TRUE(eglChooseConfig(display, none, all.data(), 100, &count));
+    std::vector<std::vector<EGLint>> order;
+    for (EGLint i = 0; i < count; ++i)
+        order.push_back({attrib(all[i], EGL_BUFFER_SIZE), attrib(all[i], EGL_SAMPLES), attrib(all[i], EGL_DEPTH_SIZE)});
+    EXPECT_TRUE(std::ranges::is_sorted(order));
+}
+
+TEST_F(Egl, ASurfaceHasTheSamplesOfItsConfiguration) {
+    Window window = make_window();
+    EXPECT_NE(eglCreatePlatformWindowSurface(display, config({EGL_SAMPLES, 4}), &window, nullptr), EGL_NO_SURFACE);
+    EXPECT_THAT(last_logged("fake_surface_made"), HasSubstr("samples=4"));
+    EXPECT_NE(eglCreatePbufferSurface(display, config({EGL_SURFACE_TYPE, EGL_PBUFFER_BIT}), nullptr), EGL_NO_SURFACE);
+    EXPECT_THAT(last_logged("fake_surface_made"), HasSubstr("samples=0"));
 }
 
 TEST_F(Egl, SingleBufferedWindowsAndPbuffers) {
@@ -177,6 +203,20 @@ TEST_F(EglEs, ContextsMayBeCurrentWithoutASurface) {
     EXPECT_EQ(eglGetError(), EGL_BAD_MATCH);
 }
 
+TEST_F(EglEs, ContextsMayHaveNoConfiguration) {
+    EXPECT_THAT(eglQueryString(display, EGL_EXTENSIONS), HasSubstr("EGL_KHR_no_config_context"));
+    const EGLint version[] = {EGL_CONTEXT_CLIENT_VERSION, 2, EGL_NONE};
+    EGLContext made = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, version);
+    ASSERT_NE(made, EGL_NO_CONTEXT);
+    EGLint value = -1;
+    EXPECT_TRUE(eglQueryContext(display, made, EGL_CONFIG_ID, &value));
+    EXPECT_EQ(value, 0);
+    EGLSurface surface = eglCreateWindowSurface(display, config(), make_window(), nullptr);
+    EXPECT_TRUE(eglMakeCurrent(display, surface, surface, made));
+    EXPECT_EQ(eglCreateWindowSurface(display, EGL_NO_CONFIG_KHR, make_window(), nullptr), EGL_NO_SURFACE);
+    EXPECT_EQ(eglGetError(), EGL_BAD_CONFIG);
+}
+
 TEST_F(EglEs, DesktopsAttributesAreErrors) {
     constexpr EGLint kVersion = EGL_CONTEXT_CLIENT_VERSION;
     EXPECT_EQ(context({kVersion, 2, EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT}),
@@ -188,6 +228,18 @@ TEST_F(EglEs, DesktopsAttributesAreErrors) {
     const EGLint endless[] = {0x7777, 1};
     EXPECT_EQ(eglCreateContext(display, config(), EGL_NO_CONTEXT, endless), EGL_NO_CONTEXT);
     EXPECT_NE(context({kVersion, 2, EGL_CONTEXT_FLAGS_KHR, EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR}), EGL_NO_CONTEXT);
+}
+
+TEST_F(EglEs, RobustContextsAreAskedForByEitherWord) {
+    EXPECT_THAT(eglQueryString(display, EGL_EXTENSIONS), HasSubstr("EGL_EXT_create_context_robustness"));
+    EXPECT_NE(context({EGL_CONTEXT_CLIENT_VERSION, 2, EGL_CONTEXT_OPENGL_ROBUST_ACCESS_EXT, EGL_TRUE,
+                       EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_EXT}),
+              EGL_NO_CONTEXT);
+    EXPECT_THAT(last_logged("fake_context"), HasSubstr("robust=1 resets=1"));
+    EXPECT_NE(context({EGL_CONTEXT_CLIENT_VERSION, 2, EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE}), EGL_NO_CONTEXT);
+    EXPECT_THAT(last_logged("fake_context"), HasSubstr("robust=1 resets=0"));
+    EXPECT_EQ(context({EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, 7}), EGL_NO_CONTEXT);
+    EXPECT_EQ(eglGetError(), EGL_BAD_ATTRIBUTE);
 }
 
 TEST_F(EglEs, ContextsShareWithTheirKindOnly) {

@@ -22,9 +22,10 @@ class ClientSurface {
 public:
     explicit ClientSurface(SurfaceOptions o) : options(std::move(o)), id(++last) {
         log(LogLevel::info,
-            "fake_surface_made id=%d visible=%d size=%ux%u double=%d alpha=%d depth=%d stencil=%d title=%s", id,
-            options.visible, options.size.width, options.size.height, options.format.double_buffered,
-            options.format.alpha_bits, options.format.depth_bits, options.format.stencil_bits, options.title.c_str());
+            "fake_surface_made id=%d visible=%d size=%ux%u double=%d alpha=%d depth=%d stencil=%d samples=%d title=%s",
+            id, options.visible, options.size.width, options.size.height, options.format.double_buffered,
+            options.format.alpha_bits, options.format.depth_bits, options.format.stencil_bits, options.format.samples,
+            options.title.c_str());
     }
     ~ClientSurface() { log(LogLevel::info, "fake_surface_gone id=%d", id); }
     Extent now() const { return options.query_size ? options.query_size().value_or(options.size) : options.size; }
@@ -75,8 +76,9 @@ std::shared_ptr<ClientSurface> create_surface(SurfaceOptions options) {
 bool offers_es(int major) { return major == 1 || major == 2; }
 
 std::shared_ptr<Context> create_context(const ContextOptions& options) {
-    log(LogLevel::info, "fake_context version=%d.%d core=%d shared=%d es=%d", options.major, options.minor,
-        options.core_profile, options.share != nullptr, options.es);
+    log(LogLevel::info, "fake_context version=%d.%d core=%d shared=%d es=%d robust=%d resets=%d", options.major,
+        options.minor, options.core_profile, options.share != nullptr, options.es, options.robust,
+        options.notifies_of_resets);
     if (options.core_profile || options.major > 2 || (options.es && !offers_es(options.major))) return nullptr;
     auto context = std::make_shared<Context>();
     context->options = options;

@@ -81,11 +81,11 @@ TEST_F(Glx, ConfigurationsAreAMatrix) {
     std::set<int> ids;
     for (int i = 0; i < count; ++i) {
         kinds.insert({attrib(all[i], GLX_ALPHA_SIZE), attrib(all[i], GLX_DEPTH_SIZE), attrib(all[i], GLX_STENCIL_SIZE),
-                      attrib(all[i], GLX_DOUBLEBUFFER)});
+                      attrib(all[i], GLX_DOUBLEBUFFER), attrib(all[i], GLX_SAMPLES)});
         ids.insert(attrib(all[i], GLX_FBCONFIG_ID));
         EXPECT_EQ(attrib(all[i], GLX_X_VISUAL_TYPE), GLX_TRUE_COLOR);
     }
-    EXPECT_EQ(kinds.size(), 16u);
+    EXPECT_EQ(kinds.size(), 32u);
     EXPECT_EQ(ids.size(), static_cast<std::size_t>(count));
     EXPECT_EQ(attrib(all[0], GLX_VISUAL_ID), static_cast<int>(XVisualIDFromVisual(DefaultVisual(display, 0))));
     XFree(all);
@@ -97,11 +97,14 @@ TEST_F(Glx, ChoosesNoMoreThanAskedFor) {
     EXPECT_EQ(attrib(found[0], GLX_STENCIL_SIZE), 0);
     EXPECT_EQ(attrib(found[0], GLX_ALPHA_SIZE), 0);
     EXPECT_EQ(attrib(found[0], GLX_ACCUM_RED_SIZE), 0);
+    EXPECT_EQ(attrib(found[0], GLX_SAMPLES), 0);
+    EXPECT_EQ(attrib(found[0], GLX_SAMPLE_BUFFERS), 0);
     const auto alpha = configs({GLX_ALPHA_SIZE, 8, GLX_STENCIL_SIZE, 8});
     EXPECT_EQ(attrib(alpha[0], GLX_ALPHA_SIZE), 8);
     EXPECT_EQ(attrib(alpha[0], GLX_STENCIL_SIZE), 8);
     EXPECT_TRUE(configs({GLX_STEREO, True}).empty());
-    EXPECT_TRUE(configs({GLX_SAMPLES, 4}).empty());
+    EXPECT_TRUE(configs({GLX_SAMPLES, 8}).empty());
+    EXPECT_TRUE(configs({GLX_SAMPLES, 4, GLX_ACCUM_RED_SIZE, 1}).empty());
     EXPECT_TRUE(configs({GLX_RENDER_TYPE, GLX_COLOR_INDEX_BIT}).empty());
     EXPECT_TRUE(configs({0x12345, 1}).empty());
 }
@@ -128,6 +131,30 @@ TEST_F(Glx, AVisualStandsForWhatWasChosen) {
             XDestroyWindow(display, window);
         }
     EXPECT_FALSE(choose({GLX_DOUBLEBUFFER}));  // colour index
+}
+
+TEST_F(Glx, PixelsHaveSeveralSamplesWhereThatIsAskedFor) {
+    for (const auto& wish : {std::vector{GLX_SAMPLE_BUFFERS, 1}, std::vector{GLX_SAMPLES, 2, GLX_DOUBLEBUFFER, False},
+                             std::vector{GLX_SAMPLES, 4, GLX_DRAWABLE_TYPE, GLX_PBUFFER_BIT}}) {
+        const auto found = configs(wish);
+        ASSERT_FALSE(found.empty());
+        for (GLXFBConfig config : found) {
+            EXPECT_EQ(attrib(config, GLX_SAMPLES), 4);
+            EXPECT_EQ(attrib(config, GLX_SAMPLE_BUFFERS), 1);
+        }
+    }
+    const auto visual = choose({GLX_RGBA, GLX_DOUBLEBUFFER, GLX_DEPTH_SIZE, 1, GLX_SAMPLE_BUFFERS, 1, GLX_SAMPLES, 4});
+    ASSERT_TRUE(visual);
+    int value = -1;
+    EXPECT_EQ(glXGetConfig(display, visual.get(), GLX_SAMPLES, &value), 0);
+    EXPECT_EQ(value, 4);
+    GLXContext context = glXCreateContext(display, visual.get(), nullptr, True);
+    const Window window = make_window(*visual);
+    EXPECT_TRUE(glXMakeCurrent(display, window, context));
+    EXPECT_THAT(last_logged("fake_surface_made"), HasSubstr("samples=4"));
+    glXMakeCurrent(display, None, nullptr);
+    glXDestroyContext(display, context);
+    XDestroyWindow(display, window);
 }
 
 TEST_F(Glx, UnknownVisualsAreNotForGl) {

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "common/glstate/framebuffer.h"
+#include "common/wire/whole_window.h"
 #include "tests/unit/tileserver/test_node.h"
 
 namespace wall::tileserver::test {
@@ -201,6 +202,37 @@ TEST_F(FramebufferTest, ARenderbufferStartsEmptyAndIsBlitted) {
     EXPECT_EQ(at(10, 12), kRed);
     EXPECT_EQ(at(17, 19), kRed);
     EXPECT_EQ(at(18, 20), kGreen);
+}
+
+TEST_F(FramebufferTest, AWindowIsBlittedIntoItWhereOneLayerHasAllOfIt) {
+    constexpr Pixel kBlue{0, 0, 255, 255};
+    struct Case {
+        std::int32_t x;
+        std::uint32_t kind;
+        Pixel expected;
+    };
+    std::uint32_t version = 10;
+    for (const Case& each : {Case{0, wire::kTilesOnly, kRed},
+                             {-8, wire::kTilesOnly, kBlue},
+                             {-8, wire::kShownWholeWindow, kRed},
+                             {0, wire::kOnlyWholeWindow, kRed}}) {
+        const std::uint32_t slot = each.kind == wire::kTilesOnly ? 0 : wire::kOffscreenSlot;
+        draw_texture();
+        Batch batch;
+        clear(batch, {0, 0, 1, 1});
+        pack::BindTargets(batch.buffer(), {}, {}, 1);
+        pack::SurfacePlace(batch.buffer(), SurfaceId(1), ++version, kSize, kSize, each.x, 0, kSize, kSize, each.kind);
+        batch.set<el::clear_color>({1, 0, 0, 1});
+        batch.block(std::uint64_t{1} << slot, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT); });
+        pack::BindTargets(batch.buffer(), kFramebuffer, {}, 1);
+        batch.block(1, [](auto& b) { pack::Blit(b, 4, 4, 12, 12, 10, 12, 18, 20, GL_COLOR_BUFFER_BIT, GL_NEAREST); });
+        pack::BindTargets(batch.buffer(), kFramebuffer, kFramebuffer, 1);
+        session_->expect_run(batch);
+        EXPECT_EQ(at(10, 12), each.expected) << each.kind << " at " << each.x;
+        EXPECT_EQ(at(17, 19), each.expected);
+        EXPECT_EQ(at(9, 12), kBlue);
+        EXPECT_EQ(at(18, 20), kBlue);
+    }
 }
 
 TEST_F(FramebufferTest, SamplesOfItAreCountedOnOneNodeOnly) {

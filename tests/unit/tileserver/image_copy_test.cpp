@@ -128,6 +128,19 @@ TEST_F(ImageCopyTest, AViewShowsWhatItsOriginHas) {
     EXPECT_EQ(session_->session.work.gl_errors, 0u);
 }
 
+TEST_F(ImageCopyTest, ViewsAreCountedAsTexturesAre) {
+    const auto before = node_.driver->gl().objects->textures;
+    run(define_array);
+    run(store_array);
+    run([](auto& b) { pack::TexView(b, kView, kArray, GL_TEXTURE_2D, GL_R32UI, 0, 1, 4, 1); });
+    EXPECT_EQ(node_.driver->gl().objects->textures, before + 2);
+    run([](auto& b) {
+        pack::ObjectDelete(b, kArray);
+        pack::ObjectDelete(b, kView);
+    });
+    EXPECT_EQ(node_.driver->gl().objects->textures, before);
+}
+
 TEST_F(ImageCopyTest, AViewOutlivesItsOriginAndHasMipmaps) {
     run([](auto& b) {
         pack::TexStorage(b, kArray, GL_TEXTURE_2D_ARRAY, 3, GL_RGBA8, kSize, kSize, 6, 0, 0);

@@ -15,15 +15,16 @@ namespace {
 
 constexpr int kWidth = 301, kHeight = 207;
 
-class LayerTest : public ::testing::TestWithParam<std::tuple<const char*, bool>> {};
+/// Backend, alpha, samples.
+class LayerTest : public ::testing::TestWithParam<std::tuple<const char*, bool, int>> {};
 
 TEST_P(LayerTest, DrawsTheSamePixelsAsAWindow) {
-    const auto [backend_name, alpha] = GetParam();
+    const auto [backend_name, alpha, samples] = GetParam();
     auto backend = open_backend(backend_name);
     if (!backend) GTEST_SKIP() << backend.error().message;
     test::Pixels expected, drawn;
     {
-        test::ReferenceWindow window(kWidth, kHeight, alpha);
+        test::ReferenceWindow window(kWidth, kHeight, alpha, samples);
         test::draw_scene(window.gl(), kWidth, kHeight);
         expected = window.read();
     }
@@ -33,12 +34,16 @@ TEST_P(LayerTest, DrawsTheSamePixelsAsAWindow) {
     {
         const geom::Rect all{0, 0, kWidth, kHeight};
         PixelBudget budget;
-        Layer layer(gl, true, {all, all, kWidth, kHeight}, {.alpha = alpha}, budget);
+        Layer layer(gl, true, {all, all, kWidth, kHeight},
+                    {.alpha = alpha, .samples = static_cast<std::uint32_t>(samples)}, budget);
         ASSERT_TRUE(layer.complete());
         layer.bind(GL_BACK, GL_BACK);
         gl.Viewport(0, 0, kWidth, kHeight);
         test::draw_scene(gl, kWidth, kHeight);
-        drawn = test::read_pixels(gl, kWidth, kHeight);
+        layer.finish_frame();
+        layer.show_frame();
+        drawn.resize(expected.size());
+        layer.read_texture(layer.front(), all, drawn);
     }
     EXPECT_EQ(gl.GetError(), GLenum{GL_NO_ERROR});
     const auto different = test::count_different(expected, drawn);
@@ -50,7 +55,8 @@ TEST_P(LayerTest, DrawsTheSamePixelsAsAWindow) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, LayerTest,
-                         ::testing::Combine(::testing::Values("egl", "osmesa"), ::testing::Bool()));
+                         ::testing::Combine(::testing::Values("egl", "osmesa"), ::testing::Bool(),
+                                            ::testing::Values(0, 4)));
 
 }  // namespace
 }  // namespace wall::tileserver

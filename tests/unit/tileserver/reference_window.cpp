@@ -14,7 +14,8 @@
 
 namespace wall::tileserver::test {
 
-ReferenceWindow::ReferenceWindow(int width, int height, bool alpha) : width_(width), height_(height) {
+ReferenceWindow::ReferenceWindow(int width, int height, bool alpha, int samples)
+    : width_(width), height_(height), samples_(samples) {
     const auto get_display =
         reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
     display_ = get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
@@ -36,6 +37,8 @@ ReferenceWindow::ReferenceWindow(int width, int height, bool alpha) : width_(wid
                              24,
                              EGL_STENCIL_SIZE,
                              8,
+                             EGL_SAMPLES,
+                             samples,
                              EGL_NONE};
     EGLConfig configs[64];
     EGLint count = 0;
@@ -73,7 +76,23 @@ void ReferenceWindow::make_current() {
     WALL_ASSERT(eglMakeCurrent(display_, surface_, surface_, context_) == EGL_TRUE);
 }
 
-Pixels ReferenceWindow::read() const { return read_pixels(gl_, width_, height_); }
+Pixels ReferenceWindow::read() const {
+    if (samples_ == 0) return read_pixels(gl_, width_, height_);
+    GLuint framebuffer = 0, texture = 0;
+    gl_.CreateTextures(GL_TEXTURE_2D, 1, &texture);
+    gl_.TextureStorage2D(texture, 1, GL_RGBA8, width_, height_);
+    gl_.CreateFramebuffers(1, &framebuffer);
+    gl_.NamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, texture, 0);
+    gl_.Disable(GL_SCISSOR_TEST);
+    gl_.BlitNamedFramebuffer(0, framebuffer, 0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
+                             GL_NEAREST);
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+    auto pixels = read_pixels(gl_, width_, height_);
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    gl_.DeleteFramebuffers(1, &framebuffer);
+    gl_.DeleteTextures(1, &texture);
+    return pixels;
+}
 
 namespace {
 

@@ -16,16 +16,18 @@ using Pixels = std::vector<std::uint8_t>;  ///< RGBA, bottom row first
 
 class ReferenceWindow {
 public:
-    ReferenceWindow(int width, int height, bool alpha = false);
+    /// `samples`: of a pixel; 0: it has no sample buffers.
+    ReferenceWindow(int width, int height, bool alpha = false, int samples = 0);
     ~ReferenceWindow();
     ReferenceWindow(const ReferenceWindow&) = delete;
 
     void make_current();
     const Gl& gl() const { return gl_; }
+    /// Of samples what a blit makes of them: Mesa 22.3's glReadPixels gives the first one of each pixel.
     Pixels read() const;
 
 private:
-    int width_, height_;
+    int width_, height_, samples_;
     EGLDisplay display_ = EGL_NO_DISPLAY;
     EGLSurface surface_ = EGL_NO_SURFACE;
     EGLContext context_ = EGL_NO_CONTEXT;

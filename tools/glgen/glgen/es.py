@@ -32,7 +32,7 @@ class EsModel:
     registry: object
     commands: object
     more_words: dict    # "gles1", "gles2" -> those in every version
-    numbers: dict       # short name of a command -> its parameter of type GLenum that is none
+    numbers: dict       # short name of a command -> those of its parameters of type GLenum that are none
     images: list        # of Image
     drawn: dict         # internal format that may be drawn to -> the version that brought it
 
@@ -87,8 +87,8 @@ class EsModel:
 
     def checked(self, i):
         """Places of the parameters that are words."""
-        number = self.numbers.get(i.name)
-        return [n for n, p in enumerate(i.command.params) if p.type == "GLenum" and p.name != number]
+        numbers = self.numbers.get(i.name, "").split()
+        return [n for n, p in enumerate(i.command.params) if p.type == "GLenum" and p.name not in numbers]
 
 
 def _extensions(file, section, registry, commands):
@@ -110,10 +110,10 @@ def load(path, registry, commands):
     extensions = _extensions(file, "extensions", registry, commands)
     extensions += _extensions(file, "extensions_1", registry, commands)
     assert len({e.name for e in extensions}) == len(extensions), f"{path}: an extension twice"
-    for name, parameter in file.sections["numbers"].items():
+    for name, parameters in file.sections["numbers"].items():
         with file.line("numbers", name):
-            params = registry.commands["gl" + name].params
-            assert any(p.name == parameter and p.type == "GLenum" for p in params), f"no GLenum {parameter}"
+            words = [p.name for p in registry.commands["gl" + name].params if p.type == "GLenum"]
+            assert set(parameters.split()) <= set(words), f"no GLenum {parameters}"
     words = {"gles1": "words_1", "gles2": "words"}
     for section in words.values():
         for name in file.sections[section]:

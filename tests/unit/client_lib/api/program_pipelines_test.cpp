@@ -64,6 +64,42 @@ protected:
     }
 };
 
+TEST(ProgramPipeline, TakesExactlyWhatIsGivenIfAsked) {
+    const auto made = [](GLenum stage, glapi::ProgramReflection reflection) {
+        auto program = std::make_shared<Program>(next_object_id(), 1);
+        glapi::ProgramDefinition definition;
+        definition.shaders = {{stage, true, ""}};
+        reflection.linked = true;
+        program->executable = Executable::make(definition, reflection);
+        program->linked_separable = true;
+        return program;
+    };
+    const auto vertex = [&](std::vector<glapi::ActiveOutput> outputs) {
+        outputs.push_back({-1, -1, 1, false, "gl_Position", GL_FLOAT_VEC4, 1});
+        return made(GL_VERTEX_SHADER, {.outputs = std::move(outputs)});
+    };
+    const auto fragment = [&](std::vector<glapi::ActiveAttribute> inputs) {
+        return made(GL_FRAGMENT_SHADER, {.attributes = std::move(inputs)});
+    };
+    const auto runs = [](std::shared_ptr<Program> before, std::shared_ptr<Program> behind, bool exact) {
+        ProgramPipeline pipeline(1, exact);
+        pipeline.programs[0] = std::move(before);
+        pipeline.programs[1] = std::move(behind);
+        pipeline.combine();
+        return pipeline.fault().empty();
+    };
+    const glapi::ActiveOutput color{-1, -1, 1, false, "color", GL_FLOAT_VEC4, 1},
+        third{3, -1, 1, false, "other", GL_FLOAT_VEC4, 1};
+    const glapi::ActiveAttribute taken{GL_FLOAT_VEC4, 1, -1, "color", 2}, as_third{GL_FLOAT_VEC4, 1, 3, "color", 2},
+        of_two{GL_FLOAT_VEC2, 1, -1, "color", 2};
+    EXPECT_TRUE(runs(vertex({color}), fragment({taken}), true));
+    EXPECT_TRUE(runs(vertex({third}), fragment({as_third}), true)) << "by location";
+    EXPECT_FALSE(runs(vertex({color}), fragment({}), true)) << "nobody takes it";
+    EXPECT_FALSE(runs(vertex({}), fragment({taken}), true)) << "nobody gives it";
+    EXPECT_FALSE(runs(vertex({color}), fragment({of_two}), true));
+    EXPECT_TRUE(runs(vertex({color}), fragment({of_two}), false));
+}
+
 TEST_F(ProgramPipelines, ProgramsAreDrawnWithTogetherWhileNoneIsInUse) {
     const GLuint vertex = make(GL_VERTEX_SHADER), fragment = make(GL_FRAGMENT_SHADER);
     GLuint pipeline = 0;
@@ -90,6 +126,26 @@ TEST_F(ProgramPipelines, ProgramsAreDrawnWithTogetherWhileNoneIsInUse) {
     EXPECT_EQ(name, 1);
     gl().BindProgramPipeline(c, 0);
     EXPECT_EQ(c.program, nullptr);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+}
+
+// ARB_separate_shader_objects, issue 9
+TEST_F(ProgramPipelines, StagesAreSetByDisplayLists) {
+    const GLuint red = make(GL_FRAGMENT_SHADER), green = make(GL_FRAGMENT_SHADER), list = gl().GenLists(c, 1);
+    GLuint pipeline = 0;
+    gl().GenProgramPipelines(c, 1, &pipeline);
+    gl().UseProgramStages(c, pipeline, GL_FRAGMENT_SHADER_BIT, red);
+    const auto fragment = [&] {
+        GLint name = 0;
+        gl().GetProgramPipelineiv(c, pipeline, GL_FRAGMENT_SHADER, &name);
+        return static_cast<GLuint>(name);
+    };
+    gl().NewList(c, list, GL_COMPILE);
+    gl().UseProgramStages(c, pipeline, GL_FRAGMENT_SHADER_BIT, green);
+    gl().EndList(c);
+    EXPECT_EQ(fragment(), red);
+    gl().CallList(c, list);
+    EXPECT_EQ(fragment(), green);
     EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
 }
 

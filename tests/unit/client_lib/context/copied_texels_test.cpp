@@ -50,11 +50,21 @@ TEST_F(CopiedTexels, OfTheSameKindAreCopiedByNodes) {
 }
 
 TEST_F(CopiedTexels, OfAnotherKindAreNot) {
-    EXPECT_FALSE(can_copy(GL_RGB8));
+    EXPECT_FALSE(can_copy(GL_RGB5));
+    EXPECT_FALSE(can_copy(GL_RED));
     EXPECT_FALSE(can_copy(GL_RGBA16F));
     EXPECT_FALSE(can_copy(GL_SRGB8_ALPHA8));
     EXPECT_FALSE(can_copy(GL_LUMINANCE8));
     EXPECT_FALSE(can_copy(GL_DEPTH_COMPONENT24));
+}
+
+TEST_F(CopiedTexels, LeaveAlphaAwayOrHaveNone) {
+    EXPECT_TRUE(can_copy(GL_RGB8));
+    gl().BindTexture(c, GL_TEXTURE_2D, drawn_);
+    gl().TexImage2D(c, GL_TEXTURE_2D, 0, GL_RGB8, kSize, kSize, 0, GL_RGB, GL_UNSIGNED_BYTE, nullptr);
+    gl().BindTexture(c, GL_TEXTURE_2D, 0);
+    EXPECT_TRUE(can_copy(GL_RGBA8));
+    EXPECT_TRUE(can_copy(GL_RGB8));
 }
 
 TEST_F(CopiedTexels, OutsideOfTheImageAreNot) {
@@ -69,6 +79,11 @@ TEST_F(CopiedTexels, OfAWindowAreNot) {
 
 TEST_F(CopiedTexels, ThatPixelTransferChangesAreNot) {
     gl().PixelTransferf(c, GL_RED_SCALE, 2);
+    EXPECT_FALSE(can_copy(GL_RGBA8));
+}
+
+TEST_F(CopiedTexels, WhileNothingIsDrawnAreNot) {
+    c.set<glstate::el::render_mode>(0, GL_SELECT);
     EXPECT_FALSE(can_copy(GL_RGBA8));
 }
 

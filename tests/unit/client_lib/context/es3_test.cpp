@@ -178,7 +178,7 @@ TEST_F(Es3Context, IsOfNoMoreThanItsNodesCan) {
 TEST_F(Es3Context, ReadsWhatTheColoursAre) {
     draw_to(GL_RGBA16I);
     EXPECT_EQ(value(GL_IMPLEMENTATION_COLOR_READ_FORMAT), GL_RGBA_INTEGER);
-    EXPECT_EQ(value(GL_IMPLEMENTATION_COLOR_READ_TYPE), GL_INT);
+    EXPECT_EQ(value(GL_IMPLEMENTATION_COLOR_READ_TYPE), GL_SHORT);
     EXPECT_EQ(gl().CheckFramebufferStatus(c, GL_FRAMEBUFFER), GLenum{GL_FRAMEBUFFER_COMPLETE});
     GLint pixel[4];
     gl().ReadPixels(c, 0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);

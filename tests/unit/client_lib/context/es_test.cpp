@@ -107,7 +107,7 @@ TEST_F(EsContext, TakesPixelsOfItsFormats) {
     EXPECT_EQ(image_error(GL_DEPTH_COMPONENT, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT), kNone);
     EXPECT_EQ(image_error(GL_RGBA, GL_RGB, GL_UNSIGNED_BYTE), kOperation);
     EXPECT_EQ(image_error(GL_RGBA, GL_RGBA, GL_UNSIGNED_SHORT_5_6_5), kOperation);
-    EXPECT_EQ(image_error(GL_RGBA16, GL_RGBA, GL_UNSIGNED_BYTE), kValue);
+    EXPECT_EQ(image_error(GL_RGBA12, GL_RGBA, GL_UNSIGNED_BYTE), kValue);
     EXPECT_EQ(image_error(GL_RGBA, GL_RGBA, GL_DOUBLE), kEnum);
     gl().TexImage2D(c, GL_TEXTURE_2D, 0, GL_RGBA, 3, 3, 1, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     EXPECT_EQ(error(), kValue) << "there are no borders";

@@ -7,6 +7,7 @@
 #include <array>
 #include <vector>
 
+#include "client_lib/context/memory_use.h"
 #include "client_lib/context/texture_binding.h"
 #include "client_lib/objects/maps.h"
 #include "tests/unit/client_lib/context_fixture.h"
@@ -85,6 +86,10 @@ TEST_F(UsedObjectsTest, TheStampTellsOfEachChange) {
     EXPECT_EQ(use_stamp(c), stamps.back());
     gl().Color4f(c, 1, 0, 0, 1);
     EXPECT_EQ(use_stamp(c), stamps.back()) << "nothing that names an object";
+    DispatchTarget target;
+    c.memory->now = &target;
+    EXPECT_TRUE(differs()) << "where compute shaders run";
+    c.memory->now = nullptr;
 }
 
 }  // namespace

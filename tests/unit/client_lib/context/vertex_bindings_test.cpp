@@ -30,6 +30,17 @@ protected:
     }
 };
 
+TEST_F(VertexBindingsTest, ElementsMayLieSoFarApart) {
+    EXPECT_GT(longest_stride_of_pointers(false, 4, 3), kLongestStride);
+    EXPECT_EQ(longest_stride_of_pointers(false, 4, 4), kLongestStride);
+    EXPECT_GT(longest_stride_of_pointers(true, 3, 0), kLongestStride);
+    EXPECT_EQ(longest_stride_of_pointers(true, 3, 1), kLongestStride);
+    gl().VertexAttribPointer(c, 2, 4, GL_FLOAT, GL_FALSE, -1, nullptr);
+    EXPECT_EQ(error(), GLenum{GL_INVALID_VALUE});
+    gl().VertexAttribPointer(c, 2, 4, GL_FLOAT, GL_FALSE, kLongestStride + 1, nullptr);
+    EXPECT_EQ(error(), GLenum{GL_NO_ERROR}) << "an older version";
+}
+
 TEST_F(VertexBindingsTest, AnArrayIsAPlaceOfItsOwn) {
     const GLuint name = buffer();
     gl().BindBuffer(c, GL_ARRAY_BUFFER, name);

@@ -124,7 +124,7 @@ TEST_F(VertexInputsTest, DrawsThatAreCountedLaterAreCounted) {
     found->count_drawn_later(10, 1, 1);  // 13 bytes an element: far less than what was written
     gl().BufferSubData(c, GL_ARRAY_BUFFER, 0, 4, "abc");
     EXPECT_TRUE(found->facts().kept) << "counted here, judged by the next change";
-    gl().BufferSubData(c, GL_ARRAY_BUFFER, 0, 4, "abc");
+    gl().BufferSubData(c, GL_ARRAY_BUFFER, 0, 4, "xyz");
     EXPECT_FALSE(found->facts().kept);
 }
 

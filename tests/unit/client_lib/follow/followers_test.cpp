@@ -7,6 +7,7 @@
 
 #include <thread>
 
+#include "client_lib/follow/block_sender.h"
 #include "client_lib/objects/texture.h"
 #include "tests/unit/client_lib/fake_node.h"
 
@@ -96,6 +97,38 @@ TEST_F(AFollower, IsToldOfTheTargetOnceAndThenOnlyOfTheCommand) {
     EXPECT_TRUE(surface.drawn);
     clear();
     EXPECT_EQ(packed().ops, (std::vector{Op::Block, Op::Clear}));
+}
+
+TEST_F(AFollower, GetsTheCurrentNormalWithTheBlockThatReadsIt) {
+    surface.layout.layers = {tile_layer(surface.layout, kNode, 0, surface.layout.rect)};
+    state.lighting.lighting_enabled = 1;
+    clear();
+    const auto triangle = [&](bool with_normal) {
+        Packer packer;
+        if (with_normal) {
+            const float up[] = {0, 1, 0};
+            std::memcpy(packer.append_attribute(Attribute::normal, Op::Normal3f, sizeof up), up, sizeof up);
+        }
+        packer.begin(GL_TRIANGLES);
+        for (int i = 0; i < 3; ++i) glapi::pack::Vertex3f(packer, 0, 0, 0);
+        packer.box.make_unbounded();
+        packer.end();
+        SortScratch scratch;
+        BlockSender(followers, source(), packer, glstate::Projection(), scratch).run();
+    };
+    triangle(true);
+    packed();
+    const std::vector drawn{Op::Block, Op::Begin, Op::Vertex3f, Op::Vertex3f, Op::Vertex3f, Op::End};
+    triangle(false);
+    EXPECT_EQ(packed().ops, drawn) << "it has that normal";
+    glstate::assign<glstate::el::normal>(state, 0, {1, 0, 0});
+    triangle(false);
+    EXPECT_EQ(packed().ops,
+              (std::vector{Op::Block, Op::Normal3f, Op::Begin, Op::Vertex3f, Op::Vertex3f, Op::Vertex3f, Op::End}));
+    triangle(false);
+    EXPECT_EQ(packed().ops, drawn);
+    triangle(true);
+    EXPECT_EQ(packed().ops[1], Op::Normal3f) << "the block's own, and no other";
 }
 
 TEST_F(AFollower, GetsNothingOfWhatDoesNotTouchItsLayers) {

@@ -41,6 +41,14 @@ TEST(BlockStore, CountsInBlocks) {
     EXPECT_EQ(block_slice_offset(store, kVolume, 1), (2u * 4 + 1) * 16) << "nor rows";
 }
 
+TEST(BlockStore, BlocksHaveSizesOfTheirOwn) {
+    const BlockImage image{GL_COMPRESSED_RGBA_ASTC_10x5_KHR, {21, 6, 1, 2}};  // 3 x 2 blocks
+    EXPECT_EQ(block_memory_bytes({}, image), 6u * 16);
+    glapi::PixelStore store = store_of_blocks();
+    store.block_width = 10, store.block_height = 5, store.row_length = 40;
+    EXPECT_EQ(block_memory_bytes(store, image), (4u + 3) * 16);
+}
+
 TEST(BlockStore, SkipsWholeBlocksOnly) {
     glapi::PixelStore store = store_of_blocks();
     store.block_depth = 2;

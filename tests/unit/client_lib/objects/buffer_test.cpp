@@ -61,6 +61,68 @@ TEST_F(BufferContentTest, IsSentOnceAndThenWhatChanges) {
     expect_same(late);
 }
 
+TEST_F(BufferContentTest, OfOneThatIsDefinedAgainOnlyWhatDiffersIsSent) {
+    Bytes content(50000, std::byte{7});
+    buffer.define(content.data(), content.size(), GL_STATIC_DRAW);
+    EXPECT_EQ(follow(copy, known), 50000u);
+    const std::uint64_t latest = buffer.latest();
+    buffer.define(content.data(), content.size(), GL_STATIC_DRAW);
+    EXPECT_EQ(buffer.latest(), latest);
+    for (const std::size_t place : {0u, 20000u, 49999u}) content[place] = std::byte{8};
+    buffer.define(content.data(), content.size(), GL_STATIC_DRAW);
+    EXPECT_LE(follow(copy, known), 3 * 64u);
+    expect_same(copy);
+    EXPECT_EQ(std::memcmp(buffer.data(), content.data(), content.size()), 0);
+}
+
+TEST_F(BufferContentTest, OfOneThatIsDefinedAgainAllIsSentWhereMostDiffersOrTheUsageDoes) {
+    const Bytes content(10000, std::byte{7}), other(10000, std::byte{8});
+    for (const auto& [bytes, usage] :
+         {std::pair(&content, GL_STATIC_DRAW), std::pair(&other, GL_STATIC_DRAW), std::pair(&other, GL_DYNAMIC_DRAW)}) {
+        buffer.define(bytes->data(), bytes->size(), static_cast<GLenum>(usage));
+        EXPECT_EQ(follow(copy, known), 10000u);
+        expect_same(copy);
+    }
+    buffer.define(other.data(), 5000, GL_DYNAMIC_DRAW);
+    EXPECT_EQ(follow(copy, known), 5000u);
+    expect_same(copy);
+}
+
+TEST_F(BufferContentTest, WhatIsWrittenAgainIsNotSent) {
+    const Bytes content(10000, std::byte{7});
+    buffer.define(content.data(), content.size(), GL_STATIC_DRAW);
+    follow(copy, known);
+    buffer.write({1000, 9000}, content.data());
+    EXPECT_EQ(follow(copy, known), 0u);
+    Bytes changed = content;
+    changed[5000] = std::byte{9};
+    buffer.write({1000, 9000}, changed.data() + 1000);
+    EXPECT_LE(follow(copy, known), 64u);
+    expect_same(copy);
+    EXPECT_EQ(std::memcmp(buffer.data(), changed.data(), changed.size()), 0);
+}
+
+TEST_F(BufferContentTest, WhatANodeWroteOrAProgramMapsIsNotTakenForWhatIsThere) {
+    const Bytes content(1000, std::byte{7});
+    buffer.define(content.data(), content.size(), GL_STATIC_DRAW);
+    follow(copy, known);
+    buffer.note_drawn();
+    buffer.define(content.data(), content.size(), GL_STATIC_DRAW);
+    EXPECT_EQ(follow(copy, known), 1000u);
+    // Written into a mapping, not told, and then given as content: the nodes do not have it.
+    std::byte* const mapped =
+        buffer.map({{0, 1000}, GL_MAP_WRITE_BIT | GL_MAP_FLUSH_EXPLICIT_BIT | GL_MAP_PERSISTENT_BIT});
+    mapped[10] = std::byte{8};
+    const Bytes now(mapped, mapped + 1000);
+    buffer.write({0, 1000}, now.data());
+    EXPECT_EQ(follow(copy, known), 1000u);
+    mapped[20] = std::byte{9};
+    const Bytes then(mapped, mapped + 1000);
+    buffer.define(then.data(), then.size(), GL_STATIC_DRAW);
+    EXPECT_EQ(follow(copy, known), 1000u);
+    expect_same(copy);
+}
+
 TEST_F(BufferContentTest, OfOneThatIsDefinedWithoutContentOnlyWhatIsWrittenIsSent) {
     const Bytes part(100, std::byte{9});
     buffer.define(nullptr, 1 << 20, GL_STREAM_DRAW);
