@@ -199,7 +199,8 @@ const Special kSpecials[] = {
     {GL_FRAMEBUFFER_SRGB_CAPABLE_EXT, 1,
      [](Context& c, double* out) {
          const TextureFormat* format = draw_color_format(c);
-         *out = format != nullptr && format->srgb;
+         const bool window = !c.framebuffers->draw && c.draw_target();
+         *out = window ? c.draw_target().encodes_srgb() : format != nullptr && format->srgb;
      }},
     {GL_TEXTURE_BUFFER_DATA_STORE_BINDING, 1, part_of_buffer<GL_TEXTURE_BUFFER_DATA_STORE_BINDING>},
     {GL_TEXTURE_BUFFER_FORMAT_ARB, 1, part_of_buffer<GL_TEXTURE_BUFFER_FORMAT_ARB>},

@@ -91,6 +91,8 @@ Context::~Context() = default;
 void Context::bind_surfaces(std::shared_ptr<ClientSurface> draw, std::shared_ptr<ClientSurface> read) {
     draw_ = std::move(draw);
     read_ = std::move(read);
+    for (const auto& surface : {draw_, read_})
+        if (surface && !surface->srgb) surface->srgb = surface->options.format.srgb || !profile.is_es();
     if (!used_ && draw_ && !has_no_surface()) first_use();
 }
 

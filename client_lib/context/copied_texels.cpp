@@ -49,6 +49,7 @@ std::optional<ImageShape> source_shape(Context& c) {
     }
     if (!can_copy_out_of_window(c)) return std::nullopt;
     const DrawTarget window = c.read_target();
+    if (window_color_format(c, window) != GL_RGBA8) return std::nullopt;  // a blit would change colours
     const TextureFormat* format = find_texture_format(window.format().alpha_bits != 0 ? GL_RGBA8 : GL_RGB8);
     return ImageShape{window.size().width, window.size().height, 0, format, format->bits};
 }

@@ -90,13 +90,18 @@ bool is_attached(const Context& c, const Object& image) {
     return attached;
 }
 
+GLint window_color_format(Context& c, const DrawTarget& window) {
+    const bool srgb = window && window.encodes_srgb() && c.get<glstate::el::framebuffer_srgb>();
+    return srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8;
+}
+
 namespace {
 
 /// Of the window's buffer, or the framebuffer object's.
 template <class Shape>
-const TextureFormat* color_format(Context& c, const std::shared_ptr<Framebuffer>& framebuffer, GLenum window_buffer,
-                                  Shape&& which) {
-    if (!framebuffer) return window_buffer == GL_NONE ? nullptr : find_texture_format(GL_RGBA8);
+const TextureFormat* color_format(Context& c, const std::shared_ptr<Framebuffer>& framebuffer, const DrawTarget& window,
+                                  GLenum window_buffer, Shape&& which) {
+    if (!framebuffer) return window_buffer == GL_NONE ? nullptr : find_texture_format(window_color_format(c, window));
     const auto found = shape(c, *framebuffer, which);
     return found ? found->format : nullptr;
 }
@@ -104,13 +109,14 @@ const TextureFormat* color_format(Context& c, const std::shared_ptr<Framebuffer>
 }  // namespace
 
 const TextureFormat* read_color_format(Context& c) {
-    return color_format(c, c.framebuffers->read, c.state.window.read_buffer, &Framebuffer::read_shape);
+    return color_format(c, c.framebuffers->read, c.read_target(), c.state.window.read_buffer, &Framebuffer::read_shape);
 }
 const TextureFormat* draw_color_format(Context& c) {
-    return color_format(c, c.framebuffers->draw, c.state.window.draw_buffer, &Framebuffer::draw_shape);
+    return color_format(c, c.framebuffers->draw, c.draw_target(), c.state.window.draw_buffer, &Framebuffer::draw_shape);
 }
 const TextureFormat* first_draw_format(Context& c) {
-    return color_format(c, c.framebuffers->draw, c.state.window.draw_buffer, &Framebuffer::first_draw_shape);
+    return color_format(c, c.framebuffers->draw, c.draw_target(), c.state.window.draw_buffer,
+                        &Framebuffer::first_draw_shape);
 }
 
 ComponentBits draw_target_bits(Context& c) {

@@ -43,6 +43,8 @@ void detach_from_bound(Context& c, const Object& image);
 /// Whether any framebuffer of the context has it attached.
 bool is_attached(const Context& c, const Object& image);
 
+/// What the colours of a window count as now: GL_RGBA8, or GL_SRGB8_ALPHA8 where GL_FRAMEBUFFER_SRGB makes them so.
+GLint window_color_format(Context& c, const DrawTarget& window);
 /// Of the colours that are read from, that are drawn, and that the first draw buffer takes. Null: there are none.
 const TextureFormat* read_color_format(Context& c);
 const TextureFormat* draw_color_format(Context& c);

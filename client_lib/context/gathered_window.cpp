@@ -16,7 +16,8 @@ namespace el = glstate::el;
 
 GatheredWindow::GatheredWindow(Context& c, const PixelBox& box, GLbitfield mask, const char* function)
     : c_(c), function_(function), made_(std::in_place, c, GLenum{GL_READ_FRAMEBUFFER}) {
-    if (mask & GL_COLOR_BUFFER_BIT) attach(**made_, 0, box, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE);
+    if (mask & GL_COLOR_BUFFER_BIT)
+        attach(**made_, 0, box, window_color_format(c, c.read_target()), GL_RGBA, GL_UNSIGNED_BYTE);
     if (mask & (GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT)) attach_depth(**made_, box);
     made_->bind();
 }

@@ -25,6 +25,8 @@ const SurfaceFormat& DrawTarget::format() const {
     return surface_ ? surface_->options.format : kNothingPromised;
 }
 
+bool DrawTarget::encodes_srgb() const { return surface_ && surface_->srgb.value_or(false); }
+
 Extent DrawTarget::size() const {
     if (objects_) return {objects_->width(), objects_->height()};
     return {surface_->layout.width, surface_->layout.height};
@@ -37,7 +39,7 @@ void DrawTarget::describe_to(Node& node) const {
     if (known == node.surfaces.end()) {
         const SurfaceFormat& f = format();
         glapi::pack::SurfaceCreate(node.batch, surface_->id, f.double_buffered, f.alpha_bits, f.depth_bits,
-                                   f.stencil_bits, f.accum_bits, f.samples);
+                                   f.stencil_bits, f.accum_bits, f.samples, encodes_srgb());
     } else if (known->second == layout.version) {
         return;
     }

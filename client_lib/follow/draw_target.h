@@ -39,6 +39,8 @@ public:
     // ---- any application thread that has it current ----
     /// Of a surface; that of one made of objects is nothing that a window promises.
     const SurfaceFormat& format() const;
+    /// Of a window: colours are written by the curve of sRGB while GL_FRAMEBUFFER_SRGB is on.
+    bool encodes_srgb() const;
     Extent size() const;
     /// There is no back buffer, so what is drawn is on show, and a frame ends with glFlush.
     bool shows_at_once() const { return surface_ != nullptr && !format().double_buffered; }

@@ -34,6 +34,7 @@ public:
     SurfaceLayout layout;
     std::uint32_t frame = 0;             ///< of the last swap
     bool opened = false;                 ///< walld knows it
+    std::optional<bool> srgb;            ///< GL_FRAMEBUFFER_SRGB counts; none: it was never current
     bool whole = false;                  ///< every node draws all of it, and tiles show parts of that
     bool drawn = false;                  ///< something was drawn since the last swap
     std::optional<Placement> next;       ///< from walld, for a frame that begins

@@ -66,8 +66,8 @@ Layer::Layer(const Gl& gl, bool flip_y, const LayerGeometry& geometry, const Lay
     }
     if (format.depth || format.stencil) depth_stencil_ = make_texture(GL_DEPTH24_STENCIL8, format.samples);
     gl_.CreateFramebuffers(1, &framebuffer_);
-    if (format.double_buffered) attach(kBack, back_);
-    if (format.samples == 0) attach(format.double_buffered ? kFront : kBack, front_);
+    if (format.double_buffered) attach(kBack, drawn_as(back_));
+    if (format.samples == 0) attach(format.double_buffered ? kFront : kBack, drawn_as(front_));
     else if (!format.double_buffered) need_front_samples();
     if (format.depth) attach(GL_DEPTH_ATTACHMENT, depth_stencil_);
     if (format.stencil) attach(GL_STENCIL_ATTACHMENT, depth_stencil_);
@@ -80,6 +80,7 @@ Layer::~Layer() {
     budget_.left += pixels_taken(geometry_, format_);
     const std::array textures = {front_, back_, ready_, depth_stencil_, front_samples_};
     gl_.DeleteFramebuffers(1, &framebuffer_);
+    for (const auto& [texture, view] : views_) gl_.DeleteTextures(1, &view);
     gl_.DeleteTextures(static_cast<GLsizei>(textures.size()), textures.data());
 }
 
@@ -95,6 +96,27 @@ GLuint Layer::make_texture(GLenum format, std::uint32_t samples) const {
 
 void Layer::attach(GLenum point, GLuint texture) { gl_.NamedFramebufferTexture(framebuffer_, point, texture, 0); }
 
+GLuint Layer::drawn_as(GLuint texture) {
+    if (!format_.srgb) return texture;
+    const auto known = std::ranges::find(views_, texture, &std::pair<GLuint, GLuint>::first);
+    if (known != views_.end()) return known->second;
+    GLint samples = 0;
+    gl_.GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_SAMPLES, &samples);
+    GLuint view = 0;
+    gl_.GenTextures(1, &view);
+    gl_.TextureView(view, target_of(static_cast<std::uint32_t>(samples)), texture,
+                    format_.alpha ? GL_SRGB8_ALPHA8 : GL_SRGB8, 0, 1, 0, 1);
+    views_.emplace_back(texture, view);
+    return view;
+}
+
+void Layer::forget_view(GLuint texture) {
+    const auto known = std::ranges::find(views_, texture, &std::pair<GLuint, GLuint>::first);
+    if (known == views_.end()) return;
+    gl_.DeleteTextures(1, &known->second);
+    views_.erase(known);
+}
+
 bool Layer::draws_to_front() const {
     const auto [first, second] = attachments(draw_buffer_, format_.double_buffered);
     return !format_.double_buffered ? first != GL_NONE : first == kFront || second == kFront;
@@ -104,12 +126,13 @@ void Layer::need_front_samples() {
     if (front_samples_ != 0) return;
     front_samples_ = make_texture(color_format(), format_.samples);
     if (format_.double_buffered) convert_samples(gl_, program_front(), front_samples_, width(), height());
-    attach(format_.double_buffered ? kFront : kBack, front_samples_);
+    attach(format_.double_buffered ? kFront : kBack, drawn_as(front_samples_));
 }
 
 void Layer::drop_front_samples() {
     if (front_samples_ == 0) return;
     attach(kFront, 0);
+    forget_view(front_samples_);
     gl_.DeleteTextures(1, &front_samples_);
     front_samples_ = 0;
     front_drawn_ = false;
@@ -199,7 +222,7 @@ void Layer::finish_frame() {
         copy(back_, *this, ready_);
     }
     frame_waits_ = true;
-    if (format_.samples == 0) attach(kFront, program_front());
+    if (format_.samples == 0) attach(kFront, drawn_as(program_front()));
 }
 
 void Layer::show_frame() {
@@ -219,7 +242,7 @@ void Layer::take_content(const Layer& older) {
         copy(older.back_, older, back_, drawn_to);
         copy(older.ready_, older, ready_);
         frame_waits_ = older.frame_waits_;
-        if (format_.samples == 0) attach(kFront, program_front());
+        if (format_.samples == 0) attach(kFront, drawn_as(program_front()));
     } else if (format_.samples != 0 && !format_.double_buffered) {
         copy(older.front_samples_, older, front_samples_, drawn_to);
     }

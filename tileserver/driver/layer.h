@@ -7,11 +7,15 @@
 //
 // Where a pixel has several samples, what is drawn to has them, and what is shown has been made of them: the back
 // buffer at the end of a frame, the front buffer when somebody looks at it (OpenGL 4.6, 14.3.1 and 17.4.2).
+//
+// Colours are kept as they are shown. Where a window can be drawn to by the curve of sRGB, what is attached are views
+// of them as sRGB, which are the same until GL_FRAMEBUFFER_SRGB is on (OpenGL 4.6, 17.3.7).
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "common/geom/rect.h"
@@ -23,6 +27,7 @@ struct LayerFormat {
     bool double_buffered = true;
     bool alpha = false, depth = true, stencil = true;
     std::uint32_t samples = 0;  ///< of a pixel; 0: it has no sample buffers
+    bool srgb = false;          ///< what is drawn goes by the curve of sRGB while GL_FRAMEBUFFER_SRGB is on
     bool operator==(const LayerFormat&) const = default;
 };
 
@@ -69,6 +74,9 @@ private:
     GLuint program_front() const { return frame_waits_ ? ready_ : front_; }
     GLuint make_texture(GLenum format, std::uint32_t samples) const;
     void attach(GLenum point, GLuint texture);
+    /// The same texels, as what is drawn to sees them: a view of them as sRGB, where the window has that.
+    GLuint drawn_as(GLuint texture);
+    void forget_view(GLuint texture);
     void copy(GLuint from, const Layer& source, GLuint to, GLenum target = GL_TEXTURE_2D) const;
     GLenum color_format() const { return format_.alpha ? GL_RGBA8 : GL_RGB8; }
     bool draws_to_front() const;
@@ -83,6 +91,7 @@ private:
     LayerFormat format_;
     bool flip_y_, frame_waits_ = false;
     GLuint front_ = 0, back_ = 0, ready_ = 0, depth_stencil_ = 0;  // textures; 0: none
+    std::vector<std::pair<GLuint, GLuint>> views_;                 // of colours as sRGB: texture, view
     GLuint front_samples_ = 0;          // what is drawn to the front buffer, where pixels have several; 0: none
     mutable bool front_drawn_ = false;  // its picture is older than its samples
     GLenum draw_buffer_ = GL_INVALID_ENUM, read_buffer_ = GL_INVALID_ENUM;  // bound last

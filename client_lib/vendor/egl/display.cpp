@@ -71,7 +71,7 @@ xcb_screen_t* EglDisplay::open_screen() {
 
 bool EglDisplay::initialize() {
     if (initialized_) return true;
-    if (platform_ == Platform::surfaceless) {
+    if (platform_ == Platform::surfaceless || platform_ == Platform::device) {
         if (configs_.empty()) make_configs(0, 0);
     } else if (!connection_ || !connection_->open()) {  // the program may open another display at the same address
         auto* screen = open_screen();

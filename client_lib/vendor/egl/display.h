@@ -19,7 +19,7 @@
 
 namespace wall::client::egl {
 
-enum class Platform { x11, xcb, surfaceless };
+enum class Platform { x11, xcb, surfaceless, device };  // the last two have no windows
 
 struct Config {
     EGLint id = 0;
@@ -38,6 +38,7 @@ struct EglSurface {
     std::shared_ptr<ClientSurface> core;
     Extent size;  ///< pbuffer, pixmap
     bool single_buffered = false;
+    bool srgb = false;  ///< EGL_GL_COLORSPACE_SRGB
     EGLint swap_behavior = EGL_BUFFER_DESTROYED;
     EGLint swap_interval = 1;
 

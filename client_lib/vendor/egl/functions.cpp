@@ -23,12 +23,13 @@ using vendor::XConnection;
 constexpr const char* kVendor = "WallGL";
 constexpr const char* kVersion = "1.5 WallGL";
 constexpr const char* kClientExtensions =
-    "EGL_EXT_client_extensions EGL_EXT_platform_base EGL_KHR_client_get_all_proc_addresses "
-    "EGL_KHR_platform_x11 EGL_EXT_platform_x11 EGL_EXT_platform_xcb EGL_MESA_platform_surfaceless";
+    "EGL_EXT_client_extensions EGL_EXT_device_base EGL_EXT_device_enumeration EGL_EXT_device_query "
+    "EGL_EXT_platform_base EGL_EXT_platform_device EGL_KHR_client_get_all_proc_addresses EGL_KHR_platform_x11 "
+    "EGL_EXT_platform_x11 EGL_EXT_platform_xcb EGL_MESA_platform_surfaceless";
 constexpr const char* kClientApis = "OpenGL OpenGL_ES";
 constexpr const char* kDisplayExtensions =
     "EGL_EXT_create_context_robustness EGL_KHR_create_context EGL_KHR_get_all_proc_addresses "
-    "EGL_KHR_no_config_context EGL_KHR_surfaceless_context";
+    "EGL_KHR_gl_colorspace EGL_KHR_no_config_context EGL_KHR_surfaceless_context";
 
 constinit std::atomic<const __EGLapiExports*> glvnd{nullptr};
 constinit std::mutex current_mutex;  // guards EglContext::current
@@ -160,6 +161,45 @@ EGLBoolean get_config_attrib(EGLDisplay handle, EGLConfig config_handle, EGLint 
     });
 }
 
+// ---- devices: there is one, the wall (EGL_EXT_device_base) ----
+
+constexpr const char* kDeviceExtensions = "EGL_EXT_device_query_name";
+
+EGLDeviceEXT the_device() {
+    static char device;
+    return &device;
+}
+
+EGLBoolean query_devices(EGLint room, EGLDeviceEXT* devices, EGLint* count) {
+    if (!count || (devices && room <= 0)) return refuse(EGL_BAD_PARAMETER);
+    if (devices) devices[0] = the_device();
+    *count = 1;
+    return succeed();
+}
+
+EGLBoolean query_device_attrib(EGLDeviceEXT device, EGLint, EGLAttrib*) {
+    return refuse(device == the_device() ? EGL_BAD_ATTRIBUTE : EGL_BAD_DEVICE_EXT);
+}
+
+const char* query_device_string(EGLDeviceEXT device, EGLint name) {
+    constexpr const char* kNone = nullptr;
+    if (device != the_device()) return refuse(EGL_BAD_DEVICE_EXT, kNone);
+    switch (name) {
+        case EGL_EXTENSIONS: return succeed(kDeviceExtensions);
+        case EGL_VENDOR:
+        case EGL_RENDERER_EXT: return succeed(kVendor);
+        default: return refuse(EGL_BAD_PARAMETER, kNone);
+    }
+}
+
+EGLBoolean query_display_attrib(EGLDisplay handle, EGLint name, EGLAttrib* value) {
+    if (!display_of(handle)) return EGL_FALSE;
+    if (name != EGL_DEVICE_EXT) return refuse(EGL_BAD_ATTRIBUTE);
+    if (!value) return refuse(EGL_BAD_PARAMETER);
+    *value = reinterpret_cast<EGLAttrib>(the_device());
+    return succeed();
+}
+
 // ---- surfaces ----
 
 /// False, and the error is set, for an attribute that a surface cannot have.
@@ -179,7 +219,9 @@ bool set_attributes(const std::vector<Attribute>& attributes, EglSurface& surfac
                 if (value != EGL_NO_TEXTURE) return refuse(EGL_BAD_MATCH, false);
                 break;
             case EGL_GL_COLORSPACE:
-                if (value != EGL_GL_COLORSPACE_LINEAR) return refuse(EGL_BAD_MATCH, false);
+                if (value != EGL_GL_COLORSPACE_LINEAR && value != EGL_GL_COLORSPACE_SRGB)
+                    return refuse(EGL_BAD_MATCH, false);
+                surface.srgb = value == EGL_GL_COLORSPACE_SRGB;
                 break;
             case EGL_MIPMAP_TEXTURE:
             case EGL_VG_COLORSPACE:
@@ -211,6 +253,7 @@ EGLSurface create_window(EGLDisplay handle, EGLConfig config_handle, std::uint32
     surface->connection = display->connection();
     auto format = config->format;
     format.double_buffered = !surface->single_buffered;
+    format.srgb = surface->srgb;
     surface->core = create_surface(vendor::window_surface(surface->connection, window, *size, format));
     return succeed(display->add(std::move(surface)));
 }
@@ -221,6 +264,7 @@ EGLSurface create_offscreen(EGLDisplay handle, EGLConfig config_handle, std::sha
     if (!surface->config) return refuse(EGL_BAD_CONFIG, EGL_NO_SURFACE);
     SurfaceOptions options;
     options.format = surface->config->format;
+    options.format.srgb = surface->srgb;
     options.visible = false;
     options.size = surface->size;
     // EGL draws pbuffers and pixmaps in one buffer; the core's back buffer is that one, read and drawn alike.
@@ -260,30 +304,32 @@ EGLSurface create_pbuffer_surface(EGLDisplay handle, EGLConfig config, const EGL
 }
 
 // The X pixmap's own pixels are not touched: what is drawn can be read back with glReadPixels only.
-EGLSurface create_pixmap(EGLDisplay handle, EGLConfig config, std::uint32_t pixmap) {
+EGLSurface create_pixmap(EGLDisplay handle, EGLConfig config, std::uint32_t pixmap,
+                         const std::vector<Attribute>& attributes) {
     auto* display = display_of(handle);
     if (!display) return EGL_NO_SURFACE;
     const auto size = display->connection() ? display->connection()->size_of(pixmap) : std::nullopt;
     if (!size) return refuse(EGL_BAD_NATIVE_PIXMAP, EGL_NO_SURFACE);
     auto surface = std::make_shared<EglSurface>();
     surface->kind = SurfaceKind::pixmap;
+    if (!set_attributes(attributes, *surface)) return EGL_NO_SURFACE;
     surface->native = pixmap;
     surface->size = *size;
     return create_offscreen(handle, config, std::move(surface));
 }
 
-EGLSurface create_pixmap_surface(EGLDisplay display, EGLConfig config, EGLNativePixmapType pixmap, const EGLint*) {
+EGLSurface create_pixmap_surface(EGLDisplay display, EGLConfig config, EGLNativePixmapType pixmap, const EGLint* list) {
     return guarded("eglCreatePixmapSurface", EGL_NO_SURFACE,
-                   [&] { return create_pixmap(display, config, static_cast<std::uint32_t>(pixmap)); });
+                   [&] { return create_pixmap(display, config, static_cast<std::uint32_t>(pixmap), read_list(list)); });
 }
 
 template <class T>
-EGLSurface create_platform_pixmap_surface(EGLDisplay handle, EGLConfig config, void* native, const T*) {
+EGLSurface create_platform_pixmap_surface(EGLDisplay handle, EGLConfig config, void* native, const T* list) {
     return guarded("eglCreatePlatformPixmapSurface", EGL_NO_SURFACE, [&]() -> EGLSurface {
         auto* display = display_of(handle);
         if (!display) return EGL_NO_SURFACE;
         if (!native) return refuse(EGL_BAD_NATIVE_PIXMAP, EGL_NO_SURFACE);
-        return create_pixmap(handle, config, native_id(*display, native));
+        return create_pixmap(handle, config, native_id(*display, native), read_list(list));
     });
 }
 
@@ -315,7 +361,7 @@ std::optional<EGLint> surface_attribute(const EglSurface& surface, EGLint name) 
         case EGL_HORIZONTAL_RESOLUTION:
         case EGL_VERTICAL_RESOLUTION: return EGL_UNKNOWN;
         case EGL_PIXEL_ASPECT_RATIO: return EGL_DISPLAY_SCALING;
-        case EGL_GL_COLORSPACE: return EGL_GL_COLORSPACE_LINEAR;
+        case EGL_GL_COLORSPACE: return surface.srgb ? EGL_GL_COLORSPACE_SRGB : EGL_GL_COLORSPACE_LINEAR;
         case EGL_VG_COLORSPACE: return EGL_VG_COLORSPACE_sRGB;
         case EGL_VG_ALPHA_FORMAT: return EGL_VG_ALPHA_FORMAT_NONPRE;
         default: return std::nullopt;
@@ -682,6 +728,9 @@ EGLDisplay get_platform_display(EGLenum platform, void* native, const EGLAttrib*
             case EGL_NONE:
             case EGL_PLATFORM_X11_KHR: return succeed(find_or_make_display(Platform::x11, native, screen)->handle());
             case EGL_PLATFORM_XCB_EXT: return succeed(find_or_make_display(Platform::xcb, native, screen)->handle());
+            case EGL_PLATFORM_DEVICE_EXT:
+                if (native != the_device()) return refuse(EGL_BAD_PARAMETER, EGL_NO_DISPLAY);
+                return succeed(find_or_make_display(Platform::device, native, 0)->handle());
             case EGL_PLATFORM_SURFACELESS_MESA:
                 return succeed(find_or_make_display(Platform::surfaceless, nullptr, 0)->handle());
             default: return succeed(EGL_NO_DISPLAY);  // another vendor may know it
@@ -717,6 +766,11 @@ std::span<const NamedFunction> functions() {
         named("eglInitialize", initialize),
         named("eglMakeCurrent", make_current_handles),
         named("eglQueryContext", query_context),
+        named("eglQueryDeviceAttribEXT", query_device_attrib),
+        named("eglQueryDeviceStringEXT", query_device_string),
+        named("eglQueryDevicesEXT", query_devices),
+        named("eglQueryDisplayAttribEXT", query_display_attrib),
+        named("eglQueryDisplayAttribKHR", query_display_attrib),
         named("eglQueryString", query_string),
         named("eglQuerySurface", query_surface),
         named("eglReleaseTexImage", bind_tex_image),

@@ -21,6 +21,7 @@ std::span<const NamedFunction> functions();
 void start(const __EGLapiExports& exports);
 EGLDisplay get_platform_display(EGLenum platform, void* native, const EGLAttrib* attributes);
 inline constexpr const char* kPlatformExtensions =
-    "EGL_KHR_platform_x11 EGL_EXT_platform_x11 EGL_EXT_platform_xcb EGL_MESA_platform_surfaceless";
+    "EGL_KHR_platform_x11 EGL_EXT_platform_x11 EGL_EXT_platform_xcb EGL_EXT_platform_device "
+    "EGL_MESA_platform_surfaceless";
 
 }  // namespace wall::client::egl

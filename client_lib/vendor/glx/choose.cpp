@@ -45,7 +45,7 @@ constexpr std::array kCriteria{
     Criterion{GLX_X_VISUAL_TYPE, Match::exact, kDontCare},
     Criterion{GLX_CONFIG_CAVEAT, Match::exact, kDontCare},
     Criterion{GLX_TRANSPARENT_TYPE, Match::exact, GLX_NONE},
-    Criterion{GLX_FRAMEBUFFER_SRGB_CAPABLE_ARB, Match::exact, kDontCare},
+    Criterion{GLX_FRAMEBUFFER_SRGB_CAPABLE_ARB, Match::at_least, 0},  // all are, and until it is turned on none shows
     Criterion{GLX_VISUAL_ID, Match::ignored, 0},
     Criterion{GLX_SCREEN, Match::ignored, 0},
     Criterion{GLX_MAX_PBUFFER_WIDTH, Match::ignored, 0},

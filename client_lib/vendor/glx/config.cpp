@@ -119,7 +119,7 @@ std::optional<int> attribute(const Config& c, int name) {
         case GLX_MAX_PBUFFER_PIXELS: return vendor::kMaxPbufferExtent * vendor::kMaxPbufferExtent;
         case GLX_OPTIMAL_PBUFFER_WIDTH_SGIX:
         case GLX_OPTIMAL_PBUFFER_HEIGHT_SGIX: return 0;
-        case GLX_FRAMEBUFFER_SRGB_CAPABLE_ARB: return 0;
+        case GLX_FRAMEBUFFER_SRGB_CAPABLE_ARB: return 1;
         case GLX_RGBA:
         case GLX_USE_GL: return std::nullopt;
         default: return visual_attribute(c, name);

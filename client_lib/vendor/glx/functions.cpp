@@ -26,10 +26,10 @@ using vendor::XConnection;
 constexpr const char* kVendor = "WallGL";
 constexpr const char* kVersion = "1.4";
 constexpr const char* kExtensions =
-    "GLX_ARB_create_context GLX_ARB_create_context_profile GLX_ARB_get_proc_address GLX_ARB_multisample "
-    "GLX_EXT_create_context_es_profile "
-    "GLX_EXT_create_context_es2_profile "
-    "GLX_EXT_swap_control GLX_EXT_visual_info GLX_EXT_visual_rating GLX_MESA_swap_control GLX_SGI_swap_control "
+    "GLX_ARB_create_context GLX_ARB_create_context_profile GLX_ARB_framebuffer_sRGB GLX_ARB_get_proc_address "
+    "GLX_ARB_multisample GLX_EXT_create_context_es_profile GLX_EXT_create_context_es2_profile "
+    "GLX_EXT_framebuffer_sRGB GLX_EXT_swap_control GLX_EXT_visual_info GLX_EXT_visual_rating GLX_MESA_swap_control "
+    "GLX_SGI_swap_control "
     "GLX_SGIX_fbconfig ";
 
 // Errors of ARB extensions, counted from the extension's first error like those in glxproto.h.

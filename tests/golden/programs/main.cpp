@@ -119,6 +119,7 @@ bool swaps(const Scene& scene) { return scene.needs.double_buffered && !scene.ne
 
 void run(const Scene& scene, const Options& options) {
     const Size size;
+    if (scene.needs.srgb) unsetenv("MESA_EXTENSION_OVERRIDE");
     const auto window =
         scene.needs.egl || scene.needs.es ? Window::by_egl(size, scene.needs) : Window::by_glx(size, scene.needs);
     for (int frame = 0; frame < options.frames.value_or(scene.frames); ++frame) {

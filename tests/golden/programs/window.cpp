@@ -76,6 +76,8 @@ public:
                               needs.samples,
                               GLX_DOUBLEBUFFER,
                               needs.double_buffered ? True : False,
+                              GLX_FRAMEBUFFER_SRGB_CAPABLE_ARB,
+                              static_cast<int>(needs.asks_srgb ? True : GLX_DONT_CARE),
                               None};
         int count = 0;
         GLXFBConfig* configs =
@@ -135,7 +137,9 @@ public:
         open(size, visual->visual, visual->depth);
         XFree(visual);
         must(eglBindAPI(needs.es ? EGL_OPENGL_ES_API : EGL_OPENGL_API), "bind OpenGL");
-        surface_ = must(eglCreateWindowSurface(egl_, config, window_, nullptr), "create a surface");
+        const EGLint colors[] = {EGL_GL_COLORSPACE, EGL_GL_COLORSPACE_SRGB, EGL_NONE};
+        surface_ =
+            must(eglCreateWindowSurface(egl_, config, window_, needs.asks_srgb ? colors : nullptr), "create a surface");
         const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, needs.es, EGL_NONE};
         context_ =
             must(eglCreateContext(egl_, config, EGL_NO_CONTEXT, needs.es ? version : nullptr), "create a context");

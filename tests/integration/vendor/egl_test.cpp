@@ -124,6 +124,28 @@ TEST_F(Egl, ASurfaceHasTheSamplesOfItsConfiguration) {
     EXPECT_THAT(last_logged("fake_surface_made"), HasSubstr("samples=0"));
 }
 
+TEST_F(Egl, ASurfaceHasTheColoursThatWereAskedFor) {
+    EXPECT_THAT(eglQueryString(display, EGL_EXTENSIONS), HasSubstr("EGL_KHR_gl_colorspace"));
+    const EGLint srgb[] = {EGL_GL_COLORSPACE, EGL_GL_COLORSPACE_SRGB, EGL_NONE};
+    const EGLint linear[] = {EGL_GL_COLORSPACE, EGL_GL_COLORSPACE_LINEAR, EGL_NONE};
+    const EGLint other[] = {EGL_GL_COLORSPACE, EGL_ALPHA_SIZE, EGL_NONE};
+    const auto pbuffers = config({EGL_SURFACE_TYPE, EGL_PBUFFER_BIT});
+    for (const auto& [asked, space] : {std::pair{srgb, EGL_GL_COLORSPACE_SRGB}, {linear, EGL_GL_COLORSPACE_LINEAR}}) {
+        const std::string made = space == EGL_GL_COLORSPACE_SRGB ? "srgb=1" : "srgb=0";
+        for (const bool window : {true, false}) {
+            EGLSurface surface = window ? eglCreateWindowSurface(display, config(), make_window(), asked)
+                                        : eglCreatePbufferSurface(display, pbuffers, asked);
+            ASSERT_NE(surface, EGL_NO_SURFACE);
+            EXPECT_THAT(last_logged("fake_surface_made"), HasSubstr(made));
+            EGLint value = 0;
+            EXPECT_TRUE(eglQuerySurface(display, surface, EGL_GL_COLORSPACE, &value));
+            EXPECT_EQ(value, space);
+        }
+    }
+    EXPECT_EQ(eglCreatePbufferSurface(display, pbuffers, other), EGL_NO_SURFACE);
+    EXPECT_EQ(eglGetError(), EGL_BAD_MATCH);
+}
+
 TEST_F(Egl, SingleBufferedWindowsAndPbuffers) {
     const EGLint single[] = {EGL_RENDER_BUFFER, EGL_SINGLE_BUFFER, EGL_NONE};
     EGLSurface surface = eglCreateWindowSurface(display, config(), make_window(), single);
@@ -289,6 +311,39 @@ TEST(EglPlatforms, XcbAndSurfaceless) {
     ASSERT_EQ(count, 1);
     EXPECT_NE(eglCreatePbufferSurface(surfaceless, config, nullptr), EGL_NO_SURFACE);
     eglTerminate(surfaceless);
+}
+
+TEST(EglPlatforms, TheWallIsADevice) {
+    const auto query_devices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
+    const auto query_string =
+        reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(eglGetProcAddress("eglQueryDeviceStringEXT"));
+    const auto query_attrib =
+        reinterpret_cast<PFNEGLQUERYDISPLAYATTRIBEXTPROC>(eglGetProcAddress("eglQueryDisplayAttribEXT"));
+    ASSERT_TRUE(query_devices && query_string && query_attrib);
+    EGLDeviceEXT devices[4] = {};
+    EGLint count = 0;
+    ASSERT_TRUE(query_devices(4, devices, &count));
+    ASSERT_EQ(count, 1);
+    EXPECT_STREQ(query_string(devices[0], EGL_RENDERER_EXT), "WallGL");
+    EXPECT_EQ(query_string(devices[0], EGL_WIDTH), nullptr);
+    EXPECT_EQ(eglGetError(), EGL_BAD_PARAMETER);
+    EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[0], nullptr);
+    ASSERT_NE(display, EGL_NO_DISPLAY);
+    ASSERT_TRUE(eglInitialize(display, nullptr, nullptr));
+    EGLAttrib of_display = 0;
+    ASSERT_TRUE(query_attrib(display, EGL_DEVICE_EXT, &of_display));
+    EXPECT_EQ(reinterpret_cast<EGLDeviceEXT>(of_display), devices[0]);
+    EXPECT_FALSE(query_attrib(display, EGL_WIDTH, &of_display));
+    EXPECT_EQ(eglGetError(), EGL_BAD_ATTRIBUTE);
+    const EGLint windows[] = {EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_NONE};
+    const EGLint pbuffers[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_NONE};
+    EGLConfig config = nullptr;
+    ASSERT_TRUE(eglChooseConfig(display, windows, &config, 1, &count));
+    EXPECT_EQ(count, 0);
+    ASSERT_TRUE(eglChooseConfig(display, pbuffers, &config, 1, &count));
+    ASSERT_EQ(count, 1);
+    EXPECT_NE(eglCreatePbufferSurface(display, config, nullptr), EGL_NO_SURFACE);
+    eglTerminate(display);
 }
 
 }  // namespace

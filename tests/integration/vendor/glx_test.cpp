@@ -157,6 +157,15 @@ TEST_F(Glx, PixelsHaveSeveralSamplesWhereThatIsAskedFor) {
     XDestroyWindow(display, window);
 }
 
+TEST_F(Glx, EveryWindowCanBeDrawnToBySrgb) {
+    EXPECT_THAT(glXQueryExtensionsString(display, DefaultScreen(display)), HasSubstr("GLX_ARB_framebuffer_sRGB"));
+    for (const int wanted : {False, True}) {
+        const auto found = configs({GLX_FRAMEBUFFER_SRGB_CAPABLE_ARB, wanted});
+        ASSERT_FALSE(found.empty());
+        EXPECT_EQ(attrib(found[0], GLX_FRAMEBUFFER_SRGB_CAPABLE_ARB), 1);
+    }
+}
+
 TEST_F(Glx, UnknownVisualsAreNotForGl) {
     XVisualInfo wanted{};
     wanted.c_class = DirectColor;

@@ -169,7 +169,7 @@ protected:
         auto queue = std::make_shared<BatchQueue>([] {});
         thread_->add_stream(StreamId(id), SessionId(id), queue);
         wire::PackBuffer buffer;
-        pack::SurfaceCreate(buffer, SurfaceId(1), 1, 0, 24, 8, 0, 0);
+        pack::SurfaceCreate(buffer, SurfaceId(1), 1, 0, 24, 8, 0, 0, 1);
         pack::SurfacePlace(buffer, SurfaceId(1), 1, kSize, kSize, 0, 0, kSize, kSize, 0);
         pack::Bind(buffer, SurfaceId(1), SurfaceId(1));
         const glstate::Viewport viewport{0, 0, kSize, kSize};
