@@ -40,10 +40,12 @@ asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const NodeServer&
 }
 
 Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node) {
+    const auto compilers = CompilerHost::start(config::name_of(node.backend));  // forks: before there are threads
+    if (!compilers) return tl::unexpected(compilers.error());
     asio::io_context io(1);
     auto server = Result<std::unique_ptr<NodeServer>>(nullptr);
     const auto open = [&]() -> Result<void> {
-        server = NodeServer::open(io.get_executor(), wall, node);
+        server = NodeServer::open(io.get_executor(), wall, node, compilers->get());
         return server ? Result<void>() : tl::unexpected(server.error());
     };
     if (auto opened = net::listen_patiently(open); !opened) return opened;

@@ -54,6 +54,8 @@ public:
     void TexMipmaps(GLenum target, std::int32_t base, std::int32_t last) {
         add(Op::TexMipmaps, {}, target, base, last);
     }
+    void ShaderCompile(GLenum type, std::span<const std::byte> source) { add(Op::ShaderCompile, source, type); }
+    void ProgramLink(std::span<const std::byte> definition) { add(Op::ProgramLink, definition); }
     /// A name that a program gave, instead of pixels: GL_WALLGL_global_texture.
     void OwnName(std::uint32_t name) { add(Op::ShareTexture, {}, name); }
     /// A name of content that is known only in one session.

@@ -57,6 +57,8 @@ Result<void> Executor::run_batch(std::span<const std::byte> payload) {
 }
 
 Result<bool> Executor::go_on() {
+    if (program.trying()) program.go_on();
+    if (program.trying()) return false;
     if (run.compiling()) run.go_on();
     if (draw.calling()) draw.go_on();
     if (run.compiling() || draw.calling()) return false;
@@ -93,6 +95,7 @@ bool Executor::divisible() {
 }
 
 glapi::Pause Executor::should_pause() {
+    if (program.trying()) return glapi::Pause::now;
     if (!run.list_is_full() && !draw.calling() && !execution_.out_of_time())
         return closely_ ? glapi::Pause::closely : glapi::Pause::go_on;
     return divisible() ? glapi::Pause::now : glapi::Pause::soon;

@@ -68,6 +68,8 @@ public:
     /// Executes what is left of it until about `until`. True: all of it is done. Behind it the driver is in the
     /// middle of nothing, and others may draw.
     Result<bool> run_slice(Clock::time_point until);
+    /// The next slice would do nothing: a shader is still on trial.
+    bool waits() const { return program.waits(); }
     /// Both, to the end.
     Result<void> run_batch(std::span<const std::byte> payload);
     void present(SurfaceId surface_id, std::uint32_t frame) { surface.present(surface_id, frame); }

@@ -1,20 +1,69 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/execute/program_commands.h"
 
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "common/log/log.h"
 #include "tileserver/objects/program.h"
 #include "tileserver/objects/program_build.h"
 
 namespace wall::tileserver {
 
+namespace {
+
+/// A session that has so many shaders given up keeps others waiting for theirs.
+constexpr int kMostGivenUp = 16;
+
+}  // namespace
+
+void ProgramCommands::hold(std::shared_ptr<const CompileTrial> trial,
+                           std::function<void(const CompileTrial& trial)> then) {
+    tried_ = Tried{std::move(trial), std::move(then)};
+    go_on();
+}
+
+void ProgramCommands::go_on() {
+    if (!tried_ || waits()) return;
+    const Tried tried = *std::exchange(tried_, std::nullopt);
+    tried.then(*tried.trial);
+}
+
+std::string ProgramCommands::given_up() {
+    if (++given_up_ > kMostGivenUp) execution_.refuse("too many shaders that take the compiler too long");
+    const std::string limits = execution_.node.trials->limits();
+    log::warn("shader_given_up session={} limits={}", execution_.session.id().value, log::quoted(limits));
+    return "error: given up: the compiler took more than " + limits + ", or crashed\n";
+}
+
 void ProgramCommands::ShaderCompile(RequestId request, GLenum type, std::span<const std::byte> source) {
+    if (execution_.node.trials == nullptr) return compile(request, type, source);
+    hold(execution_.node.trials->shader(type, source), [=, this](const CompileTrial& trial) {
+        if (trial.outcome() == Outcome::unavailable || trial.answer().empty()) {
+            if (trial.outcome() != Outcome::given_up) return compile(request, type, source);
+            return execution_.output.reply(request, encode(glapi::CompileResult{false, given_up()}));
+        }
+        execution_.output.reply(request, std::vector(trial.answer()));
+    });
+}
+
+void ProgramCommands::compile(RequestId request, GLenum type, std::span<const std::byte> source) {
     auto answer = compile_shader(execution_.gl, type, source);
     if (!answer) return execution_.refuse(answer.error().message);
     execution_.output.reply(request, std::move(*answer));
 }
 
 void ProgramCommands::ProgramLink(RequestId request, ClientName program, std::span<const std::byte> definition) {
+    if (execution_.node.trials == nullptr) return link(request, program, definition);
+    hold(execution_.node.trials->program(definition), [=, this](const CompileTrial& trial) {
+        if (trial.outcome() != Outcome::given_up) return link(request, program, definition);
+        const std::string reason = given_up();
+        if (request) execution_.output.reply(request, encode(glapi::ProgramReflection{false, reason}));
+    });
+}
+
+void ProgramCommands::link(RequestId request, ClientName program, std::span<const std::byte> definition) {
     const auto made = execution_.session.objects.make<Program>(program, execution_.node.driver);
     if (!made) return execution_.refuse(made.error().message);
     auto answer = (*made)->link(definition, static_cast<bool>(request));

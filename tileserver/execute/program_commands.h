@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Groups [program] and [subroutine]: GLSL. Render thread.
+// Groups [program] and [subroutine]: GLSL. Before the driver of the node compiles or links anything it has been tried
+// (compile_trials.h); meanwhile the stream stands at the command, and others draw. Render thread.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 
+#include "tileserver/compile/compile_trials.h"
 #include "tileserver/execute/execution.h"
 
 namespace wall::tileserver {
@@ -22,8 +27,28 @@ public:
     void StorageBlock(ClientName program, std::uint32_t block, std::uint32_t binding);
     void Subroutines(ClientName program, GLenum stage, std::span<const std::byte> indices);
 
+    /// A command of this group is being executed, and nothing behind it may be.
+    bool trying() const { return tried_.has_value(); }
+    /// What it waits for is not there yet.
+    bool waits() const { return tried_ && tried_->trial->outcome() == CompileTrial::Outcome::pending; }
+    /// Executes the rest of it, if it can.
+    void go_on();
+
 private:
+    using Outcome = CompileTrial::Outcome;
+    struct Tried {
+        std::shared_ptr<const CompileTrial> trial;
+        std::function<void(const CompileTrial& trial)> then;
+    };
+    void hold(std::shared_ptr<const CompileTrial> trial, std::function<void(const CompileTrial& trial)> then);
+    void compile(RequestId request, GLenum type, std::span<const std::byte> source);
+    void link(RequestId request, ClientName program, std::span<const std::byte> definition);
+    /// What the program is told of a shader that was given up.
+    std::string given_up();
+
     Execution& execution_;
+    std::optional<Tried> tried_;
+    int given_up_ = 0;
 };
 
 }  // namespace wall::tileserver

@@ -89,12 +89,12 @@ NodeServer::NodeServer(asio::any_io_executor executor, const config::WallConfig&
 NodeServer::~NodeServer() = default;
 
 Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor executor, const config::WallConfig& wall,
-                                                     const config::NodeConfig& node) {
+                                                     const config::NodeConfig& node, const CompilerHost* compilers) {
     std::unique_ptr<NodeServer> server(new NodeServer(executor, wall, node.name));
     auto listener = net::Listener::open(executor, node.listen);
     if (!listener) return tl::unexpected(listener.error());
     server->listener_.emplace(std::move(*listener));
-    auto render = RenderThread::start(config::name_of(node.backend), *server, window_request(wall, node));
+    auto render = RenderThread::start(config::name_of(node.backend), *server, window_request(wall, node), compilers);
     if (!render) return tl::unexpected(render.error());
     server->render_ = std::move(*render);
     return server;

@@ -28,9 +28,11 @@ namespace wall::tileserver {
 
 class NodeServer final : private StreamHost, private NodeEvents {
 public:
-    /// Opens the driver and the listener; the error says what stands in the way.
+    /// Opens the driver and the listener; the error says what stands in the way. `compilers`, which outlives it, for
+    /// trials of shaders; null: they are compiled without limits.
     static Result<std::unique_ptr<NodeServer>> open(asio::any_io_executor executor, const config::WallConfig& wall,
-                                                    const config::NodeConfig& node);
+                                                    const config::NodeConfig& node,
+                                                    const CompilerHost* compilers = nullptr);
     ~NodeServer() override;
 
     /// Starts to accept clients and to look for walld.

@@ -42,12 +42,13 @@ bool needs_shown_frame(const std::vector<std::byte>& payload) {
 /// Everything that lives in the render thread.
 class RenderThread::Loop {
 public:
-    /// `windows`: that the tiles are shown in; null: none.
-    Loop(const Gl& gl, NodeEvents& events, TurnBoard& board, TileWindows* windows)
+    /// `windows`: that the tiles are shown in; `trials`: of shaders; null: none.
+    Loop(const Gl& gl, NodeEvents& events, TurnBoard& board, TileWindows* windows, CompileTrials* trials)
         : events_(events), board_(board), driver_(gl), node_(driver_), compositor_(node_, [this](const StackEntry& e) {
               return find(e);
           }) {
         node_.present_at_once = true;
+        node_.trials = trials;
         if (windows != nullptr)
             output_.emplace(node_, compositor_, *windows, [this](const ScaledTile& tile) { events_.scaled(tile); });
     }
@@ -83,7 +84,7 @@ public:
         /// True: a batch was executed, or some of it. `now` is the time, before and after. `contended`: others want
         /// turns, too.
         bool run_turn(Clock::time_point& now, bool contended) {
-            if (failed_ || (contended && !pace_.may_run(now)) || !next_batch()) return false;
+            if (failed_ || executor_.waits() || (contended && !pace_.may_run(now)) || !next_batch()) return false;
             const auto start = now;
             const auto render_before = session_.work.render;
             loop_.board_.begin({id_, session_.id(), start});
@@ -107,7 +108,9 @@ public:
             loop_.board_.end();
             return true;
         }
-        bool active(Clock::time_point now) const { return !failed_ && (batch_ || now - last_run_ < kActive); }
+        bool active(Clock::time_point now) const {
+            return !failed_ && ((batch_ && !executor_.waits()) || now - last_run_ < kActive);
+        }
         /// How long it has to wait for its next turn at least.
         Clock::duration delay(Clock::time_point now) const {
             return failed_ ? Clock::duration::zero() : pace_.not_before() - now;
@@ -319,15 +322,18 @@ private:
 };
 
 Result<std::unique_ptr<RenderThread>> RenderThread::start(std::string backend, NodeEvents& events,
-                                                          WindowRequest windows) {
+                                                          WindowRequest windows, const CompilerHost* compilers) {
     const auto open = [backend, windows = std::move(windows)] {
         return windows.windows.empty() ? open_backend(backend) : open_window_backend(windows);
     };
-    return start(open, std::move(backend), events);
+    return start(open, std::move(backend), events, compilers);
 }
 
-Result<std::unique_ptr<RenderThread>> RenderThread::start(OpenBackend open, std::string name, NodeEvents& events) {
+Result<std::unique_ptr<RenderThread>> RenderThread::start(OpenBackend open, std::string name, NodeEvents& events,
+                                                          const CompilerHost* compilers) {
     std::unique_ptr<RenderThread> thread(new RenderThread(events));
+    if (compilers != nullptr)
+        thread->trials_ = std::make_unique<CompileTrials>(*compilers, [self = thread.get()] { self->wake(); });
     std::promise<Result<Started>> promise;
     auto future = promise.get_future();
     thread->thread_ =
@@ -357,7 +363,7 @@ void RenderThread::run(const OpenBackend& open, std::string backend_name,
     if (auto current = (*backend)->make_current(); !current) return started(tl::unexpected(current.error()));
     Gl gl;
     gl.load([&](const char* function) { return (*backend)->get_proc_address(function); });
-    Loop loop(gl, events_, board_, (*backend)->windows());
+    Loop loop(gl, events_, board_, (*backend)->windows(), trials_.get());
     started(Started{query_caps(gl), std::move(backend_name)});
     serve(loop);
 }

@@ -16,6 +16,7 @@
 
 #include "common/base/ids.h"
 #include "common/base/result.h"
+#include "tileserver/compile/compile_trials.h"
 #include "tileserver/gpu/backend.h"
 #include "tileserver/gpu/caps.h"
 #include "tileserver/render/batch_queue.h"
@@ -71,13 +72,15 @@ public:
     };
     using OpenBackend = std::function<Result<std::unique_ptr<GlBackend>>()>;
     /// Makes the driver's context in the new thread, and opens the windows, if there are any; an error if there is
-    /// none.
+    /// none. `compilers`, which outlives it, for trials of shaders; null: they are compiled without limits.
     static Result<std::unique_ptr<RenderThread>> start(std::string backend, NodeEvents& events,
-                                                       WindowRequest windows = {});
+                                                       WindowRequest windows = {},
+                                                       const CompilerHost* compilers = nullptr);
     ~RenderThread();
 
     /// The same on a driver that `open` gives, in the new thread.
-    static Result<std::unique_ptr<RenderThread>> start(OpenBackend open, std::string name, NodeEvents& events);
+    static Result<std::unique_ptr<RenderThread>> start(OpenBackend open, std::string name, NodeEvents& events,
+                                                       const CompilerHost* compilers = nullptr);
 
     const Started& started() const { return started_; }
 
@@ -124,6 +127,7 @@ private:
     std::condition_variable wake_;
     std::vector<std::function<void(Loop&)>> tasks_;
     bool awake_ = false, stop_ = false;
+    std::unique_ptr<CompileTrials> trials_;  // after what it wakes
     std::thread thread_;
 };
 

@@ -16,6 +16,7 @@
 namespace wall::tileserver {
 
 struct SoftContext;
+class CompileTrials;
 
 /// What the executors of a node share.
 struct RenderNode {
@@ -28,6 +29,7 @@ struct RenderNode {
     std::set<std::pair<SessionId, SurfaceId>> held;  ///< windows whose frames are shown only when somebody says so
     std::set<SessionId> returning;                   ///< whoever coordinates does not know them yet
     const SoftContext* current = nullptr;            ///< whose state the driver holds; only compared, it may be gone
+    CompileTrials* trials = nullptr;                 ///< of shaders; null: the driver compiles them at once
     Work ended;                                      ///< of sessions that are gone
 
     explicit RenderNode(Driver& d) : driver(d) {}

@@ -12,9 +12,12 @@
 #include <mutex>
 #include <thread>
 
+#include "common/glapi/program_format.h"
 #include "common/wire/batch.h"
 #include "gen/glapi/wire.gen.h"
 #include "gen/glstate/state.gen.h"
+#include "tests/unit/tileserver/monstrous_shader.h"
+#include "tileserver/compile/compiler_host.h"
 #include "tileserver/render/pace.h"
 
 namespace wall::tileserver {
@@ -160,7 +163,10 @@ void block(wire::PackBuffer& buffer, std::uint64_t tiles, Draw&& draw) {
 class RenderThreadTest : public ::testing::Test {
 protected:
     void SetUp() override {
-        auto thread = RenderThread::start("egl", events_);
+        auto compilers = CompilerHost::start("egl", {.processor_time = 2s, .time = 60s, .memory = 0});
+        ASSERT_TRUE(compilers) << compilers.error().message;
+        compilers_ = std::move(*compilers);
+        auto thread = RenderThread::start("egl", events_, {}, compilers_.get());
         if (!thread) GTEST_SKIP() << thread.error().message;
         thread_ = std::move(*thread);
         thread_->set_tiles({{0, {0, 0, kSize, kSize}}}, 0);
@@ -205,6 +211,7 @@ protected:
     }
 
     Events events_;  // outlives the thread
+    std::unique_ptr<CompilerHost> compilers_;
     std::unique_ptr<RenderThread> thread_;
 };
 
@@ -228,6 +235,34 @@ void define_run(wire::PackBuffer& buffer, std::uint32_t run, int triangles, GLen
 
 /// Frames a second beside a program that would take minutes for one; hundreds were measured on a busy machine.
 constexpr double kDecent = 10;
+
+TEST_F(RenderThreadTest, AShaderThatTakesTheCompilerMinutesIsRefusedAndKeepsNobodyAway) {
+    const auto queue = open(1);
+    wire::PackBuffer buffer;
+    glapi::ProgramDefinition monster, good;
+    monster.shaders.push_back({.type = GL_FRAGMENT_SHADER, .compiled = true, .source = monstrous_shader()});
+    good.shaders.push_back(
+        {.type = GL_FRAGMENT_SHADER, .compiled = true, .source = "void main() { gl_FragColor = vec4(1); }"});
+    pack::ProgramLink(buffer, RequestId(1), ClientName(1), encode(monster));
+    pack::ShaderCompile(buffer, RequestId(2), GL_FRAGMENT_SHADER, std::as_bytes(std::span(monstrous_shader(29))));
+    pack::ProgramLink(buffer, RequestId(3), ClientName(1), encode(good));
+    pack::Sync(buffer, RequestId(4));
+    push(queue, buffer);
+    EXPECT_GT(frames_a_second(2, 1s), kDecent) << "others draw meanwhile";
+    const auto reply = [&](std::uint32_t id) { return std::pair{StreamId(1), RequestId(id)}; };
+    EXPECT_FALSE(events_.wait([&](Events& e) { return e.replies_.contains(reply(1)); }, 0s)) << "still on trial";
+    ASSERT_TRUE(events_.wait([&](Events& e) { return e.replies_.contains(reply(4)); }));
+    const auto linked = glapi::decode_reflection(events_.replies_[reply(1)]);
+    const auto compiled = glapi::decode_compile_result(events_.replies_[reply(2)]);
+    const auto then = glapi::decode_reflection(events_.replies_[reply(3)]);
+    ASSERT_TRUE(linked && compiled && then);
+    EXPECT_FALSE(linked->linked);
+    EXPECT_FALSE(compiled->compiled);
+    for (const std::string& log : {linked->log, compiled->log})
+        EXPECT_NE(log.find("2 s of processor time"), std::string::npos) << log;
+    EXPECT_TRUE(then->linked) << then->log;
+    EXPECT_EQ(events_.failure_, "");
+}
 
 TEST_F(RenderThreadTest, ABatchOfMinutesKeepsNobodyAway) {
     const auto heavy = open(1);

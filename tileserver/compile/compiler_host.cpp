@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/compile/compiler_host.h"
+
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include "tileserver/compile/compiler_messages.h"
+#include "tileserver/gpu/backend.h"
+#include "tileserver/gpu/gl.h"
+#include "tileserver/objects/program_build.h"
+
+namespace wall::tileserver {
+namespace {
+
+// ---- a socket sent through a socket ----
+
+union DescriptorSpace {
+    cmsghdr aligned;
+    std::array<char, CMSG_SPACE(sizeof(int))> bytes;
+};
+
+bool send_descriptor(int socket, int descriptor) {
+    char nothing = 0;
+    iovec data{&nothing, 1};
+    DescriptorSpace space{};
+    msghdr message{};
+    message.msg_iov = &data;
+    message.msg_iovlen = 1;
+    message.msg_control = space.bytes.data();
+    message.msg_controllen = space.bytes.size();
+    cmsghdr* const control = CMSG_FIRSTHDR(&message);
+    control->cmsg_level = SOL_SOCKET;
+    control->cmsg_type = SCM_RIGHTS;
+    control->cmsg_len = CMSG_LEN(sizeof descriptor);
+    std::memcpy(CMSG_DATA(control), &descriptor, sizeof descriptor);
+    ssize_t sent = 0;
+    do sent = ::sendmsg(socket, &message, MSG_NOSIGNAL);
+    while (sent < 0 && errno == EINTR);
+    return sent == 1;
+}
+
+/// None: the other end is gone.
+UniqueFd receive_descriptor(int socket) {
+    char nothing = 0;
+    iovec data{&nothing, 1};
+    DescriptorSpace space{};
+    msghdr message{};
+    message.msg_iov = &data;
+    message.msg_iovlen = 1;
+    message.msg_control = space.bytes.data();
+    message.msg_controllen = space.bytes.size();
+    ssize_t received = 0;
+    do received = ::recvmsg(socket, &message, MSG_CMSG_CLOEXEC);
+    while (received < 0 && errno == EINTR);
+    const cmsghdr* const control = received == 1 ? CMSG_FIRSTHDR(&message) : nullptr;
+    if (control == nullptr || control->cmsg_type != SCM_RIGHTS) return {};
+    int descriptor = -1;
+    std::memcpy(&descriptor, CMSG_DATA(control), sizeof descriptor);
+    return UniqueFd(descriptor);
+}
+
+// ---- the compiler's process ----
+
+void limit(int resource, rlim_t value) {
+    rlimit now{};
+    ::getrlimit(resource, &now);
+    now.rlim_cur = std::min(value, now.rlim_max);
+    ::setrlimit(resource, &now);
+}
+
+/// From now on, until allow_time() is called again.
+void allow_time(const CompilerLimits& limits) {
+    rusage used{};
+    ::getrusage(RUSAGE_SELF, &used);
+    const auto begun = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec + 1);
+    limit(RLIMIT_CPU, begun + static_cast<rlim_t>(limits.processor_time.count()));  // SIGXCPU ends the process
+    ::alarm(static_cast<unsigned>(limits.time.count()));                            // as does SIGALRM
+}
+
+std::vector<std::byte> answer(const Gl& gl, const CompilerQuestion& question) {
+    if (question.shader_type != 0) {
+        auto compiled = compile_shader(gl, question.shader_type, question.bytes);
+        return compiled ? *std::move(compiled) : std::vector<std::byte>();
+    }
+    if (const auto definition = read_definition(question.bytes)) {
+        GLint linked = 0;  // asked for, so that no driver puts its work off
+        const GLuint program = build_program(gl, *definition).driver;
+        gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
+        gl.DeleteProgram(program);
+    }
+    return {};
+}
+
+void compile(int socket, const std::string& backend_name, const CompilerLimits& limits) {
+    ::setenv("LP_NUM_THREADS", "0", 1);  // nothing is drawn
+    limit(RLIMIT_CORE, 0);
+    if (limits.memory != 0) limit(RLIMIT_DATA, limits.memory);
+    const auto backend = open_backend(backend_name);
+    if (!backend || !(*backend)->make_current()) return;
+    Gl gl;
+    gl.load([&](const char* function) { return (*backend)->get_proc_address(function); });
+    if (!send_message(socket, 0, {})) return;
+    while (const auto question = receive_message(socket)) {
+        allow_time(limits);
+        const auto given = answer(gl, *question);
+        ::alarm(0);
+        if (!send_message(socket, 0, given)) return;
+    }
+}
+
+void end_with_parent(pid_t parent) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) ::_exit(0);
+}
+
+/// Forks a compiler for each socket that comes.
+void serve(int socket, const std::string& backend, const CompilerLimits& limits) {
+    ::signal(SIGCHLD, SIG_IGN);  // nobody asks how they ended
+    ::prctl(PR_SET_NAME, "wallgl-compiler");
+    const pid_t self = ::getpid();
+    while (const UniqueFd compiler = receive_descriptor(socket)) {
+        if (::fork() != 0) continue;
+        ::close(socket);
+        end_with_parent(self);
+        compile(compiler.get(), backend, limits);
+        ::_exit(0);
+    }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<CompilerHost>> CompilerHost::start(std::string backend, const CompilerLimits& limits) {
+    std::array<int, 2> ends{};
+    if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
+        return fail(std::string("socketpair: ") + std::strerror(errno));
+    UniqueFd mine(ends[0]), its(ends[1]);
+    const pid_t self = ::getpid(), process = ::fork();
+    if (process < 0) return fail(std::string("fork: ") + std::strerror(errno));
+    if (process == 0) {
+        mine.reset();
+        end_with_parent(self);
+        serve(its.get(), backend, limits);
+        ::_exit(0);
+    }
+    return std::unique_ptr<CompilerHost>(new CompilerHost(std::move(mine), process, limits));
+}
+
+CompilerHost::~CompilerHost() {
+    socket_.reset();
+    ::kill(process_, SIGKILL);  // and with it the compilers
+    ::waitpid(process_, nullptr, 0);
+}
+
+Result<UniqueFd> CompilerHost::open() const {
+    std::array<int, 2> ends{};
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+        return fail(std::string("socketpair: ") + std::strerror(errno));
+    UniqueFd mine(ends[0]), its(ends[1]);
+    if (!send_descriptor(socket_.get(), its.get())) return fail("the process that starts compilers is gone");
+    return mine;
+}
+
+}  // namespace wall::tileserver
