@@ -16,7 +16,7 @@ namespace wall::tileserver {
 /// Names that the driver has given and not got back.
 struct DriverObjects {
     std::int64_t textures = 0, buffers = 0, lists = 0, programs = 0, shaders = 0, framebuffers = 0, renderbuffers = 0,
-                 queries = 0, vertex_arrays = 0, samplers = 0;
+                 queries = 0, vertex_arrays = 0, samplers = 0, pipelines = 0, captures = 0;
     bool operator==(const DriverObjects&) const = default;
 };
 
@@ -74,6 +74,22 @@ struct Gl : glapi::GlFunctions {
         objects->samplers -= named(n, names);
         GlFunctions::DeleteSamplers(n, names);
     }
+    void CreateProgramPipelines(GLsizei n, GLuint* names) const {
+        GlFunctions::CreateProgramPipelines(n, names);
+        objects->pipelines += named(n, names);
+    }
+    void DeleteProgramPipelines(GLsizei n, const GLuint* names) const {
+        objects->pipelines -= named(n, names);
+        GlFunctions::DeleteProgramPipelines(n, names);
+    }
+    void CreateTransformFeedbacks(GLsizei n, GLuint* names) const {
+        GlFunctions::CreateTransformFeedbacks(n, names);
+        objects->captures += named(n, names);
+    }
+    void DeleteTransformFeedbacks(GLsizei n, const GLuint* names) const {
+        objects->captures -= named(n, names);
+        GlFunctions::DeleteTransformFeedbacks(n, names);
+    }
     void GenQueries(GLsizei n, GLuint* names) const {
         GlFunctions::GenQueries(n, names);
         objects->queries += named(n, names);
@@ -116,6 +132,8 @@ struct Gl : glapi::GlFunctions {
     void GenRenderbuffers(GLsizei, GLuint*) const = delete;
     void GenVertexArrays(GLsizei, GLuint*) const = delete;
     void GenSamplers(GLsizei, GLuint*) const = delete;
+    void GenProgramPipelines(GLsizei, GLuint*) const = delete;
+    void GenTransformFeedbacks(GLsizei, GLuint*) const = delete;
     void CreateQueries(GLenum, GLsizei, GLuint*) const = delete;
     GLuint CreateShaderProgramv(GLenum, GLsizei, const GLchar* const*) const = delete;
 
