@@ -35,10 +35,6 @@ bool meant_for_us() {
     return (manifests && *manifests) || (glx_vendor && std::strcmp(glx_vendor, "wallgl") == 0);
 }
 
-// No display extension of ours has functions that GLVND has no stubs for.
-void* get_dispatch_address(const char*) { return nullptr; }
-void set_dispatch_index(const char*, int) {}
-
 }  // namespace
 }  // namespace wall::client::egl
 
@@ -49,11 +45,12 @@ extern "C" [[gnu::visibility("default")]] EGLBoolean __egl_Main(std::uint32_t ve
     if (!egl::meant_for_us()) return EGL_FALSE;
     watch_forks();
     egl::start(*exports);
+    egl::start_dispatch(*exports);
     imports->getPlatformDisplay = egl::get_platform_display;
     imports->getSupportsAPI = egl::supports_api;
     imports->getVendorString = egl::vendor_string;
     imports->getProcAddress = egl::get_proc_address;
-    imports->getDispatchAddress = egl::get_dispatch_address;
+    imports->getDispatchAddress = egl::dispatch_address;
     imports->setDispatchIndex = egl::set_dispatch_index;
     log(LogLevel::info, "loaded window_system=egl program=%s", program_name().c_str());
     return EGL_TRUE;

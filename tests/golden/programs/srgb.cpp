@@ -129,7 +129,7 @@ SCENE(srgb_copies, 3, kAsked) {  // the same texels, whether they are copied wit
     glEnable(GL_TEXTURE_2D);
     glTexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_REPLACE);
     glBegin(GL_QUADS);
-    for (const auto& [s, t] : std::array{std::pair{0.f, 0.f}, {1.f, 0.f}, {1.f, 1.f}, {0.f, 1.f}}) {
+    for (const auto& [s, t] : {std::pair{0.f, 0.f}, {1.f, 0.f}, {1.f, 1.f}, {0.f, 1.f}}) {
         glTexCoord2f(s, t);
         glVertex2f(s - 0.5f, 0.9f * t);
     }

@@ -81,7 +81,7 @@ TEST_F(CompileTrialsTest, GiveUpWhatTakesTooLong) {
     start();
     if (!can_draw()) GTEST_SKIP() << "no driver";
     const auto begin = Clock::now();
-    const auto monster = trials_->shader(GL_FRAGMENT_SHADER, bytes_of(monstrous_shader()));
+    const auto monster = trials_->shader(GL_FRAGMENT_SHADER, bytes_of(monstrous_macros()));
     EXPECT_EQ(outcome_of("void main() { gl_FragColor = vec4(0); }"), Outcome::done) << "another compiler has time";
     EXPECT_EQ(wait(monster), Outcome::given_up);
     EXPECT_LT(Clock::now() - begin, 30s);
@@ -102,7 +102,7 @@ TEST_F(CompileTrialsTest, GiveUpProgramsToo) {
 TEST_F(CompileTrialsTest, EndWhileOneIsRunning) {
     start("egl", {.processor_time = 100s, .time = 100s, .memory = 0});
     if (!can_draw()) GTEST_SKIP() << "no driver";
-    for (unsigned i = 0; i < 5; ++i) trials_->shader(GL_FRAGMENT_SHADER, bytes_of(monstrous_shader(26 + i)));
+    for (unsigned i = 0; i < 5; ++i) trials_->shader(GL_FRAGMENT_SHADER, bytes_of(monstrous_macros(36 + i)));
     const auto begin = Clock::now();
     trials_.reset();
     host_.reset();

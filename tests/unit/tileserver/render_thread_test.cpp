@@ -239,12 +239,13 @@ constexpr double kDecent = 10;
 TEST_F(RenderThreadTest, AShaderThatTakesTheCompilerMinutesIsRefusedAndKeepsNobodyAway) {
     const auto queue = open(1);
     wire::PackBuffer buffer;
+    const std::string other_monster = test::monstrous_macros();
     glapi::ProgramDefinition monster, good;
-    monster.shaders.push_back({.type = GL_FRAGMENT_SHADER, .compiled = true, .source = monstrous_shader()});
+    monster.shaders.push_back({.type = GL_FRAGMENT_SHADER, .compiled = true, .source = test::monstrous_shader()});
     good.shaders.push_back(
         {.type = GL_FRAGMENT_SHADER, .compiled = true, .source = "void main() { gl_FragColor = vec4(1); }"});
     pack::ProgramLink(buffer, RequestId(1), ClientName(1), encode(monster));
-    pack::ShaderCompile(buffer, RequestId(2), GL_FRAGMENT_SHADER, std::as_bytes(std::span(monstrous_shader(29))));
+    pack::ShaderCompile(buffer, RequestId(2), GL_FRAGMENT_SHADER, std::as_bytes(std::span(other_monster)));
     pack::ProgramLink(buffer, RequestId(3), ClientName(1), encode(good));
     pack::Sync(buffer, RequestId(4));
     push(queue, buffer);
