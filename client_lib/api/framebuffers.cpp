@@ -175,6 +175,7 @@ void window_value(Context& c, GLenum point, GLenum pname, GLint* value) {
                                             ImageUse::drawn};
     ImageShape shape{.format = stencil ? &kStencil : &kColor, .bits = bits};
     if (color) shape.bits.depth = shape.bits.stencil = 0;
+    if (color && c.draw_target() && c.draw_target().encodes_srgb()) shape.format = find_texture_format(GL_SRGB8_ALPHA8);
     if (pname == GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) *value = there ? GL_FRAMEBUFFER_DEFAULT : GL_NONE;
     else if (pname == GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME) *value = 0;
     else if (!there) c.error(GL_INVALID_OPERATION);

@@ -226,6 +226,29 @@ void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yo
     c.set<el::raster_position>(0, position);
 }
 
+namespace {
+
+/// Colours are read as light and written as light where both lie by the curve of sRGB (OpenGL 4.6, 17.3.7 and 18.3.2).
+bool copies_light(Context& c, GLenum what) {
+    if (what != GL_COLOR || !c.get<el::framebuffer_srgb>()) return false;
+    const TextureFormat* colors = read_color_format(c);
+    return colors && colors->srgb;
+}
+
+/// RGBA bytes as floats, the colours taken off the curve of sRGB (OpenGL 4.6, 8.24).
+std::vector<std::byte> as_light(std::span<const std::byte> pixels) {
+    const auto linear = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
+    std::vector<float> light(pixels.size());
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const double value = std::to_integer<int>(pixels[i]) / 255.0;
+        light[i] = static_cast<float>(i % 4 == 3 ? value : linear(value));
+    }
+    const auto bytes = std::as_bytes(std::span(light));
+    return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
 void CopyPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLenum what) {
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
     if (what != GL_COLOR && what != GL_DEPTH && what != GL_STENCIL && what != GL_DEPTH_STENCIL)
@@ -242,14 +265,16 @@ void CopyPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
     const GLenum type = what == GL_DEPTH           ? GL_UNSIGNED_INT
                         : what == GL_DEPTH_STENCIL ? GL_UNSIGNED_INT_24_8
                                                    : GL_UNSIGNED_BYTE;
-    const auto pixels = gather_plain(c, from, format, type, "glCopyPixels");
+    auto pixels = gather_plain(c, from, format, type, "glCopyPixels");
+    const bool light = copies_light(c, what);
+    if (light) pixels = as_light(pixels);
     const auto position = c.state.raster.raster_position;
     const auto& zoom = c.state.window.pixel_zoom;
     auto moved = position;  // where the part that lies in the window goes
     moved[0] += static_cast<float>(from.x - x) * zoom.x;
     moved[1] += static_cast<float>(from.y - y) * zoom.y;
     c.set<el::raster_position>(0, moved);
-    draw_tight(c, from.width, from.height, format, type, pixels);
+    draw_tight(c, from.width, from.height, format, light ? GLenum{GL_FLOAT} : type, pixels);
     c.set<el::raster_position>(0, position);
 }
 

@@ -2,6 +2,7 @@
 #include "tests/golden/moved/reads.h"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <vector>
@@ -196,6 +197,22 @@ void ReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, 
              asked);
 }
 
+namespace {
+
+/// The colours of RGBA bytes as light, where Mesa would take them so.
+std::vector<std::byte> as_light(const std::vector<std::byte>& pixels) {
+    std::vector<float> light;
+    for (const std::byte byte : pixels) {
+        const float value = static_cast<float>(byte) / 255;
+        const bool alpha = light.size() % 4 == 3;
+        light.push_back(alpha ? value : value < 0.0405f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f));
+    }
+    const auto* bytes = reinterpret_cast<const std::byte*>(light.data());
+    return {bytes, bytes + light.size() * sizeof(float)};
+}
+
+}  // namespace
+
 /// What lies beyond the window is not copied, so that the rest begins later.
 void CopyPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum what) {
     must_execute("glCopyPixels in a list");
@@ -206,13 +223,15 @@ void CopyPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum what) {
     const PlainPixels plain;
     const GLenum format = what == GL_COLOR ? GL_RGBA : what == GL_DEPTH ? GL_DEPTH_COMPONENT : GL_STENCIL_INDEX;
     const GLenum type = what == GL_DEPTH ? GL_UNSIGNED_INT : GL_UNSIGNED_BYTE;
-    const auto pixels = gather(from, format, type);
+    auto pixels = gather(from, format, type);
+    const bool light = what == GL_COLOR && mesa().IsEnabled(GL_FRAMEBUFFER_SRGB);  // every window has it
+    if (light) pixels = as_light(pixels);
     float zoom_x = 1, zoom_y = 1;
     mesa().GetFloatv(GL_ZOOM_X, &zoom_x);
     mesa().GetFloatv(GL_ZOOM_Y, &zoom_y);
     const float right = static_cast<float>(from.x - x) * zoom_x, up = static_cast<float>(from.y - y) * zoom_y;
     mesa().Bitmap(0, 0, 0, 0, right, up, nullptr);
-    mesa().DrawPixels(from.width, from.height, format, type, pixels.data());
+    mesa().DrawPixels(from.width, from.height, format, light ? GLenum{GL_FLOAT} : type, pixels.data());
     mesa().Bitmap(0, 0, 0, 0, -right, -up, nullptr);
 }
 

@@ -100,13 +100,8 @@ SCENE(srgb_blits, 4, kAsked) {
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
         const int x = 140 * i + 13, y = 107;
         glBlitFramebuffer(0, 0, 120, 90, x, y, x + 120, y + 90, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-        glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffers[static_cast<std::size_t>(i)]);
-        glBlitFramebuffer(100, 2, 160, 26, 10, 10, 70, 34, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-        glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers[static_cast<std::size_t>(i)]);
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
         glDisable(GL_FRAMEBUFFER_SRGB);
-        glBlitFramebuffer(0, 0, 120, 90, x, 50, x + 60, 95, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        glBlitFramebuffer(0, 0, 120, 90, x, 50, x + 40, 80, GL_COLOR_BUFFER_BIT, GL_NEAREST);
         if (frame % 2 == 1) glEnable(GL_FRAMEBUFFER_SRGB);
     }
     say_error("blits");
