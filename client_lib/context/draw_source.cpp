@@ -13,18 +13,27 @@
 #include "client_lib/process/log.h"
 
 namespace wall::client {
+namespace {
+
+/// A layer on each node; none in a context that no session draws for.
+const std::vector<TargetLayer>& everywhere(ClientSession* session) {
+    static const auto* const nowhere = new std::vector<TargetLayer>;  // never freed: programs draw while they exit
+    return session ? session->nodes().everywhere() : *nowhere;
+}
+
+}  // namespace
 
 DrawTarget Context::draw_target() const {
     if (!draw_) return {};
-    if (memory->now) return DrawTarget(*memory->now, session_->nodes().everywhere());
-    if (captures->now) return DrawTarget(*captures->now, session_->nodes().everywhere());
-    if (framebuffers->draw && !select->layer) return DrawTarget(*framebuffers->draw, session_->nodes().everywhere());
+    if (memory->now) return DrawTarget(*memory->now, everywhere(session_.get()));
+    if (captures->now) return DrawTarget(*captures->now, everywhere(session_.get()));
+    if (framebuffers->draw && !select->layer) return DrawTarget(*framebuffers->draw, everywhere(session_.get()));
     return select->layer ? DrawTarget(*draw_, *select->layer) : DrawTarget(*draw_);
 }
 
 DrawTarget Context::read_target() const {
     if (!read_) return {};
-    return framebuffers->read ? DrawTarget(*framebuffers->read, session_->nodes().everywhere()) : DrawTarget(*read_);
+    return framebuffers->read ? DrawTarget(*framebuffers->read, everywhere(session_.get())) : DrawTarget(*read_);
 }
 
 void Context::for_each_used(const std::function<void(const Object&)>& use) { client::for_each_used(*this, use); }

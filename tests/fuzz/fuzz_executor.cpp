@@ -2,6 +2,7 @@
 // Batches executed on a real driver, in a session with a window on two tiles and in both members of a parallel program.
 // After each input another session must still draw what it always draws.
 #include <memory>
+#include <numeric>
 
 #include "common/base/assert.h"
 #include "tests/fuzz/batch_input.h"
@@ -15,6 +16,32 @@ using namespace wall::tileserver;
 
 constexpr int kOthersTurns = 4;
 constexpr std::uint64_t kObjectBytes = std::uint64_t{4} << 20;  // of a session: gigabytes take the driver seconds
+
+constexpr std::int64_t kElements = 1 << 20;  // of a draw: more take the driver seconds, which a node puts up with
+
+/// The driver's draws whose elements no buffer bounds, but for those of too many.
+struct BoundedDraws {
+    static inline glapi::GlFunctions of_driver;
+
+    static bool few(std::int64_t elements, GLsizei instances = 1) { return elements * instances <= kElements; }
+    static void arrays(GLenum mode, const GLint* first, const GLsizei* count, GLsizei draws) {
+        if (few(std::accumulate(count, count + draws, std::int64_t{0})))
+            of_driver.MultiDrawArrays(mode, first, count, draws);
+    }
+    static void instances(GLenum mode, GLint first, GLsizei count, GLsizei instances) {
+        if (few(count, instances)) of_driver.DrawArraysInstanced(mode, first, count, instances);
+    }
+    static void elements(GLenum mode, GLsizei count, GLenum type, const void* indices, GLsizei instances, GLint base) {
+        if (few(count, instances))
+            of_driver.DrawElementsInstancedBaseVertex(mode, count, type, indices, instances, base);
+    }
+    static void put_into(glapi::GlFunctions& gl) {
+        of_driver = gl;
+        gl.MultiDrawArrays = arrays;
+        gl.DrawArraysInstanced = instances;
+        gl.DrawElementsInstancedBaseVertex = elements;
+    }
+};
 
 struct Ignore final : SessionOutput {
     void reply(RequestId, std::vector<std::byte> bytes) override { answer = std::move(bytes); }
@@ -33,6 +60,7 @@ struct Node {
         backend = std::move(*opened);
         Gl gl;
         gl.load([this](const char* name) { return backend->get_proc_address(name); });
+        BoundedDraws::put_into(gl);
         driver = std::make_unique<Driver>(gl);
         node = std::make_unique<RenderNode>(*driver);
         node->tiles = {{0, {0, 0, 32, 32}}, {1, {32, 0, 32, 32}}};
