@@ -37,6 +37,7 @@ test=(
   x11-utils x11-xserver-utils        # xprop, xwininfo; xrandr: monitors of a display that has none
   xterm fonts-dejavu-core            # the text desktop of the codec benchmark
   python3-numpy python3-opencv python3-jsonschema python3-yaml python3-prometheus-client curl systemd
+  iproute2 openssl                   # walls of several machines: network namespaces, keys of strangers
   mmdebstrap                         # the clean machine of the stage `fresh`
   chromium                           # the status page in a real browser
 )

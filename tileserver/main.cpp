@@ -13,8 +13,10 @@
 
 #include "common/config/load_config.h"
 #include "common/daemon/keep_running.h"
+#include "common/join/join.h"
 #include "common/log/log.h"
 #include "common/net/sockets.h"
+#include "common/tls/identity.h"
 #include "tileserver/gpu/memory.h"
 #include "tileserver/io/node_server.h"
 
@@ -39,13 +41,13 @@ asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const NodeServer&
     }
 }
 
-Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node) {
+Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node, const NodeKeys& keys) {
     const auto compilers = CompilerHost::start(config::name_of(node.backend));  // forks: before there are threads
     if (!compilers) return tl::unexpected(compilers.error());
     asio::io_context io(1);
     auto server = Result<std::unique_ptr<NodeServer>>(nullptr);
     const auto open = [&]() -> Result<void> {
-        server = NodeServer::open(io.get_executor(), wall, node, compilers->get());
+        server = NodeServer::open(io.get_executor(), wall, node, compilers->get(), keys);
         return server ? Result<void>() : tl::unexpected(server.error());
     };
     if (auto opened = net::listen_patiently(open); !opened) return opened;
@@ -77,6 +79,62 @@ Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node)
     return {};
 }
 
+struct Options {
+    std::string config, node, state, join;
+};
+
+/// The node that this process is to be.
+struct Role {
+    config::WallConfig wall;
+    std::string node;
+    NodeKeys keys;
+};
+
+Result<NodeKeys> keys_in(const std::string& folder) {
+    const auto own = tls::Identity::load_or_make(join::key_file(folder));
+    if (!own) return tl::unexpected(own.error());
+    auto context = tls::TlsContext::make(*own);
+    if (!context) return tl::unexpected(context.error());
+    return NodeKeys{std::make_shared<const tls::TlsContext>(std::move(*context)), std::nullopt};
+}
+
+Result<void> join_wall(const Options& options) {
+    const auto line = tls::JoinLine::parse(options.join);
+    if (!line) return tl::unexpected(line.error());
+    const auto joined = join::join(*line, join::MachineKind::node, options.state);
+    if (!joined) return tl::unexpected(joined.error());
+    log::info("joined name={} walld={}", log::quoted(joined->name), log::quoted(joined->walld.text()));
+    return {};
+}
+
+/// Of another machine's wall: by what was kept when it joined.
+Result<Role> joined_role(const std::string& folder) {
+    const auto joined = join::Membership::load(folder);
+    if (!joined) return tl::unexpected(joined.error());
+    if (joined->kind != join::MachineKind::node) return fail(folder + ": this machine has joined as a client host");
+    auto wall = config::load_config(join::wall_file(folder));
+    if (!wall) return tl::unexpected(wall.error());
+    auto keys = keys_in(folder);
+    if (!keys) return tl::unexpected(keys.error());
+    keys->joined = JoinedWall{joined->walld, joined->walld_key};
+    return Role{std::move(*wall), joined->name, std::move(*keys)};
+}
+
+Result<Role> role_of(const Options& options) {
+    if (options.config.empty()) return joined_role(options.state);
+    auto wall = config::load_config(options.config);
+    if (!wall) return tl::unexpected(wall.error());
+    auto keys = options.state.empty() ? Result<NodeKeys>(NodeKeys{}) : keys_in(options.state);
+    if (!keys) return tl::unexpected(keys.error());
+    return Role{std::move(*wall), options.node, std::move(*keys)};
+}
+
+/// An error of whoever starts us, in one sentence.
+int refuse_start(const std::string& why) {
+    std::cerr << "tileserver: " << why << '\n';
+    return kExitUsage;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -84,28 +142,35 @@ int main(int argc, char** argv) {
     CLI::App app(
         "tileserver: one node of a WallGL wall. It draws what programs send it for its tiles. It connects to walld by "
         "itself,\n"
-        "whenever that is there.");
-    std::string config_path, node_name;
-    app.add_option("--config", config_path, "wall.toml, the description of the wall (docs/operation.md)")->required();
-    app.add_option("--node", node_name, "which of its [[node]]s this one is")->required();
+        "whenever that is there. On walld's machine: --config and --node. On another one, first with the line that\n"
+        "`wallctl join-token node NAME` prints: --state FOLDER --join LINE; later --state FOLDER.");
+    Options options;
+    auto* config =
+        app.add_option("--config", options.config, "wall.toml, the description of the wall (docs/operation.md)");
+    app.add_option("--node", options.node, "which of its [[node]]s this one is")->needs(config);
+    auto* state = app.add_option("--state", options.state,
+                                 "where this machine keeps its key, and what it knows of the wall that it has joined");
+    app.add_option("--join", options.join, "joins a wall of another machine, with a line of `wallctl join-token`")
+        ->needs(state)
+        ->excludes(config);
     app.set_version_flag("--version", WALLGL_VERSION);
     CLI11_PARSE(app, argc, argv);
+    const bool of_file = !options.config.empty() && !options.node.empty();
+    const bool of_state = options.config.empty() && options.node.empty() && !options.state.empty();
+    if (!of_file && !of_state)
+        return refuse_start("expected --config FILE --node NAME, or --state FOLDER (--help tells more)");
 
     ::signal(SIGPIPE, SIG_IGN);
     net::use_all_descriptors();
-    log::begin("tileserver " + node_name);
+    log::begin("tileserver " + options.node);
     try {
-        const auto wall = config::load_config(config_path);
-        if (!wall) {
-            std::cerr << "tileserver: " << wall.error().message << '\n';
-            return kExitUsage;
-        }
-        const auto* node = wall->find_node(node_name);
-        if (node == nullptr) {
-            std::cerr << "tileserver: " << config_path << ": no [[node]] has the name \"" << node_name << "\"\n";
-            return kExitUsage;
-        }
-        if (auto done = run(*wall, *node); !done) {
+        if (!options.join.empty())
+            if (auto joined = join_wall(options); !joined) return refuse_start(joined.error().message);
+        const auto role = role_of(options);
+        if (!role) return refuse_start(role.error().message);
+        const auto* node = role->wall.find_node(role->node);
+        if (node == nullptr) return refuse_start(options.config + ": no [[node]] has the name \"" + role->node + "\"");
+        if (auto done = run(role->wall, *node, role->keys); !done) {
             std::cerr << "tileserver: " << done.error().message << '\n';
             return 1;
         }

@@ -4,19 +4,23 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "common/config/load_config.h"
 #include "common/daemon/keep_running.h"
 #include "common/log/log.h"
 #include "common/net/sockets.h"
+#include "common/tls/identity.h"
 #include "walld/control/control_server.h"
 #include "walld/control/service_manager.h"
 #include "walld/http/http_server.h"
@@ -61,13 +65,45 @@ std::string state_directory(const config::WallConfig& config) {
     return !config.state_directory.empty() ? config.state_directory : given ? given : "";
 }
 
+Result<std::string> text_of(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return file ? Result<std::string>(text.str()) : fail(path + ": cannot be read");
+}
+
+/// A key for links with other machines, if walld shall have any.
+Result<WalldKeys> open_keys(const config::WallConfig& config, const std::string& config_path,
+                            const std::string& state) {
+    auto machines = Machines::open(state);
+    if (!machines) return tl::unexpected(machines.error());
+    WalldKeys out{nullptr, std::move(*machines), {}};
+    if (std::ranges::all_of(config.control_listen, &net::Address::local)) return out;
+    if (state.empty())
+        return fail(
+            "'listen' in [control] has an address that other machines reach, which needs a key, and walld has "
+            "no place for one: say 'state_directory' in [wall] of wall.toml");
+    const auto own = tls::Identity::load_or_make(std::filesystem::path(state) / "key.pem");
+    if (!own) return tl::unexpected(own.error());
+    auto context = tls::TlsContext::make(*own);
+    if (!context) return tl::unexpected(context.error());
+    auto text = text_of(config_path);
+    if (!text) return tl::unexpected(text.error());
+    out.tls = std::make_shared<const tls::TlsContext>(std::move(*context));
+    out.wall_toml = std::move(*text);
+    log::info("own_key fingerprint={}", log::quoted(out.tls->fingerprint().text()));
+    return out;
+}
+
 Result<void> run(config::WallConfig config, const Options& options) {
     asio::io_context io(1);
     const auto http_listen = config.http_listen;
     const auto state = state_directory(config);
     auto identities = Identities::open(config.people);
     if (!identities) return tl::unexpected(identities.error());
-    ControlServer control(io.get_executor(), std::move(config), std::move(*identities), state);
+    auto keys = open_keys(config, options.config, state);
+    if (!keys) return tl::unexpected(keys.error());
+    ControlServer control(io.get_executor(), std::move(config), std::move(*identities), std::move(*keys), state);
     const WallMetrics metrics(control.wall(), control.streams(), WALLGL_VERSION);
     HttpServer http(io.get_executor(), control.wall(), control.identities(), control.who_is_there(),
                     control.operators(), control.streams(), metrics);

@@ -24,6 +24,8 @@ struct Address {
     bool is_unix() const { return !path.empty(); }
     /// True for what only this machine can reach: a Unix socket, `localhost`, 127.0.0.0/8, ::1.
     bool local() const;
+    /// True for what means every address of a machine: 0.0.0.0, [::].
+    bool any() const { return host == "0.0.0.0" || host == "::"; }
     std::string text() const;
     bool operator==(const Address&) const = default;
 };

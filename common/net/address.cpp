@@ -3,15 +3,18 @@
 
 namespace wall::net {
 
-Result<SocketAddress> resolve_for_listening(const Address& address) {
+Result<SocketAddress> resolve_for_listening(const Address& address, Peers peers) {
     const auto refusal = [&] {
         return fail("listen address " + address.text() +
-                    " can be reached from other machines, and authentication and TLS for them are not there yet: "
-                    "use unix:PATH or a loopback address (127.0.0.1:PORT)");
+                    " can be reached from other machines, and there is no key to know them by: use unix:PATH or a "
+                    "loopback address (127.0.0.1:PORT), or give the daemon a place for its key (docs/operation.md, "
+                    "\"Walls of several machines\")");
     };
-    if (!address.local()) return refusal();  // before a name service is asked
+    const bool any = peers == Peers::with_keys;
+    if (!any && !address.local()) return refusal();  // before a name service is asked
     auto resolved = resolve(address);
-    if (resolved && !resolved->local()) return refusal();  // a `localhost` that is none
+    // A `localhost` that is none would be listened on without keys.
+    if (resolved && !resolved->local() && (!any || address.local())) return refusal();
     return resolved;
 }
 

@@ -16,8 +16,13 @@ inline constexpr std::uint16_t kDefaultControlPort = 7770;
 inline constexpr std::uint16_t kDefaultHttpPort = 7780;
 inline constexpr std::uint16_t kDefaultDataPort = 7790;
 
-/// The socket address to listen on. An error for one that other machines reach, which no daemon listens on
-/// (docs/security.md).
-Result<SocketAddress> resolve_for_listening(const Address& address);
+/// Whom a listener lets in (docs/security.md).
+enum class Peers {
+    of_this_machine,  ///< the kernel says who they are
+    with_keys,        ///< from anywhere, over TLS
+};
+
+/// The socket address to listen on. An error for one that other machines reach, unless their keys are asked for.
+Result<SocketAddress> resolve_for_listening(const Address& address, Peers peers);
 
 }  // namespace wall::net

@@ -8,9 +8,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/asio/write.hpp>
 
 #include "common/base/trusted_server.h"
 
@@ -34,14 +32,14 @@ asio::generic::stream_protocol protocol_of(const Address& address, int family) {
 
 }  // namespace
 
-Result<Listener> Listener::open(asio::any_io_executor executor, const Address& address) {
-    Listener listener(Acceptor(executor), address);
+Result<Listener> Listener::open(asio::any_io_executor executor, const Address& address, Peers peers) {
+    Listener listener(Acceptor(executor), address, peers);
     if (auto listening = listener.listen(); !listening) return tl::unexpected(listening.error());
     return listener;
 }
 
 Result<void> Listener::listen() {
-    auto fd = listen_on(address_);
+    auto fd = listen_on(address_, peers_);
     if (!fd) return tl::unexpected(fd.error());
     auto to = resolve(address_);
     if (!to) return tl::unexpected(to.error());
@@ -79,23 +77,25 @@ asio::awaitable<Result<StreamSocket>> Listener::accept() {
     }
 }
 
-ControlConnection::ControlConnection(StreamSocket socket)
-    : socket_(std::move(socket)),
-      ends_(ends_of(socket_.native_handle())),
-      drained_(socket_.get_executor(), asio::steady_timer::time_point::max()) {}
+ControlConnection::ControlConnection(Stream stream)
+    : stream_(std::move(stream)),
+      ends_(ends_of(stream_.descriptor())),
+      drained_(stream_.executor(), asio::steady_timer::time_point::max()) {}
 
 asio::awaitable<Result<std::shared_ptr<ControlConnection>>> ControlConnection::connect(Address address,
                                                                                        std::string server) {
-    auto to = resolve(address);
-    if (!to) co_return tl::unexpected(to.error());
-    StreamSocket socket(co_await asio::this_coro::executor);
-    const asio::generic::stream_protocol::endpoint endpoint(to->get(), to->length,
-                                                            protocol_of(address, to->family()).protocol());
-    auto [error] = co_await socket.async_connect(endpoint, kTuple);
-    if (error) co_return fail(address.text() + ": cannot connect: " + error.message());
-    if (const auto trusted = check_server(socket.native_handle(), server); !trusted)
+    auto stream = co_await Stream::connect(address);
+    if (!stream) co_return tl::unexpected(stream.error());
+    if (const auto trusted = check_server(stream->descriptor(), server); !trusted)
         co_return fail(address.text() + ": this is not walld: " + trusted.error().message);
-    co_return std::make_shared<ControlConnection>(std::move(socket));
+    co_return std::make_shared<ControlConnection>(std::move(*stream));
+}
+
+asio::awaitable<Result<std::shared_ptr<ControlConnection>>> ControlConnection::connect_tls(
+    Address address, std::shared_ptr<const tls::TlsContext> own, tls::Fingerprint walld) {
+    auto stream = co_await Stream::connect_tls(address, *own, walld);
+    if (!stream) co_return tl::unexpected(stream.error());
+    co_return std::make_shared<ControlConnection>(std::move(*stream));
 }
 
 asio::awaitable<Result<proto::Envelope>> ControlConnection::receive() {
@@ -108,9 +108,9 @@ asio::awaitable<Result<proto::Envelope>> ControlConnection::receive() {
         }
         if (*message) co_return std::move(**message);
         const auto room = unframer_.prepare();
-        auto [error, bytes] = co_await socket_.async_read_some(asio::buffer(room.data(), room.size()), kTuple);
+        auto [error, bytes] = co_await stream_.read_some(asio::buffer(room.data(), room.size()));
         if (error) {
-            const bool ours = !socket_.is_open();
+            const bool ours = !stream_.is_open();
             const bool orderly = error == asio::error::eof && unframer_.at_boundary();
             close();
             if (failure_) co_return tl::unexpected(*failure_);
@@ -131,12 +131,12 @@ void ControlConnection::send(const proto::Envelope& envelope) {
     if (writing_) return;
     writing_ = true;
     asio::co_spawn(
-        socket_.get_executor(), [self = shared_from_this()] { return self->write_queue(); }, asio::detached);
+        stream_.executor(), [self = shared_from_this()] { return self->write_queue(); }, asio::detached);
 }
 
 asio::awaitable<void> ControlConnection::write_queue() {
-    while (!queue_.empty() && socket_.is_open()) {
-        auto [error, bytes] = co_await asio::async_write(socket_, asio::buffer(queue_.front()), kTuple);
+    while (!queue_.empty() && stream_.is_open()) {
+        auto [error, bytes] = co_await stream_.write(asio::buffer(queue_.front()));
         if (error) close();
         queued_bytes_ -= queue_.front().size();
         queue_.pop_front();
@@ -158,10 +158,7 @@ void ControlConnection::give_up(Error why) {
 
 void ControlConnection::close() {
     closing_ = true;
-    boost::system::error_code ignored;
-    if (!socket_.is_open()) return;
-    socket_.shutdown(StreamSocket::shutdown_both, ignored);
-    socket_.close(ignored);
+    stream_.close();
 }
 
 void ControlConnection::close_after_sending() {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Asio's side of a control connection: Envelopes in order, both ways, over a Unix socket or TCP. One executor, one
+// Asio's side of a control connection: Envelopes in order, both ways, over a Unix socket, TCP or TLS. One executor, one
 // thread: everything is called from coroutines and handlers of the executor that it was made with.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/basic_socket_acceptor.hpp>
-#include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <deque>
 #include <memory>
@@ -17,18 +16,15 @@
 #include "common/net/address.h"
 #include "common/net/framing.h"
 #include "common/net/sockets.h"
+#include "common/net/stream.h"
 
 namespace wall::net {
-
-namespace asio = boost::asio;
-
-/// Unix or TCP, decided when it is opened.
-using StreamSocket = asio::generic::stream_protocol::socket;
 
 /// Accepts stream sockets; removes its Unix socket file in the end. Also what a node listens with for data streams.
 class Listener {
 public:
-    static Result<Listener> open(asio::any_io_executor executor, const Address& address);
+    static Result<Listener> open(asio::any_io_executor executor, const Address& address,
+                                 Peers peers = Peers::of_this_machine);
     Listener(Listener&&) = default;
     Listener& operator=(Listener&&) = delete;
     ~Listener();
@@ -40,13 +36,17 @@ public:
     /// Listens anew on the same address, whatever has become of the socket.
     Result<void> reopen();
     const Address& address() const { return address_; }  ///< with the port that the kernel chose
+    /// Other machines reach it: whoever comes has to prove a key (Stream::accept_tls).
+    bool wants_keys() const { return !address_.local(); }
 
 private:
     using Acceptor = asio::basic_socket_acceptor<asio::generic::stream_protocol>;
-    Listener(Acceptor acceptor, Address address) : acceptor_(std::move(acceptor)), address_(std::move(address)) {}
+    Listener(Acceptor acceptor, Address address, Peers peers)
+        : acceptor_(std::move(acceptor)), address_(std::move(address)), peers_(peers) {}
     Result<void> listen();
     Acceptor acceptor_;
     Address address_;
+    Peers peers_;
 };
 
 class ControlConnection : public std::enable_shared_from_this<ControlConnection> {
@@ -54,9 +54,12 @@ public:
     /// What may wait for a slow reader before the connection is given up.
     static constexpr std::size_t kMaxQueued = std::size_t{256} << 20;  // bytes
 
-    explicit ControlConnection(StreamSocket socket);
+    explicit ControlConnection(Stream stream);
     /// `server`: the user whose process must be there, if it is not root's or our own (check_server).
     static asio::awaitable<Result<std::shared_ptr<ControlConnection>>> connect(Address address, std::string server);
+    /// To a walld of another machine.
+    static asio::awaitable<Result<std::shared_ptr<ControlConnection>>> connect_tls(
+        Address address, std::shared_ptr<const tls::TlsContext> own, tls::Fingerprint walld);
 
     /// The next message. The error says "closed" for an orderly end, else what was wrong; the socket is closed then.
     asio::awaitable<Result<proto::Envelope>> receive();
@@ -70,7 +73,10 @@ public:
     /// Closes when everything queued has gone out.
     void close_after_sending();
 
-    bool is_open() const { return socket_.is_open() && !closing_; }
+    bool is_open() const { return stream_.is_open() && !closing_; }
+    /// The key that a peer on another machine has proven; nothing on this machine.
+    const std::optional<tls::Fingerprint>& peer_key() const { return stream_.peer_key(); }
+    asio::any_io_executor executor() { return stream_.executor(); }
     /// For peer_of().
     const std::optional<SocketEnds>& ends() const { return ends_; }
     /// What is known at once: of a Unix socket's peer.
@@ -80,7 +86,7 @@ private:
     asio::awaitable<void> write_queue();
     void give_up(Error why);
 
-    StreamSocket socket_;
+    Stream stream_;
     std::optional<SocketEnds> ends_;
     Unframer unframer_;
     std::deque<std::string> queue_;

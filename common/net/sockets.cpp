@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "common/net/sockets.h"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -9,6 +10,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -40,10 +42,20 @@ void remove_stale(const Address& address, const SocketAddress& to) {
     if (::connect(probe.get(), to.get(), to.length) != 0 && errno == ECONNREFUSED) ::unlink(address.path.c_str());
 }
 
+/// Of TCP; empty for other sockets.
+std::string host_of(const sockaddr_storage& address) {
+    std::array<char, INET6_ADDRSTRLEN> text{};
+    const void* bytes = nullptr;
+    if (address.ss_family == AF_INET) bytes = &reinterpret_cast<const sockaddr_in&>(address).sin_addr;
+    if (address.ss_family == AF_INET6) bytes = &reinterpret_cast<const sockaddr_in6&>(address).sin6_addr;
+    if (!bytes || !::inet_ntop(address.ss_family, bytes, text.data(), text.size())) return {};
+    return text.data();
+}
+
 }  // namespace
 
-Result<UniqueFd> listen_on(const Address& address) {
-    auto to = resolve_for_listening(address);
+Result<UniqueFd> listen_on(const Address& address, Peers peers) {
+    auto to = resolve_for_listening(address, peers);
     if (!to) return tl::unexpected(to.error());
     auto fd = open_socket(address, *to, SOCK_NONBLOCK);
     if (!fd) return fd;
@@ -86,6 +98,21 @@ Address bound_address(int fd, const Address& asked) {
     // sin_port and sin6_port lie at the same place.
     out.port = ntohs(reinterpret_cast<const sockaddr_in*>(&got.storage)->sin_port);
     return out;
+}
+
+std::string peer_text(int fd) {
+    const auto ends = ends_of(fd);
+    const auto host = ends ? host_of(ends->there) : std::string();
+    return host.empty() ? "this machine" : host;
+}
+
+std::string reachable_at(const std::string& listens, const std::optional<SocketEnds>& ends) {
+    auto address = Address::parse(listens);
+    if (!address || address->is_unix() || !address->any() || !ends) return listens;
+    const auto host = host_of(ends->there);
+    if (host.empty()) return listens;
+    address->host = host;
+    return address->text();
 }
 
 }  // namespace wall::net

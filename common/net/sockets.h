@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <optional>
+#include <string>
 
 #include "common/base/result.h"
 #include "common/base/socket_peer.h"
@@ -14,9 +15,9 @@
 
 namespace wall::net {
 
-/// A listening socket, which other machines cannot reach: such an address is refused. A stale Unix socket file is
-/// replaced; one that somebody listens on is an error.
-Result<UniqueFd> listen_on(const Address& address);
+/// A listening socket; `address` is held against `peers`. A stale Unix socket file is replaced; one that somebody
+/// listens on is an error.
+Result<UniqueFd> listen_on(const Address& address, Peers peers = Peers::of_this_machine);
 /// What listen_on() says of an address that another process has.
 bool is_address_taken(const Error& error);
 /// A connected, blocking socket.
@@ -28,5 +29,11 @@ Address bound_address(int fd, const Address& asked);
 
 using wall::Peer;
 using wall::peer_of;
+
+/// The address of the other end as people write it, without its port; "this machine" of a Unix socket.
+std::string peer_text(int fd);
+/// The address that a peer says it listens on; where that is any of its addresses (0.0.0.0, [::]), the one that it has
+/// come from.
+std::string reachable_at(const std::string& listens, const std::optional<SocketEnds>& ends);
 
 }  // namespace wall::net

@@ -10,7 +10,6 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/asio/write.hpp>
 #include <cerrno>
 #include <chrono>
 
@@ -47,8 +46,8 @@ bool equal_secret(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-DataStream::DataStream(StreamHost& host, StreamId id, net::StreamSocket socket)
-    : host_(host), id_(id), socket_(std::move(socket)), timer_(socket_.get_executor()), reader_(kMaxHello) {}
+DataStream::DataStream(StreamHost& host, StreamId id, net::Stream connection)
+    : host_(host), id_(id), connection_(std::move(connection)), timer_(connection_.executor()), reader_(kMaxHello) {}
 
 asio::awaitable<void> DataStream::run() {
     const auto self = shared_from_this();
@@ -69,7 +68,7 @@ asio::awaitable<Result<Frame>> DataStream::next_frame() {
         if (!frame) co_return tl::unexpected(frame.error());
         if (*frame) co_return std::move(**frame);
         const auto room = reader_.prepare();
-        const auto [error, bytes] = co_await socket_.async_read_some(asio::buffer(room.data(), room.size()), kWaitable);
+        const auto [error, bytes] = co_await connection_.read_some(asio::buffer(room.data(), room.size()));
         if (error) co_return wall::fail(error == asio::error::eof ? "closed" : error.message());
         reader_.commit(bytes);
         host_.stream_bytes(bytes);
@@ -101,7 +100,7 @@ asio::awaitable<Result<void>> DataStream::greet() {
         co_return wall::fail("session " + std::to_string(hello.session()) + " has no rank " +
                              std::to_string(hello.rank()));
     reader_.set_limits(wire::kMaxFramePayload, wire::kMaxBatchPayload);
-    const auto on_room = [weak = weak_from_this(), executor = socket_.get_executor()] {
+    const auto on_room = [weak = weak_from_this(), executor = connection_.executor()] {
         asio::post(executor, [weak] {
             if (const auto self = weak.lock()) {
                 self->room_ = true;
@@ -117,12 +116,19 @@ asio::awaitable<Result<void>> DataStream::greet() {
     co_return Result<void>{};
 }
 
+/// A ticket that was taken along to another machine is none.
+bool DataStream::comes_from(const std::string& machine) const {
+    const auto& key = connection_.peer_key();
+    return machine.empty() || (key && key->bytes() == machine);
+}
+
 asio::awaitable<std::optional<Admission>> DataStream::find_admission(SessionId session, const std::string& given) {
     const auto until = std::chrono::steady_clock::now() + kTicketLimit;
     for (;;) {
         if (const Admission* known = host_.admission(session))
-            co_return session&& equal_secret(known->ticket, given) ? std::optional(*known) : std::nullopt;
-        if (std::chrono::steady_clock::now() > until || closing_ || is_gone(socket_.native_handle()))
+            co_return session&& equal_secret(known->ticket, given) && comes_from(known->key) ? std::optional(*known)
+                                                                                             : std::nullopt;
+        if (std::chrono::steady_clock::now() > until || closing_ || is_gone(connection_.descriptor()))
             co_return std::nullopt;
         timer_.expires_after(kTicketPoll);
         co_await timer_.async_wait(kWaitable);
@@ -153,7 +159,7 @@ void DataStream::send(wire::FrameKind kind, std::span<const std::byte> payload) 
     outgoing_bytes_ += bytes.size();
     outgoing_.push_back(std::move(bytes));
     if (outgoing_bytes_ > kMaxQueued) return close();
-    if (!std::exchange(writing_, true)) asio::co_spawn(socket_.get_executor(), write_queue(), asio::detached);
+    if (!std::exchange(writing_, true)) asio::co_spawn(connection_.executor(), write_queue(), asio::detached);
 }
 
 asio::awaitable<void> DataStream::write_queue() {
@@ -161,8 +167,7 @@ asio::awaitable<void> DataStream::write_queue() {
     while (!outgoing_.empty()) {
         const auto bytes = std::move(outgoing_.front());
         outgoing_.pop_front();
-        const auto [error, written] =
-            co_await asio::async_write(socket_, asio::buffer(bytes.data(), bytes.size()), kWaitable);
+        const auto [error, written] = co_await connection_.write(asio::buffer(bytes.data(), bytes.size()));
         outgoing_bytes_ -= bytes.size();
         if (error) break;
     }
@@ -174,16 +179,13 @@ void DataStream::fail(const std::string& reason) {
     send(wire::FrameKind::error, std::as_bytes(std::span(reason)));
     closing_ = true;
     timer_.cancel();
-    boost::system::error_code ignored;
-    socket_.shutdown(net::StreamSocket::shutdown_receive, ignored);
+    connection_.shut_reading();
 }
 
 void DataStream::close() {
     closing_ = true;
     timer_.cancel();
-    boost::system::error_code ignored;
-    socket_.shutdown(net::StreamSocket::shutdown_both, ignored);
-    socket_.close(ignored);
+    connection_.close();
 }
 
 }  // namespace wall::tileserver

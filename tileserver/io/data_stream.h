@@ -30,6 +30,7 @@ namespace asio = boost::asio;
 struct Admission {
     std::string ticket;
     Membership membership;
+    std::string key{};  ///< fingerprint of the machine that it runs on, which alone may come; empty: any
 };
 
 /// What a stream needs of the node.
@@ -49,7 +50,7 @@ public:
 
 class DataStream : public std::enable_shared_from_this<DataStream> {
 public:
-    DataStream(StreamHost& host, StreamId id, net::StreamSocket socket);
+    DataStream(StreamHost& host, StreamId id, net::Stream connection);
 
     /// Runs until the connection ends.
     asio::awaitable<void> run();
@@ -69,10 +70,11 @@ private:
     /// Nothing if there is none for that ticket.
     asio::awaitable<std::optional<Admission>> find_admission(SessionId session, const std::string& ticket);
     asio::awaitable<void> write_queue();
+    bool comes_from(const std::string& machine) const;
 
     StreamHost& host_;
     StreamId id_;
-    net::StreamSocket socket_;
+    net::Stream connection_;
     asio::steady_timer timer_;  // of whatever run() waits for besides the socket
     FrameReader reader_;
     SessionId session_;

@@ -69,11 +69,18 @@ WindowRequest window_request(const config::WallConfig& wall, const config::NodeC
     return request;
 }
 
+/// What wall.toml says, or the same port of all addresses where that would be for this machine alone.
+net::Address for_other_machines(const net::Address& listen) {
+    if (!listen.local()) return listen;
+    return {.path = {}, .host = "0.0.0.0", .port = listen.is_unix() ? net::kDefaultDataPort : listen.port};
+}
+
 }  // namespace
 
-NodeServer::NodeServer(asio::any_io_executor executor, const config::WallConfig& wall, std::string name)
+NodeServer::NodeServer(asio::any_io_executor executor, const config::WallConfig& wall, std::string name, NodeKeys keys)
     : executor_(executor),
-      walld_(wall.control_listen.front()),
+      keys_(std::move(keys)),
+      walld_(keys_.joined ? keys_.joined->walld : wall.control_listen.front()),
       walld_user_(wall.daemon_user),
       name_(std::move(name)),
       retry_(executor),
@@ -89,9 +96,12 @@ NodeServer::NodeServer(asio::any_io_executor executor, const config::WallConfig&
 NodeServer::~NodeServer() = default;
 
 Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor executor, const config::WallConfig& wall,
-                                                     const config::NodeConfig& node, const CompilerHost* compilers) {
-    std::unique_ptr<NodeServer> server(new NodeServer(executor, wall, node.name));
-    auto listener = net::Listener::open(executor, node.listen);
+                                                     const config::NodeConfig& node, const CompilerHost* compilers,
+                                                     NodeKeys keys) {
+    const auto peers = keys.tls ? net::Peers::with_keys : net::Peers::of_this_machine;
+    const auto address = keys.joined ? for_other_machines(node.listen) : node.listen;
+    std::unique_ptr<NodeServer> server(new NodeServer(executor, wall, node.name, std::move(keys)));
+    auto listener = net::Listener::open(executor, address, peers);
     if (!listener) return tl::unexpected(listener.error());
     server->listener_.emplace(std::move(*listener));
     auto render = RenderThread::start(config::name_of(node.backend), *server, window_request(wall, node), compilers);
@@ -102,8 +112,11 @@ Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor execu
 
 void NodeServer::start() {
     const auto stopping = [this] { return stopping_; };
-    net::keep_accepting(
-        executor_, *listener_, [this](net::StreamSocket socket) { take_client(std::move(socket)); }, stopping);
+    const auto take = [this](net::StreamSocket socket) {
+        if (listener_->wants_keys()) net::spawn(executor_, "handshake", take_over_tls(std::move(socket)));
+        else take_client(net::Stream(std::move(socket)));
+    };
+    net::keep_accepting(executor_, *listener_, take, stopping);
     keep("link", &NodeServer::keep_link);
     keep("walld", &NodeServer::watch_walld);
     keep("turns", &NodeServer::watch_turns);
@@ -142,10 +155,21 @@ void NodeServer::make_room_for_stranger() {
     if (DataStream* silent = stream(oldest)) silent->fail("too many connections that have shown no ticket");
 }
 
-void NodeServer::take_client(net::StreamSocket socket) {
+/// Somebody from anywhere; so many may prove their keys at the same time.
+asio::awaitable<void> NodeServer::take_over_tls(net::StreamSocket socket) {
+    if (handshakes_ >= kMaxHandshakes) co_return;
+    ++handshakes_;
+    auto connection = co_await net::Stream::accept_tls(std::move(socket), *keys_.tls);
+    --handshakes_;
+    if (stopping_) co_return;
+    if (connection) co_return take_client(std::move(*connection));
+    log::info("stream_refused reason={}", log::quoted(connection.error().message));
+}
+
+void NodeServer::take_client(net::Stream connection) {
     make_room_for_stranger();
     const StreamId id(++last_stream_);
-    const auto stream = std::make_shared<DataStream>(static_cast<StreamHost&>(*this), id, std::move(socket));
+    const auto stream = std::make_shared<DataStream>(static_cast<StreamHost&>(*this), id, std::move(connection));
     streams_.emplace(id, stream);
     strangers_.insert(id);
     asio::co_spawn(executor_, stream->run(), [this, id](std::exception_ptr failure) {
@@ -194,9 +218,15 @@ void NodeServer::blame(const RunningTurn& turn) {
 
 // ---- walld ----
 
+asio::awaitable<Result<std::shared_ptr<net::ControlConnection>>> NodeServer::connect() {
+    if (keys_.joined)
+        co_return co_await net::ControlConnection::connect_tls(walld_, keys_.tls, keys_.joined->walld_key);
+    co_return co_await net::ControlConnection::connect(walld_, walld_user_);
+}
+
 asio::awaitable<void> NodeServer::keep_link() {
     while (!stopping_) {
-        auto link = co_await net::ControlConnection::connect(walld_, walld_user_);
+        auto link = co_await connect();
         if (link) {
             said_unreachable_ = false;
             std::exception_ptr failure;
@@ -279,6 +309,7 @@ proto::Envelope NodeServer::hello() const {
     hello.set_version(wire::kProtocolVersion);
     hello.set_name(name_);
     hello.set_address(listener_->address().text());
+    if (listener_->wants_keys()) hello.set_key(keys_.tls->fingerprint().bytes());
     hello.set_backend(render_->started().backend);
     hello.set_pid(static_cast<std::uint32_t>(::getpid()));
     hello.set_started_us(started_us_);
@@ -342,8 +373,8 @@ void NodeServer::admit(const proto::Ticket& ticket) {
     // A number that another walld has given to another program.
     if (known != admissions_.end() && known->second.ticket != ticket.ticket()) end_session(SessionId(ticket.session()));
     const auto members = std::min(ticket.members(), wire::kMaxMembers);
-    admissions_[SessionId(ticket.session())] = {ticket.ticket(),
-                                                {members, {ticket.left().begin(), ticket.left().end()}}};
+    admissions_[SessionId(ticket.session())] = {
+        ticket.ticket(), {members, {ticket.left().begin(), ticket.left().end()}}, ticket.key()};
 }
 
 void NodeServer::welcome(const proto::NodeWelcome& welcome) {

@@ -26,13 +26,25 @@
 
 namespace wall::tileserver {
 
+/// A walld of another machine.
+struct JoinedWall {
+    net::Address walld;
+    tls::Fingerprint walld_key;
+};
+
+/// What a node has for links between machines; nothing: it lives on walld's.
+struct NodeKeys {
+    std::shared_ptr<const tls::TlsContext> tls;  ///< null: nobody beyond this machine is let in
+    std::optional<JoinedWall> joined;            ///< none: the first address of [control]; needs `tls`
+};
+
 class NodeServer final : private StreamHost, private NodeEvents {
 public:
     /// Opens the driver and the listener; the error says what stands in the way. `compilers`, which outlives it, for
     /// trials of shaders; null: they are compiled without limits.
     static Result<std::unique_ptr<NodeServer>> open(asio::any_io_executor executor, const config::WallConfig& wall,
                                                     const config::NodeConfig& node,
-                                                    const CompilerHost* compilers = nullptr);
+                                                    const CompilerHost* compilers = nullptr, NodeKeys keys = {});
     ~NodeServer() override;
 
     /// Starts to accept clients and to look for walld.
@@ -52,7 +64,9 @@ public:
     const std::optional<std::string>& failure() const { return failure_; }
 
 private:
-    NodeServer(asio::any_io_executor executor, const config::WallConfig& wall, std::string name);
+    static constexpr std::size_t kMaxHandshakes = 256;  ///< at the same time
+
+    NodeServer(asio::any_io_executor executor, const config::WallConfig& wall, std::string name, NodeKeys keys);
 
     // StreamHost
     const Admission* admission(SessionId session) const override;
@@ -79,8 +93,10 @@ private:
     void output_lost(std::string reason) override;
 
     void keep(const char* name, asio::awaitable<void> (NodeServer::*work)());
-    void take_client(net::StreamSocket socket);
+    asio::awaitable<void> take_over_tls(net::StreamSocket socket);
+    void take_client(net::Stream connection);
     void make_room_for_stranger();
+    asio::awaitable<Result<std::shared_ptr<net::ControlConnection>>> connect();
     asio::awaitable<void> keep_link();
     asio::awaitable<void> watch_turns();
     void blame(const RunningTurn& turn);
@@ -101,6 +117,8 @@ private:
     void post(std::function<void()> task);
 
     asio::any_io_executor executor_;
+    NodeKeys keys_;
+    std::size_t handshakes_ = 0;
     net::Address walld_;
     std::string walld_user_;
     std::string name_;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <iostream>
 
+#include "common/join/join.h"
 #include "common/net/address.h"
 #include "tools/request/request.h"
 #include "tools/wallctl/doctor.h"
@@ -31,6 +32,7 @@ struct Options {
     Walld walld{net::kDefaultWalld, {}};
     bool as_json = false;
     std::string id, tile, file, name;
+    std::string role, at, line, state = "/var/lib/wallgl/agent";
     int x = 0, y = 0, width = 0, height = 0;
     int frames = 1, frame = 1;
     unsigned fps = 10;
@@ -136,6 +138,64 @@ void add_layouts(CLI::App& app, Options& o, Action& action) {
     named("delete", "delete_layout", "forgets a layout", kNoTable);
 }
 
+Outcome<void> join_wall(const Options& options) {
+    const auto line = tls::JoinLine::parse(options.line);
+    if (!line) return failed(line.error().message);
+    const auto joined = join::join(*line, join::MachineKind::client, options.state);
+    if (!joined) return failed(joined.error().message);
+    if (options.as_json) std::cout << json{{"name", joined->name}, {"walld", joined->walld.text()}}.dump(2) << '\n';
+    else
+        std::cout << "joined the wall at " << joined->walld.text() << " as '" << joined->name
+                  << "'; wallagent brings programs there (systemctl enable --now wallagent)\n";
+    return {};
+}
+
+/// wallctl join-token, machines, node, client, join: walls of several machines
+void add_machines(CLI::App& app, Options& o, Action& action) {
+    const auto verb = [&action](CLI::App& parent, const char* name, const char* about, Action run) {
+        auto* sub = parent.add_subcommand(name, about);
+        sub->callback([&action, run] { action = run; });
+        sub->fallthrough();
+        return sub;
+    };
+    const auto ask_about = [&o](const char* wire, const char* kind, std::string (*text)(const json&)) {
+        return Action([&o, wire, kind, text] {
+            const json arguments{{"kind", kind}, {"name", o.name}, {"role", o.role}, {"address", o.at}};
+            return print(o, ask(o.walld, wire, arguments, kLimit), text);
+        });
+    };
+    auto* token = app.add_subcommand("join-token", "prints the command with which another machine joins the wall");
+    token->require_subcommand(1)->fallthrough();
+    token->add_option("--address", o.at, "where that machine reaches walld, HOST:PORT, if it listens on all addresses");
+    verb(*token, "node", "a render node", ask_about("join_token", "node", invitation_text))
+        ->add_option("NAME", o.name, "of its [[node]] in wall.toml")
+        ->required();
+    auto* client = verb(*token, "client", "a machine whose people start programs on the wall",
+                        ask_about("join_token", "client", invitation_text));
+    client->add_option("NAME", o.name, "what the wall shall call it (its host name)");
+    client->add_option("--role", o.role, "of its people: viewer, user or operator (user)");
+    for (const char* kind : {"node", "client"}) {
+        auto* group = app.add_subcommand(kind, std::string("the machines that have joined as ") + kind + "s");
+        group->require_subcommand(1)->fallthrough();
+        verb(*group, "list", "those that have joined", [&o, kind] {
+            auto answer = ask(o.walld, "machines", json::object(), kLimit);
+            json of_kind = json::array();
+            for (const auto& machine : answer ? answer->json : json::array())
+                if (machine.value("kind", "") == kind) of_kind.push_back(machine);
+            if (answer) answer->json = std::move(of_kind);
+            return print(o, answer, machines_table);
+        });
+        verb(*group, "revoke", "ends its connections, and lets it in no more", ask_about("revoke", kind, kNoTable))
+            ->add_option("NAME", o.name)
+            ->required();
+    }
+    verb(app, "machines", "all machines that have joined", show(o, "machines", machines_table));
+    auto* join = verb(app, "join", "joins a wall as a client host, with a line of `wallctl join-token client`",
+                      [&o] { return join_wall(o); });
+    join->add_option("LINE", o.line)->required();
+    join->add_option("--state", o.state, "where the key is kept (/var/lib/wallgl/agent)");
+}
+
 void add_verbs(CLI::App& app, Options& o, Action& action) {
     const auto verb = [&](const char* name, const char* about, Action run) {
         auto* sub = app.add_subcommand(name, about);
@@ -193,6 +253,7 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
     waiting->add_option("--timeout", o.seconds, "seconds (10)")->check(CLI::Range(0.0, 600.0));
     verb("whoami", "as whom walld sees you, and your role", show(o, "whoami", person_text));
     add_layouts(app, o, action);
+    add_machines(app, o, action);
     verb("doctor", "looks for what usually goes wrong", [&o] { return doctor(o); });
 }
 

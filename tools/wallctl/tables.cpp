@@ -74,6 +74,19 @@ std::string streams_table(const json& streams) {
     return table(rows);
 }
 
+std::string machines_table(const json& machines) {
+    std::vector<Row> rows{{"KIND", "NAME", "ROLE", "STATE", "KEY"}};
+    for (const auto& m : machines)
+        rows.push_back(
+            {text(m, "kind"), text(m, "name"), text(m, "role"), is(m, "up") ? "up" : "away", text(m, "key")});
+    return table(rows);
+}
+
+std::string invitation_text(const json& invitation) {
+    return fmt::format("run this on that machine within {} minutes; it is good once:\n\n  {}\n",
+                       invitation.value("valid_s", 0) / 60, text(invitation, "command"));
+}
+
 std::string status_text(const json& status) {
     const auto& wall = status.at("wall");
     const auto& nodes = status.at("nodes");

@@ -13,6 +13,10 @@ std::string sessions_table(const nlohmann::json& sessions);
 std::string streams_table(const nlohmann::json& streams);
 std::string status_text(const nlohmann::json& status);
 
+std::string machines_table(const nlohmann::json& machines);
+/// What to do on the machine that shall join.
+std::string invitation_text(const nlohmann::json& invitation);
+
 std::string person_text(const nlohmann::json& person);
 std::string names_text(const nlohmann::json& names);
 /// What loading a layout has done.

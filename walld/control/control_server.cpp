@@ -41,15 +41,16 @@ bool answer_ping(net::ControlConnection& connection, const proto::Envelope& mess
 }  // namespace
 
 ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities,
-                             const std::string& state)
+                             WalldKeys keys, const std::string& state)
     : executor_(executor),
       changed_(executor),
       identities_(std::move(identities)),
       who_(executor, [this](std::uint32_t user) { return identities_.of(user); }),
       wall_(std::move(config), *this, random_bytes),
+      machines_(std::move(keys), wall_.config(), *this, random_bytes),
       snapshots_(executor, wall_, *this),
       streams_(executor, wall_, *this),
-      operators_(wall_, snapshots_, streams_, LayoutStore(state), changed_,
+      operators_(wall_, snapshots_, streams_, LayoutStore(state), machines_, changed_,
                  [this](SessionId id) {
                      end_session(id, "closed by an operator");
                      wall_.close_session(id);
@@ -60,15 +61,23 @@ ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig 
 Result<void> ControlServer::listen() {
     listeners_.clear();  // of an attempt before, which one of the addresses has ended
     for (const auto& address : wall_.config().control_listen) {
-        auto listener = net::Listener::open(executor_, address);
+        auto listener = net::Listener::open(executor_, address,
+                                            machines_.tls() ? net::Peers::with_keys : net::Peers::of_this_machine);
         if (!listener) return tl::unexpected(listener.error());
         listeners_.push_back(std::make_unique<net::Listener>(std::move(*listener)));
-        log::info("control_listening address={}", log::quoted(listeners_.back()->address().text()));
+        log::info("control_listening address={} tls={}", log::quoted(listeners_.back()->address().text()),
+                  listeners_.back()->wants_keys());
     }
-    for (auto& listener : listeners_)
+    for (auto& listener : listeners_) {
+        const bool wants_keys = listener->wants_keys();
         net::keep_accepting(
-            executor_, *listener, [this](net::StreamSocket socket) { take(std::move(socket)); },
+            executor_, *listener,
+            [this, wants_keys](net::StreamSocket socket) {
+                if (wants_keys) net::spawn(executor_, "handshake", take_over_tls(std::move(socket)));
+                else take(net::Stream(std::move(socket)));
+            },
             [this] { return stopping_; });
+    }
     keep("deadlines", &ControlServer::run_deadlines);
     keep("peers", &ControlServer::watch_peers);
     return {};
@@ -81,7 +90,7 @@ void ControlServer::keep(const char* name, asio::awaitable<void> (ControlServer:
 void ControlServer::stop() {
     stopping_ = true;
     for (auto& listener : listeners_) listener->close();
-    for (auto& [key, connection] : std::exchange(all_, {})) {
+    for (auto& [at, connection] : std::exchange(all_, {})) {
         if (const auto open = connection.lock()) open->close();
     }
     deadline_timer_.cancel();
@@ -115,8 +124,21 @@ void ControlServer::end_session(SessionId session, const std::string& reason) {
 
 // ---- connections ----
 
-void ControlServer::take(net::StreamSocket socket) {
-    auto connection = std::make_shared<net::ControlConnection>(std::move(socket));
+/// Somebody from anywhere: until a key is proven it takes a place among those that may try at the same time.
+asio::awaitable<void> ControlServer::take_over_tls(net::StreamSocket socket) {
+    const auto from = net::peer_text(socket.native_handle());
+    const auto place = handshakes_.take(from);
+    if (!place) {
+        log::warn("peer_refused from={} reason={}", log::quoted(from), log::quoted(place.error().message));
+        co_return;
+    }
+    auto stream = co_await net::Stream::accept_tls(std::move(socket), *machines_.tls());
+    if (stream) co_return take(std::move(*stream));
+    log::warn("peer_refused from={} reason={}", log::quoted(from), log::quoted(stream.error().message));
+}
+
+void ControlServer::take(net::Stream stream) {
+    auto connection = std::make_shared<net::ControlConnection>(std::move(stream));
     all_[connection.get()] = connection;
     net::spawn(executor_, "connection", serve(std::move(connection)));
 }
@@ -127,9 +149,10 @@ void ControlServer::refuse(const Connection& connection, const std::string& reas
 }
 
 asio::awaitable<void> ControlServer::serve(Connection connection) {
-    auto place = peers_.take(kNotKnownYet);
+    const auto& key = connection->peer_key();
+    auto place = peers_.take(key ? "key " + key->text() : kNotKnownYet);
     Person who;
-    if (place) {
+    if (place && !key) {
         who = co_await who_.at(connection->ends());
         place->leave();
         place = peers_.take(who.text());
@@ -137,18 +160,72 @@ asio::awaitable<void> ControlServer::serve(Connection connection) {
     if (!place) {
         log::warn("peer_refused reason={}", log::quoted(place.error().message));
         refuse(connection, place.error().message);
+    } else if (key) {
+        co_await serve_machine(connection, std::move(*place));
     } else if (who.role == Role::none) {
         log::warn("peer_refused user={}", log::quoted(who.text()));
         refuse(connection, who.text() + " may not use this wall: add them to [people] in wall.toml");
     } else if (auto first = co_await first_message(connection)) {
-        if (first->has_node_hello()) co_await serve_node(connection, first->node_hello(), who);
-        else if (first->has_client_hello())
-            co_await serve_client(connection, first->client_hello(), std::move(who), std::move(*place));
-        else if (first->has_operator_request()) co_await serve_operator(connection, std::move(*first), std::move(who));
-        else refuse(connection, "expected a hello of a node or a client, or an operator's request");
+        co_await serve_first(connection, std::move(*first), std::move(who), std::move(*place));
     }
     all_.erase(connection.get());
     connection->close_after_sending();
+}
+
+/// Somebody who may use the wall, and what they have begun with.
+asio::awaitable<void> ControlServer::serve_first(Connection connection, proto::Envelope first, Person who,
+                                                 Quota::Place place) {
+    if (first.has_node_hello()) co_await serve_node(connection, first.node_hello(), who);
+    else if (first.has_client_hello())
+        co_await serve_client(connection, first.client_hello(), std::move(who), std::move(place));
+    else if (first.has_operator_request()) co_await serve_operator(connection, std::move(first), std::move(who));
+    else refuse(connection, "expected a hello of a node or a client, or an operator's request");
+}
+
+/// Over TLS comes a machine that joins, a node, or a client host for one of its people.
+asio::awaitable<void> ControlServer::serve_machine(Connection connection, Quota::Place place) {
+    const tls::Fingerprint key = *connection->peer_key();
+    auto first = co_await first_message(connection);
+    if (!first) co_return;
+    const auto no = [&](const Refusal& why) {
+        log::warn("machine_refused key={} reason={}", log::quoted(key.text()), log::quoted(why.message));
+        refuse(connection, why.message);
+    };
+    if (first->has_join_request()) {
+        const auto answer = machines_.join(first->join_request(), key, Clock::now());
+        if (!answer) co_return no(answer.error());
+        log::info("machine_joined kind={} name={} key={}", log::plain(first->join_request().node() ? "node" : "client"),
+                  log::quoted(answer->name()), log::quoted(key.text()));
+        connection->send(make(&proto::Envelope::mutable_join_answer, *answer));
+    } else if (first->has_node_hello()) {
+        const auto who = machines_.node(first->node_hello(), key);
+        if (!who) co_return no(who.error());
+        co_await serve_node(connection, first->node_hello(), *who);
+    } else if (first->has_host_hello()) {
+        auto who = machines_.user(first->host_hello(), key);
+        if (!who) co_return no(who.error());
+        place.leave();
+        auto own = peers_.take(who->text());
+        if (!own) co_return no(own.error());
+        auto message = co_await first_message(connection);
+        if (message && message->has_node_hello()) co_return no({RefusalKind::forbidden, "a client host runs no nodes"});
+        if (message) co_await serve_first(connection, std::move(*message), std::move(*who), std::move(*own));
+    } else {
+        no({RefusalKind::invalid, "expected a machine that joins, a node or a client host"});
+    }
+}
+
+std::set<tls::Fingerprint> ControlServer::connected() const {
+    std::set<tls::Fingerprint> out;
+    for (const auto& [key, connection] : all_)
+        if (const auto open = connection.lock(); open && open->is_open() && open->peer_key())
+            out.insert(*open->peer_key());
+    return out;
+}
+
+void ControlServer::cut(const tls::Fingerprint& key, const std::string& reason) {
+    for (const auto& [at, connection] : std::map(all_))
+        if (const auto open = connection.lock(); open && open->peer_key() == key) refuse(open, reason);
 }
 
 asio::awaitable<Result<proto::Envelope>> ControlServer::first_message(Connection connection) {
@@ -166,6 +243,7 @@ asio::awaitable<Result<proto::Envelope>> ControlServer::first_message(Connection
 // ---- nodes ----
 
 asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::NodeHello hello, const Person& who) {
+    hello.set_address(net::reachable_at(hello.address(), connection->ends()));
     // Nodes get every session's tickets and pixels.
     if (const auto permitted = may(who, Need::operate, "run a node", nullptr); !permitted) {
         log::warn("node_refused node={} reason={}", log::quoted(hello.name()), log::quoted(permitted.error().message));

@@ -11,6 +11,7 @@
 #include "common/net/control_connection.h"
 #include "common/net/reply_parts.h"
 #include "walld/control/identity.h"
+#include "walld/control/machine_desk.h"
 #include "walld/control/operator_desk.h"
 #include "walld/control/who_is_there.h"
 #include "walld/streams/snapshot_desk.h"
@@ -22,7 +23,7 @@ namespace wall::walld {
 
 namespace asio = boost::asio;
 
-class ControlServer : public Outbox {
+class ControlServer : public Outbox, public MachineLinks {
 public:
     static constexpr std::chrono::seconds kHelloLimit{5};  ///< a peer that has not said what it is by then is cut off
     static constexpr std::chrono::seconds kNodeLimit{4};   ///< how long a program waits for nodes while the wall starts
@@ -33,7 +34,7 @@ public:
     static constexpr unsigned kSilentChecks = 15;
 
     /// `state`: where layouts are kept; empty: nowhere.
-    ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities,
+    ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities, WalldKeys keys,
                   const std::string& state);
 
     /// Starts to listen everywhere that the configuration says.
@@ -53,6 +54,9 @@ public:
     void to_member(SessionId session, Rank rank, const proto::Envelope& message) override;
     void end_session(SessionId session, const std::string& reason) override;
 
+    std::set<tls::Fingerprint> connected() const override;
+    void cut(const tls::Fingerprint& key, const std::string& reason) override;
+
 private:
     using Connection = std::shared_ptr<net::ControlConnection>;
 
@@ -62,8 +66,11 @@ private:
         unsigned silent_checks = 0;  ///< since its last message
     };
     void keep(const char* name, asio::awaitable<void> (ControlServer::*work)());
-    void take(net::StreamSocket socket);
+    void take(net::Stream stream);
+    asio::awaitable<void> take_over_tls(net::StreamSocket socket);
     asio::awaitable<void> serve(Connection connection);
+    asio::awaitable<void> serve_first(Connection connection, proto::Envelope first, Person who, Quota::Place place);
+    asio::awaitable<void> serve_machine(Connection connection, Quota::Place place);
     asio::awaitable<void> serve_node(Connection connection, proto::NodeHello hello, const Person& who);
     Result<NodeIndex> admit_node(const Connection& connection, const proto::NodeHello& hello, const Person& who);
     void drop_node(NodeIndex node, const std::string& reason);
@@ -93,9 +100,11 @@ private:
     asio::any_io_executor executor_;
     net::Changed changed_;
     Quota peers_{kPeerConnections}, requests_{kRequests};
+    Quota handshakes_{kHandshakes};
     Identities identities_;
     WhoIsThere who_;
     Wall wall_;
+    MachineDesk machines_;
     SnapshotDesk snapshots_;
     StreamHub streams_;
     OperatorDesk operators_;

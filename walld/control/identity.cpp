@@ -82,7 +82,10 @@ Person Identities::of(std::uint32_t user) const {
 Outcome<Person> Identities::with_token(Person base, std::string_view token) const {
     if (token.empty()) return base;
     for (const auto& known : tokens_) {
-        if (same(known.secret, token)) return known.person;
+        if (!same(known.secret, token)) continue;
+        Person person = known.person;
+        person.machine = std::move(base.machine);
+        return person;
     }
     return refuse(RefusalKind::forbidden, "this wall does not know that token");
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "walld/control/layout_store.h"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,7 +9,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "common/base/unique_fd.h"
+#include "common/base/whole_file.h"
 #include "common/json/parse_json.h"
 
 namespace wall::walld {
@@ -30,28 +29,6 @@ bool name_ok(const std::string& name) {
 
 tl::unexpected<Refusal> failed(const fs::path& path, const std::string& what) {
     return refuse(RefusalKind::failed, path.string() + ": " + what);
-}
-
-Outcome<void> write_all(int fd, const std::string& text, const fs::path& path) {
-    for (std::size_t done = 0; done < text.size();) {
-        const auto n = ::write(fd, text.data() + done, text.size() - done);
-        if (n < 0 && errno != EINTR) return failed(path, std::strerror(errno));
-        if (n > 0) done += static_cast<std::size_t>(n);
-    }
-    if (::fsync(fd) != 0) return failed(path, std::strerror(errno));
-    return {};
-}
-
-/// After a crash there is the old content or the new, never a part.
-Outcome<void> write_whole(const fs::path& path, const std::string& text) {
-    const fs::path next = path.string() + ".new";
-    const UniqueFd fd(::open(next.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0640));
-    if (!fd) return failed(next, std::strerror(errno));
-    if (auto written = write_all(fd.get(), text, next); !written) return written;
-    if (::rename(next.c_str(), path.c_str()) != 0) return failed(path, std::strerror(errno));
-    const UniqueFd folder(::open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (::fsync(folder.get()) != 0) return failed(path, std::strerror(errno));
-    return {};
 }
 
 }  // namespace
@@ -78,7 +55,9 @@ Outcome<void> LayoutStore::save(const std::string& name, const Layout& layout) c
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error) return failed(folder_, error.message());
-    return write_whole(*path, to_text(layout));
+    if (auto written = write_whole(*path, to_text(layout), 0640); !written)
+        return refuse(RefusalKind::failed, written.error().message);
+    return {};
 }
 
 Outcome<Layout> LayoutStore::load(const std::string& name) const {

@@ -47,6 +47,9 @@ const OperatorDesk::Row OperatorDesk::kVerbs[] = {
     {"save_layout", Need::operate, &OperatorDesk::save_layout},
     {"load_layout", Need::operate, &OperatorDesk::load_layout},
     {"delete_layout", Need::operate, &OperatorDesk::delete_layout},
+    {"machines", Need::operate, &OperatorDesk::machines},
+    {"join_token", Need::operate, &OperatorDesk::join_token},
+    {"revoke", Need::operate, &OperatorDesk::revoke},
 };
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::carry_out(Asked asked) {
@@ -236,6 +239,21 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::load_layout(const Asked& asked) {
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::delete_layout(const Asked& asked) {
     co_return name_of(asked).and_then([&](const std::string& name) { return layouts_.remove(name); }).map(done);
+}
+
+// ---- machines ----
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::machines(const Asked&) { co_return Answer{machines_.list(), {}}; }
+
+/// The line is a secret: the log has who asked for it, and for whom, but not the line.
+asio::awaitable<Outcome<Answer>> OperatorDesk::join_token(const Asked& asked) {
+    co_return machines_.invite(asked.arguments, Clock::now()).map([](json line) {
+        return Answer{std::move(line), {}};
+    });
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::revoke(const Asked& asked) {
+    co_return machines_.revoke(asked.arguments).map(done);
 }
 
 }  // namespace wall::walld

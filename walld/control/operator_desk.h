@@ -9,6 +9,7 @@
 
 #include "common/daemon/changed.h"
 #include "walld/control/layout_store.h"
+#include "walld/control/machine_desk.h"
 #include "walld/streams/snapshot_desk.h"
 #include "walld/streams/stream_hub.h"
 #include "walld/wall/person.h"
@@ -35,11 +36,12 @@ class OperatorDesk {
 public:
     /// `end_session` cuts a client off. `changed` is notified after every event of the wall.
     OperatorDesk(Wall& wall, SnapshotDesk& snapshots, const StreamHub& streams, LayoutStore layouts,
-                 net::Changed& changed, std::function<void(SessionId)> end_session)
+                 MachineDesk& machines, net::Changed& changed, std::function<void(SessionId)> end_session)
         : wall_(wall),
           snapshots_(snapshots),
           streams_(streams),
           layouts_(std::move(layouts)),
+          machines_(machines),
           changed_(changed),
           end_session_(std::move(end_session)) {}
 
@@ -77,11 +79,15 @@ private:
     asio::awaitable<Outcome<Answer>> save_layout(const Asked&);
     asio::awaitable<Outcome<Answer>> load_layout(const Asked&);
     asio::awaitable<Outcome<Answer>> delete_layout(const Asked&);
+    asio::awaitable<Outcome<Answer>> machines(const Asked&);
+    asio::awaitable<Outcome<Answer>> join_token(const Asked&);
+    asio::awaitable<Outcome<Answer>> revoke(const Asked&);
 
     Wall& wall_;
     SnapshotDesk& snapshots_;
     const StreamHub& streams_;
     LayoutStore layouts_;
+    MachineDesk& machines_;
     net::Changed& changed_;
     std::function<void(SessionId)> end_session_;
 };

@@ -18,7 +18,9 @@ const char* name_of(RefusalKind kind) {
 
 std::string Person::text() const {
     switch (kind) {
-        case Kind::unix_user: return name;
+        case Kind::unix_user:
+        case Kind::host_user:
+        case Kind::machine: return name;
         case Kind::token: return "token " + name;
         case Kind::unknown: return "somebody unknown";
     }

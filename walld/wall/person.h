@@ -13,14 +13,15 @@ namespace wall::walld {
 using config::Role;
 
 struct Person {
-    enum class Kind { unix_user, token, unknown };
+    enum class Kind { unix_user, token, host_user, machine, unknown };
 
     Kind kind = Kind::unknown;
-    std::string name;        ///< of the user or the token
+    std::string name;        ///< of the user or the token; of a client host's user with the host, "alice@desk"
     std::uint32_t user = 0;  ///< of a Unix user
     Role role = Role::none;
+    std::string machine{};  ///< the key (fingerprint, bytes) of the machine that they are at; empty: walld's own
 
-    /// "alice", "token kiosk", "somebody unknown": for people and the log.
+    /// "alice", "token kiosk", "alice@desk", "somebody unknown": for people and the log.
     std::string text() const;
     /// Nobody unknown is the same as anybody.
     bool same_as(const Person& other) const;

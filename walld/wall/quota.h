@@ -20,6 +20,7 @@ struct QuotaLimits {
 
 // What walld allows. LimitNOFILE of walld.service is above the sum of all connections.
 inline constexpr QuotaLimits kPeerConnections{"connections to this wall that are not a program's", 512, 2048};
+inline constexpr QuotaLimits kHandshakes{"TLS handshakes with this wall", 64, 512};
 inline constexpr QuotaLimits kHttpConnections{"HTTP connections to this wall", 512, 1024};
 inline constexpr QuotaLimits kViewers{"live views of this wall", 256, 768};
 inline constexpr QuotaLimits kRequests{"requests to this wall that wait for an answer", 128, 1024};

@@ -150,7 +150,7 @@ json sessions_json(const Wall& wall) {
 }
 
 json person_json(const Person& person) {
-    constexpr const char* kKinds[] = {"user", "token", "unknown"};
+    constexpr const char* kKinds[] = {"user", "token", "host_user", "machine", "unknown"};  // in the order of Kind
     return {
         {"kind", kKinds[static_cast<int>(person.kind)]}, {"name", person.name}, {"role", config::name_of(person.role)}};
 }

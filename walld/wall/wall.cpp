@@ -134,6 +134,7 @@ proto::NodeUp Wall::node_up_message(NodeIndex node, const std::string& ticket) c
     up.set_address(nodes_[node].hello.address());
     up.set_ticket(ticket);
     up.set_incarnation(nodes_[node].incarnation);
+    up.set_key(nodes_[node].hello.key());
     return up;
 }
 
@@ -213,6 +214,7 @@ void Wall::hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node) 
     proto::Ticket message;
     message.set_session(id.value);
     message.set_ticket(ticket);
+    if (!session.group) message.set_key(session.owner.machine);  // a group's members may be at several
     if (session.group) {
         message.set_members(session.group->size());
         for (const Rank rank : session.group->left()) message.add_left(rank);

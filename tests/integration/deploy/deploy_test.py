@@ -37,9 +37,10 @@ class Installed(unittest.TestCase):
         return found[0]
 
     def test_everything_is_in_its_place(self) -> None:
-        for ending in ("bin/walld", "bin/tileserver", "bin/wallrun", "bin/wallctl", "bin/wallview",
+        for ending in ("bin/walld", "bin/tileserver", "bin/wallrun", "bin/wallctl", "bin/wallview", "bin/wallagent",
                        "libGLX_wallgl.so.0", "libEGL_wallgl.so.0",
                        "lib/systemd/system/walld.service", "lib/systemd/system/tileserver@.service",
+                       "lib/systemd/system/tileserver-joined@.service", "lib/systemd/system/wallagent.service",
                        "lib/sysusers.d/wallgl.conf", "lib/tmpfiles.d/wallgl.conf", "egl_vendor.d/50_wallgl.json",
                        "share/wallgl/grafana/wallgl.json", "share/wallgl/prometheus/wallgl.rules.yml",
                        "share/wallgl/prometheus/prometheus.example.yml"):
@@ -49,16 +50,18 @@ class Installed(unittest.TestCase):
         # An instance of the template, with the programs where this installation has them.
         with tempfile.TemporaryDirectory() as folder:
             for name, instance in (("walld.service", "walld.service"),
-                                   ("tileserver@.service", "tileserver@left.service")):
+                                   ("tileserver@.service", "tileserver@left.service"),
+                                   ("tileserver-joined@.service", "tileserver-joined@left.service"),
+                                   ("wallagent.service", "wallagent.service")):
                 text = self.find(name).read_text()
-                for program in ("walld", "tileserver"):
+                for program in ("walld", "tileserver", "wallagent"):
                     text = re.sub(rf"(?m)^ExecStart=\S*/{program} ", f"ExecStart={self.find(f'bin/{program}')} ", text)
                 (Path(folder) / instance).write_text(text)
                 verified = output("systemd-analyze", "verify", "--man=no", Path(folder) / instance)
                 self.assertEqual((verified.returncode, verified.stderr.strip()), (0, ""))
 
     def test_no_daemon_takes_the_whole_machine(self) -> None:
-        for unit in ("walld.service", "tileserver@.service"):
+        for unit in ("walld.service", "tileserver@.service", "tileserver-joined@.service", "wallagent.service"):
             with self.subTest(unit):
                 text = self.find(unit).read_text()
                 descriptors = re.findall(r"(?m)^LimitNOFILE=(\d+)$", text)

@@ -20,7 +20,7 @@ Address socket_in(const test::TemporaryFolder& folder) { return {.path = folder.
 /// Answers every Rendered with a Present of the same frame until the peer closes.
 asio::awaitable<void> echo_once(Listener& listener, std::optional<Peer>& peer) {
     auto socket = co_await listener.accept();
-    const auto connection = std::make_shared<ControlConnection>(std::move(*socket));
+    const auto connection = std::make_shared<ControlConnection>(Stream(std::move(*socket)));
     peer = peer_of(*connection->ends());
     for (;;) {
         auto message = co_await connection->receive();

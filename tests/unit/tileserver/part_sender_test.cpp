@@ -99,8 +99,8 @@ protected:
         int ends[2];
         ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
         const net::asio::generic::stream_protocol unix_socket(AF_UNIX, 0);
-        link_ = std::make_shared<net::ControlConnection>(net::StreamSocket(io_, unix_socket, ends[0]));
-        walld_ = std::make_shared<net::ControlConnection>(net::StreamSocket(io_, unix_socket, ends[1]));
+        link_ = std::make_shared<net::ControlConnection>(net::Stream(net::StreamSocket(io_, unix_socket, ends[0])));
+        walld_ = std::make_shared<net::ControlConnection>(net::Stream(net::StreamSocket(io_, unix_socket, ends[1])));
         sender_.use(link_);
     }
     void go_on() {

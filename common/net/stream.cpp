@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "common/net/stream.h"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/error.hpp>
+#include <boost/asio/ssl/stream.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+
+namespace wall::net {
+namespace {
+
+constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
+using Tls = asio::ssl::stream<StreamSocket&>;
+
+/// Closes the socket when the time is over, unless it goes first.
+class Deadline {
+public:
+    explicit Deadline(StreamSocket& socket) : timer_(socket.get_executor(), Stream::kHandshakeLimit) {
+        timer_.async_wait([&socket, armed = armed_](const boost::system::error_code& cancelled) {
+            boost::system::error_code ignored;
+            if (!cancelled && *armed) socket.close(ignored);
+        });
+    }
+    ~Deadline() { *armed_ = false; }  // the timer goes with us, but its handler may be on its way
+
+private:
+    std::shared_ptr<bool> armed_ = std::make_shared<bool>(true);
+    asio::steady_timer timer_;
+};
+
+asio::generic::stream_protocol protocol_of(const Address& address, int family) {
+    return {family, address.is_unix() ? 0 : IPPROTO_TCP};
+}
+
+/// What went wrong in a handshake, for people.
+std::string reason_of(const boost::system::error_code& error) {
+    if (error == asio::error::operation_aborted || error == asio::error::bad_descriptor)
+        return "the TLS handshake took longer than " + std::to_string(Stream::kHandshakeLimit.count()) + " s";
+    return "the TLS handshake failed: " + error.message();
+}
+
+}  // namespace
+
+struct Stream::Parts {
+    explicit Parts(StreamSocket s) : socket(std::move(s)) {}
+    /// Within the limit; `peer` is known then.
+    asio::awaitable<Result<void>> shake_hands(const tls::TlsContext& own, asio::ssl::stream_base::handshake_type as);
+
+    StreamSocket socket;
+    std::optional<Tls> tls;  // none: plain
+    std::optional<tls::Fingerprint> peer;
+};
+
+asio::awaitable<Result<void>> Stream::Parts::shake_hands(const tls::TlsContext& own,
+                                                         asio::ssl::stream_base::handshake_type as) {
+    SSL* connection = SSL_new(own.links());
+    if (!connection) co_return fail("TLS: " + tls::openssl_error());
+    tls.emplace(socket, connection);  // whose it is from now on
+    const Deadline limit(socket);
+    auto [error] = co_await tls->async_handshake(as, kTuple);
+    if (error) co_return fail(reason_of(error));
+    auto key = tls::peer_of(connection);
+    if (!key) co_return tl::unexpected(key.error());
+    peer = *key;
+    co_return Result<void>{};
+}
+
+Stream::Stream(StreamSocket socket) : parts_(std::make_unique<Parts>(std::move(socket))) {}
+Stream::Stream(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Stream::Stream(Stream&&) noexcept = default;
+Stream& Stream::operator=(Stream&&) noexcept = default;
+Stream::~Stream() = default;
+
+asio::awaitable<Result<Stream>> Stream::accept_tls(StreamSocket socket, const tls::TlsContext& own) {
+    auto parts = std::make_unique<Parts>(std::move(socket));
+    if (auto done = co_await parts->shake_hands(own, asio::ssl::stream_base::server); !done)
+        co_return tl::unexpected(done.error());
+    co_return Stream(std::move(parts));
+}
+
+asio::awaitable<Result<Stream>> Stream::connect(const Address& address) {
+    auto to = resolve(address);
+    if (!to) co_return tl::unexpected(to.error());
+    StreamSocket socket(co_await asio::this_coro::executor);
+    const asio::generic::stream_protocol::endpoint endpoint(to->get(), to->length,
+                                                            protocol_of(address, to->family()).protocol());
+    const Deadline limit(socket);
+    auto [error] = co_await socket.async_connect(endpoint, kTuple);
+    if (error == asio::error::operation_aborted)
+        co_return fail(address.text() + ": cannot connect: no answer within " +
+                       std::to_string(kHandshakeLimit.count()) + " s");
+    if (error) co_return fail(address.text() + ": cannot connect: " + error.message());
+    boost::system::error_code ignored;
+    if (!address.is_unix()) socket.set_option(asio::ip::tcp::no_delay(true), ignored);
+    co_return Stream(std::move(socket));
+}
+
+asio::awaitable<Result<Stream>> Stream::connect_tls(const Address& address, const tls::TlsContext& own,
+                                                    const tls::Fingerprint& server) {
+    auto plain = co_await connect(address);
+    if (!plain) co_return plain;
+    auto& parts = *plain->parts_;
+    if (auto done = co_await parts.shake_hands(own, asio::ssl::stream_base::client); !done)
+        co_return fail(address.text() + ": " + done.error().message);
+    if (parts.peer != server)
+        co_return fail(address.text() + ": another machine answers there: its key is " + parts.peer->text() + ", not " +
+                       server.text());
+    co_return std::move(*plain);
+}
+
+asio::awaitable<Stream::Transferred> Stream::read_some(asio::mutable_buffer room) {
+    if (!parts_->tls) co_return co_await parts_->socket.async_read_some(room, kTuple);
+    auto [error, bytes] = co_await parts_->tls->async_read_some(room, kTuple);
+    // Whoever speaks to us says how much is to come, so that nothing can be cut off unseen.
+    if (error == asio::ssl::error::stream_truncated) error = asio::error::eof;
+    co_return Transferred(error, bytes);
+}
+
+asio::awaitable<Stream::Transferred> Stream::write(asio::const_buffer bytes) {
+    if (parts_->tls) co_return co_await asio::async_write(*parts_->tls, bytes, kTuple);
+    co_return co_await asio::async_write(parts_->socket, bytes, kTuple);
+}
+
+void Stream::shut_reading() {
+    boost::system::error_code ignored;
+    parts_->socket.shutdown(StreamSocket::shutdown_receive, ignored);
+}
+
+void Stream::close() {
+    boost::system::error_code ignored;
+    if (!parts_->socket.is_open()) return;
+    parts_->socket.shutdown(StreamSocket::shutdown_both, ignored);
+    parts_->socket.close(ignored);
+}
+
+bool Stream::is_open() const { return parts_->socket.is_open(); }
+
+const std::optional<tls::Fingerprint>& Stream::peer_key() const { return parts_->peer; }
+
+asio::any_io_executor Stream::executor() { return parts_->socket.get_executor(); }
+
+int Stream::descriptor() { return parts_->socket.native_handle(); }
+
+}  // namespace wall::net
