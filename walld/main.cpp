@@ -78,11 +78,8 @@ Result<WalldKeys> open_keys(const config::WallConfig& config, const std::string&
     auto machines = Machines::open(state);
     if (!machines) return tl::unexpected(machines.error());
     WalldKeys out{nullptr, std::move(*machines), {}};
-    if (std::ranges::all_of(config.control_listen, &net::Address::local)) return out;
-    if (state.empty())
-        return fail(
-            "'listen' in [control] has an address that other machines reach, which needs a key, and walld has "
-            "no place for one: say 'state_directory' in [wall] of wall.toml");
+    // Without a place for its key walld listens nowhere else, and says so.
+    if (state.empty() || std::ranges::all_of(config.control_listen, &net::Address::local)) return out;
     const auto own = tls::Identity::load_or_make(std::filesystem::path(state) / "key.pem");
     if (!own) return tl::unexpected(own.error());
     auto context = tls::TlsContext::make(*own);

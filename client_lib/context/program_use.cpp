@@ -2,6 +2,7 @@
 #include "client_lib/context/program_use.h"
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 #include <ranges>
 #include <utility>
@@ -18,7 +19,24 @@
 namespace wall::client {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr const char* kNoAnswer = "no node of the wall answered\n";
+constexpr std::chrono::seconds kCompileLimit{130};  // a node gives a compiler up after 120 (CompilerLimits)
+constexpr std::chrono::seconds kWaited{1};          // who has no answer sooner has nobody to ask
+
+/// What a compiler says, which may take long where a machine has other things to do: who has not answered in time is
+/// asked again, and answers once the compiler has, since each content is tried once.
+template <class Pack>
+std::optional<NodeAnswer> ask_compiler(Context& c, const char* function, Pack&& pack) {
+    const auto until = Clock::now() + kCompileLimit;
+    for (;;) {
+        const auto begin = Clock::now();
+        auto answer = ask_one_node(c, function, pack);
+        const auto now = Clock::now();
+        if (answer || now - begin < kWaited || now > until) return answer;
+    }
+}
 
 void take_link_result(Program& program, glapi::ProgramDefinition definition, glapi::ProgramReflection reflection) {
     program.log = std::move(reflection.log);
@@ -41,7 +59,7 @@ void learn_compile_result(Context& c, Shader& shader) {
         if (shader.state != Shader::State::unknown) return;
         source = shader.compiled_source;
     }
-    const auto answer = ask_one_node(c, "glCompileShader", [&](wire::PackBuffer& buffer, RequestId request) {
+    const auto answer = ask_compiler(c, "glCompileShader", [&](wire::PackBuffer& buffer, RequestId request) {
         glapi::pack::ShaderCompile(buffer, request, shader.type, std::as_bytes(std::span(source)));
     });
     auto result = answer ? glapi::decode_compile_result(answer->bytes) : std::nullopt;
@@ -59,7 +77,7 @@ void learn_link_result(Context& c, Program& program) {
     if (!definition) return;
     const auto bytes = encode(*definition);
     c.before_change(program.id);
-    const auto answer = ask_one_node(c, "glLinkProgram", [&](wire::PackBuffer& buffer, RequestId request) {
+    const auto answer = ask_compiler(c, "glLinkProgram", [&](wire::PackBuffer& buffer, RequestId request) {
         glapi::pack::ProgramLink(buffer, request, program.id, bytes);
     });
     auto reflection = answer ? glapi::decode_reflection(answer->bytes) : std::nullopt;

@@ -55,10 +55,10 @@ void Agent::stop() {
 void Agent::take(net::StreamSocket socket) {
     auto program = std::make_shared<net::ControlConnection>(net::Stream(std::move(socket)));
     const auto peer = program->peer();
-    if (!peer) return log::warn("program_refused reason={}", log::plain("nobody knows whose process it is"));
+    if (!peer) return log::warn("program_refused reason=\"nobody knows whose process it is\"");
     if (auto place = places_.take())
         return net::spawn(executor_, "program", serve(std::move(program), std::move(place), peer->user));
-    log::warn("program_refused user={} reason={}", peer->user, log::plain("too many connections at once"));
+    log::warn("program_refused user={} reason=\"too many connections at once\"", peer->user);
     net::spawn(executor_, "refusal",
                refuse_control(std::move(program), "this machine's agent serves " + std::to_string(kMostConnections) +
                                                       " connections already; try again when some have ended"));

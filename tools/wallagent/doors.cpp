@@ -63,7 +63,7 @@ void Door::close() {
 
 void Door::take(const asio::any_io_executor& executor, net::StreamSocket socket) {
     auto place = places_.take();
-    if (!place) return log::warn("stream_refused reason={}", log::plain("too many streams at once"));
+    if (!place) return log::warn("stream_refused reason=\"too many streams at once\"");
     net::spawn(executor, "stream", serve(net::Stream(std::move(socket)), std::move(place)));
 }
 

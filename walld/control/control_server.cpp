@@ -194,8 +194,9 @@ asio::awaitable<void> ControlServer::serve_machine(Connection connection, Quota:
     if (first->has_join_request()) {
         const auto answer = machines_.join(first->join_request(), key, Clock::now());
         if (!answer) co_return no(answer.error());
-        log::info("machine_joined kind={} name={} key={}", log::plain(first->join_request().node() ? "node" : "client"),
-                  log::quoted(answer->name()), log::quoted(key.text()));
+        log::info("machine_joined kind={} name={} key={}",
+                  log::quoted(first->join_request().node() ? "node" : "client"), log::quoted(answer->name()),
+                  log::quoted(key.text()));
         connection->send(make(&proto::Envelope::mutable_join_answer, *answer));
     } else if (first->has_node_hello()) {
         const auto who = machines_.node(first->node_hello(), key);

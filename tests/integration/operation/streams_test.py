@@ -55,6 +55,9 @@ class Streams(unittest.TestCase):
 
     def setUp(self) -> None:
         self.wall.hold(self.session, False)
+        # A window that the test before has moved takes its place with a frame that its program begins after that.
+        shown = self.wall.sessions()[0]["surfaces"][0]["frame"]
+        self.wall.wait(self.session, shown + 3)
 
     def open(self, **headers: str) -> WebSocket:
         return self.enterContext(WebSocket(self.wall.url, **headers))

@@ -302,6 +302,24 @@ TEST_F(NodeServerTest, RefusesWhoHasNoTicket) {
     EXPECT_THAT(huge.expect_error(), ::testing::HasSubstr("at most"));
 }
 
+// walld has said on which machine the session runs, and here comes somebody who has proven no key at all.
+TEST_F(NodeServerTest, ATicketOfAnotherMachineIsNone) {
+    proto::Envelope ticket;
+    ticket.mutable_ticket()->set_session(3);
+    ticket.mutable_ticket()->set_ticket("secret3");
+    ticket.mutable_ticket()->set_key(std::string(32, 'k'));
+    walld_->send(ticket);
+    Client elsewhere(node_address());
+    elsewhere.hello(3, "secret3");
+    EXPECT_THAT(elsewhere.expect_error(), ::testing::HasSubstr("no valid ticket"));
+    ticket.mutable_ticket()->clear_key();
+    walld_->send(ticket);
+    shown();  // behind which the node knows it
+    Client here(node_address());
+    here.hello(3, "secret3");
+    here.expect(wire::FrameKind::welcome);
+}
+
 // The oldest of those who have shown no ticket goes; whoever has shown one stays, and new ones are let in.
 TEST_F(NodeServerTest, ConnectionsWithoutATicketAreBounded) {
     Client known(node_address());
