@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "common/tls/join_line.h"
 
+#include <algorithm>
+
 namespace wall::tls {
 namespace {
 
@@ -13,6 +15,15 @@ std::string_view take_last(std::string_view& text) {
     const auto last = text.substr(dot + 1);
     text = text.substr(0, dot);
     return last;
+}
+
+/// What names and numbers of machines are made of.
+bool host_ok(std::string_view host) {
+    const auto plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-' ||
+               c == '_' || c == ':' || c == '%';
+    };
+    return !host.empty() && std::ranges::all_of(host, plain);
 }
 
 }  // namespace
@@ -34,6 +45,7 @@ Result<JoinLine> JoinLine::parse(std::string_view line) {
     auto walld = Address::parse(rest);
     if (!walld) return wrong(walld.error().message);
     if (walld->is_unix()) return wrong("walld's address is a socket of one machine: expected HOST:PORT");
+    if (!host_ok(walld->host)) return wrong("walld's host is neither a name nor a number");
     return JoinLine{std::move(*walld), *fingerprint, *secret};
 }
 

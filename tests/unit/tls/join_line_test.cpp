@@ -33,6 +33,14 @@ TEST(JoinLine, ThatWasCutOrChangedIsRefused) {
     EXPECT_FALSE(JoinLine::parse(line_for("unix:/run/wallgl/walld.sock").text()));
 }
 
+TEST(JoinLine, HasAHostThatIsANameOrANumber) {
+    const auto whole = line_for("10.77.0.1:7770").text();
+    const auto rest = whole.substr(whole.find(":7770"));
+    for (const char* host : {"[\034a.[b]", "[a b]", "[a/b]", "a\"b"})
+        EXPECT_FALSE(JoinLine::parse("wallgl1." + std::string(host) + rest)) << host;
+    EXPECT_TRUE(JoinLine::parse("wallgl1.wall-1.example" + rest));
+}
+
 TEST(JoinLine, SaysWhatWasExpected) {
     const auto wrong = JoinLine::parse("10.77.0.1:7770");
     ASSERT_FALSE(wrong);
