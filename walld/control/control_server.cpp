@@ -22,6 +22,7 @@ namespace {
 constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
 constexpr const char* kWatchVerb = "watch";  // the one verb with many answers
 constexpr std::chrono::seconds kLookAtConnection{1};
+constexpr std::chrono::seconds kLastWords{1};  // for a machine that was revoked to read why
 constexpr const char* kNotKnownYet = "somebody whose name is being looked up";
 
 std::string random_bytes(std::size_t count) {
@@ -224,9 +225,15 @@ std::set<tls::Fingerprint> ControlServer::connected() const {
     return out;
 }
 
+/// They are told why; one that does not read that is closed all the same.
 void ControlServer::cut(const tls::Fingerprint& key, const std::string& reason) {
-    for (const auto& [at, connection] : std::map(all_))
-        if (const auto open = connection.lock(); open && open->peer_key() == key) refuse(open, reason);
+    for (const auto& [at, connection] : std::map(all_)) {
+        const auto open = connection.lock();
+        if (!open || open->peer_key() != key) continue;
+        refuse(open, reason);
+        const auto limit = std::make_shared<asio::steady_timer>(executor_, kLastWords);
+        limit->async_wait([open, limit](const boost::system::error_code&) { open->close(); });
+    }
 }
 
 asio::awaitable<Result<proto::Envelope>> ControlServer::first_message(Connection connection) {
