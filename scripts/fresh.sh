@@ -23,6 +23,8 @@ mkdir -p "$work/archives" "$work/root"
 rm -rf "${root:?}"
 echo "fresh: making a clean Debian 12"
 mmdebstrap --quiet --variant=apt bookworm "$root" || { echo "fresh: mmdebstrap failed, see above" >&2; exit 1; }
+# A root is a mount of its own, which network namespaces rely on (ip netns exec).
+mount --bind "$root" "$root"
 cp /etc/resolv.conf "$root/etc/resolv.conf"
 git clone --quiet --no-local "$project" "$root/srv/wallgl"
 mount --bind "$work/archives" "$root/var/cache/apt/archives"
@@ -46,8 +48,7 @@ env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 CCACHE_DIR=/cc
   chroot "$root" bash -c "cd /srv/wallgl && $command" </dev/null || result=$?
 [[ ! -f "$root/tmp/wall.png" ]] || cp "$root/tmp/wall.png" "$work/wall.png"
 if [[ -z $keep ]]; then
-  umount -R "$root/root/.npm" "$root/ccache" "$root/tmp" "$root/dev" "$root/sys" "$root/proc" \
-    "$root/var/cache/apt/archives"
+  umount -R "$root"
   rm -rf --one-file-system "${root:?}"
 fi
 echo "fresh: exit code $result"

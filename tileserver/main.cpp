@@ -2,6 +2,7 @@
 // tileserver, one node of a wall: read wall.toml, open the driver, serve clients until a signal.
 #include <signal.h>
 #include <systemd/sd-daemon.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <boost/asio/as_tuple.hpp>
@@ -9,16 +10,17 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
+#include <system_error>
+#include <vector>
 
-#include "common/config/load_config.h"
 #include "common/daemon/keep_running.h"
-#include "common/join/join.h"
 #include "common/log/log.h"
 #include "common/net/sockets.h"
-#include "common/tls/identity.h"
 #include "tileserver/gpu/memory.h"
 #include "tileserver/io/node_server.h"
+#include "tileserver/node_role.h"
 
 namespace {
 
@@ -41,16 +43,20 @@ asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const NodeServer&
     }
 }
 
-Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node, const NodeKeys& keys) {
+enum class Ended { stopped, starts_anew };
+
+Result<Ended> run(const NodeRole& role) {
+    const auto& node = role.node();
+    const auto described = [&role](const std::string& wall_toml) { return role.described(wall_toml); };
     const auto compilers = CompilerHost::start(config::name_of(node.backend));  // forks: before there are threads
     if (!compilers) return tl::unexpected(compilers.error());
     asio::io_context io(1);
     auto server = Result<std::unique_ptr<NodeServer>>(nullptr);
     const auto open = [&]() -> Result<void> {
-        server = NodeServer::open(io.get_executor(), wall, node, compilers->get(), keys);
+        server = NodeServer::open(io.get_executor(), role.wall(), node, compilers->get(), role.keys(), described);
         return server ? Result<void>() : tl::unexpected(server.error());
     };
-    if (auto opened = net::listen_patiently(open); !opened) return opened;
+    if (auto opened = net::listen_patiently(open); !opened) return tl::unexpected(opened.error());
     asio::steady_timer watchdog(io);
     bool stopping = false;
     asio::signal_set signals(io, SIGINT, SIGTERM);
@@ -66,8 +72,9 @@ Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node,
     sd_notify(0, ("READY=1\nSTATUS=node " + node.name).c_str());
     log::info("ready node={} backend={} listen={}", log::quoted(node.name), log::plain(config::name_of(node.backend)),
               log::quoted((*server)->address().text()));
-    while (!stopping && !(*server)->failure()) io.run_one();
+    while (!stopping && !(*server)->failure() && !(*server)->starts_anew()) io.run_one();
     const auto failure = (*server)->failure();
+    const auto ended = stopping ? Ended::stopped : Ended::starts_anew;
     stopping = true;
     (*server)->stop();
     signals.cancel();
@@ -75,58 +82,27 @@ Result<void> run(const config::WallConfig& wall, const config::NodeConfig& node,
     io.run_for(kStopLimit);
     server->reset();
     if (failure) return fail(*failure);
-    log::info("stopped");
-    return {};
+    if (ended == Ended::stopped) log::info("stopped");
+    else log::info("starting_anew reason=\"described otherwise\"");
+    return ended;
 }
 
-struct Options {
-    std::string config, node, state, join;
-};
-
-/// The node that this process is to be.
-struct Role {
-    config::WallConfig wall;
-    std::string node;
-    NodeKeys keys;
-};
-
-Result<NodeKeys> keys_in(const std::string& folder) {
-    const auto own = tls::Identity::load_or_make(join::key_file(folder));
-    if (!own) return tl::unexpected(own.error());
-    auto context = tls::TlsContext::make(*own);
-    if (!context) return tl::unexpected(context.error());
-    return NodeKeys{std::make_shared<const tls::TlsContext>(std::move(*context)), std::nullopt};
-}
-
-Result<void> join_wall(const Options& options) {
-    const auto line = tls::JoinLine::parse(options.join);
-    if (!line) return tl::unexpected(line.error());
-    const auto joined = join::join(*line, join::MachineKind::node, options.state);
-    if (!joined) return tl::unexpected(joined.error());
-    log::info("joined name={} walld={}", log::quoted(joined->name), log::quoted(joined->walld.text()));
-    return {};
-}
-
-/// Of another machine's wall: by what was kept when it joined.
-Result<Role> joined_role(const std::string& folder) {
-    const auto joined = join::Membership::load(folder);
-    if (!joined) return tl::unexpected(joined.error());
-    if (joined->kind != join::MachineKind::node) return fail(folder + ": this machine has joined as a client host");
-    auto wall = config::load_config(join::wall_file(folder));
-    if (!wall) return tl::unexpected(wall.error());
-    auto keys = keys_in(folder);
-    if (!keys) return tl::unexpected(keys.error());
-    keys->joined = JoinedWall{joined->walld, joined->walld_key};
-    return Role{std::move(*wall), joined->name, std::move(*keys)};
-}
-
-Result<Role> role_of(const Options& options) {
-    if (options.config.empty()) return joined_role(options.state);
-    auto wall = config::load_config(options.config);
-    if (!wall) return tl::unexpected(wall.error());
-    auto keys = options.state.empty() ? Result<NodeKeys>(NodeKeys{}) : keys_in(options.state);
-    if (!keys) return tl::unexpected(keys.error());
-    return Role{std::move(*wall), options.node, std::move(*keys)};
+/// The same process from its beginning: it reads again what it is.
+[[noreturn]] void start_anew(const RoleSource& source) {
+    std::error_code error;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", error).string();
+    std::vector<const char*> arguments{program.c_str()};
+    const auto add = [&](const char* option, const std::string& value) {
+        if (!value.empty()) arguments.insert(arguments.end(), {option, value.c_str()});
+    };
+    add("--config", source.config);
+    add("--node", source.node);
+    add("--state", source.state);
+    arguments.push_back(nullptr);
+    ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
+    ::execv(program.c_str(), const_cast<char* const*>(arguments.data()));
+    // Whoever started us starts the program that was put in our place.
+    throw std::system_error(errno, std::generic_category(), program);
 }
 
 /// An error of whoever starts us, in one sentence.
@@ -144,34 +120,35 @@ int main(int argc, char** argv) {
         "itself,\n"
         "whenever that is there. On walld's machine: --config and --node. On another one, first with the line that\n"
         "`wallctl join-token node NAME` prints: --state FOLDER --join LINE; later --state FOLDER.");
-    Options options;
+    RoleSource source;
+    std::string line;
     auto* config =
-        app.add_option("--config", options.config, "wall.toml, the description of the wall (docs/operation.md)");
-    app.add_option("--node", options.node, "which of its [[node]]s this one is")->needs(config);
-    auto* state = app.add_option("--state", options.state,
+        app.add_option("--config", source.config, "wall.toml, the description of the wall (docs/operation.md)");
+    app.add_option("--node", source.node, "which of its [[node]]s this one is")->needs(config);
+    auto* state = app.add_option("--state", source.state,
                                  "where this machine keeps its key, and what it knows of the wall that it has joined");
-    app.add_option("--join", options.join, "joins a wall of another machine, with a line of `wallctl join-token`")
+    app.add_option("--join", line, "joins a wall of another machine, with a line of `wallctl join-token`")
         ->needs(state)
         ->excludes(config);
     app.set_version_flag("--version", WALLGL_VERSION);
     CLI11_PARSE(app, argc, argv);
-    const bool of_file = !options.config.empty() && !options.node.empty();
-    const bool of_state = options.config.empty() && options.node.empty() && !options.state.empty();
+    const bool of_file = !source.config.empty() && !source.node.empty();
+    const bool of_state = source.config.empty() && source.node.empty() && !source.state.empty();
     if (!of_file && !of_state)
         return refuse_start("expected --config FILE --node NAME, or --state FOLDER (--help tells more)");
 
     ::signal(SIGPIPE, SIG_IGN);
     net::use_all_descriptors();
-    log::begin("tileserver " + options.node);
+    log::begin("tileserver " + source.node);
     try {
-        if (!options.join.empty())
-            if (auto joined = join_wall(options); !joined) return refuse_start(joined.error().message);
-        const auto role = role_of(options);
+        if (!line.empty())
+            if (auto joined = NodeRole::join(line, source.state); !joined) return refuse_start(joined.error().message);
+        const auto role = NodeRole::find(source);
         if (!role) return refuse_start(role.error().message);
-        const auto* node = role->wall.find_node(role->node);
-        if (node == nullptr) return refuse_start(options.config + ": no [[node]] has the name \"" + role->node + "\"");
-        if (auto done = run(role->wall, *node, role->keys); !done) {
-            std::cerr << "tileserver: " << done.error().message << '\n';
+        const auto ended = run(*role);
+        if (ended && *ended == Ended::starts_anew) start_anew(source);
+        if (!ended) {
+            std::cerr << "tileserver: " << ended.error().message << '\n';
             return 1;
         }
     } catch (const std::exception& error) {

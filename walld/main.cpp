@@ -14,7 +14,6 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "common/config/load_config.h"
 #include "common/daemon/keep_running.h"
@@ -65,42 +64,51 @@ std::string state_directory(const config::WallConfig& config) {
     return !config.state_directory.empty() ? config.state_directory : given ? given : "";
 }
 
-Result<std::string> text_of(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return file ? Result<std::string>(text.str()) : fail(path + ": cannot be read");
-}
-
 /// A key for links with other machines, if walld shall have any.
-Result<WalldKeys> open_keys(const config::WallConfig& config, const std::string& config_path,
-                            const std::string& state) {
+Result<WalldKeys> open_keys(const config::WallConfig& config, const std::string& state) {
     auto machines = Machines::open(state);
     if (!machines) return tl::unexpected(machines.error());
-    WalldKeys out{nullptr, std::move(*machines), {}};
+    WalldKeys out{nullptr, std::move(*machines)};
     // Without a place for its key walld listens nowhere else, and says so.
     if (state.empty() || std::ranges::all_of(config.control_listen, &net::Address::local)) return out;
     const auto own = tls::Identity::load_or_make(std::filesystem::path(state) / "key.pem");
     if (!own) return tl::unexpected(own.error());
     auto context = tls::TlsContext::make(*own);
     if (!context) return tl::unexpected(context.error());
-    auto text = text_of(config_path);
-    if (!text) return tl::unexpected(text.error());
     out.tls = std::make_shared<const tls::TlsContext>(std::move(*context));
-    out.wall_toml = std::move(*text);
     log::info("own_key fingerprint={}", log::quoted(out.tls->fingerprint().text()));
     return out;
 }
 
-Result<void> run(config::WallConfig config, const Options& options) {
+std::string status_of(const ControlServer& control) { return "wall " + control.wall().config().name; }
+
+/// SIGHUP does what `wallctl reload` does.
+asio::awaitable<void> reload_on(asio::signal_set& signals, ControlServer& control, const bool& stopping) {
+    while (!stopping) {
+        const auto [error, signal] = co_await signals.async_wait(asio::as_tuple(asio::use_awaitable));
+        if (error) continue;
+        notify_reloading();
+        if (const auto done = control.description().reload(); done)
+            log::info("reloaded nodes={}", log::plain(done->dump()));
+        else log::error("reload_refused reason={}", log::quoted(done.error().message));
+        notify_ready(status_of(control));
+    }
+}
+
+/// `config`: of wall.toml alone.
+Result<void> run(const config::WallConfig& config, const Options& options) {
     asio::io_context io(1);
-    const auto http_listen = config.http_listen;
     const auto state = state_directory(config);
-    auto identities = Identities::open(config.people);
+    WallFile file(options.config, state);
+    auto description = file.read();
+    if (!description) return fail(description.error().message);
+    const auto http_listen = description->config.http_listen;
+    auto identities = Identities::open(description->config.people);
     if (!identities) return tl::unexpected(identities.error());
-    auto keys = open_keys(config, options.config, state);
+    auto keys = open_keys(description->config, state);
     if (!keys) return tl::unexpected(keys.error());
-    ControlServer control(io.get_executor(), std::move(config), std::move(*identities), std::move(*keys), state);
+    ControlServer control(io.get_executor(), std::move(*description), std::move(file), std::move(*identities),
+                          std::move(*keys), state);
     const WallMetrics metrics(control.wall(), control.streams(), WALLGL_VERSION);
     HttpServer http(io.get_executor(), control.wall(), control.identities(), control.who_is_there(),
                     control.operators(), control.streams(), metrics);
@@ -110,10 +118,12 @@ Result<void> run(config::WallConfig config, const Options& options) {
     if (!options.ready_file.empty()) write_ready_file(options.ready_file, control, http, http_listen.has_value());
 
     asio::steady_timer watchdog(io);
-    asio::signal_set signals(io, SIGINT, SIGTERM);
+    asio::signal_set signals(io, SIGINT, SIGTERM), hangups(io, SIGHUP);
     bool stopping = false;
     net::keep_running(io.get_executor(),
                       {"watchdog", [&] { return feed_watchdog(watchdog, stopping); }, [&] { return stopping; }});
+    net::keep_running(io.get_executor(),
+                      {"reload", [&] { return reload_on(hangups, control, stopping); }, [&] { return stopping; }});
     signals.async_wait([&](const boost::system::error_code& error, int signal) {
         if (error) return;
         log::info("stopping signal={}", signal);
@@ -122,9 +132,10 @@ Result<void> run(config::WallConfig config, const Options& options) {
         http.stop();
         control.stop();
         watchdog.cancel();
+        hangups.cancel();
         io.stop();
     });
-    notify_ready("wall " + control.wall().config().name);
+    notify_ready(status_of(control));
     log::info("ready wall={} nodes={}", log::quoted(control.wall().config().name), control.wall().nodes().size());
     io.run();
     io.restart();
@@ -154,13 +165,13 @@ int main(int argc, char** argv) {
     net::use_all_descriptors();
     log::begin("walld");
     try {
-        auto config = config::load_config(options.config);
+        const auto config = config::load_config(options.config);
         if (!config) {
             std::cerr << "walld: " << config.error().message << '\n';
             return kExitUsage;
         }
         if (options.check) return 0;
-        if (auto done = run(std::move(*config), options); !done) {
+        if (auto done = run(*config, options); !done) {
             std::cerr << "walld: " << done.error().message << '\n';
             return 1;
         }

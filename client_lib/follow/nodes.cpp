@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/follow/nodes.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "client_lib/process/log.h"
@@ -53,6 +54,16 @@ void Nodes::connect(const NodeInfo& info) {
     if (!node.info.up) return;
     attempt(node);
     attempts_begun_ = true;
+}
+
+void Nodes::forget_others(const Welcome& welcome) {
+    for (const auto& node : nodes_) {
+        const bool up = std::ranges::count(welcome.nodes, node->index, &NodeInfo::node) > 0;
+        const bool shows = std::ranges::count(welcome.tiles, node->index, &TileInfo::node) > 0;
+        if (up || shows || !node->alive()) continue;
+        connect({.node = node->index, .address = {}, .ticket = {}, .up = false});
+        events_.lost();
+    }
 }
 
 void Nodes::connect_and_wait(const NodeInfo& info) {

@@ -48,7 +48,9 @@ public:
     void set_session(SessionId session) { session_ = session; }
     /// The node, as walld names it now, is another one than before: what it held is gone.
     void connect(const NodeInfo& info);
-    /// The same, unless it is connected to that very process; waits until something has come of it.
+    /// Of a walld that came back: nodes that it does not have any more go.
+    void forget_others(const Welcome& welcome);
+    /// The same as connect(), unless it is connected to that very process; waits until something has come of it.
     void connect_and_wait(const NodeInfo& info);
     /// Until what connect() has begun since the last call has come to something, at most `limit`; the lock is not held
     /// meanwhile.

@@ -107,7 +107,7 @@ void ClientSession::adopt(const Welcome& welcome) {
     id_ = welcome.session;
     nodes_.set_session(id_);
     for (const TileInfo& tile : welcome.tiles) nodes_.at(tile.node);  // also those that are not up
-    surfaces_.set_tiles(welcome.tiles);
+    nodes_.forget_others(welcome);
     for (const NodeInfo& info : welcome.nodes) {
         Node& node = nodes_.at(info.node);
         const bool same = goes_on && node.alive() && node.info.ticket == info.ticket;

@@ -37,6 +37,7 @@ public:
     std::optional<bool> srgb;            ///< GL_FRAMEBUFFER_SRGB counts; none: it was never current
     bool whole = false;                  ///< every node draws all of it, and tiles show parts of that
     bool drawn = false;                  ///< something was drawn since the last swap
+    Tiles tiles;                         ///< among which it lies; none: it was placed nowhere yet
     std::optional<Placement> next;       ///< from walld, for a frame that begins
     bool cleared = false;                ///< all of its back buffer, since the last swap
     bool depth_images = false;           ///< depth or stencil was drawn as an image

@@ -89,11 +89,18 @@ void Surfaces::apply_layout(ClientSurface& surface, const Placement& placement) 
         return;
     }
     layout.rect = placement.rect;
-    for (const TileInfo& tile : tiles_) {
+    if (placement.tiles) surface.tiles = placement.tiles;
+    if (!surface.tiles) return;
+    for (const TileInfo& tile : *surface.tiles) {
+        nodes_.at(tile.node);  // also one that is not up
         const geom::Rect part = geom::intersect(tile.rect, layout.rect);
         if (!part.empty()) layout.layers.push_back(tile_layer(layout, tile.node, tile.slot, part));
     }
-    hidden_.lay(surface, tiles_);
+    lay_hidden(surface);
+}
+
+void Surfaces::lay_hidden(ClientSurface& surface) {
+    if (surface.tiles) hidden_.lay(surface, *surface.tiles);
 }
 
 /// A layer of the window's size on every node; those of nodes that are not there are not drawn in.
@@ -130,7 +137,7 @@ void Surfaces::draw_whole(ClientSurface& surface) {
 void Surfaces::place_off_wall() {
     for (auto& [id, surface] : open_)
         if (surface->whole) lay_whole(*surface);
-        else if (!surface->layout.offscreen) hidden_.lay(*surface, tiles_);
+        else if (!surface->layout.offscreen) lay_hidden(*surface);
     for (auto& [id, surface] : open_) {
         const auto& layers = surface->layout.layers;
         if (surface->layout.offscreen && (layers.empty() || !nodes_[layers.front()].alive()))

@@ -21,9 +21,6 @@ public:
     Surfaces(ControlLink& control, Nodes& nodes, HiddenParts& hidden, OpenSurfaces& open)
         : control_(control), nodes_(nodes), hidden_(hidden), open_(open) {}
 
-    /// The wall's, whose nodes are all known.
-    void set_tiles(std::vector<TileInfo> tiles) { tiles_ = std::move(tiles); }
-
     /// Tells walld, and waits for its placement. A parallel program's comes with take().
     void open(ClientSurface& surface);
     void close(ClientSurface& surface);
@@ -49,6 +46,7 @@ public:
 
 private:
     void lay_whole(ClientSurface& surface);
+    void lay_hidden(ClientSurface& surface);
     void apply_layout(ClientSurface& surface, const Placement& placement);
     void adopt_placement(ClientSurface& surface);
     void adopt_agreed(ClientSurface& surface);
@@ -60,7 +58,6 @@ private:
     Nodes& nodes_;
     HiddenParts& hidden_;
     OpenSurfaces& open_;
-    std::vector<TileInfo> tiles_;
 };
 
 }  // namespace wall::client

@@ -191,7 +191,7 @@ ControlLink::ControlLink(UniqueFd fd, Hello hello, std::string address, Welcome 
       fd_(std::move(fd)),
       inbox_(std::move(rest)),
       session_(welcome_.session) {
-    for (const auto& node : welcome_.nodes) tickets_[node.node] = node.ticket;
+    take_welcome(welcome_);
     SignalsBlocked blocked;
     thread_ = std::thread([this] { run(); });
 }
@@ -406,7 +406,11 @@ bool ControlLink::handle(FromWalld message) {
     heard_ = true;
     if (std::exchange(silent_, false)) log(LogLevel::info, "walld_answers");
     if (auto* placement = std::get_if<Placement>(&message)) {
+        placement->tiles = tiles_;
         arrived(*placement);
+    } else if (auto* changed = std::get_if<TilesChanged>(&message)) {
+        tiles_ = std::make_shared<const std::vector<TileInfo>>(std::move(changed->tiles));
+        return true;  // placements follow
     } else if (auto* node = std::get_if<NodeInfo>(&message)) {
         log(LogLevel::info, "node_%s node=%u address=%s", node->up ? "up" : "down", node->node.value,
             node->address.c_str());
@@ -434,6 +438,13 @@ bool ControlLink::handle(FromWalld message) {
 }
 
 // With the mutex held.
+/// Before the other thread runs, or with the mutex held.
+void ControlLink::take_welcome(const Welcome& welcome) {
+    tickets_.clear();
+    for (const auto& node : welcome.nodes) tickets_[node.node] = node.ticket;
+    tiles_ = std::make_shared<const std::vector<TileInfo>>(welcome.tiles);
+}
+
 void ControlLink::arrived(const Placement& placement) {
     events_.placements.push_back(placement);
     if (hello_.group) {
@@ -567,8 +578,7 @@ bool ControlLink::reconnect() {
         events_ = {};
         events_.lost = true;
         session_ = opened->welcome.session;
-        tickets_.clear();
-        for (const auto& node : opened->welcome.nodes) tickets_[node.node] = node.ticket;
+        take_welcome(opened->welcome);
         events_.reconnected = std::move(opened->welcome);
         placements_.clear();
         for (auto& [id, surface] : surfaces_) {

@@ -106,6 +106,7 @@ private:
     bool write_some();
     bool take_messages();
     bool handle(FromWalld message);
+    void take_welcome(const Welcome& welcome);
     void arrived(const Placement& placement);
     void watch_walld();
     bool answers() const { return up_ && !silent_; }
@@ -138,6 +139,7 @@ private:
     bool silent_ = false;  // none has come: nobody waits for walld until it says something
     SessionId session_;
     std::map<NodeIndex, std::string> tickets_;
+    Tiles tiles_;  ///< the wall's, as walld said last
     std::function<void(const std::string&)> end_;
     std::map<SurfaceId, OpenSurface> surfaces_;
     Wishes wishes_;

@@ -18,7 +18,8 @@ namespace envelope {
 constexpr protozero::pbf_tag_type client_hello = 1, surface_open = 2, surface_resize = 3, surface_close = 4,
                                   surface_adopted = 5, close_refused = 6, client_stats = 7, placement_noted = 8,
                                   member_leaves = 9, client_welcome = 10, refused = 11, placement = 12, node_up = 13,
-                                  node_down = 14, close_request = 15, adoption_noted = 16, ping = 50, surface_note = 52;
+                                  node_down = 14, close_request = 15, adoption_noted = 16, tiles_changed = 17,
+                                  ping = 50, surface_note = 52;
 }
 
 void put_string(pbf_writer& out, protozero::pbf_tag_type tag, std::string_view text) {
@@ -237,6 +238,15 @@ SurfaceNote read_note(pbf_reader in) {
     return note;
 }
 
+TilesChanged read_tiles(pbf_reader in) {
+    TilesChanged changed;
+    while (in.next()) {
+        if (in.tag() == 1) changed.tiles.push_back(read_tile(read_message(in)));
+        else in.skip();
+    }
+    return changed;
+}
+
 FromWalld read_envelope(pbf_reader in) {
     FromWalld message;
     while (in.next()) {
@@ -249,6 +259,7 @@ FromWalld read_envelope(pbf_reader in) {
             case envelope::close_request: message = read_close(read_message(in)); break;
             case envelope::adoption_noted: message = read_noted(read_message(in)); break;
             case envelope::surface_note: message = read_note(read_message(in)); break;
+            case envelope::tiles_changed: message = read_tiles(read_message(in)); break;
             default: in.skip();
         }
     }

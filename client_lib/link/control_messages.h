@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -66,6 +67,9 @@ struct TileInfo {
     std::string name;
 };
 
+/// The tiles of the wall at some time. Many placements share them.
+using Tiles = std::shared_ptr<const std::vector<TileInfo>>;
+
 struct Welcome {
     SessionId session;
     std::uint32_t canvas_width = 0, canvas_height = 0;
@@ -84,6 +88,7 @@ struct Placement {
     SurfaceId surface;
     std::uint32_t layout_version = 0;
     geom::Rect rect;
+    Tiles tiles;  ///< among which it lies; the link adds them, from what walld said last
     // To a parallel program.
     std::uint32_t from_frame = 0;         ///< it holds from this frame on
     std::uint32_t width = 0, height = 0;  ///< of the window, in every member
@@ -108,14 +113,19 @@ struct Restore {
     std::string note;
 };
 
+/// Placements that come from now on lie among these.
+struct TilesChanged {
+    std::vector<TileInfo> tiles;
+};
+
 struct CloseRequest {
     SurfaceId surface;
     std::string reason;
 };
 
 /// A message from walld; nothing for one that this version does not know.
-using FromWalld =
-    std::variant<std::monostate, Welcome, Refused, Placement, NodeInfo, CloseRequest, AdoptionNoted, SurfaceNote>;
+using FromWalld = std::variant<std::monostate, Welcome, Refused, Placement, NodeInfo, CloseRequest, AdoptionNoted,
+                               SurfaceNote, TilesChanged>;
 
 // One encoded Envelope each, without the length in front.
 std::string encode(const Hello& hello);

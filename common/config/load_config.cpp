@@ -100,9 +100,10 @@ void read_nodes(TreeReader& read, const toml::table& root, WallConfig& out) {
     }
 }
 
-}  // namespace
-
-Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name) {
+/// `read_root` reads a file's root table.
+template <class ReadRoot>
+auto parse(std::string_view toml, std::string_view file_name, ReadRoot read_root)
+    -> Result<decltype(read_root(std::declval<TreeReader&>(), std::declval<const toml::table&>()))> {
     if (const auto line = control_character_line(toml)) {
         return fail(std::string(file_name) + ":" + std::to_string(line) +
                     ": not TOML: a control character: expected tabs and line breaks only");
@@ -113,7 +114,12 @@ Result<WallConfig> parse_config(std::string_view toml, std::string_view file_nam
         read.refuse(parsed.error().source(), "not TOML: " + std::string(parsed.error().description()));
         return tl::unexpected(*read.error());
     }
-    const toml::table& root = parsed.table();
+    auto out = read_root(read, parsed.table());
+    if (read.error()) return tl::unexpected(*read.error());
+    return out;
+}
+
+WallConfig read_wall(TreeReader& read, const toml::table& root) {
     WallConfig out;
     read.only(root, "the file", {"wall", "control", "http", "people", "node"});
     const auto& wall = read.section(root, "wall");
@@ -132,8 +138,22 @@ Result<WallConfig> parse_config(std::string_view toml, std::string_view file_nam
     read_people(read, root, out.people);
     read_http(read, root, out);
     read_nodes(read, root, out);
-    if (read.error()) return tl::unexpected(*read.error());
     return out;
+}
+
+}  // namespace
+
+Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name) {
+    return parse(toml, file_name, read_wall);
+}
+
+Result<std::vector<NodeConfig>> parse_nodes(std::string_view toml, std::string_view file_name) {
+    return parse(toml, file_name, [](TreeReader& read, const toml::table& root) {
+        WallConfig out;
+        read.only(root, "the nodes", {"node"});
+        read_nodes(read, root, out);
+        return out.nodes;
+    });
 }
 
 Result<WallConfig> load_config(const std::string& path) {

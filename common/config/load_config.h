@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/base/result.h"
 #include "common/config/wall_config.h"
@@ -11,6 +12,8 @@
 namespace wall::config {
 
 Result<WallConfig> load_config(const std::string& path);
+/// Only [[node]] tables, as they may be added to a description.
+Result<std::vector<NodeConfig>> parse_nodes(std::string_view toml, std::string_view file_name);
 /// `file_name` is for the error only.
 Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name);
 

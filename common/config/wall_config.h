@@ -32,6 +32,7 @@ struct TileConfig {
     std::string name;                    ///< unique on the wall
     geom::Rect rect;                     ///< on the canvas
     std::optional<WindowConfig> window;  ///< none: headless
+    bool operator==(const TileConfig&) const = default;
 };
 /// `headless` or `window`, as in wall.toml.
 const char* output_name(const TileConfig& tile);
@@ -41,6 +42,7 @@ struct NodeConfig {
     Backend backend = Backend::egl;
     net::Address listen;            ///< data streams
     std::vector<TileConfig> tiles;  ///< slot = index
+    bool operator==(const NodeConfig&) const = default;
 };
 
 struct WallConfig {

@@ -56,6 +56,10 @@ class Healing:
             raise WallError("session fault: " + sessions[0]["fault"])
         return sessions[0]["surfaces"][-1]["frame"]
 
+    def all_in_time(self) -> bool:
+        """No node is left out of frames because it is late: its tiles show an earlier one."""
+        return all(tile["lag_frames"] == 0 for tile in self._wall.ctl("tiles"))
+
     def still_picture(self) -> np.ndarray | None:
         """What the wall shows while nobody disturbs it; None if it never shows the same twice."""
         end = time.monotonic() + STANDS_STILL
@@ -63,7 +67,7 @@ class Healing:
         while time.monotonic() < end:
             with contextlib.suppress(WallError):
                 before = self.frame()
-                if before >= self._recording.frames + SETTLED:
+                if before >= self._recording.frames + SETTLED and self.all_in_time():
                     picture = self.picture()
                     if last is not None and (picture == last).all():
                         return picture

@@ -149,11 +149,12 @@ class MachineWall(Wall):
     # ---- at a client host ----
 
     def run_at(self, client: str, *command: object, rect: tuple[int, int, int, int] | None = None, hold: bool = False,
-               env: dict[str, str] | None = None, **popen) -> subprocess.Popen:
+               parallel: int = 0, env: dict[str, str] | None = None, **popen) -> subprocess.Popen:
         """Starts a program there, as run() does here."""
         line = [self.client_bin / "wallrun", "--walld", self.agent_address(client)]
         line += ["--rect", ",".join(map(str, rect))] if rect else []
         line += ["--hold"] if hold else []
+        line += ["--parallel", str(parallel)] if parallel else []
         app = self.hosts.popen(client, [*line, "--", *command], env=env or self._environment,
                                preexec_fn=self._before_exec, **popen)
         self.apps.append(app)

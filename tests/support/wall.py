@@ -113,11 +113,14 @@ class Wall:
     def _description(self) -> str:
         nodes = [(self.node_names[0], self.tile_names)] if self.one_node else [(n, [n[len("node-"):]])
                                                                                for n in self.node_names]
+        return self._but_nodes() + "".join(self._node(*node) for node in nodes)
+
+    def _but_nodes(self) -> str:
         return (f"[wall]\nname = {_quoted(self.name)}\nswap_timeout_ms = {self.swap_timeout_ms}\n"
                 f"state_directory = {_quoted(self.folder / 'state')}\n{self.options}\n"
                 f"[people]\n{self.people}\n"
                 f"[control]\nlisten = [{_quoted(f'unix:{self.folder}/walld.sock')}]\n"
-                f"[http]\nlisten = {_quoted(self.http)}\n" + "".join(self._node(*node) for node in nodes))
+                f"[http]\nlisten = {_quoted(self.http)}\n")
 
     def _start(self) -> None:
         (self.folder / "wall.toml").write_text(self._description())
@@ -140,12 +143,16 @@ class Wall:
 
     def restart_walld(self, pause: float = 0) -> None:
         """Killed, and after `pause` seconds another one on the same addresses (but for HTTP)."""
+        self.restart_walld_only(pause)
+        self.wait_nodes()
+
+    def restart_walld_only(self, pause: float = 0) -> None:
+        """The same without waiting for nodes."""
         self.daemons["walld"].kill()
         self.daemons["walld"].wait()
         time.sleep(pause)
         (self.folder / "ready").unlink()
         self.start_walld()
-        self.wait_nodes()
 
     def wait_nodes(self) -> None:
         """Until all nodes are up."""
@@ -192,21 +199,23 @@ class Wall:
     # ---- programs ----
 
     def wallrun(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False,
-                name: str = "", hold: bool = False) -> list[str]:
+                name: str = "", hold: bool = False, parallel: int = 0) -> list[str]:
         """The command line that starts a program on this wall."""
         line = [self.client_bin / "wallrun", "--walld", self.address]
         line += ["--rect", ",".join(map(str, rect))] if rect else []
         line += ["--fullscreen"] if fullscreen else []
         line += ["--name", name] if name else []
         line += ["--hold"] if hold else []
+        line += ["--parallel", parallel] if parallel else []
         return [str(word) for word in (*line, "--", *command)]
 
     def run(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False,
-            name: str = "",
-            hold: bool = False, env: dict[str, str] | None = None, **popen) -> subprocess.Popen:
-        """Starts a program on the wall. Its process id is that of the session (wallrun becomes the program)."""
-        return self.run_line(self.wallrun(*command, rect=rect, fullscreen=fullscreen, name=name, hold=hold), env=env,
-                             **popen)
+            name: str = "", hold: bool = False, parallel: int = 0, env: dict[str, str] | None = None,
+            **popen) -> subprocess.Popen:
+        """Starts a program on the wall. Its process id is that of the session (wallrun becomes the program), but for
+        one of several processes."""
+        return self.run_line(self.wallrun(*command, rect=rect, fullscreen=fullscreen, name=name, hold=hold,
+                                          parallel=parallel), env=env, **popen)
 
     def run_line(self, line: list[str], *, env: dict[str, str] | None = None, **popen) -> subprocess.Popen:
         """The same with a command line of wallrun()."""

@@ -14,6 +14,7 @@
 
 #include "common/log/log.h"
 #include "common/wire/limits.h"
+#include "common/wire/weights.h"
 #include "tileserver/io/node_stats.h"
 
 namespace wall::tileserver {
@@ -22,6 +23,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kRetryInterval = 250ms;
+constexpr auto kRefusedInterval = 2s;
 constexpr auto kWaitable = asio::as_tuple(asio::use_awaitable);
 
 void fill_caps(const GlCaps& caps, proto::GlCaps& out) {
@@ -77,7 +79,8 @@ net::Address for_other_machines(const net::Address& listen) {
 
 }  // namespace
 
-NodeServer::NodeServer(asio::any_io_executor executor, const config::WallConfig& wall, std::string name, NodeKeys keys)
+NodeServer::NodeServer(asio::any_io_executor executor, const config::WallConfig& wall, std::string name, NodeKeys keys,
+                       Described described)
     : executor_(executor),
       keys_(std::move(keys)),
       walld_(keys_.joined ? keys_.joined->walld : wall.control_listen.front()),
@@ -88,6 +91,7 @@ NodeServer::NodeServer(asio::any_io_executor executor, const config::WallConfig&
       watch_timer_(executor),
       watch_(wall.swap_timeout),
       started_us_(microseconds_since_1970()),
+      described_(std::move(described)),
       parts_(executor),
       tile_streams_(executor, [this](PictureId stream, Parts parts) {
           parts_.send({PartsOf::Kind::stream, stream}, std::move(parts));
@@ -97,10 +101,11 @@ NodeServer::~NodeServer() = default;
 
 Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor executor, const config::WallConfig& wall,
                                                      const config::NodeConfig& node, const CompilerHost* compilers,
-                                                     NodeKeys keys) {
+                                                     NodeKeys keys, Described described) {
     const auto peers = keys.tls ? net::Peers::with_keys : net::Peers::of_this_machine;
     const auto address = keys.joined ? for_other_machines(node.listen) : node.listen;
-    std::unique_ptr<NodeServer> server(new NodeServer(executor, wall, node.name, std::move(keys)));
+    std::unique_ptr<NodeServer> server(
+        new NodeServer(executor, wall, node.name, std::move(keys), std::move(described)));
     auto listener = net::Listener::open(executor, address, peers);
     if (!listener) return tl::unexpected(listener.error());
     server->listener_.emplace(std::move(*listener));
@@ -242,7 +247,8 @@ asio::awaitable<void> NodeServer::keep_link() {
                       log::quoted(link.error().message));
         }
         if (stopping_) break;
-        retry_.expires_after(kRetryInterval);
+        // What an operator has to mend is not tried four times a second.
+        retry_.expires_after(std::exchange(refused_, false) ? kRefusedInterval : kRetryInterval);
         co_await retry_.async_wait(kWaitable);
     }
 }
@@ -344,7 +350,13 @@ void NodeServer::handle(const proto::Envelope& envelope) {
         case Case::kStreamStart: return tile_streams_.start(*render_, envelope.stream_start());
         case Case::kStreamStop: return tile_streams_.stop(*render_, PictureId(envelope.stream_stop().stream()));
         case Case::kStreamReady: return tile_streams_.ready(*render_, envelope.stream_ready());
-        case Case::kRefused: log::error("walld_refused reason={}", log::quoted(envelope.refused().reason())); return;
+        case Case::kWallDescription:
+            starts_anew_ = starts_anew_ || (described_ && described_(envelope.wall_description().wall_toml()));
+            return;
+        case Case::kRefused:
+            refused_ = true;
+            log::error("walld_refused reason={}", log::quoted(envelope.refused().reason()));
+            return;
         default: log::warn("walld_unexpected_message number={}", static_cast<int>(envelope.message_case()));
     }
 }
@@ -375,6 +387,8 @@ void NodeServer::admit(const proto::Ticket& ticket) {
     const auto members = std::min(ticket.members(), wire::kMaxMembers);
     admissions_[SessionId(ticket.session())] = {
         ticket.ticket(), {members, {ticket.left().begin(), ticket.left().end()}}, ticket.key()};
+    if (ticket.weight() != 0)
+        render_->set_weight(SessionId(ticket.session()), static_cast<double>(ticket.weight()) / wire::kUsualWeight);
 }
 
 void NodeServer::welcome(const proto::NodeWelcome& welcome) {

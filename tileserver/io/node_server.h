@@ -6,6 +6,7 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -38,13 +39,17 @@ struct NodeKeys {
     std::optional<JoinedWall> joined;            ///< none: the first address of [control]; needs `tls`
 };
 
+/// Told what walld goes by, a wall.toml. True: this node is described otherwise now, and is to start anew.
+using Described = std::function<bool(const std::string& wall_toml)>;
+
 class NodeServer final : private StreamHost, private NodeEvents {
 public:
     /// Opens the driver and the listener; the error says what stands in the way. `compilers`, which outlives it, for
     /// trials of shaders; null: they are compiled without limits.
     static Result<std::unique_ptr<NodeServer>> open(asio::any_io_executor executor, const config::WallConfig& wall,
                                                     const config::NodeConfig& node,
-                                                    const CompilerHost* compilers = nullptr, NodeKeys keys = {});
+                                                    const CompilerHost* compilers = nullptr, NodeKeys keys = {},
+                                                    Described described = {});
     ~NodeServer() override;
 
     /// Starts to accept clients and to look for walld.
@@ -62,11 +67,14 @@ public:
     void set_most_strangers(std::size_t most) { most_strangers_ = most; }
     /// Why the node cannot go on; none: it can.
     const std::optional<std::string>& failure() const { return failure_; }
+    /// It is described otherwise now.
+    bool starts_anew() const { return starts_anew_; }
 
 private:
     static constexpr std::size_t kMaxHandshakes = 256;  ///< at the same time
 
-    NodeServer(asio::any_io_executor executor, const config::WallConfig& wall, std::string name, NodeKeys keys);
+    NodeServer(asio::any_io_executor executor, const config::WallConfig& wall, std::string name, NodeKeys keys,
+               Described described);
 
     // StreamHost
     const Admission* admission(SessionId session) const override;
@@ -145,6 +153,9 @@ private:
     std::uint32_t last_stream_ = 0;
     std::uint64_t bytes_received_ = 0;
     std::optional<std::string> failure_;
+    Described described_;
+    bool starts_anew_ = false;
+    bool refused_ = false;  // by walld, on this link
     std::chrono::steady_clock::time_point last_stats_ = std::chrono::steady_clock::now();
     PartSender parts_;
     TileStreams tile_streams_;

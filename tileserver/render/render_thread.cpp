@@ -81,6 +81,16 @@ public:
         }
         /// The others of its parallel program must come first.
         bool held() const { return group_ && group_->sync.waits(session_.rank()); }
+        /// The turns of one round, as many as its weight says: what is less than one is saved up. True: there may be
+        /// more to do at once.
+        bool run_turns(Clock::time_point& now, bool contended) {
+            turns_ = contended ? std::min(turns_ + weight_, std::max(1.0, weight_)) : 1.0;
+            if (turns_ < 1.0) return batch_ || (!failed_ && !held() && queue_->front() != nullptr);
+            bool worked = false;
+            for (; turns_ >= 1.0 && run_turn(now, contended); turns_ -= 1.0) worked = true;
+            return worked;
+        }
+        void set_weight(double weight) { weight_ = weight; }
         /// True: a batch was executed, or some of it. `now` is the time, before and after. `contended`: others want
         /// turns, too.
         bool run_turn(Clock::time_point& now, bool contended) {
@@ -162,6 +172,7 @@ public:
         Pace pace_;
         DriverWait driver_wait_{loop_.driver_.gl()};
         Clock::time_point last_run_{};
+        double weight_ = 1.0, turns_ = 0.0;  // turns a round; those that are left of this one
         bool failed_ = false, closed_ = false;
     };
 
@@ -177,7 +188,7 @@ public:
         bool worked = false;
         auto now = Clock::now();
         const auto active = std::ranges::count_if(streams_, [now](const auto& e) { return e.second->active(now); });
-        for (auto& [id, stream] : streams_) worked |= stream->run_turn(now, active > (stream->active(now) ? 1 : 0));
+        for (auto& [id, stream] : streams_) worked |= stream->run_turns(now, active > (stream->active(now) ? 1 : 0));
         worked |= remove_ended();
         check_driver();
         show();
@@ -192,9 +203,19 @@ public:
         for (auto& [other, stream] : streams_)
             if (stream->session().id() == session && !stream->failed() && stream->group()) group = stream->group();
         if (!group && membership.members != 0) group = std::make_shared<ParallelGroup>(driver_, membership);
-        streams_.emplace(id, std::make_unique<Stream>(*this, id, session, std::move(queue), std::move(group), rank));
+        auto& stream =
+            *streams_
+                 .emplace(id, std::make_unique<Stream>(*this, id, session, std::move(queue), std::move(group), rank))
+                 .first->second;
+        if (const auto weight = weights_.find(session); weight != weights_.end()) stream.set_weight(weight->second);
+    }
+    void set_weight(SessionId session, double weight) {
+        weights_[session] = weight;
+        for (auto& [id, stream] : streams_)
+            if (stream->session().id() == session) stream->set_weight(weight);
     }
     void remove_session(SessionId session) {
+        weights_.erase(session);
         node_.damage +=
             std::erase_if(streams_, [session](const auto& entry) { return entry.second->session().id() == session; });
     }
@@ -316,6 +337,7 @@ private:
         events_.stats(stats);
     }
 
+    std::map<SessionId, double> weights_;
     std::deque<PictureRequest> asked_;
     Clock::time_point next_stats_ = Clock::now() + kStatsInterval;
     bool lost_ = false;
@@ -407,6 +429,9 @@ void RenderThread::remove_stream(StreamId stream) {
     post([=](Loop& loop) {
         if (const auto at = loop.streams_.find(stream); at != loop.streams_.end()) at->second->close();
     });
+}
+void RenderThread::set_weight(SessionId session, double weight) {
+    post([=](Loop& loop) { loop.set_weight(session, weight); });
 }
 void RenderThread::remove_session(SessionId session) {
     post([=](Loop& loop) { loop.remove_session(session); });

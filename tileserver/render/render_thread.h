@@ -93,6 +93,8 @@ public:
     /// Nothing more comes. The session's objects are freed; a parallel program's stream is executed to its end before,
     /// because others may wait for what it says.
     void remove_stream(StreamId stream);
+    /// How many turns the session's streams get where others get one, while several want them; 1 without this.
+    void set_weight(SessionId session, double weight);
     /// All streams of the session go at once, whatever is left in them.
     void remove_session(SessionId session);
     void set_tiles(std::vector<Tile> tiles, std::uint32_t background);

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <functional>
 #include <iostream>
+#include <sstream>
 
 #include "common/join/join.h"
 #include "common/net/address.h"
@@ -22,6 +23,7 @@ using namespace wall::wallctl;
 using nlohmann::json;
 using request::ask;
 
+constexpr const char* kNode = "node";
 constexpr std::chrono::seconds kLimit{10};          // for an answer
 constexpr std::chrono::seconds kPictureLimit{120};  // it may wait in line, and a large one takes long to encode
 constexpr std::chrono::seconds kCloseLimit{
@@ -34,7 +36,7 @@ struct Options {
     std::string id, tile, file, name;
     std::string role, at, line, state = "/var/lib/wallgl/agent";
     int x = 0, y = 0, width = 0, height = 0;
-    int frames = 1, frame = 1;
+    int frames = 1, frame = 1, weight = 0;
     unsigned fps = 10;
     double seconds = 10, interval = 1;
     std::uint64_t count = 0;
@@ -150,6 +152,32 @@ Outcome<void> join_wall(const Options& options) {
     return {};
 }
 
+Outcome<void> add_node(const Options& options) {
+    std::ostringstream text;
+    std::ifstream file(options.file, std::ios::binary);
+    if (options.file == "-") text << std::cin.rdbuf();
+    else text << file.rdbuf();
+    if (options.file != "-" && !file) return failed(options.file + ": cannot be read");
+    return print(options, ask(options.walld, "add_node", json{{"toml", text.str()}}, kLimit), reloaded_text);
+}
+
+/// wallctl node add|remove|drain|undrain
+template <class Verb>
+void add_node_verbs(CLI::App& group, const Verb& verb, Options& o) {
+    verb(group, "add", "adds a node to the wall while it runs, until `remove`", [&o] { return add_node(o); })
+        ->add_option("FILE", o.file, "its [[node]] table, as in wall.toml; - for standard input")
+        ->required();
+    const auto named = [&](const char* name, const char* wire, const char* about) {
+        auto* sub = verb(group, name, about, [&o, wire] {
+            return print(o, ask(o.walld, wire, json{{"name", o.name}}, kLimit), kNoTable);
+        });
+        sub->add_option("NAME", o.name, "as `wallctl nodes` shows it")->required();
+    };
+    named("remove", "remove_node", "takes a node away that `add` has added");
+    named("drain", "drain_node", "programs leave the node, so that its machine can be stopped; its tiles go dark");
+    named("undrain", "undrain_node", "programs use the node again");
+}
+
 /// wallctl join-token, machines, node, client, join: walls of several machines
 void add_machines(CLI::App& app, Options& o, Action& action) {
     const auto verb = [&action](CLI::App& parent, const char* name, const char* about, Action run) {
@@ -174,8 +202,10 @@ void add_machines(CLI::App& app, Options& o, Action& action) {
                         ask_about("join_token", "client", invitation_text));
     client->add_option("NAME", o.name, "what the wall shall call it (its host name)");
     client->add_option("--role", o.role, "of its people: viewer, user or operator (user)");
-    for (const char* kind : {"node", "client"}) {
-        auto* group = app.add_subcommand(kind, std::string("the machines that have joined as ") + kind + "s");
+    for (const char* kind : {kNode, "client"}) {
+        auto* group =
+            app.add_subcommand(kind, kind == kNode ? "the wall's nodes, and the machines that have joined as such"
+                                                   : "the machines that have joined as client hosts");
         group->require_subcommand(1)->fallthrough();
         verb(*group, "list", "those that have joined", [&o, kind] {
             auto answer = ask(o.walld, "machines", json::object(), kLimit);
@@ -188,7 +218,10 @@ void add_machines(CLI::App& app, Options& o, Action& action) {
         verb(*group, "revoke", "ends its connections, and lets it in no more", ask_about("revoke", kind, kNoTable))
             ->add_option("NAME", o.name)
             ->required();
+        if (kind == kNode) add_node_verbs(*group, verb, o);
     }
+    verb(app, "reload", "reads wall.toml again: nodes and tiles come, move and go while programs run",
+         show(o, "reload", reloaded_text));
     verb(app, "machines", "all machines that have joined", show(o, "machines", machines_table));
     auto* join = verb(app, "join", "joins a wall as a client host, with a line of `wallctl join-token client`",
                       [&o] { return join_wall(o); });
@@ -247,6 +280,12 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
                       }));
     add_id(step, o);
     step->add_option("N", o.frames, "how many (1)")->check(CLI::PositiveNumber);
+    auto* weight =
+        verb("weight", "a program's share of the nodes' time, beside those of the others", tell(o, "weight", [&o] {
+                 return json{{"id", o.id}, {"weight", o.weight}};
+             }));
+    add_id(weight, o);
+    weight->add_option("N", o.weight, "1 to 100; of a program of which nobody has said anything: 10")->required();
     auto* waiting = verb("wait", "returns when a frame is shown on all tiles", [&o] { return wait(o); });
     add_id(waiting, o);
     waiting->add_option("--frame", o.frame, "its number")->required()->check(CLI::PositiveNumber);

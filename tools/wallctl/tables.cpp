@@ -25,7 +25,7 @@ std::string program(const json& session) {
 }
 
 void add_session(std::vector<Row>& rows, const json& session) {
-    const auto note = is(session, "held") ? "held" : text(session, "fault");
+    const auto note = is(session, "held") ? "held" : is(session, "silent") ? "silent" : text(session, "fault");
     const auto owner = who(session.value("owner", json::object()));
     const auto surfaces = session.value("surfaces", json::array());
     if (surfaces.empty())
@@ -43,8 +43,9 @@ void add_session(std::vector<Row>& rows, const json& session) {
 std::string nodes_table(const json& nodes) {
     std::vector<Row> rows{{"NODE", "STATE", "BACKEND", "ADDRESS", "PID", "TILES", "FRAMES", "RECEIVED", "RENDERER"}};
     for (const auto& n : nodes) {
-        rows.push_back({text(n, "name"), is(n, "up") ? "up" : "away", text(n, "backend"), text(n, "address"),
-                        text(n, "pid"), text(n, "tiles"), text(n, "frames"),
+        const auto* state = is(n, "drained") ? "drained" : is(n, "silent") ? "silent" : is(n, "up") ? "up" : "away";
+        rows.push_back({text(n, "name"), state, text(n, "backend"), text(n, "address"), text(n, "pid"),
+                        text(n, "tiles"), text(n, "frames"),
                         fmt::format("{:.1f} MB", n.value("bytes_received", 0.0) / 1e6), text(n, "renderer")});
     }
     return table(rows);
@@ -102,6 +103,13 @@ std::string names_text(const json& names) {
     std::string out;
     for (const auto& name : names) out += name.get<std::string>() + "\n";
     return out;
+}
+
+std::string reloaded_text(const json& reloaded) {
+    std::string names;
+    for (const auto& name : reloaded.at("nodes")) names += " " + name.get<std::string>();
+    return fmt::format("the wall has {} tiles; nodes that are new, gone or described otherwise:{}\n",
+                       text(reloaded, "tiles"), names.empty() ? " none" : names);
 }
 
 std::string placed_text(const json& loaded) {

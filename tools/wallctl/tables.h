@@ -19,6 +19,8 @@ std::string invitation_text(const nlohmann::json& invitation);
 
 std::string person_text(const nlohmann::json& person);
 std::string names_text(const nlohmann::json& names);
+/// What reading wall.toml again has done.
+std::string reloaded_text(const nlohmann::json& reloaded);
 /// What loading a layout has done.
 std::string placed_text(const nlohmann::json& loaded);
 

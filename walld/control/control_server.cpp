@@ -41,17 +41,19 @@ bool answer_ping(net::ControlConnection& connection, const proto::Envelope& mess
 
 }  // namespace
 
-ControlServer::ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities,
-                             WalldKeys keys, const std::string& state)
+ControlServer::ControlServer(asio::any_io_executor executor, Description description, WallFile file,
+                             Identities identities, WalldKeys keys, const std::string& state)
     : executor_(executor),
       changed_(executor),
       identities_(std::move(identities)),
       who_(executor, [this](std::uint32_t user) { return identities_.of(user); }),
-      wall_(std::move(config), *this, random_bytes),
+      wall_(std::move(description.config), *this, random_bytes),
       machines_(std::move(keys), wall_.config(), *this, random_bytes),
       snapshots_(executor, wall_, *this),
       streams_(executor, wall_, *this),
-      operators_(wall_, snapshots_, streams_, LayoutStore(state), machines_, changed_,
+      description_(std::move(file), std::move(description.toml),
+                   {wall_, identities_, who_, machines_, streams_, *this, *this}),
+      operators_(wall_, snapshots_, streams_, LayoutStore(state), machines_, description_, changed_,
                  [this](SessionId id) {
                      end_session(id, "closed by an operator");
                      wall_.close_session(id);
@@ -110,17 +112,18 @@ void ControlServer::to_node(NodeIndex node, const proto::Envelope& message) {
 }
 
 void ControlServer::to_client(SessionId session, const proto::Envelope& message) {
-    for (const auto& [client, connection] : clients_)
-        if (client.first == session) connection->send(message);
+    for (const auto& [client, link] : clients_)
+        if (client.first == session) link.connection->send(message);
 }
 
 void ControlServer::to_member(SessionId session, Rank rank, const proto::Envelope& message) {
-    if (const auto found = clients_.find({session, rank}); found != clients_.end()) found->second->send(message);
+    if (const auto found = clients_.find({session, rank}); found != clients_.end())
+        found->second.connection->send(message);
 }
 
 void ControlServer::end_session(SessionId session, const std::string& reason) {
-    for (const auto& [client, connection] : clients_)
-        if (client.first == session) refuse(connection, reason);
+    for (const auto& [client, link] : clients_)
+        if (client.first == session) refuse(link.connection, reason);
 }
 
 // ---- connections ----
@@ -266,6 +269,7 @@ asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::No
     log::info("node_up node={} incarnation={} address={} backend={} renderer={}", log::quoted(hello.name()),
               wall_.nodes()[*joined].incarnation, log::quoted(hello.address()), log::quoted(hello.backend()),
               log::quoted(hello.caps().renderer()));
+    description_.tell(*joined);
     streams_.node_joined(*joined);
     something_changed();
     for (;;) {
@@ -297,6 +301,10 @@ Result<NodeIndex> ControlServer::admit_node(const Connection& connection, const 
 bool ControlServer::serves(NodeIndex node, const Connection& connection) const {
     const auto found = nodes_.find(node);
     return found != nodes_.end() && found->second.connection == connection;
+}
+
+void ControlServer::let_go(NodeIndex node, const std::string& reason) {
+    if (nodes_.contains(node)) drop_node(node, reason);
 }
 
 void ControlServer::drop_node(NodeIndex node, const std::string& reason) {
@@ -333,7 +341,8 @@ Result<void> ControlServer::node_says(NodeIndex node, proto::Envelope& message) 
 asio::awaitable<void> ControlServer::wait_for_nodes() {
     const auto until = Clock::now() + kNodeLimit;
     const auto ready = [&] {
-        const bool all = std::ranges::all_of(wall_.nodes(), &Node::up);
+        const auto there = [](const Node& node) { return node.up || node.duty != Duty::serves; };
+        const bool all = std::ranges::all_of(wall_.nodes(), there);
         return all || (wall_.any_node_up() && Clock::now() > started_ + kNodeLimit);
     };
     while (!ready() && Clock::now() < until && !stopping_) co_await changed_.wait(until);
@@ -364,7 +373,7 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
         if (!still) co_return refuse(connection, still.error().message);
     const Rank rank = hello.group().rank();
     const auto id = wall_.open_session(hello, who, Clock::now(), [&](SessionId session) {
-        clients_[{session, rank}] = connection;
+        clients_[{session, rank}] = {connection};
     });
     place.leave();
     log::info("session_open session={} owner={} pid={} program={} name={} group={} rank={}", id.value,
@@ -374,6 +383,7 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
     std::string reason;
     while (reason.empty()) {
         auto message = co_await connection->receive();
+        if (message) clients_[{id, rank}].silent_checks = 0;
         if (message && answer_ping(*connection, *message)) continue;
         const auto result = message ? client_says({id, rank}, *message) : Result<void>(tl::unexpected(message.error()));
         if (!result) reason = result.error().message;
@@ -526,20 +536,32 @@ asio::awaitable<void> ControlServer::watch_peers() {
     while (!stopping_) {
         process_timer_.expires_after(kPidCheck);
         co_await process_timer_.async_wait(kTuple);
-        for (const auto& [id, connection] : clients_) {
-            const auto pid = connection->peer() ? connection->peer()->process : 0;
-            if (pid <= 0 || ::kill(pid, 0) == 0 || errno != ESRCH) continue;
-            log::info("session_orphaned session={} pid={}", id.first.value, pid);
-            connection->close();
-        }
+        watch_programs();
         watch_nodes();
     }
 }
 
+void ControlServer::watch_programs() {
+    std::set<SessionId> quiet;
+    for (auto& [id, link] : clients_) {
+        if (++link.silent_checks >= kQuietProgram) quiet.insert(id.first);
+        const auto pid = link.connection->peer() ? link.connection->peer()->process : 0;
+        if (pid <= 0 || ::kill(pid, 0) == 0 || errno != ESRCH) continue;
+        log::info("session_orphaned session={} pid={}", id.first.value, pid);
+        link.connection->close();
+    }
+    for (const SessionId id : wall_.note_silent(quiet)) log::warn("session_silent session={}", id.value);
+}
+
 void ControlServer::watch_nodes() {
     std::vector<NodeIndex> silent;
-    for (auto& [node, link] : nodes_)
-        if (++link.silent_checks > kSilentChecks) silent.push_back(node);
+    std::set<NodeIndex> quiet;
+    for (auto& [node, link] : nodes_) {
+        if (++link.silent_checks >= kQuietNode) quiet.insert(node);
+        if (link.silent_checks > kSilentChecks) silent.push_back(node);
+    }
+    for (const NodeIndex node : wall_.note_silent(quiet))
+        log::warn("node_silent node={}", log::quoted(wall_.nodes()[node].config->name));
     for (const auto node : silent) {
         nodes_[node].connection->close();  // nobody reads there any more
         drop_node(node, "it has said nothing for " + std::to_string(kSilentChecks * kPidCheck.count()) + " s");

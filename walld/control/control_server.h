@@ -10,6 +10,7 @@
 #include "common/daemon/changed.h"
 #include "common/net/control_connection.h"
 #include "common/net/reply_parts.h"
+#include "walld/control/description_desk.h"
 #include "walld/control/identity.h"
 #include "walld/control/machine_desk.h"
 #include "walld/control/operator_desk.h"
@@ -23,7 +24,7 @@ namespace wall::walld {
 
 namespace asio = boost::asio;
 
-class ControlServer : public Outbox, public MachineLinks {
+class ControlServer : public Outbox, public MachineLinks, public NodeLinks {
 public:
     static constexpr std::chrono::seconds kHelloLimit{5};  ///< a peer that has not said what it is by then is cut off
     static constexpr std::chrono::seconds kNodeLimit{4};   ///< how long a program waits for nodes while the wall starts
@@ -32,10 +33,13 @@ public:
     /// A node says something many times a second; one that has not for so many checks is away. They are counted, so
     /// that a walld that stood still itself has missed nothing.
     static constexpr unsigned kSilentChecks = 15;
+    /// So many without a word, and operators see that the link may be dead: nodes say something each second at least,
+    /// programs each two.
+    static constexpr unsigned kQuietNode = 2, kQuietProgram = 3;
 
-    /// `state`: where layouts are kept; empty: nowhere.
-    ControlServer(asio::any_io_executor executor, config::WallConfig config, Identities identities, WalldKeys keys,
-                  const std::string& state);
+    /// `description`: what `file` says now. `state`: where layouts are kept; empty: nowhere.
+    ControlServer(asio::any_io_executor executor, Description description, WallFile file, Identities identities,
+                  WalldKeys keys, const std::string& state);
 
     /// Starts to listen everywhere that the configuration says.
     Result<void> listen();
@@ -46,6 +50,7 @@ public:
     const Identities& identities() const { return identities_; }
     WhoIsThere& who_is_there() { return who_; }
     OperatorDesk& operators() { return operators_; }
+    DescriptionDesk& description() { return description_; }
     StreamHub& streams() { return streams_; }
     std::vector<net::Address> addresses() const;
 
@@ -56,6 +61,7 @@ public:
 
     std::set<tls::Fingerprint> connected() const override;
     void cut(const tls::Fingerprint& key, const std::string& reason) override;
+    void let_go(NodeIndex node, const std::string& reason) override;
 
 private:
     using Connection = std::shared_ptr<net::ControlConnection>;
@@ -86,6 +92,7 @@ private:
     asio::awaitable<void> run_deadlines();
     asio::awaitable<void> watch_peers();
     void watch_nodes();
+    void watch_programs();
     asio::awaitable<Result<proto::Envelope>> first_message(Connection connection);
     asio::awaitable<void> wait_for_nodes();
 
@@ -107,10 +114,15 @@ private:
     MachineDesk machines_;
     SnapshotDesk snapshots_;
     StreamHub streams_;
+    DescriptionDesk description_;
     OperatorDesk operators_;
     std::vector<std::unique_ptr<net::Listener>> listeners_;
     std::map<NodeIndex, NodeLink> nodes_;
-    std::map<ClientId, Connection> clients_;
+    struct ClientLink {
+        Connection connection;
+        unsigned silent_checks = 0;
+    };
+    std::map<ClientId, ClientLink> clients_;
     std::map<net::ControlConnection*, std::weak_ptr<net::ControlConnection>> all_;
     asio::steady_timer deadline_timer_;
     asio::steady_timer process_timer_;

@@ -118,7 +118,7 @@ Outcome<proto::JoinAnswer> MachineDesk::join(const proto::JoinRequest& request, 
     if (!machine) return tl::unexpected(machine.error());
     proto::JoinAnswer answer;
     answer.set_name(machine->name);
-    if (request.node()) answer.set_wall_toml(keys_.wall_toml);
+    if (request.node()) answer.set_wall_toml(wall_toml_);
     return answer;
 }
 

@@ -29,7 +29,6 @@ public:
 struct WalldKeys {
     std::shared_ptr<const tls::TlsContext> tls;  ///< null: nobody beyond this machine is let in
     Machines machines;
-    std::string wall_toml;  ///< the wall's description, for nodes
 };
 
 class MachineDesk {
@@ -40,6 +39,8 @@ public:
     MachineDesk(WalldKeys keys, const config::WallConfig& config, MachineLinks& links, RandomBytes random)
         : keys_(std::move(keys)), config_(config), links_(links), random_(std::move(random)) {}
 
+    /// The wall's description, for nodes that join.
+    void set_wall_toml(std::string toml) { wall_toml_ = std::move(toml); }
     /// Null: this wall is on one machine.
     const std::shared_ptr<const tls::TlsContext>& tls() const { return keys_.tls; }
 
@@ -63,6 +64,7 @@ private:
     Outcome<net::Address> reachable(const nlohmann::json& arguments) const;
 
     WalldKeys keys_;
+    std::string wall_toml_;
     const config::WallConfig& config_;
     MachineLinks& links_;
     RandomBytes random_;

@@ -23,6 +23,7 @@ Outcome<Target> target_of(const Asked& asked) {
 Outcome<std::string> name_of(const Asked& asked) { return text_of(asked.arguments, "name"); }
 
 Answer done() { return {}; }
+Answer as_answer(json content) { return {std::move(content), {}}; }
 
 }  // namespace
 
@@ -44,12 +45,18 @@ const OperatorDesk::Row OperatorDesk::kVerbs[] = {
     {"close", Need::own, &OperatorDesk::close},
     {"hold", Need::own, &OperatorDesk::hold},
     {"step", Need::own, &OperatorDesk::step},
+    {"weight", Need::operate, &OperatorDesk::weight},
     {"save_layout", Need::operate, &OperatorDesk::save_layout},
     {"load_layout", Need::operate, &OperatorDesk::load_layout},
     {"delete_layout", Need::operate, &OperatorDesk::delete_layout},
     {"machines", Need::operate, &OperatorDesk::machines},
     {"join_token", Need::operate, &OperatorDesk::join_token},
     {"revoke", Need::operate, &OperatorDesk::revoke},
+    {"reload", Need::operate, &OperatorDesk::reload},
+    {"add_node", Need::operate, &OperatorDesk::add_node},
+    {"remove_node", Need::operate, &OperatorDesk::remove_node},
+    {"drain_node", Need::operate, &OperatorDesk::drain_node},
+    {"undrain_node", Need::operate, &OperatorDesk::undrain_node},
 };
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::carry_out(Asked asked) {
@@ -168,6 +175,14 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::step(const Asked& asked) {
         .map(done);
 }
 
+asio::awaitable<Outcome<Answer>> OperatorDesk::weight(const Asked& asked) {
+    const auto weight = number_of(asked.arguments, "weight", 0, 1, wire::kMostWeight);
+    if (!weight) co_return tl::unexpected(weight.error());
+    co_return target_of(asked)
+        .and_then([&](const Target& target) { return wall_.set_weight(target, static_cast<std::uint32_t>(*weight)); })
+        .map(done);
+}
+
 /// Answers when the frame is shown on all tiles. The session may still be about to open its window.
 asio::awaitable<Outcome<Answer>> OperatorDesk::wait(const Asked& asked) {
     const auto target = target_of(asked);
@@ -254,6 +269,26 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::join_token(const Asked& asked) {
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::revoke(const Asked& asked) {
     co_return machines_.revoke(asked.arguments).map(done);
+}
+
+// ---- what the wall is ----
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::reload(const Asked&) { co_return description_.reload().map(as_answer); }
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::add_node(const Asked& asked) {
+    co_return description_.add(asked.arguments).map(as_answer);
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::remove_node(const Asked& asked) {
+    co_return description_.remove(asked.arguments).map(as_answer);
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::drain_node(const Asked& asked) {
+    co_return description_.drain(asked.arguments).map(as_answer);
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::undrain_node(const Asked& asked) {
+    co_return description_.undrain(asked.arguments).map(as_answer);
 }
 
 }  // namespace wall::walld

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/daemon/changed.h"
+#include "walld/control/description_desk.h"
 #include "walld/control/layout_store.h"
 #include "walld/control/machine_desk.h"
 #include "walld/streams/snapshot_desk.h"
@@ -36,12 +37,14 @@ class OperatorDesk {
 public:
     /// `end_session` cuts a client off. `changed` is notified after every event of the wall.
     OperatorDesk(Wall& wall, SnapshotDesk& snapshots, const StreamHub& streams, LayoutStore layouts,
-                 MachineDesk& machines, net::Changed& changed, std::function<void(SessionId)> end_session)
+                 MachineDesk& machines, DescriptionDesk& description, net::Changed& changed,
+                 std::function<void(SessionId)> end_session)
         : wall_(wall),
           snapshots_(snapshots),
           streams_(streams),
           layouts_(std::move(layouts)),
           machines_(machines),
+          description_(description),
           changed_(changed),
           end_session_(std::move(end_session)) {}
 
@@ -73,6 +76,7 @@ private:
     asio::awaitable<Outcome<Answer>> screenshot(const Asked&);
     asio::awaitable<Outcome<Answer>> hold(const Asked&);
     asio::awaitable<Outcome<Answer>> step(const Asked&);
+    asio::awaitable<Outcome<Answer>> weight(const Asked&);
     asio::awaitable<Outcome<Answer>> wait(const Asked&);
     asio::awaitable<Outcome<Answer>> layouts(const Asked&);
     asio::awaitable<Outcome<Answer>> layout(const Asked&);
@@ -82,12 +86,18 @@ private:
     asio::awaitable<Outcome<Answer>> machines(const Asked&);
     asio::awaitable<Outcome<Answer>> join_token(const Asked&);
     asio::awaitable<Outcome<Answer>> revoke(const Asked&);
+    asio::awaitable<Outcome<Answer>> reload(const Asked&);
+    asio::awaitable<Outcome<Answer>> add_node(const Asked&);
+    asio::awaitable<Outcome<Answer>> remove_node(const Asked&);
+    asio::awaitable<Outcome<Answer>> drain_node(const Asked&);
+    asio::awaitable<Outcome<Answer>> undrain_node(const Asked&);
 
     Wall& wall_;
     SnapshotDesk& snapshots_;
     const StreamHub& streams_;
     LayoutStore layouts_;
     MachineDesk& machines_;
+    DescriptionDesk& description_;
     net::Changed& changed_;
     std::function<void(SessionId)> end_session_;
 };

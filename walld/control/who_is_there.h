@@ -32,6 +32,8 @@ public:
     /// `ends`: of the connection; nothing: somebody unknown.
     asio::awaitable<Person> at(std::optional<SocketEnds> ends);
     asio::awaitable<Person> user(std::uint32_t user);
+    /// Everybody is asked for again: who may do what has changed.
+    void forget() { kept_.clear(); }
 
 private:
     struct Kept {

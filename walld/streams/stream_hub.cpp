@@ -181,19 +181,33 @@ void StreamHub::follow(Viewer& viewer, std::uint32_t number, Clock::time_point n
         deadline_ = std::min(deadline_.value_or(watch.not_before), watch.not_before);
         return;
     }
+    if (find_anew(viewer, number, scope))
+        watch.not_before = now + std::chrono::microseconds(1'000'000 / watch.request.fps);
+}
+
+/// False: there is still nothing to see, as was said.
+bool StreamHub::find_anew(Viewer& viewer, std::uint32_t number, const Result<StreamScope>& scope) {
+    Watch& watch = viewer.watches_[number];
     Watch next = scope ? make_watch(watch.request, *scope)
                        : Watch{.request = watch.request,
                                .ended = scope.error().message.substr(scope.error().message.find(": ") + 2)};
     if (const auto room = check_room(viewer, {&next, 1}, {&watch, 1}); !room) {
-        if (!watch.scope) return;  // that was said
+        if (!watch.scope) return false;
         next = Watch{.request = watch.request, .ended = room.error().message};
     }
     const auto old = leave(viewer, number);
-    next.not_before = now + std::chrono::microseconds(1'000'000 / watch.request.fps);
     watch = std::move(next);
     join(viewer, number);
     drop_unwatched(old);
     viewer.news_.notify();
+    return true;
+}
+
+void StreamHub::wall_changed(Clock::time_point now) {
+    for (auto& [viewer, owner] : viewers_)
+        for (std::uint32_t i = 0; i < viewer->watches_.size(); ++i)
+            find_anew(*viewer, i, scope_of(wall_, viewer->watches_[i].request));
+    tick(now);
 }
 
 std::string StreamHub::tile_name(const Key& key) const { return wall_.nodes()[key.node].config->tiles[key.slot].name; }

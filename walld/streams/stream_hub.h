@@ -66,6 +66,8 @@ public:
     void node_joined(NodeIndex node);
     void node_left(NodeIndex node);
     void arrived(NodeIndex node, proto::StreamFrame& frame);
+    /// The wall has other tiles: everything that is watched is found anew among them.
+    void wall_changed(Clock::time_point now);
     /// To be called after any change of the wall: streams of windows follow them, at their rate.
     void tick(Clock::time_point now);
     /// When tick() has to be called even if nothing changes.
@@ -126,6 +128,7 @@ private:
     void join(Viewer& viewer, std::uint32_t number);
     void drop_unwatched(const std::vector<Key>& keys);
     void follow(Viewer& viewer, std::uint32_t number, Clock::time_point now);
+    bool find_anew(Viewer& viewer, std::uint32_t number, const Result<StreamScope>& scope);
     std::optional<ViewerMessage> next_of(Viewer& viewer, std::uint32_t number);
     std::string parts_text(std::uint32_t number, const Watch& watch) const;
     static Part& at(const Place& place);

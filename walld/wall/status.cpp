@@ -54,6 +54,8 @@ json objects_json(const proto::DriverObjects& o) {
 json node_json(const Node& node) {
     return {{"name", node.config->name},
             {"up", node.up},
+            {"silent", node.silent},
+            {"drained", node.duty == Duty::drained},
             {"backend", node.up ? node.hello.backend() : config::name_of(node.config->backend)},
             {"address", node.up ? node.hello.address() : node.config->listen.text()},
             {"pid", node.hello.pid()},
@@ -88,7 +90,8 @@ json traffic_json(const SessionTraffic& traffic) {
 
 json nodes_json(const Wall& wall) {
     auto out = json::array();
-    for (const auto& node : wall.nodes()) out.push_back(node_json(node));
+    for (const auto& node : wall.nodes())
+        if (node.duty != Duty::gone) out.push_back(node_json(node));
     return out;
 }
 
@@ -137,6 +140,8 @@ json session_json(const Wall& wall, SessionId id) {
              {"owner", person_json(session.owner)},
              {"held", session.held},
              {"fault", session.fault},
+             {"silent", session.silent},
+             {"weight", session.weight},
              {"traffic", traffic_json(session.traffic)},
              {"surfaces", std::move(surfaces)}};
     if (session.group) out["group"] = group_json(*session.group);

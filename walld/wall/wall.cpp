@@ -36,22 +36,21 @@ bool extent_ok(std::uint32_t width, std::uint32_t height) {
 
 Wall::Wall(config::WallConfig config, Outbox& out, RandomBytes random)
     : config_(std::move(config)), out_(out), random_(std::move(random)) {
-    for (const auto& node : config_.nodes)
-        nodes_.push_back(
-            {.config = &node, .hello = {}, .stats = {}, .tiles = std::vector<TileShown>(node.tiles.size())});
+    take_nodes();
 }
 
 // ---- nodes ----
 
 Result<NodeIndex> Wall::check_node(const proto::NodeHello& hello) const {
-    const auto found = std::ranges::find(nodes_, hello.name(), [](const Node& n) { return n.config->name; });
+    const auto index = find_node(hello.name());
     if (hello.version() != wire::kProtocolVersion)
         return fail("this walld speaks protocol version " + std::to_string(wire::kProtocolVersion) + ", the node " +
                     std::to_string(hello.version()));
-    if (found == nodes_.end()) return fail("node '" + hello.name() + "' is not in wall.toml");
-    if (found->up && !same_process(found->hello, hello) && hello.started_us() <= found->hello.started_us())
-        return fail("node '" + hello.name() + "' is already here, as process " + std::to_string(found->hello.pid()));
-    return NodeIndex(static_cast<std::uint32_t>(found - nodes_.begin()));
+    if (!index || nodes_[*index].duty == Duty::gone) return fail("node '" + hello.name() + "' is not in wall.toml");
+    const Node& node = nodes_[*index];
+    if (node.up && !same_process(node.hello, hello) && hello.started_us() <= node.hello.started_us())
+        return fail("node '" + hello.name() + "' is already here, as process " + std::to_string(node.hello.pid()));
+    return *index;
 }
 
 Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_point now) {
@@ -60,18 +59,23 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
     const auto index = *good;
     auto& node = nodes_[index];
     if (node.up) node_leaves(index, now);
-    const bool same = node.incarnation > 0 && same_process(node.hello, hello);
+    const bool anew = std::exchange(node.described_anew, false);
+    const bool same = !anew && node.incarnation > 0 && same_process(node.hello, hello);
     if (!same) {
         ++node.incarnation;
         node.stats.Clear();
     }
-    node.up = true;
+    node.up = node.duty == Duty::serves;
     node.hello = hello;
     welcome_node(index);
+    if (!node.up) {
+        send_away(hello, index);
+        return index;
+    }
     hear_wall_note(index, hello.wall_note());
     hear_of_sessions(index, hello, now);
     for (auto& [id, session] : sessions_) {
-        if (!same && !has_ticket(hello, id, session.tickets[index])) session.tickets.erase(index);
+        if (anew || (!same && !has_ticket(hello, id, session.tickets[index]))) session.tickets.erase(index);
         hand_out_ticket(id, session, index);
         out_.to_client(id, make(&proto::Envelope::mutable_node_up, node_up_message(index, session.tickets[index])));
     }
@@ -113,6 +117,20 @@ void Wall::node_faults(NodeIndex node, const proto::SessionFault& report) {
     if (!session->group && !report.ends()) return;
     out_.end_session(id, session->fault);
     close_session(id);
+}
+
+std::vector<NodeIndex> Wall::note_silent(const std::set<NodeIndex>& quiet) {
+    std::vector<NodeIndex> out;
+    for (const NodeIndex i : nodes_.ids())
+        if (!std::exchange(nodes_[i].silent, quiet.contains(i)) && quiet.contains(i)) out.push_back(i);
+    return out;
+}
+
+std::vector<SessionId> Wall::note_silent(const std::set<SessionId>& quiet) {
+    std::vector<SessionId> out;
+    for (auto& [id, session] : sessions_)
+        if (!std::exchange(session.silent, quiet.contains(id)) && quiet.contains(id)) out.push_back(id);
+    return out;
 }
 
 void Wall::welcome_node(NodeIndex node) {
@@ -184,7 +202,8 @@ SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Cloc
     session.owner = std::move(owner);
     session.held = hello.hold();
     if (hello.has_rect()) session.rect = from_proto(hello.rect());
-    if (hello.fullscreen()) session.rect = config_.canvas();
+    session.fullscreen = hello.fullscreen();
+    if (session.fullscreen) session.rect = config_.canvas();
     session.opened = now;
     if (hello.has_group()) {
         session.group.emplace(hello.group().name(), hello.group().members());
@@ -214,6 +233,7 @@ void Wall::hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node) 
     proto::Ticket message;
     message.set_session(id.value);
     message.set_ticket(ticket);
+    message.set_weight(session.weight);
     if (!session.group) message.set_key(session.owner.machine);  // a group's members may be at several
     if (session.group) {
         message.set_members(session.group->size());
@@ -228,15 +248,9 @@ void Wall::welcome_client(SessionId id, const SessionEntry& session, Rank rank) 
     welcome.set_session(id.value);
     welcome.set_canvas_width(static_cast<std::uint32_t>(canvas.width));
     welcome.set_canvas_height(static_cast<std::uint32_t>(canvas.height));
+    add_tiles(*welcome.mutable_tiles());
     std::vector<const proto::GlCaps*> caps;
     for (const NodeIndex i : nodes_.ids()) {
-        for (std::uint32_t slot = 0; const auto& tile : nodes_[i].config->tiles) {
-            auto* entry = welcome.add_tiles();
-            entry->set_node(i.value);
-            entry->set_slot(slot++);
-            entry->set_name(tile.name);
-            *entry->mutable_rect() = to_proto(tile.rect);
-        }
         if (!nodes_[i].up) continue;
         const auto at_first = session.group_nodes.find(i);
         const bool same_for_all =

@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -17,6 +18,7 @@
 #include "common/base/ids.h"
 #include "common/base/result.h"
 #include "common/config/wall_config.h"
+#include "common/wire/weights.h"
 #include "proto/control.pb.h"
 #include "walld/wall/layout.h"
 #include "walld/wall/parallel_group.h"
@@ -46,9 +48,18 @@ struct TileShown {
     std::optional<Clock::time_point> last;
 };
 
+enum class Duty {
+    serves,
+    drained,  ///< an operator has taken it off the wall: programs leave it alone, and its tiles stay
+    gone,     ///< not in wall.toml any more; its number stays free for it
+};
+
 struct Node {
-    const config::NodeConfig* config = nullptr;
-    bool up = false;
+    std::shared_ptr<const config::NodeConfig> config;
+    Duty duty = Duty::serves;
+    bool up = false;                ///< programs may use it
+    bool silent = false;            ///< its link may be dead
+    bool described_anew = false;    ///< since it came last: what it has of sessions is for other tiles
     std::uint32_t incarnation = 0;  ///< 0: never seen
     proto::NodeHello hello;         ///< of the last connection
     proto::NodeStats stats;         ///< the last that this process has told
@@ -83,8 +94,11 @@ struct SessionEntry {
     Clock::time_point opened;
     Person owner;
     std::optional<geom::Rect> rect;  ///< asked for; fullscreen: the canvas
+    bool fullscreen = false;
     bool held = false;
-    std::string fault;          ///< what a node said against its stream
+    std::string fault;  ///< what a node said against its stream
+    std::uint32_t weight = wire::kUsualWeight;
+    bool silent = false;        ///< its link may be dead, or somebody has stopped it
     std::uint32_t awaited = 0;  ///< windows that it still has to announce, of a session that goes on
     std::map<NodeIndex, std::string> tickets;
     std::map<SurfaceId, SurfaceEntry> surfaces;
@@ -129,7 +143,19 @@ public:
     void node_leaves(NodeIndex node, Clock::time_point now);
     void node_rendered(NodeIndex node, const proto::Rendered& report, Clock::time_point now);
     void node_faults(NodeIndex node, const proto::SessionFault& report);
+    /// Those of which nothing has been heard for a while, all of them. Gives those that are new among them.
+    std::vector<NodeIndex> note_silent(const std::set<NodeIndex>& quiet);
+    std::vector<SessionId> note_silent(const std::set<SessionId>& quiet);
     void node_reports(NodeIndex node, const proto::NodeStats& stats) { nodes_[node].stats = stats; }
+
+    // ---- another description (wall_describe.cpp) ----
+    /// Nodes of which the wall would have another description.
+    std::vector<NodeIndex> described_otherwise(const config::WallConfig& next) const;
+    /// The wall is described so from now on. Those nodes must have left. Windows whose place is gone get another one.
+    void describe(config::WallConfig next, Clock::time_point now);
+    /// It must have left, unless it is away.
+    void set_duty(NodeIndex node, Duty duty) { nodes_[node].duty = duty; }
+    std::optional<NodeIndex> find_node(std::string_view name) const;
 
     // ---- clients ----
     bool any_node_up() const;
@@ -165,6 +191,8 @@ public:
     Outcome<std::vector<SurfaceKey>> ask_to_close(const Target& target);
     Outcome<void> hold(const Target& target, bool on, Clock::time_point now);
     Outcome<void> step(const Target& target, std::uint32_t frames, Clock::time_point now);
+    /// Of the whole session: 1 to wire::kMostWeight.
+    Outcome<void> set_weight(const Target& target, std::uint32_t weight);
     Outcome<SurfaceKey> resolve(const Target& target) const;
     /// The one surface named, or all of the session (possibly none), bottom first.
     Outcome<std::vector<SurfaceKey>> surfaces_of(const Target& target) const;
@@ -192,6 +220,10 @@ private:
     SurfaceEntry* find(SurfaceId surface, SessionId session);
     SurfaceEntry& add_surface(const SurfaceKey& key, const proto::SurfaceOpen& message);
     proto::NodeUp node_up_message(NodeIndex node, const std::string& ticket) const;
+    bool take_nodes();
+    void add_tiles(google::protobuf::RepeatedPtrField<proto::TileInfo>& out) const;
+    geom::Rect place_after_change(const SessionEntry& session, const SurfaceEntry& surface);
+    void send_away(const proto::NodeHello& hello, NodeIndex node);
     void welcome_node(NodeIndex node);
     void welcome_client(SessionId id, const SessionEntry& session, Rank rank);
     void hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node);

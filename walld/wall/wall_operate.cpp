@@ -125,6 +125,17 @@ Outcome<void> Wall::step(const Target& target, std::uint32_t frames, Clock::time
     return {};
 }
 
+/// Nodes hear of it with the ticket that they have.
+Outcome<void> Wall::set_weight(const Target& target, std::uint32_t weight) {
+    auto* session = find(target.session);
+    if (!session) return no_session(target.session);
+    session->weight = weight;
+    for (const NodeIndex node : nodes_.ids())
+        if (nodes_[node].up) hand_out_ticket(target.session, *session, node);
+    for (const auto& [surface, entry] : session->surfaces) tell_note({target.session, surface});
+    return {};
+}
+
 // ---- layouts ----
 
 WindowName Wall::name_of(const SurfaceKey& key) const {

@@ -119,6 +119,9 @@ bool Wall::restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& mess
     proto::WindowRecord record;
     if (!check_place(config_.canvas(), drawn) || !record.ParseFromString(message.restore().note())) return false;
     session.held = record.session_held();
+    if (record.session_weight() != 0 && record.session_weight() <= wire::kMostWeight &&
+        record.session_weight() != session.weight)
+        (void)set_weight({key.session, {}}, record.session_weight());
     auto& surface = add_surface(key, message);
     surface.place = PlacementTrack(drawn);
     surface.scaled = record.scaled();
@@ -169,6 +172,7 @@ void Wall::tell_note(const SurfaceKey& key) {
     record.set_wanted_rect(surface.wanted_rect);
     record.set_held(surface.swap.held());
     record.set_session_held(session.held);
+    record.set_session_weight(session.weight);
     record.set_order(surface.order);
     if (surface.layout_z) record.set_layout_z(*surface.layout_z);
     auto text = record.SerializeAsString();

@@ -3,9 +3,7 @@
 whose programs are drawn on it; a guest joins now and then. What is on that wall is compared with a wall of the same
 tiles on one machine. Links are cut and limited, machines are revoked, and strangers come to the ports.
 
-Programs draw what only the nodes keep (drawn_once.cpp) and a colour that tells the frame (frame_clock.cpp). They are
-held while pictures are compared, so that the frame which they show is known, and run while something happens: a held
-program draws no frame from which a node that was away could take it up."""
+The programs and what is asked of them are those of tests/support/show.py."""
 from __future__ import annotations
 
 import base64
@@ -30,17 +28,15 @@ import numpy  # noqa: E402
 import strangers  # noqa: E402
 from compare import Verdict, same  # noqa: E402
 from machine_wall import DATA_PORT, WALLD, MachineWall  # noqa: E402
+from show import PROGRAMS, SETTLED, OneMachine, Show, until  # noqa: E402
 from wall import Wall, WallError, build_folder, end_all  # noqa: E402
 from xserver import XServer  # noqa: E402
 
-PROGRAMS = build_folder() / "tests"
 GENERATED = build_folder() / "generated" / "gen" / "glapi" / "wire.gen.h"
 TILES, TILE = (3, 2), (200, 150)
-SHOWN = {"drawn_once": (0, 0, 600, 180), "frame_clock": (0, 180, 600, 120)}  # each over all nodes
 QUIET = {"LP_NUM_THREADS": "0"}
-FIRST, FPS = 2, 20  # frames that a show begins with, and those a second while it is not held
+FPS = 20  # frames a second while a show is not held
 SOME = 10  # frames, from which one sees that a program goes on
-SETTLED = 0.3  # seconds after which what was told to be shown is shown
 CUT = 5.0  # seconds
 BACK = 30.0  # seconds until TCP, and whoever uses it, is back after a cut
 RIGHT_AGAIN = 15.0  # seconds from a node's start until the wall is right; about 1 where the machine does nothing else
@@ -49,87 +45,6 @@ STAYS_OUT = 3.0  # seconds in which a node that was revoked tries to come back
 CLOSED = 10.0  # seconds; a stranger is sent away after 5
 UNKNOWN = "does not know this machine's key"  # what a machine is told that has not joined, or was revoked
 LIMITED, LIMITED_FRAMES = 3.0, 10  # seconds with a slow link, and what is drawn in them at least
-
-
-def until(done: Callable[[], bool], what: str, limit: float) -> None:
-    end = time.monotonic() + limit
-    while not done():
-        if time.monotonic() > end:
-            raise AssertionError(f"not within {limit:.0f} s: {what}")
-        time.sleep(0.05)
-
-
-class Show:
-    """Both programs on a wall, started by `run` and held. `fps`: of those that come after they were let go; 0: as many
-    as possible."""
-
-    def __init__(self, wall: Wall, run: Callable, x: XServer, fps: int = 0):
-        self.wall = wall
-        self.apps = [run(PROGRAMS / name, "--size", f"{rect[2]}x{rect[3]}", *(["--fps", fps] if fps else []), rect=rect,
-                         hold=True, env=x.environment()) for name, rect in SHOWN.items()]
-        try:
-            self.frames = {wall.wait_session(app): 0 for app in self.apps}  # by session
-            self.clock = list(self.frames)[list(SHOWN).index("frame_clock")]
-            self.step(FIRST)
-        except BaseException:
-            end_all(self.apps)
-            raise
-
-    @property
-    def frame(self) -> int:
-        """The one that tells its number; the other program's are all the same."""
-        return self.frames[self.clock]
-
-    def step(self, frames: int = 1) -> None:
-        for session in self.frames:
-            self.step_one(session, frames)
-
-    def step_one(self, session: int, frames: int) -> None:
-        self.frames[session] += frames
-        self.wall.step(session, frames)
-        self.wall.wait(session, self.frames[session])
-
-    def go_on(self) -> None:
-        for session in self.frames:
-            self.wall.hold(session, on=False)
-
-    def hold(self) -> None:
-        for session in self.frames:
-            self.wall.hold(session)
-        time.sleep(SETTLED)
-        self.frames = {session: self.frame_now(session) for session in self.frames}
-
-    def frame_now(self, session: int | None = None) -> int:
-        """While they are not held, too."""
-        wanted = self.clock if session is None else session
-        return next(s["surfaces"][0]["frame"] for s in self.wall.sessions() if s["id"] == wanted)
-
-    def picture(self) -> numpy.ndarray:
-        return cv2.imdecode(numpy.frombuffer(self.wall.screenshot(), numpy.uint8), cv2.IMREAD_COLOR)
-
-    def end(self) -> None:
-        end_all(self.apps)
-        until(lambda: not set(self.frames) & {s["id"] for s in self.wall.sessions()}, "programs leave the wall",
-              NOTICED)
-
-
-class OneMachine:
-    """The same programs on a wall of this machine, where nothing happens."""
-
-    def __init__(self, wall: Wall, x: XServer):
-        self.wall, self.x = wall, x
-        self.show = Show(wall, wall.run, x)
-        self.pictures: dict[int, numpy.ndarray] = {}
-
-    def picture(self, frame: int) -> numpy.ndarray:
-        if frame not in self.pictures:
-            if frame < self.show.frame:
-                self.show.end()
-                self.show = Show(self.wall, self.wall.run, self.x)
-            if frame > self.show.frame:
-                self.show.step_one(self.show.clock, frame - self.show.frame)
-            self.pictures[frame] = self.show.picture()
-        return self.pictures[frame]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -189,11 +104,11 @@ class Machines(unittest.TestCase):
         return show
 
     def is_same(self, show: Show) -> Verdict:
-        return same(self.one_machine.picture(show.frame), show.picture())
+        return same(self.one_machine.picture(show.frames), show.picture())
 
     def assert_same(self, show: Show) -> None:
         verdict = self.is_same(show)
-        self.assertTrue(verdict.good, f"frame {show.frame}: {verdict}")
+        self.assertTrue(verdict.good, f"frames {show.frames}: {verdict}")
 
     def assert_becomes_same(self, show: Show, limit: float = RIGHT_AGAIN) -> float:
         """With the frames to come; gives how long it took. It is held then."""
@@ -203,7 +118,7 @@ class Machines(unittest.TestCase):
             took = time.monotonic() - begin
             if (verdict := self.is_same(show)).good:
                 break
-            self.assertLess(took, limit, f"frame {show.frame}: {verdict}")
+            self.assertLess(took, limit, f"frames {show.frames}: {verdict}")
             show.go_on()
             time.sleep(SETTLED)
         for app in show.apps:
@@ -213,9 +128,9 @@ class Machines(unittest.TestCase):
 
     def assert_goes_on(self, show: Show, limit: float = NOTICED) -> float:
         """With at least some frames from now on; gives how long these took."""
-        begin, first = time.monotonic(), show.frame_now()
+        begin, first = time.monotonic(), show.clock.frame_now()
         show.go_on()
-        until(lambda: show.frame_now() >= first + SOME, "the program goes on", limit)
+        until(lambda: show.clock.frame_now() >= first + SOME, "the program goes on", limit)
         return time.monotonic() - begin
 
     def is_up(self, node: str) -> bool:
@@ -245,10 +160,10 @@ class Machines(unittest.TestCase):
     def test_its_owner_is_told_with_the_machine(self) -> None:
         show = self.show()
         owners = {s["id"]: s["owner"]["name"] for s in self.wall.sessions()}
-        self.assertEqual({owners[session] for session in show.frames}, {"root@desk"})
+        self.assertEqual({owners[session] for session in show.sessions}, {"root@desk"})
         me = self.wall.ctl_at("desk", "whoami")
         self.assertEqual((me["name"], me["role"]), ("root@desk", "user"))
-        self.wall.ctl_at("desk", "raise", show.clock)
+        self.wall.ctl_at("desk", "raise", show.clock.session)
         with self.assertRaisesRegex(WallError, "may not"):
             self.wall.ctl_at("desk", "machines")
 
@@ -283,7 +198,7 @@ class Machines(unittest.TestCase):
     def test_walld_is_killed_and_started_again(self) -> None:
         show = self.show()
         self.wall.restart_walld()
-        until(lambda: set(show.frames) <= {s["id"] for s in self.wall.sessions() if s["surfaces"]},
+        until(lambda: show.sessions <= {s["id"] for s in self.wall.sessions() if s["surfaces"]},
               "the programs are back", RIGHT_AGAIN)
         self.assert_goes_on(show)
         self.assert_becomes_same(show)
@@ -292,11 +207,11 @@ class Machines(unittest.TestCase):
 
     def cut(self, host: str, show: Show) -> int:
         """For some seconds; gives how many frames were shown meanwhile."""
-        first = show.frame_now()
+        first = show.clock.frame_now()
         self.wall.hosts.cut(host)
         try:
             time.sleep(CUT)
-            return show.frame_now() - first
+            return show.clock.frame_now() - first
         finally:
             self.wall.hosts.mend(host)
 
@@ -358,7 +273,7 @@ class Machines(unittest.TestCase):
         self.assertEqual({s["owner"]["name"] for s in self.wall.sessions()}, {"root@guest", "root@desk"})
         self.assertTrue(self.streams_from("guest"))
         self.wall.revoke("client", "guest")
-        until(lambda: {s["id"] for s in self.wall.sessions()} == set(ours.frames), "its programs are gone", NOTICED)
+        until(lambda: {s["id"] for s in self.wall.sessions()} == ours.sessions, "its programs are gone", NOTICED)
         until(lambda: not self.streams_from("guest"), "its streams are gone", NOTICED)
         for attempt in (["status"], ["screenshot", self.folder / "none.png"]):
             with self.assertRaisesRegex(WallError, UNKNOWN):

@@ -263,6 +263,16 @@ TEST(WallConfig, AnEmptyOneLacksNodes) {
     EXPECT_EQ(config.error().message, "wall.toml:1: 'node' is missing: expected at least one [[node]]");
 }
 
+TEST(WallConfig, NodesStandAloneToBeAdded) {
+    const auto nodes = parse_nodes("[[node]]\nname = \"a\"\n[[node.tile]]\nname = \"t\"\nrect = [0, 0, 8, 6]\n", "x");
+    ASSERT_TRUE(nodes) << nodes.error().message;
+    ASSERT_EQ(nodes->size(), 1u);
+    EXPECT_EQ(nodes->front().tiles.at(0).rect, (geom::Rect{0, 0, 8, 6}));
+    const auto more = parse_nodes("[people]\n", "x");
+    ASSERT_FALSE(more);
+    EXPECT_THAT(more.error().message, StartsWith("x:1: unknown key 'people' in the nodes"));
+}
+
 TEST(WallConfig, AMissingFileIsNamed) {
     const auto config = load_config("/nowhere/wall.toml");
     ASSERT_FALSE(config);

@@ -284,6 +284,43 @@ TEST_F(RenderThreadTest, ABatchOfMinutesKeepsNobodyAway) {
     EXPECT_EQ(events_.failure_, "");
 }
 
+/// Two programs that each want all there is, for as long as it takes.
+TEST_F(RenderThreadTest, TurnsAreSharedByWeight) {
+    constexpr std::uint32_t kHeavy = 1, kLight = 2, kFrames = 2000;
+    for (const std::uint32_t id : {kHeavy, kLight}) {
+        const auto queue = open(id);
+        wire::PackBuffer list;
+        define_run(list, 7, 20'000);
+        push(queue, list);
+        for (std::uint32_t frame = 1; frame <= kFrames; ++frame) {
+            wire::PackBuffer buffer;
+            block(buffer, 1, [](auto& b) { pack::RunCall(b, ClientName(7)); });
+            pack::Swap(buffer, SurfaceId(1), frame);
+            push(queue, buffer);
+        }
+    }
+    const auto drawn_in = [&](Clock::duration time) {
+        std::map<std::uint32_t, std::uint32_t> before, after;
+        events_.wait([&](Events& e) { return before = e.drawn_, true; });
+        std::this_thread::sleep_for(time);
+        events_.wait([&](Events& e) { return after = e.drawn_, true; });
+        EXPECT_LT(after[kHeavy], kFrames) << "it has had work all the time";
+        return static_cast<double>(after[kHeavy] - before[kHeavy]) / std::max(1u, after[kLight] - before[kLight]);
+    };
+    thread_->set_weight(SessionId(kHeavy), 4);
+    std::this_thread::sleep_for(500ms);
+    const double four = drawn_in(2s);
+    thread_->set_weight(SessionId(kHeavy), 0.25);
+    std::this_thread::sleep_for(100ms);
+    const double quarter = drawn_in(2s);
+    std::printf("frames to one of the other at four times the weight: %.2f, at a quarter: %.2f\n", four, quarter);
+    EXPECT_GT(four, 2.5);
+    EXPECT_LT(four, 6);
+    EXPECT_GT(quarter, 1.0 / 6);
+    EXPECT_LT(quarter, 1 / 2.5);
+    EXPECT_EQ(events_.failure_, "");
+}
+
 /// Little to tell the driver, much for it to do: it gathers triangles and fills them later.
 TEST_F(RenderThreadTest, ABatchOfLargeTrianglesKeepsNobodyAway) {
     const auto heavy = open(1);

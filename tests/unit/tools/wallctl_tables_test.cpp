@@ -9,6 +9,7 @@ namespace wall::wallctl {
 namespace {
 
 using nlohmann::json;
+using ::testing::HasSubstr;
 
 TEST(Tables, AlignColumnsAndLeaveOutTrailingBlanks) {
     const json tiles{
@@ -47,6 +48,22 @@ TEST(Tables, ASessionHasALineForEachWindow) {
               "ID   PROGRAM  NAME  OWNER        PID  WINDOW   PLACE        FRAME  SENT       NOTE\n"
               "3.1  gears          alice        42   300x200  300x200+0+0  7      12.5 kB/s  held\n"
               "4    new      x     token kiosk  43                                           bad stream\n");
+}
+
+TEST(Tables, ANodeIsUpAwayOrDrained) {
+    const auto with = [](bool up, bool drained) {
+        return nodes_table({{{"name", "left"}, {"up", up}, {"drained", drained}}});
+    };
+    EXPECT_THAT(with(true, false), HasSubstr("left  up "));
+    EXPECT_THAT(with(false, false), HasSubstr("left  away "));
+    EXPECT_THAT(with(false, true), HasSubstr("left  drained "));
+}
+
+TEST(Tables, SaysWhatReadingWallTomlAgainHasDone) {
+    EXPECT_EQ(reloaded_text({{"tiles", 6}, {"nodes", {"a", "b"}}}),
+              "the wall has 6 tiles; nodes that are new, gone or described otherwise: a b\n");
+    EXPECT_EQ(reloaded_text({{"tiles", 6}, {"nodes", json::array()}}),
+              "the wall has 6 tiles; nodes that are new, gone or described otherwise: none\n");
 }
 
 TEST(Tables, AParallelProgramSaysHowManyProcessesAreThere) {

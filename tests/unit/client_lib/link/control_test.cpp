@@ -272,6 +272,16 @@ TEST(ControlMessages, ReadsAWholeWelcome) {
     EXPECT_THAT(welcome.caps.limits.at(0x846E), ElementsAre(1, 255.5));
 }
 
+TEST(ControlMessages, ReadsOtherTiles) {
+    proto::Envelope envelope;
+    *envelope.mutable_tiles_changed()->mutable_tiles() = full_welcome().client_welcome().tiles();
+    const auto message = decode_from_walld(envelope.SerializeAsString());
+    ASSERT_TRUE(message);
+    const auto& tiles = std::get<TilesChanged>(*message).tiles;
+    ASSERT_EQ(tiles.size(), 2u);
+    EXPECT_EQ(tiles[1].rect, (geom::Rect{-5, 0, 1024, 768}));
+}
+
 TEST(ControlMessages, CutOrChangedBytesNeverCrash) {
     const auto good = full_welcome().SerializeAsString();
     for (std::size_t i = 1; i < good.size(); ++i) EXPECT_FALSE(decode_from_walld(good.substr(0, i))) << i;
@@ -366,6 +376,21 @@ proto::Envelope close_of(std::uint32_t surface) {
     proto::Envelope envelope;
     envelope.mutable_close_request()->set_surface(surface);
     return envelope;
+}
+
+TEST(ControlLink, APlacementLiesAmongTheTilesThatWalldSaidLast) {
+    Linked linked;
+    linked.link->surface_open(SurfaceId(1), 300, 200, "gears");
+    proto::Envelope placement, tiles;
+    placement.mutable_placement()->set_surface(1);
+    tiles.mutable_tiles_changed()->add_tiles()->set_node(9);
+    linked.walld.send(framed(placement) + framed(tiles) + framed(placement));
+    const auto events = collect(*linked.link, [](auto& e) { return e.placements.size() > 1; });
+    ASSERT_EQ(events.placements.size(), 2u);
+    ASSERT_TRUE(events.placements[0].tiles);
+    EXPECT_EQ(events.placements[0].tiles->size(), 2u) << "the welcome's";
+    ASSERT_EQ(events.placements[1].tiles->size(), 1u);
+    EXPECT_EQ(events.placements[1].tiles->front().node, NodeIndex(9));
 }
 
 TEST(ControlLink, AWindowIsToldToRedrawAfterAMoveAndNotAfterItsOwnRequests) {

@@ -298,6 +298,24 @@ TEST_F(StreamHubTest, AStreamFollowsItsWindowAtItsRate) {
     EXPECT_EQ(hub_.node_streams(), 0u);
 }
 
+TEST_F(StreamHubTest, WhatIsWatchedIsFoundAmongOtherTiles) {
+    const auto whole = viewer({{.wall = true}}), right = viewer({tile("r")});
+    next(*whole), next(*right);
+    const std::string left = "[[node]]\nname = \"left\"\n[[node.tile]]\nname = \"l\"\nrect = [0, 0, 640, 480]\n";
+    wall_.node_leaves(kRight, {});
+    hub_.node_left(kRight);
+    wall_.describe(*config::parse_config(left, "test"), {});
+    hub_.wall_changed({});
+    EXPECT_THAT(next(*whole), HasSubstr(R"("shows":[0,0,640,480])"));
+    EXPECT_EQ(next(*right), R"({"ended":"there is no tile 'r'","stream":0})");
+    EXPECT_EQ(next(*right), "");
+    EXPECT_EQ(hub_.views().size(), 1u) << "of the tile that is left";
+    wall_.describe(*config::parse_config(kTwoNodes, "test"), {});
+    hub_.wall_changed({});
+    EXPECT_THAT(next(*whole), HasSubstr(R"("shows":[0,0,1280,480])"));
+    EXPECT_THAT(next(*right), HasSubstr(R"("tile":"r")")) << "it is there again";
+}
+
 TEST_F(StreamHubTest, ThereAreOnlySoManyStreams) {
     const auto id = window({0, 0, 100, 100});
     const auto follower = viewer({{.session = id}});

@@ -313,6 +313,22 @@ TEST_F(TheWall, APlacementThatCannotBeChangesNothing) {
     EXPECT_FALSE(wall_.find({id, SurfaceId(1)})->place.moving());
 }
 
+TEST_F(TheWall, TellsNodesASessionsWeightWithTheTicketThatTheyHave) {
+    join("left");
+    const auto id = open();
+    const auto ticket = last_to_node(kLeft).ticket();
+    EXPECT_EQ(ticket.weight(), wire::kUsualWeight);
+    ASSERT_TRUE(wall_.set_weight({id, {}}, 30));
+    EXPECT_EQ(last_to_node(kLeft).ticket().weight(), 30u);
+    EXPECT_EQ(last_to_node(kLeft).ticket().ticket(), ticket.ticket());
+    join("right");
+    const auto& heard = out_.nodes[kRight];
+    const auto told = std::ranges::find_if(heard, &proto::Envelope::has_ticket);
+    ASSERT_NE(told, heard.end());
+    EXPECT_EQ(told->ticket().weight(), 30u) << "who comes later as well";
+    EXPECT_EQ(wall_.set_weight({SessionId(7), {}}, 30).error().kind, RefusalKind::not_found);
+}
+
 TEST_F(TheWall, TakesNoMoreSessionsThanItsLimit) {
     join("left");
     proto::ClientHello hello;

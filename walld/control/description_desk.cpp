@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "walld/control/description_desk.h"
+
+#include <algorithm>
+
+#include "common/log/log.h"
+#include "walld/control/arguments.h"
+#include "walld/wall/messages.h"
+
+namespace wall::walld {
+namespace {
+
+using nlohmann::json;
+
+/// What only a new process can take, if the descriptions differ in it.
+const char* fixed_difference(const config::WallConfig& before, const config::WallConfig& after) {
+    if (before.control_listen != after.control_listen) return "'listen' in [control]";
+    if (before.daemon_user != after.daemon_user) return "'daemon_user' in [control]";
+    if (before.http_listen != after.http_listen) return "[http]";
+    if (before.state_directory != after.state_directory) return "'state_directory' in [wall]";
+    if (before.swap_timeout != after.swap_timeout) return "'swap_timeout_ms' in [wall]";
+    return nullptr;
+}
+
+}  // namespace
+
+DescriptionDesk::DescriptionDesk(WallFile file, std::string toml, const Told& told)
+    : file_(std::move(file)), toml_(std::move(toml)), told_(told) {
+    told_.machines.set_wall_toml(toml_);
+    const auto drained = file_.drained();
+    if (!drained) {
+        log::error("drained_unknown reason={}", log::quoted(drained.error().message));
+        return;
+    }
+    for (const auto& name : *drained)
+        if (const auto node = told_.wall.find_node(name)) told_.wall.set_duty(*node, Duty::drained);
+}
+
+void DescriptionDesk::tell(NodeIndex node) const {
+    proto::WallDescription message;
+    message.set_wall_toml(toml_);
+    told_.out.to_node(node, make(&proto::Envelope::mutable_wall_description, message));
+}
+
+Outcome<json> DescriptionDesk::reload() { return take(file_.read()); }
+
+Outcome<json> DescriptionDesk::add(const json& arguments) {
+    return text_of(arguments, "toml").and_then([&](const std::string& text) { return take(file_.add(text)); });
+}
+
+Outcome<json> DescriptionDesk::remove(const json& arguments) {
+    return text_of(arguments, "name").and_then([&](const std::string& name) { return take(file_.remove(name)); });
+}
+
+Outcome<json> DescriptionDesk::take(Outcome<Description> next) {
+    if (!next) return tl::unexpected(next.error());
+    Wall& wall = told_.wall;
+    if (const char* fixed = fixed_difference(wall.config(), next->config))
+        return refuse(RefusalKind::conflict, std::string(fixed) +
+                                                 " has changed, which walld takes only when it starts "
+                                                 "(`systemctl restart walld`): nothing was changed");
+    auto identities = Identities::open(next->config.people);
+    if (!identities) return refuse(RefusalKind::invalid, identities.error().message);
+    told_.identities = std::move(*identities);
+    told_.who.forget();
+    toml_ = std::move(next->toml);
+    told_.machines.set_wall_toml(toml_);
+
+    const auto known = wall.nodes().size();
+    const auto others = wall.described_otherwise(next->config);
+    json names = json::array();
+    for (const NodeIndex node : others) {
+        names.push_back(wall.nodes()[node].config->name);
+        tell(node);
+        told_.links.let_go(node, "it is described otherwise");
+    }
+    wall.describe(std::move(next->config), Clock::now());
+    for (const NodeIndex node : wall.nodes().ids()) {
+        if (node.value >= known) names.push_back(wall.nodes()[node].config->name);
+        if (std::ranges::count(others, node) == 0) tell(node);
+    }
+    told_.streams.wall_changed(Clock::now());
+    std::size_t tiles = 0;
+    for (const auto& node : wall.config().nodes) tiles += node.tiles.size();
+    return json{{"nodes", names}, {"tiles", tiles}};
+}
+
+Outcome<json> DescriptionDesk::set_drained(const json& arguments, bool on) {
+    const auto name = text_of(arguments, "name");
+    if (!name) return tl::unexpected(name.error());
+    Wall& wall = told_.wall;
+    const auto node = wall.find_node(*name);
+    if (!node || wall.nodes()[*node].duty == Duty::gone)
+        return refuse(RefusalKind::not_found, "there is no node '" + *name + "'");
+    auto drained = file_.drained();
+    if (!drained) return tl::unexpected(drained.error());
+    if (on) drained->insert(*name);
+    else drained->erase(*name);
+    if (auto kept = file_.set_drained(*drained); !kept) return tl::unexpected(kept.error());
+    const auto duty = on ? Duty::drained : Duty::serves;
+    if (wall.nodes()[*node].duty == duty) return json::object();
+    told_.links.let_go(*node, on ? "an operator drains it" : "it serves the wall again");
+    wall.set_duty(*node, duty);
+    return json::object();
+}
+
+}  // namespace wall::walld

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// What of the wall follows its description: which nodes and tiles there are, from the start and when wall.toml changes
+// while programs run. A node keeps its number as long as walld runs. One whose tiles change leaves and comes back as
+// one that knows nothing, so that no frame of it mixes two descriptions; the programs take the other tiles at their
+// next frames, with a placement, as they take a move.
+#include <algorithm>
+
+#include "walld/wall/messages.h"
+#include "walld/wall/placement.h"
+#include "walld/wall/wall.h"
+
+namespace wall::walld {
+
+std::optional<NodeIndex> Wall::find_node(std::string_view name) const {
+    for (const NodeIndex i : nodes_.ids())
+        if (nodes_[i].config->name == name) return i;
+    return std::nullopt;
+}
+
+/// Those of config_; others are gone. True: some are others than before.
+bool Wall::take_nodes() {
+    bool changed = false;
+    for (const NodeIndex i : nodes_.ids()) {
+        Node& node = nodes_[i];
+        if (node.duty == Duty::gone || config_.find_node(node.config->name)) continue;
+        node.duty = Duty::gone;
+        node.config = std::make_shared<const config::NodeConfig>(config::NodeConfig{.name = node.config->name});
+        node.tiles.clear();
+        changed = true;
+    }
+    for (const auto& config : config_.nodes) {
+        auto index = find_node(config.name);
+        if (index && nodes_[*index].duty != Duty::gone && *nodes_[*index].config == config) continue;
+        if (!index) {
+            index = NodeIndex(static_cast<std::uint32_t>(nodes_.size()));
+            nodes_.push_back({});
+        }
+        Node& node = nodes_[*index];
+        node.config = std::make_shared<const config::NodeConfig>(config);
+        if (node.duty == Duty::gone) node.duty = Duty::serves;
+        node.described_anew = node.incarnation > 0;
+        node.tiles.assign(config.tiles.size(), {});
+        changed = true;
+    }
+    return changed;
+}
+
+std::vector<NodeIndex> Wall::described_otherwise(const config::WallConfig& next) const {
+    std::vector<NodeIndex> out;
+    for (const NodeIndex i : nodes_.ids()) {
+        const auto* described = next.find_node(nodes_[i].config->name);
+        if (nodes_[i].duty != Duty::gone && (!described || *described != *nodes_[i].config)) out.push_back(i);
+    }
+    return out;
+}
+
+void Wall::describe(config::WallConfig next, Clock::time_point now) {
+    const bool other_background = next.background != config_.background;
+    config_ = std::move(next);
+    const bool other_tiles = take_nodes();
+    for (const NodeIndex i : nodes_.ids())
+        if (other_background && nodes_[i].up) welcome_node(i);
+    if (!other_tiles) return;
+    proto::TilesChanged tiles;
+    add_tiles(*tiles.mutable_tiles());
+    for (auto& [id, session] : sessions_) {
+        if (session.fullscreen) session.rect = config_.canvas();
+        out_.to_client(id, make(&proto::Envelope::mutable_tiles_changed, tiles));
+    }
+    for_each_surface([&](const SurfaceKey& key, SurfaceEntry& surface) {
+        want(key, place_after_change(*find(key.session), surface), now);
+    });
+}
+
+/// Where it was, if that is on the wall.
+geom::Rect Wall::place_after_change(const SessionEntry& session, const SurfaceEntry& surface) {
+    const auto canvas = config_.canvas();
+    if (surface.wanted_rect && session.fullscreen) return canvas;
+    const auto rect = surface.place.wanted();
+    if (check_place(canvas, rect)) return rect;
+    return place(canvas, {}, rect.width, rect.height, windows_placed_++);
+}
+
+void Wall::add_tiles(google::protobuf::RepeatedPtrField<proto::TileInfo>& out) const {
+    for (const NodeIndex i : nodes_.ids()) {
+        for (std::uint32_t slot = 0; const auto& tile : nodes_[i].config->tiles) {
+            auto& entry = *out.Add();
+            entry.set_node(i.value);
+            entry.set_slot(slot++);
+            entry.set_name(tile.name);
+            *entry.mutable_rect() = to_proto(tile.rect);
+        }
+    }
+}
+
+/// A drained node keeps nothing of the programs, which do not know that it is here.
+void Wall::send_away(const proto::NodeHello& hello, NodeIndex node) {
+    nodes_[node].described_anew = true;  // what it gets later are other tickets
+    for (auto& [id, session] : sessions_) session.tickets.erase(node);
+    for (const auto& known : hello.sessions()) {
+        proto::SessionEnd end;
+        end.set_session(known.session());
+        out_.to_node(node, make(&proto::Envelope::mutable_session_end, end));
+    }
+}
+
+}  // namespace wall::walld
