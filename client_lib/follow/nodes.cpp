@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "client_lib/process/log.h"
+#include "common/base/quoted.h"
 
 namespace wall::client {
 namespace {
@@ -85,8 +86,8 @@ void Nodes::wait_for_attempts(std::unique_lock<std::mutex>& lock, std::chrono::m
 void Nodes::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream) {
     const auto now = std::chrono::steady_clock::now();
     if (!stream) {
-        log_warning("event=node_refused node=" + std::to_string(node.index.value) + " reason=\"" +
-                    stream.error().message + "\"");
+        log(LogLevel::warn, "event=node_refused node=%u reason=%s", node.index.value,
+            in_quotes(stream.error().message).c_str());
         return node.reopening.not_opened(now);
     }
     node.reopening.opened(now);
@@ -110,7 +111,7 @@ void Nodes::lose(Node& node) {
     const std::string why = node.stream->failure();
     const bool ended = node.stream->ended_by_node();
     node.reopening.lost(std::chrono::steady_clock::now(), ended);
-    log_warning("event=stream_lost node=" + std::to_string(node.index.value) + " why=\"" + why + "\"");
+    log(LogLevel::warn, "event=stream_lost node=%u why=%s", node.index.value, in_quotes(why).c_str());
     if (node.reopening.given_up())
         complain_once("a node of the wall has ended this program's drawing again and again and is left alone: " + why,
                       "node_given_up");
