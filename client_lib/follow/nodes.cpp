@@ -56,13 +56,17 @@ void Nodes::connect(const NodeInfo& info) {
     attempts_begun_ = true;
 }
 
-void Nodes::connect_and_wait(const NodeInfo& info) {
-    Node& node = at(info.node);
-    if (node.alive() && node.info.incarnation == info.incarnation) return;
-    connect(info);
-    if (!node.attempt) return;
-    node.attempt->wait_until(std::chrono::steady_clock::time_point::max());
-    take_attempt(node);
+void Nodes::connect_and_wait(std::span<const NodeInfo> infos) {
+    for (const NodeInfo& info : infos) {
+        const Node& node = at(info.node);
+        if (!node.alive() || node.info.incarnation != info.incarnation) connect(info);
+    }
+    for (const NodeInfo& info : infos) {
+        Node& node = at(info.node);
+        if (!node.attempt) continue;
+        node.attempt->wait_until(std::chrono::steady_clock::time_point::max());
+        take_attempt(node);
+    }
 }
 
 void Nodes::attempt(Node& node) {

@@ -48,8 +48,9 @@ public:
     void set_session(SessionId session) { session_ = session; }
     /// The node, as walld names it now, is another one than before: what it held is gone.
     void connect(const NodeInfo& info);
-    /// The same, unless it is connected to that very process; waits until something has come of it.
-    void connect_and_wait(const NodeInfo& info);
+    /// The same as connect() for several at once, but for those that are connected to that very process; waits until
+    /// something has come of each, with the lock held.
+    void connect_and_wait(std::span<const NodeInfo> infos);
     /// Until what connect() has begun since the last call has come to something, at most `limit`; the lock is not held
     /// meanwhile.
     void wait_for_attempts(std::unique_lock<std::mutex>& lock, std::chrono::milliseconds limit);
