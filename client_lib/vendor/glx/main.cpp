@@ -51,6 +51,6 @@ extern "C" [[gnu::visibility("default")]] Bool __glx_Main(std::uint32_t version,
     imports->getProcAddress = glx::get_proc_address;
     imports->getDispatchAddress = glx::get_dispatch_address;
     imports->setDispatchIndex = glx::set_index;
-    log(LogLevel::info, "loaded window_system=glx program=%s", in_quotes(program_name()).c_str());
+    log(LogLevel::info, "loaded window_system=glx program=%s", wall::in_quotes(program_name()).c_str());
     return True;
 }
