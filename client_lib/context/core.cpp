@@ -39,14 +39,27 @@ struct Current {
 };
 constinit thread_local Current* current = nullptr;
 
+/// A thread has the context; whatever is thrown, nobody has it any more when this goes without keep().
+class Claim {
+public:
+    explicit Claim(Context& context) : context_(&context) {}
+    ~Claim() {
+        if (context_) context_->in_use = false;
+    }
+    Claim(const Claim&) = delete;
+    void keep() { context_ = nullptr; }
+
+private:
+    Context* context_;
+};
+
 void release() {
     const std::unique_ptr<Current> last(std::exchange(current, nullptr));
-    if (last) {
-        last->context->flush_block();
-        last->context->session().flush(DrawTarget(), false);
-        last->context->in_use = false;
-    }
     go_dark();
+    if (!last) return;
+    const Claim over(*last->context);
+    last->context->flush_block();
+    last->context->session().flush(DrawTarget(), false);
 }
 
 }  // namespace
@@ -115,16 +128,17 @@ bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurfac
         release();
         return true;
     }
-    if (!current || context != current->context) {
-        if (context->in_use.exchange(true)) return false;
-        release();
-        context->in_use = true;
-    } else {
+    const bool again = current && context == current->context;
+    if (!again && context->in_use.exchange(true)) return false;
+    Claim claim(*context);
+    if (again) {
+        claim.keep();  // it has been made already
         context->flush_block();
+    } else {
+        release();
     }
     const auto session = ClientSession::get();
     if (!session) {
-        context->in_use = false;
         release();
         return false;
     }
@@ -137,6 +151,7 @@ bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurfac
         current = new Current;
         at_thread_end(release);
     }
+    claim.keep();
     *current = {std::move(context), std::move(draw), std::move(read)};
     if (current->context->lost()) {
         go_dark();

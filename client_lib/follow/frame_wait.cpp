@@ -7,6 +7,7 @@
 
 #include "client_lib/link/pacing.h"
 #include "client_lib/process/log.h"
+#include "common/base/quoted.h"
 
 namespace wall::client {
 namespace {
@@ -90,8 +91,8 @@ void wait_for_group(const FrameWait& wait, const ClientSurface& surface) {
         w.first->slow = !done;
         if (done || w.second->queued_bytes() <= kMaxLateBytes || w.first->stream != w.second) continue;
         w.second->give_up("too late with a parallel program's frames");
-        log_warning("event=node_given_up node=" + std::to_string(w.first->index.value) + " why=\"" +
-                    w.second->failure() + "\"");
+        log(LogLevel::warn, "event=node_given_up node=%u why=%s", w.first->index.value,
+            in_quotes(w.second->failure()).c_str());
         w.first->stream.reset();
     }
 }

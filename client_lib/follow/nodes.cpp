@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "client_lib/process/log.h"
+#include "common/base/quoted.h"
 
 namespace wall::client {
 namespace {
@@ -66,13 +67,17 @@ void Nodes::forget_others(const Welcome& welcome) {
     }
 }
 
-void Nodes::connect_and_wait(const NodeInfo& info) {
-    Node& node = at(info.node);
-    if (node.alive() && node.info.incarnation == info.incarnation) return;
-    connect(info);
-    if (!node.attempt) return;
-    node.attempt->wait_until(std::chrono::steady_clock::time_point::max());
-    take_attempt(node);
+void Nodes::connect_and_wait(std::span<const NodeInfo> infos) {
+    for (const NodeInfo& info : infos) {
+        const Node& node = at(info.node);
+        if (!node.alive() || node.info.incarnation != info.incarnation) connect(info);
+    }
+    for (const NodeInfo& info : infos) {
+        Node& node = at(info.node);
+        if (!node.attempt) continue;
+        node.attempt->wait_until(std::chrono::steady_clock::time_point::max());
+        take_attempt(node);
+    }
 }
 
 void Nodes::attempt(Node& node) {
@@ -96,8 +101,8 @@ void Nodes::wait_for_attempts(std::unique_lock<std::mutex>& lock, std::chrono::m
 void Nodes::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream) {
     const auto now = std::chrono::steady_clock::now();
     if (!stream) {
-        log_warning("event=node_refused node=" + std::to_string(node.index.value) + " reason=\"" +
-                    stream.error().message + "\"");
+        log(LogLevel::warn, "event=node_refused node=%u reason=%s", node.index.value,
+            in_quotes(stream.error().message).c_str());
         return node.reopening.not_opened(now);
     }
     node.reopening.opened(now);
@@ -121,7 +126,7 @@ void Nodes::lose(Node& node) {
     const std::string why = node.stream->failure();
     const bool ended = node.stream->ended_by_node();
     node.reopening.lost(std::chrono::steady_clock::now(), ended);
-    log_warning("event=stream_lost node=" + std::to_string(node.index.value) + " why=\"" + why + "\"");
+    log(LogLevel::warn, "event=stream_lost node=%u why=%s", node.index.value, in_quotes(why).c_str());
     if (node.reopening.given_up())
         complain_once("a node of the wall has ended this program's drawing again and again and is left alone: " + why,
                       "node_given_up");

@@ -50,8 +50,9 @@ public:
     void connect(const NodeInfo& info);
     /// Of a walld that came back: nodes that it does not have any more go.
     void forget_others(const Welcome& welcome);
-    /// The same as connect(), unless it is connected to that very process; waits until something has come of it.
-    void connect_and_wait(const NodeInfo& info);
+    /// The same as connect() for several at once, but for those that are connected to that very process; waits until
+    /// something has come of each, with the lock held.
+    void connect_and_wait(std::span<const NodeInfo> infos);
     /// Until what connect() has begun since the last call has come to something, at most `limit`; the lock is not held
     /// meanwhile.
     void wait_for_attempts(std::unique_lock<std::mutex>& lock, std::chrono::milliseconds limit);

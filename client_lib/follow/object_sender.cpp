@@ -55,7 +55,7 @@ void ObjectSender::fetch(const Object& object) {
     };
     const auto holder = std::ranges::find_if(nodes_, has_it);
     if (holder == nodes_.end()) {
-        log_warning("event=drawn_content_lost object=" + std::to_string(object.id.value));
+        log(LogLevel::warn, "event=drawn_content_lost object=%u", object.id.value);
         return;
     }
     Node& from = **holder;

@@ -180,7 +180,8 @@ void Surfaces::adopt_agreed(ClientSurface& surface) {
     while (!coming.empty() && coming.front().from_frame <= surface.frame + 1) {
         const Placement placement = std::move(coming.front());
         coming.pop_front();
-        for (const NodeInfo& info : placement.nodes) nodes_.connect_and_wait(info);
+        // The lock stays held: what another thread drew meanwhile would miss nodes that other members' frames have.
+        nodes_.connect_and_wait(placement.nodes);
         const bool moved = placement.rect != surface.layout.rect;
         surface.layout.width = placement.width;
         surface.layout.height = placement.height;

@@ -17,6 +17,7 @@
 #include "client_lib/process/process.h"
 #include "client_lib/process/stats.h"
 #include "common/base/address.h"
+#include "common/base/quoted.h"
 #include "common/base/trusted_server.h"
 #include "common/wire/limits.h"
 
@@ -413,7 +414,7 @@ bool ControlLink::handle(FromWalld message) {
         return true;  // placements follow
     } else if (auto* node = std::get_if<NodeInfo>(&message)) {
         log(LogLevel::info, "node_%s node=%u address=%s", node->up ? "up" : "down", node->node.value,
-            node->address.c_str());
+            in_quotes(node->address).c_str());
         if (node->up) tickets_[node->node] = node->ticket;
         // What it shows of programs that do not draw by themselves is lost with its process.
         for (const auto& [id, surface] : surfaces_)
@@ -429,7 +430,8 @@ bool ControlLink::handle(FromWalld message) {
     } else if (std::holds_alternative<std::monostate>(message)) {
         return true;
     } else if (auto* close = std::get_if<CloseRequest>(&message)) {
-        log(LogLevel::info, "close_requested surface=%u reason=%s", close->surface.value, close->reason.c_str());
+        log(LogLevel::info, "close_requested surface=%u reason=%s", close->surface.value,
+            in_quotes(close->reason).c_str());
         wishes_.close.insert(close->surface);
     }
     has_events_ = true;
@@ -472,7 +474,7 @@ void ControlLink::watch_walld() {
     } else if (!std::exchange(asked_, true)) {
         queue(encode_ping());
     } else if (!std::exchange(silent_, true)) {
-        log(LogLevel::warn, "walld_silent address=%s", address_.c_str());
+        log(LogLevel::warn, "walld_silent address=%s", in_quotes(address_).c_str());
         changed_.notify_all();
     }
 }
@@ -514,7 +516,7 @@ void ControlLink::tell_traffic() {
 }
 
 void ControlLink::on_lost(const std::string& why) {
-    log(LogLevel::error, "walld_lost address=%s why=%s", address_.c_str(), why.c_str());
+    log(LogLevel::error, "walld_lost address=%s why=%s", in_quotes(address_).c_str(), in_quotes(why).c_str());
     fd_.reset();
     inbox_.clear();
     {
@@ -544,7 +546,7 @@ void ControlLink::end_if_walld_is_new() {
     if (::poll(&closed, 1, static_cast<int>(kLifeSign.count())) != 0) return;
     refused_ = true;
     const std::string why = "walld was started anew: so must the parallel program be";
-    log(LogLevel::error, "session_ended why=%s", why.c_str());
+    log(LogLevel::error, "session_ended why=%s", in_quotes(why).c_str());
     end_group(why);
 }
 
@@ -566,7 +568,7 @@ bool ControlLink::reconnect() {
     }
     auto opened = greet(hello_again(), address_, kOpenLimit);
     if (!opened) {
-        log(LogLevel::debug, "walld_unreachable why=%s", opened.error().message.c_str());
+        log(LogLevel::debug, "walld_unreachable why=%s", in_quotes(opened.error().message).c_str());
         return false;
     }
     log(LogLevel::info, "walld_reconnected session=%u", opened->welcome.session.value);

@@ -14,6 +14,8 @@
 #include <mutex>
 #include <string_view>
 
+#include "common/base/quoted.h"
+
 namespace wall::client {
 
 namespace detail {
@@ -79,9 +81,10 @@ void complain_once(const std::string& text, const char* topic) {
             }
         }
     }
-    const std::string line = "wallgl: " + text + "\n";
+    const std::string harmless = escaped(text);
+    const std::string line = "wallgl: " + harmless + "\n";
     [[maybe_unused]] const auto n = write(STDERR_FILENO, line.data(), line.size());
-    if (log_fd != STDERR_FILENO) log(LogLevel::error, "%s", text.c_str());
+    if (log_fd != STDERR_FILENO) log(LogLevel::error, "%s", harmless.c_str());
 }
 
 }  // namespace wall::client

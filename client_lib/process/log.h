@@ -20,13 +20,12 @@ inline bool log_enabled(LogLevel level) {
     return static_cast<int>(level) <= (now >= 0 ? now : detail::read_log_environment());
 }
 
-/// One line; the format is printf's.
+/// One line; the format is printf's. A text that is not our own is given as in_quotes() (common/base/quoted.h); a test
+/// looks at all calls.
 [[gnu::format(printf, 2, 3)]] void log(LogLevel level, const char* format, ...);
 
-inline void log_warning(const std::string& event) { log(LogLevel::warn, "%s", event.c_str()); }
-
 /// A line on stderr that everybody sees, at most once per process for each topic (a string literal). Goes to the log
-/// as well.
+/// as well. The text may hold anybody's words: what is not printable is escaped.
 void complain_once(const std::string& text, const char* topic = "wall");
 
 }  // namespace wall::client

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "client_lib/process/log.h"
+#include "common/base/quoted.h"
 
 namespace wall::client::vendor {
 namespace {
@@ -95,7 +96,7 @@ bool ask_to_close(const std::string& display, xcb_window_t window) {
 
 void ask_to_redraw(const std::string& display, xcb_window_t window) {
     const Server server(display);
-    if (!server.open()) return log(LogLevel::debug, "redraw_not_asked display=%s", display.c_str());
+    if (!server.open()) return log(LogLevel::debug, "redraw_not_asked display=%s", in_quotes(display).c_str());
     const auto geometry = server.geometry(window);
     if (!geometry) return log(LogLevel::debug, "redraw_not_asked window=%u", window);
     struct {

@@ -1,24 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Text in a line of the log. Names, titles and reasons come from programs, peers and drivers; written as they are, a
-// line feed in one would begin a line of its own, and a quote a field. Pure; any thread.
+// Text in a line of the daemons' log, as types, so that none gets there as it is. Pure; any thread.
 #pragma once
 
 #include <spdlog/fmt/fmt.h>
 
-#include <cstddef>
 #include <string>
 #include <string_view>
 
+#include "common/base/quoted.h"
+
 namespace wall::log {
 
-inline constexpr std::size_t kMaxText = 512;  ///< bytes of a text that the log keeps
-
-/// Anybody's text, made harmless: in quotes, printable ASCII, one line, bounded.
+/// Anybody's text, made harmless (common/base/quoted.h).
 struct Quoted {
     std::string text;
 };
-/// Quotes, backslashes and all that is not printable ASCII become escapes; what is longer ends in "...".
-Quoted quoted(std::string_view text);
+inline Quoted quoted(std::string_view text) { return {in_quotes(text)}; }
 
 /// A text that cannot hold anybody else's words: a constant of the program, or an audit line.
 struct Plain {

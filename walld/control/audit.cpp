@@ -13,7 +13,7 @@ using nlohmann::json;
 /// As JSON, which is pure ASCII in one line.
 std::string one_line(const json& value) {
     const auto text = value.dump(-1, ' ', true, json::error_handler_t::replace);
-    return text.size() <= log::kMaxText ? text : "\"too long\"";
+    return text.size() <= kMaxQuoted ? text : "\"too long\"";
 }
 
 log::Quoted target_of(const json& arguments) {

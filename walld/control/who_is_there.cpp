@@ -8,7 +8,9 @@
 namespace wall::walld {
 namespace {
 
-asio::awaitable<std::optional<Peer>> look_for_peer(SocketEnds ends) { co_return peer_of(ends); }
+asio::awaitable<std::optional<Peer>> look_for_peer(WhoIsThere::FindPeer find_peer, SocketEnds ends) {
+    co_return find_peer(ends);
+}
 
 /// Nothing: it cannot be found out now.
 asio::awaitable<std::optional<Person>> look_up(const WhoIsThere::Lookup& lookup, std::uint32_t user) {
@@ -24,7 +26,7 @@ asio::awaitable<std::optional<Person>> look_up(const WhoIsThere::Lookup& lookup,
 asio::awaitable<Person> WhoIsThere::at(std::optional<SocketEnds> ends) {
     if (!ends) co_return Person{};
     auto peer = ends->credentials;
-    if (!peer) peer = co_await asio::co_spawn(sockets_, look_for_peer(*ends), asio::use_awaitable);
+    if (!peer) peer = co_await asio::co_spawn(sockets_, look_for_peer(find_peer_, *ends), asio::use_awaitable);
     if (!peer) co_return Person{};
     co_return co_await user(peer->user);
 }

@@ -26,8 +26,10 @@ public:
     static constexpr std::chrono::seconds kKept{60};           ///< then a user's name and groups are asked for again
     static constexpr std::size_t kMaxKept = 1024;              ///< users
     using Lookup = std::function<Person(std::uint32_t user)>;  ///< may block; called by one other thread
+    using FindPeer = std::optional<Peer> (*)(const SocketEnds& ends);  ///< the same
 
-    WhoIsThere(const asio::any_io_executor& executor, Lookup lookup) : lookup_(std::move(lookup)), known_(executor) {}
+    WhoIsThere(const asio::any_io_executor& executor, Lookup lookup, FindPeer find_peer = peer_of)
+        : lookup_(std::move(lookup)), find_peer_(find_peer), known_(executor) {}
 
     /// `ends`: of the connection; nothing: somebody unknown.
     asio::awaitable<Person> at(std::optional<SocketEnds> ends);
@@ -43,6 +45,7 @@ private:
     const Person* kept(std::uint32_t user);
 
     Lookup lookup_;
+    FindPeer find_peer_;
     std::map<std::uint32_t, Kept> kept_;
     std::set<std::uint32_t> asked_;  ///< the name service, just now
     net::Changed known_;

@@ -572,15 +572,23 @@ EGLBoolean bind(const std::shared_ptr<EglContext>& context, std::shared_ptr<EglS
         if (context->current && !again) return refuse(EGL_BAD_ACCESS);
         context->current = true;
     }
-    if (!draw && !context->nothing) context->nothing = no_surface();
-    if (!client::make_current(context->core, draw ? draw->core : context->nothing,
-                              read ? read->core : context->nothing)) {
+    const auto give_up = [&] {
         if (!again) {
             std::lock_guard lock(current_mutex);
             context->current = false;
         }
         let_go();
-        return refuse(EGL_BAD_ALLOC);  // the wall cannot be reached
+    };
+    try {
+        if (!draw && !context->nothing) context->nothing = no_surface();
+        if (!client::make_current(context->core, draw ? draw->core : context->nothing,
+                                  read ? read->core : context->nothing)) {
+            give_up();
+            return refuse(EGL_BAD_ALLOC);  // the wall cannot be reached
+        }
+    } catch (...) {
+        if (!again) give_up();
+        throw;
     }
     if (!again) {
         let_go();

@@ -8,6 +8,7 @@
 #include "client_lib/process/process.h"
 #include "client_lib/vendor/egl/functions.h"
 #include "client_lib/vendor/guarded.h"
+#include "common/base/quoted.h"
 
 namespace wall::client::egl {
 namespace {
@@ -52,6 +53,6 @@ extern "C" [[gnu::visibility("default")]] EGLBoolean __egl_Main(std::uint32_t ve
     imports->getProcAddress = egl::get_proc_address;
     imports->getDispatchAddress = egl::dispatch_address;
     imports->setDispatchIndex = egl::set_dispatch_index;
-    log(LogLevel::info, "loaded window_system=egl program=%s", program_name().c_str());
+    log(LogLevel::info, "loaded window_system=egl program=%s", wall::in_quotes(program_name()).c_str());
     return EGL_TRUE;
 }

@@ -87,18 +87,27 @@ MakeCurrentResult make_context_current(std::shared_ptr<GlxContext> context, std:
         if (context->current && context.get() != current) return MakeCurrentResult::context_in_use;
         context->current = true;
     }
-    if (!client::make_current(context->core, draw ? draw->surface : nullptr, read ? read->surface : nullptr)) {
-        if (context.get() != current) {
+    const bool again = context.get() == current;
+    const auto give_up = [&] {
+        if (!again) {
             std::lock_guard lock(contexts().mutex);
             context->current = false;
         }
         let_go();
-        return MakeCurrentResult::no_wall;
+    };
+    try {
+        if (!client::make_current(context->core, draw ? draw->surface : nullptr, read ? read->surface : nullptr)) {
+            give_up();
+            return MakeCurrentResult::no_wall;
+        }
+    } catch (...) {
+        if (!again) give_up();
+        throw;
     }
     auto& drawables = Drawables::get();
     drawables.now_current(draw);
     drawables.now_current(read);
-    if (context.get() == current) {
+    if (again) {
         drawables.no_longer_current(current->draw);
         drawables.no_longer_current(current->read);
     } else {

@@ -10,6 +10,7 @@
 #include "client_lib/process/process.h"
 #include "client_lib/vendor/glx/functions.h"
 #include "client_lib/vendor/guarded.h"
+#include "common/base/quoted.h"
 
 namespace wall::client::glx {
 namespace {
@@ -50,6 +51,6 @@ extern "C" [[gnu::visibility("default")]] Bool __glx_Main(std::uint32_t version,
     imports->getProcAddress = glx::get_proc_address;
     imports->getDispatchAddress = glx::get_dispatch_address;
     imports->setDispatchIndex = glx::set_index;
-    log(LogLevel::info, "loaded window_system=glx program=%s", program_name().c_str());
+    log(LogLevel::info, "loaded window_system=glx program=%s", wall::in_quotes(program_name()).c_str());
     return True;
 }

@@ -250,5 +250,21 @@ TEST_F(Limits, PipelinedRequestsAreAnsweredInTurn) {
     EXPECT_THAT(answers.substr(answers.rfind("HTTP/1.1")), StartsWith("HTTP/1.1 503")) << "no node is up";
 }
 
+/// A chunk's first line has no length that says when it will end, and its parser looks for its end only.
+TEST_F(Limits, ALineOfARequestThatNeverEndsIsNotKept) {
+    constexpr std::size_t kMuch = 64 << 20;  // far more than the kernel keeps of a connection
+    walld_.connect();
+    const auto fd = open(walld_.http());
+    std::string piece = "POST /api/v1/blank HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n1;";
+    std::size_t sent = 0;
+    for (ssize_t n; sent < kMuch && (n = ::send(fd.get(), piece.data(), piece.size(), MSG_NOSIGNAL)) > 0;) {
+        sent += static_cast<std::size_t>(n);
+        piece.assign(1 << 16, 'x');
+    }
+    EXPECT_LT(sent, kMuch) << "walld closes the connection";
+    auto peer = connect();
+    EXPECT_TRUE(ask(peer, "status").ok());
+}
+
 }  // namespace
 }  // namespace wall::test

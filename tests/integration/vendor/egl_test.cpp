@@ -105,6 +105,21 @@ TEST_F(Egl, DrawsFramesIntoAWindow) {
     EXPECT_EQ(eglGetError(), EGL_BAD_SURFACE);
 }
 
+TEST_F(Egl, WithoutMemoryAFunctionFailsAndTheProgramGoesOn) {
+    const EGLint size[] = {EGL_WIDTH, 16, EGL_HEIGHT, 16, EGL_NONE};
+    const auto make_surface = [&] { return eglCreatePbufferSurface(display, config(), size); };
+    const auto make_context = [&] { return eglCreateContext(display, config(), EGL_NO_CONTEXT, nullptr); };
+    const EGLSurface surface = make_surface();
+    const EGLContext context = make_context();
+    setenv("WALLGL_FAKE_NO_MEMORY", "1", 1);
+    EXPECT_EQ(make_surface(), EGL_NO_SURFACE);
+    EXPECT_EQ(make_context(), EGL_NO_CONTEXT);
+    EXPECT_FALSE(eglMakeCurrent(display, surface, surface, context));
+    unsetenv("WALLGL_FAKE_NO_MEMORY");
+    EXPECT_THAT(last_logged("event=out_of_memory"), HasSubstr("function=eglMakeCurrent"));
+    EXPECT_TRUE(eglMakeCurrent(display, surface, surface, context)) << "it is nobody's";
+}
+
 TEST_F(Egl, SamplesCountBeforeTheDepthBuffer) {
     std::vector<EGLConfig> all(100);
     EGLint count = 0;

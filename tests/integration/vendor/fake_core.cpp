@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // A core without a wall: GL calls do nothing, frames are counted. What the vendors ask of it goes to the log as
-// `fake_...` events, which the vendor tests read. WALLGL_FAKE_REFUSE=1: no wall can be reached.
+// `fake_...` events, which the vendor tests read. WALLGL_FAKE_REFUSE=1: no wall can be reached;
+// WALLGL_FAKE_NO_MEMORY=1: what makes something throws.
 #include <GL/gl.h>
 
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 
 #include "client_lib/context/core.h"
 #include "client_lib/process/log.h"
@@ -64,6 +66,10 @@ GLuint gen_lists(GLsizei) { return 1; }
 GLboolean true_function() { return GL_TRUE; }
 long no_function() { return 0; }
 
+void ask_for_memory() {
+    if (std::getenv("WALLGL_FAKE_NO_MEMORY")) throw std::bad_alloc();
+}
+
 void gen_names(GLsizei n, GLuint* names) {
     for (GLsizei i = 0; i < n; ++i) names[i] = static_cast<GLuint>(i + 1);
 }
@@ -71,12 +77,14 @@ void gen_names(GLsizei n, GLuint* names) {
 }  // namespace
 
 std::shared_ptr<ClientSurface> create_surface(SurfaceOptions options) {
+    ask_for_memory();
     return std::make_shared<ClientSurface>(std::move(options));
 }
 
 bool offers_es(int major) { return major == 1 || major == 2; }
 
 std::shared_ptr<Context> create_context(const ContextOptions& options) {
+    ask_for_memory();
     log(LogLevel::info, "fake_context version=%d.%d core=%d shared=%d es=%d robust=%d resets=%d", options.major,
         options.minor, options.core_profile, options.share != nullptr, options.es, options.robust,
         options.notifies_of_resets);
@@ -88,6 +96,7 @@ std::shared_ptr<Context> create_context(const ContextOptions& options) {
 
 bool make_current(std::shared_ptr<Context> context, std::shared_ptr<ClientSurface> draw,
                   std::shared_ptr<ClientSurface>) {
+    if (context) ask_for_memory();
     if (std::getenv("WALLGL_FAKE_REFUSE")) {
         complain_once("no wall at unix:/nowhere");
         return !context;

@@ -91,6 +91,21 @@ TEST_F(Glx, ConfigurationsAreAMatrix) {
     XFree(all);
 }
 
+TEST_F(Glx, WithoutMemoryAFunctionFailsAndTheProgramGoesOn) {
+    const GLXFBConfig config = configs().at(0);
+    const int size[] = {GLX_PBUFFER_WIDTH, 16, GLX_PBUFFER_HEIGHT, 16, None};
+    const auto make_context = [&] { return glXCreateNewContext(display, config, GLX_RGBA_TYPE, nullptr, True); };
+    const GLXPbuffer surface = glXCreatePbuffer(display, config, size);
+    const GLXContext context = make_context();
+    setenv("WALLGL_FAKE_NO_MEMORY", "1", 1);
+    EXPECT_EQ(glXCreatePbuffer(display, config, size), GLXPbuffer{0});
+    EXPECT_EQ(make_context(), nullptr);
+    EXPECT_FALSE(glXMakeContextCurrent(display, surface, surface, context));
+    unsetenv("WALLGL_FAKE_NO_MEMORY");
+    EXPECT_THAT(last_logged("event=out_of_memory"), HasSubstr("function=glXMakeContextCurrent"));
+    EXPECT_TRUE(glXMakeContextCurrent(display, surface, surface, context)) << "it is nobody's";
+}
+
 TEST_F(Glx, ChoosesNoMoreThanAskedFor) {
     const auto found = configs({GLX_DOUBLEBUFFER, True, GLX_RED_SIZE, 1, GLX_DEPTH_SIZE, 1});
     ASSERT_FALSE(found.empty());

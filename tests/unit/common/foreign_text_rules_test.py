@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Foreign text has one way in and one way out: JSON is parsed by parse_json() alone, the log is written by common/log
-alone, and no size is guarded by an assertion. Looks at the sources."""
+alone (by client_lib/process/log.h in other people's processes), in quotes that in_quotes() makes, and no size is
+guarded by an assertion. Looks at the sources."""
 import re
 import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
-FOLDERS = ("common", "walld", "tileserver", "tools")
+FOLDERS = ("client_lib", "common", "walld", "tileserver", "tools")
 
 
 def sources() -> dict[str, str]:
@@ -24,6 +25,26 @@ def uses(pattern: str, but: tuple[str, ...] = ()) -> list[str]:
     return found
 
 
+# Each was looked at: our functions' names and words, OpenGL's errors, what the standard library throws, and the text
+# that complain_once() has made harmless.
+OWN = r'(?:function|name|node->up \? "up" : "down"|message\.text\.c_str\(\)|e\.what\(\)|harmless\.c_str\(\))'
+
+
+def library_logs() -> list[tuple[str, str]]:
+    """FILE:LINE of each line that client_lib logs, and what it gives log() behind the level."""
+    found = []
+    for name, text in sources().items():
+        if name.startswith("client_lib/"):
+            found += [(f"{name}:{text.count(chr(10), 0, match.start()) + 1}", match.group(1))
+                      for match in re.finditer(r"\blog\(LogLevel::\w+,\s*([^;]*)\);", text)]
+    return found
+
+
+def harmless(call: str) -> bool:
+    """Whether each text of a line is one of ours or in_quotes()."""
+    return call.count("%s") == len(re.findall(r",\s*(?:(?:wall::)?in_quotes\(|" + OWN + r"(?=,|$))", call))
+
+
 class Rules(unittest.TestCase):
     def test_the_sources_are_there(self) -> None:
         self.assertGreater(len(sources()), 200)
@@ -36,8 +57,19 @@ class Rules(unittest.TestCase):
 
     def test_the_log_takes_only_harmless_text(self) -> None:
         self.assertEqual(uses(r"spdlog::", ("common/log/log.cpp",)), [])
-        by_hand = uses(r'\\"\{\}\\"', ("common/log/quoted.cpp",))
-        self.assertEqual(by_hand, [], "quotes by hand do not escape: use log::quoted()")
+        by_hand = uses(r'\\"\{\}\\"|=\\""')
+        self.assertEqual(by_hand, [], "quotes by hand do not escape: use log::quoted(), in client_lib in_quotes()")
+
+    def test_the_client_library_logs_only_harmless_text(self) -> None:
+        self.assertGreater(len(library_logs()), 20)
+        careless = [f"{place}: {call}" for place, call in library_logs() if not harmless(call)]
+        self.assertEqual(careless, [], "texts of others are given as in_quotes()")
+
+    def test_a_careless_line_is_found(self) -> None:
+        self.assertTrue(harmless('"lost node=%u why=%s", node, in_quotes(why).c_str()'))
+        self.assertFalse(harmless('"lost node=%u why=%s", node, why.c_str()'))
+        self.assertFalse(harmless('"lost address=%s why=%s", in_quotes(address).c_str(), why.c_str()'))
+        self.assertFalse(harmless('"%s", ("lost why=" + why).c_str()'))
 
     def test_plain_text_in_the_log_is_ours(self) -> None:
         # Each use was looked at: names of enumerations and tasks, and the audit line, which quotes what is in it.

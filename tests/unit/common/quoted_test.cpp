@@ -33,7 +33,7 @@ TEST(Quoted, EndsOnlyWhereItEnds) {
 
 TEST(Quoted, IsBounded) {
     const auto text = log::quoted(std::string(100'000, '\n')).text;
-    EXPECT_LE(text.size(), 4 * kMaxText + 5);
+    EXPECT_LE(text.size(), 4 * kMaxQuoted + 5);
     EXPECT_TRUE(text.ends_with("...\""));
 }
 

@@ -8,11 +8,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
 #include <filesystem>
 #include <thread>
 #include <vector>
 
 #include "common/base/trusted_server.h"
+#include "common/net/control_client.h"
+#include "common/net/control_connection.h"
 #include "tests/support/temporary_folder.h"
 
 namespace wall::net {
@@ -181,6 +186,32 @@ TEST_F(TrustedServer, IsNoneOfAnotherUser) {
             EXPECT_TRUE(check_server(fd->get(), "*"));
         }
     }
+}
+
+TEST_F(TrustedServer, IsAskedForByToolsBeforeTheySpeak) {
+    const AStrangersServer stranger({.path = {}, .host = "127.0.0.1", .port = 0}, true);
+    const auto tool = ControlClient::connect(stranger.address(), seconds(5));
+    ASSERT_FALSE(tool);
+    EXPECT_THAT(tool.error().message, ::testing::HasSubstr("this is not walld: it is a process of user 54321"));
+}
+
+TEST_F(TrustedServer, IsAskedForByNodesBeforeTheySpeak) {
+    const AStrangersServer stranger({.path = {}, .host = "127.0.0.1", .port = 0}, true);
+    const auto connect = [&](std::string walld) {
+        asio::io_context io(1);
+        Result<std::shared_ptr<ControlConnection>> node = fail("it does not come to an end");
+        asio::co_spawn(
+            io,
+            [&]() -> asio::awaitable<void> {
+                node = co_await ControlConnection::connect(stranger.address(), walld);
+                if (node) (*node)->close();
+            },
+            asio::detached);
+        io.run();
+        return node ? "connected" : node.error().message;
+    };
+    EXPECT_THAT(connect(kWallUser), ::testing::HasSubstr("this is not walld: it is a process of user 54321"));
+    EXPECT_EQ(connect(std::to_string(kStranger)), "connected") << "unless that is walld's user";
 }
 
 TEST_F(TcpPeer, OfOurOwnUserIsTrusted) { EXPECT_TRUE(check_server(connect().get(), "nobody-of-that-name")); }

@@ -33,7 +33,7 @@ class AFollower : public testing::Test {
 protected:
     AFollower() {
         std::thread node_side([this] { EXPECT_TRUE(fake.welcome([] {})); });
-        nodes.connect_and_wait({kNode, fake.listener.address(), "ticket", 1, true});
+        nodes.connect_and_wait(std::array{NodeInfo{kNode, fake.listener.address(), "ticket", 1, true}});
         node_side.join();
         surface.layout.width = surface.layout.height = 100;
         surface.layout.rect = {0, 0, 100, 100};

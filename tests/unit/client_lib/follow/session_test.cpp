@@ -8,9 +8,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <mutex>
+#include <span>
 #include <thread>
 
 #include "client_lib/context/core.h"
+#include "client_lib/follow/nodes.h"
 #include "client_lib/link/reopening.h"
 #include "common/glapi/gl_types.h"
 #include "gen/glapi/wire.gen.h"
@@ -159,6 +162,53 @@ TEST_F(ASession, LeavesANodeAloneThatEndsItAgainAndAgain) {
     EXPECT_EQ(opened, Reopening::kMostEndings);
     draw();
     EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("no such thing"));
+}
+
+// ---- its nodes alone ----
+
+/// Some that are silent, and behind them one that answers; what a member of a parallel program is told of them.
+class NodesOfAWall : public testing::Test {
+protected:
+    NodesOfAWall() {
+        for (std::uint32_t i = 0; i < kSilentNodes; ++i) {
+            silent_.push_back(std::make_unique<Listener>("nodes_silent" + std::to_string(i) + "_"));
+            infos_.push_back({NodeIndex(i), silent_.back()->address(), "ticket", 1, true});
+        }
+        infos_.push_back({NodeIndex(kSilentNodes), fake_.listener.address(), "ticket", 1, true});
+    }
+    std::vector<std::unique_ptr<Listener>> silent_;
+    FakeNode fake_{"nodes_node"};
+    std::vector<NodeInfo> infos_;
+    Nodes nodes_{{[](Node&) {}, [] {}, [] {}, [] {}}};
+};
+
+TEST_F(NodesOfAWall, AreWaitedForInOneLimitHoweverManyAreSilent) {
+    std::thread node_side([this] { EXPECT_TRUE(fake_.welcome([] {})); });
+    const auto start = Clock::now();
+    nodes_.connect_and_wait(infos_);
+    const auto took = Clock::now() - start;
+    node_side.join();
+    EXPECT_LT(took, 4s) << "each silent node is waited for up to 2 s";
+    EXPECT_FALSE(nodes_[NodeIndex(0)].alive());
+    EXPECT_TRUE(nodes_[NodeIndex(kSilentNodes)].alive());
+    nodes_.connect_and_wait(std::span(infos_).last(1));
+    EXPECT_TRUE(nodes_[NodeIndex(kSilentNodes)].alive()) << "it stays connected to that process";
+}
+
+TEST_F(NodesOfAWall, AreWaitedForWithoutTheLock) {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    nodes_.connect(infos_.front());
+    std::atomic<bool> drew{false};
+    std::thread other([&] {
+        const std::lock_guard held(mutex);
+        drew = true;
+    });
+    nodes_.wait_for_attempts(lock, 1500ms);
+    EXPECT_TRUE(lock.owns_lock());
+    EXPECT_TRUE(drew) << "other threads go on beside a node that is silent";
+    lock.unlock();
+    other.join();
 }
 
 // ---- the policy alone ----

@@ -8,6 +8,7 @@
 #include "client_lib/context/context.h"
 #include "client_lib/geometry/primitive_scan.h"
 #include "client_lib/objects/share_group.h"
+#include "tests/unit/client_lib/context_fixture.h"
 
 namespace wall::client {
 
@@ -168,6 +169,28 @@ TEST(PrimitiveScan, TextureUnitsAndGenericAttributesAreRememberedLikeAllOthers) 
     std::memcpy(&x, c.packer.operand_at(places.offset[place_of(Attribute::vertex_attrib + 5)]) + 4, sizeof x);
     EXPECT_EQ(x, 2);
     EXPECT_EQ(places.offset[place_of(Attribute::vertex_attrib + 4)], AttributePlaces::kNone);
+    c.packer.reset();
+}
+
+using ALargeDraw = ContextTest;
+
+TEST_F(ALargeDraw, IsAnErrorAndTheNextOneIsPacked) {
+    c.packer.set_most_bytes(1000);
+    const auto points = [&](int count) {
+        gl().Begin(c, GL_POINTS);
+        for (int i = 0; i < count; ++i) gl().Vertex2f(c, 0, 0);
+        gl().End(c);
+    };
+    points(10);
+    EXPECT_EQ(gl().GetError(c), GLenum{GL_NO_ERROR});
+    testing::internal::CaptureStderr();
+    points(100);
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("it was left out"), std::string::npos);
+    EXPECT_EQ(gl().GetError(c), GLenum{GL_OUT_OF_MEMORY});
+    EXPECT_EQ(gl().GetError(c), GLenum{GL_NO_ERROR});
+    points(10);
+    EXPECT_EQ(gl().GetError(c), GLenum{GL_NO_ERROR});
+    EXPECT_EQ(c.packer.primitives().size(), 2u);
     c.packer.reset();
 }
 

@@ -182,5 +182,21 @@ TEST_F(GuardTest, AnyOtherFailureMakesTheContextDark) {
     EXPECT_EQ(gl_error(), GLenum{GL_NO_ERROR});
 }
 
+TEST_F(GuardTest, AContextThatCouldNotBeMadeCurrentIsNobodys) {
+    ::setenv("WALLGL_WALLD", "unix:/nowhere", 1);
+    const auto context = create_context({});
+    int failed = 0;
+    for (int count = 0; count < 5; ++count) {
+        try {
+            with_allocations(count, [&] { make_current(context, nullptr, nullptr); });
+        } catch (const std::bad_alloc&) {  // which vendor/guarded.h catches
+            allocations_left = kNever;
+            ++failed;
+        }
+        EXPECT_FALSE(context->in_use);
+    }
+    EXPECT_GT(failed, 0);
+}
+
 }  // namespace
 }  // namespace wall::client
