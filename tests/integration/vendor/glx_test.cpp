@@ -104,6 +104,9 @@ TEST_F(Glx, WithoutMemoryAFunctionFailsAndTheProgramGoesOn) {
     unsetenv("WALLGL_FAKE_NO_MEMORY");
     EXPECT_THAT(last_logged("event=out_of_memory"), HasSubstr("function=glXMakeContextCurrent"));
     EXPECT_TRUE(glXMakeContextCurrent(display, surface, surface, context)) << "it is nobody's";
+    glXMakeContextCurrent(display, None, None, nullptr);
+    glXDestroyContext(display, context);
+    glXDestroyPbuffer(display, surface);
 }
 
 TEST_F(Glx, ChoosesNoMoreThanAskedFor) {
