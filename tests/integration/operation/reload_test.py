@@ -64,6 +64,11 @@ class AWallThatChanges(unittest.TestCase):
         first = show.clock.frame_now()
         until(lambda: show.clock.frame_now() >= first + SOME, "the program goes on", RIGHT_AGAIN)
 
+    def come_back(self, show: Show) -> None:
+        """Its programs, to a walld that was started again."""
+        until(lambda: show.sessions <= {s["id"] for s in show.wall.sessions() if s["surfaces"]}, "all come back",
+              RIGHT_AGAIN)
+
     def tiles(self, wall: Wall) -> dict[str, tuple[str, list[int]]]:
         return {tile["name"]: (tile["node"], tile["rect"]) for tile in wall.ctl("tiles")}
 
@@ -92,7 +97,7 @@ class AWallThatChanges(unittest.TestCase):
         self.assert_becomes_right(show)
 
         end_all([wall.daemons.pop("a")])
-        wall.reload(TWO | {"c": {"three": RIGHT}})
+        wall.reload({"b": {"two": MIDDLE, "three": LEFT}, "a": {"one": RIGHT}})
         self.assert_becomes_right(show)
         self.assertEqual({name: wall.daemons[name].pid for name in ("walld", "b")},
                          {name: pids[name] for name in ("walld", "b")}, "nobody was started by hand but who was ended")
@@ -110,9 +115,9 @@ class AWallThatChanges(unittest.TestCase):
     def test_what_makes_no_sense_changes_nothing(self) -> None:
         wall = self.wall_of(TWO)
         show = self.show_on(wall)
-        before, text = wall.status(), (wall.folder / "wall.toml").read_text()
+        before, tiles, text = wall.status(), self.tiles(wall), (wall.folder / "wall.toml").read_text()
         for changed, words in ((text.replace("[people]", "[peple]"), r"wall.toml:\d+: unknown key 'peple'"),
-                               (text + "[[node]]\nname = \"a\"\n", r"wall.toml:\d+: node 'a' appears twice"),
+                               (text + wall.node_text("a", {"x": RIGHT}), r"wall.toml:\d+: node 'a' appears twice"),
                                (text.replace("walld.sock", "other.sock"), "'listen' in .control. has changed"),
                                (text.replace("= 250", "= 300"), "'swap_timeout_ms' in .wall. has changed")):
             self.assertNotEqual(changed, text)
@@ -120,7 +125,8 @@ class AWallThatChanges(unittest.TestCase):
             with self.assertRaisesRegex(WallError, words):
                 wall.ctl("reload")
         (wall.folder / "wall.toml").write_text(text)
-        self.assertEqual([wall.status()[key] for key in ("wall", "tiles")], [before[key] for key in ("wall", "tiles")])
+        self.assertEqual(wall.status()["wall"], before["wall"])
+        self.assertEqual(self.tiles(wall), tiles)
         self.assertEqual({n["name"]: n["incarnation"] for n in wall.nodes()},
                          {n["name"]: n["incarnation"] for n in before["nodes"]})
         show.go_on()
@@ -141,6 +147,7 @@ class AWallThatChanges(unittest.TestCase):
         self.assert_becomes_right(show)
 
         wall.restart_walld()  # which has kept it
+        self.come_back(show)
         self.assertEqual(self.tiles(wall)["three"], ("c", list(RIGHT)))
         self.assert_becomes_right(show)
 
@@ -164,6 +171,7 @@ class AWallThatChanges(unittest.TestCase):
         end_all([wall.daemons["b"]])  # what it was drained for
         self.assert_goes_on(show)
         wall.restart_walld_only()
+        self.come_back(show)
         self.assertTrue(self.node(wall, "b")["drained"], "walld has kept that")
         wall.start_node("b")
         self.assert_goes_on(show)
