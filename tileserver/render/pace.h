@@ -26,6 +26,8 @@ public:
 
     /// Of the render thread's time, for the next turn. `contended`: others are active.
     Clock::duration budget(bool contended) const { return std::min(kTurn, contended ? budget_ : alone_); }
+    /// How many turns the stream gets where others get one: so much sooner a long one is made up for.
+    void set_weight(double weight) { weight_ = weight; }
     /// Otherwise others come first, if there are any.
     bool may_run(Clock::time_point now) const { return now >= not_before_; }
     Clock::time_point not_before() const { return not_before_; }
@@ -49,7 +51,8 @@ public:
         budget_ = std::min(part(kTurn, share), kStep * budget_);
         alone_ = std::min(part(kAlone, share), kStep * alone_);
         spent_ = {};
-        if (turn_ + waited > 2 * kTurn) not_before_ = now + turn_ + waited - kTurn;
+        if (turn_ + waited > 2 * kTurn)
+            not_before_ = now + std::chrono::duration_cast<Clock::duration>((turn_ + waited - kTurn) / weight_);
     }
 
 private:
@@ -61,6 +64,7 @@ private:
     Clock::duration budget_ = kFirst, alone_ = kFirst;
     Clock::duration spent_{}, turn_{};  // since the driver was waited for; in the last turn
     Clock::time_point not_before_{};
+    double weight_ = 1;
     bool keeps_up_ = false;
 };
 

@@ -90,7 +90,10 @@ public:
             for (; turns_ >= 1.0 && run_turn(now, contended); turns_ -= 1.0) worked = true;
             return worked;
         }
-        void set_weight(double weight) { weight_ = weight; }
+        void set_weight(double weight) {
+            weight_ = weight;
+            pace_.set_weight(weight);
+        }
         /// True: a batch was executed, or some of it. `now` is the time, before and after. `contended`: others want
         /// turns, too.
         bool run_turn(Clock::time_point& now, bool contended) {

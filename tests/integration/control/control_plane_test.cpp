@@ -191,7 +191,9 @@ TEST_F(ControlPlane, ANodeThatSaysNothingIsAway) {
         left_.say(ping);
         ASSERT_TRUE(left_.hear(proto::Envelope::kPong));
         if (program.hear(proto::Envelope::kNodeDown, seconds(1))) break;
-        if (second == 4) EXPECT_THAT(wallctl("nodes").text, HasSubstr("silent"));
+        if (second == 4) {
+            EXPECT_THAT(wallctl("nodes").text, HasSubstr("silent"));
+        }
         ASSERT_LT(second, 19) << "its link may be dead";
     }
     EXPECT_TRUE(right_.closed());

@@ -20,7 +20,6 @@
 #include "common/net/sockets.h"
 #include "common/wire/batch.h"
 #include "common/wire/limits.h"
-#include "common/wire/padding.h"
 #include "gen/glapi/wire.gen.h"
 #include "gen/glstate/state.gen.h"
 
@@ -382,94 +381,38 @@ TEST_F(NodeServerTest, GoesOnWithoutWalldAndFindsItAgain) {
     EXPECT_EQ(shown(), (std::vector{0, 0, 255}));
 }
 
-/// From the client library's end: a batch of more than a frame holds.
-class LargeBatchTest : public NodeServerTest {
-protected:
-    void SetUp() override {
-        NodeServerTest::SetUp();
-        stack_session(1);
-        proto::DataHello hello;
-        hello.set_version(glapi::kStreamVersion);
-        hello.set_session(1);
-        hello.set_ticket("secret1");
-        auto stream = client::NodeStream::open(node_address().text(), hello.SerializeAsString(), 10'000);
-        ASSERT_TRUE(stream) << stream.error().message;
-        stream_ = std::move(*stream);
-        transport_.add(stream_);
-    }
-    /// 286 MB that change nothing, and a square over the whole window.
-    static wire::PackBuffer much_geometry() {
-        constexpr std::size_t kCommands = 13 << 20;
-        wire::PackBuffer body;
-        for (std::size_t i = 0; i < kCommands; ++i) pack::VertexAttrib4f(body, 1, 0, 0, 0, 1);
-        pack::Color4f(body, 0, 1, 0, 1);
-        pack::Begin(body, GL_QUADS);
-        for (const auto& [x, y] : {std::pair{-1.f, -1.f}, {1.f, -1.f}, {1.f, 1.f}, {-1.f, 1.f}})
-            pack::Vertex2f(body, x, y);
-        pack::End(body);
-        return body;
-    }
-    static void pack_block(wire::PackBuffer& buffer, const wire::PackBuffer& body) {
-        const glstate::Viewport viewport{0, 0, 64, 48};
-        glapi::pack_state(buffer, glstate::el::viewport::id, &viewport, sizeof viewport);
-        pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()),
-                    static_cast<std::uint32_t>(body.operand_bytes()));
-        buffer.append(body, {}, body.mark());
-    }
-    /// A black frame, and one of what `pack_much(buffer)` packs; in one batch.
-    template <class Pack>
-    std::vector<int> shown_of(Pack&& pack_much) {
-        wire::PackBuffer buffer = one_frame({0, 0, 0, 0}, 1);
-        pack_much(buffer);
-        EXPECT_GT(buffer.bytes(), std::size_t{wire::kMaxFramePayload});
-        pack::Swap(buffer, SurfaceId(1), 2);
-        stream_->send(ContextId(1), std::move(buffer));
-        transport_.wake();
-        for (const std::uint32_t frame : {1u, 2u}) {
-            EXPECT_TRUE(stream_->wait_swap(SurfaceId(1), frame, 60'000)) << stream_->failure();
-            present(1, frame);
-        }
-        return shown();
-    }
-    const std::vector<int> green_{0, 255, 0};
-
-private:
-    client::Transport transport_{[] {}};
-    std::shared_ptr<client::NodeStream> stream_;
-};
-
-TEST_F(LargeBatchTest, OfGeometryArrives) {
-    EXPECT_EQ(shown_of([](auto& buffer) { pack_block(buffer, much_geometry()); }), green_);
-}
-
-TEST_F(LargeBatchTest, OfADisplayListArrives) {
-    const auto define_and_call = [](wire::PackBuffer& buffer) {
-        const wire::PackBuffer body = much_geometry();
-        std::vector<std::byte> content(wire::padded4(body.commands()) - body.commands());
-        content.insert(content.end(), body.opcodes().begin(), body.opcodes().end());
-        content.insert(content.end(), body.operands().begin(), body.operands().end());
-        pack::RunDefine(buffer, ClientName(7), static_cast<std::uint32_t>(body.commands()),
-                        static_cast<std::uint32_t>(body.operand_bytes()), content);
-        wire::PackBuffer call;
-        pack::RunCall(call, ClientName(7));
-        pack_block(buffer, call);
-    };
-    EXPECT_EQ(shown_of(define_and_call), green_);
-}
-
-TEST_F(LargeBatchTest, OfACompressedImageArrives) {
-    constexpr std::int32_t kSide = 16384;
-    const auto upload_and_draw = [](wire::PackBuffer& buffer) {
-        const std::vector<std::byte> blocks(std::size_t{kSide} * kSide);
-        pack::TexCompressed(buffer, ClientName(7), GL_TEXTURE_2D, 0, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, kSide, kSide, 1,
-                            blocks);
-        wire::PackBuffer clear;
-        pack::Clear(clear, GL_COLOR_BUFFER_BIT);
-        const glstate::Vec4 green{0, 1, 0, 0};
-        glapi::pack_state(buffer, glstate::el::clear_color::id, &green, sizeof green);
-        pack_block(buffer, clear);
-    };
-    EXPECT_EQ(shown_of(upload_and_draw), green_);
+/// From the client library's end: more than a frame holds.
+TEST_F(NodeServerTest, ABatchLargerThanAFrameArrives) {
+    stack_session(1);
+    proto::DataHello hello;
+    hello.set_version(glapi::kStreamVersion);
+    hello.set_session(1);
+    hello.set_ticket("secret1");
+    auto stream = client::NodeStream::open(node_address().text(), hello.SerializeAsString(), 10'000);
+    ASSERT_TRUE(stream) << stream.error().message;
+    client::Transport transport([] {});
+    transport.add(*stream);
+    constexpr std::size_t kNormals = 24 << 20;
+    wire::PackBuffer buffer = one_frame({0, 0, 0, 0}, 1), body;
+    for (std::size_t i = 0; i < kNormals; ++i) pack::Normal3f(body, 0, 0, 1);
+    pack::Color4f(body, 0, 1, 0, 1);
+    pack::Begin(body, GL_QUADS);
+    for (const auto& [x, y] : {std::pair{-1.f, -1.f}, {1.f, -1.f}, {1.f, 1.f}, {-1.f, 1.f}}) pack::Vertex2f(body, x, y);
+    pack::End(body);
+    ASSERT_GT(body.bytes(), std::size_t{wire::kMaxFramePayload});
+    const glstate::Viewport viewport{0, 0, 64, 48};
+    glapi::pack_state(buffer, glstate::el::viewport::id, &viewport, sizeof viewport);
+    pack::Block(buffer, 1, 0, static_cast<std::uint32_t>(body.commands()),
+                static_cast<std::uint32_t>(body.operand_bytes()));
+    buffer.append(body, {}, body.mark());
+    pack::Swap(buffer, SurfaceId(1), 2);
+    (*stream)->send(ContextId(1), std::move(buffer));
+    transport.wake();
+    EXPECT_TRUE((*stream)->wait_swap(SurfaceId(1), 1, 60'000)) << (*stream)->failure();
+    present(1, 1);
+    EXPECT_TRUE((*stream)->wait_swap(SurfaceId(1), 2, 60'000)) << (*stream)->failure();
+    present(1, 2);
+    EXPECT_EQ(shown(), (std::vector{0, 255, 0}));
 }
 
 class StuckDriverTest : public NodeServerTest {

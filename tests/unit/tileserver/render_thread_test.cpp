@@ -96,6 +96,11 @@ TEST(PaceTest, ALongTurnIsMadeUpFor) {
     pace.finished(0ms, now);
     EXPECT_FALSE(pace.may_run(now + 290ms));
     EXPECT_TRUE(pace.may_run(now + 295ms));
+    pace.set_weight(10);
+    pace.spend(300ms, true);
+    pace.finished(0ms, now);
+    EXPECT_FALSE(pace.may_run(now + 29ms)) << "sooner by its weight";
+    EXPECT_TRUE(pace.may_run(now + 30ms));
 }
 
 // ---- streams ----
