@@ -89,7 +89,7 @@ asio::awaitable<void> reload_on(asio::signal_set& signals, ControlServer& contro
         if (error) continue;
         notify_reloading();
         if (const auto done = control.description().reload(); done)
-            log::info("reloaded nodes={}", log::plain(done->dump()));
+            log::info("reloaded nodes={}", log::quoted(done->dump()));
         else log::error("reload_refused reason={}", log::quoted(done.error().message));
         notify_ready(status_of(control));
     }
