@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tools/wallctl/tables.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
