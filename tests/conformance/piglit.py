@@ -27,7 +27,7 @@ from wall import Wall, WallError  # noqa: E402
 from xserver import XServer  # noqa: E402
 
 PROGRESS = 10.0  # seconds between two lines of progress
-LARGE_GROUP = 100  # tests; its like are generated, hundreds of a kind
+LARGE_GROUP = 300  # tests; its like are generated, hundreds of a kind
 HELP = """\
 Selected are the tests about what the wall offers: its OpenGL and GLSL versions and extensions, GLX and EGL. They draw
 into windows, with --fbo into framebuffer objects. A test that is skipped asks for something that is not offered: that
