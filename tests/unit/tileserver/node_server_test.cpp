@@ -60,6 +60,12 @@ public:
         const std::string bytes = *net::frame(envelope);
         write_all(link_.get(), std::as_bytes(std::span(bytes)));
     }
+    /// A sign of life.
+    void send_pong() {
+        proto::Envelope pong;
+        pong.mutable_pong();
+        send(pong);
+    }
     /// The next message of one kind; others are passed over.
     proto::Envelope wait_for(proto::Envelope::MessageCase kind) {
         for (;;) {
@@ -224,9 +230,7 @@ protected:
     void answer_pings(std::chrono::milliseconds time) {
         for (const auto end = std::chrono::steady_clock::now() + time; std::chrono::steady_clock::now() < end;) {
             walld_->wait_for(proto::Envelope::kPing);
-            proto::Envelope pong;
-            pong.mutable_pong();
-            walld_->send(pong);
+            walld_->send_pong();
         }
     }
     /// Until the tile's first pixel is that one.
@@ -381,13 +385,11 @@ TEST_F(NodeServerTest, GoesOnWithoutWalldAndFindsItAgain) {
     EXPECT_EQ(shown(), (std::vector{0, 0, 255}));
 }
 
-/// Waits for a frame that may take long, while walld is not silent.
+/// Waits for a frame that may take a minute, while walld is not silent.
 bool swapped(FakeWalld& walld, client::NodeStream& stream, std::uint32_t frame) {
-    proto::Envelope pong;
-    pong.mutable_pong();
-    for (int i = 0; i < 120 && !stream.failed(); ++i) {
+    for (int seconds = 0; seconds < 60 && !stream.failed(); ++seconds) {
         if (stream.wait_swap(SurfaceId(1), frame, 1000)) return true;
-        walld.send(pong);
+        walld.send_pong();
     }
     return false;
 }
@@ -496,9 +498,7 @@ TEST_F(NodeServerTest, ShowsFramesByItselfWhileWalldIsSilent) {
     EXPECT_LT(std::chrono::steady_clock::now() - begin, (kFrames / 2) * config_.swap_timeout)
         << "the limit is paid once";
     // A sign of life: it is told where the node is, and says again when a frame is shown.
-    proto::Envelope pong;
-    pong.mutable_pong();
-    walld_->send(pong);
+    walld_->send_pong();
     proto::Rendered rendered;
     do rendered = walld_->wait_for(proto::Envelope::kRendered).rendered();
     while (!rendered.has_shown());
