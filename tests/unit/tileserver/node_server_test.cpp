@@ -468,21 +468,6 @@ TEST_F(StuckDriverTest, TheSessionIsEndedAndShutOut) {
     EXPECT_EQ(shown(), (std::vector{0, 255, 0})) << "the others go on when the driver has come back";
 }
 
-TEST(ShutOutTest, LongerEachTime) {
-    ShutOut shut_out;
-    const ShutOut::Clock::time_point start{};
-    const SessionId session(3);
-    EXPECT_FALSE(shut_out.wait(session, start));
-    shut_out.blame(session, start);
-    EXPECT_EQ(shut_out.wait(session, start), 10s);
-    EXPECT_FALSE(shut_out.wait(SessionId(4), start));
-    EXPECT_FALSE(shut_out.wait(session, start + 10s));
-    shut_out.blame(session, start + 10s);
-    EXPECT_EQ(shut_out.wait(session, start + 11s), 19s);
-    shut_out.forget(session);
-    EXPECT_FALSE(shut_out.wait(session, start + 11s));
-}
-
 TEST_F(NodeServerTest, ShowsFramesByItselfWhileWalldIsSilent) {
     Client client(node_address());
     client.hello(1, "secret1");
