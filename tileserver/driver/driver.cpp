@@ -273,12 +273,23 @@ void Driver::bind_window(RenderTarget& target, glstate::State& state) {
     mirror.ids.take(kWindow, state.ids[kWindow]);
     target_ = &target;
     target.bind(glstate::el::draw_buffer::ref(state), glstate::el::read_buffer::ref(state));
+    const bool colors = target.draws_colors();
+    if (std::exchange(colorless_, !colors) && colors) tell_textures_again();
     const WindowValues wanted = window_values(target.geometry(), state);
     apply_viewports(wanted);
     apply_scissors(wanted);
     if (wanted.stipple != window_.stipple) gl_.PolygonStipple(reinterpret_cast<const GLubyte*>(wanted.stipple.data()));
     if (wanted.pixel_zoom != window_.pixel_zoom) gl_.PixelZoom(wanted.pixel_zoom[0], wanted.pixel_zoom[1]);
     window_ = wanted;
+}
+
+/// Mesa 22.3 makes fixed function's fragment program without textures for a framebuffer without colours. If something
+/// asks for that (a read, a question) and nothing is drawn, it goes back to the program of before, but not to the
+/// textures: what is drawn next samples whatever lies there. Anything about textures that changes makes it look again.
+void Driver::tell_textures_again() {
+    const bool enabled = glstate::el::texture_1d_enabled::ref(mirror) != 0;
+    unit(gl_, 0);
+    for (const bool on : {!enabled, enabled}) on ? gl_.Enable(GL_TEXTURE_1D) : gl_.Disable(GL_TEXTURE_1D);
 }
 
 namespace {

@@ -100,7 +100,10 @@ public:
                samplers_.stamp == samplers.stamp && program_ == 0 && pipeline_ == 0;
     }
     /// Another framebuffer was bound, or a target is gone.
-    void forget_target() { target_ = nullptr; }
+    void forget_target() {
+        target_ = nullptr;
+        colorless_ = true;
+    }
     void bind_textures(const TextureBindings& wanted) {
         if (wanted.id != bound_textures_.id) bind_all(wanted);
     }
@@ -272,6 +275,7 @@ private:
     void stop_tracking(const glstate::State& state);
     void sync_values(glstate::State& state);
     void bind_window(RenderTarget& target, glstate::State& state);
+    void tell_textures_again();
     void bind_all(const TextureBindings& wanted);
     void bind_texture(unsigned unit, TextureTarget target, GLuint texture);
     void bind_each_sampler(const SamplerBindings& wanted);
@@ -321,6 +325,7 @@ private:
     std::uint32_t uniform_buffer_alignment_ = 1, storage_buffer_alignment_ = 1;
     RenderTarget* target_ = nullptr;  // whose window values are in the driver
     WindowValues window_;             // what the driver holds
+    bool colorless_ = true;           // what is bound may be a framebuffer that is drawn to without colours
     bool bitmap_held_ = false;
 };
 

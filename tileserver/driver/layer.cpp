@@ -166,6 +166,8 @@ void Layer::bind(GLenum draw_buffer, GLenum read_buffer) {
         gl_.ReadBuffer(attachments(read_buffer, format_.double_buffered).first);
 }
 
+bool Layer::draws_colors() const { return attachments(draw_buffer_, format_.double_buffered).first != GL_NONE; }
+
 std::vector<GLuint> Layer::draw_textures() const {
     std::vector<GLuint> textures;
     const auto [first, second] = attachments(draw_buffer_, format_.double_buffered);

@@ -59,6 +59,7 @@ public:
     /// Takes over the common pixels of a layer of the same surface, and so format, at an older place of the same scale.
     void take_content(const Layer& older);
 
+    bool draws_colors() const override;
     /// Textures of the buffers that are drawn to since bind().
     std::vector<GLuint> draw_textures() const;
     /// A rectangle of a colour texture of one sample a pixel as RGBA bytes, bottom row first. Pixel transfer must be

@@ -56,6 +56,8 @@ public:
 
     /// Makes it the framebuffer that is drawn to and read from, with these buffers of a window (GL_BACK, GL_NONE...).
     virtual void bind(GLenum draw_buffer, GLenum read_buffer) = 0;
+    /// Whether what is drawn to it as it was bound last may have colours.
+    virtual bool draws_colors() const = 0;
 
 protected:
     ~RenderTarget() = default;

@@ -132,4 +132,10 @@ void Framebuffer::find_size() {
 // Its draw buffers are its own, not the window's.
 void Framebuffer::bind(GLenum, GLenum) { gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_); }
 
+bool Framebuffer::draws_colors() const {
+    return std::ranges::any_of(definition_.attachments, [&](const auto& attachment) {
+        return std::ranges::count(definition_.draw_buffers, attachment.point) != 0;
+    });
+}
+
 }  // namespace wall::tileserver

@@ -26,6 +26,7 @@ public:
     Result<void> update(const ObjectTable& objects, SharedContents& shared);
 
     void bind(GLenum draw_buffer, GLenum read_buffer) override;
+    bool draws_colors() const override;
 
 private:
     void set_defaults();

@@ -320,6 +320,49 @@ TEST_F(FramebufferTest, AFaceIsReadWhereTheOthersAreMissing) {
     EXPECT_EQ(std::memcmp(answer.data() + 4 * 8, Pixel{}.data(), 4), 0);
 }
 
+// Mesa 22.3 forgets what fixed function samples when it looks at a framebuffer without colours that nothing is drawn
+// to: a read is enough, also of another program's.
+TEST_F(FramebufferTest, WhatFixedFunctionSamplesIsKeptWhileDepthIsRead) {
+    const std::vector<Pixel> texels(std::size_t{kSize} * kSize, kGreen);
+    Batch textured;
+    auto& t = textured.buffer();
+    pack::TexImage(t, kTexture, GL_TEXTURE_2D, 0, GL_RGBA8, kSize, kSize, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                   std::as_bytes(std::span(texels)));
+    pack::TexParameter(t, kTexture, GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST, 0, 0, 0);
+    textured.set<el::texture_2d_enabled>(1).set<el::texture_binding_2d>(kTexture.value);
+    textured.set<el::tex_env_mode>(GL_REPLACE);
+    session_->expect_run(textured);
+
+    TestSession other(*node_.node, SessionId(2));
+    other.open_surface(kSize, kSize, kWindow);
+    Batch depth;
+    pack::Renderbuffer(depth.buffer(), kColor, 0, GL_DEPTH_COMPONENT24, kSize, kSize);
+    glstate::FramebufferDefinition definition;
+    definition.draw_buffers = {GL_NONE};
+    definition.read_buffer = GL_NONE;
+    definition.attachments = {{GL_DEPTH_ATTACHMENT, kColor, GL_RENDERBUFFER, 0, 0}};
+    pack::Framebuffer(depth.buffer(), kFramebuffer, encode(definition));
+    other.expect_run(depth);
+
+    for (int i = 0; i < 3; ++i) {
+        Batch draw;
+        clear(draw, {1, 0, 0, 1});
+        draw.block(1, [](auto& b) {
+            pack::Begin(b, GL_QUADS);
+            for (const auto& [x, y] : {std::pair{-1.0f, -1.0f}, {1.0f, -1.0f}, {1.0f, 1.0f}, {-1.0f, 1.0f}})
+                pack::Vertex2f(b, x, y);
+            pack::End(b);
+        });
+        session_->expect_run(draw);
+        EXPECT_EQ(at(3, 5), kGreen) << "time " << i;
+        Batch read;
+        pack::BindTargets(read.buffer(), kFramebuffer, kFramebuffer, 1);
+        pack::ReadPixels(read.buffer(), RequestId(6), 0, 0, 0, kSize, kSize, GL_DEPTH_COMPONENT, GL_FLOAT);
+        other.expect_run(read);
+        EXPECT_EQ(other.replies[RequestId(6)].size(), sizeof(float) * kSize * kSize);
+    }
+}
+
 // The driver refuses it; the renderbuffer is empty, and nothing else happens.
 TEST_F(FramebufferTest, AFormatThatTheDriverDoesNotKnowIsAnEmptyImage) {
     Batch batch;
