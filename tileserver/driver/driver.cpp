@@ -289,7 +289,8 @@ void Driver::bind_window(RenderTarget& target, glstate::State& state) {
 void Driver::tell_textures_again() {
     const bool enabled = glstate::el::texture_1d_enabled::ref(mirror) != 0;
     unit(gl_, 0);
-    for (const bool on : {!enabled, enabled}) on ? gl_.Enable(GL_TEXTURE_1D) : gl_.Disable(GL_TEXTURE_1D);
+    const GLenum target = gl_target(TextureTarget::t1d);
+    for (const bool on : {!enabled, enabled}) on ? gl_.Enable(target) : gl_.Disable(target);
 }
 
 namespace {
