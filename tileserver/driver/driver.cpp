@@ -334,7 +334,7 @@ void Driver::apply_scissors(const WindowValues& values) {
 
 void Driver::disable_scissor() {
     if (std::exchange(window_.scissor_enabled, 0) != 0) gl_.Disable(GL_SCISSOR_TEST);
-    target_ = nullptr;
+    forget_target();
 }
 
 }  // namespace wall::tileserver

@@ -57,7 +57,6 @@ void SurfaceCommands::SurfacePlace(SurfaceId id, std::uint32_t layout_version, s
         if (layout_version <= surface->where().layout_version)
             return execution_.refuse("the members of the parallel program draw for different places");
     }
-    execution_.node.driver.forget_target();
     execution_.node.driver.disable_scissor();
     ++execution_.node.damage;
     if (!surface->place(place, execution_.node.tiles)) execution_.refuse("more pixels than a session may have");
