@@ -44,6 +44,15 @@ protected:
         batch.set<el::clear_color>(color);
         batch.block(1, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT); });
     }
+    /// From the bottom left to `end`, in both directions; 1 is the whole target.
+    static void draw_square(Batch& batch, float end) {
+        batch.block(1, [end](auto& b) {
+            pack::Begin(b, GL_QUADS);
+            for (const auto& [x, y] : {std::pair{-1.0f, -1.0f}, {end, -1.0f}, {end, end}, {-1.0f, end}})
+                pack::Vertex2f(b, x, y);
+            pack::End(b);
+        });
+    }
     /// A texture that was drawn red.
     void draw_texture() {
         Batch batch;
@@ -85,12 +94,7 @@ TEST_F(FramebufferTest, WhatIsDrawnIsReadAndSampled) {
     pack::BindTargets(batch.buffer(), {}, {}, 1);
     clear(batch, {0, 1, 0, 1});
     batch.set<el::texture_binding_2d>(kTexture.value).set<el::texture_2d_enabled>(1);
-    batch.block(1, [](auto& b) {
-        pack::Begin(b, GL_QUADS);
-        for (const auto& [x, y] : {std::pair{-1.f, -1.f}, {0.f, -1.f}, {0.f, 0.f}, {-1.f, 0.f}})
-            pack::Vertex2f(b, x, y);
-        pack::End(b);
-    });
+    draw_square(batch, 0);
     session_->expect_run(batch);
     EXPECT_EQ(at(3, 3), kRed) << "the window, where the texture was drawn";
     EXPECT_EQ(at(kSize - 3, 3), kGreen);
@@ -121,12 +125,7 @@ TEST_F(FramebufferTest, ClipSpaceMayEndAtTheWindowsUpperEdge) {
     Batch batch;
     clear(batch, {0, 1, 0, 1});
     batch.set<el::clip_control>({GL_UPPER_LEFT, GL_ZERO_TO_ONE}).set<el::color>({1, 0, 0, 1});
-    batch.block(1, [](auto& b) {
-        pack::Begin(b, GL_QUADS);
-        for (const auto& [x, y] : {std::pair{-1.f, -1.f}, {0.f, -1.f}, {0.f, 0.f}, {-1.f, 0.f}})
-            pack::Vertex2f(b, x, y);
-        pack::End(b);
-    });
+    draw_square(batch, 0);
     session_->expect_run(batch);
     EXPECT_EQ(at(3, kSize - 3), kRed);
     EXPECT_EQ(at(3, 3), kGreen);
@@ -347,12 +346,7 @@ TEST_F(FramebufferTest, WhatFixedFunctionSamplesIsKeptWhileDepthIsRead) {
     for (int i = 0; i < 3; ++i) {
         Batch draw;
         clear(draw, {1, 0, 0, 1});
-        draw.block(1, [](auto& b) {
-            pack::Begin(b, GL_QUADS);
-            for (const auto& [x, y] : {std::pair{-1.0f, -1.0f}, {1.0f, -1.0f}, {1.0f, 1.0f}, {-1.0f, 1.0f}})
-                pack::Vertex2f(b, x, y);
-            pack::End(b);
-        });
+        draw_square(draw, 1);
         session_->expect_run(draw);
         EXPECT_EQ(at(3, 5), kGreen) << "time " << i;
         Batch read;
