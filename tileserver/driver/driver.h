@@ -205,6 +205,16 @@ public:
         for (glstate::BufferRange& bound : uniform_buffers_)
             if (bound.buffer == buffer) bound = {};
     }
+    /// Begins the bound transform feedback, if the driver finds all that it needs.
+    void begin_capturing(GLenum mode) {
+        gl_.BeginTransformFeedback(mode);
+        GLint active = 0;
+        gl_.GetIntegerv(GL_TRANSFORM_FEEDBACK_ACTIVE, &active);
+        if (active != 0) captured_mode_ = mode;
+    }
+    /// Of the transform feedback that was begun last; 0: none was. (Mesa 22.3 draws primitives of this mode only while
+    /// any transform feedback is active, one that began with another mode and is resumed, too.)
+    GLenum captured_mode() const { return captured_mode_; }
     /// Transform feedback of the driver has begun or goes on; nothing of what is drawn is seen.
     void captures() {
         discard_all();
@@ -317,6 +327,7 @@ private:
     std::array<GLuint, kQueryTargets * kVertexStreams> queries_{};  // that count
     GLuint vertex_array_ = 0;
     bool discarding_ = false, capturing_ = false;
+    GLenum captured_mode_ = 0;
     std::array<glstate::BufferRange, glstate::el::uniform_buffer::count> uniform_buffers_{};  // the driver's names
     std::array<glstate::BufferRange, glstate::el::storage_buffer::count> storage_buffers_{};  // the same
     std::array<glstate::BufferRange, glstate::el::counter_buffer::count> counter_buffers_{};  // the same

@@ -19,12 +19,16 @@ void Capture::release() {
     if (name_ == 0) return;
     driver_.end_queries();
     driver_.stop_capturing();
+    driver_.gl().BindTransformFeedback(GL_TRANSFORM_FEEDBACK, name_);
+    end_bound(std::exchange(name_, 0));
+}
+
+/// The driver's transform feedback of this name, which is bound. (It cannot be bound again before it is paused.)
+void Capture::end_bound(GLuint name) {
     const Gl& gl = driver_.gl();
-    gl.BindTransformFeedback(GL_TRANSFORM_FEEDBACK, name_);
     gl.EndTransformFeedback();
     gl.BindTransformFeedback(GL_TRANSFORM_FEEDBACK, 0);
-    gl.DeleteTransformFeedbacks(1, &name_);
-    name_ = 0;
+    gl.DeleteTransformFeedbacks(1, &name);
 }
 
 void Capture::define(GLenum mode, std::vector<glstate::BufferRange> parts) {
@@ -33,11 +37,13 @@ void Capture::define(GLenum mode, std::vector<glstate::BufferRange> parts) {
     parts_ = std::move(parts);
 }
 
-/// A part that its buffer does not have is left out; the driver refuses to begin then, and nothing is captured.
-void Capture::begin(const ObjectTable& objects) {
+/// One of the driver's, which is left bound. A part that its buffer does not have is left out; the driver refuses to
+/// begin then, and nothing is captured.
+GLuint Capture::begin(const ObjectTable& objects) {
     const Gl& gl = driver_.gl();
-    gl.CreateTransformFeedbacks(1, &name_);
-    gl.BindTransformFeedback(GL_TRANSFORM_FEEDBACK, name_);
+    GLuint name = 0;
+    gl.CreateTransformFeedbacks(1, &name);
+    gl.BindTransformFeedback(GL_TRANSFORM_FEEDBACK, name);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const glstate::BufferRange& part = parts_[i];
         const Buffer* buffer = objects.find<Buffer>(ClientName(part.buffer));
@@ -45,10 +51,18 @@ void Capture::begin(const ObjectTable& objects) {
         const std::uint64_t rest = buffer->size() - part.offset;
         const std::uint64_t bytes = (part.size != 0 ? std::min<std::uint64_t>(part.size, rest) : rest) / 4 * 4;
         if (bytes != 0)
-            gl.TransformFeedbackBufferRange(name_, static_cast<GLuint>(i), buffer->name(), part.offset,
+            gl.TransformFeedbackBufferRange(name, static_cast<GLuint>(i), buffer->name(), part.offset,
                                             static_cast<GLsizeiptr>(bytes));
     }
-    gl.BeginTransformFeedback(mode_);
+    driver_.begin_capturing(mode_);
+    return name;
+}
+
+/// Behind one of another mode, one of ours is begun, and ended with nothing drawn: Driver::captured_mode().
+void Capture::resume(const ObjectTable& objects) {
+    if (driver_.captured_mode() != mode_) end_bound(begin(objects));
+    driver_.gl().BindTransformFeedback(GL_TRANSFORM_FEEDBACK, name_);
+    driver_.gl().ResumeTransformFeedback();
 }
 
 /// Several streams go to several buffers.
@@ -68,12 +82,8 @@ bool Capture::go_on(const ObjectTable& objects) {
         driver_.discard_all();
         return true;
     }
-    if (name_ == 0) {
-        begin(objects);
-    } else {
-        driver_.gl().BindTransformFeedback(GL_TRANSFORM_FEEDBACK, name_);
-        driver_.gl().ResumeTransformFeedback();
-    }
+    if (name_ == 0) name_ = begin(objects);
+    else resume(objects);
     driver_.captures();
     return count();
 }

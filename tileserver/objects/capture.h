@@ -43,7 +43,9 @@ public:
     const Counts& counts();
 
 private:
-    void begin(const ObjectTable& objects);
+    [[nodiscard]] GLuint begin(const ObjectTable& objects);
+    void resume(const ObjectTable& objects);
+    void end_bound(GLuint name);
     bool count();
     void release();
 

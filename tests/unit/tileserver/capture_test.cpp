@@ -54,16 +54,16 @@ protected:
         define(b, {kBuffer.value, 0, 0});
         session->expect_run(batch);
     }
-    static void define(wire::PackBuffer& b, const glstate::BufferRange& part) {
-        pack::Capture(b, kCapture, GL_POINTS, std::as_bytes(std::span(&part, 1)));
+    static void define(wire::PackBuffer& b, const glstate::BufferRange& part, GLenum mode = GL_POINTS) {
+        pack::Capture(b, kCapture, mode, std::as_bytes(std::span(&part, 1)));
     }
-    /// Points of this x, captured.
-    static Batch points(std::initializer_list<float> xs) {
+    /// Points of this x, or other primitives, captured.
+    static Batch points(std::initializer_list<float> xs, GLenum mode = GL_POINTS) {
         Batch batch;
         pack::BindTargets(batch.buffer(), kTarget, {}, 1);
         batch.set<el::current_program>(kProgram.value).set<el::capture>(kCapture.value);
         batch.block(1, [&](auto& b) {
-            pack::Begin(b, GL_POINTS);
+            pack::Begin(b, mode);
             for (const float x : xs) pack::Vertex2f(b, x, 0);
             pack::End(b);
         });
@@ -198,6 +198,33 @@ TEST_F(CaptureTest, ItGoesOnBehindWhatOthersDraw) {
     second_->expect_run(points({7}));
     EXPECT_EQ(captured(*first_, 4), (std::vector{2.f, 4.f, 6.f, 0.f}));
     EXPECT_EQ(captured(*second_, 4), (std::vector{10.f, 12.f, 14.f, 0.f}));
+}
+
+TEST_F(CaptureTest, ItGoesOnBehindOthersOfAnotherMode) {
+    const auto begin_again = [](TestSession& session, GLenum mode) {
+        Batch batch;
+        pack::ObjectDelete(batch.buffer(), kCapture);
+        define(batch.buffer(), {kBuffer.value, 0, 0}, mode);
+        session.expect_run(batch);
+    };
+    begin_again(*first_, GL_LINES);
+    begin_again(*second_, GL_TRIANGLES);
+    first_->expect_run(points({1, 2}, GL_LINES));
+    second_->expect_run(points({5, 6, 7}, GL_TRIANGLES));
+    first_->expect_run(points({3, 4}, GL_LINES));
+    second_->expect_run(points({8, 9, 10}, GL_TRIANGLES));
+    EXPECT_EQ(captured(*first_, 5), (std::vector{2.f, 4.f, 6.f, 8.f, 0.f}));
+    EXPECT_EQ(captured(*second_, 7), (std::vector{10.f, 12.f, 14.f, 16.f, 18.f, 20.f, 0.f}));
+    EXPECT_EQ(first_->session.work.gl_errors + second_->session.work.gl_errors, 0u);
+    std::optional<TestSession> third;  // nothing begins where there is no buffer
+    open(third, 3);
+    Batch nowhere;
+    pack::ObjectDelete(nowhere.buffer(), kCapture);
+    define(nowhere.buffer(), {99, 0, 0}, GL_LINES);
+    third->expect_run(nowhere);
+    third->expect_run(points({1, 2}, GL_LINES));
+    first_->expect_run(points({11, 12}, GL_LINES));
+    EXPECT_EQ(captured(*first_, 7), (std::vector{2.f, 4.f, 6.f, 8.f, 22.f, 24.f, 0.f}));
 }
 
 TEST_F(CaptureTest, AnEndedOneIsOver) {
