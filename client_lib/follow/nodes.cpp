@@ -70,7 +70,7 @@ void Nodes::forget_others(const Welcome& welcome) {
 void Nodes::connect_and_wait(std::span<const NodeInfo> infos) {
     for (const NodeInfo& info : infos) {
         const Node& node = at(info.node);
-        if (!node.alive() || node.info.incarnation != info.incarnation) connect(info);
+        if (!node.alive() || node.info.ticket != info.ticket) connect(info);
     }
     for (const NodeInfo& info : infos) {
         Node& node = at(info.node);

@@ -138,6 +138,7 @@ void ClientSession::open_surface(ClientSurface& surface) {
     if (surface.opened) return;
     surfaces_.open(surface);
     if (!surfaces_.common(surface)) return;
+    control_->begin_frame(surface.id, surface.frame + 1);
     take_events();
     surfaces_.begin_frame(surface);
 }
@@ -149,6 +150,8 @@ void ClientSession::close_surface(ClientSurface& surface) {
 
 void ClientSession::begin_frame(ClientSurface& surface) {
     std::unique_lock lock(mutex_);
+    // The lock stays held, as in adopt_agreed().
+    if (surfaces_.common(surface)) control_->begin_frame(surface.id, surface.frame + 1);
     take_events();
     nodes_.wait_for_attempts(lock, kTakeUpLimit);
     surfaces_.begin_frame(surface);

@@ -28,7 +28,6 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kLeaveLimit{1000};
-constexpr milliseconds kLifeSign{500};   // a walld that keeps a connection open for so long is there
 constexpr milliseconds kTick{1000};      // statistics are written and told, a lost link is tried again
 constexpr std::size_t kLengthBytes = 4;  // in front of every envelope, little endian
 constexpr std::size_t kReadChunk = 16 << 10;
@@ -106,6 +105,7 @@ struct Opened {
     UniqueFd fd;
     Welcome welcome;
     std::string rest;  ///< bytes that came after the welcome
+    std::string over;  ///< why the session that was to go on does not, and never will; then nothing else means anything
 };
 
 Result<Opened> greet(const Hello& hello, const std::string& address, milliseconds limit) {
@@ -117,15 +117,18 @@ Result<Opened> greet(const Hello& hello, const std::string& address, millisecond
     if (auto trusted = check_server(fd->get(), wall_user_from_environment()); !trusted)
         return fail("walld at " + address + " is not walld: " + trusted.error().message +
                     " (WALLGL_WALLD_USER names walld's user)");
-    Opened opened{std::move(*fd), {}, {}};
+    Opened opened{std::move(*fd), {}, {}, {}};
     std::string bytes;
     append_framed(bytes, encode(hello));
     if (auto sent = send_all(opened.fd.get(), bytes, deadline); !sent)
         return fail("walld at " + address + ": " + sent.error().message);
     auto answer = receive_message(opened.fd.get(), opened.rest, deadline);
     if (!answer) return fail("walld at " + address + ": " + answer.error().message);
-    if (const auto* refused = std::get_if<Refused>(&*answer))
-        return fail("walld at " + address + " refused: " + refused->reason);
+    if (const auto* refused = std::get_if<Refused>(&*answer)) {
+        if (!refused->over) return fail("walld at " + address + " refused: " + refused->reason);
+        opened.over = refused->reason;
+        return opened;
+    }
     auto* welcome = std::get_if<Welcome>(&*answer);
     if (!welcome) return fail("walld at " + address + " does not speak this protocol");
     opened.welcome = std::move(*welcome);
@@ -229,7 +232,8 @@ void ControlLink::surface_open(SurfaceId id, std::uint32_t width, std::uint32_t 
                                 .offered = {},
                                 .drawn = {},
                                 .wanted = {},
-                                .note = {}};
+                                .note = {},
+                                .member = {}};
     queue(encode_surface_open(id, width, height, title));
     wake();
 }
@@ -269,6 +273,17 @@ bool ControlLink::surface_adopted(SurfaceId id, std::uint32_t layout_version, st
     const auto noted = [&] { return surfaces_[id].noted == layout_version; };
     changed_.wait_for(lock, timeout, [&] { return !answers() || noted(); });
     return up_ && noted();
+}
+
+void ControlLink::begin_frame(SurfaceId id, std::uint32_t frame) {
+    if (in_forked_child()) return;
+    std::unique_lock lock(mutex_);
+    const auto known = [&] {
+        const auto found = surfaces_.find(id);
+        return over_ || found == surfaces_.end() || found->second.member.known(frame);
+    };
+    changed_.wait(lock, known);
+    if (const auto found = surfaces_.find(id); found != surfaces_.end()) found->second.member.begin(frame);
 }
 
 void ControlLink::leave() {
@@ -423,6 +438,10 @@ bool ControlLink::handle(FromWalld message) {
     } else if (auto* noted = std::get_if<AdoptionNoted>(&message)) {
         if (const auto found = surfaces_.find(noted->surface); found != surfaces_.end())
             found->second.noted = noted->layout_version;
+    } else if (const auto* agreed = std::get_if<PlacementAgreed>(&message)) {
+        if (const auto found = surfaces_.find(agreed->surface); found != surfaces_.end())
+            if (const auto now_holds = found->second.member.agree(agreed->layout_version))
+                holds(found->second, *now_holds);
     } else if (auto* note = std::get_if<SurfaceNote>(&message)) {
         if (const auto found = surfaces_.find(note->surface); found != surfaces_.end())
             found->second.note = std::move(note->note);
@@ -448,12 +467,12 @@ void ControlLink::take_welcome(const Welcome& welcome) {
 }
 
 void ControlLink::arrived(const Placement& placement) {
-    events_.placements.push_back(placement);
-    if (hello_.group) {
-        queue(encode_placement_noted(placement.surface, placement.layout_version));
-        wake();
-    }
     const auto found = surfaces_.find(placement.surface);
+    if (hello_.group) {
+        if (found != surfaces_.end()) arrived_at_member(found->second, placement);
+        return;
+    }
+    events_.placements.push_back(placement);
     if (found == surfaces_.end()) return;
     placements_[placement.surface] = placement;
     auto& surface = found->second;
@@ -462,8 +481,26 @@ void ControlLink::arrived(const Placement& placement) {
     surface.offered[placement.layout_version] = placement.rect;
     if (surface.offered.size() > kMaxOffered) surface.offered.erase(surface.offered.begin());
     // A program that draws only when asked would never come to adopt it.
-    if (found->second.awaited > 0) --found->second.awaited;
+    if (surface.awaited > 0) --surface.awaited;
     else wishes_.redraw.insert(placement.surface);
+}
+
+void ControlLink::arrived_at_member(OpenSurface& surface, const Placement& placement) {
+    surface.wanted = placement.rect;
+    if (placement.agreed) {
+        if (surface.member.add(placement)) holds(surface, placement);
+        return;
+    }
+    queue(encode_placement_noted(placement.surface, placement.layout_version, surface.member.propose(placement)));
+    wake();
+}
+
+void ControlLink::holds(OpenSurface& surface, const Placement& placement) {
+    events_.placements.push_back(placement);
+    placements_[placement.surface] = placement;
+    surface.drawn = placement.rect;
+    if (surface.awaited > 0) --surface.awaited;
+    else wishes_.redraw.insert(placement.surface);  // so that one comes to it that draws only when asked
 }
 
 /// A walld that hangs costs no more than one that is gone: once it has not answered, nobody waits for it.
@@ -532,22 +569,11 @@ void ControlLink::on_lost(const std::string& why) {
 
 void ControlLink::end_group(const std::string& why) {
     std::unique_lock lock(mutex_);
+    over_ = true;
+    changed_.notify_all();
     const auto end = hello_.group ? end_ : nullptr;
     lock.unlock();
     if (end) end(why);
-}
-
-/// A parallel program cannot come again: its processes would have to begin anew at the same frame. It draws on as long
-/// as walld is away.
-void ControlLink::end_if_walld_is_new() {
-    const auto fd = connect_to(address_, static_cast<int>(kOpenLimit.count()));
-    if (!fd || !check_server(fd->get(), wall_user_from_environment())) return;
-    pollfd closed{fd->get(), POLLIN, 0};  // one that is just dying closes what it has not accepted
-    if (::poll(&closed, 1, static_cast<int>(kLifeSign.count())) != 0) return;
-    refused_ = true;
-    const std::string why = "walld was started anew: so must the parallel program be";
-    log(LogLevel::error, "session_ended why=%s", in_quotes(why).c_str());
-    end_group(why);
 }
 
 /// With what a walld that was started again cannot know.
@@ -562,13 +588,15 @@ Hello ControlLink::hello_again() {
 bool ControlLink::reconnect() {
     if (fd_) return true;
     if (refused_) return false;
-    if (hello_.group) {
-        end_if_walld_is_new();
-        return false;
-    }
     auto opened = greet(hello_again(), address_, kOpenLimit);
     if (!opened) {
         log(LogLevel::debug, "walld_unreachable why=%s", in_quotes(opened.error().message).c_str());
+        return false;
+    }
+    if (!opened->over.empty()) {
+        refused_ = true;
+        log(LogLevel::error, "session_ended why=%s", in_quotes(opened->over).c_str());
+        end_group(opened->over);
         return false;
     }
     log(LogLevel::info, "walld_reconnected session=%u", opened->welcome.session.value);
@@ -577,7 +605,8 @@ bool ControlLink::reconnect() {
     {
         std::lock_guard lock(mutex_);
         up_ = true;
-        events_ = {};
+        auto placements = std::exchange(events_, {}).placements;
+        if (hello_.group) events_.placements = std::move(placements);  // agreed is agreed
         events_.lost = true;
         session_ = opened->welcome.session;
         take_welcome(opened->welcome);

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "client_lib/link/control_messages.h"
+#include "client_lib/link/member_placements.h"
 #include "client_lib/link/window_messages.h"
 #include "common/base/result.h"
 #include "common/base/unique_fd.h"
@@ -49,6 +50,9 @@ public:
     /// link breaks.
     bool surface_adopted(SurfaceId id, std::uint32_t layout_version, std::uint32_t frame,
                          std::chrono::milliseconds timeout);
+    /// In a parallel program, before anything of a frame of the window is drawn, and before take_events(): waits while
+    /// it is open where that frame is drawn, which takes longer than a moment only if walld has gone meanwhile.
+    void begin_frame(SurfaceId id, std::uint32_t frame);
     /// In a parallel program: this process ends in order. Waits a moment until that is said.
     void leave();
     /// Called by the background thread when a parallel program's session is over; before any other thread uses the
@@ -84,9 +88,10 @@ private:
         std::map<std::uint32_t, geom::Rect> offered;  ///< by layout version: placements that may still be adopted
         std::optional<geom::Rect> drawn, wanted;      ///< nothing: walld has placed it nowhere yet
         std::string note;                             ///< walld's, of this surface
+        MemberPlacements member;                      ///< in a parallel program
 
         std::optional<Restore> restore() const {
-            return drawn ? std::optional(Restore{*drawn, *wanted, note}) : std::nullopt;
+            return drawn ? std::optional(Restore{*drawn, *wanted, note, member.agreed()}) : std::nullopt;
         }
     };
     /// What the windows are to be told.
@@ -108,6 +113,8 @@ private:
     bool handle(FromWalld message);
     void take_welcome(const Welcome& welcome);
     void arrived(const Placement& placement);
+    void arrived_at_member(OpenSurface& surface, const Placement& placement);
+    void holds(OpenSurface& surface, const Placement& placement);
     void watch_walld();
     bool answers() const { return up_ && !silent_; }
     Hello hello_again();
@@ -115,7 +122,6 @@ private:
     void tell_traffic();
     void on_lost(const std::string& why);
     bool reconnect();
-    void end_if_walld_is_new();
     void end_group(const std::string& why);
 
     const Hello hello_;
@@ -137,6 +143,7 @@ private:
     bool heard_ = false;   // since the last tick
     bool asked_ = false;   // for a sign of life
     bool silent_ = false;  // none has come: nobody waits for walld until it says something
+    bool over_ = false;    // the session, for good
     SessionId session_;
     std::map<NodeIndex, std::string> tickets_;
     Tiles tiles_;  ///< the wall's, as walld said last

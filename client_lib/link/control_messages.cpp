@@ -19,7 +19,7 @@ constexpr protozero::pbf_tag_type client_hello = 1, surface_open = 2, surface_re
                                   surface_adopted = 5, close_refused = 6, client_stats = 7, placement_noted = 8,
                                   member_leaves = 9, client_welcome = 10, refused = 11, placement = 12, node_up = 13,
                                   node_down = 14, close_request = 15, adoption_noted = 16, tiles_changed = 17,
-                                  ping = 50, surface_note = 52;
+                                  placement_agreed = 18, ping = 50, surface_note = 52;
 }
 
 void put_string(pbf_writer& out, protozero::pbf_tag_type tag, std::string_view text) {
@@ -50,6 +50,15 @@ void put_restore(pbf_writer& parent, protozero::pbf_tag_type tag, const Restore&
     put_rect(out, 1, restore.drawn);
     put_rect(out, 2, restore.wanted);
     out.add_bytes(3, restore.note.data(), restore.note.size());
+    for (const auto& placement : restore.agreed) {
+        pbf_writer row(out, 4);
+        row.add_uint32(1, placement.surface.value);
+        row.add_uint32(2, placement.layout_version);
+        put_rect(row, 3, placement.rect);
+        row.add_uint32(4, placement.from_frame);
+        row.add_uint32(5, placement.width);
+        row.add_uint32(6, placement.height);
+    }
 }
 
 template <class Fill>
@@ -187,6 +196,7 @@ Placement read_placement(pbf_reader in) {
             case 5: placement.width = read_u32(in); break;
             case 6: placement.height = read_u32(in); break;
             case 7: placement.nodes.push_back(read_node(read_message(in), true)); break;
+            case 8: placement.agreed = read_u32(in) != 0; break;
             default: in.skip();
         }
     }
@@ -196,8 +206,11 @@ Placement read_placement(pbf_reader in) {
 Refused read_refused(pbf_reader in) {
     Refused refused;
     while (in.next()) {
-        if (in.tag() == 1) refused.reason = read_string(in);
-        else in.skip();
+        switch (in.tag()) {
+            case 1: refused.reason = read_string(in); break;
+            case 2: refused.over = read_u32(in) != 0; break;
+            default: in.skip();
+        }
     }
     return refused;
 }
@@ -214,16 +227,18 @@ CloseRequest read_close(pbf_reader in) {
     return close;
 }
 
-AdoptionNoted read_noted(pbf_reader in) {
-    AdoptionNoted noted;
+/// AdoptionNoted and PlacementAgreed: a surface and a version.
+template <class Message>
+Message read_version(pbf_reader in) {
+    Message message;
     while (in.next()) {
         switch (in.tag()) {
-            case 1: noted.surface = SurfaceId(read_u32(in)); break;
-            case 2: noted.layout_version = read_u32(in); break;
+            case 1: message.surface = SurfaceId(read_u32(in)); break;
+            case 2: message.layout_version = read_u32(in); break;
             default: in.skip();
         }
     }
-    return noted;
+    return message;
 }
 
 SurfaceNote read_note(pbf_reader in) {
@@ -257,9 +272,10 @@ FromWalld read_envelope(pbf_reader in) {
             case envelope::node_up: message = read_node(read_message(in), true); break;
             case envelope::node_down: message = read_node(read_message(in), false); break;
             case envelope::close_request: message = read_close(read_message(in)); break;
-            case envelope::adoption_noted: message = read_noted(read_message(in)); break;
+            case envelope::adoption_noted: message = read_version<AdoptionNoted>(read_message(in)); break;
             case envelope::surface_note: message = read_note(read_message(in)); break;
             case envelope::tiles_changed: message = read_tiles(read_message(in)); break;
+            case envelope::placement_agreed: message = read_version<PlacementAgreed>(read_message(in)); break;
             default: in.skip();
         }
     }
@@ -343,10 +359,11 @@ std::string encode(const Traffic& traffic) {
     });
 }
 
-std::string encode_placement_noted(SurfaceId id, std::uint32_t layout_version) {
+std::string encode_placement_noted(SurfaceId id, std::uint32_t layout_version, std::uint32_t begun) {
     return in_envelope(envelope::placement_noted, [&](pbf_writer& out) {
         out.add_uint32(1, id.value);
         out.add_uint32(2, layout_version);
+        out.add_uint32(3, begun);
     });
 }
 

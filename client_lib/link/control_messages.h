@@ -81,6 +81,7 @@ struct Welcome {
 
 struct Refused {
     std::string reason;
+    bool over = false;  ///< the session that was to go on does not, and never will
 };
 
 /// The surface's whole content covers `rect` of the canvas.
@@ -93,6 +94,13 @@ struct Placement {
     std::uint32_t from_frame = 0;         ///< it holds from this frame on
     std::uint32_t width = 0, height = 0;  ///< of the window, in every member
     std::vector<NodeInfo> nodes;          ///< of the session
+    bool agreed = false;                  ///< by all processes; else proposed
+};
+
+/// The placement that was proposed holds.
+struct PlacementAgreed {
+    SurfaceId surface;
+    std::uint32_t layout_version = 0;
 };
 
 /// walld knows from which frame on a placement holds.
@@ -111,6 +119,7 @@ struct SurfaceNote {
 struct Restore {
     geom::Rect drawn, wanted;  ///< canvas: of the frames that come now, and of the newest placement
     std::string note;
+    std::vector<Placement> agreed;  ///< of a parallel program: the last ones
 };
 
 /// Placements that come from now on lie among these.
@@ -125,7 +134,7 @@ struct CloseRequest {
 
 /// A message from walld; nothing for one that this version does not know.
 using FromWalld = std::variant<std::monostate, Welcome, Refused, Placement, NodeInfo, CloseRequest, AdoptionNoted,
-                               SurfaceNote, TilesChanged>;
+                               SurfaceNote, TilesChanged, PlacementAgreed>;
 
 // One encoded Envelope each, without the length in front.
 std::string encode(const Hello& hello);
@@ -138,7 +147,8 @@ std::string encode_surface_close(SurfaceId id);
 std::string encode_surface_adopted(SurfaceId id, std::uint32_t layout_version, std::uint32_t frame);
 std::string encode_close_refused(SurfaceId id);
 std::string encode(const Traffic& traffic);
-std::string encode_placement_noted(SurfaceId id, std::uint32_t layout_version);
+/// `begun`: the frame of that surface that has begun and is too late for the placement; 0: it is not.
+std::string encode_placement_noted(SurfaceId id, std::uint32_t layout_version, std::uint32_t begun);
 std::string encode_member_leaves(std::uint32_t rank);
 
 Result<FromWalld> decode_from_walld(std::string_view envelope);

@@ -324,6 +324,7 @@ proto::Envelope NodeServer::hello() const {
         auto& known = *hello.add_sessions();
         known.set_session(session.value);
         known.set_ticket(admission.ticket);
+        for (const Rank rank : admission.membership.left) known.add_left(rank);
     }
     *hello.mutable_wall_note() = wall_note_;
     return envelope;

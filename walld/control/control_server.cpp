@@ -2,17 +2,16 @@
 #include "walld/control/control_server.h"
 
 #include <signal.h>
-#include <sys/random.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/use_awaitable.hpp>
 
-#include "common/base/assert.h"
 #include "common/daemon/keep_running.h"
 #include "common/json/parse_json.h"
 #include "common/log/log.h"
+#include "walld/control/random_bytes.h"
 #include "walld/wall/messages.h"
 #include "walld/wall/status.h"
 
@@ -24,12 +23,6 @@ constexpr const char* kWatchVerb = "watch";  // the one verb with many answers
 constexpr std::chrono::seconds kLookAtConnection{1};
 constexpr std::chrono::seconds kLastWords{1};  // for a machine that was revoked to read why
 constexpr const char* kNotKnownYet = "somebody whose name is being looked up";
-
-std::string random_bytes(std::size_t count) {
-    std::string out(count, '\0');
-    WALL_ASSERT(::getrandom(out.data(), count, 0) == static_cast<ssize_t>(count));
-    return out;
-}
 
 bool answer_ping(net::ControlConnection& connection, const proto::Envelope& message) {
     if (!message.has_ping()) return false;
@@ -147,8 +140,10 @@ void ControlServer::take(net::Stream stream) {
     net::spawn(executor_, "connection", serve(std::move(connection)));
 }
 
-void ControlServer::refuse(const Connection& connection, const std::string& reason) {
-    connection->send(refused(reason));
+void ControlServer::refuse(const Connection& connection, const std::string& reason, bool over) {
+    auto message = refused(reason);
+    if (over) message.mutable_refused()->set_over(true);
+    connection->send(message);
     connection->close_after_sending();
 }
 
@@ -371,6 +366,9 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
         co_return refuse(connection, "no node of the wall is up: is a tileserver running? (wallctl nodes)");
     for (const auto& still : {wall_.check(hello), wall_.check_member(hello, who)})
         if (!still) co_return refuse(connection, still.error().message);
+    if (const auto comeback = wall_.comeback(hello, Clock::now()); comeback != Wall::Comeback::may_come)
+        co_return refuse(connection, "the wall does not know parallel program '" + hello.group().name() + "' any more",
+                         comeback == Wall::Comeback::over);
     const Rank rank = hello.group().rank();
     const auto id = wall_.open_session(hello, who, Clock::now(), [&](SessionId session) {
         clients_[{session, rank}] = {connection};
@@ -400,15 +398,14 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
 Result<void> ControlServer::client_says(const ClientId& client, const proto::Envelope& message) {
     const auto& [session, rank] = client;
     if (message.has_surface_open()) return wall_.open_surface(session, message.surface_open(), Clock::now(), rank);
-    if (message.has_surface_resize()) wall_.resize_surface(session, message.surface_resize(), Clock::now(), rank);
+    if (message.has_surface_resize()) wall_.resize_surface(session, message.surface_resize(), rank);
     else if (message.has_surface_adopted()) wall_.adopt_placement(session, message.surface_adopted(), Clock::now());
     else if (message.has_client_stats()) wall_.client_reports(session, rank, message.client_stats(), Clock::now());
     else if (message.has_close_refused()) wall_.cannot_close(session, SurfaceId(message.close_refused().surface()));
     else if (message.has_surface_close())
         wall_.close_surface(session, SurfaceId(message.surface_close().surface()), rank);
-    else if (message.has_placement_noted())
-        wall_.placement_noted(session, rank, message.placement_noted(), Clock::now());
-    else if (message.has_member_leaves()) wall_.member_leaves(session, rank, Clock::now());
+    else if (message.has_placement_noted()) wall_.placement_noted(session, rank, message.placement_noted());
+    else if (message.has_member_leaves()) wall_.member_leaves(session, rank);
     else return fail("a client may not send that message");
     return {};
 }

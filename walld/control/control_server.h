@@ -101,7 +101,8 @@ private:
     using ClientId = std::pair<SessionId, Rank>;  // rank 0 without a parallel program
 
     Result<void> client_says(const ClientId& client, const proto::Envelope& message);
-    void refuse(const Connection& connection, const std::string& reason);
+    /// `over`: a session that was to go on never will.
+    void refuse(const Connection& connection, const std::string& reason, bool over = false);
     void something_changed();
 
     asio::any_io_executor executor_;

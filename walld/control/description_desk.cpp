@@ -74,7 +74,7 @@ Outcome<json> DescriptionDesk::take(Outcome<Description> next) {
         tell(node);
         told_.links.let_go(node, "it is described otherwise");
     }
-    wall.describe(std::move(next->config), Clock::now());
+    wall.describe(std::move(next->config));
     for (const NodeIndex node : wall.nodes().ids()) {
         if (node.value >= known) names.push_back(wall.nodes()[node].config->name);
         if (std::ranges::count(others, node) == 0) tell(node);

@@ -95,6 +95,7 @@ Outcome<void> OperatorDesk::allowed(const Row& row, const Asked& asked) const {
 asio::awaitable<Outcome<Answer>> OperatorDesk::status(const Asked&) {
     auto status = status_json(wall_, Clock::now());
     status["streams"] = streams_json(wall_, streams_.views());
+    status["page"] = page_;
     co_return Answer{std::move(status), {}};
 }
 asio::awaitable<Outcome<Answer>> OperatorDesk::streams(const Asked&) {
@@ -121,7 +122,7 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::place(const Asked& asked) {
     const auto rect = rect_of(asked.arguments, "rect");
     if (!rect) co_return tl::unexpected(rect.error());
     co_return target_of(asked)
-        .and_then([&](const Target& target) { return wall_.place_surface(target, *rect, Clock::now()); })
+        .and_then([&](const Target& target) { return wall_.place_surface(target, *rect); })
         .map(done);
 }
 
@@ -247,7 +248,7 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::load_layout(const Asked& asked) {
     co_return name_of(asked)
         .and_then([&](const std::string& name) { return layouts_.load(name); })
         .map([&](const Layout& layout) {
-            const auto placed = wall_.load_layout(layout, Clock::now());
+            const auto placed = wall_.load_layout(layout);
             return Answer{{{"placed", placed}, {"waiting", layout.windows.size() - placed}}, {}};
         });
 }

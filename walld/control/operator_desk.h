@@ -49,6 +49,10 @@ public:
           end_session_(std::move(end_session)) {}
 
     asio::awaitable<Outcome<Answer>> carry_out(Asked asked);
+    /// Where the status page is, for the status. `certificate`: what a browser shows of it.
+    void tell_page(const std::vector<std::string>& urls, const std::string& certificate) {
+        page_ = {{"urls", urls}, {"certificate", certificate}};
+    }
 
 private:
     using Verb = asio::awaitable<Outcome<Answer>> (OperatorDesk::*)(const Asked&);
@@ -100,6 +104,7 @@ private:
     DescriptionDesk& description_;
     net::Changed& changed_;
     std::function<void(SessionId)> end_session_;
+    nlohmann::json page_ = nlohmann::json::object();
 };
 
 }  // namespace wall::walld

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/geom/rect.h"
+#include "common/wire/limits.h"
 #include "proto/control.pb.h"
 
 namespace wall::walld {
@@ -26,6 +27,11 @@ inline proto::Rect to_proto(const geom::Rect& rect) {
 
 inline geom::Rect from_proto(const proto::Rect& rect) {
     return {rect.x(), rect.y(), static_cast<std::int32_t>(rect.width()), static_cast<std::int32_t>(rect.height())};
+}
+
+/// Of a window.
+inline bool extent_ok(std::uint32_t width, std::uint32_t height) {
+    return width > 0 && height > 0 && width <= wire::kMaxSurfaceExtent && height <= wire::kMaxSurfaceExtent;
 }
 
 inline proto::Envelope refused(const std::string& reason) {

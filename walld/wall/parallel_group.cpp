@@ -2,14 +2,14 @@
 #include "walld/wall/parallel_group.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/wire/limits.h"
 
 namespace wall::walld {
 namespace {
 
-constexpr std::size_t kMaxName = 256;      // bytes
-constexpr std::size_t kMaxVersions = 256;  // of one window that no frame has reached
+constexpr std::size_t kMaxName = 256;  // bytes
 
 }  // namespace
 
@@ -60,16 +60,41 @@ std::string ParallelGroup::text(Rank rank) const {
     return "rank " + std::to_string(rank) + process + " of parallel program '" + name_ + "'";
 }
 
+void ParallelGroup::announced(Rank rank) {
+    const auto found = members_.find(rank);
+    if (found != members_.end() && found->second.awaited > 0) --found->second.awaited;
+}
+
+bool ParallelGroup::all_returned() const {
+    return all_came() && std::ranges::all_of(members_, [](const auto& each) { return each.second.awaited == 0; });
+}
+
 // ---- placements ----
 
 void AgreedPlacements::add(const proto::Placement& placement) {
+    // What would hold later than it never does.
+    std::erase_if(versions_, [&](const auto& old) {
+        return old.first < placement.layout_version() && old.second.from_frame() >= placement.from_frame();
+    });
     versions_[placement.layout_version()] = placement;
-    if (versions_.size() > kMaxVersions) versions_.erase(std::next(versions_.begin()));
+    versions_[placement.layout_version()].set_agreed(true);
+}
+
+std::optional<proto::Placement> AgreedPlacements::settle(const ParallelGroup& group) {
+    if (!proposed_ || !all_noted(group, proposed_->layout_version())) return std::nullopt;
+    const auto agreed = *std::exchange(proposed_, std::nullopt);
+    add(agreed);
+    return agreed;
 }
 
 void AgreedPlacements::presented(std::uint32_t frame) {
     while (versions_.size() > 1 && std::next(versions_.begin())->second.from_frame() <= frame)
         versions_.erase(versions_.begin());
+}
+
+void AgreedPlacements::opened(Rank rank) {
+    noted_.try_emplace(rank, 0);
+    closed_.erase(rank);
 }
 
 void AgreedPlacements::closed(Rank rank) {
@@ -81,6 +106,11 @@ void AgreedPlacements::noted(Rank rank, std::uint32_t version) {
     if (const auto found = noted_.find(rank); found != noted_.end()) found->second = std::max(found->second, version);
 }
 
+bool AgreedPlacements::too_late(std::uint32_t version, std::uint32_t begun) {
+    begun_ = std::max(begun_, begun);
+    return proposed_ && proposed_->layout_version() == version;
+}
+
 bool AgreedPlacements::all_noted(const ParallelGroup& group, std::uint32_t version) const {
     for (Rank rank = 0; rank < group.size(); ++rank) {
         const auto found = noted_.find(rank);
@@ -88,13 +118,6 @@ bool AgreedPlacements::all_noted(const ParallelGroup& group, std::uint32_t versi
         if (found == noted_.end() || found->second < version) return false;
     }
     return true;
-}
-
-std::uint32_t AgreedPlacements::limit(const ParallelGroup& group) const {
-    for (const auto& [version, placement] : versions_) {
-        if (placement.from_frame() >= kLead && !all_noted(group, version)) return placement.from_frame() - (kLead - 1);
-    }
-    return UINT32_MAX;
 }
 
 }  // namespace wall::walld

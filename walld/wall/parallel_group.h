@@ -23,6 +23,7 @@ public:
     struct Member {
         std::uint32_t pid = 0;
         bool left = false;
+        std::uint32_t awaited = 0;  ///< windows that it had with an earlier walld and has not announced yet
     };
 
     ParallelGroup(std::string name, std::uint32_t size) : name_(std::move(name)), size_(size) {}
@@ -32,7 +33,12 @@ public:
     /// Whether this member may come to the others.
     Outcome<void> admits(const proto::Group& hello) const;
 
-    void joins(Rank rank, std::uint32_t pid) { members_[rank] = {pid, false}; }
+    /// `windows`: that it will announce at once.
+    void joins(Rank rank, std::uint32_t pid, std::uint32_t windows = 0) { members_[rank] = {pid, false, windows}; }
+    /// It had left when an earlier walld was there.
+    void had_left(Rank rank) { members_[rank] = {0, true, 0}; }
+    /// It has announced a window.
+    void announced(Rank rank);
     /// False: it is not here.
     bool leaves(Rank rank);
 
@@ -42,6 +48,8 @@ public:
     bool here(Rank rank) const;
     bool all_came() const { return members_.size() == size_; }
     bool all_left() const { return all_came() && left().size() == size_; }
+    /// All have come, and have announced all that they had with an earlier walld.
+    bool all_returned() const;
     std::set<Rank> left() const;
     /// "rank 2 (process 4711) of parallel program NAME".
     std::string text(Rank rank) const;
@@ -52,34 +60,49 @@ private:
     std::map<Rank, Member> members_;  ///< that have come
 };
 
-/// What the members of a group know of one window: versions of its placement with the frame from which each holds. A
-/// version's frame comes only when all members know of it.
+/// What the members of a group know of one window: versions of its placement with the frame from which each holds. The
+/// newest is proposed first. A member answers that it knows it, and then begins that frame only when it is agreed; or
+/// that it has begun it, and then another one is proposed. So all draw every frame at one place, whoever is slow or
+/// away.
 class AgreedPlacements {
 public:
-    /// Frames from the last presented one to that from which a new version holds. A member can have begun the third: it
+    /// Frames from the last presented one to that from which a proposal holds. A member can have begun the third: it
     /// draws two ahead of a node, which draws one ahead of what is presented. One more is presented while they are
     /// told.
     static constexpr std::uint32_t kLead = 5;
 
+    /// It holds without having been proposed: the first one, or what members say that an earlier walld had agreed with
+    /// them.
     void add(const proto::Placement& placement);
+    /// It takes the place of an earlier proposal.
+    void propose(const proto::Placement& placement) { proposed_ = placement; }
+    /// What was proposed, if all know it now: it is agreed.
+    std::optional<proto::Placement> settle(const ParallelGroup& group);
+
     /// The members' frames up to this one are on show: what held before is forgotten.
     void presented(std::uint32_t frame);
     /// The placements in order: the one that holds, and those that will.
     const std::map<std::uint32_t, proto::Placement>& versions() const { return versions_; }
+    const std::optional<proto::Placement>& proposed() const { return proposed_; }
+    /// The last frame that a member is known to have begun.
+    std::uint32_t begun() const { return begun_; }
 
-    void opened(Rank rank) { noted_.try_emplace(rank, 0); }
+    void opened(Rank rank);
     void closed(Rank rank);
     void noted(Rank rank, std::uint32_t version);
+    /// A member has begun that frame. True: it was told the proposal too late.
+    bool too_late(std::uint32_t version, std::uint32_t begun);
     bool closed_by(Rank rank) const { return closed_.contains(rank); }
-    /// The last frame that may be presented now. `group`: its members that have left know nothing and draw nothing.
-    std::uint32_t limit(const ParallelGroup& group) const;
+    bool opened_by(Rank rank) const { return noted_.contains(rank); }
 
 private:
     bool all_noted(const ParallelGroup& group, std::uint32_t version) const;
 
     std::map<std::uint32_t, proto::Placement> versions_;
+    std::optional<proto::Placement> proposed_;
     std::map<Rank, std::uint32_t> noted_;  ///< newest version that a member has received since it opened the window
     std::set<Rank> closed_;
+    std::uint32_t begun_ = 0;
 };
 
 }  // namespace wall::walld

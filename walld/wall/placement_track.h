@@ -18,7 +18,9 @@ namespace wall::walld {
 
 class PlacementTrack {
 public:
-    explicit PlacementTrack(const geom::Rect& first = {}) : wanted_(first), drawn_(first), shown_(first) {}
+    /// `version`: of `first`, where an earlier walld has counted.
+    explicit PlacementTrack(const geom::Rect& first = {}, std::uint32_t version = 1)
+        : wanted_(first), drawn_(first), shown_(first), version_(version) {}
 
     const geom::Rect& wanted() const { return wanted_; }
     const geom::Rect& drawn() const { return drawn_; }  ///< in the frames that come
@@ -38,7 +40,7 @@ private:
         geom::Rect rect;
     };
     geom::Rect wanted_, drawn_, shown_;
-    std::uint32_t version_ = 1;
+    std::uint32_t version_;
     std::map<std::uint32_t, geom::Rect> offered_;  ///< by version: not adopted yet
     std::deque<Adopted> adopted_;                  ///< not shown yet
 };

@@ -73,11 +73,6 @@ Presents SwapCoordinator::tick(Clock::time_point now) {
     return advance(now);
 }
 
-Presents SwapCoordinator::limit(std::uint32_t frame, Clock::time_point now) {
-    last_frame_ = frame;
-    return advance(now);
-}
-
 Presents SwapCoordinator::hold(Clock::time_point now) {
     if (!held_) allowed_ = presented_;
     held_ = true;
@@ -109,7 +104,7 @@ std::uint32_t SwapCoordinator::behind(NodeIndex node) const {
     return due > shown ? due - shown : 0;
 }
 
-std::uint32_t SwapCoordinator::ceiling() const { return held_ ? std::min(allowed_, last_frame_) : last_frame_; }
+std::uint32_t SwapCoordinator::ceiling() const { return held_ ? allowed_ : UINT32_MAX; }
 
 bool SwapCoordinator::Member::takes_part(std::uint32_t frame) const {
     return std::ranges::any_of(stays, [&](const Stay& stay) { return frame >= stay.from && frame <= stay.until; });

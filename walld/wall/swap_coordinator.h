@@ -53,8 +53,6 @@ public:
     Presents resume(NodeIndex node, std::uint32_t frame, std::uint32_t shown, Clock::time_point now);
     Presents tick(Clock::time_point now);
 
-    /// Nothing beyond this frame is presented until it is called again.
-    Presents limit(std::uint32_t frame, Clock::time_point now);
     Presents hold(Clock::time_point now);
     Presents step(std::uint32_t frames, Clock::time_point now);
     /// Ends holding.
@@ -106,8 +104,7 @@ private:
     bool someone_ahead() const;
     std::uint32_t ceiling() const;
 
-    Clock::duration limit_;                  ///< of time, for a late node
-    std::uint32_t last_frame_ = UINT32_MAX;  ///< that may be presented
+    Clock::duration limit_;  ///< for a late node
     std::map<NodeIndex, Member> members_;
     std::uint32_t presented_ = 0;
     std::optional<Clock::time_point> deadline_;

@@ -28,10 +28,6 @@ bool has_ticket(const proto::NodeHello& hello, SessionId id, const std::string& 
     });
 }
 
-bool extent_ok(std::uint32_t width, std::uint32_t height) {
-    return width > 0 && height > 0 && width <= wire::kMaxSurfaceExtent && height <= wire::kMaxSurfaceExtent;
-}
-
 }  // namespace
 
 Wall::Wall(config::WallConfig config, Outbox& out, RandomBytes random)
@@ -83,7 +79,7 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
     for_each_surface([&](const SurfaceKey& key, SurfaceEntry& surface) {
         const auto& session = *find(key.session);
         present(key, surface.swap.set_nodes(nodes_of(session, surface.place.drawn()), now), now);
-        if (session.group) want(key, surface.place.wanted(), now);  // the members come to the node at the same frame
+        if (session.group) want(key, surface.place.wanted());  // the members come to the node at the same frame
     });
     return index;
 }
@@ -190,11 +186,16 @@ Outcome<void> Wall::check(const proto::ClientHello& hello) const {
 
 SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Clock::time_point now,
                              const std::function<void(SessionId)>& before_welcome) {
-    if (const auto* known = group_of(hello)) return join_session(known->first, hello, before_welcome);
+    if (const auto* known = group_of(hello); known && !resumable(hello))
+        return join_session(known->first, hello, before_welcome);
     WALL_ASSERT(any_node_up());
     const auto back = resumable(hello);
     const SessionId id = back ? *back : next_session();
     auto& session = sessions_[id];
+    if (hello.has_group()) {
+        session.group.emplace(hello.group().name(), hello.group().members());
+        session.group->joins(hello.group().rank(), hello.pid(), hello.resume().windows());
+    }
     if (back) resume_session(id, session, hello.resume());
     session.pid = hello.pid();
     session.program = hello.program().substr(0, kMaxText);
@@ -205,16 +206,13 @@ SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Cloc
     session.fullscreen = hello.fullscreen();
     if (session.fullscreen) session.rect = config_.canvas();
     session.opened = now;
-    if (hello.has_group()) {
-        session.group.emplace(hello.group().name(), hello.group().members());
-        session.group->joins(hello.group().rank(), hello.pid());
-    }
     ++counters_.sessions;
     before_welcome(id);
     for (const NodeIndex i : nodes_.ids()) {
         if (!nodes_[i].up) continue;
+        // To a node that does not know a returning program its members go with a placement.
+        if (!back || session.tickets.contains(i)) session.group_nodes[i] = nodes_[i].incarnation;
         hand_out_ticket(id, session, i);
-        session.group_nodes[i] = nodes_[i].incarnation;
     }
     welcome_client(id, session, hello.group().rank());
     return id;
@@ -282,20 +280,21 @@ Result<void> Wall::open_surface(SessionId id, const proto::SurfaceOpen& message,
     if (!extent_ok(message.width(), message.height()))
         return fail("surface of " + std::to_string(message.width()) + "x" + std::to_string(message.height()) +
                     " pixels: expected 1 to " + std::to_string(wire::kMaxSurfaceExtent) + " a side");
+    if (message.has_restore() && session->group) session->group->announced(rank);
     if (known) {
-        open_for_member(key, message, rank, now);
+        open_for_member(key, message, rank);
         return {};
     }
     if (session->surfaces.size() >= kMaxSurfaces) return fail("more than " + std::to_string(kMaxSurfaces) + " windows");
-    if (message.has_restore() && !session->group && restore_surface(key, message, now)) return {};
+    if (message.has_restore() && restore_surface(key, message, now, rank)) return {};
     auto& surface = add_surface(key, message);
     surface.place = PlacementTrack(first_rect(*session, surface, windows_placed_++));
     surface.order = order_at(now);
     stack(key);
     present(key, surface.swap.set_nodes(nodes_of(*session, surface.place.drawn()), now), now);
     if (session->group) {
-        agree(key, now);
-        open_for_member(key, message, rank, now);
+        surface.agreed.add(placement_for_all(key));
+        open_for_member(key, message, rank);
     } else {
         send_placement(key, surface);
     }
@@ -312,6 +311,7 @@ SurfaceEntry& Wall::add_surface(const SurfaceKey& key, const proto::SurfaceOpen&
                          .place = PlacementTrack(),
                          .note = {},
                          .agreed = {},
+                         .returning = {},
                          .swap = SwapCoordinator(config_.swap_timeout, session.held)};
     return session.surfaces.emplace(key.surface, std::move(surface)).first->second;
 }
@@ -346,7 +346,7 @@ void Wall::stack(const SurfaceKey& key) {
     stacking_.insert(std::ranges::find_if(stacking_, above), key);
 }
 
-void Wall::resize_surface(SessionId id, const proto::SurfaceResize& message, Clock::time_point now, Rank rank) {
+void Wall::resize_surface(SessionId id, const proto::SurfaceResize& message, Rank rank) {
     const SurfaceKey key{id, SurfaceId(message.surface())};
     auto* surface = find(key.surface, id);
     if (!surface || rank != 0 || !extent_ok(message.width(), message.height())) return;
@@ -357,7 +357,7 @@ void Wall::resize_surface(SessionId id, const proto::SurfaceResize& message, Clo
         rect.width = static_cast<std::int32_t>(message.width());
         rect.height = static_cast<std::int32_t>(message.height());
     }
-    want(key, rect, now);
+    want(key, rect);
 }
 
 void Wall::adopt_placement(SessionId id, const proto::SurfaceAdopted& message, Clock::time_point now) {
@@ -389,7 +389,8 @@ void Wall::client_reports(SessionId id, Rank rank, const proto::ClientStats& sta
 void Wall::close_surface(SessionId id, SurfaceId surface, Rank rank) {
     auto* session = find(id);
     auto* found = find(surface, id);
-    if (!found || !closed_by_all(*session, *found, rank)) return;
+    if (!found) return;
+    if (!closed_by_all(*session, *found, rank)) return settle({id, surface});
     session->surfaces.erase(surface);
     std::erase(stacking_, SurfaceKey{id, surface});
     send_stacking();
@@ -435,11 +436,11 @@ const SurfaceEntry* Wall::find(const SurfaceKey& key) const {
     return found == session->second.surfaces.end() ? nullptr : &found->second;
 }
 
-void Wall::want(const SurfaceKey& key, const geom::Rect& rect, Clock::time_point now) {
+void Wall::want(const SurfaceKey& key, const geom::Rect& rect) {
     auto& surface = *find(key.surface, key.session);
     surface.place.want(rect);
     tell_note(key);
-    if (find(key.session)->group) agree(key, now);
+    if (find(key.session)->group) propose(key);
     else send_placement(key, surface);
 }
 

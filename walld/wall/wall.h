@@ -83,6 +83,8 @@ struct SurfaceEntry {
     std::string note;                     ///< what its program keeps of it for the next walld
     std::optional<std::size_t> layout_z;  ///< its place in the stacking of the layout that placed it
     AgreedPlacements agreed;              ///< of a parallel program
+    /// Of one that an earlier walld had, until all processes are back: the newest version that they know.
+    std::optional<std::uint32_t> returning;
     SwapCoordinator swap;
 };
 
@@ -120,6 +122,7 @@ struct Counters {
 /// Of an earlier walld, by what the nodes tell of it.
 struct ReturningSession {
     std::map<NodeIndex, std::string> tickets;
+    std::set<Rank> left;  ///< of a parallel program
 };
 
 class Wall {
@@ -152,7 +155,7 @@ public:
     /// Nodes of which the wall would have another description.
     std::vector<NodeIndex> described_otherwise(const config::WallConfig& next) const;
     /// The wall is described so from now on. Those nodes must have left. Windows whose place is gone get another one.
-    void describe(config::WallConfig next, Clock::time_point now);
+    void describe(config::WallConfig next);
     /// It must have left, unless it is away.
     void set_duty(NodeIndex node, Duty duty) { nodes_[node].duty = duty; }
     std::optional<NodeIndex> find_node(std::string_view name) const;
@@ -163,6 +166,9 @@ public:
     Outcome<void> check(const proto::ClientHello& hello) const;
     /// Why it cannot be taken as this person's process of a parallel program, if so.
     Outcome<void> check_member(const proto::ClientHello& hello, const Person& who) const;
+    /// Of a process of a parallel program that an earlier walld had; any other one simply comes.
+    enum class Comeback { may_come, not_yet, over };
+    Comeback comeback(const proto::ClientHello& hello, Clock::time_point now) const;
     /// Needs a node that is up and a hello that was checked. The welcome goes to the session's client; the id is known
     /// before any message is sent. A parallel program's first member opens it, the others get the same one.
     SessionId open_session(const proto::ClientHello& hello, Person owner, Clock::time_point now,
@@ -171,12 +177,12 @@ public:
     /// A process is gone. The session is closed with its last one, and with one that has not left its parallel program:
     /// then the others are cut off. Gives what became of it, for the log.
     std::string member_gone(SessionId id, Rank rank);
-    void member_leaves(SessionId id, Rank rank, Clock::time_point now);
+    void member_leaves(SessionId id, Rank rank);
     Result<void> open_surface(SessionId id, const proto::SurfaceOpen& message, Clock::time_point now, Rank rank = 0);
     /// Always answered with a Placement. In a parallel program rank 0 says how large a window is.
-    void resize_surface(SessionId id, const proto::SurfaceResize& message, Clock::time_point now, Rank rank = 0);
+    void resize_surface(SessionId id, const proto::SurfaceResize& message, Rank rank = 0);
     void close_surface(SessionId id, SurfaceId surface, Rank rank = 0);
-    void placement_noted(SessionId id, Rank rank, const proto::PlacementNoted& message, Clock::time_point now);
+    void placement_noted(SessionId id, Rank rank, const proto::PlacementNoted& message);
 
     /// The program draws with a placement from a frame on.
     void adopt_placement(SessionId id, const proto::SurfaceAdopted& message, Clock::time_point now);
@@ -184,7 +190,7 @@ public:
     void client_reports(SessionId id, Rank rank, const proto::ClientStats& stats, Clock::time_point now);
 
     // ---- operators (wall_operate.cpp) ----
-    Outcome<void> place_surface(const Target& target, const geom::Rect& rect, Clock::time_point now);
+    Outcome<void> place_surface(const Target& target, const geom::Rect& rect);
     Outcome<void> raise(const Target& target);
     Outcome<void> lower(const Target& target);
     /// Gives the windows that were asked.
@@ -199,7 +205,7 @@ public:
     Layout current_layout() const;
     /// Places and stacks the windows that match, at once; programs that start later get the places left over, until
     /// another layout is loaded. Gives the number of windows placed.
-    std::size_t load_layout(const Layout& layout, Clock::time_point now);
+    std::size_t load_layout(const Layout& layout);
 
     // ---- time ----
     std::optional<Clock::time_point> next_deadline() const;
@@ -231,10 +237,12 @@ private:
     geom::Rect first_rect(SessionEntry& session, SurfaceEntry& surface, std::uint32_t number);
     SessionId next_session();
     // of a walld that was started again (wall_return.cpp)
+    /// The program has been told one of these, which nodes have come with.
+    static bool knows_a_ticket(const proto::Resume& resume, const std::map<NodeIndex, std::string>& tickets);
     std::optional<SessionId> resumable(const proto::ClientHello& hello) const;
     void resume_session(SessionId id, SessionEntry& session, const proto::Resume& resume);
     static std::uint64_t order_at(Clock::time_point now);
-    bool restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& message, Clock::time_point now);
+    bool restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& message, Clock::time_point now, Rank rank);
     void hear_of_sessions(NodeIndex node, const proto::NodeHello& hello, Clock::time_point now);
     void end_waiting_for_sessions(Clock::time_point now);
     void hear_wall_note(NodeIndex node, const proto::WallNote& note);
@@ -245,16 +253,20 @@ private:
     void ask_for_frames(SessionId session);
     WindowName name_of(const SurfaceKey& key) const;
     void stack(const SurfaceKey& key);
-    void want(const SurfaceKey& key, const geom::Rect& rect, Clock::time_point now);
+    void want(const SurfaceKey& key, const geom::Rect& rect);
     proto::Placement placement_of(const SurfaceKey& key, const SurfaceEntry& surface) const;
     // of parallel programs (wall_group.cpp)
     const std::pair<const SessionId, SessionEntry>* group_of(const proto::ClientHello& hello) const;
     SessionId join_session(SessionId id, const proto::ClientHello& hello,
                            const std::function<void(SessionId)>& before_welcome);
     std::set<NodeIndex> nodes_of(const SessionEntry& session, const geom::Rect& rect) const;
-    void agree(const SurfaceKey& key, Clock::time_point now);
-    void open_for_member(const SurfaceKey& key, const proto::SurfaceOpen& message, Rank rank, Clock::time_point now);
-    void limit_frames(const SurfaceKey& key, Clock::time_point now);
+    proto::Placement placement_for_all(const SurfaceKey& key) const;
+    void propose(const SurfaceKey& key);
+    void settle(const SurfaceKey& key);
+    void restore_for_member(const SurfaceKey& key, const proto::SurfaceOpen& message);
+    void all_returned(SessionId session);
+    void add_nodes(proto::Placement& placement, const SessionEntry& session) const;
+    void open_for_member(const SurfaceKey& key, const proto::SurfaceOpen& message, Rank rank);
     static bool closed_by_all(SessionEntry& session, SurfaceEntry& surface, Rank rank);
     void end_overdue_groups(Clock::time_point now);
     void present(const SurfaceKey& key, const Presents& presents, Clock::time_point now);

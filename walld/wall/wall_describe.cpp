@@ -54,7 +54,7 @@ std::vector<NodeIndex> Wall::described_otherwise(const config::WallConfig& next)
     return out;
 }
 
-void Wall::describe(config::WallConfig next, Clock::time_point now) {
+void Wall::describe(config::WallConfig next) {
     const bool other_background = next.background != config_.background;
     config_ = std::move(next);
     const bool other_tiles = take_nodes();
@@ -68,7 +68,7 @@ void Wall::describe(config::WallConfig next, Clock::time_point now) {
         out_.to_client(id, make(&proto::Envelope::mutable_tiles_changed, tiles));
     }
     for_each_surface([&](const SurfaceKey& key, SurfaceEntry& surface) {
-        want(key, place_after_change(*find(key.session), surface), now);
+        want(key, place_after_change(*find(key.session), surface));
     });
 }
 

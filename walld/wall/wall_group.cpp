@@ -6,10 +6,17 @@
 #include "walld/wall/wall.h"
 
 namespace wall::walld {
+namespace {
 
+constexpr std::size_t kMaxVersions = 64;  // of a window's placement, that the members of a returning program tell
+
+}  // namespace
+
+/// One that returns knows its number: another program may have its name meanwhile.
 const std::pair<const SessionId, SessionEntry>* Wall::group_of(const proto::ClientHello& hello) const {
     const auto found = std::ranges::find_if(sessions_, [&](const auto& entry) {
-        return entry.second.group && entry.second.group->name() == hello.group().name();
+        return entry.second.group && entry.second.group->name() == hello.group().name() &&
+               (!hello.has_resume() || entry.first.value == hello.resume().session());
     });
     return hello.has_group() && found != sessions_.end() ? &*found : nullptr;
 }
@@ -25,19 +32,32 @@ Outcome<void> Wall::check_member(const proto::ClientHello& hello, const Person& 
     return known->second.group->admits(hello.group());
 }
 
+/// Not yet: its nodes may still come and tell of it.
+Wall::Comeback Wall::comeback(const proto::ClientHello& hello, Clock::time_point now) const {
+    if (!hello.has_group() || !hello.has_resume() || resumable(hello)) return Comeback::may_come;
+    const auto* known = group_of(hello);
+    if (known && knows_a_ticket(hello.resume(), known->second.tickets)) return Comeback::may_come;
+    const bool late = returns_over_ || (return_until_ && now >= *return_until_);
+    return late ? Comeback::over : Comeback::not_yet;
+}
+
 SessionId Wall::join_session(SessionId id, const proto::ClientHello& hello,
                              const std::function<void(SessionId)>& before_welcome) {
     auto& session = *find(id);
-    session.group->joins(hello.group().rank(), hello.pid());
+    session.group->joins(hello.group().rank(), hello.pid(), hello.resume().windows());
     before_welcome(id);
     welcome_client(id, session, hello.group().rank());
+    all_returned(id);
     return id;
 }
 
-void Wall::member_leaves(SessionId id, Rank rank, Clock::time_point now) {
+void Wall::member_leaves(SessionId id, Rank rank) {
     auto* session = find(id);
     if (!session || !session->group || !session->group->leaves(rank)) return;
-    for (auto& [surface_id, surface] : session->surfaces) limit_frames({id, surface_id}, now);
+    for (const NodeIndex i : nodes_.ids())
+        if (nodes_[i].up) hand_out_ticket(id, *session, i);  // a walld that comes after this one hears of it from them
+    for (const auto& [surface_id, surface] : session->surfaces) settle({id, surface_id});
+    all_returned(id);
 }
 
 std::string Wall::member_gone(SessionId id, Rank rank) {
@@ -60,50 +80,109 @@ std::set<NodeIndex> Wall::nodes_of(const SessionEntry& session, const geom::Rect
     return session.group ? nodes_under(config_.canvas()) : nodes_under(rect);
 }
 
-/// A version that holds from a frame on that no member can have begun.
-void Wall::agree(const SurfaceKey& key, Clock::time_point now) {
-    auto& session = *find(key.session);
-    auto& surface = *find(key.surface, key.session);
-    auto placement = placement_of(key, surface);
-    const bool first = surface.agreed.versions().empty();
-    placement.set_from_frame(first ? 0 : surface.swap.presented() + AgreedPlacements::kLead);
-    placement.set_width(surface.width);
-    placement.set_height(surface.height);
-    for (const NodeIndex i : nodes_.ids()) {
+void Wall::add_nodes(proto::Placement& placement, const SessionEntry& session) const {
+    placement.clear_nodes();
+    for (const NodeIndex i : nodes_.ids())
         if (nodes_[i].up) *placement.add_nodes() = node_up_message(i, session.tickets.at(i));
-    }
-    surface.agreed.presented(surface.swap.presented());
-    surface.agreed.add(placement);
-    surface.place.adopt(placement.layout_version(), placement.from_frame());
-    limit_frames(key, now);
-    if (!first) out_.to_client(key.session, make(&proto::Envelope::mutable_placement, placement));
 }
 
-void Wall::open_for_member(const SurfaceKey& key, const proto::SurfaceOpen& message, Rank rank, Clock::time_point now) {
+proto::Placement Wall::placement_for_all(const SurfaceKey& key) const {
+    const auto& surface = *find(key);
+    auto placement = placement_of(key, surface);
+    placement.set_width(surface.width);
+    placement.set_height(surface.height);
+    add_nodes(placement, sessions_.at(key.session));
+    return placement;
+}
+
+/// From a frame on that no member should have begun.
+void Wall::propose(const SurfaceKey& key) {
+    auto& surface = *find(key.surface, key.session);
+    if (surface.returning) return;
+    auto placement = placement_for_all(key);
+    surface.agreed.presented(surface.swap.presented());
+    placement.set_from_frame(std::max(surface.swap.presented(), surface.agreed.begun()) + AgreedPlacements::kLead);
+    surface.agreed.propose(placement);
+    out_.to_client(key.session, make(&proto::Envelope::mutable_placement, placement));
+}
+
+void Wall::settle(const SurfaceKey& key) {
+    auto& surface = *find(key.surface, key.session);
+    const auto placement = surface.agreed.settle(*find(key.session)->group);
+    if (!placement) return;
+    surface.place.adopt(placement->layout_version(), placement->from_frame());
+    proto::PlacementAgreed agreed;
+    agreed.set_surface(key.surface.value);
+    agreed.set_layout_version(placement->layout_version());
+    out_.to_client(key.session, make(&proto::Envelope::mutable_placement_agreed, agreed));
+}
+
+void Wall::open_for_member(const SurfaceKey& key, const proto::SurfaceOpen& message, Rank rank) {
     auto& surface = *find(key.surface, key.session);
     surface.agreed.opened(rank);
-    const bool other_size = message.width() != surface.width || message.height() != surface.height;
+    if (message.has_restore()) restore_for_member(key, message);
     for (const auto& [version, placement] : surface.agreed.versions())
         out_.to_member(key.session, rank, make(&proto::Envelope::mutable_placement, placement));
+    if (surface.agreed.proposed())
+        out_.to_member(key.session, rank, make(&proto::Envelope::mutable_placement, *surface.agreed.proposed()));
+    all_returned(key.session);
+    const bool other_size = message.width() != surface.width || message.height() != surface.height;
     if (rank != 0 || !other_size) return;
     proto::SurfaceResize resize;
     resize.set_surface(key.surface.value);
     resize.set_width(message.width());
     resize.set_height(message.height());
-    resize_surface(key.session, resize, now);
+    resize_surface(key.session, resize);
 }
 
-void Wall::placement_noted(SessionId id, Rank rank, const proto::PlacementNoted& message, Clock::time_point now) {
+void Wall::placement_noted(SessionId id, Rank rank, const proto::PlacementNoted& message) {
     const SurfaceKey key{id, SurfaceId(message.surface())};
     auto* surface = find(key.surface, id);
     if (!surface) return;
+    if (message.begun() != 0) {
+        if (surface->agreed.too_late(message.layout_version(), message.begun())) want(key, surface->place.wanted());
+        return;
+    }
     surface->agreed.noted(rank, message.layout_version());
-    limit_frames(key, now);
+    settle(key);
 }
 
-void Wall::limit_frames(const SurfaceKey& key, Clock::time_point now) {
-    const auto& group = find(key.session)->group;
-    if (group) present(key, find(key.surface, key.session)->swap.limit(find(key)->agreed.limit(*group), now), now);
+// ---- of an earlier walld ----
+
+/// What one member knows to be agreed holds for all: whoever has not heard of it has not begun that frame.
+void Wall::restore_for_member(const SurfaceKey& key, const proto::SurfaceOpen& message) {
+    auto& surface = *find(key.surface, key.session);
+    if (!surface.returning) return;
+    for (auto placement : message.restore().agreed()) {
+        surface.returning = std::max(*surface.returning, placement.layout_version());
+        if (surface.agreed.versions().contains(placement.layout_version()) ||
+            surface.agreed.versions().size() >= kMaxVersions ||
+            !check_place(config_.canvas(), from_proto(placement.rect())) ||
+            !extent_ok(placement.width(), placement.height()))
+            continue;
+        add_nodes(placement, *find(key.session));
+        placement.set_surface(key.surface.value);
+        surface.agreed.add(placement);
+    }
+}
+
+/// Then each is told what some may not know, and where it is wanted is proposed anew: nobody waits any more.
+void Wall::all_returned(SessionId id) {
+    auto& session = *find(id);
+    if (!session.group->all_returned()) return;
+    for (auto& [surface_id, surface] : session.surfaces) {
+        if (!surface.returning) continue;
+        const SurfaceKey key{id, surface_id};
+        for (Rank rank = 0; rank < session.group->size(); ++rank)
+            if (!surface.agreed.opened_by(rank)) surface.agreed.closed(rank);
+        const auto& versions = surface.agreed.versions();
+        for (const auto& [version, placement] : versions)
+            out_.to_client(id, make(&proto::Envelope::mutable_placement, placement));
+        const auto drawn = versions.empty() ? surface.place.drawn() : from_proto(versions.rbegin()->second.rect());
+        const auto wanted = surface.place.wanted();
+        surface.place = PlacementTrack(drawn, *std::exchange(surface.returning, std::nullopt));
+        want(key, wanted);
+    }
 }
 
 /// False: others still have it.

@@ -59,12 +59,12 @@ Outcome<std::vector<SurfaceKey>> Wall::surfaces_of(const Target& target) const {
     return out;
 }
 
-Outcome<void> Wall::place_surface(const Target& target, const geom::Rect& rect, Clock::time_point now) {
+Outcome<void> Wall::place_surface(const Target& target, const geom::Rect& rect) {
     if (auto possible = check_place(config_.canvas(), rect); !possible) return possible;
     const auto key = resolve(target);
     if (!key) return tl::unexpected(key.error());
     find(key->surface, key->session)->scaled = true;
-    want(*key, rect, now);
+    want(*key, rect);
     return {};
 }
 
@@ -153,7 +153,7 @@ Layout Wall::current_layout() const {
     return layout;
 }
 
-std::size_t Wall::load_layout(const Layout& layout, Clock::time_point now) {
+std::size_t Wall::load_layout(const Layout& layout) {
     const auto canvas = config_.canvas();
     free_places_ = scaled_to(layout, canvas.width, canvas.height).windows;
     // Only what cannot be seen on this wall at all is left where it is.
@@ -173,7 +173,7 @@ std::size_t Wall::load_layout(const Layout& layout, Clock::time_point now) {
         if (!entry->scaled)
             rect = {rect.x, rect.y, static_cast<std::int32_t>(surface.width),
                     static_cast<std::int32_t>(surface.height)};
-        want(key, rect, now);
+        want(key, rect);
     }
     for (const auto& [z, key] : placed) {
         std::erase(stacking_, key);

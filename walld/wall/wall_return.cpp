@@ -28,14 +28,6 @@ bool same_secret(std::string_view a, std::string_view b) {
     return difference == 0;
 }
 
-/// The program has been told this ticket of a node that has come with it.
-bool knows_a_ticket(const proto::Resume& resume, const ReturningSession& session) {
-    return std::ranges::any_of(resume.tickets(), [&](const proto::Resume::NodeTicket& told) {
-        const auto of_node = session.tickets.find(NodeIndex(told.node()));
-        return of_node != session.tickets.end() && same_secret(of_node->second, told.ticket());
-    });
-}
-
 std::vector<LayoutEntry> places_of(const proto::WallNote& note, const geom::Rect& canvas) {
     std::vector<LayoutEntry> out;
     for (const auto& place : note.waiting()) {
@@ -50,6 +42,13 @@ std::vector<LayoutEntry> places_of(const proto::WallNote& note, const geom::Rect
 
 // ---- sessions ----
 
+bool Wall::knows_a_ticket(const proto::Resume& resume, const std::map<NodeIndex, std::string>& tickets) {
+    return std::ranges::any_of(resume.tickets(), [&](const proto::Resume::NodeTicket& told) {
+        const auto of_node = tickets.find(NodeIndex(told.node()));
+        return of_node != tickets.end() && same_secret(of_node->second, told.ticket());
+    });
+}
+
 /// Sessions of a walld before this one wait for their programs. Others have ended while the node's link was broken.
 void Wall::hear_of_sessions(NodeIndex node, const proto::NodeHello& hello, Clock::time_point now) {
     if (!return_until_) return_until_ = now + kReturnLimit;
@@ -59,7 +58,9 @@ void Wall::hear_of_sessions(NodeIndex node, const proto::NodeHello& hello, Clock
         if (sessions_.contains(id)) continue;  // with another ticket, it ends by that
         last_session_ = std::max(last_session_, id);
         if (!returns_over_ && !ended_.contains(id)) {
-            returning_[id].tickets[node] = known.ticket();
+            auto& returning = returning_[id];
+            returning.tickets[node] = known.ticket();
+            returning.left.insert(known.left().begin(), known.left().end());
             continue;
         }
         proto::SessionEnd end;
@@ -69,9 +70,9 @@ void Wall::hear_of_sessions(NodeIndex node, const proto::NodeHello& hello, Clock
 }
 
 std::optional<SessionId> Wall::resumable(const proto::ClientHello& hello) const {
-    if (!hello.has_resume() || hello.has_group()) return std::nullopt;
+    if (!hello.has_resume()) return std::nullopt;
     const auto found = returning_.find(SessionId(hello.resume().session()));
-    if (found == returning_.end() || !knows_a_ticket(hello.resume(), found->second)) return std::nullopt;
+    if (found == returning_.end() || !knows_a_ticket(hello.resume(), found->second.tickets)) return std::nullopt;
     return found->first;
 }
 
@@ -87,6 +88,8 @@ void Wall::resume_session(SessionId id, SessionEntry& session, const proto::Resu
         if (known || !nodes_[node].up) session.tickets[node] = told.ticket();
     }
     session.awaited = resume.windows();
+    for (const Rank rank : returning.left)
+        if (session.group && rank < session.group->size() && !session.group->here(rank)) session.group->had_left(rank);
 }
 
 void Wall::end_waiting_for_sessions(Clock::time_point now) {
@@ -111,35 +114,48 @@ std::uint64_t Wall::order_at(Clock::time_point now) {
         std::chrono::duration_cast<std::chrono::microseconds>(now.time_since_epoch()).count());
 }
 
-/// False: it was at no place that this wall has.
-bool Wall::restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& message, Clock::time_point now) {
+/// False: it was at no place that this wall has. (A parallel program, which goes on drawing where it did, gets another
+/// place.)
+bool Wall::restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& message, Clock::time_point now, Rank rank) {
     auto& session = *find(key.session);
     if (session.awaited > 0) --session.awaited;
-    const auto drawn = from_proto(message.restore().drawn());
+    auto drawn = from_proto(message.restore().drawn());
     proto::WindowRecord record;
-    if (!check_place(config_.canvas(), drawn) || !record.ParseFromString(message.restore().note())) return false;
+    if (!record.ParseFromString(message.restore().note())) return false;
+    const bool there = check_place(config_.canvas(), drawn).has_value();
+    if (!there && !session.group) return false;
     session.held = record.session_held();
     if (record.session_weight() != 0 && record.session_weight() <= wire::kMostWeight &&
         record.session_weight() != session.weight)
         (void)set_weight({key.session, {}}, record.session_weight());
     auto& surface = add_surface(key, message);
-    surface.place = PlacementTrack(drawn);
     surface.scaled = record.scaled();
     surface.wanted_rect = record.wanted_rect();
+    surface.place = PlacementTrack(there ? drawn
+                                         : geom::Rect{0, 0, static_cast<std::int32_t>(message.width()),
+                                                      static_cast<std::int32_t>(message.height())});
+    if (!there) surface.place = PlacementTrack(drawn = place_after_change(session, surface));
     surface.order = std::min(record.order(), order_at(now));
     if (record.has_layout_z()) surface.layout_z = record.layout_z();
     surface.swap = SwapCoordinator(config_.swap_timeout, record.held());
     const auto above = [&](const SurfaceKey& other) { return find(other)->order > surface.order; };
     stacking_.insert(std::ranges::find_if(stacking_, above), key);
-    present(key, surface.swap.set_nodes(nodes_under(drawn), now), now);
+    present(key, surface.swap.set_nodes(nodes_of(session, drawn), now), now);
     auto wanted = from_proto(message.restore().wanted());
     if (!check_place(config_.canvas(), wanted)) wanted = drawn;
     if (!surface.scaled) {
         wanted.width = static_cast<std::int32_t>(message.width());
         wanted.height = static_cast<std::int32_t>(message.height());
     }
-    if (wanted != drawn) want(key, wanted, now);
-    else send_placement(key, surface);
+    if (session.group) {
+        surface.returning = 1;
+        surface.place.want(wanted);
+        open_for_member(key, message, rank);
+    } else if (wanted != drawn) {
+        want(key, wanted);
+    } else {
+        send_placement(key, surface);
+    }
     send_stacking();
     ask_for_frames(key.session);
     return true;
@@ -162,11 +178,9 @@ void Wall::number_stacking() {
     }
 }
 
-/// A parallel program does not come back: its processes would have to begin anew at the same frame.
 void Wall::tell_note(const SurfaceKey& key) {
     const auto& session = *find(key.session);
     auto& surface = *find(key.surface, key.session);
-    if (session.group) return;
     proto::WindowRecord record;
     record.set_scaled(surface.scaled);
     record.set_wanted_rect(surface.wanted_rect);

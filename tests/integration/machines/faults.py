@@ -7,7 +7,7 @@ nodes are drained and revoked. Soon after each fault the wall shows what a wall 
 
 faults.py [--count N] [--seed N] [--limit SECONDS] [--only FAULT]...
 
-What ends a parallel program by its nature (docs/parallel-programs.md: its links to walld are its life) is told apart:
+What ends a parallel program by its nature (docs/parallel-programs.md: with its streams to nodes) is told apart:
 it is started anew then, and that is not counted as lost."""
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Faults:
     """Each is over when its function returns, and what it needs to be mended is mended. `lethal`: those by which a
     parallel program ends."""
 
-    lethal = {"kill_walld", "kill_agent"}
+    lethal = {"kill_agent"}
 
     def __init__(self, wall: ChangingWall, chance: random.Random):
         self.wall, self.chance = wall, chance

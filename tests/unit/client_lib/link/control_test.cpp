@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <future>
 #include <thread>
 
 #include "client_lib/link/node_stream.h"
@@ -486,6 +487,104 @@ TEST(ControlLink, ComesBackAfterWalldWasAway) {
     const auto events = collect(*linked.link, [](auto& e) { return e.reconnected.has_value(); });
     ASSERT_TRUE(events.reconnected);
     EXPECT_EQ(events.reconnected->session, SessionId(7));
+}
+
+// ---- in a parallel program ----
+
+Hello a_members_hello() {
+    auto hello = some_hello();
+    hello.group = Parallel{"march", 1, 2};
+    return hello;
+}
+
+proto::Envelope from(proto::Envelope placement, std::uint32_t frame, bool agreed) {
+    placement.mutable_placement()->set_from_frame(frame);
+    placement.mutable_placement()->set_agreed(agreed);
+    return placement;
+}
+
+proto::Envelope agreed(std::uint32_t surface, std::uint32_t version) {
+    proto::Envelope envelope;
+    envelope.mutable_placement_agreed()->set_surface(surface);
+    envelope.mutable_placement_agreed()->set_layout_version(version);
+    return envelope;
+}
+
+TEST(ControlLinkOfAMember, WaitsForWhereAFrameIsDrawn) {
+    Linked linked(a_members_hello());
+    linked.link->surface_open(SurfaceId(1), 300, 200, "");
+    linked.walld.receive();
+    linked.walld.send(framed(from(placement_of(1, 1), 0, true)) + framed(from(placement_of(1, 2), 6, false)));
+    const auto noted = linked.walld.receive().placement_noted();
+    EXPECT_EQ(noted.layout_version(), 2u);
+    EXPECT_EQ(noted.begun(), 0u);
+    linked.link->begin_frame(SurfaceId(1), 5);
+    EXPECT_EQ(collect(*linked.link, [](auto& e) { return !e.placements.empty(); }).placements.size(), 1u)
+        << "the other one is not agreed";
+    std::atomic<bool> begun = false;
+    std::thread drawing([&] {
+        linked.link->begin_frame(SurfaceId(1), 6);
+        begun = true;
+    });
+    std::this_thread::sleep_for(50ms);
+    EXPECT_FALSE(begun);
+    linked.walld.send(agreed(1, 2));
+    drawing.join();
+    EXPECT_EQ(linked.link->take_events().placements.at(0).layout_version, 2u);
+    linked.walld.send(from(placement_of(1, 3), 6, false));
+    EXPECT_EQ(linked.walld.receive().placement_noted().begun(), 6u) << "too late";
+    linked.link->begin_frame(SurfaceId(1), 7);
+}
+
+TEST(ControlLinkOfAMember, ComesBackToTheNextWalldWithWhatIsAgreed) {
+    Linked linked(a_members_hello());
+    EXPECT_FALSE(linked.hello.has_resume());
+    linked.link->surface_open(SurfaceId(1), 300, 200, "");
+    linked.walld.receive();
+    linked.walld.send(framed(from(placement_of(1, 1), 0, true)) + framed(from(placement_of(1, 2), 6, false)));
+    linked.walld.receive();
+    linked.walld.hang_up();
+    const auto hello = linked.walld.welcome();
+    EXPECT_EQ(hello.group().rank(), 1u);
+    EXPECT_EQ(hello.resume().session(), 7u);
+    EXPECT_EQ(hello.resume().windows(), 1u);
+    const auto restore = linked.walld.receive().surface_open().restore();
+    ASSERT_EQ(restore.agreed_size(), 1) << "not what was proposed only";
+    EXPECT_EQ(restore.agreed(0).layout_version(), 1u);
+    EXPECT_EQ(restore.agreed(0).rect().width(), 10u);
+    // Who waits goes on waiting until the new one has said what holds.
+    std::thread drawing([&] { linked.link->begin_frame(SurfaceId(1), 6); });
+    std::this_thread::sleep_for(20ms);
+    linked.walld.send(from(placement_of(1, 2), 20, false));
+    drawing.join();
+    EXPECT_EQ(collect(*linked.link, [](auto& e) { return !e.placements.empty(); }).placements.size(), 1u)
+        << "what was agreed before and not taken yet";
+}
+
+TEST(ControlLinkOfAMember, EndsWhenItsSessionIsNoMore) {
+    Linked linked(a_members_hello());
+    std::promise<std::string> ended;
+    linked.link->on_end([&](const std::string& why) { ended.set_value(why); });
+    linked.link->surface_open(SurfaceId(1), 300, 200, "");
+    linked.walld.receive();
+    linked.walld.send(framed(from(placement_of(1, 1), 0, true)) + framed(from(placement_of(1, 2), 6, false)));
+    linked.walld.receive();
+    std::thread drawing([&] { linked.link->begin_frame(SurfaceId(1), 6); });
+    linked.walld.hang_up();
+    proto::Envelope not_yet, over;
+    not_yet.mutable_refused()->set_reason("not yet");
+    over.mutable_refused()->set_reason("no more");
+    over.mutable_refused()->set_over(true);
+    for (const auto& answer : {not_yet, over}) {
+        linked.walld.accept();
+        linked.walld.receive();
+        linked.walld.send(answer);
+        linked.walld.hang_up();
+    }
+    auto why = ended.get_future();
+    ASSERT_EQ(why.wait_for(5s), std::future_status::ready);
+    EXPECT_EQ(why.get(), "no more");
+    drawing.join();
 }
 
 TEST(ControlLink, TellsTheNextWalldWhatThereWas) {

@@ -31,9 +31,10 @@ TEST(Parallel, IsSaidToWalld) {
     EXPECT_EQ(envelope.client_hello().group().name(), "g");
     EXPECT_EQ(envelope.client_hello().group().rank(), 3u);
     EXPECT_EQ(envelope.client_hello().group().members(), 4u);
-    ASSERT_TRUE(envelope.ParseFromString(encode_placement_noted(SurfaceId(7), 9)));
+    ASSERT_TRUE(envelope.ParseFromString(encode_placement_noted(SurfaceId(7), 9, 12)));
     EXPECT_EQ(envelope.placement_noted().surface(), 7u);
     EXPECT_EQ(envelope.placement_noted().layout_version(), 9u);
+    EXPECT_EQ(envelope.placement_noted().begun(), 12u);
     ASSERT_TRUE(envelope.ParseFromString(encode_member_leaves(0)));
     EXPECT_TRUE(envelope.has_member_leaves());
 }

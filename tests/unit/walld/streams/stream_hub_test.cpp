@@ -75,7 +75,7 @@ protected:
     }
     /// Its next frame is there.
     void move_window(SessionId id, std::uint32_t version, std::int32_t x) {
-        ASSERT_TRUE(wall_.place_surface({id, {}}, {x, 0, 100, 100}, {}));
+        ASSERT_TRUE(wall_.place_surface({id, {}}, {x, 0, 100, 100}));
         proto::SurfaceAdopted adopted;
         adopted.set_surface(1);
         adopted.set_layout_version(version);
@@ -304,13 +304,13 @@ TEST_F(StreamHubTest, WhatIsWatchedIsFoundAmongOtherTiles) {
     const std::string left = "[[node]]\nname = \"left\"\n[[node.tile]]\nname = \"l\"\nrect = [0, 0, 640, 480]\n";
     wall_.node_leaves(kRight, {});
     hub_.node_left(kRight);
-    wall_.describe(*config::parse_config(left, "test"), {});
+    wall_.describe(*config::parse_config(left, "test"));
     hub_.wall_changed({});
     EXPECT_THAT(next(*whole), HasSubstr(R"("shows":[0,0,640,480])"));
     EXPECT_EQ(next(*right), R"({"ended":"there is no tile 'r'","stream":0})");
     EXPECT_EQ(next(*right), "");
     EXPECT_EQ(hub_.views().size(), 1u) << "of the tile that is left";
-    wall_.describe(*config::parse_config(kTwoNodes, "test"), {});
+    wall_.describe(*config::parse_config(kTwoNodes, "test"));
     hub_.wall_changed({});
     EXPECT_THAT(next(*whole), HasSubstr(R"("shows":[0,0,1280,480])"));
     EXPECT_THAT(next(*right), HasSubstr(R"("tile":"r")")) << "it is there again";

@@ -199,15 +199,6 @@ TEST_F(Swap, MeasuresHowFarTheNodesAreApart) {
     EXPECT_DOUBLE_EQ(swap_.presented_spread().last().count(), 50) << "the late one";
 }
 
-TEST_F(Swap, NothingIsPresentedBeyondALimit) {
-    swap_.set_nodes({kLeft}, at(0));
-    swap_.limit(2, at(0));
-    EXPECT_EQ(swap_.rendered(kLeft, 2, at(1)), (Presents{{kLeft, 2}}));
-    EXPECT_EQ(swap_.rendered(kLeft, 3, at(2)), Presents{});
-    EXPECT_FALSE(swap_.deadline()) << "nobody is late";
-    EXPECT_EQ(swap_.limit(UINT32_MAX, at(3)), (Presents{{kLeft, 3}}));
-}
-
 /// Whatever comes in whatever order: a node is never told a frame that it has not rendered, nor an older one.
 TEST_F(Swap, NeverPresentsWhatANodeDoesNotHave) {
     std::uint32_t seed = 1;

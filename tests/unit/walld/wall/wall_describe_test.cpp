@@ -68,7 +68,7 @@ protected:
         auto next = config::parse_config(toml, "test");
         ASSERT_TRUE(next) << next.error().message;
         for (const NodeIndex node : wall_.described_otherwise(*next)) wall_.node_leaves(node, now_);
-        wall_.describe(std::move(*next), now_);
+        wall_.describe(std::move(*next));
     }
     std::string ticket_of(NodeIndex node) const { return wall_.sessions().at(session_).tickets.at(node); }
 
@@ -128,7 +128,7 @@ TEST_F(AWallThatIsDescribedAnew, KeepsTheNumbersOfNodes) {
 }
 
 TEST_F(AWallThatIsDescribedAnew, GivesAWindowWhosePlaceIsGoneAnotherOne) {
-    ASSERT_TRUE(wall_.place_surface({session_, SurfaceId(2)}, {900, 100, 100, 100}, now_));
+    ASSERT_TRUE(wall_.place_surface({session_, SurfaceId(2)}, {900, 100, 100, 100}));
     describe("[[node]]\nname = \"left\"\n[[node.tile]]\nname = \"l\"\nrect = [0, 0, 640, 480]\n");
     EXPECT_EQ(wanted(1), (geom::Rect{0, 0, 640, 480}));
     EXPECT_LE(wanted(2).right(), 640);

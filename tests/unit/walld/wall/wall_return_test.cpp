@@ -22,12 +22,15 @@ public:
         last[node] = message;
         if (message.has_wall_note()) wall_notes[node] = message.wall_note();
         if (message.has_ticket()) tickets[node][message.ticket().session()] = message.ticket().ticket();
+        if (message.has_ticket()) left[message.ticket().session()] = message.ticket().left();
         if (message.has_session_end()) tickets[node].erase(message.session_end().session());
         if (message.has_stacking()) stacking[node] = message.stacking();
     }
     void to_client(SessionId session, const proto::Envelope& message) override {
         if (message.has_surface_note()) notes[session] = message.surface_note().note();
         if (message.has_placement()) placements[session] = message.placement();
+        if (message.has_placement()) offered.push_back(message.placement());
+        if (message.has_placement_agreed()) agreed = message.placement_agreed().layout_version();
     }
     void to_member(SessionId session, Rank, const proto::Envelope& message) override {
         if (message.has_client_welcome()) welcomes[session] = message.client_welcome();
@@ -37,9 +40,12 @@ public:
     std::map<NodeIndex, proto::Envelope> last;
     std::map<NodeIndex, proto::WallNote> wall_notes;
     std::map<NodeIndex, std::map<std::uint32_t, std::string>> tickets;
+    std::map<std::uint32_t, google::protobuf::RepeatedField<std::uint32_t>> left;
     std::map<NodeIndex, proto::Stacking> stacking;
     std::map<SessionId, std::string> notes;
     std::map<SessionId, proto::Placement> placements;
+    std::vector<proto::Placement> offered;  // to all members of a parallel program
+    std::uint32_t agreed = 0;               // version that was agreed last
     std::map<SessionId, proto::ClientWelcome> welcomes;
 };
 
@@ -63,6 +69,7 @@ protected:
             auto& known = *hello.add_sessions();
             known.set_session(session);
             known.set_ticket(ticket);
+            *known.mutable_left() = out_.left[session];
         }
         *hello.mutable_wall_note() = out_.wall_notes[node];
         return *wall_->node_joins(hello, now_);
@@ -189,7 +196,7 @@ TEST_F(AWallThatReturns, HasTheWindowsWhereTheyWereInTheirOrder) {
     join_both();
     const auto a = open(), b = open(), c = open();
     for (const auto id : {a, b, c}) open_surface(id);
-    ASSERT_TRUE(wall_->place_surface({a, {}}, {300, 200, 200, 160}, now_));
+    ASSERT_TRUE(wall_->place_surface({a, {}}, {300, 200, 200, 160}));
     ASSERT_TRUE(wall_->raise({a, {}}));
     ASSERT_TRUE(wall_->lower({c, {}}));
     EXPECT_THAT(bottom_to_top(), ElementsAre(c.value, b.value, a.value));
@@ -216,7 +223,7 @@ TEST_F(AWallThatReturns, WantsAWindowWhereItWasToMove) {
     join_both();
     const auto id = open();
     open_surface(id);
-    ASSERT_TRUE(wall_->place_surface({id, {}}, {640, 0, 100, 80}, now_));  // the program has not drawn there yet
+    ASSERT_TRUE(wall_->place_surface({id, {}}, {640, 0, 100, 80}));  // the program has not drawn there yet
     const auto note = out_.notes[id];
     begin();
     join_both();
@@ -289,7 +296,7 @@ TEST_F(AWallThatReturns, EndsWhatHasEndedWhileANodeWasAway) {
 TEST_F(AWallThatReturns, StillHasTheLayoutThatWaits) {
     join_both();
     Layout layout{1280, 480, {{{"", "gears", ""}, {640, 10, 50, 40}, true, 3}}};
-    wall_->load_layout(layout, now_);
+    wall_->load_layout(layout);
     begin();
     join_both();
     const auto id = open_gears();
@@ -304,9 +311,9 @@ TEST_F(AWallThatReturns, StillHasTheLayoutThatWaits) {
 
 TEST_F(AWallThatReturns, ALayoutLoadedSinceCountsMore) {
     join("left");
-    wall_->load_layout({1280, 480, {{{"", "gears", ""}, {640, 10, 50, 40}, true, 0}}}, now_);
+    wall_->load_layout({1280, 480, {{{"", "gears", ""}, {640, 10, 50, 40}, true, 0}}});
     begin();
-    wall_->load_layout({1280, 480, {}}, now_);
+    wall_->load_layout({1280, 480, {}});
     join("left");
     begin();
     join_both();
@@ -322,6 +329,185 @@ TEST_F(AWallThatReturns, IsNotLedAstrayByWhatAProgramSaysOfAPlace) {
     const auto other = open();
     bring_back(other, {10, 20, 100, 80}, "\xff nonsense", other);
     EXPECT_EQ(surface(other).place.wanted(), (geom::Rect{100, 0, 100, 80}));
+}
+
+// ---- parallel programs ----
+
+class AParallelProgramThatReturns : public AWallThatReturns {
+protected:
+    static proto::ClientHello member(Rank rank, std::uint32_t members = 2) {
+        proto::ClientHello hello;
+        hello.set_pid(1000 + rank);
+        hello.mutable_group()->set_name("march");
+        hello.mutable_group()->set_rank(rank);
+        hello.mutable_group()->set_members(members);
+        return hello;
+    }
+    proto::ClientHello member_again(SessionId id, Rank rank, std::uint32_t windows = 1, std::uint32_t members = 2) {
+        auto hello = member(rank, members);
+        hello.mutable_resume()->set_session(id.value);
+        hello.mutable_resume()->set_windows(windows);
+        for (const auto& up : out_.welcomes[id].nodes()) {
+            auto& told = *hello.mutable_resume()->add_tickets();
+            told.set_node(up.node());
+            told.set_ticket(up.ticket());
+        }
+        return hello;
+    }
+    SessionId start() {
+        join_both();
+        const auto id = open(member(0));
+        open(member(1));
+        for (const Rank rank : {0u, 1u}) announce(id, rank, {}, "");
+        return id;
+    }
+    /// The window, with the placements that the member knows to be agreed; none: it is new.
+    void announce(SessionId id, Rank rank, const std::vector<proto::Placement>& agreed, const std::string& note,
+                  const geom::Rect& wanted = {0, 0, 100, 80}) {
+        proto::SurfaceOpen message;
+        message.set_surface(1);
+        message.set_width(100);
+        message.set_height(80);
+        for (const auto& placement : agreed) {
+            auto& restore = *message.mutable_restore();
+            *restore.add_agreed() = placement;
+            restore.mutable_agreed()->rbegin()->clear_nodes();
+            *restore.mutable_drawn() = placement.rect();
+            *restore.mutable_wanted() = to_proto(wanted);
+            restore.set_note(note);
+        }
+        ASSERT_TRUE(wall_->open_surface(id, message, now_, rank));
+    }
+    void note(SessionId id, Rank rank, std::uint32_t version, std::uint32_t begun = 0) {
+        proto::PlacementNoted message;
+        message.set_surface(1);
+        message.set_layout_version(version);
+        message.set_begun(begun);
+        wall_->placement_noted(id, rank, message);
+    }
+    std::vector<proto::Placement> agreed_of(SessionId id) {
+        std::vector<proto::Placement> out;
+        for (const auto& [version, placement] : surface(id).agreed.versions()) out.push_back(placement);
+        return out;
+    }
+    void another_walld() {
+        begin();
+        join_both();
+        out_.offered.clear();
+        out_.agreed = 0;
+    }
+};
+
+TEST_F(AParallelProgramThatReturns, IsOneSessionUnderItsNumberAndItsTickets) {
+    const auto id = start();
+    const auto tickets = out_.tickets;
+    another_walld();
+    for (const Rank rank : {1u, 0u}) {
+        EXPECT_EQ(wall_->comeback(member_again(id, rank), now_), Wall::Comeback::may_come);
+        EXPECT_EQ(open(member_again(id, rank)), id);
+        EXPECT_EQ(out_.welcomes[id].nodes_size(), 2);
+    }
+    EXPECT_EQ(out_.tickets, tickets) << "nobody has to open a stream again";
+    EXPECT_TRUE(wall_->sessions().at(id).group->all_came());
+}
+
+TEST_F(AParallelProgramThatReturns, IsAskedForItsPlaceWhenAllAreBack) {
+    const auto id = start();
+    const auto agreed = agreed_of(id);
+    const auto note_of_window = out_.notes[id];
+    another_walld();
+    for (const Rank rank : {0u, 1u}) open(member_again(id, rank));
+    announce(id, 0, agreed, note_of_window, {640, 0, 100, 80});
+    EXPECT_TRUE(out_.offered.empty()) << "one may know more";
+    EXPECT_EQ(surface(id).place.drawn(), (geom::Rect{0, 0, 100, 80}));
+    announce(id, 1, agreed, note_of_window);
+    ASSERT_EQ(out_.offered.size(), 2u);
+    EXPECT_TRUE(out_.offered[0].agreed());
+    const auto& proposed = out_.offered[1];
+    EXPECT_FALSE(proposed.agreed());
+    EXPECT_EQ(proposed.rect().x(), 640) << "where it was to move";
+    EXPECT_GT(proposed.layout_version(), agreed.back().layout_version());
+    EXPECT_EQ(proposed.nodes_size(), 2);
+    // The members are beyond that frame: nobody has told this walld which one is shown.
+    const auto version = proposed.layout_version();
+    note(id, 0, version, 70);
+    EXPECT_EQ(out_.offered.back().from_frame(), 75u);
+    for (const Rank rank : {0u, 1u}) note(id, rank, out_.offered.back().layout_version());
+    EXPECT_EQ(out_.agreed, out_.offered.back().layout_version());
+}
+
+TEST_F(AParallelProgramThatReturns, TakesWhatAnyMemberKnowsToBeAgreed) {
+    const auto id = start();
+    const auto before = agreed_of(id);
+    ASSERT_TRUE(wall_->place_surface({id, {}}, {300, 0, 100, 80}));
+    for (const Rank rank : {0u, 1u}) note(id, rank, out_.placements[id].layout_version());
+    const auto after = agreed_of(id);
+    ASSERT_EQ(after.size(), 2u);
+    another_walld();
+    for (const Rank rank : {0u, 1u}) open(member_again(id, rank));
+    announce(id, 0, before, "");  // walld was gone before it could tell this one
+    announce(id, 1, after, "", {300, 0, 100, 80});
+    ASSERT_EQ(out_.offered.size(), 3u);
+    EXPECT_TRUE(out_.offered[1].agreed());
+    EXPECT_EQ(out_.offered[1].layout_version(), after[1].layout_version());
+    EXPECT_EQ(out_.offered[1].from_frame(), after[1].from_frame());
+    EXPECT_EQ(out_.offered[1].nodes_size(), 2);
+    EXPECT_EQ(surface(id).place.drawn(), (geom::Rect{300, 0, 100, 80}));
+}
+
+TEST_F(AParallelProgramThatReturns, DoesNotWaitForWhoHasLeftOrClosedTheWindow) {
+    join_both();
+    const auto id = open(member(0, 3));
+    for (const Rank rank : {1u, 2u}) open(member(rank, 3));
+    for (const Rank rank : {0u, 1u, 2u}) announce(id, rank, {}, "");
+    const auto agreed = agreed_of(id);
+    wall_->member_leaves(id, 2);
+    wall_->close_surface(id, SurfaceId(1), 1);
+    another_walld();
+    open(member_again(id, 0, 1, 3));
+    announce(id, 0, agreed, "");
+    EXPECT_TRUE(out_.offered.empty());
+    open(member_again(id, 1, 0, 3));
+    ASSERT_EQ(out_.offered.size(), 2u) << "rank 2 has left";
+    note(id, 0, out_.offered.back().layout_version());
+    EXPECT_EQ(out_.agreed, out_.offered.back().layout_version());
+}
+
+TEST_F(AParallelProgramThatReturns, IsToldWhenItsSessionIsNoMore) {
+    const auto id = start();
+    const auto again = member_again(id, 0);
+    const auto tickets = out_.tickets;
+    out_.tickets.clear();
+    another_walld();
+    EXPECT_EQ(wall_->comeback(again, now_), Wall::Comeback::not_yet) << "another node may know it";
+    now_ += Wall::kReturnLimit;
+    EXPECT_EQ(wall_->comeback(again, now_), Wall::Comeback::over);
+    EXPECT_EQ(wall_->comeback(member(0), now_), Wall::Comeback::may_come);
+    out_.tickets = tickets;
+    another_walld();
+    const auto other = open(member(0));
+    EXPECT_NE(other, id);
+    EXPECT_EQ(wall_->comeback(again, now_), Wall::Comeback::may_come) << "its nodes know it";
+    EXPECT_EQ(open(again), id) << "though another one has its name";
+    auto thief = again;
+    for (auto& told : *thief.mutable_resume()->mutable_tickets()) told.set_ticket("guessed");
+    thief.mutable_group()->set_rank(1);
+    EXPECT_EQ(wall_->comeback(thief, now_), Wall::Comeback::not_yet);
+}
+
+TEST_F(AParallelProgramThatReturns, IsNotLedAstrayByWhatAMemberSays) {
+    const auto id = start();
+    auto nowhere = agreed_of(id);
+    nowhere[0].mutable_rect()->set_x(9000);
+    another_walld();
+    for (const Rank rank : {0u, 1u}) open(member_again(id, rank));
+    nowhere[0].set_layout_version(40);
+    for (const Rank rank : {0u, 1u}) announce(id, rank, nowhere, "", {9000, 0, 100, 80});
+    EXPECT_TRUE(surface(id).agreed.versions().empty());
+    ASSERT_EQ(out_.offered.size(), 1u);
+    EXPECT_FALSE(out_.offered[0].agreed());
+    EXPECT_GT(out_.offered[0].layout_version(), 40u);
+    EXPECT_TRUE(check_place(wall_->config().canvas(), from_proto(out_.offered[0].rect())));
 }
 
 }  // namespace

@@ -197,11 +197,11 @@ TEST_F(TheWall, APlacementFollowsTheWindowUnlessItIsScaled) {
     resize.set_surface(1);
     resize.set_width(400);
     resize.set_height(200);
-    wall_.resize_surface(id, resize, now_);
+    wall_.resize_surface(id, resize);
     EXPECT_EQ(last_to_client(id).placement().rect().width(), 400u);
     EXPECT_EQ(last_to_client(id).placement().layout_version(), 2u);
-    ASSERT_TRUE(wall_.place_surface({id, {}}, {10, 20, 100, 50}, now_));
-    wall_.resize_surface(id, resize, now_);
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {10, 20, 100, 50}));
+    wall_.resize_surface(id, resize);
     EXPECT_EQ(last_to_client(id).placement().rect().width(), 100u);
     EXPECT_EQ(last_to_client(id).placement().layout_version(), 4u) << "a resize is always answered";
 }
@@ -213,7 +213,7 @@ TEST_F(TheWall, ANodeShowsOnlyWhatLiesOnIt) {
     open_surface(id, 1, 300, 300);
     EXPECT_EQ(last_to_node(kLeft).stacking().entries_size(), 1);
     EXPECT_EQ(last_to_node(kRight).stacking().entries_size(), 0);
-    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}, now_));
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}));
     adopt(id, 1);
     EXPECT_EQ(last_to_node(kLeft).stacking().entries_size(), 0) << "it has moved away";
     EXPECT_EQ(last_to_node(kRight).stacking().entries_size(), 1);
@@ -225,7 +225,7 @@ TEST_F(TheWall, AMovedWindowStaysInSightUntilItsFirstFrameAtTheNewPlaceIsPresent
     const auto id = open();
     open_surface(id, 1, 300, 300);
     rendered(kLeft, id, 1);
-    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}, now_));
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}));
     EXPECT_EQ(last_to_client(id).placement().rect().x(), 700);
     EXPECT_EQ(last_to_client(id).placement().layout_version(), 2u);
     const auto& place = wall_.find({id, SurfaceId(1)})->place;
@@ -251,7 +251,7 @@ TEST_F(TheWall, TheFirstFrameAtANewPlaceWaitsForAllItsNodes) {
     const auto id = open();
     open_surface(id, 1, 300, 300);
     rendered(kLeft, id, 1);
-    ASSERT_TRUE(wall_.place_surface({id, {}}, {500, 0, 300, 300}, now_));
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {500, 0, 300, 300}));
     adopt(id, 2);
     out_.nodes.clear();
     rendered(kLeft, id, 2);
@@ -266,7 +266,7 @@ TEST_F(TheWall, AWindowThatMovesToWhereNoNodeIsDisappears) {
     const auto id = open();
     open_surface(id, 1, 300, 300);
     rendered(kLeft, id, 1);
-    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}, now_));
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 300}));
     adopt(id, 2);
     EXPECT_EQ(last_to_node(kLeft).stacking().entries_size(), 0);
     EXPECT_FALSE(wall_.find({id, SurfaceId(1)})->place.moving());
@@ -301,14 +301,13 @@ TEST_F(TheWall, APlacementThatCannotBeChangesNothing) {
                                   {0, -10, 10, 10},
                                   {-2000000000, 0, 10, 10},
                                   {0, 0, 2000000000, 10}}) {
-        const auto placed = wall_.place_surface({id, {}}, rect, now_);
+        const auto placed = wall_.place_surface({id, {}}, rect);
         ASSERT_FALSE(placed);
         EXPECT_EQ(placed.error().kind, RefusalKind::invalid);
     }
-    EXPECT_EQ(wall_.place_surface({SessionId(7), {}}, {0, 0, 10, 10}, now_).error().kind, RefusalKind::not_found);
-    EXPECT_EQ(wall_.place_surface({id, SurfaceId(2)}, {0, 0, 10, 10}, now_).error().kind, RefusalKind::not_found);
-    EXPECT_EQ(wall_.place_surface({open(), {}}, {0, 0, 10, 10}, now_).error().kind, RefusalKind::conflict)
-        << "no window yet";
+    EXPECT_EQ(wall_.place_surface({SessionId(7), {}}, {0, 0, 10, 10}).error().kind, RefusalKind::not_found);
+    EXPECT_EQ(wall_.place_surface({id, SurfaceId(2)}, {0, 0, 10, 10}).error().kind, RefusalKind::not_found);
+    EXPECT_EQ(wall_.place_surface({open(), {}}, {0, 0, 10, 10}).error().kind, RefusalKind::conflict) << "no window yet";
     EXPECT_EQ(out_.clients[id].size(), messages);
     EXPECT_FALSE(wall_.find({id, SurfaceId(1)})->place.moving());
 }
@@ -354,16 +353,16 @@ TEST_F(TheWall, ALayoutBringsWindowsBackAndWaitsForThoseThatAreMissing) {
     const auto gears = open(named("glxgears", "")), map = open(named("viewer", "map"));
     open_surface(gears, 1, 100, 100);
     open_surface(map, 1, 100, 100);
-    ASSERT_TRUE(wall_.place_surface({map, {}}, {600, 10, 200, 300}, now_));
+    ASSERT_TRUE(wall_.place_surface({map, {}}, {600, 10, 200, 300}));
     ASSERT_TRUE(wall_.lower({map, {}}));
     const auto layout = wall_.current_layout();
     ASSERT_EQ(layout.windows.size(), 2u);
 
-    ASSERT_TRUE(wall_.place_surface({map, {}}, {0, 0, 10, 10}, now_));
-    ASSERT_TRUE(wall_.place_surface({gears, {}}, {0, 0, 10, 10}, now_));
+    ASSERT_TRUE(wall_.place_surface({map, {}}, {0, 0, 10, 10}));
+    ASSERT_TRUE(wall_.place_surface({gears, {}}, {0, 0, 10, 10}));
     ASSERT_TRUE(wall_.raise({map, {}}));
     wall_.close_session(gears);
-    EXPECT_EQ(wall_.load_layout(layout, now_), 1u);
+    EXPECT_EQ(wall_.load_layout(layout), 1u);
     EXPECT_EQ(wall_.find({map, SurfaceId(1)})->place.wanted(), (geom::Rect{600, 10, 200, 300}));
     const auto other = open(named("atlantis", ""));
     open_surface(other, 1, 50, 50);
@@ -451,7 +450,7 @@ TEST_F(TheWall, RaiseLowerAndHoldNeedARealSession) {
         EXPECT_FALSE(wall_.lower(wrong));
         EXPECT_FALSE(wall_.hold(wrong, true, now_));
         EXPECT_FALSE(wall_.step(wrong, 1, now_));
-        EXPECT_FALSE(wall_.place_surface(wrong, {0, 0, 1, 1}, now_));
+        EXPECT_FALSE(wall_.place_surface(wrong, {0, 0, 1, 1}));
     }
 }
 
@@ -550,7 +549,7 @@ protected:
         proto::PlacementNoted message;
         message.set_surface(1);
         message.set_layout_version(version);
-        wall_.placement_noted(id, rank, message, now_);
+        wall_.placement_noted(id, rank, message);
     }
     void note_all(SessionId id) {
         for (const Rank rank : {0u, 1u}) note(id, rank, wall_.find({id, SurfaceId(1)})->place.version());
@@ -590,25 +589,44 @@ TEST_F(AParallelProgram, MovesAtAFrameThatNoMemberHasBegun) {
     join("left");
     join("right", 101);
     const auto id = start();
-    for (std::uint32_t frame = 1; frame <= 10; ++frame)
-        for (const NodeIndex node : {kLeft, kRight}) rendered(node, id, frame);
-    EXPECT_EQ(presented(id), 10u) << "of both nodes, though the window lies on one";
-    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 200}, now_));
-    EXPECT_EQ(out_.clients[id].back().placement().from_frame(), 15u);
-    const auto version = out_.clients[id].back().placement().layout_version();
     const auto render = [&](std::uint32_t frame) {
         for (const NodeIndex node : {kLeft, kRight}) rendered(node, id, frame);
     };
-    render(11);
-    render(12);
-    EXPECT_EQ(presented(id), 11u) << "a member may begin 14 then, and does not know that 15 is another place";
+    for (std::uint32_t frame = 1; frame <= 10; ++frame) render(frame);
+    EXPECT_EQ(presented(id), 10u) << "of both nodes, though the window lies on one";
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {700, 0, 300, 200}));
+    EXPECT_EQ(out_.clients[id].back().placement().from_frame(), 15u);
+    EXPECT_FALSE(out_.clients[id].back().placement().agreed());
+    const auto version = out_.clients[id].back().placement().layout_version();
     note(id, 1, version);
-    EXPECT_EQ(presented(id), 11u);
+    EXPECT_FALSE(out_.clients[id].back().has_placement_agreed());
     note(id, 0, version);
-    EXPECT_EQ(presented(id), 12u);
+    EXPECT_EQ(out_.clients[id].back().placement_agreed().layout_version(), version);
+    for (std::uint32_t frame = 11; frame <= 14; ++frame) render(frame);
     EXPECT_EQ(wall_.find({id, SurfaceId(1)})->place.shown().x, 0);
-    for (std::uint32_t frame = 13; frame <= 15; ++frame) render(frame);
+    render(15);
     EXPECT_EQ(wall_.find({id, SurfaceId(1)})->place.shown().x, 700);
+}
+
+TEST_F(AParallelProgram, IsAskedAgainWhereAMemberHasBegunThatFrame) {
+    join("left");
+    const auto id = start();
+    ASSERT_TRUE(wall_.place_surface({id, {}}, {100, 0, 300, 200}));
+    const auto first = out_.clients[id].back().placement();
+    note(id, 0, first.layout_version());
+    proto::PlacementNoted late;
+    late.set_surface(1);
+    late.set_layout_version(first.layout_version());
+    late.set_begun(40);  // nodes have presented by themselves meanwhile
+    wall_.placement_noted(id, 1, late);
+    const auto second = out_.clients[id].back().placement();
+    EXPECT_EQ(second.from_frame(), 45u);
+    EXPECT_GT(second.layout_version(), first.layout_version());
+    EXPECT_EQ(second.rect().x(), 100);
+    note(id, 1, first.layout_version());
+    EXPECT_FALSE(out_.clients[id].back().has_placement_agreed());
+    note_all(id);
+    EXPECT_EQ(out_.clients[id].back().placement_agreed().layout_version(), second.layout_version());
 }
 
 TEST_F(AParallelProgram, ComesToANewNodeAtTheSameFrame) {
@@ -633,9 +651,9 @@ TEST_F(AParallelProgram, HasTheSizeOfRank0sWindow) {
     resize.set_surface(1);
     resize.set_width(50);
     resize.set_height(60);
-    wall_.resize_surface(id, resize, now_, 1);
+    wall_.resize_surface(id, resize, 1);
     EXPECT_EQ(wall_.find({id, SurfaceId(1)})->width, 300u);
-    wall_.resize_surface(id, resize, now_, 0);
+    wall_.resize_surface(id, resize, 0);
     EXPECT_EQ(wall_.find({id, SurfaceId(1)})->width, 50u);
 }
 
@@ -653,14 +671,14 @@ TEST_F(AParallelProgram, GoesOnWithoutAMemberThatLeaves) {
     const auto id = start();
     wall_.close_surface(id, SurfaceId(1), 1);
     EXPECT_EQ(wall_.stacking().size(), 1u) << "rank 0 still has it";
-    wall_.member_leaves(id, 1, now_);
+    wall_.member_leaves(id, 1);
     wall_.member_gone(id, 1);
     EXPECT_EQ(wall_.sessions().size(), 1u);
     join("right", 101);
     EXPECT_EQ(out_.nodes[kRight][1].ticket().left(0), 1u);
     wall_.close_surface(id, SurfaceId(1), 0);
     EXPECT_TRUE(wall_.stacking().empty());
-    wall_.member_leaves(id, 0, now_);
+    wall_.member_leaves(id, 0);
     wall_.member_gone(id, 0);
     EXPECT_TRUE(wall_.sessions().empty());
     EXPECT_TRUE(out_.ended.empty());
