@@ -21,6 +21,7 @@
 #include "common/net/sockets.h"
 #include "common/tls/identity.h"
 #include "walld/control/control_server.h"
+#include "walld/control/random_bytes.h"
 #include "walld/control/service_manager.h"
 #include "walld/http/http_server.h"
 
@@ -39,10 +40,11 @@ struct Options {
 };
 
 /// For whoever starts a wall with port 0: written whole, then given its name.
-void write_ready_file(const std::string& path, const ControlServer& control, const HttpServer& http, bool has_http) {
+void write_ready_file(const std::string& path, const ControlServer& control, const HttpServer& http) {
     nlohmann::json ready{{"pid", ::getpid()}, {"control", nlohmann::json::array()}};
     for (const auto& address : control.addresses()) ready["control"].push_back(address.text());
-    if (has_http) ready["http"] = "http://" + http.address().text() + "/";
+    for (const auto& url : http.urls())
+        ready.emplace(url.starts_with("https") ? "https" : "http", url);  // the first of each
     std::ofstream(path + ".new") << ready.dump() << '\n';
     if (std::rename((path + ".new").c_str(), path.c_str()) != 0)
         log::error("ready_file_failed path={}", log::quoted(path));
@@ -69,8 +71,9 @@ Result<WalldKeys> open_keys(const config::WallConfig& config, const std::string&
     auto machines = Machines::open(state);
     if (!machines) return tl::unexpected(machines.error());
     WalldKeys out{nullptr, std::move(*machines)};
-    // Without a place for its key walld listens nowhere else, and says so.
-    if (state.empty() || std::ranges::all_of(config.control_listen, &net::Address::local)) return out;
+    const bool alone = std::ranges::all_of(config.control_listen, &net::Address::local) &&
+                       std::ranges::all_of(config.http_listen, &net::Address::local);
+    if (state.empty() || alone) return out;  // without a place for its key walld listens nowhere else, and says so
     const auto own = tls::Identity::load_or_make(std::filesystem::path(state) / "key.pem");
     if (!own) return tl::unexpected(own.error());
     auto context = tls::TlsContext::make(*own);
@@ -102,20 +105,22 @@ Result<void> run(const config::WallConfig& config, const Options& options) {
     WallFile file(options.config, state);
     auto description = file.read();
     if (!description) return fail(description.error().message);
-    const auto http_listen = description->config.http_listen;
+    const auto http_listen = description->config.http_listen;  // which stays as long as this process
     auto identities = Identities::open(description->config.people);
     if (!identities) return tl::unexpected(identities.error());
     auto keys = open_keys(description->config, state);
     if (!keys) return tl::unexpected(keys.error());
+    const auto own = keys->tls;
     ControlServer control(io.get_executor(), std::move(*description), std::move(file), std::move(*identities),
                           std::move(*keys), state);
     const WallMetrics metrics(control.wall(), control.streams(), WALLGL_VERSION);
     HttpServer http(io.get_executor(), control.wall(), control.identities(), control.who_is_there(),
-                    control.operators(), control.streams(), metrics);
-    const auto listen_http = [&] { return http_listen ? http.listen(*http_listen) : Result<void>(); };
+                    control.operators(), control.streams(), metrics, random_bytes, own);
+    const auto listen_http = [&] { return http.listen(http_listen); };
     if (auto listening = net::listen_patiently([&] { return control.listen(); }); !listening) return listening;
     if (auto listening = net::listen_patiently(listen_http); !listening) return listening;
-    if (!options.ready_file.empty()) write_ready_file(options.ready_file, control, http, http_listen.has_value());
+    control.operators().tell_page(http.urls(), own ? own->certificate_digest() : "");
+    if (!options.ready_file.empty()) write_ready_file(options.ready_file, control, http);
 
     asio::steady_timer watchdog(io);
     asio::signal_set signals(io, SIGINT, SIGTERM), hangups(io, SIGHUP);

@@ -12,7 +12,7 @@ async function ask(method, path, body) {
   const answer = await fetch(kBase + path, options);
   if (answer.ok) return answer.json();
   const why = await answer.json().catch(() => null);
-  throw new Error(why?.error?.message ?? `walld answers ${answer.status}`);
+  throw Object.assign(new Error(why?.error?.message ?? `walld answers ${answer.status}`), { status: answer.status });
 }
 
 const session = id => `sessions/${encodeURIComponent(id)}`;
@@ -20,6 +20,9 @@ const layout = name => `layouts/${encodeURIComponent(name)}`;
 
 export const getStatus = () => ask('GET', 'status');
 export const getWhoami = () => ask('GET', 'whoami');
+/** walld sets a cookie, which no script sees; from then on it knows this browser as the token's. */
+export const login = token => ask('POST', 'login', { token });
+export const logout = () => ask('POST', 'logout');
 /** Canvas pixels: [x, y, width, height]. */
 export const place = (id, rect) => ask('PUT', `${session(id)}/placement`, { rect });
 export const raise = id => ask('POST', `${session(id)}/raise`);

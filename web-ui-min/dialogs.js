@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The two dialogs: a question before a window is closed, and a tile's lossless picture at full size.
+// The dialogs: a question before a window is closed, a tile's lossless picture at full size, and signing in.
 
 import { snapshotUrl } from './api.js';
 import { get } from './dom.js';
@@ -14,6 +14,31 @@ export function ask(question) {
   dialog.showModal();
   return new Promise(resolve => dialog.addEventListener('close', () => resolve(dialog.returnValue === 'yes'),
       { once: true }));
+}
+
+/** Asks for a token until `login` takes one. */
+export function signIn(login) {
+  const dialog = get('sign-in'), token = get('token'), problem = get('sign-in-problem');
+  problem.hidden = true;
+  get('sign-in-form').onsubmit = async event => {
+    event.preventDefault();
+    get('sign-in-go').disabled = true;
+    try {
+      await login(token.value.trim());
+      dialog.close();
+    } catch (error) {
+      problem.textContent = error.message;
+      problem.hidden = false;
+      token.select();
+    }
+    get('sign-in-go').disabled = false;
+  };
+  dialog.oncancel = event => event.preventDefault();  // there is nothing to see without
+  if (!dialog.open) dialog.showModal();
+  return new Promise(resolve => dialog.addEventListener('close', () => {
+    token.value = '';
+    resolve();
+  }, { once: true }));
 }
 
 export function showTilePicture(name) {

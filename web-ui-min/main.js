@@ -4,7 +4,7 @@
 
 import * as api from './api.js';
 import { Backoff } from './backoff.js';
-import { ask, showTilePicture } from './dialogs.js';
+import { ask, showTilePicture, signIn } from './dialogs.js';
 import { get, setText } from './dom.js';
 import { contains, same } from './geometry.js';
 import { Layouts } from './layouts.js';
@@ -18,6 +18,7 @@ import { WallView } from './wall_view.js';
 const kStatusEvery = 1000;            // ms
 const kProblemFor = 8000;             // ms that a message of failure stays
 const kMostHeight = 0.72;             // of the window's height, for the wall
+const kSignIn = 401;                  // of HTTP: walld does not know who asks
 const kFirstWait = 1000, kMostWait = 10000;  // ms until walld is asked again when it does not answer
 
 let status, who, selected;
@@ -40,10 +41,13 @@ const view = new WallView({
   refused: window =>
       showProblem(new Error(`You may not change ${window.label}: your role is ${who?.role ?? 'not known'}`)),
 });
-const livePicture = new LivePicture(picture, isLive => {
-  live = isLive;
-  showConnection();
-}, text => showProblem(new Error(text)));
+let livePicture;  // once walld has said who watches
+function watchLive() {
+  livePicture ??= new LivePicture(picture, isLive => {
+    live = isLive;
+    showConnection();
+  }, text => showProblem(new Error(text)));
+}
 
 // ---- what is said ----
 
@@ -150,6 +154,7 @@ function fitWall() {
 async function becomeKnown() {
   who = await api.getWhoami();
   setText(get('who'), `${who.name || who.kind}, ${who.role}`);
+  get('sign-out').hidden = who.kind !== 'token';
   await layouts.refresh(mayOperate(who));
 }
 
@@ -158,29 +163,38 @@ async function poll() {
   try {
     if (!document.hidden || !status) {
       if (!who || !answers) await becomeKnown();
+      watchLive();
       await refresh();
       answers = true;
       backoff.reset();
     }
-  } catch {
+  } catch (error) {
     answers = false;
     wait = backoff.next();
+    if (error.status === kSignIn) {
+      await signIn(api.login);
+      wait = 0;
+    }
   }
   showConnection(wait);
   setTimeout(poll, wait);
 }
 
+get('sign-out').onclick = async () => {
+  await api.logout().catch(showProblem);
+  location.reload();
+};
 get('raise').onclick = () => raise(selected);
 get('lower').onclick = () => lower(selected);
 get('close').onclick = () => close(selected);
 get('pause').onclick = ({ target }) => {
   const pause = target.getAttribute('aria-pressed') !== 'true';
   target.setAttribute('aria-pressed', pause);
-  livePicture.paused = pause;
+  if (livePicture) livePicture.paused = pause;
 };
 addEventListener('resize', () => {
   if (!status) return;
   fitWall();
-  livePicture.refresh();
+  livePicture?.refresh();
 });
 poll();

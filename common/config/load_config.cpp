@@ -53,9 +53,17 @@ void read_http(TreeReader& read, const toml::table& root, WallConfig& out) {
     const auto& http = read.section(root, "http");
     read.only(http, "[http]", {"listen"});
     const auto* listen = http.get("listen");
-    out.http_listen = listen ? read.address(*listen, "'listen'")
-                             : net::Address{.path = {}, .host = "127.0.0.1", .port = net::kDefaultHttpPort};
-    if (listen && out.http_listen->is_unix()) read.refuse(listen->source(), "'listen' of [http]: expected HOST:PORT");
+    if (!listen) {
+        out.http_listen.push_back({.path = {}, .host = "127.0.0.1", .port = net::kDefaultHttpPort});
+        return;
+    }
+    const auto* array = listen->as_array();
+    if (array && array->empty()) read.refuse(listen->source(), "'listen' of [http]: expected an address, or several");
+    for (std::size_t i = 0; i < (array ? array->size() : 1); ++i) {
+        const auto& entry = array ? *array->get(i) : *listen;
+        out.http_listen.push_back(read.address(entry, "'listen'"));
+        if (out.http_listen.back().is_unix()) read.refuse(entry.source(), "'listen' of [http]: expected HOST:PORT");
+    }
 }
 
 TileConfig read_tile(TreeReader& read, const toml::table& table) {

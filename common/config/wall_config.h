@@ -51,7 +51,7 @@ struct WallConfig {
     std::vector<net::Address> control_listen;  ///< walld's; nodes connect to the first
     std::string daemon_user = kWallUser;       ///< walld's, for the nodes: a name or number, "*" for anybody
     PeopleConfig people;                       ///< who may do what
-    std::optional<net::Address> http_listen;   ///< none: no HTTP
+    std::vector<net::Address> http_listen;     ///< none: no HTTP; over TLS where other machines reach it
     std::chrono::milliseconds swap_timeout{250};
     std::chrono::milliseconds close_timeout{
         3000};                         ///< a program that was asked to close and has not by then is cut off

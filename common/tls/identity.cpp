@@ -81,8 +81,8 @@ Result<Fingerprint> fingerprint_of(X509* certificate) {
     return Fingerprint::from_bytes(digest);
 }
 
-Result<Identity> Identity::of_key(KeyOwner key) {
-    auto certificate = certificate_for(key.get());
+Result<Identity> Identity::of_key(KeyOwner key, CertificateOwner certificate) {
+    if (!certificate) certificate = certificate_for(key.get());
     if (!certificate) return fail("a certificate cannot be made: " + openssl_error());
     const auto fingerprint = fingerprint_of(certificate.get());
     if (!fingerprint) return tl::unexpected(fingerprint.error());
@@ -109,12 +109,33 @@ Result<Identity> Identity::load_or_make(const std::filesystem::path& file) {
     const BioOwner from(BIO_new_mem_buf(text->data(), static_cast<int>(text->size())));
     KeyOwner key(PEM_read_bio_PrivateKey(from.get(), nullptr, nullptr, nullptr));
     if (!key) return wrong(file, "not a private key in PEM: " + openssl_error());
-    return of_key(std::move(key));
+    CertificateOwner kept(PEM_read_bio_X509(from.get(), nullptr, nullptr, nullptr));
+    const bool known = kept && X509_check_private_key(kept.get(), key.get()) == 1;
+    ERR_clear_error();
+    if (known) return of_key(std::move(key), std::move(kept));
+    auto out = of_key(std::move(key));
+    if (!out) return out;
+    if (auto saved = out->save(file); !saved) return tl::unexpected(saved.error());
+    return out;
+}
+
+std::string Identity::certificate_digest() const {
+    unsigned char digest[SHA256_DIGEST_LENGTH];
+    unsigned size = 0;
+    std::string out;
+    if (X509_digest(certificate_.get(), EVP_sha256(), digest, &size) != 1) return out;
+    constexpr char kDigits[] = "0123456789ABCDEF";
+    for (unsigned i = 0; i < size; ++i) {
+        if (i != 0) out += ':';
+        out += {kDigits[digest[i] >> 4], kDigits[digest[i] & 15]};
+    }
+    return out;
 }
 
 Result<void> Identity::save(const std::filesystem::path& file) const {
     const BioOwner memory(BIO_new(BIO_s_mem()));
-    if (PEM_write_bio_PrivateKey(memory.get(), key_.get(), nullptr, nullptr, 0, nullptr, nullptr) != 1)
+    if (PEM_write_bio_PrivateKey(memory.get(), key_.get(), nullptr, nullptr, 0, nullptr, nullptr) != 1 ||
+        PEM_write_bio_X509(memory.get(), certificate_.get()) != 1)
         return wrong(file, openssl_error());
     char* text = nullptr;
     const auto size = static_cast<std::size_t>(BIO_get_mem_data(memory.get(), &text));

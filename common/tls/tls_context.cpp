@@ -38,7 +38,7 @@ Result<TlsContext> TlsContext::make(const Identity& identity) {
     if (!links || !pages) return fail("TLS cannot be set up: " + openssl_error());
     SSL_CTX_set_verify(links.get(), SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, nullptr);
     SSL_CTX_set_cert_verify_callback(links.get(), take_any, nullptr);
-    return TlsContext(std::move(links), std::move(pages), identity.fingerprint());
+    return TlsContext(std::move(links), std::move(pages), identity);
 }
 
 Result<Fingerprint> peer_of(SSL* connection) {

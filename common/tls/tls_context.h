@@ -4,6 +4,8 @@
 // their fingerprint is compared with what is known. Any thread.
 #pragma once
 
+#include <string>
+
 #include "common/base/result.h"
 #include "common/tls/fingerprint.h"
 #include "common/tls/identity.h"
@@ -22,12 +24,18 @@ public:
     /// For browsers, which show none; peers are not asked for a key.
     SSL_CTX* pages() const { return pages_.get(); }
     const Fingerprint& fingerprint() const { return fingerprint_; }
+    /// As browsers show it of pages().
+    const std::string& certificate_digest() const { return certificate_digest_; }
 
 private:
-    TlsContext(ContextOwner links, ContextOwner pages, const Fingerprint& own)
-        : links_(std::move(links)), pages_(std::move(pages)), fingerprint_(own) {}
+    TlsContext(ContextOwner links, ContextOwner pages, const Identity& own)
+        : links_(std::move(links)),
+          pages_(std::move(pages)),
+          fingerprint_(own.fingerprint()),
+          certificate_digest_(own.certificate_digest()) {}
     ContextOwner links_, pages_;
     Fingerprint fingerprint_;
+    std::string certificate_digest_;
 };
 
 /// The fingerprint of the key that the peer has proven; an error before the handshake, and for a peer without one.

@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import time
 from pathlib import Path
+from typing import Sequence
 
 from wall import REPOSITORY, build_folder
 
@@ -25,6 +26,10 @@ class BrowserError(RuntimeError):
 
 
 class Browser:
+    def __init__(self, via: Sequence[str] = ()):
+        """`via`: what runs it, for one on another host (hosts.py)."""
+        self._via = via
+
     def __enter__(self) -> "Browser":
         program = shutil.which("chromium")
         if not program:
@@ -32,7 +37,8 @@ class Browser:
         driver = build_folder() / "tests" / "playwright"
         if not (driver / "node_modules").exists():
             raise BrowserError(f"playwright-core is missing: tests/web/install_playwright.sh {driver} installs it")
-        self._process = subprocess.Popen(["node", REPOSITORY / "tests" / "web" / "browser.mjs", driver, program],
+        driven = ["node", REPOSITORY / "tests" / "web" / "browser.mjs", driver, program]
+        self._process = subprocess.Popen([*self._via, *driven],
                                          stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         return self
 

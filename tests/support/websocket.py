@@ -17,9 +17,11 @@ class Refused(Exception):
 
 
 class WebSocket:
-    def __init__(self, url: str, path: str = "/api/v1/stream", timeout: float = 10, **headers: str):
+    def __init__(self, url: str, path: str = "/api/v1/stream", timeout: float = 10,
+                 connected: socket.socket | None = None, **headers: str):
+        """`connected`: a socket that is connected already, for what is not reached from here, or over TLS."""
         where = urlparse(url)
-        self.socket = socket.create_connection((where.hostname, where.port), timeout)
+        self.socket = connected or socket.create_connection((where.hostname, where.port), timeout)
         self.buffer = bytearray()
         lines = [f"GET {path} HTTP/1.1", f"Host: {where.netloc}", "Upgrade: websocket", "Connection: Upgrade",
                  "Sec-WebSocket-Version: 13",

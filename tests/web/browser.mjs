@@ -34,7 +34,7 @@ function call(path, values) {
 async function answer(order) {
   if (order.open) return open(order.open);
   const result = await call(order.call, order.arguments ?? []);
-  return ['goto', 'screenshot'].includes(order.call) ? undefined : result;
+  return ['goto', 'reload', 'screenshot'].includes(order.call) ? undefined : result;
 }
 
 for await (const line of createInterface({ input: process.stdin })) {

@@ -88,13 +88,26 @@ std::string invitation_text(const json& invitation) {
                        invitation.value("valid_s", 0) / 60, text(invitation, "command"));
 }
 
+/// Where the status page is, and how a browser knows that it is ours.
+std::string page_text(const json& status) {
+    const auto page = status.value("page", json::object());
+    std::string out;
+    for (const auto& url : page.value("urls", std::vector<std::string>())) {
+        out += "page: " + url;
+        if (url.starts_with("https")) out += "  certificate (SHA-256): " + text(page, "certificate");
+        out += '\n';
+    }
+    return out;
+}
+
 std::string status_text(const json& status) {
     const auto& wall = status.at("wall");
     const auto& nodes = status.at("nodes");
     const auto up = std::ranges::count_if(nodes, [](const json& n) { return is(n, "up"); });
-    return fmt::format("wall {}: {}x{} pixels, {} tiles, {} of {} nodes up, {} programs\n\n{}\n{}", text(wall, "name"),
-                       text(wall, "width"), text(wall, "height"), status.at("tiles").size(), up, nodes.size(),
-                       status.at("sessions").size(), nodes_table(nodes), sessions_table(status.at("sessions")));
+    return fmt::format("wall {}: {}x{} pixels, {} tiles, {} of {} nodes up, {} programs\n{}\n{}\n{}",
+                       text(wall, "name"), text(wall, "width"), text(wall, "height"), status.at("tiles").size(), up,
+                       nodes.size(), status.at("sessions").size(), page_text(status), nodes_table(nodes),
+                       sessions_table(status.at("sessions")));
 }
 
 std::string person_text(const json& person) { return fmt::format("{}, role {}\n", who(person), text(person, "role")); }

@@ -90,12 +90,12 @@ Outcome<Person> Identities::with_token(Person base, std::string_view token) cons
     return refuse(RefusalKind::forbidden, "this wall does not know that token");
 }
 
-Outcome<Person> Identities::over_http(const Person& base, std::string_view authorization) const {
+Outcome<Person> Identities::over_http(const Person& base, std::string_view authorization, bool local) const {
     if (!authorization.empty() && (!authorization.starts_with(kBearer) || authorization.size() == kBearer.size()))
         return refuse(RefusalKind::forbidden, "expected 'Authorization: Bearer TOKEN'");
     const auto token = authorization.empty() ? authorization : authorization.substr(kBearer.size());
     return with_token(base, token).map([&](Person person) {
-        person.role = std::max(person.role, people_.http_role);
+        if (local) person.role = std::max(person.role, people_.http_role);
         return person;
     });
 }

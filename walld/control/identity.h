@@ -22,8 +22,8 @@ public:
     Person of(std::uint32_t user) const;
     /// The person that `token` stands for; `base` if there is none (empty).
     Outcome<Person> with_token(Person base, std::string_view token) const;
-    /// Over HTTP everybody has at least the role that the configuration gives.
-    Outcome<Person> over_http(const Person& base, std::string_view authorization) const;
+    /// Over HTTP everybody of this machine has at least the role that the configuration gives (`local`).
+    Outcome<Person> over_http(const Person& base, std::string_view authorization, bool local) const;
 
 private:
     struct Token {

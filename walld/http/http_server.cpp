@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <boost/asio/as_tuple.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
@@ -11,10 +12,10 @@
 #include <sstream>
 
 #include "common/daemon/keep_running.h"
+#include "common/json/parse_json.h"
 #include "common/log/log.h"
 #include "gen/walld/http/page.gen.h"
-#include "walld/http/rest.h"
-#include "walld/streams/stream_session.h"
+#include "walld/http/stream_session.h"
 #include "walld/wall/status.h"
 
 namespace wall::walld {
@@ -55,8 +56,7 @@ http::response<HttpBody> refusal(unsigned version, int status, const Refusal& wh
 }
 
 /// What a connection gets that is one too many: its socket is fresh, and has room for so few bytes.
-void turn_away(asio::ip::tcp::socket& socket, const Refusal& why) {
-    log::warn("http_full reason={}", log::quoted(why.message));
+void turn_away(WebStream::Socket& socket, const Refusal& why) {
     auto answer = refusal(kVersion, http_status(why.kind), why);
     answer.keep_alive(false);
     answer.prepare_payload();
@@ -68,6 +68,22 @@ void turn_away(asio::ip::tcp::socket& socket, const Refusal& why) {
 }
 
 std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
+
+/// Of the browser that has signed in; with TLS in a name that nothing in plain can set (RFC 6265bis, 4.1.3).
+const char* cookie_name(bool foreign) { return foreign ? "__Host-wallgl" : "wallgl"; }
+
+/// No script of a page reads it, and no page of another site sends it.
+std::string cookie(bool foreign, const std::string& secret, std::chrono::seconds lifetime) {
+    return std::string(cookie_name(foreign)) + "=" + secret +
+           "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + std::to_string(lifetime.count()) +
+           (foreign ? "; Secure" : "");
+}
+
+std::string address_of(WebStream::Socket& socket) {
+    boost::system::error_code failed;
+    const auto peer = socket.remote_endpoint(failed);
+    return failed ? "somewhere" : peer.address().to_string();
+}
 
 template <class Request>
 bool reads(const Request& request) {
@@ -83,6 +99,18 @@ template <class Request>
 std::string_view query_of(const Request& request) {
     const auto path = path_of(request);
     return path.size() < request.target().size() ? view(request.target()).substr(path.size() + 1) : std::string_view();
+}
+
+template <class Request, class Connection>
+RestRequest of(const Request& request, const Connection& connection) {
+    return {view(request.method_string()),
+            path_of(request),
+            request.body(),
+            view(request[http::field::content_type]),
+            view(request[http::field::host]),
+            view(request[http::field::origin]),
+            view(request["Sec-Fetch-Site"]),
+            connection.scheme()};
 }
 
 /// A browser that was led here under a foreign name (DNS rebinding) must not read the wall.
@@ -120,69 +148,97 @@ std::string query_value(std::string_view query, std::string_view key) {
 
 }  // namespace
 
-Result<void> HttpServer::listen(const net::Address& address) {
-    auto listener = net::Listener::open(executor_, address);
-    if (!listener) return tl::unexpected(listener.error());
-    listener_.emplace(std::move(*listener));
-    log::info("http_listening url={}", log::quoted("http://" + listener_->address().text() + "/"));
-    net::keep_accepting(
-        executor_, *listener_, [this](net::StreamSocket socket) { take(std::move(socket)); },
-        [this] { return stopping_; });
+Result<void> HttpServer::listen(std::span<const net::Address> addresses) {
+    listeners_.clear();  // of an attempt before, which one of the addresses has ended
+    for (const auto& address : addresses) {
+        auto listener =
+            net::Listener::open(executor_, address, own_ ? net::Peers::with_keys : net::Peers::of_this_machine);
+        if (!listener) return tl::unexpected(listener.error());
+        listeners_.push_back(std::make_unique<net::Listener>(std::move(*listener)));
+    }
+    for (auto& listener : listeners_) {
+        const bool foreign = listener->wants_keys();
+        net::keep_accepting(
+            executor_, *listener, [this, foreign](net::StreamSocket socket) { take(std::move(socket), foreign); },
+            [this] { return stopping_; });
+    }
+    for (const auto& url : urls())
+        log::info("http_listening url={} certificate={}", log::quoted(url),
+                  log::quoted(url.starts_with("https") ? own_->certificate_digest() : ""));
     return {};
+}
+
+std::vector<std::string> HttpServer::urls() const {
+    std::vector<std::string> out;
+    for (const auto& listener : listeners_)
+        out.push_back((listener->address().local() ? "http://" : "https://") + listener->address().text() + "/");
+    return out;
 }
 
 void HttpServer::stop() {
     stopping_ = true;
-    if (listener_) listener_->close();
-    boost::system::error_code ignored;
+    for (auto& listener : listeners_) listener->close();
     for (auto& [key, connection] : std::exchange(open_, {})) {
-        if (const auto open = connection.lock()) open->socket.close(ignored);
+        if (const auto open = connection.lock()) open->stream.close();
     }
 }
 
-void HttpServer::take(net::StreamSocket accepted) {
+void HttpServer::take(net::StreamSocket accepted, bool foreign) {
     boost::system::error_code ignored;
     const auto protocol = accepted.local_endpoint(ignored).protocol();
-    Socket socket(executor_);
+    WebStream::Socket socket(executor_);
     socket.assign(protocol.family() == AF_INET6 ? asio::ip::tcp::v6() : asio::ip::tcp::v4(), accepted.release(),
                   ignored);
-    auto place = connections_.take(kNotKnownYet);
-    if (!place) return turn_away(socket, place.error());
-    auto connection = std::make_shared<Connection>(std::move(socket), std::move(*place), Person{});
+    auto place = foreign ? foreign_.take("somebody at " + address_of(socket)) : connections_.take(kNotKnownYet);
+    if (!place) {
+        log::warn("http_full reason={}", log::quoted(place.error().message));
+        if (!foreign) turn_away(socket, place.error());  // in plain; nothing is said so to another machine
+        return;
+    }
+    auto connection = std::make_shared<Connection>(WebStream(std::move(socket)), std::move(*place), Person{}, foreign);
     open_[connection.get()] = connection;
     net::spawn(executor_, "http", serve(std::move(connection)));
 }
 
-/// Whose connection it is may take its time to find out.
-asio::awaitable<void> HttpServer::serve(std::shared_ptr<Connection> connection) {
-    connection->caller = co_await who_.at(ends_of(connection->socket.native_handle()));
-    connection->place.leave();
-    auto place = connections_.take(connection->caller.text());
-    if (place) {
-        connection->place = std::move(*place);
-        co_await answer_all(connection);
-    } else {
-        turn_away(connection->socket, place.error());
+/// Whose connection it is may take its time to find out; of another machine's nobody knows.
+asio::awaitable<bool> HttpServer::admit(Connection& connection) {
+    if (connection.foreign) {
+        const auto from = address_of(connection.stream.socket());
+        const auto done = co_await connection.stream.shake_hands(*own_);
+        if (!done) log::info("http_refused from={} reason={}", log::quoted(from), log::quoted(done.error().message));
+        co_return done.has_value();
     }
+    connection.caller = co_await who_.at(ends_of(connection.stream.socket().native_handle()));
+    connection.place.leave();
+    auto place = connections_.take(connection.caller.text());
+    if (place) {
+        connection.place = std::move(*place);
+        co_return true;
+    }
+    log::warn("http_full reason={}", log::quoted(place.error().message));
+    turn_away(connection.stream.socket(), place.error());
+    co_return false;
+}
+
+asio::awaitable<void> HttpServer::serve(std::shared_ptr<Connection> connection) {
+    const bool admitted = co_await admit(*connection);
+    if (admitted) co_await answer_all(connection);
     open_.erase(connection.get());
-    boost::system::error_code ignored;
-    connection->socket.shutdown(Socket::shutdown_both, ignored);
-    connection->socket.close(ignored);
+    connection->stream.close();
 }
 
 // GCC 12 inlines Asio's allocation of this coroutine's frame, but not its release, and takes them for a mismatch.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 asio::awaitable<void> HttpServer::answer_all(std::shared_ptr<Connection> connection) {
-    Socket& socket = connection->socket;
+    WebStream& stream = connection->stream;
     // Requests that come while one is answered wait in the kernel, but for what the last reading brought of them.
     boost::beast::flat_buffer buffer(kMaxHeader + kMaxBody);
-    asio::steady_timer idle(socket.get_executor());
+    asio::steady_timer idle(stream.get_executor());
     const auto limit = [&] {
         idle.expires_after(kIdleLimit);
         idle.async_wait([weak = std::weak_ptr(connection)](const boost::system::error_code& cancelled) {
-            boost::system::error_code ignored;
-            if (const auto open = weak.lock(); open && !cancelled) open->socket.close(ignored);
+            if (const auto open = weak.lock(); open && !cancelled) open->stream.close();
         });
     };
     for (bool go_on = true; go_on;) {
@@ -190,18 +246,18 @@ asio::awaitable<void> HttpServer::answer_all(std::shared_ptr<Connection> connect
         http::request_parser<http::string_body> parser;
         parser.header_limit(kMaxHeader);
         parser.body_limit(kMaxBody);
-        auto [read_error, read] = co_await http::async_read(socket, buffer, parser, kTuple);
+        auto [read_error, read] = co_await http::async_read(stream, buffer, parser, kTuple);
         if (read_error) break;
         idle.cancel();                     // a program that is asked to close may take its time
         std::optional<Response> response;  // none: there was a viewer, and all is said
         if (path_of(parser.get()) == kStreamPath) response = co_await serve_stream(connection, parser.get());
-        else response = co_await answer(parser.get(), connection->caller);
+        else response = co_await answer(parser.get(), *connection);
         if (!response) break;
         response->keep_alive(parser.get().keep_alive());
         response->prepare_payload();
         if (parser.get().method() == http::verb::head) response->body() = {};
         limit();
-        auto [write_error, written] = co_await http::async_write(socket, *response, kTuple);
+        auto [write_error, written] = co_await http::async_write(stream, *response, kTuple);
         go_on = !write_error && response->keep_alive() && !stopping_;
     }
 }
@@ -210,18 +266,22 @@ asio::awaitable<void> HttpServer::answer_all(std::shared_ptr<Connection> connect
 /// Until the viewer has gone; an answer for one who may not watch.
 asio::awaitable<std::optional<HttpServer::Response>> HttpServer::serve_stream(std::shared_ptr<Connection> connection,
                                                                               const Request& request) {
-    const auto who = viewer(request, connection->caller);
+    const auto who = viewer(request, *connection);
     if (!who) co_return who.error();
     auto place = streams_.add_viewer(*who);
     if (!place) co_return refusal(request.version(), http_status(place.error().kind), place.error());
-    std::shared_ptr<Socket> socket(connection, &connection->socket);
-    co_await serve_viewer(std::move(socket), request, streams_, std::move(*place));
+    std::shared_ptr<WebStream> stream(connection, &connection->stream);
+    co_await serve_viewer(std::move(stream), request, streams_, std::move(*place));
     co_return std::nullopt;
 }
 
-asio::awaitable<std::optional<HttpServer::Response>> HttpServer::answer(const Request& request, const Person& caller) {
-    if (auto page = local_page(request)) co_return std::move(*page);
-    auto asked = read(request, caller);
+asio::awaitable<std::optional<HttpServer::Response>> HttpServer::answer(const Request& request,
+                                                                        const Connection& connection) {
+    if (auto answer = page(request, connection)) co_return std::move(*answer);
+    if (request.method() == http::verb::post && path_of(request) == kLogin)
+        co_return co_await log_in(request, connection);
+    if (request.method() == http::verb::post && path_of(request) == kLogout) co_return log_out(request, connection);
+    auto asked = read(request, connection);
     if (!asked) co_return std::move(asked.error());
     auto answer = co_await desk_.carry_out(std::move(*asked));
     if (!answer) co_return refusal(request.version(), http_status(answer.error().kind), answer.error());
@@ -231,10 +291,48 @@ asio::awaitable<std::optional<HttpServer::Response>> HttpServer::answer(const Re
     co_return reply(request.version(), http::status::ok, kJson, dump(answer->json));
 }
 
-/// What anybody who reaches us under a local name gets, and the answer for those who do not.
-std::optional<HttpServer::Response> HttpServer::local_page(const Request& request) const {
+/// A token for a cookie. Whoever has none hears so after a while, and on this connection nothing else meanwhile.
+asio::awaitable<HttpServer::Response> HttpServer::log_in(const Request& request, const Connection& connection) {
+    const auto asked = of(request, connection);
+    if (!asked.same_site())
+        co_return refusal(request.version(), 403,
+                          {RefusalKind::forbidden, "a page of another site may not sign in at this wall"});
+    if (!asked.is_json())
+        co_return refusal(request.version(), 415, {RefusalKind::invalid, "expected 'Content-Type: application/json'"});
+    const auto body = parse_json(request.body(), kRequestJson);
+    const bool told = body && body->is_object() && body->contains("token") && body->at("token").is_string();
+    if (!told || body->at("token").get<std::string>().empty())
+        co_return refusal(request.version(), 400, {RefusalKind::invalid, R"(expected {"token": "..."})"});
+    auto who = identities_.with_token({}, body->at("token").get<std::string>());
+    const auto from = connection.foreign ? "another machine" : connection.caller.text();
+    if (!who) {
+        log::warn("login_refused from={}", log::quoted(from));
+        asio::steady_timer wait(executor_, kWrongTokenDelay);
+        co_await wait.async_wait(kTuple);
+        co_return refusal(request.version(), 401, who.error());
+    }
+    log::info("login who={} from={}", log::quoted(who->text()), log::quoted(from));
+    auto answer = reply(request.version(), http::status::ok, kJson, dump(person_json(*who)));
+    answer.set(http::field::set_cookie,
+               cookie(connection.foreign, logins_.open(std::move(*who), Logins::Clock::now()), Logins::kLifetime));
+    co_return answer;
+}
+
+HttpServer::Response HttpServer::log_out(const Request& request, const Connection& connection) {
+    if (!of(request, connection).same_site())
+        return refusal(request.version(), 403,
+                       {RefusalKind::forbidden, "a page of another site may not sign anybody out of this wall"});
+    logins_.close(cookie_value(view(request[http::field::cookie]), cookie_name(connection.foreign)));
+    auto answer = reply(request.version(), http::status::ok, kJson, std::string("{}"));
+    answer.set(http::field::set_cookie, cookie(connection.foreign, "", std::chrono::seconds(0)));
+    return answer;
+}
+
+/// What anybody gets who reaches us, on this machine under a local name, and the answer for those who do not. Over TLS
+/// the name does not matter: a browser that was led here under another one has no cookie of ours under it.
+std::optional<HttpServer::Response> HttpServer::page(const Request& request, const Connection& connection) const {
     const auto version = request.version();
-    if (!host_ok(view(request[http::field::host])))
+    if (!connection.foreign && !host_ok(view(request[http::field::host])))
         return reply(version, http::status::misdirected_request, "text/plain",
                      "this wall answers to local names only\n");
     if (!reads(request)) return std::nullopt;
@@ -246,31 +344,44 @@ std::optional<HttpServer::Response> HttpServer::local_page(const Request& reques
                  well ? "ok\n" : "no node is up\n");
 }
 
+/// Who asks: whose token it is, who has signed in, or as whom the kernel names.
+Expected<Person, HttpRefusal> HttpServer::person(const Request& request, const Connection& connection) {
+    const auto authorization = view(request[http::field::authorization]);
+    const auto secret = cookie_value(view(request[http::field::cookie]), cookie_name(connection.foreign));
+    if (authorization.empty() && !secret.empty())
+        if (auto known = logins_.find(secret, Logins::Clock::now())) return std::move(*known);
+    const auto no = [](const Refusal& why) { return tl::unexpected<HttpRefusal>({401, why}); };
+    if (connection.foreign && authorization.empty())
+        return no({RefusalKind::forbidden, "sign in with a token: at the page, or by 'Authorization: Bearer TOKEN'"});
+    auto who = identities_.over_http(connection.caller, authorization, !connection.foreign);
+    if (!who) return no(who.error());
+    return std::move(*who);
+}
+
 /// Who wants to watch, or the answer for one who may not.
-Expected<Person, HttpServer::Response> HttpServer::viewer(const Request& request, const Person& caller) const {
+Expected<Person, HttpServer::Response> HttpServer::viewer(const Request& request, const Connection& connection) {
     const auto version = request.version();
     const auto no = [](Response answer) { return tl::unexpected<Response>(std::move(answer)); };
-    if (!host_ok(view(request[http::field::host]))) return no(*local_page(request));
+    if (!connection.foreign && !host_ok(view(request[http::field::host]))) return no(*page(request, connection));
     if (!boost::beast::websocket::is_upgrade(request))
         return no(
             reply(version, http::status::upgrade_required, "text/plain", "expected a WebSocket (docs/streams.md)\n"));
-    auto who = identities_.over_http(caller, view(request[http::field::authorization]));
-    if (!who) return no(refusal(version, 401, who.error()));
+    auto who = person(request, connection);
+    if (!who) return no(refusal(version, who.error().status, who.error().why));
     if (const auto permitted = may(*who, Need::look, "watch the wall", nullptr); !permitted)
         return no(refusal(version, http_status(permitted.error().kind), permitted.error()));
-    const auto origin = view(request[http::field::origin]);
-    if (!origin.empty() && origin != "http://" + std::string(view(request[http::field::host])))
+    if (!of(request, connection).same_site())
         return no(refusal(version, 403, {RefusalKind::forbidden, "a page of another site may not watch this wall"}));
     return std::move(*who);
 }
 
 /// What is asked of the desk, or the answer if nothing is.
-Expected<Asked, HttpServer::Response> HttpServer::read(const Request& request, const Person& caller) const {
+Expected<Asked, HttpServer::Response> HttpServer::read(const Request& request, const Connection& connection) {
     const auto no = [&](int status, const Refusal& why) {
         return tl::unexpected<Response>(refusal(request.version(), status, why));
     };
-    auto who = identities_.over_http(caller, view(request[http::field::authorization]));
-    if (!who) return no(401, who.error());
+    auto who = person(request, connection);
+    if (!who) return no(who.error().status, who.error().why);
     const auto path = path_of(request);
     if (reads(request) && path == kMetricsPath) {
         if (const auto permitted = may(*who, Need::look, "read the metrics", nullptr); !permitted)
@@ -280,9 +391,7 @@ Expected<Asked, HttpServer::Response> HttpServer::read(const Request& request, c
     }
     if (reads(request) && path == kSnapshotPath)
         return Asked{"screenshot", {{"tile", query_value(query_of(request), "tile")}}, std::move(*who), kVia};
-    auto command = rest_command({view(request.method_string()), path, request.body(),
-                                 view(request[http::field::content_type]), view(request[http::field::host]),
-                                 view(request[http::field::origin]), view(request["Sec-Fetch-Site"])});
+    auto command = rest_command(of(request, connection));
     if (!command) return no(command.error().status, command.error().why);
     return Asked{std::move(command->verb), std::move(command->arguments), std::move(*who), kVia};
 }

@@ -59,25 +59,13 @@ tl::unexpected<HttpRefusal> no(int status, RefusalKind kind, std::string message
     return tl::unexpected<HttpRefusal>({status, {kind, std::move(message)}});
 }
 
-/// `application/json`, with or without parameters.
-bool is_json(std::string_view content_type) {
-    return content_type.substr(0, content_type.find(';')) == "application/json";
-}
-
-/// Browsers say where a request comes from; programs do not.
-bool same_site(const RestRequest& request) {
-    const bool fetched_here =
-        request.fetch_site.empty() || request.fetch_site == "same-origin" || request.fetch_site == "none";
-    return fetched_here && (request.origin.empty() || request.origin == "http://" + std::string(request.host));
-}
-
 Expected<RestCommand, HttpRefusal> command(const Route& route, std::string_view part, const RestRequest& request) {
     RestCommand out{route.verb, json::object()};
     if (route.method != "GET") {
-        if (!same_site(request))
+        if (!request.same_site())
             return no(403, RefusalKind::forbidden, "a page of another site may not change this wall");
         const bool needs_type = route.method != "DELETE" || !request.body.empty();  // no form can send a DELETE
-        if (needs_type && !is_json(request.content_type))
+        if (needs_type && !request.is_json())
             return no(415, RefusalKind::invalid, "expected 'Content-Type: application/json'");
         if (!request.body.empty()) {
             auto arguments = parse_json(request.body, kRequestJson);
@@ -91,6 +79,14 @@ Expected<RestCommand, HttpRefusal> command(const Route& route, std::string_view 
 }
 
 }  // namespace
+
+bool RestRequest::same_site() const {
+    const bool fetched_here = fetch_site.empty() || fetch_site == "same-origin" || fetch_site == "none";
+    return fetched_here && (origin.empty() || origin == std::string(scheme) + "://" + std::string(host));
+}
+
+/// `application/json`, with or without parameters.
+bool RestRequest::is_json() const { return content_type.substr(0, content_type.find(';')) == "application/json"; }
 
 Expected<RestCommand, HttpRefusal> rest_command(const RestRequest& request) {
     std::string allowed;

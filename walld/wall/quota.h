@@ -22,6 +22,8 @@ struct QuotaLimits {
 inline constexpr QuotaLimits kPeerConnections{"connections to this wall that are not a program's", 512, 2048};
 inline constexpr QuotaLimits kHandshakes{"TLS handshakes with this wall", 64, 512};
 inline constexpr QuotaLimits kHttpConnections{"HTTP connections to this wall", 512, 1024};
+inline constexpr QuotaLimits kForeignHttp{"HTTPS connections to this wall", 64,
+                                          512};  ///< of an address of another machine
 inline constexpr QuotaLimits kViewers{"live views of this wall", 256, 768};
 inline constexpr QuotaLimits kRequests{"requests to this wall that wait for an answer", 128, 1024};
 

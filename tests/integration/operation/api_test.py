@@ -122,8 +122,9 @@ class Api(unittest.TestCase):
 
     def test_every_route_is_described(self) -> None:
         routes = set(re.findall(r'\{"([A-Z]+)", "(/[^"]*)"', (ROOT / "walld" / "http" / "rest.cpp").read_text()))
-        routes |= {("GET", path) for path in re.findall(r'k\w+Path = "(/[^"]*)"',
-                                                        (ROOT / "walld" / "http" / "rest.h").read_text())}
+        header = (ROOT / "walld" / "http" / "rest.h").read_text()
+        routes |= {("POST", path) for path in re.findall(r'kLog(?:in|out) = "(/[^"]*)"', header)}
+        routes |= {("GET", path) for path in re.findall(r'k\w+Path = "(/[^"]*)"', header)}
         described = {(method.upper(), re.sub(r"\{\w+\}", "*", path)) for path,
                      methods in API["paths"].items() for method in set(methods) - {"parameters"}}
         self.assertIn(("GET", "/metrics"), routes)

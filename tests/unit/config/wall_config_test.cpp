@@ -84,7 +84,8 @@ TEST(WallConfig, ReadsEverything) {
     ASSERT_EQ(people.tokens.size(), 1u);
     EXPECT_EQ(people.tokens[0].name, "kiosk");
     EXPECT_EQ(people.tokens[0].role, Role::operator_);
-    EXPECT_EQ(config->http_listen->port, 7780);
+    ASSERT_EQ(config->http_listen.size(), 1u);
+    EXPECT_EQ(config->http_listen[0].port, 7780);
     ASSERT_EQ(config->nodes.size(), 2u);
     EXPECT_EQ(config->nodes[0].tiles[1].rect, (geom::Rect{0, 500, 640, 480}));
     EXPECT_EQ(config->nodes[1].backend, Backend::osmesa);
@@ -107,7 +108,7 @@ TEST(WallConfig, NodesAreEnough) {
     const auto config = parse_config("[[node]]\nname='n'\n[[node.tile]]\nname='t'\nrect=[0,0,1,1]\n", "wall.toml");
     ASSERT_TRUE(config) << config.error().message;
     EXPECT_EQ(config->control_listen[0].text(), "127.0.0.1:7770");
-    EXPECT_FALSE(config->http_listen);
+    EXPECT_TRUE(config->http_listen.empty());
     EXPECT_EQ(config->swap_timeout.count(), 250);
 }
 

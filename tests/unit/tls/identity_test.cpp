@@ -24,8 +24,34 @@ TEST(Identity, IsMadeOnceAndKeptForItsOwnerAlone) {
     ASSERT_TRUE(first) << first.error().message;
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(first->fingerprint(), again->fingerprint());
+    EXPECT_EQ(first->certificate_digest(), again->certificate_digest()) << "browsers know it again";
+    EXPECT_EQ(first->certificate_digest().size(), 32u * 3 - 1);
     EXPECT_EQ(mode_of(path), 0600u);
     EXPECT_NE(Identity::make()->fingerprint(), first->fingerprint());
+}
+
+TEST(Identity, WithoutItsCertificateGetsANewOneThatIsKept) {
+    const test::TemporaryFolder folder;
+    const auto path = folder.file("key.pem");
+    const auto first = Identity::load_or_make(path);
+    ASSERT_TRUE(first);
+    std::ifstream file(path);
+    std::string text(std::istreambuf_iterator<char>(file), {});
+    const auto certificate = text.find("-----BEGIN CERTIFICATE-----");
+    ASSERT_NE(certificate, std::string::npos);
+    std::ofstream(path) << text.substr(0, certificate);
+    const auto second = Identity::load_or_make(path), third = Identity::load_or_make(path);
+    ASSERT_TRUE(second) << second.error().message;
+    EXPECT_EQ(second->fingerprint(), first->fingerprint());
+    EXPECT_NE(second->certificate_digest(), first->certificate_digest());
+    EXPECT_EQ(third->certificate_digest(), second->certificate_digest());
+    // Somebody else's is none.
+    const auto other = folder.file("other.pem");
+    ASSERT_TRUE(Identity::load_or_make(other));
+    std::ifstream others(other);
+    const std::string foreign(std::istreambuf_iterator<char>(others), {});
+    std::ofstream(path) << text.substr(0, certificate) << foreign.substr(foreign.find("-----BEGIN CERTIFICATE-----"));
+    EXPECT_EQ(Identity::load_or_make(path)->fingerprint(), first->fingerprint());
 }
 
 TEST(Identity, ThatOthersCanReadIsRefused) {

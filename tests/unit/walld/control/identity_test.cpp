@@ -57,13 +57,13 @@ TEST_F(ThePeople, ATokenStandsForSomebodyElse) {
 
 TEST_F(ThePeople, OverHttpEverybodyIsAtLeastAViewer) {
     auto who = *Identities::open(people_);
-    EXPECT_EQ(who.over_http({}, "")->role, Role::viewer);
-    EXPECT_EQ(who.over_http(who.of(77), "")->role, Role::operator_);
-    EXPECT_EQ(who.over_http({}, std::string("Bearer ") + kSecret)->role, Role::user);
+    EXPECT_EQ(who.over_http({}, "", true)->role, Role::viewer);
+    EXPECT_EQ(who.over_http(who.of(77), "", true)->role, Role::operator_);
+    EXPECT_EQ(who.over_http({}, std::string("Bearer ") + kSecret, true)->role, Role::user);
     for (const char* wrong : {"Bearer", "Bearer ", "Bearer x", "Basic eDp5", kSecret})
-        EXPECT_FALSE(who.over_http(who.of(77), wrong)) << wrong;
+        EXPECT_FALSE(who.over_http(who.of(77), wrong, true)) << wrong;
     people_.http_role = Role::none;
-    EXPECT_EQ(Identities::open(people_)->over_http({}, "")->role, Role::none);
+    EXPECT_EQ(Identities::open(people_)->over_http({}, "", true)->role, Role::none);
 }
 
 TEST_F(ThePeople, ATokensFileMustBeASecret) {

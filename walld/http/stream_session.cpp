@@ -1,14 +1,26 @@
 // SPDX-License-Identifier: MIT
-#include "walld/streams/stream_session.h"
+#include "walld/http/stream_session.h"
 
 #include <boost/asio/as_tuple.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/bind_handler.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket.hpp>
 
 #include "common/daemon/keep_running.h"
 
 namespace wall::walld {
+
+// How Boost.Beast ends a WebSocket: its closing was said within, so the connection just goes. It finds these by name.
+inline void beast_close_socket(WebStream& stream) { stream.close(); }
+template <class Handler>
+void async_teardown(boost::beast::role_type, WebStream& stream, Handler&& handler) {
+    stream.close();
+    asio::post(stream.get_executor(),
+               boost::beast::bind_front_handler(std::forward<Handler>(handler), boost::system::error_code()));
+}
+
 namespace {
 
 namespace websocket = boost::beast::websocket;
@@ -19,21 +31,20 @@ constexpr std::chrono::seconds kHandshakeLimit{10}, kIdleLimit{30};
 constexpr std::chrono::hours kLongAgo{24};
 
 struct Connection {
-    Connection(std::shared_ptr<asio::ip::tcp::socket> from, StreamHub& the_hub, std::shared_ptr<StreamHub::Viewer> who)
+    Connection(std::shared_ptr<WebStream> from, StreamHub& the_hub, std::shared_ptr<StreamHub::Viewer> who)
         : socket(std::move(from)), stream(*socket), hub(the_hub), viewer(std::move(who)) {}
     ~Connection() { hub.remove_viewer(*viewer); }
     Connection(const Connection&) = delete;
 
-    std::shared_ptr<asio::ip::tcp::socket> socket;
-    websocket::stream<asio::ip::tcp::socket&> stream;
+    std::shared_ptr<WebStream> socket;
+    websocket::stream<WebStream&> stream;
     StreamHub& hub;
     std::shared_ptr<StreamHub::Viewer> viewer;
     bool open = true;
 
     void close() {
         open = false;
-        boost::system::error_code ignored;
-        socket->close(ignored);
+        socket->close();
         viewer->news().notify();
     }
 };
@@ -56,12 +67,12 @@ asio::awaitable<void> send_all(std::shared_ptr<Connection> connection) {
 
 }  // namespace
 
-asio::awaitable<void> serve_viewer(std::shared_ptr<asio::ip::tcp::socket> socket,
+asio::awaitable<void> serve_viewer(std::shared_ptr<WebStream> socket,
                                    boost::beast::http::request<boost::beast::http::string_body> request, StreamHub& hub,
                                    std::shared_ptr<StreamHub::Viewer> viewer) {
     boost::system::error_code ignored;
-    socket->set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
-    socket->set_option(asio::ip::tcp::no_delay(true), ignored);
+    socket->socket().set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
+    socket->socket().set_option(asio::ip::tcp::no_delay(true), ignored);
     const auto connection = std::make_shared<Connection>(std::move(socket), hub, std::move(viewer));
     auto& stream = connection->stream;
     stream.set_option(websocket::stream_base::timeout{kHandshakeLimit, kIdleLimit, true});

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "walld/http/web_stream.h"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <memory>
+
+namespace wall::walld {
+
+asio::awaitable<Result<void>> WebStream::shake_hands(const tls::TlsContext& own) {
+    SSL* connection = SSL_new(own.pages());
+    if (!connection) co_return fail("TLS: " + tls::openssl_error());
+    tls_.emplace(socket_, connection);  // whose it is from now on
+    asio::steady_timer limit(get_executor(), kHandshakeLimit);
+    const auto armed = std::make_shared<bool>(true);
+    limit.async_wait([this, armed](const boost::system::error_code& cancelled) {
+        if (!cancelled && *armed) close();
+    });
+    auto [error] = co_await tls_->async_handshake(asio::ssl::stream_base::server, asio::as_tuple(asio::use_awaitable));
+    *armed = false;
+    if (error) co_return fail("the TLS handshake failed: " + error.message());
+    co_return Result<void>{};
+}
+
+void WebStream::close() {
+    boost::system::error_code ignored;
+    if (!socket_.is_open()) return;
+    socket_.shutdown(Socket::shutdown_both, ignored);
+    socket_.close(ignored);
+}
+
+}  // namespace wall::walld
