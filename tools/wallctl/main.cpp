@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // wallctl: what an operator does. Tables for people, --json for programs.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -34,7 +36,7 @@ struct Options {
     Walld walld{net::kDefaultWalld, {}};
     bool as_json = false;
     std::string id, tile, file, name;
-    std::string role, at, line, state = "/var/lib/wallgl/agent";
+    std::string role, at, line, state, node;
     int x = 0, y = 0, width = 0, height = 0;
     int frames = 1, frame = 1, weight = 0;
     unsigned fps = 10;
@@ -99,15 +101,16 @@ Outcome<void> wait(const Options& options) {
 
 Outcome<void> doctor(const Options& options) {
     std::error_code error;
-    const auto findings =
-        examine(options.walld.address, std::filesystem::read_symlink("/proc/self/exe", error).string());
+    const auto findings = examine(options.walld, std::filesystem::read_symlink("/proc/self/exe", error).string());
     json out = json::array();
     bool good = true;
     for (const auto& finding : findings) {
-        good = good && finding.good;
-        out.push_back({{"check", finding.check}, {"good", finding.good}, {"detail", finding.detail}});
-        if (!options.as_json)
-            std::cout << (finding.good ? "ok    " : "WRONG ") << finding.check << ": " << finding.detail << '\n';
+        constexpr const char* kWords[] = {"ok", "note", "WRONG"};  // in the order of Verdict
+        const char* word = kWords[static_cast<int>(finding.verdict)];
+        const bool bad = finding.verdict == Verdict::wrong;
+        good = good && !bad;
+        out.push_back({{"check", finding.check}, {"good", !bad}, {"verdict", word}, {"detail", finding.detail}});
+        if (!options.as_json) std::cout << fmt::format("{:5} {}: {}\n", word, finding.check, finding.detail);
     }
     if (options.as_json) std::cout << out.dump(2) << '\n';
     if (!good) return failed("something is wrong, see above");
@@ -140,15 +143,25 @@ void add_layouts(CLI::App& app, Options& o, Action& action) {
     named("delete", "delete_layout", "forgets a layout", kNoTable);
 }
 
+/// Units look for what they are in these folders.
+std::string state_of(const Options& options) {
+    if (!options.state.empty()) return options.state;
+    return "/var/lib/wallgl/" + (options.node.empty() ? "agent" : options.node);
+}
+
 Outcome<void> join_wall(const Options& options) {
     const auto line = tls::JoinLine::parse(options.line);
     if (!line) return failed(line.error().message);
-    const auto joined = join::join(*line, join::MachineKind::client, options.state);
+    const auto kind = options.node.empty() ? join::MachineKind::client : join::MachineKind::node;
+    const auto joined = join::join(*line, kind, state_of(options));
     if (!joined) return failed(joined.error().message);
-    if (options.as_json) std::cout << json{{"name", joined->name}, {"walld", joined->walld.text()}}.dump(2) << '\n';
+    const std::string unit = options.node.empty() ? "wallagent" : "tileserver-joined@" + options.node;
+    const json told{{"name", joined->name}, {"walld", joined->walld.text()}, {"unit", unit}};
+    if (options.as_json) std::cout << told.dump(2) << '\n';
     else
-        std::cout << "joined the wall at " << joined->walld.text() << " as '" << joined->name
-                  << "'; wallagent brings programs there (systemctl enable --now wallagent)\n";
+        std::cout << "joined the wall at " << joined->walld.text() << " as '" << joined->name << "', "
+                  << (options.node.empty() ? "to bring programs there" : "to draw its tiles")
+                  << ": systemctl enable --now " << unit << '\n';
     return {};
 }
 
@@ -223,10 +236,11 @@ void add_machines(CLI::App& app, Options& o, Action& action) {
     verb(app, "reload", "reads wall.toml again: nodes and tiles come, move and go while programs run",
          show(o, "reload", reloaded_text));
     verb(app, "machines", "all machines that have joined", show(o, "machines", machines_table));
-    auto* join = verb(app, "join", "joins a wall as a client host, with a line of `wallctl join-token client`",
+    auto* join = verb(app, "join", "joins a wall of another machine, with a line of `wallctl join-token`",
                       [&o] { return join_wall(o); });
     join->add_option("LINE", o.line)->required();
-    join->add_option("--state", o.state, "where the key is kept (/var/lib/wallgl/agent)");
+    join->add_option("--node", o.node, "NAME: as this node, not as a client host");
+    join->add_option("--state", o.state, "where the key is kept (/var/lib/wallgl/agent, or /var/lib/wallgl/NAME)");
 }
 
 void add_verbs(CLI::App& app, Options& o, Action& action) {

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// What a wall's status says about what people complain of: a dark tile, a slow program, another picture than yesterday.
+// Pure.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace wall::wallctl {
+
+enum class Verdict { good, note, wrong };  ///< note: it may be wanted so, and explains something
+
+struct Finding {
+    std::string check;
+    Verdict verdict = Verdict::good;
+    std::string detail;  ///< what was found; the remedy, where there is one
+};
+
+/// `status`: as walld answers it (docs/http-api.md).
+std::vector<Finding> diagnose(const nlohmann::json& status);
+
+}  // namespace wall::wallctl
