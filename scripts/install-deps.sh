@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Installs what Debian 12 lacks for a purpose, as root or with sudo: scripts/install-deps.sh [--list] [demo|build|test]
-#   demo    to build the wall's own programs and run scripts/demo.sh
-#   build   that, and to build everything: tests, benchmarks, wallview, the sanitizer builds
-#   test    that, and what the tests start: all of scripts/test.sh (if nothing is named)
+# Installs what Debian 12 lacks for a purpose, as root or with sudo: scripts/install-deps.sh [--list] [PURPOSE]
+#   demo      to build the wall's own programs and run scripts/demo.sh
+#   packages  that, and to make Debian packages (scripts/packages.sh)
+#   build     demo, and to build everything: tests, benchmarks, wallview, the sanitizer builds
+#   test      all of these, and what the tests start: all of scripts/test.sh (if nothing is named)
 # --list prints the packages of the purpose instead of installing them.
 set -euo pipefail
 
@@ -22,8 +23,11 @@ demo=(
   xvfb xauth procps
   mesa-utils xscreensaver-gl-extra   # glxgears, atlantis
 )
+wallview=(libsdl2-dev)
+packages=(
+  debhelper help2man                 # help2man: manual pages out of --help
+)
 build=(
-  libsdl2-dev                        # wallview's window
   libgtest-dev libgmock-dev libbenchmark-dev
   libavcodec-dev libavutil-dev       # only benchmarks: FFmpeg's codecs beside ours
   libglu1-mesa-dev
@@ -38,7 +42,8 @@ test=(
   xterm fonts-dejavu-core            # the text desktop of the codec benchmark
   python3-numpy python3-opencv python3-jsonschema python3-yaml python3-prometheus-client curl systemd
   iproute2 openssl                   # walls of several machines: network namespaces, keys of strangers
-  mmdebstrap                         # the clean machine of the stage `fresh`
+  mmdebstrap                         # clean machines: the stages `fresh` and `packages`
+  lintian systemd-container ansible-core openssh-client   # the stage `packages`
   chromium                           # the status page in a real browser
 )
 # Node.js may come from elsewhere, with npm in it; Debian's npm does not go with that.
@@ -50,9 +55,10 @@ list=""
 purpose=${1:-test}
 case "$purpose" in
   demo) wanted=("${demo[@]}") ;;
-  build) wanted=("${demo[@]}" "${build[@]}") ;;
-  test) wanted=("${demo[@]}" "${build[@]}" "${test[@]}") ;;
-  *) echo "install-deps: '$purpose': expected demo, build or test" >&2; exit 2 ;;
+  packages) wanted=("${demo[@]}" "${wallview[@]}" "${packages[@]}") ;;
+  build) wanted=("${demo[@]}" "${wallview[@]}" "${build[@]}") ;;
+  test) wanted=("${demo[@]}" "${wallview[@]}" "${packages[@]}" "${build[@]}" "${test[@]}") ;;
+  *) echo "install-deps: '$purpose': expected demo, packages, build or test" >&2; exit 2 ;;
 esac
 if [[ -n $list ]]; then
   printf '%s\n' "${wanted[@]}"

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs what is missing, builds, and runs every test: scripts/test.sh [STAGE...], stages as listed below.
-# Ends with CTest's own summary of each stage; exit code 1 if anything failed. Three run only when they are named:
-# golden-all and conformance-all, of which the usual run takes samples (more than ten minutes, hours), and fresh, which
-# does everything once more on a clean Debian 12 (scripts/fresh.sh).
+# Ends with CTest's own summary of each stage; exit code 1 if anything failed. Four run only when they are named:
+# golden-all and conformance-all, of which the usual run takes samples (more than ten minutes, hours); packages, which
+# builds the Debian packages and runs a wall of machines that have them; and fresh, which does everything once more on a
+# clean Debian 12 (scripts/fresh.sh).
 set -uo pipefail
 cd "$(dirname "$0")/.."
-readonly all_stages=(release golden conformance asan tsan fuzz) on_request=(golden-all conformance-all fresh)
+readonly all_stages=(release golden conformance asan tsan fuzz) on_request=(golden-all conformance-all packages fresh)
 readonly summaries="build/test-summaries"
 begin=$SECONDS
 failed=()
@@ -88,6 +89,13 @@ stage_fuzz() {
   build asan fuzzers || { failed+=(fuzz); return; }
   say "fuzzers, 30 seconds each"
   run fuzz asan -L fuzz -j 2
+}
+
+stage_packages() {
+  say "building the Debian packages"
+  scripts/packages.sh || { failed+=(packages); return; }
+  say "machines on which they are installed, upgraded and purged"
+  /usr/bin/python3 tests/packages/packages_test.py -v || failed+=(packages)
 }
 
 stage_fresh() {

@@ -2,6 +2,7 @@
 """A fresh machine has everything that the build and the tests use: the headers that the build really read, and the
 programs that scripts and tests start, are of packages that scripts/install-deps.sh names or pulls in."""
 import os
+import re
 import shutil
 import subprocess
 import unittest
@@ -56,6 +57,22 @@ class AFreshMachine(unittest.TestCase):
         for name in ("Xvfb", "glretrace", "ffmpeg", "chromium", "piglit"):
             self.assertIn(name, {path.name for path in used}, "what is known to be started is found")
         self.assertEqual(missing(used, "test", self.installed), [])
+
+
+class DebianPackages(unittest.TestCase):
+    """debian/control says once more what is built with, because Debian wants that."""
+    # Of debhelper's own names, and what only runs the wall's programs.
+    OURS = {"debhelper-compat", "dh-sequence-installsysusers"}
+    TOOLS = {"cmake", "help2man", "khronos-api", "ninja-build", "pkg-config", "protobuf-compiler"}
+
+    def test_need_what_the_build_needs(self) -> None:
+        control = (ROOT / "debian" / "control").read_text()
+        field = re.search(r"(?ms)^Build-Depends:\n(.*?)^\S", control)[1]
+        named = {re.match(r"[a-z0-9.+-]+", line.strip())[0] for line in field.splitlines()} - self.OURS
+        wanted = listed("packages")
+        self.assertEqual({package for package in wanted if package.endswith("-dev") or package in self.TOOLS} - named,
+                         set(), "of scripts/install-deps.sh, in debian/control")
+        self.assertEqual(named - Installed().closure(wanted), set(), "of debian/control, in scripts/install-deps.sh")
 
 
 class TheCheckItself(unittest.TestCase):

@@ -125,6 +125,15 @@ class MachineWall(Wall):
                            self.agent_address(client), *(["--join", line] if line else []))
         self._until((self.folder / f"{client}.sock").exists, "wallagent does not listen", client)
 
+    def join_node(self, name: str) -> None:
+        """It joins without being started, by the command that is printed for it."""
+        command = self.ctl("join-token", "node", name)["command"].partition(" && ")
+        if not command[2].endswith(f"tileserver-joined@{name}"):
+            raise WallError(f"'{command[2]}': expected the unit of {name}")
+        done = self.hosts.run(name, [self.bin / "wallctl", *command[0].split()[1:], "--state", self.state_of(name)])
+        if done.returncode != 0:
+            raise WallError(f"{command[0]}: {done.stderr}")
+
     def join_client(self, client: str) -> None:
         self.start_agent(client, self.invite("client", client))
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "walld/control/machine_desk.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "common/tls/join_line.h"
@@ -40,9 +42,11 @@ Outcome<Machine> machine_of(const json& arguments) {
     return Machine{*kind, *name, *role};
 }
 
+/// Joins and starts the service, now and with the machine.
 std::string command_for(const Machine& machine, const std::string& line) {
-    if (machine.kind == Machine::Kind::client) return "wallctl join " + line;
-    return "tileserver --state /var/lib/wallgl/" + machine.name + " --join " + line;
+    constexpr std::string_view enable = " && systemctl enable --now ";
+    if (machine.kind == Machine::Kind::client) return fmt::format("wallctl join {}{}wallagent", line, enable);
+    return fmt::format("wallctl join {} --node {}{}tileserver-joined@{}", line, machine.name, enable, machine.name);
 }
 
 Outcome<void> check_version(std::uint32_t version) {
