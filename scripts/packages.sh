@@ -12,6 +12,9 @@ mkdir -p "$out/source"
 git ls-files -z --cached --others --exclude-standard |
   tar --create --null --files-from=- --ignore-failed-read 2>/dev/null | tar --extract --directory="$out/source"
 
+# debhelper builds with a home of its own, where the compiler's cache would be empty.
+export CCACHE_DIR="${CCACHE_DIR:-$HOME/.cache/ccache}"
+
 echo "packages: building; everything it prints is in build/packages/build.log"
 begin=$SECONDS
 # Ninja's own line before each command: each tenth is shown.

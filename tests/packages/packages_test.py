@@ -31,12 +31,14 @@ EXPOSURE = {"walld.service": 20, "wallagent.service": 20, "tileserver@left.servi
             "tileserver-joined@left.service": 23}
 NEXT = "9.0"  # the version of the packages that the upgrade brings
 # What any Debian system writes that installs, runs and purges something.
-KEPT_BY_SYSTEM = re.compile(r"/(etc/(\.pwd\.lock|machine-id|resolv\.conf|ld\.so\.cache"
+KEPT_BY_SYSTEM = re.compile(r"/(etc/(\.pwd\.lock|machine-id|resolv\.conf|localtime|ld\.so\.cache"
                             r"|(passwd|group|shadow|gshadow|subuid|subgid)-?)"
-                            r"|var/(log|cache|lib/(dpkg|apt|systemd|ucf))/.*|tmp/.*|var/tmp/.*|root/.*|home/.*|run/.*)")
+                            r"|var/(log|cache|lib/(dpkg|apt|dbus|systemd|ucf))/.*|tmp/.*|var/tmp/.*|root/.*|home/.*|run/.*)")
 WALL = """
 [wall]
 name = "installed"
+[control]
+listen = ["unix:/run/wallgl/walld.sock"]
 [people]
 users = ["alice"]
 [[node]]
