@@ -182,7 +182,7 @@ class OneMachine(OnMachines):
         self.addCleanup(program.wait)
         self.addCleanup(self.machine.ask, "pkill glxgears")
         session = frames_go_on(self.machine)
-        self.assertEqual(session["owner"], clean_root.USER)
+        self.assertEqual(session["owner"]["name"], clean_root.USER)
         self.machine.run("wallctl screenshot /srv/shared/wall.png")
         self.assert_shows_gears()
         with self.subTest("an upgrade while it runs"):
@@ -243,7 +243,7 @@ class SeveralMachines(OnMachines):
         self.addCleanup(program.wait)
         self.addCleanup(desk.ask, "pkill glxgears")
         for machine in (walld, desk):
-            self.assertEqual(frames_go_on(machine)["owner"], f"{clean_root.USER}@desk")
+            self.assertEqual(frames_go_on(machine)["owner"]["name"], f"{clean_root.USER}@desk")
 
 
 class RealMachines(SeveralMachines):
