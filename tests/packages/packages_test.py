@@ -101,7 +101,7 @@ def frames_go_on(machine: Machine) -> dict:
 def later_versions(folder: Path) -> None:
     """The same packages, as a later version."""
     for package in packages():
-        tree = folder / package.name
+        tree = folder / f"{package.name}.tree"
         run("dpkg-deb", "--raw-extract", package, tree, check=True)
         control = tree / "DEBIAN" / "control"
         old = re.search(r"(?m)^Version: (.*)$", control.read_text())[1]
@@ -216,7 +216,8 @@ class OneMachine(OnMachines):
         self.assertEqual(left, set())
         self.assertEqual(self.machine.run("ls /run | grep wallgl || true"), "")
         self.assertNotIn("wallgl", self.machine.run("cat /etc/passwd /etc/group"))
-        self.assertEqual(self.machine.run("systemctl list-units --all --plain --no-legend '*wall*' 'tileserver*'"), "")
+        units = "walld.service wallagent.service 'tileserver*'"
+        self.assertEqual(self.machine.run(f"systemctl list-units --state=active --plain --no-legend {units}"), "")
 
 
 class SeveralMachines(OnMachines):
