@@ -33,7 +33,8 @@ NEXT = "9.0"  # the version of the packages that the upgrade brings
 # What any Debian system writes that installs, runs and purges something.
 KEPT_BY_SYSTEM = re.compile(r"/(etc/(\.pwd\.lock|machine-id|resolv\.conf|localtime|ld\.so\.cache"
                             r"|(passwd|group|shadow|gshadow|subuid|subgid)-?)"
-                            r"|var/(log|cache|lib/(dpkg|apt|dbus|systemd|ucf))/.*|tmp/.*|var/tmp/.*|root/.*|home/.*|run/.*)")
+                            r"|var/(log|cache|lib/(dpkg|apt|dbus|systemd|ucf))/.*"
+                            r"|tmp/.*|var/tmp/.*|root/.*|home/.*|run/.*)")
 WALL = """
 [wall]
 name = "installed"
