@@ -61,7 +61,7 @@ class AFreshMachine(unittest.TestCase):
 
 class DebianPackages(unittest.TestCase):
     """debian/control says once more what is built with, because Debian wants that."""
-    # Of debhelper's own names, and what only runs the wall's programs.
+    # Names of debhelper's own.
     OURS = {"debhelper-compat", "dh-sequence-installsysusers"}
     TOOLS = {"cmake", "help2man", "khronos-api", "ninja-build", "pkg-config", "protobuf-compiler"}
 

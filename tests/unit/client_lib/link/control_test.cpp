@@ -553,8 +553,13 @@ TEST(ControlLinkOfAMember, ComesBackToTheNextWalldWithWhatIsAgreed) {
     EXPECT_EQ(restore.agreed(0).layout_version(), 1u);
     EXPECT_EQ(restore.agreed(0).rect().width(), 10u);
     // Who waits goes on waiting until the new one has said what holds.
-    std::thread drawing([&] { linked.link->begin_frame(SurfaceId(1), 6); });
+    std::atomic<bool> begun = false;
+    std::thread drawing([&] {
+        linked.link->begin_frame(SurfaceId(1), 6);
+        begun = true;
+    });
     std::this_thread::sleep_for(20ms);
+    EXPECT_FALSE(begun);
     linked.walld.send(from(placement_of(1, 2), 20, false));
     drawing.join();
     EXPECT_EQ(collect(*linked.link, [](auto& e) { return !e.placements.empty(); }).placements.size(), 1u)
