@@ -76,11 +76,18 @@ class Browser:
         return self.call("evaluate", expression)
 
     def until(self, expression: str, limit: float = 20.0) -> None:
+        """Also over a page that loads itself again: between two documents nothing has a value."""
         end = time.monotonic() + limit
-        while not self.get(expression):
+        while True:
+            problem = ""
+            try:
+                if self.get(expression):
+                    return
+            except BrowserError as error:
+                problem = f" ({error})"
             if time.monotonic() > end:
-                raise BrowserError(f"{limit:.0f} seconds are over: {expression}; the page says: "
-                                   f"{self.get('document.body.innerText')}")
+                raise BrowserError(f"{limit:.0f} seconds are over: {expression}{problem}; the page says: "
+                                   f"{self.get('document.body?.innerText')}")
             time.sleep(0.05)
 
     def screenshot(self, path: Path) -> None:
