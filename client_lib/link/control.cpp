@@ -408,8 +408,12 @@ bool ControlLink::write_some() {
         }
         if (outbox_.empty()) changed_.notify_all();
     }
-    if (!why.empty()) on_lost(why);
-    return why.empty();
+    if (why.empty()) return true;
+    // What walld said before it closed comes first: a reason, or where a window goes.
+    for (pollfd come{fd_.get(), POLLIN, 0}; ::poll(&come, 1, 0) > 0;)
+        if (!read_some()) return false;
+    on_lost(why);
+    return false;
 }
 
 bool ControlLink::handle(FromWalld message) {
@@ -486,7 +490,10 @@ void ControlLink::arrived(const Placement& placement) {
 }
 
 void ControlLink::arrived_at_member(OpenSurface& surface, const Placement& placement) {
-    surface.wanted = placement.rect;
+    if (placement.layout_version >= surface.wanted_version) {  // not one that is only told once more
+        surface.wanted = placement.rect;
+        surface.wanted_version = placement.layout_version;
+    }
     if (placement.agreed) {
         if (surface.member.add(placement)) holds(surface, placement);
         return;

@@ -87,11 +87,13 @@ private:
         std::uint32_t noted = 0;                      ///< layout version that walld knows to be adopted
         std::map<std::uint32_t, geom::Rect> offered;  ///< by layout version: placements that may still be adopted
         std::optional<geom::Rect> drawn, wanted;      ///< nothing: walld has placed it nowhere yet
+        std::uint32_t wanted_version = 0;             ///< in a parallel program
         std::string note;                             ///< walld's, of this surface
         MemberPlacements member;                      ///< in a parallel program
 
         std::optional<Restore> restore() const {
-            return drawn ? std::optional(Restore{*drawn, *wanted, note, member.agreed()}) : std::nullopt;
+            return drawn ? std::optional(Restore{*drawn, *wanted, wanted_version, note, member.agreed()})
+                         : std::nullopt;
         }
     };
     /// What the windows are to be told.

@@ -59,6 +59,7 @@ void put_restore(pbf_writer& parent, protozero::pbf_tag_type tag, const Restore&
         row.add_uint32(5, placement.width);
         row.add_uint32(6, placement.height);
     }
+    out.add_uint32(5, restore.wanted_version);
 }
 
 template <class Fill>

@@ -117,7 +117,8 @@ struct SurfaceNote {
 
 /// Where a surface is that an earlier walld knew.
 struct Restore {
-    geom::Rect drawn, wanted;  ///< canvas: of the frames that come now, and of the newest placement
+    geom::Rect drawn, wanted;          ///< canvas: of the frames that come now, and of the newest placement
+    std::uint32_t wanted_version = 0;  ///< of a parallel program
     std::string note;
     std::vector<Placement> agreed;  ///< of a parallel program: the last ones
 };

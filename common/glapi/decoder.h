@@ -20,6 +20,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "common/base/result.h"
 #include "common/wire/operand_reader.h"
@@ -53,7 +54,8 @@ private:
 class Handler : public Refusal {
 public:
     static constexpr bool kByGroup = false;
-    static constexpr Pause should_pause() { return Pause::go_on; }
+    /// `told`: commands since it was asked last.
+    static constexpr Pause should_pause([[maybe_unused]] std::size_t told) { return Pause::go_on; }
 };
 
 namespace detail {
@@ -90,25 +92,30 @@ public:
     template <class H>
     bool after(OpGroup group, H& h) {
         const bool quick = group == OpGroup::geometry || group == OpGroup::stream;
-        return after(quick ? 1 : kLook, h);
+        return after(quick ? 1 : kLook, 1, h);
     }
+    /// `untold`: commands of its tiles.
     template <class H>
-    bool after_block(H& h) {
-        return after(kBlock, h);
+    bool after_block(std::size_t untold, H& h) {
+        return after(kBlock, untold, h);
     }
+    /// Commands of which the handler has not heard.
+    std::size_t untold() const { return untold_; }
 
 private:
     static constexpr int kLook = 512, kClose = 16, kBlock = 64;  // in quick commands
     template <class H>
-    bool after(int weight, H& h) {
+    bool after(int weight, std::size_t told, H& h) {
         left_ -= weight;
+        untold_ += told;
         if (left_ > 0) [[likely]]
             return false;
-        const Pause wanted = h.should_pause();
+        const Pause wanted = h.should_pause(std::exchange(untold_, 0));
         left_ = wanted == Pause::soon ? 1 : wanted == Pause::closely ? kClose : kLook;
         return wanted == Pause::now;
     }
     int left_ = kLook;
+    std::size_t untold_ = 0;
 };
 
 }  // namespace detail
@@ -134,6 +141,8 @@ public:
         if (operands_.remaining() != 0) return fail("operands left over");
         return true;
     }
+    /// Commands of which the handler has not heard: the last ones.
+    std::size_t untold() const { return watch_.untold(); }
 
 private:
     detail::OpcodeWalk ops_;
@@ -154,7 +163,7 @@ public:
         for (;;) {
             if (in_block_) {
                 if (auto done = go_on_with_block(h); !done || !*done) return done;
-                if (watch_.after_block(h)) return false;
+                if (watch_.after_block(std::exchange(untold_, 0), h)) return false;
             }
             if (ops_.remaining() == 0) break;
             const std::size_t op = ops_.take();
@@ -170,6 +179,8 @@ public:
         if (operands_.remaining() != 0) return fail("operands left over");
         return true;
     }
+    /// At its end: commands of which the handler has not heard.
+    std::size_t untold() const { return watch_.untold(); }
 
 private:
     template <class H>
@@ -192,6 +203,7 @@ private:
                 tile_.emplace(body_, content_, false);
             }
             if (auto done = tile_->run(h); !done || !*done) return done;
+            untold_ += tile_->untold();
             tile_.reset();
         }
         in_block_ = false;
@@ -208,6 +220,7 @@ private:
     std::span<const std::byte> body_, content_;
     std::uint64_t tiles_ = 0;         ///< that are left, with the one that is drawn in
     std::optional<DrawingRun> tile_;  ///< what is left to be drawn in it
+    std::size_t untold_ = 0;          ///< commands in tiles before, of which the handler has not heard
 };
 
 /// Runs a batch to its end.

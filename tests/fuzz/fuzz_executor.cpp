@@ -111,7 +111,7 @@ void check_others(RenderNode& node) {
 void run_in_slices(RenderNode& node, Executor& executor, std::span<const std::byte> payload) {
     if (!executor.start_batch(payload)) return;
     for (int slices = 0;; ++slices) {
-        const auto done = executor.run_slice(Executor::Clock::time_point{});
+        const auto done = executor.run_slice({.until = {}});
         if (!done || *done) return;
         if (slices < kOthersTurns) check_others(node);
     }

@@ -144,7 +144,11 @@ TEST(PackedStream, EachGroupMayHaveAHandler) {
 /// Wants a pause whenever it is asked.
 struct PausingHandler : TestHandler {
     glapi::Pause wanted = glapi::Pause::now;
-    glapi::Pause should_pause() { return wanted; }
+    std::size_t all_told = 0;
+    glapi::Pause should_pause(std::size_t told) {
+        all_told += told;
+        return wanted;
+    }
 };
 
 TEST(PackedStream, APausedBatchGoesOnWhereItStood) {
@@ -175,6 +179,8 @@ TEST(PackedStream, APausedBatchGoesOnWhereItStood) {
     EXPECT_EQ(paused.tiles, at_once.tiles);
     EXPECT_EQ(paused.blocks, at_once.blocks);
     EXPECT_EQ(paused.vertex, at_once.vertex);
+    EXPECT_LE(paused.all_told, paused.commands);
+    EXPECT_EQ(paused.all_told + run.untold(), paused.commands);
 
     PausingHandler later;
     later.wanted = glapi::Pause::soon;

@@ -243,7 +243,8 @@ bool DrawCommands::call_parts(const RunContent& run) {
         const RunContent::Part& part = run.parts[next_++];
         if (block_.draws) execution_.gl.CallList(part.list);
         block_.trail.append(part.trail);
-        if (next_ < run.parts.size() && execution_.out_of_time()) return false;
+        ++execution_.told;
+        if (next_ < run.parts.size() && execution_.slice_is_over()) return false;
     }
     return true;
 }

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -18,9 +19,16 @@
 
 namespace wall::tileserver {
 
+/// How much is executed before others have their turn.
+struct Slice {
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point until = Clock::time_point::max();
+    std::uint64_t commands = std::numeric_limits<std::uint64_t>::max();  ///< about
+};
+
 /// One for each stream. What it refers to outlives it.
 struct Execution {
-    using Clock = std::chrono::steady_clock;
+    using Clock = Slice::Clock;
 
     Execution(RenderNode& n, SessionReplica& s, SessionOutput& o, glapi::Refusal& r)
         : node(n), session(s), output(o), gl(n.driver.gl()), refusal(r), modes(gl) {}
@@ -28,7 +36,7 @@ struct Execution {
     /// With it the stream ends; the first reason stays.
     void refuse(std::string why) { refusal.refuse(std::move(why)); }
     bool refused() const { return refusal.refused(); }
-    bool out_of_time() const { return Clock::now() >= until; }
+    bool slice_is_over() const { return told >= slice.commands || Clock::now() >= slice.until; }
     void look_up_targets() {
         const ClientName framebuffer = context->draw_framebuffer;
         draw_surface = framebuffer ? nullptr : session.surface(context->draw);
@@ -57,7 +65,8 @@ struct Execution {
     SurfaceReplica* draw_surface = nullptr;
     Framebuffer* draw_framebuffer = nullptr;
     bool targets_known = false;
-    Clock::time_point until;  ///< of the slice
+    Slice slice;
+    std::uint64_t told = 0;  ///< commands in it
 };
 
 /// A block in the tile that it is being executed for. Within it the driver's current attributes run ahead of the soft

@@ -14,6 +14,7 @@ namespace {
 constexpr std::uint64_t kWhole = 12;
 /// Too short for hundreds of commands: their driver works for long on each.
 constexpr std::chrono::microseconds kShortSlice{500};
+constexpr std::uint64_t kFewCommands = 2000;
 
 }  // namespace
 
@@ -37,9 +38,10 @@ Result<void> Executor::start_batch(std::span<const std::byte> payload) {
     return {};
 }
 
-Result<bool> Executor::run_slice(Clock::time_point until) {
-    execution_.until = until;
-    closely_ = until - Clock::now() < kShortSlice;
+Result<bool> Executor::run_slice(const Slice& slice) {
+    execution_.slice = slice;
+    execution_.told = 0;
+    closely_ = slice.commands < kFewCommands || slice.until - Clock::now() < kShortSlice;
     if (std::exchange(paused_, false)) blocks_.resume();
     auto done = go_on();
     paused_ = done && !*done;
@@ -52,7 +54,7 @@ Result<bool> Executor::run_slice(Clock::time_point until) {
 
 Result<void> Executor::run_batch(std::span<const std::byte> payload) {
     if (auto started = start_batch(payload); !started) return started;
-    if (const auto done = run_slice(Clock::time_point::max()); !done) return tl::unexpected(done.error());
+    if (const auto done = run_slice({}); !done) return tl::unexpected(done.error());
     return {};
 }
 
@@ -67,6 +69,7 @@ Result<bool> Executor::go_on() {
 }
 
 void Executor::finish_batch() {
+    execution_.told += batch_->untold();
     if (geometry.block().open) blocks_.end();  // the batch was refused within a block
     draw.stop();
     batch_.reset();
@@ -94,9 +97,10 @@ bool Executor::divisible() {
            (block.vertices - begin.vertices) % kWhole == 0;
 }
 
-glapi::Pause Executor::should_pause() {
+glapi::Pause Executor::should_pause(std::size_t told) {
+    execution_.told += told;
     if (program.trying()) return glapi::Pause::now;
-    if (!run.list_is_full() && !draw.calling() && !execution_.out_of_time())
+    if (!run.list_is_full() && !draw.calling() && !execution_.slice_is_over())
         return closely_ ? glapi::Pause::closely : glapi::Pause::go_on;
     return divisible() ? glapi::Pause::now : glapi::Pause::soon;
 }

@@ -65,9 +65,11 @@ public:
 
     /// Begins one batch frame's payload, which must stay until it has been executed; nothing of it runs yet.
     Result<void> start_batch(std::span<const std::byte> payload);
-    /// Executes what is left of it until about `until`. True: all of it is done. Behind it the driver is in the
-    /// middle of nothing, and others may draw.
-    Result<bool> run_slice(Clock::time_point until);
+    /// Executes about a slice of what is left of it. True: all of it is done. Behind it the driver is in the middle of
+    /// nothing, and others may draw.
+    Result<bool> run_slice(const Slice& slice);
+    /// Commands in the last slice.
+    std::uint64_t told() const { return execution_.told; }
     /// The next slice would do nothing: a shader is still on trial.
     bool waits() const { return program.waits(); }
     /// Both, to the end.
@@ -116,7 +118,7 @@ public:
     std::uint64_t begin_block(std::uint64_t tiles, std::size_t bytes) { return blocks_.begin(tiles, bytes); }
     void begin_tile(unsigned slot) { blocks_.begin_tile(slot); }
     void end_block() { blocks_.end(); }
-    glapi::Pause should_pause();
+    glapi::Pause should_pause(std::size_t told);
 
 private:
     Result<bool> go_on();

@@ -41,7 +41,7 @@ void RunCommands::RunDefine(ClientName id, std::uint32_t commands, std::uint32_t
 void RunCommands::go_on() {
     while (compiling_) {
         compile_part();
-        if (compiling_ && execution_.out_of_time()) return;
+        if (compiling_ && execution_.slice_is_over()) return;
     }
 }
 

@@ -101,7 +101,7 @@ public:
             const auto start = now;
             const auto render_before = session_.work.render;
             loop_.board_.begin({id_, session_.id(), start});
-            const auto done = executor_.run_slice(start + pace_.budget(contended));
+            const auto done = executor_.run_slice({start + Pace::kTurn, pace_.commands(contended)});
             if (!done) fail(done.error().message);
             if (!done || *done) {
                 batch_.reset();
@@ -110,7 +110,7 @@ public:
             last_run_ = now = Clock::now();
             Work& work = session_.work;
             work.decode += now - start - (work.render - render_before);
-            if (pace_.spend(now - start, contended)) {
+            if (pace_.spend(now - start, executor_.told(), contended)) {
                 if (contended || !pace_.driver_keeps_up()) driver_wait_.finish();
                 else driver_wait_.finish_before();
                 const auto before = std::exchange(now, Clock::now());

@@ -85,6 +85,7 @@ struct SurfaceEntry {
     AgreedPlacements agreed;              ///< of a parallel program
     /// Of one that an earlier walld had, until all processes are back: the newest version that they know.
     std::optional<std::uint32_t> returning;
+    std::uint32_t wanted_version = 0;  ///< then: of where it was wanted, as far as they have told
     SwapCoordinator swap;
 };
 
@@ -243,6 +244,7 @@ private:
     void resume_session(SessionId id, SessionEntry& session, const proto::Resume& resume);
     static std::uint64_t order_at(Clock::time_point now);
     bool restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& message, Clock::time_point now, Rank rank);
+    geom::Rect restored_wish(const SurfaceEntry& surface, const proto::SurfaceOpen& message) const;
     void hear_of_sessions(NodeIndex node, const proto::NodeHello& hello, Clock::time_point now);
     void end_waiting_for_sessions(Clock::time_point now);
     void hear_wall_note(NodeIndex node, const proto::WallNote& note);

@@ -149,10 +149,16 @@ void Wall::placement_noted(SessionId id, Rank rank, const proto::PlacementNoted&
 
 // ---- of an earlier walld ----
 
-/// What one member knows to be agreed holds for all: whoever has not heard of it has not begun that frame.
+/// What one member knows to be agreed holds for all: whoever has not heard of it has not begun that frame. And the
+/// window is wanted where the newest proposal says that any of them has heard.
 void Wall::restore_for_member(const SurfaceKey& key, const proto::SurfaceOpen& message) {
     auto& surface = *find(key.surface, key.session);
     if (!surface.returning) return;
+    if (const auto version = message.restore().wanted_version(); version >= surface.wanted_version) {
+        surface.wanted_version = version;
+        surface.returning = std::max(*surface.returning, version);
+        surface.place.want(restored_wish(surface, message));
+    }
     for (auto placement : message.restore().agreed()) {
         surface.returning = std::max(*surface.returning, placement.layout_version());
         if (surface.agreed.versions().contains(placement.layout_version()) ||

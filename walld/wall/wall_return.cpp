@@ -141,17 +141,10 @@ bool Wall::restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& mess
     const auto above = [&](const SurfaceKey& other) { return find(other)->order > surface.order; };
     stacking_.insert(std::ranges::find_if(stacking_, above), key);
     present(key, surface.swap.set_nodes(nodes_of(session, drawn), now), now);
-    auto wanted = from_proto(message.restore().wanted());
-    if (!check_place(config_.canvas(), wanted)) wanted = drawn;
-    if (!surface.scaled) {
-        wanted.width = static_cast<std::int32_t>(message.width());
-        wanted.height = static_cast<std::int32_t>(message.height());
-    }
     if (session.group) {
         surface.returning = 1;
-        surface.place.want(wanted);
         open_for_member(key, message, rank);
-    } else if (wanted != drawn) {
+    } else if (const auto wanted = restored_wish(surface, message); wanted != drawn) {
         want(key, wanted);
     } else {
         send_placement(key, surface);
@@ -159,6 +152,16 @@ bool Wall::restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& mess
     send_stacking();
     ask_for_frames(key.session);
     return true;
+}
+
+geom::Rect Wall::restored_wish(const SurfaceEntry& surface, const proto::SurfaceOpen& message) const {
+    auto wanted = from_proto(message.restore().wanted());
+    if (!check_place(config_.canvas(), wanted)) wanted = surface.place.drawn();
+    if (!surface.scaled) {
+        wanted.width = static_cast<std::int32_t>(message.width());
+        wanted.height = static_cast<std::int32_t>(message.height());
+    }
+    return wanted;
 }
 
 void Wall::ask_for_frames(SessionId session) {

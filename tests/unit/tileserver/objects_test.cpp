@@ -318,7 +318,7 @@ TEST_F(ObjectsTest, SessionsInSlicesDrawAsEachAlone) {
         if (!turns.in_batch) {
             ASSERT_TRUE(turns.session->executor.start_batch(all[turns.next]));
         }
-        const auto done = turns.session->executor.run_slice(Executor::Clock::time_point{});
+        const auto done = turns.session->executor.run_slice({.until = {}});
         ASSERT_TRUE(done) << done.error().message;
         turns.in_batch = !*done;
         ++slices;

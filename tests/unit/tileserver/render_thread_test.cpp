@@ -29,75 +29,88 @@ namespace pack = glapi::pack;
 
 // ---- the pace ----
 
-/// That has been measured often enough, with a driver that does at once what it is told.
+/// That knows its commands: they cost a microsecond each, and the driver does at once what it is told.
 Pace known_pace() {
     Pace pace;
     for (int i = 0; i < 8; ++i) {
-        pace.spend(1s, true);
+        pace.spend(Pace::kAlone, 25'000, true);
         pace.finished(0ms, {});
     }
     return pace;
 }
 
-TEST(PaceTest, ABudgetIsThePartOfATurnThatCommandsTake) {
+TEST(PaceTest, ATurnIsAsManyCommandsAsFitIntoItWithWhatTheDriverDoesForThem) {
     Pace pace = known_pace();
-    const Clock::time_point now{};
-    EXPECT_EQ(pace.budget(true), Pace::kTurn);
-    EXPECT_FALSE(pace.spend(Pace::kTurn / 2, true)) << "there is some left";
-    EXPECT_TRUE(pace.spend(Pace::kTurn / 2, true));
-    pace.finished(3 * Pace::kTurn, now);  // the driver took three times as long
-    EXPECT_EQ(pace.budget(true), Pace::kTurn / 4);
-    EXPECT_TRUE(pace.spend(Pace::kTurn / 4, true));
-    pace.finished(0ms, now);
-    EXPECT_EQ(pace.budget(true), Pace::kTurn);
+    EXPECT_EQ(pace.commands(true), 5000u);
+    EXPECT_FALSE(pace.spend(2ms, 2000, true)) << "there is some left";
+    EXPECT_EQ(pace.commands(true), 3000u);
+    EXPECT_TRUE(pace.spend(3ms, 3000, true));
+    pace.finished(15ms, {});  // the driver took three times as long
+    EXPECT_EQ(pace.commands(true), 1250u);
+    EXPECT_TRUE(pace.spend(1ms, 1250, true));
+    pace.finished(0ms, {});
+    EXPECT_EQ(pace.commands(true), 5000u) << "a step, though they cost less now";
 }
 
-TEST(PaceTest, BudgetsBeginSmallAndGrowByStepsWhereNothingIsBehindThem) {
+TEST(PaceTest, ATurnEndsByTimeToo) {
+    Pace pace = known_pace();
+    EXPECT_TRUE(pace.spend(Pace::kTurn, 1, true)) << "one command may be the upload of a texture";
+}
+
+TEST(PaceTest, TurnsBeginSmallAndGrowBySteps) {
     Pace pace;
-    EXPECT_EQ(pace.budget(true), Pace::kFirst);
-    EXPECT_EQ(pace.budget(false), Pace::kFirst);
-    EXPECT_TRUE(pace.spend(Pace::kFirst, false));
+    EXPECT_EQ(pace.commands(true), 100u);
+    EXPECT_EQ(pace.commands(false), 500u);
+    EXPECT_TRUE(pace.spend(50us, 500, false));
     pace.finished(0ms, {});
-    EXPECT_EQ(pace.budget(false), Pace::kStep * Pace::kFirst);
+    EXPECT_EQ(pace.commands(false), 2000u);
+}
+
+/// A driver that compiles spends a turn's time on a handful of commands: nothing follows for how many fit into one.
+TEST(PaceTest, ALongTurnInWhichLittleIsToldLetsTurnsNotGrow) {
+    Pace pace;
+    for (int turn = 0; turn < 5; ++turn) {
+        pace.spend(1ms, 10, false);
+        pace.finished(0ms, {});
+    }
+    EXPECT_LE(pace.commands(false), 250u);
 }
 
 TEST(PaceTest, AloneItWaitsForTheDriverLessOften) {
     Pace pace = known_pace();
-    EXPECT_FALSE(pace.spend(Pace::kAlone / 2, false));
-    EXPECT_TRUE(pace.spend(Pace::kAlone / 2, false));
+    EXPECT_EQ(pace.commands(false), 25'000u);
+    EXPECT_FALSE(pace.spend(Pace::kAlone / 2, 12'500, false));
+    EXPECT_TRUE(pace.spend(Pace::kAlone / 2, 12'500, false));
     pace.finished(99 * Pace::kAlone, {});
-    EXPECT_EQ(pace.budget(false), Pace::kAlone / 100) << "much is behind little";
-    EXPECT_TRUE(pace.spend(Pace::kAlone / 100, false));
+    EXPECT_EQ(pace.commands(false), 250u) << "much is behind little";
+    EXPECT_TRUE(pace.spend(Pace::kAlone / 100, 250, false));
 }
 
 TEST(PaceTest, ADriverKeepsUpThatIsDoneSoonAfterItWasTold) {
     Pace pace;
     const auto turn = [&](Clock::duration spent, Clock::duration waited) {
-        pace.spend(spent, false);
+        pace.spend(spent, 1000, false);
         pace.finished(waited, {});
     };
-    for (int i = 0; i < 3; ++i) {
-        EXPECT_FALSE(pace.driver_keeps_up()) << "nobody knows yet";
-        turn(10ms, 5ms);
-    }
+    EXPECT_FALSE(pace.driver_keeps_up()) << "nobody knows yet";
+    turn(1ms, 0ms);
+    EXPECT_FALSE(pace.driver_keeps_up()) << "it was not much";
     turn(10ms, 5ms);
     EXPECT_TRUE(pace.driver_keeps_up());
-    turn(1ms, 100ms);
+    turn(10ms, 100ms);
     EXPECT_FALSE(pace.driver_keeps_up());
-    turn(10ms, 10ms);
-    EXPECT_FALSE(pace.driver_keeps_up()) << "of a small budget";
 }
 
 TEST(PaceTest, ALongTurnIsMadeUpFor) {
     Pace pace;
     const Clock::time_point now{1h};
     EXPECT_TRUE(pace.may_run(now));
-    EXPECT_TRUE(pace.spend(300ms, true));
+    EXPECT_TRUE(pace.spend(300ms, 1, true));
     pace.finished(0ms, now);
     EXPECT_FALSE(pace.may_run(now + 290ms));
     EXPECT_TRUE(pace.may_run(now + 295ms));
     pace.set_weight(10);
-    pace.spend(300ms, true);
+    pace.spend(300ms, 1, true);
     pace.finished(0ms, now);
     EXPECT_FALSE(pace.may_run(now + 29ms)) << "sooner by its weight";
     EXPECT_TRUE(pace.may_run(now + 30ms));

@@ -216,12 +216,13 @@ TEST(ControlMessages, WhatAnEarlierWalldKnewIsWhatProtobufReads) {
     ASSERT_EQ(resume.tickets_size(), 2);
     EXPECT_EQ(resume.tickets(1).node(), 3u);
     EXPECT_EQ(resume.tickets(1).ticket(), std::string("\0\xff", 2));
-    const Restore restore{{-5, 1, 30, 40}, {5, 6, 70, 80}, std::string("n\0te", 4)};
+    const Restore restore{{-5, 1, 30, 40}, {5, 6, 70, 80}, 9, std::string("n\0te", 4), {}};
     ASSERT_TRUE(envelope.ParseFromString(encode_surface_open(SurfaceId(3), 300, 200, "gears", restore)));
     const auto& read = envelope.surface_open();
     EXPECT_EQ(read.title(), "gears");
     EXPECT_EQ(read.restore().drawn().x(), -5);
     EXPECT_EQ(read.restore().wanted().height(), 80u);
+    EXPECT_EQ(read.restore().wanted_version(), 9u);
     EXPECT_EQ(read.restore().note(), std::string("n\0te", 4));
     ASSERT_TRUE(envelope.ParseFromString(encode_ping()));
     EXPECT_TRUE(envelope.has_ping());
@@ -489,6 +490,27 @@ TEST(ControlLink, ComesBackAfterWalldWasAway) {
     EXPECT_EQ(events.reconnected->session, SessionId(7));
 }
 
+TEST(ControlLink, WhatWalldSaidBeforeItClosedIsReadThoughSomethingIsBeingWritten) {
+    std::promise<void> asked, gone;
+    Linked linked;
+    linked.link->surface_open(SurfaceId(1), 300, 200, "gears",
+                              {[&] {
+                                   asked.set_value();
+                                   gone.get_future().wait();
+                                   return false;  // so there is something to write
+                               },
+                               {}});
+    linked.walld.receive();
+    linked.walld.send(close_of(1));
+    asked.get_future().wait();
+    linked.walld.send(placement_of(1, 1));
+    linked.walld.hang_up();
+    gone.set_value();
+    const auto events = collect(*linked.link, [](auto& e) { return e.lost; });
+    EXPECT_TRUE(events.lost);
+    EXPECT_EQ(events.placements.size(), 1u);
+}
+
 // ---- in a parallel program ----
 
 Hello a_members_hello() {
@@ -552,6 +574,7 @@ TEST(ControlLinkOfAMember, ComesBackToTheNextWalldWithWhatIsAgreed) {
     ASSERT_EQ(restore.agreed_size(), 1) << "not what was proposed only";
     EXPECT_EQ(restore.agreed(0).layout_version(), 1u);
     EXPECT_EQ(restore.agreed(0).rect().width(), 10u);
+    EXPECT_EQ(restore.wanted_version(), 2u);
     // Who waits goes on waiting until the new one has said what holds.
     std::atomic<bool> begun = false;
     std::thread drawing([&] {

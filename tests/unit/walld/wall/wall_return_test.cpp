@@ -363,7 +363,7 @@ protected:
     }
     /// The window, with the placements that the member knows to be agreed; none: it is new.
     void announce(SessionId id, Rank rank, const std::vector<proto::Placement>& agreed, const std::string& note,
-                  const geom::Rect& wanted = {0, 0, 100, 80}) {
+                  const geom::Rect& wanted = {0, 0, 100, 80}, std::uint32_t wanted_version = 1) {
         proto::SurfaceOpen message;
         message.set_surface(1);
         message.set_width(100);
@@ -374,6 +374,7 @@ protected:
             restore.mutable_agreed()->rbegin()->clear_nodes();
             *restore.mutable_drawn() = placement.rect();
             *restore.mutable_wanted() = to_proto(wanted);
+            restore.set_wanted_version(wanted_version);
             restore.set_note(note);
         }
         ASSERT_TRUE(wall_->open_surface(id, message, now_, rank));
@@ -417,7 +418,7 @@ TEST_F(AParallelProgramThatReturns, IsAskedForItsPlaceWhenAllAreBack) {
     const auto note_of_window = out_.notes[id];
     another_walld();
     for (const Rank rank : {0u, 1u}) open(member_again(id, rank));
-    announce(id, 0, agreed, note_of_window, {640, 0, 100, 80});
+    announce(id, 0, agreed, note_of_window, {640, 0, 100, 80}, 2);
     EXPECT_TRUE(out_.offered.empty()) << "one may know more";
     EXPECT_EQ(surface(id).place.drawn(), (geom::Rect{0, 0, 100, 80}));
     announce(id, 1, agreed, note_of_window);
@@ -436,6 +437,22 @@ TEST_F(AParallelProgramThatReturns, IsAskedForItsPlaceWhenAllAreBack) {
     EXPECT_EQ(out_.agreed, out_.offered.back().layout_version());
 }
 
+TEST_F(AParallelProgramThatReturns, IsWantedWhereItsNewestProposalSays) {
+    const auto id = start();
+    const auto agreed = agreed_of(id);
+    for (const Rank knows : {0u, 1u}) {
+        another_walld();
+        for (const Rank rank : {0u, 1u}) open(member_again(id, rank));
+        for (const Rank rank : {0u, 1u}) {
+            const geom::Rect wanted{rank == knows ? 640 : 300, 0, 100, 80};
+            announce(id, rank, agreed, "", wanted, rank == knows ? 6 : 5);
+        }
+        ASSERT_FALSE(out_.offered.empty());
+        EXPECT_EQ(out_.offered.back().rect().x(), 640) << "rank " << knows << " has heard of it";
+        EXPECT_GT(out_.offered.back().layout_version(), 6u) << "nobody has heard of this one";
+    }
+}
+
 TEST_F(AParallelProgramThatReturns, TakesWhatAnyMemberKnowsToBeAgreed) {
     const auto id = start();
     const auto before = agreed_of(id);
@@ -446,7 +463,7 @@ TEST_F(AParallelProgramThatReturns, TakesWhatAnyMemberKnowsToBeAgreed) {
     another_walld();
     for (const Rank rank : {0u, 1u}) open(member_again(id, rank));
     announce(id, 0, before, "");  // walld was gone before it could tell this one
-    announce(id, 1, after, "", {300, 0, 100, 80});
+    announce(id, 1, after, "", {300, 0, 100, 80}, 2);
     ASSERT_EQ(out_.offered.size(), 3u);
     EXPECT_TRUE(out_.offered[1].agreed());
     EXPECT_EQ(out_.offered[1].layout_version(), after[1].layout_version());
