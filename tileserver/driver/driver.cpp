@@ -96,6 +96,7 @@ Driver::Driver(const Gl& gl) : gl_(gl), flip_y_(has_extension(gl, "GL_MESA_frame
                 for (unsigned i = 0; i < E::count; ++i) set<E>(i, E::ref(defaults_, i));
         });
     }
+    aliases_attributes_ = keeps_attributes_together();
     gl_.Disable(GL_SCISSOR_TEST);
     GLint alignment = 1;
     gl_.GetIntegerv(GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT, &alignment);
@@ -118,6 +119,36 @@ const char* Driver::reset() const {
         case GL_INNOCENT_CONTEXT_RESET: return "another program made the GPU hang";
         default: return "the GPU was reset";
     }
+}
+
+bool Driver::keeps_attributes_together() const {
+    constexpr GLuint kColor = 3;
+    const glstate::Vec4 probe{0.25f, 0.5f, 0.75f, 1};
+    glstate::Vec4 color{};
+    gl_.VertexAttrib4fv(kColor, probe.data());
+    gl_.GetFloatv(GL_CURRENT_COLOR, color.data());
+    const glstate::Vec4& before = glstate::el::vertex_attrib::ref(defaults_, kColor);
+    gl_.VertexAttrib4fv(kColor, before.data());
+    return color == probe;
+}
+
+void Driver::sync_separated(glstate::State& state) {
+    namespace el = glstate::el;
+    const bool drawn = mirror.ids[kCurrent] != separated_;
+    glstate::diff_and_unify<kCurrentMask>(mirror, state, *this);
+    if (!drawn && mirror.ids[kCurrent] == separated_) return;
+    const auto tell = [this]<class E>(E, auto wanted) {
+        for (unsigned i = 0; i < E::count; ++i)
+            if (wanted(i)) set<E>(i, E::ref(std::as_const(mirror), i));
+    };
+    const auto all = [](unsigned) { return true; };
+    tell(el::color{}, all);
+    tell(el::normal{}, all);
+    tell(el::texcoord{}, all);
+    tell(el::secondary_color{}, all);
+    tell(el::fog_coord{}, all);
+    tell(el::vertex_attrib{}, [this](unsigned i) { return (generic_ >> i & 1) != 0; });
+    separated_ = mirror.ids[kCurrent];
 }
 
 bool Driver::fragments_change(const glstate::State& from, const glstate::State& to) {

@@ -83,7 +83,11 @@ public:
     void follow(glstate::State& state) { mirror.ids.follow(state.ids); }
     /// The current attributes; the last thing before geometry, so that Mesa packs them with its vertices. Behind them
     /// any other change would make it set up each as an array of its own.
-    void sync_current(glstate::State& state) { glstate::diff_and_unify<kCurrentMask>(mirror, state, *this); }
+    void sync_current(glstate::State& state) {
+        if (aliases_attributes_) [[unlikely]]
+            return sync_separated(state);
+        glstate::diff_and_unify<kCurrentMask>(mirror, state, *this);
+    }
     /// `state` holds what the driver holds since sync() and the vertex attributes that both have seen since.
     void unify_attributes(glstate::State& state) const { glstate::unify_ids(kAttributesMask, state, mirror); }
     void sync_pixel_transfer(const glstate::State& state);
@@ -123,13 +127,15 @@ public:
     void select_first_unit() { unit(gl_, 0); }
     /// The driver unbinds a deleted texture by itself.
     void forget_texture(GLuint texture);
-    /// A program of the driver; 0: fixed function.
-    void use_program(GLuint program) {
+    /// A program of the driver; 0: fixed function. `attributes`: the generic ones that it reads, a bit each.
+    void use_program(GLuint program, std::uint32_t attributes = 0) {
+        reads_attributes(attributes);
         if (pipeline_ != 0) gl_.BindProgramPipeline(pipeline_ = 0);
         if (program_ != program) gl_.UseProgram(program_ = program);
     }
     /// Several programs of the driver, a stage or more each.
-    void use_pipeline(GLuint pipeline) {
+    void use_pipeline(GLuint pipeline, std::uint32_t attributes) {
+        reads_attributes(attributes);
         if (program_ != 0) gl_.UseProgram(program_ = 0);
         if (pipeline_ != pipeline) gl_.BindProgramPipeline(pipeline_ = pipeline);
     }
@@ -282,6 +288,15 @@ private:
     void apply_viewports(const WindowValues& values);
     void apply_scissors(const WindowValues& values);
 
+    /// Some drivers, NVIDIA's among them, keep a generic attribute and one of fixed function (3 and the colour) at one
+    /// place, as GL_ARB_vertex_program allows and OpenGL does not. There what is drawn with next has its own values.
+    bool keeps_attributes_together() const;
+    void sync_separated(glstate::State& state);
+    void reads_attributes(std::uint32_t generic) {
+        if (generic == generic_) return;
+        generic_ = generic;
+        if (aliases_attributes_) mirror.ids.renew(kCurrent);
+    }
     void stop_tracking(const glstate::State& state);
     void sync_values(glstate::State& state);
     void bind_window(RenderTarget& target, glstate::State& state);
@@ -304,6 +319,7 @@ private:
     void apply_indexed();
 
     static constexpr auto kWindow = static_cast<std::size_t>(glstate::Category::window);
+    static constexpr auto kCurrent = static_cast<std::size_t>(glstate::Category::current);
     static constexpr glstate::CategoryMask kCurrentMask = glstate::mask_of(glstate::Category::current);
     static constexpr glstate::CategoryMask kAttributesMask =
         kCurrentMask | glstate::mask_of(glstate::Category::material);
@@ -322,8 +338,11 @@ private:
     bool blend_func_changed_ = false, blend_equation_changed_ = false, depth_range_changed_ = false;  // the same
     bool modelview_has_origin_ = false;                                                               // what was loaded
     TextureBindings bound_textures_;
-    SamplerBindings samplers_;                                      // that the driver has bound
-    GLuint program_ = 0, pipeline_ = 0;                             // that the driver draws with: one of them
+    SamplerBindings samplers_;           // that the driver has bound
+    GLuint program_ = 0, pipeline_ = 0;  // that the driver draws with: one of them
+    std::uint32_t generic_ = 0;          // attributes that it reads, a bit each
+    bool aliases_attributes_ = false;
+    std::uint64_t separated_ = 0;                                   // the mirror's id of attributes that are
     std::array<GLuint, kQueryTargets * kVertexStreams> queries_{};  // that count
     GLuint vertex_array_ = 0;
     bool discarding_ = false, capturing_ = false;

@@ -28,9 +28,14 @@ public:
     template <class Each>
     void use(const ObjectTable& objects, const LayerGeometry& layer, Each&& each) {
         find_programs(objects);
-        driver_.use_pipeline(name_);
+        const auto program_of = [&](std::size_t i) {
+            return programs_[i] ? objects.find<Program>(programs_[i]) : nullptr;
+        };
+        static_assert(glapi::kShaderStages[0] == GL_VERTEX_SHADER);
+        const Program* vertices = program_of(0);
+        driver_.use_pipeline(name_, vertices != nullptr ? vertices->attributes() : 0);
         for (std::size_t i = 0; i < kStages; ++i) {
-            Program* program = programs_[i] ? objects.find<Program>(programs_[i]) : nullptr;
+            Program* program = program_of(i);
             if (program == nullptr) continue;
             program->prepare(layer);
             each(*program);

@@ -166,6 +166,20 @@ void Program::find_images() {
     });
 }
 
+void Program::find_attributes() {
+    const Gl& gl = driver_.gl();
+    attributes_ = 0;
+    for_each_resource(gl, name_, GL_PROGRAM_INPUT, [&](GLuint i) {
+        const auto value = [&](GLenum what) { return resource_value(gl, name_, GL_PROGRAM_INPUT, i, what); };
+        const GLint location = value(GL_LOCATION);
+        if (location < 0 || value(GL_REFERENCED_BY_VERTEX_SHADER) == 0) return;  // of fixed function, or no vertex's
+        const auto* type = glapi::find_uniform_type(static_cast<GLenum>(value(GL_TYPE)));
+        const GLint places = std::max(value(GL_ARRAY_SIZE), 1) * (type != nullptr ? type->columns : 1);
+        constexpr auto kAll = static_cast<GLint>(glstate::el::vertex_attrib::count);
+        for (GLint at = location; at < std::min(location + places, kAll); ++at) attributes_ |= 1u << at;
+    });
+}
+
 void Program::find_group() {
     std::array<GLint, 3> size{};
     if (computes_) driver_.gl().GetProgramiv(name_, GL_COMPUTE_WORK_GROUP_SIZE, size.data());
@@ -230,6 +244,7 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
     find_storage_blocks(storage_blocks);
     find_counters();
     find_images();
+    find_attributes();
     find_group();
     find_subroutines();
     follow_position(std::move(position), names);

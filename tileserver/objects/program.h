@@ -41,7 +41,7 @@ public:
     std::optional<glstate::Projection> project(const glstate::Projection& fixed_function, const glstate::State& state);
     /// The driver draws with it, in this layer.
     void use(const LayerGeometry& layer) {
-        driver_.use_program(name_);
+        driver_.use_program(name_, attributes_);
         prepare(layer);
     }
     /// The same where it is one of several that the driver draws with.
@@ -55,6 +55,8 @@ public:
     const std::vector<std::uint32_t>& storage_bindings() const { return storage_bindings_; }
     const std::vector<std::uint32_t>& counter_bindings() const { return counter_bindings_; }
     bool has_images() const { return has_images_; }
+    /// The generic vertex attributes that it reads, a bit each.
+    std::uint32_t attributes() const { return attributes_; }
     /// It reads or writes memory at places that it addresses.
     bool touches_memory() const { return has_images_ || !storage_bindings_.empty() || !counter_bindings_.empty(); }
     /// How many run in a group of its compute shader; 0: it has none.
@@ -67,6 +69,7 @@ private:
     void find_storage_blocks(const std::vector<std::string>& names);
     void find_counters();
     void find_images();
+    void find_attributes();
     void find_group();
     void find_subroutines();
     void release();
@@ -79,6 +82,7 @@ private:
     std::vector<GLuint> storage_blocks_;                              // as blocks_
     std::vector<std::uint32_t> storage_bindings_, counter_bindings_;  // by the driver's index
     bool has_images_ = false, computes_ = false;
+    std::uint32_t attributes_ = 0;
     std::uint64_t group_invocations_ = 0;
     /// Functions by the locations of a stage that has such variables.
     struct Subroutines {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <random>
 
+#include "common/glapi/program_format.h"
 #include "gen/glstate/samples.gen.h"
 #include "tests/unit/tileserver/test_node.h"
 
@@ -18,6 +19,7 @@ constexpr int kWidth = 64, kHeight = 48;
 
 class SoftSwitch : public ::testing::Test {
 protected:
+    explicit SoftSwitch(void (*change)(Gl& gl) = nullptr) : node_("egl", change) {}
     void SetUp() override {
         if (!node_.usable()) GTEST_SKIP() << "no EGL";
         node_.node->tiles = {{0, {0, 0, kWidth, kHeight}}};
@@ -118,6 +120,86 @@ TEST_F(SoftSwitch, HoldsAfterAnyHistory) {
         ASSERT_TRUE(switch_to_context(next));
         ASSERT_EQ(held(), wanted(next)) << step;
     }
+}
+
+// ---- a driver that has the colour and the generic attribute 3 at one place ----
+
+constexpr GLuint kPlace = 3;
+glapi::GlFunctions real;  // of the driver below it
+
+void GLAPIENTRY set_color(GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
+    real.Color4f(x, y, z, w);
+    real.VertexAttrib4f(kPlace, x, y, z, w);
+}
+void GLAPIENTRY set_attribute(GLuint index, GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
+    real.VertexAttrib4f(index, x, y, z, w);
+    if (index == kPlace) real.Color4f(x, y, z, w);
+}
+void GLAPIENTRY set_attribute_of(GLuint index, const GLfloat* v) { set_attribute(index, v[0], v[1], v[2], v[3]); }
+
+void keep_attributes_together(Gl& gl) {
+    real = gl;
+    gl.Color4f = set_color;
+    gl.VertexAttrib4f = set_attribute;
+    gl.VertexAttrib4fv = set_attribute_of;
+}
+
+class OfAttributesAtOnePlace : public SoftSwitch {
+protected:
+    static constexpr ClientName kProgram{7};
+    static constexpr glstate::Vec4 kRed{1, 0, 0, 1}, kGreen{0, 1, 0, 1};
+
+    OfAttributesAtOnePlace() : SoftSwitch(keep_attributes_together) {}
+    void SetUp() override {
+        SoftSwitch::SetUp();
+        if (IsSkipped()) return;
+        glapi::ProgramDefinition definition;
+        definition.shaders.push_back({.type = GL_VERTEX_SHADER,
+                                      .compiled = true,
+                                      .source = "attribute vec4 tint;\n"
+                                                "void main() { gl_Position = gl_Vertex; gl_FrontColor = tint; }"});
+        definition.attributes.push_back({kPlace, "tint"});
+        Batch batch;
+        pack::ProgramLink(batch.buffer(), RequestId(1), kProgram, encode(definition));
+        session_->expect_run(batch);
+        glstate::assign<el::color>(context(0).state, 0, kRed);
+        glstate::assign<el::vertex_attrib>(context(1).state, kPlace, kGreen);
+    }
+    /// Of what the next vertex has at that place.
+    glstate::Vec4 at_place() const { return held()[0]; }
+};
+
+TEST_F(OfAttributesAtOnePlace, FixedFunctionHasItsOwn) {
+    for (int turn = 0; turn < 2; ++turn) {
+        ASSERT_TRUE(switch_to_context(0));
+        EXPECT_EQ(at_place(), kRed) << turn;
+        ASSERT_TRUE(switch_to_context(1));
+        EXPECT_EQ(at_place(), (glstate::Vec4{1, 1, 1, 1})) << turn;
+    }
+}
+
+TEST_F(OfAttributesAtOnePlace, AProgramHasTheGenericOnesThatItReads) {
+    glstate::assign<el::current_program>(context(1).state, 0, kProgram.value);
+    for (int turn = 0; turn < 2; ++turn) {
+        ASSERT_TRUE(switch_to_context(0));
+        EXPECT_EQ(at_place(), kRed) << turn;
+        ASSERT_TRUE(switch_to_context(1));
+        EXPECT_EQ(at_place(), kGreen) << turn;
+    }
+    context(0).state = context(1).state;
+    glstate::assign<el::current_program>(context(0).state, 0, 0);
+    ASSERT_TRUE(switch_to_context(0));
+    EXPECT_EQ(at_place(), (glstate::Vec4{1, 1, 1, 1})) << "no value but the program has changed";
+    ASSERT_TRUE(switch_to_context(1));
+    EXPECT_EQ(at_place(), kGreen);
+}
+
+TEST_F(OfAttributesAtOnePlace, WhatDrawingLeftInTheDriverIsSeen) {
+    ASSERT_TRUE(switch_to_context(0));
+    driver().gl().VertexAttrib4f(kPlace, 0, 1, 0, 1);
+    glstate::assign<el::vertex_attrib>(driver().mirror, kPlace, kGreen);
+    ASSERT_TRUE(switch_to_context(0));
+    EXPECT_EQ(at_place(), kRed);
 }
 
 }  // namespace

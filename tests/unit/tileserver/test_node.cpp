@@ -10,10 +10,11 @@
 
 namespace wall::tileserver::test {
 
-TestNode::TestNode(std::string_view backend) : backend_(open_backend(backend)) {
+TestNode::TestNode(std::string_view backend, void (*change)(Gl& gl)) : backend_(open_backend(backend)) {
     if (!backend_ || !(*backend_)->make_current()) return;
     Gl gl;
     gl.load([this](const char* name) { return (*backend_)->get_proc_address(name); });
+    if (change != nullptr) change(gl);
     driver = std::make_unique<Driver>(gl);
     node = std::make_unique<RenderNode>(*driver);
 }

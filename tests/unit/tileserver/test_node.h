@@ -94,7 +94,8 @@ public:
 
 class TestNode {
 public:
-    explicit TestNode(std::string_view backend = "egl");
+    /// `change`: of the driver's functions.
+    explicit TestNode(std::string_view backend = "egl", void (*change)(Gl& gl) = nullptr);
     ~TestNode();
     bool usable() const { return driver != nullptr; }
     void make_current() { WALL_ASSERT((*backend_)->make_current()); }
