@@ -85,7 +85,7 @@ std::optional<TextureTarget> texture_target(GLenum target) {
     return found && !found->is_proxy() ? std::optional(found->info->id) : std::nullopt;
 }
 
-Driver::Driver(const Gl& gl) : gl_(gl), flip_y_(has_extension(gl, "GL_MESA_framebuffer_flip_y")) {
+Driver::Driver(const Gl& gl) : gl_(gl), flip_y_(has_extension(gl, "GL_MESA_framebuffer_flip_y")), quirks_(try_out(gl)) {
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);  // images travel with tight rows
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
     // Whatever the driver started with, it now holds what the mirror says.
@@ -96,7 +96,6 @@ Driver::Driver(const Gl& gl) : gl_(gl), flip_y_(has_extension(gl, "GL_MESA_frame
                 for (unsigned i = 0; i < E::count; ++i) set<E>(i, E::ref(defaults_, i));
         });
     }
-    aliases_attributes_ = keeps_attributes_together();
     gl_.Disable(GL_SCISSOR_TEST);
     GLint alignment = 1;
     gl_.GetIntegerv(GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT, &alignment);
@@ -121,15 +120,14 @@ const char* Driver::reset() const {
     }
 }
 
-bool Driver::keeps_attributes_together() const {
-    constexpr GLuint kColor = 3;
-    const glstate::Vec4 probe{0.25f, 0.5f, 0.75f, 1};
-    glstate::Vec4 color{};
-    gl_.VertexAttrib4fv(kColor, probe.data());
-    gl_.GetFloatv(GL_CURRENT_COLOR, color.data());
-    const glstate::Vec4& before = glstate::el::vertex_attrib::ref(defaults_, kColor);
-    gl_.VertexAttrib4fv(kColor, before.data());
-    return color == probe;
+void Driver::write_buffer(GLuint buffer, std::uint32_t offset, std::span<const std::byte> content) const {
+    const auto size = static_cast<GLsizeiptr>(content.size());
+    if (!quirks_.loses_writes) return gl_.NamedBufferSubData(buffer, offset, size, content.data());
+    GLuint from = 0;
+    gl_.CreateBuffers(1, &from);
+    gl_.NamedBufferData(from, size, content.data(), GL_STREAM_COPY);
+    gl_.CopyNamedBufferSubData(from, buffer, 0, offset, size);
+    gl_.DeleteBuffers(1, &from);
 }
 
 void Driver::sync_separated(glstate::State& state) {

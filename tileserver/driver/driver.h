@@ -8,12 +8,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "common/glapi/texture_target.h"
 #include "common/glstate/diff.h"
 #include "gen/glstate/driver_emit.gen.h"
 #include "gen/glstate/state.gen.h"
+#include "tileserver/driver/quirks.h"
 #include "tileserver/driver/window_values.h"
 #include "tileserver/gpu/gl.h"
 
@@ -84,7 +86,7 @@ public:
     /// The current attributes; the last thing before geometry, so that Mesa packs them with its vertices. Behind them
     /// any other change would make it set up each as an array of its own.
     void sync_current(glstate::State& state) {
-        if (aliases_attributes_) [[unlikely]]
+        if (quirks_.keeps_attributes_together) [[unlikely]]
             return sync_separated(state);
         glstate::diff_and_unify<kCurrentMask>(mirror, state, *this);
     }
@@ -240,6 +242,8 @@ public:
         }
         gl_.Disable(GL_RASTERIZER_DISCARD);
     }
+    /// Part of a buffer of the driver's.
+    void write_buffer(GLuint buffer, std::uint32_t offset, std::span<const std::byte> content) const;
     /// A vertex array object of the driver, for the next draw from arrays.
     void bind_vertex_array(GLuint vertex_array) {
         if (vertex_array_ != vertex_array) gl_.BindVertexArray(vertex_array_ = vertex_array);
@@ -288,14 +292,12 @@ private:
     void apply_viewports(const WindowValues& values);
     void apply_scissors(const WindowValues& values);
 
-    /// Some drivers, NVIDIA's among them, keep a generic attribute and one of fixed function (3 and the colour) at one
-    /// place, as GL_ARB_vertex_program allows and OpenGL does not. There what is drawn with next has its own values.
-    bool keeps_attributes_together() const;
+    /// Of two attributes that lie at one place, what is drawn with next has the one that it reads.
     void sync_separated(glstate::State& state);
     void reads_attributes(std::uint32_t generic) {
         if (generic == generic_) return;
         generic_ = generic;
-        if (aliases_attributes_) mirror.ids.renew(kCurrent);
+        if (quirks_.keeps_attributes_together) mirror.ids.renew(kCurrent);
     }
     void stop_tracking(const glstate::State& state);
     void sync_values(glstate::State& state);
@@ -334,14 +336,14 @@ private:
     Gl gl_;
     const glstate::State defaults_;
     bool flip_y_ = false;
+    Quirks quirks_;
     bool modelview_changed_ = false;  // since it was loaded
     bool blend_func_changed_ = false, blend_equation_changed_ = false, depth_range_changed_ = false;  // the same
     bool modelview_has_origin_ = false;                                                               // what was loaded
     TextureBindings bound_textures_;
-    SamplerBindings samplers_;           // that the driver has bound
-    GLuint program_ = 0, pipeline_ = 0;  // that the driver draws with: one of them
-    std::uint32_t generic_ = 0;          // attributes that it reads, a bit each
-    bool aliases_attributes_ = false;
+    SamplerBindings samplers_;                                      // that the driver has bound
+    GLuint program_ = 0, pipeline_ = 0;                             // that the driver draws with: one of them
+    std::uint32_t generic_ = 0;                                     // attributes that it reads, a bit each
     std::uint64_t separated_ = 0;                                   // the mirror's id of attributes that are
     std::array<GLuint, kQueryTargets * kVertexStreams> queries_{};  // that count
     GLuint vertex_array_ = 0;

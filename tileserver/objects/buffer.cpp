@@ -40,8 +40,7 @@ std::vector<std::byte> Buffer::read(std::uint32_t offset, std::uint32_t size) co
 bool Buffer::write(std::uint32_t offset, std::span<const std::byte> content) {
     if (offset > size_ || content.size() > size_ - offset) return false;
     release();
-    if (!content.empty())
-        gl_.NamedBufferSubData(name_, offset, static_cast<GLsizeiptr>(content.size()), content.data());
+    if (!content.empty()) driver_.write_buffer(name_, offset, content);
     return true;
 }
 
