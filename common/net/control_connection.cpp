@@ -124,8 +124,8 @@ void ControlConnection::send(const proto::Envelope& envelope) {
     if (!is_open()) return;
     auto bytes = frame(envelope);
     if (!bytes) return give_up(std::move(bytes.error()));
-    queue_.push_back(std::move(*bytes));
-    queued_bytes_ += queue_.back().size();
+    queue_ += *bytes;
+    queued_bytes_ += bytes->size();
     if (queued_bytes_ > kMaxQueued)
         return give_up({"control: " + std::to_string(queued_bytes_) + " bytes wait that the peer does not read"});
     if (writing_) return;
@@ -135,11 +135,12 @@ void ControlConnection::send(const proto::Envelope& envelope) {
 }
 
 asio::awaitable<void> ControlConnection::write_queue() {
+    // All at once: what belongs together is with the peer before anybody is told that it is done.
     while (!queue_.empty() && stream_.is_open()) {
-        auto [error, bytes] = co_await stream_.write(asio::buffer(queue_.front()));
+        const std::string now = std::exchange(queue_, {});
+        const auto [error, bytes] = co_await stream_.write(asio::buffer(now));
         if (error) close();
-        queued_bytes_ -= queue_.front().size();
-        queue_.pop_front();
+        queued_bytes_ -= now.size();
     }
     writing_ = false;
     drained_.cancel();

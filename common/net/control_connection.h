@@ -7,7 +7,6 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/basic_socket_acceptor.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -89,7 +88,7 @@ private:
     Stream stream_;
     std::optional<SocketEnds> ends_;
     Unframer unframer_;
-    std::deque<std::string> queue_;
+    std::string queue_;
     std::size_t queued_bytes_ = 0;
     std::optional<Error> failure_;  // why we closed it, if somebody should know
     asio::steady_timer drained_;    // cancelled when the queue is empty

@@ -252,6 +252,7 @@ private:
     proto::Envelope wall_note() const;
     void number_stacking();
     void tell_note(const SurfaceKey& key);
+    static proto::SurfaceNote note_of(const SurfaceKey& key, const SurfaceEntry& surface);
     void ask_for_frames(SessionId session);
     WindowName name_of(const SurfaceKey& key) const;
     void stack(const SurfaceKey& key);

@@ -125,6 +125,8 @@ void Wall::open_for_member(const SurfaceKey& key, const proto::SurfaceOpen& mess
         out_.to_member(key.session, rank, make(&proto::Envelope::mutable_placement, placement));
     if (surface.agreed.proposed())
         out_.to_member(key.session, rank, make(&proto::Envelope::mutable_placement, *surface.agreed.proposed()));
+    if (!surface.note.empty())  // of what others have opened before
+        out_.to_member(key.session, rank, make(&proto::Envelope::mutable_surface_note, note_of(key, surface)));
     all_returned(key.session);
     const bool other_size = message.width() != surface.width || message.height() != surface.height;
     if (rank != 0 || !other_size) return;
@@ -150,13 +152,17 @@ void Wall::placement_noted(SessionId id, Rank rank, const proto::PlacementNoted&
 // ---- of an earlier walld ----
 
 /// What one member knows to be agreed holds for all: whoever has not heard of it has not begun that frame. And the
-/// window is wanted where the newest proposal says that any of them has heard.
+/// window is wanted where the newest proposal says that any of them has heard, of which their notes tell as well.
 void Wall::restore_for_member(const SurfaceKey& key, const proto::SurfaceOpen& message) {
     auto& surface = *find(key.surface, key.session);
     if (!surface.returning) return;
     if (const auto version = message.restore().wanted_version(); version >= surface.wanted_version) {
         surface.wanted_version = version;
         surface.returning = std::max(*surface.returning, version);
+        if (proto::WindowRecord record; record.ParseFromString(message.restore().note())) {
+            surface.scaled = record.scaled();
+            surface.wanted_rect = record.wanted_rect();
+        }
         surface.place.want(restored_wish(surface, message));
     }
     for (auto placement : message.restore().agreed()) {

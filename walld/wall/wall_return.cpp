@@ -195,10 +195,14 @@ void Wall::tell_note(const SurfaceKey& key) {
     auto text = record.SerializeAsString();
     if (text == surface.note) return;
     surface.note = std::move(text);
+    out_.to_client(key.session, make(&proto::Envelope::mutable_surface_note, note_of(key, surface)));
+}
+
+proto::SurfaceNote Wall::note_of(const SurfaceKey& key, const SurfaceEntry& surface) {
     proto::SurfaceNote note;
     note.set_surface(key.surface.value);
     note.set_note(surface.note);
-    out_.to_client(key.session, make(&proto::Envelope::mutable_surface_note, note));
+    return note;
 }
 
 // ---- the layout that waits ----

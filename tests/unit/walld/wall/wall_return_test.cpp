@@ -32,8 +32,9 @@ public:
         if (message.has_placement()) offered.push_back(message.placement());
         if (message.has_placement_agreed()) agreed = message.placement_agreed().layout_version();
     }
-    void to_member(SessionId session, Rank, const proto::Envelope& message) override {
+    void to_member(SessionId session, Rank rank, const proto::Envelope& message) override {
         if (message.has_client_welcome()) welcomes[session] = message.client_welcome();
+        if (message.has_surface_note()) members_notes[rank] = message.surface_note().note();
     }
     void end_session(SessionId, const std::string&) override {}
 
@@ -43,6 +44,7 @@ public:
     std::map<std::uint32_t, google::protobuf::RepeatedField<std::uint32_t>> left;
     std::map<NodeIndex, proto::Stacking> stacking;
     std::map<SessionId, std::string> notes;
+    std::map<Rank, std::string> members_notes;  // to one alone
     std::map<SessionId, proto::Placement> placements;
     std::vector<proto::Placement> offered;  // to all members of a parallel program
     std::uint32_t agreed = 0;               // version that was agreed last
@@ -412,6 +414,12 @@ TEST_F(AParallelProgramThatReturns, IsOneSessionUnderItsNumberAndItsTickets) {
     EXPECT_TRUE(wall_->sessions().at(id).group->all_came());
 }
 
+TEST_F(AParallelProgramThatReturns, EachProcessKeepsTheNoteOfItsWindow) {
+    const auto id = start();
+    ASSERT_NE(out_.notes[id], "");
+    EXPECT_EQ(out_.members_notes[1], out_.notes[id]) << "it has opened the window when the others had heard of it";
+}
+
 TEST_F(AParallelProgramThatReturns, IsAskedForItsPlaceWhenAllAreBack) {
     const auto id = start();
     const auto agreed = agreed_of(id);
@@ -440,15 +448,19 @@ TEST_F(AParallelProgramThatReturns, IsAskedForItsPlaceWhenAllAreBack) {
 TEST_F(AParallelProgramThatReturns, IsWantedWhereItsNewestProposalSays) {
     const auto id = start();
     const auto agreed = agreed_of(id);
+    proto::WindowRecord record;
+    record.set_scaled(true);
+    const auto scaled = record.SerializeAsString();
     for (const Rank knows : {0u, 1u}) {
         another_walld();
         for (const Rank rank : {0u, 1u}) open(member_again(id, rank));
         for (const Rank rank : {0u, 1u}) {
-            const geom::Rect wanted{rank == knows ? 640 : 300, 0, 100, 80};
-            announce(id, rank, agreed, "", wanted, rank == knows ? 6 : 5);
+            const geom::Rect wanted{rank == knows ? 640 : 300, 0, 50, 40};
+            announce(id, rank, agreed, rank == knows ? scaled : "", wanted, rank == knows ? 6 : 5);
         }
         ASSERT_FALSE(out_.offered.empty());
         EXPECT_EQ(out_.offered.back().rect().x(), 640) << "rank " << knows << " has heard of it";
+        EXPECT_EQ(out_.offered.back().rect().width(), 50u) << "of another size than the program's window";
         EXPECT_GT(out_.offered.back().layout_version(), 6u) << "nobody has heard of this one";
     }
 }
