@@ -11,6 +11,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from expectations import Check, Expected, Outcome, judge, load  # noqa: E402
 from golden import Comparison, either, sample  # noqa: E402
+from other_driver import distance, farthest, problem, sheet  # noqa: E402
 from stages import Performance, parts_of  # noqa: E402
 from subjects import Recording, Scene, load_recordings, read_frame  # noqa: E402
 
@@ -215,6 +216,39 @@ class Sampled(unittest.TestCase):
     def test_a_sample_that_there_is_not_is_refused(self):
         for which in ("0/3", "4/3", "3"):
             self.assertRaises(ValueError, sample, self.SUBJECTS, which)
+
+
+class OtherDriver(unittest.TestCase):
+    SCENE = Scene("it", 3, True, False, Path())
+
+    def setUp(self):
+        self.plain, self.given = performance(), performance()
+
+    def test_the_farthest_picture_counts(self):
+        self.assertEqual(farthest(self.SCENE, self.plain, self.given).key(), (0, 0, 0))
+        self.given.read[0] = self.plain.read[0] ^ 1
+        self.assertEqual(farthest(self.SCENE, self.plain, self.given).key(), (0, 0, 1))
+        self.given.shown[2] = 255 - self.plain.read[2]
+        far = farthest(self.SCENE, self.plain, self.given)
+        self.assertGreater(far.differing, 0.9)
+        self.assertIs(far.picture, self.given.shown[2])
+
+    def test_a_picture_of_another_size_is_wrong_throughout(self):
+        self.assertEqual(distance(self.plain.read[0], self.plain.read[0][1:]).key(), (1, 1, 255))
+
+    def test_what_ended_too_early_is_a_failure(self):
+        self.assertEqual(problem(self.SCENE, self.given), "")
+        self.given.read.pop()
+        self.assertIn("2 of 3 frames", problem(self.SCENE, self.given))
+        self.given = performance()
+        self.given.exit_code = 1
+        self.assertIn("exit code 1", problem(self.SCENE, self.given))
+
+    def test_a_sheet_has_a_row_for_each(self):
+        far = distance(self.plain.read[0], self.plain.read[1])
+        one, two = sheet([("a", far)]), sheet([("a", far), ("b", far)])
+        self.assertEqual(two.shape[0], 2 * one.shape[0])
+        self.assertEqual(two.shape[1], one.shape[1])
 
 
 if __name__ == "__main__":

@@ -58,7 +58,7 @@ void SurfaceCommands::SurfacePlace(SurfaceId id, std::uint32_t layout_version, s
             return execution_.refuse("the members of the parallel program draw for different places");
     }
     execution_.node.driver.disable_scissor();
-    ++execution_.node.damage;
+    if (surface->is_seen_at_once(place)) ++execution_.node.damage;
     if (!surface->place(place, execution_.node.tiles)) execution_.refuse("more pixels than a session may have");
 }
 

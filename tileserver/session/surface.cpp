@@ -16,10 +16,9 @@ std::unique_ptr<Layer> SurfaceReplica::make_layer(const LayerGeometry& geometry,
     return layer;
 }
 
-/// The layer that was there stays in sight. Without a back buffer, and before the first frame, there is nothing to
-/// keep.
+/// The layer that was there stays in sight.
 void SurfaceReplica::replace(std::uint32_t slot, std::unique_ptr<Layer> layer) {
-    if (format_.layer.double_buffered && shown_once_) {
+    if (keeps_older()) {
         if (!replaced_[slot]) older_[slot] = std::move(layers_[slot]);
         replaced_.set(slot);
     }

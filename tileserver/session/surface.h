@@ -47,6 +47,10 @@ public:
     /// is until the first frame drawn there is shown. False: that is more than the session may have, and some layers
     /// are missing. No frame may wait to be shown: it would be lost.
     bool place(const SurfacePlace& place, const std::vector<Tile>& tiles);
+    /// Whether place() itself may change what the wall shows.
+    bool is_seen_at_once(const SurfacePlace& place) const {
+        return !keeps_older() || place.shown_whole || place_.shown_whole;
+    }
     /// Null if the surface does not reach the tile. The off-screen slot gives a layer of the whole window for any
     /// surface.
     Layer* layer(std::uint32_t slot);
@@ -77,6 +81,8 @@ public:
 private:
     using Layers = std::array<std::unique_ptr<Layer>, wire::kMaxTilesPerNode>;
 
+    /// Without a back buffer, and before the first frame, there is nothing to keep.
+    bool keeps_older() const { return format_.layer.double_buffered && shown_once_; }
     /// With the content of `older`, if there is one. Null: over the budget.
     std::unique_ptr<Layer> make_layer(const LayerGeometry& geometry, const Layer* older);
     /// The layer of the whole window gets what the tiles' layers hold. False: over the budget.

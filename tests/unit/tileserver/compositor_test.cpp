@@ -5,6 +5,7 @@
 
 #include <chrono>
 
+#include "common/wire/whole_window.h"
 #include "tests/unit/tileserver/test_node.h"
 
 namespace wall::tileserver {
@@ -52,6 +53,33 @@ TEST_F(TilePictures, AreComposedOnceForAllWhoWantThem) {
     ++test_node.node->damage;
     EXPECT_EQ(compositor->picture(kSlot)->framebuffer, picture->framebuffer);
     EXPECT_EQ(shot(), 0xff8000u);
+}
+
+/// What is placed elsewhere stays where it is until the first frame drawn there is shown.
+TEST_F(TilePictures, AreNoneOfAMoveBeforeItsFrame) {
+    RenderNode& node = *test_node.node;
+    node.present_at_once = true;
+    test::TestSession session(node, SessionId(1));
+    const auto swap = [&](std::uint32_t frame) {
+        test::Batch batch;
+        test::pack::Swap(batch.buffer(), SurfaceId(1), frame);
+        session.expect_run(batch);
+    };
+    const auto move = [&](std::int32_t x, std::uint32_t offscreen = 0) {
+        test::Batch batch;
+        test::pack::SurfacePlace(batch.buffer(), SurfaceId(1), 2, 8, 4, x, 0, 8, 4, offscreen);
+        session.expect_run(batch);
+    };
+    session.open_surface(8, 4, kTile);
+    swap(1);
+    const auto before = node.damage;
+    move(102);
+    EXPECT_EQ(node.damage, before);
+    swap(2);
+    EXPECT_GT(node.damage, before);
+    const auto moved = node.damage;
+    move(104, wire::kShownWholeWindow);
+    EXPECT_GT(node.damage, moved) << "the layer of the whole window is seen at once where it is placed";
 }
 
 TEST_F(TilePictures, OfATileThatIsNotThereAreNone) { EXPECT_FALSE(compositor->picture(kSlot + 1)); }
