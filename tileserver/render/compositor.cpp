@@ -28,6 +28,7 @@ void Compositor::set_background(std::uint32_t rgb) {
 }
 
 void Compositor::set_stacking(std::vector<StackEntry> bottom_first) {
+    if (stacking_ == bottom_first) return;  // walld says it with other things, too
     stacking_ = std::move(bottom_first);
     ++node_.damage;
 }

@@ -82,6 +82,16 @@ TEST_F(TilePictures, AreNoneOfAMoveBeforeItsFrame) {
     EXPECT_GT(node.damage, moved) << "the layer of the whole window is seen at once where it is placed";
 }
 
+TEST_F(TilePictures, AreThoseOfBeforeWhereTheStackingIs) {
+    const std::vector<StackEntry> stacking{{SessionId(1), SurfaceId(1)}, {SessionId(2), SurfaceId(1)}};
+    const auto before = test_node.node->damage;
+    compositor->set_stacking(stacking);
+    const auto stacked = test_node.node->damage;
+    EXPECT_GT(stacked, before);
+    compositor->set_stacking(stacking);
+    EXPECT_EQ(test_node.node->damage, stacked);
+}
+
 TEST_F(TilePictures, OfATileThatIsNotThereAreNone) { EXPECT_FALSE(compositor->picture(kSlot + 1)); }
 
 TEST_F(TilePictures, ThatAreManyArriveAFewAtATime) {
