@@ -11,7 +11,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from expectations import Check, Expected, Outcome, judge, load  # noqa: E402
 from golden import Comparison, either, sample  # noqa: E402
-from other_driver import distance, farthest, problem, sheet  # noqa: E402
+from other_driver import distance, farthest, problem  # noqa: E402
 from stages import Performance, parts_of  # noqa: E402
 from subjects import Recording, Scene, load_recordings, read_frame  # noqa: E402
 
@@ -243,12 +243,6 @@ class OtherDriver(unittest.TestCase):
         self.given = performance()
         self.given.exit_code = 1
         self.assertIn("exit code 1", problem(self.SCENE, self.given))
-
-    def test_a_sheet_has_a_row_for_each(self):
-        far = distance(self.plain.read[0], self.plain.read[1])
-        one, two = sheet([("a", far)]), sheet([("a", far), ("b", far)])
-        self.assertEqual(two.shape[0], 2 * one.shape[0])
-        self.assertEqual(two.shape[1], one.shape[1])
 
 
 if __name__ == "__main__":

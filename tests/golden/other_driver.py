@@ -5,7 +5,7 @@ made with, such as a GPU's, and says how far each picture is from plain Mesa's. 
 rounds, filters and smooths in its own way. So this finds what is missing or looks otherwise, for people to look at
 (docs/gpus.md).
 
-other_driver.py --references FOLDER [--tiles CxR] [--only NAME]... [--sheet FILE.png]
+other_driver.py --references FOLDER [--tiles CxR] [--only NAME]... [--report FOLDER]
     the references are written on a machine with Mesa: golden.py --tiles mesa --references FOLDER. Subjects that have
     none are left out. The X server needs OpenGL of its own only as far as GLX asks it for its version.
 
@@ -25,7 +25,6 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "support"))
 
 import compare  # noqa: E402
-import cv2  # noqa: E402
 import numpy as np  # noqa: E402
 from stages import Performance, References, WallStage  # noqa: E402
 from subjects import Subject, load_recordings, load_scenes  # noqa: E402
@@ -33,8 +32,7 @@ from wall import WallError, build_folder  # noqa: E402
 from xserver import XServer  # noqa: E402
 
 LIMIT = 60  # seconds for one
-WORTH_A_LOOK = 0.002  # of the pixels outside their neighbourhood: a picture goes onto the sheet
-ROW = 220  # pixels a picture is high there
+WORTH_A_LOOK = 0.002  # of the pixels outside their neighbourhood: both pictures are kept
 
 
 @dataclasses.dataclass(frozen=True)
@@ -72,18 +70,6 @@ def problem(subject: Subject, given: Performance) -> str:
     return "; ".join(given.problems)
 
 
-def sheet(found: list[tuple[str, Distance]]) -> np.ndarray:
-    """Reference and picture beside each other, a row for each."""
-    rows = []
-    for name, far in found:
-        width = ROW * far.reference.shape[1] // far.reference.shape[0]
-        pair = [cv2.resize(each, (width, ROW)) for each in (far.reference, far.picture)]
-        row = np.ascontiguousarray(np.hstack(pair)[..., ::-1])
-        rows.append(cv2.putText(row, name, (4, 14), cv2.FONT_HERSHEY_SIMPLEX, 0.45, (0, 0, 255), 1))
-    widest = max(row.shape[1] for row in rows)
-    return np.vstack([cv2.copyMakeBorder(row, 0, 4, 0, widest - row.shape[1], cv2.BORDER_CONSTANT) for row in rows])
-
-
 def too_long(*_) -> None:
     raise WallError(f"it takes longer than {LIMIT} seconds")
 
@@ -94,6 +80,8 @@ def play_all(subjects: list[Subject], tiles: tuple[int, int], references: Refere
     with XServer() as x, WallStage(x, tiles) as stage:
         for subject in subjects:
             plain = references.find(subject)
+            if plain is None:
+                continue
             start = time.monotonic()
             signal.alarm(LIMIT)
             try:
@@ -114,21 +102,23 @@ def main() -> int:
     arguments.add_argument("--references", type=Path, required=True, help="folder that golden.py --tiles mesa wrote")
     arguments.add_argument("--tiles", default="1x1")
     arguments.add_argument("--only", action="append", default=[], help="recording or scene; may be given again")
-    arguments.add_argument("--sheet", type=Path, help="picture of those that are far from theirs")
+    arguments.add_argument("--report", type=Path, default=Path("test-output/other-driver"),
+                           help="folder for pictures that are far from their references")
     options = arguments.parse_args()
-    references = References(options.references)
     subjects = [subject for subject in [*load_recordings(), *load_scenes(build_folder() / "tests" / "golden_scenes")]
-                if references.find(subject) and (not options.only or subject.name in options.only)]
-    if not subjects:
+                if not options.only or subject.name in options.only]
+    played, failed, far = 0, 0, 0
+    for subject, found, wrong in play_all(subjects, tuple(map(int, options.tiles.split("x"))),
+                                          References(options.references)):
+        played += 1
+        failed += bool(wrong)
+        if found.outside > WORTH_A_LOOK:
+            far += 1
+            compare.save_png(options.report / f"{subject.name}.png",
+                             compare.difference_picture(found.reference, found.picture))
+    if not played:
         arguments.error(f"no references of these in {options.references}")
-    played = list(play_all(subjects, tuple(map(int, options.tiles.split("x"))), references))
-    far = [(subject.name, found) for subject, found, _ in played
-           if found.outside > WORTH_A_LOOK and found.picture.shape == found.reference.shape]
-    if options.sheet and far:
-        cv2.imwrite(str(options.sheet), sheet(far))
-    failed = [subject.name for subject, _, wrong in played if wrong]
-    print(f"{len(played)} subjects, {len(failed)} failed, {len(far)} worth a look"
-          f"{f' in {options.sheet}' if options.sheet and far else ''}")
+    print(f"{played} subjects, {failed} failed, {far} worth a look in {options.report}")
     return 1 if failed else 0
 
 

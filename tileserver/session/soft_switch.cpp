@@ -167,7 +167,7 @@ bool bring_driver_to(RenderNode& node, SessionReplica& session, SoftContext& con
     node.maps.sync_evaluators(node.driver, context.maps);
     node.driver.bind_target(target, context.state);
     use_program(node, session, context.state, target.geometry());
-    if (!held) {
+    if (!held || !node.driver.holds(context.state)) {  // a pipeline's programs may read others than before
         node.driver.sync_current(context.state);
         node.driver.follow(context.state);
     }

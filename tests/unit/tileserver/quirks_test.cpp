@@ -6,10 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstring>
 
 #include "tests/unit/tileserver/test_node.h"
-#include "tileserver/objects/buffer.h"
 
 namespace wall::tileserver::test {
 namespace {

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <iterator>
 #include <optional>
 #include <random>
+#include <span>
 
 #include "common/glapi/program_format.h"
 #include "gen/glstate/samples.gen.h"
@@ -192,6 +194,31 @@ TEST_F(OfAttributesAtOnePlace, AProgramHasTheGenericOnesThatItReads) {
     EXPECT_EQ(at_place(), (glstate::Vec4{1, 1, 1, 1})) << "no value but the program has changed";
     ASSERT_TRUE(switch_to_context(1));
     EXPECT_EQ(at_place(), kGreen);
+}
+
+TEST_F(OfAttributesAtOnePlace, APipelineHasThoseOfTheProgramsThatItHasNow) {
+    constexpr ClientName kPipeline{8}, kPart{9};
+    glapi::ProgramDefinition definition;
+    definition.separable = true;
+    definition.shaders.push_back({.type = GL_VERTEX_SHADER,
+                                  .compiled = true,
+                                  .source = "#version 410\nin vec4 tint; out vec4 shade; out gl_PerVertex { vec4 "
+                                            "gl_Position; }; void main() { gl_Position = vec4(0); shade = tint; }"});
+    definition.attributes.push_back({kPlace, "tint"});
+    const auto define = [&](ClientName vertex) {
+        const std::array<std::uint32_t, std::size(glapi::kShaderStages)> programs{vertex.value};
+        Batch batch;
+        pack::ProgramLink(batch.buffer(), RequestId(2), kPart, encode(definition));
+        pack::Pipeline(batch.buffer(), kPipeline, std::as_bytes(std::span(programs)));
+        session_->expect_run(batch);
+    };
+    glstate::assign<el::current_program>(context(1).state, 0, kPipeline.value);
+    define({});
+    for (int turn = 0; turn < 2; ++turn) ASSERT_TRUE(switch_to_context(1));
+    EXPECT_EQ(at_place(), (glstate::Vec4{1, 1, 1, 1}));
+    define(kPart);
+    ASSERT_TRUE(switch_to_context(1));
+    EXPECT_EQ(at_place(), kGreen) << "of the same context, whose state has not changed";
 }
 
 TEST_F(OfAttributesAtOnePlace, WhatDrawingLeftInTheDriverIsSeen) {
