@@ -34,11 +34,14 @@ def until(done, what: str, limit: float = LIMIT) -> None:
         time.sleep(0.02)
 
 
-class Parallel(unittest.TestCase):
+class OnAWall(unittest.TestCase):
+    SWAP_TIMEOUT_MS = 250
+
     @classmethod
     def setUpClass(cls) -> None:
         cls.x = cls.enterClassContext(XServer())
-        cls.wall = cls.enterClassContext(Wall(tiles=(2, 2), tile_size=TILE, environment={"LP_NUM_THREADS": "0"}))
+        cls.wall = cls.enterClassContext(Wall(tiles=(2, 2), tile_size=TILE, environment={"LP_NUM_THREADS": "0"},
+                                              swap_timeout_ms=cls.SWAP_TIMEOUT_MS))
         cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
 
     def tearDown(self) -> None:
@@ -85,6 +88,19 @@ class Parallel(unittest.TestCase):
     def picture(self) -> numpy.ndarray:
         return cv2.imdecode(numpy.frombuffer(self.wall.screenshot(), numpy.uint8), cv2.IMREAD_COLOR)
 
+    def assert_last_on_top(self, picture: numpy.ndarray, ranks: int) -> int:
+        """Every ring of the pile is of the last rank; gives the one frame that all pixels are of."""
+        for layer, x in ((0, 10), (1, 70), (2, 200)):
+            self.assertEqual(picture[SIZE[1] // 2, x, 1], 16 * layer + ranks, f"layer {layer} has another rank on top")
+        frames = {(int(red), int(blue)) for blue, red in picture[..., [0, 2]].reshape(-1, 2)}
+        self.assertEqual(len(frames), 1, "a mixed frame")
+        return frames.pop()[0]
+
+
+class Pictures(OnAWall):
+    """Whole frames: a node that is late by a moment is waited for."""
+    SWAP_TIMEOUT_MS = 10000
+
     # ---- one picture ----
 
     def test_one_picture_from_any_number_of_processes(self) -> None:
@@ -118,14 +134,6 @@ class Parallel(unittest.TestCase):
 
     # ---- order ----
 
-    def assert_last_on_top(self, picture: numpy.ndarray, ranks: int) -> int:
-        """Every ring of the pile is of the last rank; gives the one frame that all pixels are of."""
-        for layer, x in ((0, 10), (1, 70), (2, 200)):
-            self.assertEqual(picture[SIZE[1] // 2, x, 1], 16 * layer + ranks, f"layer {layer} has another rank on top")
-        frames = {(int(red), int(blue)) for blue, red in picture[..., [0, 2]].reshape(-1, 2)}
-        self.assertEqual(len(frames), 1, "a mixed frame")
-        return frames.pop()[0]
-
     def check_order(self, kind: str) -> None:
         self.start("turns", "--order", kind, ranks=3, hold=True)
         session = self.session()
@@ -142,6 +150,8 @@ class Parallel(unittest.TestCase):
     def test_barriers_make_an_order(self) -> None:
         self.check_order("barriers")
 
+
+class Parallel(OnAWall):
     # ---- moves ----
 
     def test_a_move_shows_no_mixed_frame(self) -> None:
