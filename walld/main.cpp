@@ -106,7 +106,7 @@ Result<void> run(const config::WallConfig& config, const Options& options) {
     auto description = file.read();
     if (!description) return fail(description.error().message);
     const auto http_listen = description->config.http_listen;  // which stays as long as this process
-    auto identities = Identities::open(description->config.people);
+    auto identities = Identities::open(description->config.people, state);
     if (!identities) return tl::unexpected(identities.error());
     auto keys = open_keys(description->config, state);
     if (!keys) return tl::unexpected(keys.error());

@@ -78,6 +78,8 @@ public:
     asio::any_io_executor executor() { return stream_.executor(); }
     /// For peer_of().
     const std::optional<SocketEnds>& ends() const { return ends_; }
+    /// As peer_text(); also when it is closed.
+    std::string address() const { return peer_text(ends_); }
     /// What is known at once: of a Unix socket's peer.
     std::optional<Peer> peer() const { return ends_ ? ends_->credentials : std::nullopt; }
 

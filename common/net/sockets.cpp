@@ -100,8 +100,9 @@ Address bound_address(int fd, const Address& asked) {
     return out;
 }
 
-std::string peer_text(int fd) {
-    const auto ends = ends_of(fd);
+std::string peer_text(int fd) { return peer_text(ends_of(fd)); }
+
+std::string peer_text(const std::optional<SocketEnds>& ends) {
     const auto host = ends ? host_of(ends->there) : std::string();
     return host.empty() ? "this machine" : host;
 }

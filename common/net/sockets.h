@@ -32,6 +32,7 @@ using wall::peer_of;
 
 /// The address of the other end as people write it, without its port; "this machine" of a Unix socket.
 std::string peer_text(int fd);
+std::string peer_text(const std::optional<SocketEnds>& ends);
 /// The address that a peer says it listens on; where that is any of its addresses (0.0.0.0, [::]), the one that it has
 /// come from.
 std::string reachable_at(const std::string& listens, const std::optional<SocketEnds>& ends);

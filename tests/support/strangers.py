@@ -112,3 +112,59 @@ def join_request(secret: bytes, node: bool) -> bytes:
 def data_hello(version: int, session: int, ticket: bytes) -> bytes:
     message = field(1, version) + field(2, session) + field(3, ticket)
     return struct.pack("<IB3x", len(message), FRAME_HELLO) + message
+
+
+def operator_request(verb: str, token: str = "") -> bytes:
+    return _control(40, field(1, 1) + field(2, verb) + (field(4, token) if token else b""))
+
+
+def fields(message: bytes) -> list[tuple[int, int | bytes]]:
+    """Numbers and values of a message's fields, in their order: numbers, and bytes of whatever has a length."""
+    out: list[tuple[int, int | bytes]] = []
+    at = 0
+
+    def varint() -> int:
+        nonlocal at
+        value = shift = 0
+        while True:
+            byte = message[at]
+            at += 1
+            value |= (byte & 0x7f) << shift
+            shift += 7
+            if byte < 0x80:
+                return value
+
+    while at < len(message):
+        number, kind = divmod(varint(), 8)
+        if kind == 0:
+            out.append((number, varint()))
+        elif kind == 2:
+            size = varint()
+            out.append((number, message[at:at + size]))
+            at += size
+        else:
+            raise ValueError(f"field {number} of kind {kind}: expected a number or bytes")
+    return out
+
+
+def _exactly(connection: socket.socket, count: int) -> bytes:
+    out = b""
+    while len(out) < count:
+        portion = connection.recv(count - len(out))
+        if not portion:
+            raise ConnectionError(f"closed after {len(out)} of {count} bytes")
+        out += portion
+    return out
+
+
+def read_control(connection: socket.socket) -> tuple[int, bytes]:
+    """The next message of walld: its number in Envelope, and what is in it."""
+    size, = struct.unpack("<I", _exactly(connection, 4))
+    (number, message), *_ = fields(_exactly(connection, size))
+    return number, message
+
+
+def read_frame(connection: socket.socket) -> tuple[int, bytes]:
+    """The next frame of a node: its kind, and its payload."""
+    size, kind = struct.unpack("<IB3x", _exactly(connection, 8))
+    return kind, _exactly(connection, size)

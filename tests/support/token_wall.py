@@ -5,13 +5,15 @@ from __future__ import annotations
 from machine_wall import WALLD, MachineWall
 
 PAGE_PORT = 7780
-TOKENS = {"looks": ("viewer", "a-secret-of-those-who-look"), "leads": ("operator", "a-secret-of-those-who-lead")}
+TOKENS = {"looks": ("viewer", "a-secret-of-those-who-look"), "leads": ("operator", "a-secret-of-those-who-lead"),
+          "guest": ("user", "a-secret-of-some-guest")}
 SECRETS = {name: secret for name, (_, secret) in TOKENS.items()}
 
 
 class TokenWall(MachineWall):
     def __init__(self, *arguments, **options):
         super().__init__(*arguments, **options)
+        self._others = self.people
         self.http = ["127.0.0.1:0", f"{self.page_address[0]}:{PAGE_PORT}"]
 
     @property
@@ -23,7 +25,7 @@ class TokenWall(MachineWall):
         return f"https://{self.page_address[0]}:{PAGE_PORT}"
 
     def _description(self) -> str:
-        self.people = ""
+        self.people = self._others
         for name, (role, secret) in TOKENS.items():
             file = self.folder / name
             file.write_text(secret)

@@ -14,6 +14,7 @@
 #include <chrono>
 
 #include "common/log/log.h"
+#include "common/log/refusals.h"
 #include "common/wire/limits.h"
 #include "gen/glapi/wire.gen.h"
 #include "proto/control.pb.h"
@@ -26,7 +27,8 @@ using namespace std::chrono_literals;
 constexpr auto kWaitable = asio::as_tuple(asio::use_awaitable);
 constexpr std::uint32_t kMaxHello = 4 << 10;  // bytes
 constexpr auto kGreetingLimit = 5s;           // for the hello to come
-constexpr auto kTicketLimit = 3s;             // walld's ticket may come later than the client
+constexpr const char *kNoHello = "no hello came", *kClosed = "closed";
+constexpr auto kTicketLimit = 3s;  // walld's ticket may come later than the client
 constexpr auto kTicketPoll = 10ms;
 
 /// The other end has closed the socket, and nothing that it sent before is left.
@@ -47,16 +49,24 @@ bool equal_secret(const std::string& a, const std::string& b) {
 }  // namespace
 
 DataStream::DataStream(StreamHost& host, StreamId id, net::Stream connection)
-    : host_(host), id_(id), connection_(std::move(connection)), timer_(connection_.executor()), reader_(kMaxHello) {}
+    : host_(host),
+      id_(id),
+      connection_(std::move(connection)),
+      from_(net::peer_text(connection_.descriptor())),
+      timer_(connection_.executor()),
+      reader_(kMaxHello) {}
 
 asio::awaitable<void> DataStream::run() {
     const auto self = shared_from_this();
     auto done = co_await greet();
+    const bool admitted = done.has_value();
     if (done) done = co_await take_batches();
     if (!done && !closing_) {
-        log::info("stream_ended stream={} session={} reason={}", id_.value, session_.value,
-                  log::quoted(done.error().message));
-        fail(done.error().message);
+        const std::string& why = done.error().message;
+        if (admitted || why == kClosed)
+            log::info("stream_ended stream={} session={} reason={}", id_.value, session_.value, log::quoted(why));
+        else log::refused(kDataPort, from_, why);
+        fail(why);
     }
     if (batches_) host_.render().remove_stream(id_);
     host_.stream_closed(id_);
@@ -69,7 +79,7 @@ asio::awaitable<Result<Frame>> DataStream::next_frame() {
         if (*frame) co_return std::move(**frame);
         const auto room = reader_.prepare();
         const auto [error, bytes] = co_await connection_.read_some(asio::buffer(room.data(), room.size()));
-        if (error) co_return wall::fail(error == asio::error::eof ? "closed" : error.message());
+        if (error) co_return wall::fail(error == asio::error::eof ? kClosed : error.message());
         reader_.commit(bytes);
         host_.stream_bytes(bytes);
     }
@@ -78,7 +88,10 @@ asio::awaitable<Result<Frame>> DataStream::next_frame() {
 asio::awaitable<Result<void>> DataStream::greet() {
     timer_.expires_after(kGreetingLimit);
     timer_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
-        if (const auto self = weak.lock(); self && !error) self->fail("no hello came");
+        const auto self = weak.lock();
+        if (!self || error) return;
+        log::refused(kDataPort, self->from_, kNoHello);
+        self->fail(kNoHello);
     });
     auto frame = co_await next_frame();
     timer_.cancel();

@@ -26,6 +26,9 @@ namespace wall::tileserver {
 
 namespace asio = boost::asio;
 
+/// Where it was, for the log, of what is refused here.
+inline constexpr const char* kDataPort = "data";
+
 /// What walld has said of a session that may come.
 struct Admission {
     std::string ticket;
@@ -60,6 +63,8 @@ public:
     void close();
 
     SessionId session() const { return session_; }
+    /// The address of the other end, without its port.
+    const std::string& from() const { return from_; }
 
 private:
     static constexpr std::size_t kMaxQueued = std::size_t{512} << 20;  // bytes that a client has not read
@@ -75,6 +80,7 @@ private:
     StreamHost& host_;
     StreamId id_;
     net::Stream connection_;
+    std::string from_;
     asio::steady_timer timer_;  // of whatever run() waits for besides the socket
     FrameReader reader_;
     SessionId session_;

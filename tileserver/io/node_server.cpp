@@ -13,6 +13,7 @@
 #include <exception>
 
 #include "common/log/log.h"
+#include "common/log/refusals.h"
 #include "common/wire/limits.h"
 #include "common/wire/weights.h"
 #include "tileserver/io/node_stats.h"
@@ -156,19 +157,23 @@ void NodeServer::make_room_for_stranger() {
     if (strangers_.size() < most_strangers_) return;
     const StreamId oldest = *strangers_.begin();
     strangers_.erase(strangers_.begin());
-    log::info("stream_ended stream={} reason=\"no ticket, and too many others\"", oldest.value);
-    if (DataStream* silent = stream(oldest)) silent->fail("too many connections that have shown no ticket");
+    DataStream* silent = stream(oldest);
+    if (!silent) return;
+    constexpr const char* why = "too many connections that have shown no ticket";
+    log::refused(kDataPort, silent->from(), why);
+    silent->fail(why);
 }
 
 /// Somebody from anywhere; so many may prove their keys at the same time.
 asio::awaitable<void> NodeServer::take_over_tls(net::StreamSocket socket) {
-    if (handshakes_ >= kMaxHandshakes) co_return;
+    const auto from = net::peer_text(socket.native_handle());
+    if (handshakes_ >= kMaxHandshakes) co_return log::refused(kDataPort, from, "too many handshakes at once");
     ++handshakes_;
     auto connection = co_await net::Stream::accept_tls(std::move(socket), *keys_.tls);
     --handshakes_;
     if (stopping_) co_return;
     if (connection) co_return take_client(std::move(*connection));
-    log::info("stream_refused reason={}", log::quoted(connection.error().message));
+    log::refused(kDataPort, from, connection.error().message);
 }
 
 void NodeServer::take_client(net::Stream connection) {

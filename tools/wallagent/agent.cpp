@@ -6,6 +6,7 @@
 
 #include "common/daemon/keep_running.h"
 #include "common/log/log.h"
+#include "common/log/refusals.h"
 #include "common/wire/limits.h"
 #include "tools/wallagent/user_name.h"
 
@@ -55,13 +56,13 @@ void Agent::stop() {
 void Agent::take(net::StreamSocket socket) {
     auto program = std::make_shared<net::ControlConnection>(net::Stream(std::move(socket)));
     const auto peer = program->peer();
-    if (!peer) return log::warn("program_refused reason=\"nobody knows whose process it is\"");
+    if (!peer) return log::refused("agent", "somebody unknown", "nobody knows whose process it is");
     if (auto place = places_.take())
         return net::spawn(executor_, "program", serve(std::move(program), std::move(place), peer->user));
-    log::warn("program_refused user={} reason=\"too many connections at once\"", peer->user);
-    net::spawn(executor_, "refusal",
-               refuse_control(std::move(program), "this machine's agent serves " + std::to_string(kMostConnections) +
-                                                      " connections already; try again when some have ended"));
+    const auto why = "this machine's agent serves " + std::to_string(kMostConnections) +
+                     " connections already; try again when some have ended";
+    log::refused("agent", "uid " + std::to_string(peer->user), why);
+    net::spawn(executor_, "refusal", refuse_control(std::move(program), why));
 }
 
 // A program that hears `refused` before it was welcomed tries again, and at its start it tells people why; so do tools.

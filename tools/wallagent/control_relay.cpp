@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "common/daemon/keep_running.h"
-#include "common/log/log.h"
+#include "common/log/refusals.h"
 
 namespace wall::wallagent {
 namespace {
@@ -41,7 +41,7 @@ asio::awaitable<void> to_walld(std::shared_ptr<const ControlPair> pair) {
         auto message = co_await pair->program->receive();
         if (!message) break;
         if (!programs_may_say(*message)) {
-            log::warn("program_refused reason=\"it speaks as a machine\"");
+            log::refused("agent", "this machine", "a program speaks as a machine");
             pair->program->close();
             break;
         }

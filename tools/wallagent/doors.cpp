@@ -5,6 +5,7 @@
 
 #include "common/daemon/keep_running.h"
 #include "common/log/log.h"
+#include "common/log/refusals.h"
 #include "common/wire/frame.h"
 #include "tools/wallagent/byte_relay.h"
 
@@ -63,7 +64,7 @@ void Door::close() {
 
 void Door::take(const asio::any_io_executor& executor, net::StreamSocket socket) {
     auto place = places_.take();
-    if (!place) return log::warn("stream_refused reason=\"too many streams at once\"");
+    if (!place) return log::refused("agent", "this machine", "too many streams at once");
     net::spawn(executor, "stream", serve(net::Stream(std::move(socket)), std::move(place)));
 }
 

@@ -233,6 +233,16 @@ void add_machines(CLI::App& app, Options& o, Action& action) {
             ->required();
         if (kind == kNode) add_node_verbs(*group, verb, o);
     }
+    auto* tokens = app.add_subcommand("token", "the secrets that stand for people ([[people.token]] in wall.toml)");
+    tokens->require_subcommand(1)->fallthrough();
+    verb(*tokens, "list", "the tokens, and which are revoked", show(o, "tokens", tokens_table));
+    verb(*tokens, "revoke",
+         "takes it from whoever has it: its programs end, and it is good for nothing until it has another secret",
+         [&o] {
+             return print(o, ask(o.walld, "revoke_token", json{{"name", o.name}}, kLimit), revoked_text);
+         })
+        ->add_option("NAME", o.name)
+        ->required();
     verb(app, "reload", "reads wall.toml again: nodes and tiles come, move and go while programs run",
          show(o, "reload", reloaded_text));
     verb(app, "machines", "all machines that have joined", show(o, "machines", machines_table));

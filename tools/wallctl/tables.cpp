@@ -83,6 +83,18 @@ std::string machines_table(const json& machines) {
     return table(rows);
 }
 
+std::string tokens_table(const json& tokens) {
+    std::vector<Row> rows{{"NAME", "ROLE", "STATE", "PROGRAMS"}};
+    for (const auto& t : tokens)
+        rows.push_back({text(t, "name"), text(t, "role"), is(t, "revoked") ? "revoked" : "good", text(t, "programs")});
+    return table(rows);
+}
+
+std::string revoked_text(const json& revoked) {
+    const auto programs = revoked.value("ended", 0);
+    return fmt::format("revoked; {} ended\n", programs == 1 ? "1 program" : std::to_string(programs) + " programs");
+}
+
 std::string invitation_text(const json& invitation) {
     return fmt::format("run this on that machine within {} minutes; it is good once:\n\n  {}\n",
                        invitation.value("valid_s", 0) / 60, text(invitation, "command"));

@@ -14,6 +14,9 @@ std::string streams_table(const nlohmann::json& streams);
 std::string status_text(const nlohmann::json& status);
 
 std::string machines_table(const nlohmann::json& machines);
+std::string tokens_table(const nlohmann::json& tokens);
+/// What taking a token from somebody has ended.
+std::string revoked_text(const nlohmann::json& revoked);
 /// What to do on the machine that shall join.
 std::string invitation_text(const nlohmann::json& invitation);
 

@@ -11,7 +11,9 @@
 #include "common/daemon/keep_running.h"
 #include "common/json/parse_json.h"
 #include "common/log/log.h"
+#include "common/log/refusals.h"
 #include "walld/control/random_bytes.h"
+#include "walld/streams/still_may.h"
 #include "walld/wall/messages.h"
 #include "walld/wall/status.h"
 
@@ -23,6 +25,7 @@ constexpr const char* kWatchVerb = "watch";  // the one verb with many answers
 constexpr std::chrono::seconds kLookAtConnection{1};
 constexpr std::chrono::seconds kLastWords{1};  // for a machine that was revoked to read why
 constexpr const char* kNotKnownYet = "somebody whose name is being looked up";
+constexpr const char* kHere = "control";  // where it was, of what is refused
 
 bool answer_ping(net::ControlConnection& connection, const proto::Envelope& message) {
     if (!message.has_ping()) return false;
@@ -30,6 +33,13 @@ bool answer_ping(net::ControlConnection& connection, const proto::Envelope& mess
     pong.mutable_pong();
     connection.send(pong);
     return true;
+}
+
+/// For the log: who it is, or of a machine where it is and its key.
+std::string peer_name(const net::ControlConnection& connection, const Person& who) {
+    if (who.kind != Person::Kind::unknown) return who.text();
+    const auto& key = connection.peer_key();
+    return connection.address() + (key ? " with the key " + key->text() : "");
 }
 
 }  // namespace
@@ -44,11 +54,12 @@ ControlServer::ControlServer(asio::any_io_executor executor, Description descrip
       machines_(std::move(keys), wall_.config(), *this, random_bytes),
       snapshots_(executor, wall_, *this),
       streams_(executor, wall_, *this),
-      description_(std::move(file), std::move(description.toml),
+      description_(std::move(file), std::move(description.toml), state,
                    {wall_, identities_, who_, machines_, streams_, *this, *this}),
-      operators_(wall_, snapshots_, streams_, LayoutStore(state), machines_, description_, changed_,
-                 [this](SessionId id) {
-                     end_session(id, "closed by an operator");
+      operators_(wall_, snapshots_, streams_, LayoutStore(state), machines_, identities_.tokens(), description_,
+                 changed_,
+                 [this](SessionId id, const std::string& reason) {
+                     end_session(id, reason);
                      wall_.close_session(id);
                  }),
       deadline_timer_(executor),
@@ -126,12 +137,12 @@ asio::awaitable<void> ControlServer::take_over_tls(net::StreamSocket socket) {
     const auto from = net::peer_text(socket.native_handle());
     const auto place = handshakes_.take(from);
     if (!place) {
-        log::warn("peer_refused from={} reason={}", log::quoted(from), log::quoted(place.error().message));
+        log::refused(kHere, from, place.error().message);
         co_return;
     }
     auto stream = co_await net::Stream::accept_tls(std::move(socket), *machines_.tls());
     if (stream) co_return take(std::move(*stream));
-    log::warn("peer_refused from={} reason={}", log::quoted(from), log::quoted(stream.error().message));
+    log::refused(kHere, from, stream.error().message);
 }
 
 void ControlServer::take(net::Stream stream) {
@@ -147,6 +158,12 @@ void ControlServer::refuse(const Connection& connection, const std::string& reas
     connection->close_after_sending();
 }
 
+/// Who is told that they may not, and the log with them. Of a peer on another machine the address is said.
+void ControlServer::turn_away(const Connection& connection, const Person& who, const std::string& reason) {
+    log::refused(kHere, peer_name(*connection, who), reason);
+    refuse(connection, reason);
+}
+
 asio::awaitable<void> ControlServer::serve(Connection connection) {
     const auto& key = connection->peer_key();
     auto place = peers_.take(key ? "key " + key->text() : kNotKnownYet);
@@ -157,15 +174,15 @@ asio::awaitable<void> ControlServer::serve(Connection connection) {
         place = peers_.take(who.text());
     }
     if (!place) {
-        log::warn("peer_refused reason={}", log::quoted(place.error().message));
-        refuse(connection, place.error().message);
+        turn_away(connection, who, place.error().message);
     } else if (key) {
         co_await serve_machine(connection, std::move(*place));
     } else if (who.role == Role::none) {
-        log::warn("peer_refused user={}", log::quoted(who.text()));
-        refuse(connection, who.text() + " may not use this wall: add them to [people] in wall.toml");
-    } else if (auto first = co_await first_message(connection)) {
-        co_await serve_first(connection, std::move(*first), std::move(who), std::move(*place));
+        turn_away(connection, who, who.text() + " may not use this wall: add them to [people] in wall.toml");
+    } else {
+        const auto from = peer_name(*connection, who);
+        if (auto first = co_await first_message(connection, from))
+            co_await serve_first(connection, std::move(*first), std::move(who), std::move(*place));
     }
     all_.erase(connection.get());
     connection->close_after_sending();
@@ -178,18 +195,16 @@ asio::awaitable<void> ControlServer::serve_first(Connection connection, proto::E
     else if (first.has_client_hello())
         co_await serve_client(connection, first.client_hello(), std::move(who), std::move(place));
     else if (first.has_operator_request()) co_await serve_operator(connection, std::move(first), std::move(who));
-    else refuse(connection, "expected a hello of a node or a client, or an operator's request");
+    else turn_away(connection, who, "expected a hello of a node or a client, or an operator's request");
 }
 
 /// Over TLS comes a machine that joins, a node, or a client host for one of its people.
 asio::awaitable<void> ControlServer::serve_machine(Connection connection, Quota::Place place) {
     const tls::Fingerprint key = *connection->peer_key();
-    auto first = co_await first_message(connection);
+    const auto from = peer_name(*connection, {});
+    auto first = co_await first_message(connection, from);
     if (!first) co_return;
-    const auto no = [&](const Refusal& why) {
-        log::warn("machine_refused key={} reason={}", log::quoted(key.text()), log::quoted(why.message));
-        refuse(connection, why.message);
-    };
+    const auto no = [&](const Refusal& why) { turn_away(connection, {}, why.message); };
     if (first->has_join_request()) {
         const auto answer = machines_.join(first->join_request(), key, Clock::now());
         if (!answer) co_return no(answer.error());
@@ -207,7 +222,8 @@ asio::awaitable<void> ControlServer::serve_machine(Connection connection, Quota:
         place.leave();
         auto own = peers_.take(who->text());
         if (!own) co_return no(own.error());
-        auto message = co_await first_message(connection);
+        const auto user = who->text();
+        auto message = co_await first_message(connection, user);
         if (message && message->has_node_hello()) co_return no({RefusalKind::forbidden, "a client host runs no nodes"});
         if (message) co_await serve_first(connection, std::move(*message), std::move(*who), std::move(*own));
     } else {
@@ -234,15 +250,18 @@ void ControlServer::cut(const tls::Fingerprint& key, const std::string& reason) 
     }
 }
 
-asio::awaitable<Result<proto::Envelope>> ControlServer::first_message(Connection connection) {
+asio::awaitable<Result<proto::Envelope>> ControlServer::first_message(Connection connection, std::string from) {
     auto limit = std::make_shared<asio::steady_timer>(executor_, kHelloLimit);
-    limit->async_wait([connection, limit](const boost::system::error_code& error) {
-        if (!error) connection->close();
+    const auto silent = std::make_shared<bool>(false);
+    limit->async_wait([connection, limit, silent](const boost::system::error_code& error) {
+        if (error) return;
+        *silent = true;
+        connection->close();
     });
     auto message = co_await connection->receive();
     limit->cancel();
-    if (!message && message.error().message != "closed")
-        log::warn("peer_bad error={}", log::quoted(message.error().message));
+    if (*silent) log::refused(kHere, from, "no first message came");
+    else if (!message && message.error().message != "closed") log::refused(kHere, from, message.error().message);
     co_return message;
 }
 
@@ -252,15 +271,10 @@ asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::No
     hello.set_address(net::reachable_at(hello.address(), connection->ends()));
     // Nodes get every session's tickets and pixels.
     if (const auto permitted = may(who, Need::operate, "run a node", nullptr); !permitted) {
-        log::warn("node_refused node={} reason={}", log::quoted(hello.name()), log::quoted(permitted.error().message));
-        co_return refuse(connection, permitted.error().message);
+        co_return turn_away(connection, who, permitted.error().message);
     }
     const auto joined = admit_node(connection, hello, who);
-    if (!joined) {
-        log::warn("node_refused node={} reason={}", log::quoted(hello.name()), log::quoted(joined.error().message));
-        refuse(connection, joined.error().message);
-        co_return;
-    }
+    if (!joined) co_return turn_away(connection, who, joined.error().message);
     log::info("node_up node={} incarnation={} address={} backend={} renderer={}", log::quoted(hello.name()),
               wall_.nodes()[*joined].incarnation, log::quoted(hello.address()), log::quoted(hello.backend()),
               log::quoted(hello.caps().renderer()));
@@ -360,12 +374,12 @@ Outcome<void> ControlServer::welcome(const proto::ClientHello& hello, Person& wh
 /// Programs on the wall have a limit of their own (max_sessions), so `place` is given back when this is one.
 asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::ClientHello hello, Person who,
                                                   Quota::Place place) {
-    if (const auto good = welcome(hello, who); !good) co_return refuse(connection, good.error().message);
+    if (const auto good = welcome(hello, who); !good) co_return turn_away(connection, who, good.error().message);
     co_await wait_for_nodes();
     if (!wall_.any_node_up())
         co_return refuse(connection, "no node of the wall is up: is a tileserver running? (wallctl nodes)");
     for (const auto& still : {wall_.check(hello), wall_.check_member(hello, who)})
-        if (!still) co_return refuse(connection, still.error().message);
+        if (!still) co_return turn_away(connection, who, still.error().message);
     if (const auto comeback = wall_.comeback(hello, Clock::now()); comeback != Wall::Comeback::may_come)
         co_return refuse(connection, "the wall does not know parallel program '" + hello.group().name() + "' any more",
                          comeback == Wall::Comeback::over);
@@ -452,14 +466,16 @@ asio::awaitable<void> ControlServer::send_parts(Connection connection, net::Repl
 
 asio::awaitable<void> ControlServer::answer_operator(Connection connection, proto::OperatorRequest request, Person who,
                                                      Quota::Place place) {
-    auto person = identities_.with_token(std::move(who), request.token());
+    auto person = identities_.with_token(who, request.token());
     Outcome<Answer> answer;
     if (!person) {
+        log::refused(kHere, peer_name(*connection, who), person.error().message);
         answer = tl::unexpected(person.error());
     } else if (request.verb() == kWatchVerb) {
-        const auto permitted = may(*person, Need::look, "watch the wall", nullptr);
         place.leave();  // what is watched has limits of its own
-        if (permitted) co_return co_await serve_watch(connection, std::move(request), std::move(*person));
+        const auto permitted = may_watch(who, request.token());
+        if (permitted) co_return co_await serve_watch(connection, std::move(request), std::move(who));
+        log::refused(kHere, person->text(), permitted.error().message);
         answer = tl::unexpected(permitted.error());
     } else {
         Result<nlohmann::json> arguments = nlohmann::json::object();
@@ -475,9 +491,20 @@ asio::awaitable<void> ControlServer::answer_operator(Connection connection, prot
     something_changed();
 }
 
-/// Replies for as long as the connection lasts: what a WebSocket viewer gets, texts as JSON, frames as blobs.
+/// As whom somebody watches.
+Outcome<Person> ControlServer::may_watch(const Person& who, const std::string& token) const {
+    auto person = identities_.with_token(who, token);
+    if (!person) return person;
+    if (const auto permitted = may(*person, Need::look, "watch the wall", nullptr); !permitted)
+        return tl::unexpected(permitted.error());
+    return person;
+}
+
+/// Replies for as long as the connection lasts and they may watch: what a WebSocket viewer gets, texts as JSON, frames
+/// as blobs.
 asio::awaitable<void> ControlServer::serve_watch(Connection connection, proto::OperatorRequest request, Person who) {
-    const auto viewer = streams_.add_viewer(who);
+    StillMay still([this, who, token = request.token()] { return may_watch(who, token).map([](auto&&) {}); });
+    const auto viewer = streams_.add_viewer(*may_watch(who, request.token()));
     if (!viewer) {
         Outcome<Answer> no = tl::unexpected(viewer.error());
         co_return co_await send_answer(connection, request.request(), std::move(no));
@@ -492,9 +519,15 @@ asio::awaitable<void> ControlServer::serve_watch(Connection connection, proto::O
     reply.set_request(request.request());
     reply.set_ok(true);
     while (done && connection->is_open() && !stopping_) {
+        if (const auto& may = still.at(Clock::now()); !may) {
+            log::refused(kHere, peer_name(*connection, who), may.error().message);
+            Outcome<Answer> no = tl::unexpected(may.error());
+            co_await send_answer(connection, request.request(), std::move(no));
+            break;
+        }
         const auto message = streams_.next(**viewer);
         if (!message) {
-            co_await (*viewer)->news().wait(Clock::now() + kLookAtConnection);
+            co_await (*viewer)->news().wait(std::min(still.next(), Clock::now() + kLookAtConnection));
             continue;
         }
         const std::string_view head(message->head), nothing;

@@ -75,6 +75,7 @@ private:
     void take(net::Stream stream);
     asio::awaitable<void> take_over_tls(net::StreamSocket socket);
     asio::awaitable<void> serve(Connection connection);
+    void turn_away(const Connection& connection, const Person& who, const std::string& reason);
     asio::awaitable<void> serve_first(Connection connection, proto::Envelope first, Person who, Quota::Place place);
     asio::awaitable<void> serve_machine(Connection connection, Quota::Place place);
     asio::awaitable<void> serve_node(Connection connection, proto::NodeHello hello, const Person& who);
@@ -93,10 +94,11 @@ private:
     asio::awaitable<void> watch_peers();
     void watch_nodes();
     void watch_programs();
-    asio::awaitable<Result<proto::Envelope>> first_message(Connection connection);
+    asio::awaitable<Result<proto::Envelope>> first_message(Connection connection, std::string from);
     asio::awaitable<void> wait_for_nodes();
 
     Outcome<void> welcome(const proto::ClientHello& hello, Person& who) const;
+    Outcome<Person> may_watch(const Person& who, const std::string& token) const;
     Result<void> node_says(NodeIndex node, proto::Envelope& message);
     using ClientId = std::pair<SessionId, Rank>;  // rank 0 without a parallel program
 

@@ -24,8 +24,8 @@ const char* fixed_difference(const config::WallConfig& before, const config::Wal
 
 }  // namespace
 
-DescriptionDesk::DescriptionDesk(WallFile file, std::string toml, const Told& told)
-    : file_(std::move(file)), toml_(std::move(toml)), told_(told) {
+DescriptionDesk::DescriptionDesk(WallFile file, std::string toml, std::filesystem::path state, const Told& told)
+    : file_(std::move(file)), toml_(std::move(toml)), state_(std::move(state)), told_(told) {
     told_.machines.set_wall_toml(toml_);
     const auto drained = file_.drained();
     if (!drained) {
@@ -59,7 +59,7 @@ Outcome<json> DescriptionDesk::take(Outcome<Description> next) {
         return refuse(RefusalKind::conflict, std::string(fixed) +
                                                  " has changed, which walld takes only when it starts "
                                                  "(`systemctl restart walld`): nothing was changed");
-    auto identities = Identities::open(next->config.people);
+    auto identities = Identities::open(next->config.people, state_);
     if (!identities) return refuse(RefusalKind::invalid, identities.error().message);
     told_.identities = std::move(*identities);
     told_.who.forget();

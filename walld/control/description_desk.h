@@ -35,8 +35,8 @@ public:
         Outbox& out;
         NodeLinks& links;
     };
-    /// `toml`: what the wall was made from.
-    DescriptionDesk(WallFile file, std::string toml, const Told& told);
+    /// `toml`: what the wall was made from. `state`: walld's folder.
+    DescriptionDesk(WallFile file, std::string toml, std::filesystem::path state, const Told& told);
 
     /// As the files are now → {"nodes": [those that start anew, come or go], "tiles": how many the wall has}. On an
     /// error everything is as it was.
@@ -58,6 +58,7 @@ private:
 
     WallFile file_;
     std::string toml_;
+    std::filesystem::path state_;
     Told told_;
 };
 

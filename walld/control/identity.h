@@ -3,20 +3,18 @@
 // Asks the machine for names and groups. One thread, but for what says otherwise.
 #pragma once
 
-#include <optional>
-#include <string>
+#include <filesystem>
 #include <string_view>
-#include <vector>
 
 #include "common/base/result.h"
-#include "walld/wall/person.h"
+#include "walld/control/tokens.h"
 
 namespace wall::walld {
 
 class Identities {
 public:
-    /// Reads the tokens' files; each must hold a secret that others cannot read.
-    static Result<Identities> open(const config::PeopleConfig& people);
+    /// Reads the tokens' files. `state`: walld's folder, see Tokens.
+    static Result<Identities> open(const config::PeopleConfig& people, const std::filesystem::path& state);
 
     /// Asks the name service, which may take its time. Any thread.
     Person of(std::uint32_t user) const;
@@ -25,14 +23,13 @@ public:
     /// Over HTTP everybody of this machine has at least the role that the configuration gives (`local`).
     Outcome<Person> over_http(const Person& base, std::string_view authorization, bool local) const;
 
+    Tokens& tokens() { return tokens_; }
+    const Tokens& tokens() const { return tokens_; }
+
 private:
-    struct Token {
-        std::string secret;
-        Person person;
-    };
-    explicit Identities(config::PeopleConfig people) : people_(std::move(people)) {}
+    Identities(config::PeopleConfig people, Tokens tokens) : people_(std::move(people)), tokens_(std::move(tokens)) {}
     config::PeopleConfig people_;
-    std::vector<Token> tokens_;
+    Tokens tokens_;
 };
 
 }  // namespace wall::walld

@@ -52,6 +52,8 @@ const OperatorDesk::Row OperatorDesk::kVerbs[] = {
     {"machines", Need::operate, &OperatorDesk::machines},
     {"join_token", Need::operate, &OperatorDesk::join_token},
     {"revoke", Need::operate, &OperatorDesk::revoke},
+    {"tokens", Need::operate, &OperatorDesk::tokens},
+    {"revoke_token", Need::operate, &OperatorDesk::revoke_token},
     {"reload", Need::operate, &OperatorDesk::reload},
     {"add_node", Need::operate, &OperatorDesk::add_node},
     {"remove_node", Need::operate, &OperatorDesk::remove_node},
@@ -66,7 +68,7 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::carry_out(Asked asked) {
     Outcome<Answer> answer;
     if (const auto permitted = allowed(**row, asked); permitted) answer = co_await (this->*(*row)->run)(asked);
     else answer = tl::unexpected(permitted.error());
-    if ((*row)->need != Need::look)
+    if ((*row)->need != Need::look || (!answer && answer.error().kind == RefusalKind::forbidden))
         log::info("{}", log::plain(audit_line(
                             {asked.who, asked.via, asked.verb, asked.arguments, answer ? nullptr : &answer.error()})));
     changed_.notify();
@@ -155,7 +157,7 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::close(const Asked& asked) {
         co_return refuse(RefusalKind::conflict,
                          "the program keeps this window open; close the session to take all of it from the wall");
     }
-    end_session_(target->session);
+    end_session_(target->session, "closed by an operator");
     co_return Answer{{{"closed", "by walld"}}, {}};
 }
 
@@ -270,6 +272,34 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::join_token(const Asked& asked) {
 
 asio::awaitable<Outcome<Answer>> OperatorDesk::revoke(const Asked& asked) {
     co_return machines_.revoke(asked.arguments).map(done);
+}
+
+// ---- tokens ----
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::tokens(const Asked&) {
+    json out = json::array();
+    for (const auto& token : tokens_.all()) {
+        const auto programs = std::ranges::count_if(
+            wall_.sessions(), [&](const auto& entry) { return entry.second.owner.same_as(token.person); });
+        out.push_back({{"name", token.person.name},
+                       {"role", config::name_of(token.person.role)},
+                       {"revoked", tokens_.is_revoked(token)},
+                       {"programs", programs}});
+    }
+    co_return Answer{std::move(out), {}};
+}
+
+/// Its programs end, and whoever watches with it is seen to when they are asked again.
+asio::awaitable<Outcome<Answer>> OperatorDesk::revoke_token(const Asked& asked) {
+    co_return name_of(asked)
+        .and_then([&](const std::string& name) { return tokens_.revoke(name); })
+        .map([&](auto gone) {
+            std::vector<SessionId> programs;
+            for (const auto& [id, session] : wall_.sessions())
+                if (session.owner.same_as(gone)) programs.push_back(id);
+            for (const SessionId id : programs) end_session_(id, gone.text() + " was revoked by an operator");
+            return Answer{{{"ended", programs.size()}}, {}};
+        });
 }
 
 // ---- what the wall is ----

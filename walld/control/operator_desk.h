@@ -11,6 +11,7 @@
 #include "walld/control/description_desk.h"
 #include "walld/control/layout_store.h"
 #include "walld/control/machine_desk.h"
+#include "walld/control/tokens.h"
 #include "walld/streams/snapshot_desk.h"
 #include "walld/streams/stream_hub.h"
 #include "walld/wall/person.h"
@@ -37,13 +38,14 @@ class OperatorDesk {
 public:
     /// `end_session` cuts a client off. `changed` is notified after every event of the wall.
     OperatorDesk(Wall& wall, SnapshotDesk& snapshots, const StreamHub& streams, LayoutStore layouts,
-                 MachineDesk& machines, DescriptionDesk& description, net::Changed& changed,
-                 std::function<void(SessionId)> end_session)
+                 MachineDesk& machines, Tokens& tokens, DescriptionDesk& description, net::Changed& changed,
+                 std::function<void(SessionId, const std::string& reason)> end_session)
         : wall_(wall),
           snapshots_(snapshots),
           streams_(streams),
           layouts_(std::move(layouts)),
           machines_(machines),
+          tokens_(tokens),
           description_(description),
           changed_(changed),
           end_session_(std::move(end_session)) {}
@@ -90,6 +92,8 @@ private:
     asio::awaitable<Outcome<Answer>> machines(const Asked&);
     asio::awaitable<Outcome<Answer>> join_token(const Asked&);
     asio::awaitable<Outcome<Answer>> revoke(const Asked&);
+    asio::awaitable<Outcome<Answer>> tokens(const Asked&);
+    asio::awaitable<Outcome<Answer>> revoke_token(const Asked&);
     asio::awaitable<Outcome<Answer>> reload(const Asked&);
     asio::awaitable<Outcome<Answer>> add_node(const Asked&);
     asio::awaitable<Outcome<Answer>> remove_node(const Asked&);
@@ -101,9 +105,10 @@ private:
     const StreamHub& streams_;
     LayoutStore layouts_;
     MachineDesk& machines_;
+    Tokens& tokens_;
     DescriptionDesk& description_;
     net::Changed& changed_;
-    std::function<void(SessionId)> end_session_;
+    std::function<void(SessionId, const std::string& reason)> end_session_;
     nlohmann::json page_ = nlohmann::json::object();
 };
 

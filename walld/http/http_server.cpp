@@ -14,6 +14,7 @@
 #include "common/daemon/keep_running.h"
 #include "common/json/parse_json.h"
 #include "common/log/log.h"
+#include "common/log/refusals.h"
 #include "gen/walld/http/page.gen.h"
 #include "walld/http/stream_session.h"
 #include "walld/wall/status.h"
@@ -26,7 +27,7 @@ constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
 constexpr std::uint32_t kMaxHeader = 8 << 10, kMaxBody = 64 << 10;  // bytes
 
 constexpr const char* kJson = "application/json";
-constexpr const char* kVia = "http";
+constexpr const char* kVia = "http";      // also where it was, of what is refused
 constexpr const char* kRetryAfter = "1";  // seconds
 constexpr unsigned kVersion = 11;         // HTTP/1.1
 constexpr const char* kNotKnownYet = "somebody whose name is being looked up";
@@ -189,13 +190,15 @@ void HttpServer::take(net::StreamSocket accepted, bool foreign) {
     WebStream::Socket socket(executor_);
     socket.assign(protocol.family() == AF_INET6 ? asio::ip::tcp::v6() : asio::ip::tcp::v4(), accepted.release(),
                   ignored);
-    auto place = foreign ? foreign_.take("somebody at " + address_of(socket)) : connections_.take(kNotKnownYet);
+    const auto from = address_of(socket);
+    auto place = foreign ? foreign_.take("somebody at " + from) : connections_.take(kNotKnownYet);
     if (!place) {
-        log::warn("http_full reason={}", log::quoted(place.error().message));
+        log::refused(kVia, from, place.error().message);
         if (!foreign) turn_away(socket, place.error());  // in plain; nothing is said so to another machine
         return;
     }
-    auto connection = std::make_shared<Connection>(WebStream(std::move(socket)), std::move(*place), Person{}, foreign);
+    auto connection =
+        std::make_shared<Connection>(WebStream(std::move(socket)), std::move(*place), from, Person{}, foreign);
     open_[connection.get()] = connection;
     net::spawn(executor_, "http", serve(std::move(connection)));
 }
@@ -203,9 +206,8 @@ void HttpServer::take(net::StreamSocket accepted, bool foreign) {
 /// Whose connection it is may take its time to find out; of another machine's nobody knows.
 asio::awaitable<bool> HttpServer::admit(Connection& connection) {
     if (connection.foreign) {
-        const auto from = address_of(connection.stream.socket());
         const auto done = co_await connection.stream.shake_hands(*own_);
-        if (!done) log::info("http_refused from={} reason={}", log::quoted(from), log::quoted(done.error().message));
+        if (!done) log::refused(kVia, connection.from(), done.error().message);
         co_return done.has_value();
     }
     connection.caller = co_await who_.at(ends_of(connection.stream.socket().native_handle()));
@@ -215,7 +217,7 @@ asio::awaitable<bool> HttpServer::admit(Connection& connection) {
         connection.place = std::move(*place);
         co_return true;
     }
-    log::warn("http_full reason={}", log::quoted(place.error().message));
+    log::refused(kVia, connection.from(), place.error().message);
     turn_away(connection.stream.socket(), place.error());
     co_return false;
 }
@@ -269,9 +271,13 @@ asio::awaitable<std::optional<HttpServer::Response>> HttpServer::serve_stream(st
     const auto who = viewer(request, *connection);
     if (!who) co_return who.error();
     auto place = streams_.add_viewer(*who);
-    if (!place) co_return refusal(request.version(), http_status(place.error().kind), place.error());
+    if (!place) co_return no(request, *connection, http_status(place.error().kind), place.error());
+    StillMay still([this, request, at = connection.get()] {
+        return watcher(request, *at).map([](auto&&) {}).map_error([](const HttpRefusal& why) { return why.why; });
+    });
     std::shared_ptr<WebStream> stream(connection, &connection->stream);
-    co_await serve_viewer(std::move(stream), request, streams_, std::move(*place));
+    const auto may = co_await serve_viewer(std::move(stream), request, streams_, std::move(*place), std::move(still));
+    if (!may) log::refused(kVia, connection->from(), may.error().message);
     co_return std::nullopt;
 }
 
@@ -284,7 +290,8 @@ asio::awaitable<std::optional<HttpServer::Response>> HttpServer::answer(const Re
     auto asked = read(request, connection);
     if (!asked) co_return std::move(asked.error());
     auto answer = co_await desk_.carry_out(std::move(*asked));
-    if (!answer) co_return refusal(request.version(), http_status(answer.error().kind), answer.error());
+    if (!answer)
+        co_return refusal(request.version(), http_status(answer.error().kind), answer.error());  // the desk has said so
     if (answer->blob)
         co_return reply(request.version(), http::status::ok, "image/png",
                         HttpBody::value_type{{}, std::move(answer->blob)});
@@ -295,33 +302,32 @@ asio::awaitable<std::optional<HttpServer::Response>> HttpServer::answer(const Re
 asio::awaitable<HttpServer::Response> HttpServer::log_in(const Request& request, const Connection& connection) {
     const auto asked = of(request, connection);
     if (!asked.same_site())
-        co_return refusal(request.version(), 403,
-                          {RefusalKind::forbidden, "a page of another site may not sign in at this wall"});
+        co_return no(request, connection, 403,
+                     {RefusalKind::forbidden, "a page of another site may not sign in at this wall"});
     if (!asked.is_json())
-        co_return refusal(request.version(), 415, {RefusalKind::invalid, "expected 'Content-Type: application/json'"});
+        co_return no(request, connection, 415, {RefusalKind::invalid, "expected 'Content-Type: application/json'"});
     const auto body = parse_json(request.body(), kRequestJson);
     const bool told = body && body->is_object() && body->contains("token") && body->at("token").is_string();
     if (!told || body->at("token").get<std::string>().empty())
-        co_return refusal(request.version(), 400, {RefusalKind::invalid, R"(expected {"token": "..."})"});
-    auto who = identities_.with_token({}, body->at("token").get<std::string>());
-    const auto from = connection.foreign ? "another machine" : connection.caller.text();
+        co_return no(request, connection, 400, {RefusalKind::invalid, R"(expected {"token": "..."})"});
+    const auto secret = SecretDigest::of(body->at("token").get<std::string>());
+    const auto who = identities_.tokens().find(secret);
     if (!who) {
-        log::warn("login_refused from={}", log::quoted(from));
         asio::steady_timer wait(executor_, kWrongTokenDelay);
         co_await wait.async_wait(kTuple);
-        co_return refusal(request.version(), 401, who.error());
+        co_return no(request, connection, 401, who.error());
     }
-    log::info("login who={} from={}", log::quoted(who->text()), log::quoted(from));
+    log::info("login who={} from={}", log::quoted(who->text()), log::quoted(connection.from()));
     auto answer = reply(request.version(), http::status::ok, kJson, dump(person_json(*who)));
     answer.set(http::field::set_cookie,
-               cookie(connection.foreign, logins_.open(std::move(*who), Logins::Clock::now()), Logins::kLifetime));
+               cookie(connection.foreign, logins_.open(secret, Logins::Clock::now()), Logins::kLifetime));
     co_return answer;
 }
 
 HttpServer::Response HttpServer::log_out(const Request& request, const Connection& connection) {
     if (!of(request, connection).same_site())
-        return refusal(request.version(), 403,
-                       {RefusalKind::forbidden, "a page of another site may not sign anybody out of this wall"});
+        return no(request, connection, 403,
+                  {RefusalKind::forbidden, "a page of another site may not sign anybody out of this wall"});
     logins_.close(cookie_value(view(request[http::field::cookie]), cookie_name(connection.foreign)));
     auto answer = reply(request.version(), http::status::ok, kJson, std::string("{}"));
     answer.set(http::field::set_cookie, cookie(connection.foreign, "", std::chrono::seconds(0)));
@@ -332,9 +338,11 @@ HttpServer::Response HttpServer::log_out(const Request& request, const Connectio
 /// the name does not matter: a browser that was led here under another one has no cookie of ours under it.
 std::optional<HttpServer::Response> HttpServer::page(const Request& request, const Connection& connection) const {
     const auto version = request.version();
-    if (!connection.foreign && !host_ok(view(request[http::field::host])))
-        return reply(version, http::status::misdirected_request, "text/plain",
-                     "this wall answers to local names only\n");
+    if (!connection.foreign && !host_ok(view(request[http::field::host]))) {
+        constexpr const char* why = "this wall answers to local names only";
+        log::refused(kVia, connection.from(), why);
+        return reply(version, http::status::misdirected_request, "text/plain", std::string(why) + "\n");
+    }
     if (!reads(request)) return std::nullopt;
     const auto* file = std::ranges::find(kPageFiles, path_of(request), &PageFile::path);
     if (file != std::end(kPageFiles)) return reply(version, http::status::ok, file->type, std::string(file->content));
@@ -349,50 +357,67 @@ Expected<Person, HttpRefusal> HttpServer::person(const Request& request, const C
     const auto authorization = view(request[http::field::authorization]);
     const auto secret = cookie_value(view(request[http::field::cookie]), cookie_name(connection.foreign));
     if (authorization.empty() && !secret.empty())
-        if (auto known = logins_.find(secret, Logins::Clock::now())) return std::move(*known);
-    const auto no = [](const Refusal& why) { return tl::unexpected<HttpRefusal>({401, why}); };
+        if (const auto token = logins_.find(secret, Logins::Clock::now()))
+            if (auto known = identities_.tokens().find(*token)) return std::move(*known);
+    const auto unknown = [](const Refusal& why) { return tl::unexpected<HttpRefusal>({401, why}); };
     if (connection.foreign && authorization.empty())
-        return no({RefusalKind::forbidden, "sign in with a token: at the page, or by 'Authorization: Bearer TOKEN'"});
+        return unknown(
+            {RefusalKind::forbidden, "sign in with a token: at the page, or by 'Authorization: Bearer TOKEN'"});
     auto who = identities_.over_http(connection.caller, authorization, !connection.foreign);
-    if (!who) return no(who.error());
+    if (!who) return unknown(who.error());
     return std::move(*who);
+}
+
+Expected<Person, HttpRefusal> HttpServer::watcher(const Request& request, const Connection& connection) {
+    auto who = person(request, connection);
+    if (!who) return who;
+    if (const auto permitted = may(*who, Need::look, "watch the wall", nullptr); !permitted)
+        return tl::unexpected<HttpRefusal>({http_status(permitted.error().kind), permitted.error()});
+    return who;
 }
 
 /// Who wants to watch, or the answer for one who may not.
 Expected<Person, HttpServer::Response> HttpServer::viewer(const Request& request, const Connection& connection) {
     const auto version = request.version();
-    const auto no = [](Response answer) { return tl::unexpected<Response>(std::move(answer)); };
-    if (!connection.foreign && !host_ok(view(request[http::field::host]))) return no(*page(request, connection));
+    if (!connection.foreign && !host_ok(view(request[http::field::host])))
+        return tl::unexpected<Response>(*page(request, connection));
     if (!boost::beast::websocket::is_upgrade(request))
-        return no(
+        return tl::unexpected<Response>(
             reply(version, http::status::upgrade_required, "text/plain", "expected a WebSocket (docs/streams.md)\n"));
-    auto who = person(request, connection);
-    if (!who) return no(refusal(version, who.error().status, who.error().why));
-    if (const auto permitted = may(*who, Need::look, "watch the wall", nullptr); !permitted)
-        return no(refusal(version, http_status(permitted.error().kind), permitted.error()));
+    auto who = watcher(request, connection);
+    if (!who) return tl::unexpected<Response>(no(request, connection, who.error().status, who.error().why));
     if (!of(request, connection).same_site())
-        return no(refusal(version, 403, {RefusalKind::forbidden, "a page of another site may not watch this wall"}));
+        return tl::unexpected<Response>(
+            no(request, connection, 403, {RefusalKind::forbidden, "a page of another site may not watch this wall"}));
     return std::move(*who);
+}
+
+/// An answer that says no. Who may not, or is one too many, is in the log; who has made a mistake is not.
+HttpServer::Response HttpServer::no(const Request& request, const Connection& connection, int status,
+                                    const Refusal& why) {
+    if (why.kind == RefusalKind::forbidden || why.kind == RefusalKind::busy)
+        log::refused(kVia, connection.from(), why.message);
+    return refusal(request.version(), status, why);
 }
 
 /// What is asked of the desk, or the answer if nothing is.
 Expected<Asked, HttpServer::Response> HttpServer::read(const Request& request, const Connection& connection) {
-    const auto no = [&](int status, const Refusal& why) {
-        return tl::unexpected<Response>(refusal(request.version(), status, why));
+    const auto denied = [&](int status, const Refusal& why) {
+        return tl::unexpected<Response>(no(request, connection, status, why));
     };
     auto who = person(request, connection);
-    if (!who) return no(who.error().status, who.error().why);
+    if (!who) return denied(who.error().status, who.error().why);
     const auto path = path_of(request);
     if (reads(request) && path == kMetricsPath) {
         if (const auto permitted = may(*who, Need::look, "read the metrics", nullptr); !permitted)
-            return no(http_status(permitted.error().kind), permitted.error());
+            return denied(http_status(permitted.error().kind), permitted.error());
         return tl::unexpected<Response>(
             reply(request.version(), http::status::ok, "text/plain; version=0.0.4", metrics_.text()));
     }
     if (reads(request) && path == kSnapshotPath)
         return Asked{"screenshot", {{"tile", query_value(query_of(request), "tile")}}, std::move(*who), kVia};
     auto command = rest_command(of(request, connection));
-    if (!command) return no(command.error().status, command.error().why);
+    if (!command) return denied(command.error().status, command.error().why);
     return Asked{std::move(command->verb), std::move(command->arguments), std::move(*who), kVia};
 }
 

@@ -57,9 +57,12 @@ private:
     struct Connection {
         WebStream stream;
         Quota::Place place;
+        std::string address;   ///< of the other end, without its port
         Person caller;         ///< known once it is served
         bool foreign = false;  ///< over TLS: nobody knows who it is before they say so
 
+        /// For the log.
+        std::string from() const { return caller.kind == Person::Kind::unknown ? address : caller.text(); }
         const char* scheme() const { return foreign ? "https" : "http"; }
     };
 
@@ -71,9 +74,11 @@ private:
                                                           const Request& request);
     asio::awaitable<std::optional<Response>> answer(const Request& request, const Connection& connection);
     asio::awaitable<Response> log_in(const Request& request, const Connection& connection);
+    static Response no(const Request& request, const Connection& connection, int status, const Refusal& why);
     Response log_out(const Request& request, const Connection& connection);
     std::optional<Response> page(const Request& request, const Connection& connection) const;
     Expected<Person, HttpRefusal> person(const Request& request, const Connection& connection);
+    Expected<Person, HttpRefusal> watcher(const Request& request, const Connection& connection);
     Expected<Person, Response> viewer(const Request& request, const Connection& connection);
     Expected<Asked, Response> read(const Request& request, const Connection& connection);
 

@@ -1,43 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include "walld/http/logins.h"
 
-#include <openssl/sha.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "common/tls/fingerprint.h"
 
 namespace wall::walld {
-namespace {
 
-std::string digest_of(std::string_view secret) {
-    std::string out(SHA256_DIGEST_LENGTH, '\0');
-    SHA256(reinterpret_cast<const unsigned char*>(secret.data()), secret.size(),
-           reinterpret_cast<unsigned char*>(out.data()));
-    return out;
-}
-
-}  // namespace
-
-std::string Logins::open(Person person, Clock::time_point now) {
+std::string Logins::open(const SecretDigest& token, Clock::time_point now) {
     std::erase_if(open_, [&](const auto& entry) { return entry.second.until <= now; });
     if (open_.size() >= kMost)
         open_.erase(std::ranges::min_element(open_, {}, [](const auto& entry) { return entry.second.until; }));
     auto secret = tls::to_base64url(random_(kSecretBytes));
-    open_[digest_of(secret)] = {std::move(person), now + kLifetime};
+    open_[SecretDigest::of(secret)] = {token, now + kLifetime};
     return secret;
 }
 
-std::optional<Person> Logins::find(std::string_view secret, Clock::time_point now) {
-    const auto found = open_.find(digest_of(secret));
+std::optional<SecretDigest> Logins::find(std::string_view secret, Clock::time_point now) {
+    const auto found = open_.find(SecretDigest::of(secret));
     if (found == open_.end()) return std::nullopt;
-    if (found->second.until > now) return found->second.person;
+    if (found->second.until > now) return found->second.token;
     open_.erase(found);
     return std::nullopt;
 }
 
-void Logins::close(std::string_view secret) { open_.erase(digest_of(secret)); }
+void Logins::close(std::string_view secret) { open_.erase(SecretDigest::of(secret)); }
 
 std::string_view cookie_value(std::string_view header, std::string_view name) {
     while (!header.empty()) {

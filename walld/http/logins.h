@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Who has signed in with a token at the status page: a browser then sends a cookie instead, which scripts cannot read,
-// and which says nothing once walld has ended. Pure; the time is a parameter, and so are random bytes.
+// and which says nothing once walld has ended. It stands for the token's secret, whatever that may mean meanwhile.
+// Pure; the time is a parameter, and so are random bytes.
 #pragma once
 
 #include <chrono>
@@ -10,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "walld/wall/person.h"
+#include "walld/control/secret_digest.h"
 
 namespace wall::walld {
 
@@ -25,19 +26,19 @@ public:
     explicit Logins(RandomBytes random) : random_(std::move(random)) {}
 
     /// The cookie's value: letters, digits, - and _.
-    std::string open(Person person, Clock::time_point now);
-    /// Nothing for one that is over, or never was.
-    std::optional<Person> find(std::string_view secret, Clock::time_point now);
+    std::string open(const SecretDigest& token, Clock::time_point now);
+    /// The token that it stands for; nothing for one that is over, or never was.
+    std::optional<SecretDigest> find(std::string_view secret, Clock::time_point now);
     void close(std::string_view secret);
     std::size_t size() const { return open_.size(); }
 
 private:
     struct Login {
-        Person person;
+        SecretDigest token;
         Clock::time_point until;
     };
     RandomBytes random_;
-    std::map<std::string, Login> open_;  ///< by the digest of the secret: how long a search takes tells nothing of it
+    std::map<SecretDigest, Login> open_;  ///< by the cookie
 };
 
 /// The value of a cookie in a `Cookie` header; empty if it is not there.

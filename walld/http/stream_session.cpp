@@ -28,11 +28,12 @@ constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kMaxMessage = 64 << 10;  // bytes, from a viewer
 constexpr int kSendBuffer = 256 << 10;         // bytes in the kernel: what is there is old before a slow viewer gets it
 constexpr std::chrono::seconds kHandshakeLimit{10}, kIdleLimit{30};
-constexpr std::chrono::hours kLongAgo{24};
+constexpr const char* kNoMore = "you may watch no more";
 
 struct Connection {
-    Connection(std::shared_ptr<WebStream> from, StreamHub& the_hub, std::shared_ptr<StreamHub::Viewer> who)
-        : socket(std::move(from)), stream(*socket), hub(the_hub), viewer(std::move(who)) {}
+    Connection(std::shared_ptr<WebStream> from, StreamHub& the_hub, std::shared_ptr<StreamHub::Viewer> who,
+               StillMay still_may)
+        : socket(std::move(from)), stream(*socket), hub(the_hub), viewer(std::move(who)), still(std::move(still_may)) {}
     ~Connection() { hub.remove_viewer(*viewer); }
     Connection(const Connection&) = delete;
 
@@ -40,6 +41,7 @@ struct Connection {
     websocket::stream<WebStream&> stream;
     StreamHub& hub;
     std::shared_ptr<StreamHub::Viewer> viewer;
+    StillMay still;
     bool open = true;
 
     void close() {
@@ -51,9 +53,14 @@ struct Connection {
 
 asio::awaitable<void> send_all(std::shared_ptr<Connection> connection) {
     while (connection->open) {
+        if (const auto& may = connection->still.at(StillMay::Clock::now()); !may) {
+            const websocket::close_reason why(websocket::close_code::policy_error, kNoMore);
+            co_await connection->stream.async_close(why, kTuple);
+            co_return connection->close();
+        }
         const auto message = connection->hub.next(*connection->viewer);
         if (!message) {
-            co_await connection->viewer->news().wait(net::Changed::Clock::now() + kLongAgo);
+            co_await connection->viewer->news().wait(connection->still.next());
             continue;
         }
         static const std::string nothing;
@@ -67,18 +74,18 @@ asio::awaitable<void> send_all(std::shared_ptr<Connection> connection) {
 
 }  // namespace
 
-asio::awaitable<void> serve_viewer(std::shared_ptr<WebStream> socket,
-                                   boost::beast::http::request<boost::beast::http::string_body> request, StreamHub& hub,
-                                   std::shared_ptr<StreamHub::Viewer> viewer) {
+asio::awaitable<Outcome<void>> serve_viewer(std::shared_ptr<WebStream> socket,
+                                            boost::beast::http::request<boost::beast::http::string_body> request,
+                                            StreamHub& hub, std::shared_ptr<StreamHub::Viewer> viewer, StillMay still) {
     boost::system::error_code ignored;
     socket->socket().set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
     socket->socket().set_option(asio::ip::tcp::no_delay(true), ignored);
-    const auto connection = std::make_shared<Connection>(std::move(socket), hub, std::move(viewer));
+    const auto connection = std::make_shared<Connection>(std::move(socket), hub, std::move(viewer), std::move(still));
     auto& stream = connection->stream;
     stream.set_option(websocket::stream_base::timeout{kHandshakeLimit, kIdleLimit, true});
     stream.read_message_max(kMaxMessage);
     const auto [refused] = co_await stream.async_accept(request, kTuple);
-    if (refused) co_return;
+    if (refused) co_return Outcome<void>();
     net::spawn(stream.get_executor(), "viewer", send_all(connection));
     boost::beast::flat_buffer buffer;
     while (connection->open) {
@@ -92,6 +99,7 @@ asio::awaitable<void> serve_viewer(std::shared_ptr<WebStream> socket,
         buffer.clear();
     }
     connection->close();
+    co_return connection->still.last();
 }
 
 }  // namespace wall::walld

@@ -7,16 +7,17 @@
 #include <memory>
 
 #include "walld/http/web_stream.h"
+#include "walld/streams/still_may.h"
 #include "walld/streams/stream_hub.h"
 
 namespace wall::walld {
 
 namespace asio = boost::asio;
 
-/// Serves the viewer until either side closes. `request` is an upgrade that was checked; `viewer` is removed from the
-/// hub in the end.
-asio::awaitable<void> serve_viewer(std::shared_ptr<WebStream> socket,
-                                   boost::beast::http::request<boost::beast::http::string_body> request, StreamHub& hub,
-                                   std::shared_ptr<StreamHub::Viewer> viewer);
+/// Serves the viewer until either side closes, or they may watch no more. `request` is an upgrade that was checked;
+/// `viewer` is removed from the hub in the end. Gives why they may not.
+asio::awaitable<Outcome<void>> serve_viewer(std::shared_ptr<WebStream> socket,
+                                            boost::beast::http::request<boost::beast::http::string_body> request,
+                                            StreamHub& hub, std::shared_ptr<StreamHub::Viewer> viewer, StillMay still);
 
 }  // namespace wall::walld

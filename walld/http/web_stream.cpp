@@ -13,12 +13,15 @@ asio::awaitable<Result<void>> WebStream::shake_hands(const tls::TlsContext& own)
     if (!connection) co_return fail("TLS: " + tls::openssl_error());
     tls_.emplace(socket_, connection);  // whose it is from now on
     asio::steady_timer limit(get_executor(), kHandshakeLimit);
-    const auto armed = std::make_shared<bool>(true);
+    const auto armed = std::make_shared<bool>(true), late = std::make_shared<bool>(false);
     const std::shared_ptr<void> over(nullptr, [armed](void*) { *armed = false; });  // however this ends
-    limit.async_wait([this, armed](const boost::system::error_code& cancelled) {
-        if (!cancelled && *armed) close();
+    limit.async_wait([this, armed, late](const boost::system::error_code& cancelled) {
+        if (cancelled || !*armed) return;
+        *late = true;
+        close();
     });
     auto [error] = co_await tls_->async_handshake(asio::ssl::stream_base::server, asio::as_tuple(asio::use_awaitable));
+    if (*late) co_return fail("the TLS handshake took longer than " + std::to_string(kHandshakeLimit.count()) + " s");
     if (error) co_return fail("the TLS handshake failed: " + error.message());
     co_return Result<void>{};
 }

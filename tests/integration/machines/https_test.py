@@ -4,8 +4,6 @@
 (docs/security.md, "HTTP")."""
 from __future__ import annotations
 
-import contextlib
-import hashlib
 import http.client
 import json
 import os
@@ -20,65 +18,26 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests" / "support"))
 from machine_wall import WALLD  # noqa: E402
+from page_client import PageClient  # noqa: E402
+from show import until  # noqa: E402
 from token_wall import PAGE_PORT, SECRETS, TokenWall  # noqa: E402
 from wall import build_folder  # noqa: E402
 from websocket import Refused, WebSocket  # noqa: E402
+from xserver import XServer  # noqa: E402
 
+SOON = 5.0  # seconds
 OF_ONE, HANDSHAKE = 64, 5.0  # walld/wall/quota.h; seconds, walld/http/web_stream.h
 COOKIE = "__Host-wallgl"
-
-
-class Browser:
-    """What a program on another machine asks, over one connection for each request."""
-
-    def __init__(self, wall: TokenWall, host: str):
-        self.wall, self.host, self.cookie = wall, host, ""
-        self.address, self.origin = wall.page_address, wall.page_url
-
-    def connect(self, version: ssl.TLSVersion = ssl.TLSVersion.TLSv1_3) -> ssl.SSLSocket:
-        context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
-        context.check_hostname, context.verify_mode = False, ssl.CERT_NONE  # its key is compared, see certificate()
-        context.minimum_version = context.maximum_version = version
-        return context.wrap_socket(self.wall.hosts.connect(self.host, self.address))
-
-    def certificate(self) -> str:
-        with self.connect() as connected:
-            digest = hashlib.sha256(connected.getpeercert(binary_form=True)).hexdigest().upper()
-        return ":".join(digest[i:i + 2] for i in range(0, len(digest), 2))
-
-    def headers(self) -> dict[str, str]:
-        return {"Cookie": self.cookie} if self.cookie else {}
-
-    def ask(self, method: str, path: str, body: object = None, **headers: str) -> tuple[int, dict[str, str], bytes]:
-        """Status, headers by their lower names, body."""
-        asked = self.headers() | {name.replace("_", "-"): value for name, value in headers.items()}
-        text = None if body is None else json.dumps(body)
-        if text is not None:
-            asked.setdefault("Content-Type", "application/json")
-        with contextlib.closing(http.client.HTTPConnection(*self.address)) as connection:
-            connection.sock = self.connect()
-            connection.request(method, path, text, asked)
-            answer = connection.getresponse()
-            return answer.status, {k.lower(): v for k, v in answer.getheaders()}, answer.read()
-
-    def login(self, secret: str) -> dict[str, str]:
-        status, headers, body = self.ask("POST", "/api/v1/login", {"token": secret})
-        if status != 200:
-            raise AssertionError(f"{status}: {body}")
-        self.cookie = headers["set-cookie"].split(";")[0]
-        return headers
-
-    def watch(self, **headers: str) -> WebSocket:
-        return WebSocket(self.origin, connected=self.connect(), **(self.headers() | headers))
 
 
 class FromOtherMachines(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
+        cls.x = cls.enterClassContext(XServer())
         cls.wall = cls.enterClassContext(TokenWall((2, 1), clients=["desk", "other"]))
 
     def setUp(self) -> None:
-        self.browser = Browser(self.wall, "desk")
+        self.browser = PageClient(self.wall, "desk")
 
     def bearer(self, name: str) -> dict[str, str]:
         return {"Authorization": f"Bearer {SECRETS[name]}"}
@@ -121,7 +80,7 @@ class FromOtherMachines(unittest.TestCase):
                 pass
         cookie = self.browser.cookie
         in_plain = f"wallgl={cookie.partition('=')[2]}"
-        self.assertEqual(Browser(self.wall, "other").ask("GET", "/api/v1/whoami", Cookie=in_plain)[0], 401)
+        self.assertEqual(PageClient(self.wall, "other").ask("GET", "/api/v1/whoami", Cookie=in_plain)[0], 401)
         self.assertIn("Max-Age=0", self.browser.ask("POST", "/api/v1/logout", {})[1]["set-cookie"])
         self.assertEqual(self.browser.ask("GET", "/api/v1/whoami")[0], 401)
 
@@ -168,6 +127,55 @@ class FromOtherMachines(unittest.TestCase):
         self.assertNotIn("Secure", said)
         self.assertEqual(json.loads(ask("GET", "/api/v1/whoami", cookie=said.split(";")[0]).read())["name"], "looks")
 
+    # ---- who may no more ----
+
+    def watching(self) -> WebSocket:
+        stream = self.enterContext(self.browser.watch())
+        stream.watch({"tile": "0-0", "codec": "huffyuv"})
+        stream.message()
+        return stream
+
+    def assert_ends(self, stream: WebSocket) -> None:
+        begin = time.monotonic()
+        with self.assertRaises(ConnectionError):
+            while time.monotonic() < begin + SOON:
+                stream.message(SOON)
+        self.assertLess(time.monotonic() - begin, SOON)
+
+    def test_who_signs_out_watches_no_more(self) -> None:
+        self.browser.login(SECRETS["looks"])
+        stream = self.watching()
+        self.browser.ask("POST", "/api/v1/logout", {})
+        self.assert_ends(stream)
+
+    def test_a_token_that_was_revoked_is_good_for_nothing(self) -> None:
+        self.browser.login(SECRETS["guest"])
+        stream = self.watching()
+        app = self.wall.run_at("desk", build_folder() / "tests" / "frame_clock", "--fps", "20",
+                               env=self.x.environment(WALLGL_TOKEN_FILE=str(self.wall.folder / "guest")))
+        session = self.wall.wait_session(app)
+        self.assertEqual(next(t for t in self.wall.ctl("token", "list") if t["name"] == "guest"),
+                         {"name": "guest", "role": "user", "revoked": False, "programs": 1})
+        self.assertEqual(self.wall.ctl("token", "revoke", "guest"), {"ended": 1})
+        self.assert_ends(stream)
+        until(lambda: session not in [s["id"] for s in self.wall.sessions()], "its program is gone", SOON)
+        for _ in range(2):
+            status, _, body = self.browser.ask("GET", "/api/v1/whoami")
+            self.assertEqual(status, 401, "the cookie")
+            status, _, body = self.browser.ask("GET", "/api/v1/whoami", **self.bearer("guest"))
+            self.assertEqual(status, 401)
+            self.assertIn("token guest was revoked", json.loads(body)["error"]["message"])
+            self.assertEqual(self.browser.ask("POST", "/api/v1/login", {"token": SECRETS["guest"]})[0], 401)
+            self.wall.restart_walld()
+        self.assertEqual(self.browser.ask("GET", "/api/v1/whoami", **self.bearer("looks"))[0], 200)
+        file = self.wall.folder / "guest"
+        file.write_text("another-secret-of-the-guest")
+        self.wall.ctl("reload")
+        self.assertFalse(next(t for t in self.wall.ctl("token", "list") if t["name"] == "guest")["revoked"])
+        self.assertEqual(self.browser.ask("GET", "/api/v1/whoami", **self.bearer("guest"))[0], 401)
+        self.assertEqual(self.browser.ask("GET", "/api/v1/whoami",
+                                          Authorization="Bearer another-secret-of-the-guest")[0], 200)
+
     # ---- the connection ----
 
     def test_the_certificate_is_the_one_that_wallctl_shows_also_of_the_next_walld(self) -> None:
@@ -194,7 +202,7 @@ class FromOtherMachines(unittest.TestCase):
             one_too_many.settimeout(2)
             self.assertEqual(one_too_many.recv(1), b"", "turned away at once")
             one_too_many.close()
-            self.assertEqual(Browser(self.wall, "other").ask("GET", "/healthz")[0], 200, "another machine is served")
+            self.assertEqual(PageClient(self.wall, "other").ask("GET", "/healthz")[0], 200, "another machine is served")
             for each in stalled:
                 each.settimeout(HANDSHAKE + 3)
                 self.assertEqual(each.recv(1), b"")

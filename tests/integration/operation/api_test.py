@@ -283,7 +283,7 @@ class People(unittest.TestCase):
         try:
             end = time.monotonic() + 20
             while not any("games may not run a node" in line
-                          for line in walld_log_lines(self.wall, "node_refused")):
+                          for line in walld_log_lines(self.wall, "refused")):
                 self.assertLess(time.monotonic(), end)
                 time.sleep(0.05)
             self.assertFalse(self.wall.nodes()[0]["up"])

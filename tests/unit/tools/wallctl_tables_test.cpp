@@ -22,6 +22,17 @@ TEST(Tables, AlignColumnsAndLeaveOutTrailingBlanks) {
               "bottom  r     64x48+0+480  window    away\n");
 }
 
+TEST(Tables, ATokenIsGoodOrRevoked) {
+    const json tokens{{{"name", "kiosk"}, {"role", "user"}, {"revoked", true}, {"programs", 0}},
+                      {{"name", "control room"}, {"role", "operator"}, {"revoked", false}, {"programs", 2}}};
+    EXPECT_EQ(tokens_table(tokens),
+              "NAME          ROLE      STATE    PROGRAMS\n"
+              "kiosk         user      revoked  0\n"
+              "control room  operator  good     2\n");
+    EXPECT_EQ(revoked_text({{"ended", 1}}), "revoked; 1 program ended\n");
+    EXPECT_EQ(revoked_text({{"ended", 0}}), "revoked; 0 programs ended\n");
+}
+
 TEST(Tables, ASessionHasALineForEachWindow) {
     const json surface{{"id", "3.1"}, {"width", 300}, {"height", 200}, {"rect", {0, 0, 300, 200}}, {"frame", 7}};
     const json traffic{{"frames", 7},

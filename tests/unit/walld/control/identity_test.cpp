@@ -36,7 +36,7 @@ protected:
 };
 
 TEST_F(ThePeople, AUserOfThisMachineHasANameAndARole) {
-    const auto who = *Identities::open(people_);
+    const auto who = *Identities::open(people_, {});
     EXPECT_EQ(who.of(0).name, "root");
     EXPECT_EQ(who.of(::geteuid()).role, Role::operator_);
     EXPECT_EQ(who.of(77).role, Role::operator_);
@@ -45,7 +45,7 @@ TEST_F(ThePeople, AUserOfThisMachineHasANameAndARole) {
 }
 
 TEST_F(ThePeople, ATokenStandsForSomebodyElse) {
-    const auto who = *Identities::open(people_);
+    const auto who = *Identities::open(people_, {});
     const auto kiosk = who.with_token({}, kSecret);
     ASSERT_TRUE(kiosk);
     EXPECT_EQ(kiosk->text(), "token kiosk");
@@ -56,18 +56,18 @@ TEST_F(ThePeople, ATokenStandsForSomebodyElse) {
 }
 
 TEST_F(ThePeople, OverHttpEverybodyIsAtLeastAViewer) {
-    auto who = *Identities::open(people_);
+    auto who = *Identities::open(people_, {});
     EXPECT_EQ(who.over_http({}, "", true)->role, Role::viewer);
     EXPECT_EQ(who.over_http(who.of(77), "", true)->role, Role::operator_);
     EXPECT_EQ(who.over_http({}, std::string("Bearer ") + kSecret, true)->role, Role::user);
     for (const char* wrong : {"Bearer", "Bearer ", "Bearer x", "Basic eDp5", kSecret})
         EXPECT_FALSE(who.over_http(who.of(77), wrong, true)) << wrong;
     people_.http_role = Role::none;
-    EXPECT_EQ(Identities::open(people_)->over_http({}, "", true)->role, Role::none);
+    EXPECT_EQ(Identities::open(people_, {})->over_http({}, "", true)->role, Role::none);
 }
 
 TEST_F(ThePeople, ATokensFileMustBeASecret) {
-    const auto why = [&] { return Identities::open(people_).error().message; };
+    const auto why = [&] { return Identities::open(people_, {}).error().message; };
     ::chmod(file_.c_str(), 0640);
     EXPECT_THAT(why(), HasSubstr("token 'kiosk': " + file_ + ": expected a file that only its owner can read"));
     ::chmod(file_.c_str(), 0600);

@@ -8,7 +8,7 @@ namespace {
 
 class TheLogins : public ::testing::Test {
 protected:
-    static Person token(const std::string& name) { return {Person::Kind::token, name, 0, Role::user}; }
+    static SecretDigest token(const char* secret) { return SecretDigest::of(secret); }
     Logins::Clock::time_point now_{};
     int count_ = 0;
     Logins logins_{[this](std::size_t bytes) { return std::string(bytes - 4, 'x') + std::to_string(1000 + count_++); }};
@@ -18,8 +18,8 @@ TEST_F(TheLogins, KnowASecretUntilItIsOver) {
     const auto secret = logins_.open(token("kiosk"), now_);
     EXPECT_EQ(secret.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"),
               std::string::npos);
-    EXPECT_EQ(logins_.find(secret, now_)->name, "kiosk");
-    EXPECT_EQ(logins_.find(secret, now_ + Logins::kLifetime - std::chrono::seconds(1))->name, "kiosk");
+    EXPECT_EQ(logins_.find(secret, now_), token("kiosk"));
+    EXPECT_EQ(logins_.find(secret, now_ + Logins::kLifetime - std::chrono::seconds(1)), token("kiosk"));
     EXPECT_FALSE(logins_.find(secret, now_ + Logins::kLifetime));
     EXPECT_EQ(logins_.size(), 0u);
     EXPECT_FALSE(logins_.find("", now_));
@@ -31,7 +31,7 @@ TEST_F(TheLogins, EndWhenTheyAreClosed) {
     logins_.close(one);
     logins_.close("unknown");
     EXPECT_FALSE(logins_.find(one, now_));
-    EXPECT_EQ(logins_.find(other, now_)->name, "b");
+    EXPECT_EQ(logins_.find(other, now_), token("b"));
 }
 
 TEST_F(TheLogins, AreNotMoreThanThereMayBe) {
