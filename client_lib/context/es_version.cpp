@@ -18,13 +18,14 @@ struct Beyond {
     int version;
     const char* shading_language;  ///< null: it has none
     const char* node_word;         ///< what a node's driver must have for it; empty: nothing
+    const char* other_word = "";   ///< likewise
 };
 constexpr Beyond kBeyond[] = {
     {11, nullptr, ""},
     {20, "1.00", "GL_ARB_ES2_compatibility"},
     {30, "3.00", "GL_ARB_ES3_compatibility"},
     {31, "3.10", "GL_ARB_ES3_1_compatibility"},
-    {32, "3.20", "GL_ARB_ES3_2_compatibility"},
+    {32, "3.20", "GL_ARB_ES3_2_compatibility", "GL_KHR_texture_compression_astc_ldr"},
 };
 
 struct WordVersions {
@@ -44,6 +45,9 @@ const std::array<WordVersions, 0x10000>& word_versions() {
 }
 
 bool has_word(const NodeWords& node, const char* word) { return *word == '\0' || node.have(word); }
+bool can_do(const NodeWords& node, const Beyond& version) {
+    return has_word(node, version.node_word) && has_word(node, version.other_word);
+}
 
 std::vector<std::string> es_extensions(unsigned version, const Caps& caps) {
     const NodeWords node(caps);
@@ -62,7 +66,7 @@ const Beyond& offered_beyond(unsigned version, const Caps& caps) {
     for (const Beyond& beyond : kBeyond) {
         const auto number = static_cast<unsigned>(beyond.version);
         if (is_first_es(number) != is_first_es(version) || number > version) continue;
-        if (!offered || has_word(node, beyond.node_word)) offered = &beyond;
+        if (!offered || can_do(node, beyond)) offered = &beyond;
     }
     return *offered;
 }
@@ -124,7 +128,7 @@ std::vector<std::string> shading_languages_in(const ContextProfile& profile, con
     for (const Beyond& beyond : kBeyond) {
         const bool has = profile.es != 0 ? static_cast<unsigned>(beyond.version) <= profile.es
                                          : static_cast<unsigned>(beyond.version) <= implemented_es_version();
-        if (has && NodeWords(caps).have(beyond.node_word))
+        if (has && *beyond.node_word != '\0' && can_do(NodeWords(caps), beyond))
             out.push_back(beyond.version == 20 ? "100" : std::to_string(beyond.version * 10) + " es");
     }
     return out;

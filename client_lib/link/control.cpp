@@ -419,6 +419,7 @@ bool ControlLink::write_some() {
 bool ControlLink::handle(FromWalld message) {
     if (const auto* refused = std::get_if<Refused>(&message)) {
         refused_ = true;
+        complain_once("walld at " + address_ + " has ended this program's drawing: " + refused->reason, "ended");
         on_lost(refused->reason);
         return false;
     }

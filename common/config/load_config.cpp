@@ -19,6 +19,8 @@ namespace {
 constexpr std::int64_t kMaxSwapTimeout = 10'000;   // ms
 constexpr std::int64_t kMaxCloseTimeout = 60'000;  // ms
 constexpr std::int64_t kMaxSessions = 10'000;
+constexpr std::int64_t kMebibyte = 1 << 20, kMaxMebibytes = 1 << 20;
+constexpr std::int64_t kMaxObjects = 1 << 20, kMaxFps = 1000, kMaxWindows = 256;
 constexpr std::array kBackends{Backend::egl, Backend::osmesa};
 
 std::uint32_t read_background(TreeReader& read, const toml::table& wall) {
@@ -127,9 +129,31 @@ auto parse(std::string_view toml, std::string_view file_name, ReadRoot read_root
     return out;
 }
 
+/// [quota]: what is left out is as much as there is.
+QuotaConfig read_quota(TreeReader& read, const toml::table& root) {
+    QuotaConfig out;
+    const auto& quota = read.section(root, "quota");
+    read.only(quota, "[quota]",
+              {"program_memory", "program_objects", "program_bandwidth", "program_fps", "program_windows",
+               "person_programs", "person_memory"});
+    const auto figure = [&](const char* key, std::int64_t most, std::int64_t unit, auto& value) {
+        if (quota.get(key))
+            value = static_cast<typename std::remove_reference_t<decltype(value)>::value_type>(
+                unit * read.integer(quota, key, 1, most, 1));
+    };
+    figure("program_memory", kMaxMebibytes, kMebibyte, out.program_memory);
+    figure("program_objects", kMaxObjects, 1, out.program_objects);
+    figure("program_bandwidth", kMaxMebibytes, kMebibyte, out.program_bandwidth);
+    figure("program_fps", kMaxFps, 1, out.program_fps);
+    figure("program_windows", kMaxWindows, 1, out.program_windows);
+    figure("person_programs", kMaxSessions, 1, out.person_programs);
+    figure("person_memory", kMaxMebibytes, kMebibyte, out.person_memory);
+    return out;
+}
+
 WallConfig read_wall(TreeReader& read, const toml::table& root) {
     WallConfig out;
-    read.only(root, "the file", {"wall", "control", "http", "people", "node"});
+    read.only(root, "the file", {"wall", "control", "http", "people", "quota", "node"});
     const auto& wall = read.section(root, "wall");
     read.only(wall, "[wall]",
               {"name", "background", "swap_timeout_ms", "close_timeout_ms", "max_sessions", "state_directory"});
@@ -144,6 +168,7 @@ WallConfig read_wall(TreeReader& read, const toml::table& root) {
     if (wall.get("state_directory")) out.state_directory = read.text(wall, "state_directory");
     read_control(read, root, out);
     read_people(read, root, out.people);
+    out.quota = read_quota(read, root);
     read_http(read, root, out);
     read_nodes(read, root, out);
     return out;

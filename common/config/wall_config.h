@@ -12,6 +12,7 @@
 
 #include "common/base/trusted_server.h"
 #include "common/config/people.h"
+#include "common/config/quota.h"
 #include "common/geom/rect.h"
 #include "common/net/address.h"
 
@@ -51,6 +52,7 @@ struct WallConfig {
     std::vector<net::Address> control_listen;  ///< walld's; nodes connect to the first
     std::string daemon_user = kWallUser;       ///< walld's, for the nodes: a name or number, "*" for anybody
     PeopleConfig people;                       ///< who may do what
+    QuotaConfig quota;                         ///< and have how much
     std::vector<net::Address> http_listen;     ///< none: no HTTP; over TLS where other machines reach it
     std::chrono::milliseconds swap_timeout{250};
     std::chrono::milliseconds close_timeout{

@@ -124,7 +124,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     {
         Ignore output;
         SessionReplica session(*node->driver, SessionId(1));
-        session.objects.set_limit(kObjectBytes);
+        session.objects.set_limits(kObjectBytes, kMaxObjects);
         Executor executor(*node->node, session, output);
         open_surface(executor);
         (void)executor.run_batch(fuzz::batch_of(data, size, ContextId(1)));
@@ -132,7 +132,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     {
         Ignore output;
         SessionReplica session(*node->driver, SessionId(1));
-        session.objects.set_limit(kObjectBytes);
+        session.objects.set_limits(kObjectBytes, kMaxObjects);
         Executor executor(*node->node, session, output);
         open_surface(executor);
         const auto batch = fuzz::batch_of(data, size, ContextId(1));
@@ -142,8 +142,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         Ignore output;
         ParallelGroup group(*node->driver, {2, {}});
         SessionReplica member(*node->driver, SessionId(1), &group, 0), other(*node->driver, SessionId(1), &group, 1);
-        member.objects.set_limit(kObjectBytes);
-        other.objects.set_limit(kObjectBytes);
+        member.objects.set_limits(kObjectBytes, kMaxObjects);
+        other.objects.set_limits(kObjectBytes, kMaxObjects);
         Executor executor(*node->node, member, output), others(*node->node, other, output);
         WALL_ASSERT(group.sync.join(0) && group.sync.join(1));
         open_surface(executor);

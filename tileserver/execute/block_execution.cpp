@@ -60,7 +60,7 @@ bool BlockExecution::counts_samples() const {
 void BlockExecution::enter_tile() {
     if (!switch_to(execution_.node, execution_.session, *execution_.context, *block_.target,
                    {counts_samples(), block_.slot == first_slot_}))
-        execution_.refuse("no such query, or more objects than a session may have");
+        execution_.refuse("no such query, or " + too_much("objects"));
     execution_.modes.enter();
 }
 

@@ -15,7 +15,7 @@ constexpr std::uint32_t kLargestRead = 16 << 20;
 void BufferCommands::BufferData(ClientName name, std::uint32_t size, GLenum usage) {
     const auto buffer = execution_.session.objects.make<Buffer>(name, execution_.node.driver);
     if (!buffer) return execution_.refuse(buffer.error().message);
-    if (!(*buffer)->affords_size(size)) return execution_.refuse("more memory of objects than a session may have");
+    if (!(*buffer)->affords_size(size)) return execution_.refuse(too_much("memory of objects"));
     if (!(*buffer)->define(size, usage)) execution_.refuse("the driver has no memory for a buffer of that size");
 }
 

@@ -12,7 +12,7 @@ void DrawPiecesCommands::DrawPieces(ClientName name, std::uint32_t step, std::ui
         return execution_.refuse("no pieces of a draw");
     const auto pieces = execution_.session.objects.make<tileserver::DrawPieces>(name);
     if (!pieces) return execution_.refuse(pieces.error().message);
-    if (!(*pieces)->define({step, overlap}, boxes)) execution_.refuse("more memory of objects than a session may have");
+    if (!(*pieces)->define({step, overlap}, boxes)) execution_.refuse(too_much("memory of objects"));
 }
 
 }  // namespace wall::tileserver

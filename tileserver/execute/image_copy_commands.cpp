@@ -27,7 +27,7 @@ Texture* find_texture(const SessionReplica& session, ClientName name, GLenum tar
 
 // Mesa 22.3 looks at each face of a cube map before it looks whether there are as many.
 std::optional<GLuint> ImageCopyCommands::find(const Place& place, std::int32_t depth, bool written) {
-    const auto refuse = [&](const char* why) {
+    const auto refuse = [&](const std::string& why) {
         execution_.refuse(why);
         return std::nullopt;
     };
@@ -44,7 +44,7 @@ std::optional<GLuint> ImageCopyCommands::find(const Place& place, std::int32_t d
         place.z + depth > static_cast<std::int32_t>(glapi::kCubeFaces))
         return refuse("no such face");
     if (written && texture->promise) return refuse("content under a name is not copied");
-    if (written && !texture->own(execution_.node.shared)) return refuse("more texture memory than a session may have");
+    if (written && !texture->own(execution_.node.shared)) return refuse(too_much("texture memory"));
     return texture->content().name();
 }
 
@@ -69,7 +69,7 @@ void ImageCopyCommands::ViewMipmaps(ClientName name, GLenum target, std::int32_t
     if (texture == nullptr || !glapi::info_of(texture->target()).mipmaps)
         return execution_.refuse("no such texture or mipmaps");
     if (texture->promise) return execution_.refuse("content under a name has no mipmaps of a part");
-    if (!texture->own(execution_.node.shared)) return execution_.refuse("more texture memory than a session may have");
+    if (!texture->own(execution_.node.shared)) return execution_.refuse(too_much("texture memory"));
     if (!block_.draws) return;
     texture->content().make_mipmaps(base, last);
     execution_.session.work.gl_errors += execution_.node.driver.drain_errors();

@@ -24,7 +24,7 @@ void RenderbufferCommands::Renderbuffer(ClientName name, std::uint32_t samples, 
         renderbuffer.affords_samples(std::uint64_t{std::max(samples, 1u)} * std::uint64_t{width} * height);
     if (!affordable || !renderbuffer.define(samples, internal_format, static_cast<std::int32_t>(width),
                                             static_cast<std::int32_t>(height)))
-        execution_.refuse("more memory of objects than a session may have");
+        execution_.refuse(too_much("memory of objects"));
 }
 
 void RenderbufferCommands::RenderbufferRead(RequestId request, ClientName name, std::int32_t first_row,

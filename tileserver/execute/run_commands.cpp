@@ -19,8 +19,7 @@ void RunCommands::RunDefine(ClientName id, std::uint32_t commands, std::uint32_t
                             std::span<const std::byte> content) {
     const std::size_t room = wire::padded4(commands);
     if (content.size() != room + operand_bytes) return execution_.refuse("content does not fit its sizes");
-    if (!execution_.session.objects.affords(content.size()))
-        return execution_.refuse("more runs than a session may have");
+    if (!execution_.session.objects.affords(content.size())) return execution_.refuse(too_much("runs"));
     const auto opcodes = content.subspan(room - commands, commands);
     for (const std::byte op : opcodes)
         if (std::to_integer<std::size_t>(op) >= glapi::kOpCount ||
@@ -74,7 +73,7 @@ void RunCommands::finish_run() {
 void RunCommands::keep(ClientName id, std::shared_ptr<const RunContent> content) {
     const auto run = execution_.session.objects.make<Run>(id);
     if (!run) return execution_.refuse(run.error().message);
-    if (!content || !(*run)->adopt(std::move(content))) execution_.refuse("more runs than a session may have");
+    if (!content || !(*run)->adopt(std::move(content))) execution_.refuse(too_much("runs"));
 }
 
 bool RunCommands::list_is_full() const {

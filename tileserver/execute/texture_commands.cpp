@@ -39,7 +39,7 @@ Texture* TextureCommands::bind_to_edit(ClientName name, GLenum target) {
         return nullptr;
     }
     Texture& texture = **made;
-    if (!texture.own(execution_.node.shared)) execution_.refuse("more texture memory than a session may have");
+    if (!texture.own(execution_.node.shared)) execution_.refuse(too_much("texture memory"));
     if (texture.promise)
         execution_.node.shared.heard(texture.promise->key, execution_.session.asker(),
                                      std::chrono::steady_clock::now());
@@ -56,7 +56,7 @@ void TextureCommands::define_image(Texture& texture, GLenum target, std::int32_t
     const unsigned errors = execution_.node.driver.drain_errors();
     execution_.session.work.gl_errors += errors;
     if (!texture.note_image(target, level, errors == 0 ? &format : nullptr))
-        execution_.refuse("more texture memory than a session may have");
+        execution_.refuse(too_much("texture memory"));
 }
 
 void TextureCommands::TexImage(ClientName name, GLenum target, std::int32_t level, GLenum internal_format,
@@ -72,8 +72,7 @@ void TextureCommands::TexImage(ClientName name, GLenum target, std::int32_t leve
     if (texture == nullptr) return;
     const auto estimate = std::uint64_t{4} * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) *
                           static_cast<std::uint64_t>(depth);
-    if (!texture->affords_image(target, level, estimate))
-        return execution_.refuse("more texture memory than a session may have");
+    if (!texture->affords_image(target, level, estimate)) return execution_.refuse(too_much("texture memory"));
     if (auto* hash = texture->hash())
         hash->TexImage(target, level, internal_format, width, height, depth, border, format, type, pixels);
     execution_.node.driver.neutral_pixel_transfer();
@@ -113,8 +112,7 @@ void TextureCommands::TexCompressed(ClientName name, GLenum target, std::int32_t
     if (texture == nullptr) return;
     if (!glapi::may_have_blocks(glapi::info_of(texture->target()), internal_format))
         return execution_.refuse("no such target");
-    if (!texture->affords_image(target, level, blocks.size()))
-        return execution_.refuse("more texture memory than a session may have");
+    if (!texture->affords_image(target, level, blocks.size())) return execution_.refuse(too_much("texture memory"));
     if (auto* hash = texture->hash()) hash->TexCompressed(target, level, internal_format, width, height, depth, blocks);
     define_image(*texture, target, level, {internal_format, 0, 0, true}, [&] {
         const auto upload = texture->content().storage() ? upload_stored_blocks : upload_blocks;
@@ -170,8 +168,7 @@ void TextureCommands::TexImageSamples(ClientName name, GLenum target, std::uint3
     if (texture == nullptr) return;
     const auto estimate = std::uint64_t{4} * samples * static_cast<std::uint64_t>(width) *
                           static_cast<std::uint64_t>(height) * static_cast<std::uint64_t>(depth);
-    if (!texture->affords_image(target, 0, estimate))
-        return execution_.refuse("more texture memory than a session may have");
+    if (!texture->affords_image(target, 0, estimate)) return execution_.refuse(too_much("texture memory"));
     if (auto* hash = texture->hash())
         hash->TexImageSamples(target, samples, internal_format, width, height, depth, fixed_places);
     const auto fixed = static_cast<GLboolean>(fixed_places != 0);
@@ -203,7 +200,7 @@ void TextureCommands::adopt(Texture& texture, std::shared_ptr<SharedContent> hav
     auto content = content_as<TextureContent>(std::move(have));
     if (!content || content->target() != texture.target())
         return execution_.refuse("content is not what its name says");
-    if (!texture.adopt(std::move(content))) execution_.refuse("more texture memory than a session may have");
+    if (!texture.adopt(std::move(content))) execution_.refuse(too_much("texture memory"));
 }
 
 void TextureCommands::TexShared(ClientName name) {

@@ -28,7 +28,7 @@ void TextureDrawnCommands::TexMipmaps(ClientName name, GLenum target, std::int32
     if (!kind || !glapi::info_of(*kind).mipmaps) return execution_.refuse("no such target");
     Texture* texture = find_texture(execution_.session, name, *kind);
     if (texture == nullptr) return execution_.refuse("no such texture");
-    if (!texture->own(execution_.node.shared)) return execution_.refuse("more texture memory than a session may have");
+    if (!texture->own(execution_.node.shared)) return execution_.refuse(too_much("texture memory"));
     if (auto* hash = texture->hash()) hash->TexMipmaps(target, base, last);
     texture->content().make_mipmaps(base, last);
     execution_.session.work.gl_errors += execution_.node.driver.drain_errors();

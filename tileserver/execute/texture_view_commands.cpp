@@ -46,7 +46,7 @@ void TextureCommands::TexStorage(ClientName name, GLenum target, std::uint32_t l
                                       static_cast<GLsizei>(samples),
                                       {width, height, depth},
                                       fixed_places != 0}))
-        execution_.refuse("more texture memory than a session may have");
+        execution_.refuse(too_much("texture memory"));
     execution_.session.work.gl_errors += execution_.node.driver.drain_errors();
 }
 
@@ -71,7 +71,7 @@ void TextureCommands::TexView(ClientName name, ClientName origin_name, GLenum ta
         return execution_.refuse("no such part of a texture");
     execution_.session.work.gl_errors += execution_.node.driver.drain_errors();
     if (!texture->show(execution_.node.driver, *origin, {internal_format, first_level, levels, first_layer, layers}))
-        execution_.refuse("more texture memory than a session may have");
+        execution_.refuse(too_much("texture memory"));
     execution_.session.work.gl_errors += execution_.node.driver.drain_errors();
 }
 

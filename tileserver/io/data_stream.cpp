@@ -30,6 +30,7 @@ constexpr auto kGreetingLimit = 5s;           // for the hello to come
 constexpr const char *kNoHello = "no hello came", *kClosed = "closed";
 constexpr auto kTicketLimit = 3s;  // walld's ticket may come later than the client
 constexpr auto kTicketPoll = 10ms;
+constexpr auto kAhead = 100ms;  // of the bandwidth that a session may have
 
 /// The other end has closed the socket, and nothing that it sent before is left.
 bool is_gone(int socket) {
@@ -154,14 +155,30 @@ asio::awaitable<Result<void>> DataStream::take_batches() {
         if (!frame) co_return tl::unexpected(frame.error());
         if (frame->kind != wire::FrameKind::batch)
             co_return wall::fail("unexpected frame of kind " + std::to_string(static_cast<int>(frame->kind)));
+        const auto bytes = frame->payload.size();
         room_ = batches_->push(std::move(frame->payload));
         host_.render().wake();
+        co_await hold_to_bandwidth(bytes);
         while (!room_ && !closing_) {
             timer_.expires_after(1s);
             co_await timer_.async_wait(kWaitable);
         }
     }
     co_return Result<void>{};
+}
+
+/// Waits until so much more may have come. A moment's worth may be ahead of that, so that small frames are not late.
+asio::awaitable<void> DataStream::hold_to_bandwidth(std::size_t bytes) {
+    const Admission* admission = host_.admission(session_);
+    const auto most = admission ? admission->quota.bytes_per_second : 0;
+    if (most == 0) co_return;
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> takes(static_cast<double>(bytes) / static_cast<double>(most));
+    read_until_ = std::max(read_until_, now) + std::chrono::duration_cast<std::chrono::nanoseconds>(takes);
+    while (!closing_ && std::chrono::steady_clock::now() < read_until_ - kAhead) {
+        timer_.expires_at(read_until_ - kAhead);
+        co_await timer_.async_wait(kWaitable);
+    }
 }
 
 void DataStream::send(wire::FrameKind kind, std::span<const std::byte> payload) {

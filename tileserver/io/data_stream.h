@@ -34,6 +34,7 @@ struct Admission {
     std::string ticket;
     Membership membership;
     std::string key{};  ///< fingerprint of the machine that it runs on, which alone may come; empty: any
+    SessionQuota quota{};
 };
 
 /// What a stream needs of the node.
@@ -71,6 +72,7 @@ private:
 
     asio::awaitable<Result<void>> greet();
     asio::awaitable<Result<void>> take_batches();
+    asio::awaitable<void> hold_to_bandwidth(std::size_t bytes);
     asio::awaitable<Result<Frame>> next_frame();
     /// Nothing if there is none for that ticket.
     asio::awaitable<std::optional<Admission>> find_admission(SessionId session, const std::string& ticket);
@@ -87,6 +89,7 @@ private:
     std::shared_ptr<BatchQueue> batches_;
     std::deque<std::vector<std::byte>> outgoing_;
     std::size_t outgoing_bytes_ = 0;
+    std::chrono::steady_clock::time_point read_until_{};  ///< what was read is as much as may come until then
     bool writing_ = false, closing_ = false, room_ = true;
 };
 

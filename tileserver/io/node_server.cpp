@@ -72,6 +72,18 @@ WindowRequest window_request(const config::WallConfig& wall, const config::NodeC
     return request;
 }
 
+/// What is 0 there is as usual.
+SessionQuota quota_of(const proto::Ticket& ticket) {
+    SessionQuota out;
+    const auto& quota = ticket.quota();
+    if (ticket.weight() != 0) out.weight = static_cast<double>(ticket.weight()) / wire::kUsualWeight;
+    if (quota.memory() != 0) out.most_bytes = quota.memory();
+    if (quota.objects() != 0) out.most_objects = std::min<std::uint64_t>(quota.objects(), kMaxObjects);
+    if (quota.fps() != 0) out.frame_interval = std::chrono::nanoseconds(1'000'000'000 / quota.fps());
+    out.bytes_per_second = quota.bandwidth();
+    return out;
+}
+
 /// What wall.toml says, or the same port of all addresses where that would be for this machine alone.
 net::Address for_other_machines(const net::Address& listen) {
     if (!listen.local()) return listen;
@@ -391,10 +403,10 @@ void NodeServer::admit(const proto::Ticket& ticket) {
     // A number that another walld has given to another program.
     if (known != admissions_.end() && known->second.ticket != ticket.ticket()) end_session(SessionId(ticket.session()));
     const auto members = std::min(ticket.members(), wire::kMaxMembers);
+    const auto quota = quota_of(ticket);
     admissions_[SessionId(ticket.session())] = {
-        ticket.ticket(), {members, {ticket.left().begin(), ticket.left().end()}}, ticket.key()};
-    if (ticket.weight() != 0)
-        render_->set_weight(SessionId(ticket.session()), static_cast<double>(ticket.weight()) / wire::kUsualWeight);
+        ticket.ticket(), {members, {ticket.left().begin(), ticket.left().end()}}, ticket.key(), quota};
+    render_->set_quota(SessionId(ticket.session()), quota);
 }
 
 void NodeServer::welcome(const proto::NodeWelcome& welcome) {
@@ -485,6 +497,7 @@ void NodeServer::stats(const RenderStats& stats) {
         proto::Envelope envelope;
         auto& out = *envelope.mutable_node_stats();
         out.set_bytes_received(bytes_received_);
+        out.set_time_us(microseconds_since_1970());
         fill_stats(stats, out);
         tile_streams_.fill_stats(out);
         to_walld(envelope);

@@ -46,6 +46,8 @@ void fill_stats(const RenderStats& stats, proto::NodeStats& out) {
         row.set_object_bytes(session.work.object_bytes);
         row.set_geometry_bytes(session.work.geometry_bytes);
         row.set_queued_bytes(session.queued_bytes);
+        row.set_memory_bytes(session.memory_bytes);
+        row.set_objects(session.objects);
     }
     fill_objects(stats.objects, *out.mutable_objects());
 }

@@ -79,7 +79,7 @@ Result<void> Framebuffer::attach(const glstate::FramebufferAttachment& attachmen
     Texture* const texture = *found;
     const auto target = texture_target(attachment.target);
     if (texture == nullptr || !target || texture->target() != *target) return {};
-    if (!texture->own(shared)) return fail("more texture memory than a session may have");
+    if (!texture->own(shared)) return fail(too_much("texture memory"));
     const auto& info = glapi::info_of(*target);
     const GLuint name = texture->content().name();
     if (attachment.layer == glstate::kAllLayers) {

@@ -8,6 +8,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <string_view>
 
 namespace wall::tileserver {
 
@@ -41,9 +43,13 @@ inline constexpr std::array kObjectKindNames = {"texture",
 inline constexpr std::size_t kObjectKinds = kObjectKindNames.size();
 
 // What one session may have on a node, of all kinds together: they fill the same memory, and no kind knows what is
-// left of it. A session that wants more is ended with a reason.
+// left of it. A session that wants more is ended with a reason. walld may say less (SessionQuota).
 inline constexpr std::size_t kMaxObjects = std::size_t{1} << 20;
 inline constexpr std::uint64_t kMaxObjectBytes = std::uint64_t{6} << 30;  ///< by estimate
+/// Why a session is ended that wants more `what`.
+inline std::string too_much(std::string_view what) {
+    return "more " + std::string(what) + " than a session may have ('program_memory', 'program_objects' in [quota])";
+}
 /// What the driver takes for an object with nothing in it.
 inline constexpr std::uint64_t kLeastObjectBytes = 4096;
 

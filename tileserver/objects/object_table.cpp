@@ -11,8 +11,7 @@ std::string id_of(ObjectKey key) { return std::to_string(static_cast<std::uint32
 
 Result<void> ObjectTable::has_room_for(ObjectKey key) const {
     if (!key) return fail("object 0 is none");
-    if (objects_.size() >= kMaxObjects || !account_.affords(kLeastObjectBytes))
-        return fail("more objects than a session may have");
+    if (objects_.size() >= most_objects_ || !account_.affords(kLeastObjectBytes)) return fail(too_much("objects"));
     return {};
 }
 

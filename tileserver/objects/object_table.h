@@ -80,8 +80,11 @@ public:
     /// As long as it stays the same, all lookups of a kind find objects of the same driver names.
     std::uint64_t version(ObjectKind kind) const { return account_.versions[static_cast<std::size_t>(kind)]; }
     std::uint64_t bytes() const { return account_.bytes; }
-    /// Instead of kMaxObjectBytes.
-    void set_limit(std::uint64_t most_bytes) { account_.most_bytes = most_bytes; }
+    /// Instead of kMaxObjectBytes and kMaxObjects, for what is made from now on.
+    void set_limits(std::uint64_t most_bytes, std::uint64_t most_objects) {
+        account_.most_bytes = most_bytes;
+        most_objects_ = most_objects;
+    }
     bool affords(std::uint64_t bytes) const { return account_.affords(bytes); }
     std::size_t size() const { return objects_.size(); }
 
@@ -109,6 +112,7 @@ private:
     tl::unexpected<Error> another_kind(ObjectKey key, ObjectKind wanted) const;
     static tl::unexpected<Error> none(ObjectKey key, ObjectKind wanted);
 
+    std::uint64_t most_objects_ = kMaxObjects;
     bool has_defaults_ = false;  // few sessions have any, and most names in a state are 0
     ObjectAccount account_;      // before the objects, which use it to the end
     std::unordered_map<ObjectKey, std::unique_ptr<ObjectReplica>, Hash> objects_;

@@ -253,8 +253,7 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
     whole_centers_ = built.whole_centers;
     window_value_ = {};
     renamed();
-    if (!has_content(kProgramBytes + kBytesForEachOfSource * bytes.size()))
-        return fail("more programs than a session may have");
+    if (!has_content(kProgramBytes + kBytesForEachOfSource * bytes.size())) return fail(too_much("programs"));
     return encode(reflection);
 }
 

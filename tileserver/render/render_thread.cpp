@@ -13,6 +13,7 @@
 #include "common/wire/batch.h"
 #include "tileserver/execute/executor.h"
 #include "tileserver/render/driver_wait.h"
+#include "tileserver/render/frame_limit.h"
 #include "tileserver/render/pace.h"
 #include "tileserver/render/tile_watches.h"
 
@@ -68,9 +69,11 @@ public:
             loop_.events_.reply(id_, request, std::move(answer));
         }
         void frame_rendered(SurfaceId surface, std::uint32_t frame) override {
+            frame_ended(surface);
             loop_.events_.drawn(id_, surface, frame);
             loop_.events_.rendered(session_.id(), surface, frame);
         }
+        void frame_ended(SurfaceId surface) { frame_limit_.frame(surface, Clock::now()); }
 
         /// A finished frame has not been shown yet.
         bool frame_waits() const {
@@ -84,15 +87,19 @@ public:
         /// The turns of one round, as many as its weight says: what is less than one is saved up. True: there may be
         /// more to do at once.
         bool run_turns(Clock::time_point& now, bool contended) {
+            if (now < frame_limit_.pause_until()) return false;
             turns_ = contended ? std::min(turns_ + weight_, std::max(1.0, weight_)) : 1.0;
             if (turns_ < 1.0) return batch_ || (!failed_ && !held() && queue_->front() != nullptr);
             bool worked = false;
-            for (; turns_ >= 1.0 && run_turn(now, contended); turns_ -= 1.0) worked = true;
+            for (; turns_ >= 1.0 && now >= frame_limit_.pause_until() && run_turn(now, contended); turns_ -= 1.0)
+                worked = true;
             return worked;
         }
-        void set_weight(double weight) {
-            weight_ = weight;
-            pace_.set_weight(weight);
+        void set_quota(const SessionQuota& quota) {
+            weight_ = quota.weight;
+            pace_.set_weight(quota.weight);
+            session_.objects.set_limits(quota.most_bytes, quota.most_objects);
+            frame_limit_.set_interval(quota.frame_interval);
         }
         /// True: a batch was executed, or some of it. `now` is the time, before and after. `contended`: others want
         /// turns, too.
@@ -122,11 +129,12 @@ public:
             return true;
         }
         bool active(Clock::time_point now) const {
-            return !failed_ && ((batch_ && !executor_.waits()) || now - last_run_ < kActive);
+            const bool pauses = executor_.waits() || now < frame_limit_.pause_until();
+            return !failed_ && ((batch_ && !pauses) || now - last_run_ < kActive);
         }
         /// How long it has to wait for its next turn at least.
         Clock::duration delay(Clock::time_point now) const {
-            return failed_ ? Clock::duration::zero() : pace_.not_before() - now;
+            return failed_ ? Clock::duration::zero() : std::max(pace_.not_before(), frame_limit_.pause_until()) - now;
         }
         void fail(std::string reason) {
             failed_ = true;
@@ -144,7 +152,10 @@ public:
         bool over() const { return failed_ || (closed_ && (!group_ || (!batch_ && queue_->front() == nullptr))); }
         bool failed() const { return failed_; }
         const std::shared_ptr<ParallelGroup>& group() const { return group_; }
-        SessionStats stats() const { return {session_.id(), session_.rank(), session_.work, queue_->bytes()}; }
+        SessionStats stats() const {
+            const auto& objects = session_.objects;
+            return {session_.id(), session_.rank(), session_.work, queue_->bytes(), objects.bytes(), objects.size()};
+        }
         SessionReplica& session() { return session_; }
         Executor& executor() { return executor_; }
 
@@ -173,6 +184,7 @@ public:
         SessionReplica session_;
         Executor executor_;
         Pace pace_;
+        FrameLimit frame_limit_;
         DriverWait driver_wait_{loop_.driver_.gl()};
         Clock::time_point last_run_{};
         double weight_ = 1.0, turns_ = 0.0;  // turns a round; those that are left of this one
@@ -210,15 +222,15 @@ public:
             *streams_
                  .emplace(id, std::make_unique<Stream>(*this, id, session, std::move(queue), std::move(group), rank))
                  .first->second;
-        if (const auto weight = weights_.find(session); weight != weights_.end()) stream.set_weight(weight->second);
+        if (const auto quota = quotas_.find(session); quota != quotas_.end()) stream.set_quota(quota->second);
     }
-    void set_weight(SessionId session, double weight) {
-        weights_[session] = weight;
+    void set_quota(SessionId session, const SessionQuota& quota) {
+        quotas_[session] = quota;
         for (auto& [id, stream] : streams_)
-            if (stream->session().id() == session) stream->set_weight(weight);
+            if (stream->session().id() == session) stream->set_quota(quota);
     }
     void remove_session(SessionId session) {
-        weights_.erase(session);
+        quotas_.erase(session);
         node_.damage +=
             std::erase_if(streams_, [session](const auto& entry) { return entry.second->session().id() == session; });
     }
@@ -227,7 +239,10 @@ public:
         for (const auto& [surface, frame] :
              stream.group()->finish_frames(node_, stream.session().work, stream.session().id())) {
             for (auto& [id, member] : streams_)
-                if (member->group() == stream.group() && !member->failed()) events_.drawn(id, surface, frame);
+                if (member->group() == stream.group() && !member->failed()) {
+                    member->frame_ended(surface);
+                    events_.drawn(id, surface, frame);
+                }
             events_.rendered(stream.session().id(), surface, frame);
         }
         if (auto reason = stream.failed() ? std::nullopt : stream.group()->sync.deadlock())
@@ -340,7 +355,7 @@ private:
         events_.stats(stats);
     }
 
-    std::map<SessionId, double> weights_;
+    std::map<SessionId, SessionQuota> quotas_;
     std::deque<PictureRequest> asked_;
     Clock::time_point next_stats_ = Clock::now() + kStatsInterval;
     bool lost_ = false;
@@ -433,8 +448,8 @@ void RenderThread::remove_stream(StreamId stream) {
         if (const auto at = loop.streams_.find(stream); at != loop.streams_.end()) at->second->close();
     });
 }
-void RenderThread::set_weight(SessionId session, double weight) {
-    post([=](Loop& loop) { loop.set_weight(session, weight); });
+void RenderThread::set_quota(SessionId session, const SessionQuota& quota) {
+    post([=](Loop& loop) { loop.set_quota(session, quota); });
 }
 void RenderThread::remove_session(SessionId session) {
     post([=](Loop& loop) { loop.remove_session(session); });

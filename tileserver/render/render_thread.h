@@ -24,6 +24,7 @@
 #include "tileserver/render/running_turn.h"
 #include "tileserver/render/window_output.h"
 #include "tileserver/session/parallel_group.h"
+#include "tileserver/session/session_quota.h"
 #include "tileserver/session/work.h"
 
 namespace wall::tileserver {
@@ -34,6 +35,7 @@ struct SessionStats {
     Rank rank = 0;  ///< of a member of a parallel program
     Work work;
     std::size_t queued_bytes = 0;  ///< received, not yet executed
+    std::uint64_t memory_bytes = 0, objects = 0;
 };
 struct RenderStats {
     Work work;  ///< of all sessions since the start
@@ -93,8 +95,8 @@ public:
     /// Nothing more comes. The session's objects are freed; a parallel program's stream is executed to its end before,
     /// because others may wait for what it says.
     void remove_stream(StreamId stream);
-    /// How many turns the session's streams get where others get one, while several want them; 1 without this.
-    void set_weight(SessionId session, double weight);
+    /// Of each of the session's streams.
+    void set_quota(SessionId session, const SessionQuota& quota);
     /// All streams of the session go at once, whatever is left in them.
     void remove_session(SessionId session);
     void set_tiles(std::vector<Tile> tiles, std::uint32_t background);

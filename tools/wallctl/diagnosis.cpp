@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -13,12 +14,13 @@ namespace {
 using nlohmann::json;
 using Findings = std::vector<Finding>;
 
-constexpr unsigned kManyStarts = 3;        // of a node, while walld runs
-constexpr unsigned kFarBehind = 30;        // frames that a tile lacks
-constexpr unsigned kEnoughFrames = 100;    // of a window, to judge by
-constexpr double kManyTimeouts = 0.01;     // of its frames
-constexpr double kNearlyFull = 0.9;        // of the programs that there may be
-constexpr std::size_t kNamedDrivers = 60;  // characters
+constexpr std::int64_t kClockDifference = 2000;  // ms; less may be what the answer took
+constexpr unsigned kManyStarts = 3;              // of a node, while walld runs
+constexpr unsigned kFarBehind = 30;              // frames that a tile lacks
+constexpr unsigned kEnoughFrames = 100;          // of a window, to judge by
+constexpr double kManyTimeouts = 0.01;           // of its frames
+constexpr double kNearlyFull = 0.9;              // of the programs that there may be
+constexpr std::size_t kNamedDrivers = 60;        // characters
 
 const json& list(const json& status, const char* name) {
     static const json none = json::array();
@@ -134,10 +136,24 @@ void add_fullness(Findings& out, const json& status) {
 
 }  // namespace
 
+std::vector<Finding> clock_findings(const std::string& whose, std::int64_t ahead_ms) {
+    if (ahead_ms > -kClockDifference && ahead_ms < kClockDifference) return {};
+    return {{"clock of " + whose, Verdict::note,
+             fmt::format("is {:.1f} s {} walld's, so logs and the ages of pictures do not agree: `timedatectl set-ntp "
+                         "true` there",
+                         static_cast<double>(std::abs(ahead_ms)) / 1000, ahead_ms > 0 ? "ahead of" : "behind")}};
+}
+
 std::vector<Finding> diagnose(const json& status) {
     Findings out;
     if (!status.is_object()) return {{"walld's answer", Verdict::wrong, "no status that is understood"}};
-    for (const auto& node : list(status, "nodes")) out.push_back(node_finding(node));
+    for (const auto& node : list(status, "nodes")) {
+        out.push_back(node_finding(node));
+        const auto ahead = node.find("clock_ahead_ms");
+        if (ahead == node.end() || !ahead->is_number_integer()) continue;
+        for (auto& finding : clock_findings("node " + text(node, "name"), ahead->get<std::int64_t>()))
+            out.push_back(std::move(finding));
+    }
     add_drivers(out, list(status, "nodes"));
     add_tiles(out, list(status, "tiles"));
     for (const auto& session : list(status, "sessions")) add_session(out, session);

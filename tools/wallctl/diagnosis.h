@@ -3,6 +3,7 @@
 // Pure.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@ struct Finding {
     Verdict verdict = Verdict::good;
     std::string detail;  ///< what was found; the remedy, where there is one
 };
+
+/// How far a machine's clock is ahead of walld's; nothing if that is little enough.
+std::vector<Finding> clock_findings(const std::string& whose, std::int64_t ahead_ms);
 
 /// `status`: as walld answers it (docs/http-api.md).
 std::vector<Finding> diagnose(const nlohmann::json& status);

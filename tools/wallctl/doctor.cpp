@@ -98,6 +98,11 @@ std::vector<Finding> examine(const request::Walld& walld, const std::string& too
         out.push_back({"walld's answer", Verdict::wrong, "no status that is understood"});
         return out;
     }
+    if (const auto here = std::chrono::system_clock::now().time_since_epoch(); status->contains("time_ms"))
+        for (auto& finding :
+             clock_findings("this machine", std::chrono::duration_cast<std::chrono::milliseconds>(here).count() -
+                                                status->value("time_ms", std::int64_t{0})))
+            out.push_back(std::move(finding));
     for (const auto& node : status->value("nodes", nlohmann::json::array())) add_way(out, node);
     for (auto& finding : diagnose(*status)) out.push_back(std::move(finding));
     return out;

@@ -24,17 +24,22 @@ std::string program(const json& session) {
     return fmt::format("{} x{}/{}", text(session, "program"), here, text(*group, "size"));
 }
 
+/// What its objects take on the node where it has most.
+std::string memory(const json& session) {
+    return fmt::format("{:.1f} MB", static_cast<double>(session.value("memory_bytes", std::uint64_t{0})) / 1e6);
+}
+
 void add_session(std::vector<Row>& rows, const json& session) {
     const auto note = is(session, "held") ? "held" : is(session, "silent") ? "silent" : text(session, "fault");
     const auto owner = who(session.value("owner", json::object()));
     const auto surfaces = session.value("surfaces", json::array());
     if (surfaces.empty())
         rows.push_back({text(session, "id"), program(session), text(session, "name"), owner, text(session, "pid"), "",
-                        "", "", "", note});
+                        "", "", "", memory(session), note});
     for (const auto& s : surfaces) {
         rows.push_back({text(s, "id"), program(session), text(session, "name"), owner, text(session, "pid"),
                         fmt::format("{}x{}", text(s, "width"), text(s, "height")), place(s), text(s, "frame"),
-                        traffic(session), note});
+                        traffic(session), memory(session), note});
     }
 }
 
@@ -59,7 +64,8 @@ std::string tiles_table(const json& tiles) {
 }
 
 std::string sessions_table(const json& sessions) {
-    std::vector<Row> rows{{"ID", "PROGRAM", "NAME", "OWNER", "PID", "WINDOW", "PLACE", "FRAME", "SENT", "NOTE"}};
+    std::vector<Row> rows{
+        {"ID", "PROGRAM", "NAME", "OWNER", "PID", "WINDOW", "PLACE", "FRAME", "SENT", "MEMORY", "NOTE"}};
     for (const auto& session : sessions) add_session(rows, session);
     return table(rows);
 }

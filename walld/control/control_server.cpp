@@ -126,6 +126,7 @@ void ControlServer::to_member(SessionId session, Rank rank, const proto::Envelop
 }
 
 void ControlServer::end_session(SessionId session, const std::string& reason) {
+    log::warn("session_cut session={} reason={}", session.value, log::quoted(reason));
     for (const auto& [client, link] : clients_)
         if (client.first == session) refuse(link.connection, reason);
 }
@@ -333,7 +334,7 @@ Result<void> ControlServer::node_says(NodeIndex node, proto::Envelope& message) 
     } else if (message.has_stream_frame()) {
         streams_.arrived(node, *message.mutable_stream_frame());
     } else if (message.has_node_stats()) {
-        wall_.node_reports(node, message.node_stats());
+        wall_.node_reports(node, message.node_stats(), std::chrono::system_clock::now());
     } else if (message.has_session_fault()) {
         wall_.node_faults(node, message.session_fault());
         log::warn("session_fault session={} node={} reason={}", message.session_fault().session(),
@@ -368,6 +369,7 @@ Outcome<void> ControlServer::welcome(const proto::ClientHello& hello, Person& wh
                                  " may not put programs on this wall: that needs the role user, and theirs is " +
                                  config::name_of(who.role));
     if (auto good = wall_.check(hello); !good) return good;
+    if (auto good = wall_.check_quota(hello, who); !good) return good;
     return wall_.check_member(hello, who);
 }
 
@@ -378,7 +380,7 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
     co_await wait_for_nodes();
     if (!wall_.any_node_up())
         co_return refuse(connection, "no node of the wall is up: is a tileserver running? (wallctl nodes)");
-    for (const auto& still : {wall_.check(hello), wall_.check_member(hello, who)})
+    for (const auto& still : {wall_.check(hello), wall_.check_quota(hello, who), wall_.check_member(hello, who)})
         if (!still) co_return turn_away(connection, who, still.error().message);
     if (const auto comeback = wall_.comeback(hello, Clock::now()); comeback != Wall::Comeback::may_come)
         co_return refuse(connection, "the wall does not know parallel program '" + hello.group().name() + "' any more",

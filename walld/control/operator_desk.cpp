@@ -98,6 +98,8 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::status(const Asked&) {
     auto status = status_json(wall_, Clock::now());
     status["streams"] = streams_json(wall_, streams_.views());
     status["page"] = page_;
+    const auto time = std::chrono::system_clock::now().time_since_epoch();
+    status["time_ms"] = std::chrono::duration_cast<std::chrono::milliseconds>(time).count();
     co_return Answer{std::move(status), {}};
 }
 asio::awaitable<Outcome<Answer>> OperatorDesk::streams(const Asked&) {

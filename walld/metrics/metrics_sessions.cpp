@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "walld/metrics/metrics.h"
+#include "walld/wall/session_stats.h"
 
 namespace wall::walld {
 namespace {
@@ -62,6 +63,11 @@ constexpr MetricRow<OnNode> kOnNodes[] = {
     {Gauge, "wallgl_session_queue_bytes",
      "Bytes that the node has received from the program and not executed yet; at 64 MiB the program waits.",
      [](const OnNode& s) { return s.queued_bytes(); }},
+    {Gauge, "wallgl_session_memory_bytes",
+     "Bytes of the node's driver that the program's objects take, by estimate; [quota] may limit them.",
+     [](const OnNode& s) { return s.memory_bytes(); }},
+    {Gauge, "wallgl_session_objects", "Objects that the program has on the node.",
+     [](const OnNode& s) { return s.objects(); }},
 };
 constexpr MetricRow<SurfaceRef> kSurfaces[] = {
     {Counter, "wallgl_surface_presented_frames_total", "Number of the window's last frame that the wall shows.",
@@ -88,31 +94,14 @@ void by_kind(const Labels& labels, Bytes state, Bytes object, Bytes geometry, Ad
     }
 }
 
-void add(proto::SessionStats& sum, const proto::SessionStats& more) {
-    sum.set_frames(sum.frames() + more.frames());
-    sum.set_commands(sum.commands() + more.commands());
-    sum.set_gl_errors(sum.gl_errors() + more.gl_errors());
-    sum.set_state_bytes(sum.state_bytes() + more.state_bytes());
-    sum.set_object_bytes(sum.object_bytes() + more.object_bytes());
-    sum.set_geometry_bytes(sum.geometry_bytes() + more.geometry_bytes());
-    sum.set_context_switches(sum.context_switches() + more.context_switches());
-    sum.set_decode_ns(sum.decode_ns() + more.decode_ns());
-    sum.set_render_ns(sum.render_ns() + more.render_ns());
-    sum.set_queued_bytes(sum.queued_bytes() + more.queued_bytes());
-}
-
-/// What each node that is up says of the programs that are still here; of two streams of one process, the newer one's.
+/// What each node that is up says of the programs that are still here.
 std::vector<Labelled<OnNode>> on_nodes(const Wall& wall) {
     std::vector<Labelled<OnNode>> out;
     for (const auto& node : wall.nodes()) {
-        std::map<std::pair<SessionId, Rank>, const proto::SessionStats*> newest;
-        for (const auto& session : node.stats.session_stats())
-            if (node.up && wall.sessions().contains(SessionId(session.session())))
-                newest[{SessionId(session.session()), session.rank()}] = &session;
-        std::map<SessionId, OnNode> sums;
-        for (const auto& [process, stats] : newest) add(sums[process.first], *stats);
-        for (auto& [id, stats] : sums)
-            out.push_back({{{"session", std::to_string(id.value)}, {"node", node.config->name}}, std::move(stats)});
+        if (!node.up) continue;
+        for (auto& [id, stats] : stats_by_session(node.stats))
+            if (wall.sessions().contains(id))
+                out.push_back({{{"session", std::to_string(id.value)}, {"node", node.config->name}}, stats});
     }
     return out;
 }

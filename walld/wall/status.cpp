@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "walld/wall/session_stats.h"
+
 namespace wall::walld {
 namespace {
 
@@ -68,6 +70,7 @@ json node_json(const Node& node) {
             {"commands", node.stats.commands()},
             {"gl_errors", node.stats.gl_errors()},
             {"array_elements", node.stats.array_elements()},
+            {"clock_ahead_ms", node.up && node.clock_ahead ? json(node.clock_ahead->count()) : json(nullptr)},
             {"objects", objects_json(node.stats.objects())}};
 }
 
@@ -84,6 +87,22 @@ json traffic_json(const SessionTraffic& traffic) {
             {"object_bytes_per_second", std::round(rates.object)},
             {"geometry_bytes_per_second", std::round(rates.geometry)},
             {"frame_bytes", std::round(rates.frame_bytes)}};
+}
+
+/// What wall.toml says, in bytes.
+json quota_json(const config::QuotaConfig& quota) {
+    json out = json::object();
+    const auto add = [&](const char* name, const auto& value) {
+        if (value) out[name] = *value;
+    };
+    add("program_memory", quota.program_memory);
+    add("program_objects", quota.program_objects);
+    add("program_bandwidth", quota.program_bandwidth);
+    add("program_fps", quota.program_fps);
+    add("program_windows", quota.program_windows);
+    add("person_programs", quota.person_programs);
+    add("person_memory", quota.person_memory);
+    return out;
 }
 
 }  // namespace
@@ -129,6 +148,7 @@ json group_json(const ParallelGroup& group) {
 
 json session_json(const Wall& wall, SessionId id) {
     const auto& session = wall.sessions().at(id);
+    const auto held = held_by(wall, id);
     auto surfaces = json::array();
     for (const auto& key : wall.stacking()) {
         if (key.session == id) surfaces.push_back(surface_json(wall, key));
@@ -142,6 +162,8 @@ json session_json(const Wall& wall, SessionId id) {
              {"fault", session.fault},
              {"silent", session.silent},
              {"weight", session.weight},
+             {"memory_bytes", held.memory_bytes},
+             {"objects", held.objects},
              {"traffic", traffic_json(session.traffic)},
              {"surfaces", std::move(surfaces)}};
     if (session.group) out["group"] = group_json(*session.group);
@@ -167,7 +189,8 @@ json status_json(const Wall& wall, Clock::time_point now) {
               {"width", canvas.width},
               {"height", canvas.height},
               {"background", color_text(wall.config().background)},
-              {"max_sessions", wall.config().max_sessions}}},
+              {"max_sessions", wall.config().max_sessions},
+              {"quota", quota_json(wall.config().quota)}}},
             {"nodes", nodes_json(wall)},
             {"tiles", tiles_json(wall, now)},
             {"sessions", sessions_json(wall)}};

@@ -13,8 +13,8 @@
 namespace wall::walld {
 namespace {
 
-constexpr std::size_t kMaxSurfaces = 256;  // of a session
-constexpr std::size_t kMaxText = 256;      // bytes of a program's name or a window's title that are kept
+constexpr std::uint32_t kMaxSurfaces = 256;  // of a session
+constexpr std::size_t kMaxText = 256;        // bytes of a program's name or a window's title that are kept
 
 /// The same process, perhaps on another link.
 bool same_process(const proto::NodeHello& a, const proto::NodeHello& b) {
@@ -232,6 +232,7 @@ void Wall::hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node) 
     message.set_session(id.value);
     message.set_ticket(ticket);
     message.set_weight(session.weight);
+    *message.mutable_quota() = quota_of_programs();
     if (!session.group) message.set_key(session.owner.machine);  // a group's members may be at several
     if (session.group) {
         message.set_members(session.group->size());
@@ -285,7 +286,8 @@ Result<void> Wall::open_surface(SessionId id, const proto::SurfaceOpen& message,
         open_for_member(key, message, rank);
         return {};
     }
-    if (session->surfaces.size() >= kMaxSurfaces) return fail("more than " + std::to_string(kMaxSurfaces) + " windows");
+    if (const auto most = config_.quota.program_windows.value_or(kMaxSurfaces); session->surfaces.size() >= most)
+        return fail("more than " + std::to_string(most) + " windows ('program_windows' in [quota] of wall.toml)");
     if (message.has_restore() && restore_surface(key, message, now, rank)) return {};
     auto& surface = add_surface(key, message);
     surface.place = PlacementTrack(first_rect(*session, surface, windows_placed_++));

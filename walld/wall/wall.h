@@ -63,7 +63,8 @@ struct Node {
     std::uint32_t incarnation = 0;  ///< 0: never seen
     proto::NodeHello hello;         ///< of the last connection
     proto::NodeStats stats;         ///< the last that this process has told
-    std::vector<TileShown> tiles;   ///< by slot
+    std::optional<std::chrono::milliseconds> clock_ahead;  ///< of walld's, when they came
+    std::vector<TileShown> tiles;                          ///< by slot
 };
 
 struct SurfaceKey {
@@ -150,7 +151,8 @@ public:
     /// Those of which nothing has been heard for a while, all of them. Gives those that are new among them.
     std::vector<NodeIndex> note_silent(const std::set<NodeIndex>& quiet);
     std::vector<SessionId> note_silent(const std::set<SessionId>& quiet);
-    void node_reports(NodeIndex node, const proto::NodeStats& stats) { nodes_[node].stats = stats; }
+    /// Programs may end, if somebody has too much there. `here`: what walld's clock says.
+    void node_reports(NodeIndex node, const proto::NodeStats& stats, std::chrono::system_clock::time_point here = {});
 
     // ---- another description (wall_describe.cpp) ----
     /// Nodes of which the wall would have another description.
@@ -167,6 +169,8 @@ public:
     Outcome<void> check(const proto::ClientHello& hello) const;
     /// Why it cannot be taken as this person's process of a parallel program, if so.
     Outcome<void> check_member(const proto::ClientHello& hello, const Person& who) const;
+    /// Why this person may have no other program now, if so (wall_quota.cpp).
+    Outcome<void> check_quota(const proto::ClientHello& hello, const Person& who) const;
     /// Of a process of a parallel program that an earlier walld had; any other one simply comes.
     enum class Comeback { may_come, not_yet, over };
     Comeback comeback(const proto::ClientHello& hello, Clock::time_point now) const;
@@ -234,6 +238,8 @@ private:
     void welcome_node(NodeIndex node);
     void welcome_client(SessionId id, const SessionEntry& session, Rank rank);
     void hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node);
+    proto::Quota quota_of_programs() const;
+    void end_who_has_too_much(NodeIndex node);
     std::set<NodeIndex> nodes_under(const geom::Rect& rect) const;
     geom::Rect first_rect(SessionEntry& session, SurfaceEntry& surface, std::uint32_t number);
     SessionId next_session();

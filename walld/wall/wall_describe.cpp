@@ -55,11 +55,14 @@ std::vector<NodeIndex> Wall::described_otherwise(const config::WallConfig& next)
 }
 
 void Wall::describe(config::WallConfig next) {
-    const bool other_background = next.background != config_.background;
+    const bool other_background = next.background != config_.background, other_quota = next.quota != config_.quota;
     config_ = std::move(next);
     const bool other_tiles = take_nodes();
     for (const NodeIndex i : nodes_.ids())
         if (other_background && nodes_[i].up) welcome_node(i);
+    for (auto& [id, session] : sessions_)
+        for (const NodeIndex i : nodes_.ids())
+            if (other_quota && nodes_[i].up && session.tickets.contains(i)) hand_out_ticket(id, session, i);
     if (!other_tiles) return;
     proto::TilesChanged tiles;
     add_tiles(*tiles.mutable_tiles());

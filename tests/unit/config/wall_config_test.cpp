@@ -195,7 +195,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"stray_character_after_a_quote_in_a_number", "name = \"lab\"", "name = 1'''\u0422",
               "wall.toml:3: ", "not TOML"},
         Wrong{"unknown_section", "[http]", "[htpp]",
-              "wall.toml:14: ", "expected one of wall, control, http, people, node"},
+              "wall.toml:14: ", "expected one of wall, control, http, people, quota, node"},
         Wrong{"unknown_key", "swap_timeout_ms", "swap_timeout", "wall.toml:5: ",
               "expected one of name, background, swap_timeout_ms, close_timeout_ms, max_sessions, state_directory"},
         Wrong{"name_type", "\"lab\"", "7", "wall.toml:3: ", "'name': expected a string"},
@@ -262,6 +262,24 @@ TEST(WallConfig, AnEmptyOneLacksNodes) {
     const auto config = parse_config("", "wall.toml");
     ASSERT_FALSE(config);
     EXPECT_EQ(config.error().message, "wall.toml:1: 'node' is missing: expected at least one [[node]]");
+}
+
+TEST(WallConfig, AQuotaIsWhatItSaysAndNothingElse) {
+    const auto with = [](const std::string& keys) { return parse_config(kGood + ("[quota]\n" + keys), "wall.toml"); };
+    const auto quota = with("program_memory = 512\nprogram_fps = 60\nperson_programs = 3\n")->quota;
+    EXPECT_EQ(quota.program_memory, std::uint64_t{512} << 20);
+    EXPECT_EQ(quota.program_fps, 60u);
+    EXPECT_EQ(quota.person_programs, 3u);
+    EXPECT_FALSE(quota.program_objects || quota.program_bandwidth || quota.program_windows || quota.person_memory);
+    EXPECT_EQ(parse_config(kGood, "wall.toml")->quota, QuotaConfig());
+    EXPECT_EQ(with("program_bandwidth = 100\nprogram_objects = 7\nprogram_windows = 2\nperson_memory = 1\n")->quota,
+              (QuotaConfig{{}, 7, 100 << 20, {}, 2, {}, 1 << 20}));
+    for (const char* wrong : {"program_memory = 0", "program_memory = \"1 GiB\"", "program_fps = 1001",
+                              "program_windows = 257", "memory = 1"}) {
+        const auto read = with(wrong);
+        ASSERT_FALSE(read) << wrong;
+        EXPECT_THAT(read.error().message, StartsWith("wall.toml:"));
+    }
 }
 
 TEST(WallConfig, NodesStandAloneToBeAdded) {

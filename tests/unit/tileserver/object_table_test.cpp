@@ -103,6 +103,20 @@ TEST(ObjectTable, ASessionHasABudget) {
     EXPECT_TRUE(texture->weigh(0) && table.make<ListRun>(ClientName(3)));
 }
 
+TEST(ObjectTable, ABudgetMayBeLess) {
+    ObjectTable table;
+    table.set_limits(10 * kLeastObjectBytes, 2);
+    Texture* texture = *table.make<Texture>(kOne);
+    ASSERT_TRUE(table.make<ListRun>(kTwo));
+    EXPECT_FALSE(texture->weigh(9 * kLeastObjectBytes));
+    EXPECT_TRUE(texture->weigh(8 * kLeastObjectBytes));
+    const auto third = table.make<ListRun>(ClientName(3));
+    ASSERT_FALSE(third);
+    EXPECT_EQ(third.error().message, too_much("objects"));
+    table.erase(kTwo);
+    EXPECT_TRUE(table.make<ListRun>(ClientName(3)));
+}
+
 TEST(ObjectTable, AVersionIsOfAKind) {
     ObjectTable table;
     const auto versions = [&table] {

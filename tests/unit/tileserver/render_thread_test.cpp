@@ -325,16 +325,34 @@ TEST_F(RenderThreadTest, TurnsAreSharedByWeight) {
         EXPECT_LT(after[kHeavy], kFrames) << "it has had work all the time";
         return static_cast<double>(after[kHeavy] - before[kHeavy]) / std::max(1u, after[kLight] - before[kLight]);
     };
-    thread_->set_weight(SessionId(kHeavy), 4);
+    thread_->set_quota(SessionId(kHeavy), {.weight = 4});
     std::this_thread::sleep_for(500ms);
     const double four = drawn_in(2s);
-    thread_->set_weight(SessionId(kHeavy), 0.25);
+    thread_->set_quota(SessionId(kHeavy), {.weight = 0.25});
     std::this_thread::sleep_for(100ms);
     const double quarter = drawn_in(2s);
     std::printf("frames to one of the other at four times the weight: %.2f, at a quarter: %.2f\n", four, quarter);
     // 3.8 and 0.3 were measured; turns that a busy machine interrupts are too long to be shared as finely.
     EXPECT_GT(four, 1.5);
     EXPECT_LT(quarter, 1 / 1.5);
+    EXPECT_EQ(events_.failure_, "");
+}
+
+TEST_F(RenderThreadTest, FramesAreNoMoreThanTheQuotaSays) {
+    constexpr std::uint32_t kLimited = 1, kFrames = 400;
+    thread_->set_quota(SessionId(kLimited), {.frame_interval = 20ms});
+    const auto queue = open(kLimited);
+    for (std::uint32_t frame = 1; frame <= kFrames; ++frame) {
+        wire::PackBuffer buffer;
+        pack::Swap(buffer, SurfaceId(1), frame);
+        push(queue, buffer);
+    }
+    const auto begin = Clock::now();
+    ASSERT_TRUE(events_.wait([&](Events& e) { return e.drawn_[kLimited] >= 51; }));
+    EXPECT_GT(Clock::now() - begin, 950ms);
+    thread_->set_quota(SessionId(kLimited), {});
+    ASSERT_TRUE(events_.wait([&](Events& e) { return e.drawn_[kLimited] == kFrames; }));
+    EXPECT_LT(Clock::now() - begin, 6s) << "8 s with the limit";
     EXPECT_EQ(events_.failure_, "");
 }
 

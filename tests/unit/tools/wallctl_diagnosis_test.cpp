@@ -45,6 +45,16 @@ TEST(Diagnosis, SaysWhatIsTheMatterWithANode) {
                                                           is(Verdict::note, "node d", "started 3 times")));
 }
 
+TEST(Diagnosis, SaysWhoseClockIsWrong) {
+    const json nodes{with(node("a"), "clock_ahead_ms", 2500), with(node("b"), "clock_ahead_ms", -61'000),
+                     with(node("c"), "clock_ahead_ms", 900), with(node("d"), "clock_ahead_ms", nullptr)};
+    const auto found = diagnose({{"nodes", nodes}});
+    ASSERT_EQ(found.size(), 6u);
+    EXPECT_THAT(found[1], is(Verdict::note, "clock of node a", "is 2.5 s ahead of walld's"));
+    EXPECT_THAT(found[3], is(Verdict::note, "clock of node b", "is 61.0 s behind walld's"));
+    EXPECT_TRUE(clock_findings("this machine", -1999).empty());
+}
+
 TEST(Diagnosis, SaysWhereNodesDiffer) {
     const json nodes{node("a", "llvmpipe (LLVM 15)"), node("b"), node("c", "NVIDIA", "4.5")};
     const auto found = diagnose({{"nodes", nodes}});

@@ -46,6 +46,7 @@ TEST(Tables, ASessionHasALineForEachWindow) {
                          {"owner", {{"kind", "user"}, {"name", "alice"}}},
                          {"held", true},
                          {"fault", ""},
+                         {"memory_bytes", 7'340'032},
                          {"traffic", traffic},
                          {"surfaces", {surface}}},
                         {{"id", 4},
@@ -57,9 +58,9 @@ TEST(Tables, ASessionHasALineForEachWindow) {
                          {"fault", "bad stream"},
                          {"surfaces", json::array()}}};
     EXPECT_EQ(sessions_table(sessions),
-              "ID   PROGRAM  NAME  OWNER        PID  WINDOW   PLACE        FRAME  SENT       NOTE\n"
-              "3.1  gears          alice        42   300x200  300x200+0+0  7      12.5 kB/s  held\n"
-              "4    new      x     token kiosk  43                                           bad stream\n");
+              "ID   PROGRAM  NAME  OWNER        PID  WINDOW   PLACE        FRAME  SENT       MEMORY  NOTE\n"
+              "3.1  gears          alice        42   300x200  300x200+0+0  7      12.5 kB/s  7.3 MB  held\n"
+              "4    new      x     token kiosk  43                                           0.0 MB  bad stream\n");
 }
 
 TEST(Tables, ANodeIsUpAwayOrDrained) {

@@ -43,6 +43,8 @@ TEST(Es32Versions, AreOfferedAsFarAsNodesGo) {
     const ContextProfile profile{.es = 32};
     EXPECT_EQ(shading_language_in(profile, caps), "OpenGL ES GLSL ES 3.10");
     caps.extensions += " GL_ARB_ES3_2_compatibility";
+    EXPECT_EQ(shading_language_in(profile, caps), "OpenGL ES GLSL ES 3.10") << "3.2 has blocks of ASTC";
+    caps.extensions += " GL_KHR_texture_compression_astc_ldr";
     EXPECT_EQ(shading_language_in(profile, caps), "OpenGL ES GLSL ES 3.20");
     EXPECT_TRUE(version_text_in(profile, caps).starts_with("OpenGL ES 3.2 "));
     EXPECT_EQ(shading_languages_in(profile, caps), (std::vector<std::string>{"100", "300 es", "310 es", "320 es"}));

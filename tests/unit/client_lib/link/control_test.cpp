@@ -720,6 +720,19 @@ TEST(ControlLink, LosingWalldEndsWaiting) {
     later.join();
 }
 
+/// Without logging as well: the program draws on, and nobody would know why it is not seen.
+TEST(ControlLink, WhyWalldHasEndedItIsSaidToPeople) {
+    Linked linked;
+    testing::internal::CaptureStderr();
+    proto::Envelope refused;
+    refused.mutable_refused()->set_reason("too much\nof it");
+    linked.walld.send(refused);
+    collect(*linked.link, [](auto& e) { return e.lost; });
+    const auto said = testing::internal::GetCapturedStderr();
+    EXPECT_THAT(said, HasSubstr("wallgl: walld at " + linked.walld.address() + " has ended this program's drawing: "));
+    EXPECT_THAT(said, HasSubstr(R"(too much\nof it)"));
+}
+
 TEST(ControlLink, RefusalTellsTheReason) {
     FakeWalld walld;
     std::thread server([&] {

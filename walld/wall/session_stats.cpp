@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "walld/wall/session_stats.h"
+
+#include <algorithm>
+
+namespace wall::walld {
+namespace {
+
+void add(proto::SessionStats& sum, const proto::SessionStats& more) {
+    sum.set_frames(sum.frames() + more.frames());
+    sum.set_commands(sum.commands() + more.commands());
+    sum.set_gl_errors(sum.gl_errors() + more.gl_errors());
+    sum.set_state_bytes(sum.state_bytes() + more.state_bytes());
+    sum.set_object_bytes(sum.object_bytes() + more.object_bytes());
+    sum.set_geometry_bytes(sum.geometry_bytes() + more.geometry_bytes());
+    sum.set_context_switches(sum.context_switches() + more.context_switches());
+    sum.set_decode_ns(sum.decode_ns() + more.decode_ns());
+    sum.set_render_ns(sum.render_ns() + more.render_ns());
+    sum.set_queued_bytes(sum.queued_bytes() + more.queued_bytes());
+    sum.set_memory_bytes(sum.memory_bytes() + more.memory_bytes());
+    sum.set_objects(sum.objects() + more.objects());
+}
+
+}  // namespace
+
+std::map<SessionId, proto::SessionStats> stats_by_session(const proto::NodeStats& stats) {
+    std::map<std::pair<SessionId, Rank>, const proto::SessionStats*> newest;
+    for (const auto& session : stats.session_stats()) newest[{SessionId(session.session()), session.rank()}] = &session;
+    std::map<SessionId, proto::SessionStats> out;
+    for (const auto& [process, its] : newest) add(out[process.first], *its);
+    return out;
+}
+
+HeldOnNode held_by(const Wall& wall, SessionId session) {
+    HeldOnNode out;
+    for (const auto& node : wall.nodes()) {
+        if (!node.up) continue;
+        const auto stats = stats_by_session(node.stats);
+        const auto found = stats.find(session);
+        if (found == stats.end()) continue;
+        out.memory_bytes = std::max(out.memory_bytes, found->second.memory_bytes());
+        out.objects = std::max(out.objects, found->second.objects());
+    }
+    return out;
+}
+
+}  // namespace wall::walld
