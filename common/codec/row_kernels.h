@@ -22,7 +22,8 @@ struct RowStart {
 struct RowKernels {
     std::string_view name;
 
-    // Residuals of `count` pixels at `row`; `above` and `previous` are rows alike. Decorrelated if `decorrelate`.
+    // Residuals of `count` pixels at `row`; `above` and `previous` are rows alike, `out` lies apart from all of them.
+    // Decorrelated if `decorrelate`.
     void (*left)(std::uint32_t* out, const std::byte* row, std::size_t count, RowStart start, bool decorrelate);
     void (*gradient)(std::uint32_t* out, const std::byte* row, const std::byte* above, std::size_t count,
                      RowStart start, bool decorrelate);

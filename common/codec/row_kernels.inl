@@ -84,18 +84,19 @@ void residuals_as(Pixel* out, const std::byte* row, const std::byte* above, std:
     if (count == 0) return;
     out[0] =
         single_residual<Predictor, decorrelate>(load<Pixel>(row), start.left, load<Pixel>(above), start.above_left);
-    each(
-        1, count,
-        [&](std::size_t i) {
-            const Bytes predicted =
-                Predictor::predict(load(row + 4 * i - 4), load(above + 4 * i), load(above + 4 * i - 4));
-            store(out + i, decorrelated<decorrelate>(load(row + 4 * i) - predicted));
-        },
-        [&](std::size_t i) {
-            out[i] =
-                single_residual<Predictor, decorrelate>(load<Pixel>(row + 4 * i), load<Pixel>(row + 4 * i - 4),
-                                                        load<Pixel>(above + 4 * i), load<Pixel>(above + 4 * i - 4));
-        });
+    const auto vector = [&](std::size_t i) {
+        const Bytes predicted =
+            Predictor::predict(load(row + 4 * i - 4), load(above + 4 * i), load(above + 4 * i - 4));
+        store(out + i, decorrelated<decorrelate>(load(row + 4 * i) - predicted));
+    };
+    std::size_t i = 1;
+    for (; i + kPixels <= count; i += kPixels) vector(i);
+    // Behind the first pixel of a row of whole vectors all but one of the last vector's are left: some pixels are made
+    // once more, instead of each of these by itself.
+    if (i < count && count > kPixels) return vector(count - kPixels);
+    for (; i < count; ++i)
+        out[i] = single_residual<Predictor, decorrelate>(load<Pixel>(row + 4 * i), load<Pixel>(row + 4 * i - 4),
+                                                         load<Pixel>(above + 4 * i), load<Pixel>(above + 4 * i - 4));
 }
 
 template <class Predictor>

@@ -191,7 +191,9 @@ class OneMachine(OnMachines):
             later_versions(self.shared)
             self.machine.run(f"apt-get install --yes --no-install-recommends /srv/shared/*_{NEXT}.deb", timeout=300)
             self.assertEqual(self.machine.run("dpkg-query -W -f '${Version}\\n' 'wallgl-*' | sort -u"), f"{NEXT}\n")
-            self.assertTrue(before.isdisjoint(self.pids()), "every daemon is another process")
+            now = self.pids()
+            self.assertTrue(before.isdisjoint(now), "every daemon is another process")
+            self.assertNotIn("0", now, "and runs")
             until(lambda: all(node["up"] for node in json.loads(self.machine.run("wallctl --json nodes"))), "nodes up")
             after = frames_go_on(self.machine)
             self.assertEqual((after["pid"], after["owner"]), (session["pid"], session["owner"]))
@@ -287,7 +289,7 @@ class WithAnsible(SeveralMachines):
         key = self.folder / "key"
         run("ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", key, check=True)
         for machine in self.machines.values():
-            machine.run("mkdir -m 700 /root/.ssh")
+            machine.run("install -d -m 700 /root/.ssh")
             machine.write("/root/.ssh/authorized_keys", key.with_suffix(".pub").read_text())
         (self.folder / "wall.toml").write_text(self.wall())
         address = self.machines["walld"].hosts.address
