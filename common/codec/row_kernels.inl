@@ -85,8 +85,7 @@ void residuals_as(Pixel* out, const std::byte* row, const std::byte* above, std:
     out[0] =
         single_residual<Predictor, decorrelate>(load<Pixel>(row), start.left, load<Pixel>(above), start.above_left);
     const auto vector = [&](std::size_t i) {
-        const Bytes predicted =
-            Predictor::predict(load(row + 4 * i - 4), load(above + 4 * i), load(above + 4 * i - 4));
+        const Bytes predicted = Predictor::predict(load(row + 4 * i - 4), load(above + 4 * i), load(above + 4 * i - 4));
         store(out + i, decorrelated<decorrelate>(load(row + 4 * i) - predicted));
     };
     std::size_t i = 1;
