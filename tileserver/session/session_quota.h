@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a session may have of a node: walld says it with the ticket ([weight], [quota] of wall.toml). Any thread.
+// What a session may have of a node: walld says it with the ticket (`wallctl weight`, [quota] of wall.toml). Any
+// thread.
 #pragma once
 
 #include <chrono>

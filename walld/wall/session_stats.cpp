@@ -31,15 +31,15 @@ std::map<SessionId, proto::SessionStats> stats_by_session(const proto::NodeStats
     return out;
 }
 
-HeldOnNode held_by(const Wall& wall, SessionId session) {
-    HeldOnNode out;
+std::map<SessionId, HeldOnNode> most_held(const Wall& wall) {
+    std::map<SessionId, HeldOnNode> out;
     for (const auto& node : wall.nodes()) {
         if (!node.up) continue;
-        const auto stats = stats_by_session(node.stats);
-        const auto found = stats.find(session);
-        if (found == stats.end()) continue;
-        out.memory_bytes = std::max(out.memory_bytes, found->second.memory_bytes());
-        out.objects = std::max(out.objects, found->second.objects());
+        for (const auto& [session, stats] : stats_by_session(node.stats)) {
+            auto& most = out[session];
+            most.memory_bytes = std::max(most.memory_bytes, stats.memory_bytes());
+            most.objects = std::max(most.objects, stats.objects());
+        }
     }
     return out;
 }

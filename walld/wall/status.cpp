@@ -146,9 +146,10 @@ json group_json(const ParallelGroup& group) {
     return {{"name", group.name()}, {"size", group.size()}, {"members", std::move(members)}};
 }
 
-json session_json(const Wall& wall, SessionId id) {
+static json session_json(const Wall& wall, SessionId id, const std::map<SessionId, HeldOnNode>& most) {
     const auto& session = wall.sessions().at(id);
-    const auto held = held_by(wall, id);
+    const auto found = most.find(id);
+    const auto held = found == most.end() ? HeldOnNode() : found->second;
     auto surfaces = json::array();
     for (const auto& key : wall.stacking()) {
         if (key.session == id) surfaces.push_back(surface_json(wall, key));
@@ -170,9 +171,12 @@ json session_json(const Wall& wall, SessionId id) {
     return out;
 }
 
+json session_json(const Wall& wall, SessionId id) { return session_json(wall, id, most_held(wall)); }
+
 json sessions_json(const Wall& wall) {
     auto out = json::array();
-    for (const auto& [id, session] : wall.sessions()) out.push_back(session_json(wall, id));
+    const auto most = most_held(wall);
+    for (const auto& [id, session] : wall.sessions()) out.push_back(session_json(wall, id, most));
     return out;
 }
 
