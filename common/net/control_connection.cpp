@@ -111,6 +111,7 @@ asio::awaitable<Result<proto::Envelope>> ControlConnection::receive() {
         auto [error, bytes] = co_await stream_.read_some(asio::buffer(room.data(), room.size()));
         if (error) {
             const bool ours = !stream_.is_open();
+            lost_ = !closing_;
             const bool orderly = error == asio::error::eof && unframer_.at_boundary();
             close();
             if (failure_) co_return tl::unexpected(*failure_);

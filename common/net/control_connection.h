@@ -73,6 +73,8 @@ public:
     void close_after_sending();
 
     bool is_open() const { return stream_.is_open() && !closing_; }
+    /// It is closed, and not by us: the peer is gone, or the link.
+    bool lost() const { return lost_; }
     /// The key that a peer on another machine has proven; nothing on this machine.
     const std::optional<tls::Fingerprint>& peer_key() const { return stream_.peer_key(); }
     asio::any_io_executor executor() { return stream_.executor(); }
@@ -96,6 +98,7 @@ private:
     asio::steady_timer drained_;    // cancelled when the queue is empty
     bool writing_ = false;
     bool closing_ = false;
+    bool lost_ = false;
 };
 
 }  // namespace wall::net

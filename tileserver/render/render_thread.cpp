@@ -25,6 +25,8 @@ using namespace std::chrono_literals;
 
 /// A stream that had a turn so short a time ago may want the next one soon.
 constexpr auto kActive = 100ms;
+/// Within it walld says whether a program has ended whose connection was closed.
+constexpr auto kUntilWalldSays = 1s;
 constexpr auto kStatsInterval = 1s;
 constexpr auto kReadbackPoll = 1ms;
 constexpr auto kLongestNap = 100ms;  // also until an X server's event is seen
@@ -87,7 +89,7 @@ public:
         /// The turns of one round, as many as its weight says: what is less than one is saved up. True: there may be
         /// more to do at once.
         bool run_turns(Clock::time_point& now, bool contended) {
-            if (now < frame_limit_.pause_until()) return false;
+            if (now < frame_limit_.pause_until() || lingers()) return false;
             turns_ = contended ? std::min(turns_ + weight_, std::max(1.0, weight_)) : 1.0;
             if (turns_ < 1.0) return batch_ || (!failed_ && !held() && queue_->front() != nullptr);
             bool worked = false;
@@ -130,7 +132,7 @@ public:
         }
         bool active(Clock::time_point now) const {
             const bool pauses = executor_.waits() || now < frame_limit_.pause_until();
-            return !failed_ && ((batch_ && !pauses) || now - last_run_ < kActive);
+            return !failed_ && !lingers() && ((batch_ && !pauses) || now - last_run_ < kActive);
         }
         /// How long it has to wait for its next turn at least.
         Clock::duration delay(Clock::time_point now) const {
@@ -147,9 +149,19 @@ public:
             loop_.events_.ended(id_, std::move(reason));
         }
         /// Its connection is closed.
-        void close() { closed_ = true; }
-        /// Nothing of it is left to be executed.
-        bool over() const { return failed_ || (closed_ && (!group_ || (!batch_ && queue_->front() == nullptr))); }
+        void close() { closed_ = Clock::now(); }
+        /// Nothing of it is left to be executed, or shown.
+        bool over(Clock::time_point now) const {
+            if (failed_ || !closed_) return failed_;
+            return group_ ? !batch_ && queue_->front() == nullptr : !stays_in_sight(now);
+        }
+        bool lingers() const { return closed_ && !group_; }
+        bool has_shown() const {
+            bool shown = false;
+            session_.for_each_surface(
+                [&](SurfaceId, const SurfaceReplica& surface) { shown = shown || surface.shows_something(); });
+            return shown;
+        }
         bool failed() const { return failed_; }
         const std::shared_ptr<ParallelGroup>& group() const { return group_; }
         SessionStats stats() const {
@@ -170,6 +182,14 @@ public:
             if (auto started = executor_.start_batch(*batch_); !started) fail(started.error().message);
             return !failed_;
         }
+        /// If only the link was lost, the program comes again. Until walld says that it has ended, or what it sends
+        /// anew is shown, its pictures stay. Nobody says so while walld is away.
+        bool stays_in_sight(Clock::time_point now) const {
+            if (loop_.node_.present_at_once) return false;
+            if (now - *closed_ < kUntilWalldSays || loop_.node_.returning.contains(session_.id())) return true;
+            const Stream* next = loop_.open_stream(session_.id());
+            return next != nullptr && !next->has_shown();
+        }
         bool question_answered() {
             const auto answered = executor_.pursue_question();
             if (!answered) fail(answered.error().message);
@@ -188,14 +208,26 @@ public:
         DriverWait driver_wait_{loop_.driver_.gl()};
         Clock::time_point last_run_{};
         double weight_ = 1.0, turns_ = 0.0;  // turns a round; those that are left of this one
-        bool failed_ = false, closed_ = false;
+        bool failed_ = false;
+        std::optional<Clock::time_point> closed_;
     };
 
+    /// The newest that shows something.
     const SurfaceReplica* find(const StackEntry& entry) {
+        const SurfaceReplica* found = nullptr;
         for (auto& [id, stream] : streams_)
             if (stream->session().id() == entry.session)
-                if (const SurfaceReplica* surface = stream->session().surface(entry.surface)) return surface;
-        return nullptr;
+                if (const SurfaceReplica* surface = stream->session().surface(entry.surface);
+                    surface != nullptr && (found == nullptr || surface->shows_something()))
+                    found = surface;
+        return found;
+    }
+    /// Of a program alone: the last of its streams that is not closed.
+    const Stream* open_stream(SessionId session) const {
+        const Stream* found = nullptr;
+        for (const auto& [id, stream] : streams_)
+            if (stream->session().id() == session && !stream->lingers()) found = stream.get();
+        return found;
     }
 
     /// True: there may be more to do at once.
@@ -255,9 +287,10 @@ public:
     /// True: others may go on without what has ended.
     bool remove_ended() {
         bool removed = false;
+        const auto now = Clock::now();
         for (auto at = streams_.begin(); at != streams_.end();) {
             Stream& stream = *at->second;
-            if (!stream.over()) {
+            if (!stream.over(now)) {
                 ++at;
                 continue;
             }

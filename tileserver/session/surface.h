@@ -77,6 +77,8 @@ public:
     std::optional<std::uint32_t> waiting_frame() const { return waiting_; }
     /// The last one on show; 0: none.
     std::uint32_t shown_frame() const { return shown_; }
+    /// It has something on show: without a back buffer, whatever there is.
+    bool shows_something() const { return shown_ > 0 || !format_.layer.double_buffered; }
 
 private:
     using Layers = std::array<std::unique_ptr<Layer>, wire::kMaxTilesPerNode>;

@@ -37,15 +37,23 @@ asio::awaitable<void> pass_on(Connection to, proto::Envelope message) {
 }
 
 asio::awaitable<void> to_walld(std::shared_ptr<const ControlPair> pair) {
-    for (;;) {
+    bool gone = false;
+    while (!gone) {
         auto message = co_await pair->program->receive();
+        gone = !message && pair->program->lost();
         if (!message) break;
         if (!programs_may_say(*message)) {
             log::refused("agent", "this machine", "a program speaks as a machine");
             pair->program->close();
-            break;
+            gone = true;
+        } else {
+            co_await pass_on(pair->walld, std::move(*message));
         }
-        co_await pass_on(pair->walld, std::move(*message));
+    }
+    if (gone) {
+        proto::Envelope ended;
+        ended.mutable_program_ended();
+        pair->walld->send(ended);
     }
     co_await close_when_sent(pair->walld);
 }

@@ -24,7 +24,8 @@ void lead_through_doors(proto::Envelope& envelope, const DoorFor& door_for) {
 }
 
 bool programs_may_say(const proto::Envelope& envelope) {
-    return !envelope.has_host_hello() && !envelope.has_join_request() && !envelope.has_node_hello();
+    return !envelope.has_host_hello() && !envelope.has_join_request() && !envelope.has_node_hello() &&
+           !envelope.has_program_ended();
 }
 
 }  // namespace wall::wallagent

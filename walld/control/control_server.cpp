@@ -386,6 +386,7 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
         co_return refuse(connection, "the wall does not know parallel program '" + hello.group().name() + "' any more",
                          comeback == Wall::Comeback::over);
     const Rank rank = hello.group().rank();
+    if (hello.has_resume() && !hello.has_group()) give_way(hello.resume());
     const auto id = wall_.open_session(hello, who, Clock::now(), [&](SessionId session) {
         clients_[{session, rank}] = {connection};
     });
@@ -397,18 +398,45 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
     std::string reason;
     while (reason.empty()) {
         auto message = co_await connection->receive();
+        if (!serves({id, rank}, connection)) co_return;  // the program has come on another one
         if (message) clients_[{id, rank}].silent_checks = 0;
         if (message && answer_ping(*connection, *message)) continue;
+        if (message && message->has_program_ended() && !who.machine.empty()) {
+            reason = "closed";
+            break;
+        }
         const auto result = message ? client_says({id, rank}, *message) : Result<void>(tl::unexpected(message.error()));
         if (!result) reason = result.error().message;
         if (message && !result) refuse(connection, reason);
         something_changed();
     }
+    const bool may_come = connection->lost() && !who.machine.empty() && !hello.has_group();
     clients_.erase({id, rank});
-    const auto became = wall_.member_gone(id, rank);
-    log::info("session_end session={} rank={} reason={} became={}", id.value, rank, log::quoted(reason),
-              log::quoted(became));
+    if (may_come) {
+        wall_.await_again(id, Clock::now());
+        log::warn("session_lost session={} reason={}", id.value, log::quoted(reason));
+    } else {
+        const auto became = wall_.member_gone(id, rank);
+        log::info("session_end session={} rank={} reason={} became={}", id.value, rank, log::quoted(reason),
+                  log::quoted(became));
+    }
     something_changed();
+}
+
+bool ControlServer::serves(const ClientId& client, const Connection& connection) const {
+    const auto found = clients_.find(client);
+    return found != clients_.end() && found->second.connection == connection;
+}
+
+/// A program that comes again while the link on which it was is not known to be dead yet.
+void ControlServer::give_way(const proto::Resume& resume) {
+    const SessionId id(resume.session());
+    const auto before = clients_.find({id, 0});
+    if (before == clients_.end() || !wall_.is_program_of(id, resume)) return;
+    log::warn("session_lost session={} reason={}", id.value, log::quoted("it has come again"));
+    before->second.connection->close();
+    clients_.erase(before);
+    wall_.await_again(id, Clock::now());
 }
 
 Result<void> ControlServer::client_says(const ClientId& client, const proto::Envelope& message) {

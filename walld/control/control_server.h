@@ -103,6 +103,8 @@ private:
     using ClientId = std::pair<SessionId, Rank>;  // rank 0 without a parallel program
 
     Result<void> client_says(const ClientId& client, const proto::Envelope& message);
+    bool serves(const ClientId& client, const Connection& connection) const;
+    void give_way(const proto::Resume& resume);
     /// `over`: a session that was to go on never will.
     void refuse(const Connection& connection, const std::string& reason, bool over = false);
     void something_changed();

@@ -407,10 +407,10 @@ std::optional<Clock::time_point> Wall::next_deadline() const {
     };
     for (const auto& [id, session] : sessions_) {
         if (session.group && !session.group->all_came()) consider(session.opened + kMembersLimit);
+        if (session.awaited > 0) consider(session.awaited_until);
         for (const auto& [surface_id, surface] : session.surfaces) consider(surface.swap.deadline());
     }
-    const bool waits = std::ranges::any_of(sessions_, [](const auto& entry) { return entry.second.awaited > 0; });
-    if (waits || !returning_.empty()) consider(return_until_);
+    for (const auto& [id, session] : returning_) consider(session.until);
     return out;
 }
 

@@ -104,6 +104,7 @@ struct SessionEntry {
     std::uint32_t weight = wire::kUsualWeight;
     bool silent = false;        ///< its link may be dead, or somebody has stopped it
     std::uint32_t awaited = 0;  ///< windows that it still has to announce, of a session that goes on
+    Clock::time_point awaited_until;
     std::map<NodeIndex, std::string> tickets;
     std::map<SurfaceId, SurfaceEntry> surfaces;
     SessionTraffic traffic;
@@ -121,16 +122,18 @@ struct Counters {
     std::uint64_t sessions = 0, presents = 0, faults = 0;
 };
 
-/// Of an earlier walld, by what the nodes tell of it.
+/// Whose program may come again: of an earlier walld, by what the nodes tell of it, or one whose link was lost.
 struct ReturningSession {
     std::map<NodeIndex, std::string> tickets;
     std::set<Rank> left;  ///< of a parallel program
+    Clock::time_point until;
 };
 
 class Wall {
 public:
     static constexpr std::size_t kTicketBytes = 16;
-    /// From the first node on: programs of an earlier walld that have not come by then have lost their session.
+    /// Programs that have not come again by then have lost their session: those of an earlier walld from the first
+    /// node on, others from the loss of their link on.
     static constexpr std::chrono::seconds kReturnLimit{10};
     static constexpr std::chrono::seconds kMembersLimit{60};  ///< for all processes of a parallel program to come
     using RandomBytes = std::function<std::string(std::size_t)>;
@@ -182,6 +185,11 @@ public:
     /// A process is gone. The session is closed with its last one, and with one that has not left its parallel program:
     /// then the others are cut off. Gives what became of it, for the log.
     std::string member_gone(SessionId id, Rank rank);
+    /// Its link is lost, and it may be well: it is not on the wall then, but its windows stay in sight until it comes
+    /// again, or for kReturnLimit (wall_return.cpp).
+    void await_again(SessionId id, Clock::time_point now);
+    /// Whether it says that it is this session's program, and knows its ticket.
+    bool is_program_of(SessionId id, const proto::Resume& resume) const;
     void member_leaves(SessionId id, Rank rank);
     Result<void> open_surface(SessionId id, const proto::SurfaceOpen& message, Clock::time_point now, Rank rank = 0);
     /// Always answered with a Placement. In a parallel program rank 0 says how large a window is.

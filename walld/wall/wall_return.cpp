@@ -7,9 +7,12 @@
 //   frames   the nodes say what they have drawn and what they show
 //   layout   each node keeps the places that wait for programs
 //
+// A program of another machine whose link was lost comes back in the same way, to a walld that has lived on.
+//
 // The notes are worth no more than what the program could ask for anyway: its own windows' place, order and hold.
 #include <algorithm>
 
+#include "common/base/assert.h"
 #include "common/wire/limits.h"
 #include "walld/wall/messages.h"
 #include "walld/wall/wall.h"
@@ -57,8 +60,8 @@ void Wall::hear_of_sessions(NodeIndex node, const proto::NodeHello& hello, Clock
         const SessionId id(known.session());
         if (sessions_.contains(id)) continue;  // with another ticket, it ends by that
         last_session_ = std::max(last_session_, id);
-        if (!returns_over_ && !ended_.contains(id)) {
-            auto& returning = returning_[id];
+        if (returning_.contains(id) || (!returns_over_ && !ended_.contains(id))) {
+            auto& returning = returning_.try_emplace(id, ReturningSession{{}, {}, *return_until_}).first->second;
             returning.tickets[node] = known.ticket();
             returning.left.insert(known.left().begin(), known.left().end());
             continue;
@@ -88,21 +91,42 @@ void Wall::resume_session(SessionId id, SessionEntry& session, const proto::Resu
         if (known || !nodes_[node].up) session.tickets[node] = told.ticket();
     }
     session.awaited = resume.windows();
+    session.awaited_until = returning.until;
     for (const Rank rank : returning.left)
         if (session.group && rank < session.group->size() && !session.group->here(rank)) session.group->had_left(rank);
 }
 
 void Wall::end_waiting_for_sessions(Clock::time_point now) {
-    if (returns_over_ || !return_until_ || now < *return_until_) return;
-    returns_over_ = true;
-    ended_.clear();
-    for (const auto& [id, session] : std::exchange(returning_, {})) {
+    if (return_until_ && now >= *return_until_ && !std::exchange(returns_over_, true)) ended_.clear();
+    bool over = std::erase_if(returning_, [&](const auto& entry) {
+        const auto& [id, session] = entry;
+        if (now < session.until) return false;
         proto::SessionEnd end;
         end.set_session(id.value);
         for (const auto& [node, ticket] : session.tickets)
             out_.to_node(node, make(&proto::Envelope::mutable_session_end, end));
-    }
-    for (auto& [id, session] : sessions_) session.awaited = 0;
+        return true;
+    }) > 0;
+    for (auto& [id, session] : sessions_)
+        if (session.awaited > 0 && now >= session.awaited_until) {
+            session.awaited = 0;
+            over = true;
+        }
+    if (over) send_stacking();
+}
+
+bool Wall::is_program_of(SessionId id, const proto::Resume& resume) const {
+    const auto found = sessions_.find(id);
+    return found != sessions_.end() && id == SessionId(resume.session()) &&
+           knows_a_ticket(resume, found->second.tickets);
+}
+
+void Wall::await_again(SessionId id, Clock::time_point now) {
+    auto lost = sessions_.extract(id);
+    if (lost.empty()) return;
+    WALL_ASSERT(!lost.mapped().group);
+    returning_[id] = {std::move(lost.mapped().tickets), {}, now + kReturnLimit};
+    std::erase_if(stacking_, [&](const SurfaceKey& key) { return key.session == id; });
     send_stacking();
 }
 

@@ -195,6 +195,32 @@ class Machines(unittest.TestCase):
         self.wall.start_agent("desk")
         self.assert_same(self.show())
 
+    def test_programs_whose_agent_was_killed_go_on_as_the_same_sessions(self) -> None:
+        show = self.show()
+        self.wall.ctl("place", show.clock.session, 0, 30, 600, 120)
+        self.wall.ctl("weight", show.clock.session, 30)
+        show.step()
+        before, picture = self.wall.sessions(), show.picture()
+        self.wall.daemons["desk"].kill()
+        self.wall.daemons["desk"].wait()
+        time.sleep(SETTLED)
+        self.assertTrue(same(picture, show.picture()).good, "what they have drawn stays in sight")
+        self.wall.start_agent("desk")
+        until(lambda: show.sessions <= {s["id"] for s in self.wall.sessions() if s["surfaces"]},
+              "the programs are back", RIGHT_AGAIN)
+        self.assert_goes_on(show)
+        kept = ("id", "owner", "held", "weight")
+        self.assertEqual([[s[key] for key in kept] for s in self.wall.sessions()],
+                         [[{**s, "held": False}[key] for key in kept] for s in before])
+        self.assertEqual([s["surfaces"][0]["rect"] for s in self.wall.sessions()],
+                         [s["surfaces"][0]["rect"] for s in before])
+
+    def test_programs_that_end_are_gone_at_once(self) -> None:
+        show = self.show()
+        for app in show.apps:
+            app.kill()
+        until(lambda: not self.wall.sessions(), "nobody waits for them", 1.0)
+
     def test_walld_is_killed_and_started_again(self) -> None:
         show = self.show()
         self.wall.restart_walld()

@@ -134,7 +134,9 @@ public:
     void ended(StreamId, std::string reason) override {
         note([&] { failure_ = std::move(reason); });
     }
-    void picture(Picture) override {}
+    void picture(Picture picture) override {
+        note([&] { pictures_[picture.request.id.value] = std::move(picture.rgba); });
+    }
     void stats(const RenderStats&) override {
         note([&] { ++stats_; });
     }
@@ -151,6 +153,7 @@ public:
     }
     std::map<std::uint32_t, std::uint32_t> drawn_;
     std::map<std::pair<StreamId, RequestId>, std::vector<std::byte>> replies_;
+    std::map<std::uint32_t, std::vector<std::byte>> pictures_;
     std::string failure_, lost_;
     int stats_ = 0;
 
@@ -193,13 +196,16 @@ protected:
         auto queue = std::make_shared<BatchQueue>([] {});
         thread_->add_stream(StreamId(id), SessionId(id), queue);
         wire::PackBuffer buffer;
+        create_window(buffer);
+        push(queue, buffer);
+        return queue;
+    }
+    static void create_window(wire::PackBuffer& buffer) {
         pack::SurfaceCreate(buffer, SurfaceId(1), 1, 0, 24, 8, 0, 0, 1);
         pack::SurfacePlace(buffer, SurfaceId(1), 1, kSize, kSize, 0, 0, kSize, kSize, 0);
         pack::Bind(buffer, SurfaceId(1), SurfaceId(1));
         const glstate::Viewport viewport{0, 0, kSize, kSize};
         glapi::pack_state(buffer, glstate::el::viewport::id, &viewport, sizeof viewport);
-        push(queue, buffer);
-        return queue;
     }
     void push(const std::shared_ptr<BatchQueue>& queue, const wire::PackBuffer& buffer) {
         std::vector<std::byte> payload;
@@ -232,6 +238,103 @@ protected:
     std::unique_ptr<CompilerHost> compilers_;
     std::unique_ptr<RenderThread> thread_;
 };
+
+// ---- connections that end ----
+
+/// A program of one colour, whose connection is closed.
+class AConnectionThatIsClosed : public RenderThreadTest {
+protected:
+    static constexpr SessionId kSession{1};
+    static constexpr StackEntry kWindow{kSession, SurfaceId(1)};
+
+    void SetUp() override {
+        RenderThreadTest::SetUp();
+        if (!thread_) return;
+        thread_->set_coordinated(true);
+        thread_->set_stacking({kWindow});
+        show(open_of_session(1), 1, 0.5f);
+        ASSERT_EQ(seen(), 128);
+    }
+    std::shared_ptr<BatchQueue> open_of_session(std::uint32_t stream) {
+        auto queue = std::make_shared<BatchQueue>([] {});
+        thread_->add_stream(StreamId(stream), kSession, queue);
+        wire::PackBuffer buffer;
+        create_window(buffer);
+        push(queue, buffer);
+        return queue;
+    }
+    void show(const std::shared_ptr<BatchQueue>& queue, std::uint32_t frame, float red) {
+        wire::PackBuffer buffer;
+        const glstate::Vec4 colour{red, 0, 0, 1};
+        glapi::pack_state(buffer, glstate::el::clear_color::id, &colour, sizeof colour);
+        block(buffer, 1, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT); });
+        pack::Swap(buffer, SurfaceId(1), frame);
+        push(queue, buffer);
+        EXPECT_TRUE(events_.wait([&](Events& e) {
+            return std::ranges::any_of(e.drawn_, [&](const auto& drawn) { return drawn.second == frame; });
+        }));
+        thread_->present(kSession, SurfaceId(1), frame);
+    }
+    /// The red of the tile's first pixel.
+    int seen() {
+        const PictureId id(++pictures_);
+        thread_->request_picture({.id = id, .slot = 0});
+        int red = -1;
+        events_.wait([&](Events& e) {
+            const auto found = e.pictures_.find(id.value);
+            if (found != e.pictures_.end()) red = std::to_integer<int>(found->second.at(0));
+            return found != e.pictures_.end();
+        });
+        return red;
+    }
+    /// Whether that is seen before the time is over.
+    bool becomes(int red, Clock::duration limit = 5s) {
+        for (const auto end = Clock::now() + limit; Clock::now() < end; std::this_thread::sleep_for(20ms))
+            if (seen() == red) return true;
+        return false;
+    }
+
+    static constexpr auto kLongerThanWalldTakes = 1500ms;
+    std::uint32_t pictures_ = 0;
+};
+
+TEST_F(AConnectionThatIsClosed, IsOutOfSightWhenWalldSaysThatItsProgramHasEnded) {
+    thread_->remove_stream(StreamId(1));
+    EXPECT_EQ(seen(), 128) << "nobody has said so yet";
+    thread_->remove_session(kSession);
+    EXPECT_EQ(seen(), 0);
+}
+
+TEST_F(AConnectionThatIsClosed, IsOutOfSightSoonIfWalldSaysNothing) {
+    thread_->remove_stream(StreamId(1));
+    EXPECT_TRUE(becomes(0));
+}
+
+TEST_F(AConnectionThatIsClosed, IsOutOfSightAtOnceWhileWalldIsAway) {
+    thread_->set_coordinated(false);
+    thread_->remove_stream(StreamId(1));
+    EXPECT_TRUE(becomes(0, 500ms));
+}
+
+TEST_F(AConnectionThatIsClosed, StaysInSightWhileItsProgramIsAwaited) {
+    thread_->remove_stream(StreamId(1));
+    thread_->set_stacking({kWindow}, {}, {kSession});
+    EXPECT_FALSE(becomes(0, kLongerThanWalldTakes));
+    EXPECT_EQ(seen(), 128);
+    thread_->set_stacking({}, {}, {});
+    EXPECT_EQ(seen(), 0);
+}
+
+TEST_F(AConnectionThatIsClosed, StaysInSightUntilItsProgramShowsSomethingAgain) {
+    thread_->remove_stream(StreamId(1));
+    const auto again = open_of_session(2);
+    EXPECT_FALSE(becomes(0, kLongerThanWalldTakes)) << "its program is held, or has much to send";
+    EXPECT_EQ(seen(), 128);
+    show(again, 2, 1.0f);
+    EXPECT_TRUE(becomes(255));
+    thread_->remove_stream(StreamId(2));
+    EXPECT_TRUE(becomes(0)) << "nothing is left of the first one";
+}
 
 /// A list of small triangles.
 void define_run(wire::PackBuffer& buffer, std::uint32_t run, int triangles, GLenum mode = GL_TRIANGLES) {

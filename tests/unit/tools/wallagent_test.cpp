@@ -87,6 +87,8 @@ TEST(WallagentEnvelopes, LetNoProgramSpeakAsAMachine) {
     EXPECT_FALSE(programs_may_say(envelope));
     envelope.mutable_join_request();
     EXPECT_FALSE(programs_may_say(envelope));
+    envelope.mutable_program_ended();
+    EXPECT_FALSE(programs_may_say(envelope));
 }
 
 TEST(WallagentPlaces, AreFreeAgainWhenTheirOwnersHaveGone) {

@@ -333,6 +333,86 @@ TEST_F(AWallThatReturns, IsNotLedAstrayByWhatAProgramSaysOfAPlace) {
     EXPECT_EQ(surface(other).place.wanted(), (geom::Rect{100, 0, 100, 80}));
 }
 
+// ---- a link that was lost, to a walld that lives on ----
+
+TEST_F(AWallThatReturns, TakesAProgramWhoseLinkWasLostUnderItsNumberAndItsTickets) {
+    join_both();
+    const auto other = open();
+    open_surface(other);
+    const auto id = open();
+    open_surface(id);
+    ASSERT_TRUE(wall_->place_surface({id, {}}, {640, 0, 200, 160}));
+    ASSERT_TRUE(wall_->hold({id, {}}, true, now_));
+    ASSERT_TRUE(wall_->lower({id, {}}));
+    const auto tickets = out_.tickets;
+    wall_->await_again(id, now_);
+    EXPECT_FALSE(wall_->sessions().contains(id));
+    EXPECT_THAT(out_.stacking[kLeft].returning(), ElementsAre(id.value)) << "what it has drawn stays in sight";
+    EXPECT_EQ(come_back(id), id);
+    bring_back(id, {640, 0, 200, 160}, out_.notes[id], id);
+    EXPECT_EQ(out_.tickets, tickets) << "nobody has to open a stream again";
+    EXPECT_EQ(surface(id).place.wanted(), (geom::Rect{640, 0, 200, 160}));
+    EXPECT_TRUE(surface(id).swap.held());
+    EXPECT_THAT(bottom_to_top(), ElementsAre(id.value, other.value));
+    EXPECT_EQ(out_.stacking[kLeft].returning_size(), 0);
+    EXPECT_FALSE(wall_->next_deadline());
+}
+
+TEST_F(AWallThatReturns, AwaitsAProgramWhoseLinkWasLostForAWhileOnly) {
+    join_both();
+    now_ += 2 * Wall::kReturnLimit;
+    wall_->tick(now_);  // whoever was to come from an earlier walld has come
+    const auto id = open();
+    open_surface(id);
+    wall_->await_again(id, now_);
+    EXPECT_EQ(wall_->next_deadline(), now_ + Wall::kReturnLimit);
+    wall_->tick(now_ + Wall::kReturnLimit);
+    EXPECT_FALSE(wall_->next_deadline());
+    EXPECT_FALSE(out_.tickets[kLeft].contains(id.value)) << "the nodes forget it";
+    EXPECT_EQ(out_.stacking[kLeft].returning_size(), 0);
+    EXPECT_NE(come_back(id), id);
+}
+
+TEST_F(AWallThatReturns, DoesNotWaitForEverForWindowsEither) {
+    join_both();
+    now_ += 2 * Wall::kReturnLimit;
+    const auto id = open();
+    open_surface(id);
+    wall_->await_again(id, now_);
+    come_back(id, 1);  // and closes its window before it has said anything of it
+    EXPECT_EQ(wall_->next_deadline(), now_ + Wall::kReturnLimit);
+    wall_->tick(now_ + Wall::kReturnLimit);
+    EXPECT_FALSE(wall_->next_deadline());
+    EXPECT_EQ(out_.stacking[kLeft].returning_size(), 0);
+    EXPECT_TRUE(wall_->sessions().contains(id));
+}
+
+TEST_F(AWallThatReturns, ANodeThatComesMeanwhileKeepsWhatItHasOfAProgramWhoseLinkWasLost) {
+    join_both();
+    now_ += 2 * Wall::kReturnLimit;
+    wall_->tick(now_);
+    const auto id = open();
+    wall_->await_again(id, now_);
+    wall_->node_leaves(kRight, now_);
+    join("right");
+    EXPECT_TRUE(out_.tickets[kRight].contains(id.value));
+    EXPECT_EQ(come_back(id), id);
+}
+
+TEST_F(AWallThatReturns, KnowsAProgramThatComesBeforeItsLinkIsKnownToBeLost) {
+    join_both();
+    const auto id = open(), other = open();
+    proto::Resume resume;
+    resume.set_session(id.value);
+    auto& told = *resume.add_tickets();
+    told.set_node(kLeft.value);
+    told.set_ticket(out_.tickets[kLeft].at(id.value));
+    EXPECT_TRUE(wall_->is_program_of(id, resume));
+    EXPECT_FALSE(wall_->is_program_of(other, resume));
+    resume.mutable_tickets(0)->set_ticket(std::string(Wall::kTicketBytes, '?'));
+    EXPECT_FALSE(wall_->is_program_of(id, resume));
+}
+
 // ---- parallel programs ----
 
 class AParallelProgramThatReturns : public AWallThatReturns {
