@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Runs the benchmarks of build/release and prints their tables.
 # bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, execute, switch,
-#                                         pack, mesh, buffers, late_node, march, off_wall, traffic, share, fair,
-#                                         streams, codec)
+#                                         pack, mesh, buffers, late_node, march, off_wall, traffic, share,
+#                                         transport, fair, streams, codec)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -41,6 +41,7 @@ run march bench/march.py --json "$results/march.json"
 run off_wall bench/off_wall.py --json "$results/off_wall.json"
 run traffic bench/traffic.py --json "$results/traffic.json"
 run share bench/share.py --json "$results/share.json"
+run transport bench/transport.py --json "$results/transport.json"
 run fair bench/fair.py --json "$results/fair.json"
 run streams bench/stream_cost.py --json "$results/streams.json"
 run codec bench/codec.py --json "$results/codec.json"

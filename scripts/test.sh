@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs what is missing, builds, and runs every test: scripts/test.sh [STAGE...], stages as listed below.
-# Ends with CTest's own summary of each stage; exit code 1 if anything failed. Four run only when they are named:
-# golden-all and conformance-all, of which the usual run takes samples (more than ten minutes, hours); packages, which
-# builds the Debian packages and runs a wall of machines that have them; and fresh, which does everything once more on a
-# clean Debian 12 (scripts/fresh.sh).
+# Ends with CTest's own summary of each stage; exit code 1 if anything failed. Six run only when they are named:
+# golden-all and conformance-all, of which the usual run takes samples (more than ten minutes, hours); faults and soak,
+# 300 faults on a wall of machines and an hour of them; packages, which builds the Debian packages and runs a wall of
+# machines that have them; and fresh, which does everything once more on a clean Debian 12 (scripts/fresh.sh).
 set -uo pipefail
 cd "$(dirname "$0")/.."
-readonly all_stages=(release golden conformance asan tsan fuzz) on_request=(golden-all conformance-all packages fresh)
+readonly all_stages=(release golden conformance asan tsan fuzz)
+readonly on_request=(golden-all conformance-all faults soak packages fresh)
 readonly summaries="build/test-summaries"
 begin=$SECONDS
 failed=()
@@ -67,6 +68,16 @@ stage_conformance-all() {
       --report "build/release/test-output/conformance-all-$1${3:-}" || failed+=("conformance-all ($1${3:+ $3})")
   done
 }
+
+faults() {
+  say "$1"
+  build release || { failed+=("$2"); return; }
+  WALLGL_BUILD="$PWD/build/release" tests/integration/machines/faults.py "${@:3}" --pictures "$summaries" ||
+    failed+=("$2")
+}
+
+stage_faults() { faults "300 faults on a wall of machines (half an hour)" faults --count 300; }
+stage_soak() { faults "an hour of faults on a wall of machines" soak --for 3600; }
 
 stage_asan() {
   say "building the unit tests and fuzzers (clang, address and undefined behaviour sanitizers)"

@@ -57,6 +57,13 @@ void Nodes::connect(const NodeInfo& info) {
     attempts_begun_ = true;
 }
 
+bool Nodes::goes_on(const NodeInfo& info) {
+    Node& node = at(info.node);
+    const bool same = info.up && node.alive() && node.info.ticket == info.ticket;
+    if (same) node.info = info;
+    return same;
+}
+
 void Nodes::forget_others(const Welcome& welcome) {
     for (const auto& node : nodes_) {
         const bool up = std::ranges::count(welcome.nodes, node->index, &NodeInfo::node) > 0;
@@ -69,8 +76,7 @@ void Nodes::forget_others(const Welcome& welcome) {
 
 void Nodes::connect_and_wait(std::span<const NodeInfo> infos) {
     for (const NodeInfo& info : infos) {
-        const Node& node = at(info.node);
-        if (!node.alive() || node.info.ticket != info.ticket) connect(info);
+        if (!goes_on(info)) connect(info);
     }
     for (const NodeInfo& info : infos) {
         Node& node = at(info.node);
@@ -158,7 +164,7 @@ void Nodes::send(Node& node) {
     if (node.batch.empty()) return;
     if (node.alive()) {
         stats().add_node(node.index, NodeCounter::batches, 1);
-        node.stream->send(node.batch_context, std::exchange(node.batch, wire::PackBuffer()));
+        node.stream->send(node.batch_context, std::exchange(node.batch, node.stream->spare()));
         transport_.wake();
     }
     node.batch.clear();

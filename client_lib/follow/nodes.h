@@ -46,6 +46,8 @@ public:
     // ---- streams ----
     /// As whose nodes they are spoken to.
     void set_session(SessionId session) { session_ = session; }
+    /// Whether the node, as walld names it now, is the one to which there is a stream: it keeps what it has.
+    bool goes_on(const NodeInfo& info);
     /// The node, as walld names it now, is another one than before: what it held is gone.
     void connect(const NodeInfo& info);
     /// Of a walld that came back: nodes that it does not have any more go.

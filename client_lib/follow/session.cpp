@@ -109,10 +109,8 @@ void ClientSession::adopt(const Welcome& welcome) {
     for (const TileInfo& tile : welcome.tiles) nodes_.at(tile.node);  // also those that are not up
     nodes_.forget_others(welcome);
     for (const NodeInfo& info : welcome.nodes) {
-        Node& node = nodes_.at(info.node);
-        const bool same = goes_on && node.alive() && node.info.ticket == info.ticket;
-        if (same) node.info = info;
-        else nodes_.connect(info);
+        const bool same = goes_on && nodes_.goes_on(info);
+        if (!same) nodes_.connect(info);
         anew = anew || !same;
     }
     if (anew) surfaces_.ask_to_redraw();
@@ -123,6 +121,7 @@ void ClientSession::take_events() {
     if (events.reconnected) adopt(*events.reconnected);
     for (const NodeInfo& info : events.node_changes) {
         if (group_ && info.up) continue;  // comes with a placement
+        if (nodes_.goes_on(info)) continue;
         nodes_.connect(info);
         surfaces_.place_off_wall();
     }

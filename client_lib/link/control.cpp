@@ -12,7 +12,7 @@
 
 #include <fstream>
 
-#include "client_lib/link/node_stream.h"
+#include "client_lib/link/node_greeting.h"
 #include "client_lib/process/log.h"
 #include "client_lib/process/process.h"
 #include "client_lib/process/stats.h"

@@ -383,6 +383,16 @@ std::string encode_data_hello(SessionId session, std::string_view ticket, std::u
     return bytes;
 }
 
+std::string encode_resume(std::uint32_t stream, std::uint64_t received, std::uint64_t attempt) {
+    std::string bytes;
+    pbf_writer hello(bytes);
+    pbf_writer out(hello, 5);
+    out.add_uint32(1, stream);
+    out.add_uint64(2, received);
+    out.add_uint64(3, attempt);
+    return bytes;
+}
+
 Result<FromWalld> decode_from_walld(std::string_view bytes) {
     try {
         return read_envelope(pbf_reader(bytes.data(), bytes.size()));

@@ -156,5 +156,7 @@ Result<FromWalld> decode_from_walld(std::string_view envelope);
 
 /// The first message on a data stream, for NodeStream::open.
 std::string encode_data_hello(SessionId session, std::string_view ticket, std::uint32_t rank);
+/// What is appended to it to go on with a stream of which so many frames have come. `attempt`: more than of any before.
+std::string encode_resume(std::uint32_t stream, std::uint64_t received, std::uint64_t attempt);
 
 }  // namespace wall::client

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/link/node_stream.h"
 
-#include <fcntl.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
-#include <poll.h>
 #include <sys/socket.h>
-#include <sys/uio.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <span>
 
+#include "client_lib/link/node_greeting.h"
+#include "client_lib/link/stream_attempts.h"
+#include "client_lib/process/log.h"
 #include "common/base/address.h"
-#include "common/base/connect_within.h"
+#include "common/base/quoted.h"
 #include "common/wire/limits.h"
 #include "common/wire/padding.h"
 
@@ -26,97 +25,32 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMaxQueuedBytes = 64u << 20;  // of one node: about two frames of the heaviest programs
 constexpr int kStallLimitMs = 5000;                 // a node that takes nothing for so long is given up
 constexpr std::size_t kReadChunk = 64 << 10;
-
-int remaining_ms(Clock::time_point deadline) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    return left > 0 ? static_cast<int>(left) : 0;
-}
-
-bool poll_for(int fd, short events, Clock::time_point deadline) {
-    pollfd p{fd, events, 0};
-    for (;;) {
-        const int n = ::poll(&p, 1, remaining_ms(deadline));
-        if (n > 0) return true;
-        if (n == 0 || errno != EINTR) return false;
-    }
-}
-
-Result<UniqueFd> start_connect(const SocketAddress& to, const std::string& text, Clock::time_point deadline) {
-    UniqueFd fd(::socket(to.family(), SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-    if (!fd) return fail("cannot make a socket: " + std::string(std::strerror(errno)));
-    const int error = connect_within(fd.get(), to.get(), to.length, deadline);
-    if (error == ETIMEDOUT) return fail("no answer from " + text);
-    if (error != 0) return fail("cannot connect to " + text + ": " + std::strerror(error));
-    return fd;
-}
-
-bool write_all(int fd, const std::byte* data, std::size_t size, Clock::time_point deadline) {
-    while (size > 0) {
-        const ssize_t n = ::send(fd, data, size, MSG_NOSIGNAL);
-        if (n > 0) {
-            data += n;
-            size -= static_cast<std::size_t>(n);
-        } else if (n < 0 && errno == EAGAIN) {
-            if (!poll_for(fd, POLLOUT, deadline)) return false;
-        } else if (n < 0 && errno != EINTR) {
-            return false;
-        }
-    }
-    return true;
-}
-
-bool read_all(int fd, std::byte* data, std::size_t size, Clock::time_point deadline) {
-    while (size > 0) {
-        const ssize_t n = ::recv(fd, data, size, 0);
-        if (n > 0) {
-            data += n;
-            size -= static_cast<std::size_t>(n);
-        } else if (n == 0) {
-            return false;
-        } else if (errno == EAGAIN) {
-            if (!poll_for(fd, POLLIN, deadline)) return false;
-        } else if (errno != EINTR) {
-            return false;
-        }
-    }
-    return true;
-}
+constexpr std::uint64_t kReceiptFrames = 64;                       // that have come since the last receipt
+constexpr std::size_t kReceiptBytes = 1 << 20;                     // or bytes of them
+constexpr std::size_t kMostSpare = 4;                              // buffers that wait for another batch
+constexpr std::size_t kLargestSpare = (std::size_t{5} << 20) / 4;  // bytes of one: a mebibyte of operands, and opcodes
 
 }  // namespace
 
-Result<UniqueFd> connect_to(const std::string& address, int timeout_ms) {
-    const auto deadline = Clock::now() + std::chrono::milliseconds(timeout_ms);
-    const auto parsed = Address::parse(address);
-    if (!parsed) return tl::unexpected(parsed.error());
-    const auto to = resolve(*parsed);
-    if (!to) return tl::unexpected(to.error());
-    auto fd = start_connect(*to, address, deadline);
-    const int one = 1;
-    if (fd && !parsed->is_unix()) ::setsockopt(fd->get(), IPPROTO_TCP, TCP_NODELAY, &one, sizeof one);
-    return fd;
-}
-
 Result<std::shared_ptr<NodeStream>> NodeStream::open(const std::string& address, const std::string& hello,
-                                                     int timeout_ms) {
+                                                     int timeout_ms, bool ring) {
     const auto deadline = Clock::now() + std::chrono::milliseconds(timeout_ms);
-    auto fd = connect_to(address, timeout_ms);
-    if (!fd) return tl::unexpected(fd.error());
-    const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(hello.size()), wire::FrameKind::hello});
-    if (!write_all(fd->get(), header.data(), header.size(), deadline) ||
-        !write_all(fd->get(), reinterpret_cast<const std::byte*>(hello.data()), hello.size(), deadline))
-        return fail("node at " + address + " does not take the hello");
-    std::array<std::byte, wire::kFrameHeaderBytes> answer;
-    if (!read_all(fd->get(), answer.data(), answer.size(), deadline))
-        return fail("node at " + address + " does not answer");
-    const auto frame = wire::decode_frame_header(answer.data());
-    if (frame.kind == wire::FrameKind::error && frame.payload_bytes < 4096) {
-        std::string text(frame.payload_bytes, '\0');
-        read_all(fd->get(), reinterpret_cast<std::byte*>(text.data()), text.size(), deadline);
-        return fail("node at " + address + " refused: " + text);
-    }
-    if (frame.kind != wire::FrameKind::welcome || frame.payload_bytes != 0)
+    const auto at = Address::parse(address);
+    if (!at) return tl::unexpected(at.error());
+    // Where the system forbids shared memory to this process, or the node does not take it, the socket will do.
+    auto offered =
+        ring && at->is_unix() ? wire::RingWriter::create() : Result<wire::RingWriter>(fail("none is wanted"));
+    auto greeting = greet_node(address, hello, offered ? offered->descriptor() : -1, deadline);
+    if (!greeting) return tl::unexpected(greeting.error());
+    const Answer& answer = greeting->answer;
+    if (!answer.why.empty()) return fail(answer.why);
+    const bool taken = answer.kind == wire::FrameKind::ring && offered;
+    if (!taken && answer.kind != wire::FrameKind::welcome)
         return fail("node at " + address + " does not speak this protocol");
-    return std::shared_ptr<NodeStream>(new NodeStream(std::move(*fd)));
+    if (taken) offered->close_descriptor();
+    return std::shared_ptr<NodeStream>(new NodeStream(std::move(greeting->fd),
+                                                      taken ? std::optional(std::move(*offered)) : std::nullopt,
+                                                      static_cast<std::uint32_t>(answer.number), address, hello));
 }
 
 template <class Done>
@@ -140,8 +74,12 @@ void NodeStream::send(ContextId context, wire::PackBuffer batch) {
     out.begin_part(0);
 
     std::unique_lock lock(mutex_);
-    const auto room = [&] { return failed() || queued_bytes_ < kMaxQueuedBytes; };
+    const auto room = [&] { return failed() || queued_bytes_ + sent_bytes_ < kMaxQueuedBytes; };
     while (!room()) {
+        if (stalls_ && !connected_) {  // nobody waits for a link that may be gone for long
+            lock.unlock();
+            return give_up("its connection is lost, and much waits for the next one");
+        }
         const std::uint64_t before = bytes_sent();
         wait(lock, stalls_ ? kStallLimitMs : kNoLimit, room);
         if (room() || bytes_sent() != before) continue;
@@ -149,8 +87,25 @@ void NodeStream::send(ContextId context, wire::PackBuffer batch) {
         give_up("node takes no more data");
         return;
     }
+    out.first_frame = next_frame_;
+    next_frame_ += out.frames();
     queued_bytes_ += payload;
     queue_.push_back(std::move(out));
+}
+
+wire::PackBuffer NodeStream::spare() {
+    std::lock_guard lock(mutex_);
+    if (spare_.empty()) return wire::PackBuffer();
+    auto buffer = std::move(spare_.back());
+    spare_.pop_back();
+    return buffer;
+}
+
+/// The smallest that are large enough for most programs' batches; a few, since a few are on their way at a time.
+void NodeStream::keep(wire::PackBuffer sent) {
+    if (spare_.size() >= kMostSpare || sent.capacity() > kLargestSpare) return;
+    sent.clear();
+    spare_.push_back(std::move(sent));
 }
 
 void NodeStream::Outgoing::begin_part(std::size_t start) {
@@ -213,59 +168,125 @@ std::string NodeStream::failure() const {
 
 bool NodeStream::wants_write() {
     std::lock_guard lock(mutex_);
-    return !queue_.empty() && !failed();
+    return connected_ && (!queue_.empty() || !control_.empty() || receipt_is_due()) && !failed();
 }
 
-// All of a frame goes out in one system call; opcodes and operands are one run of memory.
+/// Opcodes and operands are one run of memory.
+NodeStream::Pieces NodeStream::pieces_of(const Outgoing& out) {
+    Pieces pieces;
+    const auto add = [&](const std::byte* from, std::size_t bytes) {
+        if (bytes != 0) pieces.at[pieces.count++] = {const_cast<std::byte*>(from), bytes};
+    };
+    const std::size_t head = std::min(out.sent, out.frame.size());
+    add(out.frame.data() + head, out.frame.size() - head);
+    const std::size_t at = out.part_start + (out.sent - head), end = out.part_start + out.part_bytes;
+    const std::size_t lead = std::min(at, out.lead_bytes), lead_end = std::min(end, out.lead_bytes);
+    add(out.lead.data() + lead, lead_end - lead);
+    const std::size_t body = std::max(at, out.lead_bytes), body_end = std::max(end, out.lead_bytes);
+    add(out.body.opcodes().data() + (body - out.lead_bytes), body_end - body);
+    return pieces;
+}
+
 bool NodeStream::write_some(Outgoing& out) {
     for (;;) {
-        std::array<iovec, 3> pieces;
-        std::size_t count = 0;
-        const auto add = [&](const std::byte* from, std::size_t bytes) {
-            if (bytes != 0) pieces[count++] = {const_cast<std::byte*>(from), bytes};
-        };
-        const std::size_t head = std::min(out.sent, out.frame.size());
-        add(out.frame.data() + head, out.frame.size() - head);
-        const std::size_t at = out.part_start + (out.sent - head), end = out.part_start + out.part_bytes;
-        const std::size_t lead = std::min(at, out.lead_bytes), lead_end = std::min(end, out.lead_bytes);
-        add(out.lead.data() + lead, lead_end - lead);
-        const std::size_t body = std::max(at, out.lead_bytes), body_end = std::max(end, out.lead_bytes);
-        add(out.body.opcodes().data() + (body - out.lead_bytes), body_end - body);
-        if (count == 0) {
+        const Pieces pieces = pieces_of(out);
+        if (pieces.count == 0) {
+            const std::size_t end = out.part_start + out.part_bytes;
             if (end == out.payload_bytes()) return true;
             out.begin_part(end);
             continue;
         }
-        msghdr message{};
-        message.msg_iov = pieces.data();
-        message.msg_iovlen = count;
-        const ssize_t n = ::sendmsg(fd_.get(), &message, MSG_NOSIGNAL | MSG_DONTWAIT);
-        if (n < 0) {
-            if (errno == EINTR) continue;
-            if (errno == EAGAIN) return false;
-            const std::string why = std::string("cannot send: ") + std::strerror(errno);
-            on_readable();  // the node may have said why it closed the stream
-            give_up(why);
-            return false;
-        }
-        out.sent += static_cast<std::size_t>(n);
-        bytes_sent_.fetch_add(static_cast<std::uint64_t>(n), std::memory_order_relaxed);
+        const auto written = ring_ ? write_ring(pieces) : write_socket(pieces);
+        if (!written) return false;
+        out.sent += *written;
+        bytes_sent_.fetch_add(*written, std::memory_order_relaxed);
     }
+}
+
+/// All of a frame in one system call.
+std::optional<std::size_t> NodeStream::write_socket(Pieces pieces) {
+    msghdr message{};
+    message.msg_iov = pieces.at.data();
+    message.msg_iovlen = pieces.count;
+    for (;;) {
+        const ssize_t n = ::sendmsg(fd_.get(), &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (n >= 0) return static_cast<std::size_t>(n);
+        if (errno == EINTR) continue;
+        if (errno != EAGAIN) cannot_send();
+        return std::nullopt;
+    }
+}
+
+std::optional<std::size_t> NodeStream::write_ring(const Pieces& pieces) {
+    std::size_t written = 0;
+    do {
+        for (std::size_t i = 0; i < pieces.count; ++i) {
+            const std::span piece(static_cast<const std::byte*>(pieces.at[i].iov_base), pieces.at[i].iov_len);
+            const std::size_t n = ring_->write(piece);
+            written += n;
+            if (n < piece.size()) break;
+        }
+        // A full socket holds signs enough.
+        const std::byte sign{};
+        if (ring_->reader_waits() && ::send(fd_.get(), &sign, 1, MSG_NOSIGNAL | MSG_DONTWAIT) < 0 && errno != EAGAIN)
+            return cannot_send(), std::nullopt;
+        if (ring_->broken()) return give_up("node has broken the ring"), std::nullopt;
+    } while (written == 0 && !ring_->wait_for_room());
+    return written == 0 ? std::nullopt : std::optional(written);
+}
+
+void NodeStream::cannot_send() {
+    const std::string why = std::string("cannot send: ") + std::strerror(errno);
+    on_readable();  // the node may have said why it closed the stream
+    if (connected_) lost(why);
+}
+
+/// What is on its way goes out first: nothing stands within a batch. False: not all of it is out.
+bool NodeStream::write_receipt() {
+    if (control_.empty()) {
+        const auto header = wire::encode_frame_header({sizeof received_, wire::FrameKind::receipt});
+        const auto frames = std::as_bytes(std::span(&received_, 1));
+        control_.assign(header.begin(), header.end());
+        control_.insert(control_.end(), frames.begin(), frames.end());
+        control_sent_ = 0;
+        receipt_for_ = received_;
+        unreceipted_bytes_ = 0;
+    }
+    while (control_sent_ < control_.size()) {
+        Pieces rest;
+        rest.at[rest.count++] = {control_.data() + control_sent_, control_.size() - control_sent_};
+        const auto written = write_socket(rest);
+        if (!written) return false;
+        control_sent_ += *written;
+    }
+    control_.clear();
+    return true;
 }
 
 void NodeStream::on_writable() {
     for (;;) {
+        if (!connected_) return;
         Outgoing* front = nullptr;
         {
             std::lock_guard lock(mutex_);
-            if (queue_.empty()) return;
-            front = &queue_.front();  // only this thread removes, and deque keeps references on push_back
+            if (!queue_.empty()) front = &queue_.front();  // only this thread removes, and push_back moves none
         }
+        if (!control_.empty() || (receipt_is_due() && !(front && front->has_begun()))) {
+            if (!write_receipt()) return;
+            continue;
+        }
+        if (!front) return;
         const std::size_t total = front->payload_bytes();
         if (!write_some(*front)) return;
         std::lock_guard lock(mutex_);
         if (queue_.empty()) return;  // failed meanwhile
         queued_bytes_ -= total;
+        if (number_ != 0) {
+            sent_bytes_ += total;
+            sent_.push_back(std::move(queue_.front()));
+        } else {
+            keep(std::move(queue_.front().body));
+        }
         queue_.pop_front();
         changed_.notify_all();
     }
@@ -275,10 +296,10 @@ void NodeStream::on_readable() {
     for (;;) {
         if (inbox_.size() - inbox_used_ < kReadChunk) inbox_.resize(std::max(inbox_.size() * 2, kReadChunk * 2));
         const ssize_t n = ::recv(fd_.get(), inbox_.data() + inbox_used_, inbox_.size() - inbox_used_, MSG_DONTWAIT);
-        if (n == 0) return give_up("node closed the stream");
+        if (n == 0) return lost("node closed the stream");
         if (n < 0) {
             if (errno == EINTR) continue;
-            if (errno != EAGAIN) give_up(std::string("cannot receive: ") + std::strerror(errno));
+            if (errno != EAGAIN) lost(std::string("cannot receive: ") + std::strerror(errno));
             return;
         }
         inbox_used_ += static_cast<std::size_t>(n);
@@ -304,6 +325,15 @@ void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> paylo
         return give_up("node ended the session: " +
                        std::string(reinterpret_cast<const char*>(payload.data()), payload.size()));
     }
+    if (kind == wire::FrameKind::room) return;  // whoever has read it looks what there is to write
+    if (kind == wire::FrameKind::receipt && payload.size() == sizeof(std::uint64_t)) {
+        std::uint64_t frames = 0;
+        std::memcpy(&frames, payload.data(), sizeof frames);
+        return take_receipt(frames);
+    }
+    if (kind != wire::FrameKind::reply && kind != wire::FrameKind::swap_done) return;
+    ++received_;
+    unreceipted_bytes_ += payload.size();
     std::lock_guard lock(mutex_);
     std::uint32_t words[2];
     if (kind == wire::FrameKind::reply && payload.size() >= 4) {
@@ -316,6 +346,69 @@ void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> paylo
         swaps_[SurfaceId(words[0])] = words[1];
     }
     changed_.notify_all();
+}
+
+bool NodeStream::receipt_is_due() const {
+    return number_ != 0 && (received_ - receipt_for_ >= kReceiptFrames || unreceipted_bytes_ >= kReceiptBytes);
+}
+
+void NodeStream::take_receipt(std::uint64_t frames) {
+    const std::lock_guard lock(mutex_);
+    while (!sent_.empty() && sent_.front().first_frame + sent_.front().frames() <= frames) {
+        sent_bytes_ -= sent_.front().payload_bytes();
+        keep(std::move(sent_.front().body));
+        sent_.pop_front();
+    }
+    changed_.notify_all();
+}
+
+// ---- another connection ----
+
+void NodeStream::lost(const std::string& why) {
+    if (number_ == 0 || failed()) return give_up(why);
+    log(LogLevel::info, "event=stream_broken stream=%u why=%s", number_, in_quotes(why).c_str());
+    fd_.reset();
+    inbox_used_ = 0;
+    control_.clear();
+    attempts_ = StreamAttempts::start({address_, hello_, number_, received_});
+    if (!attempts_) return give_up(why);
+    const std::lock_guard lock(mutex_);
+    connected_ = false;
+    changed_.notify_all();
+}
+
+void NodeStream::go_on() {
+    if (connected_ || !attempts_) return;
+    auto outcome = attempts_->take();
+    if (!outcome) return;
+    attempts_.reset();
+    if (!*outcome) return give_up("the connection was lost: " + outcome->error().message);
+    fd_ = std::move((*outcome)->fd);
+    begin_again((*outcome)->received);
+}
+
+/// With what the node has not got.
+void NodeStream::begin_again(std::uint64_t received) {
+    take_receipt(received);
+    const std::lock_guard lock(mutex_);
+    for (; !sent_.empty(); sent_.pop_back()) {
+        sent_bytes_ -= sent_.back().payload_bytes();
+        queued_bytes_ += sent_.back().payload_bytes();
+        queue_.push_front(std::move(sent_.back()));
+    }
+    for (Outgoing& batch : queue_) {
+        const std::uint64_t parts = received > batch.first_frame ? received - batch.first_frame : 0;
+        if (parts < batch.frames()) batch.begin_part(static_cast<std::size_t>(parts) * wire::kPartBytes);
+    }
+    receipt_for_ = received_;
+    unreceipted_bytes_ = 0;
+    connected_ = true;
+    log(LogLevel::info, "event=stream_resumed stream=%u", number_);
+    changed_.notify_all();
+}
+
+NodeStream::~NodeStream() {
+    if (attempts_) attempts_->stop();
 }
 
 void NodeStream::give_up(const std::string& why) {

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The data connection to one node. The application's threads queue whole batches and wait for answers; one transport
-// thread per process (transport.h) moves the bytes, so that sending overlaps with packing (W4.1).
+// The stream to one node. The application's threads queue whole batches and wait for answers; one transport thread per
+// process (transport.h) moves the bytes, so that sending overlaps with packing (W4.1). A stream outlives the connection
+// that brings its bytes, unless that is a ring: what the node has not got is sent again over another one (frame.h).
 #pragma once
 
+#include <sys/uio.h>
+
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -16,19 +21,27 @@
 #include <unordered_set>
 #include <vector>
 
+#include "client_lib/process/options.h"
 #include "common/base/ids.h"
 #include "common/base/result.h"
 #include "common/base/unique_fd.h"
 #include "common/wire/frame.h"
 #include "common/wire/pack_buffer.h"
+#include "common/wire/ring.h"
 
 namespace wall::client {
 
+class StreamAttempts;
+
 class NodeStream {
 public:
-    /// Connects and says hello; at most `timeout_ms` in all. `hello` is an encoded DataHello.
+    /// Connects and says hello; at most `timeout_ms` in all. `hello` is an encoded DataHello. `ring`: to a node on this
+    /// machine batches go through shared memory, if it and the system let them.
     static Result<std::shared_ptr<NodeStream>> open(const std::string& address, const std::string& hello,
-                                                    int timeout_ms);
+                                                    int timeout_ms, bool ring = options().ring);
+    bool has_ring() const { return ring_.has_value(); }
+
+    ~NodeStream();
 
     static constexpr int kNoLimit = -1;  ///< as timeout_ms
 
@@ -36,6 +49,10 @@ public:
     /// slower than the program), but never longer than `kStallLimitMs` without a byte that goes out: then the stream
     /// counts as failed. Application threads.
     void send(ContextId context, wire::PackBuffer batch);
+
+    /// An empty buffer for a batch, with memory that a sent one has left: memory that is new costs the system more than
+    /// the bytes that are packed into it. Application threads.
+    wire::PackBuffer spare();
 
     /// No stall fails the stream: the node may hold it for others' sake. Before the first send().
     void never_stalls() { stalls_ = false; }
@@ -61,14 +78,24 @@ public:
     std::uint64_t bytes_sent() const { return bytes_sent_.load(std::memory_order_relaxed); }
 
     // ---- transport thread ----
-    int fd() const { return fd_.get(); }
+    int fd() const { return fd_.get(); }  ///< -1: the connection is lost
+    /// If the connection is lost: whether there is another one by now.
+    void go_on();
     bool wants_write();
+    /// For poll(): with a ring the node says when there is room.
+    bool waits_for_socket() { return !ring_ && wants_write(); }
     void on_writable();
     void on_readable();
     void give_up(const std::string& why);
 
 private:
-    explicit NodeStream(UniqueFd fd) : fd_(std::move(fd)) {}
+    NodeStream(UniqueFd fd, std::optional<wire::RingWriter> ring, std::uint32_t number, std::string address,
+               std::string hello)
+        : fd_(std::move(fd)),
+          ring_(std::move(ring)),
+          number_(number),
+          address_(std::move(address)),
+          hello_(std::move(hello)) {}
     /// A batch on its way, in as many frames as it takes.
     struct Outgoing {
         std::array<std::byte, 16> lead;  ///< batch header, padding in front of the opcodes
@@ -77,16 +104,44 @@ private:
         std::array<std::byte, wire::kFrameHeaderBytes> frame;  ///< of the part that is being sent
         std::size_t part_start = 0, part_bytes = 0;            ///< of the payload
         std::size_t sent = 0;                                  ///< of the part, its frame header included
+        std::uint64_t first_frame = 0;                         ///< by its number in the stream
+        std::uint64_t frames() const {
+            return std::max<std::size_t>(1, (payload_bytes() + wire::kPartBytes - 1) / wire::kPartBytes);
+        }
+        bool has_begun() const { return sent != 0 || part_start != 0; }
         std::size_t payload_bytes() const { return lead_bytes + body.bytes(); }
         void begin_part(std::size_t start);
     };
+    /// What is to be sent next of a part, from memory that is not in one piece.
+    struct Pieces {
+        std::array<iovec, 3> at;
+        std::size_t count = 0;
+    };
+    static Pieces pieces_of(const Outgoing& out);
     void handle_frame(wire::FrameKind kind, std::vector<std::byte> payload);
+    void take_receipt(std::uint64_t frames);
+    bool write_receipt();
+    bool receipt_is_due() const;
+    /// The connection is; the stream goes on over another one if it can.
+    void lost(const std::string& why);
+    void begin_again(std::uint64_t received);
+    /// True: all of it is out.
     bool write_some(Outgoing& out);
+    /// How many bytes went out; nothing: no room, or the stream has failed.
+    std::optional<std::size_t> write_socket(Pieces pieces);
+    std::optional<std::size_t> write_ring(const Pieces& pieces);
+    void cannot_send();
+    void keep(wire::PackBuffer sent);
 
     template <class Done>
     void wait(std::unique_lock<std::mutex>& lock, int timeout_ms, Done&& done);
 
     UniqueFd fd_;
+    std::optional<wire::RingWriter> ring_;      // transport thread
+    const std::uint32_t number_;                // by which the node knows it; 0: it ends with its connection
+    const std::string address_, hello_;         // to come to it again
+    std::shared_ptr<StreamAttempts> attempts_;  // to go on; transport thread
+    std::atomic<bool> connected_{true};
     bool stalls_ = true;
     std::atomic<bool> failed_{false}, ended_by_node_{false};
     std::atomic<std::uint64_t> bytes_sent_{0};
@@ -94,7 +149,10 @@ private:
     mutable std::mutex mutex_;  // guards what follows
     std::condition_variable changed_;
     std::deque<Outgoing> queue_;
-    std::size_t queued_bytes_ = 0;
+    std::deque<Outgoing> sent_;  // all of it, and the node has not said yet that it has got it
+    std::size_t queued_bytes_ = 0, sent_bytes_ = 0;
+    std::uint64_t next_frame_ = 0;  // its number
+    std::vector<wire::PackBuffer> spare_;
     struct Reply {
         std::vector<std::byte> bytes;
         std::chrono::steady_clock::time_point at;  ///< when it came
@@ -104,11 +162,13 @@ private:
     std::unordered_map<SurfaceId, std::uint32_t> swaps_;  // surface -> last frame drawn
     std::string failure_;
 
-    std::vector<std::byte> inbox_;  // transport thread only
+    // transport thread only
+    std::uint64_t received_ = 0, receipt_for_ = 0;  // counted frames; those that the node knows of
+    std::size_t unreceipted_bytes_ = 0;
+    std::vector<std::byte> control_;  // a receipt on its way
+    std::size_t control_sent_ = 0;
+    std::vector<std::byte> inbox_;
     std::size_t inbox_used_ = 0;
 };
-
-/// Opens a stream socket to `unix:PATH` or `HOST:PORT`, non-blocking; at most `timeout_ms`.
-Result<UniqueFd> connect_to(const std::string& address, int timeout_ms);
 
 }  // namespace wall::client

@@ -11,6 +11,12 @@
 #include "client_lib/process/process.h"
 
 namespace wall::client {
+namespace {
+
+constexpr int kLostMs = 10;  // while a stream waits for another connection
+
+}  // namespace
+
 Transport::Transport(std::function<void()> on_failure)
     : on_failure_(std::move(on_failure)), wake_fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
     SignalsBlocked blocked;
@@ -69,10 +75,15 @@ void Transport::run() {
             streams = streams_;
         }
         if (some_failed) on_failure_();
+        bool some_lost = false;
+        for (auto& stream : streams) {
+            stream->go_on();
+            some_lost |= stream->fd() < 0;
+        }
         fds.assign(1, pollfd{wake_fd_.get(), POLLIN, 0});
         for (auto& stream : streams)
-            fds.push_back({stream->fd(), static_cast<short>(POLLIN | (stream->wants_write() ? POLLOUT : 0)), 0});
-        if (::poll(fds.data(), fds.size(), 1000) < 0) continue;
+            fds.push_back({stream->fd(), static_cast<short>(POLLIN | (stream->waits_for_socket() ? POLLOUT : 0)), 0});
+        if (::poll(fds.data(), fds.size(), some_lost ? kLostMs : 1000) < 0) continue;
         if (fds[0].revents) {
             std::uint64_t count;
             [[maybe_unused]] const auto n = ::read(wake_fd_.get(), &count, sizeof count);

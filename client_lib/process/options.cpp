@@ -7,15 +7,16 @@
 namespace wall::client {
 namespace {
 
-bool flag(const char* name) {
+bool is(const char* name, const char* wanted) {
     const char* value = secure_getenv(name);
-    return value && std::strcmp(value, "1") == 0;
+    return value && std::strcmp(value, wanted) == 0;
 }
 
 }  // namespace
 
 const Options& options() {
-    static const Options read{flag("WALLGL_BROADCAST"), flag("WALLGL_IDEAL"), flag("WALLGL_SHOWN_ONLY")};
+    static const Options read{is("WALLGL_BROADCAST", "1"), is("WALLGL_IDEAL", "1"), is("WALLGL_SHOWN_ONLY", "1"),
+                              !is("WALLGL_RING", "0")};
     return read;
 }
 

@@ -8,6 +8,7 @@ struct Options {
     bool broadcast = false;    ///< WALLGL_BROADCAST=1: everything goes to every node, for comparison
     bool count_ideal = false;  ///< WALLGL_IDEAL=1: also count what perfect sorting by primitive would send
     bool shown_only = false;   ///< WALLGL_SHOWN_ONLY=1: what no tile shows is not kept, and reads back black
+    bool ring = true;          ///< WALLGL_RING=0: no shared memory with nodes of this machine, sockets only
 };
 
 const Options& options();

@@ -111,7 +111,7 @@ asio::awaitable<Result<proto::Envelope>> ControlConnection::receive() {
         auto [error, bytes] = co_await stream_.read_some(asio::buffer(room.data(), room.size()));
         if (error) {
             const bool ours = !stream_.is_open();
-            lost_ = !closing_;
+            lost_ = lost_ || !closing_;
             const bool orderly = error == asio::error::eof && unframer_.at_boundary();
             close();
             if (failure_) co_return tl::unexpected(*failure_);
@@ -140,7 +140,10 @@ asio::awaitable<void> ControlConnection::write_queue() {
     while (!queue_.empty() && stream_.is_open()) {
         const std::string now = std::exchange(queue_, {});
         const auto [error, bytes] = co_await stream_.write(asio::buffer(now));
-        if (error) close();
+        if (error) {
+            lost_ = lost_ || !closing_;
+            close();
+        }
         queued_bytes_ -= now.size();
     }
     writing_ = false;

@@ -75,6 +75,8 @@ public:
     bool is_open() const { return stream_.is_open() && !closing_; }
     /// It is closed, and not by us: the peer is gone, or the link.
     bool lost() const { return lost_; }
+    /// Stream::is_stuck().
+    bool is_stuck() { return stream_.is_open() && stream_.is_stuck(); }
     /// The key that a peer on another machine has proven; nothing on this machine.
     const std::optional<tls::Fingerprint>& peer_key() const { return stream_.peer_key(); }
     asio::any_io_executor executor() { return stream_.executor(); }

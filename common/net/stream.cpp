@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "common/net/stream.h"
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/error.hpp>
@@ -9,17 +13,20 @@
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
+#include <cerrno>
+#include <cstring>
 
 namespace wall::net {
 namespace {
 
+constexpr unsigned kStuckRetransmits = 2, kStuckMs = 700;
 constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
 using Tls = asio::ssl::stream<StreamSocket&>;
 
 /// Closes the socket when the time is over, unless it goes first.
 class Deadline {
 public:
-    explicit Deadline(StreamSocket& socket) : timer_(socket.get_executor(), Stream::kHandshakeLimit) {
+    Deadline(StreamSocket& socket, std::chrono::milliseconds limit) : timer_(socket.get_executor(), limit) {
         timer_.async_wait([&socket, armed = armed_](const boost::system::error_code& cancelled) {
             boost::system::error_code ignored;
             if (!cancelled && *armed) socket.close(ignored);
@@ -34,6 +41,27 @@ private:
 
 asio::generic::stream_protocol protocol_of(const Address& address, int family) {
     return {family, address.is_unix() ? 0 : IPPROTO_TCP};
+}
+
+/// As recvmsg(), without waiting; at most one descriptor.
+ssize_t receive(int socket, asio::mutable_buffer room, UniqueFd& with) {
+    iovec piece{room.data(), room.size()};
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
+    msghdr message{};
+    message.msg_iov = &piece;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    const ssize_t bytes = ::recvmsg(socket, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+    if (bytes < 0) return bytes;
+    const cmsghdr* about = CMSG_FIRSTHDR(&message);
+    if (about && about->cmsg_level == SOL_SOCKET && about->cmsg_type == SCM_RIGHTS &&
+        about->cmsg_len == CMSG_LEN(sizeof(int))) {
+        int descriptor = -1;
+        std::memcpy(&descriptor, CMSG_DATA(about), sizeof descriptor);
+        with.reset(descriptor);
+    }
+    return bytes;
 }
 
 /// What went wrong in a handshake, for people.
@@ -60,7 +88,7 @@ asio::awaitable<Result<void>> Stream::Parts::shake_hands(const tls::TlsContext& 
     SSL* connection = SSL_new(own.links());
     if (!connection) co_return fail("TLS: " + tls::openssl_error());
     tls.emplace(socket, connection);  // whose it is from now on
-    const Deadline limit(socket);
+    const Deadline limit(socket, Stream::kHandshakeLimit);
     auto [error] = co_await tls->async_handshake(as, kTuple);
     if (error) co_return fail(reason_of(error));
     auto key = tls::peer_of(connection);
@@ -88,11 +116,11 @@ asio::awaitable<Result<Stream>> Stream::connect(const Address& address) {
     StreamSocket socket(co_await asio::this_coro::executor);
     const asio::generic::stream_protocol::endpoint endpoint(to->get(), to->length,
                                                             protocol_of(address, to->family()).protocol());
-    const Deadline limit(socket);
+    const Deadline limit(socket, kConnectLimit);
     auto [error] = co_await socket.async_connect(endpoint, kTuple);
     if (error == asio::error::operation_aborted)
-        co_return fail(address.text() + ": cannot connect: no answer within " +
-                       std::to_string(kHandshakeLimit.count()) + " s");
+        co_return fail(address.text() + ": cannot connect: no answer within " + std::to_string(kConnectLimit.count()) +
+                       " ms");
     if (error) co_return fail(address.text() + ": cannot connect: " + error.message());
     boost::system::error_code ignored;
     if (!address.is_unix()) socket.set_option(asio::ip::tcp::no_delay(true), ignored);
@@ -120,6 +148,20 @@ asio::awaitable<Stream::Transferred> Stream::read_some(asio::mutable_buffer room
     co_return Transferred(error, bytes);
 }
 
+asio::awaitable<Stream::Transferred> Stream::read_some_with(asio::mutable_buffer room, UniqueFd& with) {
+    if (parts_->tls || !parts_->socket.is_open()) co_return co_await read_some(room);
+    for (;;) {
+        const ssize_t bytes = receive(parts_->socket.native_handle(), room, with);
+        if (bytes > 0) co_return Transferred(boost::system::error_code(), static_cast<std::size_t>(bytes));
+        if (bytes == 0) co_return Transferred(asio::error::eof, 0);
+        if (errno == EINTR) continue;
+        if (errno != EAGAIN && errno != EWOULDBLOCK)
+            co_return Transferred(boost::system::error_code(errno, boost::system::system_category()), 0);
+        auto [error] = co_await parts_->socket.async_wait(StreamSocket::wait_read, kTuple);
+        if (error) co_return Transferred(error, 0);
+    }
+}
+
 asio::awaitable<Stream::Transferred> Stream::write(asio::const_buffer bytes) {
     if (parts_->tls) co_return co_await asio::async_write(*parts_->tls, bytes, kTuple);
     co_return co_await asio::async_write(parts_->socket, bytes, kTuple);
@@ -140,6 +182,21 @@ void Stream::close() {
 bool Stream::is_open() const { return parts_->socket.is_open(); }
 
 const std::optional<tls::Fingerprint>& Stream::peer_key() const { return parts_->peer; }
+
+const char* Stream::transport() {
+    if (parts_->tls) return "tls";
+    int family = AF_UNSPEC;
+    socklen_t length = sizeof family;
+    ::getsockopt(descriptor(), SOL_SOCKET, SO_DOMAIN, &family, &length);
+    return family == AF_UNIX ? "unix" : "tcp";
+}
+
+bool Stream::is_stuck() {
+    tcp_info info{};
+    socklen_t length = sizeof info;
+    if (::getsockopt(descriptor(), IPPROTO_TCP, TCP_INFO, &info, &length) != 0) return false;
+    return info.tcpi_retransmits >= kStuckRetransmits && info.tcpi_last_ack_recv >= kStuckMs;
+}
 
 asio::any_io_executor Stream::executor() { return parts_->socket.get_executor(); }
 

@@ -11,10 +11,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 
 #include "common/base/result.h"
 #include "common/base/socket_peer.h"
+#include "common/base/unique_fd.h"
 #include "common/net/address.h"
 #include "common/tls/fingerprint.h"
 #include "common/tls/tls_context.h"
@@ -28,8 +30,10 @@ using StreamSocket = asio::generic::stream_protocol::socket;
 
 class Stream {
 public:
-    /// A peer has so long for TLS's handshake, and to answer a connection attempt.
-    static constexpr std::chrono::seconds kHandshakeLimit{5};
+    static constexpr std::chrono::seconds kHandshakeLimit{5};  ///< that a peer has for TLS's handshake
+    /// To answer a connection attempt. Whoever tries again then is there sooner, once there is a link, than TCP asks a
+    /// third time.
+    static constexpr std::chrono::milliseconds kConnectLimit{1500};
 
     using Transferred = std::tuple<boost::system::error_code, std::size_t>;
 
@@ -40,14 +44,17 @@ public:
 
     /// Whoever has connected to us proves a key within kHandshakeLimit; whose it is, peer_key() says.
     static asio::awaitable<Result<Stream>> accept_tls(StreamSocket socket, const tls::TlsContext& own);
-    /// Plain; within kHandshakeLimit.
+    /// Plain; within kConnectLimit.
     static asio::awaitable<Result<Stream>> connect(const Address& address);
-    /// To whoever proves the key `server`; nothing is said to anybody else. Twice kHandshakeLimit at most.
+    /// To whoever proves the key `server`; nothing is said to anybody else. kConnectLimit and
+    /// kHandshakeLimit at most.
     static asio::awaitable<Result<Stream>> connect_tls(const Address& address, const tls::TlsContext& own,
                                                        const tls::Fingerprint& server);
 
     /// Some bytes; asio::error::eof at an orderly end.
     asio::awaitable<Transferred> read_some(asio::mutable_buffer room);
+    /// The same; a descriptor that comes with the bytes, from a peer on this machine, goes to `with`.
+    asio::awaitable<Transferred> read_some_with(asio::mutable_buffer room, UniqueFd& with);
     /// All of them.
     asio::awaitable<Transferred> write(asio::const_buffer bytes);
     /// No more is read, or written; what waits ends. Never waits.
@@ -55,6 +62,13 @@ public:
     void close();
 
     bool is_open() const;
+    /// What brings the bytes: "unix", "tcp" or "tls".
+    const char* transport();
+    /// Both ends are on this machine, as the kernel knows.
+    bool is_local() { return transport() == std::string_view("unix"); }
+    /// The other end has acknowledged nothing for a while, though it was asked again: TCP will go on asking ever more
+    /// rarely, and be late when the link is back.
+    bool is_stuck();
     /// Nothing: the stream is plain.
     const std::optional<tls::Fingerprint>& peer_key() const;
     asio::any_io_executor executor();

@@ -4,7 +4,6 @@
 
 #include <cstring>
 #include <span>
-#include <vector>
 
 #include "common/base/result.h"
 #include "common/wire/frame.h"
@@ -35,8 +34,9 @@ inline Result<BatchView> split_batch(std::span<const std::byte> payload) {
                      content.subspan(room)};
 }
 
-/// The payload of one batch frame, appended to `to`.
-inline void append_batch(std::vector<std::byte>& to, const BatchView& batch) {
+/// The payload of one batch frame, appended to a vector of bytes.
+template <class Bytes>
+void append_batch(Bytes& to, const BatchView& batch) {
     const BatchHeader header{batch.context, static_cast<std::uint32_t>(batch.opcodes.size()),
                              static_cast<std::uint32_t>(batch.operands.size())};
     const std::size_t start = to.size(), padding = padded4(batch.opcodes.size()) - batch.opcodes.size();

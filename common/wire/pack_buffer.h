@@ -44,6 +44,7 @@ public:
     std::size_t commands() const { return static_cast<std::size_t>(middle_ - opcodes_); }
     std::size_t operand_bytes() const { return static_cast<std::size_t>(operands_ - middle_); }
     std::size_t bytes() const { return commands() + operand_bytes(); }
+    std::size_t capacity() const { return capacity_; }  ///< bytes
     bool empty() const { return opcodes_ == middle_; }
     void clear() { opcodes_ = operands_ = middle_; }
 

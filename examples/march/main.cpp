@@ -4,11 +4,13 @@
 // well, on any OpenGL. `march --help` tells how to start it; docs/parallel-programs.md explains the rest.
 #include <GL/gl.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "examples/march/team.h"
@@ -30,13 +32,14 @@ constexpr const char* kHelp = R"(march: soft balls by marching tetrahedra, drawn
   --balls N       (12)
   --seed N        of the balls' ways (1): the same seed gives the same pictures, however many processes draw them
   --frames N      ends after so many; 0: when the window is closed (0)
+  --fps N         at most so many frames a second; 0: as many as can be (0)
   --picture FILE  writes the last frame as it is before the last swap (PPM)
   --rank I --ranks N   this process draws part I of N (from WALLGL_PARALLEL, else 0 of 1)
 At the end it prints frames and triangles a second: of all processes, as seen by each.
 )";
 
 struct Options {
-    int width = 800, height = 600, cells = 64, balls = 12, frames = 0;
+    int width = 800, height = 600, cells = 64, balls = 12, frames = 0, fps = 0;
     unsigned seed = 1;
     Rank rank = rank_from_environment();
     std::string picture;
@@ -51,12 +54,13 @@ bool parse(int argc, char** argv, Options& o) {
         else if (name == "--balls") o.balls = std::atoi(value);
         else if (name == "--seed") o.seed = static_cast<unsigned>(std::atoi(value));
         else if (name == "--frames") o.frames = std::atoi(value);
+        else if (name == "--fps") o.fps = std::atoi(value);
         else if (name == "--rank") o.rank.own = std::atoi(value);
         else if (name == "--ranks") o.rank.all = std::atoi(value);
         else if (name == "--picture") o.picture = value;
         else return false;
     }
-    return argc % 2 == 1 && o.width > 0 && o.height > 0 && o.cells > 0 && o.balls > 0 && o.frames >= 0 &&
+    return argc % 2 == 1 && o.width > 0 && o.height > 0 && o.cells > 0 && o.balls > 0 && o.frames >= 0 && o.fps >= 0 &&
            o.rank.own >= 0 && o.rank.own < o.rank.all;
 }
 
@@ -120,7 +124,13 @@ int main(int argc, char** argv) {
     const auto start = std::chrono::steady_clock::now();
     double triangles = 0;
     int frame = 0;
+    auto due = start;  // the next frame, at the rate that is wanted
     while (window.is_open() && (o.frames == 0 || frame < o.frames)) {
+        if (o.fps > 0) {
+            std::this_thread::sleep_until(due);
+            due = std::max(due, std::chrono::steady_clock::now()) +
+                  std::chrono::nanoseconds(std::chrono::seconds(1)) / o.fps;
+        }
         field.move_to(++frame);
         const auto& corners = surface.march(field, first, last);
         triangles += static_cast<double>(corners.size()) / 3;

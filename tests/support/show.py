@@ -53,7 +53,7 @@ class Playing:
     def __init__(self, wall: Wall, part: Part, run: Callable, x: XServer, fps: int):
         self.wall, self.part, self.frame = wall, part, 0
         known = {s["id"] for s in wall.sessions()}
-        limit = ["--fps", fps] if fps and part.program != "march" else []
+        limit = ["--fps", fps] if fps else []
         self.app: subprocess.Popen = run(*part.command(), *limit, rect=part.rect, hold=True, parallel=part.ranks,
                                          env=x.environment())
         try:

@@ -105,6 +105,10 @@ def host_hello() -> bytes:
     return _control(62, field(1, constant("kProtocolVersion")) + field(2, 0) + field(3, "root"))
 
 
+def program_ended() -> bytes:
+    return _control(63, b"")
+
+
 def join_request(secret: bytes, node: bool) -> bytes:
     return _control(60, field(1, constant("kProtocolVersion")) + field(2, secret) + field(3, int(node)))
 

@@ -12,6 +12,7 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <cerrno>
 #include <chrono>
+#include <cstring>
 
 #include "common/log/log.h"
 #include "common/log/refusals.h"
@@ -27,10 +28,11 @@ using namespace std::chrono_literals;
 constexpr auto kWaitable = asio::as_tuple(asio::use_awaitable);
 constexpr std::uint32_t kMaxHello = 4 << 10;  // bytes
 constexpr auto kGreetingLimit = 5s;           // for the hello to come
-constexpr const char *kNoHello = "no hello came", *kClosed = "closed";
+constexpr const char* kNoHello = "no hello came";
 constexpr auto kTicketLimit = 3s;  // walld's ticket may come later than the client
 constexpr auto kTicketPoll = 10ms;
 constexpr auto kAhead = 100ms;  // of the bandwidth that a session may have
+constexpr auto kAwaited = 15s;  // for a client whose connection was lost; it tries for less
 
 /// The other end has closed the socket, and nothing that it sent before is left.
 bool is_gone(int socket) {
@@ -47,6 +49,15 @@ bool equal_secret(const std::string& a, const std::string& b) {
     return difference == 0;
 }
 
+bool is_counted(wire::FrameKind kind) { return kind == wire::FrameKind::reply || kind == wire::FrameKind::swap_done; }
+
+std::vector<std::byte> whole_frame(wire::FrameKind kind, std::span<const std::byte> payload) {
+    const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(payload.size()), kind});
+    std::vector<std::byte> bytes(header.begin(), header.end());
+    bytes.insert(bytes.end(), payload.begin(), payload.end());
+    return bytes;
+}
+
 }  // namespace
 
 DataStream::DataStream(StreamHost& host, StreamId id, net::Stream connection)
@@ -55,35 +66,28 @@ DataStream::DataStream(StreamHost& host, StreamId id, net::Stream connection)
       connection_(std::move(connection)),
       from_(net::peer_text(connection_.descriptor())),
       timer_(connection_.executor()),
-      reader_(kMaxHello) {}
+      source_(connection_, kMaxHello, [this](std::size_t bytes) { host_.stream_bytes(bytes); }) {}
 
 asio::awaitable<void> DataStream::run() {
     const auto self = shared_from_this();
     auto done = co_await greet();
     const bool admitted = done.has_value();
-    if (done) done = co_await take_batches();
+    while (done && !handed_over_) {
+        done = co_await take_batches();
+        if (!may_go_on()) break;
+        log::info("stream_lost stream={} session={} reason={}", id_.value, session_.value,
+                  log::quoted(done.error().message));
+        done = co_await wait_for_connection();
+    }
     if (!done && !closing_) {
         const std::string& why = done.error().message;
-        if (admitted || why == kClosed)
+        if (admitted || why == FrameSource::kClosed)
             log::info("stream_ended stream={} session={} reason={}", id_.value, session_.value, log::quoted(why));
         else log::refused(kDataPort, from_, why);
         fail(why);
     }
     if (batches_) host_.render().remove_stream(id_);
     host_.stream_closed(id_);
-}
-
-asio::awaitable<Result<Frame>> DataStream::next_frame() {
-    for (;;) {
-        auto frame = reader_.next();
-        if (!frame) co_return tl::unexpected(frame.error());
-        if (*frame) co_return std::move(**frame);
-        const auto room = reader_.prepare();
-        const auto [error, bytes] = co_await connection_.read_some(asio::buffer(room.data(), room.size()));
-        if (error) co_return wall::fail(error == asio::error::eof ? kClosed : error.message());
-        reader_.commit(bytes);
-        host_.stream_bytes(bytes);
-    }
 }
 
 asio::awaitable<Result<void>> DataStream::greet() {
@@ -94,7 +98,7 @@ asio::awaitable<Result<void>> DataStream::greet() {
         log::refused(kDataPort, self->from_, kNoHello);
         self->fail(kNoHello);
     });
-    auto frame = co_await next_frame();
+    auto frame = co_await source_.next();
     timer_.cancel();
     if (!frame) co_return tl::unexpected(frame.error());
     proto::DataHello hello;
@@ -113,7 +117,17 @@ asio::awaitable<Result<void>> DataStream::greet() {
     if (hello.rank() >= std::max(1u, admission->membership.members))
         co_return wall::fail("session " + std::to_string(hello.session()) + " has no rank " +
                              std::to_string(hello.rank()));
-    reader_.set_limits(wire::kMaxFramePayload, wire::kMaxBatchPayload);
+    rank_ = hello.rank();
+    if (hello.has_resume()) {
+        const auto handed = hand_over(hello);
+        if (!handed) co_return tl::unexpected(handed.error());
+        handed_over_ = true;
+        co_return Result<void>{};
+    }
+    const auto ring = source_.take_ring([this] { send(wire::FrameKind::room, {}); });
+    if (!ring) co_return tl::unexpected(ring.error());
+    source_.set_limits(wire::kMaxFramePayload, wire::kMaxBatchPayload);
+    host_.end_earlier(*this);
     const auto on_room = [weak = weak_from_this(), executor = connection_.executor()] {
         asio::post(executor, [weak] {
             if (const auto self = weak.lock()) {
@@ -125,8 +139,12 @@ asio::awaitable<Result<void>> DataStream::greet() {
     batches_ = std::make_shared<BatchQueue>(on_room);
     host_.render().add_stream(id_, session_, batches_, admission->membership, hello.rank());
     host_.stream_open(id_);
-    send(wire::FrameKind::welcome, {});
-    log::info("stream_open stream={} session={}", id_.value, session_.value);
+    transport_ = *ring ? "ring" : connection_.transport();
+    resumable_ = !connection_.is_local();
+    const std::uint32_t number = resumable_ ? id_.value : 0;
+    if (*ring) send(wire::FrameKind::ring, {});
+    else send(wire::FrameKind::welcome, std::as_bytes(std::span(&number, 1)));
+    log::info("stream_open stream={} session={} transport={}", id_.value, session_.value, log::quoted(transport_));
     co_return Result<void>{};
 }
 
@@ -151,15 +169,21 @@ asio::awaitable<std::optional<Admission>> DataStream::find_admission(SessionId s
 
 asio::awaitable<Result<void>> DataStream::take_batches() {
     while (!closing_) {
-        auto frame = co_await next_frame();
+        source_.lend(batches_->take_spare());
+        auto frame = co_await source_.next();
         if (!frame) co_return tl::unexpected(frame.error());
+        if (frame->kind == wire::FrameKind::receipt) {
+            if (auto taken = take_receipt(frame->payload); !taken) co_return taken;
+            continue;
+        }
         if (frame->kind != wire::FrameKind::batch)
             co_return wall::fail("unexpected frame of kind " + std::to_string(static_cast<int>(frame->kind)));
         const auto bytes = frame->payload.size();
         room_ = batches_->push(std::move(frame->payload));
         host_.render().wake();
+        send_receipt(bytes);
         co_await hold_to_bandwidth(bytes);
-        while (!room_ && !closing_) {
+        while (!room_ && !closing_ && !next_) {
             timer_.expires_after(1s);
             co_await timer_.async_wait(kWaitable);
         }
@@ -181,28 +205,120 @@ asio::awaitable<void> DataStream::hold_to_bandwidth(std::size_t bytes) {
     }
 }
 
+// ---- what it sends ----
+
 void DataStream::send(wire::FrameKind kind, std::span<const std::byte> payload) {
     if (closing_) return;
-    const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(payload.size()), kind});
-    std::vector<std::byte> bytes(header.begin(), header.end());
-    bytes.insert(bytes.end(), payload.begin(), payload.end());
-    outgoing_bytes_ += bytes.size();
-    outgoing_.push_back(std::move(bytes));
+    outgoing_.push_back(std::make_shared<const Outgoing>(whole_frame(kind, payload), is_counted(kind)));
+    outgoing_bytes_ += outgoing_.back()->bytes.size();
     if (outgoing_bytes_ > kMaxQueued) return close();
-    if (!std::exchange(writing_, true)) asio::co_spawn(connection_.executor(), write_queue(), asio::detached);
+    if (connection_.is_open() && !std::exchange(writing_, true))
+        asio::co_spawn(connection_.executor(), write_queue(), asio::detached);
 }
 
 asio::awaitable<void> DataStream::write_queue() {
     const auto self = shared_from_this();
     while (!outgoing_.empty()) {
-        const auto bytes = std::move(outgoing_.front());
+        const auto frame = outgoing_.front();
         outgoing_.pop_front();
-        const auto [error, written] = co_await connection_.write(asio::buffer(bytes.data(), bytes.size()));
-        outgoing_bytes_ -= bytes.size();
-        if (error) break;
+        outgoing_bytes_ -= frame->bytes.size();
+        keep(frame);
+        const auto [error, written] = co_await connection_.write(asio::buffer(frame->bytes));
+        if (error || next_) break;
     }
     writing_ = false;
+    if (!connection_.is_open()) timer_.cancel();  // wait_for_connection() waits for that, too
     if (closing_) close();
+}
+
+/// Until the client says that it has got it.
+void DataStream::keep(const std::shared_ptr<const Outgoing>& frame) {
+    if (!frame->counted) return;
+    if (!resumable_) {
+        ++forgotten_;
+        return;
+    }
+    sent_.push_back(frame);
+    sent_bytes_ += frame->bytes.size();
+    if (sent_bytes_ <= kMostKept) return;
+    resumable_ = false;  // a client that does not say what it gets
+    forgotten_ += sent_.size();
+    sent_.clear();
+}
+
+void DataStream::forget_sent(std::uint64_t received) {
+    for (; forgotten_ < received && !sent_.empty(); ++forgotten_) {
+        sent_bytes_ -= sent_.front()->bytes.size();
+        sent_.pop_front();
+    }
+}
+
+// ---- a connection that is lost ----
+
+Result<void> DataStream::take_receipt(std::span<const std::byte> payload) {
+    std::uint64_t received = 0;
+    if (payload.size() != sizeof received) return wall::fail("receipt: expected 8 bytes");
+    std::memcpy(&received, payload.data(), sizeof received);
+    if (received > forgotten_ + sent_.size()) return wall::fail("receipt: for more frames than were sent");
+    forget_sent(received);
+    return {};
+}
+
+void DataStream::send_receipt(std::size_t bytes) {
+    receipt_bytes_ += bytes;
+    const std::uint64_t frames = source_.batch_frames();
+    if (!resumable_ || (receipt_bytes_ < kReceiptBytes && frames - receipt_frames_ < kReceiptFrames)) return;
+    receipt_bytes_ = 0;
+    receipt_frames_ = frames;
+    send(wire::FrameKind::receipt, std::as_bytes(std::span(&frames, 1)));
+}
+
+/// Of a client that goes on with a stream: the connection is that one's from now on.
+Result<bool> DataStream::hand_over(const proto::DataHello& hello) {
+    DataStream* before = host_.stream(StreamId(hello.resume().stream()));
+    if (!before || before == this || !before->is_before(*this) ||
+        !before->go_on(connection_, hello.resume().received(), hello.resume().attempt()))
+        return wall::fail("stream " + std::to_string(hello.resume().stream()) + ", which was to go on, is over");
+    return true;
+}
+
+bool DataStream::go_on(net::Stream& connection, std::uint64_t received, std::uint64_t attempt) {
+    if (!resumable_ || closing_ || attempt <= last_attempt_ || received < forgotten_ ||
+        received > forgotten_ + sent_.size())
+        return false;
+    last_attempt_ = attempt;
+    next_.emplace(std::move(connection), received);
+    connection_.close();  // if nobody knew yet that it is lost
+    timer_.cancel();
+    return true;
+}
+
+asio::awaitable<Result<void>> DataStream::wait_for_connection() {
+    connection_.close();  // a write may still wait
+    const auto until = std::chrono::steady_clock::now() + kAwaited;
+    while (!closing_ && (!next_ || writing_) && std::chrono::steady_clock::now() < until) {
+        timer_.expires_at(until);
+        co_await timer_.async_wait(kWaitable);
+    }
+    if (closing_ || !next_ || writing_) co_return wall::fail(FrameSource::kClosed);
+    connection_ = std::move(next_->stream);
+    const auto received = std::exchange(next_, {})->received;
+    source_.go_on();
+    forget_sent(received);
+    std::erase_if(outgoing_, [](const auto& frame) { return !frame->counted; });
+    outgoing_.insert(outgoing_.begin(), sent_.begin(), sent_.end());
+    sent_.clear();
+    sent_bytes_ = 0;
+    outgoing_bytes_ = 0;
+    for (const auto& frame : outgoing_) outgoing_bytes_ += frame->bytes.size();
+    const std::uint64_t frames = source_.batch_frames();
+    outgoing_.push_front(std::make_shared<const Outgoing>(
+        whole_frame(wire::FrameKind::resumed, std::as_bytes(std::span(&frames, 1))), false));
+    outgoing_bytes_ += outgoing_.front()->bytes.size();
+    writing_ = true;
+    asio::co_spawn(connection_.executor(), write_queue(), asio::detached);
+    log::info("stream_resumed stream={} session={}", id_.value, session_.value);
+    co_return Result<void>{};
 }
 
 void DataStream::fail(const std::string& reason) {

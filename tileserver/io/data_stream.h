@@ -18,9 +18,13 @@
 
 #include "common/base/ids.h"
 #include "common/net/control_connection.h"
-#include "tileserver/io/frame_reader.h"
+#include "tileserver/io/frame_source.h"
 #include "tileserver/render/batch_queue.h"
 #include "tileserver/render/render_thread.h"
+
+namespace wall::proto {
+class DataHello;
+}
 
 namespace wall::tileserver {
 
@@ -37,6 +41,8 @@ struct Admission {
     SessionQuota quota{};
 };
 
+class DataStream;
+
 /// What a stream needs of the node.
 class StreamHost {
 public:
@@ -50,30 +56,50 @@ public:
     /// It has shown a valid ticket.
     virtual void stream_open(StreamId stream) = 0;
     virtual void stream_closed(StreamId stream) = 0;
+    /// Null: there is none (any more).
+    virtual DataStream* stream(StreamId id) = 0;
+    /// The process has begun a new stream: it goes on with none that it had before.
+    virtual void end_earlier(const DataStream& stream) = 0;
 };
 
 class DataStream : public std::enable_shared_from_this<DataStream> {
 public:
     DataStream(StreamHost& host, StreamId id, net::Stream connection);
 
-    /// Runs until the connection ends.
+    /// Runs until the stream ends: with its connection if that is a ring, else some time after it was lost and did not
+    /// go on over another one.
     asio::awaitable<void> run();
     void send(wire::FrameKind kind, std::span<const std::byte> payload);
+    /// It goes on over this connection; so many of its frames have come to the client. False: it cannot.
+    bool go_on(net::Stream& connection, std::uint64_t received, std::uint64_t attempt);
+    bool is_before(const DataStream& other) const {
+        return resumable_ && session_ == other.session_ && rank_ == other.rank_ && id_ < other.id_;
+    }
     /// Tells the client why and closes.
     void fail(const std::string& reason);
     void close();
 
     SessionId session() const { return session_; }
+    /// What brings the program's commands: "ring", "unix", "tcp" or "tls".
+    const char* transport() const { return transport_; }
     /// The address of the other end, without its port.
     const std::string& from() const { return from_; }
 
 private:
     static constexpr std::size_t kMaxQueued = std::size_t{512} << 20;  // bytes that a client has not read
+    static constexpr std::size_t kMostKept = std::size_t{64} << 20;    // bytes of frames that may have to be sent again
+    static constexpr std::size_t kReceiptBytes = 1 << 20;              // after so much the client may forget it
+    static constexpr std::uint64_t kReceiptFrames = 256;               // or after so many frames
 
     asio::awaitable<Result<void>> greet();
+    /// Ends with the reason.
     asio::awaitable<Result<void>> take_batches();
+    asio::awaitable<Result<void>> wait_for_connection();
+    bool may_go_on() const { return resumable_ && !closing_ && source_.connection_lost(); }
+    Result<bool> hand_over(const proto::DataHello& hello);
+    Result<void> take_receipt(std::span<const std::byte> payload);
+    void send_receipt(std::size_t bytes);
     asio::awaitable<void> hold_to_bandwidth(std::size_t bytes);
-    asio::awaitable<Result<Frame>> next_frame();
     /// Nothing if there is none for that ticket.
     asio::awaitable<std::optional<Admission>> find_admission(SessionId session, const std::string& ticket);
     asio::awaitable<void> write_queue();
@@ -84,11 +110,29 @@ private:
     net::Stream connection_;
     std::string from_;
     asio::steady_timer timer_;  // of whatever run() waits for besides the socket
-    FrameReader reader_;
+    FrameSource source_;
+    const char* transport_ = "";  // once it is admitted
     SessionId session_;
     std::shared_ptr<BatchQueue> batches_;
-    std::deque<std::vector<std::byte>> outgoing_;
-    std::size_t outgoing_bytes_ = 0;
+    struct Outgoing {
+        std::vector<std::byte> bytes;
+        bool counted = false;  ///< it is sent again if the client has not got it
+    };
+    void keep(const std::shared_ptr<const Outgoing>& frame);
+    void forget_sent(std::uint64_t received);
+    std::deque<std::shared_ptr<const Outgoing>> outgoing_, sent_;  // sent_: counted ones without a receipt
+    std::uint64_t forgotten_ = 0;                                  // counted frames before those of sent_
+    std::size_t outgoing_bytes_ = 0, sent_bytes_ = 0;
+    bool resumable_ = false, handed_over_ = false;
+    struct Connection {
+        net::Stream stream;
+        std::uint64_t received = 0;
+    };
+    std::optional<Connection> next_;  // on which it goes on
+    std::uint64_t last_attempt_ = 0;  // to go on
+    std::uint64_t receipt_frames_ = 0;
+    std::size_t receipt_bytes_ = 0;  // that have come since the last receipt
+    std::uint32_t rank_ = 0;
     std::chrono::steady_clock::time_point read_until_{};  ///< what was read is as much as may come until then
     bool writing_ = false, closing_ = false, room_ = true;
 };

@@ -18,6 +18,15 @@ std::span<std::byte> FrameReader::prepare() {
     return std::span(buffer_).subspan(filled_);
 }
 
+void FrameReader::lend(RawBytes memory) {
+    if (!in_payload_ && !in_parts_ && payload_.capacity() < memory.capacity()) payload_ = std::move(memory);
+}
+
+void FrameReader::begin_frame_again() {
+    read_ = filled_ = 0;
+    if (std::exchange(in_payload_, false)) have_ = start_;
+}
+
 void FrameReader::commit(std::size_t bytes) { (direct_ ? have_ : filled_) += bytes; }
 
 Result<void> FrameReader::begin_frame() {
@@ -32,6 +41,7 @@ Result<void> FrameReader::begin_frame() {
     } else if (header_.kind != wire::FrameKind::part && header_.kind != wire::FrameKind::batch) {
         return fail("another frame within the parts of a batch");
     }
+    start_ = have_;
     end_ = have_ + header_.payload_bytes;
     if (end_ > batch_limit_)
         return fail("batch of " + std::to_string(end_) + " bytes or more, at most " + std::to_string(batch_limit_) +
@@ -63,6 +73,7 @@ Result<std::optional<Frame>> FrameReader::advance() {
         take(std::min(filled_ - read_, end_ - have_));
         if (have_ < end_) return std::optional<Frame>();
         in_payload_ = false;
+        batch_frames_ += header_.kind == wire::FrameKind::part || header_.kind == wire::FrameKind::batch;
         in_parts_ = header_.kind == wire::FrameKind::part;
         if (in_parts_) continue;
         payload_.resize(end_);

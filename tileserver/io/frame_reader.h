@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "common/base/raw_bytes.h"
 #include "common/base/result.h"
 #include "common/wire/frame.h"
 
@@ -16,7 +17,7 @@ namespace wall::tileserver {
 
 struct Frame {
     wire::FrameKind kind{};
-    std::vector<std::byte> payload;
+    RawBytes payload;
 };
 
 class FrameReader {
@@ -34,6 +35,12 @@ public:
     /// The next whole frame, nothing if it has not all come yet, or why the stream is bad. A batch in parts is one
     /// frame.
     Result<std::optional<Frame>> next();
+    /// Memory that the next payload may go to; what it holds does not matter.
+    void lend(RawBytes memory);
+    /// Of `batch` and `part` frames, that have come whole.
+    std::uint64_t batch_frames() const { return batch_frames_; }
+    /// What has come of a frame that is not whole is forgotten: it comes again from its beginning.
+    void begin_frame_again();
 
 private:
     static constexpr std::size_t kBuffer = 64 << 10;  // bytes
@@ -48,7 +55,9 @@ private:
     std::size_t read_ = 0, filled_ = 0;  // in buffer_
     bool in_payload_ = false, direct_ = false, in_parts_ = false;
     wire::FrameHeader header_;
-    std::vector<std::byte> payload_;
+    RawBytes payload_;
+    std::uint64_t batch_frames_ = 0;
+    std::size_t start_ = 0;           // of the frame, in payload_
     std::size_t have_ = 0, end_ = 0;  // bytes of payload_ that have come, and that will have at the frame's end
     std::optional<Error> failure_;
 };

@@ -161,6 +161,11 @@ DataStream* NodeServer::stream(StreamId id) {
     return at == streams_.end() ? nullptr : at->second.get();
 }
 
+void NodeServer::end_earlier(const DataStream& stream) {
+    for (const auto& [id, earlier] : std::map(streams_))
+        if (earlier->is_before(stream)) earlier->close();
+}
+
 // ---- clients ----
 
 /// Whoever connects without end keeps only those out who are slower to say who they are: a program shows its ticket in
@@ -300,6 +305,10 @@ asio::awaitable<void> NodeServer::watch_walld() {
         watch_timer_.expires_after(watch_.interval());
         co_await watch_timer_.async_wait(kWaitable);
         if (!link_) continue;
+        if (link_->is_stuck()) {  // another one is there sooner than TCP asks again
+            link_->close();
+            continue;
+        }
         switch (watch_.tick()) {
             case WalldWatch::Need::nothing: break;
             case WalldWatch::Need::ask: {
@@ -499,6 +508,8 @@ void NodeServer::stats(const RenderStats& stats) {
         out.set_bytes_received(bytes_received_);
         out.set_time_us(microseconds_since_1970());
         fill_stats(stats, out);
+        for (const auto& [id, stream] : streams_)
+            if (*stream->transport() != '\0') ++(*out.mutable_transports())[stream->transport()];
         tile_streams_.fill_stats(out);
         to_walld(envelope);
     });

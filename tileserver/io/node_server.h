@@ -84,6 +84,8 @@ private:
     RenderThread& render() override { return *render_; }
     void stream_bytes(std::size_t bytes) override { bytes_received_ += bytes; }
     void stream_open(StreamId stream) override { strangers_.erase(stream); }
+    DataStream* stream(StreamId id) override;
+    void end_earlier(const DataStream& stream) override;
     void stream_closed(StreamId stream) override {
         strangers_.erase(stream);
         streams_.erase(stream);
@@ -121,7 +123,6 @@ private:
     void admit(const proto::Ticket& ticket);
     void end_session(SessionId session);
     void to_walld(const proto::Envelope& envelope);
-    DataStream* stream(StreamId id);
     void post(std::function<void()> task);
 
     asio::any_io_executor executor_;

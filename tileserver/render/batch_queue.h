@@ -11,18 +11,21 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/raw_bytes.h"
+
 namespace wall::tileserver {
 
 class BatchQueue {
 public:
     static constexpr std::size_t kHighWater = std::size_t{64} << 20;  ///< bytes; reading stops
     static constexpr std::size_t kLowWater = std::size_t{16} << 20;   ///< bytes; reading goes on
+    static constexpr std::size_t kMostSpare = std::size_t{8} << 20;   ///< bytes of memory that is kept
 
     /// `on_room` is called by the render thread when a full queue has room again.
     explicit BatchQueue(std::function<void()> on_room) : on_room_(std::move(on_room)) {}
 
     /// False: full now; wait for on_room before the next push.
-    bool push(std::vector<std::byte> batch) {
+    bool push(RawBytes batch) {
         const std::lock_guard lock(mutex_);
         bytes_ += batch.size();
         batches_.push_back(std::move(batch));
@@ -31,13 +34,13 @@ public:
     }
 
     /// Looks at the next batch without taking it. Null: none. Render thread; valid until pop().
-    const std::vector<std::byte>* front() const {
+    const RawBytes* front() const {
         const std::lock_guard lock(mutex_);
         return batches_.empty() ? nullptr : &batches_.front();
     }
-    std::vector<std::byte> pop() {
+    RawBytes pop() {
         std::unique_lock lock(mutex_);
-        std::vector<std::byte> batch = std::move(batches_.front());
+        RawBytes batch = std::move(batches_.front());
         batches_.pop_front();
         bytes_ -= batch.size();
         const bool room = full_ && bytes_ <= kLowWater;
@@ -45,6 +48,24 @@ public:
         lock.unlock();
         if (room) on_room_();
         return batch;
+    }
+
+    /// The memory of a batch that nobody needs any more, for one that comes later: memory that is new costs the system
+    /// more than the bytes that are put into it.
+    void give_back(RawBytes batch) {
+        const std::lock_guard lock(mutex_);
+        if (spare_bytes_ + batch.capacity() > kMostSpare) return;
+        spare_bytes_ += batch.capacity();
+        spare_.push_back(std::move(batch));
+    }
+    /// Some memory that was given back, or none.
+    RawBytes take_spare() {
+        const std::lock_guard lock(mutex_);
+        if (spare_.empty()) return {};
+        RawBytes memory = std::move(spare_.back());
+        spare_.pop_back();
+        spare_bytes_ -= memory.capacity();
+        return memory;
     }
 
     /// Of the batches that wait. Any thread.
@@ -56,7 +77,9 @@ public:
 private:
     mutable std::mutex mutex_;
     std::function<void()> on_room_;
-    std::deque<std::vector<std::byte>> batches_;
+    std::deque<RawBytes> batches_;
+    std::vector<RawBytes> spare_;
+    std::size_t spare_bytes_ = 0;
     std::size_t bytes_ = 0;
     bool full_ = false;
 };

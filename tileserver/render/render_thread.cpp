@@ -32,7 +32,7 @@ constexpr auto kReadbackPoll = 1ms;
 constexpr auto kLongestNap = 100ms;  // also until an X server's event is seen
 
 /// Ends a frame, or moves a surface: the frame before must be shown first.
-bool needs_shown_frame(const std::vector<std::byte>& payload) {
+bool needs_shown_frame(std::span<const std::byte> payload) {
     const auto batch = wire::split_batch(payload);
     const auto has = [&](glapi::Op op) {
         return std::memchr(batch->opcodes.data(), static_cast<int>(op), batch->opcodes.size()) != nullptr;
@@ -113,6 +113,7 @@ public:
             const auto done = executor_.run_slice({start + Pace::kTurn, pace_.commands(contended)});
             if (!done) fail(done.error().message);
             if (!done || *done) {
+                queue_->give_back(std::move(*batch_));
                 batch_.reset();
                 if (group_) loop_.pass_on_group_frames(*this);
             }
@@ -176,7 +177,7 @@ public:
         bool next_batch() {
             if (batch_) return true;
             if (held() || !question_answered()) return false;
-            const std::vector<std::byte>* next = queue_->front();
+            const RawBytes* next = queue_->front();
             if (next == nullptr || (needs_shown_frame(*next) && frame_waits())) return false;
             batch_ = queue_->pop();
             if (auto started = executor_.start_batch(*batch_); !started) fail(started.error().message);
@@ -200,7 +201,7 @@ public:
         StreamId id_;
         std::shared_ptr<BatchQueue> queue_;
         std::shared_ptr<ParallelGroup> group_;
-        std::optional<std::vector<std::byte>> batch_;  // that is being executed
+        std::optional<RawBytes> batch_;  // that is being executed
         SessionReplica session_;
         Executor executor_;
         Pace pace_;

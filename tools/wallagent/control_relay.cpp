@@ -37,7 +37,7 @@ asio::awaitable<void> pass_on(Connection to, proto::Envelope message) {
 }
 
 asio::awaitable<void> to_walld(std::shared_ptr<const ControlPair> pair) {
-    bool gone = false;
+    bool drawing = false, gone = false;  // it has said that it is a program that draws
     while (!gone) {
         auto message = co_await pair->program->receive();
         gone = !message && pair->program->lost();
@@ -47,10 +47,11 @@ asio::awaitable<void> to_walld(std::shared_ptr<const ControlPair> pair) {
             pair->program->close();
             gone = true;
         } else {
+            drawing = drawing || message->has_client_hello();
             co_await pass_on(pair->walld, std::move(*message));
         }
     }
-    if (gone) {
+    if (drawing && gone) {
         proto::Envelope ended;
         ended.mutable_program_ended();
         pair->walld->send(ended);

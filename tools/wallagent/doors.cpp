@@ -29,9 +29,10 @@ std::filesystem::path door_beside(const std::filesystem::path& control, const tl
            ("agent-" + key.text().substr(0, kKeyCharacters) + "-" + short_hash(control.string()) + ".sock");
 }
 
-/// As a node says why it does not take a stream: programs report that, and try again.
+/// Programs report that, and try again.
 asio::awaitable<void> say_error(net::Stream& program, const std::string& why) {
-    const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(why.size()), wire::FrameKind::error});
+    const auto header =
+        wire::encode_frame_header({static_cast<std::uint32_t>(why.size()), wire::FrameKind::unreachable});
     std::string bytes(reinterpret_cast<const char*>(header.data()), header.size());
     bytes += why;
     co_await program.write(asio::buffer(bytes));

@@ -43,15 +43,25 @@ void add_session(std::vector<Row>& rows, const json& session) {
     }
 }
 
+/// "3 ring, 1 tls".
+std::string transports(const json& node) {
+    std::vector<std::string> out;
+    for (const auto& [transport, streams] : node.value("transports", json::object()).items())
+        out.push_back(fmt::format("{} {}", streams.get<int>(), transport));
+    return fmt::format("{}", fmt::join(out, ", "));
+}
+
 }  // namespace
 
 std::string nodes_table(const json& nodes) {
-    std::vector<Row> rows{{"NODE", "STATE", "BACKEND", "ADDRESS", "PID", "TILES", "FRAMES", "RECEIVED", "RENDERER"}};
+    std::vector<Row> rows{
+        {"NODE", "STATE", "BACKEND", "ADDRESS", "PID", "TILES", "FRAMES", "RECEIVED", "STREAMS", "RENDERER"}};
     for (const auto& n : nodes) {
         const auto* state = is(n, "drained") ? "drained" : is(n, "silent") ? "silent" : is(n, "up") ? "up" : "away";
         rows.push_back({text(n, "name"), state, text(n, "backend"), text(n, "address"), text(n, "pid"),
                         text(n, "tiles"), text(n, "frames"),
-                        fmt::format("{:.1f} MB", n.value("bytes_received", 0.0) / 1e6), text(n, "renderer")});
+                        fmt::format("{:.1f} MB", n.value("bytes_received", 0.0) / 1e6), transports(n),
+                        text(n, "renderer")});
     }
     return table(rows);
 }

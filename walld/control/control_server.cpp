@@ -288,7 +288,7 @@ asio::awaitable<void> ControlServer::serve_node(Connection connection, proto::No
         if (message) nodes_[*joined].silent_checks = 0;
         if (message && answer_ping(*connection, *message)) continue;
         const auto result = message ? node_says(*joined, *message) : Result<void>(tl::unexpected(message.error()));
-        if (!result) co_return drop_node(*joined, result.error().message);
+        if (!result) co_return drop_node(*joined, result.error().message, connection->lost() && connection->peer_key());
         something_changed();
     }
 }
@@ -302,7 +302,7 @@ Result<NodeIndex> ControlServer::admit_node(const Connection& connection, const 
         if (!before->second.who.same_as(who))
             return fail("node '" + hello.name() + "' is already here, as a process of " + before->second.who.text());
         refuse(before->second.connection, "process " + std::to_string(hello.pid()) + " is this node now");
-        drop_node(*index, "process " + std::to_string(hello.pid()) + " has come in its place");
+        drop_node(*index, "process " + std::to_string(hello.pid()) + " has come in its place", true);
     }
     nodes_[*index] = {connection, who};  // before it joins, because joining sends
     return wall_.node_joins(hello, Clock::now());
@@ -317,9 +317,9 @@ void ControlServer::let_go(NodeIndex node, const std::string& reason) {
     if (nodes_.contains(node)) drop_node(node, reason);
 }
 
-void ControlServer::drop_node(NodeIndex node, const std::string& reason) {
+void ControlServer::drop_node(NodeIndex node, const std::string& reason, bool link_lost) {
     nodes_.extract(node).mapped().connection->close_after_sending();
-    wall_.node_leaves(node, Clock::now());
+    wall_.node_leaves(node, Clock::now(), link_lost);
     snapshots_.node_left(node);
     streams_.node_left(node);
     log::info("node_down node={} reason={}", log::quoted(wall_.nodes()[node].config->name), log::quoted(reason));
@@ -376,6 +376,7 @@ Outcome<void> ControlServer::welcome(const proto::ClientHello& hello, Person& wh
 /// Programs on the wall have a limit of their own (max_sessions), so `place` is given back when this is one.
 asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::ClientHello hello, Person who,
                                                   Quota::Place place) {
+    if (hello.has_resume()) give_way(hello.resume(), hello.group().rank());
     if (const auto good = welcome(hello, who); !good) co_return turn_away(connection, who, good.error().message);
     co_await wait_for_nodes();
     if (!wall_.any_node_up())
@@ -386,7 +387,6 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
         co_return refuse(connection, "the wall does not know parallel program '" + hello.group().name() + "' any more",
                          comeback == Wall::Comeback::over);
     const Rank rank = hello.group().rank();
-    if (hello.has_resume() && !hello.has_group()) give_way(hello.resume());
     const auto id = wall_.open_session(hello, who, Clock::now(), [&](SessionId session) {
         clients_[{session, rank}] = {connection};
     });
@@ -410,11 +410,11 @@ asio::awaitable<void> ControlServer::serve_client(Connection connection, proto::
         if (message && !result) refuse(connection, reason);
         something_changed();
     }
-    const bool may_come = connection->lost() && !who.machine.empty() && !hello.has_group();
+    const bool may_come = connection->lost() && !who.machine.empty();
     clients_.erase({id, rank});
     if (may_come) {
-        wall_.await_again(id, Clock::now());
-        log::warn("session_lost session={} reason={}", id.value, log::quoted(reason));
+        wall_.await_again(id, rank, Clock::now());
+        log::warn("session_lost session={} rank={} reason={}", id.value, rank, log::quoted(reason));
     } else {
         const auto became = wall_.member_gone(id, rank);
         log::info("session_end session={} rank={} reason={} became={}", id.value, rank, log::quoted(reason),
@@ -429,14 +429,14 @@ bool ControlServer::serves(const ClientId& client, const Connection& connection)
 }
 
 /// A program that comes again while the link on which it was is not known to be dead yet.
-void ControlServer::give_way(const proto::Resume& resume) {
+void ControlServer::give_way(const proto::Resume& resume, Rank rank) {
     const SessionId id(resume.session());
-    const auto before = clients_.find({id, 0});
+    const auto before = clients_.find({id, rank});
     if (before == clients_.end() || !wall_.is_program_of(id, resume)) return;
-    log::warn("session_lost session={} reason={}", id.value, log::quoted("it has come again"));
+    log::warn("session_lost session={} rank={} reason={}", id.value, rank, log::quoted("it has come again"));
     before->second.connection->close();
     clients_.erase(before);
-    wall_.await_again(id, Clock::now());
+    wall_.await_again(id, rank, Clock::now());
 }
 
 Result<void> ControlServer::client_says(const ClientId& client, const proto::Envelope& message) {

@@ -80,7 +80,7 @@ private:
     asio::awaitable<void> serve_machine(Connection connection, Quota::Place place);
     asio::awaitable<void> serve_node(Connection connection, proto::NodeHello hello, const Person& who);
     Result<NodeIndex> admit_node(const Connection& connection, const proto::NodeHello& hello, const Person& who);
-    void drop_node(NodeIndex node, const std::string& reason);
+    void drop_node(NodeIndex node, const std::string& reason, bool link_lost = false);
     bool serves(NodeIndex node, const Connection& connection) const;
     asio::awaitable<void> serve_client(Connection connection, proto::ClientHello hello, Person who, Quota::Place place);
     asio::awaitable<void> serve_operator(Connection connection, proto::Envelope first, Person who);
@@ -104,7 +104,7 @@ private:
 
     Result<void> client_says(const ClientId& client, const proto::Envelope& message);
     bool serves(const ClientId& client, const Connection& connection) const;
-    void give_way(const proto::Resume& resume);
+    void give_way(const proto::Resume& resume, Rank rank);
     /// `over`: a session that was to go on never will.
     void refuse(const Connection& connection, const std::string& reason, bool over = false);
     void something_changed();

@@ -26,12 +26,12 @@ Outcome<void> ParallelGroup::check(const proto::Group& hello) {
     return {};
 }
 
-Outcome<void> ParallelGroup::admits(const proto::Group& hello) const {
+Outcome<void> ParallelGroup::admits(const proto::Group& hello, bool again) const {
     if (hello.members() != size_)
         return refuse(RefusalKind::conflict, "parallel program '" + name_ + "' has " + std::to_string(size_) +
                                                  " processes, not " + std::to_string(hello.members()));
     const auto known = members_.find(hello.rank());
-    if (known == members_.end()) return {};
+    if (known == members_.end() || (again && known->second.missed)) return {};
     return refuse(RefusalKind::conflict,
                   text(hello.rank()) + (known->second.left ? " has ended already" : " is here already"));
 }
@@ -58,6 +58,13 @@ std::string ParallelGroup::text(Rank rank) const {
     const auto process =
         found == members_.end() ? std::string() : " (process " + std::to_string(found->second.pid) + ")";
     return "rank " + std::to_string(rank) + process + " of parallel program '" + name_ + "'";
+}
+
+std::optional<std::pair<ParallelGroup::Clock::time_point, Rank>> ParallelGroup::first_missed() const {
+    std::optional<std::pair<Clock::time_point, Rank>> first;
+    for (const auto& [rank, member] : members_)
+        if (member.missed && (!first || *member.missed < first->first)) first.emplace(*member.missed, rank);
+    return first;
 }
 
 void ParallelGroup::announced(Rank rank) {

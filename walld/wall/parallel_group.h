@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The processes of a parallel program, which are one session (docs/parallel-programs.md). Pure; times are parameters.
 //
-//   absent --hello--> here --leaves--> left          here --connection lost--> the session ends
+//   absent --hello--> here --leaves--> left          here --its process ends--> the session ends
+//                     here --link lost--> missed --hello--> here          missed --not in time--> the session ends
 #pragma once
 
 #include <chrono>
@@ -20,23 +21,29 @@ using Rank = std::uint32_t;  ///< of a member, from 0
 
 class ParallelGroup {
 public:
+    using Clock = std::chrono::steady_clock;
     struct Member {
         std::uint32_t pid = 0;
         bool left = false;
         std::uint32_t awaited = 0;  ///< windows that it had with an earlier walld and has not announced yet
+        std::optional<Clock::time_point> missed{};  ///< its link is lost, and it may come again until then
     };
 
     ParallelGroup(std::string name, std::uint32_t size) : name_(std::move(name)), size_(size) {}
 
     /// A group in itself: a name, a rank that there is, a size that there may be.
     static Outcome<void> check(const proto::Group& hello);
-    /// Whether this member may come to the others.
-    Outcome<void> admits(const proto::Group& hello) const;
+    /// Whether this member may come to the others. `again`: it says that it was here before.
+    Outcome<void> admits(const proto::Group& hello, bool again) const;
 
     /// `windows`: that it will announce at once.
-    void joins(Rank rank, std::uint32_t pid, std::uint32_t windows = 0) { members_[rank] = {pid, false, windows}; }
+    void joins(Rank rank, std::uint32_t pid, std::uint32_t windows = 0) { members_[rank] = {pid, false, windows, {}}; }
     /// It had left when an earlier walld was there.
-    void had_left(Rank rank) { members_[rank] = {0, true, 0}; }
+    void had_left(Rank rank) { members_[rank] = {0, true, 0, {}}; }
+    /// Its link is lost.
+    void misses(Rank rank, Clock::time_point until) { members_.at(rank).missed = until; }
+    /// The first that has not come again by then.
+    std::optional<std::pair<Clock::time_point, Rank>> first_missed() const;
     /// It has announced a window.
     void announced(Rank rank);
     /// False: it is not here.

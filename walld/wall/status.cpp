@@ -53,6 +53,12 @@ json objects_json(const proto::DriverObjects& o) {
             {"renderbuffers", o.renderbuffers()}, {"queries", o.queries()}};
 }
 
+json transports_json(const proto::NodeStats& stats) {
+    json out = json::object();
+    for (const auto& [transport, streams] : stats.transports()) out[transport] = streams;
+    return out;
+}
+
 json node_json(const Node& node) {
     return {{"name", node.config->name},
             {"up", node.up},
@@ -71,6 +77,7 @@ json node_json(const Node& node) {
             {"gl_errors", node.stats.gl_errors()},
             {"array_elements", node.stats.array_elements()},
             {"clock_ahead_ms", node.up && node.clock_ahead ? json(node.clock_ahead->count()) : json(nullptr)},
+            {"transports", node.up ? transports_json(node.stats) : json::object()},
             {"objects", objects_json(node.stats.objects())}};
 }
 

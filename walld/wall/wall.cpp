@@ -58,9 +58,11 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
     const bool anew = std::exchange(node.described_anew, false);
     const bool same = !anew && node.incarnation > 0 && same_process(node.hello, hello);
     if (!same) {
+        if (node.missed) tell_gone(index);
         ++node.incarnation;
         node.stats.Clear();
     }
+    node.missed.reset();
     node.up = node.duty == Duty::serves;
     node.hello = hello;
     welcome_node(index);
@@ -84,13 +86,19 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
     return index;
 }
 
-void Wall::node_leaves(NodeIndex node, Clock::time_point now) {
+void Wall::node_leaves(NodeIndex node, Clock::time_point now, bool link_lost) {
     nodes_[node].up = false;
+    if (link_lost) nodes_[node].missed = now + kMissedLimit;
+    else tell_gone(node);
+    for_each_surface(
+        [&](const SurfaceKey& key, SurfaceEntry& surface) { present(key, surface.swap.lose(node, now), now); });
+}
+
+void Wall::tell_gone(NodeIndex node) {
+    nodes_[node].missed.reset();
     proto::NodeDown down;
     down.set_node(node.value);
     for (const auto& [id, session] : sessions_) out_.to_client(id, make(&proto::Envelope::mutable_node_down, down));
-    for_each_surface(
-        [&](const SurfaceKey& key, SurfaceEntry& surface) { present(key, surface.swap.lose(node, now), now); });
 }
 
 void Wall::node_rendered(NodeIndex node, const proto::Rendered& report, Clock::time_point now) {
@@ -408,15 +416,19 @@ std::optional<Clock::time_point> Wall::next_deadline() const {
     for (const auto& [id, session] : sessions_) {
         if (session.group && !session.group->all_came()) consider(session.opened + kMembersLimit);
         if (session.awaited > 0) consider(session.awaited_until);
+        if (const auto missed = session.group ? session.group->first_missed() : std::nullopt) consider(missed->first);
         for (const auto& [surface_id, surface] : session.surfaces) consider(surface.swap.deadline());
     }
     for (const auto& [id, session] : returning_) consider(session.until);
+    for (const Node& node : nodes_) consider(node.missed);
     return out;
 }
 
 void Wall::tick(Clock::time_point now) {
     for_each_surface([&](const SurfaceKey& key, SurfaceEntry& surface) { present(key, surface.swap.tick(now), now); });
     end_overdue_groups(now);
+    for (const NodeIndex i : nodes_.ids())
+        if (nodes_[i].missed && now >= *nodes_[i].missed) tell_gone(i);
     end_waiting_for_sessions(now);
 }
 

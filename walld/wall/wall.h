@@ -57,8 +57,10 @@ enum class Duty {
 struct Node {
     std::shared_ptr<const config::NodeConfig> config;
     Duty duty = Duty::serves;
-    bool up = false;                ///< programs may use it
-    bool silent = false;            ///< its link may be dead
+    bool up = false;      ///< programs may use it
+    bool silent = false;  ///< its link may be dead
+    /// Its link is lost, and it may be well: until then programs are not told that it is gone.
+    std::optional<std::chrono::steady_clock::time_point> missed;
     bool described_anew = false;    ///< since it came last: what it has of sessions is for other tiles
     std::uint32_t incarnation = 0;  ///< 0: never seen
     proto::NodeHello hello;         ///< of the last connection
@@ -135,6 +137,8 @@ public:
     /// Programs that have not come again by then have lost their session: those of an earlier walld from the first
     /// node on, others from the loss of their link on.
     static constexpr std::chrono::seconds kReturnLimit{10};
+    /// For a node whose link was lost to come on another one.
+    static constexpr std::chrono::milliseconds kMissedLimit{1500};
     static constexpr std::chrono::seconds kMembersLimit{60};  ///< for all processes of a parallel program to come
     using RandomBytes = std::function<std::string(std::size_t)>;
 
@@ -148,7 +152,8 @@ public:
     /// link, and to a process that was started later.
     Result<NodeIndex> check_node(const proto::NodeHello& hello) const;
     Result<NodeIndex> node_joins(const proto::NodeHello& hello, Clock::time_point now);
-    void node_leaves(NodeIndex node, Clock::time_point now);
+    /// `link_lost`: that is all that is known of it. Programs that draw there go on if it is back soon.
+    void node_leaves(NodeIndex node, Clock::time_point now, bool link_lost = false);
     void node_rendered(NodeIndex node, const proto::Rendered& report, Clock::time_point now);
     void node_faults(NodeIndex node, const proto::SessionFault& report);
     /// Those of which nothing has been heard for a while, all of them. Gives those that are new among them.
@@ -185,9 +190,9 @@ public:
     /// A process is gone. The session is closed with its last one, and with one that has not left its parallel program:
     /// then the others are cut off. Gives what became of it, for the log.
     std::string member_gone(SessionId id, Rank rank);
-    /// Its link is lost, and it may be well: it is not on the wall then, but its windows stay in sight until it comes
-    /// again, or for kReturnLimit (wall_return.cpp).
-    void await_again(SessionId id, Clock::time_point now);
+    /// Its link is lost, and it may be well: its windows stay in sight until it comes again, or for kReturnLimit
+    /// (wall_return.cpp). A program alone is not on the wall meanwhile; a parallel one ends if its process stays away.
+    void await_again(SessionId id, Rank rank, Clock::time_point now);
     /// Whether it says that it is this session's program, and knows its ticket.
     bool is_program_of(SessionId id, const proto::Resume& resume) const;
     void member_leaves(SessionId id, Rank rank);
@@ -286,6 +291,7 @@ private:
     void open_for_member(const SurfaceKey& key, const proto::SurfaceOpen& message, Rank rank);
     static bool closed_by_all(SessionEntry& session, SurfaceEntry& surface, Rank rank);
     void end_overdue_groups(Clock::time_point now);
+    void tell_gone(NodeIndex node);
     void present(const SurfaceKey& key, const Presents& presents, Clock::time_point now);
     void send_placement(const SurfaceKey& key, const SurfaceEntry& surface);
     void send_stacking();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Parallel programs: several processes that are one session.
 #include <algorithm>
+#include <ranges>
+#include <vector>
 
 #include "walld/wall/messages.h"
 #include "walld/wall/wall.h"
@@ -29,7 +31,7 @@ Outcome<void> Wall::check_member(const proto::ClientHello& hello, const Person& 
     if (!known->second.owner.same_as(who))
         return refuse(RefusalKind::forbidden,
                       "parallel program '" + hello.group().name() + "' belongs to " + known->second.owner.text());
-    return known->second.group->admits(hello.group());
+    return known->second.group->admits(hello.group(), hello.has_resume());
 }
 
 /// Not yet: its nodes may still come and tell of it.
@@ -212,6 +214,14 @@ void Wall::end_overdue_groups(Clock::time_point now) {
     std::vector<SessionId> overdue;
     for (const auto& [id, session] : sessions_)
         if (session.group && !session.group->all_came() && now >= session.opened + kMembersLimit) overdue.push_back(id);
+    const auto sessions = sessions_ | std::views::keys;
+    for (const SessionId id : std::vector<SessionId>(sessions.begin(), sessions.end())) {
+        const auto* session = find(id);
+        const auto missed = session->group ? session->group->first_missed() : std::nullopt;
+        if (!missed || now < missed->first) continue;
+        out_.end_session(id, session->group->text(missed->second) + " has not come again since its link was lost");
+        close_session(id);
+    }
     for (const auto id : overdue) {
         const auto& group = *sessions_.at(id).group;
         out_.end_session(id, "only " + std::to_string(group.members().size()) + " of " + std::to_string(group.size()) +

@@ -99,14 +99,14 @@ void Wall::resume_session(SessionId id, SessionEntry& session, const proto::Resu
 void Wall::end_waiting_for_sessions(Clock::time_point now) {
     if (return_until_ && now >= *return_until_ && !std::exchange(returns_over_, true)) ended_.clear();
     bool over = std::erase_if(returning_, [&](const auto& entry) {
-        const auto& [id, session] = entry;
-        if (now < session.until) return false;
-        proto::SessionEnd end;
-        end.set_session(id.value);
-        for (const auto& [node, ticket] : session.tickets)
-            out_.to_node(node, make(&proto::Envelope::mutable_session_end, end));
-        return true;
-    }) > 0;
+                    const auto& [id, session] = entry;
+                    if (now < session.until) return false;
+                    proto::SessionEnd end;
+                    end.set_session(id.value);
+                    for (const auto& [node, ticket] : session.tickets)
+                        out_.to_node(node, make(&proto::Envelope::mutable_session_end, end));
+                    return true;
+                }) > 0;
     for (auto& [id, session] : sessions_)
         if (session.awaited > 0 && now >= session.awaited_until) {
             session.awaited = 0;
@@ -121,10 +121,13 @@ bool Wall::is_program_of(SessionId id, const proto::Resume& resume) const {
            knows_a_ticket(resume, found->second.tickets);
 }
 
-void Wall::await_again(SessionId id, Clock::time_point now) {
+void Wall::await_again(SessionId id, Rank rank, Clock::time_point now) {
+    if (auto* session = find(id); session && session->group) {
+        if (session->group->here(rank)) session->group->misses(rank, now + kReturnLimit);
+        return;
+    }
     auto lost = sessions_.extract(id);
     if (lost.empty()) return;
-    WALL_ASSERT(!lost.mapped().group);
     returning_[id] = {std::move(lost.mapped().tickets), {}, now + kReturnLimit};
     std::erase_if(stacking_, [&](const SurfaceKey& key) { return key.session == id; });
     send_stacking();

@@ -5,14 +5,12 @@ four programs run, one of them parallel: daemons are killed and stopped, links c
 nodes are drained and revoked. Soon after each fault the wall shows what a wall shows to which nothing has happened
 (DESIGN, section 1), and all programs are there.
 
-faults.py [--count N] [--seed N] [--limit SECONDS] [--only FAULT]...
-
-What ends a parallel program by its nature (docs/parallel-programs.md: with its streams to nodes) is told apart:
-it is started anew then, and that is not counted as lost."""
+faults.py [--count N | --for SECONDS] [--seed N] [--limit SECONDS] [--only FAULT]... [--pictures FOLDER]"""
 from __future__ import annotations
 
 import argparse
 import functools
+import itertools
 import os
 import random
 import signal
@@ -23,10 +21,11 @@ from typing import Callable
 
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests" / "support"))
+import cv2  # noqa: E402
 import numpy  # noqa: E402
 from compare import same  # noqa: E402
 from machine_wall import WALLD, MachineWall  # noqa: E402
-from show import SETTLED, OneMachine, Part, Playing, Show, until  # noqa: E402
+from show import SETTLED, OneMachine, Part, Show  # noqa: E402
 from wall import Wall, WallError, end_all  # noqa: E402
 from xserver import XServer  # noqa: E402
 
@@ -36,7 +35,7 @@ PARTS = (Part("drawn_once", (0, 0, 600, 100), still=True), Part("frame_clock", (
          Part("frame_clock", (0, 200, 300, 100), arguments=("--egl", "--vertices", "3000")),
          Part("march", (300, 200, 300, 100), ranks=2, arguments=("--cells", "8")))
 QUIET = {"LP_NUM_THREADS": "0"}
-FPS = 20
+FPS = 10
 BACK = 30.0  # seconds until what was broken is whole again, and the next fault may come
 RATES = ("20mbit", "100mbit")
 MORE_DESCRIPTORS = 16  # of a daemon at the end than at the beginning: what is just coming and going
@@ -60,16 +59,13 @@ class ChangingWall(MachineWall):
 
 
 class Faults:
-    """Each is over when its function returns, and what it needs to be mended is mended. `lethal`: those by which a
-    parallel program ends."""
-
-    lethal = {"kill_agent"}
+    """Each is over when its function returns, and what it needs to be mended is mended."""
 
     def __init__(self, wall: ChangingWall, chance: random.Random):
         self.wall, self.chance = wall, chance
 
     def names(self) -> list[str]:
-        return [name for name in vars(Faults) if not name.startswith("_") and name not in ("names", "lethal")]
+        return [name for name in vars(Faults) if not name.startswith("_") and name != "names"]
 
     def _some_nodes(self) -> list[str]:
         return self.chance.sample(self.wall.node_names, self.chance.randint(1, len(self.wall.node_names) - 1))
@@ -133,7 +129,9 @@ class Faults:
         return f"{host} to {rate} for {seconds:.1f} s"
 
     def reload(self) -> str:
-        columns = self.chance.sample(range(TILES[0]), TILES[0])
+        columns = list(self.wall.columns)  # of two nodes: if all began anew, none would have what programs have drawn
+        one, other = self.chance.sample(range(TILES[0]), 2)
+        columns[one], columns[other] = columns[other], columns[one]
         self.wall.reload(columns)
         return "columns " + " ".join(map(str, columns))
 
@@ -154,72 +152,67 @@ class Faults:
 
 
 class Trial:
-    def __init__(self, wall: ChangingWall, one: OneMachine, show: Show, x: XServer, chance: random.Random,
-                 limit: float):
-        self.wall, self.one, self.show, self.x = wall, one, show, x
-        self.limit = limit
+    def __init__(self, wall: ChangingWall, one: OneMachine, show: Show, chance: random.Random, limit: float,
+                 pictures: Path | None):
+        self.wall, self.one, self.show = wall, one, show
+        self.limit, self.pictures = limit, pictures
         self.faults = Faults(wall, chance)
         self.chance = chance
         self.before = self._descriptors()
 
-    def one_fault(self, name: str) -> tuple[str, float]:
-        """What was done, and how long it took from its end until the wall was right."""
-        lethal = name in Faults.lethal
-        if lethal:
-            end_all([self.show.playing[-1].app])
+    def one_fault(self, name: str) -> tuple[str, float, bool]:
+        """What was done, how long it took from its end until the wall was right, and whether that was too long."""
         said = getattr(self.faults, name)()
-        begin = time.monotonic()
-        if lethal:
-            self._start_parallel()
         try:
-            return said, self._until_right(begin)
+            return said, *self._until_right(time.monotonic())
         except (AssertionError, WallError) as error:
             raise AssertionError(f"{name} {said}: {error}") from error
 
-    def _start_parallel(self) -> None:
-        until(self._all_up, "all nodes are up", BACK)  # from which its members begin
-        run = functools.partial(self.wall.run_at, CLIENT)
-        self.show.playing[-1] = Playing(self.wall, PARTS[-1], run, self.x, FPS)
-        end_all([self.one.show.playing[-1].app])
-        self.one.show.playing[-1] = Playing(self.one.wall, PARTS[-1], self.one.wall.run, self.x, 0)
-        self.show.go_on()
+    def _all_back(self) -> bool:
+        return self.show.sessions <= {s["id"] for s in self.wall.sessions() if s["surfaces"]}
 
-    def _all_up(self) -> bool:
-        return all(node["up"] for node in self.wall.nodes())
-
-    def _until_right(self, begin: float) -> float:
-        """With frames to come: they go on meanwhile. Pictures are taken first and compared afterwards, because the
+    def _until_right(self, begin: float) -> tuple[float, bool]:
+        """With frames to come: they go on meanwhile. Gives from when on the wall was right, and whether it is late.
+        Pictures are taken first, the last at the limit, and compared afterwards, while all programs are held: the
         other wall has to draw up to their frames, which takes longer than what is measured here."""
-        right: float | None = None
-        verdict: object = "not all sessions are there"
-        while right is None:
+        late = False
+        while True:
             taken = []
-            enough = time.monotonic() + self.limit
-            while not taken or time.monotonic() < min(enough, begin + self.limit):
+            while not taken or taken[-1][0] < self.limit:
+                if time.monotonic() > begin + BACK:
+                    raise AssertionError(f"not all sessions are there: {sorted(self.show.sessions)} are expected")
+                if taken:
+                    self.show.go_on()
+                time.sleep(SETTLED)
                 if (sample := self._sample(begin)) is not None:
                     taken.append(sample)
-                elif time.monotonic() > begin + BACK:
-                    break
-                time.sleep(SETTLED)
-            for took, frames, picture in taken:
-                verdict = same(self.one.picture(frames), picture)
-                right = None if not verdict.good else took if right is None else right
-            if right is None and time.monotonic() > begin + BACK:
-                raise AssertionError(f"frames {self.show.frames}: {verdict}")
-        return right
+            verdicts = [same(self.one.picture(frames), picture) for _, frames, picture in taken]
+            self.show.go_on()
+            if verdicts[-1].good:
+                wrong = max((i for i, verdict in enumerate(verdicts) if not verdict.good), default=-1)
+                return taken[wrong + 1][0], late
+            late = True
+            if time.monotonic() > begin + BACK:
+                if self.pictures:
+                    self._write(taken[-1])
+                raise AssertionError(f"frames {taken[-1][1]}: {verdicts[-1]}")
+
+    def _write(self, taken: tuple[float, list[int], numpy.ndarray]) -> None:
+        """What the wall shows, and beside it what it should."""
+        cv2.imwrite(str(self.pictures / "shown.png"), taken[2])
+        cv2.imwrite(str(self.pictures / "expected.png"), self.one.picture(taken[1]))
 
     def _sample(self, begin: float) -> tuple[float, list[int], numpy.ndarray] | None:
-        """When it was held, at which frames, and what the wall shows then; None: not all are on the wall."""
+        """When it was held, at which frames, and what the wall shows then; it is held then. None: not all are on the
+        wall."""
         for playing in self.show.playing:
             if playing.app.poll() is not None:
                 raise AssertionError(f"{playing.part.program} has ended with {playing.app.returncode}")
-        if not self.show.sessions <= {s["id"] for s in self.wall.sessions() if s["surfaces"]}:
+        if not self._all_back():
             return None
         self.show.hold()
         took = time.monotonic() - begin
-        sample = took, self.show.frames, self.show.picture()
-        self.show.go_on()
-        return sample
+        return took, self.show.frames, self.show.picture()
 
     def _descriptors(self) -> dict[str, int]:
         return {name: len(os.listdir(f"/proc/{daemon.pid}/fd")) for name, daemon in self.wall.daemons.items()}
@@ -229,7 +222,8 @@ class Trial:
                 for name, count in self._descriptors().items() if count > self.before[name] + MORE_DESCRIPTORS]
 
 
-def run(count: int, seed: int, limit: float, only: list[str], say: Callable[[str], None]) -> int:
+def run(count: int | None, seconds: float, seed: int, limit: float, only: list[str], pictures: Path | None,
+        say: Callable[[str], None]) -> int:
     chance = random.Random(seed)
     slow, times = 0, []
     with XServer() as x, ChangingWall(TILES, TILE, clients=[CLIENT], environment=QUIET) as wall, \
@@ -237,37 +231,47 @@ def run(count: int, seed: int, limit: float, only: list[str], say: Callable[[str
         one = OneMachine(still, x, PARTS)
         show = Show(wall, functools.partial(wall.run_at, CLIENT), x, FPS, PARTS)
         show.go_on()
-        trial = Trial(wall, one, show, x, chance, limit)
+        trial = Trial(wall, one, show, chance, limit, pictures)
         names = only or trial.faults.names()
-        for number in range(1, count + 1):
+        end = time.monotonic() + seconds
+        for number in itertools.count(1):
+            if number > count if count is not None else time.monotonic() > end:
+                break
             name = chance.choice(names)
             try:
-                said, took = trial.one_fault(name)
+                said, took, late = trial.one_fault(name)
             except (AssertionError, WallError) as error:
                 say(f"{number}: FAILED {error}")
                 for daemon in wall.daemons:
+                    if pictures:
+                        (pictures / f"{daemon}.log").write_text(wall.log(daemon))
                     say(f"--- {daemon}:\n{wall.log(daemon)[-4000:]}")
                 return 1
             times.append(took)
-            slow += took > limit
-            say(f"{number}: {name} {said}: right after {took:.1f} s{'  TOO LATE' if took > limit else ''}")
+            slow += late
+            say(f"{number}: {name} {said}: right after {took:.1f} s{'  TOO LATE' if late else ''}")
         leaks = trial.leaks()
         for leak in leaks:
             say(f"FAILED {leak}")
     times.sort()
-    say(f"{count} faults, seed {seed}: right after {times[len(times) // 2]:.1f} s (median), {times[-1]:.1f} s at most; "
-        f"{slow} later than {limit:.0f} s; no program was lost")
+    say(f"{len(times)} faults, seed {seed}: right after {times[len(times) // 2]:.1f} s (median), "
+        f"{times[-1]:.1f} s at most; {slow} later than {limit:.0f} s; no program was lost")
     return 1 if slow or leaks else 0
 
 
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    arguments.add_argument("--count", type=int, default=300)
+    length = arguments.add_mutually_exclusive_group()
+    length.add_argument("--count", type=int, help="of faults (300)")
+    length.add_argument("--for", dest="seconds", type=float, default=0.0, help="as many as there are in that time")
     arguments.add_argument("--seed", type=int, default=int(time.time()), help="of chance; printed")
     arguments.add_argument("--limit", type=float, default=2.0, help="seconds from a fault's end until all is right")
     arguments.add_argument("--only", action="append", default=[], help="this kind of fault; may be given again")
+    arguments.add_argument("--pictures", type=Path, help="a folder for what is shown and should be, and logs")
     options = arguments.parse_args()
-    return run(options.count, options.seed, options.limit, options.only, functools.partial(print, flush=True))
+    count = None if options.seconds else options.count or 300
+    return run(count, options.seconds, options.seed, options.limit, options.only, options.pictures,
+               functools.partial(print, flush=True))
 
 
 if __name__ == "__main__":

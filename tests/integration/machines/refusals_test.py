@@ -49,6 +49,7 @@ FLOODED = 10_000  # connections
 AT_ONCE, THEN_EACH = 20, 5.0  # lines, seconds: common/log/refusals.h
 SECRET = os.urandom(16)
 CLIENT_WELCOME = 10  # of proto/control.proto
+WELCOME = 16  # of common/wire/frame.h
 NOT_FOR_MACHINES = "expected a machine that joins"
 UNKNOWN = "does not know this machine's key"
 
@@ -280,12 +281,12 @@ class Refusals(unittest.TestCase):
                 line + ".*may not watch"),
         ]
 
-    def as_a_machine(self) -> bytes:
+    def to_the_agent(self, words: bytes) -> bytes:
         """A program of the client host, to its agent."""
         with socket.socket(socket.AF_UNIX) as agent:
             agent.settimeout(PATIENCE)
             agent.connect(self.wall.agent_address("desk").removeprefix("unix:"))
-            return say(strangers.host_hello(), agent)
+            return say(words, agent)
 
     def of_this_machine(self) -> list[Row]:
         wrong = self.folder / "wrong"
@@ -304,7 +305,11 @@ class Refusals(unittest.TestCase):
             Row("http, here", "another user, to change something",
                 lambda: self.curl("mail", f"/api/v1/sessions/{self.session}/raise", "-X", "POST"), 403,
                 "audit who=\"mail\" role=viewer via=http what=raise .*result=forbidden"),
-            Row("agent", "a program that speaks as a machine", self.as_a_machine, None,
+            Row("agent", "a program that speaks as a machine",
+                lambda: self.to_the_agent(strangers.host_hello()), None,
+                "refused at=agent .*speaks as a machine", "desk"),
+            Row("agent", "a program that tells of its end as its agent does",
+                lambda: self.to_the_agent(strangers.program_ended()), None,
                 "refused at=agent .*speaks as a machine", "desk"),
             Row("http, here", "under a foreign name", lambda: self.curl("mail", "/", "-H", "Host: evil.example"), 421,
                 "refused at=http from=\"mail\" .*local names only"),
@@ -325,7 +330,9 @@ class Refusals(unittest.TestCase):
                 welcome = strangers.fields(message)
                 nodes = [dict(strangers.fields(value)) for number, value in welcome if number == 5]
                 out[name] = dict(welcome)[1], next(node[3] for node in nodes if node.get(1, 0) == 0)
-                if name != "over":
+                if name == "over":
+                    tls.sendall(strangers.program_ended())  # else its program would be awaited
+                else:
                     self.addCleanup(stack.pop_all().close)
         until(lambda: out["over"][0] not in [s["id"] for s in self.wall.sessions()], "a session is over", SOON)
         return out
@@ -334,7 +341,7 @@ class Refusals(unittest.TestCase):
         """Else nothing would follow from a ticket that is refused."""
         with self.at("desk", self.wall.data_port(NODE)) as plain, strangers.speak_tls(plain, self.desk) as tls:
             tls.sendall(strangers.data_hello(VERSION, *ticket))
-            self.assertEqual(strangers.read_frame(tls)[1], b"", "a welcome, not an error's text")
+            self.assertEqual(strangers.read_frame(tls)[0], WELCOME, "and no error")
 
     def answer(self, row: Row) -> bytes | int | Exception:
         try:

@@ -71,6 +71,49 @@ TEST(ControlConnection, CarriesMessagesOverUnixSockets) {
 
 TEST(ControlConnection, CarriesMessagesOverTcpAndKnowsThePeersUser) { round_trip(*Address::parse("127.0.0.1:0")); }
 
+/// Either end closes: whose doing it was. `reads`: the other way of noticing is that a write fails.
+void closes(bool the_peer, bool reads) {
+    const test::TemporaryFolder folder;
+    asio::io_context io;
+    auto listener = Listener::open(io.get_executor(), socket_in(folder));
+    ASSERT_TRUE(listener);
+    std::shared_ptr<ControlConnection> here, there;
+    const auto accept = [&]() -> asio::awaitable<void> {
+        auto socket = co_await listener->accept();
+        there = std::make_shared<ControlConnection>(Stream(std::move(*socket)));
+    };
+    const auto connect = [&]() -> asio::awaitable<void> {
+        auto connected = co_await ControlConnection::connect(listener->address(), "wallgl");
+        here = *connected;
+    };
+    asio::co_spawn(io, accept(), asio::detached);
+    asio::co_spawn(io, connect(), asio::detached);
+    io.run();
+    ASSERT_TRUE(here && there);
+    io.restart();
+    (the_peer ? there : here)->close();
+    const auto notice = [&]() -> asio::awaitable<void> {
+        if (!reads) {
+            proto::Envelope ping;
+            ping.mutable_ping();
+            here->send(ping);
+            co_await here->drained();
+        }
+        const auto message = co_await here->receive();
+        EXPECT_FALSE(message);
+    };
+    asio::co_spawn(io, notice(), asio::detached);
+    io.run();
+    EXPECT_EQ(here->lost(), the_peer);
+}
+
+TEST(ControlConnection, KnowsWhetherItWasClosedFromTheOtherEnd) {
+    for (const bool reads : {true, false}) {
+        closes(true, reads);
+        closes(false, reads);
+    }
+}
+
 TEST(Sockets, ReplaceAStaleSocketButNotALiveOne) {
     const test::TemporaryFolder folder;
     { const auto dead = listen_on(socket_in(folder)); }

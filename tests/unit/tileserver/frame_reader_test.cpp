@@ -42,7 +42,7 @@ TEST_P(FrameReaderPortions, GivesEveryFrameWhole) {
     const auto frames = feed(reader, bytes, GetParam());
     ASSERT_EQ(frames.size(), sizes.size());
     for (std::size_t i = 0; i < sizes.size(); ++i)
-        EXPECT_EQ(frames[i].payload, std::vector<std::byte>(sizes[i], static_cast<std::byte>(i))) << i;
+        EXPECT_EQ(frames[i].payload, RawBytes(sizes[i], static_cast<std::byte>(i))) << i;
 }
 
 INSTANTIATE_TEST_SUITE_P(Portions, FrameReaderPortions, ::testing::Values(1000, 65'536, 3'000'000, 100'000'000));
@@ -61,12 +61,53 @@ TEST_P(FrameReaderPortions, PutsABatchInPartsTogether) {
     FrameReader reader(4 << 20);
     const auto frames = feed(reader, bytes, GetParam());
     ASSERT_EQ(frames.size(), 2u);
-    std::vector<std::byte> whole(3'000'001, std::byte{1});
+    RawBytes whole(3'000'001, std::byte{1});
     whole.insert(whole.end(), 70'000, std::byte{2});
     whole.insert(whole.end(), 5, std::byte{3});
     EXPECT_EQ(frames[0].kind, wire::FrameKind::batch);
     EXPECT_EQ(frames[0].payload, whole);
-    EXPECT_EQ(frames[1].payload, std::vector<std::byte>(9, std::byte{4}));
+    EXPECT_EQ(frames[1].payload, RawBytes(9, std::byte{4}));
+}
+
+TEST(FrameReader, PutsWhatComesIntoMemoryThatItWasLent) {
+    FrameReader reader(8 << 20);
+    RawBytes memory(3 << 20, std::byte{9});
+    const std::byte* const at = memory.data();
+    reader.lend(std::move(memory));
+    reader.lend(RawBytes(100));  // it has larger one already
+    const auto first = feed(reader, frame(wire::FrameKind::batch, 2 << 20, 1), 100'000);
+    ASSERT_EQ(first.size(), 1u);
+    EXPECT_EQ(first[0].payload.data(), at);
+    EXPECT_EQ(first[0].payload, RawBytes(2 << 20, std::byte{1}));
+    const auto next = feed(reader, frame(wire::FrameKind::batch, 2 << 20, 2), 100'000);
+    ASSERT_EQ(next.size(), 1u);
+    EXPECT_NE(next[0].payload.data(), at) << "it was given away with the frame";
+}
+
+/// Cut anywhere; then the frame that was not whole comes again.
+TEST(FrameReader, BeginsAFrameAgain) {
+    std::vector<std::vector<std::byte>> frames = {frame(wire::FrameKind::part, 3000, 1),
+                                                  frame(wire::FrameKind::part, 500, 2),
+                                                  frame(wire::FrameKind::batch, 200'000, 3)};
+    RawBytes whole(3000, std::byte{1});
+    whole.insert(whole.end(), 500, std::byte{2});
+    whole.insert(whole.end(), 200'000, std::byte{3});
+    std::size_t all = 0;
+    for (const auto& one : frames) all += one.size();
+    for (std::size_t cut = 0; cut < all; cut += 997) {
+        FrameReader reader(1 << 20);
+        std::vector<std::byte> bytes;
+        for (const auto& one : frames) bytes.insert(bytes.end(), one.begin(), one.end());
+        EXPECT_TRUE(feed(reader, std::span(bytes).first(cut), 70'000).empty());
+        reader.begin_frame_again();
+        std::vector<std::byte> rest;
+        for (std::size_t i = reader.batch_frames(); i < frames.size(); ++i)
+            rest.insert(rest.end(), frames[i].begin(), frames[i].end());
+        const auto came = feed(reader, rest, 70'000);
+        ASSERT_EQ(came.size(), 1u) << cut;
+        EXPECT_EQ(came[0].payload, whole) << cut;
+        EXPECT_EQ(reader.batch_frames(), 3u);
+    }
 }
 
 TEST(FrameReader, PartsTogetherHaveALimit) {

@@ -5,14 +5,18 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <poll.h>
+#include <sys/mman.h>
 #include <sys/socket.h>
 
+#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <cstring>
 #include <filesystem>
 #include <future>
+#include <random>
 #include <thread>
 
 #include "client_lib/link/node_stream.h"
@@ -20,6 +24,7 @@
 #include "common/net/sockets.h"
 #include "common/wire/batch.h"
 #include "common/wire/limits.h"
+#include "common/wire/ring.h"
 #include "gen/glapi/wire.gen.h"
 #include "gen/glstate/state.gen.h"
 
@@ -31,9 +36,9 @@ namespace pack = glapi::pack;
 constexpr auto kPatience = 10s;
 
 /// Waits for bytes; false if none come in time.
-bool readable(int fd) {
+bool readable(int fd, std::chrono::milliseconds limit = kPatience) {
     pollfd wait{fd, POLLIN, 0};
-    return ::poll(&wait, 1, static_cast<int>(std::chrono::milliseconds(kPatience).count())) > 0;
+    return ::poll(&wait, 1, static_cast<int>(limit.count())) > 0;
 }
 
 void write_all(int fd, std::span<const std::byte> bytes) {
@@ -92,8 +97,7 @@ class Client {
 public:
     explicit Client(const net::Address& node) : fd_(std::move(*net::connect_to(node, kPatience))) {}
     void send(wire::FrameKind kind, std::span<const std::byte> payload) {
-        write_all(fd_.get(), wire::encode_frame_header({static_cast<std::uint32_t>(payload.size()), kind}));
-        write_all(fd_.get(), payload);
+        write_all(fd_.get(), whole_frame(kind, payload));
     }
     void hello(std::uint32_t session, const std::string& ticket, std::uint32_t version = glapi::kStreamVersion) {
         proto::DataHello hello;
@@ -103,10 +107,44 @@ public:
         const std::string bytes = hello.SerializeAsString();
         send(wire::FrameKind::hello, std::as_bytes(std::span(bytes)));
     }
-    void batch(const wire::PackBuffer& buffer) {
+    /// As a library says it, with a descriptor.
+    void hello_with(int descriptor, std::uint32_t session, const std::string& ticket) {
+        proto::DataHello hello;
+        hello.set_version(glapi::kStreamVersion);
+        hello.set_session(session);
+        hello.set_ticket(ticket);
+        const std::string text = hello.SerializeAsString();
+        const auto bytes = whole_frame(wire::FrameKind::hello, std::as_bytes(std::span(text)));
+        iovec piece{const_cast<std::byte*>(bytes.data()), bytes.size()};
+        alignas(cmsghdr) char control[CMSG_SPACE(sizeof descriptor)] = {};
+        msghdr message{};
+        message.msg_iov = &piece;
+        message.msg_iovlen = 1;
+        message.msg_control = control;
+        message.msg_controllen = sizeof control;
+        cmsghdr* about = CMSG_FIRSTHDR(&message);
+        about->cmsg_level = SOL_SOCKET;
+        about->cmsg_type = SCM_RIGHTS;
+        about->cmsg_len = CMSG_LEN(sizeof descriptor);
+        std::memcpy(CMSG_DATA(about), &descriptor, sizeof descriptor);
+        ASSERT_EQ(::sendmsg(fd_.get(), &message, MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size()));
+    }
+    static std::vector<std::byte> whole_frame(wire::FrameKind kind, std::span<const std::byte> payload) {
+        const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(payload.size()), kind});
+        std::vector<std::byte> out(header.begin(), header.end());
+        out.insert(out.end(), payload.begin(), payload.end());
+        return out;
+    }
+    static std::vector<std::byte> batch_frame(const wire::PackBuffer& buffer) {
         std::vector<std::byte> payload;
         wire::append_batch(payload, {ContextId(1), buffer.opcodes(), buffer.operands()});
-        send(wire::FrameKind::batch, payload);
+        return whole_frame(wire::FrameKind::batch, payload);
+    }
+    void batch(const wire::PackBuffer& buffer) { write_all(fd_.get(), batch_frame(buffer)); }
+    /// There is something in the ring.
+    void sign() {
+        const std::byte one{};
+        write_all(fd_.get(), std::span(&one, 1));
     }
     /// The next frame; nothing at the connection's end.
     std::optional<Frame> next() {
@@ -145,8 +183,7 @@ protected:
         char name[] = "/tmp/wallgl-node-test-XXXXXX";
         folder_ = ::mkdtemp(name);
         config_.control_listen = {*net::Address::parse("unix:" + folder_ + "/walld.sock")};
-        config_.nodes = {
-            {"n", config::Backend::egl, *net::Address::parse("unix:" + folder_ + "/n.sock"), {{"t", {0, 0, 64, 48}}}}};
+        config_.nodes = {{"n", config::Backend::egl, *net::Address::parse(listen_at()), {{"t", {0, 0, 64, 48}}}}};
         walld_.emplace(config_.control_listen.front());
         auto server = NodeServer::open(io_.get_executor(), config_, config_.nodes.front());
         ASSERT_TRUE(server) << server.error().message;
@@ -155,7 +192,7 @@ protected:
         server_->set_most_strangers(kStrangers);
         server_->start();
         thread_ = std::thread([this] { io_.run(); });
-        introduce();
+        address_ = *net::Address::parse(introduce().address());
     }
     void TearDown() override {
         if (server_) boost::asio::post(io_, [this] { server_->stop(); });
@@ -185,7 +222,8 @@ protected:
         }
         return hello;
     }
-    const net::Address& node_address() const { return config_.nodes.front().listen; }
+    virtual std::string listen_at() const { return "unix:" + folder_ + "/n.sock"; }
+    const net::Address& node_address() const { return address_; }
     /// A surface over the whole tile, one frame all in `color`.
     static wire::PackBuffer one_frame(const glstate::Vec4& color, std::uint32_t frame) {
         wire::PackBuffer buffer, body;
@@ -199,6 +237,12 @@ protected:
         buffer.append(body, {}, body.mark());
         pack::Swap(buffer, SurfaceId(1), frame);
         return buffer;
+    }
+    /// So many commands that do nothing much.
+    static void say_much(wire::PackBuffer& buffer, std::size_t commands) {
+        const glstate::Vec4 any{0, 0, 1, 0};
+        for (std::size_t i = 0; i < commands; ++i)
+            glapi::pack_state(buffer, glstate::el::clear_color::id, &any, sizeof any);
     }
     /// The tile's first pixel as it is shown now.
     std::vector<int> shown() {
@@ -251,6 +295,7 @@ protected:
     std::chrono::milliseconds longest_turn_ = 60s;
     std::string folder_;
     config::WallConfig config_;
+    net::Address address_;
     std::optional<FakeWalld> walld_;
     boost::asio::io_context io_{1};
     std::unique_ptr<NodeServer> server_;
@@ -394,15 +439,270 @@ bool swapped(FakeWalld& walld, client::NodeStream& stream, std::uint32_t frame) 
     return false;
 }
 
+// ---- rings ----
+
+TEST_F(NodeServerTest, TakesBatchesOutOfARing) {
+    stack_session(1);
+    auto ring = wire::RingWriter::create(wire::RingMemory::kSmallest);
+    ASSERT_TRUE(ring);
+    Client client(node_address());
+    client.hello_with(ring->descriptor(), 1, "secret1");
+    client.expect(wire::FrameKind::ring);
+    const auto first = Client::batch_frame(one_frame({1, 0, 0, 1}, 1));
+    ASSERT_EQ(ring->write(first), first.size());
+    client.sign();
+    client.expect(wire::FrameKind::swap_done);
+}
+
+TEST_F(NodeServerTest, SaysWhenThereIsRoomInARingAgain) {
+    stack_session(1);
+    auto ring = wire::RingWriter::create(wire::RingMemory::kSmallest);
+    ASSERT_TRUE(ring);
+    Client client(node_address());
+    client.hello_with(ring->descriptor(), 1, "secret1");
+    client.expect(wire::FrameKind::ring);
+    wire::PackBuffer buffer;
+    say_much(buffer, 100'000);
+    const auto much = Client::batch_frame(buffer);
+    ASSERT_GT(much.size(), wire::RingMemory::kSmallest);
+    const std::size_t sent = ring->write(much);
+    ASSERT_TRUE(ring->wait_for_room());
+    client.sign();
+    client.expect(wire::FrameKind::room);
+    EXPECT_GT(ring->write(std::span(much).subspan(sent)), 0u);
+}
+
+TEST_F(NodeServerTest, RefusesARingThatIsNone) {
+    stack_session(1);
+    const UniqueFd open_memory(::memfd_create("test", MFD_CLOEXEC));
+    ASSERT_EQ(::ftruncate(open_memory.get(), 4096 + 65536), 0);
+    Client client(node_address());
+    client.hello_with(open_memory.get(), 1, "secret1");
+    EXPECT_THAT(client.expect_error(), ::testing::HasSubstr("sealed against another size"));
+}
+
+TEST_F(NodeServerTest, EndsAStreamWhoseRingCannotBe) {
+    stack_session(1);
+    auto ring = wire::RingWriter::create(wire::RingMemory::kSmallest);
+    ASSERT_TRUE(ring);
+    auto memory = wire::RingMemory::map(ring->descriptor(), wire::RingMemory::kSmallest);
+    ASSERT_TRUE(memory);
+    Client client(node_address());
+    client.hello_with(ring->descriptor(), 1, "secret1");
+    client.expect(wire::FrameKind::ring);
+    memory->counters().written = ~std::uint64_t{0} / 2;
+    client.sign();
+    EXPECT_THAT(client.expect_error(), ::testing::HasSubstr("more than it can hold"));
+}
+
+// ---- connections that are lost ----
+
+/// Brings bytes from whoever connects to it to the node, and back, and breaks in between.
+class BreakingLink {
+public:
+    explicit BreakingLink(net::Address node) : node_(std::move(node)) {
+        listens_ = std::move(*net::listen_on(*net::Address::parse("127.0.0.1:0"), net::Peers::of_this_machine));
+        sockaddr_in at{};
+        socklen_t length = sizeof at;
+        ::getsockname(listens_.get(), reinterpret_cast<sockaddr*>(&at), &length);
+        address_ = "127.0.0.1:" + std::to_string(ntohs(at.sin_port));
+        thread_ = std::thread([this] { run(); });
+    }
+    ~BreakingLink() {
+        stop_ = true;
+        thread_.join();
+    }
+    const std::string& address() const { return address_; }
+    /// After so many more bytes, both ways together.
+    void break_after(std::int64_t bytes) { left_ = bytes; }
+    int connections() const { return connections_; }
+
+private:
+    void run() {
+        while (!stop_) {
+            if (!readable(listens_.get(), std::chrono::milliseconds(20))) continue;
+            const UniqueFd client(::accept(listens_.get(), nullptr, nullptr));
+            const UniqueFd node = std::move(*net::connect_to(node_, kPatience));
+            ++connections_;
+            pump(client.get(), node.get());
+        }
+    }
+    void pump(int client, int node) {
+        std::vector<char> room(8192);
+        while (!stop_) {
+            pollfd ends[2] = {{client, POLLIN, 0}, {node, POLLIN, 0}};
+            if (::poll(ends, 2, 20) <= 0) continue;
+            for (const int i : {0, 1}) {
+                if (ends[i].revents == 0) continue;
+                const ssize_t n = ::read(ends[i].fd, room.data(), room.size());
+                if (n <= 0) return;
+                const auto passed = std::min<std::int64_t>(n, std::max<std::int64_t>(left_, 0));
+                if (::send(ends[1 - i].fd, room.data(), static_cast<std::size_t>(passed), MSG_NOSIGNAL) < passed)
+                    return;
+                if ((left_ -= passed) <= 0) {
+                    left_ = kNever;
+                    return;
+                }
+            }
+        }
+    }
+    static constexpr std::int64_t kNever = std::int64_t{1} << 62;
+    net::Address node_;
+    UniqueFd listens_;
+    std::string address_;
+    std::atomic<std::int64_t> left_{kNever};
+    std::atomic<int> connections_{0};
+    std::atomic<bool> stop_{false};
+    std::thread thread_;
+};
+
+class ANodeOfAnotherMachine : public NodeServerTest {
+protected:
+    std::string listen_at() const override { return "127.0.0.1:0"; }
+    static std::string hello_of(std::uint32_t session, std::uint32_t resume = 0, std::uint64_t received = 0,
+                                std::uint64_t attempt = 0) {
+        proto::DataHello hello;
+        hello.set_version(glapi::kStreamVersion);
+        hello.set_session(session);
+        hello.set_ticket("secret" + std::to_string(session));
+        if (resume != 0) {
+            hello.mutable_resume()->set_stream(resume);
+            hello.mutable_resume()->set_received(received);
+            hello.mutable_resume()->set_attempt(attempt);
+        }
+        return hello.SerializeAsString();
+    }
+    /// Comes and gives the stream's number.
+    static std::uint32_t come(Client& client, std::uint32_t session) {
+        const std::string hello = hello_of(session);
+        client.send(wire::FrameKind::hello, std::as_bytes(std::span(hello)));
+        const auto welcome = client.next();
+        std::uint32_t number = 0;
+        EXPECT_TRUE(welcome && welcome->kind == wire::FrameKind::welcome && welcome->payload.size() == sizeof number);
+        if (welcome) std::memcpy(&number, welcome->payload.data(), sizeof number);
+        EXPECT_NE(number, 0u);
+        return number;
+    }
+    static void come_again(Client& client, std::uint32_t session, std::uint32_t stream, std::uint64_t received,
+                           std::uint64_t attempt = 1) {
+        const std::string hello = hello_of(session, stream, received, attempt);
+        client.send(wire::FrameKind::hello, std::as_bytes(std::span(hello)));
+    }
+};
+
+/// Wherever it breaks, in the midst of a batch or an answer: all comes through, once, in order.
+TEST_F(ANodeOfAnotherMachine, GoesOnWithAStreamWhoseConnectionBreaksAgainAndAgain) {
+    stack_session(1);
+    BreakingLink link(node_address());
+    auto stream = client::NodeStream::open(link.address(), hello_of(1), 10'000);
+    ASSERT_TRUE(stream) << stream.error().message;
+    client::Transport transport([] {});
+    transport.add(*stream);
+    constexpr std::uint32_t kFrames = 400;
+    std::minstd_rand chance(1);
+    for (std::uint32_t frame = 1; frame <= kFrames; ++frame) {
+        if (frame % 40 == 1) link.break_after(static_cast<std::int64_t>(1 + chance() % 40'000));
+        if (frame % 100 == 0) walld_->send_pong();
+        wire::PackBuffer buffer = one_frame({0, static_cast<float>(frame % 2), 0, 0}, frame);
+        say_much(buffer, chance() % 2000);
+        pack::Sync(buffer, RequestId(frame));
+        (*stream)->send(ContextId(1), std::move(buffer));
+        transport.wake();
+        const auto answer = (*stream)->wait_reply(RequestId(frame), 10'000);
+        ASSERT_TRUE(answer) << "frame " << frame << ": " << (*stream)->failure();
+        proto::Envelope present;
+        present.mutable_present()->set_session(1);
+        present.mutable_present()->set_surface(1);
+        present.mutable_present()->set_frame(frame);
+        walld_->send(present);
+    }
+    EXPECT_TRUE((*stream)->wait_swap(SurfaceId(1), kFrames, 10'000));
+    EXPECT_FALSE((*stream)->failed()) << (*stream)->failure();
+    EXPECT_GT(link.connections(), 5);
+    EXPECT_EQ(shown(), (std::vector{0, 0, 0}));
+}
+
+TEST_F(ANodeOfAnotherMachine, SendsAgainWhatHasNotComeToTheClient) {
+    stack_session(1);
+    std::uint32_t number = 0;
+    {
+        Client client(node_address());
+        number = come(client, 1);
+        client.batch(one_frame({1, 0, 0, 1}, 1));
+        client.expect(wire::FrameKind::swap_done);
+    }
+    for (const bool seen : {false, true}) {
+        Client again(node_address());
+        come_again(again, 1, number, seen ? 1 : 0, seen ? 2 : 1);
+        const auto resumed = again.next();
+        ASSERT_TRUE(resumed && resumed->kind == wire::FrameKind::resumed && resumed->payload.size() == 8);
+        EXPECT_EQ(std::to_integer<int>(resumed->payload[0]), 1) << "one batch has come";
+        if (seen) again.batch(one_frame({0, 1, 0, 1}, 2));
+        again.expect(wire::FrameKind::swap_done);
+    }
+}
+
+TEST_F(ANodeOfAnotherMachine, GoesOnWithNoStreamOfAnotherSessionNorWithOneThatIsOver) {
+    stack_session(1);
+    Client first(node_address());
+    const auto number = come(first, 1);
+    const auto refused = [&](std::uint32_t session, std::uint32_t stream, std::uint64_t received) {
+        Client client(node_address());
+        come_again(client, session, stream, received);
+        return client.expect_error();
+    };
+    EXPECT_THAT(refused(2, number, 0), ::testing::HasSubstr("is over")) << "another session's";
+    EXPECT_THAT(refused(1, number + 100, 0), ::testing::HasSubstr("is over")) << "there was none";
+    EXPECT_THAT(refused(1, number, 5), ::testing::HasSubstr("is over")) << "so much was never sent";
+    first.batch(one_frame({1, 0, 0, 1}, 1));
+    first.expect(wire::FrameKind::swap_done);
+    proto::Envelope end;
+    end.mutable_session_end()->set_session(1);
+    walld_->send(end);
+    EXPECT_FALSE(first.next());
+    EXPECT_NE(refused(1, number, 0), "no error frame") << "its ticket is none any more";
+}
+
+TEST_F(ANodeOfAnotherMachine, IsNotLedBackByAnAttemptThatWasOnItsWayForLong) {
+    stack_session(1);
+    Client first(node_address());
+    const auto number = come(first, 1);
+    Client newer(node_address());
+    come_again(newer, 1, number, 0, 20);
+    newer.expect(wire::FrameKind::resumed);
+    Client older(node_address());
+    come_again(older, 1, number, 0, 10);
+    EXPECT_THAT(older.expect_error(), ::testing::HasSubstr("is over"));
+    newer.batch(one_frame({1, 0, 0, 1}, 1));
+    newer.expect(wire::FrameKind::swap_done);
+}
+
+TEST_F(ANodeOfAnotherMachine, ForgetsALostStreamWhenItsProgramBeginsANewOne) {
+    stack_session(1);
+    std::uint32_t number = 0;
+    {
+        Client client(node_address());
+        number = come(client, 1);
+    }
+    Client anew(node_address());
+    EXPECT_NE(come(anew, 1), number);
+    Client late(node_address());
+    come_again(late, 1, number, 0);
+    EXPECT_THAT(late.expect_error(), ::testing::HasSubstr("is over"));
+}
+
 /// From the client library's end: more than a frame holds.
-TEST_F(NodeServerTest, ABatchLargerThanAFrameArrives) {
+class ABatchLargerThanAFrame : public NodeServerTest, public ::testing::WithParamInterface<bool> {};
+
+TEST_P(ABatchLargerThanAFrame, Arrives) {
     stack_session(1);
     proto::DataHello hello;
     hello.set_version(glapi::kStreamVersion);
     hello.set_session(1);
     hello.set_ticket("secret1");
-    auto stream = client::NodeStream::open(node_address().text(), hello.SerializeAsString(), 10'000);
+    auto stream = client::NodeStream::open(node_address().text(), hello.SerializeAsString(), 10'000, GetParam());
     ASSERT_TRUE(stream) << stream.error().message;
+    EXPECT_EQ((*stream)->has_ring(), GetParam());
     client::Transport transport([] {});
     transport.add(*stream);
     constexpr std::size_t kNormals = 24 << 20;
@@ -430,6 +730,9 @@ TEST_F(NodeServerTest, ABatchLargerThanAFrameArrives) {
     present(1, 2);
     EXPECT_EQ(shown(), (std::vector{0, 255, 0}));
 }
+
+INSTANTIATE_TEST_SUITE_P(Transports, ABatchLargerThanAFrame, ::testing::Bool(),
+                         [](const auto& ring) { return ring.param ? "ring" : "socket"; });
 
 class StuckDriverTest : public NodeServerTest {
 protected:

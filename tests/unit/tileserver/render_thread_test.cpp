@@ -208,7 +208,7 @@ protected:
         glapi::pack_state(buffer, glstate::el::viewport::id, &viewport, sizeof viewport);
     }
     void push(const std::shared_ptr<BatchQueue>& queue, const wire::PackBuffer& buffer) {
-        std::vector<std::byte> payload;
+        RawBytes payload;
         wire::append_batch(payload, {ContextId(1), buffer.opcodes(), buffer.operands()});
         queue->push(std::move(payload));
         thread_->wake();

@@ -21,7 +21,8 @@ the command's group; see common/glapi/decoder.h for what H must offer and for th
 """
 
 
-FRAMING = 2  # of common/wire/frame.h and batch.h; 2: a batch may come in parts
+FRAMING = 3  # of common/wire/frame.h and batch.h; 2: a batch may come in parts; 3: rings, streams that outlive
+             # their connection
 
 
 def stream_version(ops, elements):

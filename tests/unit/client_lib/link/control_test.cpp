@@ -13,7 +13,7 @@
 #include <future>
 #include <thread>
 
-#include "client_lib/link/node_stream.h"
+#include "client_lib/link/node_greeting.h"
 #include "client_lib/process/stats.h"
 #include "common/wire/limits.h"
 #include "gen/glapi/wire.gen.h"

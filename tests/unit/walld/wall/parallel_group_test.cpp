@@ -27,13 +27,13 @@ proto::Placement version(std::uint32_t number, std::uint32_t from_frame) {
 TEST(ParallelGroup, TakesEachRankOnce) {
     ParallelGroup group("g", 3);
     group.joins(1, 100);
-    EXPECT_TRUE(group.admits(member(0, 3)));
-    EXPECT_THAT(group.admits(member(1, 3)).error().message,
+    EXPECT_TRUE(group.admits(member(0, 3), false));
+    EXPECT_THAT(group.admits(member(1, 3), false).error().message,
                 HasSubstr("rank 1 (process 100) of parallel program 'g' is here already"));
-    EXPECT_THAT(group.admits(member(0, 2)).error().message, HasSubstr("has 3 processes, not 2"));
+    EXPECT_THAT(group.admits(member(0, 2), false).error().message, HasSubstr("has 3 processes, not 2"));
     EXPECT_TRUE(group.leaves(1));
     EXPECT_FALSE(group.leaves(1));
-    EXPECT_THAT(group.admits(member(1, 3)).error().message, HasSubstr("has ended already"));
+    EXPECT_THAT(group.admits(member(1, 3), false).error().message, HasSubstr("has ended already"));
     for (const auto& wrong :
          {member(0, 0), member(3, 3), member(0, 65), member(0, 1, ""), member(0, 1, std::string(300, 'x'))})
         EXPECT_FALSE(ParallelGroup::check(wrong));

@@ -29,6 +29,7 @@ public:
     void to_client(SessionId session, const proto::Envelope& message) override {
         if (message.has_surface_note()) notes[session] = message.surface_note().note();
         if (message.has_placement()) placements[session] = message.placement();
+        if (message.has_node_down()) downs.push_back(message.node_down().node());
         if (message.has_placement()) offered.push_back(message.placement());
         if (message.has_placement_agreed()) agreed = message.placement_agreed().layout_version();
     }
@@ -48,6 +49,7 @@ public:
     std::map<SessionId, proto::Placement> placements;
     std::vector<proto::Placement> offered;  // to all members of a parallel program
     std::uint32_t agreed = 0;               // version that was agreed last
+    std::vector<std::uint32_t> downs;       // nodes that programs were told to be gone
     std::map<SessionId, proto::ClientWelcome> welcomes;
 };
 
@@ -345,7 +347,7 @@ TEST_F(AWallThatReturns, TakesAProgramWhoseLinkWasLostUnderItsNumberAndItsTicket
     ASSERT_TRUE(wall_->hold({id, {}}, true, now_));
     ASSERT_TRUE(wall_->lower({id, {}}));
     const auto tickets = out_.tickets;
-    wall_->await_again(id, now_);
+    wall_->await_again(id, 0, now_);
     EXPECT_FALSE(wall_->sessions().contains(id));
     EXPECT_THAT(out_.stacking[kLeft].returning(), ElementsAre(id.value)) << "what it has drawn stays in sight";
     EXPECT_EQ(come_back(id), id);
@@ -364,7 +366,7 @@ TEST_F(AWallThatReturns, AwaitsAProgramWhoseLinkWasLostForAWhileOnly) {
     wall_->tick(now_);  // whoever was to come from an earlier walld has come
     const auto id = open();
     open_surface(id);
-    wall_->await_again(id, now_);
+    wall_->await_again(id, 0, now_);
     EXPECT_EQ(wall_->next_deadline(), now_ + Wall::kReturnLimit);
     wall_->tick(now_ + Wall::kReturnLimit);
     EXPECT_FALSE(wall_->next_deadline());
@@ -378,7 +380,7 @@ TEST_F(AWallThatReturns, DoesNotWaitForEverForWindowsEither) {
     now_ += 2 * Wall::kReturnLimit;
     const auto id = open();
     open_surface(id);
-    wall_->await_again(id, now_);
+    wall_->await_again(id, 0, now_);
     come_back(id, 1);  // and closes its window before it has said anything of it
     EXPECT_EQ(wall_->next_deadline(), now_ + Wall::kReturnLimit);
     wall_->tick(now_ + Wall::kReturnLimit);
@@ -392,11 +394,34 @@ TEST_F(AWallThatReturns, ANodeThatComesMeanwhileKeepsWhatItHasOfAProgramWhoseLin
     now_ += 2 * Wall::kReturnLimit;
     wall_->tick(now_);
     const auto id = open();
-    wall_->await_again(id, now_);
+    wall_->await_again(id, 0, now_);
     wall_->node_leaves(kRight, now_);
     join("right");
     EXPECT_TRUE(out_.tickets[kRight].contains(id.value));
     EXPECT_EQ(come_back(id), id);
+}
+
+TEST_F(AWallThatReturns, TellsNobodyOfANodeWhoseLinkWasLostThatIsBackSoon) {
+    join_both();
+    const auto id = open();
+    open_surface(id);
+    out_.downs.clear();
+    wall_->node_leaves(kLeft, now_, true);
+    EXPECT_FALSE(wall_->nodes()[kLeft].up);
+    EXPECT_TRUE(wall_->next_deadline());
+    join("left");
+    wall_->tick(now_ + Wall::kMissedLimit);
+    EXPECT_TRUE(out_.downs.empty()) << "its programs draw on as before";
+
+    wall_->node_leaves(kLeft, now_, true);
+    wall_->tick(now_ + Wall::kMissedLimit);
+    EXPECT_THAT(out_.downs, ElementsAre(kLeft.value)) << "it is gone";
+    join("left");
+
+    wall_->node_leaves(kLeft, now_, true);
+    out_.downs.clear();
+    join("left", 2);
+    EXPECT_THAT(out_.downs, ElementsAre(kLeft.value)) << "it is another process";
 }
 
 TEST_F(AWallThatReturns, KnowsAProgramThatComesBeforeItsLinkIsKnownToBeLost) {
@@ -580,6 +605,34 @@ TEST_F(AParallelProgramThatReturns, DoesNotWaitForWhoHasLeftOrClosedTheWindow) {
     ASSERT_EQ(out_.offered.size(), 2u) << "rank 2 has left";
     note(id, 0, out_.offered.back().layout_version());
     EXPECT_EQ(out_.agreed, out_.offered.back().layout_version());
+}
+
+TEST_F(AParallelProgramThatReturns, GoesOnWhenTheLinkOfAProcessWasLost) {
+    const auto id = start();
+    const auto agreed = agreed_of(id);
+    const auto again = member_again(id, 1);
+    const auto admits = [&](const proto::ClientHello& hello) {
+        return wall_->sessions().at(id).group->admits(hello.group(), hello.has_resume()).has_value();
+    };
+    EXPECT_FALSE(admits(again)) << "it is here";
+    wall_->await_again(id, 1, now_);
+    EXPECT_EQ(wall_->next_deadline(), now_ + Wall::kReturnLimit);
+    EXPECT_FALSE(admits(member(1))) << "another process";
+    EXPECT_TRUE(admits(again));
+    EXPECT_EQ(wall_->comeback(again, now_), Wall::Comeback::may_come);
+    EXPECT_EQ(open(again), id);
+    EXPECT_FALSE(wall_->next_deadline());
+    announce(id, 1, agreed, out_.notes[id]);
+    wall_->tick(now_ + 2 * Wall::kReturnLimit);
+    EXPECT_TRUE(wall_->sessions().contains(id));
+}
+
+TEST_F(AParallelProgramThatReturns, EndsWhenAProcessStaysAway) {
+    const auto id = start();
+    wall_->await_again(id, 1, now_);
+    wall_->tick(now_ + Wall::kReturnLimit);
+    EXPECT_FALSE(wall_->sessions().contains(id));
+    EXPECT_FALSE(wall_->next_deadline());
 }
 
 TEST_F(AParallelProgramThatReturns, IsToldWhenItsSessionIsNoMore) {
