@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "common/net/framing.h"
 
+#include <google/protobuf/stubs/logging.h>
+
 #include <cstring>
 
 #include "common/wire/limits.h"
@@ -9,6 +11,10 @@ namespace wall::net {
 namespace {
 
 constexpr std::size_t kPrefix = sizeof(std::uint32_t);
+
+/// Protobuf writes a line to standard error for each text that is no UTF-8. Whoever is answered here may send many, and
+/// who was refused is said by whoever refuses, with a limit (common/log/refusals.h).
+[[maybe_unused]] const auto kNobodyHearsProtobuf = google::protobuf::SetLogHandler(nullptr);
 
 Error size_error(std::size_t bytes) {
     return {bytes == 0 ? "control: empty message"

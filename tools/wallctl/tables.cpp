@@ -46,7 +46,8 @@ void add_session(std::vector<Row>& rows, const json& session) {
 /// "3 ring, 1 tls".
 std::string transports(const json& node) {
     std::vector<std::string> out;
-    for (const auto& [transport, streams] : node.value("transports", json::object()).items())
+    const json open = node.value("transports", json::object());
+    for (const auto& [transport, streams] : open.items())
         out.push_back(fmt::format("{} {}", streams.get<int>(), transport));
     return fmt::format("{}", fmt::join(out, ", "));
 }

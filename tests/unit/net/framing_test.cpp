@@ -84,6 +84,18 @@ TEST(Framing, RefusesWhatIsNoEnvelopeOrAnUnknownOne) {
     }
 }
 
+/// Nobody fills the log of a daemon with what it refuses.
+TEST(Framing, IsQuietAboutTextsThatAreNone) {
+    using namespace std::string_literals;
+    const auto body = "\x0a\x03\x1a\x01\xff"s;  // ClientHello.program
+    const auto bytes = static_cast<std::uint32_t>(body.size());
+    Unframer unframer;
+    feed(unframer, std::string(reinterpret_cast<const char*>(&bytes), 4) + body);
+    testing::internal::CaptureStderr();
+    EXPECT_FALSE(unframer.next());
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 TEST(Framing, SurvivesGarbage) {
     std::mt19937 random(1);
     for (int round = 0; round < 2000; ++round) {

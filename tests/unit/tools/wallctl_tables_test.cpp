@@ -70,6 +70,8 @@ TEST(Tables, ANodeIsUpAwayOrDrained) {
     EXPECT_THAT(with(true, false), HasSubstr("left  up "));
     EXPECT_THAT(with(false, false), HasSubstr("left  away "));
     EXPECT_THAT(with(false, true), HasSubstr("left  drained "));
+    EXPECT_THAT(nodes_table({{{"name", "left"}, {"up", true}, {"transports", {{"ring", 3}, {"tls", 1}}}}}),
+                HasSubstr("3 ring, 1 tls"));
 }
 
 TEST(Tables, SaysWhatReadingWallTomlAgainHasDone) {
