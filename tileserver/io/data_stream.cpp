@@ -276,7 +276,7 @@ void DataStream::send_receipt(std::size_t bytes) {
 /// Of a client that goes on with a stream: the connection is that one's from now on.
 Result<bool> DataStream::hand_over(const proto::DataHello& hello) {
     DataStream* before = host_.stream(StreamId(hello.resume().stream()));
-    if (!before || before == this || !before->is_before(*this) ||
+    if (!before || before == this || !before->is_before(*this) || before->rank_ != rank_ ||
         !before->go_on(connection_, hello.resume().received(), hello.resume().attempt()))
         return wall::fail("stream " + std::to_string(hello.resume().stream()) + ", which was to go on, is over");
     return true;

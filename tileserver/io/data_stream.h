@@ -58,7 +58,8 @@ public:
     virtual void stream_closed(StreamId stream) = 0;
     /// Null: there is none (any more).
     virtual DataStream* stream(StreamId id) = 0;
-    /// The process has begun a new stream: it goes on with none that it had before.
+    /// The process has begun a new stream: it goes on with none that it had before. Nor do the others of a parallel
+    /// program, which come to a node together.
     virtual void end_earlier(const DataStream& stream) = 0;
 };
 
@@ -73,7 +74,8 @@ public:
     /// It goes on over this connection; so many of its frames have come to the client. False: it cannot.
     bool go_on(net::Stream& connection, std::uint64_t received, std::uint64_t attempt);
     bool is_before(const DataStream& other) const {
-        return resumable_ && session_ == other.session_ && rank_ == other.rank_ && id_ < other.id_;
+        return resumable_ && session_ == other.session_ && id_ < other.id_ &&
+               (rank_ == other.rank_ || !connection_.is_open());
     }
     /// Tells the client why and closes.
     void fail(const std::string& reason);
@@ -91,6 +93,15 @@ private:
     static constexpr std::size_t kReceiptBytes = 1 << 20;              // after so much the client may forget it
     static constexpr std::uint64_t kReceiptFrames = 256;               // or after so many frames
 
+    struct Outgoing {
+        std::vector<std::byte> bytes;
+        bool counted = false;  ///< it is sent again if the client has not got it
+    };
+    struct Connection {
+        net::Stream stream;
+        std::uint64_t received = 0;  ///< frames, by the client
+    };
+
     asio::awaitable<Result<void>> greet();
     /// Ends with the reason.
     asio::awaitable<Result<void>> take_batches();
@@ -99,6 +110,8 @@ private:
     Result<bool> hand_over(const proto::DataHello& hello);
     Result<void> take_receipt(std::span<const std::byte> payload);
     void send_receipt(std::size_t bytes);
+    void keep(const std::shared_ptr<const Outgoing>& frame);
+    void forget_sent(std::uint64_t received);
     asio::awaitable<void> hold_to_bandwidth(std::size_t bytes);
     /// Nothing if there is none for that ticket.
     asio::awaitable<std::optional<Admission>> find_admission(SessionId session, const std::string& ticket);
@@ -113,27 +126,20 @@ private:
     FrameSource source_;
     const char* transport_ = "";  // once it is admitted
     SessionId session_;
+    std::uint32_t rank_ = 0;  // of a parallel program's member
     std::shared_ptr<BatchQueue> batches_;
-    struct Outgoing {
-        std::vector<std::byte> bytes;
-        bool counted = false;  ///< it is sent again if the client has not got it
-    };
-    void keep(const std::shared_ptr<const Outgoing>& frame);
-    void forget_sent(std::uint64_t received);
+    std::chrono::steady_clock::time_point read_until_{};  // what was read is as much as may come until then
+    std::uint64_t receipt_frames_ = 0;                    // that the last receipt was for
+    std::size_t receipt_bytes_ = 0;                       // that have come since
+
     std::deque<std::shared_ptr<const Outgoing>> outgoing_, sent_;  // sent_: counted ones without a receipt
     std::uint64_t forgotten_ = 0;                                  // counted frames before those of sent_
     std::size_t outgoing_bytes_ = 0, sent_bytes_ = 0;
-    bool resumable_ = false, handed_over_ = false;
-    struct Connection {
-        net::Stream stream;
-        std::uint64_t received = 0;
-    };
+
+    bool resumable_ = false;          // it may go on over another connection
+    bool handed_over_ = false;        // its connection is an earlier stream's now
     std::optional<Connection> next_;  // on which it goes on
-    std::uint64_t last_attempt_ = 0;  // to go on
-    std::uint64_t receipt_frames_ = 0;
-    std::size_t receipt_bytes_ = 0;  // that have come since the last receipt
-    std::uint32_t rank_ = 0;
-    std::chrono::steady_clock::time_point read_until_{};  ///< what was read is as much as may come until then
+    std::uint64_t last_attempt_ = 0;
     bool writing_ = false, closing_ = false, room_ = true;
 };
 

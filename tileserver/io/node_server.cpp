@@ -162,8 +162,11 @@ DataStream* NodeServer::stream(StreamId id) {
 }
 
 void NodeServer::end_earlier(const DataStream& stream) {
-    for (const auto& [id, earlier] : std::map(streams_))
-        if (earlier->is_before(stream)) earlier->close();
+    for (const auto& [id, earlier] : std::map(streams_)) {
+        if (!earlier->is_before(stream)) continue;
+        render_->replace_stream(id);
+        earlier->close();
+    }
 }
 
 // ---- clients ----

@@ -482,6 +482,15 @@ void RenderThread::remove_stream(StreamId stream) {
         if (const auto at = loop.streams_.find(stream); at != loop.streams_.end()) at->second->close();
     });
 }
+void RenderThread::replace_stream(StreamId stream) {
+    post([=](Loop& loop) {
+        const auto at = loop.streams_.find(stream);
+        if (at == loop.streams_.end()) return;
+        if (!at->second->group()) return at->second->close();
+        loop.streams_.erase(at);
+        ++loop.node_.damage;
+    });
+}
 void RenderThread::set_quota(SessionId session, const SessionQuota& quota) {
     post([=](Loop& loop) { loop.set_quota(session, quota); });
 }

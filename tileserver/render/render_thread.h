@@ -95,6 +95,9 @@ public:
     /// Nothing more comes. The session's objects are freed; a parallel program's stream is executed to its end before,
     /// because others may wait for what it says.
     void remove_stream(StreamId stream);
+    /// As remove_stream(), before its process comes with another one. What members of a parallel program had between
+    /// them goes with their streams: they begin anew together.
+    void replace_stream(StreamId stream);
     /// Of each of the session's streams.
     void set_quota(SessionId session, const SessionQuota& quota);
     /// All streams of the session go at once, whatever is left in them.
