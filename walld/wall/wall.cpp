@@ -249,7 +249,7 @@ void Wall::hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node) 
     out_.to_node(node, make(&proto::Envelope::mutable_ticket, message));
 }
 
-void Wall::welcome_client(SessionId id, const SessionEntry& session, Rank rank) {
+void Wall::welcome_client(SessionId id, const SessionEntry& session, Rank rank, const proto::Resume& again) {
     proto::ClientWelcome welcome;
     const auto canvas = config_.canvas();
     welcome.set_session(id.value);
@@ -262,7 +262,10 @@ void Wall::welcome_client(SessionId id, const SessionEntry& session, Rank rank) 
         const auto at_first = session.group_nodes.find(i);
         const bool same_for_all =
             !session.group || (at_first != session.group_nodes.end() && at_first->second == nodes_[i].incarnation);
-        if (same_for_all) *welcome.add_nodes() = node_up_message(i, session.tickets.at(i));
+        const bool has_it = std::ranges::any_of(again.tickets(), [&](const proto::Resume::NodeTicket& told) {
+            return told.node() == i.value && told.ticket() == session.tickets.at(i);
+        });
+        if (same_for_all || has_it) *welcome.add_nodes() = node_up_message(i, session.tickets.at(i));
         caps.push_back(&nodes_[i].hello.caps());
     }
     *welcome.mutable_caps() = common_caps(caps);

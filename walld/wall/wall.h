@@ -249,7 +249,8 @@ private:
     geom::Rect place_after_change(const SessionEntry& session, const SurfaceEntry& surface);
     void send_away(const proto::NodeHello& hello, NodeIndex node);
     void welcome_node(NodeIndex node);
-    void welcome_client(SessionId id, const SessionEntry& session, Rank rank);
+    /// `again`: what a member of a parallel program says that comes again.
+    void welcome_client(SessionId id, const SessionEntry& session, Rank rank, const proto::Resume& again = {});
     void hand_out_ticket(SessionId id, SessionEntry& session, NodeIndex node);
     proto::Quota quota_of_programs() const;
     void end_who_has_too_much(NodeIndex node);

@@ -48,7 +48,7 @@ SessionId Wall::join_session(SessionId id, const proto::ClientHello& hello,
     auto& session = *find(id);
     session.group->joins(hello.group().rank(), hello.pid(), hello.resume().windows());
     before_welcome(id);
-    welcome_client(id, session, hello.group().rank());
+    welcome_client(id, session, hello.group().rank(), hello.resume());
     all_returned(id);
     return id;
 }

@@ -627,6 +627,22 @@ TEST_F(AParallelProgramThatReturns, GoesOnWhenTheLinkOfAProcessWasLost) {
     EXPECT_TRUE(wall_->sessions().contains(id));
 }
 
+/// Else it would not know their tickets when the next walld asks for one.
+TEST_F(AParallelProgramThatReturns, IsToldOfNodesOnWhichAProcessWhoseLinkWasLostDraws) {
+    const auto id = start();
+    for (const bool left : {true, false}) join(left ? "left" : "right", 2);  // they were started anew meanwhile
+    auto again = member(1);
+    again.mutable_resume()->set_session(id.value);
+    for (const NodeIndex node : {kLeft, kRight}) {
+        auto& told = *again.mutable_resume()->add_tickets();
+        told.set_node(node.value);
+        told.set_ticket(out_.tickets[node].at(id.value));
+    }
+    wall_->await_again(id, 1, now_);
+    EXPECT_EQ(open(again), id);
+    EXPECT_EQ(out_.welcomes[id].nodes_size(), 2);
+}
+
 TEST_F(AParallelProgramThatReturns, EndsWhenAProcessStaysAway) {
     const auto id = start();
     wall_->await_again(id, 1, now_);
