@@ -8,7 +8,6 @@
 // to whoever takes them out of the queue in which the render thread finds them. wallgl-tls: what an agent writes to a
 // node. bare-*: the least that must happen: one thread writes the same bytes again and again, another one reads them
 // all to one place, over a ring, a socket, or a socket with each record sealed by AES-256-GCM.
-#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <openssl/evp.h>
@@ -23,6 +22,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
+#include <semaphore>
 #include <string>
 #include <thread>
 
@@ -48,9 +49,9 @@ constexpr std::size_t kWrite = 1 << 20;  // bytes at a time, as of one batch
     std::exit(2);
 }
 
-/// What has come so far; asked for at the beginning and at the end of the time that counts.
+/// What has come so far; asked for at the beginning and at the end of the time that counts. The threads that bring it
+/// go on until the process ends.
 std::atomic<std::uint64_t> came{0};
-std::atomic<bool> over{false};
 
 double measure(double seconds) {
     const auto pause = [](double s) { std::this_thread::sleep_for(std::chrono::duration<double>(s)); };
@@ -138,7 +139,7 @@ double wallgl(const std::string& address, bool ring, double seconds) {
     static client::Transport transport([] { give_up("the stream has failed"); });
     transport.add(*stream);
     std::thread([stream = *stream] {
-        while (!over) {
+        for (;;) {
             wire::PackBuffer batch = stream->spare();
             batch.append(0, kWrite);
             stream->send(ContextId(1), std::move(batch));
@@ -160,7 +161,7 @@ double wallgl_tls(double seconds) {
         const auto head = wire::encode_frame_header({kWrite, wire::FrameKind::batch});
         const auto hello = wire::encode_frame_header({0, wire::FrameKind::hello});
         co_await stream->write(asio::buffer(hello));
-        while (!over) {
+        for (;;) {
             co_await stream->write(asio::buffer(head));
             co_await stream->write(asio::buffer(payload));
         }
@@ -177,12 +178,12 @@ double bare_ring(double seconds) {
     static auto reader = std::move(*wire::RingReader::open(UniqueFd(::dup(writer.descriptor()))));
     std::thread([] {
         const std::vector<std::byte> bytes(kWrite, std::byte{1});
-        while (!over)
+        for (;;)
             for (std::size_t done = 0; done < bytes.size();) done += writer.write(std::span(bytes).subspan(done));
     }).detach();
     std::thread([] {
         std::vector<std::byte> room(kWrite);
-        while (!over) came += *reader.read(room);
+        for (;;) came += *reader.read(room);
     }).detach();
     return measure(seconds);
 }
@@ -213,7 +214,7 @@ Sockets tcp_pair() {
 }
 
 void send_all(int fd, const std::byte* data, std::size_t size) {
-    while (size > 0 && !over) {
+    while (size > 0) {
         const auto n = ::send(fd, data, size, MSG_NOSIGNAL);
         if (n <= 0) return;
         data += n;
@@ -224,7 +225,7 @@ void send_all(int fd, const std::byte* data, std::size_t size) {
 double bare_socket(Sockets ends, double seconds) {
     std::thread([fd = ends.writes] {
         const std::vector<std::byte> bytes(kWrite, std::byte{1});
-        while (!over) send_all(fd, bytes.data(), bytes.size());
+        for (;;) send_all(fd, bytes.data(), bytes.size());
     }).detach();
     std::thread([fd = ends.reads] {
         std::vector<std::byte> room(kWrite);
@@ -243,7 +244,7 @@ double bare_sealed(double seconds) {
         std::vector<unsigned char> sealed(kWrite / kRecord * (kRecord + kTag));
         auto* context = EVP_CIPHER_CTX_new();
         EVP_EncryptInit_ex(context, EVP_aes_256_gcm(), nullptr, key.data(), nonce.data());
-        while (!over) {
+        for (;;) {
             for (int at = 0, out = 0; at < static_cast<int>(kWrite); at += kRecord, out += kRecord + kTag) {
                 int n = 0;
                 EVP_EncryptInit_ex(context, nullptr, nullptr, nullptr, nonce.data());
@@ -258,7 +259,7 @@ double bare_sealed(double seconds) {
         std::vector<unsigned char> sealed(kWrite / kRecord * (kRecord + kTag)), plain(kWrite);
         auto* context = EVP_CIPHER_CTX_new();
         EVP_DecryptInit_ex(context, EVP_aes_256_gcm(), nullptr, key.data(), nonce.data());
-        while (!over) {
+        for (;;) {
             if (::recv(ends.reads, sealed.data(), sealed.size(), MSG_WAITALL) <= 0) return;
             for (int at = 0, in = 0; at < static_cast<int>(kWrite); at += kRecord, in += kRecord + kTag) {
                 int n = 0;
