@@ -6,7 +6,6 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <sys/uio.h>
 
 #include <algorithm>
 #include <array>
@@ -17,6 +16,8 @@
 
 #include "common/base/address.h"
 #include "common/base/connect_within.h"
+#include "common/base/descriptor_message.h"
+#include "common/wire/frame.h"
 
 namespace wall::client {
 namespace {
@@ -66,20 +67,8 @@ bool write_all(int fd, const std::byte* data, std::size_t size, Clock::time_poin
 /// The first bytes of a stream, and with them a descriptor; -1: none.
 bool send_first(int fd, std::span<const std::byte> bytes, int descriptor, Clock::time_point deadline) {
     if (descriptor < 0) return write_all(fd, bytes.data(), bytes.size(), deadline);
-    iovec piece{const_cast<std::byte*>(bytes.data()), bytes.size()};
-    alignas(cmsghdr) char control[CMSG_SPACE(sizeof descriptor)] = {};
-    msghdr message{};
-    message.msg_iov = &piece;
-    message.msg_iovlen = 1;
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    cmsghdr* about = CMSG_FIRSTHDR(&message);
-    about->cmsg_level = SOL_SOCKET;
-    about->cmsg_type = SCM_RIGHTS;
-    about->cmsg_len = CMSG_LEN(sizeof descriptor);
-    std::memcpy(CMSG_DATA(about), &descriptor, sizeof descriptor);
     for (;;) {
-        const ssize_t n = ::sendmsg(fd, &message, MSG_NOSIGNAL);
+        const ssize_t n = send_with_descriptor(fd, bytes, descriptor);
         if (n >= 0) {
             const auto rest = bytes.subspan(static_cast<std::size_t>(n));
             return write_all(fd, rest.data(), rest.size(), deadline);
@@ -103,14 +92,6 @@ bool read_all(int fd, std::byte* data, std::size_t size, Clock::time_point deadl
         }
     }
     return true;
-}
-
-std::vector<std::byte> hello_frame(const std::string& hello) {
-    const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(hello.size()), wire::FrameKind::hello});
-    std::vector<std::byte> out(header.begin(), header.end());
-    const auto text = std::as_bytes(std::span(hello));
-    out.insert(out.end(), text.begin(), text.end());
-    return out;
 }
 
 Result<Answer> read_answer(int fd, const std::string& address, Clock::time_point deadline) {
@@ -146,7 +127,8 @@ Result<Greeting> greet_node(const std::string& address, const std::string& hello
                             Clock::time_point deadline) {
     auto fd = connect_to(address, remaining_ms(deadline));
     if (!fd) return tl::unexpected(fd.error());
-    if (!send_first(fd->get(), hello_frame(hello), descriptor, deadline))
+    if (!send_first(fd->get(), wire::whole_frame(wire::FrameKind::hello, std::as_bytes(std::span(hello))), descriptor,
+                    deadline))
         return fail("node at " + address + " does not take the hello");
     auto answer = read_answer(fd->get(), address, deadline);
     if (!answer) return tl::unexpected(answer.error());

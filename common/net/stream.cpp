@@ -14,7 +14,8 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <cerrno>
-#include <cstring>
+
+#include "common/base/descriptor_message.h"
 
 namespace wall::net {
 namespace {
@@ -41,27 +42,6 @@ private:
 
 asio::generic::stream_protocol protocol_of(const Address& address, int family) {
     return {family, address.is_unix() ? 0 : IPPROTO_TCP};
-}
-
-/// As recvmsg(), without waiting; at most one descriptor.
-ssize_t receive(int socket, asio::mutable_buffer room, UniqueFd& with) {
-    iovec piece{room.data(), room.size()};
-    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
-    msghdr message{};
-    message.msg_iov = &piece;
-    message.msg_iovlen = 1;
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    const ssize_t bytes = ::recvmsg(socket, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
-    if (bytes < 0) return bytes;
-    const cmsghdr* about = CMSG_FIRSTHDR(&message);
-    if (about && about->cmsg_level == SOL_SOCKET && about->cmsg_type == SCM_RIGHTS &&
-        about->cmsg_len == CMSG_LEN(sizeof(int))) {
-        int descriptor = -1;
-        std::memcpy(&descriptor, CMSG_DATA(about), sizeof descriptor);
-        with.reset(descriptor);
-    }
-    return bytes;
 }
 
 /// What went wrong in a handshake, for people.
@@ -151,7 +131,8 @@ asio::awaitable<Stream::Transferred> Stream::read_some(asio::mutable_buffer room
 asio::awaitable<Stream::Transferred> Stream::read_some_with(asio::mutable_buffer room, UniqueFd& with) {
     if (parts_->tls || !parts_->socket.is_open()) co_return co_await read_some(room);
     for (;;) {
-        const ssize_t bytes = receive(parts_->socket.native_handle(), room, with);
+        const ssize_t bytes = receive_with_descriptor(
+            parts_->socket.native_handle(), {static_cast<std::byte*>(room.data()), room.size()}, with, MSG_DONTWAIT);
         if (bytes > 0) co_return Transferred(boost::system::error_code(), static_cast<std::size_t>(bytes));
         if (bytes == 0) co_return Transferred(asio::error::eof, 0);
         if (errno == EINTR) continue;

@@ -23,6 +23,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
+#include <vector>
 
 #include "common/base/ids.h"
 
@@ -58,6 +60,13 @@ inline std::array<std::byte, kFrameHeaderBytes> encode_frame_header(FrameHeader 
     std::array<std::byte, kFrameHeaderBytes> out{};
     std::memcpy(out.data(), &h.payload_bytes, 4);
     out[4] = static_cast<std::byte>(h.kind);
+    return out;
+}
+
+inline std::vector<std::byte> whole_frame(FrameKind kind, std::span<const std::byte> payload) {
+    const auto header = encode_frame_header({static_cast<std::uint32_t>(payload.size()), kind});
+    std::vector<std::byte> out(header.begin(), header.end());
+    out.insert(out.end(), payload.begin(), payload.end());
     return out;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A ring of bytes in memory that two processes of one machine share: one writes a data stream into it (frame.h), the
 // other reads it, and the kernel copies nothing. Neither waits in it. Whoever finds it full or empty says so in it and
-// is told by the other side, with a frame on the socket that the two have besides (FrameKind::more and ::room).
+// is told by the other side over the socket that the two have besides: with one byte that there is something, with a
+// FrameKind::room that there is room.
 //
 //   memory := counters, a page of them | bytes, a power of two      (sealed memfd; the writer makes it)
 //

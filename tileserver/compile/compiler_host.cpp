@@ -14,6 +14,7 @@
 #include <cstring>
 #include <utility>
 
+#include "common/base/descriptor_message.h"
 #include "tileserver/compile/compiler_messages.h"
 #include "tileserver/gpu/backend.h"
 #include "tileserver/gpu/gl.h"
@@ -24,49 +25,22 @@ namespace {
 
 // ---- a socket sent through a socket ----
 
-union DescriptorSpace {
-    cmsghdr aligned;
-    std::array<char, CMSG_SPACE(sizeof(int))> bytes;
-};
-
 bool send_descriptor(int socket, int descriptor) {
-    char nothing = 0;
-    iovec data{&nothing, 1};
-    DescriptorSpace space{};
-    msghdr message{};
-    message.msg_iov = &data;
-    message.msg_iovlen = 1;
-    message.msg_control = space.bytes.data();
-    message.msg_controllen = space.bytes.size();
-    cmsghdr* const control = CMSG_FIRSTHDR(&message);
-    control->cmsg_level = SOL_SOCKET;
-    control->cmsg_type = SCM_RIGHTS;
-    control->cmsg_len = CMSG_LEN(sizeof descriptor);
-    std::memcpy(CMSG_DATA(control), &descriptor, sizeof descriptor);
+    constexpr std::byte nothing{};
     ssize_t sent = 0;
-    do sent = ::sendmsg(socket, &message, MSG_NOSIGNAL);
+    do sent = send_with_descriptor(socket, {&nothing, 1}, descriptor);
     while (sent < 0 && errno == EINTR);
     return sent == 1;
 }
 
 /// None: the other end is gone.
 UniqueFd receive_descriptor(int socket) {
-    char nothing = 0;
-    iovec data{&nothing, 1};
-    DescriptorSpace space{};
-    msghdr message{};
-    message.msg_iov = &data;
-    message.msg_iovlen = 1;
-    message.msg_control = space.bytes.data();
-    message.msg_controllen = space.bytes.size();
+    std::byte nothing{};
+    UniqueFd descriptor;
     ssize_t received = 0;
-    do received = ::recvmsg(socket, &message, MSG_CMSG_CLOEXEC);
+    do received = receive_with_descriptor(socket, {&nothing, 1}, descriptor);
     while (received < 0 && errno == EINTR);
-    const cmsghdr* const control = received == 1 ? CMSG_FIRSTHDR(&message) : nullptr;
-    if (control == nullptr || control->cmsg_type != SCM_RIGHTS) return {};
-    int descriptor = -1;
-    std::memcpy(&descriptor, CMSG_DATA(control), sizeof descriptor);
-    return UniqueFd(descriptor);
+    return descriptor;
 }
 
 // ---- the compiler's process ----

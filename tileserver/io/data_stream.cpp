@@ -16,6 +16,7 @@
 
 #include "common/log/log.h"
 #include "common/log/refusals.h"
+#include "common/tls/secret.h"
 #include "common/wire/limits.h"
 #include "gen/glapi/wire.gen.h"
 #include "proto/control.pb.h"
@@ -41,22 +42,7 @@ bool is_gone(int socket) {
     return peeked == 0 || (peeked < 0 && errno != EAGAIN && errno != EINTR);
 }
 
-/// Takes the same time wherever they differ.
-bool equal_secret(const std::string& a, const std::string& b) {
-    unsigned char difference = a.size() == b.size() ? 0 : 1;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-        difference |= static_cast<unsigned char>(a[i] ^ b[i]);
-    return difference == 0;
-}
-
 bool is_counted(wire::FrameKind kind) { return kind == wire::FrameKind::reply || kind == wire::FrameKind::swap_done; }
-
-std::vector<std::byte> whole_frame(wire::FrameKind kind, std::span<const std::byte> payload) {
-    const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(payload.size()), kind});
-    std::vector<std::byte> bytes(header.begin(), header.end());
-    bytes.insert(bytes.end(), payload.begin(), payload.end());
-    return bytes;
-}
 
 }  // namespace
 
@@ -158,8 +144,8 @@ asio::awaitable<std::optional<Admission>> DataStream::find_admission(SessionId s
     const auto until = std::chrono::steady_clock::now() + kTicketLimit;
     for (;;) {
         if (const Admission* known = host_.admission(session))
-            co_return session&& equal_secret(known->ticket, given) && comes_from(known->key) ? std::optional(*known)
-                                                                                             : std::nullopt;
+            co_return session&& tls::same_secret(known->ticket, given) && comes_from(known->key) ? std::optional(*known)
+                                                                                                 : std::nullopt;
         if (std::chrono::steady_clock::now() > until || closing_ || is_gone(connection_.descriptor()))
             co_return std::nullopt;
         timer_.expires_after(kTicketPoll);
@@ -209,7 +195,7 @@ asio::awaitable<void> DataStream::hold_to_bandwidth(std::size_t bytes) {
 
 void DataStream::send(wire::FrameKind kind, std::span<const std::byte> payload) {
     if (closing_) return;
-    outgoing_.push_back(std::make_shared<const Outgoing>(whole_frame(kind, payload), is_counted(kind)));
+    outgoing_.push_back(std::make_shared<const Outgoing>(wire::whole_frame(kind, payload), is_counted(kind)));
     outgoing_bytes_ += outgoing_.back()->bytes.size();
     if (outgoing_bytes_ > kMaxQueued) return close();
     if (connection_.is_open() && !std::exchange(writing_, true))
@@ -313,7 +299,7 @@ asio::awaitable<Result<void>> DataStream::wait_for_connection() {
     for (const auto& frame : outgoing_) outgoing_bytes_ += frame->bytes.size();
     const std::uint64_t frames = source_.batch_frames();
     outgoing_.push_front(std::make_shared<const Outgoing>(
-        whole_frame(wire::FrameKind::resumed, std::as_bytes(std::span(&frames, 1))), false));
+        wire::whole_frame(wire::FrameKind::resumed, std::as_bytes(std::span(&frames, 1))), false));
     outgoing_bytes_ += outgoing_.front()->bytes.size();
     writing_ = true;
     asio::co_spawn(connection_.executor(), write_queue(), asio::detached);

@@ -11,6 +11,8 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <cstring>
 #include <exception>
+#include <map>
+#include <string>
 
 #include "common/log/log.h"
 #include "common/log/refusals.h"
@@ -511,8 +513,14 @@ void NodeServer::stats(const RenderStats& stats) {
         out.set_bytes_received(bytes_received_);
         out.set_time_us(microseconds_since_1970());
         fill_stats(stats, out);
+        std::map<std::string, std::uint32_t> transports;
         for (const auto& [id, stream] : streams_)
-            if (*stream->transport() != '\0') ++(*out.mutable_transports())[stream->transport()];
+            if (*stream->transport() != '\0') ++transports[stream->transport()];
+        for (const auto& [name, streams] : transports) {
+            auto& transport = *out.add_transports();
+            transport.set_name(name);
+            transport.set_streams(streams);
+        }
         tile_streams_.fill_stats(out);
         to_walld(envelope);
     });

@@ -9,6 +9,7 @@
 
 #include "common/base/whole_file.h"
 #include "common/json/parse_json.h"
+#include "common/tls/secret.h"
 
 namespace wall::walld {
 namespace {
@@ -55,14 +56,6 @@ Result<std::vector<Machine>> read_machines(const std::string& text) {
         out.push_back(std::move(*machine));
     }
     return out;
-}
-
-/// As long for a wrong one that begins right as for any other.
-bool same_secret(const std::string& a, const std::string& b) {
-    unsigned difference = a.size() == b.size() ? 0 : 1;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-        difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
-    return difference == 0;
 }
 
 auto called(Machine::Kind kind, const std::string& name) {
@@ -128,7 +121,7 @@ Outcome<std::string> Machines::invite(const Machine& machine, const std::string&
 Outcome<Machine> Machines::join(Machine::Kind kind, const std::string& secret, const std::string& host,
                                 const tls::Fingerprint& key, Clock::time_point now) {
     const auto found =
-        std::ranges::find_if(invitations_, [&](const Invitation& i) { return same_secret(i.secret, secret); });
+        std::ranges::find_if(invitations_, [&](const Invitation& i) { return tls::same_secret(i.secret, secret); });
     if (found == invitations_.end() || found->until <= now)
         return refuse(RefusalKind::forbidden, "the join line is used up, or older than " +
                                                   std::to_string(kJoinTime.count()) +

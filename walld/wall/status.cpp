@@ -55,7 +55,7 @@ json objects_json(const proto::DriverObjects& o) {
 
 json transports_json(const proto::NodeStats& stats) {
     json out = json::object();
-    for (const auto& [transport, streams] : stats.transports()) out[transport] = streams;
+    for (const auto& transport : stats.transports()) out[transport.name()] = transport.streams();
     return out;
 }
 

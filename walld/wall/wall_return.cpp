@@ -13,6 +13,7 @@
 #include <algorithm>
 
 #include "common/base/assert.h"
+#include "common/tls/secret.h"
 #include "common/wire/limits.h"
 #include "walld/wall/messages.h"
 #include "walld/wall/wall.h"
@@ -21,15 +22,6 @@ namespace wall::walld {
 namespace {
 
 constexpr std::size_t kMaxWaiting = 4096;  // places
-
-/// Takes as long for a wrong one that begins right as for any other.
-bool same_secret(std::string_view a, std::string_view b) {
-    if (a.size() != b.size()) return false;
-    unsigned difference = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
-    return difference == 0;
-}
 
 std::vector<LayoutEntry> places_of(const proto::WallNote& note, const geom::Rect& canvas) {
     std::vector<LayoutEntry> out;
@@ -48,7 +40,7 @@ std::vector<LayoutEntry> places_of(const proto::WallNote& note, const geom::Rect
 bool Wall::knows_a_ticket(const proto::Resume& resume, const std::map<NodeIndex, std::string>& tickets) {
     return std::ranges::any_of(resume.tickets(), [&](const proto::Resume::NodeTicket& told) {
         const auto of_node = tickets.find(NodeIndex(told.node()));
-        return of_node != tickets.end() && same_secret(of_node->second, told.ticket());
+        return of_node != tickets.end() && tls::same_secret(of_node->second, told.ticket());
     });
 }
 
@@ -87,7 +79,7 @@ void Wall::resume_session(SessionId id, SessionEntry& session, const proto::Resu
         const NodeIndex node(told.node());
         if (!nodes_.contains(node) || told.ticket().size() != kTicketBytes) continue;
         const auto of_node = returning.tickets.find(node);
-        const bool known = of_node != returning.tickets.end() && same_secret(of_node->second, told.ticket());
+        const bool known = of_node != returning.tickets.end() && tls::same_secret(of_node->second, told.ticket());
         if (known || !nodes_[node].up) session.tickets[node] = told.ticket();
     }
     session.awaited = resume.windows();

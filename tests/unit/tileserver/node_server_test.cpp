@@ -21,6 +21,7 @@
 
 #include "client_lib/link/node_stream.h"
 #include "client_lib/link/transport.h"
+#include "common/base/descriptor_message.h"
 #include "common/net/sockets.h"
 #include "common/wire/batch.h"
 #include "common/wire/limits.h"
@@ -97,7 +98,7 @@ class Client {
 public:
     explicit Client(const net::Address& node) : fd_(std::move(*net::connect_to(node, kPatience))) {}
     void send(wire::FrameKind kind, std::span<const std::byte> payload) {
-        write_all(fd_.get(), whole_frame(kind, payload));
+        write_all(fd_.get(), wire::whole_frame(kind, payload));
     }
     void hello(std::uint32_t session, const std::string& ticket, std::uint32_t version = glapi::kStreamVersion) {
         proto::DataHello hello;
@@ -114,31 +115,13 @@ public:
         hello.set_session(session);
         hello.set_ticket(ticket);
         const std::string text = hello.SerializeAsString();
-        const auto bytes = whole_frame(wire::FrameKind::hello, std::as_bytes(std::span(text)));
-        iovec piece{const_cast<std::byte*>(bytes.data()), bytes.size()};
-        alignas(cmsghdr) char control[CMSG_SPACE(sizeof descriptor)] = {};
-        msghdr message{};
-        message.msg_iov = &piece;
-        message.msg_iovlen = 1;
-        message.msg_control = control;
-        message.msg_controllen = sizeof control;
-        cmsghdr* about = CMSG_FIRSTHDR(&message);
-        about->cmsg_level = SOL_SOCKET;
-        about->cmsg_type = SCM_RIGHTS;
-        about->cmsg_len = CMSG_LEN(sizeof descriptor);
-        std::memcpy(CMSG_DATA(about), &descriptor, sizeof descriptor);
-        ASSERT_EQ(::sendmsg(fd_.get(), &message, MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size()));
-    }
-    static std::vector<std::byte> whole_frame(wire::FrameKind kind, std::span<const std::byte> payload) {
-        const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(payload.size()), kind});
-        std::vector<std::byte> out(header.begin(), header.end());
-        out.insert(out.end(), payload.begin(), payload.end());
-        return out;
+        const auto bytes = wire::whole_frame(wire::FrameKind::hello, std::as_bytes(std::span(text)));
+        ASSERT_EQ(send_with_descriptor(fd_.get(), bytes, descriptor), static_cast<ssize_t>(bytes.size()));
     }
     static std::vector<std::byte> batch_frame(const wire::PackBuffer& buffer) {
         std::vector<std::byte> payload;
         wire::append_batch(payload, {ContextId(1), buffer.opcodes(), buffer.operands()});
-        return whole_frame(wire::FrameKind::batch, payload);
+        return wire::whole_frame(wire::FrameKind::batch, payload);
     }
     void batch(const wire::PackBuffer& buffer) { write_all(fd_.get(), batch_frame(buffer)); }
     /// There is something in the ring.

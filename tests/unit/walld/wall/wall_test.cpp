@@ -473,10 +473,15 @@ TEST_F(TheWall, SaysWhatThereIs) {
     hello.set_name("\xff not UTF-8");
     const auto id = open(hello);
     open_surface(id, 1, 300, 300);
+    proto::NodeStats stats;
+    stats.add_transports()->set_name("ring");
+    stats.mutable_transports(0)->set_streams(2);
+    wall_.node_reports(kLeft, stats);
     const auto status = status_json(wall_, now_);
     EXPECT_NE(dump(status).find("not UTF-8"), std::string::npos);
     EXPECT_EQ(status["wall"]["width"], 1280);
     EXPECT_EQ(status["nodes"].size(), 2u);
+    EXPECT_EQ(status["nodes"][0]["transports"]["ring"], 2);
     EXPECT_EQ(status["tiles"][1]["up"], false);
     EXPECT_EQ(status["tiles"][0]["age_ms"], nullptr);
     EXPECT_EQ(status["sessions"][0]["surfaces"][0]["id"], "1.1");
