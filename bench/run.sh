@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Runs the benchmarks of build/release and prints their tables.
-# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, execute, switch,
-#                                         pack, mesh, buffers, late_node, march, off_wall, traffic, share,
-#                                         transport, fair, streams, codec)
+# bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, execute, output,
+#                                         switch, pack, mesh, buffers, late_node, march, off_wall, traffic,
+#                                         share, transport, fair, streams, codec)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -31,6 +31,8 @@ run() {
 run state "$build/bench/state_bench" --benchmark_out="$results/state.json" --benchmark_out_format=json \
   --benchmark_color=false
 run execute "$build/bench/execute_bench" --benchmark_out="$results/execute.json" --benchmark_out_format=json \
+  --benchmark_color=false
+run output "$build/bench/output_bench" --benchmark_out="$results/output.json" --benchmark_out_format=json \
   --benchmark_color=false
 run switch bench/switch.py --json "$results/switch.json"
 run pack bench/pack.py --json "$results/pack.json"

@@ -95,15 +95,15 @@ bool NodeRole::described(const std::string& wall_toml) const {
         const auto file = join::wall_file(source_.state);
         const auto kept = file_has(file, wall_toml) ? Result<void>() : write_whole(file, wall_toml, kWallFileMode);
         if (!kept) log::error("description_not_kept reason={}", log::quoted(kept.error().message));
-        return kept && *node != this->node();
+        return kept && !draws_as(*node, this->node());
     }
     const auto here = config::load_config(source_.config);
     const auto* own = here ? here->find_node(name_) : nullptr;
-    if (!own || *own != *node) {
+    if (!own || !draws_as(*own, *node)) {
         log::warn("description_differs file={} node={}", log::quoted(source_.config), log::quoted(name_));
         return false;
     }
-    return *own != this->node();
+    return !draws_as(*own, this->node());
 }
 
 }  // namespace wall::tileserver

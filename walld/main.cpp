@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/load_config.h"
+#include "common/config/read_warp.h"
 #include "common/daemon/keep_running.h"
 #include "common/log/log.h"
 #include "common/net/sockets.h"
@@ -170,9 +171,11 @@ int main(int argc, char** argv) {
     net::use_all_descriptors();
     log::begin("walld");
     try {
-        const auto config = config::load_config(options.config);
-        if (!config) {
-            std::cerr << "walld: " << config.error().message << '\n';
+        auto config = config::load_config(options.config);
+        const auto warps = config ? config::load_warps(*config, std::filesystem::path(options.config).parent_path())
+                                  : tl::unexpected(config.error());
+        if (!warps) {
+            std::cerr << "walld: " << warps.error().message << '\n';
             return kExitUsage;
         }
         if (options.check) return 0;

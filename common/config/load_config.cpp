@@ -9,9 +9,10 @@
 #include <sstream>
 #include <utility>
 
+#include "common/config/parse_toml.h"
 #include "common/config/read_output.h"
 #include "common/config/read_people.h"
-#include "common/config/tree_reader.h"
+#include "common/config/read_tile_output.h"
 
 namespace wall::config {
 namespace {
@@ -69,8 +70,12 @@ void read_http(TreeReader& read, const toml::table& root, WallConfig& out) {
 }
 
 TileConfig read_tile(TreeReader& read, const toml::table& table) {
-    read.only(table, "[[node.tile]]", {"name", "rect", "output", "display", "monitor", "position"});
-    return {read.text(table, "name"), read.rect(table, "rect"), read_output(read, table)};
+    read.only(table, "[[node.tile]]",
+              {"name", "rect", "output", "display", "monitor", "position", "rotation", "pixels", "size_mm", "bezel_mm",
+               "warp", "blend", "color"});
+    TileConfig out{read.text(table, "name"), read.rect(table, "rect"), read_output(read, table)};
+    read_tile_output(read, table, out);
+    return out;
 }
 
 NodeConfig read_node(TreeReader& read, const toml::table& table) {
@@ -110,23 +115,17 @@ void read_nodes(TreeReader& read, const toml::table& root, WallConfig& out) {
     }
 }
 
-/// `read_root` reads a file's root table.
-template <class ReadRoot>
-auto parse(std::string_view toml, std::string_view file_name, ReadRoot read_root)
-    -> Result<decltype(read_root(std::declval<TreeReader&>(), std::declval<const toml::table&>()))> {
-    if (const auto line = control_character_line(toml)) {
-        return fail(std::string(file_name) + ":" + std::to_string(line) +
-                    ": not TOML: a control character: expected tabs and line breaks only");
+/// What tiles say of each other.
+void relate_tiles(TreeReader& read, const toml::table& root, WallConfig& wall) {
+    if (read.error()) return;
+    std::vector<DescribedTile> all;
+    for (auto node = wall.nodes.begin(); const auto* table : read.tables(root, "node", "[[node]]")) {
+        for (auto tile = node->tiles.begin(); const auto* of_tile : read.tables(*table, "tile", "[[node.tile]]"))
+            all.push_back({of_tile, &*tile++});
+        ++node;
     }
-    const auto parsed = toml::parse(to_private_use(toml), file_name);
-    TreeReader read(file_name);
-    if (!parsed) {
-        read.refuse(parsed.error().source(), "not TOML: " + std::string(parsed.error().description()));
-        return tl::unexpected(*read.error());
-    }
-    auto out = read_root(read, parsed.table());
-    if (read.error()) return tl::unexpected(*read.error());
-    return out;
+    place_behind_bezels(read, all);
+    check_blends(read, all);
 }
 
 /// [quota]: what is left out is as much as there is.
@@ -171,17 +170,18 @@ WallConfig read_wall(TreeReader& read, const toml::table& root) {
     out.quota = read_quota(read, root);
     read_http(read, root, out);
     read_nodes(read, root, out);
+    relate_tiles(read, root, out);
     return out;
 }
 
 }  // namespace
 
 Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name) {
-    return parse(toml, file_name, read_wall);
+    return parse_toml(toml, file_name, read_wall);
 }
 
 Result<std::vector<NodeConfig>> parse_nodes(std::string_view toml, std::string_view file_name) {
-    return parse(toml, file_name, [](TreeReader& read, const toml::table& root) {
+    return parse_toml(toml, file_name, [](TreeReader& read, const toml::table& root) {
         WallConfig out;
         read.only(root, "the nodes", {"node"});
         read_nodes(read, root, out);

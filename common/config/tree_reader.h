@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -76,6 +77,33 @@ public:
         refuse(node.source(),
                what + ": expected an integer from " + std::to_string(least) + " to " + std::to_string(most));
         return least;
+    }
+
+    /// Integers are numbers, too.
+    double number(const toml::node& node, const std::string& what, double least, double most) {
+        const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+        if (value && *value >= least && *value <= most) return *value;  // which no NaN is
+        std::ostringstream text;
+        text << what << ": expected a number from " << least << " to " << most;
+        refuse(node.source(), text.str());
+        return least;
+    }
+    double number(const toml::table& table, std::string_view key, double least, double most, double otherwise) {
+        const auto* node = table.get(key);
+        return node ? number(*node, quoted(key), least, most) : otherwise;
+    }
+    /// An array of `fewest` to `most_of_them` numbers; `expected`: of it, for people.
+    std::vector<float> numbers(const toml::node& node, const std::string& what, std::string_view expected,
+                               std::size_t fewest, std::size_t most_of_them, double least, double most) {
+        const auto* array = node.as_array();
+        if (!array || array->size() < fewest || array->size() > most_of_them) {
+            refuse(node.source(), what + ": expected " + std::string(expected));
+            return std::vector<float>(fewest);
+        }
+        std::vector<float> out;
+        out.reserve(array->size());
+        for (const toml::node& value : *array) out.push_back(static_cast<float>(number(value, what, least, most)));
+        return out;
     }
 
     net::Address address(const toml::node& node, const std::string& what) {

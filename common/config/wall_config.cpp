@@ -9,6 +9,16 @@ const char* name_of(Backend backend) { return backend == Backend::egl ? "egl" : 
 
 const char* output_name(const TileConfig& tile) { return tile.window ? "window" : "headless"; }
 
+bool draws_as(const TileConfig& a, const TileConfig& b) {
+    const bool same_window = !a.window || (a.output.width == b.output.width && a.output.height == b.output.height);
+    return a.name == b.name && a.rect == b.rect && a.window == b.window && same_window;
+}
+
+bool draws_as(const NodeConfig& a, const NodeConfig& b) {
+    return a.name == b.name && a.backend == b.backend && a.listen == b.listen &&
+           std::ranges::equal(a.tiles, b.tiles, [](const auto& x, const auto& y) { return draws_as(x, y); });
+}
+
 geom::Rect WallConfig::canvas() const {
     geom::Rect out;
     for (const auto& node : nodes) {

@@ -14,6 +14,7 @@
 #include "common/config/people.h"
 #include "common/config/quota.h"
 #include "common/geom/rect.h"
+#include "common/geom/tile_output.h"
 #include "common/net/address.h"
 
 namespace wall::config {
@@ -33,10 +34,14 @@ struct TileConfig {
     std::string name;                    ///< unique on the wall
     geom::Rect rect;                     ///< on the canvas
     std::optional<WindowConfig> window;  ///< none: headless
+    geom::TileOutput output;             ///< how that shows it; the warp comes with load_warps()
+    std::string warp_file;               ///< as wall.toml names it; empty: none
     bool operator==(const TileConfig&) const = default;
 };
 /// `headless` or `window`, as in wall.toml.
 const char* output_name(const TileConfig& tile);
+/// The same but for how its output shows it, which can be changed at any moment. The size of a window cannot.
+bool draws_as(const TileConfig& a, const TileConfig& b);
 
 struct NodeConfig {
     std::string name;
@@ -45,6 +50,7 @@ struct NodeConfig {
     std::vector<TileConfig> tiles;  ///< slot = index
     bool operator==(const NodeConfig&) const = default;
 };
+bool draws_as(const NodeConfig& a, const NodeConfig& b);
 
 struct WallConfig {
     std::string name;

@@ -47,18 +47,18 @@ def _quoted(text: object) -> str:
 class Wall:
     """`tiles` are columns and rows, `tile_size` is in pixels. `environment` goes to the daemons, `die_with_parent` ends
     them with the *thread* that starts the wall. `options` and `people` are lines for wall.toml. `windows` is an X
-    display on which the tiles are windows, beside each other as on the wall. `one_node` puts all tiles on one
-    tileserver. `client_build` is where wallrun and the vendor library come from, if not from `build` (a sanitizer's
-    library does not load into a foreign program)."""
+    display on which the tiles are windows, beside each other as on the wall. `tile_keys` are further lines of each tile
+    in wall.toml. `one_node` puts all tiles on one tileserver. `client_build` is where wallrun and the vendor library
+    come from, if not from `build` (a sanitizer's library does not load into a foreign program)."""
 
     def __init__(self, tiles: tuple[int, int] = (2, 2), tile_size: tuple[int, int] = (512, 384), backend: str = "egl",
                  *, http: str = "127.0.0.1:0", swap_timeout_ms: int = 250, one_node: bool = False, name: str = "test",
-                 options: str = "", people: str = "", windows: str = "", build: Path | None = None,
+                 options: str = "", people: str = "", windows: str = "", tile_keys: str = "", build: Path | None = None,
                  client_build: Path | None = None, environment: dict[str, str] | None = None,
                  die_with_parent: bool = False):
         self.tiles, self.tile_size, self.backend = tiles, tile_size, backend
         self.http, self.swap_timeout_ms, self.one_node, self.name = http, swap_timeout_ms, one_node, name
-        self.options, self.people, self.windows = options, people, windows
+        self.options, self.people, self.windows, self.tile_keys = options, people, windows, tile_keys
         self.bin = (build or build_folder()) / "bin"
         self.client_bin = (client_build or build or build_folder()) / "bin"
         self._environment = dict(os.environ, **(environment or {}))
@@ -101,7 +101,8 @@ class Wall:
         column, row = map(int, name.split("-"))
         width, height = self.tile_size
         x, y = column * width, row * height
-        return f"[[node.tile]]\nname = {_quoted(name)}\nrect = [{x}, {y}, {width}, {height}]\n" + self._output(x, y)
+        return f"[[node.tile]]\nname = {_quoted(name)}\nrect = [{x}, {y}, {width}, {height}]\n" + (
+            self._output(x, y) + f"{self.tile_keys}\n")
 
     def _output(self, x: int, y: int) -> str:
         return f'output = "window"\ndisplay = {_quoted(self.windows)}\nposition = [{x}, {y}]\n' if self.windows else ""
@@ -281,10 +282,13 @@ class Wall:
         """Until the frame is shown on all tiles; gives the number of the last one shown."""
         return self.ctl("wait", session, "--frame", frame, "--timeout", limit, timeout=limit + 10)["frame"]
 
-    def screenshot(self, path: Path | str | None = None, tile: str = "", session: object = None) -> bytes:
-        """PNG of the wall, of one tile, or of one program's window alone; also written to `path`."""
+    def screenshot(self, path: Path | str | None = None, tile: str = "", session: object = None,
+                   output: bool = False) -> bytes:
+        """PNG of the wall, of one tile (or what its output shows), or of one program's window alone; also written to
+        `path`."""
         target = Path(path) if path else self.folder / f"screenshot-{time.monotonic_ns()}.png"
         options = (["--tile", tile] if tile else []) + (["--session", session] if session is not None else [])
+        options += ["--output"] if output else []
         self.ctl("screenshot", target, *options)
         return target.read_bytes()
 

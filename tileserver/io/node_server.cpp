@@ -19,6 +19,7 @@
 #include "common/wire/limits.h"
 #include "common/wire/weights.h"
 #include "tileserver/io/node_stats.h"
+#include "tileserver/io/output_message.h"
 
 namespace wall::tileserver {
 namespace {
@@ -69,7 +70,7 @@ WindowRequest window_request(const config::WallConfig& wall, const config::NodeC
         request.windows.push_back({slot,
                                    tile.name,
                                    tile.window->monitor,
-                                   {tile.window->x, tile.window->y, tile.rect.width, tile.rect.height}});
+                                   {tile.window->x, tile.window->y, tile.output.width, tile.output.height}});
     }
     return request;
 }
@@ -376,8 +377,10 @@ void NodeServer::handle(const proto::Envelope& envelope) {
         case Case::kFramesRequest: return render_->report_frames(SessionId(envelope.frames_request().session()));
         case Case::kSnapshotRequest: {
             const auto& request = envelope.snapshot_request();
-            return render_->request_picture(
-                {PictureId(request.request()), false, request.slot(), SessionId(request.session())});
+            return render_->request_picture({.id = PictureId(request.request()),
+                                             .slot = request.slot(),
+                                             .session = SessionId(request.session()),
+                                             .output = request.output()});
         }
         case Case::kStreamStart: return tile_streams_.start(*render_, envelope.stream_start());
         case Case::kStreamStop: return tile_streams_.stop(*render_, PictureId(envelope.stream_stop().stream()));
@@ -425,7 +428,14 @@ void NodeServer::admit(const proto::Ticket& ticket) {
 
 void NodeServer::welcome(const proto::NodeWelcome& welcome) {
     std::vector<Tile> tiles;
-    for (const auto& tile : welcome.tiles()) tiles.push_back({tile.slot(), rect_of(tile.rect())});
+    for (const auto& tile : welcome.tiles()) {
+        tiles.push_back({tile.slot(), rect_of(tile.rect())});
+        if (!tile.has_output()) continue;
+        if (auto output = output_of(tile.output())) tiles.back().output = std::move(*output);
+        else
+            log::error("output_unusable tile={} reason={}", log::quoted(tile.name()),
+                       log::quoted(output.error().message));
+    }
     log::info("walld_welcome node={} tiles={}", welcome.node(), tiles.size());
     render_->set_tiles(std::move(tiles), welcome.background());
     render_->set_coordinated(true);

@@ -91,7 +91,7 @@ void TileStreams::start(RenderThread& render, const proto::StreamStart& message)
     const geom::Rect part{crop.x(), crop.y(), static_cast<std::int32_t>(crop.width()),
                           static_cast<std::int32_t>(crop.height())};
     render.watch({id, true, message.slot(), SessionId(message.session()), SurfaceId(message.surface()), part,
-                  message.width(), message.height()},
+                  message.width(), message.height(), message.output()},
                  std::chrono::microseconds(message.interval_us()));
 }
 

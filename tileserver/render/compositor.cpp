@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "common/log/log.h"
+
 namespace wall::tileserver {
 namespace {
 
@@ -40,7 +42,9 @@ const Tile* Compositor::tile(std::uint32_t slot) const {
 }
 
 void Compositor::release(TileTarget& target) const {
+    if (target.texture == 0) return;
     gl_.DeleteFramebuffers(1, &target.framebuffer);
+    node_.driver.forget_texture(target.texture);
     gl_.DeleteTextures(1, &target.texture);
     target = TileTarget{};
 }
@@ -62,25 +66,39 @@ Compositor::TileTarget& Compositor::target(const Tile& tile) {
     return target = make_target(tile.rect);
 }
 
-/// A part of the picture, halved until one linear step is left, so that every pixel counts.
-Compositor::TileTarget Compositor::scaled(const TileTarget& picture, geom::Rect part, std::int32_t width,
+/// A part of the picture, halved until one linear step is left, so that every pixel counts. Nothing is done where it
+/// has that size.
+Compositor::TileTarget Compositor::scaled(const PictureTexture& picture, geom::Rect part, std::int32_t width,
                                           std::int32_t height) const {
-    TileTarget from = picture;
+    TileTarget out;
     while (part.width != width || part.height != height) {
         const geom::Rect size{0, 0, std::max(width, (part.width + 1) / 2), std::max(height, (part.height + 1) / 2)};
         TileTarget to = make_target(size);
-        gl_.BlitNamedFramebuffer(from.framebuffer, to.framebuffer, part.x, part.y, part.right(), part.bottom(), 0, 0,
-                                 size.width, size.height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
-        if (from.texture != picture.texture) release(from);
-        from = to;
+        gl_.BlitNamedFramebuffer(out.texture != 0 ? out.framebuffer : picture.framebuffer, to.framebuffer, part.x,
+                                 part.y, part.right(), part.bottom(), 0, 0, size.width, size.height,
+                                 GL_COLOR_BUFFER_BIT, GL_LINEAR);
+        release(out);
+        out = to;
         part = size;
     }
-    return from;
+    return out;
+}
+
+PictureTexture Compositor::as_output_shows(const Tile& tile, const TileTarget& target) {
+    const PictureTexture canvas{target.texture, target.framebuffer, target.rect.width, target.rect.height,
+                                target.version};
+    if (!tile.output) return canvas;
+    auto shown = output_pass_.show(tile.slot, tile.output, canvas);
+    if (shown) return *shown;
+    if (!std::exchange(told_of_failure_, true))
+        log::error("output_as_it_is reason={}", log::quoted(shown.error().message));
+    return canvas;
 }
 
 void Compositor::compose(TileTarget& target, std::uint32_t slot, const StackEntry& only) {
     if (target.composed == node_.damage && target.only == only) return;
     target.composed = node_.damage;
+    target.version = ++compositions_;
     target.only = only;
     node_.driver.disable_scissor();
     gl_.ClearTexImage(target.texture, 0, GL_RGBA, GL_FLOAT, background_.data());
@@ -120,12 +138,12 @@ void Compositor::draw_whole(const TileTarget& target, const Layer& layer, const 
     gl_.NamedFramebufferTexture(source_, GL_COLOR_ATTACHMENT0, 0, 0);
 }
 
-std::optional<TilePicture> Compositor::picture(std::uint32_t slot) {
+std::optional<PictureTexture> Compositor::output(std::uint32_t slot) {
     const Tile* wanted = tile(slot);
     if (wanted == nullptr) return {};
     TileTarget& whole = target(*wanted);
     compose(whole, slot, {});
-    return TilePicture{whole.framebuffer, whole.rect.width, whole.rect.height};
+    return as_output_shows(*wanted, whole);
 }
 
 void Compositor::request(const PictureRequest& request) {
@@ -134,21 +152,26 @@ void Compositor::request(const PictureRequest& request) {
         refused_.push_back({request, 0, 0, {}, "this node has no tile in slot " + std::to_string(request.slot)});
         return;
     }
-    TileTarget& picture = target(*wanted);
-    const geom::Rect whole{0, 0, picture.rect.width, picture.rect.height},
-        crop = request.crop.empty() ? whole : geom::intersect(request.crop, whole);
+    Tile as_wanted = *wanted;
+    if (!request.output) as_wanted.output = nullptr;
+    const geom::Rect whole = as_wanted.output ? geom::Rect{0, 0, as_wanted.output->width, as_wanted.output->height}
+                                              : geom::Rect{0, 0, as_wanted.rect.width, as_wanted.rect.height},
+                     crop = request.crop.empty() ? whole : geom::intersect(request.crop, whole);
     if (crop.empty()) {
         refused_.push_back({request, 0, 0, {}, "the tile is smaller than the part of it that is wanted"});
         return;
     }
-    compose(picture, request.slot, {request.session, request.surface});
+    TileTarget& composed = target(*wanted);
+    compose(composed, request.slot, {request.session, request.surface});
     node_.driver.disable_scissor();
+    const PictureTexture picture = as_output_shows(as_wanted, composed);
     const auto width = static_cast<std::int32_t>(at_most(request.width, crop.width));
     const auto height = static_cast<std::int32_t>(at_most(request.height, crop.height));
     TileTarget small = scaled(picture, crop, width, height);
-    const bool as_it_is = small.texture == picture.texture;
-    read_back(request, small.framebuffer, as_it_is ? crop : geom::Rect{0, 0, width, height});
-    if (!as_it_is) release(small);
+    const bool as_it_is = small.texture == 0;
+    read_back(request, as_it_is ? picture.framebuffer : small.framebuffer,
+              as_it_is ? crop : geom::Rect{0, 0, width, height});
+    release(small);
 }
 
 void Compositor::read_back(const PictureRequest& request, GLuint framebuffer, const geom::Rect& part) {

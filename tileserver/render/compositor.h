@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/base/ids.h"
+#include "tileserver/render/output_pass.h"
 #include "tileserver/render/picture_budget.h"
 #include "tileserver/session/render_node.h"
 
@@ -33,6 +34,7 @@ struct PictureRequest {
     SurfaceId surface;                    ///< only this one of the session; none: all
     geom::Rect crop;                      ///< in pixels of the tile; empty: all of it
     std::uint32_t width = 0, height = 0;  ///< of the picture; 0: the crop's; never more than that
+    bool output = false;                  ///< as the tile's output shows it: `crop` is in its pixels
 };
 
 struct Picture {
@@ -43,25 +45,20 @@ struct Picture {
     std::shared_ptr<const void> hold;  ///< its share of the PictureBudget, until the last copy of this is gone
 };
 
-/// A tile as it is to be seen, in the driver.
-struct TilePicture {
-    GLuint framebuffer = 0;              ///< top row first; the compositor's
-    std::int32_t width = 0, height = 0;  ///< pixels
-};
-
 class Compositor {
 public:
     using FindSurface = std::function<const SurfaceReplica*(const StackEntry&)>;  ///< null: no such surface (yet)
 
-    Compositor(RenderNode& node, FindSurface find) : node_(node), gl_(node.driver.gl()), find_(std::move(find)) {}
+    Compositor(RenderNode& node, FindSurface find)
+        : node_(node), gl_(node.driver.gl()), find_(std::move(find)), output_pass_(node.driver) {}
     ~Compositor();
     Compositor(const Compositor&) = delete;
 
     void set_background(std::uint32_t rgb);
     void set_stacking(std::vector<StackEntry> bottom_first);
-    /// All layers of a tile, composed now unless they are already. Good until the compositor is called again. None:
-    /// this node has no such tile (yet).
-    std::optional<TilePicture> picture(std::uint32_t slot);
+    /// What the tile's output is to show: all layers, composed now unless they are already. Good until the compositor
+    /// is called again. None: this node has no such tile (yet).
+    std::optional<PictureTexture> output(std::uint32_t slot);
     /// Starts reading a tile; collect() gives the picture later.
     void request(const PictureRequest& request);
     /// The pictures that have arrived, at most kMostAtOnce. `wait`: all that were requested.
@@ -77,6 +74,7 @@ private:
         geom::Rect rect;
         GLuint texture = 0, framebuffer = 0;
         std::uint64_t composed = 0;  // RenderNode::damage that the picture shows; 0: none
+        std::uint64_t version = 0;   // one for each time
         StackEntry only;             // of one session or surface only
     };
     struct Readback {
@@ -92,8 +90,9 @@ private:
     /// Scaled to where the window lies.
     void draw_whole(const TileTarget& target, const Layer& layer, const geom::Rect& place);
     void draw_layer(const TileTarget& target, const Layer& layer);
+    PictureTexture as_output_shows(const Tile& tile, const TileTarget& target);
     TileTarget make_target(const geom::Rect& rect) const;
-    TileTarget scaled(const TileTarget& picture, geom::Rect part, std::int32_t width, std::int32_t height) const;
+    TileTarget scaled(const PictureTexture& picture, geom::Rect part, std::int32_t width, std::int32_t height) const;
     void release(TileTarget& target) const;
     void read_back(const PictureRequest& request, GLuint framebuffer, const geom::Rect& part);
     Picture finish(const Readback& readback);
@@ -105,6 +104,9 @@ private:
     std::vector<StackEntry> stacking_;
     std::map<std::uint32_t, TileTarget> targets_;  // by slot
     GLuint source_ = 0;                            // framebuffer that a layer's texture is read through
+    std::uint64_t compositions_ = 0;
+    OutputPass output_pass_;
+    bool told_of_failure_ = false;
     PictureBudget budget_;
     std::deque<Readback> readbacks_;
     std::vector<Picture> refused_;

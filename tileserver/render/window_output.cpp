@@ -41,7 +41,7 @@ Result<void> WindowOutput::show(Clock::time_point now) {
 /// something is drawn while the window is bound: that is to be here, and not in somebody's work between.
 Result<void> WindowOutput::draw(std::size_t i) {
     TileWindow& window = windows_.at(i);
-    const auto picture = compositor_.picture(window.spec().slot);
+    const auto picture = compositor_.output(window.spec().slot);
     window.drawn();
     if (!picture) return {};  // until walld has said which tiles there are, the X server shows the background
     tell_scaled(window, *picture);
@@ -56,7 +56,7 @@ Result<void> WindowOutput::draw(std::size_t i) {
     return windows_.swap(i);
 }
 
-void WindowOutput::tell_scaled(const TileWindow& window, const TilePicture& picture) {
+void WindowOutput::tell_scaled(const TileWindow& window, const PictureTexture& picture) {
     if (window.width() == picture.width && window.height() == picture.height) return;
     if (told_.insert(window.spec().slot).second)
         scaled_({window.spec().tile, picture.width, picture.height, window.width(), window.height()});

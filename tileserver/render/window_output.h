@@ -37,7 +37,7 @@ private:
     bool wanted(std::size_t i) const { return shown_ != node_.damage || windows_.at(i).exposed(); }
     bool any_wanted() const;
     Result<void> draw(std::size_t i);
-    void tell_scaled(const TileWindow& window, const TilePicture& picture);
+    void tell_scaled(const TileWindow& window, const PictureTexture& picture);
 
     RenderNode& node_;
     Compositor& compositor_;

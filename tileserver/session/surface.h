@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/geom/rect.h"
+#include "common/geom/tile_output.h"
 #include "common/wire/limits.h"
 #include "tileserver/driver/layer.h"
 
@@ -19,7 +20,8 @@ namespace wall::tileserver {
 /// A tile of this node; its slot is the bit in tile masks.
 struct Tile {
     std::uint32_t slot = 0;
-    geom::Rect rect;  ///< canvas
+    geom::Rect rect;                                 ///< canvas
+    std::shared_ptr<const geom::TileOutput> output;  ///< none: pixel for pixel
 };
 
 struct SurfaceFormat {

@@ -42,7 +42,7 @@ struct Options {
     unsigned fps = 10;
     double seconds = 10, interval = 1;
     std::uint64_t count = 0;
-    bool off = false;
+    bool off = false, of_output = false;
 };
 
 /// What main() runs in the end; set by the verb that was given.
@@ -74,6 +74,7 @@ Outcome<void> screenshot(const Options& options) {
     json arguments = json::object();
     if (!options.tile.empty()) arguments["tile"] = options.tile;
     if (!options.id.empty()) arguments["id"] = options.id;
+    if (options.of_output) arguments["output"] = true;
     const auto answer = ask(options.walld, "screenshot", arguments, kPictureLimit);
     if (!answer) return tl::unexpected(answer.error());
     std::ofstream file(options.file, std::ios::binary);
@@ -83,8 +84,8 @@ Outcome<void> screenshot(const Options& options) {
 }
 
 Outcome<void> record(const Options& options) {
-    const auto recorded =
-        wallctl::record(options.walld, {options.file, options.tile, options.seconds, options.fps, !options.as_json});
+    const auto recorded = wallctl::record(
+        options.walld, {options.file, options.tile, options.seconds, options.fps, options.of_output, !options.as_json});
     return print(options, recorded, kNoTable);
 }
 
@@ -286,14 +287,18 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
            o);
     auto* shot = verb("screenshot", "writes what the wall shows as PNG", [&o] { return screenshot(o); });
     shot->add_option("FILE", o.file)->required();
-    shot->add_option("--tile", o.tile, "only this tile");
-    shot->add_option("--session", o.id, "only this program");
+    auto* of_tile = shot->add_option("--tile", o.tile, "only this tile");
+    auto* of_program = shot->add_option("--session", o.id, "only this program");
+    shot->add_flag("--output", o.of_output, "as the tile's monitor or projector gets it: turned, warped, blended")
+        ->needs(of_tile)
+        ->excludes(of_program);
     auto* recording = verb("record", "writes what the wall shows as AVI, without loss (HuffYUV); Ctrl-C ends it early",
                            [&o] { return record(o); });
     recording->add_option("FILE", o.file)->required();
     recording->add_option("--seconds", o.seconds, "how long (10)")->check(CLI::Range(0.1, 86400.0));
     recording->add_option("--fps", o.fps, "frames a second (10)")->check(CLI::Range(1, 60));
-    recording->add_option("--tile", o.tile, "only this tile");
+    auto* recorded_tile = recording->add_option("--tile", o.tile, "only this tile");
+    recording->add_flag("--output", o.of_output, "as the tile's monitor or projector gets it")->needs(recorded_tile);
     auto* hold = verb("hold", "shows no further frame of a program until it is stepped", tell(o, "hold", [&o] {
                           return json{{"id", o.id}, {"on", !o.off}};
                       }));

@@ -94,6 +94,7 @@ Outcome<Answer> record(const Walld& walld, const Recording& recording) {
     nlohmann::json entry{{"codec", kCodec}, {"fps", recording.fps}};
     if (recording.tile.empty()) entry["wall"] = true;
     else entry["tile"] = recording.tile;
+    if (recording.output) entry["output"] = true;
     view::LiveView wall(
         [&walld](const nlohmann::json& what) { return view::open_control_feed(walld, nlohmann::json::array({what})); },
         entry, view::LiveView::AfterFailure::stay);

@@ -15,6 +15,7 @@ struct Recording {
     std::string file, tile;  ///< tile empty: the whole wall
     double seconds = 10;
     unsigned fps = 10;
+    bool output = false;   ///< of a tile: what its output shows
     bool progress = true;  ///< on standard error, once a second
 };
 

@@ -52,6 +52,20 @@ std::string transports(const json& node) {
     return fmt::format("{}", fmt::join(out, ", "));
 }
 
+std::string pixels(const json& tile) {
+    const json size = tile.value("pixels", json::array());
+    return size.size() == 2 ? fmt::format("{}x{}", size[0].dump(), size[1].dump()) : "";
+}
+
+/// What its output does to the canvas's pixels, such as "turned 90, warp".
+std::string shown(const json& tile) {
+    std::string out;
+    if (const auto turned = tile.value("rotation", 0); turned != 0) out = fmt::format("turned {}", turned);
+    const json steps = tile.value("shown", json::array());
+    for (const json& step : steps) out += (out.empty() ? "" : ", ") + step.get<std::string>();
+    return out.empty() ? "as it is" : out;
+}
+
 }  // namespace
 
 std::string nodes_table(const json& nodes) {
@@ -68,9 +82,10 @@ std::string nodes_table(const json& nodes) {
 }
 
 std::string tiles_table(const json& tiles) {
-    std::vector<Row> rows{{"TILE", "NODE", "PLACE", "OUTPUT", "STATE"}};
+    std::vector<Row> rows{{"TILE", "NODE", "PLACE", "OUTPUT", "PIXELS", "SHOWN", "STATE"}};
     for (const auto& t : tiles)
-        rows.push_back({text(t, "name"), text(t, "node"), place(t), text(t, "output"), is(t, "up") ? "up" : "away"});
+        rows.push_back({text(t, "name"), text(t, "node"), place(t), text(t, "output"), pixels(t), shown(t),
+                        is(t, "up") ? "up" : "away"});
     return table(rows);
 }
 

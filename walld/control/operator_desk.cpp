@@ -216,7 +216,10 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::screenshot(const Asked& asked) {
     const auto tile = text_of(asked.arguments, "tile"), id = text_of(asked.arguments, "id");
     if (!tile) co_return tl::unexpected(tile.error());
     if (!id) co_return tl::unexpected(id.error());
-    SnapshotQuery query{.tile = *tile, .target = {}};  // a name of its own: GCC 12 destroys such a temporary twice
+    const auto output = flag_of(asked.arguments, "output", false);
+    if (!output) co_return tl::unexpected(output.error());
+    SnapshotQuery query{
+        .tile = *tile, .target = {}, .output = *output};  // a name of its own: GCC 12 destroys such a temporary twice
     if (!id->empty()) {
         const auto target = Target::parse(*id);
         if (!target) co_return tl::unexpected(target.error());

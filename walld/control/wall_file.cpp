@@ -9,6 +9,7 @@
 
 #include "common/base/whole_file.h"
 #include "common/config/load_config.h"
+#include "common/config/read_warp.h"
 #include "common/json/parse_json.h"
 
 namespace wall::walld {
@@ -49,14 +50,16 @@ Outcome<void> keep(const fs::path& path, const std::string& text) {
     return {};
 }
 
+}  // namespace
+
 /// `name`: of the text, for people.
-Outcome<Description> described(std::string toml, const std::string& name) {
+Outcome<Description> WallFile::described(std::string toml, const std::string& name) const {
     auto config = config::parse_config(toml, name);
     if (!config) return refuse(RefusalKind::invalid, config.error().message);
+    if (auto loaded = config::load_warps(*config, fs::path(path_).parent_path()); !loaded)
+        return refuse(RefusalKind::invalid, loaded.error().message);
     return Description{std::move(*config), std::move(toml)};
 }
-
-}  // namespace
 
 Outcome<fs::path> WallFile::file_of(const std::string& node) const {
     if (state_.empty()) return refuse(RefusalKind::unavailable, kNoState);

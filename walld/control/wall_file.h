@@ -36,6 +36,7 @@ public:
 
 private:
     Outcome<std::string> text() const;
+    Outcome<Description> described(std::string toml, const std::string& name) const;
     std::filesystem::path folder() const { return state_ / "nodes"; }
     Outcome<std::filesystem::path> file_of(const std::string& node) const;
 

@@ -415,7 +415,11 @@ Expected<Asked, HttpServer::Response> HttpServer::read(const Request& request, c
             reply(request.version(), http::status::ok, "text/plain; version=0.0.4", metrics_.text()));
     }
     if (reads(request) && path == kSnapshotPath)
-        return Asked{"screenshot", {{"tile", query_value(query_of(request), "tile")}}, std::move(*who), kVia};
+        return Asked{"screenshot",
+                     {{"tile", query_value(query_of(request), "tile")},
+                      {"output", query_value(query_of(request), "output") == "1"}},
+                     std::move(*who),
+                     kVia};
     auto command = rest_command(of(request, connection));
     if (!command) return denied(command.error().status, command.error().why);
     return Asked{std::move(command->verb), std::move(command->arguments), std::move(*who), kVia};

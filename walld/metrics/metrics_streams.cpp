@@ -68,7 +68,8 @@ void add_stream_metrics(Families& out, const Observed& observed) {
                             {"size", fmt::format("{}x{}", view.width, view.height)},
                             {"fps", std::to_string(view.fps)},
                             {"session", session},
-                            {"region", region}},
+                            {"region", region},
+                            {"output", view.output ? "1" : ""}},
                            {&view, &told_of(node, view.id.value)}});
     }
     add_table(out, kStreams, streams);

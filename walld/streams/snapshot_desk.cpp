@@ -82,21 +82,30 @@ Outcome<void> SnapshotDesk::ask_nodes(const std::shared_ptr<Job>& job) {
         session = key->session;
         job->picture.view = geom::intersect(job->picture.view, wall_.find(*key)->place.shown());
     }
+    if (query.output && (query.tile.empty() || query.target))
+        return refuse(RefusalKind::invalid,
+                      "what an output shows is a picture of its own: expected a tile, and no program");
     bool found = false;
     for (const NodeIndex node : wall_.nodes().ids()) {
         for (std::uint32_t slot = 0; const auto& tile : wall_.nodes()[node].config->tiles) {
             const auto this_slot = slot++;
             if (!query.tile.empty() && tile.name != query.tile) continue;
             found = true;
+            const auto place = place_of(query, tile);
             if (!query.tile.empty())
-                job->picture.view = query.target ? geom::intersect(job->picture.view, tile.rect) : tile.rect;
-            if (!wall_.nodes()[node].up || !geom::overlaps(tile.rect, job->picture.view)) continue;
-            job->picture.tiles.push_back({tile.rect, {}});
+                job->picture.view = query.target ? geom::intersect(job->picture.view, place) : place;
+            if (!wall_.nodes()[node].up || !geom::overlaps(place, job->picture.view)) continue;
+            job->picture.tiles.push_back({place, {}});
             ask(job, node, this_slot, session);
         }
     }
     if (!found) return refuse(RefusalKind::not_found, "there is no tile '" + query.tile + "'");
     return {};
+}
+
+/// Where what the tile's node sends lies in the picture.
+geom::Rect SnapshotDesk::place_of(const SnapshotQuery& query, const config::TileConfig& tile) {
+    return query.output ? geom::Rect{0, 0, tile.output.width, tile.output.height} : tile.rect;
 }
 
 void SnapshotDesk::ask(const std::shared_ptr<Job>& job, NodeIndex node, std::uint32_t slot, SessionId session) {
@@ -105,6 +114,7 @@ void SnapshotDesk::ask(const std::shared_ptr<Job>& job, NodeIndex node, std::uin
     request.set_request(last_id_.value);
     request.set_slot(slot);
     request.set_session(session.value);
+    request.set_output(job->query.output);
     pending_.emplace(last_id_, Pending{job, job->picture.tiles.size() - 1, node});
     ++job->missing;
     out_.to_node(node, walld::make(&proto::Envelope::mutable_snapshot_request, request));

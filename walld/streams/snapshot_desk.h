@@ -26,12 +26,13 @@ namespace asio = boost::asio;
 struct SnapshotQuery {
     std::string tile;              ///< empty: the whole wall
     std::optional<Target> target;  ///< only this surface's session, and only its rectangle
+    bool output = false;           ///< of a tile: what its output shows, in its pixels
 
     bool operator==(const SnapshotQuery& other) const {
         const auto key = [](const SnapshotQuery& of) {
             return of.target ? SurfaceKey{of.target->session, of.target->surface} : SurfaceKey{};
         };
-        return tile == other.tile && key(*this) == key(other);
+        return tile == other.tile && key(*this) == key(other) && output == other.output;
     }
 };
 
@@ -76,6 +77,7 @@ private:
     asio::awaitable<Outcome<Png>> picture_of(const std::shared_ptr<Job>& job);
     Outcome<void> ask_nodes(const std::shared_ptr<Job>& job);
     void ask(const std::shared_ptr<Job>& job, NodeIndex node, std::uint32_t slot, SessionId session);
+    static geom::Rect place_of(const SnapshotQuery& query, const config::TileConfig& tile);
     void finish(std::map<PictureId, Pending>::iterator pending);
 
     asio::any_io_executor executor_;

@@ -56,7 +56,7 @@ StreamHub::Watch StreamHub::make_watch(const WatchRequest& request, const Stream
     for (const auto& [node, slot, crop, at] : parts_of(wall_, scope)) {
         const auto width = static_cast<std::uint32_t>(at.width), height = static_cast<std::uint32_t>(at.height);
         watch.parts.push_back({.key = {node, slot, scope.session, scope.surface, crop.x, crop.y, crop.width,
-                                       crop.height, request.codec, width, height, request.fps},
+                                       crop.height, request.codec, width, height, request.fps, scope.output},
                                .at = at});
     }
     return watch;
@@ -289,6 +289,7 @@ void StreamHub::start(const Key& key, NodeStream& stream) {
     crop.set_width(static_cast<std::uint32_t>(key.crop_width));
     crop.set_height(static_cast<std::uint32_t>(key.crop_height));
     message.set_codec(key.codec);
+    message.set_output(key.output);
     message.set_width(key.width);
     message.set_height(key.height);
     message.set_interval_us(1'000'000 / key.fps);
@@ -407,10 +408,11 @@ std::vector<StreamView> StreamHub::views() const {
     for (const auto& [key, stream] : streams_) {
         const auto& tile = wall_.nodes()[key.node].config->tiles[key.slot];
         const geom::Rect crop{key.x, key.y, key.crop_width, key.crop_height},
-            whole{0, 0, tile.rect.width, tile.rect.height};
+            whole = key.output ? geom::Rect{0, 0, tile.output.width, tile.output.height}
+                               : geom::Rect{0, 0, tile.rect.width, tile.rect.height};
         out.push_back({stream.id, key.node, tile.name, key.codec, key.session, key.surface,
-                       crop == whole ? geom::Rect{} : crop, key.width, key.height, key.fps, stream.watchers.size(),
-                       stream.frames, stream.bytes, stream.dropped});
+                       crop == whole ? geom::Rect{} : crop, key.output, key.width, key.height, key.fps,
+                       stream.watchers.size(), stream.frames, stream.bytes, stream.dropped});
     }
     return out;
 }

@@ -35,9 +35,10 @@ struct StreamView {
     PictureId id;  ///< in the node's messages
     NodeIndex node;
     std::string tile, codec;
-    SessionId session;  ///< none: all
-    SurfaceId surface;  ///< none: all of the session
-    geom::Rect crop;    ///< of the tile; all of it: empty
+    SessionId session;    ///< none: all
+    SurfaceId surface;    ///< none: all of the session
+    geom::Rect crop;      ///< of the tile; all of it: empty
+    bool output = false;  ///< what the tile's output shows; `crop` is in its pixels
     std::uint32_t width = 0, height = 0, fps = 0;
     std::size_t viewers = 0;
     std::uint64_t frames = 0, bytes = 0, dropped = 0;  ///< that have come since it was started; as StreamHub::Counters
@@ -90,6 +91,7 @@ private:
         std::int32_t x, y, crop_width, crop_height;
         std::string codec;
         std::uint32_t width, height, fps;
+        bool output;
         auto operator<=>(const Key&) const = default;
         std::uint64_t pixels() const { return std::uint64_t{width} * height; }
     };

@@ -16,6 +16,11 @@ Result<geom::Rect> region_of(const geom::Rect& whole, const std::optional<geom::
     return geom::Rect{whole.x + region->x, whole.y + region->y, region->width, region->height};
 }
 
+/// Where a tile lies, or all of what its output shows.
+geom::Rect place_of(const config::TileConfig& tile, bool output) {
+    return output ? geom::Rect{0, 0, tile.output.width, tile.output.height} : tile.rect;
+}
+
 Result<geom::Rect> rect_of(const Wall& wall, const WatchRequest& request, StreamScope& scope) {
     if (request.wall) return region_of(wall.config().canvas(), request.region);
     if (request.follows()) {
@@ -27,7 +32,7 @@ Result<geom::Rect> rect_of(const Wall& wall, const WatchRequest& request, Stream
     for (const NodeIndex node : wall.nodes().ids()) {
         for (std::uint32_t slot = 0; const auto& tile : wall.nodes()[node].config->tiles) {
             scope.tile = {node, slot++};
-            if (tile.name == request.tile) return region_of(tile.rect, request.region);
+            if (tile.name == request.tile) return region_of(place_of(tile, request.output), request.region);
         }
     }
     return fail(".tile: there is no tile '" + request.tile + "'");
@@ -70,6 +75,7 @@ Result<StreamScope> scope_of(const Wall& wall, const WatchRequest& request) {
     StreamScope scope;
     scope.session = request.session;
     scope.surface = request.surface;
+    scope.output = request.output;
     const auto rect = rect_of(wall, request, scope);
     if (!rect) return tl::unexpected(rect.error());
     if (rect->empty()) return fail(".session: its window has no pixels");
@@ -84,11 +90,11 @@ std::vector<StreamPart> parts_of(const Wall& wall, const StreamScope& scope) {
         for (std::uint32_t slot = 0; const auto& tile : wall.nodes()[node].config->tiles) {
             const auto this_slot = slot++;
             if (scope.tile && *scope.tile != std::pair(node, this_slot)) continue;
-            const auto common = geom::intersect(tile.rect, scope.rect);
+            const auto place = place_of(tile, scope.output);
+            const auto common = geom::intersect(place, scope.rect);
             const auto at = in_picture(scope, common);
             if (common.empty() || at.empty()) continue;
-            out.push_back(
-                {node, this_slot, {common.x - tile.rect.x, common.y - tile.rect.y, common.width, common.height}, at});
+            out.push_back({node, this_slot, {common.x - place.x, common.y - place.y, common.width, common.height}, at});
         }
     }
     return out;

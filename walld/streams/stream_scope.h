@@ -12,7 +12,8 @@
 namespace wall::walld {
 
 struct StreamScope {
-    geom::Rect rect;                                          ///< of the canvas
+    geom::Rect rect;                                          ///< of the canvas, or of the output
+    bool output = false;                                      ///< what the tile's output shows
     std::uint32_t width = 0, height = 0;                      ///< of the picture, pixels
     SessionId session;                                        ///< only its windows; none: all
     SurfaceId surface;                                        ///< only this one; none: all

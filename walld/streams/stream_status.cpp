@@ -22,6 +22,7 @@ json one(const Wall& wall, const StreamView& stream) {
              {"bytes", stream.bytes},
              {"dropped", stream.dropped},
              {"region", nullptr},
+             {"output", stream.output},
              {"session", nullptr}};
     if (!stream.crop.empty()) out["region"] = {stream.crop.x, stream.crop.y, stream.crop.width, stream.crop.height};
     if (stream.session)

@@ -74,6 +74,7 @@ Result<WatchRequest> one_request(const json& from) {
     out.session = SessionId(members.number("session", 1, UINT32_MAX, 0));
     out.surface = SurfaceId(members.number("surface", 1, UINT32_MAX, 0));
     out.region = members.rect("region");
+    out.output = members.flag("output");
     out.codec = members.text("codec", out.codec);
     out.width = members.number("width", 1, codec::kMaxExtent, 0);
     out.height = members.number("height", 1, codec::kMaxExtent, 0);
@@ -82,6 +83,7 @@ Result<WatchRequest> one_request(const json& from) {
     if (!members.error().empty()) return fail(members.error());
     if (!out.tile.empty() && out.wall) return fail(": expected a tile or the wall, not both");
     if (out.follows() && !out.session) return fail(": expected \"tile\": NAME, \"wall\": true or \"session\": NUMBER");
+    if (out.output && out.tile.empty()) return fail(".output: expected a tile with it");
     if (out.surface && !out.session) return fail(".surface: expected a session with it");
     if (out.follows() && out.region) return fail(".region: goes with a tile or the wall; a window is shown as a whole");
     if (const auto known = codec::find_codec(out.codec); !known) return fail(".codec: " + known.error().message);

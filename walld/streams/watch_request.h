@@ -23,6 +23,7 @@ struct WatchRequest {
     SessionId session;  ///< with a tile or the wall: only its windows; none: all
     SurfaceId surface;  ///< only this window; none: all of the session, or its topmost if nothing else is shown
     std::optional<geom::Rect> region;  ///< in pixels of the tile or the canvas
+    bool output = false;               ///< of a tile: what its output shows, in its pixels
     std::string codec = "huffyuv";
     std::uint32_t width = 0, height = 0;  ///< of the picture; 0: of what it shows
     bool fit = false;                     ///< width and height are a box; proportions stay

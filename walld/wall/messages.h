@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/geom/rect.h"
+#include "common/geom/tile_output.h"
 #include "common/wire/limits.h"
 #include "proto/control.pb.h"
 
@@ -24,6 +25,9 @@ inline proto::Rect to_proto(const geom::Rect& rect) {
     out.set_height(static_cast<std::uint32_t>(rect.height));
     return out;
 }
+
+/// Of a tile's output that has something to do.
+proto::TileOutput to_proto(const geom::TileOutput& output);
 
 inline geom::Rect from_proto(const proto::Rect& rect) {
     return {rect.x(), rect.y(), static_cast<std::int32_t>(rect.width()), static_cast<std::int32_t>(rect.height())};

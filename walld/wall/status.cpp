@@ -96,6 +96,15 @@ json traffic_json(const SessionTraffic& traffic) {
             {"frame_bytes", std::round(rates.frame_bytes)}};
 }
 
+/// What is done to the canvas's pixels, beside turning and scaling them.
+json steps_json(const geom::TileOutput& output) {
+    json out = json::array();
+    if (output.warp) out.push_back("warp");
+    if (output.blend) out.push_back("blend");
+    if (output.color) out.push_back("color");
+    return out;
+}
+
 /// What wall.toml says, in bytes.
 json quota_json(const config::QuotaConfig& quota) {
     json out = json::object();
@@ -136,6 +145,9 @@ json tiles_json(const Wall& wall, Clock::time_point now) {
                            {"slot", slot},
                            {"rect", rect_json(tile.rect)},
                            {"output", config::output_name(tile)},
+                           {"pixels", {tile.output.width, tile.output.height}},
+                           {"rotation", tile.output.rotation},
+                           {"shown", steps_json(tile.output)},
                            {"up", node.up},
                            {"frames", shown.frames},
                            {"age_ms", age},

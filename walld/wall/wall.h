@@ -245,6 +245,7 @@ private:
     SurfaceEntry& add_surface(const SurfaceKey& key, const proto::SurfaceOpen& message);
     proto::NodeUp node_up_message(NodeIndex node, const std::string& ticket) const;
     bool take_nodes();
+    void take_outputs(NodeIndex node, const config::NodeConfig& config);
     void add_tiles(google::protobuf::RepeatedPtrField<proto::TileInfo>& out) const;
     geom::Rect place_after_change(const SessionEntry& session, const SurfaceEntry& surface);
     void send_away(const proto::NodeHello& hello, NodeIndex node);

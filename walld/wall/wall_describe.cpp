@@ -30,7 +30,10 @@ bool Wall::take_nodes() {
     }
     for (const auto& config : config_.nodes) {
         auto index = find_node(config.name);
-        if (index && nodes_[*index].duty != Duty::gone && *nodes_[*index].config == config) continue;
+        if (index && nodes_[*index].duty != Duty::gone && draws_as(*nodes_[*index].config, config)) {
+            take_outputs(*index, config);
+            continue;
+        }
         if (!index) {
             index = NodeIndex(static_cast<std::uint32_t>(nodes_.size()));
             nodes_.push_back({});
@@ -45,11 +48,18 @@ bool Wall::take_nodes() {
     return changed;
 }
 
+/// A node shows its tiles otherwise from the next picture on.
+void Wall::take_outputs(NodeIndex node, const config::NodeConfig& config) {
+    if (*nodes_[node].config == config) return;
+    nodes_[node].config = std::make_shared<const config::NodeConfig>(config);
+    if (nodes_[node].up) welcome_node(node);
+}
+
 std::vector<NodeIndex> Wall::described_otherwise(const config::WallConfig& next) const {
     std::vector<NodeIndex> out;
     for (const NodeIndex i : nodes_.ids()) {
         const auto* described = next.find_node(nodes_[i].config->name);
-        if (nodes_[i].duty != Duty::gone && (!described || *described != *nodes_[i].config)) out.push_back(i);
+        if (nodes_[i].duty != Duty::gone && (!described || !draws_as(*described, *nodes_[i].config))) out.push_back(i);
     }
     return out;
 }

@@ -116,6 +116,23 @@ class Windows(OnAScreen):
     def test_one_node_for_all_windows(self) -> None:
         self.shows_a_moving_program(one_node=True)
 
+    def test_monitors_on_their_sides(self) -> None:
+        wall = self.wall(tiles=(2, 1), tile_keys="rotation = 90")
+        self.gears(wall)
+
+        def turned(name: str) -> numpy.ndarray:
+            """As its window is to show it, which is 150 x 200."""
+            return numpy.rot90(tile_picture(wall, name))
+
+        def seen() -> bool:
+            wanted = numpy.zeros((SCREEN[1], SCREEN[0], 3), numpy.uint8)
+            for i, name in enumerate(wall.tile_names):
+                wanted[:TILE[0], i * TILE[0]:i * TILE[0] + TILE[1]] = turned(name)
+            return bool((self.screen.picture() == wanted).all())
+
+        self.until(seen, "the program, turned")
+        self.assertGreater(self.screen.picture()[:, :, 0].max(), 100, "gears are to be seen")
+
     def test_the_order_of_programs(self) -> None:
         wall = self.wall(one_node=True)
         below, above = self.run_clock(wall, (20, 20, 300, 200)), self.gears(wall)

@@ -39,7 +39,7 @@ protected:
 };
 
 TEST_F(TilePictures, AreComposedOnceForAllWhoWantThem) {
-    const auto picture = compositor->picture(kSlot);
+    const auto picture = compositor->output(kSlot);
     ASSERT_TRUE(picture);
     EXPECT_EQ(picture->width, kTile.width);
     EXPECT_EQ(picture->height, kTile.height);
@@ -48,10 +48,10 @@ TEST_F(TilePictures, AreComposedOnceForAllWhoWantThem) {
     const auto& gl = test_node.driver->gl();
     constexpr float kOther[] = {0, 0, 1, 1};
     gl.ClearNamedFramebufferfv(picture->framebuffer, GL_COLOR, 0, kOther);
-    EXPECT_EQ(compositor->picture(kSlot)->framebuffer, picture->framebuffer);
+    EXPECT_EQ(compositor->output(kSlot)->framebuffer, picture->framebuffer);
     EXPECT_EQ(shot(), 0x0000ffu) << "nothing has changed, nothing is composed anew";
     ++test_node.node->damage;
-    EXPECT_EQ(compositor->picture(kSlot)->framebuffer, picture->framebuffer);
+    EXPECT_EQ(compositor->output(kSlot)->framebuffer, picture->framebuffer);
     EXPECT_EQ(shot(), 0xff8000u);
 }
 
@@ -92,7 +92,7 @@ TEST_F(TilePictures, AreThoseOfBeforeWhereTheStackingIs) {
     EXPECT_EQ(test_node.node->damage, stacked);
 }
 
-TEST_F(TilePictures, OfATileThatIsNotThereAreNone) { EXPECT_FALSE(compositor->picture(kSlot + 1)); }
+TEST_F(TilePictures, OfATileThatIsNotThereAreNone) { EXPECT_FALSE(compositor->output(kSlot + 1)); }
 
 TEST_F(TilePictures, ThatAreManyArriveAFewAtATime) {
     for (std::uint32_t i = 0; i < 10; ++i) compositor->request({.id = PictureId(i), .slot = kSlot});

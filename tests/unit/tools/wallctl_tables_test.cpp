@@ -13,13 +13,26 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 
 TEST(Tables, AlignColumnsAndLeaveOutTrailingBlanks) {
-    const json tiles{
-        {{"name", "a"}, {"node", "left"}, {"rect", {0, 0, 640, 480}}, {"output", "headless"}, {"up", true}},
-        {{"name", "bottom"}, {"node", "r"}, {"rect", {0, 480, 64, 48}}, {"output", "window"}, {"up", false}}};
+    const json tiles{{{"name", "a"},
+                      {"node", "left"},
+                      {"rect", {0, 0, 640, 480}},
+                      {"output", "headless"},
+                      {"pixels", {480, 640}},
+                      {"rotation", 90},
+                      {"shown", {"warp", "blend"}},
+                      {"up", true}},
+                     {{"name", "bottom"},
+                      {"node", "r"},
+                      {"rect", {0, 480, 64, 48}},
+                      {"output", "window"},
+                      {"pixels", {64, 48}},
+                      {"rotation", 0},
+                      {"shown", json::array()},
+                      {"up", false}}};
     EXPECT_EQ(tiles_table(tiles),
-              "TILE    NODE  PLACE        OUTPUT    STATE\n"
-              "a       left  640x480+0+0  headless  up\n"
-              "bottom  r     64x48+0+480  window    away\n");
+              "TILE    NODE  PLACE        OUTPUT    PIXELS   SHOWN                   STATE\n"
+              "a       left  640x480+0+0  headless  480x640  turned 90, warp, blend  up\n"
+              "bottom  r     64x48+0+480  window    64x48    as it is                away\n");
 }
 
 TEST(Tables, ATokenIsGoodOrRevoked) {

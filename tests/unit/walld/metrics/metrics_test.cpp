@@ -166,7 +166,7 @@ TEST_F(Metrics, AStreamIsWhatWalldAndItsNodeKnowOfIt) {
                  .frames = 3,
                  .dropped = 1}};
     const std::string labels =
-        "{node=\"left\",tile=\"l\",codec=\"huffyuv\",size=\"64x48\",fps=\"10\",session=\"\",region=\"\"} ";
+        "{node=\"left\",tile=\"l\",codec=\"huffyuv\",size=\"64x48\",fps=\"10\",session=\"\",region=\"\",output=\"\"} ";
     EXPECT_THAT(text(), HasSubstr("wallgl_stream_viewers" + labels + "2\n"));
     EXPECT_THAT(text(), HasSubstr("wallgl_stream_dropped_frames_total" + labels + "1\n"));
     EXPECT_THAT(text(), HasSubstr("wallgl_stream_raw_bytes_total" + labels + "4000\n"));

@@ -101,6 +101,25 @@ TEST_F(AWallThatIsDescribedAnew, LeavesAloneWhoIsDescribedAsBefore) {
     EXPECT_THAT(out_.nodes[kLeft], IsEmpty());
 }
 
+TEST_F(AWallThatIsDescribedAnew, OnlyTellsANodeThatItsOutputsShowThemselvesOtherwise) {
+    const auto ticket = ticket_of(kLeft);
+    describe(std::string(kTwoNodes) + "rotation = 180\n");  // of the last tile
+    EXPECT_TRUE(wall_.nodes()[kRight].up);
+    EXPECT_EQ(wall_.nodes()[kRight].incarnation, 1u);
+    EXPECT_EQ(ticket_of(kLeft), ticket);
+    EXPECT_THAT(out_.nodes[kLeft], IsEmpty());
+    EXPECT_THAT(out_.client, IsEmpty()) << "nothing of programs' concern";
+    ASSERT_EQ(out_.nodes[kRight].size(), 1u);
+    const auto& tile = out_.nodes[kRight][0].node_welcome().tiles(0);
+    EXPECT_EQ(tile.output().rotation(), 180u);
+    EXPECT_EQ(tile.output().width(), 640u);
+    describe(kTwoNodes);
+    ASSERT_EQ(out_.nodes[kRight].size(), 2u);
+    EXPECT_FALSE(out_.nodes[kRight][1].node_welcome().tiles(0).has_output()) << "as it is";
+    describe(kTwoNodes);
+    EXPECT_EQ(out_.nodes[kRight].size(), 2u) << "nothing has changed";
+}
+
 TEST_F(AWallThatIsDescribedAnew, TakesANodeWithOtherTilesForOneThatKnowsNothing) {
     const auto ticket = ticket_of(kRight);
     describe("[[node]]\nname = \"left\"\n[[node.tile]]\nname = \"l\"\nrect = [0, 0, 640, 480]\n" +

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// How a tile's output - a monitor, a projector - shows its part of the canvas: turned, with other pixels, warped, faded
+// where it overlaps its neighbours, in corrected colours. docs/walls.md has the formulas. Pure.
+//
+//   pixel of the output --(warp)--> place on the flat output --(rotation)--> place in the tile --> pixels of the canvas
+//
+// Places are fractions: (0, 0) is the top left corner of the first pixel, (1, 1) the bottom right corner of the last.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "common/geom/rect.h"
+
+namespace wall::geom {
+
+inline constexpr std::int32_t kMaxOutputExtent = 16384;     ///< pixels a side
+inline constexpr std::uint32_t kMaxMeshPoints = 128 * 128;  ///< of a warp
+inline constexpr std::uint32_t kMaxCurvePoints = 256;       ///< of a tone curve
+
+struct Point {
+    float x = 0, y = 0;
+    bool operator==(const Point&) const = default;
+};
+
+/// Where each place of an output looks: a homography, or a mesh. What it says beyond 0 to 1 is black.
+struct Warp {
+    /// Row by row; (x, y, 1) of the output gives (x', y', w'), the place is (x' / w', y' / w').
+    std::array<float, 9> homography{1, 0, 0, 0, 1, 0, 0, 0, 1};
+    /// A grid of columns x rows points that covers the output from corner to corner, row by row; between them as they
+    /// say, linearly along both sides of a cell. 0: the homography holds.
+    std::uint32_t columns = 0, rows = 0;
+    std::vector<Point> points;
+    bool operator==(const Warp&) const = default;
+};
+
+/// Why it cannot be shown; nullptr: it can. Everything is finite, no point of the output lies at infinity, and no two
+/// parts of it look at one place because it is folded. (Mirrored as a whole it may be: projectors behind a screen.)
+const char* wrong_with(const Warp& warp);
+
+/// What is shown less bright at a tile's edges because another projector shows it, too.
+struct Blend {
+    enum Edge : std::uint8_t { left, right, top, bottom };
+    std::array<float, 4> ramps{};  ///< by Edge, pixels of the canvas; 0: none
+    float gamma = 2.2f;            ///< of the projector: light = value ^ gamma
+    /// Light of black as the projector shows it, of its white. What only one shows is lifted to what several do.
+    float black = 0;
+    bool operator==(const Blend&) const = default;
+};
+
+/// Brings an output's colours to those of the others.
+struct ColorCorrection {
+    using Curve = std::vector<float>;  ///< values 0 to 1 at equal steps from 0 to 1, linear between; empty: none
+    std::array<float, 9> matrix{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row by row, of red, green and blue light
+    float gamma = 2.2f;                                      ///< what makes values into light for that
+    std::array<Curve, 3> curves;                             ///< of red, green and blue values, after all else
+    bool operator==(const ColorCorrection&) const = default;
+};
+
+struct TileOutput {
+    /// Degrees that the monitor is turned clockwise, as seen from in front of it: 0, 90, 180, 270.
+    std::uint32_t rotation = 0;
+    std::int32_t width = 0, height = 0;  ///< pixels, as the monitor itself counts them
+    std::shared_ptr<const Warp> warp;    ///< none: flat
+    std::optional<Blend> blend;
+    std::optional<ColorCorrection> color;
+    bool operator==(const TileOutput&) const;  ///< of what the warp says
+};
+
+/// Of a tile that is shown pixel for pixel.
+TileOutput plain_output(const Rect& tile);
+bool is_sideways(std::uint32_t rotation);
+/// Nothing has to be done to the canvas's pixels.
+bool is_plain(const TileOutput& output, const Rect& tile);
+
+/// From a place of the output to one of the tile. The specification of what GPUs do.
+Point place_in_tile(const TileOutput& output, Point of_output);
+
+}  // namespace wall::geom

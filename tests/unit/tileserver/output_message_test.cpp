@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "tileserver/io/output_message.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "walld/wall/messages.h"
+
+namespace wall::tileserver {
+namespace {
+
+geom::TileOutput everything() {
+    geom::TileOutput out{.rotation = 270, .width = 1920, .height = 1080};
+    out.warp = std::make_shared<const geom::Warp>(
+        geom::Warp{.columns = 2, .rows = 2, .points = {{0, 0}, {1, 0}, {0, 1}, {0.9f, 1}}});
+    out.blend = geom::Blend{{1, 2, 3, 4}, 2.4f, 0.01f};
+    out.color = geom::ColorCorrection{{1, 0.1f, 0, 0, 1, 0, 0, 0, 1}, 2.1f, {{{0, 1}, {}, {0, 0.5f, 1}}}};
+    return out;
+}
+
+TEST(OutputMessage, ArrivesAsItWasSent) {
+    const auto arrived = output_of(walld::to_proto(everything()));
+    ASSERT_TRUE(arrived) << arrived.error().message;
+    EXPECT_TRUE(**arrived == everything());
+    auto with_homography = everything();
+    with_homography.warp =
+        std::make_shared<const geom::Warp>(geom::Warp{.homography = {1, 0.1f, 0, 0, 1, 0, 0.2f, 0, 1}});
+    EXPECT_TRUE(**output_of(walld::to_proto(with_homography)) == with_homography);
+    const auto plain = geom::plain_output({0, 0, 5, 6});
+    EXPECT_TRUE(**output_of(walld::to_proto(plain)) == plain);
+}
+
+TEST(OutputMessage, IsRefusedIfNoOutputIsThat) {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<std::function<void(proto::TileOutput&)>> changes{
+        [](auto& o) { o.set_rotation(45); },
+        [](auto& o) { o.set_rotation(360); },
+        [](auto& o) { o.set_width(0); },
+        [](auto& o) { o.set_height(1u << 31); },
+        [](auto& o) { o.mutable_warp()->set_columns(1); },
+        [](auto& o) { o.mutable_warp()->set_columns(0); },
+        [](auto& o) { o.mutable_warp()->set_rows(1u << 30); },
+        [](auto& o) { o.mutable_warp()->add_points(1); },
+        [=](auto& o) { o.mutable_warp()->set_points(3, kNone); },
+        [](auto& o) { o.mutable_blend()->set_left(-1); },
+        [=](auto& o) { o.mutable_blend()->set_top(kNone); },
+        [](auto& o) { o.mutable_blend()->set_gamma(0); },
+        [=](auto& o) { o.mutable_blend()->set_black(kNone); },
+        [](auto& o) { o.mutable_color()->add_matrix(1); },
+        [=](auto& o) { o.mutable_color()->set_matrix(0, kNone); },
+        [=](auto& o) { o.mutable_color()->set_gamma(kNone); },
+        [](auto& o) { o.mutable_color()->add_green(1); },
+        [](auto& o) { o.mutable_color()->set_red(0, 2); },
+        [](auto& o) {
+            for (int i = 0; i < 300; ++i) o.mutable_color()->add_blue(1);
+        },
+    };
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+        auto told = walld::to_proto(everything());
+        changes[i](told);
+        EXPECT_FALSE(output_of(told)) << "change " << i;
+    }
+}
+
+}  // namespace
+}  // namespace wall::tileserver
