@@ -21,6 +21,7 @@
 #include "tileserver/gpu/memory.h"
 #include "tileserver/io/node_server.h"
 #include "tileserver/node_role.h"
+#include "tileserver/render/continued.h"
 
 namespace {
 
@@ -115,6 +116,7 @@ int refuse_start(const std::string& why) {
 
 int main(int argc, char** argv) {
     wall::tileserver::keep_freed_memory();
+    wall::tileserver::continued::expect();
     CLI::App app(
         "tileserver: one node of a WallGL wall. It draws what programs send it for its tiles. It connects to walld by "
         "itself,\n"

@@ -12,6 +12,7 @@
 
 #include "common/wire/batch.h"
 #include "tileserver/execute/executor.h"
+#include "tileserver/render/continued.h"
 #include "tileserver/render/driver_wait.h"
 #include "tileserver/render/frame_limit.h"
 #include "tileserver/render/pace.h"
@@ -108,6 +109,7 @@ public:
         bool run_turn(Clock::time_point& now, bool contended) {
             if (failed_ || executor_.waits() || (contended && !pace_.may_run(now)) || !next_batch()) return false;
             const auto start = now;
+            const auto continued_before = continued::count();
             const auto render_before = session_.work.render;
             loop_.board_.begin({id_, session_.id(), start});
             const auto done = executor_.run_slice({start + Pace::kTurn, pace_.commands(contended)});
@@ -118,15 +120,9 @@ public:
                 if (group_) loop_.pass_on_group_frames(*this);
             }
             last_run_ = now = Clock::now();
-            Work& work = session_.work;
-            work.decode += now - start - (work.render - render_before);
-            if (pace_.spend(now - start, executor_.told(), contended)) {
-                if (contended || !pace_.driver_keeps_up()) driver_wait_.finish();
-                else driver_wait_.finish_before();
-                const auto before = std::exchange(now, Clock::now());
-                pace_.finished(now - before, now);
-                work.render += now - before;
-                last_run_ = now;
+            if (continued::count() == continued_before) {
+                session_.work.decode += now - start - (session_.work.render - render_before);
+                if (pace_.spend(now - start, executor_.told(), contended)) wait_for_driver(now, contended);
             }
             loop_.board_.end();
             return true;
@@ -173,6 +169,17 @@ public:
         Executor& executor() { return executor_; }
 
     private:
+        /// What is measured while the process is stopped says nothing.
+        void wait_for_driver(Clock::time_point& now, bool contended) {
+            const auto continued_before = continued::count();
+            if (contended || !pace_.driver_keeps_up()) driver_wait_.finish();
+            else driver_wait_.finish_before();
+            const auto before = std::exchange(now, Clock::now());
+            last_run_ = now;
+            if (continued::count() != continued_before) return;
+            pace_.finished(now - before, now);
+            session_.work.render += now - before;
+        }
         /// True: there is one to go on with.
         bool next_batch() {
             if (batch_) return true;
@@ -438,6 +445,7 @@ void RenderThread::run(const OpenBackend& open, std::string backend_name,
     Gl gl;
     gl.load([&](const char* function) { return (*backend)->get_proc_address(function); });
     Loop loop(gl, events_, board_, (*backend)->windows(), trials_.get());
+    continued::hear();  // behind what the driver has made of threads
     started(Started{query_caps(gl), std::move(backend_name)});
     serve(loop);
 }

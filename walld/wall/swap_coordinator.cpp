@@ -42,13 +42,7 @@ Presents SwapCoordinator::rendered(NodeIndex node, std::uint32_t frame, Clock::t
     member.rendered = frame;
     if (frame >= presented_) member.waited = true;
     rendered_spread_.note(frame, group_of(frame), now);
-    auto out = advance(now);
-    // One that comes too late for the group shows what it has: better than nothing, and it frees its buffers.
-    if (const auto late = members_.find(node); late != members_.end() && late->second.rendered <= presented_) {
-        tell(out, node, late->second, late->second.rendered, now);
-        forget_past();
-    }
-    return out;
+    return advance(now);
 }
 
 Presents SwapCoordinator::resume(NodeIndex node, std::uint32_t frame, std::uint32_t shown, Clock::time_point now) {
@@ -167,8 +161,12 @@ Presents SwapCoordinator::advance(Clock::time_point now) {
         presented_ = frame;
         deadline_.reset();
         count_frame(now);
-        for (auto& [node, member] : members_) tell(out, node, member, std::min(member.rendered, frame), now);
     }
+    // One that comes too late for the group shows what it has: better than nothing, and it frees its buffers. However
+    // that has become known: a node waits for the word, also while the group is held.
+    for (auto& [node, member] : members_)
+        if (const auto due = std::min(member.rendered, presented_); member.takes_part(due))
+            tell(out, node, member, due, now);
     forget_past();
     if (!someone_ahead()) deadline_.reset();
     else if (!deadline_) deadline_ = now + limit_;

@@ -191,16 +191,19 @@ class Trial:
             if verdicts[-1].good:
                 wrong = max((i for i, verdict in enumerate(verdicts) if not verdict.good), default=-1)
                 return taken[wrong + 1][0], late
+            if not late and self.pictures:
+                self._write(taken[-1])
             late = True
             if time.monotonic() > begin + BACK:
-                if self.pictures:
-                    self._write(taken[-1])
                 raise AssertionError(f"frames {taken[-1][1]}: {verdicts[-1]}")
 
     def _write(self, taken: tuple[float, list[int], numpy.ndarray]) -> None:
-        """What the wall shows, and beside it what it should."""
-        cv2.imwrite(str(self.pictures / "shown.png"), taken[2])
-        cv2.imwrite(str(self.pictures / "expected.png"), self.one.picture(taken[1]))
+        """What the wall shows when it is late, and beside it what it should; and what the daemons have said."""
+        at = time.strftime("%H%M%S")
+        cv2.imwrite(str(self.pictures / f"{at}-shown.png"), taken[2])
+        cv2.imwrite(str(self.pictures / f"{at}-expected.png"), self.one.picture(taken[1]))
+        for daemon in self.wall.daemons:
+            (self.pictures / f"{at}-{daemon}.log").write_text(self.wall.log(daemon))
 
     def _sample(self, begin: float) -> tuple[float, list[int], numpy.ndarray] | None:
         """When it was held, at which frames, and what the wall shows then; it is held then. None: not all are on the
@@ -243,8 +246,6 @@ def run(count: int | None, seconds: float, seed: int, limit: float, only: list[s
             except (AssertionError, WallError) as error:
                 say(f"{number}: FAILED {error}")
                 for daemon in wall.daemons:
-                    if pictures:
-                        (pictures / f"{daemon}.log").write_text(wall.log(daemon))
                     say(f"--- {daemon}:\n{wall.log(daemon)[-4000:]}")
                 return 1
             times.append(took)

@@ -247,6 +247,21 @@ TEST(Resume, KeepsAHeldFrame) {
     EXPECT_EQ(swap.step(1, now), (Presents{{kLeft, 8}}));
 }
 
+/// Its report is all that is heard of that frame; the group goes nowhere while it is held.
+TEST(Resume, TellsANodeThatIsBehindToShowWhatItHasDrawn) {
+    const Clock::time_point now{};
+    SwapCoordinator swap(std::chrono::milliseconds(250), false);
+    swap.set_nodes({kLeft, kRight}, now);
+    swap.resume(kLeft, 9, 9, now);
+    swap.hold(now);
+    EXPECT_EQ(swap.resume(kRight, 5, 4, now), (Presents{{kRight, 5}}));
+    EXPECT_TRUE(swap.rendered(kRight, 5, now).empty()) << "once";
+    EXPECT_EQ(swap.rendered(kRight, 6, now), (Presents{{kRight, 6}})) << "and so on until it shows what all show";
+    EXPECT_FALSE(swap.shown(9));
+    EXPECT_EQ(swap.rendered(kRight, 10, now), (Presents{{kRight, 9}})) << "and no more";
+    EXPECT_TRUE(swap.shown(9));
+}
+
 TEST(Resume, TakesInWhatANodeHasShownByItself) {
     Clock::time_point now{};
     SwapCoordinator swap(std::chrono::milliseconds(250), false);
