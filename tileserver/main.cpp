@@ -18,6 +18,7 @@
 #include "common/daemon/keep_running.h"
 #include "common/log/log.h"
 #include "common/net/sockets.h"
+#include "tileserver/gpu/gpu_devices.h"
 #include "tileserver/gpu/memory.h"
 #include "tileserver/io/node_server.h"
 #include "tileserver/node_role.h"
@@ -49,7 +50,8 @@ enum class Ended { stopped, starts_anew };
 Result<Ended> run(const NodeRole& role) {
     const auto& node = role.node();
     const auto described = [&role](const std::string& wall_toml) { return role.described(wall_toml); };
-    const auto compilers = CompilerHost::start(config::name_of(node.backend));  // forks: before there are threads
+    const auto compilers =
+        CompilerHost::start({config::name_of(node.backend), node.gpu()});  // forks: before there are threads
     if (!compilers) return tl::unexpected(compilers.error());
     asio::io_context io(1);
     auto server = Result<std::unique_ptr<NodeServer>>(nullptr);
@@ -129,11 +131,17 @@ int main(int argc, char** argv) {
     app.add_option("--node", source.node, "which of its [[node]]s this one is")->needs(config);
     auto* state = app.add_option("--state", source.state,
                                  "where this machine keeps its key, and what it knows of the wall that it has joined");
+    bool list_gpus = false;
+    app.add_flag("--gpus", list_gpus, "only lists this machine's GPUs, for `gpu` in wall.toml")->excludes(config);
     app.add_option("--join", line, "joins a wall of another machine, with a line of `wallctl join-token`")
         ->needs(state)
         ->excludes(config);
     app.set_version_flag("--version", WALLGL_VERSION);
     CLI11_PARSE(app, argc, argv);
+    if (list_gpus) {
+        std::cout << gpu_table();
+        return 0;
+    }
     const bool of_file = !source.config.empty() && !source.node.empty();
     const bool of_state = source.config.empty() && source.node.empty() && !source.state.empty();
     if (!of_file && !of_state)

@@ -71,9 +71,10 @@ void read_http(TreeReader& read, const toml::table& root, WallConfig& out) {
 
 TileConfig read_tile(TreeReader& read, const toml::table& table) {
     read.only(table, "[[node.tile]]",
-              {"name", "rect", "output", "display", "monitor", "position", "rotation", "pixels", "size_mm", "bezel_mm",
-               "warp", "blend", "color"});
+              {"name", "rect", "output", "display", "monitor", "position", "gpu", "rotation", "pixels", "size_mm",
+               "bezel_mm", "warp", "blend", "color"});
     TileConfig out{read.text(table, "name"), read.rect(table, "rect"), read_output(read, table)};
+    out.gpu = read_gpu(read, table);
     read_tile_output(read, table, out);
     return out;
 }

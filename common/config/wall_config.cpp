@@ -11,7 +11,7 @@ const char* output_name(const TileConfig& tile) { return tile.window ? "window" 
 
 bool draws_as(const TileConfig& a, const TileConfig& b) {
     const bool same_window = !a.window || (a.output.width == b.output.width && a.output.height == b.output.height);
-    return a.name == b.name && a.rect == b.rect && a.window == b.window && same_window;
+    return a.name == b.name && a.rect == b.rect && a.window == b.window && a.gpu == b.gpu && same_window;
 }
 
 bool draws_as(const NodeConfig& a, const NodeConfig& b) {

@@ -36,6 +36,7 @@ struct TileConfig {
     std::optional<WindowConfig> window;  ///< none: headless
     geom::TileOutput output;             ///< how that shows it; the warp comes with load_warps()
     std::string warp_file;               ///< as wall.toml names it; empty: none
+    std::string gpu = "auto";            ///< or a number, or a PCI address
     bool operator==(const TileConfig&) const = default;
 };
 /// `headless` or `window`, as in wall.toml.
@@ -48,6 +49,8 @@ struct NodeConfig {
     Backend backend = Backend::egl;
     net::Address listen;            ///< data streams
     std::vector<TileConfig> tiles;  ///< slot = index
+    /// That draws its tiles: it is the same for all.
+    std::string gpu() const { return tiles.empty() ? "auto" : tiles.front().gpu; }
     bool operator==(const NodeConfig&) const = default;
 };
 bool draws_as(const NodeConfig& a, const NodeConfig& b);

@@ -75,11 +75,11 @@ std::vector<std::byte> answer(const Gl& gl, const CompilerQuestion& question) {
     return {};
 }
 
-void compile(int socket, const std::string& backend_name, const CompilerLimits& limits) {
+void compile(int socket, const BackendChoice& choice, const CompilerLimits& limits) {
     ::setenv("LP_NUM_THREADS", "0", 1);  // nothing is drawn
     limit(RLIMIT_CORE, 0);
     if (limits.memory != 0) limit(RLIMIT_DATA, limits.memory);
-    const auto backend = open_backend(backend_name);
+    const auto backend = open_backend(choice);
     if (!backend || !(*backend)->make_current()) return;
     Gl gl;
     gl.load([&](const char* function) { return (*backend)->get_proc_address(function); });
@@ -98,7 +98,7 @@ void end_with_parent(pid_t parent) {
 }
 
 /// Forks a compiler for each socket that comes.
-void serve(int socket, const std::string& backend, const CompilerLimits& limits) {
+void serve(int socket, const BackendChoice& backend, const CompilerLimits& limits) {
     ::signal(SIGCHLD, SIG_IGN);  // nobody asks how they ended
     ::prctl(PR_SET_NAME, "wallgl-compiler");
     const pid_t self = ::getpid();
@@ -113,7 +113,7 @@ void serve(int socket, const std::string& backend, const CompilerLimits& limits)
 
 }  // namespace
 
-Result<std::unique_ptr<CompilerHost>> CompilerHost::start(std::string backend, const CompilerLimits& limits) {
+Result<std::unique_ptr<CompilerHost>> CompilerHost::start(BackendChoice backend, const CompilerLimits& limits) {
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
         return fail(std::string("socketpair: ") + std::strerror(errno));

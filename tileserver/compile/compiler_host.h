@@ -17,6 +17,7 @@
 
 #include "common/base/result.h"
 #include "common/base/unique_fd.h"
+#include "tileserver/gpu/backend.h"
 
 namespace wall::tileserver {
 
@@ -29,8 +30,8 @@ struct CompilerLimits {
 
 class CompilerHost {
 public:
-    /// Forks. While this process has one thread. `backend`: of open_backend().
-    static Result<std::unique_ptr<CompilerHost>> start(std::string backend, const CompilerLimits& limits = {});
+    /// Forks. While this process has one thread.
+    static Result<std::unique_ptr<CompilerHost>> start(BackendChoice backend, const CompilerLimits& limits = {});
     /// All compilers end.
     ~CompilerHost();
     CompilerHost(const CompilerHost&) = delete;

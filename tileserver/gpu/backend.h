@@ -4,7 +4,9 @@
 // render thread.
 #pragma once
 
+#include <concepts>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "common/base/result.h"
@@ -30,13 +32,25 @@ public:
     virtual TileWindows* windows() { return nullptr; }
 };
 
-/// A GPU's EGL device if there is one, else Mesa's surfaceless platform (llvmpipe).
-Result<std::unique_ptr<GlBackend>> open_egl_backend();
+inline constexpr std::string_view kAnyGpu = "auto";
+
+/// Which driver, in the words of wall.toml.
+struct BackendChoice {
+    template <class Name>
+    requires std::convertible_to<Name, std::string_view> BackendChoice(
+        const Name& backend, std::string_view which = kAnyGpu)  // NOLINT: a name alone is a choice
+        : name(std::string_view(backend)), gpu(which) {}
+    std::string name;  ///< egl, osmesa
+    std::string gpu;   ///< of egl (gpu_devices.h)
+};
+
+/// A GPU's EGL device if there is one, else Mesa's surfaceless platform (llvmpipe). `gpu`: as of choose_gpu().
+Result<std::unique_ptr<GlBackend>> open_egl_backend(std::string_view gpu = kAnyGpu);
 /// Off-screen Mesa, from a library that is looked for now; newer Mesa releases have none.
 Result<std::unique_ptr<GlBackend>> open_osmesa_backend();
 /// EGL on an X display, with windows there.
 Result<std::unique_ptr<GlBackend>> open_window_backend(const WindowRequest& request);
-/// Without windows, by its name in wall.toml: `egl` or `osmesa`.
-Result<std::unique_ptr<GlBackend>> open_backend(std::string_view name);
+/// Without windows.
+Result<std::unique_ptr<GlBackend>> open_backend(const BackendChoice& choice);
 
 }  // namespace wall::tileserver

@@ -1,38 +1,25 @@
 // SPDX-License-Identifier: MIT
 // The EGL backend: no window system, no surface; all drawing goes to framebuffer objects. Render thread.
-#include <array>
+#include <functional>
+#include <vector>
 
 #include "tileserver/gpu/backend.h"
 #include "tileserver/gpu/egl_context.h"
+#include "tileserver/gpu/gpu_devices.h"
 
 namespace wall::tileserver {
 namespace {
 
-template <class Function>
-Function extension(const char* name) {
-    return reinterpret_cast<Function>(eglGetProcAddress(name));
-}
-
-/// The first device that is not a software rasterizer; no display if there is none.
-EGLDisplay gpu_display() {
-    const auto query_devices = extension<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
-    const auto query_string = extension<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
-    const auto get_display = extension<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
-    if (query_devices == nullptr || query_string == nullptr || get_display == nullptr) return EGL_NO_DISPLAY;
-    std::array<EGLDeviceEXT, 16> devices{};
-    EGLint count = 0;
-    if (query_devices(static_cast<EGLint>(devices.size()), devices.data(), &count) == EGL_FALSE) return EGL_NO_DISPLAY;
-    for (EGLint i = 0; i < count; ++i) {
-        const EGLDeviceEXT device = devices[static_cast<std::size_t>(i)];
-        if (has_word(query_string(device, EGL_EXTENSIONS), "EGL_MESA_device_software")) continue;
-        const EGLDisplay display = get_display(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
-        if (display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE) return display;
-    }
-    return EGL_NO_DISPLAY;
+/// None: the driver has none for it.
+EGLDisplay display_of(const GpuDevice& gpu) {
+    const auto get_display = egl_extension<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
+    if (get_display == nullptr) return EGL_NO_DISPLAY;
+    const EGLDisplay display = get_display(EGL_PLATFORM_DEVICE_EXT, gpu.egl, nullptr);
+    return display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE ? display : EGL_NO_DISPLAY;
 }
 
 EGLDisplay surfaceless_display() {
-    const auto get_display = extension<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
+    const auto get_display = egl_extension<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
     if (get_display == nullptr) return EGL_NO_DISPLAY;
     const EGLDisplay display = get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
     return display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE ? display : EGL_NO_DISPLAY;
@@ -60,8 +47,16 @@ private:
 
 }  // namespace
 
-Result<std::unique_ptr<GlBackend>> open_egl_backend() {
-    for (const auto find_display : {gpu_display, surfaceless_display}) {
+Result<std::unique_ptr<GlBackend>> open_egl_backend(std::string_view gpu) {
+    const auto gpus = gpu_devices();
+    const auto chosen = choose_gpu(gpus, gpu);
+    if (!chosen) return tl::unexpected(chosen.error());
+    // Without a choice the next one does, and at last the software renderer.
+    std::vector<std::function<EGLDisplay()>> ways;
+    for (std::size_t i = *chosen; i < gpus.size() && (i == *chosen || gpu == kAnyGpu); ++i)
+        ways.push_back([&gpus, i] { return display_of(gpus[i]); });
+    if (gpus.empty() || gpu == kAnyGpu) ways.push_back(surfaceless_display);
+    for (const auto& find_display : ways) {
         const EGLDisplay display = find_display();
         if (display == EGL_NO_DISPLAY) continue;
         const EGLContext context = create_egl_context(display);

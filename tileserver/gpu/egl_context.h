@@ -13,6 +13,11 @@ namespace wall::tileserver {
 
 /// "eglXyz failed, EGL error 0x3009": the last error of this thread, which EGL then forgets.
 std::string egl_error(const char* call);
+/// Null: there is no such function.
+template <class Function>
+Function egl_extension(const char* name) {
+    return reinterpret_cast<Function>(eglGetProcAddress(name));
+}
 /// Whether an extension is in a list as eglQueryString() gives it; null is an empty list.
 bool has_word(const char* list, std::string_view word);
 /// OpenGL 4.5 compatibility, for surfaces of any config and for none, and robust where the driver offers that.

@@ -125,7 +125,8 @@ Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor execu
     auto listener = net::Listener::open(executor, address, peers);
     if (!listener) return tl::unexpected(listener.error());
     server->listener_.emplace(std::move(*listener));
-    auto render = RenderThread::start(config::name_of(node.backend), *server, window_request(wall, node), compilers);
+    auto render = RenderThread::start(BackendChoice(config::name_of(node.backend), node.gpu()), *server,
+                                      window_request(wall, node), compilers);
     if (!render) return tl::unexpected(render.error());
     server->render_ = std::move(*render);
     return server;
@@ -375,6 +376,8 @@ void NodeServer::handle(const proto::Envelope& envelope) {
         case Case::kPong: return;
         case Case::kWallNote: wall_note_ = envelope.wall_note(); return;
         case Case::kFramesRequest: return render_->report_frames(SessionId(envelope.frames_request().session()));
+        case Case::kTilePattern:
+            return render_->set_pattern(envelope.tile_pattern().slot(), pattern_of(envelope.tile_pattern()));
         case Case::kSnapshotRequest: {
             const auto& request = envelope.snapshot_request();
             return render_->request_picture({.id = PictureId(request.request()),

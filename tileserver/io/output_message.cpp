@@ -7,6 +7,9 @@
 namespace wall::tileserver {
 namespace {
 
+constexpr std::uint32_t kMostBit = 15;
+constexpr std::size_t kMostLabel = 1 << 20;  // bytes
+
 using Floats = google::protobuf::RepeatedField<float>;
 
 bool in_range(const Floats& values, float least, float most) {
@@ -69,6 +72,29 @@ Result<void> take(bool has, const Told& told, Read read, Out take_it) {
 }
 
 }  // namespace
+
+std::shared_ptr<const TestPattern> pattern_of(const proto::TilePattern& told) {
+    using Kind = proto::TilePattern;
+    TestPattern out;
+    switch (told.kind()) {
+        case Kind::GRID: out.kind = TestPattern::Kind::grid; break;
+        case Kind::RAMPS: out.kind = TestPattern::Kind::ramps; break;
+        case Kind::NAMES: out.kind = TestPattern::Kind::names; break;
+        case Kind::WHITE: out.kind = TestPattern::Kind::white; break;
+        case Kind::BLACK: out.kind = TestPattern::Kind::black; break;
+        case Kind::CODE: out.kind = TestPattern::Kind::code; break;
+        default: return nullptr;
+    }
+    out.on_output = told.on_output();
+    out.bit = std::min(told.bit(), kMostBit);
+    out.rows = told.rows();
+    out.inverted = told.inverted();
+    if (std::uint64_t{told.label_width()} * told.label_height() == told.label().size() &&
+        told.label().size() <= kMostLabel)
+        out.label = {static_cast<std::int32_t>(told.label_width()), static_cast<std::int32_t>(told.label_height()),
+                     told.label()};
+    return std::make_shared<const TestPattern>(std::move(out));
+}
 
 Result<std::shared_ptr<const geom::TileOutput>> output_of(const proto::TileOutput& told) {
     constexpr auto kMost = static_cast<std::uint32_t>(geom::kMaxOutputExtent);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What walld says of a tile's output. Pure.
+// What walld says of what a tile and its output show. Pure.
 #pragma once
 
 #include <memory>
@@ -7,9 +7,12 @@
 #include "common/base/result.h"
 #include "common/geom/tile_output.h"
 #include "proto/control.pb.h"
+#include "tileserver/render/test_pattern.h"
 
 namespace wall::tileserver {
 
+/// None: programs again.
+std::shared_ptr<const TestPattern> pattern_of(const proto::TilePattern& told);
 /// An error: what no output can be.
 Result<std::shared_ptr<const geom::TileOutput>> output_of(const proto::TileOutput& told);
 

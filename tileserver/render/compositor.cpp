@@ -17,6 +17,7 @@ std::uint32_t at_most(std::uint32_t wanted, std::int32_t limit) {
 
 Compositor::~Compositor() {
     for (auto& [slot, target] : targets_) release(target);
+    for (auto& [slot, pattern] : patterns_) release(pattern.on_output);
     gl_.DeleteFramebuffers(1, &source_);
     for (const Readback& readback : readbacks_) {
         gl_.DeleteSync(readback.done);
@@ -33,6 +34,25 @@ void Compositor::set_stacking(std::vector<StackEntry> bottom_first) {
     if (stacking_ == bottom_first) return;  // walld says it with other things, too
     stacking_ = std::move(bottom_first);
     ++node_.damage;
+}
+
+void Compositor::set_pattern(std::uint32_t slot, std::shared_ptr<const TestPattern> pattern) {
+    auto& of_slot = patterns_[slot];
+    release(of_slot.on_output);
+    of_slot.what = std::move(pattern);
+    if (!of_slot.what) patterns_.erase(slot);
+    ++node_.damage;
+}
+
+void Compositor::clear_patterns() {
+    while (!patterns_.empty()) set_pattern(patterns_.begin()->first, nullptr);
+}
+
+void Compositor::draw_pattern(const TileTarget& target, const TestPattern& pattern) const {
+    const auto pixels = pattern_pixels(pattern, target.rect);
+    node_.driver.neutral_pixel_transfer();
+    gl_.TextureSubImage2D(target.texture, 0, 0, 0, target.rect.width, target.rect.height, GL_RGBA, GL_UNSIGNED_BYTE,
+                          pixels.data());
 }
 
 const Tile* Compositor::tile(std::uint32_t slot) const {
@@ -84,9 +104,23 @@ Compositor::TileTarget Compositor::scaled(const PictureTexture& picture, geom::R
     return out;
 }
 
+PictureTexture Compositor::as_it_is(const TileTarget& target) {
+    return {target.texture, target.framebuffer, target.rect.width, target.rect.height, target.version};
+}
+
 PictureTexture Compositor::as_output_shows(const Tile& tile, const TileTarget& target) {
-    const PictureTexture canvas{target.texture, target.framebuffer, target.rect.width, target.rect.height,
-                                target.version};
+    const PictureTexture canvas = as_it_is(target);
+    if (const auto found = patterns_.find(tile.slot); found != patterns_.end() && found->second.what->on_output) {
+        auto& [what, drawn] = found->second;
+        const geom::Rect size{0, 0, tile.output ? tile.output->width : tile.rect.width,
+                              tile.output ? tile.output->height : tile.rect.height};
+        if (drawn.texture == 0 || drawn.rect != size) {
+            release(drawn);
+            drawn = make_target(size);
+            draw_pattern(drawn, *what);
+        }
+        return {drawn.texture, drawn.framebuffer, size.width, size.height, target.version};
+    }
     if (!tile.output) return canvas;
     auto shown = output_pass_.show(tile.slot, tile.output, canvas);
     if (shown) return *shown;
@@ -98,8 +132,14 @@ PictureTexture Compositor::as_output_shows(const Tile& tile, const TileTarget& t
 void Compositor::compose(TileTarget& target, std::uint32_t slot, const StackEntry& only) {
     if (target.composed == node_.damage && target.only == only) return;
     target.composed = node_.damage;
-    target.version = ++compositions_;
     target.only = only;
+    const auto found = patterns_.find(slot);
+    const bool hidden = found != patterns_.end() && !found->second.what->on_output && !only.session;
+    const auto pattern = hidden ? found->second.what : nullptr;
+    if (pattern && target.pattern == pattern) return;  // whatever the programs behind it do
+    target.version = ++compositions_;
+    target.pattern = pattern;
+    if (pattern) return draw_pattern(target, *pattern);
     node_.driver.disable_scissor();
     gl_.ClearTexImage(target.texture, 0, GL_RGBA, GL_FLOAT, background_.data());
     for (const StackEntry& entry : stacking_) {
@@ -152,10 +192,9 @@ void Compositor::request(const PictureRequest& request) {
         refused_.push_back({request, 0, 0, {}, "this node has no tile in slot " + std::to_string(request.slot)});
         return;
     }
-    Tile as_wanted = *wanted;
-    if (!request.output) as_wanted.output = nullptr;
-    const geom::Rect whole = as_wanted.output ? geom::Rect{0, 0, as_wanted.output->width, as_wanted.output->height}
-                                              : geom::Rect{0, 0, as_wanted.rect.width, as_wanted.rect.height},
+    const bool as_output = request.output && wanted->output;
+    const geom::Rect whole = as_output ? geom::Rect{0, 0, wanted->output->width, wanted->output->height}
+                                       : geom::Rect{0, 0, wanted->rect.width, wanted->rect.height},
                      crop = request.crop.empty() ? whole : geom::intersect(request.crop, whole);
     if (crop.empty()) {
         refused_.push_back({request, 0, 0, {}, "the tile is smaller than the part of it that is wanted"});
@@ -164,7 +203,7 @@ void Compositor::request(const PictureRequest& request) {
     TileTarget& composed = target(*wanted);
     compose(composed, request.slot, {request.session, request.surface});
     node_.driver.disable_scissor();
-    const PictureTexture picture = as_output_shows(as_wanted, composed);
+    const PictureTexture picture = request.output ? as_output_shows(*wanted, composed) : as_it_is(composed);
     const auto width = static_cast<std::int32_t>(at_most(request.width, crop.width));
     const auto height = static_cast<std::int32_t>(at_most(request.height, crop.height));
     TileTarget small = scaled(picture, crop, width, height);

@@ -16,6 +16,7 @@
 #include "common/base/ids.h"
 #include "tileserver/render/output_pass.h"
 #include "tileserver/render/picture_budget.h"
+#include "tileserver/render/test_pattern.h"
 #include "tileserver/session/render_node.h"
 
 namespace wall::tileserver {
@@ -56,6 +57,9 @@ public:
 
     void set_background(std::uint32_t rgb);
     void set_stacking(std::vector<StackEntry> bottom_first);
+    /// Instead of the layers; none: these again.
+    void set_pattern(std::uint32_t slot, std::shared_ptr<const TestPattern> pattern);
+    void clear_patterns();
     /// What the tile's output is to show: all layers, composed now unless they are already. Good until the compositor
     /// is called again. None: this node has no such tile (yet).
     std::optional<PictureTexture> output(std::uint32_t slot);
@@ -73,9 +77,10 @@ private:
     struct TileTarget {
         geom::Rect rect;
         GLuint texture = 0, framebuffer = 0;
-        std::uint64_t composed = 0;  // RenderNode::damage that the picture shows; 0: none
-        std::uint64_t version = 0;   // one for each time
-        StackEntry only;             // of one session or surface only
+        std::uint64_t composed = 0;                  // RenderNode::damage that the picture shows; 0: none
+        std::uint64_t version = 0;                   // one for each time
+        StackEntry only;                             // of one session or surface only
+        std::shared_ptr<const TestPattern> pattern;  // that it shows
     };
     struct Readback {
         PictureRequest request;
@@ -90,10 +95,12 @@ private:
     /// Scaled to where the window lies.
     void draw_whole(const TileTarget& target, const Layer& layer, const geom::Rect& place);
     void draw_layer(const TileTarget& target, const Layer& layer);
+    static PictureTexture as_it_is(const TileTarget& target);
     PictureTexture as_output_shows(const Tile& tile, const TileTarget& target);
     TileTarget make_target(const geom::Rect& rect) const;
     TileTarget scaled(const PictureTexture& picture, geom::Rect part, std::int32_t width, std::int32_t height) const;
     void release(TileTarget& target) const;
+    void draw_pattern(const TileTarget& target, const TestPattern& pattern) const;
     void read_back(const PictureRequest& request, GLuint framebuffer, const geom::Rect& part);
     Picture finish(const Readback& readback);
 
@@ -104,6 +111,11 @@ private:
     std::vector<StackEntry> stacking_;
     std::map<std::uint32_t, TileTarget> targets_;  // by slot
     GLuint source_ = 0;                            // framebuffer that a layer's texture is read through
+    struct Pattern {
+        std::shared_ptr<const TestPattern> what;
+        TileTarget on_output;  // drawn already, if it is for the output
+    };
+    std::map<std::uint32_t, Pattern> patterns_;  // by slot
     std::uint64_t compositions_ = 0;
     OutputPass output_pass_;
     bool told_of_failure_ = false;

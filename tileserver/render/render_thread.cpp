@@ -402,12 +402,12 @@ private:
     bool lost_ = false;
 };
 
-Result<std::unique_ptr<RenderThread>> RenderThread::start(std::string backend, NodeEvents& events,
+Result<std::unique_ptr<RenderThread>> RenderThread::start(BackendChoice backend, NodeEvents& events,
                                                           WindowRequest windows, const CompilerHost* compilers) {
     const auto open = [backend, windows = std::move(windows)] {
         return windows.windows.empty() ? open_backend(backend) : open_window_backend(windows);
     };
-    return start(open, std::move(backend), events, compilers);
+    return start(open, std::move(backend.name), events, compilers);
 }
 
 Result<std::unique_ptr<RenderThread>> RenderThread::start(OpenBackend open, std::string name, NodeEvents& events,
@@ -508,6 +508,7 @@ void RenderThread::remove_session(SessionId session) {
 void RenderThread::set_tiles(std::vector<Tile> tiles, std::uint32_t background) {
     post([tiles = std::move(tiles), background](Loop& loop) {
         loop.node_.tiles = tiles;
+        loop.compositor_.clear_patterns();
         loop.compositor_.set_background(background);
         loop.driver_.disable_scissor();
         for (auto& [id, stream] : loop.streams_)
@@ -525,6 +526,9 @@ void RenderThread::set_stacking(std::vector<StackEntry> bottom_first, std::vecto
         loop.node_.returning = {returning.begin(), returning.end()};
         loop.show_uncoordinated();
     });
+}
+void RenderThread::set_pattern(std::uint32_t slot, std::shared_ptr<const TestPattern> pattern) {
+    post([=](Loop& loop) { loop.compositor_.set_pattern(slot, pattern); });
 }
 void RenderThread::present(SessionId session, SurfaceId surface, std::uint32_t frame) {
     post([=](Loop& loop) {

@@ -75,7 +75,7 @@ public:
     using OpenBackend = std::function<Result<std::unique_ptr<GlBackend>>()>;
     /// Makes the driver's context in the new thread, and opens the windows, if there are any; an error if there is
     /// none. `compilers`, which outlives it, for trials of shaders; null: they are compiled without limits.
-    static Result<std::unique_ptr<RenderThread>> start(std::string backend, NodeEvents& events,
+    static Result<std::unique_ptr<RenderThread>> start(BackendChoice backend, NodeEvents& events,
                                                        WindowRequest windows = {},
                                                        const CompilerHost* compilers = nullptr);
     ~RenderThread();
@@ -107,6 +107,8 @@ public:
     /// `returning` nobody will say present() yet.
     void set_stacking(std::vector<StackEntry> bottom_first, std::vector<StackEntry> held = {},
                       const std::vector<SessionId>& returning = {});
+    /// What the tile shows instead of programs, until set_tiles(); none: programs again.
+    void set_pattern(std::uint32_t slot, std::shared_ptr<const TestPattern> pattern);
     void present(SessionId session, SurfaceId surface, std::uint32_t frame);
     /// Whether somebody will say present(); if not, frames show when they are done.
     void set_coordinated(bool coordinated);

@@ -42,7 +42,9 @@ struct Options {
     unsigned fps = 10;
     double seconds = 10, interval = 1;
     std::uint64_t count = 0;
-    bool off = false, of_output = false;
+    bool off = false, of_output = false, inverted = false;
+    std::string axis = "x";
+    int bit = 0;
 };
 
 /// What main() runs in the end; set by the verb that was given.
@@ -68,6 +70,15 @@ Action tell(const Options& options, const char* verb, std::function<json()> argu
     return [&options, verb, arguments, limit] {
         return print(options, ask(options.walld, verb, arguments(), limit), kNoTable);
     };
+}
+
+json pattern_arguments(const Options& options) {
+    json out{{"kind", options.name}};
+    if (!options.tile.empty()) out["tile"] = options.tile;
+    if (options.of_output) out["output"] = true;
+    if (options.name == "code")
+        out.update({{"bit", options.bit}, {"axis", options.axis}, {"inverted", options.inverted}});
+    return out;
 }
 
 Outcome<void> screenshot(const Options& options) {
@@ -299,6 +310,15 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
     recording->add_option("--fps", o.fps, "frames a second (10)")->check(CLI::Range(1, 60));
     auto* recorded_tile = recording->add_option("--tile", o.tile, "only this tile");
     recording->add_flag("--output", o.of_output, "as the tile's monitor or projector gets it")->needs(recorded_tile);
+    auto* pattern = verb("pattern", "shows test pictures instead of the programs, until `wallctl pattern off`",
+                         tell(o, "pattern", [&o] { return pattern_arguments(o); }));
+    pattern->add_option("KIND", o.name, "grid, ramps, names, white, black, code (a bit of a Gray code) or off")
+        ->required();
+    pattern->add_option("--tile", o.tile, "only this tile");
+    pattern->add_flag("--output", o.of_output, "in the output's own pixels: not turned, warped or blended");
+    pattern->add_option("--bit", o.bit, "of a code: 0 changes most often (0)");
+    pattern->add_option("--axis", o.axis, "of a code: x tells columns, y rows (x)");
+    pattern->add_flag("--inverted", o.inverted, "of a code: dark where it would be bright");
     auto* hold = verb("hold", "shows no further frame of a program until it is stepped", tell(o, "hold", [&o] {
                           return json{{"id", o.id}, {"on", !o.off}};
                       }));

@@ -2,11 +2,13 @@
 #include "walld/control/operator_desk.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/asio/this_coro.hpp>
 
 #include "common/log/log.h"
 #include "walld/control/arguments.h"
 #include "walld/control/audit.h"
+#include "walld/streams/pattern_label.h"
 #include "walld/streams/stream_status.h"
 #include "walld/wall/status.h"
 
@@ -21,6 +23,50 @@ Outcome<Target> target_of(const Asked& asked) {
     return text_of(asked.arguments, "id").and_then([](const std::string& text) { return Target::parse(text); });
 }
 Outcome<std::string> name_of(const Asked& asked) { return text_of(asked.arguments, "name"); }
+
+constexpr std::int64_t kMostBit = 14;  // of a column or row: no tile has more than 32768
+
+Outcome<proto::TilePattern> pattern_of(const json& arguments) {
+    constexpr std::array<std::pair<const char*, proto::TilePattern::Kind>, 7> kKinds{
+        {{"off", proto::TilePattern::NONE},
+         {"grid", proto::TilePattern::GRID},
+         {"ramps", proto::TilePattern::RAMPS},
+         {"names", proto::TilePattern::NAMES},
+         {"white", proto::TilePattern::WHITE},
+         {"black", proto::TilePattern::BLACK},
+         {"code", proto::TilePattern::CODE}}};
+    const auto kind = text_of(arguments, "kind"), axis = text_of(arguments, "axis");
+    const auto bit = number_of(arguments, "bit", 0, 0, kMostBit);
+    const auto output = flag_of(arguments, "output", false), inverted = flag_of(arguments, "inverted", false);
+    if (!kind) return tl::unexpected(kind.error());
+    if (!axis) return tl::unexpected(axis.error());
+    if (!bit) return tl::unexpected(bit.error());
+    if (!output) return tl::unexpected(output.error());
+    if (!inverted) return tl::unexpected(inverted.error());
+    const auto found = std::ranges::find(kKinds, *kind, [](const auto& entry) { return std::string(entry.first); });
+    if (found == kKinds.end())
+        return refuse(RefusalKind::invalid,
+                      "'kind' is '" + *kind + "': expected grid, ramps, names, white, black, code or off");
+    if (!axis->empty() && *axis != "x" && *axis != "y")
+        return refuse(RefusalKind::invalid, "'axis' is '" + *axis + "': expected x or y");
+    proto::TilePattern out;
+    out.set_kind(found->second);
+    out.set_on_output(*output);
+    out.set_bit(static_cast<std::uint32_t>(*bit));
+    out.set_rows(*axis == "y");
+    out.set_inverted(*inverted);
+    return out;
+}
+
+void add_label(proto::TilePattern& pattern, const config::NodeConfig& node, const config::TileConfig& tile) {
+    const auto& rect = tile.rect;
+    auto label = pattern_label({tile.name, "node " + node.name,
+                                std::to_string(rect.width) + "x" + std::to_string(rect.height) + "+" +
+                                    std::to_string(rect.x) + "+" + std::to_string(rect.y)});
+    pattern.set_label_width(label.width);
+    pattern.set_label_height(label.height);
+    pattern.set_label(std::move(label.bytes));
+}
 
 Answer done() { return {}; }
 Answer as_answer(json content) { return {std::move(content), {}}; }
@@ -46,6 +92,7 @@ const OperatorDesk::Row OperatorDesk::kVerbs[] = {
     {"hold", Need::own, &OperatorDesk::hold},
     {"step", Need::own, &OperatorDesk::step},
     {"weight", Need::operate, &OperatorDesk::weight},
+    {"pattern", Need::operate, &OperatorDesk::pattern},
     {"save_layout", Need::operate, &OperatorDesk::save_layout},
     {"load_layout", Need::operate, &OperatorDesk::load_layout},
     {"delete_layout", Need::operate, &OperatorDesk::delete_layout},
@@ -228,6 +275,27 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::screenshot(const Asked& asked) {
     auto png = co_await snapshots_.take(std::move(query));
     if (!png) co_return tl::unexpected(png.error());
     co_return Answer{{{"bytes", (*png)->size()}}, std::move(*png)};
+}
+
+/// {"kind": what `wallctl pattern` shows, "tile": one; without it all, "output", "bit", "axis", "inverted"}
+asio::awaitable<Outcome<Answer>> OperatorDesk::pattern(const Asked& asked) {
+    const auto told = pattern_of(asked.arguments);
+    if (!told) co_return tl::unexpected(told.error());
+    const auto only = text_of(asked.arguments, "tile");
+    if (!only) co_return tl::unexpected(only.error());
+    std::size_t shown = 0;
+    for (const NodeIndex node : wall_.nodes().ids()) {
+        const auto config = wall_.nodes()[node].config;
+        for (const auto& tile : config->tiles) {
+            if (!only->empty() && tile.name != *only) continue;
+            auto pattern = *told;
+            if (pattern.kind() == proto::TilePattern::NAMES) add_label(pattern, *config, tile);
+            if (auto set = wall_.set_pattern(tile.name, pattern); !set) co_return tl::unexpected(set.error());
+            ++shown;
+        }
+    }
+    if (shown == 0) co_return refuse(RefusalKind::not_found, "there is no tile '" + *only + "'");
+    co_return Answer{{{"tiles", shown}}, {}};
 }
 
 // ---- layouts ----

@@ -80,6 +80,7 @@ private:
     asio::awaitable<Outcome<Answer>> lower(const Asked&);
     asio::awaitable<Outcome<Answer>> close(const Asked&);
     asio::awaitable<Outcome<Answer>> screenshot(const Asked&);
+    asio::awaitable<Outcome<Answer>> pattern(const Asked&);
     asio::awaitable<Outcome<Answer>> hold(const Asked&);
     asio::awaitable<Outcome<Answer>> step(const Asked&);
     asio::awaitable<Outcome<Answer>> weight(const Asked&);

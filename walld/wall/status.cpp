@@ -4,6 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -96,6 +97,14 @@ json traffic_json(const SessionTraffic& traffic) {
             {"frame_bytes", std::round(rates.frame_bytes)}};
 }
 
+json pattern_json(const Wall& wall, const std::string& tile) {
+    const auto found = wall.patterns().find(tile);
+    if (found == wall.patterns().end()) return nullptr;
+    auto name = proto::TilePattern::Kind_Name(found->second.kind());
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return name;
+}
+
 /// What is done to the canvas's pixels, beside turning and scaling them.
 json steps_json(const geom::TileOutput& output) {
     json out = json::array();
@@ -148,6 +157,7 @@ json tiles_json(const Wall& wall, Clock::time_point now) {
                            {"pixels", {tile.output.width, tile.output.height}},
                            {"rotation", tile.output.rotation},
                            {"shown", steps_json(tile.output)},
+                           {"pattern", pattern_json(wall, tile.name)},
                            {"up", node.up},
                            {"frames", shown.frames},
                            {"age_ms", age},

@@ -149,6 +149,11 @@ void Wall::welcome_node(NodeIndex node) {
         if (!geom::is_plain(tile.output, tile.rect)) *entry->mutable_output() = to_proto(tile.output);
     }
     out_.to_node(node, make(&proto::Envelope::mutable_node_welcome, welcome));
+    for (std::uint32_t slot = 0; const auto& tile : nodes_[node].config->tiles) {
+        if (const auto found = patterns_.find(tile.name); found != patterns_.end())
+            tell_pattern(node, slot, found->second);
+        ++slot;
+    }
 }
 
 proto::NodeUp Wall::node_up_message(NodeIndex node, const std::string& ticket) const {

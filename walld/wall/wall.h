@@ -217,6 +217,10 @@ public:
     Outcome<void> step(const Target& target, std::uint32_t frames, Clock::time_point now);
     /// Of the whole session: 1 to wire::kMostWeight.
     Outcome<void> set_weight(const Target& target, std::uint32_t weight);
+    /// What the tile shows instead of programs, also when its node comes anew; of kind NONE: programs again.
+    Outcome<void> set_pattern(const std::string& tile, const proto::TilePattern& pattern);
+    /// By the tiles' names.
+    const std::map<std::string, proto::TilePattern>& patterns() const { return patterns_; }
     Outcome<SurfaceKey> resolve(const Target& target) const;
     /// The one surface named, or all of the session (possibly none), bottom first.
     Outcome<std::vector<SurfaceKey>> surfaces_of(const Target& target) const;
@@ -245,6 +249,7 @@ private:
     SurfaceEntry& add_surface(const SurfaceKey& key, const proto::SurfaceOpen& message);
     proto::NodeUp node_up_message(NodeIndex node, const std::string& ticket) const;
     bool take_nodes();
+    void tell_pattern(NodeIndex node, std::uint32_t slot, const proto::TilePattern& pattern);
     void take_outputs(NodeIndex node, const config::NodeConfig& config);
     void add_tiles(google::protobuf::RepeatedPtrField<proto::TileInfo>& out) const;
     geom::Rect place_after_change(const SessionEntry& session, const SurfaceEntry& surface);
@@ -302,6 +307,7 @@ private:
     void for_each_surface(const std::function<void(const SurfaceKey&, SurfaceEntry&)>& visit);
 
     config::WallConfig config_;
+    std::map<std::string, proto::TilePattern> patterns_;  // by the tiles' names
     Outbox& out_;
     RandomBytes random_;
     IdVector<NodeIndex, Node> nodes_;

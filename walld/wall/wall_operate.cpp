@@ -30,6 +30,25 @@ tl::unexpected<Refusal> no_window_yet(SessionId id) {
 
 }  // namespace
 
+void Wall::tell_pattern(NodeIndex node, std::uint32_t slot, const proto::TilePattern& pattern) {
+    auto told = pattern;
+    told.set_slot(slot);
+    out_.to_node(node, make(&proto::Envelope::mutable_tile_pattern, told));
+}
+
+Outcome<void> Wall::set_pattern(const std::string& tile, const proto::TilePattern& pattern) {
+    for (const NodeIndex node : nodes_.ids()) {
+        const auto& tiles = nodes_[node].config->tiles;
+        const auto found = std::ranges::find(tiles, tile, &config::TileConfig::name);
+        if (found == tiles.end()) continue;
+        if (pattern.kind() == proto::TilePattern::NONE) patterns_.erase(tile);
+        else patterns_[tile] = pattern;
+        if (nodes_[node].up) tell_pattern(node, static_cast<std::uint32_t>(found - tiles.begin()), pattern);
+        return {};
+    }
+    return refuse(RefusalKind::not_found, "there is no tile '" + tile + "'");
+}
+
 Outcome<Target> Target::parse(std::string_view text) {
     const auto dot = text.find('.');
     const auto session = number<std::uint32_t>(text.substr(0, dot));

@@ -49,6 +49,12 @@ def places(width: int, height: int) -> np.ndarray:
     return np.stack(np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height), axis=-1)
 
 
+def load_png_of(wall: PlannedWall) -> np.ndarray:
+    path = wall.folder / "whole.png"
+    wall.screenshot(path)
+    return load_png(path)[:, :, :3]
+
+
 class AWallOfOddOutputs(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
@@ -128,6 +134,48 @@ class AWallOfOddOutputs(unittest.TestCase):
             self.wall._until(lambda: all(not t["shown"] for t in self.wall.ctl("tiles")), "reloaded", "walld")
             self.wall.hold(self.session)
             self.assertTrue((self.picture("last") == self.canvas("last")).all())
+
+    def test_test_pictures_take_the_place_of_programs(self) -> None:
+        before = self.canvas("left")
+        self.wall.ctl("pattern", "grid")
+        self.assertEqual({tile["pattern"] for tile in self.wall.ctl("tiles")}, {"grid"})
+        whole = load_png_of(self.wall)
+        for x in (300, 400):
+            self.assertTrue((whole[20:60, x] == 128).all(), "a line of the canvas, through two tiles")
+        self.assertTrue((self.picture("low") == cv2.rotate(self.canvas("low"), cv2.ROTATE_90_COUNTERCLOCKWISE)).all())
+        self.assertFalse((self.picture("left") == self.canvas("left")).all(), "it fades")
+        self.wall.ctl("pattern", "white", "--tile", "left", "--output")
+        self.assertTrue((self.picture("left") == 255).all(), "untouched by the blend")
+        self.assertTrue((self.canvas("left") == before).all(), "the canvas has the program")
+        self.wall.ctl("pattern", "names", "--tile", "last")
+        self.assertGreater(self.picture("last").max(), 200)
+
+        with self.subTest("a node that comes anew shows it"):
+            self.wall.daemons["a"].kill()
+            self.wall.daemons["a"].wait()
+            self.wall.start_node("a")
+            self.wall.wait_nodes()
+            self.wall._until(lambda: (self.picture("left") == 255).all(), "white again", "walld")
+        with self.subTest("a bit of a code, by the API"):
+            status, answer = self.wall.rest("POST", "/api/v1/pattern", {"kind": "code", "bit": 3, "axis": "y"})
+            self.assertIn(status, (200, 403), answer)  # over HTTP only where that may operate
+            self.wall.ctl("pattern", "code", "--bit", 3, "--axis", "y", "--output")
+            rows = np.arange(SIZE[1])
+            wanted = np.where((rows ^ rows >> 1) >> 3 & 1, 255, 0)
+            self.assertTrue((self.picture("right")[:, 5, 1] == wanted).all())
+        for wrong, why in (({"kind": "stars"}, "expected grid"), ({"kind": "code", "bit": 15}, "'bit'"),
+                           ({"kind": "code", "axis": "z"}, "expected x or y"),
+                           ({"kind": "grid", "tile": "x"}, "no tile")):
+            with self.subTest(wrong=wrong), self.assertRaisesRegex(WallError, why):
+                self.wall.ctl("pattern", wrong["kind"], *(["--tile", "x"] if "tile" in wrong else []),
+                              *(["--bit", wrong["bit"]] if "bit" in wrong else []),
+                              *(["--axis", wrong["axis"]] if "axis" in wrong else []))
+        self.wall.ctl("pattern", "off")
+        self.assertEqual({tile["pattern"] for tile in self.wall.ctl("tiles")}, {None})
+        self.wall.hold(self.session, False)
+        self.wall.wait(self.session, self.wall.sessions()[0]["surfaces"][0]["frame"] + 3)
+        self.wall.hold(self.session)
+        self.assertGreater(self.canvas("left")[:, :, 0].max(), 100, "the program again")
 
     def test_recordings_and_the_api_have_outputs(self) -> None:
         self.wall.ctl("record", self.wall.folder / "low.avi", "--tile", "low", "--output", "--seconds", 0.3)

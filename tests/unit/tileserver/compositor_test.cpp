@@ -25,8 +25,8 @@ protected:
     void TearDown() override { compositor.reset(); }
 
     /// First pixel of a screenshot.
-    std::uint32_t shot() {
-        compositor->request({.slot = kSlot});
+    std::uint32_t shot(bool output = false) {
+        compositor->request({.slot = kSlot, .output = output});
         const auto pictures = compositor->collect(true);
         EXPECT_EQ(pictures.size(), 1u);
         if (pictures.empty() || pictures[0].rgba.empty()) return 0;
@@ -90,6 +90,45 @@ TEST_F(TilePictures, AreThoseOfBeforeWhereTheStackingIs) {
     EXPECT_GT(stacked, before);
     compositor->set_stacking(stacking);
     EXPECT_EQ(test_node.node->damage, stacked);
+}
+
+TEST_F(TilePictures, AreTestPicturesUntilTheyAreTakenAway) {
+    const auto pattern = [](TestPattern::Kind kind, bool on_output) {
+        return std::make_shared<const TestPattern>(TestPattern{.kind = kind, .on_output = on_output});
+    };
+    compositor->set_pattern(kSlot, pattern(TestPattern::Kind::white, false));
+    EXPECT_EQ(shot(), 0xffffffu);
+    const auto picture = compositor->output(kSlot);
+    constexpr float kOther[] = {0, 0, 1, 1};
+    test_node.driver->gl().ClearNamedFramebufferfv(picture->framebuffer, GL_COLOR, 0, kOther);
+    ++test_node.node->damage;
+    EXPECT_EQ(shot(), 0x0000ffu) << "what programs do behind it costs nothing";
+    compositor->set_pattern(kSlot, pattern(TestPattern::Kind::black, true));
+    EXPECT_EQ(shot(), 0xff8000u) << "it is not on the canvas";
+    EXPECT_EQ(shot(true), 0u);
+    compositor->set_pattern(kSlot, nullptr);
+    EXPECT_EQ(shot(true), 0xff8000u);
+    compositor->set_pattern(kSlot, pattern(TestPattern::Kind::white, false));
+    compositor->clear_patterns();
+    EXPECT_EQ(shot(), 0xff8000u);
+}
+
+TEST_F(TilePictures, AreWhatTheOutputShows) {
+    geom::TileOutput output{.rotation = 90, .width = 2 * kTile.height, .height = 2 * kTile.width};
+    output.color.emplace();
+    output.color->curves.fill({1, 0});
+    test_node.node->tiles = {{kSlot, kTile, std::make_shared<const geom::TileOutput>(output)}};
+    const auto picture = compositor->output(kSlot);
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->width, 2 * kTile.height);
+    EXPECT_EQ(picture->height, 2 * kTile.width);
+    EXPECT_EQ(shot(), 0xff8000u) << "the canvas";
+    EXPECT_EQ(shot(true), 0x007fffu) << "inverted";
+    compositor->request({.slot = kSlot, .crop = {2, 3, 4, 5}, .width = 2, .height = 2, .output = true});
+    const auto part = compositor->collect(true);
+    ASSERT_EQ(part.size(), 1u);
+    EXPECT_EQ(part[0].width, 2u);
+    EXPECT_EQ(std::to_integer<int>(part[0].rgba[2]), 0xff);
 }
 
 TEST_F(TilePictures, OfATileThatIsNotThereAreNone) { EXPECT_FALSE(compositor->output(kSlot + 1)); }

@@ -33,6 +33,27 @@ TEST(OutputMessage, ArrivesAsItWasSent) {
     EXPECT_TRUE(**output_of(walld::to_proto(plain)) == plain);
 }
 
+TEST(PatternMessage, IsATestPictureOrNone) {
+    proto::TilePattern told;
+    EXPECT_EQ(pattern_of(told), nullptr);
+    told.set_kind(proto::TilePattern::NAMES);
+    told.set_label_width(2);
+    told.set_label_height(3);
+    told.set_label("123456");
+    ASSERT_TRUE(pattern_of(told));
+    EXPECT_EQ(pattern_of(told)->label.bytes, "123456");
+    told.set_label_height(4);
+    EXPECT_TRUE(pattern_of(told)->label.bytes.empty()) << "a label that is no picture is none";
+    told.set_label_width(1u << 31);
+    told.set_label_height(2);
+    EXPECT_TRUE(pattern_of(told)->label.bytes.empty());
+    told.set_kind(proto::TilePattern::CODE);
+    told.set_bit(99);
+    EXPECT_LE(pattern_of(told)->bit, 15u);
+    told.set_kind(static_cast<proto::TilePattern::Kind>(77));
+    EXPECT_EQ(pattern_of(told), nullptr) << "of a newer walld";
+}
+
 TEST(OutputMessage, IsRefusedIfNoOutputIsThat) {
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
     const std::vector<std::function<void(proto::TileOutput&)>> changes{

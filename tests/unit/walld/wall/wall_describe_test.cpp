@@ -120,6 +120,23 @@ TEST_F(AWallThatIsDescribedAnew, OnlyTellsANodeThatItsOutputsShowThemselvesOther
     EXPECT_EQ(out_.nodes[kRight].size(), 2u) << "nothing has changed";
 }
 
+TEST_F(AWallThatIsDescribedAnew, TellsTestPicturesAgainToNodesThatAreWelcomed) {
+    proto::TilePattern pattern;
+    pattern.set_kind(proto::TilePattern::GRID);
+    EXPECT_FALSE(wall_.set_pattern("nowhere", pattern));
+    ASSERT_TRUE(wall_.set_pattern("r", pattern));
+    ASSERT_EQ(out_.nodes[kRight].size(), 1u);
+    EXPECT_EQ(out_.nodes[kRight][0].tile_pattern().kind(), proto::TilePattern::GRID);
+    EXPECT_THAT(out_.nodes[kLeft], IsEmpty());
+    describe(std::string(kTwoNodes) + "rotation = 180\n");
+    ASSERT_EQ(out_.nodes[kRight].size(), 3u);
+    EXPECT_TRUE(out_.nodes[kRight][1].has_node_welcome());
+    EXPECT_EQ(out_.nodes[kRight][2].tile_pattern().kind(), proto::TilePattern::GRID);
+    ASSERT_TRUE(wall_.set_pattern("r", {}));
+    EXPECT_EQ(out_.nodes[kRight][3].tile_pattern().kind(), proto::TilePattern::NONE);
+    EXPECT_THAT(wall_.patterns(), IsEmpty());
+}
+
 TEST_F(AWallThatIsDescribedAnew, TakesANodeWithOtherTilesForOneThatKnowsNothing) {
     const auto ticket = ticket_of(kRight);
     describe("[[node]]\nname = \"left\"\n[[node.tile]]\nname = \"l\"\nrect = [0, 0, 640, 480]\n" +
