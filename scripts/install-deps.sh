@@ -15,7 +15,8 @@ demo=(
   libx11-dev libx11-xcb-dev libxcb1-dev libxrandr-dev libxss-dev
   libboost1.81-dev libprotobuf-dev protobuf-compiler libprotozero-dev
   libexpected-dev libspdlog-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
-  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libsystemd-dev prometheus-cpp-dev
+  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-calib3d-dev
+  libsystemd-dev prometheus-cpp-dev
   liblz4-dev libzstd-dev             # frame codecs
   libssl-dev                         # content hashes
   glslang-dev                        # the parser of shaders

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // wallctl: what an operator does. Tables for people, --json for programs.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -44,6 +47,7 @@ struct Options {
     std::uint64_t count = 0;
     bool off = false, of_output = false, inverted = false;
     std::string axis = "x";
+    std::vector<std::string> rest;  ///< of the command line, for another program
     int bit = 0;
 };
 
@@ -79,6 +83,21 @@ json pattern_arguments(const Options& options) {
     if (options.name == "code")
         out.update({{"bit", options.bit}, {"axis", options.axis}, {"inverted", options.inverted}});
     return out;
+}
+
+/// By the program for it, which lies beside this one.
+Outcome<void> calibrate_with(const Options& options) {
+    std::error_code error;
+    const auto program =
+        (std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "wallcalibrate").string();
+    std::vector<std::string> words{program, "--walld", options.walld.address};
+    if (!options.walld.token_file.empty()) words.insert(words.end(), {"--token-file", options.walld.token_file});
+    words.insert(words.end(), options.rest.begin(), options.rest.end());
+    std::vector<char*> arguments;
+    for (auto& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    ::execv(program.c_str(), arguments.data());
+    return failed(program + ": " + std::strerror(errno));
 }
 
 Outcome<void> screenshot(const Options& options) {
@@ -342,6 +361,15 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
     verb("whoami", "as whom walld sees you, and your role", show(o, "whoami", person_text));
     add_layouts(app, o, action);
     add_machines(app, o, action);
+    auto* calibrate = verb("calibrate", "finds projectors' places with a camera, and writes warps and blends (--help)",
+                           [&o] { return calibrate_with(o); });
+    calibrate->fallthrough(false);
+    calibrate->prefix_command();
+    calibrate->set_help_flag();
+    calibrate->callback([&action, &o, calibrate] {
+        o.rest = calibrate->remaining();
+        action = [&o] { return calibrate_with(o); };
+    });
     verb("doctor", "looks for what usually goes wrong", [&o] { return doctor(o); });
 }
 
