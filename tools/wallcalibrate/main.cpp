@@ -80,14 +80,21 @@ Result<void> show(const Options& options, const std::string& tile, const Shot& s
     return {};
 }
 
+/// As one word of a shell.
+std::string quoted(const std::string& text) {
+    std::string out = "'";
+    for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
+
 /// By the command that was given, whose {} is the file.
 Result<void> photograph(const Options& options, const fs::path& file) {
     std::string command = !options.capture.empty()
                               ? options.capture
-                              : "ffmpeg -v error -y -f v4l2 -i '" + options.camera + "' -frames:v 1 {}";
+                              : "ffmpeg -v error -y -f v4l2 -i " + quoted(options.camera) + " -frames:v 1 {}";
     const auto place = command.find("{}");
     if (place == std::string::npos) return fail("--capture: expected a command with {} where the file's name goes");
-    command.replace(place, 2, "'" + file.string() + "'");
+    command.replace(place, 2, quoted(file.string()));
     std::error_code error;
     fs::remove(file, error);
     const int status = std::system(command.c_str());

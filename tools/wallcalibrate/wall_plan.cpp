@@ -8,6 +8,7 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
+#include "common/base/quoted.h"
 #include "tools/wallcalibrate/flat_screen.h"
 
 namespace wall::calibrate {
@@ -170,8 +171,8 @@ Result<std::vector<PlannedTile>> plan_wall(std::span<const Projector> projectors
 
 std::string tile_lines(const PlannedTile& tile, const std::string& warp_file, double gamma) {
     const auto& r = tile.rect;
-    std::string out = fmt::format("rect = [{}, {}, {}, {}]\npixels = [{}, {}]\nwarp = \"{}\"\n", r.x, r.y, r.width,
-                                  r.height, tile.width, tile.height, warp_file);
+    std::string out = fmt::format("rect = [{}, {}, {}, {}]\npixels = [{}, {}]\nwarp = {}\n", r.x, r.y, r.width,
+                                  r.height, tile.width, tile.height, in_quotes(warp_file));
     if (std::ranges::any_of(tile.ramps, [](int ramp) { return ramp != 0; }))
         out += fmt::format("blend = {{ left = {}, right = {}, top = {}, bottom = {}, gamma = {} }}\n", tile.ramps[0],
                            tile.ramps[1], tile.ramps[2], tile.ramps[3], gamma);

@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import functools
 import itertools
+import json
 import os
 import random
 import signal
@@ -186,20 +187,23 @@ class Trial:
                 time.sleep(SETTLED)
                 if (sample := self._sample(begin)) is not None:
                     taken.append(sample)
+                    status = self.wall.status()
             verdicts = [same(self.one.picture(frames), picture) for _, frames, picture in taken]
             self.show.go_on()
             if verdicts[-1].good:
                 wrong = max((i for i, verdict in enumerate(verdicts) if not verdict.good), default=-1)
                 return taken[wrong + 1][0], late
             if not late and self.pictures:
-                self._write(taken[-1])
+                self._write(taken[-1], status)
             late = True
             if time.monotonic() > begin + BACK:
                 raise AssertionError(f"frames {taken[-1][1]}: {verdicts[-1]}")
 
-    def _write(self, taken: tuple[float, list[int], numpy.ndarray]) -> None:
-        """What the wall shows when it is late, and beside it what it should; and what the daemons have said."""
+    def _write(self, taken: tuple[float, list[int], numpy.ndarray], status: dict) -> None:
+        """What the wall shows when it is late, and beside it what it should; what walld knew then, and what all daemons
+        have said."""
         at = time.strftime("%H%M%S")
+        (self.pictures / f"{at}-status.json").write_text(json.dumps(status, indent=1))
         cv2.imwrite(str(self.pictures / f"{at}-shown.png"), taken[2])
         cv2.imwrite(str(self.pictures / f"{at}-expected.png"), self.one.picture(taken[1]))
         for daemon in self.wall.daemons:
