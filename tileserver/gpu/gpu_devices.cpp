@@ -59,8 +59,7 @@ Result<std::size_t> choose_gpu(std::span<const GpuDevice> gpus, std::string_view
     std::size_t number = 0;
     const char* const end = wanted.data() + wanted.size();
     const bool is_number = std::from_chars(wanted.data(), end, number).ptr == end && !wanted.empty();
-    if (gpus.empty() && (is_number || wanted == "auto")) return 0;
-    if (wanted == "auto") return 0;
+    if (wanted == kAnyGpu || (gpus.empty() && is_number)) return 0;
     if (is_number && number < gpus.size()) return number;
     const auto found = std::ranges::find_if(gpus, [&](const GpuDevice& gpu) {
         return !gpu.pci.empty() && (gpu.pci == wanted || gpu.pci == std::string(kUsualDomain) + std::string(wanted));

@@ -12,7 +12,7 @@ namespace {
 
 enum Unit : unsigned { kCanvas, kMesh, kCurves, kUnits };  // as in the shader
 constexpr unsigned kParameters = 0;
-constexpr float kLittle = 0.25f;  // as in the shader
+constexpr float kLittle = 0.25f;  // of a pixel that is covered besides: a tap is linear, so none is missed
 
 /// Pixel for pixel, maybe turned.
 bool is_exact(const geom::TileOutput& output, const PictureTexture& canvas) {
@@ -48,7 +48,8 @@ bool has_curves(const geom::TileOutput& output) {
 
 /// The shader's #defines.
 std::string steps_of(const geom::TileOutput& output, const PictureTexture& canvas) {
-    std::string out = "#define TURNS " + std::to_string(output.rotation / 90) + "\n";
+    std::string out =
+        "#define LITTLE " + std::to_string(kLittle) + "\n#define TURNS " + std::to_string(output.rotation / 90) + "\n";
     const auto add = [&](bool wanted, const char* step) {
         if (wanted) out += std::string("#define ") + step + "\n";
     };

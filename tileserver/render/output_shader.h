@@ -24,8 +24,8 @@ inline constexpr const char* kOutputVertexShader = R"(#version 430
 void main() { gl_Position = vec4(4 * (gl_VertexID & 1) - 1, 2 * (gl_VertexID & 2) - 1, 0, 1); }
 )";
 
-/// Behind "#version 430" and #defines: TURNS (by 90 degrees), and where the step is wanted EXACT or ENLARGED, MESH or
-/// HOMOGRAPHY, COLOR, BLEND (with LIFT of black), CURVE.
+/// Behind "#version 430" and #defines: LITTLE (of a pixel), TURNS (by 90 degrees), and where the step is wanted EXACT
+/// or ENLARGED, MESH or HOMOGRAPHY, COLOR, BLEND (with LIFT of black), CURVE.
 inline constexpr const char* kOutputFragmentShader = R"(
 layout(binding = 0) uniform sampler2D canvas;  // linear, but for EXACT
 layout(binding = 1) uniform sampler2D mesh;    // a point each
@@ -36,7 +36,6 @@ layout(std140, binding = 0) uniform Parameters {
 };
 layout(location = 0) out vec4 shown;
 const int kMostTaps = 8;  // along a side of a pixel
-const float kLittle = 0.25;  // of a pixel that is covered besides: a tap is linear, so none is missed
 
 vec2 warped(vec2 at) {
 #if defined HOMOGRAPHY
@@ -78,7 +77,7 @@ vec3 tap(vec2 at) {
 vec3 filtered(vec2 at) {
     vec2 across = dFdx(at), down = dFdy(at);
     vec2 covered = vec2(max(abs(across.x), abs(across.y)), max(abs(down.x), abs(down.y)));
-    ivec2 taps = clamp(ivec2(ceil(covered - kLittle)), 1, kMostTaps);
+    ivec2 taps = clamp(ivec2(ceil(covered - LITTLE)), 1, kMostTaps);
     vec3 sum = vec3(0);
     for (int y = 0; y < taps.y; ++y)
         for (int x = 0; x < taps.x; ++x) {

@@ -68,6 +68,11 @@ void Wall::describe(config::WallConfig next) {
     const bool other_background = next.background != config_.background, other_quota = next.quota != config_.quota;
     config_ = std::move(next);
     const bool other_tiles = take_nodes();
+    std::erase_if(patterns_, [&](const auto& shown) {
+        return std::ranges::none_of(config_.nodes, [&](const auto& node) {
+            return std::ranges::count(node.tiles, shown.first, &config::TileConfig::name) > 0;
+        });
+    });
     for (const NodeIndex i : nodes_.ids())
         if (other_background && nodes_[i].up) welcome_node(i);
     for (auto& [id, session] : sessions_)

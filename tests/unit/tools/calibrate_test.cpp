@@ -254,8 +254,6 @@ TEST(Calibration, OfARowAndOfTwoAboveEachOther) {
 }
 
 TEST(Calibration, SaysWhatIsWrong) {
-    Room dark;
-    dark.build();
     const Photograph nothing = [](const Shot&) -> Result<cv::Mat> { return cv::Mat(kPicture, CV_8UC1, cv::Scalar(9)); };
     EXPECT_THAT(decode(kWidth, kHeight, nothing).error().message, HasSubstr("only 0 pixels"));
     const Photograph lost = [](const Shot& shot) -> Result<cv::Mat> {

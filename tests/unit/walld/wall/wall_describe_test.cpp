@@ -132,8 +132,16 @@ TEST_F(AWallThatIsDescribedAnew, TellsTestPicturesAgainToNodesThatAreWelcomed) {
     ASSERT_EQ(out_.nodes[kRight].size(), 3u);
     EXPECT_TRUE(out_.nodes[kRight][1].has_node_welcome());
     EXPECT_EQ(out_.nodes[kRight][2].tile_pattern().kind(), proto::TilePattern::GRID);
+    describe(node_text("left", "0, 0, 640, 480"));
+    EXPECT_THAT(wall_.patterns(), IsEmpty()) << "of a tile that is gone";
+}
+
+TEST_F(AWallThatIsDescribedAnew, TellsThatATestPictureIsOver) {
+    proto::TilePattern pattern;
+    pattern.set_kind(proto::TilePattern::GRID);
+    ASSERT_TRUE(wall_.set_pattern("r", pattern));
     ASSERT_TRUE(wall_.set_pattern("r", {}));
-    EXPECT_EQ(out_.nodes[kRight][3].tile_pattern().kind(), proto::TilePattern::NONE);
+    EXPECT_EQ(out_.nodes[kRight][1].tile_pattern().kind(), proto::TilePattern::NONE);
     EXPECT_THAT(wall_.patterns(), IsEmpty());
 }
 
