@@ -34,7 +34,6 @@ class Part:
 
 # One draws once what only the nodes keep (drawn_once.cpp), the other a colour that tells the frame (frame_clock.cpp).
 SHOWN = (Part("drawn_once", (0, 0, 600, 180), still=True), Part("frame_clock", (0, 180, 600, 120)))
-FAR = 1 << 30  # a frame that no program reaches
 FIRST = 2  # frames that a show begins with
 SETTLED = 0.3  # seconds after which what was told to be shown is shown
 GONE = 5.0  # seconds until a program that has ended is off the wall
@@ -142,13 +141,6 @@ class OneMachine:
         self.wall, self.x = wall, x
         self.parts = parts
         self.show = Show(wall, wall.run, x, parts=parts)
-
-    def anew(self, frames: list[int]) -> numpy.ndarray:
-        """The same, by programs that are started again."""
-        for playing in self.show.playing:
-            if not playing.part.still:
-                playing.frame = FAR
-        return self.picture(frames)
 
     def picture(self, frames: list[int]) -> numpy.ndarray:
         """Of Show.frames."""

@@ -117,8 +117,10 @@ public:
             if (!done || *done) {
                 queue_->give_back(std::move(*batch_));
                 batch_.reset();
-                if (group_) loop_.pass_on_group_frames(*this);
             }
+            // Whether or not the batch is at its end: the slice may be over behind its last command, and whoever that
+            // has set free draws the next frame over this one.
+            if (group_) loop_.pass_on_group_frames(*this);
             last_run_ = now = Clock::now();
             if (continued::count() == continued_before) {
                 session_.work.decode += now - start - (session_.work.render - render_before);

@@ -239,6 +239,76 @@ protected:
     std::unique_ptr<RenderThread> thread_;
 };
 
+// ---- parallel programs ----
+
+/// Two processes: the first clears, the second draws, both end the frame.
+class AParallelProgram : public RenderThreadTest {
+protected:
+    static constexpr SessionId kSession{1};
+
+    void SetUp() override {
+        RenderThreadTest::SetUp();
+        if (!thread_) return;
+        thread_->set_coordinated(true);
+        thread_->set_stacking({{kSession, SurfaceId(1)}});
+        for (const Rank rank : {0u, 1u}) {
+            queues_[rank] = std::make_shared<BatchQueue>([] {});
+            thread_->add_stream(StreamId(rank), kSession, queues_[rank], {2, {}}, rank);
+            wire::PackBuffer join, window;
+            pack::Join(join);
+            push(queues_[rank], join);
+            create_window(window);
+            push(queues_[rank], window);
+        }
+    }
+    void clear_and_swap(std::uint32_t frame) {
+        wire::PackBuffer buffer;
+        block(buffer, 1, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT); });
+        pack::Swap(buffer, SurfaceId(1), frame);
+        push(queues_[0], buffer);
+    }
+    /// So much that the turn is over behind it.
+    void draw_and_swap(int red, std::uint32_t frame) {
+        wire::PackBuffer buffer;
+        block(buffer, 1, [&](auto& b) {
+            pack::Color4f(b, static_cast<float>(red) / 255, 0, 0, 1);
+            pack::Begin(b, GL_TRIANGLE_STRIP);  // each vertex makes a triangle that covers the window
+            for (int i = 0; i < 160; ++i)
+                for (const auto& [x, y] : {std::pair{-9.0f, -9.0f}, {9.0f, -9.0f}, {0.0f, 9.0f}})
+                    pack::Vertex3f(b, x, y, 0);
+            pack::End(b);
+        });
+        pack::Swap(buffer, SurfaceId(1), frame);
+        push(queues_[1], buffer);
+    }
+    bool drawn(std::uint32_t frame) {
+        return events_.wait([&](Events& e) { return e.drawn_[0] == frame && e.drawn_[1] == frame; });
+    }
+    /// The red of the tile's first pixel.
+    int seen() {
+        const PictureId id(++pictures_);
+        thread_->request_picture({.id = id, .slot = 0});
+        events_.wait([&](Events& e) { return e.pictures_.contains(id.value); });
+        return std::to_integer<int>(events_.pictures_.at(id.value).at(0));
+    }
+
+    std::array<std::shared_ptr<BatchQueue>, 2> queues_;
+    std::uint32_t pictures_ = 0;
+};
+
+/// Also where a turn ends behind a frame's last command, and the next frame begins with a clear.
+TEST_F(AParallelProgram, ShowsEachFrameAsItWasWhenTheLastHadEndedIt) {
+    clear_and_swap(1);
+    for (std::uint32_t frame = 1; frame < 12; ++frame) {
+        clear_and_swap(frame + 1);
+        const int red = 100 + static_cast<int>(frame);
+        draw_and_swap(red, frame);
+        ASSERT_TRUE(drawn(frame));
+        thread_->present(kSession, SurfaceId(1), frame);
+        EXPECT_EQ(seen(), red);
+    }
+}
+
 // ---- connections that end ----
 
 /// A program of one colour, whose connection is closed.
