@@ -98,7 +98,7 @@ stage_tsan() {
 stage_fuzz() {
   say "building the fuzzers (clang, address and undefined behaviour sanitizers)"
   build asan fuzzers || { failed+=(fuzz); return; }
-  say "fuzzers, 30 seconds each"
+  say "fuzzers, 60 seconds each"
   run fuzz asan -L fuzz -j 2
 }
 

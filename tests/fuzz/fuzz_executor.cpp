@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Batches executed on a real driver, in a session with a window on two tiles and in both members of a parallel program.
-// After each input another session must still draw what it always draws.
+// After each input another session must still draw what it always draws. WALLGL_FUZZ_BACKEND: osmesa, else EGL.
+#include <cstdlib>
 #include <memory>
 #include <numeric>
 
@@ -55,7 +56,8 @@ struct Node {
     std::unique_ptr<RenderNode> node;
 
     Node() {
-        auto opened = open_egl_backend();
+        const char* name = std::getenv("WALLGL_FUZZ_BACKEND");
+        auto opened = open_backend({name != nullptr ? name : "egl"});
         WALL_ASSERT(opened && (*opened)->make_current());
         backend = std::move(*opened);
         Gl gl;

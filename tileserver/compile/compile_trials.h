@@ -34,7 +34,8 @@ public:
         unavailable,  ///< there are no compilers of their own here
     };
     Outcome outcome() const { return outcome_.load(std::memory_order_acquire); }
-    /// Of a shader that is done: the encoded glapi::CompileResult.
+    /// Of a shader that is done: the encoded glapi::CompileResult. Of a program: a ProgramReflection, of which only
+    /// `linked` and `position` are told. Empty: it was no shader, or no program.
     const std::vector<std::byte>& answer() const { return answer_; }
 
 private:

@@ -18,6 +18,7 @@
 #include "tileserver/compile/compiler_messages.h"
 #include "tileserver/gpu/backend.h"
 #include "tileserver/gpu/gl.h"
+#include "tileserver/objects/position_recogniser.h"
 #include "tileserver/objects/program_build.h"
 
 namespace wall::tileserver {
@@ -61,18 +62,23 @@ void allow_time(const CompilerLimits& limits) {
     ::alarm(static_cast<unsigned>(limits.time.count()));                            // as does SIGALRM
 }
 
+std::vector<std::byte> link(const Gl& gl, const glapi::ProgramDefinition& definition) {
+    GLint linked = 0;  // asked for, so that no driver puts its work off
+    const GLuint program = build_program(gl, definition).driver;
+    gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
+    gl.DeleteProgram(program);
+    glapi::ProgramReflection found{.linked = linked != 0};
+    if (found.linked) found.position = recognise_position(definition).program;
+    return encode(found);
+}
+
 std::vector<std::byte> answer(const Gl& gl, const CompilerQuestion& question) {
     if (question.shader_type != 0) {
         auto compiled = compile_shader(gl, question.shader_type, question.bytes);
         return compiled ? *std::move(compiled) : std::vector<std::byte>();
     }
-    if (const auto definition = read_definition(question.bytes)) {
-        GLint linked = 0;  // asked for, so that no driver puts its work off
-        const GLuint program = build_program(gl, *definition).driver;
-        gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
-        gl.DeleteProgram(program);
-    }
-    return {};
+    const auto definition = read_definition(question.bytes);
+    return definition ? link(gl, *definition) : std::vector<std::byte>();
 }
 
 void compile(int socket, const BackendChoice& choice, const CompilerLimits& limits) {

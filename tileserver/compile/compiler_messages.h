@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What goes between a node and its compilers: first an empty answer when the compiler is ready, then one answer for
-// each question. Both are a header and as many bytes. The two are the same program, so nothing is checked but that all
-// of it comes. Blocks; one thread for each end.
+// each question. Both are a header and as many bytes. A compiler works on what strangers have written, so the node
+// believes it little: what it may say has a limit, and is decoded as any foreign bytes. Blocks; one thread for each
+// end.
 #pragma once
 
 #include <sys/socket.h>
@@ -16,6 +17,9 @@
 #include "common/glapi/gl_types.h"
 
 namespace wall::tileserver {
+
+/// Of a question, and of an answer.
+inline constexpr std::uint64_t kMostMessageBytes = std::uint64_t{64} << 20;
 
 struct CompilerQuestion {
     GLenum shader_type = 0;  ///< 0: the bytes define a program (glapi::decode_definition), else they are source
@@ -57,10 +61,11 @@ inline bool send_message(int socket, GLenum shader_type, std::span<const std::by
     return detail::send_all(socket, std::as_bytes(std::span(&header, 1))) && detail::send_all(socket, bytes);
 }
 
-/// Nothing: the other end is gone.
+/// Nothing: the other end is gone, or says more than it may.
 inline std::optional<CompilerQuestion> receive_message(int socket) {
     detail::Header header;
     if (!detail::receive_all(socket, std::as_writable_bytes(std::span(&header, 1)))) return std::nullopt;
+    if (header.bytes > kMostMessageBytes) return std::nullopt;
     CompilerQuestion message{header.shader_type, std::vector<std::byte>(header.bytes)};
     if (!detail::receive_all(socket, message.bytes)) return std::nullopt;
     return message;

@@ -57,16 +57,22 @@ void ProgramCommands::compile(RequestId request, GLenum type, std::span<const st
 void ProgramCommands::ProgramLink(RequestId request, ClientName program, std::span<const std::byte> definition) {
     if (execution_.node.trials == nullptr) return link(request, program, definition);
     hold(execution_.node.trials->program(definition), [=, this](const CompileTrial& trial) {
-        if (trial.outcome() != Outcome::given_up) return link(request, program, definition);
+        if (trial.outcome() == Outcome::unavailable) return link(request, program, definition);
+        if (trial.outcome() == Outcome::done) {
+            const auto found = glapi::decode_reflection(trial.answer());
+            const auto position = found ? found->position : glapi::PositionProgram{};
+            return link(request, program, definition, &position);
+        }
         const std::string reason = given_up();
         if (request) execution_.output.reply(request, encode(glapi::ProgramReflection{false, reason}));
     });
 }
 
-void ProgramCommands::link(RequestId request, ClientName program, std::span<const std::byte> definition) {
+void ProgramCommands::link(RequestId request, ClientName program, std::span<const std::byte> definition,
+                           const glapi::PositionProgram* recognised) {
     const auto made = execution_.session.objects.make<Program>(program, execution_.node.driver);
     if (!made) return execution_.refuse(made.error().message);
-    auto answer = (*made)->link(definition, static_cast<bool>(request));
+    auto answer = (*made)->link(definition, static_cast<bool>(request), recognised);
     if (!answer) return execution_.refuse(answer.error().message);
     if (request) execution_.output.reply(request, std::move(*answer));
 }

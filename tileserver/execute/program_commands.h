@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 
+#include "common/glapi/position_program.h"
 #include "tileserver/compile/compile_trials.h"
 #include "tileserver/execute/execution.h"
 
@@ -42,7 +43,9 @@ private:
     };
     void hold(std::shared_ptr<const CompileTrial> trial, std::function<void(const CompileTrial& trial)> then);
     void compile(RequestId request, GLenum type, std::span<const std::byte> source);
-    void link(RequestId request, ClientName program, std::span<const std::byte> definition);
+    /// `recognised`: what is known of the position from a trial; null: nothing.
+    void link(RequestId request, ClientName program, std::span<const std::byte> definition,
+              const glapi::PositionProgram* recognised = nullptr);
     /// What the program is told of a shader that was given up.
     std::string given_up();
 

@@ -206,7 +206,8 @@ void Program::follow_position(glapi::PositionProgram position, const std::vector
     }
 }
 
-Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, bool wants_reflection) {
+Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, bool wants_reflection,
+                                             const glapi::PositionProgram* recognised) {
     const auto definition = read_definition(bytes);
     if (!definition) return tl::unexpected(definition.error());
     const BuiltProgram built = build_program(driver_.gl(), *definition);
@@ -222,7 +223,8 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
     }
     // Once for all nodes: the others are told by the definition.
     glapi::PositionProgram position = definition->position;
-    if (wants_reflection) position = reflection.position = recognise_position(*definition).program;
+    if (wants_reflection)
+        position = reflection.position = recognised != nullptr ? *recognised : recognise_position(*definition).program;
     std::vector<glapi::UniformName> names = definition->uniforms;
     std::vector<std::string> blocks = definition->blocks, storage_blocks = definition->storage_blocks;
     if (!named) {

@@ -25,9 +25,11 @@ public:
     Program(ObjectAccount& account, Driver& driver) : ObjectOf(account), driver_(driver) {}
     ~Program() override { release(); }
 
-    /// Links a definition, and takes the result's place if that works. The encoded ProgramReflection if `reflect`. An
-    /// error: bad bytes, or more memory than a session may have.
-    Result<std::vector<std::byte>> link(std::span<const std::byte> definition, bool reflect);
+    /// Links a definition, and takes the result's place if that works. The encoded ProgramReflection if `reflect`, in
+    /// it the position as it was `recognised`; null: it is recognised here. An error: bad bytes, or more memory than a
+    /// session may have.
+    Result<std::vector<std::byte>> link(std::span<const std::byte> definition, bool reflect,
+                                        const glapi::PositionProgram* recognised = nullptr);
     Result<void> set_uniform(std::uint32_t location, GLenum type, std::uint32_t count,
                              std::span<const std::byte> values);
     /// From now on a block takes its uniforms from what is bound there. An error: no such block, no such place.

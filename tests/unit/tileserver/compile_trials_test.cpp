@@ -99,6 +99,26 @@ TEST_F(CompileTrialsTest, GiveUpProgramsToo) {
         << "the node's own reader says what is wrong";
 }
 
+/// A parser of its own, of what strangers have written: not in the node's process either.
+TEST_F(CompileTrialsTest, RecogniseAProgramsPosition) {
+    start();
+    if (!can_draw()) GTEST_SKIP() << "no driver";
+    const auto trial_of = [&](const std::string& source) {
+        glapi::ProgramDefinition definition;
+        definition.shaders.push_back({.type = GL_VERTEX_SHADER, .compiled = true, .source = source});
+        const auto trial = trials_->program(encode(definition));
+        EXPECT_EQ(wait(trial), Outcome::done);
+        return glapi::decode_reflection(trial->answer());
+    };
+    const auto found = trial_of("uniform mat4 m; void main() { gl_Position = m * gl_Vertex; }");
+    ASSERT_TRUE(found);
+    EXPECT_TRUE(found->linked);
+    ASSERT_TRUE(found->position.known());
+    EXPECT_EQ(found->position.uniforms.at(0).name, "m");
+    const auto none = trial_of("void main() { gl_Position = vec4(float(gl_VertexID)); }");
+    EXPECT_TRUE(none && !none->position.known());
+}
+
 TEST_F(CompileTrialsTest, EndWhileOneIsRunning) {
     start("egl", {.processor_time = 100s, .time = 100s, .memory = 0});
     if (!can_draw()) GTEST_SKIP() << "no driver";
