@@ -14,13 +14,15 @@ namespace {
 using nlohmann::json;
 using Findings = std::vector<Finding>;
 
-constexpr std::int64_t kClockDifference = 2000;  // ms; less may be what the answer took
-constexpr unsigned kManyStarts = 3;              // of a node, while walld runs
-constexpr unsigned kFarBehind = 30;              // frames that a tile lacks
-constexpr unsigned kEnoughFrames = 100;          // of a window, to judge by
-constexpr double kManyTimeouts = 0.01;           // of its frames
-constexpr double kNearlyFull = 0.9;              // of the programs that there may be
-constexpr std::size_t kNamedDrivers = 60;        // characters
+constexpr std::int64_t kClockDifference = 2000;      // ms; less may be what the answer took
+constexpr unsigned kManyStarts = 3;                  // of a node, while walld runs
+constexpr unsigned kFarBehind = 30;                  // frames that a tile lacks
+constexpr unsigned kEnoughFrames = 100;              // of a window, to judge by
+constexpr double kManyTimeouts = 0.01;               // of its frames
+constexpr double kNearlyFull = 0.9;                  // of the programs that there may be
+constexpr double kHalfAGigabit = 62.5e6;             // bytes a second
+constexpr double kLargeTexture = 2048 * 2048 * 4.0;  // bytes
+constexpr std::size_t kNamedDrivers = 60;            // characters
 
 const json& list(const json& status, const char* name) {
     static const json none = json::array();
@@ -142,6 +144,20 @@ std::vector<Finding> clock_findings(const std::string& whose, std::int64_t ahead
              fmt::format("is {:.1f} s {} walld's, so logs and the ages of pictures do not agree: `timedatectl set-ntp "
                          "true` there",
                          static_cast<double>(std::abs(ahead_ms)) / 1000, ahead_ms > 0 ? "ahead of" : "behind")}};
+}
+
+Finding way_finding(const Way& way, const json& status) {
+    std::string check = "bandwidth to tile " + way.tile;
+    for (const auto& tile : list(status, "tiles"))
+        if (text(tile, "name") == way.tile) check = "bandwidth to node " + text(tile, "node");
+    if (!way.trouble.empty()) return {check, Verdict::wrong, way.trouble};
+    auto found = fmt::format("{:.1f} MB/s, {:.2f} ms there and back", way.bytes_a_second / 1e6,
+                             static_cast<double>(way.round_trip.count()) / 1e3);
+    if (way.bytes_a_second >= kHalfAGigabit) return {check, Verdict::good, std::move(found)};
+    return {check, Verdict::note,
+            fmt::format("{}: less than half of what a gigabit link carries; a texture of 2048x2048 takes {:.1f} s. Is "
+                        "something between at 100 Mbit/s, a radio, or busy ([quota] in wall.toml limits, too)?",
+                        found, kLargeTexture / way.bytes_a_second)};
 }
 
 std::vector<Finding> diagnose(const json& status) {

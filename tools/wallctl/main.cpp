@@ -16,6 +16,7 @@
 #include "common/join/join.h"
 #include "common/net/address.h"
 #include "tools/request/request.h"
+#include "tools/wallctl/bandwidth.h"
 #include "tools/wallctl/doctor.h"
 #include "tools/wallctl/record.h"
 #include "tools/wallctl/tables.h"
@@ -29,6 +30,7 @@ using nlohmann::json;
 using request::ask;
 
 constexpr const char* kNode = "node";
+constexpr const char* kSaid = "said";  // code of a failure of which the JSON has been printed
 constexpr std::chrono::seconds kLimit{10};          // for an answer
 constexpr std::chrono::seconds kPictureLimit{120};  // it may wait in line, and a large one takes long to encode
 constexpr std::chrono::seconds kCloseLimit{
@@ -37,7 +39,7 @@ constexpr std::chrono::seconds kWaitSlack{2};  // on top of what walld itself wa
 
 struct Options {
     Walld walld{net::kDefaultWalld, {}};
-    bool as_json = false;
+    bool as_json = false, bandwidth = false;
     std::string id, tile, file, name;
     std::string role, at, line, state, node;
     int x = 0, y = 0, width = 0, height = 0;
@@ -132,19 +134,27 @@ Outcome<void> wait(const Options& options) {
 
 Outcome<void> doctor(const Options& options) {
     std::error_code error;
-    const auto findings = examine(options.walld, std::filesystem::read_symlink("/proc/self/exe", error).string());
     json out = json::array();
     bool good = true;
-    for (const auto& finding : findings) {
+    const auto say = [&](const Finding& finding) {
         constexpr const char* kWords[] = {"ok", "note", "WRONG"};  // in the order of Verdict
         const char* word = kWords[static_cast<int>(finding.verdict)];
         const bool bad = finding.verdict == Verdict::wrong;
         good = good && !bad;
         out.push_back({{"check", finding.check}, {"good", !bad}, {"verdict", word}, {"detail", finding.detail}});
-        if (!options.as_json) std::cout << fmt::format("{:5} {}: {}\n", word, finding.check, finding.detail);
+        if (!options.as_json)
+            std::cout << fmt::format("{:5} {}: {}\n", word, finding.check, finding.detail) << std::flush;
+    };
+    for (const auto& finding : examine(options.walld, std::filesystem::read_symlink("/proc/self/exe", error).string()))
+        say(finding);
+    if (options.bandwidth) {
+        const auto status = ask(options.walld, "status", json::object(), kLimit);
+        const auto measured = measure_ways(
+            options.walld, [&](const Way& way) { say(way_finding(way, status ? status->json : json::object())); });
+        if (!measured) say({"bandwidth", Verdict::wrong, measured.error().message});
     }
     if (options.as_json) std::cout << out.dump(2) << '\n';
-    if (!good) return failed("something is wrong, see above");
+    if (!good) return tl::unexpected<Failure>({kSaid, "something is wrong, see above"});
     return {};
 }
 
@@ -370,7 +380,10 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
         o.rest = calibrate->remaining();
         action = [&o] { return calibrate_with(o); };
     });
-    verb("doctor", "looks for what usually goes wrong", [&o] { return doctor(o); });
+    auto* doctors = verb("doctor", "looks for what usually goes wrong", [&o] { return doctor(o); });
+    doctors->add_flag("--bandwidth", o.bandwidth,
+                      "also measures how fast programs of this machine reach each node: full load for half a second "
+                      "each");
 }
 
 }  // namespace
@@ -397,7 +410,7 @@ int main(int argc, char** argv) {
     try {
         if (const auto done = action(); !done) {
             std::cerr << "wallctl: " << done.error().message << '\n';
-            if (options.as_json)
+            if (options.as_json && done.error().code != kSaid)
                 std::cout << json{{"error", {{"code", done.error().code}, {"message", done.error().message}}}}.dump(2)
                           << '\n';
             return 1;

@@ -286,6 +286,26 @@ class Machines(unittest.TestCase):
         end_all([app])
         until(lambda: not self.wall.sessions(), "the program leaves the wall", NOTICED)
 
+    def bandwidths(self) -> dict[str, tuple[str, float]]:
+        """Of the nodes from the client host, as the doctor says: the verdict and MB a second."""
+        found = self.wall.ctl_at("desk", "doctor", "--bandwidth", any_exit=True)
+        return {f["check"]: (f["verdict"], float(f["detail"].split(" MB/s")[0])) for f in found
+                if f["check"].startswith("bandwidth")}
+
+    def test_the_doctor_measures_the_way_to_each_node(self) -> None:
+        good = self.bandwidths()
+        self.assertEqual(set(good), {f"bandwidth to node {name}" for name in self.wall.node_names})
+        self.wall.hosts.limit("node-1", "100mbit")
+        try:
+            found = self.bandwidths()
+        finally:
+            self.wall.hosts.unlimit("node-1")
+        verdict, speed = found.pop("bandwidth to node node-1")
+        self.assertEqual(verdict, "note")
+        self.assertTrue(6 < speed <= 13, f"{speed} MB/s over 12.5 MB/s")
+        self.assertTrue(all(other > 2 * speed for _, other in found.values()), found)
+        self.assertEqual(self.wall.sessions(), [], "the doctor has left")
+
     def one_frame_is_shown(self) -> bool:
         picture = cv2.imdecode(numpy.frombuffer(self.wall.screenshot(), numpy.uint8), cv2.IMREAD_COLOR)
         return len(numpy.unique(picture.reshape(-1, 3), axis=0)) == 1 and picture[0, 0, 0] == 255

@@ -55,6 +55,18 @@ TEST(Diagnosis, SaysWhoseClockIsWrong) {
     EXPECT_TRUE(clock_findings("this machine", -1999).empty());
 }
 
+TEST(Diagnosis, SaysHowFastANodeIsReached) {
+    using namespace std::chrono_literals;
+    const json status{{"tiles", {{{"name", "a0"}, {"node", "a"}}, {{"name", "b0"}, {"node", "b"}}}}};
+    EXPECT_THAT(way_finding({"a0", 112.5e6, 420us, ""}, status),
+                is(Verdict::good, "bandwidth to node a", "112.5 MB/s, 0.42 ms"));
+    EXPECT_THAT(way_finding({"b0", 11.8e6, 9ms, ""}, status),
+                is(Verdict::note, "bandwidth to node b", "a texture of 2048x2048 takes 1.4 s"));
+    EXPECT_THAT(way_finding({"b0", 0, 0us, "no answer"}, status),
+                is(Verdict::wrong, "bandwidth to node b", "no answer"));
+    EXPECT_EQ(way_finding({"c0", 1e9, 1ms, ""}, json::object()).check, "bandwidth to tile c0");
+}
+
 TEST(Diagnosis, SaysWhereNodesDiffer) {
     const json nodes{node("a", "llvmpipe (LLVM 15)"), node("b"), node("c", "NVIDIA", "4.5")};
     const auto found = diagnose({{"nodes", nodes}});
