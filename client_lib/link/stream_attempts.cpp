@@ -15,7 +15,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kOneAttempt = std::chrono::milliseconds(800);  // less than TCP takes to ask a second time
+constexpr auto kOneAttempt = std::chrono::seconds(2);  // an agent asks the node several times in it
 constexpr auto kBetweenAttempts = std::chrono::milliseconds(50);
 constexpr auto kAttempts = std::chrono::seconds(10);  // all of them
 

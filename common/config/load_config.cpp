@@ -22,6 +22,7 @@ constexpr std::int64_t kMaxCloseTimeout = 60'000;  // ms
 constexpr std::int64_t kMaxSessions = 10'000;
 constexpr std::int64_t kMebibyte = 1 << 20, kMaxMebibytes = 1 << 20;
 constexpr std::int64_t kMaxObjects = 1 << 20, kMaxFps = 1000, kMaxWindows = 256;
+constexpr std::int64_t kMaxViews = 256, kMaxPictures = 128;  // walld/wall/quota.h
 constexpr std::array kBackends{Backend::egl, Backend::osmesa};
 
 std::uint32_t read_background(TreeReader& read, const toml::table& wall) {
@@ -135,7 +136,7 @@ QuotaConfig read_quota(TreeReader& read, const toml::table& root) {
     const auto& quota = read.section(root, "quota");
     read.only(quota, "[quota]",
               {"program_memory", "program_objects", "program_bandwidth", "program_fps", "program_windows",
-               "person_programs", "person_memory"});
+               "person_programs", "person_memory", "person_views", "person_pictures"});
     const auto figure = [&](const char* key, std::int64_t most, std::int64_t unit, auto& value) {
         if (quota.get(key))
             value = static_cast<typename std::remove_reference_t<decltype(value)>::value_type>(
@@ -148,6 +149,8 @@ QuotaConfig read_quota(TreeReader& read, const toml::table& root) {
     figure("program_windows", kMaxWindows, 1, out.program_windows);
     figure("person_programs", kMaxSessions, 1, out.person_programs);
     figure("person_memory", kMaxMebibytes, kMebibyte, out.person_memory);
+    figure("person_views", kMaxViews, 1, out.person_views);
+    figure("person_pictures", kMaxPictures, 1, out.person_pictures);
     return out;
 }
 

@@ -15,7 +15,9 @@ struct QuotaConfig {
     std::optional<std::uint32_t> program_fps;        ///< frames a second of a window
     std::optional<std::uint32_t> program_windows;
     std::optional<std::uint32_t> person_programs;
-    std::optional<std::uint64_t> person_memory;  ///< bytes on a node, of all of their programs' objects
+    std::optional<std::uint64_t> person_memory;    ///< bytes on a node, of all of their programs' objects
+    std::optional<std::uint32_t> person_views;     ///< live pictures that are watched or recorded
+    std::optional<std::uint32_t> person_pictures;  ///< single ones that are being made
     bool operator==(const QuotaConfig&) const = default;
 };
 

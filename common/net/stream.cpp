@@ -14,6 +14,8 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <cerrno>
+#include <list>
+#include <memory>
 
 #include "common/base/descriptor_message.h"
 
@@ -43,6 +45,55 @@ private:
 asio::generic::stream_protocol protocol_of(const Address& address, int family) {
     return {family, address.is_unix() ? 0 : IPPROTO_TCP};
 }
+
+/// Connects, and asks anew now and then while there is no answer, with each question on a socket of its own: whoever is
+/// reached first counts. TCP itself asks a second time after a second only, and again ever more rarely, so that a link
+/// that is whole again would be found late. A refusal ends it.
+class Asking : public std::enable_shared_from_this<Asking> {
+public:
+    using Endpoint = asio::generic::stream_protocol::endpoint;
+
+    Asking(const asio::any_io_executor& executor, Endpoint to)
+        : to_(std::move(to)), again_(executor), answered_(executor, asio::steady_timer::time_point::max()) {}
+
+    asio::awaitable<boost::system::error_code> ask(std::chrono::milliseconds limit, StreamSocket& connected) {
+        const auto until = std::chrono::steady_clock::now() + limit;
+        answered_.expires_at(until);
+        ask_again(until);
+        co_await answered_.async_wait(kTuple);
+        again_.cancel();
+        for (auto& question : questions_) {
+            boost::system::error_code ignored;
+            if (&question != reached_) question.close(ignored);
+        }
+        if (reached_ == nullptr) co_return error_ ? error_ : make_error_code(asio::error::timed_out);
+        connected = std::move(*reached_);
+        co_return boost::system::error_code();
+    }
+
+private:
+    void ask_again(asio::steady_timer::time_point until) {
+        auto& question = questions_.emplace_back(again_.get_executor());
+        question.async_connect(to_, [self = shared_from_this(), &question](const boost::system::error_code& error) {
+            if (self->reached_ != nullptr || self->error_ || error == asio::error::operation_aborted) return;
+            if (error) self->error_ = error;
+            else self->reached_ = &question;
+            self->answered_.cancel();
+        });
+        if (std::chrono::steady_clock::now() + kAgain >= until) return;
+        again_.expires_after(kAgain);
+        again_.async_wait([self = shared_from_this(), until](const boost::system::error_code& cancelled) {
+            if (!cancelled && self->reached_ == nullptr && !self->error_) self->ask_again(until);
+        });
+    }
+
+    static constexpr std::chrono::milliseconds kAgain{250};
+    Endpoint to_;
+    asio::steady_timer again_, answered_;
+    std::list<StreamSocket> questions_;
+    StreamSocket* reached_ = nullptr;  // among them
+    boost::system::error_code error_;
+};
 
 /// What went wrong in a handshake, for people.
 std::string reason_of(const boost::system::error_code& error) {
@@ -96,9 +147,9 @@ asio::awaitable<Result<Stream>> Stream::connect(const Address& address) {
     StreamSocket socket(co_await asio::this_coro::executor);
     const asio::generic::stream_protocol::endpoint endpoint(to->get(), to->length,
                                                             protocol_of(address, to->family()).protocol());
-    const Deadline limit(socket, kConnectLimit);
-    auto [error] = co_await socket.async_connect(endpoint, kTuple);
-    if (error == asio::error::operation_aborted)
+    const auto asking = std::make_shared<Asking>(socket.get_executor(), endpoint);
+    const auto error = co_await asking->ask(kConnectLimit, socket);
+    if (error == asio::error::timed_out)
         co_return fail(address.text() + ": cannot connect: no answer within " + std::to_string(kConnectLimit.count()) +
                        " ms");
     if (error) co_return fail(address.text() + ": cannot connect: " + error.message());

@@ -31,8 +31,7 @@ using StreamSocket = asio::generic::stream_protocol::socket;
 class Stream {
 public:
     static constexpr std::chrono::seconds kHandshakeLimit{5};  ///< that a peer has for TLS's handshake
-    /// To answer a connection attempt. Whoever tries again then is there sooner, once there is a link, than TCP asks a
-    /// third time.
+    /// To answer a connection attempt, which asks anew several times until then.
     static constexpr std::chrono::milliseconds kConnectLimit{1500};
 
     using Transferred = std::tuple<boost::system::error_code, std::size_t>;

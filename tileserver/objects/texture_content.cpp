@@ -169,8 +169,14 @@ void TextureContent::store(const Storage& storage) {
         }
 }
 
+bool TextureContent::has_level(std::int32_t level) const {
+    if (part_) return level >= 0 && static_cast<GLuint>(level) < part_->levels;
+    return images_.contains({glapi::image_target(glapi::info_of(target_), 0), level});
+}
+
 void TextureContent::make_mipmaps(std::int32_t base, std::int32_t last) {
     constexpr GLint kLast = 1000;
+    if (!has_level(base)) return;  // Mesa 22.3 looks for it behind the levels that a texture may have
     const auto parameter = [&](GLenum pname, GLint otherwise) {
         const auto known = parameters_.find(pname);
         return known == parameters_.end() ? otherwise : static_cast<GLint>(known->second[0]);

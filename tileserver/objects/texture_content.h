@@ -51,7 +51,8 @@ public:
     }
     /// The border colour of whole numbers, instead of any of before.
     void note_whole_border(const std::array<GLint, 4>& value) { whole_border_ = value; }
-    /// Makes the levels behind one of it, `last` at most, whichever levels the parameters let be sampled.
+    /// Makes the levels behind one of it, `last` at most, whichever levels the parameters let be sampled. Without that
+    /// one there is nothing to make.
     void make_mipmaps(std::int32_t base, std::int32_t last);
 
     /// All levels, for good; of cube maps `depth` is 1, of others it counts layers, too.
@@ -82,6 +83,7 @@ private:
         ImageFormat format;
         std::uint64_t bytes = 0;  ///< estimate
     };
+    bool has_level(std::int32_t level) const;
     bool make_storage(GLuint name, const Storage& storage) const;
     void copy_levels(GLuint to) const;
     void set_parameters(GLuint name) const;

@@ -30,7 +30,7 @@ using nlohmann::json;
 using request::ask;
 
 constexpr const char* kNode = "node";
-constexpr const char* kSaid = "said";  // code of a failure of which the JSON has been printed
+constexpr const char* kSaid = "said";               // code of a failure of which the JSON has been printed
 constexpr std::chrono::seconds kLimit{10};          // for an answer
 constexpr std::chrono::seconds kPictureLimit{120};  // it may wait in line, and a large one takes long to encode
 constexpr std::chrono::seconds kCloseLimit{

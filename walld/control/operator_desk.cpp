@@ -272,6 +272,8 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::screenshot(const Asked& asked) {
         if (!target) co_return tl::unexpected(target.error());
         query.target = *target;
     }
+    const auto place = pictures_.take(asked.who.text(), {wall_.config().quota.person_pictures, "person_pictures"});
+    if (!place) co_return tl::unexpected(place.error());
     auto png = co_await snapshots_.take(std::move(query));
     if (!png) co_return tl::unexpected(png.error());
     co_return Answer{{{"bytes", (*png)->size()}}, std::move(*png)};

@@ -103,6 +103,7 @@ private:
 
     Wall& wall_;
     SnapshotDesk& snapshots_;
+    Quota pictures_{kPictures};
     const StreamHub& streams_;
     LayoutStore layouts_;
     MachineDesk& machines_;

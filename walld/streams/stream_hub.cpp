@@ -35,7 +35,7 @@ void StreamHub::Viewer::tell_error(const std::string& what) {
 }
 
 Outcome<std::shared_ptr<StreamHub::Viewer>> StreamHub::add_viewer(const Person& who) {
-    auto place = places_.take(who.text());
+    auto place = places_.take(who.text(), {wall_.config().quota.person_views, "person_views"});
     if (!place) return tl::unexpected(place.error());
     auto viewer = std::make_shared<Viewer>(executor_, who.text(), std::move(*place));
     viewers_[viewer.get()] = viewer;

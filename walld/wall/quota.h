@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "walld/wall/refusal.h"
@@ -25,7 +27,14 @@ inline constexpr QuotaLimits kHttpConnections{"HTTP connections to this wall", 5
 inline constexpr QuotaLimits kForeignHttp{"HTTPS connections to this wall", 64,
                                           512};  ///< of an address of another machine
 inline constexpr QuotaLimits kViewers{"live views of this wall", 256, 768};
+inline constexpr QuotaLimits kPictures{"pictures of this wall that are being made", 128, 1024};
 inline constexpr QuotaLimits kRequests{"requests to this wall that wait for an answer", 128, 1024};
+
+/// What wall.toml allows of one peer.
+struct QuotaAllowed {
+    std::optional<std::uint32_t> most;  ///< nothing: what there may be
+    const char* key = "";               ///< in [quota]
+};
 
 class Quota {
     struct Counts {
@@ -58,7 +67,7 @@ public:
     explicit Quota(const QuotaLimits& limits) : limits_(limits) {}
 
     /// `who`: names the peer, for the refusal as well.
-    Outcome<Place> take(const std::string& who);
+    Outcome<Place> take(const std::string& who, const QuotaAllowed& allowed = {});
     std::size_t in_all() const { return counts_->in_all; }
 
 private:

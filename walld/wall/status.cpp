@@ -127,6 +127,8 @@ json quota_json(const config::QuotaConfig& quota) {
     add("program_windows", quota.program_windows);
     add("person_programs", quota.person_programs);
     add("person_memory", quota.person_memory);
+    add("person_views", quota.person_views);
+    add("person_pictures", quota.person_pictures);
     return out;
 }
 

@@ -160,6 +160,26 @@ class Quotas(unittest.TestCase):
         self.assertIsNotNone(self.session(small))
         self.assert_others_go_on()
 
+    def record(self, name: str, seconds: float) -> subprocess.Popen:
+        line = [self.wall.bin / "wallctl", "--walld", self.wall.address, "record", self.wall.folder / name, "--seconds",
+                str(seconds)]
+        recording = subprocess.Popen(line, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(recording.stderr.close)
+        self.addCleanup(recording.wait)
+        return recording
+
+    def test_a_person_has_no_more_live_views_than_they_may(self) -> None:
+        self.quota(person_views=1)
+        first = self.record("first.avi", 3)
+        until(lambda: self.wall.ctl("streams"), "it is watched", SOON)
+        second = self.record("second.avi", 1)
+        self.assertNotEqual(second.wait(SOON), 0)
+        self.assertIn("('person_views' in [quota] of wall.toml)", second.stderr.read())
+        self.assertEqual(first.wait(SOON), 0, "the first is not disturbed")
+        self.quota(person_views=2)
+        both = [self.record(f"{name}.avi", 1) for name in ("third", "fourth")]
+        self.assertEqual([recording.wait(SOON) for recording in both], [0, 0])
+
     # ---- who sees it ----
 
     def test_it_is_told(self) -> None:

@@ -272,10 +272,14 @@ TEST(WallConfig, AQuotaIsWhatItSaysAndNothingElse) {
     EXPECT_EQ(quota.person_programs, 3u);
     EXPECT_FALSE(quota.program_objects || quota.program_bandwidth || quota.program_windows || quota.person_memory);
     EXPECT_EQ(parse_config(kGood, "wall.toml")->quota, QuotaConfig());
-    EXPECT_EQ(with("program_bandwidth = 100\nprogram_objects = 7\nprogram_windows = 2\nperson_memory = 1\n")->quota,
-              (QuotaConfig{{}, 7, 100 << 20, {}, 2, {}, 1 << 20}));
+    EXPECT_EQ(with("person_views = 4\nperson_pictures = 2\n")->quota,
+              (QuotaConfig{.person_views = 4, .person_pictures = 2}));
+    EXPECT_EQ(
+        with("program_bandwidth = 100\nprogram_objects = 7\nprogram_windows = 2\nperson_memory = 1\n")->quota,
+        (QuotaConfig{
+            .program_objects = 7, .program_bandwidth = 100 << 20, .program_windows = 2, .person_memory = 1 << 20}));
     for (const char* wrong : {"program_memory = 0", "program_memory = \"1 GiB\"", "program_fps = 1001",
-                              "program_windows = 257", "memory = 1"}) {
+                              "program_windows = 257", "person_views = 257", "memory = 1"}) {
         const auto read = with(wrong);
         ASSERT_FALSE(read) << wrong;
         EXPECT_THAT(read.error().message, StartsWith("wall.toml:"));

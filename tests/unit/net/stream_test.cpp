@@ -7,6 +7,9 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <fstream>
+#include <sstream>
 
 #include "common/net/control_connection.h"
 #include "common/net/sockets.h"
@@ -128,6 +131,40 @@ TEST_F(TwoMachines, WhoeverStallsInTheHandshakeIsCutOff) {
     run(say_nothing());
     EXPECT_NE(refusal_.find("took longer than"), std::string::npos) << refusal_;
     EXPECT_LT(std::chrono::steady_clock::now() - begin, 4 * Stream::kHandshakeLimit);
+}
+
+/// Connections that the kernel has dropped because a queue of this network was full.
+std::uint64_t dropped() {
+    std::ifstream file("/proc/net/netstat");
+    for (std::string names, values; std::getline(file, names) && std::getline(file, values);) {
+        std::istringstream name(names), value(values);
+        for (std::string n, v; name >> n && value >> v;)
+            if (n == "ListenOverflows") return std::stoull(v);
+    }
+    return 0;
+}
+
+asio::awaitable<void> try_to_connect(Address address, Result<Stream>& result) {
+    result = co_await Stream::connect(address);
+}
+
+/// TCP asks after a second, and then after three: too late for kConnectLimit.
+TEST(Stream, AsksAnewWhileThereIsNoAnswer) {
+    asio::io_context io;
+    asio::ip::tcp::acceptor listener(io, {asio::ip::address_v4::loopback(), 0});
+    listener.listen(0);  // a queue of one
+    asio::ip::tcp::socket first(io);
+    first.connect(listener.local_endpoint());
+    const auto address = *Address::parse("127.0.0.1:" + std::to_string(listener.local_endpoint().port()));
+    Result<Stream> result = wall::fail("nothing yet");
+    asio::co_spawn(io, try_to_connect(address, result), asio::detached);
+    const auto before = dropped();
+    for (bool full = true; !io.stopped(); io.run_one_for(std::chrono::milliseconds(10)))
+        if (full && dropped() >= before + 2) {
+            full = false;
+            listener.accept();  // makes room
+        }
+    EXPECT_TRUE(result) << result.error().message;
 }
 
 TEST(Stream, WithoutKeyIsPlain) {

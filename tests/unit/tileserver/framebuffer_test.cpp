@@ -276,6 +276,17 @@ TEST_F(FramebufferTest, MipmapsAreMadeOfWhatWasDrawn) {
     EXPECT_EQ(std::memcmp(answer.data(), kRed.data(), 4), 0);
 }
 
+TEST_F(FramebufferTest, ThereAreNoMipmapsBehindALevelThatIsNotThere) {
+    draw_texture();
+    for (const int base : {5, 14, 15, 32, 1'000'000}) {
+        Batch batch;
+        pack::TexMipmaps(batch.buffer(), kTexture, GL_TEXTURE_2D, base, 1000);
+        pack::TexRead(batch.buffer(), RequestId(5), kTexture, GL_TEXTURE_2D, 1, 0, 0, 4, GL_RGBA, GL_UNSIGNED_BYTE);
+        session_->expect_run(batch);
+        EXPECT_TRUE(session_->replies[RequestId(5)].empty()) << base;
+    }
+}
+
 TEST_F(FramebufferTest, RefusesWhatAClientCannotSend) {
     EXPECT_THAT(refusal([](auto& b) { pack::Framebuffer(b, kFramebuffer, std::vector<std::byte>(7)); }),
                 HasSubstr("no definition of a framebuffer"));

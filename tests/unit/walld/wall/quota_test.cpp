@@ -25,6 +25,18 @@ TEST(Quota, OnePeerCannotTakeWhatOthersNeed) {
     EXPECT_TRUE(quota.take("bob"));
 }
 
+TEST(Quota, WhatIsAllowedOfOneMayBeLess) {
+    Quota quota(kLimits);
+    const auto first = quota.take("alice", {1, "person_chairs"});
+    ASSERT_TRUE(first);
+    EXPECT_THAT(quota.take("alice", {1, "person_chairs"}).error().message,
+                HasSubstr("alice has 1 chairs, as many as a person may have ('person_chairs' in [quota]"));
+    EXPECT_TRUE(quota.take("bob", {1, "person_chairs"}));
+    const auto second = quota.take("alice", {7, "person_chairs"});
+    EXPECT_TRUE(second) << "the wall was described anew";
+    EXPECT_FALSE(quota.take("alice", {7, "person_chairs"})) << "there are no more";
+}
+
 TEST(Quota, AllTogetherHaveALimit) {
     Quota quota(kLimits);
     std::vector<Quota::Place> places;
