@@ -58,6 +58,7 @@ bool BlockExecution::counts_samples() const {
 }
 
 void BlockExecution::enter_tile() {
+    block_.drawable = block_.undrawable = 0;
     if (!switch_to(execution_.node, execution_.session, *execution_.context, *block_.target,
                    {counts_samples(), block_.slot == first_slot_}))
         execution_.refuse("no such query, or " + too_much("objects"));
@@ -69,7 +70,7 @@ void BlockExecution::finish_tile() {
     if (block_.in_begin) {
         execution_.refuse("a block ends between Begin and End");
         block_.in_begin = false;
-        if (block_.draws) execution_.gl.End();
+        geometry_.end_drawing();
     }
     execution_.node.driver.end_queries();
     execution_.node.driver.stop_capturing();
@@ -103,7 +104,7 @@ bool BlockExecution::shows_at_once() const {
 
 void BlockExecution::pause() {
     if (!block_.tile_open || !block_.draws) return;
-    if (block_.in_begin) execution_.gl.End();
+    geometry_.end_drawing();
     execution_.node.driver.end_queries();
     execution_.node.driver.stop_capturing();
     execution_.node.driver.settle_memory();
@@ -121,7 +122,7 @@ void BlockExecution::resume() {
     block_.trail.fold_into(execution_.context->state);
     enter_tile();
     execution_.context->state = before_block;
-    if (block_.in_begin) execution_.gl.Begin(block_.begin.mode);
+    if (block_.in_begin) geometry_.begin_drawing();
 }
 
 }  // namespace wall::tileserver

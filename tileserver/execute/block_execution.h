@@ -8,13 +8,15 @@
 #include <cstdint>
 
 #include "tileserver/execute/execution.h"
+#include "tileserver/execute/geometry_commands.h"
 
 namespace wall::tileserver {
 
 class BlockExecution {
 public:
     /// Both outlive it.
-    BlockExecution(Execution& execution, OpenBlock& block) : execution_(execution), block_(block) {}
+    BlockExecution(Execution& execution, GeometryCommands& geometry)
+        : execution_(execution), geometry_(geometry), block_(geometry.block()) {}
 
     /// The tiles to execute a block for, out of `tiles`. `bytes`: that it takes in the batch.
     std::uint64_t begin(std::uint64_t tiles, std::size_t bytes);
@@ -36,6 +38,7 @@ private:
     bool shows_at_once() const;
 
     Execution& execution_;
+    GeometryCommands& geometry_;
     OpenBlock& block_;
     unsigned first_slot_ = 0;  // of the block's tiles: in one of them primitives are counted
 };

@@ -87,6 +87,9 @@ struct OpenBlock {
         std::uint64_t vertices = 0;  ///< OpenBlock::vertices there
         bool countable = true;       ///< every vertex since then is counted
     } begin;
+    bool begun = false;  ///< the driver is within its Begin, so that vertices mean something
+    /// Bits of primitive modes that the driver takes with the tile's state, and that it refuses; neither: not known.
+    std::uint32_t drawable = 0, undrawable = 0;
     AttributeTrail trail;
     glstate::Vec4 raster{};  ///< position as the block's bitmaps move it
 };

@@ -90,7 +90,7 @@ public:
     ObjectCommands object{execution_};
     TextureCommands texture{execution_, question_};
     TextureCommands& texture_view = texture;
-    RunCommands run{execution_, geometry.block(), question_, [this](glapi::DrawingRun& r) { return r.run(*this); }};
+    RunCommands run{execution_, geometry, question_, [this](glapi::DrawingRun& r) { return r.run(*this); }};
     ProgramCommands program{execution_};
     ProgramCommands& subroutine = program;
     ProgramCommands& storage = program;
@@ -126,7 +126,7 @@ private:
     /// Between two commands the open glBegin, if there is one, can be ended and begun anew without a difference.
     bool divisible();
 
-    BlockExecution blocks_{execution_, geometry.block()};
+    BlockExecution blocks_{execution_, geometry};
 
     // Of the batch.
     std::optional<glapi::BatchRun> batch_;

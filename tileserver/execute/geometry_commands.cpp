@@ -3,6 +3,22 @@
 
 namespace wall::tileserver {
 
+/// Mesa 22.3 keeps vertices behind a Begin that it has refused, and then leaves out what the next one draws who uses
+/// the driver. So each mode is tried out once with a tile's state, which a client that looks after its program's errors
+/// has no use for.
+bool GeometryCommands::may_begin() {
+    const std::uint32_t bit = 1u << block_.begin.mode;
+    if ((block_.undrawable & bit) != 0) return false;
+    Driver& driver = execution_.node.driver;
+    execution_.session.work.gl_errors += driver.drain_errors();
+    gl_.Begin(block_.begin.mode);
+    gl_.End();
+    const unsigned errors = driver.drain_errors();
+    execution_.session.work.gl_errors += errors;
+    (errors == 0 ? block_.drawable : block_.undrawable) |= bit;
+    return errors == 0;
+}
+
 void GeometryCommands::Material(GLenum face, GLenum pname, float p0, float p1, float p2, float p3) {
     const glstate::Vec4 value = {p0, p1, p2, p3};
     if (pname == GL_SHININESS && !(p0 >= 0 && p0 <= 128)) return execution_.refuse("shininess is not within 0 and 128");

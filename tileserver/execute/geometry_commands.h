@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
 #include "tileserver/execute/execution.h"
 
@@ -17,29 +18,39 @@ public:
 
     /// That the commands write to; the other groups and the executor look at it, and set it up.
     OpenBlock& block() { return block_; }
+    /// The block's last Begin, for the driver: now, or again after a pause.
+    void begin_drawing() {
+        const GLenum mode = block_.begin.mode;
+        if (mode > GL_PATCHES || ((block_.drawable >> mode & 1) == 0 && !may_begin())) return;
+        gl_.Begin(mode);
+        block_.begun = true;
+    }
+    void end_drawing() {
+        if (std::exchange(block_.begun, false)) gl_.End();
+    }
 
     void Begin(GLenum mode) {
         if (block_.in_begin) return execution_.refuse("inside Begin and End");
         block_.in_begin = true;
         block_.begin = {mode, block_.vertices, true};
-        if (block_.draws) gl_.Begin(mode);
+        if (block_.draws) begin_drawing();
     }
     void End() {
         if (!block_.in_begin) return execution_.refuse("without Begin");
         block_.in_begin = false;
-        if (block_.draws) gl_.End();
+        end_drawing();
     }
     void Vertex2f(float x, float y) {
         ++block_.vertices;
-        if (block_.draws) gl_.Vertex2f(x, y);
+        if (block_.begun) gl_.Vertex2f(x, y);
     }
     void Vertex3f(float x, float y, float z) {
         ++block_.vertices;
-        if (block_.draws) gl_.Vertex3f(x, y, z);
+        if (block_.begun) gl_.Vertex3f(x, y, z);
     }
     void Vertex4f(float x, float y, float z, float w) {
         ++block_.vertices;
-        if (block_.draws) gl_.Vertex4f(x, y, z, w);
+        if (block_.begun) gl_.Vertex4f(x, y, z, w);
     }
     void Normal3f(float x, float y, float z) {
         block_.trail.set(Attribute::normal, x, y, z);
@@ -104,22 +115,24 @@ public:
     void Material(GLenum face, GLenum pname, float p0, float p1, float p2, float p3);
     void EvalCoord1f(float u) {
         block_.begin.countable = false;
-        if (block_.draws) gl_.EvalCoord1f(u);
+        if (block_.begun) gl_.EvalCoord1f(u);
     }
     void EvalCoord2f(float u, float v) {
         block_.begin.countable = false;
-        if (block_.draws) gl_.EvalCoord2f(u, v);
+        if (block_.begun) gl_.EvalCoord2f(u, v);
     }
     void EvalPoint1(std::int32_t i) {
         block_.begin.countable = false;
-        if (block_.draws) gl_.EvalPoint1(i);
+        if (block_.begun) gl_.EvalPoint1(i);
     }
     void EvalPoint2(std::int32_t i, std::int32_t j) {
         block_.begin.countable = false;
-        if (block_.draws) gl_.EvalPoint2(i, j);
+        if (block_.begun) gl_.EvalPoint2(i, j);
     }
 
 private:
+    bool may_begin();
+
     const Gl& gl_;
     OpenBlock block_;
     Execution& execution_;

@@ -50,10 +50,12 @@ void RunCommands::compile_part() {
     compiling_->list_start = block_.vertices;
     block_.trail.clear();
     block_.draws = true;  // into the list
-    if (block_.in_begin) execution_.gl.Begin(block_.begin.mode);
+    block_.drawable = ~0u;
+    if (block_.in_begin) geometry_.begin_drawing();
     const auto done = play_(compiling_->content);
-    if (block_.in_begin) execution_.gl.End();
+    geometry_.end_drawing();
     block_.draws = false;
+    block_.drawable = 0;
     execution_.gl.EndList();
     compiling_->run->parts.back().trail = block_.trail;
     block_.trail.clear();

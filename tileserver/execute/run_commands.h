@@ -12,6 +12,7 @@
 
 #include "tileserver/execute/content_question.h"
 #include "tileserver/execute/execution.h"
+#include "tileserver/execute/geometry_commands.h"
 #include "tileserver/objects/run.h"
 
 namespace wall::tileserver {
@@ -21,8 +22,12 @@ public:
     /// Executes the run's commands until a list is full, there is no time left, or its end (glapi::DrawingRun::run).
     using Play = std::function<Result<bool>(glapi::DrawingRun&)>;
     /// All outlive it.
-    RunCommands(Execution& execution, OpenBlock& block, ContentQuestion& question, Play play)
-        : execution_(execution), block_(block), question_(question), play_(std::move(play)) {}
+    RunCommands(Execution& execution, GeometryCommands& geometry, ContentQuestion& question, Play play)
+        : execution_(execution),
+          geometry_(geometry),
+          block_(geometry.block()),
+          question_(question),
+          play_(std::move(play)) {}
 
     void RunDefine(ClientName run, std::uint32_t commands, std::uint32_t operand_bytes,
                    std::span<const std::byte> content);
@@ -48,6 +53,7 @@ private:
     void keep(ClientName id, std::shared_ptr<const RunContent> content);
 
     Execution& execution_;
+    GeometryCommands& geometry_;
     OpenBlock& block_;
     ContentQuestion& question_;
     Play play_;

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <random>
 
 #include "common/wire/whole_window.h"
@@ -522,6 +523,60 @@ TEST_F(ExecutorTest, MoreNamesThanTheDriverIsGivenAtOnce) {
     ASSERT_EQ(answer.size(), 1 + std::size_t{4} * kMany);
     EXPECT_EQ(answer[0], kMany);
     for (GLuint i = 0; i < kMany; ++i) ASSERT_EQ(answer[1 + std::size_t{4} * i + 3], i);
+}
+
+/// Mesa 22.3 keeps vertices that are outside of Begin and End, and then leaves out what the next one draws.
+TEST_F(ExecutorTest, StrayVerticesKeepNobodyFromDrawing) {
+    const auto vertices = [](auto& b, int count) {
+        for (int i = 0; i < count; ++i) pack::Vertex2f(b, 1, -1);
+    };
+    const std::vector<std::function<void(wire::PackBuffer&)>> strays = {
+        [&](auto& b) {  // behind an End
+            pack::Begin(b, GL_QUADS);
+            pack::End(b);
+            vertices(b, 1);
+            pack::Color3f(b, 1, 0, 0);
+        },
+        [&](auto& b) {  // behind a Begin that the driver refuses: there is no tessellation
+            pack::Begin(b, GL_PATCHES);
+            for (int i = 0; i < 4; ++i) pack::TexCoord3f(b, 1, 1, 1), vertices(b, 1);
+            pack::End(b);
+            pack::Begin(b, GL_QUADS);
+            pack::TexCoord3f(b, 1, 1, 1);
+            pack::End(b);
+        },
+        [&](auto& b) {  // behind one that is none
+            pack::Begin(b, 0x27000007);
+            vertices(b, 4);
+            pack::End(b);
+            pack::Begin(b, GL_QUADS);
+            pack::TexCoord3f(b, 1, 1, 1);
+            pack::End(b);
+        }};
+    for (const auto& stray : strays) {
+        Batch first, second;
+        first.block(1, stray);
+        {
+            TestSession session(*node_.node, SessionId(1));
+            session.open_surface(kWidth, kHeight, kWindow);
+            session.expect_run(first);
+            TestSession again(*node_.node, SessionId(3));
+            again.open_surface(kWidth, kHeight, kWindow);
+            again.expect_run(first);
+        }
+        TestSession other(*node_.node, SessionId(2));
+        other.open_surface(kWidth, kHeight, kWindow);
+        second.block(1, [](auto& b) {
+            pack::Clear(b, kColorDepth);
+            pack::Color4ub(b, 0xff00ff00);
+            pack::Begin(b, GL_QUADS);
+            for (const auto& [x, y] : {std::pair{-1.0f, -1.0f}, {1.0f, -1.0f}, {1.0f, 1.0f}, {-1.0f, 1.0f}})
+                pack::Vertex2f(b, x, y);
+            pack::End(b);
+        });
+        other.expect_run(second);
+        EXPECT_EQ(other.read(0, {5, 5, 1, 1})[1], 255);
+    }
 }
 
 TEST_F(ExecutorTest, FeedbackGoesOnBetweenOthersTurns) {
