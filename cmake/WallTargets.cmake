@@ -126,7 +126,8 @@ function(wall_test name)
   if(WALLGL_SANITIZE)
     set(limit 360)
   endif()
-  set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${limit})
+  set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${limit}
+    ENVIRONMENT "WALLGL_CACHE=off")  # a test's questions are its own
   # `unit_tests`, `integration_tests`, ...: all programs of a label, for builds that want only those.
   foreach(label ${ARG_LABELS})
     if(NOT TARGET ${label}_tests)

@@ -14,6 +14,7 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
+os.environ.setdefault("WALLGL_CACHE", "")  # as usual, which tests do not want
 from wall import Wall, WallError  # noqa: E402
 from xserver import XServer  # noqa: E402
 

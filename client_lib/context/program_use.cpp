@@ -7,6 +7,7 @@
 #include <ranges>
 #include <utility>
 
+#include "client_lib/context/answer_cache.h"
 #include "client_lib/context/ask_one.h"
 #include "client_lib/context/capture_use.h"
 #include "client_lib/context/framebuffer_binding.h"
@@ -38,6 +39,22 @@ std::optional<NodeAnswer> ask_compiler(Context& c, const char* function, Pack&& 
     }
 }
 
+AnswerCache& kept_answers() {
+    static auto* const kept = new AnswerCache(AnswerCache::usual_folder());  // for as long as the process runs
+    return *kept;
+}
+
+/// What names a question on this wall: who asks nodes of another driver, or speaks to them otherwise, asks another one.
+glapi::ContentHash question(Context& c) {
+    const Caps& caps = c.session().caps();
+    std::string wall = std::to_string(glapi::kStreamVersion);
+    for (const std::string* name : {&caps.vendor, &caps.renderer, &caps.version, &caps.shading_language_version})
+        wall += '\n' + *name;
+    glapi::ContentHash hash;
+    hash.ShaderCompile(0, std::as_bytes(std::span(wall)));
+    return hash;
+}
+
 void take_link_result(Program& program, glapi::ProgramDefinition definition, glapi::ProgramReflection reflection) {
     program.log = std::move(reflection.log);
     program.linked = reflection.linked;
@@ -59,10 +76,20 @@ void learn_compile_result(Context& c, Shader& shader) {
         if (shader.state != Shader::State::unknown) return;
         source = shader.compiled_source;
     }
-    const auto answer = ask_compiler(c, "glCompileShader", [&](wire::PackBuffer& buffer, RequestId request) {
-        glapi::pack::ShaderCompile(buffer, request, shader.type, std::as_bytes(std::span(source)));
-    });
-    auto result = answer ? glapi::decode_compile_result(answer->bytes) : std::nullopt;
+    const auto bytes = std::as_bytes(std::span(source));
+    glapi::ContentHash hash = question(c);
+    hash.ShaderCompile(shader.type, bytes);
+    const auto name = hash.finish();
+    const auto known = kept_answers().find(name);
+    auto result = known ? glapi::decode_compile_result(*known) : std::nullopt;
+    if (!result) {
+        const auto answer = ask_compiler(c, "glCompileShader", [&](wire::PackBuffer& buffer, RequestId request) {
+            glapi::pack::ShaderCompile(buffer, request, shader.type, bytes);
+        });
+        result = answer ? glapi::decode_compile_result(answer->bytes) : std::nullopt;
+        // A failure may be one of this moment: a compiler that was given up.
+        if (result && result->compiled) kept_answers().keep(name, answer->bytes);
+    }
     std::lock_guard lock(c.share().mutex);
     shader.state = result && result->compiled ? Shader::State::compiled : Shader::State::failed;
     shader.log = result ? std::move(result->log) : kNoAnswer;
@@ -77,14 +104,23 @@ void learn_link_result(Context& c, Program& program) {
     if (!definition) return;
     const auto bytes = encode(*definition);
     c.before_change(program.id);
-    const auto answer = ask_compiler(c, "glLinkProgram", [&](wire::PackBuffer& buffer, RequestId request) {
-        glapi::pack::ProgramLink(buffer, request, program.id, bytes);
-    });
-    auto reflection = answer ? glapi::decode_reflection(answer->bytes) : std::nullopt;
+    glapi::ContentHash hash = question(c);
+    hash.ProgramLink(bytes);
+    const auto name = hash.finish();
+    const auto known = kept_answers().find(name);
+    auto reflection = known ? glapi::decode_reflection(*known) : std::nullopt;
+    std::optional<NodeAnswer> answer;
+    if (!reflection) {
+        answer = ask_compiler(c, "glLinkProgram", [&](wire::PackBuffer& buffer, RequestId request) {
+            glapi::pack::ProgramLink(buffer, request, program.id, bytes);
+        });
+        reflection = answer ? glapi::decode_reflection(answer->bytes) : std::nullopt;
+        if (reflection && reflection->linked) kept_answers().keep(name, answer->bytes);
+    }
     std::scoped_lock lock(c.session().mutex(), c.share().mutex);
     if (!reflection) reflection.emplace().log = kNoAnswer;
     take_link_result(program, std::move(*definition), std::move(*reflection));
-    if (program.linked) answer->node->object_stamps[program.id] = program.executable->stamp;
+    if (program.linked && answer) answer->node->object_stamps[program.id] = program.executable->stamp;
     if (c.pipelines->bound && c.pipelines->bound->is_outdated()) c.pipelines->bound->combine();
     c.share().last_change = next_stamp();
 }

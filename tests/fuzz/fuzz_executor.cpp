@@ -18,6 +18,8 @@ using namespace wall::tileserver;
 constexpr int kOthersTurns = 4;
 constexpr std::uint64_t kObjectBytes = std::uint64_t{4} << 20;  // of a session: gigabytes take the driver seconds
 
+constexpr std::int64_t kPixels = 1 << 22;  // of its windows
+
 constexpr std::int64_t kElements = 1 << 20;  // of a draw: more take the driver seconds, which a node puts up with
 
 /// The driver's draws whose elements no buffer bounds, but for those of too many.
@@ -127,6 +129,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         Ignore output;
         SessionReplica session(*node->driver, SessionId(1));
         session.objects.set_limits(kObjectBytes, kMaxObjects);
+        session.set_most_pixels(kPixels);
         Executor executor(*node->node, session, output);
         open_surface(executor);
         (void)executor.run_batch(fuzz::batch_of(data, size, ContextId(1)));
@@ -135,6 +138,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         Ignore output;
         SessionReplica session(*node->driver, SessionId(1));
         session.objects.set_limits(kObjectBytes, kMaxObjects);
+        session.set_most_pixels(kPixels);
         Executor executor(*node->node, session, output);
         open_surface(executor);
         const auto batch = fuzz::batch_of(data, size, ContextId(1));
@@ -143,6 +147,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     {
         Ignore output;
         ParallelGroup group(*node->driver, {2, {}});
+        group.set_most_pixels(kPixels);
         SessionReplica member(*node->driver, SessionId(1), &group, 0), other(*node->driver, SessionId(1), &group, 1);
         member.objects.set_limits(kObjectBytes, kMaxObjects);
         other.objects.set_limits(kObjectBytes, kMaxObjects);

@@ -22,6 +22,8 @@ import urllib.error
 import urllib.request
 from pathlib import Path
 
+os.environ.setdefault("WALLGL_CACHE", "off")  # what a program asks nodes is the same in each run
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 START_LIMIT = 30.0  # seconds until everything answers; a software renderer compiles its shaders first
 STOP_LIMIT = 5.0  # seconds for an orderly end, then SIGKILL

@@ -33,7 +33,15 @@ struct LayerFormat {
 
 /// Pixels that a session's layers may still take; one with several samples counts as often.
 struct PixelBudget {
-    std::int64_t left = 0;
+    PixelBudget() : PixelBudget(0) {}
+    explicit PixelBudget(std::int64_t all) : left(all), all_(all) {}
+    /// So many in all from now on. Who has more keeps them, and gets no other.
+    void set(std::int64_t all) { left += all - std::exchange(all_, all); }
+
+    std::int64_t left;
+
+private:
+    std::int64_t all_;
 };
 inline std::int64_t pixels_taken(const LayerGeometry& geometry, const LayerFormat& format) {
     return std::int64_t{geometry.area.width} * geometry.area.height * std::max(format.samples, 1u);

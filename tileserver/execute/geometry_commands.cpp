@@ -5,14 +5,14 @@ namespace wall::tileserver {
 
 /// Mesa 22.3 keeps vertices behind a Begin that it has refused, and then leaves out what the next one draws who uses
 /// the driver. So each mode is tried out once with a tile's state, which a client that looks after its program's errors
-/// has no use for.
+/// has no use for. A draw of nothing asks for the same as Begin; Begin and End of nothing would do so, too, but Mesa
+/// cuts what is drawn behind it into other triangles.
 bool GeometryCommands::may_begin() {
     const std::uint32_t bit = 1u << block_.begin.mode;
     if ((block_.undrawable & bit) != 0) return false;
     Driver& driver = execution_.node.driver;
     execution_.session.work.gl_errors += driver.drain_errors();
-    gl_.Begin(block_.begin.mode);
-    gl_.End();
+    gl_.DrawArraysInstanced(block_.begin.mode, 0, 0, 1);
     const unsigned errors = driver.drain_errors();
     execution_.session.work.gl_errors += errors;
     (errors == 0 ? block_.drawable : block_.undrawable) |= bit;

@@ -28,7 +28,7 @@ struct Copies {
     Driver& driver;
     LayerFormat format;
     GLbitfield buffers;
-    PixelBudget budget{};
+    PixelBudget budget;
 
     /// `buffers` of the part in pixels of that size, bound.
     std::unique_ptr<Layer> copy(const Layer& layer, const WindowValues::IntBox& from, std::int32_t width,

@@ -102,6 +102,10 @@ public:
             weight_ = quota.weight;
             pace_.set_weight(quota.weight);
             session_.objects.set_limits(quota.most_bytes, quota.most_objects);
+            const auto pixels =
+                std::min(kMaxLayerPixels, static_cast<std::int64_t>(quota.most_bytes) / kLayerPixelBytes);
+            session_.set_most_pixels(pixels);
+            if (group_) group_->set_most_pixels(pixels);
             frame_limit_.set_interval(quota.frame_interval);
         }
         /// True: a batch was executed, or some of it. `now` is the time, before and after. `contended`: others want

@@ -34,6 +34,8 @@ public:
 
     static bool shares(SurfaceId id) { return id.value != 0 && id.value <= wire::kMaxSharedSurfaces; }
 
+    /// As SessionReplica's.
+    void set_most_pixels(std::int64_t most) { pixels_.set(most); }
     SurfaceReplica* surface(SurfaceId id);
     const std::map<SurfaceId, std::unique_ptr<SurfaceReplica>>& surfaces() const { return surfaces_; }
     /// The first member makes it. Null: it has another format.

@@ -57,6 +57,8 @@ public:
     SessionReplica(const SessionReplica&) = delete;
 
     SessionId id() const { return id_; }
+    /// Of all its windows' layers.
+    void set_most_pixels(std::int64_t most) { pixels_.set(most); }
     ContentAsker asker() const { return ContentAsker(std::uint64_t{id_.value} << 32 | rank_); }
     ParallelGroup* group() const { return group_; }
     Rank rank() const { return rank_; }

@@ -525,6 +525,29 @@ TEST_F(ExecutorTest, MoreNamesThanTheDriverIsGivenAtOnce) {
     for (GLuint i = 0; i < kMany; ++i) ASSERT_EQ(answer[1 + std::size_t{4} * i + 3], i);
 }
 
+TEST_F(ExecutorTest, WindowsHaveNoMorePixelsThanTheSessionMayHave) {
+    TestSession session(*node_.node, SessionId(1));
+    session.open_surface(kWidth, kHeight, kWindow);
+    const auto open = [&](std::uint32_t number, std::uint32_t width) {  // off the wall: all of it is one layer
+        Batch batch;
+        pack::SurfaceCreate(batch.buffer(), SurfaceId(number), 1, 0, 24, 8, 0, 0, 1);
+        pack::SurfacePlace(batch.buffer(), SurfaceId(number), 1, width, 10, 0, 0, 0, 0, wire::kAlsoWholeWindow);
+        pack::SwapOffscreen(batch.buffer(), SurfaceId(number));
+        pack::Bind(batch.buffer(), SurfaceId(number), SurfaceId(number));
+        batch.block(std::uint64_t{1} << wire::kOffscreenSlot, [](auto& b) { pack::Clear(b, kColorDepth); });
+        session.expect_run(batch);
+        return session.session.surface(SurfaceId(number))->layer(wire::kOffscreenSlot) != nullptr;
+    };
+    session.session.set_most_pixels(kWidth * kHeight + 1000);
+    EXPECT_TRUE(open(2, 60));
+    EXPECT_FALSE(open(3, 60));
+    session.session.set_most_pixels(kWidth * kHeight + 1200);
+    EXPECT_TRUE(open(4, 60));
+    session.session.set_most_pixels(10);
+    EXPECT_NE(session.session.surface(SurfaceId(2))->layer(wire::kOffscreenSlot), nullptr) << "what it has, it keeps";
+    EXPECT_FALSE(open(5, 1));
+}
+
 /// Mesa 22.3 keeps vertices that are outside of Begin and End, and then leaves out what the next one draws.
 TEST_F(ExecutorTest, StrayVerticesKeepNobodyFromDrawing) {
     const auto vertices = [](auto& b, int count) {
