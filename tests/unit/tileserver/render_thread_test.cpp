@@ -241,10 +241,11 @@ protected:
 
 // ---- parallel programs ----
 
-/// Two processes: the first clears, the second draws, both end the frame.
+/// Two processes: the first clears, the second draws when that is done, both end the frame.
 class AParallelProgram : public RenderThreadTest {
 protected:
     static constexpr SessionId kSession{1};
+    static constexpr std::uint32_t kBarrier = 1;
 
     void SetUp() override {
         RenderThreadTest::SetUp();
@@ -258,18 +259,23 @@ protected:
             pack::Join(join);
             push(queues_[rank], join);
             create_window(window);
+            pack::BarrierCreate(window, kBarrier, 2);
             push(queues_[rank], window);
         }
     }
     void clear_and_swap(std::uint32_t frame) {
-        wire::PackBuffer buffer;
-        block(buffer, 1, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT); });
-        pack::Swap(buffer, SurfaceId(1), frame);
-        push(queues_[0], buffer);
+        wire::PackBuffer clear, swap;
+        block(clear, 1, [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT); });
+        pack::BarrierExec(clear, kBarrier);
+        push(queues_[0], clear);
+        pack::Swap(swap, SurfaceId(1), frame);
+        push(queues_[0], swap);
     }
     /// So much that the turn is over behind it.
     void draw_and_swap(int red, std::uint32_t frame) {
-        wire::PackBuffer buffer;
+        wire::PackBuffer wait, buffer;
+        pack::BarrierExec(wait, kBarrier);
+        push(queues_[1], wait);
         block(buffer, 1, [&](auto& b) {
             pack::Color4f(b, static_cast<float>(red) / 255, 0, 0, 1);
             pack::Begin(b, GL_TRIANGLE_STRIP);  // each vertex makes a triangle that covers the window
