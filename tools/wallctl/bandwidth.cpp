@@ -33,7 +33,11 @@ constexpr std::size_t kBuffer = std::size_t{1} << 20;
 constexpr int kRoundTrips = 9;
 constexpr std::uint32_t kStaticDraw = 0x88E4;  // GL_STATIC_DRAW
 
-Result<void> failed(const char* what) { return fail(std::string(what) + ": " + std::strerror(errno)); }
+Result<void> failed(const char* what) {
+    const bool slow = errno == EAGAIN || errno == EWOULDBLOCK;
+    return fail(std::string(what) + ": " +
+                (slow ? "nothing has moved for " + std::to_string(kLongest.count()) + " s" : std::strerror(errno)));
+}
 
 /// A program's stream to a node.
 class Probe {
