@@ -86,8 +86,8 @@ class Browser:
             except BrowserError as error:
                 problem = f" ({error})"
             if time.monotonic() > end:
-                raise BrowserError(f"{limit:.0f} seconds are over: {expression}{problem}; the page says: "
-                                   f"{self.get('document.body?.innerText')}")
+                raise BrowserError(f"{limit:.0f} seconds are over: {expression}{problem}; the page's errors are "
+                                   f"{self.errors()}; it says: {self.get('document.body?.innerText')}")
             time.sleep(0.05)
 
     def screenshot(self, path: Path) -> None:

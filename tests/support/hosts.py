@@ -81,6 +81,8 @@ class Hosts:
                  hub)
             _run("ip", "-n", own, "address", "add", f"{self.address(name)}/24", "dev", LINK)
             _run("ip", "-n", own, "link", "set", "lo", "up")
+            # With an address of IPv6, which a link gets by itself a second later, Chromium drops what it is loading.
+            _run("ip", "-n", own, "link", "set", LINK, "addrgenmode", "none")
             _run("ip", "-n", own, "link", "set", LINK, "up")
             _run("ip", "-n", hub, "link", "set", self._port(name), "master", BRIDGE, "up")
 
