@@ -89,7 +89,8 @@ std::optional<std::vector<std::byte>> AnswerCache::find(const glapi::ContentKey&
     return answer;
 }
 
-/// Under another name first: who reads finds all of it or nothing.
+/// Under another name first: who reads finds all of it or nothing. write_whole() would wait for the disk twice, and
+/// several processes keep the same at once.
 void AnswerCache::keep(const glapi::ContentKey& question, std::span<const std::byte> answer) {
     if (folder_.empty() || answer.size() > kMostAnswer) return;
     std::error_code error;

@@ -2,7 +2,6 @@
 // A ring of which the other side writes what it likes into the counters, whenever it likes: nothing is read or written
 // outside of its memory, and whoever is lied to stops. Input: (what:u8 number:u8...)*.
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <vector>
 
@@ -13,7 +12,6 @@
 namespace {
 
 using namespace wall;
-using Counters = wire::RingMemory::Counters;
 
 std::uint64_t number(fuzz::InputPieces& input) {
     std::uint64_t value = 0;

@@ -100,7 +100,8 @@ def main() -> int:
     options = arguments.parse_args()
     seeds = Seeds(options.folder)
     with XServer() as x, Wall(TILES, TILE) as wall:
-        taps = [Tap(wall.folder / f"{name}.sock", seeds) for name in wall.node_names]
+        for name in wall.node_names:
+            Tap(wall.folder / f"{name}.sock", seeds)  # its threads keep it
         for recording in load_recordings():
             if options.names and recording.name not in options.names:
                 continue
@@ -111,7 +112,6 @@ def main() -> int:
                 player.wait(MOST_SECONDS)
             end_all([player])
             print(f"{recording.name}: {len(list(options.folder.iterdir()))} inputs", flush=True)
-    del taps
     return 0
 
 
