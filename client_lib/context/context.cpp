@@ -151,6 +151,7 @@ const Placing& Context::placing() {
     const bool depth = executable.position().program().depth;
     placing_ = {true, static_cast<std::uint32_t>(attribute), transform->homogeneous(),
                 make_projection(fixed_function, *transform, depth), transform->steady()};
+    glstate::set_camera(placing_.projection, executable.position().camera(state.matrix.projection));
     return placing_;
 }
 

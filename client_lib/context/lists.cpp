@@ -107,11 +107,11 @@ void call_run(Context& c, const ListRun& run) {
     forget_dead_runs(c);
     const Placing& placing = c.placing();
     const bool bounded = !options().broadcast && placing.of_vertices() && placing.homogeneous;
-    const auto box = bounded ? project(placing.projection, run.box) : std::nullopt;
     draw_in_passes(c.state, *c.captures, [&] {
         std::vector<Node*> reached;
+        const bool somewhere = bounded && c.captures->now == nullptr;
         c.session().draw(
-            c.draw_source(), c.captures->now == nullptr ? box : std::nullopt, needs_of_run(c, run),
+            c.draw_source(), somewhere ? Drawn(placing.projection, run.box) : Drawn::anywhere(), needs_of_run(c, run),
             [&](Node& node, wire::PackBuffer& buffer) { define_once(c.session().nodes(), node, buffer, run); },
             [&](wire::PackBuffer& buffer) { glapi::pack::RunCall(buffer, run.id); },
             [&](Node& node) {

@@ -280,9 +280,9 @@ void NodeDraw::send() {
 /// What is captured is captured everywhere.
 void NodeDraw::send_once() {
     const bool bounded = !options().broadcast && bounded_ && c_.captures->now == nullptr;
-    const auto box = bounded ? project(placing_.projection, known_->box, draw_.mode) : std::nullopt;
+    const Drawn drawn = bounded ? Drawn(placing_.projection, known_->box, draw_.mode) : Drawn::anywhere();
     c_.session().draw(
-        c_.draw_source(), box, needs(), [&](Node& node, wire::PackBuffer& buffer) { bring_objects(node, buffer); },
+        c_.draw_source(), drawn, needs(), [&](Node& node, wire::PackBuffer& buffer) { bring_objects(node, buffer); },
         [&](wire::PackBuffer& buffer) { pack(buffer); },
         [&](Node& node) {  // kept commands draw with them, too
             const std::uint64_t latest = latest_of_input();

@@ -36,8 +36,10 @@ void BlockSender::run() {
     before_drawing(followers_, source_);
     const bool everywhere =
         options().broadcast || glstate::counts_primitives(source_.state) || source_.objects.writes();
-    const auto box = everywhere ? std::nullopt : project(projection_, packer_.block_box());
-    kept_ = followers_.hidden.begin_keeping(source_, box);
+    source_.draw.note_camera(&projection_);
+    scratch_.sight.aim(projection_, source_.draw.views());
+    const Reach box = everywhere ? Reach() : scratch_.sight.of(packer_.block_box());
+    kept_ = followers_.hidden.begin_keeping(source_, box.window);
     if (options().count_ideal) scratch_.ideal.count(source_, packer_, projection_);
     needs_ = needs_of_block(source_.state, packer_);
     if (kept_) pack_whole(followers_.hidden.prepare(*kept_, source_, needs_), kept_->layer.bit());
@@ -126,11 +128,11 @@ void BlockSender::send_apart() {
     scratch_.shares.assign(followers_.nodes.size(), Share{});
     BlockWalk walk(packer_, {}, packer_.mark(), {});
     for (const Primitive& primitive : packer_.primitives()) {
-        const auto rect = project(projection_, primitive.box, primitive.mode);
-        nodes_touched(source_.draw.layers(), rect, scratch_.touched);
+        const Reach reach = scratch_.sight.of(primitive.box, primitive.mode);
+        nodes_touched(source_.draw.layers(), reach, scratch_.touched);
         if (scratch_.touched.empty()) continue;
         walk.go_to(primitive.first);
-        if (scratch_.touched.size() > 1 && may_be_divided(primitive)) divide(primitive, walk.places(), rect);
+        if (scratch_.touched.size() > 1 && may_be_divided(primitive)) divide(primitive, walk.places(), reach);
         else send_primitive(primitive, walk);
     }
     for (Share& share : scratch_.shares) close_block(share);
@@ -171,17 +173,16 @@ bool BlockSender::may_be_divided(const Primitive& primitive) const {
     return !source_.state.line_point.line_stipple_enabled;  // its counter runs along the primitive
 }
 
-/// `rect`: what the primitive touches.
-void BlockSender::divide(const Primitive& primitive, const AttributePlaces& before,
-                         const std::optional<PixelRect>& rect) {
+/// `reach`: of the whole primitive.
+void BlockSender::divide(const Primitive& primitive, const AttributePlaces& before, const Reach& reach) {
     const Topology topology = *topology_of(primitive.mode);
     VertexScan& vertices = scratch_.vertices;
     vertices.scan(packer_, primitive, before, projection_);
     scratch_.candidates.clear();
     for (const TargetLayer& layer : source_.draw.layers())
-        if (!rect || rect->overlaps(layer.area)) scratch_.candidates.push_back(layer);
+        if (reach.touches(layer)) scratch_.candidates.push_back(layer);
     for (std::size_t v = topology.fan ? 1 : 0; v + topology.size <= vertices.size(); v += topology.step) {
-        nodes_touched(scratch_.candidates, window_rect(topology, vertices, v, projection_), scratch_.touched_part);
+        nodes_touched(scratch_.candidates, scratch_.sight.of(topology, vertices, v), scratch_.touched_part);
         const auto first = static_cast<std::int64_t>(v / topology.alignment * topology.alignment),
                    last = static_cast<std::int64_t>(v + topology.size - 1);
         const auto seen = [&] { return vertices.attributes(topology.fan ? 0 : static_cast<std::size_t>(first)); };

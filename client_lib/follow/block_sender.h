@@ -14,6 +14,7 @@
 #include "client_lib/follow/followers.h"
 #include "client_lib/follow/ideal.h"
 #include "client_lib/geometry/primitive_scan.h"
+#include "client_lib/geometry/sight.h"
 
 namespace wall::client {
 
@@ -49,6 +50,7 @@ struct SortScratch {
     NodeMasks touched_part;               ///< by a triangle of it
     std::vector<TargetLayer> candidates;  ///< that a primitive's triangles may touch
     VertexScan vertices;                  ///< of the primitive being divided
+    Sight sight;                          ///< of the block
     IdealTraffic ideal;                   ///< unused without WALLGL_IDEAL
 };
 
@@ -70,7 +72,7 @@ private:
     void send_apart();
     void send_primitive(const Primitive& primitive, BlockWalk& walk);
     bool may_be_divided(const Primitive& primitive) const;
-    void divide(const Primitive& primitive, const AttributePlaces& before, const std::optional<PixelRect>& rect);
+    void divide(const Primitive& primitive, const AttributePlaces& before, const Reach& reach);
     void add_to_run(Share& share, const Primitive& primitive, std::int64_t first, std::int64_t last,
                     std::uint64_t mask);
     void finish_run(Share& share, const Primitive& primitive);

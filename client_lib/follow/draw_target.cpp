@@ -18,6 +18,22 @@ std::uint32_t whole_window_of(const Node& node, const ClientSurface& surface) {
     return surface.hidden && surface.hidden->layer.node == node.index ? wire::kAlsoWholeWindow : wire::kTilesOnly;
 }
 
+/// Those of the node's tiles, for the place that comes behind them: each is a tile's slot and values_of() its view.
+void pack_views(Node& node, const ClientSurface& surface) {
+    if (surface.layout.views.empty()) return;
+    std::vector<std::byte> bytes;
+    const auto add = [&](const auto& value) {
+        const auto raw = std::as_bytes(std::span(&value, 1));
+        bytes.insert(bytes.end(), raw.begin(), raw.end());
+    };
+    for (const TargetLayer& layer : surface.layout.layers) {
+        if (layer.view == 0 || layer.node != node.index) continue;
+        add(layer.slot);
+        add(geom::values_of(surface.layout.views[layer.view - 1].view));
+    }
+    if (!bytes.empty()) glapi::pack::SurfaceViews(node.batch, surface.id, bytes);
+}
+
 }  // namespace
 
 const SurfaceFormat& DrawTarget::format() const {
@@ -43,6 +59,7 @@ void DrawTarget::describe_to(Node& node) const {
     } else if (known->second == layout.version) {
         return;
     }
+    pack_views(node, *surface_);
     glapi::pack::SurfacePlace(node.batch, surface_->id, layout.version, layout.width, layout.height, layout.rect.x,
                               layout.rect.y, static_cast<std::uint32_t>(layout.rect.width),
                               static_cast<std::uint32_t>(layout.rect.height), whole_window_of(node, *surface_));

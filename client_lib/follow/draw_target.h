@@ -58,6 +58,15 @@ public:
         if (only_) return std::span(only_, 1);
         return objects_ ? *everywhere_ : surface_->layout.layers;
     }
+    /// That some of the layers show.
+    std::span<const SurfaceView> views() const {
+        return surface_ && only_ == nullptr ? std::span<const SurfaceView>(surface_->layout.views)
+                                            : std::span<const SurfaceView>();
+    }
+    /// Vertices are drawn by this projection; null: by none that is known.
+    void note_camera(const glstate::Projection* projection) const {
+        if (surface_ && surface_->views.offered) surface_->views.note(projection);
+    }
     /// The surface whose hidden part may be kept instead of being drawn; null: there is no such part, or no target.
     ClientSurface* with_hidden_part() const {
         return surface_ && only_ == nullptr && surface_->hidden ? surface_ : nullptr;

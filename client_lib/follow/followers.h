@@ -12,6 +12,7 @@
 #include "client_lib/follow/node_updater.h"
 #include "client_lib/follow/nodes.h"
 #include "client_lib/follow/object_sender.h"
+#include "client_lib/geometry/sight.h"
 #include "common/glstate/draw_buffers.h"
 
 namespace wall::client {
@@ -20,6 +21,7 @@ struct Followers {
     Nodes& nodes;
     NodeUpdater& updater;
     HiddenParts& hidden;
+    Sight& sight;
 };
 
 /// Packs the head of a Block for these layers; its counts are filled in by end_block().
@@ -56,28 +58,39 @@ inline void note_content(const DrawSource& source) {
     source.share->has_drawn.store(true, std::memory_order_relaxed);
 }
 
-/// Runs `pack(buffer)` inside a Block on every layer of the draw target that the box `touched` touches (nothing:
-/// all of them), after `before(node, buffer)` outside of the Block; `after(node)` when it is packed.
+/// Where on the draw target it is, in each of its views. Good until the next call.
+inline Reach reach_of(const Followers& followers, const DrawSource& source, const Drawn& drawn) {
+    if (drawn.projection == nullptr) {
+        if (drawn.vertices) source.draw.note_camera(nullptr);
+        return drawn.rect;
+    }
+    source.draw.note_camera(drawn.projection);
+    followers.sight.aim(*drawn.projection, source.draw.views());
+    return drawn.mode ? followers.sight.of(*drawn.box, *drawn.mode) : followers.sight.of(*drawn.box);
+}
+
+/// Runs `pack(buffer)` inside a Block on every layer of the draw target that `drawn` touches, after `before(node,
+/// buffer)` outside of the Block; `after(node)` when it is packed.
 template <class Before, class Pack, class After>
-void draw_on(const Followers& followers, const DrawSource& source, const std::optional<PixelRect>& touched,
-             const Needs& needs, Before&& before, Pack&& pack, After&& after) {
+void draw_on(const Followers& followers, const DrawSource& source, const Drawn& drawn, const Needs& needs,
+             Before&& before, Pack&& pack, After&& after) {
     if (!source.draw) return;
     const bool everywhere = glstate::counts_primitives(source.state) || source.objects.writes();
-    const auto box = everywhere ? std::nullopt : touched;
+    const Reach reach = everywhere ? Reach() : reach_of(followers, source, drawn);
     before_drawing(followers, source);
     const auto pack_block = [&](wire::PackBuffer& buffer, std::uint64_t slots) {
         const OpenBlock block = begin_block(buffer, slots);
         pack(buffer);
         end_block(buffer, block);
     };
-    auto& [nodes, updater, hidden] = followers;
-    if (KeptFrame* const kept = hidden.begin_keeping(source, box)) {
+    auto& [nodes, updater, hidden, sight] = followers;
+    if (KeptFrame* const kept = hidden.begin_keeping(source, reach.window)) {
         Node& node = nodes[kept->layer];
         before(node, nodes.batch(node, source.id));
         pack_block(hidden.prepare(*kept, source, needs), kept->layer.bit());
         after(kept->follower);
     }
-    for (const auto& [index, slots] : nodes.touched(source.draw.layers(), box)) {
+    for (const auto& [index, slots] : nodes.touched(source.draw.layers(), reach)) {
         Node& node = nodes[index];
         if (!source.draw.goes_to(node)) continue;
         wire::PackBuffer& buffer = updater.prepare(node, source, needs);

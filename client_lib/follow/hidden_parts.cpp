@@ -52,6 +52,13 @@ bool clears_whole(const DrawSource& source, const HiddenPart& part, GLbitfield m
     return (depth || !part.depth_matters) && (stencil || !part.stencil_matters) && (accum || !part.accum_matters);
 }
 
+/// The tile shows the window through a view, and no part of its picture.
+bool looks_elsewhere(const SurfaceLayout& layout, const TileInfo& tile) {
+    return std::ranges::any_of(layout.layers, [&](const TargetLayer& layer) {
+        return layer.view != 0 && layer.node == tile.node && layer.slot == tile.slot;
+    });
+}
+
 }  // namespace
 
 // ---- which part, and where ----
@@ -61,7 +68,7 @@ void HiddenParts::lay(ClientSurface& surface, std::span<const TileInfo> tiles) {
     std::erase_if(layout.layers, std::mem_fn(&TargetLayer::is_whole_window));
     std::vector<geom::Rect> shown;
     for (const TileInfo& tile : tiles)
-        if (nodes_[tile.node].alive()) shown.push_back(tile.rect);
+        if (nodes_[tile.node].alive() && !looks_elsewhere(layout, tile)) shown.push_back(tile.rect);
     const geom::Rect around = uncovered(layout.rect, shown);
     const auto before = surface.hidden ? std::optional(surface.hidden->layer.node) : std::nullopt;
     const auto node = node_for(surface, before);

@@ -61,9 +61,9 @@ public:
     /// Opens streams again that have failed, and those of nodes that did not answer.
     void keep_connected();
 
-    /// Nodes whose layers a rectangle touches (target_layers.h). Good until the next call.
-    const NodeMasks& touched(std::span<const TargetLayer> layers, const std::optional<PixelRect>& rect) {
-        nodes_touched(layers, rect, touched_);
+    /// Nodes whose layers something touches (target_layers.h). Good until the next call.
+    const NodeMasks& touched(std::span<const TargetLayer> layers, const Reach& reach) {
+        nodes_touched(layers, reach, touched_);
         return touched_;
     }
 

@@ -53,13 +53,13 @@ public:
     // ---- commands; the context's block has been sent before ----
     /// Sends a block of geometry to the nodes that it touches. `source.state` is that behind the block, then.
     void submit_block(const DrawSource& source, const Packer& packer, const glstate::Projection& projection);
-    /// Runs `pack(buffer)` inside a Block on every layer of the draw target that `box` touches (nothing: all of them).
+    /// Runs `pack(buffer)` inside a Block on every layer of the draw target that `drawn` touches.
     template <class Pack>
-    void draw(const DrawSource& source, const std::optional<PixelRect>& box, const Needs& needs, Pack&& pack);
+    void draw(const DrawSource& source, const Drawn& drawn, const Needs& needs, Pack&& pack);
     /// The same with draw_on()'s `before` and `after`.
     template <class Before, class Pack, class After>
-    void draw(const DrawSource& source, const std::optional<PixelRect>& box, const Needs& needs, Before&& before,
-              Pack&& pack, After&& after);
+    void draw(const DrawSource& source, const Drawn& drawn, const Needs& needs, Before&& before, Pack&& pack,
+              After&& after);
     /// Runs `pack(buffer, node)` outside of blocks on every node, with nothing brought up to date.
     template <class Pack>
     void on_every_node(ContextId context, Pack&& pack);
@@ -140,21 +140,21 @@ private:
     NodeUpdater updater_{nodes_};
     HiddenParts hidden_{nodes_, open_surfaces_};
     Surfaces surfaces_{*control_, nodes_, hidden_, open_surfaces_};
-    const Followers followers_{nodes_, updater_, hidden_};
+    Sight sight_;
+    const Followers followers_{nodes_, updater_, hidden_, sight_};
     const std::unique_ptr<SortScratch> sort_scratch_;
 };
 
 template <class Pack>
-void ClientSession::draw(const DrawSource& source, const std::optional<PixelRect>& box, const Needs& needs,
-                         Pack&& pack) {
+void ClientSession::draw(const DrawSource& source, const Drawn& drawn, const Needs& needs, Pack&& pack) {
     draw(
-        source, box, needs, [](Node&, wire::PackBuffer&) {}, std::forward<Pack>(pack), [](Node&) {});
+        source, drawn, needs, [](Node&, wire::PackBuffer&) {}, std::forward<Pack>(pack), [](Node&) {});
 }
 
 template <class Before, class Pack, class After>
-void ClientSession::draw(const DrawSource& source, const std::optional<PixelRect>& box, const Needs& needs,
-                         Before&& before, Pack&& pack, After&& after) {
-    packing([&] { draw_on(followers_, source, box, needs, before, pack, after); });
+void ClientSession::draw(const DrawSource& source, const Drawn& drawn, const Needs& needs, Before&& before, Pack&& pack,
+                         After&& after) {
+    packing([&] { draw_on(followers_, source, drawn, needs, before, pack, after); });
 }
 
 template <class Pack>

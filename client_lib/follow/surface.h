@@ -11,6 +11,7 @@
 
 #include "client_lib/follow/copy_habit.h"
 #include "client_lib/follow/surface_options.h"
+#include "client_lib/follow/view_use.h"
 #include "client_lib/geometry/target_layers.h"
 #include "client_lib/link/control_messages.h"
 #include "common/base/ids.h"
@@ -42,6 +43,7 @@ public:
     bool cleared = false;                ///< all of its back buffer, since the last swap
     bool depth_images = false;           ///< depth or stencil was drawn as an image
     CopyHabit copies;                    ///< out of it
+    ViewUse views;                       ///< whether tiles that look elsewhere show what is there
     std::unique_ptr<HiddenPart> hidden;  ///< what no tile shows; null: nothing
     // In a parallel program.
     std::deque<Placement> coming;  ///< for frames that have not begun, in order

@@ -66,6 +66,7 @@ void Surfaces::begin_frame(ClientSurface& surface) {
     if (in_frame(surface)) return;
     adopt_placement(surface);
     follow_window(surface);
+    if (!surface.drawn && surface.views.finish_frame()) look_otherwise(surface);
 }
 
 void Surfaces::adopt_placements() {
@@ -75,6 +76,7 @@ void Surfaces::adopt_placements() {
 void Surfaces::apply_layout(ClientSurface& surface, const Placement& placement) {
     SurfaceLayout& layout = surface.layout;
     layout.layers.clear();
+    layout.views.clear();
     ++layout.version;
     layout.offscreen = !surface.options.visible;
     if (!layout.offscreen) layout.rect = placement.rect;
@@ -91,12 +93,38 @@ void Surfaces::apply_layout(ClientSurface& surface, const Placement& placement) 
     layout.rect = placement.rect;
     if (placement.tiles) surface.tiles = placement.tiles;
     if (!surface.tiles) return;
+    surface.views.offered = false;
     for (const TileInfo& tile : *surface.tiles) {
         nodes_.at(tile.node);  // also one that is not up
         const geom::Rect part = geom::intersect(tile.rect, layout.rect);
-        if (!part.empty()) layout.layers.push_back(tile_layer(layout, tile.node, tile.slot, part));
+        if (part.empty()) continue;
+        const bool looks_elsewhere = tile.view && part == tile.rect && !common(surface);
+        surface.views.offered = surface.views.offered || looks_elsewhere;
+        if (!looks_elsewhere || !surface.views.used) {
+            layout.layers.push_back(tile_layer(layout, tile.node, tile.slot, part));
+            continue;
+        }
+        const auto ratio = [](std::uint32_t window, std::int32_t of_tile) {
+            return static_cast<float>(window) / static_cast<float>(of_tile);
+        };
+        layout.views.push_back(
+            {*tile.view, ratio(layout.width, tile.rect.width), ratio(layout.height, tile.rect.height)});
+        const auto view = static_cast<std::uint32_t>(layout.views.size());
+        layout.layers.push_back(view_layer(layout, tile.node, tile.slot, view));
     }
+    using Views = ControlLink::Views;
+    control_.surface_views(surface.id, !surface.views.offered ? Views::none
+                                       : surface.views.used   ? Views::seen
+                                                              : Views::flat);
     lay_hidden(surface);
+}
+
+/// Through the views of tiles, or at their parts of the picture, as surface.views says now.
+void Surfaces::look_otherwise(ClientSurface& surface) {
+    Placement same;
+    same.rect = surface.layout.rect;
+    apply_layout(surface, same);
+    control_.ask_to_redraw(surface.id);
 }
 
 void Surfaces::lay_hidden(ClientSurface& surface) {
@@ -108,6 +136,8 @@ void Surfaces::lay_whole(ClientSurface& surface) {
     SurfaceLayout& layout = surface.layout;
     if (layout.offscreen) layout.rect = {0, 0, static_cast<int>(layout.width), static_cast<int>(layout.height)};
     surface.hidden.reset();
+    surface.views = {};
+    layout.views.clear();
     layout.layers.clear();
     for (auto& node : nodes_)
         if (node->alive()) layout.layers.push_back(whole_window(layout.width, layout.height, node->index));
@@ -116,7 +146,8 @@ void Surfaces::lay_whole(ClientSurface& surface) {
 Wholeness Surfaces::wholeness(const ClientSurface& surface) const {
     if (surface.whole) return Wholeness::is;
     const auto alive = std::ranges::count_if(nodes_, [](const auto& node) { return node->alive(); });
-    if (alive == 1 && surface.layout.layers.size() == 1 && !surface.hidden) return Wholeness::is;
+    if (alive == 1 && surface.layout.layers.size() == 1 && surface.layout.views.empty() && !surface.hidden)
+        return Wholeness::is;
     return common(surface) ? Wholeness::cannot_be : Wholeness::may_be;
 }
 

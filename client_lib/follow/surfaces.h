@@ -46,6 +46,7 @@ public:
 
 private:
     void lay_whole(ClientSurface& surface);
+    void look_otherwise(ClientSurface& surface);
     void lay_hidden(ClientSurface& surface);
     void apply_layout(ClientSurface& surface, const Placement& placement);
     void adopt_placement(ClientSurface& surface);

@@ -51,12 +51,18 @@ AttributePlaces VertexScan::attributes(std::size_t v) const {
     return walk.places();
 }
 
+std::size_t corners_of(const Topology& topology, const VertexScan& vertices, std::size_t first,
+                       std::array<glstate::WindowVertex, kMostVertices>& out) {
+    std::size_t count = 0;
+    if (topology.fan) out[count++] = vertices.window(0);
+    for (std::size_t i = first; i < first + topology.size; ++i) out[count++] = vertices.window(i);
+    return count;
+}
+
 std::optional<geom::PixelRect> window_rect(const Topology& topology, const VertexScan& vertices, std::size_t first,
                                            const glstate::Projection& projection) {
     std::array<glstate::WindowVertex, kMostVertices> corners;
-    std::size_t count = 0;
-    if (topology.fan) corners[count++] = vertices.window(0);
-    for (std::size_t i = first; i < first + topology.size; ++i) corners[count++] = vertices.window(i);
+    const std::size_t count = corners_of(topology, vertices, first, corners);
     return hull_rect(projection, {corners.data(), count});
 }
 

@@ -3,6 +3,7 @@
 // lines, triangles or quads. Pure.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -51,6 +52,9 @@ private:
     std::vector<AttributePlaces> snapshots_;  ///< at every kSnapshotEvery-th lead
 };
 
+/// The vertices of the point, line, triangle or quad that starts at vertex `first`; how many.
+std::size_t corners_of(const Topology& topology, const VertexScan& vertices, std::size_t first,
+                       std::array<glstate::WindowVertex, kMostVertices>& out);
 /// Where the point, line, triangle or quad that starts at vertex `first` may be drawn; nothing if that is unknown.
 std::optional<geom::PixelRect> window_rect(const Topology& topology, const VertexScan& vertices, std::size_t first,
                                            const glstate::Projection& projection);

@@ -25,6 +25,12 @@ TargetLayer tile_layer(const SurfaceLayout& layout, NodeIndex node, std::uint32_
     return {node, slot, area, pixels};
 }
 
+TargetLayer view_layer(const SurfaceLayout& layout, NodeIndex node, std::uint32_t slot, std::uint32_t view) {
+    TargetLayer layer = tile_layer(layout, node, slot, layout.rect);
+    layer.view = view;
+    return layer;
+}
+
 TargetLayer whole_window(const SurfaceLayout& layout, NodeIndex node, const geom::Rect& part) {
     return tile_layer(layout, node, wire::kOffscreenSlot, part);
 }
@@ -34,10 +40,10 @@ TargetLayer whole_window(std::uint32_t width, std::uint32_t height, NodeIndex no
     return whole_window({.width = width, .height = height, .rect = all}, node, all);
 }
 
-void nodes_touched(std::span<const TargetLayer> layers, const std::optional<PixelRect>& rect, NodeMasks& out) {
+void nodes_touched(std::span<const TargetLayer> layers, const Reach& reach, NodeMasks& out) {
     out.clear();
     for (const TargetLayer& layer : layers) {
-        if (rect && !rect->overlaps(layer.area)) continue;
+        if (!reach.touches(layer)) continue;
         auto mask = std::find_if(out.rbegin(), out.rend(), [&](const NodeMask& m) { return m.node == layer.node; });
         NodeMask& of_node = mask != out.rend() ? *mask : out.emplace_back(NodeMask{layer.node, 0});
         of_node.slots |= layer.bit();
@@ -50,9 +56,9 @@ std::size_t count_nodes(std::span<const TargetLayer> layers) {
     return static_cast<std::size_t>(std::popcount(seen));
 }
 
-NodeMasks nodes_touched(std::span<const TargetLayer> layers, const std::optional<PixelRect>& rect) {
+NodeMasks nodes_touched(std::span<const TargetLayer> layers, const Reach& reach) {
     NodeMasks out;
-    nodes_touched(layers, rect, out);
+    nodes_touched(layers, reach, out);
     return out;
 }
 

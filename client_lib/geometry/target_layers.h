@@ -11,6 +11,7 @@
 #include "common/base/ids.h"
 #include "common/geom/pixel_rect.h"
 #include "common/geom/rect.h"
+#include "common/geom/view.h"
 
 namespace wall::client {
 
@@ -22,9 +23,18 @@ struct TargetLayer {
     std::uint32_t slot = 0;
     PixelRect area;     ///< of the window: what is seen of it here
     geom::Rect pixels;  ///< the same, whole pixels, rounded outwards
+    std::uint32_t view =
+        0;  ///< what it shows instead of its part of the picture: SurfaceLayout::views[view - 1]; 0: no view
 
     std::uint64_t bit() const { return std::uint64_t{1} << slot; }  ///< in a Block's mask
     bool is_whole_window() const;                                   ///< made by whole_window()
+};
+
+/// What a tile shows of a window's scene, instead of a part of its picture: all of the window lies on the tile.
+struct SurfaceView {
+    geom::View view;
+    float window_pixels_x = 1, window_pixels_y = 1;  ///< that one of the tile's is as large as
+    bool operator==(const SurfaceView&) const = default;
 };
 
 /// How a surface lies on the wall just now.
@@ -34,10 +44,31 @@ struct SurfaceLayout {
     geom::Rect rect;                      ///< canvas
     bool offscreen = false;               ///< on no tile, ever: a pixel buffer
     std::vector<TargetLayer> layers;
+    std::vector<SurfaceView> views;  ///< that some of them show
+};
+
+/// Where something is drawn, in window pixels; nothing: it may be anywhere.
+struct Reach {
+    Reach() = default;
+    Reach(const PixelRect& rect) : window(rect) {}  // NOLINT: in all of them
+    Reach(std::nullopt_t) {}                        // NOLINT: all of them
+    Reach(const std::optional<PixelRect>& rect, std::span<const std::optional<PixelRect>> by_view = {})  // NOLINT
+        : window(rect), views(by_view) {}
+    std::optional<PixelRect> window;                  ///< in the program's own picture
+    std::span<const std::optional<PixelRect>> views;  ///< in each view; none: as there
+    const std::optional<PixelRect>& on(const TargetLayer& layer) const {
+        return layer.view == 0 || views.empty() ? window : views[layer.view - 1];
+    }
+    bool touches(const TargetLayer& layer) const {
+        const auto& rect = on(layer);
+        return !rect || rect->overlaps(layer.area);
+    }
 };
 
 /// The layer of a node's tile that shows `part` of the canvas.
 TargetLayer tile_layer(const SurfaceLayout& layout, NodeIndex node, std::uint32_t slot, const geom::Rect& part);
+/// The layer of a node's tile that shows all of the window through a view.
+TargetLayer view_layer(const SurfaceLayout& layout, NodeIndex node, std::uint32_t slot, std::uint32_t view);
 /// The layer that a node has of the whole window, at the window's own resolution and apart from its tiles; only `part`
 /// of the canvas is to be seen there.
 TargetLayer whole_window(const SurfaceLayout& layout, NodeIndex node, const geom::Rect& part);
@@ -51,10 +82,10 @@ struct NodeMask {
 };
 using NodeMasks = std::vector<NodeMask>;
 
-/// The layers that a rectangle touches; nothing: all. Each node once.
-NodeMasks nodes_touched(std::span<const TargetLayer> layers, const std::optional<PixelRect>& rect);
+/// The layers that something touches. Each node once.
+NodeMasks nodes_touched(std::span<const TargetLayer> layers, const Reach& reach);
 /// The same into a vector that is used again and again, so that no memory is asked for.
-void nodes_touched(std::span<const TargetLayer> layers, const std::optional<PixelRect>& rect, NodeMasks& out);
+void nodes_touched(std::span<const TargetLayer> layers, const Reach& reach, NodeMasks& out);
 /// On how many nodes the layers lie; where these are more than 64, perhaps fewer.
 std::size_t count_nodes(std::span<const TargetLayer> layers);
 

@@ -250,6 +250,11 @@ void ControlLink::surface_resize(SurfaceId id, std::uint32_t width, std::uint32_
     wake();
 }
 
+void ControlLink::surface_views(SurfaceId id, Views views) {
+    std::lock_guard lock(mutex_);
+    if (const auto found = surfaces_.find(id); found != surfaces_.end()) found->second.views = views;
+}
+
 void ControlLink::surface_close(SurfaceId id) {
     if (in_forked_child()) return;
     std::lock_guard lock(mutex_);
@@ -554,9 +559,11 @@ void ControlLink::tell_windows() {
 }
 
 void ControlLink::tell_traffic() {
-    const Traffic traffic = stats().traffic();
+    Traffic traffic = stats().traffic();
     if (traffic.nodes.empty()) return;  // nothing was sent to anybody yet
     std::lock_guard lock(mutex_);
+    for (const auto& [id, surface] : surfaces_)
+        if (surface.views != Views::none) (surface.views == Views::seen ? traffic.seen : traffic.flat).push_back(id);
     if (outbox_.empty()) queue(encode(traffic));  // walld does not read now: the next second's figures will do
 }
 

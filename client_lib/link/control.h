@@ -44,6 +44,9 @@ public:
     /// `messages`: how walld's wishes reach the window.
     void surface_open(SurfaceId id, std::uint32_t width, std::uint32_t height, const std::string& title,
                       WindowMessages messages = {});
+    /// How tiles show the window that look elsewhere; walld is told with the next figures.
+    enum class Views : std::uint8_t { none, seen, flat };
+    void surface_views(SurfaceId id, Views views);
     void surface_resize(SurfaceId id, std::uint32_t width, std::uint32_t height);
     void surface_close(SurfaceId id);
     /// The placement of that version holds from `frame` on. Waits until walld knows; false when the time is over or the
@@ -90,6 +93,7 @@ private:
         std::uint32_t wanted_version = 0;             ///< in a parallel program
         std::string note;                             ///< walld's, of this surface
         MemberPlacements member;                      ///< in a parallel program
+        Views views = Views::none;
 
         std::optional<Restore> restore() const {
             return drawn ? std::optional(Restore{*drawn, *wanted, wanted_version, note, member.agreed()})

@@ -140,6 +140,21 @@ Caps read_caps(pbf_reader in) {
     return caps;
 }
 
+/// Nothing: it is none.
+std::optional<geom::View> read_view(pbf_reader in) {
+    std::vector<float> values;
+    while (in.next()) {
+        if (in.tag() == 1 && in.wire_type() == protozero::pbf_wire_type::length_delimited) {
+            const auto packed = in.get_packed_float();
+            values.insert(values.end(), packed.begin(), packed.end());
+        } else {
+            in.skip();
+        }
+    }
+    const auto view = geom::view_of_values(values);
+    return view && geom::wrong_with(*view) == nullptr ? view : std::nullopt;
+}
+
 TileInfo read_tile(pbf_reader in) {
     TileInfo tile;
     while (in.next()) {
@@ -148,6 +163,7 @@ TileInfo read_tile(pbf_reader in) {
             case 2: tile.slot = read_u32(in); break;
             case 3: tile.rect = read_rect(read_message(in)); break;
             case 4: tile.name = read_string(in); break;
+            case 5: tile.view = read_view(read_message(in)); break;
             default: in.skip();
         }
     }
@@ -357,6 +373,8 @@ std::string encode(const Traffic& traffic) {
             row.add_uint64(3, node.object_bytes);
             row.add_uint64(4, node.geometry_bytes);
         }
+        for (const SurfaceId surface : traffic.seen) out.add_uint32(5, surface.value);
+        for (const SurfaceId surface : traffic.flat) out.add_uint32(6, surface.value);
     });
 }
 

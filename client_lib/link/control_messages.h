@@ -18,6 +18,7 @@
 #include "common/base/ids.h"
 #include "common/base/result.h"
 #include "common/geom/rect.h"
+#include "common/geom/view.h"
 
 namespace wall::client {
 
@@ -65,6 +66,7 @@ struct TileInfo {
     std::uint32_t slot = 0;
     geom::Rect rect;  ///< canvas
     std::string name;
+    std::optional<geom::View> view;  ///< none: it shows its part of the canvas
 };
 
 /// The tiles of the wall at some time. Many placements share them.

@@ -20,6 +20,8 @@ struct Traffic {
     std::uint64_t frames = 0, round_trips = 0;
     std::chrono::nanoseconds diff_time{};  ///< comparing contexts with what nodes hold; an estimate
     std::vector<NodeTraffic> nodes;        ///< those that something was packed for
+    /// Windows that cover tiles that look elsewhere: seen through their views, or shown flat.
+    std::vector<SurfaceId> seen, flat;
 };
 
 }  // namespace wall::client

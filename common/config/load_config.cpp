@@ -13,6 +13,7 @@
 #include "common/config/read_output.h"
 #include "common/config/read_people.h"
 #include "common/config/read_tile_output.h"
+#include "common/config/read_view.h"
 
 namespace wall::config {
 namespace {
@@ -70,17 +71,18 @@ void read_http(TreeReader& read, const toml::table& root, WallConfig& out) {
     }
 }
 
-TileConfig read_tile(TreeReader& read, const toml::table& table) {
+TileConfig read_tile(TreeReader& read, const toml::table& table, const geom::Vec3& eye) {
     read.only(table, "[[node.tile]]",
               {"name", "rect", "output", "display", "monitor", "position", "gpu", "rotation", "pixels", "size_mm",
-               "bezel_mm", "warp", "blend", "color"});
+               "bezel_mm", "warp", "blend", "color", "yaw", "pitch", "roll", "fov", "screen"});
     TileConfig out{read.text(table, "name"), read.rect(table, "rect"), read_output(read, table)};
     out.gpu = read_gpu(read, table);
     read_tile_output(read, table, out);
+    out.view = read_view(read, table, out.rect, eye);
     return out;
 }
 
-NodeConfig read_node(TreeReader& read, const toml::table& table) {
+NodeConfig read_node(TreeReader& read, const toml::table& table, const geom::Vec3& eye) {
     read.only(table, "[[node]]", {"name", "backend", "listen", "tile"});
     NodeConfig out;
     out.name = read.text(table, "name");
@@ -96,7 +98,7 @@ NodeConfig read_node(TreeReader& read, const toml::table& table) {
                                         " tiles: expected at most " + std::to_string(wire::kOffscreenSlot - 1));
     }
     for (const auto* tile : tiles) {
-        out.tiles.push_back(read_tile(read, *tile));
+        out.tiles.push_back(read_tile(read, *tile, eye));
         check_output(read, *tile, out);
     }
     return out;
@@ -106,7 +108,7 @@ NodeConfig read_node(TreeReader& read, const toml::table& table) {
 void read_nodes(TreeReader& read, const toml::table& root, WallConfig& out) {
     std::set<std::string> nodes, tiles;
     for (const auto* table : read.tables(root, "node", "[[node]]")) {
-        out.nodes.push_back(read_node(read, *table));
+        out.nodes.push_back(read_node(read, *table, out.eye));
         const auto& node = out.nodes.back();
         if (!nodes.insert(node.name).second)
             read.refuse(table->source(), "node '" + node.name + "' appears twice: expected unique names");
@@ -159,7 +161,7 @@ WallConfig read_wall(TreeReader& read, const toml::table& root) {
     read.only(root, "the file", {"wall", "control", "http", "people", "quota", "node"});
     const auto& wall = read.section(root, "wall");
     read.only(wall, "[wall]",
-              {"name", "background", "swap_timeout_ms", "close_timeout_ms", "max_sessions", "state_directory"});
+              {"name", "background", "swap_timeout_ms", "close_timeout_ms", "max_sessions", "state_directory", "eye"});
     out.name = read.text(wall, "name", "wall");
     out.background = read_background(read, wall);
     out.swap_timeout =
@@ -169,6 +171,7 @@ WallConfig read_wall(TreeReader& read, const toml::table& root) {
     out.max_sessions =
         static_cast<std::uint32_t>(read.integer(wall, "max_sessions", 1, kMaxSessions, out.max_sessions));
     if (wall.get("state_directory")) out.state_directory = read.text(wall, "state_directory");
+    out.eye = read_eye(read, wall);
     read_control(read, root, out);
     read_people(read, root, out.people);
     out.quota = read_quota(read, root);
@@ -184,9 +187,10 @@ Result<WallConfig> parse_config(std::string_view toml, std::string_view file_nam
     return parse_toml(toml, file_name, read_wall);
 }
 
-Result<std::vector<NodeConfig>> parse_nodes(std::string_view toml, std::string_view file_name) {
-    return parse_toml(toml, file_name, [](TreeReader& read, const toml::table& root) {
+Result<std::vector<NodeConfig>> parse_nodes(std::string_view toml, std::string_view file_name, const geom::Vec3& eye) {
+    return parse_toml(toml, file_name, [&eye](TreeReader& read, const toml::table& root) {
         WallConfig out;
+        out.eye = eye;
         read.only(root, "the nodes", {"node"});
         read_nodes(read, root, out);
         return out.nodes;

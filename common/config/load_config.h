@@ -12,8 +12,9 @@
 namespace wall::config {
 
 Result<WallConfig> load_config(const std::string& path);
-/// Only [[node]] tables, as they may be added to a description.
-Result<std::vector<NodeConfig>> parse_nodes(std::string_view toml, std::string_view file_name);
+/// Only [[node]] tables, as they may be added to a description with this eye.
+Result<std::vector<NodeConfig>> parse_nodes(std::string_view toml, std::string_view file_name,
+                                            const geom::Vec3& eye = {});
 /// `file_name` is for the error only.
 Result<WallConfig> parse_config(std::string_view toml, std::string_view file_name);
 

@@ -15,6 +15,7 @@
 #include "common/config/quota.h"
 #include "common/geom/rect.h"
 #include "common/geom/tile_output.h"
+#include "common/geom/view.h"
 #include "common/net/address.h"
 
 namespace wall::config {
@@ -37,6 +38,7 @@ struct TileConfig {
     geom::TileOutput output;             ///< how that shows it; the warp comes with load_warps()
     std::string warp_file;               ///< as wall.toml names it; empty: none
     std::string gpu = "auto";            ///< or a number, or a PCI address
+    std::optional<geom::View> view;      ///< where it looks; none: it is a part of the canvas as the others
     bool operator==(const TileConfig&) const = default;
 };
 /// `headless` or `window`, as in wall.toml.
@@ -57,6 +59,7 @@ bool draws_as(const NodeConfig& a, const NodeConfig& b);
 
 struct WallConfig {
     std::string name;
+    geom::Vec3 eye{};                          ///< of the person, metres, in the room of the tiles' screens
     std::uint32_t background = 0;              ///< 0xRRGGBB behind all windows
     std::vector<net::Address> control_listen;  ///< walld's; nodes connect to the first
     std::string daemon_user = kWallUser;       ///< walld's, for the nodes: a name or number, "*" for anybody

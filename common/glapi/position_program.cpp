@@ -316,8 +316,56 @@ std::optional<PositionTransform> evaluate(const PositionProgram& program, const 
     return Evaluation(program, values).run();
 }
 
+namespace {
+
+/// Calls use(step) for each step that this one names, as often as it does.
+template <class Use>
+void for_each_operand(const PositionStep& step, Use&& use) {
+    const bool names_none = step.op == PositionOp::constant || step.op == PositionOp::uniform ||
+                            step.op == PositionOp::built_in || step.op == PositionOp::attribute;
+    if (names_none) return;
+    for (std::size_t i = 0; i < step.operands.size(); i += step.op == PositionOp::pick ? 2 : 1) use(step.operands[i]);
+}
+
+}  // namespace
+
+std::optional<LastMatrix> last_matrix(const PositionProgram& program) {
+    const auto& steps = program.steps;
+    if (steps.empty()) return std::nullopt;
+    const auto is_matrix = [](const PositionStep& step) { return step.columns == 4 && step.rows == 4; };
+    std::size_t at = steps.size() - 1;
+    while (steps[at].op == PositionOp::product && is_matrix(steps[steps[at].operands[0]])) at = steps[at].operands[0];
+    const PositionStep& last = steps[at];
+    if (at + 1 == steps.size() || (last.op != PositionOp::uniform && last.op != PositionOp::built_in))
+        return std::nullopt;
+    const auto same = [&](const PositionStep& step) { return step.op == last.op && step.operands == last.operands; };
+    std::size_t uses = 0;
+    for (const PositionStep& step : steps)
+        for_each_operand(step, [&](std::uint32_t operand) { uses += same(steps[operand]) ? 1 : 0; });
+    if (last.op == PositionOp::uniform)
+        return uses == 1 ? std::optional(LastMatrix{false, last.operands[0]}) : std::nullopt;
+    const bool projects = last.operands[0] != static_cast<std::uint32_t>(BuiltInMatrix::modelview);
+    return projects && uses == 1 ? std::optional(LastMatrix{true, 0}) : std::nullopt;
+}
+
 LinkedPosition::LinkedPosition(PositionProgram program, std::vector<std::uint32_t> locations)
-    : program_(std::move(program)), locations_(std::move(locations)), values_(program_.uniforms.size()) {}
+    : program_(std::move(program)),
+      locations_(std::move(locations)),
+      last_(last_matrix(program_)),
+      values_(program_.uniforms.size()) {}
+
+std::optional<LinkedPosition::Camera> LinkedPosition::uniform_camera() const {
+    if (!last_ || last_->built_in) return std::nullopt;
+    const std::vector<float>& value = values_[last_->uniform];
+    if (value.size() != 16) return std::nullopt;
+    return Camera{locations_[last_->uniform], std::span(value).first<16>()};
+}
+
+std::span<const float> LinkedPosition::camera(std::span<const float, 16> projection) const {
+    if (last_ && last_->built_in) return projection;
+    const auto uniform = uniform_camera();
+    return uniform ? std::span<const float>(uniform->matrix) : std::span<const float>();
+}
 
 void LinkedPosition::set(std::uint32_t first, std::size_t words_each, std::span<const std::uint32_t> words) {
     for (std::size_t i = 0; i < locations_.size(); ++i) {

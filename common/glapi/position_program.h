@@ -92,6 +92,15 @@ struct PositionTransform {
 /// no number. Of a valid program only.
 std::optional<PositionTransform> evaluate(const PositionProgram& program, const PositionValues& values);
 
+/// The matrix that everything else is multiplied by last, and that takes part in nothing else: changing it changes what
+/// is seen and not what there is.
+struct LastMatrix {
+    bool built_in = false;      ///< the projection of fixed function
+    std::uint32_t uniform = 0;  ///< else: index in PositionProgram::uniforms
+};
+/// Nothing: it is made in another way. Of a valid program.
+std::optional<LastMatrix> last_matrix(const PositionProgram& program);
+
 /// The position program of a linked program with the values that its uniforms have now; evaluated when it is asked for
 /// and something has changed. For one thread at a time.
 class LinkedPosition {
@@ -102,6 +111,14 @@ public:
 
     const PositionProgram& program() const { return program_; }
     const std::vector<std::uint32_t>& locations() const { return locations_; }
+    /// The last matrix if it is a uniform, by its location; nothing: it is none, or one that has no value yet.
+    struct Camera {
+        std::uint32_t location;
+        std::span<const float, 16> matrix;
+    };
+    std::optional<Camera> uniform_camera() const;
+    /// The last matrix, of vertices in eye space or before; empty: there is none.
+    std::span<const float> camera(std::span<const float, 16> projection) const;
     /// Uniforms have values from now on: those with the locations from `first` on, each of `words_each`.
     void set(std::uint32_t first, std::size_t words_each, std::span<const std::uint32_t> words);
     /// Null as evaluate() says. Stays until the next call.
@@ -110,6 +127,7 @@ public:
 private:
     PositionProgram program_;
     std::vector<std::uint32_t> locations_;
+    std::optional<LastMatrix> last_;
     std::vector<std::vector<float>> values_;  ///< of the uniforms
     std::array<float, 16> modelview_{}, projection_{};
     bool current_ = false;

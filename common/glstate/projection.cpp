@@ -80,6 +80,7 @@ Mat4 multiply(const Mat4& a, const Mat4& b) {
 Projection make_projection(const State& state) {
     Projection p;
     p.clip_from_object = multiply(state.matrix.projection, state.matrix.modelview);
+    p.camera = state.matrix.projection;
     const auto& v = state.window.viewport;
     const float viewport[4] = {v.x, v.y, v.width, v.height};
     std::copy_n(viewport, 4, p.viewport);
@@ -104,6 +105,11 @@ Projection make_projection(const Projection& fixed_function, const glapi::Positi
     p.by_shader = true;
     p.sizes = transform.sizes;
     return p;
+}
+
+void set_camera(Projection& projection, std::span<const float> camera) {
+    projection.camera = {};
+    std::ranges::copy(camera.first(std::min(camera.size(), projection.camera.size())), projection.camera.begin());
 }
 
 Projection unknown_projection() {
@@ -260,6 +266,12 @@ std::optional<PixelRect> hull_rect(const Projection& p, std::span<const WindowVe
 
 WindowVertex project(const Projection& p, float x, float y, float z, float w) {
     return to_window(p, transform(p.clip_from_object, _mm_set1_ps(x), _mm_set1_ps(y), _mm_set1_ps(z), _mm_set1_ps(w)));
+}
+
+WindowVertex moved(const Projection& p, const WindowVertex& vertex, const Mat4& change) {
+    const auto& clip = vertex.clip;
+    return to_window(
+        p, transform(change, _mm_set1_ps(clip[0]), _mm_set1_ps(clip[1]), _mm_set1_ps(clip[2]), _mm_set1_ps(clip[3])));
 }
 
 }  // namespace wall::glstate

@@ -33,12 +33,15 @@ struct Projection {
     bool near_is_zero = false;  ///< it is where z is 0, not where z is -w (glClipControl)
     float y_up = 1;             ///< -1: the window's y goes down while that of clip space goes up (glClipControl)
     bool by_shader = false;     ///< which rounds in an order of its own, so that what it makes lies about there
+    Mat4 camera{};              ///< whose clip coordinates these are (view_change.h); zeros: none that is known
     Mat4 sizes{};               ///< if by_shader: as of glapi::PositionTransform
 };
 
 Projection make_projection(const State& state);
 /// The same of vertices that a shader places. `depth`: as of its position program.
 Projection make_projection(const Projection& fixed_function, const glapi::PositionTransform& transform, bool depth);
+/// `camera`: 16 numbers column by column, or none.
+void set_camera(Projection& projection, std::span<const float> camera);
 /// Every box may be anywhere.
 Projection unknown_projection();
 Mat4 multiply(const Mat4& a, const Mat4& b);
@@ -54,6 +57,9 @@ struct WindowVertex {
     bool in_front;  ///< of the eye; else x and y mean nothing
 };
 WindowVertex project(const Projection& projection, float x, float y, float z, float w);
+
+/// A vertex whose clip coordinates were made by another projection, with what brings them to those of this one.
+WindowVertex moved(const Projection& projection, const WindowVertex& vertex, const Mat4& change);
 
 /// Where the convex hull of some vertices can be drawn, what clipping leaves of it; nothing if that is unknown.
 std::optional<PixelRect> hull_rect(const Projection& projection, std::span<const WindowVertex> vertices);

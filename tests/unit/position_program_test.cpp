@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -169,6 +170,57 @@ TEST(PositionProgram, StepsWithoutMeaningAreRefused) {
     EXPECT_FALSE(valid({vertex, {static_cast<Op>(11), 1, 4, {0, 0}}}));
     EXPECT_FALSE(valid(std::vector<PositionStep>(kMostPositionSteps + 1, vertex)));
     EXPECT_TRUE(valid(std::vector<PositionStep>(kMostPositionSteps, vertex)));
+}
+
+/// projection * (model * place), as the two are numbered.
+PositionProgram chain(std::uint32_t projection, std::uint32_t model) {
+    PositionProgram program = program_of({{Op::uniform, 4, 4, {projection}},
+                                          {Op::uniform, 4, 4, {model}},
+                                          {Op::attribute, 1, 4, {}},
+                                          {Op::product, 1, 4, {1, 2}},
+                                          {Op::product, 1, 4, {0, 3}}});
+    program.uniforms = {{"u", 0}, {"v", 0}};
+    return program;
+}
+
+TEST(LastMatrix, IsTheFirstOfAChainOfProducts) {
+    EXPECT_EQ(last_matrix(chain(1, 0))->uniform, 1u);
+    auto left_to_right = chain(0, 1);
+    left_to_right.steps[3] = {Op::product, 4, 4, {0, 1}};
+    left_to_right.steps[4] = {Op::product, 1, 4, {3, 2}};
+    ASSERT_TRUE(is_valid(left_to_right));
+    EXPECT_EQ(last_matrix(left_to_right)->uniform, 0u);
+    for (const auto which : {BuiltInMatrix::projection, BuiltInMatrix::modelview_projection}) {
+        const auto found = last_matrix(program_of({{Op::built_in, 4, 4, {static_cast<std::uint32_t>(which)}},
+                                                   {Op::attribute, 1, 4, {}},
+                                                   {Op::product, 1, 4, {0, 1}}}));
+        EXPECT_TRUE(found && found->built_in);
+    }
+}
+
+TEST(LastMatrix, TakesPartInNothingElse) {
+    EXPECT_FALSE(last_matrix(chain(0, 0))) << "the same one twice";
+    EXPECT_FALSE(last_matrix({}));
+    auto moved = chain(0, 1);
+    moved.steps.push_back({Op::constant, 1, 4, {bits(1), 0, 0, 0}});
+    moved.steps.push_back({Op::add, 1, 4, {4, 5}});
+    ASSERT_TRUE(is_valid(moved));
+    EXPECT_FALSE(last_matrix(moved)) << "something comes after it";
+    EXPECT_FALSE(last_matrix(program_of({{Op::built_in, 4, 4, {static_cast<std::uint32_t>(BuiltInMatrix::modelview)}},
+                                         {Op::attribute, 1, 4, {}},
+                                         {Op::product, 1, 4, {0, 1}}})));
+}
+
+TEST(LastMatrix, HasTheValueThatItWasGiven) {
+    LinkedPosition position(chain(1, 0), {7, 9});
+    EXPECT_FALSE(position.uniform_camera()) << "it has none yet";
+    EXPECT_TRUE(position.camera(kProjection).empty());
+    std::vector<std::uint32_t> words;
+    for (const float v : kModelview) words.push_back(bits(v));
+    position.set(9, 16, words);
+    ASSERT_TRUE(position.uniform_camera());
+    EXPECT_EQ(position.uniform_camera()->location, 9u);
+    EXPECT_TRUE(std::ranges::equal(position.camera(kProjection), kModelview));
 }
 
 }  // namespace

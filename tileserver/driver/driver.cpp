@@ -11,6 +11,7 @@
 #include "common/glstate/draw_buffers.h"
 #include "common/glstate/indexed_values.h"
 #include "common/glstate/modelview.h"
+#include "common/glstate/view_change.h"
 
 namespace wall::tileserver {
 namespace {
@@ -233,10 +234,15 @@ void Driver::emit(Gl&, glstate::el::modelview_step, unsigned, const glstate::Mod
 void Driver::emit(Gl&, glstate::el::modelview_form, unsigned, const glstate::ModelviewForm&) {
     modelview_changed_ = true;
 }
-void Driver::emit(Gl& gl, glstate::el::projection, unsigned, const glstate::Mat4& v) {
+/// As the target's view has it. What is no perspective is the same in all views.
+void Driver::load_projection(const Gl& gl, const glstate::Mat4& wanted) const {
+    const auto change = view_ ? glstate::view_change(*view_, wanted) : std::nullopt;
+    const glstate::Mat4 seen = change ? glstate::product(*change, wanted) : wanted;
     gl.MatrixMode(GL_PROJECTION);
-    gl.LoadMatrixf(v.data());
+    gl.LoadMatrixf(seen.data());
 }
+
+void Driver::emit(Gl& gl, glstate::el::projection, unsigned, const glstate::Mat4& v) { load_projection(gl, v); }
 void Driver::emit(Gl& gl, glstate::el::texture_matrix, unsigned i, const glstate::Mat4& v) {
     unit(gl, i);
     gl.MatrixMode(GL_TEXTURE);
@@ -301,6 +307,10 @@ void Driver::bind_window(RenderTarget& target, glstate::State& state) {
     mirror.window = state.window;
     mirror.ids.take(kWindow, state.ids[kWindow]);
     target_ = &target;
+    if (view_ != target.geometry().view) {
+        view_ = target.geometry().view;
+        load_projection(gl_, mirror.matrix.projection);
+    }
     target.bind(glstate::el::draw_buffer::ref(state), glstate::el::read_buffer::ref(state));
     const bool colors = target.draws_colors();
     if (std::exchange(colorless_, !colors) && colors) tell_textures_again();

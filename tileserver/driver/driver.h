@@ -289,6 +289,7 @@ private:
     void emit(Gl& gl, glstate::el::light_position, unsigned i, const glstate::Vec4& v);
     void emit(Gl& gl, glstate::el::light_spot_direction, unsigned i, const glstate::Vec3& v);
     void emit(Gl& gl, glstate::el::tex_gen_eye_plane, unsigned i, const glstate::Vec4& v);
+    void load_projection(const Gl& gl, const glstate::Mat4& wanted) const;
     void apply_viewports(const WindowValues& values);
     void apply_scissors(const WindowValues& values);
 
@@ -307,6 +308,7 @@ private:
     void bind_texture(unsigned unit, TextureTarget target, GLuint texture);
     void bind_each_sampler(const SamplerBindings& wanted);
 
+    std::optional<geom::View> view_;  ///< of the target
     void bind_buffer_part(GLenum target, glstate::BufferRange& bound, unsigned place,
                           const glstate::BufferRange& wanted) const {
         if (glstate::same(bound, wanted)) return;

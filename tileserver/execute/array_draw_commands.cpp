@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/glapi/primitive.h"
+#include "common/glstate/view_change.h"
 #include "tileserver/objects/buffer.h"
 #include "tileserver/objects/draw_pieces.h"
 #include "tileserver/objects/program.h"
@@ -62,9 +63,12 @@ void ArrayDrawCommands::find_runs(ClientName name, std::int32_t count, GLenum mo
     const DrawPieces& pieces = **found;
     if ((all + pieces.cut().step - 1) / pieces.cut().step != pieces.boxes().size())
         return execution_.refuse("pieces of another draw");
-    const auto projection = this->projection();
+    const LayerGeometry& layer = block_.target->geometry();
+    auto projection = this->projection();
     if (!projection) return add(0, all);
-    const geom::PixelRect area = block_.target->geometry().window_area();
+    if (const auto change = layer.view ? glstate::view_change(*layer.view, projection->camera) : std::nullopt)
+        projection = glstate::seen(*projection, *change);
+    const geom::PixelRect area = layer.window_area();
     const auto wanted = [&](const geom::Box& box) {
         const auto rect = glstate::project(*projection, box, mode);
         return !rect || rect->overlaps(area);

@@ -86,6 +86,7 @@ public:
     InstancedDrawCommands instanced_draw{execution_, array_draw};
     StreamCommands stream{execution_};
     SurfaceCommands surface{execution_};
+    SurfaceCommands& surface_view = surface;
     ReadCommands read{execution_};
     ObjectCommands object{execution_};
     TextureCommands texture{execution_, question_};

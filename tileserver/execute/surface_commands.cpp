@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/execute/surface_commands.h"
 
+#include <cstring>
 #include <string>
+#include <utility>
 
 #include "common/wire/whole_window.h"
 #include "tileserver/execute/say_to_group.h"
@@ -60,6 +62,25 @@ void SurfaceCommands::SurfacePlace(SurfaceId id, std::uint32_t layout_version, s
     execution_.node.driver.disable_scissor();
     if (surface->is_seen_at_once(place)) ++execution_.node.damage;
     if (!surface->place(place, execution_.node.tiles)) execution_.refuse("more pixels than a session may have");
+}
+
+void SurfaceCommands::SurfaceViews(SurfaceId id, std::span<const std::byte> bytes) {
+    SurfaceReplica* surface = known_surface(id);
+    if (surface == nullptr) return;
+    constexpr std::size_t kEach = sizeof(std::uint32_t) + sizeof(geom::ViewValues);
+    if (bytes.size() % kEach != 0) return execution_.refuse("no whole number of views");
+    SurfaceReplica::Views views;
+    for (std::size_t at = 0; at < bytes.size(); at += kEach) {
+        std::uint32_t slot = 0;
+        geom::ViewValues values;
+        std::memcpy(&slot, bytes.data() + at, sizeof slot);
+        std::memcpy(values.data(), bytes.data() + at + sizeof slot, sizeof values);
+        const auto view = geom::view_of_values(values);
+        if (slot >= wire::kOffscreenSlot || !view) return execution_.refuse("a view of no tile");
+        if (const char* wrong = geom::wrong_with(*view)) return execution_.refuse(std::string("a view has ") + wrong);
+        views[slot] = *view;
+    }
+    surface->look(std::move(views));
 }
 
 void SurfaceCommands::SurfaceDestroy(SurfaceId id) {

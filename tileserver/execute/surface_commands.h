@@ -2,7 +2,9 @@
 // Group [surface]: a session's windows, what contexts draw to, and frames. Render thread.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "tileserver/execute/execution.h"
 
@@ -19,6 +21,7 @@ public:
     void SurfacePlace(SurfaceId surface, std::uint32_t layout_version, std::uint32_t window_width,
                       std::uint32_t window_height, std::int32_t x, std::int32_t y, std::uint32_t width,
                       std::uint32_t height, std::uint32_t offscreen);
+    void SurfaceViews(SurfaceId surface, std::span<const std::byte> views);
     void SwapOffscreen(SurfaceId window);
     void SurfaceDestroy(SurfaceId surface);
     void Bind(SurfaceId draw_surface, SurfaceId read_surface);

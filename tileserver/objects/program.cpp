@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "common/glstate/view_change.h"
 #include "tileserver/objects/position_recogniser.h"
 #include "tileserver/objects/program_build.h"
 #include "tileserver/objects/shader_patch.h"
@@ -254,6 +255,7 @@ Result<std::vector<std::byte>> Program::link(std::span<const std::byte> bytes, b
     upper_left_ = built.upper_left;
     whole_centers_ = built.whole_centers;
     window_value_ = {};
+    view_.reset();
     renamed();
     if (!has_content(kProgramBytes + kBytesForEachOfSource * bytes.size())) return fail(too_much("programs"));
     return encode(reflection);
@@ -268,6 +270,7 @@ Result<void> Program::set_uniform(std::uint32_t location, GLenum type_name, std:
     if (count == 0 || location >= locations_.size() || count > locations_.size() - location)
         return fail("no such location");
     if (values.size() != std::size_t{count} * type->words() * 4) return fail("size does not fit the values");
+    camera_changed_ = true;
     if (type->base == glapi::UniformBase::real)
         position_.set(location, type->words(),
                       {reinterpret_cast<const std::uint32_t*>(values.data()), values.size() / sizeof(std::uint32_t)});
@@ -326,7 +329,22 @@ std::optional<glstate::Projection> Program::project(const glstate::Projection& f
                                                     const glstate::State& state) {
     const auto* transform = position_.transform(state.matrix.modelview, state.matrix.projection);
     if (transform == nullptr) return std::nullopt;
-    return glstate::make_projection(fixed_function, *transform, position_.program().depth);
+    auto out = glstate::make_projection(fixed_function, *transform, position_.program().depth);
+    glstate::set_camera(out, position_.camera(state.matrix.projection));
+    return out;
+}
+
+/// The matrix that the shader multiplies by last becomes that of a view; none: its own. A built-in one the driver has.
+void Program::look(const std::optional<geom::View>& view) {
+    view_ = view;
+    camera_changed_ = false;
+    const auto camera = position_.uniform_camera();
+    if (!camera || camera->location >= locations_.size()) return;
+    glstate::Mat4 seen;
+    std::ranges::copy(camera->matrix, seen.begin());
+    if (const auto change = view ? glstate::view_change(*view, seen) : std::nullopt)
+        seen = glstate::product(*change, seen);
+    driver_.gl().ProgramUniformMatrix4fv(name_, locations_[camera->location], 1, GL_FALSE, seen.data());
 }
 
 void Program::prepare(const LayerGeometry& layer) {
@@ -334,6 +352,7 @@ void Program::prepare(const LayerGeometry& layer) {
         if (!each.indices.empty())
             driver_.gl().UniformSubroutinesuiv(each.stage, static_cast<GLsizei>(each.indices.size()),
                                                each.indices.data());
+    if (view_ != layer.view || (layer.view && camera_changed_)) look(layer.view);
     if (window_ < 0) return;
     const auto value = window_of(layer, upper_left_, whole_centers_);
     if (std::exchange(window_value_, value) != value) driver_.gl().ProgramUniform4fv(name_, window_, 1, value.data());

@@ -11,7 +11,8 @@ std::unique_ptr<Layer> SurfaceReplica::make_layer(const LayerGeometry& geometry,
     if (pixels > budget_.left) forget_older();
     if (pixels > budget_.left) return nullptr;
     auto layer = std::make_unique<Layer>(gl_, flip_y_, geometry, format_.layer, budget_);
-    if (older && older->geometry().scale_x() == geometry.scale_x() && older->geometry().scale_y() == geometry.scale_y())
+    if (older && older->geometry().view == geometry.view && older->geometry().scale_x() == geometry.scale_x() &&
+        older->geometry().scale_y() == geometry.scale_y())
         layer->take_content(*older);
     return layer;
 }
@@ -30,9 +31,18 @@ void SurfaceReplica::forget_older() {
     replaced_.reset();
 }
 
+LayerGeometry SurfaceReplica::geometry_on(const Tile& tile, const geom::Rect& area, const SurfacePlace& place,
+                                          const Views& views) {
+    const auto view = views.find(tile.slot);
+    if (view == views.end() || area != tile.rect)
+        return {place.rect, area, place.window_width, place.window_height, {}};
+    return {tile.rect, tile.rect, place.window_width, place.window_height, view->second};
+}
+
 bool SurfaceReplica::place(const SurfacePlace& place, const std::vector<Tile>& tiles) {
     const bool same_size = place.window_width == place_.window_width && place.window_height == place_.window_height;
     place_ = place;
+    const Views views = std::exchange(next_views_, {});
     if (!(place.whole_window || place.shown_whole) || !same_size) layers_[wire::kOffscreenSlot].reset();
     std::bitset<wire::kMaxTilesPerNode> wanted;
     bool affordable = !place.shown_whole || layers_[wire::kOffscreenSlot] || gather_whole();
@@ -42,7 +52,7 @@ bool SurfaceReplica::place(const SurfacePlace& place, const std::vector<Tile>& t
         if (area.empty() || tile.slot >= wire::kOffscreenSlot) continue;
         reaches_tiles_ = true;
         if (place.shown_whole) continue;
-        const LayerGeometry geometry{place.rect, area, place.window_width, place.window_height};
+        const LayerGeometry geometry = geometry_on(tile, area, place, views);
         wanted.set(tile.slot);
         const Layer* now = layers_[tile.slot].get();
         if (now == nullptr || !(now->geometry() == geometry)) replace(tile.slot, make_layer(geometry, now));

@@ -6,12 +6,15 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/geom/rect.h"
 #include "common/geom/tile_output.h"
+#include "common/geom/view.h"
 #include "common/wire/limits.h"
 #include "tileserver/driver/layer.h"
 
@@ -45,6 +48,10 @@ public:
     SurfaceReplica(const Gl& gl, bool flip_y, const SurfaceFormat& format, PixelBudget& budget)
         : gl_(gl), flip_y_(flip_y), format_(format), budget_(budget) {}
 
+    /// Of tiles that look elsewhere, by their slots: at its next place all of the window lies on each of those that it
+    /// covers.
+    using Views = std::map<std::uint32_t, geom::View>;
+    void look(Views views) { next_views_ = std::move(views); }
     /// Makes the layers anew where they differ; what stays in sight keeps its pixels. What the wall shows stays as it
     /// is until the first frame drawn there is shown. False: that is more than the session may have, and some layers
     /// are missing. No frame may wait to be shown: it would be lost.
@@ -83,6 +90,9 @@ public:
     bool shows_something() const { return shown_ > 0 || !format_.layer.double_buffered; }
 
 private:
+    /// How it lies on a tile that it has `area` in common with.
+    static LayerGeometry geometry_on(const Tile& tile, const geom::Rect& area, const SurfacePlace& place,
+                                     const Views& views);
     using Layers = std::array<std::unique_ptr<Layer>, wire::kMaxTilesPerNode>;
 
     /// Without a back buffer, and before the first frame, there is nothing to keep.
@@ -99,6 +109,7 @@ private:
     SurfaceFormat format_;
     PixelBudget& budget_;
     SurfacePlace place_;
+    Views next_views_;
     Layers layers_;  ///< that are drawn on
     std::optional<std::uint32_t> waiting_;
     std::uint32_t shown_ = 0;

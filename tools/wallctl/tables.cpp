@@ -4,6 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tools/wallctl/cells.h"
@@ -31,6 +32,10 @@ std::string memory(const json& session) {
 
 void add_session(std::vector<Row>& rows, const json& session) {
     const auto note = is(session, "held") ? "held" : is(session, "silent") ? "silent" : text(session, "fault");
+    const auto with_views = [&](const json& surface) {
+        const bool flat = text(surface, "views") == "flat";
+        return !flat ? note : note.empty() ? "shown flat: its camera is not known" : note + ", flat";
+    };
     const auto owner = who(session.value("owner", json::object()));
     const auto surfaces = session.value("surfaces", json::array());
     if (surfaces.empty())
@@ -39,7 +44,7 @@ void add_session(std::vector<Row>& rows, const json& session) {
     for (const auto& s : surfaces) {
         rows.push_back({text(s, "id"), program(session), text(session, "name"), owner, text(session, "pid"),
                         fmt::format("{}x{}", text(s, "width"), text(s, "height")), place(s), text(s, "frame"),
-                        traffic(session), memory(session), note});
+                        traffic(session), memory(session), with_views(s)});
     }
 }
 
@@ -57,12 +62,26 @@ std::string pixels(const json& tile) {
     return size.size() == 2 ? fmt::format("{}x{}", size[0].dump(), size[1].dump()) : "";
 }
 
+/// Where a tile looks, such as "looks 90 right".
+std::string look(const json& view) {
+    constexpr double kDegrees = 180 / 3.14159265358979;
+    constexpr std::size_t kAhead = 6;
+    const auto at = [&](std::size_t i) { return view.at(kAhead + i).get<double>(); };
+    const auto aside = std::lround(std::atan2(at(0), at(2)) * kDegrees);
+    const auto up = std::lround(std::atan2(at(1), std::hypot(at(0), at(2))) * kDegrees);
+    std::string out;
+    if (aside != 0) out = fmt::format("{} {}", std::abs(aside), aside > 0 ? "right" : "left");
+    if (up != 0) out += fmt::format("{}{} {}", out.empty() ? "" : " ", std::abs(up), up > 0 ? "up" : "down");
+    return "looks " + (out.empty() ? "ahead" : out);
+}
+
 /// What its output does to the canvas's pixels, such as "turned 90, warp".
 std::string shown(const json& tile) {
     std::string out;
     if (const auto turned = tile.value("rotation", 0); turned != 0) out = fmt::format("turned {}", turned);
     const json steps = tile.value("shown", json::array());
     for (const json& step : steps) out += (out.empty() ? "" : ", ") + step.get<std::string>();
+    if (tile.contains("view") && tile["view"].is_array()) out += (out.empty() ? "" : ", ") + look(tile["view"]);
     return out.empty() ? "as it is" : out;
 }
 

@@ -96,7 +96,8 @@ Outcome<Description> WallFile::read() const {
 }
 
 Outcome<Description> WallFile::add(const std::string& nodes) const {
-    const auto added = config::parse_nodes(nodes, "the node");
+    const auto before = read();
+    const auto added = config::parse_nodes(nodes, "the node", before ? before->config.eye : geom::Vec3{});
     if (!added) return refuse(RefusalKind::invalid, added.error().message);
     if (added->size() != 1)
         return refuse(RefusalKind::invalid,
@@ -104,7 +105,6 @@ Outcome<Description> WallFile::add(const std::string& nodes) const {
     const auto& name = added->front().name;
     const auto file = file_of(name);
     if (!file) return tl::unexpected(file.error());
-    const auto before = read();
     if (!before) return before;
     if (before->config.find_node(name))
         return refuse(RefusalKind::conflict, "the wall has a node '" + name + "' already");

@@ -47,4 +47,11 @@ proto::TileOutput to_proto(const geom::TileOutput& output) {
     return out;
 }
 
+proto::View to_proto(const geom::View& view) {
+    proto::View out;
+    const auto values = geom::values_of(view);
+    out.mutable_values()->Add(values.begin(), values.end());
+    return out;
+}
+
 }  // namespace wall::walld

@@ -4,6 +4,7 @@
 
 #include "common/geom/rect.h"
 #include "common/geom/tile_output.h"
+#include "common/geom/view.h"
 #include "common/wire/limits.h"
 #include "proto/control.pb.h"
 
@@ -28,6 +29,7 @@ inline proto::Rect to_proto(const geom::Rect& rect) {
 
 /// Of a tile's output that has something to do.
 proto::TileOutput to_proto(const geom::TileOutput& output);
+proto::View to_proto(const geom::View& view);
 
 inline geom::Rect from_proto(const proto::Rect& rect) {
     return {rect.x(), rect.y(), static_cast<std::int32_t>(rect.width()), static_cast<std::int32_t>(rect.height())};

@@ -27,6 +27,11 @@ json spread_json(const Spread& spread) {
             {"most_ms", ms(spread.most())}};
 }
 
+json views_json(SurfaceEntry::Views views) {
+    if (views == SurfaceEntry::Views::none) return nullptr;
+    return views == SurfaceEntry::Views::seen ? "seen" : "flat";
+}
+
 json surface_json(const Wall& wall, const SurfaceKey& key) {
     const auto& surface = *wall.find(key);
     const auto& stacking = wall.stacking();
@@ -38,6 +43,7 @@ json surface_json(const Wall& wall, const SurfaceKey& key) {
             {"shown_rect", rect_json(surface.place.shown())},
             {"moving", surface.place.moving()},
             {"scaled", surface.scaled},
+            {"views", views_json(surface.views)},
             {"z", std::ranges::find(stacking, key) - stacking.begin()},
             {"frame", surface.swap.presented()},
             {"held", surface.swap.held()},
@@ -151,6 +157,8 @@ json tiles_json(const Wall& wall, Clock::time_point now) {
             const auto age =
                 shown.last ? json(std::chrono::duration_cast<std::chrono::milliseconds>(now - *shown.last).count())
                            : json(nullptr);
+            json view = nullptr;
+            if (tile.view) view = geom::values_of(*tile.view);
             out.push_back({{"name", tile.name},
                            {"node", node.config->name},
                            {"slot", slot},
@@ -159,6 +167,7 @@ json tiles_json(const Wall& wall, Clock::time_point now) {
                            {"pixels", {tile.output.width, tile.output.height}},
                            {"rotation", tile.output.rotation},
                            {"shown", steps_json(tile.output)},
+                           {"view", std::move(view)},
                            {"pattern", pattern_json(wall, tile.name)},
                            {"up", node.up},
                            {"frames", shown.frames},

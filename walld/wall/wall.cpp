@@ -402,7 +402,14 @@ void Wall::cannot_close(SessionId id, SurfaceId surface) {
 }
 
 void Wall::client_reports(SessionId id, Rank rank, const proto::ClientStats& stats, Clock::time_point now) {
-    if (auto* session = find(id)) session->traffic.note(rank, stats, nodes_.size(), now);
+    auto* session = find(id);
+    if (!session) return;
+    session->traffic.note(rank, stats, nodes_.size(), now);
+    const auto among = [](const auto& ids, SurfaceId surface) { return std::ranges::count(ids, surface.value) > 0; };
+    for (auto& [surface, entry] : session->surfaces)
+        entry.views = among(stats.seen(), surface)   ? SurfaceEntry::Views::seen
+                      : among(stats.flat(), surface) ? SurfaceEntry::Views::flat
+                                                     : SurfaceEntry::Views::none;
 }
 
 void Wall::close_surface(SessionId id, SurfaceId surface, Rank rank) {

@@ -78,7 +78,8 @@ struct SurfaceKey {
 struct SurfaceEntry {
     std::uint32_t width = 0, height = 0;  ///< the program's window
     std::string title;
-    PlacementTrack place;                 ///< on the canvas
+    PlacementTrack place;                                       ///< on the canvas
+    enum class Views { none, seen, flat } views = Views::none;  ///< how tiles show it that look elsewhere
     bool scaled = false;                  ///< the rectangle was given; else it follows the window's size
     bool wanted_rect = false;             ///< it is the session's WALLGL_RECT window
     bool cannot_close = false;            ///< its program has no way to be asked
@@ -250,7 +251,7 @@ private:
     proto::NodeUp node_up_message(NodeIndex node, const std::string& ticket) const;
     bool take_nodes();
     void tell_pattern(NodeIndex node, std::uint32_t slot, const proto::TilePattern& pattern);
-    void take_outputs(NodeIndex node, const config::NodeConfig& config);
+    bool take_rest(NodeIndex node, const config::NodeConfig& config);
     void add_tiles(google::protobuf::RepeatedPtrField<proto::TileInfo>& out) const;
     geom::Rect place_after_change(const SessionEntry& session, const SurfaceEntry& surface);
     void send_away(const proto::NodeHello& hello, NodeIndex node);

@@ -31,7 +31,7 @@ bool Wall::take_nodes() {
     for (const auto& config : config_.nodes) {
         auto index = find_node(config.name);
         if (index && nodes_[*index].duty != Duty::gone && draws_as(*nodes_[*index].config, config)) {
-            take_outputs(*index, config);
+            changed = take_rest(*index, config) || changed;
             continue;
         }
         if (!index) {
@@ -48,11 +48,14 @@ bool Wall::take_nodes() {
     return changed;
 }
 
-/// A node shows its tiles otherwise from the next picture on.
-void Wall::take_outputs(NodeIndex node, const config::NodeConfig& config) {
-    if (*nodes_[node].config == config) return;
+/// What a node goes on with: it shows its tiles otherwise from the next picture on. True: programs must draw otherwise.
+bool Wall::take_rest(NodeIndex node, const config::NodeConfig& config) {
+    if (*nodes_[node].config == config) return false;
+    const bool same_views = std::ranges::equal(nodes_[node].config->tiles, config.tiles, {}, &config::TileConfig::view,
+                                               &config::TileConfig::view);
     nodes_[node].config = std::make_shared<const config::NodeConfig>(config);
     if (nodes_[node].up) welcome_node(node);
+    return !same_views;
 }
 
 std::vector<NodeIndex> Wall::described_otherwise(const config::WallConfig& next) const {
@@ -107,6 +110,7 @@ void Wall::add_tiles(google::protobuf::RepeatedPtrField<proto::TileInfo>& out) c
             entry.set_slot(slot++);
             entry.set_name(tile.name);
             *entry.mutable_rect() = to_proto(tile.rect);
+            if (tile.view) *entry.mutable_view() = to_proto(*tile.view);
         }
     }
 }

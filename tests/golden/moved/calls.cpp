@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/golden/moved/calls.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include "tests/golden/moved/mesa.h"
 #include "tests/golden/moved/place.h"
 #include "tests/golden/moved/reads.h"
+#include "tests/golden/moved/views.h"
 
 namespace golden::moved {
 namespace {
@@ -71,10 +73,15 @@ void GetIntegerv(GLenum name, GLint* values) {
     answer_in_window_pixels(name, values);
 }
 void GetFloatv(GLenum name, GLfloat* values) {
+    if (own_projection(name, values)) return;
     mesa().GetFloatv(name, values);
     answer_in_window_pixels(name, values);
 }
 void GetDoublev(GLenum name, GLdouble* values) {
+    if (std::array<GLfloat, 16> own{}; own_projection(name, own.data())) {
+        std::ranges::copy(own, values);
+        return;
+    }
     mesa().GetDoublev(name, values);
     answer_in_window_pixels(name, values);
 }
@@ -242,6 +249,7 @@ void* replacement(std::string_view name) {
         with("glCopyTexSubImage2D", CopyTexSubImage2D),
     };
     const std::string_view core = core_name(name);
+    if (void* of_view = view_replacement(core)) return of_view;
     for (const Replacement& each : replacements)
         if (each.name == core) return reinterpret_cast<void*>(each.function);
     for (const std::string_view start : kNeverStart)

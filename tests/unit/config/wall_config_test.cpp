@@ -223,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(
               "wall.toml:42: ", "expected [x, y, width, height]"},
         Wrong{"rect_huge", "[660, 0, 1280, 980]", "[32000, 0, 1280, 980]",
               "wall.toml:42: ", "expected [x, y, width, height]"},
-        Wrong{"tile_key", "rect = [660", "screen = 1\nrect = [660",
+        Wrong{"tile_key", "rect = [660", "size = 1\nrect = [660",
               "wall.toml:42: ", "expected one of name, rect, output, display, monitor, position"},
         Wrong{"output", "rect = [0, 500, 640, 480]", "output = \"tv\"\nrect = [0, 500, 640, 480]",
               "wall.toml:35: ", "'output' is 'tv': expected \"headless\" or \"window\""},

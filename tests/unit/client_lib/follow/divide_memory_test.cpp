@@ -93,7 +93,8 @@ private:
     OpenSurfaces open_;
     NodeUpdater updater_{nodes_};
     HiddenParts hidden_{nodes_, open_};
-    Followers followers_{nodes_, updater_, hidden_};
+    Sight sight_;
+    Followers followers_{nodes_, updater_, hidden_, sight_};
     ClientSurface surface_{SurfaceId(1), {}};
     glstate::State state_;
     glstate::Projection projection_;

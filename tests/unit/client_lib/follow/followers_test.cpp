@@ -82,7 +82,8 @@ protected:
     OpenSurfaces open;
     NodeUpdater updater{nodes};
     HiddenParts hidden{nodes, open};
-    Followers followers{nodes, updater, hidden};
+    Sight sight;
+    Followers followers{nodes, updater, hidden, sight};
     ClientSurface surface{SurfaceId(1), {}};
     glstate::State state;
     UseStamp used;

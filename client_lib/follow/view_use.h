@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Whether a window is seen through the views of the tiles that it covers (docs/walls.md, "Views"), which a program can
+// be whose vertices go through a camera that is known: frame after frame those are counted that do, and those of which
+// nobody knows. What is drawn in parallel (a title over the scene) tells nothing. The session's mutex guards it.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "common/glstate/projection.h"
+#include "common/glstate/view_change.h"
+
+namespace wall::client {
+
+class ViewUse {
+public:
+    bool offered = false;  ///< it covers tiles that look elsewhere
+    bool used = false;     ///< and they show what is there; else their parts of the program's picture
+
+    /// Something is drawn by a projection; null: by none that is known.
+    void note(const glstate::Projection* projection) {
+        if (projection == nullptr || (projection->by_shader && projection->camera == glstate::Mat4{})) {
+            ++unknown_;
+            return;
+        }
+        if (std::exchange(camera_, projection->camera) != projection->camera)
+            perspective_ = glstate::view_change(geom::View{}, camera_).has_value();
+        if (perspective_) ++seen_;
+    }
+    /// A frame is over. True: from the next one on it is seen otherwise.
+    bool finish_frame() {
+        const unsigned seen = std::exchange(seen_, 0), unknown = std::exchange(unknown_, 0);
+        if (!offered || seen + unknown == 0) return false;
+        const bool now = seen > 0 && seen >= unknown;
+        return std::exchange(used, now) != now;
+    }
+
+private:
+    unsigned seen_ = 0, unknown_ = 0;  ///< draws of the frame
+    glstate::Mat4 camera_{};           ///< of the last of them
+    bool perspective_ = false;
+};
+
+}  // namespace wall::client

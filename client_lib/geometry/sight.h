@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// Where on a target geometry is drawn: in the program's own picture, and in each of the views that tiles have of the
+// scene instead (docs/walls.md, "Views"). Sorting asks for it by boxes and by single triangles; where there are no
+// views it costs a comparison. Keeps its memory; the session's mutex guards it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "client_lib/geometry/primitive_scan.h"
+#include "client_lib/geometry/target_layers.h"
+#include "common/glstate/view_change.h"
+
+namespace wall::client {
+
+/// What is drawn, as far as it says where.
+struct Drawn {
+    /// By a rectangle of the window (a clear, an image); nothing: anywhere.
+    Drawn(const std::optional<PixelRect>& window) : rect(window) {}  // NOLINT: of either kind is drawn alike
+    Drawn(std::nullopt_t) {}                                         // NOLINT: as those
+    /// Primitives in a box, of one mode if it is given.
+    Drawn(const glstate::Projection& by, const geom::Box& around, std::optional<GLenum> primitives = {})
+        : projection(&by), box(&around), mode(primitives) {}
+    /// Vertices that a shader puts anywhere.
+    static Drawn anywhere() {
+        Drawn out{std::nullopt};
+        out.vertices = true;
+        return out;
+    }
+
+    std::optional<PixelRect> rect;
+    const glstate::Projection* projection = nullptr;  ///< null: `rect` holds
+    const geom::Box* box = nullptr;
+    std::optional<GLenum> mode;
+    bool vertices = false;  ///< by no projection that is known
+};
+
+class Sight {
+public:
+    /// Of this projection, through these views; both stay until the next call.
+    void aim(const glstate::Projection& own, std::span<const SurfaceView> views);
+
+    /// Good until the next call of anything.
+    Reach of(const geom::Box& box) {
+        return of_box([&](const auto& p) { return project(p, box); });
+    }
+    Reach of(const geom::Box& box, GLenum mode) {
+        return of_box([&](const auto& p) { return project(p, box, mode); });
+    }
+    /// The point, line, triangle or quad that starts at vertex `first`, scanned by the program's own projection.
+    Reach of(const Topology& topology, const VertexScan& vertices, std::size_t first);
+
+private:
+    template <class Project>
+    Reach of_box(Project&& project_by) {
+        rects_.clear();
+        for (const Through& view : through_) rects_.push_back(project_by(view.projection));
+        return {project_by(*own_), rects_};
+    }
+
+    struct Through {
+        std::optional<glstate::ViewChange> change;  ///< of clip coordinates; none: as the program's own picture
+        glstate::Projection projection;
+    };
+    const glstate::Projection* own_ = nullptr;
+    std::vector<Through> through_;  ///< by view
+    std::vector<std::optional<PixelRect>> rects_;
+    // What `through_[].change` was made of.
+    glstate::Mat4 camera_{};
+    std::vector<SurfaceView> views_;
+};
+
+}  // namespace wall::client

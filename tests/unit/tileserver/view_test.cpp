@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: MIT
+// Tiles that look elsewhere: what a program draws by a camera is seen there as plain Mesa draws it by that view's own
+// matrix, whatever places the vertices.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "common/glapi/program_format.h"
+#include "common/glstate/pieces.h"
+#include "common/glstate/vertex_input.h"
+#include "common/glstate/view_change.h"
+#include "tests/unit/tileserver/test_node.h"
+
+namespace wall::tileserver::test {
+namespace {
+
+using glstate::Mat4;
+using ::testing::HasSubstr;
+
+constexpr int kWidth = 120, kHeight = 90;
+constexpr geom::Rect kPart{0, 0, kWidth, kHeight};
+constexpr SurfaceId kSurface{1};
+constexpr ClientName kProgram{21}, kVertices{22}, kInput{23}, kPieces{24};
+constexpr std::uint32_t kSlots = 3;  // 0 and 1 look elsewhere, 2 does not
+
+/// 90 degrees wide, from 0.5 to 50.
+const Mat4 kCamera{1, 0, 0, 0, 0, 4.0f / 3, 0, 0, 0, 0, -50.5f / 49.5f, -1, 0, 0, -50 / 49.5f, 0};
+const Mat4 kModelview{0.8f, 0, 0.6f, 0, 0, 1, 0, 0, -0.6f, 0, 0.8f, 0, 0.5f, -0.25f, -2, 1};
+
+struct Vertex {
+    float x, y, z;
+};
+
+/// Triangles all around the eye.
+std::vector<Vertex> ring() {
+    std::vector<Vertex> out;
+    constexpr int kCount = 40;
+    for (int i = 0; i < kCount; ++i) {
+        const float angle = 6.2831853f * static_cast<float>(i) / kCount, next = angle + 0.1f;
+        const float height = 0.1f * static_cast<float>(i % 7) - 0.5f;
+        out.push_back({4 * std::sin(angle), height, -4 * std::cos(angle)});
+        out.push_back({4 * std::sin(next), height, -4 * std::cos(next)});
+        out.push_back({3 * std::sin(angle), height + 0.8f, -3 * std::cos(angle)});
+    }
+    return out;
+}
+
+class TilesThatLookElsewhere : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (!node_.usable()) GTEST_SKIP() << "no driver";
+        for (std::uint32_t slot = 0; slot < kSlots; ++slot)
+            node_.node->tiles.push_back({slot, {static_cast<int>(slot) * kWidth, 0, kWidth, kHeight}, {}});
+        session_.emplace(*node_.node, SessionId(1));
+        session_->open_surface(kWidth, kHeight, kWhole);
+        place({view_of(0), view_of(1)});
+    }
+    static geom::View view_of(std::uint32_t slot) { return geom::view_of_angles(slot == 0 ? 70 : -120, 5, 3, 80, 60); }
+    static std::vector<std::byte> bytes_of(const std::vector<geom::View>& views) {
+        std::vector<std::byte> bytes;
+        for (std::uint32_t slot = 0; slot < views.size(); ++slot) {
+            const auto values = geom::values_of(views[slot]);
+            const auto add = [&](const auto& value) {
+                const auto raw = std::as_bytes(std::span(&value, 1));
+                bytes.insert(bytes.end(), raw.begin(), raw.end());
+            };
+            add(slot);
+            add(values);
+        }
+        return bytes;
+    }
+    void place(const std::vector<geom::View>& views, const geom::Rect& rect = kWhole) {
+        Batch batch;
+        pack::SurfaceViews(batch.buffer(), kSurface, bytes_of(views));
+        pack::SurfacePlace(batch.buffer(), kSurface, ++version_, kWidth, kHeight, rect.x, rect.y,
+                           static_cast<std::uint32_t>(rect.width), static_cast<std::uint32_t>(rect.height), 0);
+        session_->expect_run(batch);
+    }
+    /// Clears the tiles, then draws with these matrices.
+    template <class Draw>
+    void draw(Batch& batch, const Mat4& projection, const Mat4& modelview, Draw&& pack_draw) {
+        batch.set<el::projection>(projection).set<el::modelview>(modelview);
+        batch.block((1u << kSlots) - 1, [&](auto& b) {
+            pack::Clear(b, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+            pack_draw(b);
+        });
+        session_->expect_run(batch);
+    }
+    void pack_ring(wire::PackBuffer& b) const {
+        pack::Begin(b, GL_TRIANGLES);
+        for (std::size_t i = 0; i < ring_.size(); ++i) {
+            pack::Color3f(b, static_cast<float>(i % 3) / 2, static_cast<float>(i % 5) / 4, 1);
+            pack::Vertex3f(b, ring_[i].x, ring_[i].y, ring_[i].z);
+        }
+        pack::End(b);
+    }
+    void link(const char* vertex) {
+        const glapi::ProgramDefinition definition{
+            {{GL_VERTEX_SHADER, true, vertex}, {GL_FRAGMENT_SHADER, true, "void main() { gl_FragColor = gl_Color; }"}},
+            {},
+            {}};
+        Batch batch;
+        pack::ProgramLink(batch.buffer(), RequestId(5), kProgram, encode(definition));
+        batch.set<el::current_program>(kProgram.value);
+        session_->expect_run(batch);
+        const auto reflection = glapi::decode_reflection(session_->replies[RequestId(5)]);
+        ASSERT_TRUE(reflection && reflection->linked);
+        ASSERT_TRUE(reflection->position.known());
+        uniforms_ = *glapi::number_uniforms(reflection->uniforms);
+    }
+    void set_matrix(Batch& batch, const char* name, const Mat4& matrix) {
+        const auto found = std::ranges::find(uniforms_, name, &glapi::UniformName::name);
+        ASSERT_NE(found, uniforms_.end()) << name;
+        pack::Uniform(batch.buffer(), kProgram, found->location, GL_FLOAT_MAT4, 1, std::as_bytes(std::span(matrix)));
+    }
+    /// What plain Mesa draws by these matrices, of `count` vertices.
+    Pixels drawn_by(const Mat4& projection, const Mat4& modelview) {
+        Pixels pixels;
+        {
+            ReferenceWindow window(kWidth, kHeight);
+            const Gl& gl = window.gl();
+            gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+            gl.MatrixMode(GL_PROJECTION);
+            gl.LoadMatrixf(projection.data());
+            gl.MatrixMode(GL_MODELVIEW);
+            gl.LoadMatrixf(modelview.data());
+            gl.Begin(GL_TRIANGLES);
+            for (std::size_t i = 0; i < ring_.size(); ++i) {
+                gl.Color3f(static_cast<float>(i % 3) / 2, static_cast<float>(i % 5) / 4, 1);
+                gl.Vertex3f(ring_[i].x, ring_[i].y, ring_[i].z);
+            }
+            gl.End();
+            pixels = window.read();
+        }
+        node_.make_current();
+        return pixels;
+    }
+    static Mat4 seen(std::uint32_t slot, const Mat4& camera) {
+        const auto change = glstate::view_change(view_of(slot), camera);
+        EXPECT_TRUE(change.has_value());
+        return glstate::product(*change, camera);
+    }
+    /// Each of the two shows the ring as its view has it: `but` pixels may be rounded otherwise.
+    void expect_views(std::size_t but = 0) {
+        for (const std::uint32_t slot : {0u, 1u}) {
+            const Pixels wanted = drawn_by(seen(slot, kCamera), kModelview);
+            EXPECT_LE(count_different(wanted, session_->read(slot, kPart)), but) << "slot " << slot;
+            EXPECT_GT(count_different(wanted, drawn_by(kCamera, kModelview)), 500u) << "it tells them apart";
+        }
+    }
+
+    static constexpr geom::Rect kWhole{0, 0, kSlots* kWidth, kHeight};
+    static constexpr std::size_t kRounded = 4;  ///< pixels, where a shader multiplies in another order
+    TestNode node_;
+    std::optional<TestSession> session_;
+    std::uint32_t version_ = 1;
+    std::vector<glapi::UniformName> uniforms_;
+    const std::vector<Vertex> ring_ = ring();
+};
+
+TEST_F(TilesThatLookElsewhere, FixedFunctionIsSeenThroughThem) {
+    Batch batch;
+    draw(batch, kCamera, kModelview, [&](auto& b) { pack_ring(b); });
+    expect_views();
+}
+
+TEST_F(TilesThatLookElsewhere, MatricesAndViewsChangeInAnyOrder) {
+    Batch first, second;
+    draw(first, Mat4{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, kModelview, [&](auto& b) { pack_ring(b); });
+    draw(second, kCamera, kModelview, [&](auto& b) { pack_ring(b); });
+    expect_views();
+    place({geom::view_of_angles(10, 0, 0, 50, 40), geom::view_of_angles(20, 0, 0, 50, 40)});
+    place({view_of(0), view_of(1)});
+    Batch third;
+    draw(third, kCamera, kModelview, [&](auto& b) { pack_ring(b); });
+    expect_views();
+}
+
+TEST_F(TilesThatLookElsewhere, WhatHasNoPerspectiveIsTheSameOnEach) {
+    const Mat4 flat{0.2f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, -0.1f, 0, 0, 0, 0, 1};
+    Batch batch;
+    draw(batch, flat, kModelview, [&](auto& b) { pack_ring(b); });
+    const Pixels wanted = drawn_by(flat, kModelview);
+    for (const std::uint32_t slot : {0u, 1u}) EXPECT_EQ(count_different(wanted, session_->read(slot, kPart)), 0u);
+}
+
+TEST_F(TilesThatLookElsewhere, OthersShowTheirPartOfThePicture) {
+    place({}, {2 * kWidth, 0, kWidth, kHeight});
+    Batch batch;
+    draw(batch, kCamera, kModelview, [&](auto& b) { pack_ring(b); });
+    EXPECT_EQ(count_different(drawn_by(kCamera, kModelview), session_->read(2, kPart)), 0u);
+}
+
+TEST_F(TilesThatLookElsewhere, AShaderWithMatricesOfFixedFunctionIsSeenThroughThem) {
+    link("void main() { gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex; gl_FrontColor = gl_Color; }");
+    Batch batch;
+    draw(batch, kCamera, kModelview, [&](auto& b) { pack_ring(b); });
+    expect_views(kRounded);
+}
+
+TEST_F(TilesThatLookElsewhere, AShadersOwnProjectionIsSeenThroughThem) {
+    link(
+        "uniform mat4 projection, model; void main() { gl_Position = projection * model * gl_Vertex; gl_FrontColor = "
+        "gl_Color; }");
+    const Mat4 nothing{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    Batch batch;
+    set_matrix(batch, "model", kModelview);
+    set_matrix(batch, "projection", kCamera);
+    draw(batch, nothing, nothing, [&](auto& b) { pack_ring(b); });
+    expect_views(kRounded);
+    // And when it is told again between two draws.
+    Batch other, again;
+    set_matrix(other, "projection", nothing);
+    draw(other, nothing, nothing, [&](auto& b) { pack_ring(b); });
+    set_matrix(again, "projection", kCamera);
+    draw(again, nothing, nothing, [&](auto& b) { pack_ring(b); });
+    expect_views(kRounded);
+}
+
+TEST_F(TilesThatLookElsewhere, AShaderWithOneMatrixForAllIsSeenThroughThem) {
+    link("uniform mat4 all; void main() { gl_Position = all * gl_Vertex; gl_FrontColor = gl_Color; }");
+    const Mat4 nothing{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    Batch batch;
+    set_matrix(batch, "all", glstate::multiply(kCamera, kModelview));
+    draw(batch, nothing, nothing, [&](auto& b) { pack_ring(b); });
+    expect_views(kRounded);
+}
+
+TEST_F(TilesThatLookElsewhere, PiecesAreThoseThatTheViewSees) {
+    Batch batch;
+    auto& b = batch.buffer();
+    pack::BufferData(b, kVertices, static_cast<std::uint32_t>(ring_.size() * sizeof(Vertex)), GL_STATIC_DRAW);
+    pack::BufferSubData(b, kVertices, 0, std::as_bytes(std::span(ring_)));
+    const glstate::VertexInputDefinition input{{},
+                                               {{.place = glstate::kPositionArray,
+                                                 .buffer = kVertices,
+                                                 .stride = sizeof(Vertex),
+                                                 .type = GL_FLOAT,
+                                                 .size = 3}}};
+    pack::VertexInput(b, kInput, glstate::encode(input));
+    constexpr std::uint32_t kStep = 12;
+    std::vector<glstate::PieceBox> pieces;
+    for (std::size_t first = 0; first < ring_.size(); first += kStep) {
+        geom::Box box;
+        for (std::size_t i = first; i < first + kStep; ++i) box.add(_mm_setr_ps(ring_[i].x, ring_[i].y, ring_[i].z, 1));
+        pieces.push_back(glstate::piece_box(box));
+    }
+    pack::DrawPieces(b, kPieces, kStep, 0, std::as_bytes(std::span(pieces)));
+    const auto count = static_cast<std::int32_t>(ring_.size());
+    draw(batch, kCamera, kModelview,
+         [&](auto& block) { pack::DrawArrays(block, kInput, kPieces, GL_TRIANGLES, 0, count); });
+    std::vector<Pixels> in_pieces;
+    for (const std::uint32_t slot : {0u, 1u}) in_pieces.push_back(session_->read(slot, kPart));
+    const std::uint64_t counted = session_->session.work.array_elements;
+    EXPECT_LT(counted, kSlots * ring_.size()) << "each tile draws some of them";
+    Batch whole;
+    draw(whole, kCamera, kModelview, [&](auto& block) { pack::DrawArrays(block, kInput, {}, GL_TRIANGLES, 0, count); });
+    for (const std::uint32_t slot : {0u, 1u})
+        EXPECT_EQ(count_different(in_pieces[slot], session_->read(slot, kPart)), 0u) << slot;
+}
+
+TEST_F(TilesThatLookElsewhere, WrongViewsAreRefused) {
+    const auto refusal = [&](std::span<const std::byte> bytes) {
+        session_.emplace(*node_.node, SessionId(2));  // what was refused once stays so
+        session_->open_surface(kWidth, kHeight, kWhole);
+        Batch batch;
+        pack::SurfaceViews(batch.buffer(), kSurface, bytes);
+        const auto done = session_->run(batch);
+        return done ? "" : done.error().message;
+    };
+    auto bytes = bytes_of({view_of(0)});
+    EXPECT_EQ(refusal(bytes), "");
+    EXPECT_THAT(refusal(std::span(bytes).first(20)), HasSubstr("no whole number of views"));
+    geom::View folded = view_of(0);
+    folded.top = folded.bottom;
+    EXPECT_THAT(refusal(bytes_of({folded})), HasSubstr("edges that leave nothing between them"));
+    const std::uint32_t slot = 63;
+    std::memcpy(bytes.data(), &slot, sizeof slot);
+    EXPECT_THAT(refusal(bytes), HasSubstr("a view of no tile"));
+}
+
+}  // namespace
+}  // namespace wall::tileserver::test
