@@ -23,8 +23,8 @@ from wall import build_folder  # noqa: E402
 from xserver import XServer  # noqa: E402
 
 SIDES, SIZE = 8, (400, 300)
-CASES = {"immediate": 20, "lists": 40, "buffers": 40}  # frames
-LEAST_FASTER = 2.0  # than without sorting; of buffers nodes leave out pieces whatever they are told
+CASES = {"immediate": 15, "lists": 20, "buffers": 20}  # frames
+LEAST_FASTER = 2.0  # in immediate mode. What nodes keep costs them little where it is not seen, sorted or not
 MOST_PROCESSED = 1.3  # of the band's elements, by all tiles together
 
 
@@ -60,7 +60,7 @@ def run(wall: PlannedWall, how: str, frames: int, triangles: int, environment: d
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     arguments.add_argument("--rounds", type=int, default=3)
-    arguments.add_argument("--triangles", type=int, default=200_000)
+    arguments.add_argument("--triangles", type=int, default=1_000_000)
     arguments.add_argument("--json", type=Path)
     options = arguments.parse_args()
     results, missed = {}, []
@@ -75,7 +75,7 @@ def main() -> int:
             results[how] = {kind: statistics.median(all_of) for kind, all_of in rates.items()} | {"faster": faster}
             print(f"{how:10} {results[how]['sorted']:7.2f} frames/s, {results[how]['broadcast']:7.2f} without sorting: "
                   f"{faster:.2f} times", flush=True)
-            if how != "buffers" and faster < LEAST_FASTER:
+            if how == "immediate" and faster < LEAST_FASTER:
                 missed.append(f"{how}: {faster:.2f} times, at least {LEAST_FASTER} wanted")
         before = elements_of(wall)
         few, many = 10, 60

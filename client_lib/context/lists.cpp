@@ -13,7 +13,6 @@
 #include "client_lib/follow/object_sender.h"
 #include "client_lib/geometry/block_walk.h"
 #include "client_lib/geometry/material.h"
-#include "client_lib/process/options.h"
 #include "common/glapi/content_hash.h"
 #include "common/glstate/diff.h"
 #include "common/wire/batch.h"
@@ -106,7 +105,7 @@ void call_run(Context& c, const ListRun& run) {
     if (!c.draw_target() || !may_draw(c) || c.draws_nothing) return apply_effects(c.state, run, run.in_context);
     forget_dead_runs(c);
     const Placing& placing = c.placing();
-    const bool bounded = !options().broadcast && placing.of_vertices() && placing.homogeneous;
+    const bool bounded = placing.of_vertices() && placing.homogeneous;
     draw_in_passes(c.state, *c.captures, [&] {
         std::vector<Node*> reached;
         const bool somewhere = bounded && c.captures->now == nullptr;

@@ -16,7 +16,6 @@
 #include "client_lib/context/vertex_inputs.h"
 #include "client_lib/follow/object_sender.h"
 #include "client_lib/objects/share_group.h"
-#include "client_lib/process/options.h"
 #include "common/glstate/draw_buffers.h"
 
 namespace wall::client {
@@ -279,7 +278,7 @@ void NodeDraw::send() {
 
 /// What is captured is captured everywhere.
 void NodeDraw::send_once() {
-    const bool bounded = !options().broadcast && bounded_ && c_.captures->now == nullptr;
+    const bool bounded = bounded_ && c_.captures->now == nullptr;
     const Drawn drawn = bounded ? Drawn(placing_.projection, known_->box, draw_.mode) : Drawn::anywhere();
     c_.session().draw(
         c_.draw_source(), drawn, needs(), [&](Node& node, wire::PackBuffer& buffer) { bring_objects(node, buffer); },

@@ -13,6 +13,7 @@
 #include "client_lib/follow/nodes.h"
 #include "client_lib/follow/object_sender.h"
 #include "client_lib/geometry/sight.h"
+#include "client_lib/process/options.h"
 #include "common/glstate/draw_buffers.h"
 
 namespace wall::client {
@@ -60,11 +61,7 @@ inline void note_content(const DrawSource& source) {
 
 /// Where on the draw target it is, in each of its views. Good until the next call.
 inline Reach reach_of(const Followers& followers, const DrawSource& source, const Drawn& drawn) {
-    if (drawn.projection == nullptr) {
-        if (drawn.vertices) source.draw.note_camera(nullptr);
-        return drawn.rect;
-    }
-    source.draw.note_camera(drawn.projection);
+    if (drawn.projection == nullptr) return drawn.rect;
     followers.sight.aim(*drawn.projection, source.draw.views());
     return drawn.mode ? followers.sight.of(*drawn.box, *drawn.mode) : followers.sight.of(*drawn.box);
 }
@@ -75,7 +72,8 @@ template <class Before, class Pack, class After>
 void draw_on(const Followers& followers, const DrawSource& source, const Drawn& drawn, const Needs& needs,
              Before&& before, Pack&& pack, After&& after) {
     if (!source.draw) return;
-    const bool everywhere = glstate::counts_primitives(source.state) || source.objects.writes();
+    const bool everywhere = options().broadcast || glstate::counts_primitives(source.state) || source.objects.writes();
+    if (drawn.vertices) source.draw.note_camera(drawn.projection);
     const Reach reach = everywhere ? Reach() : reach_of(followers, source, drawn);
     before_drawing(followers, source);
     const auto pack_block = [&](wire::PackBuffer& buffer, std::uint64_t slots) {

@@ -19,7 +19,7 @@ public:
 
     /// Something is drawn by a projection; null: by none that is known.
     void note(const glstate::Projection* projection) {
-        if (projection == nullptr || (projection->by_shader && projection->camera == glstate::Mat4{})) {
+        if (projection == nullptr || projection->camera == glstate::Mat4{}) {
             ++unknown_;
             return;
         }

@@ -22,7 +22,7 @@ struct Drawn {
     Drawn(std::nullopt_t) {}                                         // NOLINT: as those
     /// Primitives in a box, of one mode if it is given.
     Drawn(const glstate::Projection& by, const geom::Box& around, std::optional<GLenum> primitives = {})
-        : projection(&by), box(&around), mode(primitives) {}
+        : projection(&by), box(&around), mode(primitives), vertices(true) {}
     /// Vertices that a shader puts anywhere.
     static Drawn anywhere() {
         Drawn out{std::nullopt};
@@ -34,7 +34,7 @@ struct Drawn {
     const glstate::Projection* projection = nullptr;  ///< null: `rect` holds
     const geom::Box* box = nullptr;
     std::optional<GLenum> mode;
-    bool vertices = false;  ///< by no projection that is known
+    bool vertices = false;  ///< not by a rectangle; where `projection` is null, by none that is known
 };
 
 class Sight {

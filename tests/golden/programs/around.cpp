@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "tests/golden/programs/scene.h"
@@ -141,8 +142,12 @@ void ribbon() {
 void title(Size canvas) {
     pixel_view(canvas);
     glDisable(GL_DEPTH_TEST);
+    // Not glRecti: behind a list Mesa 22.3 draws it in the colour of before the list, where lighting was never on.
+    glBegin(GL_QUADS);
     glColor3f(1, 1, 0.2f);
-    glRecti(10, 10, canvas.width / 3, 20);
+    for (const auto& [x, y] : {std::pair{10, 10}, {canvas.width / 3, 10}, {canvas.width / 3, 20}, {10, 20}})
+        glVertex2i(x, y);
+    glEnd();
 }
 
 GLuint program() {
