@@ -11,6 +11,7 @@ import { Layouts } from './layouts.js';
 import { LivePicture } from './live_picture.js';
 import { mayChange, mayOperate, Rates, tileSkew, tileState, windowsOf } from './model.js';
 import { Mover } from './mover.js';
+import { showRoom } from './room.js';
 import { showTables } from './tables.js';
 import { WallPicture } from './wall_picture.js';
 import { WallView } from './wall_view.js';
@@ -138,6 +139,7 @@ function show() {
   picture.setTiles(status.wall, tiles.map(({ name, rect, state }) => ({ name, rect, away: state === 'away' })));
   fitWall();
   view.update(status.wall, tiles, windows, selected);
+  showRoom(tiles, showTilePicture);
   showTables({ status, windows, tiles, rates }, { onWindow: select, onTile: showTilePicture });
   showTools();
   livePicture.refresh();

@@ -36,6 +36,7 @@ void Sight::aim(const glstate::Projection& own, std::span<const SurfaceView> vie
         views_.clear();
         return;
     }
+    sees_all_ = own.by_shader && own.camera == glstate::Mat4{};
     if (own.camera != camera_ || !std::ranges::equal(views, views_)) {
         camera_ = own.camera;
         views_.assign(views.begin(), views.end());
@@ -55,7 +56,7 @@ Reach Sight::of(const Topology& topology, const VertexScan& vertices, std::size_
             const glstate::Mat4 change = narrow(*view.change);
             for (std::size_t i = 0; i < count; ++i) corners[i] = glstate::moved(view.projection, corners[i], change);
         }
-        rects_.push_back(hull_rect(view.projection, {corners.data(), count}));
+        rects_.push_back(sees_all_ ? std::nullopt : hull_rect(view.projection, {corners.data(), count}));
     }
     return {window_rect(topology, vertices, first, *own_), rects_};
 }

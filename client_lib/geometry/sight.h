@@ -56,7 +56,7 @@ private:
     template <class Project>
     Reach of_box(Project&& project_by) {
         rects_.clear();
-        for (const Through& view : through_) rects_.push_back(project_by(view.projection));
+        for (const Through& view : through_) rects_.push_back(sees_all_ ? std::nullopt : project_by(view.projection));
         return {project_by(*own_), rects_};
     }
 
@@ -67,6 +67,8 @@ private:
     const glstate::Projection* own_ = nullptr;
     std::vector<Through> through_;  ///< by view
     std::vector<std::optional<PixelRect>> rects_;
+    /// A shader of which no camera is known, and which may use matrices of fixed function, which the views change.
+    bool sees_all_ = false;
     // What `through_[].change` was made of.
     glstate::Mat4 camera_{};
     std::vector<SurfaceView> views_;
