@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The room from above: the person in the middle, and around them the screens of tiles that look elsewhere (docs/walls.md,
-// "Views"). Every screen is drawn as far away as the others, since a view tells directions and no distances.
+// The room from above: the person in the middle, and around them the screens of tiles that look elsewhere
+// (docs/walls.md, "Views"). Every screen is drawn as far away as the others: a view tells directions and no distances.
 
 import { get } from './dom.js';
 
@@ -27,7 +27,8 @@ export function screensOf(tiles) {
     const corners = [[left, bottom], [right, bottom], [right, top], [left, top]]
         .map(([along, upwards]) => fromAbove(corner(view, along, upwards)));
     const middle = fromAbove(corner(view, (left + right) / 2, (bottom + top) / 2));
-    const aside = Math.round(Math.atan2(ax, az) / kDegree), up = Math.round(Math.atan2(ay, Math.hypot(ax, az)) / kDegree);
+    const aside = Math.round(Math.atan2(ax, az) / kDegree);
+    const up = Math.round(Math.atan2(ay, Math.hypot(ax, az)) / kDegree);
     const words = [aside && `${Math.abs(aside)}° to the ${aside > 0 ? 'right' : 'left'}`,
                    up && `${Math.abs(up)}° ${up > 0 ? 'up' : 'down'}`].filter(Boolean);
     return { name, state, corners, middle, text: `${name} looks ${words.join(', ') || 'ahead'}` };
@@ -57,7 +58,8 @@ export function showRoom(tiles, onTile) {
   room.setAttribute('aria-label', `The room from above: ${screens.map(({ text }) => text).join('; ')}`);
   room.replaceChildren(draw('circle', { cx: 0, cy: 0, r: 0.06, class: 'person' }), ...screens.map(screen => {
     const { name, state, corners, middle, text } = screen, tile = draw('g', { class: 'screen', 'data-state': state });
-    tile.append(draw('title', {}, text), draw('polygon', { points: points([[0, 0], corners[0], corners[1]]), class: 'sight' }),
+    tile.append(draw('title', {}, text),
+        draw('polygon', { points: points([[0, 0], corners[0], corners[1]]), class: 'sight' }),
         draw('polygon', { points: points(corners), class: 'surface' }),
         draw('text', { x: middle[0] * 0.78, y: middle[1] * 0.78 }, name));
     tile.onclick = () => onTile(name);

@@ -41,7 +41,7 @@ constexpr Beyond kBeyond[] = {
 };
 
 /// What no driver need have: it is between the programs and the nodes.
-constexpr const char* kOwnExtensions[] = {"GL_CR_synchronization", "GL_WALLGL_global_texture"};
+constexpr const char* kOwnExtensions[] = {"GL_CR_synchronization", "GL_WALLGL_global_texture", "GL_WALLGL_views"};
 
 /// Core profiles do not list extensions of what they have removed (NV_primitive_restart's client state), nor those that
 /// were part of OpenGL before there were profiles: a program would take them for the fixed functions that came along.

@@ -63,9 +63,13 @@ public:
         return surface_ && only_ == nullptr ? std::span<const SurfaceView>(surface_->layout.views)
                                             : std::span<const SurfaceView>();
     }
+    /// Those that tiles have of a window, or would have if its camera were known.
+    std::span<const geom::View> offered_views() const {
+        return surface_ ? std::span<const geom::View>(surface_->views.offered) : std::span<const geom::View>();
+    }
     /// Vertices are drawn by this projection; null: by none that is known.
     void note_camera(const glstate::Projection* projection) const {
-        if (surface_ && surface_->views.offered) surface_->views.note(projection);
+        if (surface_ && !surface_->views.offered.empty()) surface_->views.note(projection);
     }
     /// The surface whose hidden part may be kept instead of being drawn; null: there is no such part, or no target.
     ClientSurface* with_hidden_part() const {

@@ -156,6 +156,12 @@ void ClientSession::begin_frame(ClientSurface& surface) {
     surfaces_.begin_frame(surface);
 }
 
+std::vector<geom::View> ClientSession::views_of(const DrawTarget& target) {
+    std::lock_guard lock(mutex_);
+    const auto views = target.offered_views();
+    return {views.begin(), views.end()};
+}
+
 Wholeness ClientSession::wholeness(const ClientSurface& surface) {
     std::lock_guard lock(mutex_);
     return surfaces_.wholeness(surface);

@@ -93,13 +93,13 @@ void Surfaces::apply_layout(ClientSurface& surface, const Placement& placement) 
     layout.rect = placement.rect;
     if (placement.tiles) surface.tiles = placement.tiles;
     if (!surface.tiles) return;
-    surface.views.offered = false;
+    surface.views.offered.clear();
     for (const TileInfo& tile : *surface.tiles) {
         nodes_.at(tile.node);  // also one that is not up
         const geom::Rect part = geom::intersect(tile.rect, layout.rect);
         if (part.empty()) continue;
         const bool looks_elsewhere = tile.view && part == tile.rect && !common(surface);
-        surface.views.offered = surface.views.offered || looks_elsewhere;
+        if (looks_elsewhere) surface.views.offered.push_back(*tile.view);
         if (!looks_elsewhere || !surface.views.used) {
             layout.layers.push_back(tile_layer(layout, tile.node, tile.slot, part));
             continue;
@@ -113,9 +113,9 @@ void Surfaces::apply_layout(ClientSurface& surface, const Placement& placement) 
         layout.layers.push_back(view_layer(layout, tile.node, tile.slot, view));
     }
     using Views = ControlLink::Views;
-    control_.surface_views(surface.id, !surface.views.offered ? Views::none
-                                       : surface.views.used   ? Views::seen
-                                                              : Views::flat);
+    control_.surface_views(surface.id, surface.views.offered.empty() ? Views::none
+                                       : surface.views.used          ? Views::seen
+                                                                     : Views::flat);
     lay_hidden(surface);
 }
 

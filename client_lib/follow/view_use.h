@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "common/glstate/projection.h"
 #include "common/glstate/view_change.h"
@@ -14,8 +15,8 @@ namespace wall::client {
 
 class ViewUse {
 public:
-    bool offered = false;  ///< it covers tiles that look elsewhere
-    bool used = false;     ///< and they show what is there; else their parts of the program's picture
+    std::vector<geom::View> offered;  ///< of the tiles that it covers and that look elsewhere
+    bool used = false;                ///< they show what is there; else their parts of the program's picture
 
     /// Something is drawn by a projection; null: by none that is known.
     void note(const glstate::Projection* projection) {
@@ -30,7 +31,7 @@ public:
     /// A frame is over. True: from the next one on it is seen otherwise.
     bool finish_frame() {
         const unsigned seen = std::exchange(seen_, 0), unknown = std::exchange(unknown_, 0);
-        if (!offered || seen + unknown == 0) return false;
+        if (offered.empty() || seen + unknown == 0) return false;
         const bool now = seen > 0 && seen >= unknown;
         return std::exchange(used, now) != now;
     }

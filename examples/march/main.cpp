@@ -15,7 +15,7 @@
 
 #include "examples/march/team.h"
 #include "examples/march/tetrahedra.h"
-#include "examples/march/window.h"
+#include "examples/window.h"
 
 namespace {
 
@@ -114,7 +114,7 @@ int main(int argc, char** argv) {
     Options o;
     if (argc == 2 && std::strcmp(argv[1], "--help") == 0) return std::fputs(kHelp, stdout), 0;
     if (!parse(argc, argv, o)) return std::fputs(kHelp, stderr), 2;
-    march::Window window(o.width, o.height);
+    example::Window window("march", o.width, o.height);
     const Team team(o.rank);
     set_up(o);
     Field field(o.seed, o.balls);

@@ -33,6 +33,8 @@ class Registry(unittest.TestCase):
         c = self.gl.commands["glBarrierCreateCR"]
         self.assertEqual((c.declaration, c.extensions, c.gl),
                          ("GLuint name, GLuint count", ["GL_CR_synchronization"], None))
+        c = self.gl.commands["glGetViewsWALLGL"]
+        self.assertEqual((c.returns, c.declaration), ("GLsizei", "GLsizei count, GLfloat *views"))
 
     def test_aliases(self):
         self.assertEqual(self.gl.canonical("glActiveTextureARB"), "glActiveTexture")

@@ -6,7 +6,8 @@ import { screensOf } from '../../web-ui-min/room.js';
 
 const edge = Math.tan(Math.PI / 8);
 /** As the status has them: right, up, ahead, then the left, right, bottom and top edge. */
-const upright = yaw => [Math.cos(yaw), 0, -Math.sin(yaw), 0, 1, 0, Math.sin(yaw), 0, Math.cos(yaw), -edge, edge, -0.3, 0.3];
+const upright = yaw =>
+    [Math.cos(yaw), 0, -Math.sin(yaw), 0, 1, 0, Math.sin(yaw), 0, Math.cos(yaw), -edge, edge, -0.3, 0.3];
 const near = (a, b) => a.forEach((value, i) => assert.ok(Math.abs(value - b[i]) < 1e-9, `${a} is not ${b}`));
 const one = view => screensOf([{ name: 'a', state: 'up', view }])[0];
 
@@ -30,7 +31,8 @@ test('an upright screen is a line from its left edge to its right one', () => {
 });
 
 test('the screens of a ring meet at their edges', () => {
-  const ring = screensOf([...Array(8).keys()].map(i => ({ name: `${i}`, state: 'up', view: upright(i * Math.PI / 4) })));
+  const ring = screensOf([...Array(8).keys()]
+      .map(i => ({ name: `${i}`, state: 'up', view: upright(i * Math.PI / 4) })));
   ring.forEach(({ corners }, i) => near(corners[1], ring[(i + 1) % 8].corners[0]));
 });
 

@@ -13,9 +13,10 @@ sys.path.insert(0, str(ROOT / "tests" / "support"))
 import numpy as np  # noqa: E402
 from compare import load_png  # noqa: E402
 from planned_wall import PlannedWall  # noqa: E402
-from wall import WallError  # noqa: E402
+from wall import WallError, build_folder  # noqa: E402
 from xserver import XServer  # noqa: E402
 
+ROOT_BUILD = build_folder()
 QUIET = {"LP_NUM_THREADS": "0"}
 SIZE = 240, 180  # of a tile
 PLAN = {"a": {"ahead": (0, 0, *SIZE), "aside": (SIZE[0], 0, *SIZE)}, "b": {"flat": (2 * SIZE[0], 0, *SIZE)}}
@@ -114,6 +115,27 @@ class TilesThatLookElsewhere(unittest.TestCase):
         picture = self.picture("ahead")
         self.assertGreater((picture[10:160, 20:220].max(axis=2) > 0).mean(), 0.03)
         self.assertEqual(picture[170:].max(), 0)
+
+    def test_a_program_that_asks_draws_what_the_tiles_see(self) -> None:
+        def panorama(*options: str) -> tuple[int, float]:
+            """Views that it was told, and what part of the tile beside its camera shows houses."""
+            program = ROOT_BUILD / "examples" / "panorama"
+            app = self.wall.run(program, "--still", "--size", "240x180", *options, fullscreen=True,
+                                env=self.x.environment(), stdout=subprocess.PIPE, text=True)
+            session = self.wall.wait_session(app)
+            self.wall.wait(session, 5)
+            self.until_views(session, "seen")
+            sky = (140, 179, 230)  # BGR or RGB: the picture's corner has it
+            picture = self.picture("aside").astype(int)
+            houses = float((np.abs(picture - picture[0, 0]).max(axis=2) > 4).mean())
+            self.assertLess(np.abs(picture[0, 0] - sky).max(), 3)
+            self.wall.ctl("close", session)
+            return int(app.communicate(timeout=20)[0].split(" views")[0].split()[-1]), houses
+
+        self.assertEqual(panorama("--alone"), (0, 0.0), "as any program it leaves out what its camera does not see")
+        views, houses = panorama()
+        self.assertEqual(views, 2)
+        self.assertGreater(houses, 0.2)
 
     def test_a_program_without_a_camera_is_flat(self) -> None:
         session = self.start("glmark2", "-b", "effect2d:duration=60", "--size", "300x100", fullscreen=True)

@@ -130,7 +130,7 @@ TEST(ViewUseTest, AProgramWithACameraIsSeenAndOthersAreFlat) {
     shader.by_shader = true;
     shader.camera = {};
     ViewUse use;
-    use.offered = true;
+    use.offered.emplace_back();
     EXPECT_FALSE(use.finish_frame()) << "nothing was drawn";
     use.note(&flat);
     EXPECT_FALSE(use.finish_frame()) << "it stays flat";

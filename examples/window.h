@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// A GLX window with a current context: nothing of it is special to a parallel program. Each process opens its own, and
-// on the wall they are one.
+// A GLX window with a current context: nothing of it is special to a wall. Each process of a parallel program opens its
+// own, and on the wall they are one.
 #pragma once
 
 #include <GL/glx.h>
 
-namespace march {
+namespace example {
 
 class Window {
 public:
-    /// Ends the program with a message if there is no display or no such visual.
-    Window(int width, int height);
+    /// Ends the program with a message, which begins with `title`, if there is no display or no such visual.
+    Window(const char* title, int width, int height);
     ~Window();
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
@@ -27,4 +27,4 @@ private:
     bool open_ = true;
 };
 
-}  // namespace march
+}  // namespace example

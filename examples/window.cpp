@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: MIT
-#include "examples/march/window.h"
+#include "examples/window.h"
 
 #include <cstdio>
 #include <cstdlib>
 
-namespace march {
+namespace example {
 namespace {
 
 template <class T>
-T need(T thing, const char* missing) {
+T need(T thing, const char* title, const char* missing) {
     if (thing) return thing;
-    std::fprintf(stderr, "march: %s\n", missing);
+    std::fprintf(stderr, "%s: %s\n", title, missing);
     std::exit(1);
 }
 
 }  // namespace
 
-Window::Window(int width, int height)
-    : display_(need(XOpenDisplay(nullptr), "cannot open the display; is DISPLAY set?")) {
+Window::Window(const char* title, int width, int height)
+    : display_(need(XOpenDisplay(nullptr), title, "cannot open the display; is DISPLAY set?")) {
     int wanted[] = {GLX_RGBA, GLX_DOUBLEBUFFER, GLX_DEPTH_SIZE, 24, 0};
     XVisualInfo* visual =
-        need(glXChooseVisual(display_, DefaultScreen(display_), wanted), "no visual with a depth buffer");
+        need(glXChooseVisual(display_, DefaultScreen(display_), wanted), title, "no visual with a depth buffer");
     XSetWindowAttributes attributes{};
     const ::Window root = RootWindow(display_, visual->screen);
     attributes.colormap = XCreateColormap(display_, root, visual->visual, AllocNone);
@@ -28,11 +28,11 @@ Window::Window(int width, int height)
                             visual->depth, InputOutput, visual->visual, CWColormap, &attributes);
     close_ = XInternAtom(display_, "WM_DELETE_WINDOW", False);
     XSetWMProtocols(display_, window_, &close_, 1);
-    XStoreName(display_, window_, "march");
+    XStoreName(display_, window_, title);
     XMapWindow(display_, window_);
-    context_ = need(glXCreateContext(display_, visual, nullptr, True), "no OpenGL context");
+    context_ = need(glXCreateContext(display_, visual, nullptr, True), title, "no OpenGL context");
     XFree(visual);
-    need(glXMakeCurrent(display_, window_, context_), "the context cannot be made current");
+    need(glXMakeCurrent(display_, window_, context_), title, "the context cannot be made current");
 }
 
 Window::~Window() {
@@ -50,4 +50,4 @@ bool Window::is_open() {
     return open_;
 }
 
-}  // namespace march
+}  // namespace example
