@@ -199,4 +199,5 @@ addEventListener('resize', () => {
   fitWall();
   livePicture?.refresh();
 });
+dispatchEvent(new Event('wallgl-started'));
 poll();

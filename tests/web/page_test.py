@@ -241,6 +241,17 @@ class Page(unittest.TestCase):
                    "element.labels?.length)).map(element => element.outerHTML)")
         self.assertEqual(self.browser.get(unnamed), [])
 
+    def test_a_page_that_did_not_come_as_a_whole_is_loaded_again(self) -> None:
+        self.browser.open("about:blank")
+        self.browser.call("devtools", "Network.enable")
+        self.browser.call("devtools", "Network.setBlockedURLs", {"urls": ["*/model.js"]})
+        self.browser.call("goto", self.wall.url)
+        self.browser.until("document.getElementById('connection').textContent.includes('did not come as a whole')")
+        self.browser.call("devtools", "Network.setBlockedURLs", {"urls": []})
+        self.browser.until("document.getElementById('connection').dataset.state === 'live'")
+        self.assertEqual(self.browser.get("sessionStorage.length"), 0, "the next time it begins with a short wait again")
+        self.browser.open(self.wall.url)  # without the errors that there were
+
     def test_every_file_comes_with_its_type_and_a_strict_policy(self) -> None:
         self.open()
         types = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
