@@ -14,10 +14,10 @@ import re
 import statistics
 import subprocess
 import sys
-import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
+sys.path[:0] = [str(Path(__file__).resolve().parents[1] / "tests" / "support"), str(Path(__file__).resolve().parent)]
+from buffers import elements_of  # noqa: E402
 from planned_wall import PlannedWall  # noqa: E402
 from wall import build_folder  # noqa: E402
 from xserver import XServer  # noqa: E402
@@ -34,17 +34,6 @@ def octagon() -> PlannedWall:
     plan = {f"node{i}": {f"side{i}": (i * width, 0, width, height)} for i in range(SIDES)}
     keys = {f"side{i}": f"yaw = {i * 360 / SIDES}\nfov = {360 / SIDES}" for i in range(SIDES)}
     return PlannedWall(plan, keys, name="views", swap_timeout_ms=10000, environment={"LP_NUM_THREADS": "0"})
-
-
-def elements_of(wall: PlannedWall) -> int:
-    """What all nodes have processed, when they have said so: they do once a second."""
-    def now() -> int:
-        return sum(node["array_elements"] for node in wall.nodes())
-    before = -1
-    while (after := now()) != before:
-        before = after
-        time.sleep(2.5)
-    return after
 
 
 def run(wall: PlannedWall, how: str, frames: int, triangles: int, environment: dict[str, str]) -> tuple[float, int]:

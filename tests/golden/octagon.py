@@ -22,7 +22,7 @@ sys.path.insert(0, str(HERE.parent / "support"))
 import cv2  # noqa: E402
 import numpy as np  # noqa: E402
 from planned_wall import PlannedWall  # noqa: E402
-from stages import MesaStage, Performance, _Session, decode_png, mesa_environment  # noqa: E402
+from stages import MesaStage, Performance, Session, decode_png, mesa_environment  # noqa: E402
 from subjects import WINDOW, Play, Subject, load_recordings, load_scenes  # noqa: E402
 from wall import WallError, build_folder  # noqa: E402
 from xserver import XServer  # noqa: E402
@@ -67,7 +67,7 @@ class Octagon:
         given, sides = Performance(), {}
         prefix = self.wall.wallrun(rect=self.rect, name=subject.name)
         play = Play(subject, self._x.environment(vblank_mode="0"), prefix)
-        session = _Session(self.wall, play.pid)
+        session = Session(self.wall, play.pid)
         for number, frame in enumerate(play.frames()):
             given.read.append(frame)
             if number >= 1 and number in subject.shown:

@@ -205,7 +205,7 @@ class WallStage:
             rect = None if self._tiles == (1, 1) else (*self._origin, *subject.window)
             prefix = self._wall.wallrun(rect=rect, name=subject.name)
             play = Play(subject, self._x.environment(WALLGL_STATS=str(stats), vblank_mode="0"), prefix)
-            session = _Session(self._wall, play.pid)
+            session = Session(self._wall, play.pid)
             for number, frame in enumerate(play.frames()):
                 given.read.append(frame)
                 if number in subject.shown:
@@ -216,7 +216,7 @@ class WallStage:
                 given.stats = json.loads(stats.read_text())
         return given
 
-    def _look(self, session: "_Session", subject: Subject, number: int, given: Performance) -> None:
+    def _look(self, session: "Session", subject: Subject, number: int, given: Performance) -> None:
         """The composed wall, cut to the window, once it shows the frame."""
         try:
             session.wait_shown(number + 1 if subject.swaps else 0, wait_a_moment=not subject.swaps)
@@ -229,7 +229,7 @@ class WallStage:
             given.problems.append(f"frame {number}: {problem}")
 
 
-class _Session:
+class Session:
     """A program's session on the wall, found by its process."""
 
     def __init__(self, wall: Wall, pid: int):
