@@ -249,7 +249,7 @@ class Page(unittest.TestCase):
         self.browser.until("document.getElementById('connection').textContent.includes('did not come as a whole')")
         self.browser.call("devtools", "Network.setBlockedURLs", {"urls": []})
         self.browser.until("document.getElementById('connection').dataset.state === 'live'")
-        self.assertEqual(self.browser.get("sessionStorage.length"), 0, "the next time it begins with a short wait again")
+        self.assertEqual(self.browser.get("sessionStorage.length"), 0, "the next time it waits for a second again")
         self.browser.open(self.wall.url)  # without the errors that there were
 
     def test_every_file_comes_with_its_type_and_a_strict_policy(self) -> None:
