@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // From the picture that a program draws to what is seen of the same scene through a tile that looks elsewhere. A
 // camera's clip coordinates x, y and w are a 3x3 matrix times directions from the eye (what photographers call the
-// intrinsic one), so another direction and field of view are one matrix on clip coordinates, whatever made them: fixed
-// function, an ARB program or a shader. Depth follows w. Pure.
+// intrinsic one), so another direction and field of view are one matrix on clip coordinates, whatever made them, fixed
+// function or a shader. Depth follows w. Pure.
 #pragma once
 
 #include <array>
