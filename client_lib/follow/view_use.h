@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Whether a window is seen through the views of the tiles that it covers (docs/walls.md, "Views"), which a program can
 // be whose vertices go through a camera that is known: frame after frame those are counted that do, and those of which
-// nobody knows. What is drawn in parallel (a title over the scene) tells nothing. The session's mutex guards it.
+// nobody knows. What is drawn without a perspective (a title over the scene) tells nothing. The session's mutex guards
+// it.
 #pragma once
 
 #include <cstdint>

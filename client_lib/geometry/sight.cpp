@@ -2,21 +2,15 @@
 #include "client_lib/geometry/sight.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 #include "common/glstate/view_change.h"
 
 namespace wall::client {
 namespace {
 
-glstate::Mat4 narrow(const glstate::ViewChange& change) {
-    glstate::Mat4 out;
-    std::ranges::transform(change, out.begin(), [](double v) { return static_cast<float>(v); });
-    return out;
-}
-
 /// As the view has it. A tile's pixels may be larger than the window's, and its primitives reach as many of them.
-glstate::Projection seen(const glstate::Projection& own, const std::optional<glstate::ViewChange>& change,
+glstate::Projection seen(const glstate::Projection& own, const std::optional<glstate::Mat4>& change,
                          const SurfaceView& view) {
     glstate::Projection out = change ? glstate::seen(own, *change) : own;
     const float larger = std::max(1.0f, std::max(view.window_pixels_x, view.window_pixels_y));
@@ -41,8 +35,10 @@ void Sight::aim(const glstate::Projection& own, std::span<const SurfaceView> vie
         camera_ = own.camera;
         views_.assign(views.begin(), views.end());
         through_.resize(views.size());
-        for (std::size_t i = 0; i < views.size(); ++i)
-            through_[i].change = glstate::view_change(views[i].view, own.camera);
+        for (std::size_t i = 0; i < views.size(); ++i) {
+            const auto change = glstate::view_change(views[i].view, own.camera);
+            through_[i].change = change ? std::optional(glstate::narrow(*change)) : std::nullopt;
+        }
     }
     for (std::size_t i = 0; i < views.size(); ++i) through_[i].projection = seen(own, through_[i].change, views[i]);
 }
@@ -52,10 +48,9 @@ Reach Sight::of(const Topology& topology, const VertexScan& vertices, std::size_
     for (const Through& view : through_) {
         std::array<glstate::WindowVertex, kMostVertices> corners;
         const std::size_t count = corners_of(topology, vertices, first, corners);
-        if (view.change) {
-            const glstate::Mat4 change = narrow(*view.change);
-            for (std::size_t i = 0; i < count; ++i) corners[i] = glstate::moved(view.projection, corners[i], change);
-        }
+        if (view.change)
+            for (std::size_t i = 0; i < count; ++i)
+                corners[i] = glstate::moved(view.projection, corners[i], *view.change);
         rects_.push_back(sees_all_ ? std::nullopt : hull_rect(view.projection, {corners.data(), count}));
     }
     return {window_rect(topology, vertices, first, *own_), rects_};

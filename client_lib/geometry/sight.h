@@ -11,7 +11,7 @@
 
 #include "client_lib/geometry/primitive_scan.h"
 #include "client_lib/geometry/target_layers.h"
-#include "common/glstate/view_change.h"
+#include "common/glstate/projection.h"
 
 namespace wall::client {
 
@@ -61,7 +61,7 @@ private:
     }
 
     struct Through {
-        std::optional<glstate::ViewChange> change;  ///< of clip coordinates; none: as the program's own picture
+        std::optional<glstate::Mat4> change;  ///< of clip coordinates; none: as the program's own picture
         glstate::Projection projection;
     };
     const glstate::Projection* own_ = nullptr;

@@ -23,8 +23,8 @@ struct TargetLayer {
     std::uint32_t slot = 0;
     PixelRect area;     ///< of the window: what is seen of it here
     geom::Rect pixels;  ///< the same, whole pixels, rounded outwards
-    std::uint32_t view =
-        0;  ///< what it shows instead of its part of the picture: SurfaceLayout::views[view - 1]; 0: no view
+    /// What it shows instead of its part of the picture: SurfaceLayout::views[view - 1]; 0: it shows that part.
+    std::uint32_t view = 0;
 
     std::uint64_t bit() const { return std::uint64_t{1} << slot; }  ///< in a Block's mask
     bool is_whole_window() const;                                   ///< made by whole_window()

@@ -251,6 +251,7 @@ void ControlLink::surface_resize(SurfaceId id, std::uint32_t width, std::uint32_
 }
 
 void ControlLink::surface_views(SurfaceId id, Views views) {
+    if (in_forked_child()) return;
     std::lock_guard lock(mutex_);
     if (const auto found = surfaces_.find(id); found != surfaces_.end()) found->second.views = views;
 }

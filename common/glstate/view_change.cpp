@@ -75,13 +75,19 @@ std::optional<ViewChange> view_change(const geom::View& view, const Mat4& camera
                       0,       0,       1,           0,       h[0][2], h[1][2], a * (h[2][2] - 1), h[2][2]};
 }
 
-Projection seen(const Projection& own, const ViewChange& change) {
-    Mat4 narrow, sizes;
-    std::ranges::transform(change, narrow.begin(), [](double v) { return static_cast<float>(v); });
-    std::ranges::transform(narrow, sizes.begin(), [](float v) { return std::abs(v); });
+Mat4 narrow(const ViewChange& change) {
+    Mat4 out;
+    std::ranges::transform(change, out.begin(), [](double v) { return static_cast<float>(v); });
+    return out;
+}
+
+Projection seen(const Projection& own, const Mat4& change) {
     Projection out = own;
-    out.clip_from_object = multiply(narrow, own.clip_from_object);
-    if (own.by_shader) out.sizes = multiply(sizes, own.sizes);
+    out.clip_from_object = multiply(change, own.clip_from_object);
+    if (!own.by_shader) return out;
+    Mat4 sizes;
+    std::ranges::transform(change, sizes.begin(), [](float v) { return std::abs(v); });
+    out.sizes = multiply(sizes, own.sizes);
     return out;
 }
 

@@ -21,8 +21,10 @@ using ViewChange = std::array<double, 16>;  ///< column by column
 /// With (x, y, w) = K (right, up, ahead) and z = a w + b:  (x', y', w') = K_view axes K^-1 (x, y, w), z' = z + a (w' -
 /// w).
 std::optional<ViewChange> view_change(const geom::View& view, const Mat4& camera);
+/// For sorting, where single precision does.
+Mat4 narrow(const ViewChange& change);
 /// What comes of clip coordinates by it.
-Projection seen(const Projection& own, const ViewChange& change);
+Projection seen(const Projection& own, const Mat4& change);
 /// Rounded once, so that what a driver is told has no more error than what the program has told.
 Mat4 product(const ViewChange& change, const Mat4& camera);
 

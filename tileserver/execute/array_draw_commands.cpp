@@ -69,7 +69,7 @@ void ArrayDrawCommands::find_runs(ClientName name, std::int32_t count, GLenum mo
     // A shader of which no camera is known may use matrices of fixed function, which the view changes.
     if (layer.view && projection->by_shader && projection->camera == glstate::Mat4{}) return add(0, all);
     if (const auto change = layer.view ? glstate::view_change(*layer.view, projection->camera) : std::nullopt)
-        projection = glstate::seen(*projection, *change);
+        projection = glstate::seen(*projection, glstate::narrow(*change));
     const geom::PixelRect area = layer.window_area();
     const auto wanted = [&](const geom::Box& box) {
         const auto rect = glstate::project(*projection, box, mode);

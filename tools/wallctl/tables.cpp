@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "tools/wallctl/cells.h"
 #include "tools/wallctl/columns.h"
@@ -64,7 +65,7 @@ std::string pixels(const json& tile) {
 
 /// Where a tile looks, such as "looks 90 right".
 std::string look(const json& view) {
-    constexpr double kDegrees = 180 / 3.14159265358979;
+    constexpr double kDegrees = 180 / std::numbers::pi;
     constexpr std::size_t kAhead = 6;
     const auto at = [&](std::size_t i) { return view.at(kAhead + i).get<double>(); };
     const auto aside = std::lround(std::atan2(at(0), at(2)) * kDegrees);

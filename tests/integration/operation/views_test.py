@@ -125,7 +125,7 @@ class TilesThatLookElsewhere(unittest.TestCase):
             session = self.wall.wait_session(app)
             self.wall.wait(session, 5)
             self.until_views(session, "seen")
-            sky = (140, 179, 230)  # BGR or RGB: the picture's corner has it
+            sky = (140, 179, 230)  # in the tile's upper left corner
             picture = self.picture("aside").astype(int)
             houses = float((np.abs(picture - picture[0, 0]).max(axis=2) > 4).mean())
             self.assertLess(np.abs(picture[0, 0] - sky).max(), 3)
