@@ -48,15 +48,19 @@ asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const NodeServer&
 enum class Ended { stopped, starts_anew };
 
 Result<Ended> run(const NodeRole& role) {
-    const auto& node = role.node();
     const auto described = [&role](const std::string& wall_toml) { return role.described(wall_toml); };
-    const auto compilers =
-        CompilerHost::start({config::name_of(node.backend), node.gpu()});  // forks: before there are threads
-    if (!compilers) return tl::unexpected(compilers.error());
+    std::vector<std::unique_ptr<CompilerHost>> compilers;
+    std::vector<GpuPart> parts;
+    for (const auto& node : role.nodes()) {
+        auto host = CompilerHost::start({config::name_of(node.backend), node.gpu()});  // forks: before any thread
+        if (!host) return tl::unexpected(host.error());
+        compilers.push_back(std::move(*host));
+        parts.push_back({node, compilers.back().get()});
+    }
     asio::io_context io(1);
     auto server = Result<std::unique_ptr<NodeServer>>(nullptr);
     const auto open = [&]() -> Result<void> {
-        server = NodeServer::open(io.get_executor(), role.wall(), node, compilers->get(), role.keys(), described);
+        server = NodeServer::open(io.get_executor(), role.wall(), parts, role.keys(), described);
         return server ? Result<void>() : tl::unexpected(server.error());
     };
     if (auto opened = net::listen_patiently(open); !opened) return tl::unexpected(opened.error());
@@ -72,9 +76,10 @@ Result<Ended> run(const NodeRole& role) {
     net::keep_running(io.get_executor(), {"watchdog", [&] { return feed_watchdog(watchdog, **server, stopping); },
                                           [&] { return stopping; }});
     (*server)->start();
-    sd_notify(0, ("READY=1\nSTATUS=node " + node.name).c_str());
-    log::info("ready node={} backend={} listen={}", log::quoted(node.name), log::plain(config::name_of(node.backend)),
-              log::quoted((*server)->address().text()));
+    sd_notify(0, ("READY=1\nSTATUS=node " + role.name()).c_str());
+    const auto& node = parts.front().node;
+    log::info("ready node={} backend={} gpus={} listen={}", log::quoted(role.name()),
+              log::plain(config::name_of(node.backend)), parts.size(), log::quoted((*server)->address().text()));
     while (!stopping && !(*server)->failure() && !(*server)->starts_anew()) io.run_one();
     const auto failure = (*server)->failure();
     const auto ended = stopping ? Ended::stopped : Ended::starts_anew;

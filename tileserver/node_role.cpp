@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/node_role.h"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <utility>
@@ -22,6 +23,10 @@ Result<NodeKeys> keys_in(const std::string& folder) {
     auto context = tls::TlsContext::make(*own);
     if (!context) return tl::unexpected(context.error());
     return NodeKeys{std::make_shared<const tls::TlsContext>(std::move(*context)), std::nullopt};
+}
+
+bool draws_otherwise(const std::vector<config::NodeConfig>& a, const std::vector<config::NodeConfig>& b) {
+    return !std::ranges::equal(a, b, [](const auto& x, const auto& y) { return draws_as(x, y); });
 }
 
 bool file_has(const std::filesystem::path& path, const std::string& text) {
@@ -75,7 +80,7 @@ Result<NodeRole> NodeRole::find(RoleSource source) {
         out->wall_ = std::move(*wall);
         out->keys_ = std::move(*keys);
     }
-    if (out->wall_.find_node(out->name_)) return out;
+    if (!out->nodes().empty()) return out;
     const auto file = out->keys_.joined ? join::wall_file(out->source_.state).string() : out->source_.config;
     return fail(file + ": no [[node]] has the name \"" + out->name_ + "\"");
 }
@@ -86,8 +91,7 @@ bool NodeRole::described(const std::string& wall_toml) const {
         log::error("description_unreadable reason={}", log::quoted(told.error().message));
         return false;
     }
-    const auto* node = told->find_node(name_);
-    if (!node) {
+    if (told->nodes_of(name_).empty()) {
         log::warn("taken_off_the_wall node={}", log::quoted(name_));
         return false;
     }
@@ -95,15 +99,14 @@ bool NodeRole::described(const std::string& wall_toml) const {
         const auto file = join::wall_file(source_.state);
         const auto kept = file_has(file, wall_toml) ? Result<void>() : write_whole(file, wall_toml, kWallFileMode);
         if (!kept) log::error("description_not_kept reason={}", log::quoted(kept.error().message));
-        return kept && !draws_as(*node, this->node());
+        return kept && draws_otherwise(told->nodes_of(name_), nodes());
     }
     const auto here = config::load_config(source_.config);
-    const auto* own = here ? here->find_node(name_) : nullptr;
-    if (!own || !draws_as(*own, *node)) {
+    if (!here || draws_otherwise(here->nodes_of(name_), told->nodes_of(name_))) {
         log::warn("description_differs file={} node={}", log::quoted(source_.config), log::quoted(name_));
         return false;
     }
-    return !draws_as(*own, this->node());
+    return draws_otherwise(here->nodes_of(name_), nodes());
 }
 
 }  // namespace wall::tileserver

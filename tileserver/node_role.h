@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/config/wall_config.h"
 #include "tileserver/io/node_server.h"
@@ -24,7 +25,9 @@ public:
     static Result<NodeRole> find(RoleSource source);
 
     const config::WallConfig& wall() const { return wall_; }
-    const config::NodeConfig& node() const { return *wall_.find_node(name_); }
+    /// The nodes of the wall that it is, one for each GPU; at least one.
+    std::vector<config::NodeConfig> nodes() const { return wall_.nodes_of(name_); }
+    const std::string& name() const { return name_; }
     const NodeKeys& keys() const { return keys_; }
 
     /// walld goes by this wall.toml now, which a machine that has joined keeps. True: the node is another one by it,

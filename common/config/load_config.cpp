@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/config/parse_toml.h"
+#include "common/config/read_gpus.h"
 #include "common/config/read_output.h"
 #include "common/config/read_people.h"
 #include "common/config/read_tile_output.h"
@@ -83,9 +84,9 @@ TileConfig read_tile(TreeReader& read, const toml::table& table, const geom::Vec
 }
 
 NodeConfig read_node(TreeReader& read, const toml::table& table, const geom::Vec3& eye) {
-    read.only(table, "[[node]]", {"name", "backend", "listen", "tile"});
+    read.only(table, "[[node]]", {"name", "backend", "listen", "gpus", "tile"});
     NodeConfig out;
-    out.name = read.text(table, "name");
+    out.name = out.process = read.text(table, "name");
     const auto backend = read.text(table, "backend", "egl");
     const auto found = std::ranges::find(kBackends, backend, [](Backend b) { return std::string(name_of(b)); });
     if (found != kBackends.end()) out.backend = *found;
@@ -178,6 +179,7 @@ WallConfig read_wall(TreeReader& read, const toml::table& root) {
     read_http(read, root, out);
     read_nodes(read, root, out);
     relate_tiles(read, root, out);
+    read_gpus(read, root, out.nodes);
     return out;
 }
 
@@ -193,6 +195,7 @@ Result<std::vector<NodeConfig>> parse_nodes(std::string_view toml, std::string_v
         out.eye = eye;
         read.only(root, "the nodes", {"node"});
         read_nodes(read, root, out);
+        read_gpus(read, root, out.nodes);
         return out.nodes;
     });
 }

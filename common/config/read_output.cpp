@@ -8,8 +8,6 @@ namespace wall::config {
 namespace {
 
 constexpr std::int64_t kMaxPosition = 32767;  // X has 16 bits for it
-constexpr std::int64_t kMaxGpu = 63;
-constexpr std::size_t kLeastAddress = 7, kMostAddress = 16;  // "65:00.0", "00000000:65:00.0"
 
 /// Keys that mean nothing without a window, or beside another key.
 void refuse_key(TreeReader& read, const toml::table& tile, std::string_view key, std::string_view why) {
@@ -32,24 +30,6 @@ void check_beside(TreeReader& read, const toml::table& tile, const TileConfig& s
     if (!mine.monitor.empty() && others.monitor == mine.monitor)
         read.refuse(tile.get("monitor")->source(), "monitor '" + mine.monitor + "' shows tile '" + first.name +
                                                        "' already: expected one tile for a monitor");
-}
-
-/// All tiles of a node are drawn by one GPU so far.
-void check_gpu(TreeReader& read, const toml::table& tile, const NodeConfig& node) {
-    const auto& last = node.tiles.back();
-    const auto* key = tile.get("gpu");
-    if (key && node.backend != Backend::egl)
-        read.refuse(key->source(),
-                    "'gpu' of a node with backend \"osmesa\", which draws without one: expected backend = "
-                    "\"egl\"");
-    if (key && last.window)
-        read.refuse(key->source(),
-                    "'gpu' of a tile in a window, which the X server's graphics card draws: expected none");
-    if (last.gpu != node.tiles.front().gpu)
-        read.refuse(key ? key->source() : tile.source(),
-                    "tile '" + last.name + "' is drawn by GPU " + last.gpu + ", tile '" + node.tiles.front().name +
-                        "' by " + node.tiles.front().gpu +
-                        ": expected one GPU for all tiles of a node (or a node for each GPU)");
 }
 
 }  // namespace
@@ -75,23 +55,7 @@ std::optional<WindowConfig> read_output(TreeReader& read, const toml::table& til
     return out;
 }
 
-std::string read_gpu(TreeReader& read, const toml::table& tile) {
-    const auto* node = tile.get("gpu");
-    if (!node) return "auto";
-    if (node->is_integer()) return std::to_string(read.integer(*node, "'gpu'", 0, kMaxGpu));
-    const auto text = node->is_string() ? node->as_string()->get() : "";
-    const bool is_address = text.size() >= kLeastAddress && text.size() <= kMostAddress &&
-                            text.find_first_not_of("0123456789abcdef:.") == std::string::npos &&
-                            text.find(':') != std::string::npos;
-    if (text == "auto" || is_address) return text;
-    read.refuse(node->source(),
-                "'gpu': expected \"auto\", a number (`tileserver --gpus` lists them), or a PCI address such as "
-                "\"0000:65:00.0\"");
-    return "auto";
-}
-
 void check_output(TreeReader& read, const toml::table& tile, const NodeConfig& node) {
-    check_gpu(read, tile, node);
     const auto& last = node.tiles.back();
     if (!last.window) return;
     if (node.backend != Backend::egl)

@@ -11,8 +11,6 @@ namespace wall::config {
 
 /// Reads the window of one [[node.tile]]; none: the tile is headless.
 std::optional<WindowConfig> read_output(TreeReader& read, const toml::table& tile);
-/// Which GPU draws one [[node.tile]]: "auto", a number, or a PCI address.
-std::string read_gpu(TreeReader& read, const toml::table& tile);
 /// Checks that the node's last tile, which `tile` describes, goes with the backend and with the tiles before it.
 void check_output(TreeReader& read, const toml::table& tile, const NodeConfig& node);
 

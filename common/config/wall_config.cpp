@@ -2,6 +2,7 @@
 #include "common/config/wall_config.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace wall::config {
 
@@ -15,7 +16,7 @@ bool draws_as(const TileConfig& a, const TileConfig& b) {
 }
 
 bool draws_as(const NodeConfig& a, const NodeConfig& b) {
-    return a.name == b.name && a.backend == b.backend && a.listen == b.listen &&
+    return a.name == b.name && a.process == b.process && a.backend == b.backend && a.listen == b.listen &&
            std::ranges::equal(a.tiles, b.tiles, [](const auto& x, const auto& y) { return draws_as(x, y); });
 }
 
@@ -33,6 +34,12 @@ geom::Rect WallConfig::canvas() const {
 const NodeConfig* WallConfig::find_node(std::string_view node) const {
     const auto found = std::ranges::find(nodes, node, &NodeConfig::name);
     return found == nodes.end() ? nullptr : &*found;
+}
+
+std::vector<NodeConfig> WallConfig::nodes_of(std::string_view process) const {
+    std::vector<NodeConfig> out;
+    std::ranges::copy_if(nodes, std::back_inserter(out), [&](const auto& node) { return node.process == process; });
+    return out;
 }
 
 }  // namespace wall::config

@@ -46,11 +46,13 @@ const char* output_name(const TileConfig& tile);
 /// The same but for how its output shows it, which can be changed at any moment. The size of a window cannot.
 bool draws_as(const TileConfig& a, const TileConfig& b);
 
+/// What a render thread draws: the tiles of a [[node]], or those that one of its GPUs draws if there are several.
 struct NodeConfig {
     std::string name;
     Backend backend = Backend::egl;
     net::Address listen;            ///< data streams
     std::vector<TileConfig> tiles;  ///< slot = index
+    std::string process{};          ///< the [[node]]'s name, of the tileserver that it is, or is a part of
     /// That draws its tiles: it is the same for all.
     std::string gpu() const { return tiles.empty() ? "auto" : tiles.front().gpu; }
     bool operator==(const NodeConfig&) const = default;
@@ -76,6 +78,8 @@ struct WallConfig {
     /// The least rectangle from (0,0) that holds every tile.
     geom::Rect canvas() const;
     const NodeConfig* find_node(std::string_view node) const;
+    /// Those that the tileserver `process` is; none: there is no such [[node]].
+    std::vector<NodeConfig> nodes_of(std::string_view process) const;
 };
 
 }  // namespace wall::config

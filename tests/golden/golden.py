@@ -159,7 +159,8 @@ def play_all(subjects: list[Subject], expected: Collection[Check], options: argp
         if tiles == "mesa":
             stage, count = MesaStage(x_server()), 1
         else:
-            stage = stack.enter_context(WallStage(x_server(), tuple(map(int, tiles.split("x"))), options.backend))
+            stage = stack.enter_context(WallStage(x_server(), tuple(map(int, tiles.split("x"))), options.backend,
+                                                  gpus=options.gpus))
             count = len(stage.parts(WINDOW))
         servers = [x_server() for _ in range(count)]
         parts_of_window = whole_window if tiles == "mesa" else stage.parts
@@ -202,6 +203,7 @@ def main() -> int:
     arguments.add_argument("--tiles", default="mesa")
     arguments.add_argument("--sample", default="1/1", metavar="K/N", help="of recordings only the Kth of every N")
     arguments.add_argument("--backend", default="egl", choices=["egl", "osmesa"])
+    arguments.add_argument("--gpus", type=int, default=0, help="all tiles on one node that draws with so many")
     arguments.add_argument("--only", action="append", default=[], help="recording or scene; may be given again")
     arguments.add_argument("--report", type=Path, default=Path("test-output/golden"),
                            help="folder for pictures of failures")

@@ -23,13 +23,14 @@ CONTROL_PORT, DATA_PORT = 7770, 7790
 
 
 class MachineWall(Wall):
-    """`clients` have joined; `guests` are hosts that have not, for join_client(). Options that are not here are those
-    of Wall. All ends with the thread that starts it."""
+    """`clients` have joined; `guests` are hosts that have not, for join_client(). `gpus` are how many a node draws
+    with, if several. Options that are not here are those of Wall. All ends with the thread that starts it."""
 
     def __init__(self, tiles: tuple[int, int] = (3, 2), tile_size: tuple[int, int] = (200, 150), *,
-                 clients: Sequence[str] = ("desk",), guests: Sequence[str] = (), **options):
+                 clients: Sequence[str] = ("desk",), guests: Sequence[str] = (),
+                 gpus: dict[str, int] | None = None, **options):
         super().__init__(tiles, tile_size, die_with_parent=True, **options)
-        self.clients = clients
+        self.clients, self.gpus = clients, gpus or {}
         self.hosts = Hosts(WALLD, *self.node_names, *clients, *guests)
 
     # ---- life ----
@@ -55,6 +56,7 @@ class MachineWall(Wall):
         control = [f"unix:{self.folder}/walld.sock", f"{self.hosts.address(WALLD)}:{CONTROL_PORT}"]
         nodes = "".join(f"[[node]]\nname = {quoted(name)}\nbackend = {quoted(self.backend)}\n"
                         f"listen = {quoted(self.listen_address(name))}\n"
+                        + (f"gpus = {self.gpus[name]}\n" if name in self.gpus else "")
                         + "".join(self._tile(f"{column}-{row}") for row in range(self.tiles[1]))
                         for column, name in enumerate(self.node_names))
         return (f"[wall]\nname = {quoted(self.name)}\nswap_timeout_ms = {self.swap_timeout_ms}\n"

@@ -14,11 +14,12 @@ Plan = dict[str, dict[str, tuple[int, int, int, int]]]  # node -> tile -> rectan
 
 class PlannedWall(Wall):
     """Options that are not here are those of Wall. `tiles` and `tile_size` of that mean nothing. `keys` are further
-    lines of a tile in wall.toml."""
+    lines of a tile in wall.toml, `node_keys` of a node."""
 
-    def __init__(self, plan: Plan, keys: dict[str, str] | None = None, **options):
+    def __init__(self, plan: Plan, keys: dict[str, str] | None = None,
+                 node_keys: dict[str, str] | None = None, **options):
         super().__init__(**options)
-        self.plan, self.keys = plan, keys or {}
+        self.plan, self.keys, self.node_keys = plan, keys or {}, node_keys or {}
 
     @property
     def node_names(self) -> list[str]:
@@ -30,8 +31,9 @@ class PlannedWall(Wall):
 
     def node_text(self, name: str, tiles: dict[str, tuple[int, int, int, int]]) -> str:
         """Its part of wall.toml."""
-        return self._node(name, []) + "".join(f"[[node.tile]]\nname = {json.dumps(tile)}\nrect = {list(rect)}\n"
-                                              f"{self.keys.get(tile, '')}\n" for tile, rect in tiles.items())
+        return self._node(name, []) + self.node_keys.get(name, "") + "\n" + "".join(
+            f"[[node.tile]]\nname = {json.dumps(tile)}\nrect = {list(rect)}\n{self.keys.get(tile, '')}\n"
+            for tile, rect in tiles.items())
 
     def _description(self) -> str:
         return self._but_nodes() + "".join(self.node_text(*node) for node in self.plan.items())

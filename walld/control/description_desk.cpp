@@ -33,7 +33,7 @@ DescriptionDesk::DescriptionDesk(WallFile file, std::string toml, std::filesyste
         return;
     }
     for (const auto& name : *drained)
-        if (const auto node = told_.wall.find_node(name)) told_.wall.set_duty(*node, Duty::drained);
+        for (const auto node : told_.wall.nodes_called(name)) told_.wall.set_duty(node, Duty::drained);
 }
 
 void DescriptionDesk::tell(NodeIndex node) const {
@@ -89,18 +89,24 @@ Outcome<json> DescriptionDesk::set_drained(const json& arguments, bool on) {
     const auto name = text_of(arguments, "name");
     if (!name) return tl::unexpected(name.error());
     Wall& wall = told_.wall;
-    const auto node = wall.find_node(*name);
-    if (!node || wall.nodes()[*node].duty == Duty::gone)
-        return refuse(RefusalKind::not_found, "there is no node '" + *name + "'");
+    const auto nodes = wall.nodes_called(*name);
+    if (nodes.empty()) return refuse(RefusalKind::not_found, "there is no node '" + *name + "'");
     auto drained = file_.drained();
     if (!drained) return tl::unexpected(drained.error());
-    if (on) drained->insert(*name);
-    else drained->erase(*name);
+    for (const NodeIndex node : wall.nodes().ids()) {
+        const auto& config = *wall.nodes()[node].config;
+        const bool is_drained = std::ranges::count(nodes, node) > 0 ? on : wall.nodes()[node].duty == Duty::drained;
+        drained->erase(config.process);
+        if (is_drained) drained->insert(config.name);
+        else drained->erase(config.name);
+    }
     if (auto kept = file_.set_drained(*drained); !kept) return tl::unexpected(kept.error());
     const auto duty = on ? Duty::drained : Duty::serves;
-    if (wall.nodes()[*node].duty == duty) return json::object();
-    told_.links.let_go(*node, on ? "an operator drains it" : "it serves the wall again");
-    wall.set_duty(*node, duty);
+    for (const NodeIndex node : nodes) {
+        if (wall.nodes()[node].duty == duty) continue;
+        told_.links.let_go(node, on ? "an operator drains it" : "it serves the wall again");
+        wall.set_duty(node, duty);
+    }
     return json::object();
 }
 

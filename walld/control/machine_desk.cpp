@@ -81,7 +81,7 @@ Outcome<json> MachineDesk::invite(const json& arguments, Clock::time_point now) 
     if (!machine) return tl::unexpected(machine.error());
     auto walld = reachable(arguments);
     if (!walld) return tl::unexpected(walld.error());
-    if (machine->kind == Machine::Kind::node && !config_.find_node(machine->name))
+    if (machine->kind == Machine::Kind::node && config_.nodes_of(machine->name).empty())
         return refuse(RefusalKind::not_found, "wall.toml has no [[node]] with the name '" + machine->name + "'");
     const auto secret = keys_.machines.invite(*machine, random_(tls::JoinLine::kSecretBytes), now);
     if (!secret) return tl::unexpected(secret.error());
@@ -138,7 +138,8 @@ Outcome<const Machine*> MachineDesk::known(const tls::Fingerprint& key, Machine:
 Outcome<Person> MachineDesk::node(const proto::NodeHello& hello, const tls::Fingerprint& key) const {
     const auto machine = known(key, Machine::Kind::node);
     if (!machine) return tl::unexpected(machine.error());
-    if ((*machine)->name != hello.name())
+    const auto* node = config_.find_node(hello.name());
+    if ((*machine)->name != (node ? node->process : hello.name()))
         return refuse(RefusalKind::forbidden, "this machine has joined as " + (*machine)->text());
     if (hello.key() != key.bytes())
         return refuse(RefusalKind::invalid, "a node's data port needs the key that it has joined with");

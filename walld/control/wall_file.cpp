@@ -99,14 +99,16 @@ Outcome<Description> WallFile::add(const std::string& nodes) const {
     const auto before = read();
     const auto added = config::parse_nodes(nodes, "the node", before ? before->config.eye : geom::Vec3{});
     if (!added) return refuse(RefusalKind::invalid, added.error().message);
-    if (added->size() != 1)
+    std::set<std::string> names;
+    for (const auto& node : *added) names.insert(node.process);
+    if (names.size() != 1)
         return refuse(RefusalKind::invalid,
-                      "the node: expected one [[node]] table, not " + std::to_string(added->size()));
-    const auto& name = added->front().name;
+                      "the node: expected one [[node]] table, not " + std::to_string(names.size()));
+    const auto& name = *names.begin();
     const auto file = file_of(name);
     if (!file) return tl::unexpected(file.error());
     if (!before) return before;
-    if (before->config.find_node(name))
+    if (!before->config.nodes_of(name).empty())
         return refuse(RefusalKind::conflict, "the wall has a node '" + name + "' already");
     auto after = described(before->toml + "\n" + nodes, path_ + " with the node '" + name + "'");
     if (!after) return after;
@@ -117,7 +119,7 @@ Outcome<Description> WallFile::add(const std::string& nodes) const {
 Outcome<Description> WallFile::remove(const std::string& node) const {
     const auto before = read();
     if (!before) return before;
-    if (!before->config.find_node(node)) return refuse(RefusalKind::not_found, "there is no node '" + node + "'");
+    if (before->config.nodes_of(node).empty()) return refuse(RefusalKind::not_found, "there is no node '" + node + "'");
     const auto file = state_.empty() || !name_ok(node) ? fs::path() : folder() / (node + kEnding);
     std::error_code error;
     if (file.empty() || !fs::exists(file, error))

@@ -68,6 +68,8 @@ json transports_json(const proto::NodeStats& stats) {
 
 json node_json(const Node& node) {
     return {{"name", node.config->name},
+            {"process", node.config->process},
+            {"gpu", node.config->gpu()},
             {"up", node.up},
             {"silent", node.silent},
             {"drained", node.duty == Duty::drained},

@@ -171,6 +171,8 @@ public:
     /// It must have left, unless it is away.
     void set_duty(NodeIndex node, Duty duty) { nodes_[node].duty = duty; }
     std::optional<NodeIndex> find_node(std::string_view name) const;
+    /// The node of this name, or all of the tileserver of this name, as far as wall.toml has them.
+    std::vector<NodeIndex> nodes_called(std::string_view name) const;
 
     // ---- clients ----
     bool any_node_up() const;

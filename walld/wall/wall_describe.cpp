@@ -17,6 +17,15 @@ std::optional<NodeIndex> Wall::find_node(std::string_view name) const {
     return std::nullopt;
 }
 
+std::vector<NodeIndex> Wall::nodes_called(std::string_view name) const {
+    std::vector<NodeIndex> out;
+    for (const NodeIndex i : nodes_.ids()) {
+        const auto& config = *nodes_[i].config;
+        if (nodes_[i].duty != Duty::gone && (config.name == name || config.process == name)) out.push_back(i);
+    }
+    return out;
+}
+
 /// Those of config_; others are gone. True: some are others than before.
 bool Wall::take_nodes() {
     bool changed = false;

@@ -82,7 +82,7 @@ class Machines(unittest.TestCase):
         cls.x = cls.enterClassContext(XServer())
         cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         cls.wall = cls.enterClassContext(MachineWall(TILES, TILE, clients=["desk"], guests=["guest"],
-                                                     environment=QUIET))
+                                                     gpus={"node-2": 2}, environment=QUIET))
         one = cls.enterClassContext(Wall(TILES, TILE, one_node=True, environment=QUIET, die_with_parent=True))
         cls.one_machine = OneMachine(one, cls.x)
 
@@ -134,7 +134,8 @@ class Machines(unittest.TestCase):
         return time.monotonic() - begin
 
     def is_up(self, node: str) -> bool:
-        return next(n["up"] for n in self.wall.nodes() if n["name"] == node)
+        """With all of its GPUs."""
+        return all(n["up"] for n in self.wall.nodes() if n["process"] == node)
 
     def streams_from(self, host: str) -> list[str]:
         """Connections of a host to nodes."""
@@ -294,7 +295,7 @@ class Machines(unittest.TestCase):
 
     def test_the_doctor_measures_the_way_to_each_node(self) -> None:
         good = self.bandwidths()
-        self.assertEqual(set(good), {f"bandwidth to node {name}" for name in self.wall.node_names})
+        self.assertEqual(set(good), {f"bandwidth to node {n['name']}" for n in self.wall.nodes()})
         self.wall.hosts.limit("node-1", "100mbit")
         try:
             found = self.bandwidths()
@@ -356,7 +357,8 @@ class Machines(unittest.TestCase):
     def assert_stays_out(self, node: str) -> None:
         end = time.monotonic() + STAYS_OUT
         while time.monotonic() < end:
-            self.assertFalse(self.is_up(node), f"{node} is let in without having joined anew")
+            self.assertFalse(any(n["up"] for n in self.wall.nodes() if n["process"] == node),
+                             f"{node} is let in without having joined anew")
             time.sleep(0.1)
 
     def bring_back(self, node: str) -> None:

@@ -90,28 +90,6 @@ TEST(TileOutputConfig, SaysWhatIsWrongAndWhatWasExpected) {
     for (const auto& [keys, expected] : rows) EXPECT_THAT(refusal_of(wall_with(keys)), StartsWith(expected)) << keys;
 }
 
-TEST(TileGpu, IsAnyANumberOrAnAddress) {
-    EXPECT_EQ(tile_with("").gpu, "auto");
-    EXPECT_EQ(tile_with("gpu = \"auto\"").gpu, "auto");
-    EXPECT_EQ(tile_with("gpu = 3").gpu, "3");
-    EXPECT_EQ(tile_with("gpu = \"0000:65:00.0\"").gpu, "0000:65:00.0");
-    for (const auto* wrong : {"-1", "64", "1.5", "\"\"", "\"first\"", "\"3\"", "\"65:00.0; rm\"", "[1]"})
-        EXPECT_THAT(refusal_of(wall_with(std::string("gpu = ") + wrong)), StartsWith("wall.toml:6: 'gpu'")) << wrong;
-}
-
-TEST(TileGpu, IsOneForAllTilesOfANode) {
-    const std::string two = wall_with("gpu = 0") + "[[node.tile]]\nname = \"b\"\nrect = [0, 480, 640, 480]\n";
-    EXPECT_THAT(refusal_of(two),
-                StartsWith("wall.toml:7: tile 'b' is drawn by GPU auto, tile 'a' by 0: expected one GPU"));
-    EXPECT_THAT(refusal_of(two + "gpu = 1\n"), StartsWith("wall.toml:10: tile 'b' is drawn by GPU 1"));
-    EXPECT_TRUE(parse_config(two + "gpu = 0\n", "wall.toml"));
-    EXPECT_THAT(refusal_of(wall_with("gpu = 0\noutput = \"window\"")), HasSubstr("X server's graphics card"));
-    const std::string software =
-        "[[node]]\nname = \"n\"\nbackend = \"osmesa\"\n[[node.tile]]\nname = \"a\"\n"
-        "rect = [0, 0, 9, 9]\ngpu = 0\n";
-    EXPECT_THAT(refusal_of(software), HasSubstr("which draws without one"));
-}
-
 TEST(TileOutputConfig, WantsRoomForBothRamps) {
     const std::string two =
         "[[node]]\nname = \"n\"\n[[node.tile]]\nname = \"a\"\nrect = [0, 0, 100, 50]\nblend = { left = 60, right = 60 "

@@ -31,7 +31,7 @@ TEST_F(ARole, OfAFileIsAnotherOneWhenTheFileAndWalldSaySo) {
     write("wall.toml", kOneTile);
     const auto role = NodeRole::find({folder_.file("wall.toml"), "right", {}});
     ASSERT_TRUE(role) << role.error().message;
-    EXPECT_EQ(role->node().tiles.size(), 1u);
+    EXPECT_EQ(role->nodes().at(0).tiles.size(), 1u);
     EXPECT_FALSE(role->described(kOneTile));
     EXPECT_FALSE(role->described(kTwoTiles)) << "by a file that is not the one here";
     write("wall.toml", kTwoTiles);
@@ -42,6 +42,24 @@ TEST_F(ARole, OfAFileIsAnotherOneWhenTheFileAndWalldSaySo) {
     EXPECT_FALSE(role->described("[[node]")) << "nonsense";
     EXPECT_FALSE(role->described("[[node]]\nname = \"x\"\n[[node.tile]]\nname = \"x\"\nrect = [0, 0, 9, 9]\n"))
         << "that has no such node";
+}
+
+TEST_F(ARole, OfSeveralGpusIsAnotherOneWhenTheirTilesAreOthers) {
+    const auto with = [](const std::string& gpu, const std::string& other) {
+        return kOneTile + "gpu = " + gpu +
+               "\n[[node.tile]]\nname = \"r2\"\nrect = [640, 480, 640, 480]\ngpu = " + other + "\n";
+    };
+    write("wall.toml", with("0", "1"));
+    const auto role = NodeRole::find({folder_.file("wall.toml"), "right", {}});
+    ASSERT_TRUE(role) << role.error().message;
+    ASSERT_EQ(role->nodes().size(), 2u);
+    EXPECT_EQ(role->nodes()[1].name, "right/gpu1");
+    EXPECT_FALSE(role->described(with("0", "1")));
+    for (const auto& other : {with("1", "0"), with("0", "0"), with("0", "2"), kOneTile}) {
+        write("wall.toml", other);
+        EXPECT_TRUE(role->described(other)) << other;
+    }
+    EXPECT_FALSE(NodeRole::find({folder_.file("wall.toml"), "right/gpu0", {}})) << "which is no process";
 }
 
 TEST_F(ARole, OfAMachineThatHasJoinedIsKeptAsWalldSaysIt) {
@@ -59,7 +77,7 @@ TEST_F(ARole, OfAMachineThatHasJoinedIsKeptAsWalldSaysIt) {
     EXPECT_EQ(kept(), kAnotherNode) << "what is about others as well";
     EXPECT_TRUE(role->described(kTwoTiles));
     EXPECT_EQ(kept(), kTwoTiles);
-    EXPECT_EQ(NodeRole::find({{}, {}, folder_.file("")})->node().tiles.size(), 2u);
+    EXPECT_EQ(NodeRole::find({{}, {}, folder_.file("")})->nodes().at(0).tiles.size(), 2u);
     EXPECT_FALSE(role->described("[[node]"));
     EXPECT_EQ(kept(), kTwoTiles);
 }

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "common/config/read_gpus.h"
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "common/config/gpus.h"
+
+namespace wall::config {
+namespace {
+
+constexpr std::int64_t kMostGpus = 64;
+constexpr std::size_t kLeastAddress = 7, kMostAddress = 16;  // "65:00.0", "00000000:65:00.0"
+
+void check(TreeReader& read, const toml::table& table, const NodeConfig& node, std::uint32_t gpus) {
+    const auto in_window = std::ranges::any_of(node.tiles, [](const auto& tile) { return tile.window.has_value(); });
+    if (gpus != 0 && node.backend != Backend::egl)
+        read.refuse(table.get("gpus")->source(),
+                    "'gpus' of a node with backend \"osmesa\", which draws without one: expected backend = \"egl\"");
+    if (gpus != 0 && in_window)
+        read.refuse(table.get("gpus")->source(),
+                    "'gpus' of a node with tiles in windows, which the X server's graphics card draws: expected a "
+                    "[[node]] of their own for these");
+    for (auto tile = node.tiles.begin(); const auto* of_tile : read.tables(table, "tile", "[[node.tile]]")) {
+        const auto& [gpu, name] = std::tie(tile->gpu, tile->name);
+        ++tile;
+        if (gpu == kAnyGpu) continue;
+        const auto& where = of_tile->get("gpu")->source();
+        if (node.backend != Backend::egl)
+            read.refuse(where,
+                        "'gpu' of a node with backend \"osmesa\", which draws without one: expected backend = \"egl\"");
+        else if (in_window)
+            read.refuse(where,
+                        "'gpu' in a node with tiles in windows, which the X server's graphics card draws: expected a "
+                        "[[node]] of their own for these");
+        else if (gpus != 0 && !is_gpu_number(gpu))
+            read.refuse(where, "tile '" + name +
+                                   "' names its GPU by its address in a node with 'gpus': expected a "
+                                   "number, or no 'gpus'");
+        else if (gpus != 0 && std::stoul(gpu) >= gpus)
+            read.refuse(where, "tile '" + name + "' is drawn by GPU " + gpu + " of " + std::to_string(gpus) +
+                                   ": expected a number from 0 to " + std::to_string(gpus - 1));
+    }
+}
+
+}  // namespace
+
+std::string read_gpu(TreeReader& read, const toml::table& tile) {
+    const auto* node = tile.get("gpu");
+    if (!node) return kAnyGpu;
+    if (node->is_integer()) return std::to_string(read.integer(*node, "'gpu'", 0, kMostGpus - 1));
+    const auto text = node->is_string() ? node->as_string()->get() : "";
+    const bool is_address = text.size() >= kLeastAddress && text.size() <= kMostAddress &&
+                            text.find_first_not_of("0123456789abcdef:.") == std::string::npos &&
+                            text.find(':') != std::string::npos;
+    if (text == "auto" || is_address) return text;
+    read.refuse(node->source(),
+                "'gpu': expected \"auto\", a number (`tileserver --gpus` lists them), or a PCI address such as "
+                "\"0000:65:00.0\"");
+    return "auto";
+}
+
+void read_gpus(TreeReader& read, const toml::table& root, std::vector<NodeConfig>& nodes) {
+    if (read.error()) return;
+    std::vector<NodeConfig> out;
+    for (auto node = nodes.begin(); const auto* table : read.tables(root, "node", "[[node]]")) {
+        const auto gpus =
+            table->get("gpus") ? static_cast<std::uint32_t>(read.integer(*table, "gpus", 1, kMostGpus, 1)) : 0;
+        check(read, *table, *node, gpus);
+        if (read.error()) return;
+        deal_out(node->tiles, gpus);
+        for (auto& of_gpu : split_by_gpu(*node)) out.push_back(std::move(of_gpu));
+        ++node;
+    }
+    nodes = std::move(out);
+    for (auto node = nodes.begin(); node != nodes.end(); ++node)
+        if (std::ranges::count(nodes.begin(), node, node->name, &NodeConfig::name) > 0)
+            read.refuse(root.source(), "two nodes are called '" + node->name +
+                                           "', one of them for a GPU of [[node]] '" + node->process +
+                                           "': expected unique names");
+}
+
+}  // namespace wall::config
