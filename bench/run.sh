@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Runs the benchmarks of build/release and prints their tables.
 # bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, execute, output,
-#                                         switch, pack, mesh, buffers, late_node, notice, march, off_wall, traffic,
-#                                         share, transport, fair, streams, codec)
+#                                         switch, pack, mesh, buffers, late_node, notice, gpus, views, march, off_wall,
+#                                         traffic, share, transport, fair, streams, codec)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -40,6 +40,7 @@ run mesh bench/mesh.py --json "$results/mesh.json"
 run buffers bench/buffers.py --json "$results/buffers.json"
 run late_node bench/late_node.py --json "$results/late_node.json"
 run notice bench/notice.py --json "$results/notice.json"
+run gpus bench/gpus.py --json "$results/gpus.json"
 run views bench/views.py --json "$results/views.json"
 run march bench/march.py --json "$results/march.json"
 run off_wall bench/off_wall.py --json "$results/off_wall.json"

@@ -20,6 +20,7 @@
 #include "common/net/sockets.h"
 #include "tileserver/gpu/gpu_devices.h"
 #include "tileserver/gpu/memory.h"
+#include "tileserver/gpu_processes.h"
 #include "tileserver/io/node_server.h"
 #include "tileserver/node_role.h"
 #include "tileserver/render/continued.h"
@@ -32,7 +33,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kStopLimit{2};     // what has not ended by itself then is dropped
 constexpr std::chrono::seconds kRenderStall{30};  // a render thread that says nothing for so long hangs
-constexpr int kExitUsage = 2;
 
 /// Tells systemd that both threads are alive, as often as it wants to hear it.
 asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const NodeServer& server, const bool& stopping) {
@@ -48,19 +48,15 @@ asio::awaitable<void> feed_watchdog(asio::steady_timer& timer, const NodeServer&
 enum class Ended { stopped, starts_anew };
 
 Result<Ended> run(const NodeRole& role) {
+    const auto& node = *role.node();
     const auto described = [&role](const std::string& wall_toml) { return role.described(wall_toml); };
-    std::vector<std::unique_ptr<CompilerHost>> compilers;
-    std::vector<GpuPart> parts;
-    for (const auto& node : role.nodes()) {
-        auto host = CompilerHost::start({config::name_of(node.backend), node.gpu()});  // forks: before any thread
-        if (!host) return tl::unexpected(host.error());
-        compilers.push_back(std::move(*host));
-        parts.push_back({node, compilers.back().get()});
-    }
+    const auto compilers =
+        CompilerHost::start({config::name_of(node.backend), node.gpu()});  // forks: before there are threads
+    if (!compilers) return tl::unexpected(compilers.error());
     asio::io_context io(1);
     auto server = Result<std::unique_ptr<NodeServer>>(nullptr);
     const auto open = [&]() -> Result<void> {
-        server = NodeServer::open(io.get_executor(), role.wall(), parts, role.keys(), described);
+        server = NodeServer::open(io.get_executor(), role.wall(), node, compilers->get(), role.keys(), described);
         return server ? Result<void>() : tl::unexpected(server.error());
     };
     if (auto opened = net::listen_patiently(open); !opened) return tl::unexpected(opened.error());
@@ -76,10 +72,9 @@ Result<Ended> run(const NodeRole& role) {
     net::keep_running(io.get_executor(), {"watchdog", [&] { return feed_watchdog(watchdog, **server, stopping); },
                                           [&] { return stopping; }});
     (*server)->start();
-    sd_notify(0, ("READY=1\nSTATUS=node " + role.name()).c_str());
-    const auto& node = parts.front().node;
-    log::info("ready node={} backend={} gpus={} listen={}", log::quoted(role.name()),
-              log::plain(config::name_of(node.backend)), parts.size(), log::quoted((*server)->address().text()));
+    sd_notify(0, ("READY=1\nSTATUS=node " + node.name).c_str());
+    log::info("ready node={} backend={} listen={}", log::quoted(node.name), log::plain(config::name_of(node.backend)),
+              log::quoted((*server)->address().text()));
     while (!stopping && !(*server)->failure() && !(*server)->starts_anew()) io.run_one();
     const auto failure = (*server)->failure();
     const auto ended = stopping ? Ended::stopped : Ended::starts_anew;
@@ -95,28 +90,58 @@ Result<Ended> run(const NodeRole& role) {
     return ended;
 }
 
-/// The same process from its beginning: it reads again what it is.
-[[noreturn]] void start_anew(const RoleSource& source) {
+/// This program, as it was started.
+std::vector<std::string> command_of(const RoleSource& source) {
     std::error_code error;
-    const auto program = std::filesystem::read_symlink("/proc/self/exe", error).string();
-    std::vector<const char*> arguments{program.c_str()};
+    std::vector<std::string> out{std::filesystem::read_symlink("/proc/self/exe", error).string()};
     const auto add = [&](const char* option, const std::string& value) {
-        if (!value.empty()) arguments.insert(arguments.end(), {option, value.c_str()});
+        if (!value.empty()) out.insert(out.end(), {option, value});
     };
     add("--config", source.config);
     add("--node", source.node);
     add("--state", source.state);
+    add("--gpu", source.gpu);
+    return out;
+}
+
+/// The same process from its beginning: it reads again what it is.
+[[noreturn]] void start_anew(const RoleSource& source) {
+    const auto command = command_of(source);
+    std::vector<char*> arguments;
+    for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
-    ::execv(program.c_str(), const_cast<char* const*>(arguments.data()));
+    ::execv(arguments.front(), arguments.data());
     // Whoever started us starts the program that was put in our place.
-    throw std::system_error(errno, std::generic_category(), program);
+    throw std::system_error(errno, std::generic_category(), command.front());
+}
+
+/// A node of several GPUs.
+Result<GpuProcesses::Ended> run_all(const NodeRole& role, const RoleSource& source) {
+    std::vector<std::string> gpus;
+    for (const auto& node : role.nodes()) gpus.push_back(node.name);
+    const auto command = [&source](const std::string& gpu) {
+        auto of_gpu = source;
+        of_gpu.gpu = gpu;
+        return command_of(of_gpu);
+    };
+    const auto& name = role.nodes().front().process;
+    const auto ready = [&] {
+        sd_notify(0, ("READY=1\nSTATUS=node " + name).c_str());
+        log::info("ready node={} gpus={}", log::quoted(name), gpus.size());
+    };
+    return GpuProcesses(gpus, command, ready).run();
 }
 
 /// An error of whoever starts us, in one sentence.
 int refuse_start(const std::string& why) {
     std::cerr << "tileserver: " << why << '\n';
-    return kExitUsage;
+    return kExitMistake;
+}
+
+int fail_with(const std::string& why) {
+    std::cerr << "tileserver: " << why << '\n';
+    return 1;
 }
 
 }  // namespace
@@ -134,6 +159,10 @@ int main(int argc, char** argv) {
     auto* config =
         app.add_option("--config", source.config, "wall.toml, the description of the wall (docs/operation.md)");
     app.add_option("--node", source.node, "which of its [[node]]s this one is")->needs(config);
+    app.add_option(
+        "--gpu", source.gpu,
+        "draws with this one of its GPUs only, such as NAME/gpu1 (docs/gpus.md); without it, a process for each "
+        "is started");
     auto* state = app.add_option("--state", source.state,
                                  "where this machine keeps its key, and what it knows of the wall that it has joined");
     bool list_gpus = false;
@@ -154,21 +183,24 @@ int main(int argc, char** argv) {
 
     ::signal(SIGPIPE, SIG_IGN);
     net::use_all_descriptors();
-    log::begin("tileserver " + source.node);
+    log::begin("tileserver " + (source.gpu.empty() ? source.node : source.gpu));
     try {
         if (!line.empty())
             if (auto joined = NodeRole::join(line, source.state); !joined) return refuse_start(joined.error().message);
         const auto role = NodeRole::find(source);
         if (!role) return refuse_start(role.error().message);
-        const auto ended = run(*role);
-        if (ended && *ended == Ended::starts_anew) start_anew(source);
-        if (!ended) {
-            std::cerr << "tileserver: " << ended.error().message << '\n';
-            return 1;
+        if (role->node() == nullptr) {
+            const auto ended = run_all(*role, source);
+            if (ended && *ended == GpuProcesses::Ended::starts_anew) start_anew(source);
+            if (!ended) return fail_with(ended.error().message);
+            return *ended == GpuProcesses::Ended::mistaken ? kExitMistake : 0;
         }
+        const auto ended = run(*role);
+        if (!ended) return fail_with(ended.error().message);
+        if (*ended == Ended::starts_anew && !source.gpu.empty()) return kExitDescribed;  // its parent does
+        if (*ended == Ended::starts_anew) start_anew(source);
     } catch (const std::exception& error) {
-        std::cerr << "tileserver: " << error.what() << '\n';
-        return 1;
+        return fail_with(error.what());
     }
     return 0;
 }

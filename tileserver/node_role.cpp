@@ -80,9 +80,12 @@ Result<NodeRole> NodeRole::find(RoleSource source) {
         out->wall_ = std::move(*wall);
         out->keys_ = std::move(*keys);
     }
-    if (!out->nodes().empty()) return out;
+    const auto& gpu = out->source_.gpu;
+    const auto nodes = out->nodes();
+    if (!nodes.empty() && (gpu.empty() || std::ranges::count(nodes, gpu, &config::NodeConfig::name) > 0)) return out;
     const auto file = out->keys_.joined ? join::wall_file(out->source_.state).string() : out->source_.config;
-    return fail(file + ": no [[node]] has the name \"" + out->name_ + "\"");
+    if (nodes.empty()) return fail(file + ": no [[node]] has the name \"" + out->name_ + "\"");
+    return fail(file + ": node \"" + out->name_ + "\" has no GPU \"" + gpu + "\"");
 }
 
 bool NodeRole::described(const std::string& wall_toml) const {

@@ -16,6 +16,7 @@ struct RoleSource {
     std::string config;  ///< wall.toml
     std::string node;    ///< [[node]] name
     std::string state;   ///< folder of a machine that has joined, or of this node's key
+    std::string gpu{};   ///< the one node of those of its GPUs that the process is to be; empty: all that there are
 };
 
 class NodeRole {
@@ -25,9 +26,10 @@ public:
     static Result<NodeRole> find(RoleSource source);
 
     const config::WallConfig& wall() const { return wall_; }
-    /// The nodes of the wall that it is, one for each GPU; at least one.
+    /// The nodes of the wall that its tileserver is, one for each GPU; at least one.
     std::vector<config::NodeConfig> nodes() const { return wall_.nodes_of(name_); }
-    const std::string& name() const { return name_; }
+    /// The one that this process draws. Null: that is for its children, since there are several.
+    const config::NodeConfig* node() const { return wall_.find_node(source_.gpu.empty() ? name_ : source_.gpu); }
     const NodeKeys& keys() const { return keys_; }
 
     /// walld goes by this wall.toml now, which a machine that has joined keeps. True: the node is another one by it,

@@ -29,6 +29,12 @@ std::int64_t nearest(const std::vector<geom::Rect>& tiles, const geom::Rect& to)
     return out;
 }
 
+net::Address behind(net::Address address, std::uint16_t part) {
+    if (address.is_unix()) address.path += "." + std::to_string(part);
+    else if (address.port != 0) address.port = static_cast<std::uint16_t>(address.port + part);
+    return address;
+}
+
 }  // namespace
 
 bool is_gpu_number(const std::string& gpu) { return gpu.find_first_not_of("0123456789") == std::string::npos; }
@@ -66,6 +72,8 @@ std::vector<NodeConfig> split_by_gpu(const NodeConfig& node) {
             auto& added = out.emplace_back(node);
             added.name += (is_gpu_number(tile.gpu) ? "/gpu" : "/") + tile.gpu;
             added.tiles.clear();
+            added.part = static_cast<std::uint16_t>(out.size() - 1);
+            if (added.part != 0) added.listen = behind(node.listen, added.part);
             of_gpu = out.end() - 1;
         }
         of_gpu->tiles.push_back(tile);

@@ -23,8 +23,8 @@ bool is_gpu_number(const std::string& gpu);
 /// wall (OCTAVIS 5.3: 1.32 times faster than blocks of tiles).
 void deal_out(std::vector<TileConfig>& tiles, std::uint32_t gpus);
 
-/// One for each GPU that draws a tile, in the order of the tiles: NODE/gpu0, NODE/0000:65:00.0. With one GPU it is the
-/// same node.
+/// One for each GPU that draws a tile, in the order of the tiles: NODE/gpu0, NODE/0000:65:00.0. The first listens where
+/// the node does, the others on the ports behind that, or at PATH.1, PATH.2, ... With one GPU it is the same node.
 std::vector<NodeConfig> split_by_gpu(const NodeConfig& node);
 
 }  // namespace wall::config

@@ -12,6 +12,7 @@ namespace wall::config {
 namespace {
 
 constexpr std::int64_t kMostGpus = 64;
+constexpr std::size_t kMostPort = 65535;
 constexpr std::size_t kLeastAddress = 7, kMostAddress = 16;  // "65:00.0", "00000000:65:00.0"
 
 void check(TreeReader& read, const toml::table& table, const NodeConfig& node, std::uint32_t gpus) {
@@ -71,7 +72,12 @@ void read_gpus(TreeReader& read, const toml::table& root, std::vector<NodeConfig
         check(read, *table, *node, gpus);
         if (read.error()) return;
         deal_out(node->tiles, gpus);
-        for (auto& of_gpu : split_by_gpu(*node)) out.push_back(std::move(of_gpu));
+        const auto of_gpus = split_by_gpu(*node);
+        if (!node->listen.is_unix() && node->listen.port + of_gpus.size() - 1 > kMostPort)
+            read.refuse(table->source(), "node '" + node->name + "' listens on a port for each of its " +
+                                             std::to_string(of_gpus.size()) +
+                                             " GPUs: expected a port in 'listen' that has them behind it");
+        out.insert(out.end(), of_gpus.begin(), of_gpus.end());
         ++node;
     }
     nodes = std::move(out);

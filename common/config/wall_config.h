@@ -46,13 +46,14 @@ const char* output_name(const TileConfig& tile);
 /// The same but for how its output shows it, which can be changed at any moment. The size of a window cannot.
 bool draws_as(const TileConfig& a, const TileConfig& b);
 
-/// What a render thread draws: the tiles of a [[node]], or those that one of its GPUs draws if there are several.
+/// What one process draws: the tiles of a [[node]], or those that one of its GPUs draws if there are several.
 struct NodeConfig {
     std::string name;
     Backend backend = Backend::egl;
     net::Address listen;            ///< data streams
     std::vector<TileConfig> tiles;  ///< slot = index
-    std::string process{};          ///< the [[node]]'s name, of the tileserver that it is, or is a part of
+    std::string process{};          ///< the [[node]]'s name, of the tileserver that it is a part of
+    std::uint16_t part = 0;         ///< number among the nodes of that
     /// That draws its tiles: it is the same for all.
     std::string gpu() const { return tiles.empty() ? "auto" : tiles.front().gpu; }
     bool operator==(const NodeConfig&) const = default;

@@ -46,15 +46,13 @@ bool is_counted(wire::FrameKind kind) { return kind == wire::FrameKind::reply ||
 
 }  // namespace
 
-DataStream::DataStream(StreamDoor& door, StreamId id, net::Stream connection)
-    : door_(door),
+DataStream::DataStream(StreamHost& host, StreamId id, net::Stream connection)
+    : host_(host),
       id_(id),
       connection_(std::move(connection)),
       from_(net::peer_text(connection_.descriptor())),
       timer_(connection_.executor()),
-      source_(connection_, kMaxHello, [this](std::size_t bytes) {
-          if (host_ != nullptr) host_->stream_bytes(bytes);
-      }) {}
+      source_(connection_, kMaxHello, [this](std::size_t bytes) { host_.stream_bytes(bytes); }) {}
 
 asio::awaitable<void> DataStream::run() {
     const auto self = shared_from_this();
@@ -74,15 +72,8 @@ asio::awaitable<void> DataStream::run() {
         else log::refused(kDataPort, from_, why);
         fail(why);
     }
-    leave();
-}
-
-void DataStream::leave() {
-    if (batches_) {
-        host_->render().remove_stream(id_);
-        host_->stream_closed(id_);
-    }
-    door_.gone(id_);
+    if (batches_) host_.render().remove_stream(id_);
+    host_.stream_closed(id_);
 }
 
 asio::awaitable<Result<void>> DataStream::greet() {
@@ -103,14 +94,13 @@ asio::awaitable<Result<void>> DataStream::greet() {
     if (hello.version() != glapi::kStreamVersion)
         co_return wall::fail("the program's WallGL library is of another version than this node");
     session_ = SessionId(hello.session());
-    host_ = co_await find_host(session_, hello.ticket());
-    if (host_ == nullptr) co_return wall::fail("no valid ticket for session " + std::to_string(hello.session()));
-    if (const auto wait = host_->shut_out(session_))
+    const auto admission = co_await find_admission(session_, hello.ticket());
+    if (!admission) co_return wall::fail("no valid ticket for session " + std::to_string(hello.session()));
+    if (const auto wait = host_.shut_out(session_))
         co_return wall::fail("session " + std::to_string(hello.session()) +
                              " kept this node for itself; it is not let in for another " +
                              std::to_string(wait->count()) + " s");
-    const auto membership = host_->admission(session_)->membership;
-    if (hello.rank() >= std::max(1u, membership.members))
+    if (hello.rank() >= std::max(1u, admission->membership.members))
         co_return wall::fail("session " + std::to_string(hello.session()) + " has no rank " +
                              std::to_string(hello.rank()));
     rank_ = hello.rank();
@@ -123,7 +113,7 @@ asio::awaitable<Result<void>> DataStream::greet() {
     const auto ring = source_.take_ring([this] { send(wire::FrameKind::room, {}); });
     if (!ring) co_return tl::unexpected(ring.error());
     source_.set_limits(wire::kMaxFramePayload, wire::kMaxBatchPayload);
-    host_->end_earlier(*this);
+    host_.end_earlier(*this);
     const auto on_room = [weak = weak_from_this(), executor = connection_.executor()] {
         asio::post(executor, [weak] {
             if (const auto self = weak.lock()) {
@@ -133,9 +123,8 @@ asio::awaitable<Result<void>> DataStream::greet() {
         });
     };
     batches_ = std::make_shared<BatchQueue>(on_room);
-    host_->render().add_stream(id_, session_, batches_, membership, hello.rank());
-    host_->stream_open(shared_from_this());
-    door_.known(id_);
+    host_.render().add_stream(id_, session_, batches_, admission->membership, hello.rank());
+    host_.stream_open(id_);
     transport_ = *ring ? "ring" : connection_.transport();
     resumable_ = !connection_.is_local();
     const std::uint32_t number = resumable_ ? id_.value : 0;
@@ -151,19 +140,14 @@ bool DataStream::comes_from(const std::string& machine) const {
     return machine.empty() || (key && key->bytes() == machine);
 }
 
-asio::awaitable<StreamHost*> DataStream::find_host(SessionId session, const std::string& given) {
+asio::awaitable<std::optional<Admission>> DataStream::find_admission(SessionId session, const std::string& given) {
     const auto until = std::chrono::steady_clock::now() + kTicketLimit;
     for (;;) {
-        bool known_everywhere = true;
-        for (StreamHost* host : door_.hosts()) {
-            const Admission* known = host->admission(session);
-            if (known != nullptr && session && tls::same_secret(known->ticket, given) && comes_from(known->key))
-                co_return host;
-            known_everywhere = known_everywhere && known != nullptr;
-        }
-        if (known_everywhere || std::chrono::steady_clock::now() > until || closing_ ||
-            is_gone(connection_.descriptor()))
-            co_return nullptr;
+        if (const Admission* known = host_.admission(session))
+            co_return session&& tls::same_secret(known->ticket, given) && comes_from(known->key) ? std::optional(*known)
+                                                                                                 : std::nullopt;
+        if (std::chrono::steady_clock::now() > until || closing_ || is_gone(connection_.descriptor()))
+            co_return std::nullopt;
         timer_.expires_after(kTicketPoll);
         co_await timer_.async_wait(kWaitable);
     }
@@ -182,7 +166,7 @@ asio::awaitable<Result<void>> DataStream::take_batches() {
             co_return wall::fail("unexpected frame of kind " + std::to_string(static_cast<int>(frame->kind)));
         const auto bytes = frame->payload.size();
         room_ = batches_->push(std::move(frame->payload));
-        host_->render().wake();
+        host_.render().wake();
         send_receipt(bytes);
         co_await hold_to_bandwidth(bytes);
         while (!room_ && !closing_ && !next_) {
@@ -195,7 +179,7 @@ asio::awaitable<Result<void>> DataStream::take_batches() {
 
 /// Waits until so much more may have come. A moment's worth may be ahead of that, so that small frames are not late.
 asio::awaitable<void> DataStream::hold_to_bandwidth(std::size_t bytes) {
-    const Admission* admission = host_->admission(session_);
+    const Admission* admission = host_.admission(session_);
     const auto most = admission ? admission->quota.bytes_per_second : 0;
     if (most == 0) co_return;
     const auto now = std::chrono::steady_clock::now();
@@ -277,7 +261,7 @@ void DataStream::send_receipt(std::size_t bytes) {
 
 /// Of a client that goes on with a stream: the connection is that one's from now on.
 Result<bool> DataStream::hand_over(const proto::DataHello& hello) {
-    DataStream* before = host_->stream(StreamId(hello.resume().stream()));
+    DataStream* before = host_.stream(StreamId(hello.resume().stream()));
     if (!before || before == this || !before->is_before(*this) || before->rank_ != rank_ ||
         !before->go_on(connection_, hello.resume().received(), hello.resume().attempt()))
         return wall::fail("stream " + std::to_string(hello.resume().stream()) + ", which was to go on, is over");

@@ -43,7 +43,7 @@ struct Admission {
 
 class DataStream;
 
-/// What a stream needs of the node that it is for.
+/// What a stream needs of the node.
 class StreamHost {
 public:
     virtual ~StreamHost() = default;
@@ -53,8 +53,8 @@ public:
     virtual std::optional<std::chrono::seconds> shut_out(SessionId session) const = 0;
     virtual RenderThread& render() = 0;
     virtual void stream_bytes(std::size_t bytes) = 0;
-    /// It has shown a valid ticket: the node has it until it is closed.
-    virtual void stream_open(const std::shared_ptr<DataStream>& stream) = 0;
+    /// It has shown a valid ticket.
+    virtual void stream_open(StreamId stream) = 0;
     virtual void stream_closed(StreamId stream) = 0;
     /// Null: there is none (any more).
     virtual DataStream* stream(StreamId id) = 0;
@@ -63,19 +63,9 @@ public:
     virtual void end_earlier(const DataStream& stream) = 0;
 };
 
-/// Where it comes in. A process may be several nodes of the wall; the ticket says which of them a stream is for.
-class StreamDoor {
-public:
-    virtual ~StreamDoor() = default;
-    virtual const std::vector<StreamHost*>& hosts() const = 0;
-    /// It is no stranger any more: a node has it.
-    virtual void known(StreamId stream) = 0;
-    virtual void gone(StreamId stream) = 0;
-};
-
 class DataStream : public std::enable_shared_from_this<DataStream> {
 public:
-    DataStream(StreamDoor& door, StreamId id, net::Stream connection);
+    DataStream(StreamHost& host, StreamId id, net::Stream connection);
 
     /// Runs until the stream ends: with its connection if that is a ring, else some time after it was lost and did not
     /// go on over another one.
@@ -90,10 +80,7 @@ public:
     /// Tells the client why and closes.
     void fail(const std::string& reason);
     void close();
-    /// Nobody has it any more. run() ends with it.
-    void leave();
 
-    StreamId id() const { return id_; }
     SessionId session() const { return session_; }
     /// What brings the program's commands: "ring", "unix", "tcp" or "tls".
     const char* transport() const { return transport_; }
@@ -126,13 +113,12 @@ private:
     void keep(const std::shared_ptr<const Outgoing>& frame);
     void forget_sent(std::uint64_t received);
     asio::awaitable<void> hold_to_bandwidth(std::size_t bytes);
-    /// The node that lets the session in with that ticket. Null: none does.
-    asio::awaitable<StreamHost*> find_host(SessionId session, const std::string& ticket);
+    /// Nothing if there is none for that ticket.
+    asio::awaitable<std::optional<Admission>> find_admission(SessionId session, const std::string& ticket);
     asio::awaitable<void> write_queue();
     bool comes_from(const std::string& machine) const;
 
-    StreamDoor& door_;
-    StreamHost* host_ = nullptr;  // once it has shown a ticket
+    StreamHost& host_;
     StreamId id_;
     net::Stream connection_;
     std::string from_;

@@ -24,9 +24,9 @@ std::string short_hash(const std::string& text) {
 }
 
 /// Beside the control socket; the same for the same node whenever the agent is started.
-std::filesystem::path door_beside(const std::filesystem::path& control, const tls::Fingerprint& key) {
-    return control.parent_path() /
-           ("agent-" + key.text().substr(0, kKeyCharacters) + "-" + short_hash(control.string()) + ".sock");
+std::filesystem::path door_beside(const std::filesystem::path& control, const Door::Node& node) {
+    return control.parent_path() / ("agent-" + node.key.text().substr(0, kKeyCharacters) + "-" +
+                                    std::to_string(node.address.port) + "-" + short_hash(control.string()) + ".sock");
 }
 
 /// Programs report that, and try again.
@@ -83,7 +83,7 @@ asio::awaitable<void> Door::serve(net::Stream program, std::shared_ptr<Places::P
 Result<std::string> Doors::door_for(const std::string& key, const std::string& address) {
     const auto node = node_of(key, address);
     if (!node) return tl::unexpected(node.error());
-    if (const auto found = doors_.find(node->key); found != doors_.end()) {
+    if (const auto found = doors_.find({node->key, node->address.port}); found != doors_.end()) {
         found->second->lead_to(node->address);
         return found->second->address().text();
     }
@@ -94,10 +94,10 @@ Result<std::string> Doors::door_for(const std::string& key, const std::string& a
 
 Result<Door*> Doors::open(const Door::Node& node) {
     if (doors_.size() >= kMost) return fail("there are " + std::to_string(kMost) + " doors already");
-    const net::Address at{door_beside(control_, node.key).string(), {}, 0};
+    const net::Address at{door_beside(control_, node).string(), {}, 0};
     auto listener = net::Listener::open(executor_, at);
     if (!listener) return tl::unexpected(listener.error());
-    auto& door = doors_[node.key];
+    auto& door = doors_[{node.key, node.address.port}];
     door = std::make_unique<Door>(std::move(*listener), node, own_, places_);
     door->open(executor_);
     log::info("door_open node={} key={} at={}", log::quoted(node.address.text()), log::quoted(node.key.text()),
@@ -106,7 +106,7 @@ Result<Door*> Doors::open(const Door::Node& node) {
 }
 
 void Doors::close() {
-    for (const auto& [key, door] : doors_) door->close();
+    for (const auto& [node, door] : doors_) door->close();
     places_.end_all();
 }
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "common/net/control_connection.h"
 #include "common/tls/tls_context.h"
@@ -30,7 +31,7 @@ public:
 
     void open(const asio::any_io_executor& executor);
     void close();
-    /// The node is somewhere else now.
+    /// The node's machine has another address now.
     void lead_to(const net::Address& address) { node_.address = address; }
     const net::Address& address() const { return listener_.address(); }
 
@@ -45,7 +46,8 @@ private:
     bool closed_ = false;
 };
 
-/// One for each node's key. They stay as long as the agent runs: a program may come back to its node at any time.
+/// One for each node's key and port: a machine has a node for each of its GPUs. They stay as long as the agent runs: a
+/// program may come back to its node at any time.
 class Doors {
 public:
     static constexpr std::size_t kMost = 1024, kMostStreams = 4096;
@@ -66,7 +68,7 @@ private:
     std::shared_ptr<const tls::TlsContext> own_;
     std::filesystem::path control_;
     Places places_{kMostStreams};
-    std::map<tls::Fingerprint, std::unique_ptr<Door>> doors_;
+    std::map<std::pair<tls::Fingerprint, std::uint16_t>, std::unique_ptr<Door>> doors_;
 };
 
 }  // namespace wall::wallagent

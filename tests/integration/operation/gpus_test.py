@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""A tileserver that draws with several GPUs (docs/gpus.md): each is a node of the wall, in one process at one address.
+"""A tileserver that draws with several GPUs (docs/gpus.md): each is a node of the wall, with a process of its own.
 Several contexts of the software renderer stand for GPUs here."""
 from __future__ import annotations
 
+import os
+import signal
 import subprocess
 import sys
 import time
@@ -60,15 +62,15 @@ class ANodeOfTwoGpus(unittest.TestCase):
         self.assert_becomes_right()
         nodes = self.nodes()
         self.assertEqual(list(nodes), GPUS)
-        self.assertEqual({nodes[gpu]["pid"] for gpu in GPUS[:2]}, {self.wall.daemons["a"].pid}, "in one process")
-        self.assertEqual(nodes["a/gpu0"]["address"], nodes["a/gpu1"]["address"])
+        self.assertEqual([nodes[gpu]["address"] for gpu in GPUS],
+                         [f"unix:{self.wall.folder}/{name}" for name in ("a.sock", "a.sock.1", "b.sock")])
         self.assertEqual([(nodes[gpu]["process"], nodes[gpu]["gpu"]) for gpu in GPUS],
                          [("a", "0"), ("a", "1"), ("b", "auto")])
         self.assertEqual({tile["name"]: tile["node"] for tile in self.wall.ctl("tiles")},
                          {"one": "a/gpu0", "two": "a/gpu1", "three": "b"})
         self.assertIn("a/gpu1", subprocess.run([self.wall.bin / "wallctl", "--walld", self.wall.address, "nodes"],
                                                check=True, capture_output=True, text=True).stdout)
-        self.assertIn("gpus=2", self.wall.log("a"))
+        self.assertIn('ready node="a" gpus=2', self.wall.log("a"))
 
     def test_gets_only_what_it_draws(self) -> None:
         """A window on the tile of one is none of the other one's business: objects are where they are drawn with."""
@@ -96,6 +98,23 @@ class ANodeOfTwoGpus(unittest.TestCase):
             until(lambda: all(self.nodes()[gpu]["up"] and self.nodes()[gpu]["incarnation"] > incarnations[gpu]
                               for gpu in GPUS[:2]), "both are up again", RIGHT_AGAIN)
             self.assert_becomes_right()
+
+    def test_one_comes_back_alone(self) -> None:
+        before = self.nodes()
+        os.kill(before["a/gpu1"]["pid"], signal.SIGKILL)
+        until(lambda: self.nodes()["a/gpu1"]["up"] and
+              self.nodes()["a/gpu1"]["incarnation"] > before["a/gpu1"]["incarnation"], "it is up again", RIGHT_AGAIN)
+        self.assert_becomes_right()
+        after = self.nodes()
+        self.assertEqual([after[gpu]["incarnation"] for gpu in ("a/gpu0", "b")],
+                         [before[gpu]["incarnation"] for gpu in ("a/gpu0", "b")])
+        self.assertIsNone(self.wall.daemons["a"].poll())
+
+    def test_ends_in_order(self) -> None:
+        self.wall.daemons["a"].send_signal(signal.SIGTERM)
+        self.assertEqual(self.wall.daemons["a"].wait(5), 0)
+        log = self.wall.log("a")
+        self.assertEqual(log.count(" info stopped\n"), 2, log)
 
     def test_is_drained_as_a_whole_or_in_part(self) -> None:
         def drained() -> list[str]:

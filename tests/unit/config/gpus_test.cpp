@@ -81,14 +81,27 @@ TEST(NodeOfSeveralGpus, IsANodeForEach) {
     EXPECT_EQ(config->nodes[1].tiles.size(), 2u);
     for (const auto& node : config->nodes) {
         EXPECT_EQ(node.process, "n");
-        EXPECT_EQ(node.listen.path, "/run/n");
         EXPECT_EQ(node.gpu(), node.tiles.back().gpu);
     }
+    EXPECT_EQ(config->nodes[0].listen.path, "/run/n");
+    EXPECT_EQ(config->nodes[1].listen.path, "/run/n.1");
     EXPECT_EQ(config->nodes_of("n").size(), 2u);
     EXPECT_TRUE(config->nodes_of("n/gpu1").empty());
     EXPECT_EQ(config->find_node("n"), nullptr);
     EXPECT_THAT(names(*parse_config(node_of(1, {"gpu = 3", "gpu = 3"}), "wall.toml")), ElementsAre("n"))
         << "one is the node";
+}
+
+TEST(NodeOfSeveralGpus, ListensOnAPortForEach) {
+    const auto ports = [](const std::string& listen) {
+        const auto config = parse_config(node_of(3, {"", "", ""}, "gpus = 3\nlisten = \"" + listen + "\"\n"), "x");
+        std::vector<int> out;
+        for (const auto& node : config->nodes) out.push_back(node.listen.port);
+        return out;
+    };
+    EXPECT_THAT(ports("10.0.0.5:7790"), ElementsAre(7790, 7791, 7792));
+    EXPECT_THAT(ports("127.0.0.1:0"), ElementsAre(0, 0, 0)) << "any that are free";
+    EXPECT_THAT(ports("127.0.0.1:65533"), ElementsAre(65533, 65534, 65535));
 }
 
 TEST(NodeOfSeveralGpus, SaysWhatIsWrongAndWhatWasExpected) {
@@ -102,6 +115,8 @@ TEST(NodeOfSeveralGpus, SaysWhatIsWrongAndWhatWasExpected) {
         {node_of(1, {"gpu = 0"}, "backend = \"osmesa\"\n"), "wall.toml:7: 'gpu' of a node with backend"},
         {node_of(1, {"output = \"window\""}, "gpus = 2\n"), "wall.toml:3: 'gpus' of a node with tiles in windows"},
         {node_of(1, {"output = \"window\"", "gpu = 2"}), "wall.toml:10: 'gpu' in a node with tiles in windows"},
+        {node_of(1, {"gpu = 0", "gpu = 1"}, "listen = \"127.0.0.1:65535\"\n"),
+         "wall.toml:1: node 'n' listens on a port for each of its 2 GPUs"},
         {node_of(1, {"gpu = 0", "gpu = 1"}) + "[[node]]\nname = \"n/gpu1\"\n[[node.tile]]\nname = \"x\"\n"
                                               "rect = [0, 0, 9, 9]\n",
          "wall.toml:1: two nodes are called 'n/gpu1'"},

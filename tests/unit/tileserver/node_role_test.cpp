@@ -59,7 +59,16 @@ TEST_F(ARole, OfSeveralGpusIsAnotherOneWhenTheirTilesAreOthers) {
         write("wall.toml", other);
         EXPECT_TRUE(role->described(other)) << other;
     }
+    EXPECT_EQ(role->node(), nullptr) << "which its children are";
     EXPECT_FALSE(NodeRole::find({folder_.file("wall.toml"), "right/gpu0", {}})) << "which is no process";
+    write("wall.toml", with("0", "1"));
+    const auto child = NodeRole::find({folder_.file("wall.toml"), "right", {}, "right/gpu1"});
+    ASSERT_TRUE(child) << child.error().message;
+    ASSERT_NE(child->node(), nullptr);
+    EXPECT_EQ(child->node()->tiles.at(0).name, "r2");
+    const auto none = NodeRole::find({folder_.file("wall.toml"), "right", {}, "right/gpu5"});
+    ASSERT_FALSE(none);
+    EXPECT_THAT(none.error().message, HasSubstr("wall.toml: node \"right\" has no GPU \"right/gpu5\""));
 }
 
 TEST_F(ARole, OfAMachineThatHasJoinedIsKeptAsWalldSaysIt) {

@@ -56,8 +56,6 @@ public:
     explicit FakeWalld(const net::Address& address) : listener_(std::move(*net::listen_on(address))) {
         ::fcntl(listener_.get(), F_SETFL, ::fcntl(listener_.get(), F_GETFL) & ~O_NONBLOCK);
     }
-    /// Its end of another link to the same address.
-    FakeWalld another() const { return FakeWalld(UniqueFd(::dup(listener_.get()))); }
     void accept() {
         ASSERT_TRUE(readable(listener_.get()));
         link_.reset(::accept(listener_.get(), nullptr, nullptr));
@@ -92,7 +90,6 @@ public:
     }
 
 private:
-    explicit FakeWalld(UniqueFd listener) : listener_(std::move(listener)) {}
     UniqueFd listener_, link_;
     net::Unframer unframer_;
 };
@@ -166,23 +163,19 @@ private:
 class NodeServerTest : public ::testing::Test {
 protected:
     void SetUp() override {
-        char folder[] = "/tmp/wallgl-node-test-XXXXXX";
-        folder_ = ::mkdtemp(folder);
+        char name[] = "/tmp/wallgl-node-test-XXXXXX";
+        folder_ = ::mkdtemp(name);
         config_.control_listen = {*net::Address::parse("unix:" + folder_ + "/walld.sock")};
-        for (const auto& name : node_names())
-            config_.nodes.push_back(
-                {name, config::Backend::egl, *net::Address::parse(listen_at()), {{"t", {0, 0, 64, 48}}}});
+        config_.nodes = {{"n", config::Backend::egl, *net::Address::parse(listen_at()), {{"t", {0, 0, 64, 48}}}}};
         walld_.emplace(config_.control_listen.front());
-        std::vector<GpuPart> parts;
-        for (const auto& node : config_.nodes) parts.push_back({node});
-        auto server = NodeServer::open(io_.get_executor(), config_, parts);
+        auto server = NodeServer::open(io_.get_executor(), config_, config_.nodes.front());
         ASSERT_TRUE(server) << server.error().message;
         server_ = std::move(*server);
         server_->set_longest_turn(longest_turn_);
         server_->set_most_strangers(kStrangers);
         server_->start();
         thread_ = std::thread([this] { io_.run(); });
-        meet();
+        address_ = *net::Address::parse(introduce().address());
     }
     void TearDown() override {
         if (server_) boost::asio::post(io_, [this] { server_->stop(); });
@@ -190,9 +183,6 @@ protected:
         server_.reset();
         std::filesystem::remove_all(folder_);
     }
-    /// One for each GPU.
-    virtual std::vector<std::string> node_names() const { return {"n"}; }
-    virtual void meet() { address_ = *net::Address::parse(introduce().address()); }
     /// The node finds walld and learns of its tile and of sessions 1 and 2. Gives its hello.
     proto::NodeHello introduce() {
         walld_->accept();
@@ -380,77 +370,6 @@ TEST_F(NodeServerTest, ConnectionsWithoutATicketAreBounded) {
     // One of the others may still say who it is.
     silent.back()->hello(2, "guess");
     EXPECT_THAT(silent.back()->expect_error(), ::testing::HasSubstr("no valid ticket"));
-}
-
-/// A process of two GPUs, both of which have a stream of session 1.
-class ANodeOfTwoGpus : public NodeServerTest {
-protected:
-    std::vector<std::string> node_names() const override { return {"n/gpu0", "n/gpu1"}; }
-    /// Which of the two links is whose, only their hellos say.
-    void meet() override {
-        for (std::size_t i = 0; i < 2; ++i) {
-            FakeWalld link = walld_->another();
-            link.accept();
-            const auto hello = link.wait_for(proto::Envelope::kNodeHello).node_hello();
-            address_ = *net::Address::parse(hello.address());
-            links_.emplace(hello.name(), std::move(link));
-        }
-    }
-    FakeWalld& walld(const std::string& node) { return links_.at(node); }
-    void admit(const std::string& node, const std::string& secret) {
-        proto::Envelope ticket;
-        ticket.mutable_ticket()->set_session(1);
-        ticket.mutable_ticket()->set_ticket(secret);
-        walld(node).send(ticket);
-    }
-    /// A frame is drawn there, and only there.
-    void expect_drawn(Client& client, const std::string& node, std::uint32_t frame) {
-        client.batch(one_frame({0, 1, 0, 0}, frame));
-        client.expect(wire::FrameKind::swap_done);
-        EXPECT_EQ(walld(node).wait_for(proto::Envelope::kRendered).rendered().frame(), frame);
-    }
-    std::map<std::string, FakeWalld> links_;
-};
-
-TEST_F(ANodeOfTwoGpus, DrawsWithTheOneThatATicketIsFor) {
-    ASSERT_TRUE(links_.contains("n/gpu0") && links_.contains("n/gpu1"));
-    admit("n/gpu0", "first");
-    admit("n/gpu1", "second");
-    Client second(node_address()), first(node_address()), guesses(node_address());
-    second.hello(1, "second");
-    second.expect(wire::FrameKind::welcome);
-    first.hello(1, "first");
-    first.expect(wire::FrameKind::welcome);
-    guesses.hello(1, "third");
-    EXPECT_THAT(guesses.expect_error(), ::testing::HasSubstr("no valid ticket"));
-    expect_drawn(first, "n/gpu0", 1);
-    expect_drawn(second, "n/gpu1", 7);
-    expect_drawn(first, "n/gpu0", 2);
-}
-
-TEST_F(ANodeOfTwoGpus, WaitsForTheTicketOfTheOtherOne) {
-    admit("n/gpu0", "first");
-    Client early(node_address()), first(node_address());
-    early.hello(1, "second");
-    first.hello(1, "first");
-    first.expect(wire::FrameKind::welcome);
-    admit("n/gpu1", "second");
-    early.expect(wire::FrameKind::welcome);
-}
-
-TEST_F(ANodeOfTwoGpus, EndsTheSessionOfOneOnly) {
-    admit("n/gpu0", "first");
-    admit("n/gpu1", "second");
-    Client first(node_address()), second(node_address());
-    first.hello(1, "first");
-    first.expect(wire::FrameKind::welcome);
-    second.hello(1, "second");
-    second.expect(wire::FrameKind::welcome);
-    proto::Envelope end;
-    end.mutable_session_end()->set_session(1);
-    walld("n/gpu0").send(end);
-    EXPECT_FALSE(first.next()) << "is closed";
-    expect_drawn(second, "n/gpu1", 1);
 }
 
 TEST_F(NodeServerTest, SaysWhatASessionCostsUntilItEnds) {
