@@ -17,6 +17,7 @@ demo=(
   libexpected-dev libspdlog-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-calib3d-dev
   libsystemd-dev prometheus-cpp-dev
+  libzip-dev libpugixml-dev          # MPCDI files of projectors
   liblz4-dev libzstd-dev             # frame codecs
   libssl-dev                         # content hashes
   glslang-dev                        # the parser of shaders

@@ -16,7 +16,6 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/load_config.h"
-#include "common/config/read_warp.h"
 #include "common/daemon/keep_running.h"
 #include "common/log/log.h"
 #include "common/net/sockets.h"
@@ -25,6 +24,7 @@
 #include "walld/control/random_bytes.h"
 #include "walld/control/service_manager.h"
 #include "walld/http/http_server.h"
+#include "walld/mpcdi/load_mpcdi.h"
 
 namespace {
 
@@ -172,7 +172,7 @@ int main(int argc, char** argv) {
     log::begin("walld");
     try {
         auto config = config::load_config(options.config);
-        const auto warps = config ? config::load_warps(*config, std::filesystem::path(options.config).parent_path())
+        const auto warps = config ? mpcdi::load_files(*config, std::filesystem::path(options.config).parent_path())
                                   : tl::unexpected(config.error());
         if (!warps) {
             std::cerr << "walld: " << warps.error().message << '\n';

@@ -131,6 +131,11 @@ void read_tile_output(TreeReader& read, const toml::table& table, TileConfig& ti
     tile.output.rotation = read_rotation(read, table);
     read_pixels(read, table, tile);
     if (table.get("warp")) tile.warp_file = read.text(table, "warp");
+    if (table.get("mpcdi")) tile.mpcdi_file = read.text(table, "mpcdi");
+    for (const char* key : {"warp", "blend", "rotation"})
+        if (table.get("mpcdi") && table.get(key))
+            read.refuse(table.get(key)->source(),
+                        TreeReader::quoted(key) + ": expected none beside 'mpcdi', which says that");
     if (table.get("blend")) tile.output.blend = read_blend(read, table);
     if (table.get("color")) tile.output.color = read_color(read, table);
 }

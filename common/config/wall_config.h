@@ -37,6 +37,7 @@ struct TileConfig {
     std::optional<WindowConfig> window;  ///< none: headless
     geom::TileOutput output;             ///< how that shows it; the warp comes with load_warps()
     std::string warp_file;               ///< as wall.toml names it; empty: none
+    std::string mpcdi_file;              ///< the same
     std::string gpu = "auto";            ///< or a number, or a PCI address
     std::optional<geom::View> view;      ///< where it looks; none: it is a part of the canvas as the others
     bool operator==(const TileConfig&) const = default;

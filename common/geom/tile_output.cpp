@@ -43,16 +43,18 @@ float area(Point a, Point b, Point c) { return (b.x - a.x) * (c.y - a.y) - (b.y 
 const char* wrong_with_mesh(const Warp& warp) {
     if (warp.columns < 2 || warp.rows < 2) return "has a mesh of fewer than 2 columns or rows";
     if (warp.columns > kMaxMeshPoints || warp.rows > kMaxMeshPoints / warp.columns)
-        return "has a mesh of more than 16384 points";
+        return "has a mesh of more than 65536 points";
     if (warp.points.size() != std::size_t{warp.columns} * warp.rows)
         return "has another number of points than columns times rows";
     for (const Point& point : warp.points)
-        if (!std::isfinite(point.x) || !std::isfinite(point.y)) return "has a point that is none";
+        if (std::isinf(point.x) || std::isinf(point.y) || std::isnan(point.x) != std::isnan(point.y))
+            return "has a point that is none";
     float way = 0;
     for (std::uint32_t row = 0; row + 1 < warp.rows; ++row) {
         for (std::uint32_t column = 0; column + 1 < warp.columns; ++column) {
             const Point* top = &warp.points[std::size_t{row} * warp.columns + column];
             const Point* bottom = top + warp.columns;
+            if (std::isnan(top[0].x + top[1].x + bottom[0].x + bottom[1].x)) continue;
             for (const float corner : {area(top[0], top[1], bottom[0]), area(top[1], bottom[1], top[0]),
                                        area(bottom[1], bottom[0], top[1]), area(bottom[0], top[0], bottom[1])}) {
                 if (way == 0) way = corner;
@@ -87,10 +89,24 @@ const char* wrong_with(const Warp& warp) {
     return warp.columns == 0 ? wrong_with_homography(warp.homography) : wrong_with_mesh(warp);
 }
 
+const char* wrong_with(const LightMap& light) {
+    for (const auto* map : {&light.share, &light.lift}) {
+        if (map->width == 0 && map->height == 0 && map->values.empty()) continue;
+        constexpr auto kMost = static_cast<std::uint32_t>(kMaxOutputExtent);
+        if (map->width == 0 || map->height == 0 || map->width > kMost || map->height > kMost)
+            return "is too large, or nothing";
+        if (map->channels != 1 && map->channels != 3) return "has neither one nor three values a place";
+        if (map->values.size() != std::size_t{map->width} * map->height * map->channels)
+            return "has another number of values than places";
+    }
+    return nullptr;
+}
+
 bool TileOutput::operator==(const TileOutput& other) const {
     const bool same_warp = warp == other.warp || (warp && other.warp && *warp == *other.warp);
+    const bool same_light = light == other.light || (light && other.light && *light == *other.light);
     return rotation == other.rotation && width == other.width && height == other.height && same_warp &&
-           blend == other.blend && color == other.color;
+           blend == other.blend && same_light && color == other.color;
 }
 
 TileOutput plain_output(const Rect& tile) { return {.width = tile.width, .height = tile.height}; }

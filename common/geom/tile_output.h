@@ -19,7 +19,7 @@
 namespace wall::geom {
 
 inline constexpr std::int32_t kMaxOutputExtent = 16384;     ///< pixels a side
-inline constexpr std::uint32_t kMaxMeshPoints = 128 * 128;  ///< of a warp
+inline constexpr std::uint32_t kMaxMeshPoints = 256 * 256;  ///< of a warp
 inline constexpr std::uint32_t kMaxCurvePoints = 256;       ///< of a tone curve
 
 struct Point {
@@ -32,7 +32,7 @@ struct Warp {
     /// Row by row; (x, y, 1) of the output gives (x', y', w'), the place is (x' / w', y' / w').
     std::array<float, 9> homography{1, 0, 0, 0, 1, 0, 0, 0, 1};
     /// A grid of columns x rows points that covers the output from corner to corner, row by row; between them as they
-    /// say, linearly along both sides of a cell. 0: the homography holds.
+    /// say, linearly along both sides of a cell. Cells with a point that is NaN are black. 0: the homography holds.
     std::uint32_t columns = 0, rows = 0;
     std::vector<Point> points;
     bool operator==(const Warp&) const = default;
@@ -52,6 +52,22 @@ struct Blend {
     bool operator==(const Blend&) const = default;
 };
 
+/// How much of its picture each place of an output shows, as a map: values times `share`, and up to white as `lift`
+/// says where a projector alone would be darker than several. Both cover the output from edge to edge, row by row.
+struct LightMap {
+    struct Map {
+        std::uint32_t width = 0, height = 0;  ///< places; 0: there is none
+        std::uint32_t channels = 1;           ///< 3: red, green and blue each
+        std::vector<std::uint8_t> values;     ///< 255: all
+        bool operator==(const Map&) const = default;
+    };
+    Map share, lift;
+    bool operator==(const LightMap&) const = default;
+};
+
+/// Why it cannot be shown; nullptr: it can.
+const char* wrong_with(const LightMap& light);
+
 /// Brings an output's colours to those of the others.
 struct ColorCorrection {
     using Curve = std::vector<float>;  ///< values 0 to 1 at equal steps from 0 to 1, linear between; empty: none
@@ -67,8 +83,9 @@ struct TileOutput {
     std::int32_t width = 0, height = 0;  ///< pixels, as the monitor itself counts them
     std::shared_ptr<const Warp> warp;    ///< none: flat
     std::optional<Blend> blend;
+    std::shared_ptr<const LightMap> light;  ///< none: all of it everywhere
     std::optional<ColorCorrection> color;
-    bool operator==(const TileOutput&) const;  ///< of what the warp says
+    bool operator==(const TileOutput&) const;  ///< of what warp and light say
 };
 
 /// Of a tile that is shown pixel for pixel.

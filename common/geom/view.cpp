@@ -34,6 +34,10 @@ Vec3 as_direction(const Wide& room) { return narrow({room[0], room[1], -room[2]}
 }  // namespace
 
 View view_of_angles(double yaw, double pitch, double roll, double width, double height) {
+    return view_of_angles(yaw, pitch, roll, -width / 2, width / 2, -height / 2, height / 2);
+}
+
+View view_of_angles(double yaw, double pitch, double roll, double left, double right, double down, double up_angle) {
     const double y = yaw * kDegree, p = pitch * kDegree, r = roll * kDegree;
     const Wide level{std::cos(y), 0, -std::sin(y)};
     const Wide upright{-std::sin(y) * std::sin(p), std::cos(p), -std::cos(y) * std::sin(p)};
@@ -41,10 +45,10 @@ View view_of_angles(double yaw, double pitch, double roll, double width, double 
     out.right = narrow(sum(level, std::cos(r), upright, -std::sin(r)));
     out.up = narrow(sum(level, std::sin(r), upright, std::cos(r)));
     out.ahead = narrow({std::sin(y) * std::cos(p), std::sin(p), std::cos(y) * std::cos(p)});
-    out.right_edge = static_cast<float>(std::tan(width * kDegree / 2));
-    out.top = static_cast<float>(std::tan(height * kDegree / 2));
-    out.left = -out.right_edge;
-    out.bottom = -out.top;
+    out.left = static_cast<float>(std::tan(left * kDegree));
+    out.right_edge = static_cast<float>(std::tan(right * kDegree));
+    out.bottom = static_cast<float>(std::tan(down * kDegree));
+    out.top = static_cast<float>(std::tan(up_angle * kDegree));
     return out;
 }
 

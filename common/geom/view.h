@@ -26,6 +26,8 @@ struct View {
 /// Degrees: turned to the right, then up, then clockwise as seen; `width` and `height` are the angles from edge to
 /// edge, more than 0 and less than 180.
 View view_of_angles(double yaw, double pitch, double roll, double width, double height);
+/// The same of the angles of each edge from the middle, to the right and up.
+View view_of_angles(double yaw, double pitch, double roll, double left, double right, double down, double up);
 /// The angle from edge to edge of something `ratio` times as large as what has `angle`, in the same plane; degrees.
 double angle_of_ratio(double angle, double ratio);
 

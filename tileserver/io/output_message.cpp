@@ -47,6 +47,10 @@ Result<geom::Blend> blend_of(const proto::TileOutput::Blend& told) {
     return out;
 }
 
+geom::LightMap::Map map_of(const proto::TileOutput::Map& told) {
+    return {told.width(), told.height(), told.channels(), {told.values().begin(), told.values().end()}};
+}
+
 Result<geom::ColorCorrection> color_of(const proto::TileOutput::Color& told) {
     geom::ColorCorrection out;
     out.gamma = told.gamma();
@@ -111,6 +115,11 @@ Result<std::shared_ptr<const geom::TileOutput>> output_of(const proto::TileOutpu
     const auto blend =
         take(told.has_blend(), told.blend(), blend_of, [&](const geom::Blend& read) { out.blend = read; });
     if (!blend) return tl::unexpected(blend.error());
+    if (told.has_share() || told.has_lift()) {
+        geom::LightMap light{map_of(told.share()), map_of(told.lift())};
+        if (const char* wrong = geom::wrong_with(light)) return fail(std::string("its map of light ") + wrong);
+        out.light = std::make_shared<const geom::LightMap>(std::move(light));
+    }
     const auto color = take(told.has_color(), told.color(), color_of,
                             [&](geom::ColorCorrection read) { out.color = std::move(read); });
     if (!color) return tl::unexpected(color.error());

@@ -10,7 +10,7 @@
 namespace wall::tileserver {
 namespace {
 
-enum Unit : unsigned { kCanvas, kMesh, kCurves, kUnits };  // as in the shader
+enum Unit : unsigned { kCanvas, kMesh, kCurves, kShare, kRaise, kUnits };  // as in the shader
 constexpr unsigned kParameters = 0;
 constexpr float kLittle = 0.25f;  // of a pixel that is covered besides: a tap is linear, so none is missed
 
@@ -60,6 +60,14 @@ std::string steps_of(const geom::TileOutput& output, const PictureTexture& canva
     add(output.color && (output.color->matrix != geom::ColorCorrection{}.matrix), "COLOR");
     add(output.blend.has_value(), "BLEND");
     add(output.blend && output.blend->black != 0, "LIFT");
+    const auto add_light = [&](const geom::LightMap::Map& map, const std::string& step) {
+        const bool exact = static_cast<std::int32_t>(map.width) == output.width &&
+                           static_cast<std::int32_t>(map.height) == output.height;
+        out += "#define " + step + (map.width == 0 ? " 0\n" : exact ? " 2\n" : " 1\n");
+    };
+    const geom::LightMap none, &light = output.light ? *output.light : none;
+    add_light(light.share, "SHARE");
+    add_light(light.lift, "RAISE");
     add(has_curves(output), "CURVE");
     return out;
 }
@@ -109,6 +117,10 @@ public:
         driver_.neutral_pixel_transfer();
         if (output->warp && output->warp->columns != 0) make_mesh(*output->warp);
         if (has_curves(*output)) make_curves(*output->color);
+        if (output->light) {
+            share = make_light(output->light->share);
+            raise = make_light(output->light->lift);
+        }
     }
     ~Shown() {
         const Gl& gl = driver_.gl();
@@ -116,7 +128,7 @@ public:
         gl.DeleteFramebuffers(1, &framebuffer_);
         driver_.forget_buffer(parameters);
         gl.DeleteBuffers(1, &parameters);
-        for (const GLuint name : {texture, mesh, curves}) {
+        for (const GLuint name : {texture, mesh, curves, share, raise}) {
             if (name == 0) continue;
             driver_.forget_texture(name);
             gl.DeleteTextures(1, &name);
@@ -130,7 +142,7 @@ public:
     PictureTexture canvas;  // that it is for; its version is the one that is drawn
     const bool exact;
     const std::string steps;
-    GLuint texture = 0, parameters = 0, mesh = 0, curves = 0;
+    GLuint texture = 0, parameters = 0, mesh = 0, curves = 0, share = 0, raise = 0;
 
 private:
     GLuint make_texture(GLenum format, std::int32_t width, std::int32_t height) const {
@@ -143,6 +155,18 @@ private:
         const auto columns = static_cast<std::int32_t>(warp.columns), rows = static_cast<std::int32_t>(warp.rows);
         mesh = make_texture(GL_RG32F, columns, rows);
         driver_.gl().TextureSubImage2D(mesh, 0, 0, 0, columns, rows, GL_RG, GL_FLOAT, warp.points.data());
+    }
+    /// 0: there is none.
+    GLuint make_light(const geom::LightMap::Map& map) const {
+        if (map.width == 0) return 0;
+        const auto width = static_cast<std::int32_t>(map.width), height = static_cast<std::int32_t>(map.height);
+        const bool grey = map.channels == 1;
+        const GLuint out = make_texture(grey ? GL_R8 : GL_RGB8, width, height);
+        const Gl& gl = driver_.gl();
+        gl.TextureSubImage2D(out, 0, 0, 0, width, height, grey ? GL_RED : GL_RGB, GL_UNSIGNED_BYTE, map.values.data());
+        for (const GLenum channel : {GL_TEXTURE_SWIZZLE_G, GL_TEXTURE_SWIZZLE_B})
+            if (grey) gl.TextureParameteri(out, channel, GL_RED);
+        return out;
     }
     void make_curves(const geom::ColorCorrection& color) {
         std::size_t longest = 0;
@@ -245,6 +269,8 @@ void OutputPass::draw(Shown& shown, GLuint canvas) {
     bind(kCanvas, canvas);
     bind(kMesh, shown.mesh);
     bind(kCurves, shown.curves);
+    bind(kShare, shown.share);
+    bind(kRaise, shown.raise);
     SamplerBindings samplers{glstate::next_value_id(), {}};
     std::fill_n(samplers.names.begin(), kUnits, exact_);
     if (!shown.exact) samplers.names[kCanvas] = linear_;

@@ -25,11 +25,14 @@ void main() { gl_Position = vec4(4 * (gl_VertexID & 1) - 1, 2 * (gl_VertexID & 2
 )";
 
 /// Behind "#version 430" and #defines: LITTLE (of a pixel), TURNS (by 90 degrees), and where the step is wanted EXACT
-/// or ENLARGED, MESH or HOMOGRAPHY, COLOR, BLEND (with LIFT of black), CURVE.
+/// or ENLARGED, MESH or HOMOGRAPHY, COLOR, BLEND (with LIFT of black), SHARE, RAISE, CURVE. SHARE and RAISE are 2 for a
+/// map of as many places as the output has pixels.
 inline constexpr const char* kOutputFragmentShader = R"(
 layout(binding = 0) uniform sampler2D canvas;  // linear, but for EXACT
 layout(binding = 1) uniform sampler2D mesh;    // a point each
 layout(binding = 2) uniform sampler2D curves;  // rows of red, green, blue
+layout(binding = 3) uniform sampler2D share;   // of light, over all of the output
+layout(binding = 4) uniform sampler2D raise;
 layout(std140, binding = 0) uniform Parameters {
     ivec4 sizes, points;
     vec4 homography[3], ramps, blend, color[3];
@@ -76,6 +79,7 @@ vec3 tap(vec2 at) {
 // As many taps, evenly over the pixel, as it covers pixels of the canvas.
 vec3 filtered(vec2 at) {
     vec2 across = dFdx(at), down = dFdy(at);
+    if (any(isnan(across)) || any(isnan(down))) across = down = vec2(0);  // at the border of what is shown
     vec2 covered = vec2(max(abs(across.x), abs(across.y)), max(abs(down.x), abs(down.y)));
     ivec2 taps = clamp(ivec2(ceil(covered - LITTLE)), 1, kMostTaps);
     vec3 sum = vec3(0);
@@ -124,6 +128,16 @@ float curve(float value, int row, int count) {
     return mix(texelFetch(curves, ivec2(i, row), 0).r, texelFetch(curves, ivec2(i + 1, row), 0).r, along - first);
 }
 
+// Of a map of `light`, linear between the middles of its places: by hand, because drivers know only some 256 steps.
+vec3 between(sampler2D light) {
+    ivec2 size = textureSize(light, 0);
+    vec2 along = gl_FragCoord.xy / vec2(sizes.zw) * vec2(size) - 0.5, first = floor(along), t = along - first;
+    ivec2 a = clamp(ivec2(first), ivec2(0), size - 1), b = clamp(ivec2(first) + 1, ivec2(0), size - 1);
+    return mix(mix(texelFetch(light, a, 0).rgb, texelFetch(light, ivec2(b.x, a.y), 0).rgb, t.x),
+               mix(texelFetch(light, ivec2(a.x, b.y), 0).rgb, texelFetch(light, b, 0).rgb, t.x), t.y);
+}
+vec3 pixel_of(sampler2D light) { return texelFetch(light, ivec2(gl_FragCoord.xy), 0).rgb; }
+
 void main() {
     vec2 at = place(gl_FragCoord.xy);
 #if defined EXACT
@@ -138,6 +152,19 @@ void main() {
 #endif
 #ifdef BLEND
     value = blended(value, at);
+#endif
+#if SHARE == 2
+    value *= pixel_of(share);
+#elif SHARE == 1
+    value *= between(share);
+#endif
+#if RAISE == 2
+    vec3 least = pixel_of(raise);
+#elif RAISE == 1
+    vec3 least = between(raise);
+#endif
+#if RAISE != 0
+    value = value * (1 - least) + least;
 #endif
 #ifdef CURVE
     value = vec3(curve(value.r, 0, points.x), curve(value.g, 1, points.y), curve(value.b, 2, points.z));

@@ -17,6 +17,13 @@ void warp_to_proto(const geom::Warp& warp, proto::TileOutput::Warp& out) {
     }
 }
 
+void map_to_proto(const geom::LightMap::Map& map, proto::TileOutput::Map& out) {
+    out.set_width(map.width);
+    out.set_height(map.height);
+    out.set_channels(map.channels);
+    out.set_values(map.values.data(), map.values.size());
+}
+
 }  // namespace
 
 proto::TileOutput to_proto(const geom::TileOutput& output) {
@@ -34,6 +41,10 @@ proto::TileOutput to_proto(const geom::TileOutput& output) {
         blend.set_bottom(ramps[geom::Blend::bottom]);
         blend.set_gamma(output.blend->gamma);
         blend.set_black(output.blend->black);
+    }
+    if (output.light) {
+        map_to_proto(output.light->share, *out.mutable_share());
+        map_to_proto(output.light->lift, *out.mutable_lift());
     }
     if (output.color) {
         auto& color = *out.mutable_color();

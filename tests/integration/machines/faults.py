@@ -274,6 +274,8 @@ def main() -> int:
     arguments.add_argument("--only", action="append", default=[], help="this kind of fault; may be given again")
     arguments.add_argument("--pictures", type=Path, help="a folder for what is shown and should be, and logs")
     options = arguments.parse_args()
+    if options.pictures:
+        options.pictures.mkdir(parents=True, exist_ok=True)
     count = None if options.seconds else options.count or 300
     return run(count, options.seconds, options.seed, options.limit, options.only, options.pictures,
                functools.partial(print, flush=True))

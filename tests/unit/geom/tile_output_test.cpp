@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace wall::geom {
@@ -52,6 +53,24 @@ TEST(TileOutput, IsTheSameIfItsWarpSaysTheSame) {
     EXPECT_FALSE(a == b);
 }
 
+TEST(TileOutput, IsTheSameIfItsLightIs) {
+    auto a = plain_output(kTile), b = a;
+    a.light = std::make_shared<const LightMap>(LightMap{{1, 1, 1, {9}}, {}});
+    EXPECT_FALSE(a == b);
+    b.light = std::make_shared<const LightMap>(LightMap{{1, 1, 1, {9}}, {}});
+    EXPECT_TRUE(a == b);
+    EXPECT_FALSE(is_plain(a, kTile));
+}
+
+TEST(LightMap, IsRefusedIfItIsNone) {
+    EXPECT_EQ(wrong_with(LightMap{}), nullptr);
+    EXPECT_EQ(wrong_with(LightMap{{2, 1, 3, {1, 2, 3, 4, 5, 6}}, {1, 1, 1, {7}}}), nullptr);
+    EXPECT_THAT(wrong_with(LightMap{{2, 1, 1, {1}}, {}}), HasSubstr("another number"));
+    EXPECT_THAT(wrong_with(LightMap{{1, 1, 2, {1, 2}}, {}}), HasSubstr("neither one nor three"));
+    EXPECT_THAT(wrong_with(LightMap{{}, {1u << 31, 2, 1, {}}}), HasSubstr("too large"));
+    EXPECT_THAT(wrong_with(LightMap{{}, {0, 2, 1, {}}}), HasSubstr("nothing"));
+}
+
 /// A monitor's own top left corner hangs top right when it is turned clockwise once.
 TEST(TileOutput, TurnsClockwise) {
     TileOutput output{.width = 30, .height = 40};
@@ -84,6 +103,17 @@ TEST(Warp, OfACellIsLinearAlongItsSides) {
     expect_at(place_in_tile(output, {0.5f, 0}), 0.5f, 0.1f);
     expect_at(place_in_tile(output, {0, 0.5f}), 0.05f, 0.5f);
     expect_at(place_in_tile(output, {0.5f, 0.5f}), 0.525f, 0.55f);
+}
+
+TEST(Warp, ShowsNothingInCellsWithoutAPoint) {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    auto mesh = flat_mesh(4, 4);
+    mesh.points[0] = {kNone, kNone};
+    EXPECT_EQ(wrong_with(mesh), nullptr);
+    auto output = plain_output(kTile);
+    output.warp = std::make_shared<const Warp>(mesh);
+    EXPECT_TRUE(std::isnan(place_in_tile(output, {0.2f, 0.2f}).x));
+    EXPECT_NEAR(place_in_tile(output, {0.5f, 0.2f}).x, 0.5f, 1e-6f);
 }
 
 TEST(Warp, IsRefusedIfItFolds) {

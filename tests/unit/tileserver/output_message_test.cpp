@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 
@@ -17,6 +18,8 @@ geom::TileOutput everything() {
     out.warp = std::make_shared<const geom::Warp>(
         geom::Warp{.columns = 2, .rows = 2, .points = {{0, 0}, {1, 0}, {0, 1}, {0.9f, 1}}});
     out.blend = geom::Blend{{1, 2, 3, 4}, 2.4f, 0.01f};
+    out.light =
+        std::make_shared<const geom::LightMap>(geom::LightMap{{2, 1, 3, {1, 2, 3, 4, 5, 6}}, {1, 2, 1, {7, 8}}});
     out.color = geom::ColorCorrection{{1, 0.1f, 0, 0, 1, 0, 0, 0, 1}, 2.1f, {{{0, 1}, {}, {0, 0.5f, 1}}}};
     return out;
 }
@@ -29,6 +32,12 @@ TEST(OutputMessage, ArrivesAsItWasSent) {
     with_homography.warp =
         std::make_shared<const geom::Warp>(geom::Warp{.homography = {1, 0.1f, 0, 0, 1, 0, 0.2f, 0, 1}});
     EXPECT_TRUE(**output_of(walld::to_proto(with_homography)) == with_homography);
+    auto with_hole = everything();
+    with_hole.warp = std::make_shared<const geom::Warp>(
+        geom::Warp{.columns = 2, .rows = 2, .points = {{NAN, NAN}, {1, 0}, {0, 1}, {1, 1}}});
+    const auto hole = output_of(walld::to_proto(with_hole));
+    ASSERT_TRUE(hole) << hole.error().message;
+    EXPECT_TRUE(std::isnan((*hole)->warp->points[0].x));
     const auto plain = geom::plain_output({0, 0, 5, 6});
     EXPECT_TRUE(**output_of(walld::to_proto(plain)) == plain);
 }
@@ -70,6 +79,11 @@ TEST(OutputMessage, IsRefusedIfNoOutputIsThat) {
         [=](auto& o) { o.mutable_blend()->set_top(kNone); },
         [](auto& o) { o.mutable_blend()->set_gamma(0); },
         [=](auto& o) { o.mutable_blend()->set_black(kNone); },
+        [](auto& o) { o.mutable_share()->set_width(3); },
+        [](auto& o) { o.mutable_share()->set_channels(2); },
+        [](auto& o) { o.mutable_lift()->set_height(0); },
+        [](auto& o) { o.mutable_lift()->set_width(1u << 31), o.mutable_lift()->set_height(1u << 31); },
+        [](auto& o) { o.mutable_lift()->clear_values(); },
         [](auto& o) { o.mutable_color()->add_matrix(1); },
         [=](auto& o) { o.mutable_color()->set_matrix(0, kNone); },
         [=](auto& o) { o.mutable_color()->set_gamma(kNone); },

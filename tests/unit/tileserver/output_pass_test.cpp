@@ -286,6 +286,64 @@ TEST_P(Outputs, HaveOneBlackWhereverManyShine) {
     EXPECT_NEAR(most, 4 * kBlack, 0.01);
 }
 
+/// A map over all of the output, as OpenCV enlarges it.
+cv::Mat enlarged(const geom::LightMap::Map& map, int width, int height) {
+    const cv::Mat small(static_cast<int>(map.height), static_cast<int>(map.width),
+                        map.channels == 1 ? CV_8UC1 : CV_8UC3, const_cast<std::uint8_t*>(map.values.data()));
+    cv::Mat values, out;
+    small.convertTo(values, CV_MAKETYPE(CV_32F, static_cast<int>(map.channels)), 1 / 255.0);
+    cv::resize(values, out, {width, height}, 0, 0, cv::INTER_LINEAR);
+    if (map.channels == 1) cv::cvtColor(out, out, cv::COLOR_GRAY2RGB);
+    return out;
+}
+
+TEST_P(Outputs, ShareAndLiftLightByMaps) {
+    const auto map = [](std::uint32_t width, std::uint32_t height, std::uint32_t channels, unsigned least) {
+        geom::LightMap::Map out{width, height, channels, {}};
+        std::mt19937 random(kSeed);
+        std::uniform_int_distribution<unsigned> value(least, 255);
+        for (std::uint32_t i = 0; i < width * height * channels; ++i)
+            out.values.push_back(static_cast<std::uint8_t>(value(random)));
+        return out;
+    };
+    const cv::Mat canvas = hills(150, 90);
+    for (const auto& light :
+         {geom::LightMap{map(150, 90, 1, 0), {}}, geom::LightMap{map(7, 5, 3, 100), {}},
+          geom::LightMap{{}, map(9, 4, 1, 0)}, geom::LightMap{map(31, 17, 3, 0), map(5, 6, 3, 0)}}) {
+        const geom::TileOutput output{
+            .width = 150, .height = 90, .light = std::make_shared<const geom::LightMap>(light)};
+        const cv::Mat got = shown(output, canvas);
+        const cv::Mat all(90, 150, CV_32FC3, cv::Scalar(1, 1, 1)), none(90, 150, CV_32FC3, cv::Scalar(0, 0, 0));
+        const cv::Mat share = light.share.width != 0 ? enlarged(light.share, 150, 90) : all;
+        const cv::Mat lift = light.lift.width != 0 ? enlarged(light.lift, 150, 90) : none;
+        cv::Mat expected(90, 150, CV_8UC4);
+        for (int y = 0; y < 90; ++y)
+            for (int x = 0; x < 150; ++x) {
+                for (int i = 0; i < 3; ++i) {
+                    const double value = canvas.at<cv::Vec4b>(y, x)[i] / 255.0 * share.at<cv::Vec3f>(y, x)[i];
+                    const double least = lift.at<cv::Vec3f>(y, x)[i];
+                    expected.at<cv::Vec4b>(y, x)[i] =
+                        static_cast<std::uint8_t>(std::lround(255 * (value * (1 - least) + least)));
+                }
+                expected.at<cv::Vec4b>(y, x)[3] = 255;
+            }
+        EXPECT_LE(difference(got, expected).most, 1) << light.share.width << " and " << light.lift.width;
+    }
+}
+
+TEST_P(Outputs, AreBlackWhereAMeshHasNoPoint) {
+    geom::Warp warp;
+    warp.columns = warp.rows = 5;
+    for (int i = 0; i < 25; ++i) warp.points.push_back({static_cast<float>(i % 5) / 4, static_cast<float>(i / 5) / 4});
+    warp.points[0] = {NAN, NAN};
+    ASSERT_EQ(geom::wrong_with(warp), nullptr);
+    const cv::Mat canvas(80, 120, CV_8UC4, cv::Scalar(90, 180, 255, 255));
+    const cv::Mat got = shown({.width = 120, .height = 80, .warp = std::make_shared<const geom::Warp>(warp)}, canvas);
+    cv::Mat expected = canvas.clone();
+    expected(cv::Rect(0, 0, 30, 20)) = cv::Scalar(0, 0, 0, 255);
+    EXPECT_EQ(difference(got, expected).most, 0);
+}
+
 TEST_P(Outputs, HaveTheirColoursMixedInLight) {
     const cv::Mat canvas = noise(16, 16);
     geom::ColorCorrection color{.matrix = {0.8f, 0.1f, 0, 0, 0.9f, 0.05f, 0.2f, 0, 0.7f}, .gamma = 2};
