@@ -10,7 +10,6 @@
 #include "common/base/whole_file.h"
 #include "common/config/load_config.h"
 #include "common/json/parse_json.h"
-#include "walld/mpcdi/load_mpcdi.h"
 
 namespace wall::walld {
 namespace {
@@ -56,7 +55,7 @@ Outcome<void> keep(const fs::path& path, const std::string& text) {
 Outcome<Description> WallFile::described(std::string toml, const std::string& name) const {
     auto config = config::parse_config(toml, name);
     if (!config) return refuse(RefusalKind::invalid, config.error().message);
-    if (auto loaded = mpcdi::load_files(*config, fs::path(path_).parent_path()); !loaded)
+    if (auto loaded = files_.load(*config, fs::path(path_).parent_path()); !loaded)
         return refuse(RefusalKind::invalid, loaded.error().message);
     return Description{std::move(*config), std::move(toml)};
 }

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "common/config/wall_config.h"
+#include "walld/mpcdi/load_mpcdi.h"
 #include "walld/wall/refusal.h"
 
 namespace wall::walld {
@@ -42,6 +43,7 @@ private:
 
     std::string path_;
     std::filesystem::path state_;
+    mutable mpcdi::DescribedFiles files_;  // that it names
 };
 
 }  // namespace wall::walld

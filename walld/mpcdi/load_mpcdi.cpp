@@ -20,14 +20,14 @@ constexpr std::size_t kMostMap = std::size_t{512} << 20;        // of a map in i
 constexpr std::size_t kMostLight = std::size_t{32} << 20;       // of all that a node is told at once
 constexpr float kClose = 1.0f / 256;  // pixels of the tile that a mesh may be off: one level between black and white
 constexpr float kFar = 0.5f;          // that people are told of
-constexpr double kProjectorGamma = 2.2;
+constexpr float kProjectorGamma = 2.2f;
 
 struct File {
     Archive archive;
     Setup setup;
 };
 
-Result<File> load(const std::filesystem::path& path, const std::string& tile) {
+Result<File> read_file(const std::filesystem::path& path, const std::string& tile) {
     std::error_code error;
     const auto bytes = std::filesystem::file_size(path, error);
     if (error)
@@ -64,6 +64,10 @@ Result<std::optional<Factors>> light_map(const File& file, const std::optional<L
     auto out = parse_png(*bytes, file.archive.name() + ": '" + light->path + "'");
     if (!out) return tl::unexpected(out.error());
     return std::optional(std::move(*out));
+}
+
+float projector_gamma(const config::TileConfig& tile) {
+    return tile.output.color ? tile.output.color->gamma : kProjectorGamma;
 }
 
 /// Of a region without a map: each pixel shows its own place.
@@ -109,30 +113,51 @@ Result<void> apply(const File& file, const geom::Vec3& eye, config::TileConfig& 
                       log::quoted(region.id), mesh.error);
         tile.output.warp = std::make_shared<const geom::Warp>(std::move(mesh.warp));
     }
-    tile.output.light = light_of(look->places, *alpha ? &**alpha : nullptr, region.alpha ? region.alpha->gamma : 1,
-                                 *beta ? &**beta : nullptr, region.beta ? region.beta->gamma : 1,
-                                 tile.output.color ? tile.output.color->gamma : kProjectorGamma);
+    tile.output.light =
+        light_of(look->places, *alpha ? &**alpha : nullptr, region.alpha ? region.alpha->gamma : 1,
+                 *beta ? &**beta : nullptr, region.beta ? region.beta->gamma : 1, projector_gamma(tile));
     if (look->view) tile.view = look->view;
     return {};
 }
 
 }  // namespace
 
-Result<void> load_files(config::WallConfig& wall, const std::filesystem::path& folder) {
+Result<void> DescribedFiles::load(config::WallConfig& wall, const std::filesystem::path& folder) {
     if (auto warps = config::load_warps(wall, folder); !warps) return warps;
     std::map<std::filesystem::path, File> files;  // tiles share them
+    std::map<Key, Said> said;
     for (auto& node : wall.nodes) {
         std::size_t light = 0;
         for (auto& tile : node.tiles) {
             if (tile.mpcdi_file.empty()) continue;
             const auto path = folder / tile.mpcdi_file;
-            auto file = files.find(path);
-            if (file == files.end()) {
-                auto loaded = load(path, tile.name);
-                if (!loaded) return tl::unexpected(loaded.error());
-                file = files.emplace(path, std::move(*loaded)).first;
+            std::error_code error;
+            Key key{path.string(),
+                    std::filesystem::last_write_time(path, error),
+                    std::filesystem::file_size(path, error),
+                    tile.name,
+                    tile.rect.width,
+                    tile.rect.height,
+                    tile.output.width,
+                    tile.output.height,
+                    wall.eye,
+                    projector_gamma(tile),
+                    tile.view.has_value()};
+            auto known = known_.find(key);
+            if (error || known == known_.end()) {
+                auto file = files.find(path);
+                if (file == files.end()) {
+                    auto read = read_file(path, tile.name);
+                    if (!read) return tl::unexpected(read.error());
+                    file = files.emplace(path, std::move(*read)).first;
+                }
+                if (auto applied = apply(file->second, wall.eye, tile); !applied) return applied;
+                known = known_.insert_or_assign(key, Said{tile.output.warp, tile.output.light, tile.view}).first;
             }
-            if (auto applied = apply(file->second, wall.eye, tile); !applied) return applied;
+            tile.output.warp = known->second.warp;
+            tile.output.light = known->second.light;
+            tile.view = known->second.view;
+            said.insert(*known);
             if (tile.output.light)
                 light += tile.output.light->share.values.size() + tile.output.light->lift.values.size();
         }
@@ -141,6 +166,7 @@ Result<void> load_files(config::WallConfig& wall, const std::filesystem::path& f
                         std::to_string(light) +
                         " bytes: expected at most 32 MiB for a node (grey maps, or several nodes)");
     }
+    known_ = std::move(said);
     return {};
 }
 

@@ -162,8 +162,9 @@ geom::Warp grid_of(const Field& places, std::uint32_t columns, std::uint32_t row
     return out;
 }
 
-/// Of the farthest place that is shown; infinity where the mesh shows nothing of it.
-float error_of(const Field& places, const geom::TileOutput& by, std::int32_t width, std::int32_t height) {
+/// Of the farthest place that is shown, or of the first that is farther than `enough`; infinity where the mesh shows
+/// nothing of it.
+float error_of(const Field& places, const geom::TileOutput& by, std::int32_t width, std::int32_t height, float enough) {
     float out = 0;
     for (std::uint32_t y = 0; y < places.height; ++y)
         for (std::uint32_t x = 0; x < places.width; ++x) {
@@ -175,6 +176,7 @@ float error_of(const Field& places, const geom::TileOutput& by, std::int32_t wid
             const float off = std::max(std::abs(got.x - wanted[0]) * static_cast<float>(width),
                                        std::abs(got.y - wanted[1]) * static_cast<float>(height));
             out = std::max(out, std::isnan(off) ? INFINITY : off);
+            if (out > enough) return out;
         }
     return out;
 }
@@ -208,15 +210,16 @@ Mesh mesh_of(const Field& places, std::int32_t width, std::int32_t height, float
     Mesh out;
     for (std::uint32_t cells = kLeastCells;; cells = std::min(2 * cells, kMostCells)) {
         Field filled = places;
-        widen(filled, longer / cells + 2);  // a cell, and the places that its corners lie between
+        widen(filled, 2 * (longer / cells + 2));  // to the corners of a cell, along both of its sides
         const auto along = [&](std::uint32_t extent) {
             const auto wanted = (std::uint64_t{cells} * extent + longer - 1) / longer;
             return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, extent - 1)) + 1;
         };
         geom::TileOutput by;
         by.warp = std::make_shared<const geom::Warp>(grid_of(filled, along(places.width), along(places.height)));
-        out = {*by.warp, error_of(places, by, width, height)};
-        if (out.error <= most || cells == kMostCells) return out;
+        const bool last = cells == kMostCells;
+        out = {*by.warp, error_of(places, by, width, height, last ? INFINITY : most)};
+        if (last || out.error <= most) return out;
     }
 }
 

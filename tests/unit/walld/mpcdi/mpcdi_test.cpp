@@ -66,7 +66,7 @@ protected:
                                      "rect = [0, 0, 8, 6]\nmpcdi = \"p.mpcdi\"\n" + keys + "\n",
                                  "wall.toml");
         if (!config) return config;
-        if (auto loaded = load_files(*config, folder_.file("")); !loaded) return tl::unexpected(loaded.error());
+        if (auto loaded = files_.load(*config, folder_.file("")); !loaded) return tl::unexpected(loaded.error());
         return config;
     }
     config::TileConfig tile(const std::string& file, const std::string& keys = {}, const std::string& wall = {}) const {
@@ -87,6 +87,7 @@ protected:
         return zip_of(more);
     }
     test::TemporaryFolder folder_;
+    mutable DescribedFiles files_;
 };
 
 /// Bent as a projector's picture on a column is.
@@ -209,6 +210,27 @@ TEST_F(MpcdiFile, IsBlackWhereTheMapSaysNothing) {
         ASSERT_EQ(share.values[i], std::isnan(map.values[i][0]) ? 0 : 255) << i;
 }
 
+TEST_F(MpcdiFile, IsReadAgainOnlyIfItHasChanged) {
+    const auto map = field_of(80, 60, bent);
+    const auto file = with({.files = mpcdi_fileset("left.pfm")}, map);
+    const auto read = [&](const std::string& keys) {
+        auto config = config::parse_config(
+            "[[node]]\nname = \"n\"\n[[node.tile]]\nname = \"left\"\n" + keys + "mpcdi = \"p.mpcdi\"\n", "wall.toml");
+        EXPECT_TRUE(files_.load(*config, folder_.file("")));
+        return config->nodes[0].tiles[0].output.warp;
+    };
+    const std::string plain = "rect = [0, 0, 8, 6]\n", larger = "rect = [0, 0, 80, 60]\npixels = [8, 6]\n";
+    tile(file);
+    const auto first = read(plain);
+    EXPECT_EQ(read(plain), first);
+    EXPECT_NE(read(larger), first) << "which wants a finer mesh";
+    EXPECT_NE(read(plain), first) << "and is known instead";
+    const auto again = read(plain);
+    std::ofstream(folder_.file("p.mpcdi"), std::ios::binary)
+        << with({.files = mpcdi_fileset("left.pfm")}, field_of(60, 60, bent));
+    EXPECT_NE(read(plain), again);
+}
+
 TEST_F(MpcdiFile, HasARegionForEachTile) {
     const auto two = [](const std::string& second) {
         test::MpcdiText text;
@@ -304,7 +326,7 @@ TEST_F(MpcdiFile, SaysWhatIsWrongAndWhatWasExpected) {
         "[[node]]\nname = \"n\"\n[[node.tile]]\nname = \"left\"\nrect = [0, 0, 8, 6]\n"
         "mpcdi = \"q.mpcdi\"\n",
         "wall.toml");
-    EXPECT_THAT(load_files(*config, folder_.file("")).error().message,
+    EXPECT_THAT(files_.load(*config, folder_.file("")).error().message,
                 HasSubstr("q.mpcdi: cannot be read: expected the MPCDI file of tile 'left'"));
 }
 
@@ -315,6 +337,15 @@ TEST(Pfm, IsOfEitherByteOrder) {
         ASSERT_TRUE(read) << read.error().message;
         EXPECT_EQ(read->values, map.values);
     }
+}
+
+/// A cell of the finest mesh is 7.5 pixels, and its farthest corner twice that away along rows and columns.
+TEST(MpcdiMesh, ReachesBeyondTheBorderOfWhatIsShown) {
+    const auto map = field_of(1920, 270, [](double x, double y) -> Value {
+        if (std::hypot(x - 0.5, y - 0.5) > 0.5) return {kNan, kNan, kNan};
+        return {static_cast<float>(0.5 + 0.47 * std::sin((x - 0.5) * 1.9)), static_cast<float>(y), 0};
+    });
+    EXPECT_LE(mesh_of(map, 1920, 270, 0).error, 0.02f);
 }
 
 TEST(MpcdiMesh, IsAsFineAsItMustBe) {
