@@ -30,7 +30,7 @@ namespace wall::tileserver {
 namespace {
 
 constexpr auto kWaitable = asio::as_tuple(asio::use_awaitable);
-constexpr int kExitNotStarted = 127;  // as shells have it
+constexpr int kExitNotStarted = 127;  // as shells have it; an upgrade may just replace the program
 
 Error system_error(const char* what) { return {std::string(what) + ": " + std::strerror(errno)}; }
 
@@ -182,7 +182,7 @@ void GpuProcesses::has_ended(Gpu& gpu, int status) {
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     if (code == kExitDescribed) return stop(Ended::starts_anew);
     log::error("gpu_ended gpu={} by={}", log::quoted(gpu.name), log::quoted(how_it_ended(status)));
-    if (code == kExitMistake || code == kExitNotStarted) return stop(Ended::mistaken);
+    if (code == kExitMistake) return stop(Ended::mistaken);
     tell_ready();
 }
 

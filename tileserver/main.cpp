@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -90,10 +91,12 @@ Result<Ended> run(const NodeRole& role) {
     return ended;
 }
 
-/// This program, as it was started.
+/// This program, as it was started; or what an upgrade has put in its place.
 std::vector<std::string> command_of(const RoleSource& source) {
+    constexpr std::string_view kReplaced = " (deleted)";  // as the kernel says it
     std::error_code error;
     std::vector<std::string> out{std::filesystem::read_symlink("/proc/self/exe", error).string()};
+    if (out[0].ends_with(kReplaced)) out[0].resize(out[0].size() - kReplaced.size());
     const auto add = [&](const char* option, const std::string& value) {
         if (!value.empty()) out.insert(out.end(), {option, value});
     };
@@ -125,7 +128,7 @@ Result<GpuProcesses::Ended> run_all(const NodeRole& role, const RoleSource& sour
         of_gpu.gpu = gpu;
         return command_of(of_gpu);
     };
-    const auto& name = role.nodes().front().process;
+    const std::string name = role.nodes().front().process;
     const auto ready = [&] {
         sd_notify(0, ("READY=1\nSTATUS=node " + name).c_str());
         log::info("ready node={} gpus={}", log::quoted(name), gpus.size());

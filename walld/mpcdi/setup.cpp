@@ -17,7 +17,7 @@ using pugi::xml_node;
 
 constexpr double kMostExtent = 16384;  // pixels
 constexpr double kMostAngle = 89.5;    // of a frustum's edge from its middle
-constexpr double kMostTurn = 360, kMostMetres = 1e6;
+constexpr double kMostTurn = 360;
 constexpr double kLeastGamma = 0.1, kMostGamma = 10;
 constexpr double kAlmostUnit = 1e-2;  // what a unit vector's length may be off
 constexpr std::array<std::pair<const char*, Profile>, 4> kProfiles{

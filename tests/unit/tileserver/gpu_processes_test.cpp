@@ -63,7 +63,7 @@ TEST_F(ProcessesOfGpus, AreReadyWhenAllAre) {
 TEST_F(ProcessesOfGpus, AreStartedAgainWithoutTheOthers) {
     const auto ended = run({"a", "b"},
                            "echo $$ >>$1; say READY=1\n"
-                           "if [ $1 = a ]; then [ $(wc -l <a) -ge 3 ] && exit 100; kill -9 $$; fi; sleep 60");
+                           "if [ $1 = a ]; then [ $(wc -l <a) -ge 3 ] && exit 100; kill -9 $$; fi; exec sleep 60");
     ASSERT_TRUE(ended) << ended.error().message;
     EXPECT_EQ(*ended, Ended::starts_anew);
     EXPECT_EQ(std::ranges::count(content("a"), '\n'), 3) << content("a");
@@ -77,7 +77,7 @@ TEST_F(ProcessesOfGpus, AreKilledWhenTheySayNothing) {
     const auto ended = run({"a"},
                            "echo x >>a; say READY=1\n"
                            "if [ $(wc -l <a) = 2 ]; then for i in 1 2 3 4 5 6 7 8; do sleep 0.3; say WATCHDOG=1; "
-                           "done; exit 100; fi; sleep 60",
+                           "done; exit 100; fi; exec sleep 60",
                            limits);
     ASSERT_TRUE(ended) << ended.error().message;
     EXPECT_EQ(*ended, Ended::starts_anew) << "the second one lived, by its signs";
@@ -85,12 +85,20 @@ TEST_F(ProcessesOfGpus, AreKilledWhenTheySayNothing) {
 }
 
 TEST_F(ProcessesOfGpus, OfAMistakeAreNotStartedAgain) {
-    const auto ended = run({"a", "b"}, "echo x >>$1; [ $1 = a ] && exit 2; sleep 60");
+    const auto ended = run({"a", "b"}, "echo x >>$1; [ $1 = a ] && exit 2; exec sleep 60");
     ASSERT_TRUE(ended) << ended.error().message;
     EXPECT_EQ(*ended, Ended::mistaken);
     EXPECT_EQ(content("a"), "x\n");
-    const auto nowhere = [](const std::string&) { return std::vector<std::string>{"/nowhere/tileserver"}; };
-    EXPECT_EQ(*GpuProcesses({"a"}, nowhere, {}).run(), Ended::mistaken);
+}
+
+TEST_F(ProcessesOfGpus, WaitForAProgramThatIsBeingReplaced) {
+    int tries = 0;
+    const auto command = [&](const std::string&) {
+        if (++tries < 3) return std::vector<std::string>{"/nowhere/tileserver"};
+        return std::vector<std::string>{"/bin/sh", "-c", "exit 100"};
+    };
+    EXPECT_EQ(*GpuProcesses({"a"}, command, {}, kQuick).run(), Ended::starts_anew);
+    EXPECT_EQ(tries, 3);
 }
 
 TEST_F(ProcessesOfGpus, EndWithTheirParentInOrder) {
