@@ -172,8 +172,9 @@ int main(int argc, char** argv) {
     log::begin("walld");
     try {
         auto config = config::load_config(options.config);
-        const auto warps = config ? mpcdi::DescribedFiles().load(*config, std::filesystem::path(options.config).parent_path())
-                                  : tl::unexpected(config.error());
+        const auto warps =
+            config ? mpcdi::DescribedFiles().load(*config, std::filesystem::path(options.config).parent_path())
+                   : tl::unexpected(config.error());
         if (!warps) {
             std::cerr << "walld: " << warps.error().message << '\n';
             return kExitUsage;
