@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -21,13 +22,13 @@ namespace {
 using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 
-// What systemd-notify would do, without a package for it.
+// What systemd-notify would do, without a package for it; as whoever $as makes of us.
 constexpr const char* kNotify =
-    "say() { /usr/bin/python3 -c 'import os, socket, sys\n"
+    "say() { $as /usr/bin/python3 -c 'import os, socket, sys\n"
     "s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)\n"
     "s.sendto(sys.argv[1].encode(), chr(0) + os.environ[\"NOTIFY_SOCKET\"][1:])' \"$1\"; }\n";
 
-constexpr GpuProcesses::Limits kQuick{50ms, 100ms, 20s, 20s, 300ms};
+constexpr GpuProcesses::Limits kQuick{50ms, 100ms, 20s, 20s, 3s};
 
 class ProcessesOfGpus : public ::testing::Test {
 protected:
@@ -58,6 +59,17 @@ TEST_F(ProcessesOfGpus, AreReadyWhenAllAre) {
     ASSERT_TRUE(ended) << ended.error().message;
     EXPECT_EQ(*ended, Ended::starts_anew);
     EXPECT_EQ(content("ready"), "yes");
+}
+
+TEST_F(ProcessesOfGpus, HearNobodyElse) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can be somebody else";
+    const std::string nobody = "as='/usr/bin/setpriv --reuid 65534 --regid 65534 --clear-groups'\n";
+    for (const auto& [who, heard] : {std::pair(nobody, ""), std::pair(std::string("as=\n"), "yes")}) {
+        const auto ended = run({"a"}, who + "say READY=1 && touch said; sleep 0.3; exit 100");
+        ASSERT_TRUE(ended) << ended.error().message;
+        EXPECT_TRUE(std::filesystem::remove(folder_.file("said"))) << "it was sent";
+        EXPECT_EQ(content("ready"), heard) << who;
+    }
 }
 
 TEST_F(ProcessesOfGpus, AreStartedAgainWithoutTheOthers) {
@@ -108,7 +120,7 @@ TEST_F(ProcessesOfGpus, EndWithTheirParentInOrder) {
         ::kill(parent, SIGTERM);
     });
     const auto ended = run({"a", "b"},
-                           "trap 'echo in order >end-$1; exit 0' TERM; [ $1 = b ] && trap '' TERM\n"
+                           "gpu=$1; trap 'echo in order >end-$gpu; exit 0' TERM; [ $1 = b ] && trap '' TERM\n"
                            "echo $$ >$1; say READY=1; while :; do sleep 0.02; done");
     asks.join();
     ASSERT_TRUE(ended) << ended.error().message;
