@@ -94,6 +94,7 @@ Outcome<json> DescriptionDesk::set_drained(const json& arguments, bool on) {
     auto drained = file_.drained();
     if (!drained) return tl::unexpected(drained.error());
     for (const NodeIndex node : wall.nodes().ids()) {
+        if (wall.nodes()[node].duty == Duty::gone) continue;  // it stays what it was, if it comes again
         const auto& config = *wall.nodes()[node].config;
         const bool is_drained = std::ranges::count(nodes, node) > 0 ? on : wall.nodes()[node].duty == Duty::drained;
         drained->erase(config.process);
