@@ -27,6 +27,11 @@ const char* fixed_difference(const config::WallConfig& before, const config::Wal
 DescriptionDesk::DescriptionDesk(WallFile file, std::string toml, std::filesystem::path state, const Told& told)
     : file_(std::move(file)), toml_(std::move(toml)), state_(std::move(state)), told_(told) {
     told_.machines.set_wall_toml(toml_);
+    drain();
+}
+
+/// Nodes that were drained, by their own name or their tileserver's, and have come (again) with a description.
+void DescriptionDesk::drain() const {
     const auto drained = file_.drained();
     if (!drained) {
         log::error("drained_unknown reason={}", log::quoted(drained.error().message));
@@ -75,6 +80,7 @@ Outcome<json> DescriptionDesk::take(Outcome<Description> next) {
         told_.links.let_go(node, "it is described otherwise");
     }
     wall.describe(std::move(next->config));
+    drain();
     for (const NodeIndex node : wall.nodes().ids()) {
         if (node.value >= known) names.push_back(wall.nodes()[node].config->name);
         if (std::ranges::count(others, node) == 0) tell(node);
@@ -93,13 +99,21 @@ Outcome<json> DescriptionDesk::set_drained(const json& arguments, bool on) {
     if (nodes.empty()) return refuse(RefusalKind::not_found, "there is no node '" + *name + "'");
     auto drained = file_.drained();
     if (!drained) return tl::unexpected(drained.error());
-    for (const NodeIndex node : wall.nodes().ids()) {
-        if (wall.nodes()[node].duty == Duty::gone) continue;  // it stays what it was, if it comes again
-        const auto& config = *wall.nodes()[node].config;
-        const bool is_drained = std::ranges::count(nodes, node) > 0 ? on : wall.nodes()[node].duty == Duty::drained;
-        drained->erase(config.process);
-        if (is_drained) drained->insert(config.name);
-        else drained->erase(config.name);
+    // A tileserver is drained by its name if all of its GPUs are: so it stays when it has others. Those that are gone
+    // stay what they were, if they come again.
+    const auto is_drained = [&](NodeIndex node) {
+        return std::ranges::count(nodes, node) > 0 ? on : wall.nodes()[node].duty == Duty::drained;
+    };
+    for (const auto& config : wall.config().nodes) {
+        const auto of_process = wall.nodes_called(config.process);
+        const bool all = std::ranges::all_of(of_process, is_drained);
+        for (const NodeIndex node : of_process) {
+            const auto& its_name = wall.nodes()[node].config->name;
+            if (is_drained(node) && !all) drained->insert(its_name);
+            else drained->erase(its_name);
+        }
+        if (all) drained->insert(config.process);
+        else if (of_process.size() > 1) drained->erase(config.process);
     }
     if (auto kept = file_.set_drained(*drained); !kept) return tl::unexpected(kept.error());
     const auto duty = on ? Duty::drained : Duty::serves;

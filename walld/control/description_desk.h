@@ -53,6 +53,7 @@ public:
     void tell(NodeIndex node) const;
 
 private:
+    void drain() const;
     Outcome<nlohmann::json> take(Outcome<Description> next);
     Outcome<nlohmann::json> set_drained(const nlohmann::json& arguments, bool on);
 

@@ -136,6 +136,14 @@ class ANodeOfTwoGpus(unittest.TestCase):
         self.assert_becomes_right()
         with self.assertRaisesRegex(WallError, "there is no node 'a/gpu2'"):
             self.wall.ctl("node", "drain", "a/gpu2")
+        self.wall.ctl("node", "drain", "a")
+        for gpus, names in (({}, ["a"]), ({"a": "gpus = 2"}, GPUS[:2])):
+            self.wall.node_keys = gpus
+            self.wall.write(PLAN)
+            self.wall.ctl("reload")
+            self.assertEqual(drained(), names, "as a whole, also when it has other GPUs")
+        self.wall.ctl("node", "undrain", "a/gpu0")
+        self.assertEqual(drained(), ["a/gpu1"])
 
     def test_tiles_move_from_one_to_the_other(self) -> None:
         def expect(tiles: dict[str, str]) -> None:
