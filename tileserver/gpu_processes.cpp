@@ -230,7 +230,8 @@ asio::awaitable<void> GpuProcesses::feed_systemd() {
 void GpuProcesses::stop(Ended how) {
     if (ended_) return;
     ended_ = how;
-    sd_notify(0, "STOPPING=1");
+    // Not of one that starts anew: systemd would see to it that it ends.
+    if (how != Ended::starts_anew) sd_notify(0, "STOPPING=1");
     const auto end = [this](int signal) {
         for (const auto& gpu : gpus_)
             if (gpu.pid != 0) ::kill(gpu.pid, signal);

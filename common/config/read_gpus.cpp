@@ -56,11 +56,11 @@ std::string read_gpu(TreeReader& read, const toml::table& tile) {
     const bool is_address = text.size() >= kLeastAddress && text.size() <= kMostAddress &&
                             text.find_first_not_of("0123456789abcdef:.") == std::string::npos &&
                             text.find(':') != std::string::npos;
-    if (text == "auto" || is_address) return text;
+    if (text == kAnyGpu || is_address) return text;
     read.refuse(node->source(),
                 "'gpu': expected \"auto\", a number (`tileserver --gpus` lists them), or a PCI address such as "
                 "\"0000:65:00.0\"");
-    return "auto";
+    return kAnyGpu;
 }
 
 void read_gpus(TreeReader& read, const toml::table& root, std::vector<NodeConfig>& nodes) {

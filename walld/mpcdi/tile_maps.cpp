@@ -16,9 +16,8 @@ constexpr double kLeastAhead = 0.05;                         // of a direction, 
 constexpr std::uint32_t kLeastCells = 16, kMostCells = 255;  // of a mesh's longer side
 constexpr double kFarthest = 1e6;                            // of a place, in fractions of the picture
 
-bool shows(const Field::Value& value) {
-    return std::abs(value[0]) < kFarthest && std::abs(value[1]) < kFarthest && std::isfinite(value[2]);
-}
+/// Which no NaN is.
+bool is_place(const Field::Value& value) { return std::abs(value[0]) < kFarthest && std::abs(value[1]) < kFarthest; }
 
 double dot(const Wide& a, const Wide& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Wide cross(const Wide& a, const Wide& b) {
@@ -196,7 +195,7 @@ geom::LightMap::Map map_of(const Factors* factors, double gamma, double projecto
 Result<Look> look_of(const Region& region, Profile profile, Field map, const geom::Vec3& eye) {
     if (profile == Profile::surface || profile == Profile::lamps) return seen_by_eye(region, std::move(map), eye);
     for (auto& value : map.values)
-        if (!shows({value[0], value[1], 0})) value = {kNothing, kNothing, kNothing};
+        if (!is_place(value)) value = {kNothing, kNothing, kNothing};
     std::optional<geom::View> view;
     if (region.frustum) {
         const auto& f = *region.frustum;

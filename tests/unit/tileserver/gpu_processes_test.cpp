@@ -5,15 +5,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <thread>
 
+#include "common/base/unique_fd.h"
 #include "tests/support/temporary_folder.h"
 
 namespace wall::tileserver {
@@ -29,6 +33,8 @@ constexpr const char* kNotify =
     "s.sendto(sys.argv[1].encode(), chr(0) + os.environ[\"NOTIFY_SOCKET\"][1:])' \"$1\"; }\n";
 
 constexpr GpuProcesses::Limits kQuick{50ms, 100ms, 20s, 20s, 3s};
+
+constexpr int kTries = 2000;  // 10 ms each
 
 class ProcessesOfGpus : public ::testing::Test {
 protected:
@@ -59,6 +65,25 @@ TEST_F(ProcessesOfGpus, AreReadyWhenAllAre) {
     ASSERT_TRUE(ended) << ended.error().message;
     EXPECT_EQ(*ended, Ended::starts_anew);
     EXPECT_EQ(content("ready"), "yes");
+}
+
+/// What systemd would hear.
+TEST_F(ProcessesOfGpus, SayThatTheyStopOnlyIfTheyDo) {
+    for (const auto& [code, told] : {std::pair("100", ""), std::pair("2", "STOPPING=1")}) {
+        const UniqueFd socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+        const auto path = folder_.file(std::string("systemd") + code);
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        path.copy(address.sun_path, sizeof address.sun_path - 1);
+        ASSERT_EQ(::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+        ::setenv("NOTIFY_SOCKET", path.c_str(), 1);
+        const auto ended = run({"a"}, std::string("exit ") + code);
+        ::unsetenv("NOTIFY_SOCKET");
+        ASSERT_TRUE(ended) << ended.error().message;
+        std::array<char, 64> text{};
+        const auto bytes = ::recv(socket.get(), text.data(), text.size(), MSG_DONTWAIT);
+        EXPECT_EQ(std::string(text.data(), bytes > 0 ? static_cast<std::size_t>(bytes) : 0), told);
+    }
 }
 
 TEST_F(ProcessesOfGpus, HearNobodyElse) {
@@ -116,7 +141,7 @@ TEST_F(ProcessesOfGpus, WaitForAProgramThatIsBeingReplaced) {
 TEST_F(ProcessesOfGpus, EndWithTheirParentInOrder) {
     const auto parent = ::getpid();
     std::thread asks([parent, this] {
-        while (content("ready").empty()) std::this_thread::sleep_for(10ms);
+        for (int i = 0; i < kTries && content("ready").empty(); ++i) std::this_thread::sleep_for(10ms);
         ::kill(parent, SIGTERM);
     });
     const auto ended = run({"a", "b"},
@@ -135,11 +160,11 @@ TEST_F(ProcessesOfGpus, EndWithAParentThatIsKilled) {
         static_cast<void>(run({"a"}, "echo $$ >a; say READY=1; while :; do sleep 0.02; done"));
         ::_exit(0);
     }
-    while (content("ready").empty()) std::this_thread::sleep_for(10ms);
+    for (int i = 0; i < kTries && content("ready").empty(); ++i) std::this_thread::sleep_for(10ms);
     ::kill(parent, SIGKILL);
     ::waitpid(parent, nullptr, 0);
     const pid_t child = std::stoi(content("a"));
-    for (int i = 0; i < 500 && ::kill(child, 0) == 0; ++i) std::this_thread::sleep_for(10ms);
+    for (int i = 0; i < kTries && ::kill(child, 0) == 0; ++i) std::this_thread::sleep_for(10ms);
     EXPECT_NE(::kill(child, 0), 0);
 }
 
