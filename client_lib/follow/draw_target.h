@@ -64,12 +64,12 @@ public:
                                             : std::span<const SurfaceView>();
     }
     /// Those that tiles have of a window, or would have if its camera were known.
-    std::span<const geom::View> offered_views() const {
-        return surface_ ? std::span<const geom::View>(surface_->views.offered) : std::span<const geom::View>();
+    std::span<const geom::EyeView> offered_views() const {
+        return surface_ ? std::span<const geom::EyeView>(surface_->views.offered) : std::span<const geom::EyeView>();
     }
-    /// Vertices are drawn by this projection; null: by none that is known.
-    void note_camera(const glstate::Projection* projection) const {
-        if (surface_ && !surface_->views.offered.empty()) surface_->views.note(projection);
+    /// Vertices in this box are drawn by this projection; null: by none that is known.
+    void note_camera(const glstate::Projection* projection, const geom::Box* box) const {
+        if (surface_ && surface_->views.wanted()) surface_->views.note(projection, box);
     }
     /// The surface whose hidden part may be kept instead of being drawn; null: there is no such part, or no target.
     ClientSurface* with_hidden_part() const {

@@ -158,8 +158,10 @@ void ClientSession::begin_frame(ClientSurface& surface) {
 
 std::vector<geom::View> ClientSession::views_of(const DrawTarget& target) {
     std::lock_guard lock(mutex_);
-    const auto views = target.offered_views();
-    return {views.begin(), views.end()};
+    std::vector<geom::View> out;
+    for (const geom::EyeView& view : target.offered_views())
+        if (view.elsewhere) out.push_back(*view.elsewhere);
+    return out;
 }
 
 Wholeness ClientSession::wholeness(const ClientSurface& surface) {

@@ -42,7 +42,7 @@ public:
     /// Adopts what changed since the last frame: placements, nodes that came or went, the window's size. Called where
     /// a frame begins, so that culling and drawing of one frame agree on one layout.
     void begin_frame(ClientSurface& surface);
-    /// DrawTarget::offered_views(), as they are now.
+    /// Where DrawTarget::offered_views() look, as far as they look elsewhere.
     std::vector<geom::View> views_of(const DrawTarget& target);
     Wholeness wholeness(const ClientSurface& surface);
     /// Every node has all of its pixels, at the window's own resolution.

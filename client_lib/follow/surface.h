@@ -44,6 +44,7 @@ public:
     bool depth_images = false;           ///< depth or stencil was drawn as an image
     CopyHabit copies;                    ///< out of it
     ViewUse views;                       ///< whether tiles that look elsewhere show what is there
+    std::optional<Stereo> stereo;        ///< as the last placement has it
     std::unique_ptr<HiddenPart> hidden;  ///< what no tile shows; null: nothing
     // In a parallel program.
     std::deque<Placement> coming;  ///< for frames that have not begun, in order

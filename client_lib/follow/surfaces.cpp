@@ -19,6 +19,36 @@ std::optional<Extent> window_size(const ClientSurface& surface) {
     return surface.options.query_size ? surface.options.query_size() : std::nullopt;
 }
 
+/// How far the picture of a tile is from the program's own.
+geom::Parallax parallax_of(const ClientSurface& surface, geom::Eye eye) {
+    if (!surface.stereo || eye == geom::Eye::both) return {};
+    const double screen =
+        surface.stereo->screen > 0 ? static_cast<double>(surface.stereo->screen) : surface.views.distance.value();
+    if (!(screen > 0)) return {};
+    // Both eyes together are apart by `separation` of the window, which is two half widths.
+    const float shift = eye == geom::Eye::left ? -surface.stereo->separation : surface.stereo->separation;
+    return {shift, static_cast<float>(screen)};
+}
+
+/// What a tile shows of the window instead of `part` of the program's picture, if it does. (A window that covers only a
+/// part of a tile that looks elsewhere lies there as on any other.)
+std::optional<geom::EyeView> eye_view(const ClientSurface& surface, const TileInfo& tile, const geom::Rect& part) {
+    geom::EyeView out{.parallax = parallax_of(surface, tile.eye)};
+    if (part == tile.rect) out.elsewhere = tile.view;
+    return out.elsewhere || out.parallax.shift != 0 ? std::optional(out) : std::nullopt;
+}
+
+TargetLayer view_layer(SurfaceLayout& layout, const TileInfo& tile, const geom::Rect& part, const geom::EyeView& view) {
+    const geom::Rect& covers = view.elsewhere ? tile.rect : layout.rect;
+    layout.views.push_back({view, static_cast<float>(layout.width) / static_cast<float>(covers.width),
+                            static_cast<float>(layout.height) / static_cast<float>(covers.height)});
+    const auto index = static_cast<std::uint32_t>(layout.views.size());
+    if (view.elsewhere) return view_layer(layout, tile.node, tile.slot, index);
+    TargetLayer out = tile_layer(layout, tile.node, tile.slot, part);
+    out.view = index;
+    return out;
+}
+
 }  // namespace
 
 // ---- opening and closing ----
@@ -34,7 +64,7 @@ void Surfaces::open(ClientSurface& surface) {
                           surface.options.messages);
     const auto placement = control_.wait_placement(surface.id, kPlacementTimeout);
     if (group_) surface.window = {surface.layout.width, surface.layout.height};
-    else if (placement) apply_layout(surface, *placement);
+    else if (placement) take_place(surface, *placement);
 }
 
 void Surfaces::close(ClientSurface& surface) {
@@ -73,6 +103,13 @@ void Surfaces::adopt_placements() {
     for (auto& [id, surface] : open_) adopt_placement(*surface);
 }
 
+/// And how it is shown to two eyes, of which apply_layout() alone changes nothing.
+void Surfaces::take_place(ClientSurface& surface, const Placement& placement) {
+    surface.stereo = placement.stereo;
+    surface.views.measure(surface.stereo && surface.stereo->screen == 0);
+    apply_layout(surface, placement);
+}
+
 void Surfaces::apply_layout(ClientSurface& surface, const Placement& placement) {
     SurfaceLayout& layout = surface.layout;
     layout.layers.clear();
@@ -98,19 +135,10 @@ void Surfaces::apply_layout(ClientSurface& surface, const Placement& placement) 
         nodes_.at(tile.node);  // also one that is not up
         const geom::Rect part = geom::intersect(tile.rect, layout.rect);
         if (part.empty()) continue;
-        const bool looks_elsewhere = tile.view && part == tile.rect && !common(surface);
-        if (looks_elsewhere) surface.views.offered.push_back(*tile.view);
-        if (!looks_elsewhere || !surface.views.used) {
-            layout.layers.push_back(tile_layer(layout, tile.node, tile.slot, part));
-            continue;
-        }
-        const auto ratio = [](std::uint32_t window, std::int32_t of_tile) {
-            return static_cast<float>(window) / static_cast<float>(of_tile);
-        };
-        layout.views.push_back(
-            {*tile.view, ratio(layout.width, tile.rect.width), ratio(layout.height, tile.rect.height)});
-        const auto view = static_cast<std::uint32_t>(layout.views.size());
-        layout.layers.push_back(view_layer(layout, tile.node, tile.slot, view));
+        const auto view = common(surface) ? std::nullopt : eye_view(surface, tile, part);
+        if (view) surface.views.offered.push_back(*view);
+        layout.layers.push_back(view && surface.views.used ? view_layer(layout, tile, part, *view)
+                                                           : tile_layer(layout, tile.node, tile.slot, part));
     }
     using Views = ControlLink::Views;
     control_.surface_views(surface.id, surface.views.offered.empty() ? Views::none
@@ -198,8 +226,8 @@ void Surfaces::follow_window(ClientSurface& surface) {
 void Surfaces::adopt_placement(ClientSurface& surface) {
     if (!surface.next || in_frame(surface)) return;
     const Placement placement = *std::exchange(surface.next, std::nullopt);
-    const bool moved = placement.rect != surface.layout.rect;
-    apply_layout(surface, placement);
+    const bool moved = placement.rect != surface.layout.rect || placement.stereo != surface.stereo;
+    take_place(surface, placement);
     control_.surface_adopted(surface.id, placement.layout_version, surface.frame + 1, kPlacementTimeout);
     if (moved && (surface.frame > 0 || !surface.options.format.double_buffered)) control_.ask_to_redraw(surface.id);
 }

@@ -48,6 +48,7 @@ private:
     void lay_whole(ClientSurface& surface);
     void look_otherwise(ClientSurface& surface);
     void lay_hidden(ClientSurface& surface);
+    void take_place(ClientSurface& surface, const Placement& placement);
     void apply_layout(ClientSurface& surface, const Placement& placement);
     void adopt_placement(ClientSurface& surface);
     void adopt_agreed(ClientSurface& surface);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Whether a window is seen through the views of the tiles that it covers (docs/walls.md, "Views"), which a program can
-// be whose vertices go through a camera that is known: frame after frame those are counted that do, and those of which
-// nobody knows. What is drawn without a perspective (a title over the scene) tells nothing. The session's mutex guards
-// it.
+// Whether a window is seen through the views of the tiles that it covers (docs/walls.md, "Views", "Stereo"), which a
+// program can be whose vertices go through a camera that is known: frame after frame those are counted that do, and
+// those of which nobody knows. What is drawn without a perspective (a title over the scene) tells nothing. The
+// session's mutex guards it.
 #pragma once
 
 #include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "client_lib/follow/middle_distance.h"
 #include "common/glstate/projection.h"
 #include "common/glstate/view_change.h"
 
@@ -16,31 +17,39 @@ namespace wall::client {
 
 class ViewUse {
 public:
-    std::vector<geom::View> offered;  ///< of the tiles that it covers and that look elsewhere
-    bool used = false;                ///< they show what is there; else their parts of the program's picture
+    std::vector<geom::EyeView> offered;  ///< of the tiles that it covers and that look elsewhere, or with one eye
+    bool used = false;                   ///< they show what is there; else their parts of the program's picture
+    MiddleDistance distance;             ///< of what is drawn
 
-    /// Something is drawn by a projection; null: by none that is known.
-    void note(const glstate::Projection* projection) {
+    /// Something is drawn by a projection, in a box where one is known; null: by none that is known.
+    void note(const glstate::Projection* projection, const geom::Box* box) {
         if (projection == nullptr || projection->camera == glstate::Mat4{}) {
             ++unknown_;
             return;
         }
         if (std::exchange(camera_, projection->camera) != projection->camera)
-            perspective_ = glstate::view_change(geom::View{}, camera_).has_value();
-        if (perspective_) ++seen_;
+            perspective_ = glstate::view_change(geom::EyeView{}, camera_).has_value();
+        if (!perspective_) return;
+        ++seen_;
+        if (box != nullptr) distance.note(projection->clip_from_object, *box);
     }
     /// A frame is over. True: from the next one on it is seen otherwise.
     bool finish_frame() {
         const unsigned seen = std::exchange(seen_, 0), unknown = std::exchange(unknown_, 0);
-        if (offered.empty() || seen + unknown == 0) return false;
+        const bool farther = distance.finish_frame();
+        if (!wanted() || seen + unknown == 0) return false;
         const bool now = seen > 0 && seen >= unknown;
-        return std::exchange(used, now) != now;
+        return std::exchange(used, now) != now || (farther && measures_);
     }
+    /// The distance of what is drawn counts.
+    void measure(bool on) { measures_ = on; }
+    /// Somebody wants to know what note() is told.
+    bool wanted() const { return measures_ || !offered.empty(); }
 
 private:
     unsigned seen_ = 0, unknown_ = 0;  ///< draws of the frame
     glstate::Mat4 camera_{};           ///< of the last of them
-    bool perspective_ = false;
+    bool perspective_ = false, measures_ = false;
 };
 
 }  // namespace wall::client

@@ -30,9 +30,10 @@ struct TargetLayer {
     bool is_whole_window() const;                                   ///< made by whole_window()
 };
 
-/// What a tile shows of a window's scene, instead of a part of its picture: all of the window lies on the tile.
+/// What a tile shows of a window's scene, instead of a part of its picture. Where it looks elsewhere all of the window
+/// lies on the tile.
 struct SurfaceView {
-    geom::View view;
+    geom::EyeView view;
     float window_pixels_x = 1, window_pixels_y = 1;  ///< that one of the tile's is as large as
     bool operator==(const SurfaceView&) const = default;
 };

@@ -166,6 +166,10 @@ Hello Hello::from_environment() {
         hello.invalid = parse_parallel(text).error().message;
     const auto hold = environment("WALLGL_HOLD");
     hello.hold = !hold.empty() && hold != "0";
+    if (const auto stereo = environment("WALLGL_STEREO"); !stereo.empty()) {
+        hello.stereo = stereo_of_text(stereo);
+        if (!hello.stereo) hello.invalid = "WALLGL_STEREO: expected PERCENT or PERCENT,DISTANCE, got '" + stereo + "'";
+    }
     const auto rect = environment("WALLGL_RECT");
     if (rect.empty()) return hello;
     hello.fullscreen = rect == "fullscreen";

@@ -34,6 +34,12 @@ void put_rect(pbf_writer& parent, protozero::pbf_tag_type tag, const geom::Rect&
     out.add_uint32(4, static_cast<std::uint32_t>(rect.height));
 }
 
+void put_stereo(pbf_writer& parent, protozero::pbf_tag_type tag, const Stereo& stereo) {
+    pbf_writer out(parent, tag);
+    out.add_float(1, stereo.separation);
+    out.add_float(2, stereo.screen);
+}
+
 void put_resume(pbf_writer& parent, protozero::pbf_tag_type tag, const Resume& resume) {
     pbf_writer out(parent, tag);
     out.add_uint32(1, resume.session.value);
@@ -79,6 +85,12 @@ std::string in_envelope(protozero::pbf_tag_type tag, Fill&& fill) {
 std::uint32_t read_u32(pbf_reader& in) {
     if (in.wire_type() != protozero::pbf_wire_type::varint) wrong_field();
     return in.get_uint32();
+}
+
+float read_float(pbf_reader& in) {
+    if (in.wire_type() == protozero::pbf_wire_type::fixed32) return in.get_float();
+    in.skip();
+    return 0;
 }
 
 std::string read_string(pbf_reader& in) {
@@ -155,6 +167,24 @@ std::optional<geom::View> read_view(pbf_reader in) {
     return view && geom::wrong_with(*view) == nullptr ? view : std::nullopt;
 }
 
+geom::Eye read_eye(pbf_reader& in) {
+    const auto eye = read_u32(in);
+    return eye <= static_cast<std::uint32_t>(geom::Eye::right) ? static_cast<geom::Eye>(eye) : geom::Eye::both;
+}
+
+/// Nothing: it cannot be.
+std::optional<Stereo> read_stereo(pbf_reader in) {
+    Stereo out;
+    while (in.next()) {
+        switch (in.tag()) {
+            case 1: out.separation = read_float(in); break;
+            case 2: out.screen = read_float(in); break;
+            default: in.skip();
+        }
+    }
+    return is_sound(out) ? std::optional(out) : std::nullopt;
+}
+
 TileInfo read_tile(pbf_reader in) {
     TileInfo tile;
     while (in.next()) {
@@ -164,6 +194,7 @@ TileInfo read_tile(pbf_reader in) {
             case 3: tile.rect = read_rect(read_message(in)); break;
             case 4: tile.name = read_string(in); break;
             case 5: tile.view = read_view(read_message(in)); break;
+            case 6: tile.eye = read_eye(in); break;
             default: in.skip();
         }
     }
@@ -214,6 +245,7 @@ Placement read_placement(pbf_reader in) {
             case 6: placement.height = read_u32(in); break;
             case 7: placement.nodes.push_back(read_node(read_message(in), true)); break;
             case 8: placement.agreed = read_u32(in) != 0; break;
+            case 9: placement.stereo = read_stereo(read_message(in)); break;
             default: in.skip();
         }
     }
@@ -312,6 +344,7 @@ std::string encode(const Hello& hello) {
         if (hello.hold) out.add_bool(7, true);
         put_string(out, 8, hello.token);
         if (hello.resume) put_resume(out, 10, *hello.resume);
+        if (hello.stereo) put_stereo(out, 11, *hello.stereo);
         if (!hello.group) return;
         pbf_writer group(out, 9);
         put_string(group, 1, hello.group->group);

@@ -17,6 +17,7 @@
 #include "client_lib/process/traffic.h"
 #include "common/base/ids.h"
 #include "common/base/result.h"
+#include "common/base/stereo.h"
 #include "common/geom/rect.h"
 #include "common/geom/view.h"
 
@@ -37,6 +38,7 @@ struct Hello {
     std::optional<geom::Rect> rect;  ///< WALLGL_RECT; nothing: where there is room, 1:1
     bool fullscreen = false;         ///< WALLGL_RECT=fullscreen
     bool hold = false;               ///< WALLGL_HOLD
+    std::optional<Stereo> stereo;    ///< WALLGL_STEREO
     std::string token;               ///< from WALLGL_TOKEN_FILE: who owns the session, if not the Unix user
     std::optional<Parallel> group;   ///< from WALLGL_PARALLEL
     std::optional<Resume> resume;    ///< it was on the wall before
@@ -67,6 +69,7 @@ struct TileInfo {
     geom::Rect rect;  ///< canvas
     std::string name;
     std::optional<geom::View> view;  ///< none: it shows its part of the canvas
+    geom::Eye eye = geom::Eye::both;
 };
 
 /// The tiles of the wall at some time. Many placements share them.
@@ -91,7 +94,8 @@ struct Placement {
     SurfaceId surface;
     std::uint32_t layout_version = 0;
     geom::Rect rect;
-    Tiles tiles;  ///< among which it lies; the link adds them, from what walld said last
+    Tiles tiles;                   ///< among which it lies; the link adds them, from what walld said last
+    std::optional<Stereo> stereo;  ///< none: tiles of both eyes show the same
     // To a parallel program.
     std::uint32_t from_frame = 0;         ///< it holds from this frame on
     std::uint32_t width = 0, height = 0;  ///< of the window, in every member

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "common/config/eyes.h"
 #include "common/config/parse_toml.h"
 #include "common/config/read_gpus.h"
 #include "common/config/read_output.h"
@@ -73,15 +74,19 @@ void read_http(TreeReader& read, const toml::table& root, WallConfig& out) {
 }
 
 TileConfig read_tile(TreeReader& read, const toml::table& table, const geom::Vec3& eye) {
-    read.only(table, "[[node.tile]]", {"name",     "rect",   "output",  "display",  "monitor", "position", "gpu",
-                                       "rotation", "pixels", "size_mm", "bezel_mm", "warp",    "mpcdi",    "blend",
-                                       "color",    "yaw",    "pitch",   "roll",     "fov",     "screen"});
+    read.only(table, "[[node.tile]]",
+              {"name",   "rect",    "output",   "display", "monitor", "position", "gpu",   "rotation",
+               "pixels", "size_mm", "bezel_mm", "warp",    "mpcdi",   "blend",    "color", "yaw",
+               "pitch",  "roll",    "fov",      "screen",  "eye",     "stereo"});
     TileConfig out{read.text(table, "name"), read.rect(table, "rect"), read_output(read, table)};
     out.gpu = read_gpu(read, table);
     read_tile_output(read, table, out);
+    read_eyes(read, table, out);
     out.view = read_view(read, table, out.rect, eye);
     return out;
 }
+
+bool shows_two_eyes(const TileConfig& tile) { return tile.output.stereo != geom::StereoLayout::none; }
 
 NodeConfig read_node(TreeReader& read, const toml::table& table, const geom::Vec3& eye) {
     read.only(table, "[[node]]", {"name", "backend", "listen", "gpus", "tile"});
@@ -94,14 +99,15 @@ NodeConfig read_node(TreeReader& read, const toml::table& table, const geom::Vec
     if (const auto* listen = table.get("listen")) out.listen = read.address(*listen, "'listen'");
     else out.listen = {.path = {}, .host = "127.0.0.1", .port = net::kDefaultDataPort};
     const auto tiles = read.tables(table, "tile", "[[node.tile]]");
-    if (tiles.size() >= wire::kOffscreenSlot) {
-        read.refuse(table.source(), "node '" + out.name + "' has " + std::to_string(tiles.size()) +
-                                        " tiles: expected at most " + std::to_string(wire::kOffscreenSlot - 1));
-    }
     for (const auto* tile : tiles) {
         out.tiles.push_back(read_tile(read, *tile, eye));
         check_output(read, *tile, out);
     }
+    const auto pictures = out.tiles.size() + static_cast<std::size_t>(std::ranges::count_if(out.tiles, shows_two_eyes));
+    if (pictures >= wire::kOffscreenSlot)
+        read.refuse(table.source(), "node '" + out.name + "' has " + std::to_string(pictures) +
+                                        " tiles, counting those of two eyes twice: expected at most " +
+                                        std::to_string(wire::kOffscreenSlot - 1));
     return out;
 }
 
@@ -114,8 +120,9 @@ void read_nodes(TreeReader& read, const toml::table& root, WallConfig& out) {
         if (!nodes.insert(node.name).second)
             read.refuse(table->source(), "node '" + node.name + "' appears twice: expected unique names");
         for (const auto& tile : node.tiles) {
-            if (!tiles.insert(tile.name).second)
-                read.refuse(table->source(), "tile '" + tile.name + "' appears twice: expected unique names");
+            for (const auto& name : {tile.name, shows_two_eyes(tile) ? companion_name(tile.name) : std::string()})
+                if (!name.empty() && !tiles.insert(name).second)
+                    read.refuse(table->source(), "tile '" + name + "' appears twice: expected unique names");
         }
     }
 }
@@ -131,6 +138,7 @@ void relate_tiles(TreeReader& read, const toml::table& root, WallConfig& wall) {
     }
     place_behind_bezels(read, all);
     check_blends(read, all);
+    check_eyes(read, all);
 }
 
 /// [quota]: what is left out is as much as there is.
@@ -180,6 +188,7 @@ WallConfig read_wall(TreeReader& read, const toml::table& root) {
     read_nodes(read, root, out);
     relate_tiles(read, root, out);
     read_gpus(read, root, out.nodes);
+    std::ranges::for_each(out.nodes, add_companions);
     return out;
 }
 
@@ -196,6 +205,7 @@ Result<std::vector<NodeConfig>> parse_nodes(std::string_view toml, std::string_v
         read.only(root, "the nodes", {"node"});
         read_nodes(read, root, out);
         read_gpus(read, root, out.nodes);
+        std::ranges::for_each(out.nodes, add_companions);
         return out.nodes;
     });
 }

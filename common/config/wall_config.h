@@ -40,6 +40,7 @@ struct TileConfig {
     std::string mpcdi_file;              ///< the same
     std::string gpu = "auto";            ///< or a number, or a PCI address
     std::optional<geom::View> view;      ///< where it looks; none: it is a part of the canvas as the others
+    geom::Eye eye = geom::Eye::both;     ///< that sees it
     bool operator==(const TileConfig&) const = default;
 };
 /// `headless` or `window`, as in wall.toml.

@@ -106,7 +106,19 @@ bool TileOutput::operator==(const TileOutput& other) const {
     const bool same_warp = warp == other.warp || (warp && other.warp && *warp == *other.warp);
     const bool same_light = light == other.light || (light && other.light && *light == *other.light);
     return rotation == other.rotation && width == other.width && height == other.height && same_warp &&
-           blend == other.blend && same_light && color == other.color;
+           blend == other.blend && same_light && color == other.color && stereo == other.stereo &&
+           right_slot == other.right_slot;
+}
+
+const char* name_of(StereoLayout layout) {
+    switch (layout) {
+        case StereoLayout::side_by_side: return "side-by-side";
+        case StereoLayout::over_under: return "over-under";
+        case StereoLayout::rows: return "rows";
+        case StereoLayout::anaglyph: return "anaglyph";
+        case StereoLayout::none: break;
+    }
+    return "";
 }
 
 TileOutput plain_output(const Rect& tile) { return {.width = tile.width, .height = tile.height}; }

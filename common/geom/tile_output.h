@@ -77,6 +77,17 @@ struct ColorCorrection {
     bool operator==(const ColorCorrection&) const = default;
 };
 
+/// How one output shows the pictures of two eyes.
+enum class StereoLayout : std::uint8_t {
+    none,          ///< it does not
+    side_by_side,  ///< the left half is the left eye's, each half as wide as the whole is
+    over_under,    ///< the upper half is the left eye's
+    rows,          ///< rows 0, 2, ... are the left eye's
+    anaglyph,      ///< red is the left eye's, green and blue are the right one's
+};
+/// As in wall.toml; "" for none.
+const char* name_of(StereoLayout layout);
+
 struct TileOutput {
     /// Degrees that the monitor is turned clockwise, as seen from in front of it: 0, 90, 180, 270.
     std::uint32_t rotation = 0;
@@ -85,6 +96,8 @@ struct TileOutput {
     std::optional<Blend> blend;
     std::shared_ptr<const LightMap> light;  ///< none: all of it everywhere
     std::optional<ColorCorrection> color;
+    StereoLayout stereo = StereoLayout::none;
+    std::uint32_t right_slot = 0;              ///< whose picture the right eye sees, if there are two
     bool operator==(const TileOutput&) const;  ///< of what warp and light say
 };
 

@@ -109,4 +109,25 @@ const char* wrong_with(const View& view) {
     return nullptr;
 }
 
+EyeViewValues values_of(const EyeView& view) {
+    EyeViewValues out{};
+    out[0] = view.elsewhere ? 1 : 0;
+    if (view.elsewhere) std::ranges::copy(values_of(*view.elsewhere), out.begin() + 1);
+    out[14] = view.parallax.shift;
+    out[15] = view.parallax.screen;
+    return out;
+}
+
+std::variant<EyeView, const char*> eye_view_of_values(const EyeViewValues& values) {
+    constexpr float kMostShift = 1;  // half widths: at 1 the two eyes' pictures are a whole one apart
+    constexpr float kLeastScreen = 1e-6f, kMostScreen = 1e9f;  // the program's units
+    EyeView out{.parallax = {values[14], values[15]}};
+    if (!(std::abs(out.parallax.shift) <= kMostShift)) return "eyes that are more than a picture apart";
+    if (!(out.parallax.screen >= kLeastScreen && out.parallax.screen <= kMostScreen)) return "a screen at no distance";
+    if (values[0] == 0) return out;
+    out.elsewhere = view_of_values(std::span(values).subspan<1, ViewValues{}.size()>());
+    if (const char* wrong = wrong_with(*out.elsewhere)) return wrong;
+    return out;
+}
+
 }  // namespace wall::geom

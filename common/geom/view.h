@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <variant>
@@ -46,5 +47,29 @@ ViewValues values_of(const View& view);
 std::optional<View> view_of_values(std::span<const float> values);
 /// What is wrong with one that comes from elsewhere; nullptr: nothing.
 const char* wrong_with(const View& view);
+
+/// Whose picture a tile shows (docs/walls.md, "Stereo").
+enum class Eye : std::uint8_t { both, left, right };
+
+/// An eye beside the program's, as far as one sees it in the picture: what is at distance w from it lies
+/// shift * (1 - screen / w) half widths of the picture farther to the right.
+struct Parallax {
+    float shift = 0;   ///< of what is infinitely far; 0: the program's own eye
+    float screen = 1;  ///< the distance, in the program's units, at which nothing is shifted
+    bool operator==(const Parallax&) const = default;
+};
+
+/// How a tile shows a scene that it does not show as the program draws it.
+struct EyeView {
+    std::optional<View> elsewhere{};  ///< none: where the program's own camera looks
+    Parallax parallax{};              ///< of that picture
+    bool operator==(const EyeView&) const = default;
+};
+
+/// As it travels: whether it looks elsewhere (1 or 0), where (0s if not), then its parallax.
+using EyeViewValues = std::array<float, 16>;
+EyeViewValues values_of(const EyeView& view);
+/// With what is wrong with it, where something is.
+std::variant<EyeView, const char*> eye_view_of_values(const EyeViewValues& values);
 
 }  // namespace wall::geom

@@ -26,10 +26,10 @@ Mat3 times(const Mat3& a, const Mat3& b) {
     return out;
 }
 
-/// (x, y, w) of directions (right, up, ahead), divided by w's share of `ahead`, and z = depth_by_w * w + a constant.
+/// (x, y, w) of directions (right, up, ahead), divided by w's share of `ahead`, and z = depth_by_w * w + depth.
 struct Camera {
     double xx, xy, xz, yy, yz;
-    double depth_by_w;
+    double depth_by_w, depth;
 };
 
 /// The rows of x, y and w taken apart from below: w grows straight ahead; up is what is left of y's row, and right what
@@ -50,29 +50,49 @@ std::optional<Camera> camera_of(const Mat4& m) {
     const Vec rest_of_x = minus(minus(x, scaled(ahead, xz)), scaled(up, xy));
     const double xx = std::sqrt(dot(rest_of_x, rest_of_x));
     if (!(xx > kLeast * largest) || std::abs(xy) > kSheared * xx) return std::nullopt;
-    return Camera{xx / size, xy / size, xz / size, yy / size, yz / size, dot(z, ahead) / size};
+    const double depth_by_w = dot(z, ahead) / size;
+    return Camera{xx / size,
+                  xy / size,
+                  xz / size,
+                  yy / size,
+                  yz / size,
+                  depth_by_w,
+                  static_cast<double>(m[14]) - depth_by_w * static_cast<double>(m[15])};
 }
 
 Vec wide(const geom::Vec3& v) { return {v[0], v[1], v[2]}; }
 
-}  // namespace
-
-std::optional<ViewChange> view_change(const geom::View& view, const Mat4& camera) {
-    const auto c = camera_of(camera);
-    if (!c) return std::nullopt;
+/// (x, y, w) of a view from those of the camera.
+Mat3 looking(const geom::View& view, const Camera& c) {
     const double width = static_cast<double>(view.right_edge) - view.left,
                  height = static_cast<double>(view.top) - view.bottom;
     const Mat3 of_view{Vec{2 / width, 0, -(static_cast<double>(view.right_edge) + view.left) / width},
                        Vec{0, 2 / height, -(static_cast<double>(view.top) + view.bottom) / height}, Vec{0, 0, 1}};
     const Mat3 axes{wide(view.right), wide(view.up), wide(view.ahead)};
     // The inverse of K, whose last row is (0, 0, 1).
-    const Mat3 back{Vec{1 / c->xx, -c->xy / (c->xx * c->yy), (c->xy * c->yz / c->yy - c->xz) / c->xx},
-                    Vec{0, 1 / c->yy, -c->yz / c->yy}, Vec{0, 0, 1}};
-    const Mat3 h = times(times(of_view, axes), back);
+    const Mat3 back{Vec{1 / c.xx, -c.xy / (c.xx * c.yy), (c.xy * c.yz / c.yy - c.xz) / c.xx},
+                    Vec{0, 1 / c.yy, -c.yz / c.yy}, Vec{0, 0, 1}};
+    return times(times(of_view, axes), back);
+}
+
+}  // namespace
+
+std::optional<ViewChange> view_change(const geom::EyeView& view, const Mat4& camera) {
+    const auto c = camera_of(camera);
+    if (!c) return std::nullopt;
+    const Mat3 h = view.elsewhere ? looking(*view.elsewhere, *c) : Mat3{Vec{1, 0, 0}, Vec{0, 1, 0}, Vec{0, 0, 1}};
     const double a = c->depth_by_w;
     // Column by column: x, y, z, w.
-    return ViewChange{h[0][0], h[1][0], a * h[2][0], h[2][0], h[0][1], h[1][1], a * h[2][1],       h[2][1],
-                      0,       0,       1,           0,       h[0][2], h[1][2], a * (h[2][2] - 1), h[2][2]};
+    ViewChange out{h[0][0], h[1][0], a * h[2][0], h[2][0], h[0][1], h[1][1], a * h[2][1],       h[2][1],
+                   0,       0,       1,           0,       h[0][2], h[1][2], a * (h[2][2] - 1), h[2][2]};
+    const auto [shift, screen] = view.parallax;
+    if (shift == 0 || !(std::abs(c->depth) > kLeast)) return out;  // without a depth there is no 1 in clip coordinates
+    constexpr std::size_t kX = 0, kZ = 2, kW = 3;
+    const auto at = [&out](std::size_t row, std::size_t column) -> double& { return out[4 * column + row]; };
+    for (const std::size_t column : {kX, std::size_t{1}, kW}) at(kX, column) += shift * at(kW, column);
+    at(kX, kZ) -= shift * screen / c->depth;
+    at(kX, kW) += shift * screen * a / c->depth;
+    return out;
 }
 
 Mat4 narrow(const ViewChange& change) {

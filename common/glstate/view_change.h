@@ -19,8 +19,8 @@ using ViewChange = std::array<double, 16>;  ///< column by column
 /// more than another. What brings its clip coordinates to those of the view. Nothing: it is no perspective, or sheared.
 ///
 /// With (x, y, w) = K (right, up, ahead) and z = a w + b:  (x', y', w') = K_view axes K^-1 (x, y, w), z' = z + a (w' -
-/// w).
-std::optional<ViewChange> view_change(const geom::View& view, const Mat4& camera);
+/// w). Then an eye beside it: x'' = x' + shift (w' - screen), where the 1 in `screen` is (z - a w) / b.
+std::optional<ViewChange> view_change(const geom::EyeView& view, const Mat4& camera);
 /// For sorting, where single precision does.
 Mat4 narrow(const ViewChange& change);
 /// What comes of clip coordinates by it.

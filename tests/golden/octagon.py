@@ -37,13 +37,13 @@ def to_single(value: float) -> float:
 
 
 def view_of(yaw: float, window: tuple[int, int]) -> str:
-    """The 13 numbers of geom::values_of(), from the angles as wall.toml says them."""
+    """The 16 numbers of geom::values_of() of a view for both eyes, from the angles as wall.toml says them."""
     degree = math.pi / 180
     height = 2 * math.atan(math.tan(FOV * degree / 2) * (window[1] / window[0])) / degree
     aside, up = math.tan(FOV * degree / 2), math.tan(height * degree / 2)
     sin, cos = math.sin(yaw * degree), math.cos(yaw * degree)
     return " ".join(repr(to_single(number)) for number in
-                    (cos, 0, -sin, 0, 1, 0, sin, 0, cos, -aside, aside, -up, up))
+                    (1, cos, 0, -sin, 0, 1, 0, sin, 0, cos, -aside, aside, -up, up, 0, 1))
 
 
 class Octagon:

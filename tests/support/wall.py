@@ -205,13 +205,14 @@ class Wall:
     # ---- programs ----
 
     def wallrun(self, *command: object, rect: tuple[int, int, int, int] | None = None, fullscreen: bool = False,
-                name: str = "", hold: bool = False, parallel: int = 0) -> list[str]:
+                name: str = "", hold: bool = False, parallel: int = 0, stereo: str = "") -> list[str]:
         """The command line that starts a program on this wall."""
         line = [self.client_bin / "wallrun", "--walld", self.address]
         line += ["--rect", ",".join(map(str, rect))] if rect else []
         line += ["--fullscreen"] if fullscreen else []
         line += ["--name", name] if name else []
         line += ["--hold"] if hold else []
+        line += ["--stereo", stereo] if stereo else []
         line += ["--parallel", parallel] if parallel else []
         return [str(word) for word in (*line, "--", *command)]
 

@@ -47,8 +47,8 @@ Mat4 drawn_by_hand(double yaw, double pitch, double fov, double aspect, double n
     const double x = std::tan(fov * M_PI / 360), y = x / aspect;
     return multiply(frustum(-x * n, x * n, -y * n, y * n, n, f), multiply(rotation(-pitch, 0), rotation(yaw, 1)));
 }
-geom::View view(double yaw, double pitch, double fov, double aspect) {
-    return geom::view_of_angles(yaw, pitch, 0, fov, geom::angle_of_ratio(fov, 1 / aspect));
+geom::EyeView view(double yaw, double pitch, double fov, double aspect) {
+    return {geom::view_of_angles(yaw, pitch, 0, fov, geom::angle_of_ratio(fov, 1 / aspect))};
 }
 
 void expect_near(const Mat4& a, const Mat4& b, float tolerance = 2e-6f) {
@@ -57,7 +57,7 @@ void expect_near(const Mat4& a, const Mat4& b, float tolerance = 2e-6f) {
     for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], tolerance * largest) << i;
 }
 
-Mat4 seen(const geom::View& through, const Mat4& camera) {
+Mat4 seen(const geom::EyeView& through, const Mat4& camera) {
     const auto change = view_change(through, camera);
     EXPECT_TRUE(change.has_value());
     return change ? product(*change, camera) : Mat4{};
@@ -119,6 +119,47 @@ TEST(ViewChange, WhatIsNoPerspectiveOrShearedHasNone) {
     EXPECT_FALSE(view_change(view(45, 0, 90, 1), broken));
     broken[0] = INFINITY;
     EXPECT_FALSE(view_change(view(45, 0, 90, 1), broken));
+}
+
+/// Two cameras beside each other whose pictures meet at a distance (an off-axis frustum each).
+TEST(ViewChange, AnEyeBesideItIsWhatOneDrawsByHand) {
+    const double near = 0.5, far = 80, screen = 6;
+    for (const double shift : {-0.04, 0.04}) {
+        const double half = 0.3 / near, aside = shift * screen * half;  // half of the width at distance 1
+        const double moved = aside * near / screen;
+        const Mat4 by_hand = multiply(frustum(-0.3 - moved, 0.3 - moved, -0.2, 0.25, near, far),
+                                      translation(static_cast<float>(-aside), 0, 0));
+        const geom::EyeView eye{.parallax = {static_cast<float>(shift), static_cast<float>(screen)}};
+        const Mat4 camera = frustum(-0.3, 0.3, -0.2, 0.25, near, far);
+        expect_near(seen(eye, camera), by_hand);
+        const Mat4 model = multiply(rotation(33, 1), multiply(translation(3, -2, -7), scale(2, 2, 2)));
+        expect_near(seen(eye, multiply(camera, model)), multiply(by_hand, model));
+    }
+}
+
+TEST(ViewChange, AnEyeBesideAViewMovesAlongItsScreen) {
+    const double near = 1, far = 50, screen = 4, shift = 0.05;
+    const double half = std::tan(50 * M_PI / 360), aside = shift * screen * half, moved = aside * near / screen;
+    const Mat4 by_hand = multiply(frustum(-half - moved, half - moved, -half, half, near, far),
+                                  multiply(translation(static_cast<float>(-aside), 0, 0), rotation(60, 1)));
+    geom::EyeView eye = view(60, 0, 50, 1);
+    eye.parallax = {static_cast<float>(shift), static_cast<float>(screen)};
+    expect_near(seen(eye, frustum(-0.4, 0.4, -0.3, 0.3, near, far)), by_hand);
+}
+
+/// In half widths of the picture: shift * (1 - screen / distance), whatever the depths are.
+TEST(ViewChange, EyesAreAsFarApartAsTheDistanceSays) {
+    const Mat4 usual = frustum(-1, 1, -1, 1, 1, 100), endless{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -2, 0},
+               reversed{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 0.1f, 0};
+    const geom::EyeView right{.parallax = {0.03f, 5}};
+    for (const Mat4& camera : {usual, endless, reversed})
+        for (const float distance : {2.0f, 5.0f, 20.0f}) {
+            const Mat4 at = multiply(seen(right, camera), translation(0.5f, 0.25f, -distance)),
+                       own = multiply(camera, translation(0.5f, 0.25f, -distance));
+            EXPECT_NEAR(at[12] / at[15] - own[12] / own[15], 0.03f * (1 - 5 / distance), 1e-6) << distance;
+            EXPECT_FLOAT_EQ(at[13] / at[15], own[13] / own[15]) << "eyes lie beside each other";
+            EXPECT_FLOAT_EQ(at[14] / at[15], own[14] / own[15]) << "depths stay";
+        }
 }
 
 }  // namespace

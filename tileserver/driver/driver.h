@@ -308,7 +308,7 @@ private:
     void bind_texture(unsigned unit, TextureTarget target, GLuint texture);
     void bind_each_sampler(const SamplerBindings& wanted);
 
-    std::optional<geom::View> view_;  ///< of the target
+    std::optional<geom::EyeView> view_;  ///< of the target
     void bind_buffer_part(GLenum target, glstate::BufferRange& bound, unsigned place,
                           const glstate::BufferRange& wanted) const {
         if (glstate::same(bound, wanted)) return;

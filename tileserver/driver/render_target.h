@@ -17,7 +17,7 @@ struct LayerGeometry {
     geom::Rect surface;  ///< canvas pixels; offscreen: {0, 0, window}
     geom::Rect area;     ///< canvas pixels that the layer holds
     std::uint32_t window_width = 0, window_height = 0;
-    std::optional<geom::View> view;  ///< that the layer has of what is drawn by a camera; none: the camera's own
+    std::optional<geom::EyeView> view;  ///< that the layer has of what is drawn by a camera; none: the camera's own
     bool operator==(const LayerGeometry&) const = default;
 
     bool scaled() const {

@@ -67,18 +67,19 @@ void SurfaceCommands::SurfacePlace(SurfaceId id, std::uint32_t layout_version, s
 void SurfaceCommands::SurfaceViews(SurfaceId id, std::span<const std::byte> bytes) {
     SurfaceReplica* surface = known_surface(id);
     if (surface == nullptr) return;
-    constexpr std::size_t kEach = sizeof(std::uint32_t) + sizeof(geom::ViewValues);
+    constexpr std::size_t kEach = sizeof(std::uint32_t) + sizeof(geom::EyeViewValues);
     if (bytes.size() % kEach != 0) return execution_.refuse("no whole number of views");
     SurfaceReplica::Views views;
     for (std::size_t at = 0; at < bytes.size(); at += kEach) {
         std::uint32_t slot = 0;
-        geom::ViewValues values;
+        geom::EyeViewValues values;
         std::memcpy(&slot, bytes.data() + at, sizeof slot);
         std::memcpy(values.data(), bytes.data() + at + sizeof slot, sizeof values);
-        const auto view = geom::view_of_values(values);
-        if (slot >= wire::kOffscreenSlot || !view) return execution_.refuse("a view of no tile");
-        if (const char* wrong = geom::wrong_with(*view)) return execution_.refuse(std::string("a view has ") + wrong);
-        views[slot] = *view;
+        if (slot >= wire::kOffscreenSlot) return execution_.refuse("a view of no tile");
+        const auto view = geom::eye_view_of_values(values);
+        if (const auto* wrong = std::get_if<const char*>(&view))
+            return execution_.refuse(std::string("a view has ") + *wrong);
+        views[slot] = std::get<geom::EyeView>(view);
     }
     surface->look(std::move(views));
 }

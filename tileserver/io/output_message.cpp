@@ -123,6 +123,10 @@ Result<std::shared_ptr<const geom::TileOutput>> output_of(const proto::TileOutpu
     const auto color = take(told.has_color(), told.color(), color_of,
                             [&](geom::ColorCorrection read) { out.color = std::move(read); });
     if (!color) return tl::unexpected(color.error());
+    if (told.stereo() > static_cast<std::uint32_t>(geom::StereoLayout::anaglyph))
+        return fail("it shows two eyes as no output does");
+    out.stereo = static_cast<geom::StereoLayout>(told.stereo());
+    out.right_slot = told.right_slot();
     return std::make_shared<const geom::TileOutput>(std::move(out));
 }
 

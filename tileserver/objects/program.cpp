@@ -335,7 +335,7 @@ std::optional<glstate::Projection> Program::project(const glstate::Projection& f
 }
 
 /// The matrix that the shader multiplies by last becomes that of a view; none: its own. A built-in one the driver has.
-void Program::look(const std::optional<geom::View>& view) {
+void Program::look(const std::optional<geom::EyeView>& view) {
     view_ = view;
     camera_changed_ = false;
     const auto camera = position_.uniform_camera();

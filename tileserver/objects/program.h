@@ -74,7 +74,7 @@ private:
     void find_attributes();
     void find_group();
     void find_subroutines();
-    void look(const std::optional<geom::View>& view);
+    void look(const std::optional<geom::EyeView>& view);
     void release();
 
     Driver& driver_;
@@ -97,8 +97,8 @@ private:
     GLint window_ = -1;  // location of kWindowUniform
     bool upper_left_ = false, whole_centers_ = false;
     std::array<float, 4> window_value_{};
-    std::optional<geom::View> view_;  // that the driver's matrices are for
-    bool camera_changed_ = false;     // since then
+    std::optional<geom::EyeView> view_;  // that the driver's matrices are for
+    bool camera_changed_ = false;        // since then
     glapi::LinkedPosition position_;
 };
 

@@ -108,6 +108,15 @@ PictureTexture Compositor::as_it_is(const TileTarget& target) {
     return {target.texture, target.framebuffer, target.rect.width, target.rect.height, target.version};
 }
 
+/// None: the output shows one eye, or the node has not been told of the other.
+PictureTexture Compositor::of_right_eye(const geom::TileOutput& output, const TileTarget& of_left) {
+    const Tile* right = output.stereo == geom::StereoLayout::none ? nullptr : tile(output.right_slot);
+    if (right == nullptr || right->rect != of_left.rect) return {};
+    TileTarget& whole = target(*right);
+    compose(whole, right->slot, of_left.only);
+    return as_it_is(whole);
+}
+
 PictureTexture Compositor::as_output_shows(const Tile& tile, const TileTarget& target) {
     const PictureTexture canvas = as_it_is(target);
     if (const auto found = patterns_.find(tile.slot); found != patterns_.end() && found->second.what->on_output) {
@@ -122,7 +131,7 @@ PictureTexture Compositor::as_output_shows(const Tile& tile, const TileTarget& t
         return {drawn.texture, drawn.framebuffer, size.width, size.height, target.version};
     }
     if (!tile.output) return canvas;
-    auto shown = output_pass_.show(tile.slot, tile.output, canvas);
+    auto shown = output_pass_.show(tile.slot, tile.output, canvas, of_right_eye(*tile.output, target));
     if (shown) return *shown;
     if (!std::exchange(told_of_failure_, true))
         log::error("output_as_it_is reason={}", log::quoted(shown.error().message));

@@ -96,6 +96,7 @@ private:
     void draw_whole(const TileTarget& target, const Layer& layer, const geom::Rect& place);
     void draw_layer(const TileTarget& target, const Layer& layer);
     static PictureTexture as_it_is(const TileTarget& target);
+    PictureTexture of_right_eye(const geom::TileOutput& output, const TileTarget& of_left);
     PictureTexture as_output_shows(const Tile& tile, const TileTarget& target);
     TileTarget make_target(const geom::Rect& rect) const;
     TileTarget scaled(const PictureTexture& picture, geom::Rect part, std::int32_t width, std::int32_t height) const;

@@ -10,14 +10,19 @@
 namespace wall::tileserver {
 namespace {
 
-enum Unit : unsigned { kCanvas, kMesh, kCurves, kShare, kRaise, kUnits };  // as in the shader
+enum Unit : unsigned { kCanvas, kMesh, kCurves, kShare, kRaise, kRightCanvas, kUnits };  // as in the shader
 constexpr unsigned kParameters = 0;
 constexpr float kLittle = 0.25f;  // of a pixel that is covered besides: a tap is linear, so none is missed
+
+/// Each eye has half of the output.
+bool is_halved(geom::StereoLayout stereo) {
+    return stereo == geom::StereoLayout::side_by_side || stereo == geom::StereoLayout::over_under;
+}
 
 /// Pixel for pixel, maybe turned.
 bool is_exact(const geom::TileOutput& output, const PictureTexture& canvas) {
     const bool sideways = geom::is_sideways(output.rotation);
-    return !output.warp && output.width == (sideways ? canvas.height : canvas.width) &&
+    return !output.warp && !is_halved(output.stereo) && output.width == (sideways ? canvas.height : canvas.width) &&
            output.height == (sideways ? canvas.width : canvas.height);
 }
 
@@ -25,7 +30,9 @@ bool is_exact(const geom::TileOutput& output, const PictureTexture& canvas) {
 /// warps are so. A driver in software is four times faster then: it need not count taps.)
 bool is_enlarged(const geom::TileOutput& output, const PictureTexture& canvas) {
     constexpr int kPlaces = 128;  // a side
-    const auto width = static_cast<float>(output.width), height = static_cast<float>(output.height);
+    auto width = static_cast<float>(output.width), height = static_cast<float>(output.height);
+    if (output.stereo == geom::StereoLayout::side_by_side) width /= 2;
+    if (output.stereo == geom::StereoLayout::over_under) height /= 2;
     const auto covered = [&](geom::Point from, geom::Point to) {
         const auto a = geom::place_in_tile(output, from), b = geom::place_in_tile(output, to);
         return std::max(std::abs(b.x - a.x) * static_cast<float>(canvas.width),
@@ -69,6 +76,14 @@ std::string steps_of(const geom::TileOutput& output, const PictureTexture& canva
     add_light(light.share, "SHARE");
     add_light(light.lift, "RAISE");
     add(has_curves(output), "CURVE");
+    add(output.stereo != geom::StereoLayout::none, "STEREO");
+    switch (output.stereo) {
+        case geom::StereoLayout::side_by_side: add(true, "SIDES"); break;
+        case geom::StereoLayout::over_under: add(true, "HALVES"); break;
+        case geom::StereoLayout::rows: add(true, "ROWS"); break;
+        case geom::StereoLayout::anaglyph: add(true, "ANAGLYPH"); break;
+        case geom::StereoLayout::none: break;
+    }
     return out;
 }
 
@@ -136,10 +151,13 @@ public:
     }
     void bind(GLenum, GLenum) override { driver_.gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffer_); }
     bool draws_colors() const override { return true; }
-    PictureTexture picture() const { return {texture, framebuffer_, width(), height(), canvas.version}; }
+    PictureTexture picture() const {
+        return {texture, framebuffer_, width(), height(), std::max(canvas.version, right_version)};
+    }
 
     const std::shared_ptr<const geom::TileOutput> output;
     PictureTexture canvas;  // that it is for; its version is the one that is drawn
+    std::uint64_t right_version = 0;
     const bool exact;
     const std::string steps;
     GLuint texture = 0, parameters = 0, mesh = 0, curves = 0, share = 0, raise = 0;
@@ -231,7 +249,7 @@ Result<GLuint> OutputPass::program_for(const std::string& steps) {
 }
 
 Result<PictureTexture> OutputPass::show(std::uint32_t slot, const std::shared_ptr<const geom::TileOutput>& output,
-                                        const PictureTexture& canvas) {
+                                        const PictureTexture& canvas, const PictureTexture& of_right_eye) {
     auto& shown = shown_[slot];
     if (!shown || shown->output != output || shown->canvas.width != canvas.width ||
         shown->canvas.height != canvas.height) {
@@ -239,17 +257,19 @@ Result<PictureTexture> OutputPass::show(std::uint32_t slot, const std::shared_pt
         shown = std::make_unique<Shown>(driver_, output, canvas);
         shown->canvas.version = 0;
     }
-    if (shown->canvas.version == canvas.version) return shown->picture();
+    if (shown->canvas.version == canvas.version && shown->right_version == of_right_eye.version)
+        return shown->picture();
     const auto program = program_for(shown->steps);
     if (!program) return tl::unexpected(program.error());
     driver_.use_program(*program);
-    draw(*shown, canvas.texture);
+    draw(*shown, canvas.texture, of_right_eye.texture);
     shown->canvas.version = canvas.version;
+    shown->right_version = of_right_eye.version;
     return shown->picture();
 }
 
 /// With the program that is in use. Nothing of other contexts may be left that a default state does not undo.
-void OutputPass::draw(Shown& shown, GLuint canvas) {
+void OutputPass::draw(Shown& shown, GLuint canvas, GLuint of_right_eye) {
     if (vertex_array_ == 0) {
         gl_.CreateVertexArrays(1, &vertex_array_);
         for (GLuint* sampler : {&linear_, &exact_}) {
@@ -271,9 +291,10 @@ void OutputPass::draw(Shown& shown, GLuint canvas) {
     bind(kCurves, shown.curves);
     bind(kShare, shown.share);
     bind(kRaise, shown.raise);
+    bind(kRightCanvas, of_right_eye);
     SamplerBindings samplers{glstate::next_value_id(), {}};
     std::fill_n(samplers.names.begin(), kUnits, exact_);
-    if (!shown.exact) samplers.names[kCanvas] = linear_;
+    if (!shown.exact) samplers.names[kCanvas] = samplers.names[kRightCanvas] = linear_;
     glstate::assign<glstate::el::viewport>(
         state_, 0, {0, 0, static_cast<float>(shown.width()), static_cast<float>(shown.height())});
     driver_.sync(state_);

@@ -30,16 +30,16 @@ public:
     ~OutputPass();
     OutputPass(const OutputPass&) = delete;
 
-    /// What the output of that slot shows of `canvas`; good until the next call for the slot. An error: the driver
-    /// cannot do it.
+    /// What the output of that slot shows of `canvas`, which is the left eye's where it shows two; good until the next
+    /// call for the slot. An error: the driver cannot do it.
     Result<PictureTexture> show(std::uint32_t slot, const std::shared_ptr<const geom::TileOutput>& output,
-                                const PictureTexture& canvas);
+                                const PictureTexture& canvas, const PictureTexture& of_right_eye = {});
 
 private:
     class Shown;
     Result<GLuint> program_for(const std::string& steps);
     Result<GLuint> build(const std::string& steps) const;
-    void draw(Shown& shown, GLuint canvas);
+    void draw(Shown& shown, GLuint canvas, GLuint of_right_eye);
     GLuint compile(GLenum stage, const std::string& source) const;
 
     Driver& driver_;

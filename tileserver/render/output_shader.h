@@ -26,13 +26,14 @@ void main() { gl_Position = vec4(4 * (gl_VertexID & 1) - 1, 2 * (gl_VertexID & 2
 
 /// Behind "#version 430" and #defines: LITTLE (of a pixel), TURNS (by 90 degrees), and where the step is wanted EXACT
 /// or ENLARGED, MESH or HOMOGRAPHY, COLOR, BLEND (with LIFT of black), SHARE, RAISE, CURVE. SHARE and RAISE are 2 for a
-/// map of as many places as the output has pixels.
+/// map of as many places as the output has pixels. STEREO, of two eyes, with SIDES, HALVES, ROWS or ANAGLYPH.
 inline constexpr const char* kOutputFragmentShader = R"(
 layout(binding = 0) uniform sampler2D canvas;  // linear, but for EXACT
 layout(binding = 1) uniform sampler2D mesh;    // a point each
 layout(binding = 2) uniform sampler2D curves;  // rows of red, green, blue
 layout(binding = 3) uniform sampler2D share;   // of light, over all of the output
 layout(binding = 4) uniform sampler2D raise;
+layout(binding = 5) uniform sampler2D right;   // the right eye's canvas
 layout(std140, binding = 0) uniform Parameters {
     ivec4 sizes, points;
     vec4 homography[3], ramps, blend, color[3];
@@ -70,14 +71,14 @@ vec2 place(vec2 pixel) {
 }
 
 // Linear between the centres of pixels; black beyond the canvas.
-vec3 tap(vec2 at) {
+vec3 tap(sampler2D picture, vec2 at) {
     vec2 size = vec2(sizes.xy);
     bool inside = all(greaterThanEqual(at, vec2(0))) && all(lessThanEqual(at, size));
-    return inside ? textureLod(canvas, at / size, 0).rgb : vec3(0);
+    return inside ? textureLod(picture, at / size, 0).rgb : vec3(0);
 }
 
 // As many taps, evenly over the pixel, as it covers pixels of the canvas.
-vec3 filtered(vec2 at) {
+vec3 filtered(sampler2D picture, vec2 at) {
     vec2 across = dFdx(at), down = dFdy(at);
     if (any(isnan(across)) || any(isnan(down))) across = down = vec2(0);  // at the border of what is shown
     vec2 covered = vec2(max(abs(across.x), abs(across.y)), max(abs(down.x), abs(down.y)));
@@ -86,7 +87,7 @@ vec3 filtered(vec2 at) {
     for (int y = 0; y < taps.y; ++y)
         for (int x = 0; x < taps.x; ++x) {
             vec2 aside = (vec2(x, y) + 0.5) / vec2(taps) - 0.5;
-            sum += tap(at + across * aside.x + down * aside.y);
+            sum += tap(picture, at + across * aside.x + down * aside.y);
         }
     return sum / float(taps.x * taps.y);
 }
@@ -138,14 +139,40 @@ vec3 between(sampler2D light) {
 }
 vec3 pixel_of(sampler2D light) { return texelFetch(light, ivec2(gl_FragCoord.xy), 0).rgb; }
 
-void main() {
-    vec2 at = place(gl_FragCoord.xy);
+// As far as it is to be filtered, from where the eye sees a pixel of the output.
+vec3 seen(sampler2D picture, vec2 at) {
 #if defined EXACT
-    vec3 value = texelFetch(canvas, ivec2(at), 0).rgb;
+    return texelFetch(picture, ivec2(at), 0).rgb;
 #elif defined ENLARGED
-    vec3 value = tap(at);
+    return tap(picture, at);
 #else
-    vec3 value = filtered(at);
+    return filtered(picture, at);
+#endif
+}
+
+void main() {
+    vec2 pixel = gl_FragCoord.xy;
+    bool to_right = false;
+#if defined SIDES
+    float half_of_it = float(sizes.z) / 2;
+    to_right = pixel.x >= half_of_it;
+    pixel.x = 2 * (to_right ? pixel.x - half_of_it : pixel.x);
+#elif defined HALVES
+    float half_of_it = float(sizes.w) / 2;
+    to_right = pixel.y >= half_of_it;
+    pixel.y = 2 * (to_right ? pixel.y - half_of_it : pixel.y);
+#elif defined ROWS
+    to_right = (int(pixel.y) & 1) == 1;
+#endif
+    vec2 at = place(pixel);
+    vec3 value = seen(canvas, at);
+#ifdef STEREO
+    vec3 of_right = seen(right, at);
+#ifdef ANAGLYPH
+    value.gb = of_right.gb;
+#else
+    if (to_right) value = of_right;
+#endif
 #endif
 #ifdef COLOR
     value = corrected(value);

@@ -33,10 +33,11 @@ void SurfaceReplica::forget_older() {
 
 LayerGeometry SurfaceReplica::geometry_on(const Tile& tile, const geom::Rect& area, const SurfacePlace& place,
                                           const Views& views) {
-    const auto view = views.find(tile.slot);
-    if (view == views.end() || area != tile.rect)
-        return {place.rect, area, place.window_width, place.window_height, {}};
-    return {tile.rect, tile.rect, place.window_width, place.window_height, view->second};
+    const auto found = views.find(tile.slot);
+    const auto view = found == views.end() ? std::nullopt : std::optional(found->second);
+    if (!view || !view->elsewhere) return {place.rect, area, place.window_width, place.window_height, view};
+    if (area != tile.rect) return {place.rect, area, place.window_width, place.window_height, {}};
+    return {tile.rect, tile.rect, place.window_width, place.window_height, view};
 }
 
 bool SurfaceReplica::place(const SurfacePlace& place, const std::vector<Tile>& tiles) {
@@ -90,8 +91,8 @@ Layer* SurfaceReplica::layer(std::uint32_t slot) {
 Layer* SurfaceReplica::whole_layer() {
     if (place_.offscreen || place_.shown_whole) return layer(wire::kOffscreenSlot);
     for (std::uint32_t slot = 0; slot < wire::kOffscreenSlot; ++slot)
-        if (Layer* tile = layers_[slot].get();
-            tile != nullptr && tile->geometry().area == tile->geometry().surface && !tile->geometry().scaled())
+        if (Layer* tile = layers_[slot].get(); tile != nullptr && tile->geometry().area == tile->geometry().surface &&
+                                               !tile->geometry().scaled() && !tile->geometry().view)
             return tile;
     return nullptr;
 }

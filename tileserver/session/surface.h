@@ -48,9 +48,9 @@ public:
     SurfaceReplica(const Gl& gl, bool flip_y, const SurfaceFormat& format, PixelBudget& budget)
         : gl_(gl), flip_y_(flip_y), format_(format), budget_(budget) {}
 
-    /// Of tiles that look elsewhere, by their slots: at its next place all of the window lies on each of those that it
-    /// covers.
-    using Views = std::map<std::uint32_t, geom::View>;
+    /// What tiles show instead of the program's own picture, by their slots: at its next place all of the window lies
+    /// on each of those that it covers and that look elsewhere.
+    using Views = std::map<std::uint32_t, geom::EyeView>;
     void look(Views views) { next_views_ = std::move(views); }
     /// Makes the layers anew where they differ; what stays in sight keeps its pixels. What the wall shows stays as it
     /// is until the first frame drawn there is shown. False: that is more than the session may have, and some layers

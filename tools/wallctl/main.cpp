@@ -13,6 +13,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "common/base/stereo.h"
 #include "common/join/join.h"
 #include "common/net/address.h"
 #include "tools/request/request.h"
@@ -44,6 +45,7 @@ struct Options {
     std::string role, at, line, state, node;
     int x = 0, y = 0, width = 0, height = 0;
     int frames = 1, frame = 1, weight = 0;
+    double separation = 100 * wall::kUsualSeparation, distance = 0;
     unsigned fps = 10;
     double seconds = 10, interval = 1;
     std::uint64_t count = 0;
@@ -364,6 +366,19 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
              }));
     add_id(weight, o);
     weight->add_option("N", o.weight, "1 to 100; of a program of which nobody has said anything: 10")->required();
+    auto* stereo =
+        verb("stereo", "shows a program to two eyes, on tiles that are for one each", tell(o, "stereo", [&o] {
+                 return json{{"id", o.id}, {"on", !o.off}, {"separation", o.separation}, {"distance", o.distance}};
+             }));
+    add_id(stereo, o);
+    stereo->add_option("--separation", o.separation,
+                       "of what is infinitely far, from one eye's picture to the other's: percent of the window's "
+                       "width (1.5). On a large wall no more than eyes are apart, 65 mm; less than 0 swaps the eyes");
+    stereo->add_option(
+        "--distance", o.distance,
+        "in the program's units: what is so far from its camera lies in the wall's plane, what is nearer "
+        "comes out of it (0: the middle of what it draws)");
+    stereo->add_flag("--off", o.off, "both eyes see the program's own picture again");
     auto* waiting = verb("wait", "returns when a frame is shown on all tiles", [&o] { return wait(o); });
     add_id(waiting, o);
     waiting->add_option("--frame", o.frame, "its number")->required()->check(CLI::PositiveNumber);

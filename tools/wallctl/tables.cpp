@@ -82,6 +82,9 @@ std::string shown(const json& tile) {
     if (const auto turned = tile.value("rotation", 0); turned != 0) out = fmt::format("turned {}", turned);
     const json steps = tile.value("shown", json::array());
     for (const json& step : steps) out += (out.empty() ? "" : ", ") + step.get<std::string>();
+    const auto add = [&](const std::string& step) { out += (out.empty() ? "" : ", ") + step; };
+    if (const auto stereo = tile.value("stereo", ""); !stereo.empty()) add("both eyes, " + stereo);
+    else if (tile.contains("eye") && tile["eye"].is_string()) add(tile["eye"].get<std::string>() + " eye");
     if (tile.contains("view") && tile["view"].is_array()) out += (out.empty() ? "" : ", ") + look(tile["view"]);
     return out.empty() ? "as it is" : out;
 }

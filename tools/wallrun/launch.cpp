@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "common/base/stereo.h"
 #include "common/net/control_client.h"
 
 namespace wall::wallrun {
@@ -79,6 +80,12 @@ Result<void> check_rect(const std::string& rect) {
                 "': expected X,Y,W,H in canvas pixels, for example 0,0,1920,1080, or fullscreen");
 }
 
+Result<void> check_stereo(const std::string& stereo) {
+    if (stereo.empty() || stereo_of_text(stereo)) return {};
+    return fail("stereo '" + stereo +
+                "': expected PERCENT of the window's width, up to 25, or PERCENT,DISTANCE, for example 1.5,40");
+}
+
 std::map<std::string, std::string> environment_for(const Launch& launch, const VendorFiles& files,
                                                    const std::string& library_path) {
     std::map<std::string, std::string> out{
@@ -90,6 +97,7 @@ std::map<std::string, std::string> environment_for(const Launch& launch, const V
     if (!launch.rect.empty()) out["WALLGL_RECT"] = launch.rect;
     if (!launch.name.empty()) out["WALLGL_NAME"] = launch.name;
     if (launch.hold) out["WALLGL_HOLD"] = "1";
+    if (!launch.stereo.empty()) out["WALLGL_STEREO"] = launch.stereo;
     return out;
 }
 

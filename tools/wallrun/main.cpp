@@ -78,6 +78,12 @@ int main(int argc, char** argv) {
     app.add_flag("--fullscreen", fullscreen, "the first window covers the whole wall")->excludes(rect);
     app.add_option("--name", launch.name, "what wallctl and the status page call it");
     app.add_flag("--hold", launch.hold, "frames are shown only on `wallctl step` (to look at one after the other)");
+    app.add_option(
+           "--stereo", launch.stereo,
+           "for two eyes, on tiles that are for one each: how far what is infinitely far is apart, in percent of "
+           "the window's width, and from which distance of the program's camera on, in its units, things lie "
+           "behind the wall (as `wallctl stereo` has it)")
+        ->type_name("PERCENT[,DISTANCE]");
     auto* processes =
         app.add_option("--parallel", parallel, "a parallel program: so many processes draw into its windows together")
             ->type_name("N");
@@ -93,6 +99,7 @@ int main(int argc, char** argv) {
 
     if (fullscreen) launch.rect = "fullscreen";
     if (auto good = check_rect(launch.rect); !good) give_up(good.error());
+    if (auto good = check_stereo(launch.stereo); !good) give_up(good.error());
     if (*processes && parallel == 0) give_up({"--parallel: expected at least one process"});
     if (parallel > 0) group = new_group_name(command[0]);
     if (!group.empty()) {

@@ -2,6 +2,7 @@
 #include "walld/control/arguments.h"
 
 #include <array>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 namespace wall::walld {
@@ -37,6 +38,16 @@ Outcome<std::int64_t> number_of(const json& arguments, const char* key, std::int
     if (found == arguments.end()) return otherwise;
     if (const auto number = integer(*found, least, most)) return *number;
     return expected(key, "an integer from " + std::to_string(least) + " to " + std::to_string(most));
+}
+
+Outcome<double> real_of(const json& arguments, const char* key, double otherwise, double least, double most) {
+    const auto found = arguments.find(key);
+    if (found == arguments.end()) return otherwise;
+    if (found->is_number() && found->get<double>() >= least && found->get<double>() <= most)
+        return found->get<double>();
+    std::array<char, 96> text{};
+    (void)std::snprintf(text.data(), text.size(), "a number from %g to %g", least, most);
+    return expected(key, text.data());
 }
 
 Outcome<bool> flag_of(const json& arguments, const char* key, bool otherwise) {

@@ -17,6 +17,7 @@ Outcome<std::string> text_of(const nlohmann::json& arguments, const char* key);
 /// `otherwise` if absent.
 Outcome<std::int64_t> number_of(const nlohmann::json& arguments, const char* key, std::int64_t otherwise,
                                 std::int64_t least, std::int64_t most);
+Outcome<double> real_of(const nlohmann::json& arguments, const char* key, double otherwise, double least, double most);
 Outcome<bool> flag_of(const nlohmann::json& arguments, const char* key, bool otherwise);
 /// [x, y, width, height]
 Outcome<geom::Rect> rect_of(const nlohmann::json& arguments, const char* key);

@@ -5,6 +5,7 @@
 #include <array>
 #include <boost/asio/this_coro.hpp>
 
+#include "common/base/stereo.h"
 #include "common/log/log.h"
 #include "walld/control/arguments.h"
 #include "walld/control/audit.h"
@@ -92,6 +93,7 @@ const OperatorDesk::Row OperatorDesk::kVerbs[] = {
     {"hold", Need::own, &OperatorDesk::hold},
     {"step", Need::own, &OperatorDesk::step},
     {"weight", Need::operate, &OperatorDesk::weight},
+    {"stereo", Need::own, &OperatorDesk::stereo},
     {"pattern", Need::operate, &OperatorDesk::pattern},
     {"save_layout", Need::operate, &OperatorDesk::save_layout},
     {"load_layout", Need::operate, &OperatorDesk::load_layout},
@@ -232,6 +234,25 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::weight(const Asked& asked) {
     if (!weight) co_return tl::unexpected(weight.error());
     co_return target_of(asked)
         .and_then([&](const Target& target) { return wall_.set_weight(target, static_cast<std::uint32_t>(*weight)); })
+        .map(done);
+}
+
+/// Percents of the window's width and the program's units, as people say them.
+asio::awaitable<Outcome<Answer>> OperatorDesk::stereo(const Asked& asked) {
+    constexpr double kPercent = 100, kMostPercent = kMostSeparation * kPercent;
+    const auto on = flag_of(asked.arguments, "on", true);
+    if (!on) co_return tl::unexpected(on.error());
+    const auto percent =
+        real_of(asked.arguments, "separation", kUsualSeparation * kPercent, -kMostPercent, kMostPercent);
+    if (!percent) co_return tl::unexpected(percent.error());
+    const auto distance = real_of(asked.arguments, "distance", 0, 0, kFarthestScreen);
+    if (!distance) co_return tl::unexpected(distance.error());
+    proto::Stereo stereo;
+    stereo.set_separation(static_cast<float>(*percent / kPercent));
+    stereo.set_screen(static_cast<float>(*distance));
+    co_return target_of(asked)
+        .and_then(
+            [&](const Target& target) { return wall_.set_stereo(target, *on ? std::optional(stereo) : std::nullopt); })
         .map(done);
 }
 

@@ -84,6 +84,7 @@ private:
     asio::awaitable<Outcome<Answer>> hold(const Asked&);
     asio::awaitable<Outcome<Answer>> step(const Asked&);
     asio::awaitable<Outcome<Answer>> weight(const Asked&);
+    asio::awaitable<Outcome<Answer>> stereo(const Asked&);
     asio::awaitable<Outcome<Answer>> wait(const Asked&);
     asio::awaitable<Outcome<Answer>> layouts(const Asked&);
     asio::awaitable<Outcome<Answer>> layout(const Asked&);

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "common/config/eyes.h"
 #include "common/config/read_warp.h"
 #include "common/log/log.h"
 #include "walld/mpcdi/archive.h"
@@ -157,6 +158,7 @@ Result<void> DescribedFiles::load(config::WallConfig& wall, const std::filesyste
             tile.output.warp = known->second.warp;
             tile.output.light = known->second.light;
             tile.view = known->second.view;
+            if (auto* right = config::companion_of(tile, node.tiles)) right->view = tile.view;
             said.insert(*known);
             if (tile.output.light)
                 light += tile.output.light->share.values.size() + tile.output.light->lift.values.size();

@@ -89,7 +89,7 @@ Outcome<void> SnapshotDesk::ask_nodes(const std::shared_ptr<Job>& job) {
     for (const NodeIndex node : wall_.nodes().ids()) {
         for (std::uint32_t slot = 0; const auto& tile : wall_.nodes()[node].config->tiles) {
             const auto this_slot = slot++;
-            if (!query.tile.empty() && tile.name != query.tile) continue;
+            if (query.tile.empty() ? tile.eye == geom::Eye::right : tile.name != query.tile) continue;
             found = true;
             const auto place = place_of(query, tile);
             if (!query.tile.empty())

@@ -89,7 +89,8 @@ std::vector<StreamPart> parts_of(const Wall& wall, const StreamScope& scope) {
     for (const NodeIndex node : wall.nodes().ids()) {
         for (std::uint32_t slot = 0; const auto& tile : wall.nodes()[node].config->tiles) {
             const auto this_slot = slot++;
-            if (scope.tile && *scope.tile != std::pair(node, this_slot)) continue;
+            const bool asked_for = scope.tile == std::pair(node, this_slot);
+            if (scope.tile ? !asked_for : tile.eye == geom::Eye::right) continue;
             const auto place = place_of(tile, scope.output);
             const auto common = geom::intersect(place, scope.rect);
             const auto at = in_picture(scope, common);

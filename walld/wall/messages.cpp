@@ -55,6 +55,8 @@ proto::TileOutput to_proto(const geom::TileOutput& output) {
         color.mutable_green()->Add(curves[1].begin(), curves[1].end());
         color.mutable_blue()->Add(curves[2].begin(), curves[2].end());
     }
+    out.set_stereo(static_cast<std::uint32_t>(output.stereo));
+    out.set_right_slot(output.right_slot);
     return out;
 }
 

@@ -122,6 +122,18 @@ json steps_json(const geom::TileOutput& output) {
     return out;
 }
 
+/// "left", "right"; null: both.
+json eye_json(geom::Eye eye) {
+    if (eye == geom::Eye::both) return nullptr;
+    return eye == geom::Eye::left ? "left" : "right";
+}
+
+/// As the verb `stereo` takes it; null: both eyes see the same.
+json stereo_json(const std::optional<proto::Stereo>& stereo) {
+    if (!stereo) return nullptr;
+    return {{"separation", 100 * static_cast<double>(stereo->separation())}, {"distance", stereo->screen()}};
+}
+
 /// What wall.toml says, in bytes.
 json quota_json(const config::QuotaConfig& quota) {
     json out = json::object();
@@ -170,6 +182,8 @@ json tiles_json(const Wall& wall, Clock::time_point now) {
                            {"rotation", tile.output.rotation},
                            {"shown", steps_json(tile.output)},
                            {"view", std::move(view)},
+                           {"eye", eye_json(tile.eye)},
+                           {"stereo", geom::name_of(tile.output.stereo)},
                            {"pattern", pattern_json(wall, tile.name)},
                            {"up", node.up},
                            {"frames", shown.frames},
@@ -205,6 +219,7 @@ static json session_json(const Wall& wall, SessionId id, const std::map<SessionI
              {"fault", session.fault},
              {"silent", session.silent},
              {"weight", session.weight},
+             {"stereo", stereo_json(session.stereo)},
              {"memory_bytes", held.memory_bytes},
              {"objects", held.objects},
              {"traffic", traffic_json(session.traffic)},

@@ -216,6 +216,7 @@ SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Cloc
     session.name = hello.name().substr(0, kMaxText);
     session.owner = std::move(owner);
     session.held = hello.hold();
+    if (hello.has_stereo() && !session.group) session.stereo = hello.stereo();
     if (hello.has_rect()) session.rect = from_proto(hello.rect());
     session.fullscreen = hello.fullscreen();
     if (session.fullscreen) session.rect = config_.canvas();
@@ -508,6 +509,7 @@ proto::Placement Wall::placement_of(const SurfaceKey& key, const SurfaceEntry& s
     placement.set_surface(key.surface.value);
     placement.set_layout_version(surface.place.version());
     *placement.mutable_rect() = to_proto(surface.place.wanted());
+    if (const auto& stereo = sessions_.at(key.session).stereo) *placement.mutable_stereo() = *stereo;
     return placement;
 }
 

@@ -105,8 +105,9 @@ struct SessionEntry {
     bool held = false;
     std::string fault;  ///< what a node said against its stream
     std::uint32_t weight = wire::kUsualWeight;
-    bool silent = false;        ///< its link may be dead, or somebody has stopped it
-    std::uint32_t awaited = 0;  ///< windows that it still has to announce, of a session that goes on
+    std::optional<proto::Stereo> stereo;  ///< of its pictures for two eyes; none: both see the same
+    bool silent = false;                  ///< its link may be dead, or somebody has stopped it
+    std::uint32_t awaited = 0;            ///< windows that it still has to announce, of a session that goes on
     Clock::time_point awaited_until;
     std::map<NodeIndex, std::string> tickets;
     std::map<SurfaceId, SurfaceEntry> surfaces;
@@ -220,6 +221,8 @@ public:
     Outcome<void> step(const Target& target, std::uint32_t frames, Clock::time_point now);
     /// Of the whole session: 1 to wire::kMostWeight.
     Outcome<void> set_weight(const Target& target, std::uint32_t weight);
+    /// How tiles of one eye show the session; nothing: as those of both. A parallel program has one picture.
+    Outcome<void> set_stereo(const Target& target, const std::optional<proto::Stereo>& stereo);
     /// What the tile shows instead of programs, also when its node comes anew; of kind NONE: programs again.
     Outcome<void> set_pattern(const std::string& tile, const proto::TilePattern& pattern);
     /// By the tiles' names.

@@ -60,8 +60,9 @@ bool Wall::take_nodes() {
 /// What a node goes on with: it shows its tiles otherwise from the next picture on. True: programs must draw otherwise.
 bool Wall::take_rest(NodeIndex node, const config::NodeConfig& config) {
     if (*nodes_[node].config == config) return false;
-    const bool same_views = std::ranges::equal(nodes_[node].config->tiles, config.tiles, {}, &config::TileConfig::view,
-                                               &config::TileConfig::view);
+    const auto seen_through = [](const config::TileConfig& tile) { return std::pair(tile.view, tile.eye); };
+    const bool same_views =
+        std::ranges::equal(nodes_[node].config->tiles, config.tiles, {}, seen_through, seen_through);
     nodes_[node].config = std::make_shared<const config::NodeConfig>(config);
     if (nodes_[node].up) welcome_node(node);
     return !same_views;
@@ -120,6 +121,7 @@ void Wall::add_tiles(google::protobuf::RepeatedPtrField<proto::TileInfo>& out) c
             entry.set_name(tile.name);
             *entry.mutable_rect() = to_proto(tile.rect);
             if (tile.view) *entry.mutable_view() = to_proto(*tile.view);
+            entry.set_eye(static_cast<std::uint32_t>(tile.eye));
         }
     }
 }

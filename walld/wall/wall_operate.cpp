@@ -155,6 +155,17 @@ Outcome<void> Wall::set_weight(const Target& target, std::uint32_t weight) {
     return {};
 }
 
+Outcome<void> Wall::set_stereo(const Target& target, const std::optional<proto::Stereo>& stereo) {
+    auto* session = find(target.session);
+    if (!session) return no_session(target.session);
+    if (session->group && stereo)
+        return refuse(RefusalKind::conflict,
+                      "a parallel program's processes draw one picture together: expected another program");
+    session->stereo = stereo;
+    for (const auto& [surface, entry] : session->surfaces) want({target.session, surface}, entry.place.wanted());
+    return {};
+}
+
 // ---- layouts ----
 
 WindowName Wall::name_of(const SurfaceKey& key) const {

@@ -147,6 +147,7 @@ bool Wall::restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& mess
     if (record.session_weight() != 0 && record.session_weight() <= wire::kMostWeight &&
         record.session_weight() != session.weight)
         (void)set_weight({key.session, {}}, record.session_weight());
+    if (record.has_session_stereo()) session.stereo = record.session_stereo();
     auto& surface = add_surface(key, message);
     surface.scaled = record.scaled();
     surface.wanted_rect = record.wanted_rect();
@@ -209,6 +210,7 @@ void Wall::tell_note(const SurfaceKey& key) {
     record.set_held(surface.swap.held());
     record.set_session_held(session.held);
     record.set_session_weight(session.weight);
+    if (session.stereo) *record.mutable_session_stereo() = *session.stereo;
     record.set_order(surface.order);
     if (surface.layout_z) record.set_layout_z(*surface.layout_z);
     auto text = record.SerializeAsString();

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <optional>
 #include <sstream>
+#include <variant>
 #include <vector>
 
 #include "common/glstate/view_change.h"
@@ -16,18 +17,18 @@ namespace {
 
 using wall::glstate::Mat4;
 
-std::optional<wall::geom::View> read_view() {
+std::optional<wall::geom::EyeView> read_view() {
     const char* text = std::getenv("GOLDEN_VIEW");  // NOLINT: before the program's first thread draws
     if (text == nullptr) return std::nullopt;
     std::istringstream words(text);
-    std::vector<float> values;
-    for (float value = 0; words >> value;) values.push_back(value);
-    const auto view = wall::geom::view_of_values(values);
-    if (!view || wall::geom::wrong_with(*view) != nullptr) stop("GOLDEN_VIEW is no view");
-    return view;
+    wall::geom::EyeViewValues values{};
+    for (float& value : values) words >> value;
+    const auto view = wall::geom::eye_view_of_values(values);
+    if (!words || std::holds_alternative<const char*>(view)) stop("GOLDEN_VIEW is no view");
+    return std::get<wall::geom::EyeView>(view);
 }
 
-const std::optional<wall::geom::View>& view() {
+const std::optional<wall::geom::EyeView>& view() {
     static const auto read = read_view();
     return read;
 }

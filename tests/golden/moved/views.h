@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A reference of a tile that looks elsewhere (docs/walls.md, "Views"): while GOLDEN_VIEW is set, to the 13 numbers of
-// geom::values_of(), the projection that the program sets becomes that of the view in Mesa. The program's own is kept
-// beside it, for what it multiplies it by, its stack and its questions.
+// A reference of a tile that looks elsewhere or is for one eye (docs/walls.md, "Views", "Stereo"): while GOLDEN_VIEW is
+// set, to the 16 numbers of geom::values_of() of an EyeView, the projection that the program sets becomes that of the
+// view in Mesa. The program's own is kept beside it, for what it multiplies it by, its stack and its questions.
 #pragma once
 
 #include <string_view>

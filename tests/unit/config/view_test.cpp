@@ -72,6 +72,74 @@ TEST(ViewConfig, SaysWhatIsWrong) {
     for (const auto& [keys, says] : cases) EXPECT_THAT(refusal_of(keys), StartsWith(says)) << keys;
 }
 
+/// Two tiles with these keys, at one place.
+std::string pair_with(const std::string& first, const std::string& second) {
+    return wall_with(first) + "[[node.tile]]\nname = \"b\"\nrect = [0, 0, 640, 480]\n" + second + "\n";
+}
+
+TEST(EyesConfig, ATileIsForBothEyesOrOne) {
+    const auto config = parse_config(pair_with("eye = \"left\"", "eye = \"right\"\nyaw = 30\nfov = 60"), "wall.toml");
+    ASSERT_TRUE(config) << config.error().message;
+    const auto& tiles = config->nodes[0].tiles;
+    ASSERT_EQ(tiles.size(), 2u);
+    EXPECT_EQ(tiles[0].eye, geom::Eye::left);
+    EXPECT_EQ(tiles[1].eye, geom::Eye::right);
+    EXPECT_TRUE(tiles[1].view.has_value());
+}
+
+TEST(EyesConfig, AnOutputThatShowsBothHasACompanionForTheRightEye) {
+    const auto config =
+        parse_config(pair_with("stereo = \"rows\"\npixels = [320, 240]\nyaw = 30\nfov = 60", ""), "wall.toml");
+    ASSERT_TRUE(config) << config.error().message;
+    const auto& tiles = config->nodes[0].tiles;
+    ASSERT_EQ(tiles.size(), 3u);
+    EXPECT_EQ(tiles[0].eye, geom::Eye::left);
+    EXPECT_EQ(tiles[0].output.stereo, geom::StereoLayout::rows);
+    EXPECT_EQ(tiles[0].output.right_slot, 2u);
+    EXPECT_EQ(tiles[1].eye, geom::Eye::both);
+    EXPECT_EQ(tiles[2].name, "a/right");
+    EXPECT_EQ(tiles[2].eye, geom::Eye::right);
+    EXPECT_EQ(tiles[2].rect, tiles[0].rect);
+    EXPECT_EQ(tiles[2].view, tiles[0].view);
+    EXPECT_TRUE(geom::is_plain(tiles[2].output, tiles[2].rect));
+}
+
+/// Each GPU is a node, and a tile's companion is drawn by the tile's.
+TEST(EyesConfig, CompanionsAreWithTheirTiles) {
+    const auto config = parse_config(
+        "[[node]]\nname = \"n\"\ngpus = 2\n"
+        "[[node.tile]]\nname = \"a\"\nrect = [0, 0, 64, 48]\nstereo = \"anaglyph\"\n"
+        "[[node.tile]]\nname = \"b\"\nrect = [64, 0, 64, 48]\nstereo = \"over-under\"\n",
+        "wall.toml");
+    ASSERT_TRUE(config) << config.error().message;
+    ASSERT_EQ(config->nodes.size(), 2u);
+    for (const auto& node : config->nodes) {
+        ASSERT_EQ(node.tiles.size(), 2u) << node.name;
+        EXPECT_EQ(node.tiles[1].name, node.tiles[0].name + "/right");
+        EXPECT_EQ(node.tiles[0].output.right_slot, 1u);
+    }
+}
+
+TEST(EyesConfig, SaysWhatIsWrong) {
+    const struct {
+        const char *first, *second, *says;
+    } cases[] = {
+        {"eye = \"middle\"", "", "wall.toml:8: 'eye' is 'middle': expected \"left\" or \"right\""},
+        {"eye = \"left\"", "", "wall.toml:8: tile 'a' is for one eye, and the other sees nothing there: expected"},
+        {"eye = \"left\"", "eye = \"left\"", "wall.toml:8: tile 'a' is for one eye"},
+        {"stereo = \"shutter\"", "", "wall.toml:8: 'stereo' is 'shutter': expected \"side-by-side\", \"over-under\""},
+        {"stereo = \"rows\"\neye = \"left\"", "", "wall.toml:9: 'eye' beside 'stereo': expected one of them"},
+        {"pixels = [639, 480]\nstereo = \"side-by-side\"", "",
+         "wall.toml:9: 'stereo' is 'side-by-side' on an output of 639 columns: expected an even number"},
+        {"pixels = [640, 479]\nstereo = \"rows\"", "", "'rows' on an output of 479 rows: expected an even number"},
+    };
+    for (const auto& [first, second, says] : cases) {
+        const auto config = parse_config(pair_with(first, second), "wall.toml");
+        ASSERT_FALSE(config) << first;
+        EXPECT_THAT(config.error().message, HasSubstr(says)) << first;
+    }
+}
+
 TEST(ViewConfig, NodesThatAreAddedStandInTheSameRoom) {
     const std::string node =
         "[[node]]\nname = \"n\"\n[[node.tile]]\nname = \"a\"\nrect = [0, 0, 8, 6]\n"

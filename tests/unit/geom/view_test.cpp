@@ -110,5 +110,28 @@ TEST(View, WhatComesFromElsewhereIsChecked) {
     EXPECT_NE(wrong_with(view), nullptr);
 }
 
+TEST(EyeView, GoesOverTheWireAsItIs) {
+    for (const EyeView& view :
+         {EyeView{}, EyeView{view_of_angles(30, 5, 1, 60, 40), {}}, EyeView{.parallax = {-0.02f, 7}},
+          EyeView{view_of_angles(-90, 0, 0, 90, 60), {0.02f, 0.5f}}}) {
+        const auto back = eye_view_of_values(values_of(view));
+        ASSERT_TRUE(std::holds_alternative<EyeView>(back));
+        EXPECT_EQ(std::get<EyeView>(back), view);
+    }
+}
+
+TEST(EyeView, WhatComesFromElsewhereIsChecked) {
+    const auto wrong = [](std::size_t at, float value) {
+        auto values = values_of(EyeView{view_of_angles(30, 5, 1, 60, 40), {0.02f, 3}});
+        values[at] = value;
+        return std::holds_alternative<const char*>(eye_view_of_values(values));
+    };
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+    for (const float shift : {1.5f, -1.5f, kNan, kInf}) EXPECT_TRUE(wrong(14, shift)) << shift;
+    for (const float screen : {0.0f, -1.0f, kNan, kInf}) EXPECT_TRUE(wrong(15, screen)) << screen;
+    EXPECT_TRUE(wrong(1, 5));
+    EXPECT_FALSE(wrong(14, 0));
+}
+
 }  // namespace
 }  // namespace wall::geom

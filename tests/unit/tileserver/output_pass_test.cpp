@@ -61,7 +61,8 @@ protected:
     void TearDown() override {
         if (!node_.usable()) return;
         pass_.reset();
-        drop_canvas();
+        drop(canvas_);
+        drop(of_right_eye_);
         EXPECT_EQ(node_.driver->drain_errors(), 0u);
         EXPECT_EQ(held(), before_) << "objects of the driver";
     }
@@ -69,26 +70,28 @@ protected:
         const auto& objects = *node_.driver->gl().objects;
         return objects.textures + objects.framebuffers + objects.programs + objects.shaders + objects.buffers;
     }
-    void drop_canvas() {
+    void drop(PictureTexture& canvas) {
         const auto& gl = node_.driver->gl();
-        node_.driver->forget_texture(canvas_.texture);
-        gl.DeleteTextures(1, &canvas_.texture);
-        canvas_ = {};
+        node_.driver->forget_texture(canvas.texture);
+        gl.DeleteTextures(1, &canvas.texture);
+        canvas = {};
     }
-    void set_canvas(const cv::Mat& picture) {
+    void set(PictureTexture& canvas, const cv::Mat& picture) {
         const auto& gl = node_.driver->gl();
-        drop_canvas();
-        gl.CreateTextures(GL_TEXTURE_2D, 1, &canvas_.texture);
-        gl.TextureStorage2D(canvas_.texture, 1, GL_RGBA8, picture.cols, picture.rows);
+        drop(canvas);
+        gl.CreateTextures(GL_TEXTURE_2D, 1, &canvas.texture);
+        gl.TextureStorage2D(canvas.texture, 1, GL_RGBA8, picture.cols, picture.rows);
         node_.driver->neutral_pixel_transfer();
-        gl.TextureSubImage2D(canvas_.texture, 0, 0, 0, picture.cols, picture.rows, GL_RGBA, GL_UNSIGNED_BYTE,
+        gl.TextureSubImage2D(canvas.texture, 0, 0, 0, picture.cols, picture.rows, GL_RGBA, GL_UNSIGNED_BYTE,
                              picture.data);
-        canvas_.width = picture.cols;
-        canvas_.height = picture.rows;
-        canvas_.version = ++version_;
+        canvas.width = picture.cols;
+        canvas.height = picture.rows;
+        canvas.version = ++version_;
     }
-    cv::Mat shown(const geom::TileOutput& output) {
-        const auto picture = pass_->show(0, std::make_shared<const geom::TileOutput>(output), canvas_);
+    void set_canvas(const cv::Mat& picture) { set(canvas_, picture); }
+    cv::Mat shown(const geom::TileOutput& output) { return shown(std::make_shared<const geom::TileOutput>(output)); }
+    cv::Mat shown(const std::shared_ptr<const geom::TileOutput>& output) {
+        const auto picture = pass_->show(0, output, canvas_, of_right_eye_);
         EXPECT_TRUE(picture) << picture.error().message;
         if (!picture) return {};
         cv::Mat out(picture->height, picture->width, CV_8UC4);
@@ -104,7 +107,7 @@ protected:
     test::TestNode node_{GetParam()};
     std::int64_t before_ = 0;
     std::optional<OutputPass> pass_;
-    PictureTexture canvas_;
+    PictureTexture canvas_, of_right_eye_;
     std::uint64_t version_ = 0;
 };
 
@@ -371,6 +374,58 @@ TEST_P(Outputs, HaveTheirToneCurves) {
         EXPECT_NEAR(to[1], i < 127.5 ? i : 127.5 + (i - 127.5) * 0.2, 1) << "bent in the middle";
         EXPECT_NEAR(to[2], i, 1) << "as it is";
     }
+}
+
+TEST_P(Outputs, ShowTwoEyes) {
+    using geom::StereoLayout;
+    constexpr int kWidth = 64, kHeight = 48;
+    const cv::Mat left = noise(kWidth, kHeight);
+    cv::Mat right;
+    cv::flip(left, right, 1);
+    const cv::Rect whole(0, 0, kWidth, kHeight);
+    // Half of a picture has each two pixels as one.
+    const auto halved = [](const cv::Mat& picture, int width, int height) {
+        cv::Mat out;
+        cv::resize(picture, out, {width, height}, 0, 0, cv::INTER_AREA);
+        return out;
+    };
+    cv::Mat sides, halves, rows = left.clone(), glasses = left.clone();
+    cv::hconcat(halved(left, kWidth / 2, kHeight), halved(right, kWidth / 2, kHeight), sides);
+    cv::vconcat(halved(left, kWidth, kHeight / 2), halved(right, kWidth, kHeight / 2), halves);
+    for (int y = 1; y < kHeight; y += 2) right.row(y).copyTo(rows.row(y));
+    for (const int channel : {1, 2}) cv::mixChannels(std::vector{right}, std::vector{glasses}, {channel, channel});
+    const auto shown_as = [&](StereoLayout layout, std::int32_t width = 64) {
+        geom::TileOutput output{.width = width, .height = kHeight};
+        output.stereo = layout;
+        output.right_slot = 1;
+        return shown(output);
+    };
+    set(canvas_, left);
+    set(of_right_eye_, right);
+    EXPECT_LE(difference(shown_as(StereoLayout::side_by_side), sides).most, 1);
+    EXPECT_LE(difference(shown_as(StereoLayout::over_under), halves).most, 1);
+    EXPECT_EQ(difference(shown_as(StereoLayout::rows), rows).most, 0);
+    EXPECT_EQ(difference(shown_as(StereoLayout::anaglyph), glasses).most, 0);
+    // Where the output has pixels for both, none is lost.
+    const cv::Mat full = shown_as(StereoLayout::side_by_side, 2 * kWidth);
+    EXPECT_EQ(difference(full(whole), left).most, 0);
+    EXPECT_EQ(difference(full(whole + cv::Point(kWidth, 0)), right).most, 0);
+}
+
+TEST_P(Outputs, ShowTheOtherEyeAnewWhenOnlyThatHasChanged) {
+    const cv::Mat left = noise(32, 24);
+    cv::Mat right;
+    cv::flip(left, right, 0);
+    geom::TileOutput output{.width = 32, .height = 24};
+    output.stereo = geom::StereoLayout::rows;
+    const auto what = std::make_shared<const geom::TileOutput>(output);
+    set(canvas_, left);
+    set(of_right_eye_, left);
+    EXPECT_EQ(difference(shown(what), left).most, 0);
+    cv::Mat mixed = left.clone();
+    for (int y = 1; y < 24; y += 2) right.row(y).copyTo(mixed.row(y));
+    set(of_right_eye_, right);
+    EXPECT_EQ(difference(shown(what), mixed).most, 0);
 }
 
 TEST_P(Outputs, AreMadeOnceForEachPicture) {

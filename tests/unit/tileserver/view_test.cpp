@@ -54,10 +54,12 @@ protected:
             node_.node->tiles.push_back({slot, {static_cast<int>(slot) * kWidth, 0, kWidth, kHeight}, {}});
         session_.emplace(*node_.node, SessionId(1));
         session_->open_surface(kWidth, kHeight, kWhole);
-        place({view_of(0), view_of(1)});
+        place(std::vector{view_of(0), view_of(1)});
     }
-    static geom::View view_of(std::uint32_t slot) { return geom::view_of_angles(slot == 0 ? 70 : -120, 5, 3, 80, 60); }
-    static std::vector<std::byte> bytes_of(const std::vector<geom::View>& views) {
+    static geom::EyeView view_of(std::uint32_t slot) {
+        return {geom::view_of_angles(slot == 0 ? 70 : -120, 5, 3, 80, 60)};
+    }
+    static std::vector<std::byte> bytes_of(const std::vector<geom::EyeView>& views) {
         std::vector<std::byte> bytes;
         for (std::uint32_t slot = 0; slot < views.size(); ++slot) {
             const auto values = geom::values_of(views[slot]);
@@ -70,7 +72,7 @@ protected:
         }
         return bytes;
     }
-    void place(const std::vector<geom::View>& views, const geom::Rect& rect = kWhole) {
+    void place(const std::vector<geom::EyeView>& views, const geom::Rect& rect = kWhole) {
         Batch batch;
         pack::SurfaceViews(batch.buffer(), kSurface, bytes_of(views));
         pack::SurfacePlace(batch.buffer(), kSurface, ++version_, kWidth, kHeight, rect.x, rect.y,
@@ -136,8 +138,9 @@ protected:
         node_.make_current();
         return pixels;
     }
-    static Mat4 seen(std::uint32_t slot, const Mat4& camera) {
-        const auto change = glstate::view_change(view_of(slot), camera);
+    static Mat4 seen(std::uint32_t slot, const Mat4& camera) { return seen(view_of(slot), camera); }
+    static Mat4 seen(const geom::EyeView& view, const Mat4& camera) {
+        const auto change = glstate::view_change(view, camera);
         EXPECT_TRUE(change.has_value());
         return glstate::product(*change, camera);
     }
@@ -170,7 +173,7 @@ TEST_F(TilesThatLookElsewhere, MatricesAndViewsChangeInAnyOrder) {
     draw(first, Mat4{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, kModelview, [&](auto& b) { pack_ring(b); });
     draw(second, kCamera, kModelview, [&](auto& b) { pack_ring(b); });
     expect_views();
-    place({geom::view_of_angles(10, 0, 0, 50, 40), geom::view_of_angles(20, 0, 0, 50, 40)});
+    place({{geom::view_of_angles(10, 0, 0, 50, 40)}, {geom::view_of_angles(20, 0, 0, 50, 40)}});
     place({view_of(0), view_of(1)});
     Batch third;
     draw(third, kCamera, kModelview, [&](auto& b) { pack_ring(b); });
@@ -260,6 +263,30 @@ TEST_F(TilesThatLookElsewhere, PiecesAreThoseThatTheViewSees) {
         EXPECT_EQ(count_different(in_pieces[slot], session_->read(slot, kPart)), 0u) << slot;
 }
 
+/// Where the window lies, not all over the tile: each eye sees the same part of the picture, from beside the other.
+TEST_F(TilesThatLookElsewhere, AnEyeSeesItsPartOfThePictureFromBeside) {
+    const std::vector<geom::EyeView> eyes{{.parallax = {-0.1f, 3}}, {.parallax = {0.1f, 3}}};
+    // The window is as large as a tile and lies with its right half on the first, with its left one on the second.
+    place(eyes, {kWidth / 2, 0, kWidth, kHeight});
+    Batch batch;
+    draw(batch, kCamera, kModelview, [&](auto& b) { pack_ring(b); });
+    for (const std::uint32_t slot : {0u, 1u}) {
+        const geom::Rect half{slot == 0 ? 0 : kWidth / 2, 0, kWidth / 2, kHeight};
+        const auto part = [&](const Mat4& projection) {
+            const Pixels all = drawn_by(projection, kModelview);
+            Pixels out;
+            for (int y = 0; y < kHeight; ++y)
+                out.insert(out.end(), all.begin() + (y * kWidth + half.x) * 4,
+                           all.begin() + (y * kWidth + half.x + half.width) * 4);
+            return out;
+        };
+        const Pixels wanted = part(seen(eyes[slot], kCamera));
+        const Pixels shown = session_->read(slot, {slot == 0 ? 0 : half.x, 0, half.width, kHeight});
+        EXPECT_LE(count_different(wanted, shown), kRounded) << "slot " << slot;
+        EXPECT_GT(count_different(wanted, part(kCamera)), 200u) << "it tells them apart";
+    }
+}
+
 TEST_F(TilesThatLookElsewhere, WrongViewsAreRefused) {
     const auto refusal = [&](std::span<const std::byte> bytes) {
         session_.emplace(*node_.node, SessionId(2));  // what was refused once stays so
@@ -272,8 +299,10 @@ TEST_F(TilesThatLookElsewhere, WrongViewsAreRefused) {
     auto bytes = bytes_of({view_of(0)});
     EXPECT_EQ(refusal(bytes), "");
     EXPECT_THAT(refusal(std::span(bytes).first(20)), HasSubstr("no whole number of views"));
-    geom::View folded = view_of(0);
-    folded.top = folded.bottom;
+    geom::EyeView folded = view_of(0), far_apart = view_of(0);
+    folded.elsewhere->top = folded.elsewhere->bottom;
+    far_apart.parallax = {2, 1};
+    EXPECT_THAT(refusal(bytes_of({far_apart})), HasSubstr("eyes that are more than a picture apart"));
     EXPECT_THAT(refusal(bytes_of({folded})), HasSubstr("edges that leave nothing between them"));
     const std::uint32_t slot = 63;
     std::memcpy(bytes.data(), &slot, sizeof slot);

@@ -52,6 +52,12 @@ TEST(Wallrun, EndsAllProcessesWhenOneFails) {
     EXPECT_EQ(run_members("g", 2, {"/nowhere/program"}), 127);
 }
 
+TEST(Wallrun, ChecksStereo) {
+    for (const char* good : {"", "1.5", "-3", "2,40", "25,0.5"}) EXPECT_TRUE(check_stereo(good)) << good;
+    for (const char* bad : {"x", "1.5,", "26", "1.5,-1", "1,2,3", "1.5 ", "nan", "1,nan"})
+        EXPECT_FALSE(check_stereo(bad)) << bad;
+}
+
 TEST(Wallrun, ChecksRectangles) {
     for (const char* good : {"", "fullscreen", "0,0,1,1", "-5,0,10,10"}) EXPECT_TRUE(check_rect(good)) << good;
     for (const char* bad : {"1,2,3", "1,2,3,4,5", "1,2,0,4", "1,2,3,-4", "a", "1x2+3+4"})

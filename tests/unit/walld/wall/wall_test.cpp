@@ -328,6 +328,25 @@ TEST_F(TheWall, TellsNodesASessionsWeightWithTheTicketThatTheyHave) {
     EXPECT_EQ(wall_.set_weight({SessionId(7), {}}, 30).error().kind, RefusalKind::not_found);
 }
 
+TEST_F(TheWall, TellsAProgramHowItsPicturesForTwoEyesAreApart) {
+    join("left");
+    const auto id = open();
+    open_surface(id, 1, 100, 100);
+    proto::Stereo stereo;
+    stereo.set_separation(0.02f);
+    stereo.set_screen(5);
+    ASSERT_TRUE(wall_.set_stereo({id, {}}, stereo));
+    const auto placement = last_to_client(id).placement();
+    EXPECT_EQ(placement.stereo().separation(), 0.02f);
+    EXPECT_EQ(placement.stereo().screen(), 5);
+    const auto& place = wall_.find({id, SurfaceId(1)})->place;
+    EXPECT_EQ(placement.layout_version(), place.version()) << "it is a placement like others";
+    ASSERT_TRUE(wall_.set_stereo({id, {}}, std::nullopt));
+    EXPECT_FALSE(last_to_client(id).placement().has_stereo());
+    EXPECT_GT(place.version(), placement.layout_version());
+    EXPECT_EQ(wall_.set_stereo({SessionId(7), {}}, stereo).error().kind, RefusalKind::not_found);
+}
+
 TEST_F(TheWall, TakesNoMoreSessionsThanItsLimit) {
     join("left");
     proto::ClientHello hello;
