@@ -136,9 +136,11 @@ function show() {
         ? Math.max(0, Date.now() - livePicture.taken.get(tile.name)) : undefined }));
   setText(get('name'), status.wall.name);
   document.title = `${status.wall.name}: WallGL`;
-  picture.setTiles(status.wall, tiles.map(({ name, rect, state }) => ({ name, rect, away: state === 'away' })));
+  // Where two eyes see the wall, this is the left one's.
+  const seen = tiles.filter(({ eye }) => eye !== 'right');
+  picture.setTiles(status.wall, seen.map(({ name, rect, state }) => ({ name, rect, away: state === 'away' })));
   fitWall();
-  view.update(status.wall, tiles, windows, selected);
+  view.update(status.wall, seen, windows, selected);
   showRoom(tiles, showTilePicture);
   showTables({ status, windows, tiles, rates }, { onWindow: select, onTile: showTilePicture });
   showTools();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "walld/wall/messages.h"
 
+#include "common/base/stereo.h"
+
 namespace wall::walld {
 namespace {
 
@@ -65,6 +67,10 @@ proto::View to_proto(const geom::View& view) {
     const auto values = geom::values_of(view);
     out.mutable_values()->Add(values.begin(), values.end());
     return out;
+}
+
+std::optional<proto::Stereo> checked(const proto::Stereo& told) {
+    return is_sound({told.separation(), told.screen()}) ? std::optional(told) : std::nullopt;
 }
 
 }  // namespace wall::walld

@@ -2,6 +2,8 @@
 // Small conversions between walld's types and control.proto. Pure.
 #pragma once
 
+#include <optional>
+
 #include "common/geom/rect.h"
 #include "common/geom/tile_output.h"
 #include "common/geom/view.h"
@@ -30,6 +32,8 @@ inline proto::Rect to_proto(const geom::Rect& rect) {
 /// Of a tile's output that has something to do.
 proto::TileOutput to_proto(const geom::TileOutput& output);
 proto::View to_proto(const geom::View& view);
+/// Of a program's words; nothing: it cannot be.
+std::optional<proto::Stereo> checked(const proto::Stereo& told);
 
 inline geom::Rect from_proto(const proto::Rect& rect) {
     return {rect.x(), rect.y(), static_cast<std::int32_t>(rect.width()), static_cast<std::int32_t>(rect.height())};

@@ -216,7 +216,7 @@ SessionId Wall::open_session(const proto::ClientHello& hello, Person owner, Cloc
     session.name = hello.name().substr(0, kMaxText);
     session.owner = std::move(owner);
     session.held = hello.hold();
-    if (hello.has_stereo() && !session.group) session.stereo = hello.stereo();
+    if (hello.has_stereo() && !session.group) session.stereo = checked(hello.stereo());
     if (hello.has_rect()) session.rect = from_proto(hello.rect());
     session.fullscreen = hello.fullscreen();
     if (session.fullscreen) session.rect = config_.canvas();

@@ -147,7 +147,7 @@ bool Wall::restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& mess
     if (record.session_weight() != 0 && record.session_weight() <= wire::kMostWeight &&
         record.session_weight() != session.weight)
         (void)set_weight({key.session, {}}, record.session_weight());
-    if (record.has_session_stereo()) session.stereo = record.session_stereo();
+    session.stereo = record.has_session_stereo() ? checked(record.session_stereo()) : std::nullopt;
     auto& surface = add_surface(key, message);
     surface.scaled = record.scaled();
     surface.wanted_rect = record.wanted_rect();

@@ -347,6 +347,21 @@ TEST_F(TheWall, TellsAProgramHowItsPicturesForTwoEyesAreApart) {
     EXPECT_EQ(wall_.set_stereo({SessionId(7), {}}, stereo).error().kind, RefusalKind::not_found);
 }
 
+TEST_F(TheWall, TakesStereoFromAProgramThatComesUnlessItCannotBe) {
+    join("left");
+    const auto stereo_of = [&](float separation, float screen) {
+        proto::ClientHello hello;
+        hello.set_version(wire::kProtocolVersion);
+        hello.mutable_stereo()->set_separation(separation);
+        hello.mutable_stereo()->set_screen(screen);
+        return wall_.sessions().at(open(hello)).stereo.has_value();
+    };
+    EXPECT_TRUE(stereo_of(-0.02f, 0));
+    EXPECT_FALSE(stereo_of(2, 1));
+    EXPECT_FALSE(stereo_of(0.01f, std::numeric_limits<float>::quiet_NaN()));
+    EXPECT_FALSE(stereo_of(std::numeric_limits<float>::quiet_NaN(), 1));
+}
+
 TEST_F(TheWall, TakesNoMoreSessionsThanItsLimit) {
     join("left");
     proto::ClientHello hello;
