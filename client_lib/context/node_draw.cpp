@@ -288,7 +288,7 @@ void NodeDraw::send_once() {
             if (!cut() && node.brought.has(input_.id, latest)) return;
             std::lock_guard lock(c_.share().mutex);
             for_each_object([&](const Object& object) { node.object_stamps[object.id] = object.latest(); });
-            node.brought.note(input_.id, latest);
+            if (node.hollow.empty()) node.brought.note(input_.id, latest);
         });
 }
 
@@ -304,7 +304,7 @@ void NodeDraw::bring_objects(Node& node, wire::PackBuffer& buffer) const {
     std::lock_guard lock(c_.share().mutex);
     ObjectSender sender(c_.session().nodes(), node, buffer);
     for_each_object([&](const Object& object) { sender.send(object); });
-    node.brought.note(input_.id, latest);
+    if (node.hollow.empty()) node.brought.note(input_.id, latest);
     count(node, NodeCounter::object_bytes, sender.bytes());
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "client_lib/link/connect_attempt.h"
@@ -72,6 +73,7 @@ struct Node {
     std::shared_ptr<NodeStream> stream;                     ///< null: not connected
     std::unordered_map<ContextId, Mirror> mirrors;          ///< by context
     ObjectStamps object_stamps;                             ///< of what the node has; absent: nothing
+    std::unordered_set<ClientName> hollow;                  ///< has them without what was drawn in them: see fetch()
     BroughtTogether brought;                                ///< vertex inputs with their buffers
     std::unordered_map<SurfaceId, std::uint32_t> surfaces;  ///< by surface: layout version it knows
     std::unordered_map<SurfaceId, std::uint32_t>
@@ -87,6 +89,11 @@ struct Node {
     bool alive() const { return stream && !stream->failed(); }
     /// Whether it can be expected to answer soon.
     bool answers() const { return alive() && left_out.empty(); }
+    /// Whether it has all that it was brought of the object, and what was drawn in it, too.
+    bool holds(ClientName object) const {
+        const auto known = object_stamps.find(object);
+        return known != object_stamps.end() && known->second != 0 && !hollow.contains(object);
+    }
 };
 
 /// Adds to what the statistics know of the node.

@@ -33,6 +33,7 @@ void Nodes::forget(Node& node) {
     find_everywhere();
     node.mirrors.clear();
     node.object_stamps.clear();
+    node.hollow.clear();
     node.brought.forget();
     node.surfaces.clear();
     node.batch.clear();

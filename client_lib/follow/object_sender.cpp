@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/follow/object_sender.h"
 
-#include <algorithm>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -24,6 +23,7 @@ void lose_images(Node& node, const DrawSource& source) {
     std::lock_guard lock(source.share->mutex);
     const auto lose = [&](const Object& image) {
         if (const auto known = node.object_stamps.find(image.id); known != node.object_stamps.end()) known->second = 0;
+        node.hollow.erase(image.id);
     };
     source.draw.for_each_image(lose);
     source.objects.for_each_written(lose);
@@ -37,33 +37,52 @@ void ObjectSender::send(const Object& object) {
     const std::uint64_t latest = object.latest();
     if (latest == 0) return;
     const std::uint64_t known = std::exchange(node_.object_stamps[object.id], latest);
-    if (known == latest) return;
+    const bool hollow = !node_.hollow.empty() && node_.hollow.contains(object.id);
+    if (known == latest && !hollow) return;
     const bool asks = known == 0 && object.worth_asking() && may_be_asked(node_);
     if (asks && held(object)) return;
-    object.pack_changes(known, buffer_, [this] {  // a node at time zero may need more than a frame holds
-        if (buffer_.bytes() >= kObjectBatchBytes) send_off();
-    });
-    if (known == 0 && object.is_drawn()) fetch(object);
+    if (known != latest)
+        object.pack_changes(known, buffer_, [this] {  // a node at time zero may need more than a frame holds
+            if (buffer_.bytes() >= kObjectBatchBytes) send_off();
+        });
+    if (!object.is_drawn()) node_.hollow.erase(object.id);
+    else if (known == 0 || hollow) fetch(object);
     if (asks && object.pack_shared(buffer_)) send_off();  // others may be waiting for it
 }
 
-/// From a node that has the object. If there is none, the program has to draw it again.
+/// From any node that has the object. One that goes away meanwhile, or is too busy to answer, is no reason to go
+/// without: the next one is asked, and those that do not answer now with a later draw. If nobody has it, the program
+/// has to draw it again.
 void ObjectSender::fetch(const Object& object) {
-    const auto has_it = [&](const auto& node) {
-        const auto known = node->object_stamps.find(object.id);
-        return node.get() != &node_ && node->answers() && known != node->object_stamps.end() && known->second != 0;
-    };
-    const auto holder = std::ranges::find_if(nodes_, has_it);
-    if (holder == nodes_.end()) {
-        log(LogLevel::warn, "event=drawn_content_lost object=%u", object.id.value);
-        return;
+    bool later = false;
+    node_.hollow.insert(object.id);
+    for (const auto& holder : nodes_) {
+        if (holder.get() == &node_ || !holder->alive() || !holder->holds(object.id)) continue;
+        if (holder->answers() && !holder->slow && fetch_from(*holder, object)) {
+            node_.hollow.erase(object.id);
+            return;
+        }
+        later = later || holder->alive();
     }
-    Node& from = **holder;
-    ObjectSender(nodes_, from, from.batch).send(object);  // what was changed since it was drawn
-    const auto ask = [&](const auto& pack) { return nodes_.ask_now(from, "drawn content", kDrawnLimitMs, pack); };
+    if (later) return;
+    node_.hollow.erase(object.id);
+    log(LogLevel::warn, "event=drawn_content_lost object=%u", object.id.value);
+}
+
+bool ObjectSender::fetch_from(Node& holder, const Object& object) {
+    ObjectSender(nodes_, holder, holder.batch).send(object);  // what was changed since it was drawn
+    bool answered = true;
+    const auto ask = [&](const auto& pack) -> std::optional<std::vector<std::byte>> {
+        if (!answered) return std::nullopt;
+        auto answer = nodes_.ask_now(holder, "drawn content", kDrawnLimitMs, pack);
+        answered = answer.has_value();
+        return answer;
+    };
     object.pack_drawn(ask, buffer_, [this] {
         if (buffer_.bytes() >= kObjectBatchBytes) send_off();
     });
+    if (!answered) holder.slow = true;  // until it answers to a frame
+    return answered;
 }
 
 /// One short round trip, for which the session's mutex stays taken. True: the node has the object now. False: send it;
@@ -96,9 +115,7 @@ void bring_drawn(Nodes& nodes, const DrawSource& source) {
         if (node.mirrors[source.id].used == source.used) continue;
         ObjectSender sender(nodes, node, nodes.batch(node, source.id));
         source.objects.for_each_used([&](const Object& object) {
-            if (!object.is_drawn()) return;
-            const auto known = node.object_stamps.find(object.id);
-            if (known == node.object_stamps.end() || known->second == 0) sender.send(object);
+            if (object.is_drawn() && !node.holds(object.id)) sender.send(object);
         });
         count(node, NodeCounter::object_bytes, sender.bytes());
     }
@@ -109,7 +126,7 @@ std::size_t bring_up_to_date(Nodes& nodes, Node& node, Mirror& mirror, const Dra
     if (mirror.used == source.used) return 0;
     ObjectSender sender(nodes, node, buffer);
     source.objects.for_each_used([&](const Object& object) { sender.send(object); });
-    mirror.used = source.used;
+    if (node.hollow.empty()) mirror.used = source.used;
     return sender.bytes();
 }
 

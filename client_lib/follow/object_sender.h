@@ -26,6 +26,8 @@ public:
 private:
     bool held(const Object& object);
     void fetch(const Object& object);
+    /// False: it does not answer.
+    bool fetch_from(Node& holder, const Object& object);
     void send_off();
 
     Nodes& nodes_;

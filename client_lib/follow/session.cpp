@@ -223,6 +223,7 @@ void ClientSession::submit_block(const DrawSource& source, const Packer& packer,
 void ClientSession::delete_object(ContextId context, ClientName object) {
     on_every_node(context, [&](wire::PackBuffer& buffer, Node& node) {
         if (node.object_stamps.erase(object) != 0) glapi::pack::ObjectDelete(buffer, object);
+        node.hollow.erase(object);
     });
 }
 

@@ -618,7 +618,9 @@ SCENE(selection, 2) {
         glLoadName(i);
         if (i % 4 == 0) glPushName(100 + i);
         glBegin(i % 3 ? GL_TRIANGLES : GL_LINES);
-        for (int k = 0; k < 6; ++k) glVertex3f(random_unit() * 6 - 3, random_unit() * 6 - 3, random_unit() * 4 - 2);
+        // Nothing reaches the far plane: Mesa says 0, not 2^32 - 1, for a farthest depth of 1.
+        for (int k = 0; k < 6; ++k)
+            glVertex3f(random_unit() * 6 - 3, random_unit() * 6 - 3, random_unit() * 1.8f - 0.9f);
         glEnd();
         if (i % 7 == 0) glRasterPos2f(0.2f, 0.3f);
         if (i % 4 == 0) glPopName();
