@@ -31,8 +31,23 @@ std::string memory(const json& session) {
     return fmt::format("{:.1f} MB", static_cast<double>(session.value("memory_bytes", std::uint64_t{0})) / 1e6);
 }
 
+/// Of a whole session, such as "held, stereo 1.5 %".
+std::vector<std::string> notes(const json& session) {
+    std::vector<std::string> out;
+    if (is(session, "held")) out.push_back("held");
+    else if (is(session, "silent")) out.push_back("silent");
+    else if (auto fault = text(session, "fault"); !fault.empty()) out.push_back(std::move(fault));
+    if (const auto stereo = session.find("stereo"); stereo != session.end() && stereo->is_object()) {
+        const auto distance = stereo->value("distance", 0.0);
+        out.push_back(fmt::format("stereo {:.3g} %", stereo->value("separation", 0.0)) +
+                      (distance > 0 ? fmt::format(" at {:.6g}", distance) : ""));
+    }
+    return out;
+}
+
 void add_session(std::vector<Row>& rows, const json& session) {
-    const auto note = is(session, "held") ? "held" : is(session, "silent") ? "silent" : text(session, "fault");
+    const auto of_all = notes(session);
+    const auto note = fmt::format("{}", fmt::join(of_all, ", "));
     const auto with_views = [&](const json& surface) {
         const bool flat = text(surface, "views") == "flat";
         return !flat ? note : note.empty() ? "shown flat: its camera is not known" : note + ", flat";

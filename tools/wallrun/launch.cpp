@@ -80,7 +80,10 @@ Result<void> check_rect(const std::string& rect) {
                 "': expected X,Y,W,H in canvas pixels, for example 0,0,1920,1080, or fullscreen");
 }
 
-Result<void> check_stereo(const std::string& stereo) {
+Result<void> check_stereo(const std::string& stereo, bool parallel) {
+    if (!stereo.empty() && parallel)
+        return fail("stereo '" + stereo +
+                    "': the processes of a parallel program draw one picture together; expected another program");
     if (stereo.empty() || stereo_of_text(stereo)) return {};
     return fail("stereo '" + stereo +
                 "': expected PERCENT of the window's width, up to 25, or PERCENT,DISTANCE, for example 1.5,40");

@@ -32,7 +32,7 @@ Result<void> check_vendor(const VendorFiles& files);
 /// walld answers and lets this user in. `answer_json`, if given, gets its status.
 Result<void> check_walld(const std::string& address, std::string* answer_json = nullptr);
 Result<void> check_rect(const std::string& rect);
-Result<void> check_stereo(const std::string& stereo);
+Result<void> check_stereo(const std::string& stereo, bool parallel);
 
 /// Variables to set; LD_LIBRARY_PATH goes before what is there (`library_path`).
 std::map<std::string, std::string> environment_for(const Launch& launch, const VendorFiles& files,

@@ -99,7 +99,8 @@ int main(int argc, char** argv) {
 
     if (fullscreen) launch.rect = "fullscreen";
     if (auto good = check_rect(launch.rect); !good) give_up(good.error());
-    if (auto good = check_stereo(launch.stereo); !good) give_up(good.error());
+    const bool of_many = parallel > 0 || !group.empty();
+    if (auto good = check_stereo(launch.stereo, of_many); !good) give_up(good.error());
     if (*processes && parallel == 0) give_up({"--parallel: expected at least one process"});
     if (parallel > 0) group = new_group_name(command[0]);
     if (!group.empty()) {

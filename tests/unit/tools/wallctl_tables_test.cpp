@@ -11,6 +11,7 @@ namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(Tables, AlignColumnsAndLeaveOutTrailingBlanks) {
     const json tiles{{{"name", "a"},
@@ -69,6 +70,7 @@ TEST(Tables, ASessionHasALineForEachWindow) {
                          {"owner", {{"kind", "token"}, {"name", "kiosk"}}},
                          {"held", false},
                          {"fault", "bad stream"},
+                         {"stereo", nullptr},
                          {"surfaces", json::array()}}};
     EXPECT_EQ(sessions_table(sessions),
               "ID   PROGRAM  NAME  OWNER        PID  WINDOW   PLACE        FRAME  SENT       MEMORY  NOTE\n"
@@ -92,6 +94,15 @@ TEST(Tables, SaysWhatReadingWallTomlAgainHasDone) {
               "the wall has 6 tiles; nodes that are new, gone or described otherwise: a b\n");
     EXPECT_EQ(reloaded_text({{"tiles", 6}, {"nodes", json::array()}}),
               "the wall has 6 tiles; nodes that are new, gone or described otherwise: none\n");
+}
+
+TEST(Tables, ASessionInStereoSaysHowFarApartTheEyesAre) {
+    const auto of = [](const json& stereo, bool held) {
+        return sessions_table({{{"id", 1}, {"held", held}, {"stereo", stereo}, {"surfaces", json::array()}}});
+    };
+    EXPECT_THAT(of({{"separation", 1.5}, {"distance", 0.0}}, false), HasSubstr("stereo 1.5 %\n"));
+    EXPECT_THAT(of({{"separation", 3.0}, {"distance", 40.0}}, true), HasSubstr("held, stereo 3 % at 40\n"));
+    EXPECT_THAT(of(nullptr, false), Not(HasSubstr("stereo")));
 }
 
 TEST(Tables, AParallelProgramSaysHowManyProcessesAreThere) {

@@ -53,9 +53,11 @@ TEST(Wallrun, EndsAllProcessesWhenOneFails) {
 }
 
 TEST(Wallrun, ChecksStereo) {
-    for (const char* good : {"", "1.5", "-3", "2,40", "25,0.5"}) EXPECT_TRUE(check_stereo(good)) << good;
+    for (const char* good : {"", "1.5", "-3", "2,40", "25,0.5"}) EXPECT_TRUE(check_stereo(good, false)) << good;
     for (const char* bad : {"x", "1.5,", "26", "1.5,-1", "1,2,3", "1.5 ", "nan", "1,nan"})
-        EXPECT_FALSE(check_stereo(bad)) << bad;
+        EXPECT_FALSE(check_stereo(bad, false)) << bad;
+    EXPECT_TRUE(check_stereo("", true));
+    EXPECT_FALSE(check_stereo("1.5", true)) << "the processes draw one picture together";
 }
 
 TEST(Wallrun, ChecksRectangles) {
