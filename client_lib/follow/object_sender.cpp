@@ -46,19 +46,19 @@ void ObjectSender::send(const Object& object) {
             if (buffer_.bytes() >= kObjectBatchBytes) send_off();
         });
     if (!object.is_drawn()) node_.hollow.erase(object.id);
-    else if (known == 0 || hollow) fetch(object);
+    else if (known == 0 || hollow) fetch(object, hollow);
     if (asks && object.pack_shared(buffer_)) send_off();  // others may be waiting for it
 }
 
 /// From any node that has the object. One that goes away meanwhile, or is too busy to answer, is no reason to go
-/// without: the next one is asked, and those that do not answer now with a later draw. If nobody has it, the program
-/// has to draw it again.
-void ObjectSender::fetch(const Object& object) {
+/// without: the next one is asked, and those that do not answer now with a later draw; `again`, and no slow one then,
+/// as that would hold up draw after draw. If nobody has it, the program has to draw it again.
+void ObjectSender::fetch(const Object& object, bool again) {
     bool later = false;
     node_.hollow.insert(object.id);
     for (const auto& holder : nodes_) {
         if (holder.get() == &node_ || !holder->alive() || !holder->holds(object.id)) continue;
-        if (holder->answers() && !holder->slow && fetch_from(*holder, object)) {
+        if (holder->answers() && !(again && holder->slow) && fetch_from(*holder, object)) {
             node_.hollow.erase(object.id);
             return;
         }

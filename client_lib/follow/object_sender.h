@@ -25,7 +25,7 @@ public:
 
 private:
     bool held(const Object& object);
-    void fetch(const Object& object);
+    void fetch(const Object& object, bool again);
     /// False: it does not answer.
     bool fetch_from(Node& holder, const Object& object);
     void send_off();

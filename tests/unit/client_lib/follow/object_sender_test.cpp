@@ -95,6 +95,17 @@ TEST_F(DrawnContent, ComesWithALaterDrawWhenNobodyAnswersNow) {
     EXPECT_TRUE(nodes[kLate].holds(object.id));
 }
 
+TEST_F(DrawnContent, ComesFromASlowOneButIsNotAskedForThereAgainAndAgain) {
+    has_it(kSecond);
+    nodes[kSecond].slow = true;
+    std::thread node_side([this] { answer(second, 1); });
+    EXPECT_TRUE(send());
+    node_side.join();
+    nodes[kLate].hollow.insert(object.id);  // as if it had not answered
+    EXPECT_FALSE(send());
+    EXPECT_FALSE(nodes[kLate].holds(object.id)) << "until it answers to a frame";
+}
+
 TEST_F(DrawnContent, IsNotWaitedForWhenNobodyHasIt) {
     has_it(kFirst);
     nodes[kFirst].hollow.insert(object.id);
