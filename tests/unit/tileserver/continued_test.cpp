@@ -2,20 +2,29 @@
 #include "tileserver/render/continued.h"
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <thread>
 
 namespace wall::tileserver {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
+/// When this process was told to go on, in the clock's own units; 0: not yet. Another process says so, which goes on
+/// while this one is stopped.
+using ToldAt = std::atomic<Clock::rep>;
+
 /// Stops this process for a tenth of a second.
-void be_stopped() {
+void be_stopped(ToldAt& told_at) {
     const pid_t us = ::getpid(), other = ::fork();
     if (other == 0) {
         ::kill(us, SIGSTOP);
         ::usleep(100'000);
+        told_at = Clock::now().time_since_epoch().count();
         ::kill(us, SIGCONT);
         ::_exit(0);
     }
@@ -24,25 +33,32 @@ void be_stopped() {
 }
 
 TEST(Continued, IsKnownToWhoMeasuresBeforeItReadsTheTime) {
+    void* shared = ::mmap(nullptr, sizeof(ToldAt), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    ASSERT_NE(shared, MAP_FAILED);
+    ToldAt& told_at = *new (shared) ToldAt(0);
+    std::atomic<bool> measuring = false;
     continued::expect();
-    std::thread measures([] {
+    // Made by who does not hear, so that it does not take the signal itself.
+    std::thread stops([&] {
+        measuring.wait(false);
+        be_stopped(told_at);
+    });
+    std::thread measures([&] {
         continued::hear();
         const auto before = continued::count();
-        const auto begin = std::chrono::steady_clock::now();
-        std::thread([] { be_stopped(); }).detach();
-        auto last = begin;
-        for (;;) {  // whatever it does meanwhile
-            const auto now = std::chrono::steady_clock::now();
-            if (now - last > std::chrono::milliseconds(80)) break;
-            if (now - begin > std::chrono::seconds(10)) {
-                ADD_FAILURE() << "it was never stopped";
-                return;
-            }
-            last = now;
+        const auto begin = Clock::now();
+        measuring = true;
+        measuring.notify_one();
+        while (told_at == 0) {  // whatever it does meanwhile
+            if (Clock::now() - begin < std::chrono::seconds(10)) continue;
+            ADD_FAILURE() << "it was never stopped";
+            return;
         }
         EXPECT_EQ(continued::count(), before + 1);
     });
     measures.join();
+    stops.join();
+    ::munmap(shared, sizeof(ToldAt));
 }
 
 }  // namespace
