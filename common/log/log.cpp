@@ -6,6 +6,8 @@
 
 #include <cstdlib>
 
+#include "common/log/last_words.h"
+
 namespace wall::log {
 namespace {
 
@@ -28,6 +30,7 @@ void begin(const std::string& name) {
     spdlog::set_default_logger(spdlog::stderr_logger_mt(name));
     spdlog::set_pattern(std::getenv("JOURNAL_STREAM") ? "%l %v" : "%Y-%m-%dT%H:%M:%S.%e %n %l %v");
     spdlog::flush_on(spdlog::level::info);
+    leave_last_words(name);
 }
 
 }  // namespace wall::log

@@ -19,7 +19,8 @@ enum class Level { info, warn, error };
 
 /// One line.
 void write(Level level, std::string_view line);
-/// From now on lines begin with `name`, and with the time unless journald adds that.
+/// From now on lines begin with `name`, and with the time unless journald adds that. A crash leaves its
+/// stack there (last_words.h).
 void begin(const std::string& name);
 
 template <Harmless... Args>

@@ -16,6 +16,7 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import urllib.error
@@ -28,6 +29,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 START_LIMIT = 30.0  # seconds until everything answers; a software renderer compiles its shaders first
 STOP_LIMIT = 5.0  # seconds for an orderly end, then SIGKILL
 PR_SET_PDEATHSIG = 1
+CRASHES = {signal.SIGSEGV, signal.SIGBUS, signal.SIGILL, signal.SIGFPE, signal.SIGABRT}
 
 
 class WallError(RuntimeError):
@@ -70,6 +72,7 @@ class Wall:
         self.daemons: dict[str, subprocess.Popen] = {}  # "walld" and the nodes' names
         self.apps: list[subprocess.Popen] = []
         self.folder = Path()
+        self.crashed = ""  # what daemons said last that had ended with one of CRASHES; known when the wall has stopped
         self.url = ""  # of the status page
         self.address = ""  # of walld, as --walld and WALLGL_WALLD take it
 
@@ -84,8 +87,12 @@ class Wall:
             raise
         return self
 
-    def __exit__(self, *_) -> None:
+    def __exit__(self, kind: object, *_) -> None:
+        """A wall on which a daemon crashed has not passed, whatever it showed."""
         self.stop()
+        if self.crashed and kind is None:
+            raise WallError(self.crashed)
+        print(self.crashed, end="", file=sys.stderr)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -197,6 +204,8 @@ class Wall:
         if "walld" in self.daemons:
             end_all([self.daemons["walld"]])
         codes = {name: daemon.returncode for name, daemon in self.daemons.items()}
+        self.crashed += "".join(f"--- {name} crashed ({signal.Signals(-code).name}):\n{self.log(name)[-4000:]}"
+                                for name, code in codes.items() if -code in CRASHES)
         if self.folder != Path():
             shutil.rmtree(self.folder, ignore_errors=True)
         self.daemons, self.apps = {}, []

@@ -91,6 +91,10 @@ Outcome<void> SnapshotDesk::ask_nodes(const std::shared_ptr<Job>& job) {
             const auto this_slot = slot++;
             if (query.tile.empty() ? tile.eye == geom::Eye::right : tile.name != query.tile) continue;
             found = true;
+            if (!query.tile.empty() && !wall_.nodes()[node].up)
+                return refuse(RefusalKind::unavailable, "node " + wall_.nodes()[node].config->name +
+                                                            ", which shows tile " + query.tile +
+                                                            ", is away: `wallctl doctor` says more");
             const auto place = place_of(query, tile);
             if (!query.tile.empty())
                 job->picture.view = query.target ? geom::intersect(job->picture.view, place) : place;

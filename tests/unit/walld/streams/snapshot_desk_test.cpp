@@ -178,5 +178,16 @@ TEST_F(SnapshotDeskTest, ANodeThatLeavesInTheMiddleIsLeftOut) {
     send(requests[0], '\x55', 3);  // comes too late for anything
 }
 
+TEST_F(SnapshotDeskTest, OneTileOfANodeThatIsAwayIsRefused) {
+    wall_.node_leaves(kLeft, Clock::now());
+    const auto one = take("l"), all = take("");
+    ASSERT_TRUE(one->result);
+    EXPECT_EQ(one->result->error().kind, RefusalKind::unavailable);
+    EXPECT_THAT(one->error(), HasSubstr("node left, which shows tile l, is away"));
+    answer_all('\x55');
+    wait_for(*all);
+    EXPECT_EQ(first_pixel(*all), 0) << "of the whole wall there is a picture, without that tile";
+}
+
 }  // namespace
 }  // namespace wall::walld
