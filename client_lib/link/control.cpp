@@ -28,7 +28,8 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kLeaveLimit{1000};
-constexpr milliseconds kTick{1000};      // statistics are written and told, a lost link is tried again
+constexpr milliseconds kTick{1000};      // statistics are written and told
+constexpr milliseconds kTryAgain{200};   // a lost link, over which the wall may be right again within two seconds
 constexpr std::size_t kLengthBytes = 4;  // in front of every envelope, little endian
 constexpr std::size_t kReadChunk = 16 << 10;
 constexpr std::size_t kMaxOffered = 64;  // placements of a surface that does not draw; only the newest ones matter
@@ -344,12 +345,14 @@ void ControlLink::run() {
         take_messages();
         while (!stop_) {
             serve();
-            while (!stop_ && !reconnect()) {
+            for (auto next_tick = Clock::now() + kTick; !stop_ && !reconnect();) {
                 pollfd p{wake_fd_.get(), POLLIN, 0};
-                ::poll(&p, 1, static_cast<int>(kTick.count()));
+                ::poll(&p, 1, static_cast<int>(kTryAgain.count()));
                 std::uint64_t count;
                 [[maybe_unused]] const auto n = ::read(wake_fd_.get(), &count, sizeof count);
+                if (Clock::now() < next_tick) continue;
                 stats().write();
+                next_tick = Clock::now() + kTick;
             }
         }
     } catch (const std::exception& e) {  // out of memory: drawing goes on, the wall's changes do not arrive

@@ -28,6 +28,14 @@ asio::awaitable<std::string> run_once(const LastingTask& task) {
     co_return "it has ended";
 }
 
+asio::awaitable<void> look_until_false(std::chrono::milliseconds interval, std::function<bool()> look) {
+    asio::steady_timer timer(co_await asio::this_coro::executor);
+    do {
+        timer.expires_after(interval);
+        co_await timer.async_wait(kTuple);
+    } while (look());
+}
+
 asio::awaitable<void> run_for_ever(LastingTask task) {
     asio::steady_timer timer(co_await asio::this_coro::executor);
     while (!task.stopping()) {
@@ -71,6 +79,11 @@ void spawn(const asio::any_io_executor& executor, const char* name, asio::awaita
             log::error("task_failed task={} error={}", log::plain(name), log::quoted(error.what()));
         }
     });
+}
+
+void look_again(const asio::any_io_executor& executor, const char* name, std::chrono::milliseconds interval,
+                std::function<bool()> look) {
+    spawn(executor, name, look_until_false(interval, std::move(look)));
 }
 
 void keep_running(const asio::any_io_executor& executor, LastingTask task) {

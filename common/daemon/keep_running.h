@@ -16,6 +16,10 @@ namespace wall::net {
 /// Runs `work` in the background; what it throws is logged and ends only itself.
 void spawn(const asio::any_io_executor& executor, const char* name, asio::awaitable<void> work);
 
+/// Calls `look` every `interval` in the background until it gives false.
+void look_again(const asio::any_io_executor& executor, const char* name, std::chrono::milliseconds interval,
+                std::function<bool()> look);
+
 /// A piece of work that is never over while the daemon lives.
 struct LastingTask {
     std::string name;                             ///< for the log

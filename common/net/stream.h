@@ -68,6 +68,7 @@ public:
     /// The other end has acknowledged nothing for a while, though it was asked again: TCP will go on asking ever more
     /// rarely, and be late when the link is back.
     bool is_stuck();
+    static constexpr std::chrono::milliseconds kLookForStuck{250};  ///< how often to ask for that
     /// Nothing: the stream is plain.
     const std::optional<tls::Fingerprint>& peer_key() const;
     asio::any_io_executor executor();

@@ -84,9 +84,11 @@ asio::awaitable<void> Agent::serve(Connection program, std::shared_ptr<Places::P
     });
     (*walld)->send(host_hello(user, name));
     const auto pair = std::make_shared<const ControlPair>(ControlPair{program, *walld, std::move(place)});
-    const auto ended = co_await relay_control(
-        pair, [this](const std::string& key, const std::string& address) { return door_for(key, address); });
-    if (ended.message != "closed" && !stopping_) walld_.lost(ended.message);
+    co_await relay_control(
+        pair, [this](const std::string& key, const std::string& address) { return door_for(key, address); },
+        [this](const std::string& why) {
+            if (!stopping_) walld_.lost(why);
+        });
 }
 
 std::string Agent::door_for(const std::string& key, const std::string& address) {

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tools/wallagent/byte_relay.h"
 
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
-#include <chrono>
-
 #include "common/daemon/keep_running.h"
 #include "common/log/log.h"
 
@@ -14,7 +8,6 @@ namespace wall::wallagent {
 namespace {
 
 constexpr std::size_t kRoom = std::size_t{256} << 10;  // bytes, each way
-constexpr auto kWatch = std::chrono::milliseconds(250);
 
 struct Pair {
     net::Stream one, other;
@@ -34,19 +27,15 @@ asio::awaitable<void> pump([[maybe_unused]] std::shared_ptr<Pair> pair, net::Str
 }
 
 /// A link that is cut is given up: the program comes to the node over another connection, as soon as there is a link.
-asio::awaitable<void> watch(std::weak_ptr<Pair> weak) {
-    asio::steady_timer timer(co_await asio::this_coro::executor);
-    for (;;) {
-        timer.expires_after(kWatch);
-        co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
-        const auto pair = weak.lock();
-        if (!pair || !pair->other.is_open()) co_return;
-        if (!pair->other.is_stuck()) continue;
-        log::warn("node_stuck node={}", log::quoted(net::peer_text(pair->other.descriptor())));
-        pair->one.close();
-        pair->other.close();
-        co_return;
-    }
+/// False: there is nothing left to look at.
+bool still_moves(const std::weak_ptr<Pair>& weak) {
+    const auto pair = weak.lock();
+    if (!pair || !pair->other.is_open()) return false;
+    if (!pair->other.is_stuck()) return true;
+    log::warn("node_stuck node={}", log::quoted(net::peer_text(pair->other.descriptor())));
+    pair->one.close();
+    pair->other.close();
+    return false;
 }
 
 }  // namespace
@@ -60,7 +49,8 @@ asio::awaitable<void> relay_bytes(net::Stream one, net::Stream other, std::share
         open->other.close();
     });
     net::spawn(pair->one.executor(), "node to program", pump(pair, pair->other, pair->one));
-    net::spawn(pair->one.executor(), "watch", watch(pair));
+    net::look_again(pair->one.executor(), "watch", net::Stream::kLookForStuck,
+                    [weak = std::weak_ptr(pair)] { return still_moves(weak); });
     co_await pump(pair, pair->one, pair->other);
 }
 

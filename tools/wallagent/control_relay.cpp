@@ -36,8 +36,16 @@ asio::awaitable<void> pass_on(Connection to, proto::Envelope message) {
     co_await to->drained();
 }
 
-asio::awaitable<void> to_walld(std::shared_ptr<const ControlPair> pair) {
-    bool drawing = false, gone = false;  // it has said that it is a program that draws
+/// What both ways know.
+struct Relay {
+    std::shared_ptr<const ControlPair> pair;
+    bool drawing = false;  ///< it has said that it is a program that draws
+    bool cut = false;      ///< walld acknowledged nothing any more, and we have given that link up
+};
+
+asio::awaitable<void> to_walld(std::shared_ptr<Relay> relay) {
+    const auto& pair = relay->pair;
+    bool gone = false;
     while (!gone) {
         auto message = co_await pair->program->receive();
         gone = !message && pair->program->lost();
@@ -47,11 +55,11 @@ asio::awaitable<void> to_walld(std::shared_ptr<const ControlPair> pair) {
             pair->program->close();
             gone = true;
         } else {
-            drawing = drawing || message->has_client_hello();
+            relay->drawing = relay->drawing || message->has_client_hello();
             co_await pass_on(pair->walld, std::move(*message));
         }
     }
-    if (drawing && gone) {
+    if (relay->drawing && gone) {
         proto::Envelope ended;
         ended.mutable_program_ended();
         pair->walld->send(ended);
@@ -59,18 +67,36 @@ asio::awaitable<void> to_walld(std::shared_ptr<const ControlPair> pair) {
     co_await close_when_sent(pair->walld);
 }
 
+/// A program that draws is back over another link before TCP asks again on one that was cut, as its pauses double. What
+/// people have asked for is not asked twice: that waits. False: there is nothing left to look at.
+bool still_moves(const std::weak_ptr<Relay>& weak) {
+    const auto relay = weak.lock();
+    if (!relay || !relay->pair->walld->is_open()) return false;
+    if (!relay->drawing || !relay->pair->walld->is_stuck()) return true;
+    relay->cut = true;
+    relay->pair->walld->close();
+    return false;
+}
+
 }  // namespace
 
-asio::awaitable<Error> relay_control(std::shared_ptr<const ControlPair> pair, DoorFor door_for) {
-    net::spawn(pair->program->executor(), "program to walld", to_walld(pair));
+asio::awaitable<void> relay_control(std::shared_ptr<const ControlPair> pair, DoorFor door_for,
+                                    std::function<void(const std::string& why)> lost) {
+    const auto relay = std::make_shared<Relay>(pair);
+    const auto executor = pair->program->executor();
+    net::spawn(executor, "program to walld", to_walld(relay));
+    net::look_again(executor, "watch", net::Stream::kLookForStuck,
+                    [weak = std::weak_ptr(relay)] { return still_moves(weak); });
     for (;;) {
         auto message = co_await pair->walld->receive();
-        if (!message) {
-            co_await close_when_sent(pair->program);
-            co_return message.error();
+        if (message) {
+            lead_through_doors(*message, door_for);
+            co_await pass_on(pair->program, std::move(*message));
+            continue;
         }
-        lead_through_doors(*message, door_for);
-        co_await pass_on(pair->program, std::move(*message));
+        if (relay->cut) lost("it acknowledges nothing");
+        else if (message.error().message != "closed") lost(message.error().message);
+        co_return co_await close_when_sent(pair->program);
     }
 }
 

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "common/net/control_connection.h"
 #include "tools/wallagent/envelopes.h"
@@ -18,9 +20,10 @@ struct ControlPair {
     std::shared_ptr<Places::Place> place;  ///< taken as long as one of the two is served
 };
 
-/// Until either side ends; what has come from it is sent on, then the other one is closed. Gives why walld's side has
-/// ended: "closed" if that was in order, or by us.
-asio::awaitable<Error> relay_control(std::shared_ptr<const ControlPair> pair, DoorFor door_for);
+/// Until either side ends; what has come from it is sent on, then the other one is closed. `lost` is told why walld's
+/// side has ended before the program can know of it; nothing if that was in order, or by us.
+asio::awaitable<void> relay_control(std::shared_ptr<const ControlPair> pair, DoorFor door_for,
+                                    std::function<void(const std::string& why)> lost);
 
 /// Says `why` in such a way that whoever has just connected reads it, and closes.
 asio::awaitable<void> refuse_control(std::shared_ptr<net::ControlConnection> program, std::string why);

@@ -259,6 +259,22 @@ class Machines(unittest.TestCase):
         self.assert_comes_back("desk", show)
         self.assertEqual(self.wall.ctl_at("desk", "whoami")["name"], "root@desk")
 
+    def test_walld_hears_of_programs_soon_after_a_cut(self) -> None:
+        """TCP, whose pauses double, may have asked just before a cut ends, and be silent then for as long as that was."""
+        show = self.show()
+        times = []
+        for seconds in (3.8, 4.2, 4.6):
+            self.wall.hosts.cut("desk")
+            time.sleep(seconds)
+            self.wall.hosts.mend("desk")
+            mended = time.monotonic()
+            until(lambda: show.sessions <= {s["id"] for s in self.wall.sessions() if s["surfaces"] and not s["silent"]},
+                  "walld hears of the programs", 10)
+            times.append(time.monotonic() - mended)
+        print(f"walld heard of the programs {', '.join(f'{t:.1f}' for t in times)} s after cuts", flush=True)
+        self.assertLess(max(times), 1.5)
+        self.assert_becomes_same(show)
+
     def test_the_link_of_a_node_is_cut(self) -> None:
         show = self.show()
         show.go_on()
