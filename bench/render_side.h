@@ -72,7 +72,7 @@ class Client {
 public:
     Client(Node& node, SessionId id) : session(node.node().driver, id), executor(node.node(), session, output_) {
         wire::PackBuffer buffer;
-        glapi::pack::SurfaceCreate(buffer, SurfaceId(1), 1, 8, 24, 8, 0, 0, 1);
+        glapi::pack::SurfaceCreate(buffer, SurfaceId(1), 1, 8, 24, 8, 0, 0, 1, 0);
         glapi::pack::SurfacePlace(buffer, SurfaceId(1), 1, kSize, kSize, 0, 0, kSize, kSize, 0);
         run(ContextId(1), buffer);
         for (const ContextId context : {ContextId(1), ContextId(2)}) {

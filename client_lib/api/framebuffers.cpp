@@ -286,7 +286,7 @@ const DefaultParameter* find_default(GLenum word) {
 std::optional<GLint> visual_value(Context& c, GLenum word) {
     switch (word) {
         case GL_DOUBLEBUFFER: return c.draw_target() && c.draw_target().format().double_buffered;
-        case GL_STEREO: return 0;
+        case GL_STEREO: return c.draw_target() && c.draw_target().format().stereo;
         case GL_SAMPLES:
         case GL_SAMPLE_BUFFERS: {
             GLint value = 0;

@@ -244,7 +244,7 @@ const Special kSpecials[] = {
     {GL_INDEX_MODE, 1, constant<0>},
     {GL_INDEX_BITS, 1, constant<0>},
     {GL_AUX_BUFFERS, 1, constant<0>},
-    {GL_STEREO, 1, constant<0>},
+    {GL_STEREO, 1, [](Context& c, double* out) { *out = format_of(c).stereo; }},
     {GL_RED_BITS, 1, [](Context& c, double* out) { *out = draw_target_bits(c).red; }},
     {GL_GREEN_BITS, 1, [](Context& c, double* out) { *out = draw_target_bits(c).green; }},
     {GL_BLUE_BITS, 1, [](Context& c, double* out) { *out = draw_target_bits(c).blue; }},

@@ -153,7 +153,10 @@ int named_buffers(GLenum word) {
     }
 }
 
-int existing_buffers(const DrawTarget& target) { return !target || target.format().double_buffered ? 3 : 1; }
+int existing_buffers(const DrawTarget& target) {
+    const int left = !target || target.format().double_buffered ? 3 : 1;
+    return target && target.format().stereo ? left | left << 2 : left;
+}
 
 GLenum buffer_error(GLenum word, const DrawTarget& target) {
     const int named = named_buffers(word);

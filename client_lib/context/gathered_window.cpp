@@ -67,6 +67,7 @@ bool turn_whole(Context& c, ClientSurface& window) {
         case Wholeness::cannot_be: return false;
         case Wholeness::may_be: break;
     }
+    if (window.options.format.stereo && window.drawn) return false;  // only one buffer is gathered
     c.flush_block();
     const PixelBox all{0, 0, static_cast<std::int32_t>(window.layout.width),
                        static_cast<std::int32_t>(window.layout.height)};

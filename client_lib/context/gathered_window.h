@@ -36,7 +36,8 @@ private:
 PixelRect touched_by_blit(const PixelBox& box);
 
 /// All nodes draw all of the window from now on, and have all of its back buffer, depth and stencil (or front buffer,
-/// where it has no other). False: it is a parallel program's, which cannot be so.
+/// where it has no other). False: it is a parallel program's, which cannot be so, or one with buffers for
+/// two eyes in mid-frame.
 bool turn_whole(Context& c, ClientSurface& window);
 
 /// A copy out of the window that is read from, since no framebuffer object is: whether every node has all of it and

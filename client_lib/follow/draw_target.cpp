@@ -55,7 +55,7 @@ void DrawTarget::describe_to(Node& node) const {
     if (known == node.surfaces.end()) {
         const SurfaceFormat& f = format();
         glapi::pack::SurfaceCreate(node.batch, surface_->id, f.double_buffered, f.alpha_bits, f.depth_bits,
-                                   f.stencil_bits, f.accum_bits, f.samples, encodes_srgb());
+                                   f.stencil_bits, f.accum_bits, f.samples, encodes_srgb(), f.stereo);
     } else if (known->second == layout.version) {
         return;
     }

@@ -34,7 +34,7 @@ struct KeptSink {
 /// Whether commands of the context go past a swap, or need what is not kept with them.
 bool cannot_be_kept(const DrawSource& source) {
     const GLenum buffer = source.state.window.draw_buffer;
-    const bool front = buffer != GL_BACK && buffer != GL_BACK_LEFT && buffer != GL_NONE;
+    const bool front = buffer != GL_NONE && !glstate::names_back_only(buffer);
     return (!source.draw.shows_at_once() && front) || source.used.maps != 0;
 }
 
@@ -43,8 +43,8 @@ bool clears_whole(const DrawSource& source, const HiddenPart& part, GLbitfield m
     const SurfaceFormat& format = source.draw.format();
     const auto& s = source.state;
     const GLenum buffer = s.window.draw_buffer;
-    const bool back = buffer == GL_BACK || buffer == GL_BACK_LEFT;
-    if (s.window.scissor_enabled || (format.double_buffered ? !back : buffer == GL_NONE)) return false;
+    const bool back = buffer == GL_BACK || (!format.stereo && buffer == GL_BACK_LEFT);
+    if (s.window.scissor_enabled || (format.double_buffered ? !back : buffer == GL_NONE || format.stereo)) return false;
     if (!(mask & GL_COLOR_BUFFER_BIT) || !glstate::writes_all_channels(s)) return false;
     const bool depth = (mask & GL_DEPTH_BUFFER_BIT) != 0 && s.depth_stencil.depth_mask;
     const bool stencil = (mask & GL_STENCIL_BUFFER_BIT) != 0 && (s.depth_stencil.stencil_mask[0] & 0xff) == 0xff;

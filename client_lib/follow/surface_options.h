@@ -23,7 +23,8 @@ struct SurfaceFormat {
     std::uint8_t stencil_bits = 8;  // 0 or 8
     std::uint8_t accum_bits = 16;   // per channel, 0 or 16
     std::uint8_t samples = 0;
-    bool srgb = false;  ///< asked for: OpenGL ES, too, writes colours by the curve of sRGB (EGL_KHR_gl_colorspace)
+    bool stereo = false;  // buffers for each eye
+    bool srgb = false;    ///< asked for: OpenGL ES, too, writes colours by the curve of sRGB (EGL_KHR_gl_colorspace)
 };
 
 struct SurfaceOptions {

@@ -19,9 +19,9 @@ std::optional<Extent> window_size(const ClientSurface& surface) {
     return surface.options.query_size ? surface.options.query_size() : std::nullopt;
 }
 
-/// How far the picture of a tile is from the program's own.
+/// How far the picture of a tile is from the program's own; a program that draws for two eyes itself has both.
 geom::Parallax parallax_of(const ClientSurface& surface, geom::Eye eye) {
-    if (!surface.stereo || eye == geom::Eye::both) return {};
+    if (!surface.stereo || surface.options.format.stereo || eye == geom::Eye::both) return {};
     const double screen =
         surface.stereo->screen > 0 ? static_cast<double>(surface.stereo->screen) : surface.views.distance.value();
     if (!(screen > 0)) return {};
@@ -106,7 +106,7 @@ void Surfaces::adopt_placements() {
 /// And how it is shown to two eyes, of which apply_layout() alone changes nothing.
 void Surfaces::take_place(ClientSurface& surface, const Placement& placement) {
     surface.stereo = placement.stereo;
-    surface.views.measure(surface.stereo && surface.stereo->screen == 0);
+    surface.views.measure(surface.stereo && !surface.options.format.stereo && surface.stereo->screen == 0);
     apply_layout(surface, placement);
 }
 

@@ -36,11 +36,14 @@ std::vector<SurfaceFormat> formats_of(std::uint8_t samples, bool with_alpha_only
 
 }  // namespace
 
-std::vector<SurfaceFormat> format_matrix(bool with_alpha_only, bool with_single_and_accum) {
+std::vector<SurfaceFormat> format_matrix(bool with_alpha_only, bool with_single_and_accum, bool stereo) {
     std::vector<SurfaceFormat> formats;
     for (const std::uint8_t samples : {std::uint8_t{0}, kWindowSamples})
-        for (const SurfaceFormat& format : formats_of(samples, with_alpha_only, with_single_and_accum))
+        for (SurfaceFormat format : formats_of(samples, with_alpha_only, with_single_and_accum)) {
+            if (stereo && !format.double_buffered) continue;
+            format.stereo = stereo;
             formats.push_back(format);
+        }
     return formats;
 }
 

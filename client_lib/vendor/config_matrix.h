@@ -19,8 +19,9 @@ inline constexpr int kMaxPbufferExtent = 8192;  // pixels a side
 inline constexpr std::uint8_t kWindowSamples = 4;
 
 /// {samples} x {alpha} x {depth} x {stencil} x {double, single} x {accumulation}, the one that most programs want
-/// first. Those with samples have no accumulation buffer, as Mesa's.
-std::vector<SurfaceFormat> format_matrix(bool with_alpha_only, bool with_single_and_accum);
+/// first. Those with samples have no accumulation buffer, as Mesa's. `stereo`: those with buffers for each eye,
+/// instead, which have back buffers.
+std::vector<SurfaceFormat> format_matrix(bool with_alpha_only, bool with_single_and_accum, bool stereo = false);
 
 /// The X visuals of a screen that can carry 8 bits per channel.
 struct ScreenVisuals {

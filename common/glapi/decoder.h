@@ -9,7 +9,8 @@
 //   - with those of group `stream`: `uint32_t state_bytes(uint32_t id)`, 0 = no such element (glstate::element_bytes),
 //     and `bool State(uint32_t id, std::span<const std::byte> value)`, false = bad value;
 //   - `uint64_t begin_block(uint64_t tiles, size_t bytes)`: the tiles to run the block for (all asked for, or fewer);
-//     `bytes` of commands it takes in the batch; `void begin_tile(unsigned slot)`, `void end_block()`.
+//     `bytes` of commands it takes in the batch; `void begin_tile(unsigned slot)`, `bool another_pass()` (whether to
+//     begin that tile once more), `void end_block()`.
 // A member that cannot go on calls `refuse("why")`. A handler that hides Handler::should_pause() can stop between two
 // commands, also in the middle of a block; BatchRun and DrawingRun then go on where they stood.
 #pragma once
@@ -197,7 +198,7 @@ private:
     }
     template <class H>
     Result<bool> go_on_with_block(H& h) {
-        for (; tiles_ != 0 && !h.refused(); tiles_ &= tiles_ - 1) {
+        while (tiles_ != 0 && !h.refused()) {
             if (!tile_) {
                 h.begin_tile(static_cast<unsigned>(std::countr_zero(tiles_)));
                 tile_.emplace(body_, content_, false);
@@ -205,6 +206,7 @@ private:
             if (auto done = tile_->run(h); !done || !*done) return done;
             untold_ += tile_->untold();
             tile_.reset();
+            if (!h.another_pass()) tiles_ &= tiles_ - 1;
         }
         in_block_ = false;
         h.end_block();

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What a state says of single draw buffers: elements with a bit for each of them (`bits` in proto/gl/state.toml). Pure.
+// What a state says of single draw buffers: elements with a bit for each of them (`bits` in proto/gl/state.toml), and
+// what the words for a window's buffers mean. Pure.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
+#include "common/geom/view.h"
 #include "gen/glstate/state.gen.h"
 
 namespace wall::glstate {
@@ -13,6 +15,24 @@ namespace wall::glstate {
 inline constexpr unsigned kDrawBuffers = 8;
 /// Viewports, each with a scissor box and a depth range, of which a geometry shader may choose one.
 inline constexpr unsigned kViewports = 1 + el::viewport_rest::count;
+
+/// Whose buffers alone a word for buffers of a window names (OpenGL 4.6, table 17.4). Where it names one of each eye's
+/// (both), the left one is read.
+constexpr geom::Eye eye_of(std::uint32_t buffer) {
+    switch (buffer) {
+        case GL_FRONT_LEFT:
+        case GL_BACK_LEFT:
+        case GL_LEFT: return geom::Eye::left;
+        case GL_FRONT_RIGHT:
+        case GL_BACK_RIGHT:
+        case GL_RIGHT: return geom::Eye::right;
+        default: return geom::Eye::both;
+    }
+}
+/// Only back buffers, or none: what is drawn shows with the next swap.
+constexpr bool names_back_only(std::uint32_t buffer) {
+    return buffer == GL_BACK || buffer == GL_BACK_LEFT || buffer == GL_BACK_RIGHT;
+}
 
 /// Whether red, green, blue and alpha of that draw buffer are written.
 inline std::array<bool, 4> written_channels(const State& state, unsigned buffer) {

@@ -80,7 +80,7 @@ void run(Executor& executor, const wire::PackBuffer& buffer) {
 
 void open_surface(Executor& executor) {
     wire::PackBuffer buffer;
-    glapi::pack::SurfaceCreate(buffer, SurfaceId(1), 1, 8, 24, 8, 16, 0, 1);
+    glapi::pack::SurfaceCreate(buffer, SurfaceId(1), 1, 8, 24, 8, 16, 0, 1, 0);
     glapi::pack::SurfacePlace(buffer, SurfaceId(1), 1, 64, 32, 0, 0, 64, 32, 0);
     glapi::pack::Bind(buffer, SurfaceId(1), SurfaceId(1));
     const glstate::Viewport viewport{0, 0, 64, 32};

@@ -24,6 +24,7 @@ struct TestHandler : glapi::NullHandler {
     bool State(std::uint32_t, std::span<const std::byte> value) { return ++commands, value.size() == 4; }
     std::uint64_t begin_block(std::uint64_t mask, std::size_t bytes) { return block_bytes += bytes, ++blocks, mask; }
     void begin_tile(unsigned) { ++tiles; }
+    bool another_pass() { return false; }
     void Begin(std::uint32_t mode) {
         ++commands;
         if (mode > 9) refuse("no such mode");
@@ -127,6 +128,7 @@ struct HandlerByGroup : glapi::Handler {
 
     std::uint64_t begin_block(std::uint64_t tiles, std::size_t) { return tiles; }
     void begin_tile(unsigned) {}
+    bool another_pass() { return false; }
     void end_block() {}
 };
 

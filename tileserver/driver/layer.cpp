@@ -6,13 +6,27 @@
 #include <utility>
 
 #include "common/glapi/texture_target.h"
+#include "common/glstate/draw_buffers.h"
 
 namespace wall::tileserver {
 namespace {
 
 constexpr GLenum kBack = GL_COLOR_ATTACHMENT0, kFront = GL_COLOR_ATTACHMENT1;
 
-/// The attachments that a buffer of the window means. There is no right eye.
+/// What the right eye's buffers are called, as if they were the left one's, and the other way round.
+GLenum for_other_eye(GLenum buffer) {
+    switch (buffer) {
+        case GL_FRONT_LEFT: return GL_FRONT_RIGHT;
+        case GL_FRONT_RIGHT: return GL_FRONT_LEFT;
+        case GL_BACK_LEFT: return GL_BACK_RIGHT;
+        case GL_BACK_RIGHT: return GL_BACK_LEFT;
+        case GL_LEFT: return GL_RIGHT;
+        case GL_RIGHT: return GL_LEFT;
+        default: return buffer;  // of both eyes, or none
+    }
+}
+
+/// The attachments that a buffer of the window means. The right eye has none here.
 std::pair<GLenum, GLenum> attachments(GLenum buffer, bool double_buffered) {
     const GLenum front = double_buffered ? kFront : kBack;
     switch (buffer) {
@@ -150,20 +164,33 @@ GLuint Layer::front() const {
 }
 
 void Layer::bind(GLenum draw_buffer, GLenum read_buffer) {
+    if (format_.eye == geom::Eye::right) {
+        draw_buffer = for_other_eye(draw_buffer);
+        read_buffer = for_other_eye(read_buffer);
+    }
     if (draws_to_front()) front_drawn_ = true;
-    if (format_.samples != 0 && format_.double_buffered)
-        for (const GLenum buffer : {draw_buffer, read_buffer}) {
-            const auto [first, second] = attachments(buffer, true);
-            if (first == kFront || second == kFront) need_front_samples();
-        }
+    prepare(draw_buffer);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     if (std::exchange(draw_buffer_, draw_buffer) != draw_buffer) {
         const auto [first, second] = attachments(draw_buffer, format_.double_buffered);
         const std::array buffers = {first, second};
         gl_.DrawBuffers(second == GL_NONE ? 1 : 2, buffers.data());
     }
-    if (std::exchange(read_buffer_, read_buffer) != read_buffer)
-        gl_.ReadBuffer(attachments(read_buffer, format_.double_buffered).first);
+    if (other_eye_ == nullptr || glstate::eye_of(read_buffer) != geom::Eye::right) return choose_read(read_buffer);
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, other_eye_->framebuffer_);
+    other_eye_->choose_read(for_other_eye(read_buffer));
+}
+
+void Layer::prepare(GLenum buffer) {
+    if (format_.samples == 0 || !format_.double_buffered) return;
+    const auto [first, second] = attachments(buffer, true);
+    if (first == kFront || second == kFront) need_front_samples();
+}
+
+void Layer::choose_read(GLenum buffer) {
+    prepare(buffer);
+    if (std::exchange(read_buffer_, buffer) != buffer)
+        gl_.ReadBuffer(attachments(buffer, format_.double_buffered).first);
 }
 
 bool Layer::draws_colors() const { return attachments(draw_buffer_, format_.double_buffered).first != GL_NONE; }

@@ -8,6 +8,9 @@
 // Where a pixel has several samples, what is drawn to has them, and what is shown has been made of them: the back
 // buffer at the end of a frame, the front buffer when somebody looks at it (OpenGL 4.6, 14.3.1 and 17.4.2).
 //
+// A window with buffers for two eyes (OpenGL 4.6, 17.4.1) has a layer for each. All that is drawn is drawn to both, and
+// colours only where the draw buffer is that eye's, so that depth and stencil, which the eyes share, are the same.
+//
 // Colours are kept as they are shown. Where a window can be drawn to by the curve of sRGB, what is attached are views
 // of them as sRGB, which are the same until GL_FRAMEBUFFER_SRGB is on (OpenGL 4.6, 17.3.7).
 #pragma once
@@ -19,6 +22,7 @@
 #include <vector>
 
 #include "common/geom/rect.h"
+#include "common/geom/view.h"
 #include "tileserver/driver/render_target.h"
 
 namespace wall::tileserver {
@@ -26,8 +30,9 @@ namespace wall::tileserver {
 struct LayerFormat {
     bool double_buffered = true;
     bool alpha = false, depth = true, stencil = true;
-    std::uint32_t samples = 0;  ///< of a pixel; 0: it has no sample buffers
-    bool srgb = false;          ///< what is drawn goes by the curve of sRGB while GL_FRAMEBUFFER_SRGB is on
+    std::uint32_t samples = 0;        ///< of a pixel; 0: it has no sample buffers
+    bool srgb = false;                ///< what is drawn goes by the curve of sRGB while GL_FRAMEBUFFER_SRGB is on
+    geom::Eye eye = geom::Eye::both;  ///< whose buffers it has, of a window with some for each
     bool operator==(const LayerFormat&) const = default;
 };
 
@@ -57,6 +62,9 @@ public:
     std::uint32_t samples() const { return format_.samples; }
 
     void bind(GLenum draw_buffer, GLenum read_buffer) override;
+    /// The layer of the window's other eye on the same tile, whose buffers can be read where this one is drawn to.
+    /// Null: there is none.
+    void set_other_eye(Layer* layer) { other_eye_ = layer; }
     /// End of a frame: a copy of the back buffer waits to be shown. Nothing for a single-buffered surface.
     void finish_frame();
     /// The waiting frame becomes the front buffer.
@@ -89,6 +97,9 @@ private:
     void copy(GLuint from, const Layer& source, GLuint to, GLenum target = GL_TEXTURE_2D) const;
     GLenum color_format() const { return format_.alpha ? GL_RGBA8 : GL_RGB8; }
     bool draws_to_front() const;
+    /// For a buffer that is about to be drawn to or read.
+    void prepare(GLenum buffer);
+    void choose_read(GLenum buffer);
     /// A front buffer that is drawn to or read from: it has samples only then.
     void need_front_samples();
     void drop_front_samples();
@@ -103,7 +114,8 @@ private:
     std::vector<std::pair<GLuint, GLuint>> views_;                 // of colours as sRGB: texture, view
     GLuint front_samples_ = 0;          // what is drawn to the front buffer, where pixels have several; 0: none
     mutable bool front_drawn_ = false;  // its picture is older than its samples
-    GLenum draw_buffer_ = GL_INVALID_ENUM, read_buffer_ = GL_INVALID_ENUM;  // bound last
+    GLenum draw_buffer_ = GL_INVALID_ENUM, read_buffer_ = GL_INVALID_ENUM;  // bound last, as if it were the left eye
+    Layer* other_eye_ = nullptr;
 };
 
 }  // namespace wall::tileserver

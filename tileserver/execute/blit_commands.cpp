@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tileserver/execute/blit_commands.h"
 
+#include "common/glstate/draw_buffers.h"
 #include "tileserver/driver/window_values.h"
 
 namespace wall::tileserver {
@@ -30,7 +31,8 @@ const RenderTarget* BlitCommands::source() {
     if (context.read_framebuffer)
         return execution_.updated(execution_.session.objects.find<tileserver::Framebuffer>(context.read_framebuffer));
     SurfaceReplica* window = execution_.session.surface(context.read);
-    Layer* layer = window != nullptr ? window->whole_layer() : nullptr;
+    const geom::Eye eye = glstate::eye_of(glstate::el::read_buffer::ref(context.state));
+    Layer* layer = window != nullptr ? window->whole_layer(eye) : nullptr;
     if (layer == nullptr || !layer->complete()) return nullptr;
     // Its buffer that is read from is chosen where it is bound.
     for (RenderTarget* target : {static_cast<RenderTarget*>(layer), block_.target})

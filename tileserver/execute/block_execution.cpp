@@ -4,6 +4,7 @@
 #include <bit>
 #include <utility>
 
+#include "common/glstate/draw_buffers.h"
 #include "common/wire/limits.h"
 #include "tileserver/session/soft_switch.h"
 
@@ -14,6 +15,7 @@ std::uint64_t BlockExecution::begin(std::uint64_t tiles, std::size_t bytes) {
     note_switch();
     if (!execution_.targets_known) execution_.look_up_targets();
     block_.open = true;
+    for_right_eye_ = false;
     SurfaceReplica* surface = execution_.draw_surface;
     std::uint64_t present = execution_.draw_framebuffer != nullptr ? tiles & (~tiles + 1) : 0;
     for (std::uint64_t rest = tiles; rest != 0 && surface != nullptr; rest &= rest - 1) {
@@ -36,6 +38,12 @@ void BlockExecution::begin_tile(unsigned slot) {
     if (block_.draws) enter_tile();
 }
 
+bool BlockExecution::another_pass() {
+    const SurfaceReplica* surface = execution_.draw_surface;
+    for_right_eye_ = !for_right_eye_ && surface != nullptr && surface->format().stereo;
+    return for_right_eye_;
+}
+
 void BlockExecution::note_switch() {
     const SoftContext* context = execution_.context;
     if (std::exchange(execution_.node.current, context) != context) ++execution_.session.work.context_switches;
@@ -43,16 +51,24 @@ void BlockExecution::note_switch() {
 
 void BlockExecution::find_target() {
     SurfaceReplica* surface = execution_.draw_surface;
-    block_.layer = surface != nullptr ? surface->layer(block_.slot) : nullptr;
+    block_.layer =
+        surface != nullptr ? surface->layer(block_.slot, for_right_eye_ ? geom::Eye::right : geom::Eye::left) : nullptr;
     block_.target = block_.layer;
     if (execution_.draw_framebuffer != nullptr) block_.target = execution_.updated(execution_.draw_framebuffer);
     block_.draws = block_.target != nullptr && block_.target->complete();
 }
 
-/// Of a window partly off the wall, its tiles' samples count; of what several nodes draw alike, those of one.
+bool BlockExecution::draws_right_only() const {
+    return glstate::eye_of(glstate::el::draw_buffer::ref(execution_.context->state)) == geom::Eye::right;
+}
+
+/// What is drawn to both eyes counts once. Of a window partly off the wall, its tiles' samples count; of what several
+/// nodes draw alike, those of one.
 bool BlockExecution::counts_samples() const {
     const bool whole = block_.slot == wire::kOffscreenSlot && block_.layer != nullptr &&
                        !execution_.draw_surface->where().whole_window;
+    if (block_.layer != nullptr && execution_.draw_surface->format().stereo && for_right_eye_ != draws_right_only())
+        return false;
     if (block_.layer == nullptr || whole) return execution_.context->counts_samples;
     return block_.slot != wire::kOffscreenSlot || !execution_.draw_surface->on_tiles();
 }
@@ -60,7 +76,7 @@ bool BlockExecution::counts_samples() const {
 void BlockExecution::enter_tile() {
     block_.drawable = block_.undrawable = 0;
     if (!switch_to(execution_.node, execution_.session, *execution_.context, *block_.target,
-                   {counts_samples(), block_.slot == first_slot_}))
+                   {counts_samples(), block_.slot == first_slot_ && !for_right_eye_}))
         execution_.refuse("no such query, or " + too_much("objects"));
     execution_.modes.enter();
 }
@@ -98,8 +114,7 @@ void BlockExecution::end() {
 bool BlockExecution::shows_at_once() const {
     const SurfaceReplica* surface = execution_.draw_surface;
     const GLenum buffer = glstate::el::draw_buffer::ref(execution_.context->state);
-    return surface != nullptr &&
-           (!surface->format().layer.double_buffered || (buffer != GL_BACK && buffer != GL_BACK_LEFT));
+    return surface != nullptr && (!surface->format().layer.double_buffered || !glstate::names_back_only(buffer));
 }
 
 void BlockExecution::pause() {

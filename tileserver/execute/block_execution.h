@@ -21,6 +21,8 @@ public:
     /// The tiles to execute a block for, out of `tiles`. `bytes`: that it takes in the batch.
     std::uint64_t begin(std::uint64_t tiles, std::size_t bytes);
     void begin_tile(unsigned slot);
+    /// The open tile is to be begun once more: for the other eye, of a window that has buffers for two.
+    bool another_pass();
     void end();
 
     /// Others draw meanwhile: the driver is left in the middle of nothing.
@@ -34,6 +36,7 @@ private:
     void find_target();
     void enter_tile();
     void finish_tile();
+    bool draws_right_only() const;
     bool counts_samples() const;
     bool shows_at_once() const;
 
@@ -41,6 +44,7 @@ private:
     GeometryCommands& geometry_;
     OpenBlock& block_;
     unsigned first_slot_ = 0;  // of the block's tiles: in one of them primitives are counted
+    bool for_right_eye_ = false;
 };
 
 }  // namespace wall::tileserver

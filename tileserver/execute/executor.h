@@ -118,6 +118,7 @@ public:
 
     std::uint64_t begin_block(std::uint64_t tiles, std::size_t bytes) { return blocks_.begin(tiles, bytes); }
     void begin_tile(unsigned slot) { blocks_.begin_tile(slot); }
+    bool another_pass() { return blocks_.another_pass(); }
     void end_block() { blocks_.end(); }
     glapi::Pause should_pause(std::size_t told);
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/glapi/image.h"
+#include "common/glstate/draw_buffers.h"
 #include "tileserver/session/limits.h"
 
 namespace wall::tileserver {
@@ -76,7 +77,8 @@ void ReadCommands::ReadPixels(RequestId request, std::uint32_t slot, std::int32_
         return execution_.output.reply(request, std::move(answer));
     }
     SurfaceReplica* surface = execution_.session.surface(execution_.context->read);
-    Layer* layer = surface != nullptr ? surface->layer(slot) : nullptr;
+    const geom::Eye eye = glstate::eye_of(glstate::el::read_buffer::ref(execution_.context->state));
+    Layer* layer = surface != nullptr ? surface->layer(slot, eye) : nullptr;
     if (layer != nullptr && layer->complete() && !answer.empty()) {
         Driver& driver = execution_.node.driver;
         driver.sync_pixel_transfer(execution_.context->state);

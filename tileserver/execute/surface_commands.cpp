@@ -19,15 +19,19 @@ SurfaceReplica* SurfaceCommands::known_surface(SurfaceId id) {
 
 void SurfaceCommands::SurfaceCreate(SurfaceId surface, std::uint32_t double_buffered, std::uint32_t alpha_bits,
                                     std::uint32_t depth_bits, std::uint32_t stencil_bits, std::uint32_t accum_bits,
-                                    std::uint32_t samples, std::uint32_t srgb) {
+                                    std::uint32_t samples, std::uint32_t srgb, std::uint32_t stereo) {
     constexpr std::uint32_t kMostSamples = 64;
     if (!surface) return execution_.refuse("surface 0 is none");
     if (samples > kMostSamples) return execution_.refuse("no pixel has so many samples");
     if (samples != 0 && accum_bits != 0) return execution_.refuse("no such window has an accumulation buffer");
     execution_.targets_known = false;
-    const LayerFormat layer{double_buffered != 0, alpha_bits != 0, depth_bits != 0,
-                            stencil_bits != 0,    samples,         srgb != 0};
-    if (execution_.session.create_surface(surface, {layer, accum_bits != 0}) != nullptr) return;
+    const LayerFormat layer{.double_buffered = double_buffered != 0,
+                            .alpha = alpha_bits != 0,
+                            .depth = depth_bits != 0,
+                            .stencil = stencil_bits != 0,
+                            .samples = samples,
+                            .srgb = srgb != 0};
+    if (execution_.session.create_surface(surface, {layer, accum_bits != 0, stereo != 0}) != nullptr) return;
     execution_.refuse(execution_.session.shares(surface)
                           ? "the members of the parallel program have windows of different formats"
                           : "too many surfaces");

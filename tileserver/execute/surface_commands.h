@@ -17,7 +17,7 @@ public:
 
     void SurfaceCreate(SurfaceId surface, std::uint32_t double_buffered, std::uint32_t alpha_bits,
                        std::uint32_t depth_bits, std::uint32_t stencil_bits, std::uint32_t accum_bits,
-                       std::uint32_t samples, std::uint32_t srgb);
+                       std::uint32_t samples, std::uint32_t srgb, std::uint32_t stereo);
     void SurfacePlace(SurfaceId surface, std::uint32_t layout_version, std::uint32_t window_width,
                       std::uint32_t window_height, std::int32_t x, std::int32_t y, std::uint32_t width,
                       std::uint32_t height, std::uint32_t offscreen);

@@ -43,6 +43,11 @@ void fill_caps(const GlCaps& caps, proto::GlCaps& out) {
     }
 }
 
+/// One that is not known is for both.
+geom::Eye eye_of(std::uint32_t word) {
+    return word <= static_cast<std::uint32_t>(geom::Eye::right) ? static_cast<geom::Eye>(word) : geom::Eye::both;
+}
+
 geom::Rect rect_of(const proto::Rect& rect) {
     return {rect.x(), rect.y(), static_cast<std::int32_t>(rect.width()), static_cast<std::int32_t>(rect.height())};
 }
@@ -434,7 +439,7 @@ void NodeServer::admit(const proto::Ticket& ticket) {
 void NodeServer::welcome(const proto::NodeWelcome& welcome) {
     std::vector<Tile> tiles;
     for (const auto& tile : welcome.tiles()) {
-        tiles.push_back({tile.slot(), rect_of(tile.rect())});
+        tiles.push_back({.slot = tile.slot(), .rect = rect_of(tile.rect()), .eye = eye_of(tile.eye())});
         if (!tile.has_output()) continue;
         if (auto output = output_of(tile.output())) tiles.back().output = std::move(*output);
         else

@@ -149,15 +149,16 @@ void Compositor::compose(TileTarget& target, std::uint32_t slot, const StackEntr
     target.version = ++compositions_;
     target.pattern = pattern;
     if (pattern) return draw_pattern(target, *pattern);
+    const Tile* shown = tile(slot);
     node_.driver.disable_scissor();
     gl_.ClearTexImage(target.texture, 0, GL_RGBA, GL_FLOAT, background_.data());
     for (const StackEntry& entry : stacking_) {
         if (only.session && entry.session != only.session) continue;
         if (only.surface && entry.surface != only.surface) continue;
         const SurfaceReplica* surface = find_(entry);
-        const Layer* layer = surface != nullptr ? surface->shown_layer(slot) : nullptr;
+        const Layer* layer = surface != nullptr ? surface->shown_layer(*shown) : nullptr;
         if (layer != nullptr) draw_layer(target, *layer);
-        else if (const Layer* whole = surface != nullptr ? surface->shown_whole_layer() : nullptr)
+        else if (const Layer* whole = surface != nullptr ? surface->shown_whole_layer(shown->eye) : nullptr)
             draw_whole(target, *whole, surface->where().rect);
     }
 }

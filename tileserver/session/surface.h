@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -25,11 +26,13 @@ struct Tile {
     std::uint32_t slot = 0;
     geom::Rect rect;                                 ///< canvas
     std::shared_ptr<const geom::TileOutput> output;  ///< none: pixel for pixel
+    geom::Eye eye = geom::Eye::both;                 ///< whose picture it shows
 };
 
 struct SurfaceFormat {
     LayerFormat layer;
     bool accum = false;
+    bool stereo = false;  ///< it has buffers for each eye
     bool operator==(const SurfaceFormat&) const = default;
 };
 
@@ -62,17 +65,21 @@ public:
     }
     /// Null if the surface does not reach the tile. The off-screen slot gives a layer of the whole window for any
     /// surface.
-    Layer* layer(std::uint32_t slot);
-    const Layer* layer(std::uint32_t slot) const { return layers_[slot].get(); }
+    Layer* layer(std::uint32_t slot, geom::Eye eye = geom::Eye::both);
+    const Layer* layer(std::uint32_t slot, geom::Eye eye = geom::Eye::both) const {
+        return layers_[index(slot, eye)].get();
+    }
 
     /// The layer that has all of the window's pixels as they are; null: none here does.
-    Layer* whole_layer();
+    Layer* whole_layer(geom::Eye eye);
 
     /// What the wall shows on the tile, if anything.
-    const Layer* shown_layer(std::uint32_t slot) const;
+    const Layer* shown_layer(const Tile& tile) const;
 
     /// The layer of the whole window, if tiles show parts of it; where shown_layer() gives one, that comes first.
-    const Layer* shown_whole_layer() const { return place_.shown_whole ? layer(wire::kOffscreenSlot) : nullptr; }
+    const Layer* shown_whole_layer(geom::Eye eye) const {
+        return place_.shown_whole ? layer(wire::kOffscreenSlot, eye) : nullptr;
+    }
 
     const SurfaceFormat& format() const { return format_; }
     const SurfacePlace& where() const { return place_; }
@@ -93,16 +100,24 @@ private:
     /// How it lies on a tile that it has `area` in common with.
     static LayerGeometry geometry_on(const Tile& tile, const geom::Rect& area, const SurfacePlace& place,
                                      const Views& views);
-    using Layers = std::array<std::unique_ptr<Layer>, wire::kMaxTilesPerNode>;
+    /// By slot those of the left eye, which are all that most windows have, then those of the right one.
+    static constexpr std::size_t kLayers = std::size_t{2} * wire::kMaxTilesPerNode;
+    using Layers = std::array<std::unique_ptr<Layer>, kLayers>;
+    std::size_t index(std::uint32_t slot, geom::Eye eye) const {
+        return slot + (format_.stereo && eye == geom::Eye::right ? std::size_t{wire::kMaxTilesPerNode} : 0);
+    }
+    std::span<const geom::Eye> eyes() const;
 
     /// Without a back buffer, and before the first frame, there is nothing to keep.
     bool keeps_older() const { return format_.layer.double_buffered && shown_once_; }
     /// With the content of `older`, if there is one. Null: over the budget.
-    std::unique_ptr<Layer> make_layer(const LayerGeometry& geometry, const Layer* older);
+    std::unique_ptr<Layer> make_layer(const LayerGeometry& geometry, geom::Eye eye, const Layer* older);
     /// The layer of the whole window gets what the tiles' layers hold. False: over the budget.
     bool gather_whole();
-    void replace(std::uint32_t slot, std::unique_ptr<Layer> layer);
+    void replace(std::size_t index, std::unique_ptr<Layer> layer);
     void forget_older();
+    /// The two eyes' layers on a tile know each other.
+    void pair_eyes(std::uint32_t slot);
 
     const Gl& gl_;
     bool flip_y_;
@@ -117,8 +132,8 @@ private:
     bool reaches_tiles_ = false;  ///< the place has something in common with a tile
 
     // Of a move that is not shown yet.
-    Layers older_;                                  ///< that are shown, where they are others
-    std::bitset<wire::kMaxTilesPerNode> replaced_;  ///< slots in which others are drawn on than shown
+    Layers older_;                   ///< that are shown, where they are others
+    std::bitset<kLayers> replaced_;  ///< where others are drawn on than shown
 };
 
 }  // namespace wall::tileserver

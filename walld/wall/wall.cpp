@@ -146,6 +146,7 @@ void Wall::welcome_node(NodeIndex node) {
         entry->set_slot(slot++);
         entry->set_name(tile.name);
         *entry->mutable_rect() = to_proto(tile.rect);
+        entry->set_eye(static_cast<std::uint32_t>(tile.eye));
         if (!geom::is_plain(tile.output, tile.rect)) *entry->mutable_output() = to_proto(tile.output);
     }
     out_.to_node(node, make(&proto::Envelope::mutable_node_welcome, welcome));

@@ -56,13 +56,16 @@ Screen::Screen(Display* display, int number) {
         by_visual_.try_emplace(visual.visualid, config);
     };
     std::size_t next = 0;
-    for (const auto& format : vendor::format_matrix(false, true)) {
-        if (visuals.opaque.empty()) break;
-        add(visuals.opaque[next < visuals.opaque.size() ? next : 0], format);
-        ++next;
+    // Those for two eyes last: who names a visual alone gets one of the others.
+    for (const bool stereo : {false, true}) {
+        for (const auto& format : vendor::format_matrix(false, true, stereo)) {
+            if (visuals.opaque.empty()) break;
+            add(visuals.opaque[next < visuals.opaque.size() ? next : 0], format);
+            ++next;
+        }
+        if (!visuals.argb.empty())
+            for (const auto& format : vendor::format_matrix(true, true, stereo)) add(visuals.argb.front(), format);
     }
-    if (!visuals.argb.empty())
-        for (const auto& format : vendor::format_matrix(true, true)) add(visuals.argb.front(), format);
 }
 
 const Config* Screen::of_visual(VisualID visual) const {
@@ -83,7 +86,7 @@ std::optional<int> visual_attribute(const Config& c, int name) {
         case GLX_BUFFER_SIZE: return buffer_size(c);
         case GLX_LEVEL: return 0;
         case GLX_DOUBLEBUFFER: return c.format.double_buffered;
-        case GLX_STEREO: return 0;
+        case GLX_STEREO: return c.format.stereo;
         case GLX_AUX_BUFFERS: return 0;
         case GLX_RED_SIZE:
         case GLX_GREEN_SIZE:

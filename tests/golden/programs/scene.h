@@ -24,6 +24,7 @@ struct Needs {
     int samples = 0;  ///< of a pixel, of which pixels are made before a frame is read; there is no accumulation buffer
     bool srgb = false;       ///< Mesa keeps what golden.py takes away from it otherwise: sRGB in framebuffers
     bool asks_srgb = false;  ///< asks for a window that has it
+    bool stereo = false;     ///< buffers for two eyes; where there are none, it draws what one of them sees
     GLenum read = 0;         ///< buffer to read the frame from; 0: the one that is drawn to by default
     /// Its shaders write memory while they draw to the window: a tile shows a part of what the whole window would.
     bool whole = false;

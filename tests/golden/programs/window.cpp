@@ -46,42 +46,48 @@ class GlxWindow : public XWindow {
 public:
     GlxWindow(Size size, const Needs& needs) {
         const int accum = needs.samples ? 0 : 16;
-        const int wanted[] = {GLX_RENDER_TYPE,
-                              GLX_RGBA_BIT,
-                              GLX_DRAWABLE_TYPE,
-                              GLX_WINDOW_BIT,
-                              GLX_X_VISUAL_TYPE,
-                              GLX_TRUE_COLOR,
-                              GLX_RED_SIZE,
-                              8,
-                              GLX_GREEN_SIZE,
-                              8,
-                              GLX_BLUE_SIZE,
-                              8,
-                              GLX_ALPHA_SIZE,
-                              8,
-                              GLX_DEPTH_SIZE,
-                              24,
-                              GLX_STENCIL_SIZE,
-                              8,
-                              GLX_ACCUM_RED_SIZE,
-                              accum,
-                              GLX_ACCUM_GREEN_SIZE,
-                              accum,
-                              GLX_ACCUM_BLUE_SIZE,
-                              accum,
-                              GLX_ACCUM_ALPHA_SIZE,
-                              accum,
-                              GLX_SAMPLES,
-                              needs.samples,
-                              GLX_DOUBLEBUFFER,
-                              needs.double_buffered ? True : False,
-                              GLX_FRAMEBUFFER_SRGB_CAPABLE_ARB,
-                              static_cast<int>(needs.asks_srgb ? True : GLX_DONT_CARE),
-                              None};
+        int wanted[] = {GLX_RENDER_TYPE,
+                        GLX_RGBA_BIT,
+                        GLX_DRAWABLE_TYPE,
+                        GLX_WINDOW_BIT,
+                        GLX_X_VISUAL_TYPE,
+                        GLX_TRUE_COLOR,
+                        GLX_RED_SIZE,
+                        8,
+                        GLX_GREEN_SIZE,
+                        8,
+                        GLX_BLUE_SIZE,
+                        8,
+                        GLX_ALPHA_SIZE,
+                        8,
+                        GLX_DEPTH_SIZE,
+                        24,
+                        GLX_STENCIL_SIZE,
+                        8,
+                        GLX_ACCUM_RED_SIZE,
+                        accum,
+                        GLX_ACCUM_GREEN_SIZE,
+                        accum,
+                        GLX_ACCUM_BLUE_SIZE,
+                        accum,
+                        GLX_ACCUM_ALPHA_SIZE,
+                        accum,
+                        GLX_SAMPLES,
+                        needs.samples,
+                        GLX_DOUBLEBUFFER,
+                        needs.double_buffered ? True : False,
+                        GLX_FRAMEBUFFER_SRGB_CAPABLE_ARB,
+                        static_cast<int>(needs.asks_srgb ? True : GLX_DONT_CARE),
+                        GLX_STEREO,
+                        needs.stereo ? True : False,
+                        None};
         int count = 0;
-        GLXFBConfig* configs =
-            must(glXChooseFBConfig(display_, DefaultScreen(display_), wanted, &count), "find a GLX config");
+        GLXFBConfig* configs = glXChooseFBConfig(display_, DefaultScreen(display_), wanted, &count);
+        if (!configs && needs.stereo) {
+            wanted[std::size(wanted) - 2] = False;
+            configs = glXChooseFBConfig(display_, DefaultScreen(display_), wanted, &count);
+        }
+        must(configs, "find a GLX config");
         XVisualInfo* visual = must(glXGetVisualFromFBConfig(display_, configs[0]), "find its visual");
         open(size, visual->visual, visual->depth);
         context_ = must(glXCreateNewContext(display_, configs[0], GLX_RGBA_TYPE, nullptr, True), "create a context");

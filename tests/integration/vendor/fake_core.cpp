@@ -25,10 +25,10 @@ public:
     explicit ClientSurface(SurfaceOptions o) : options(std::move(o)), id(++last) {
         log(LogLevel::info,
             "fake_surface_made id=%d visible=%d size=%ux%u double=%d alpha=%d depth=%d stencil=%d samples=%d "
-            "srgb=%d title=%s",
+            "srgb=%d stereo=%d title=%s",
             id, options.visible, options.size.width, options.size.height, options.format.double_buffered,
             options.format.alpha_bits, options.format.depth_bits, options.format.stencil_bits, options.format.samples,
-            options.format.srgb, options.title.c_str());
+            options.format.srgb, options.format.stereo, options.title.c_str());
     }
     ~ClientSurface() { log(LogLevel::info, "fake_surface_gone id=%d", id); }
     Extent now() const { return options.query_size ? options.query_size().value_or(options.size) : options.size; }

@@ -120,7 +120,8 @@ TEST_F(Glx, ChoosesNoMoreThanAskedFor) {
     const auto alpha = configs({GLX_ALPHA_SIZE, 8, GLX_STENCIL_SIZE, 8});
     EXPECT_EQ(attrib(alpha[0], GLX_ALPHA_SIZE), 8);
     EXPECT_EQ(attrib(alpha[0], GLX_STENCIL_SIZE), 8);
-    EXPECT_TRUE(configs({GLX_STEREO, True}).empty());
+    EXPECT_EQ(attrib(found[0], GLX_STEREO), 0);
+    EXPECT_TRUE(configs({GLX_STEREO, True, GLX_DOUBLEBUFFER, False}).empty());
     EXPECT_TRUE(configs({GLX_SAMPLES, 8}).empty());
     EXPECT_TRUE(configs({GLX_SAMPLES, 4, GLX_ACCUM_RED_SIZE, 1}).empty());
     EXPECT_TRUE(configs({GLX_RENDER_TYPE, GLX_COLOR_INDEX_BIT}).empty());
@@ -149,6 +150,29 @@ TEST_F(Glx, AVisualStandsForWhatWasChosen) {
             XDestroyWindow(display, window);
         }
     EXPECT_FALSE(choose({GLX_DOUBLEBUFFER}));  // colour index
+}
+
+TEST_F(Glx, HasBuffersForTwoEyesWhereThatIsAskedFor) {
+    const auto found = configs({GLX_STEREO, True, GLX_DEPTH_SIZE, 1});
+    ASSERT_FALSE(found.empty());
+    for (GLXFBConfig config : found) EXPECT_EQ(attrib(config, GLX_STEREO), 1);
+    EXPECT_FALSE(configs({GLX_STEREO, True, GLX_SAMPLES, 4, GLX_ALPHA_SIZE, 8}).empty());
+    for (const bool stereo : {true, false}) {  // as glxgears -stereo asks, and then one that shares the visual
+        std::vector<int> wish{GLX_RGBA, GLX_RED_SIZE, 1, GLX_DOUBLEBUFFER, GLX_DEPTH_SIZE, 1};
+        if (stereo) wish.push_back(GLX_STEREO);
+        const auto visual = choose(wish);
+        ASSERT_TRUE(visual);
+        int value = -1;
+        EXPECT_EQ(glXGetConfig(display, visual.get(), GLX_STEREO, &value), 0);
+        EXPECT_EQ(value, stereo);
+        GLXContext context = glXCreateContext(display, visual.get(), nullptr, True);
+        const Window window = make_window(*visual);
+        EXPECT_TRUE(glXMakeCurrent(display, window, context));
+        EXPECT_THAT(last_logged("fake_surface_made"), HasSubstr(stereo ? "stereo=1" : "stereo=0"));
+        glXMakeCurrent(display, None, nullptr);
+        glXDestroyContext(display, context);
+        XDestroyWindow(display, window);
+    }
 }
 
 TEST_F(Glx, PixelsHaveSeveralSamplesWhereThatIsAskedFor) {

@@ -530,7 +530,7 @@ TEST_F(ExecutorTest, WindowsHaveNoMorePixelsThanTheSessionMayHave) {
     session.open_surface(kWidth, kHeight, kWindow);
     const auto open = [&](std::uint32_t number, std::uint32_t width) {  // off the wall: all of it is one layer
         Batch batch;
-        pack::SurfaceCreate(batch.buffer(), SurfaceId(number), 1, 0, 24, 8, 0, 0, 1);
+        pack::SurfaceCreate(batch.buffer(), SurfaceId(number), 1, 0, 24, 8, 0, 0, 1, 0);
         pack::SurfacePlace(batch.buffer(), SurfaceId(number), 1, width, 10, 0, 0, 0, 0, wire::kAlsoWholeWindow);
         pack::SwapOffscreen(batch.buffer(), SurfaceId(number));
         pack::Bind(batch.buffer(), SurfaceId(number), SurfaceId(number));

@@ -210,7 +210,7 @@ protected:
     /// A surface over the whole tile, one frame all in `color`.
     static wire::PackBuffer one_frame(const glstate::Vec4& color, std::uint32_t frame) {
         wire::PackBuffer buffer, body;
-        pack::SurfaceCreate(buffer, SurfaceId(1), 1, 0, 24, 8, 0, 0, 1);
+        pack::SurfaceCreate(buffer, SurfaceId(1), 1, 0, 24, 8, 0, 0, 1, 0);
         pack::SurfacePlace(buffer, SurfaceId(1), 1, 64, 48, 0, 0, 64, 48, 0);
         pack::Bind(buffer, SurfaceId(1), SurfaceId(1));
         glapi::pack_state(buffer, glstate::el::clear_color::id, &color, sizeof color);

@@ -76,7 +76,7 @@ TEST_F(TwoMembers, EndAFrameTogether) {
 
 TEST_F(TwoMembers, MustMeanTheSameWindow) {
     members_[0]->open_surface(32, 32, kTile);
-    EXPECT_THAT(refusal(1, just([](auto& b) { pack::SurfaceCreate(b, SurfaceId(1), 0, 0, 24, 8, 16, 0, 1); })),
+    EXPECT_THAT(refusal(1, just([](auto& b) { pack::SurfaceCreate(b, SurfaceId(1), 0, 0, 24, 8, 16, 0, 1, 0); })),
                 HasSubstr("different formats"));
 }
 

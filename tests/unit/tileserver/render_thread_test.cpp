@@ -201,7 +201,7 @@ protected:
         return queue;
     }
     static void create_window(wire::PackBuffer& buffer) {
-        pack::SurfaceCreate(buffer, SurfaceId(1), 1, 0, 24, 8, 0, 0, 1);
+        pack::SurfaceCreate(buffer, SurfaceId(1), 1, 0, 24, 8, 0, 0, 1, 0);
         pack::SurfacePlace(buffer, SurfaceId(1), 1, kSize, kSize, 0, 0, kSize, kSize, 0);
         pack::Bind(buffer, SurfaceId(1), SurfaceId(1));
         const glstate::Viewport viewport{0, 0, kSize, kSize};

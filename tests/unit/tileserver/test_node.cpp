@@ -42,7 +42,7 @@ Seed::~Seed() {
 void TestSession::open_surface(int window_width, int window_height, const geom::Rect& rect, ContextId context,
                                bool alpha) {
     Batch batch(context);
-    pack::SurfaceCreate(batch.buffer(), SurfaceId(1), 1, alpha ? 8 : 0, 24, 8, 16, 0, 1);
+    pack::SurfaceCreate(batch.buffer(), SurfaceId(1), 1, alpha ? 8 : 0, 24, 8, 16, 0, 1, 0);
     pack::SurfacePlace(batch.buffer(), SurfaceId(1), 1, static_cast<std::uint32_t>(window_width),
                        static_cast<std::uint32_t>(window_height), rect.x, rect.y,
                        static_cast<std::uint32_t>(rect.width), static_cast<std::uint32_t>(rect.height), 0);

@@ -31,7 +31,7 @@ protected:
     }
     void open(const geom::Rect& rect, bool double_buffered = true, std::uint32_t kind = wire::kTilesOnly) {
         Batch batch;
-        pack::SurfaceCreate(batch.buffer(), kSurface, double_buffered, 0, 24, 8, 0, kSamples, 1);
+        pack::SurfaceCreate(batch.buffer(), kSurface, double_buffered, 0, 24, 8, 0, kSamples, 1, 0);
         place(batch, rect, kind);
         pack::Bind(batch.buffer(), kSurface, kSurface);
         batch.set<el::viewport>({0, 0, kWidth, kHeight}).set<el::scissor>({0, 0, kWidth, kHeight});
@@ -65,7 +65,7 @@ protected:
         return pixels;
     }
     Pixels shown(std::uint32_t slot) {
-        const Layer* layer = session_->session.surface(kSurface)->shown_layer(slot);
+        const Layer* layer = session_->session.surface(kSurface)->shown_layer({.slot = slot});
         if (layer == nullptr) return {};
         Pixels pixels(std::size_t{4} * static_cast<std::size_t>(layer->width() * layer->height()));
         node_.driver->neutral_pixel_transfer();
@@ -310,13 +310,13 @@ TEST_F(AWindowWithSamples, CountsAsOftenAgainstTheBudget) {
 
 TEST_F(AWindowWithSamples, IsRefusedWhereNoDriverHasSuch) {
     Batch too_many, with_accum;
-    pack::SurfaceCreate(too_many.buffer(), kSurface, 1, 0, 24, 8, 0, 65, 1);
+    pack::SurfaceCreate(too_many.buffer(), kSurface, 1, 0, 24, 8, 0, 65, 1, 0);
     EXPECT_FALSE(session_->run(too_many));
-    pack::SurfaceCreate(with_accum.buffer(), kSurface, 1, 0, 24, 8, 16, 4, 1);
+    pack::SurfaceCreate(with_accum.buffer(), kSurface, 1, 0, 24, 8, 16, 4, 1, 0);
     EXPECT_FALSE(session_->run(with_accum));
     TestSession other(*node_.node, SessionId(2));
     Batch more_than_it_has;
-    pack::SurfaceCreate(more_than_it_has.buffer(), kSurface, 1, 0, 24, 8, 0, 64, 1);
+    pack::SurfaceCreate(more_than_it_has.buffer(), kSurface, 1, 0, 24, 8, 0, 64, 1, 0);
     place(more_than_it_has, kWindow);
     pack::Bind(more_than_it_has.buffer(), kSurface, kSurface);
     more_than_it_has.block(3, pack_triangles);

@@ -35,7 +35,7 @@ protected:
     void open(bool srgb) {
         Batch batch;
         pack::SurfaceCreate(batch.buffer(), kSurface, GetParam().double_buffered, GetParam().alpha, 24, 8, 0,
-                            GetParam().samples, srgb);
+                            GetParam().samples, srgb, 0);
         place(batch, 0);
         pack::Bind(batch.buffer(), kSurface, kSurface);
         batch.set<el::viewport>({0, 0, kWidth, kHeight}).set<el::scissor>({0, 0, kWidth, kHeight});
@@ -63,7 +63,7 @@ protected:
         return pixels;
     }
     Pixels shown() {
-        const Layer* layer = session_->session.surface(kSurface)->shown_layer(0);
+        const Layer* layer = session_->session.surface(kSurface)->shown_layer({});
         Pixels pixels(std::size_t{4} * kWidth * kHeight);
         node_.driver->neutral_pixel_transfer();
         layer->read_texture(layer->front(), {0, 0, kWidth, kHeight}, pixels);

@@ -187,7 +187,7 @@ def null_handler_header(ops):
            '#include <cstdint>\n#include <span>\n\n#include "common/glapi/decoder.h"\n\nnamespace wall::glapi {\n\n'
            "struct NullHandler : Handler {\n"
            "    std::uint64_t begin_block(std::uint64_t tiles, std::size_t) { return tiles; }\n"
-           "    void begin_tile(unsigned) {}\n    void end_block() {}\n"
+           "    void begin_tile(unsigned) {}\n    bool another_pass() { return false; }\n    void end_block() {}\n"
            "    std::uint32_t state_bytes(std::uint32_t) { return 4; }\n"
            "    bool State(std::uint32_t, std::span<const std::byte>) { return true; }\n"]
     for op in ops:
