@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Programs that know nothing of two eyes, and one that draws two pictures itself (GLX_STEREO), on tiles that are for
 one eye each (docs/walls.md, "Stereo"): each shows, pixel by pixel, what plain Mesa draws from that eye's place
-(moved/views.h), or of that eye's buffers. A tile for both eyes and what the program reads back stay its own picture, and
-so does everything while nobody asks for stereo. An output that shows both eyes has the rows of one and of the other.
+(moved/views.h), or of that eye's buffers. A tile for both eyes and what the program reads back stay its own picture,
+and so does everything while nobody asks for stereo. An output that shows both eyes has the rows of one and of the other.
 
 stereo.py [--report FOLDER] [SUBJECT...]
 """
@@ -183,8 +183,8 @@ def judge_own(subject: Subject, stage: StereoWall, eyes: EyeStage, report: Path 
 
 
 def judge_gears(stage: StereoWall, x: XServer) -> list[str]:
-    """What is wrong with glxgears -stereo, of which Mesa here gives no picture: both eyes see the same things on the same
-    rows, and not at the same places."""
+    """What is wrong with glxgears -stereo, of which Mesa here gives no picture: both eyes see the same things on the
+    same rows, and not at the same places."""
     app = stage.wall.run_line(stage.wall.wallrun("glxgears", "-stereo", rect=(*ORIGIN, *WINDOW), hold=True),
                               env=x.environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     session = stage.wall.wait_session(app)

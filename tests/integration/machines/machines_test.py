@@ -260,7 +260,7 @@ class Machines(unittest.TestCase):
         self.assertEqual(self.wall.ctl_at("desk", "whoami")["name"], "root@desk")
 
     def test_walld_hears_of_programs_soon_after_a_cut(self) -> None:
-        """TCP, whose pauses double, may have asked just before a cut ends, and be silent then for as long as that was."""
+        """TCP, whose pauses double, may have asked just before a cut ends, and be silent then for as long again."""
         show = self.show()
         times = []
         for seconds in (3.8, 4.2, 4.6):
