@@ -3,7 +3,8 @@
 """Programs that know nothing of two eyes, and one that draws two pictures itself (GLX_STEREO), on tiles that are for
 one eye each (docs/walls.md, "Stereo"): each shows, pixel by pixel, what plain Mesa draws from that eye's place
 (moved/views.h), or of that eye's buffers. A tile for both eyes and what the program reads back stay its own picture,
-and so does everything while nobody asks for stereo. An output that shows both eyes has the rows of one and of the other.
+and so does everything while nobody asks for stereo. An output that shows both eyes has the rows of one and of the
+other.
 
 stereo.py [--report FOLDER] [SUBJECT...]
 """
