@@ -12,6 +12,8 @@ readonly on_request=(golden-all conformance-all faults soak packages fresh)
 readonly summaries="build/test-summaries"
 begin=$SECONDS
 failed=()
+ahead=""  # the process group that builds for a stage to come
+trap '[[ -z $ahead ]] || kill -- "-$ahead" 2>/dev/null' EXIT
 
 say() { printf '\n== test: %s (%d:%02d)\n' "$1" $(((SECONDS - begin) / 60)) $(((SECONDS - begin) % 60)); }
 
@@ -33,9 +35,25 @@ stage_release() {
   run release release -LE 'golden|conformance|fuzz|browser' -j 2
 }
 
+# The sanitized builds of the stages to come. With nothing cached they take as long as all tests; golden and conformance
+# tests wait a quarter of their time, so they are built beside those, behind them in the line for the processors.
+build_ahead() {
+  [[ -z $ahead && " ${stages[*]} " == *" asan "* ]] || return
+  setsid nice -n 10 scripts/build.py --name "test: building ahead (asan)" asan unit_tests fuzzers \
+    >"$summaries/building-ahead.log" 2>&1 &
+  ahead=$!
+}
+
+# Two builds in one folder at the same time would disturb each other. What has failed is built once more, and says why.
+wait_for_ahead() {
+  [[ -n $ahead ]] && wait "$ahead"
+  ahead=""
+}
+
 stage_golden() {
   say "golden tests: programs on plain Mesa and on walls, frame by frame; the status page in a browser"
   build release || { failed+=(golden); return; }
+  build_ahead
   run golden release -L 'golden|browser'
 }
 
@@ -80,6 +98,7 @@ stage_faults() { faults "300 faults on a wall of machines (half an hour)" faults
 stage_soak() { faults "an hour of faults on a wall of machines" soak --for 3600; }
 
 stage_asan() {
+  wait_for_ahead
   say "building the unit tests and fuzzers (clang, address and undefined behaviour sanitizers)"
   build asan unit_tests fuzzers || { failed+=(asan); return; }
   say "unit tests under these sanitizers"
