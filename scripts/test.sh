@@ -10,6 +10,7 @@ cd "$(dirname "$0")/.."
 readonly all_stages=(release golden conformance asan tsan fuzz)
 readonly on_request=(golden-all conformance-all faults soak packages fresh)
 readonly summaries="build/test-summaries"
+readonly tsan_targets=(walld tileserver wallctl control_plane_test)
 begin=$SECONDS
 failed=()
 ahead=""  # the process group that builds for a stage to come
@@ -38,9 +39,10 @@ stage_release() {
 # The sanitized builds of the stages to come. With nothing cached they take as long as all tests; golden and conformance
 # tests wait a quarter of their time, so they are built beside those, behind them in the line for the processors.
 build_ahead() {
-  [[ -z $ahead && " ${stages[*]} " == *" asan "* ]] || return
-  setsid nice -n 10 scripts/build.py --name "test: building ahead (asan)" asan unit_tests fuzzers \
-    >"$summaries/building-ahead.log" 2>&1 &
+  [[ -z $ahead && " ${stages[*]} " == *" asan tsan "* ]] || return
+  # shellcheck disable=SC2016  # that shell's own arguments
+  setsid nice -n 10 bash -c 'scripts/build.py asan unit_tests fuzzers; scripts/build.py tsan "$@"' - \
+    "${tsan_targets[@]}" >"$summaries/building-ahead.log" 2>&1 &
   ahead=$!
 }
 
@@ -109,7 +111,7 @@ stage_asan() {
 stage_tsan() {
   say "building the daemons (thread sanitizer)"
   build release wallrun wallgl_vendor || { failed+=(tsan); return; }
-  build tsan walld tileserver wallctl control_plane_test || { failed+=(tsan); return; }
+  build tsan "${tsan_targets[@]}" || { failed+=(tsan); return; }
   say "a short wall under the thread sanitizer"
   run tsan tsan -R '^(control_plane_test|threads_test)$'
 }
