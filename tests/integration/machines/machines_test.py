@@ -242,8 +242,14 @@ class Machines(unittest.TestCase):
         finally:
             self.wall.hosts.mend(host)
 
+    def assert_are_back(self, show: Show) -> None:
+        """Walld hears of the programs."""
+        until(lambda: show.sessions <= {s["id"] for s in self.wall.sessions() if s["surfaces"] and not s["silent"]},
+              "walld hears of the programs", BACK)
+
     def assert_comes_back(self, host: str, show: Show) -> None:
         mended = time.monotonic()
+        self.assert_are_back(show)
         self.assert_goes_on(show, BACK)
         went_on = time.monotonic() - mended
         self.assert_becomes_same(show, BACK - went_on)
@@ -268,8 +274,7 @@ class Machines(unittest.TestCase):
             time.sleep(seconds)
             self.wall.hosts.mend("desk")
             mended = time.monotonic()
-            until(lambda: show.sessions <= {s["id"] for s in self.wall.sessions() if s["surfaces"] and not s["silent"]},
-                  "walld hears of the programs", 10)
+            self.assert_are_back(show)
             times.append(time.monotonic() - mended)
         print(f"walld heard of the programs {', '.join(f'{t:.1f}' for t in times)} s after cuts", flush=True)
         self.assertLess(max(times), 1.5)
