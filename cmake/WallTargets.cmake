@@ -122,9 +122,9 @@ function(wall_test name)
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
   endif()
-  set(limit 120)  # seconds; at least twice what the slowest one takes, sanitized four times
+  set(limit 120)  # seconds; at least twice what the slowest one takes, sanitized three times
   if(WALLGL_SANITIZE)
-    set(limit 360)
+    set(limit 600)
   endif()
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${limit}
     ENVIRONMENT "WALLGL_CACHE=off")  # a test's questions are its own
