@@ -44,7 +44,7 @@ bool clears_whole(const DrawSource& source, const HiddenPart& part, GLbitfield m
     const auto& s = source.state;
     const GLenum buffer = s.window.draw_buffer;
     const bool back = buffer == GL_BACK || (!format.stereo && buffer == GL_BACK_LEFT);
-    if (s.window.scissor_enabled || (format.double_buffered ? !back : buffer == GL_NONE || format.stereo)) return false;
+    if (s.window.scissor_enabled || (format.double_buffered ? !back : buffer == GL_NONE)) return false;
     if (!(mask & GL_COLOR_BUFFER_BIT) || !glstate::writes_all_channels(s)) return false;
     const bool depth = (mask & GL_DEPTH_BUFFER_BIT) != 0 && s.depth_stencil.depth_mask;
     const bool stencil = (mask & GL_STENCIL_BUFFER_BIT) != 0 && (s.depth_stencil.stencil_mask[0] & 0xff) == 0xff;

@@ -29,7 +29,7 @@ constexpr geom::Eye eye_of(std::uint32_t buffer) {
         default: return geom::Eye::both;
     }
 }
-/// Only back buffers, or none: what is drawn shows with the next swap.
+/// Only back buffers: what is drawn shows with the next swap.
 constexpr bool names_back_only(std::uint32_t buffer) {
     return buffer == GL_BACK || buffer == GL_BACK_LEFT || buffer == GL_BACK_RIGHT;
 }

@@ -253,10 +253,11 @@ def main() -> int:
         stack.enter_context(stage.wall)
         plain, eyes = MesaStage(servers[1]), EyeStage(servers[1], stage.parts)
         for name in given.subjects:
-            wrong += bool(judge_own(subjects[name], stage, eyes, given.report) if name == OWN else
-                          judge(subjects[name], SUBJECTS[name], stage, plain, eyes, given.report))
             if name == OWN:
-                wrong += bool(judge_gears(stage, servers[0]))
+                found = judge_own(subjects[name], stage, eyes, given.report) + judge_gears(stage, servers[0])
+            else:
+                found = judge(subjects[name], SUBJECTS[name], stage, plain, eyes, given.report)
+            wrong += bool(found)
     print(f"{len(given.subjects) - wrong} of {len(given.subjects)} same")
     return 1 if wrong else 0
 

@@ -164,7 +164,9 @@ GLuint Layer::front() const {
 }
 
 void Layer::bind(GLenum draw_buffer, GLenum read_buffer) {
-    if (format_.eye == geom::Eye::right) {
+    const bool right = format_.eye == geom::Eye::right;
+    const bool reads_right = glstate::eye_of(read_buffer) == geom::Eye::right;  // else what is read is the left eye's
+    if (right) {
         draw_buffer = for_other_eye(draw_buffer);
         read_buffer = for_other_eye(read_buffer);
     }
@@ -176,7 +178,7 @@ void Layer::bind(GLenum draw_buffer, GLenum read_buffer) {
         const std::array buffers = {first, second};
         gl_.DrawBuffers(second == GL_NONE ? 1 : 2, buffers.data());
     }
-    if (other_eye_ == nullptr || glstate::eye_of(read_buffer) != geom::Eye::right) return choose_read(read_buffer);
+    if (other_eye_ == nullptr || reads_right == right) return choose_read(read_buffer);
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, other_eye_->framebuffer_);
     other_eye_->choose_read(for_other_eye(read_buffer));
 }

@@ -30,7 +30,7 @@ protected:
                              {.slot = 3, .rect = left, .eye = Eye::right}};
         session_.emplace(*node_.node, SessionId(1));
         Batch batch;
-        pack::SurfaceCreate(batch.buffer(), kSurface, 1, 0, 24, 8, 0, GetParam(), 1, 1);
+        pack::SurfaceCreate(batch.buffer(), kSurface, 1, 0, 24, 8, GetParam() == 0 ? 16 : 0, GetParam(), 1, 1);
         pack::SurfacePlace(batch.buffer(), kSurface, 1, kWidth, kHeight, 0, 0, kWidth, kHeight, 0);
         pack::Bind(batch.buffer(), kSurface, kSurface);
         batch.set<el::viewport>({0, 0, kWidth, kHeight}).set<el::scissor>({0, 0, kWidth, kHeight});
@@ -122,6 +122,22 @@ TEST_P(AStereoWindow, IsReadByEyeWhereverItLies) {
         EXPECT_EQ(read(GL_BACK, slot), kRed) << "the left one (OpenGL 4.6, 18.2.1)";
         EXPECT_EQ(read(GL_BACK_LEFT, slot), kRed);
         EXPECT_EQ(read(GL_BACK_RIGHT, slot), kGreen);
+    }
+}
+
+TEST_P(AStereoWindow, AccumulatesWhatIsReadWhicheverEyeItIsDrawnTo) {
+    if (GetParam() != 0) GTEST_SKIP() << "a window with samples has no accumulation buffer";
+    for (const GLenum from : {GL_BACK, GL_BACK_LEFT, GL_BACK_RIGHT}) {
+        clear(GL_BACK_LEFT, kRed);
+        clear(GL_BACK_RIGHT, kGreen);
+        for (const auto& [op, to] : {std::pair{GL_LOAD, GL_BACK_LEFT}, {GL_RETURN, GL_BACK_RIGHT}}) {
+            Batch batch;
+            batch.set<el::read_buffer>(from).set<el::draw_buffer>(to);
+            batch.block(kAll, [op = op](auto& b) { pack::Accum(b, op, 1); });
+            session_->expect_run(batch);
+        }
+        EXPECT_EQ(read(GL_BACK_RIGHT), from == GL_BACK_RIGHT ? kGreen : kRed) << from;
+        EXPECT_EQ(read(GL_BACK_LEFT), kRed);
     }
 }
 
