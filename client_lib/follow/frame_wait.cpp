@@ -2,6 +2,8 @@
 #include "client_lib/follow/frame_wait.h"
 
 #include <algorithm>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -12,20 +14,44 @@
 namespace wall::client {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr int kLookMs = 20;  // at one node, while none has drawn a frame
+
+struct Waited {
+    Node& node;
+    std::shared_ptr<NodeStream> stream;
+    NodeProgress progress;
+};
+
+/// When the first of those that have drawn its frame in time did, unless it was one that is left out.
+std::optional<Clock::time_point> first_done(std::span<const Waited> waited, SurfaceId surface) {
+    std::optional<Clock::time_point> first;
+    for (const auto& [node, stream, progress] : waited)
+        if (progress.done && !progress.left_out)
+            if (const auto at = stream->last_swap(surface); at && (!first || *at < *first)) first = at;
+    return first;
+}
+
+/// For those that have not drawn their frame. No longer than a look at one that was late before.
+void wait_until(Clock::time_point deadline, std::span<Waited> waited, SurfaceId surface, bool all_slow) {
+    for (auto& [node, stream, progress] : waited) {
+        if (progress.done) continue;
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+        const bool patient = (all_slow || !node.slow) && left > 0;
+        progress.done = stream->wait_swap(surface, progress.frame, patient ? static_cast<int>(left) : 0);
+    }
+}
 
 }  // namespace
 
 // A node that is slow for once (a long frame of all nodes alike) is waited for; one that has stopped is left out. If
-// all are late, the wall holds the frames or has stopped as a whole: then the program goes at the limit's pace.
+// all are late, the wall holds the frames or has stopped as a whole: then the program goes at the limit's pace. They
+// are let go on one after the other, or reached again over one link after the other: a node is late if it comes that
+// long after another one, and not because the wait happened to end between the two.
 void wait_for_nodes(const FrameWait& wait, ClientSurface& surface, bool whole_frames) {
     if (surface.frame < kFramesInFlight) return;
-    struct Waited {
-        Node& node;
-        std::shared_ptr<NodeStream> stream;
-    };
     std::vector<Waited> waited;
-    std::vector<NodeProgress> progress;  // of each
     bool all_slow = true;
     {
         std::lock_guard lock(wait.mutex);
@@ -34,28 +60,28 @@ void wait_for_nodes(const FrameWait& wait, ClientSurface& surface, bool whole_fr
             if (!node.alive()) continue;
             const auto left = node.left_out.find(surface.id);
             const bool left_out = left != node.left_out.end();
-            waited.push_back({node, node.stream});
-            progress.push_back(
-                {.frame = left_out ? left->second : surface.frame - (kFramesInFlight - 1), .left_out = left_out});
+            waited.push_back(
+                {node,
+                 node.stream,
+                 {.frame = left_out ? left->second : surface.frame - (kFramesInFlight - 1), .left_out = left_out}});
             all_slow = all_slow && node.slow;
         }
     }
-    const auto deadline = std::chrono::steady_clock::now() + wait.limit;
-    for (std::size_t i = 0; i < waited.size(); ++i) {
-        const auto left =
-            std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
-        const auto& [node, stream] = waited[i];
-        const bool patient = (all_slow || !node.slow) && left > 0;
-        progress[i].done = stream->wait_swap(surface.id, progress[i].frame, patient ? static_cast<int>(left) : 0);
-        progress[i].queued_bytes = stream->queued_bytes();
+    const auto deadline = Clock::now() + wait.limit;
+    wait_until(deadline, waited, surface.id, all_slow);
+    if (const auto first = first_done(waited, surface.id); first && *first + wait.limit > deadline)
+        wait_until(*first + wait.limit, waited, surface.id, all_slow);
+    std::vector<NodeProgress> progress;
+    for (Waited& w : waited) {
+        w.progress.queued_bytes = w.stream->queued_bytes();
+        progress.push_back(w.progress);
     }
     const std::uint32_t newest = newest_done(progress);
     std::lock_guard lock(wait.mutex);
-    for (std::size_t i = 0; i < waited.size(); ++i) {
-        const auto& [node, stream] = waited[i];
+    for (const auto& [node, stream, its] : waited) {
         if (node.stream != stream) continue;  // another incarnation meanwhile
-        node.slow = !progress[i].done;
-        if (!leave_out(progress[i], newest, whole_frames)) node.left_out.erase(surface.id);
+        node.slow = !its.done;
+        if (!leave_out(its, newest, whole_frames)) node.left_out.erase(surface.id);
         else node.left_out.try_emplace(surface.id, surface.frame);
     }
 }
@@ -82,10 +108,9 @@ void wait_for_group(const FrameWait& wait, const ClientSurface& surface) {
         return std::ranges::all_of(waited, [](const auto& w) { return w.second->failed(); });
     };
     while (!some_drawn() && !all_failed()) continue;
-    const auto deadline = std::chrono::steady_clock::now() + wait.limit;
+    const auto deadline = Clock::now() + wait.limit;
     for (const auto& w : waited) {
-        const auto left =
-            std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
         const bool done = drawn(w, w.first->slow || left <= 0 ? 0 : static_cast<int>(left));
         std::lock_guard lock(wait.mutex);
         w.first->slow = !done;

@@ -150,10 +150,16 @@ bool NodeStream::wait_swap(SurfaceId surface, std::uint32_t frame, int timeout_m
     std::unique_lock lock(mutex_);
     const auto done = [&] {
         const auto found = swaps_.find(surface);
-        return found != swaps_.end() && static_cast<std::int32_t>(found->second - frame) >= 0;
+        return found != swaps_.end() && static_cast<std::int32_t>(found->second.frame - frame) >= 0;
     };
     wait(lock, timeout_ms, [&] { return failed() || done(); });
     return done();
+}
+
+std::optional<Clock::time_point> NodeStream::last_swap(SurfaceId surface) const {
+    std::lock_guard lock(mutex_);
+    const auto found = swaps_.find(surface);
+    return found == swaps_.end() ? std::nullopt : std::optional(found->second.at);
 }
 
 std::size_t NodeStream::queued_bytes() const {
@@ -343,7 +349,7 @@ void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> paylo
             replies_[request] = {std::move(payload), Clock::now()};
     } else if (kind == wire::FrameKind::swap_done && payload.size() == 8) {
         std::memcpy(words, payload.data(), 8);
-        swaps_[SurfaceId(words[0])] = words[1];
+        swaps_[SurfaceId(words[0])] = {words[1], Clock::now()};
     }
     changed_.notify_all();
 }

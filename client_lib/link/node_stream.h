@@ -67,6 +67,8 @@ public:
     void forget_request(RequestId request);
     /// Waits until the node has drawn `frame` of `surface`; false if it did not in time. Application threads.
     bool wait_swap(SurfaceId surface, std::uint32_t frame, int timeout_ms);
+    /// When it said that it has drawn its latest frame of `surface`; nothing: none yet. Application threads.
+    std::optional<std::chrono::steady_clock::time_point> last_swap(SurfaceId surface) const;
 
     /// What waits to be written.
     std::size_t queued_bytes() const;
@@ -158,8 +160,12 @@ private:
         std::chrono::steady_clock::time_point at;  ///< when it came
     };
     std::unordered_map<RequestId, Reply> replies_;
-    std::unordered_set<RequestId> unwanted_;              ///< requests whose answers nobody waits for any more
-    std::unordered_map<SurfaceId, std::uint32_t> swaps_;  // surface -> last frame drawn
+    std::unordered_set<RequestId> unwanted_;  ///< requests whose answers nobody waits for any more
+    struct Drawn {
+        std::uint32_t frame;
+        std::chrono::steady_clock::time_point at;
+    };
+    std::unordered_map<SurfaceId, Drawn> swaps_;  // the last frame of each surface
     std::string failure_;
 
     // transport thread only

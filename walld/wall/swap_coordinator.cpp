@@ -39,7 +39,7 @@ Presents SwapCoordinator::rendered(NodeIndex node, std::uint32_t frame, Clock::t
     const auto found = members_.find(node);
     if (found == members_.end() || frame <= found->second.rendered) return {};
     auto& member = found->second;
-    member.rendered = frame;
+    member.draw(member.rendered, frame);
     if (frame >= presented_) member.waited = true;
     rendered_spread_.note(frame, group_of(frame), now);
     return advance(now);
@@ -52,7 +52,7 @@ Presents SwapCoordinator::resume(NodeIndex node, std::uint32_t frame, std::uint3
     if (held_) allowed_ = std::max(allowed_, presented_);
     auto& member = found->second;
     member.told = std::max(member.told, shown);
-    member.rendered = std::max(member.rendered, frame);
+    if (frame > member.rendered) member.draw(shown, frame);
     if (member.rendered >= presented_) member.waited = true;
     return advance(now);
 }
@@ -110,6 +110,23 @@ std::uint32_t SwapCoordinator::Member::cap() const {
     return std::max(rendered, stay->from > 0 ? stay->from - 1 : 0);
 }
 
+/// `last`: what it had before.
+void SwapCoordinator::Member::draw(std::uint32_t last, std::uint32_t frame) {
+    missed_from = last + 1;
+    missed_until = rendered = frame;
+}
+
+std::uint32_t SwapCoordinator::Member::shows(std::uint32_t frame) const {
+    const auto newest = std::min(rendered, frame);
+    return missed(newest) ? missed_from - 1 : newest;
+}
+
+void SwapCoordinator::allow_what_all_can_show() {
+    if (!held_) return;
+    for (const auto& [node, member] : members_)
+        if (member.takes_part(presented_) && member.missed(presented_)) allowed_ = std::max(allowed_, member.rendered);
+}
+
 /// The last frame that every waited node has rendered as far as it takes part.
 std::uint32_t SwapCoordinator::agreed() const {
     std::uint32_t least = UINT32_MAX, most = presented_;
@@ -156,6 +173,7 @@ void SwapCoordinator::forget_past() {
 
 Presents SwapCoordinator::advance(Clock::time_point now) {
     Presents out;
+    allow_what_all_can_show();
     const auto frame = std::min(agreed(), ceiling());
     if (frame > presented_) {
         presented_ = frame;
@@ -165,8 +183,7 @@ Presents SwapCoordinator::advance(Clock::time_point now) {
     // One that comes too late for the group shows what it has: better than nothing, and it frees its buffers. However
     // that has become known: a node waits for the word, also while the group is held.
     for (auto& [node, member] : members_)
-        if (const auto due = std::min(member.rendered, presented_); member.takes_part(due))
-            tell(out, node, member, due, now);
+        if (const auto due = member.shows(presented_); member.takes_part(due)) tell(out, node, member, due, now);
     forget_past();
     if (!someone_ahead()) deadline_.reset();
     else if (!deadline_) deadline_ = now + limit_;

@@ -13,6 +13,8 @@
 // it comes to from that frame on.
 //
 // held: nothing beyond `allowed` is presented, and no limit runs; step() raises it (for tests that look at each frame).
+// A node that was left out of the frame that is held, and has drawn a later one since, can show nothing before that
+// one: then the group goes on to it, so that what is held is one picture.
 #pragma once
 
 #include <chrono>
@@ -47,7 +49,8 @@ public:
     Presents move(const std::set<NodeIndex>& nodes, std::uint32_t frame, Clock::time_point now);
     /// A node is dead.
     Presents lose(NodeIndex node, Clock::time_point now);
-    /// A node has rendered `frame` (and all before it). Reports of other nodes are ignored.
+    /// A node has rendered `frame`; those between it and the one before it were not sent to it. Reports of other nodes
+    /// are ignored.
     Presents rendered(NodeIndex node, std::uint32_t frame, Clock::time_point now);
     /// A node that was not told what to show, or was told by somebody else, shows `shown` and has rendered `frame`.
     Presents resume(NodeIndex node, std::uint32_t frame, std::uint32_t shown, Clock::time_point now);
@@ -88,14 +91,20 @@ private:
         std::uint32_t rendered = 0;
         std::uint32_t told = 0;  ///< last frame it was told to show
         bool waited = true;
+        std::uint32_t missed_from = 0, missed_until = 0;  ///< those before `rendered` that it has not; until: excluded
         std::deque<Stay> stays{Stay{}};  ///< in order; a surface may come back before its last frame here is shown
 
         bool leaving() const { return stays.back().until != UINT32_MAX; }
         bool takes_part(std::uint32_t frame) const;
         /// The last frame that it does not hold back.
         std::uint32_t cap() const;
+        void draw(std::uint32_t last, std::uint32_t frame);
+        bool missed(std::uint32_t frame) const { return frame >= missed_from && frame < missed_until; }
+        /// What it can show while the group shows `frame`.
+        std::uint32_t shows(std::uint32_t frame) const;
     };
     Presents advance(Clock::time_point now);
+    void allow_what_all_can_show();
     void forget_past();
     void count_frame(Clock::time_point now);
     void tell(Presents& out, NodeIndex node, Member& member, std::uint32_t frame, Clock::time_point now);
