@@ -19,6 +19,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::int64_t kMaxWait = 600'000;  // ms
+constexpr auto kComesBack = std::chrono::seconds(3);
 
 Outcome<Target> target_of(const Asked& asked) {
     return text_of(asked.arguments, "id").and_then([](const std::string& text) { return Target::parse(text); });
@@ -115,7 +116,9 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::carry_out(Asked asked) {
     if (!row) co_return tl::unexpected(row.error());
     // An `if`, because GCC 12 destroys the temporaries of `?:` around a co_await twice.
     Outcome<Answer> answer;
-    if (const auto permitted = allowed(**row, asked); permitted) answer = co_await (this->*(*row)->run)(asked);
+    const auto there = co_await wait_for_session(asked);
+    const auto permitted = there ? allowed(**row, asked) : there;
+    if (permitted) answer = co_await (this->*(*row)->run)(asked);
     else answer = tl::unexpected(permitted.error());
     if ((*row)->need != Need::look || (!answer && answer.error().kind == RefusalKind::forbidden))
         log::info("{}", log::plain(audit_line(
@@ -129,6 +132,22 @@ Outcome<const OperatorDesk::Row*> OperatorDesk::row_of(const Asked& asked) const
     const auto found = std::ranges::find_if(kVerbs, [&](const Row& row) { return asked.verb == row.name; });
     if (found == std::end(kVerbs)) return refuse(RefusalKind::invalid, "unknown verb '" + asked.verb + "'");
     return &*found;
+}
+
+/// What is asked of a program whose link was lost just now is carried out when it is back.
+asio::awaitable<Outcome<void>> OperatorDesk::wait_for_session(const Asked& asked) {
+    if (!asked.arguments.contains("id")) co_return Outcome<void>{};
+    const auto target = target_of(asked);
+    if (!target) co_return Outcome<void>{};  // the verb says what is wrong with it
+    const auto until = Clock::now() + kComesBack;
+    while (wall_.awaits(target->session)) {
+        if (Clock::now() >= until)
+            co_return refuse(RefusalKind::unavailable,
+                             "session " + std::to_string(target->session.value) +
+                                 " is away: the link to its program is lost, and walld waits for it to come again");
+        co_await changed_.wait(until);
+    }
+    co_return Outcome<void>{};
 }
 
 /// Whether something exists is no secret: everybody who may ask for it sees all sessions.

@@ -67,6 +67,7 @@ private:
 
     Outcome<void> allowed(const Row& row, const Asked& asked) const;
     Outcome<const Row*> row_of(const Asked& asked) const;
+    asio::awaitable<Outcome<void>> wait_for_session(const Asked& asked);
 
     asio::awaitable<Outcome<Answer>> status(const Asked&);
     asio::awaitable<Outcome<Answer>> nodes(const Asked&);

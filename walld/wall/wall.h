@@ -93,6 +93,13 @@ struct SurfaceEntry {
     SwapCoordinator swap;
 };
 
+/// A window as this walld knew it when the link to its program was lost: what was asked for since then, and may have
+/// gone with the link, is in it.
+struct LastKnown {
+    std::string note;
+    geom::Rect wanted;
+};
+
 struct SessionEntry {
     std::uint32_t pid = 0;  ///< of a parallel program's first member
     std::string program, name;
@@ -109,6 +116,7 @@ struct SessionEntry {
     bool silent = false;                  ///< its link may be dead, or somebody has stopped it
     std::uint32_t awaited = 0;            ///< windows that it still has to announce, of a session that goes on
     Clock::time_point awaited_until;
+    std::map<SurfaceId, LastKnown> awaited_windows;  ///< those of them that this walld knows
     std::map<NodeIndex, std::string> tickets;
     std::map<SurfaceId, SurfaceEntry> surfaces;
     SessionTraffic traffic;
@@ -131,6 +139,7 @@ struct ReturningSession {
     std::map<NodeIndex, std::string> tickets;
     std::set<Rank> left;  ///< of a parallel program
     Clock::time_point until;
+    std::map<SurfaceId, LastKnown> windows;  ///< of one whose link was lost
 };
 
 class Wall {
@@ -197,6 +206,8 @@ public:
     /// Its link is lost, and it may be well: its windows stay in sight until it comes again, or for kReturnLimit
     /// (wall_return.cpp). A program alone is not on the wall meanwhile; a parallel one ends if its process stays away.
     void await_again(SessionId id, Rank rank, Clock::time_point now);
+    /// Its program, or a window of it, is not here, and may come again.
+    bool awaits(SessionId id) const;
     /// Whether it says that it is this session's program, and knows its ticket.
     bool is_program_of(SessionId id, const proto::Resume& resume) const;
     void member_leaves(SessionId id, Rank rank);
@@ -276,7 +287,7 @@ private:
     void resume_session(SessionId id, SessionEntry& session, const proto::Resume& resume);
     static std::uint64_t order_at(Clock::time_point now);
     bool restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& message, Clock::time_point now, Rank rank);
-    geom::Rect restored_wish(const SurfaceEntry& surface, const proto::SurfaceOpen& message) const;
+    geom::Rect restored_wish(const SurfaceEntry& surface, const proto::SurfaceOpen& message, geom::Rect wanted) const;
     void hear_of_sessions(NodeIndex node, const proto::NodeHello& hello, Clock::time_point now);
     void end_waiting_for_sessions(Clock::time_point now);
     void hear_wall_note(NodeIndex node, const proto::WallNote& note);

@@ -165,7 +165,7 @@ void Wall::restore_for_member(const SurfaceKey& key, const proto::SurfaceOpen& m
             surface.scaled = record.scaled();
             surface.wanted_rect = record.wanted_rect();
         }
-        surface.place.want(restored_wish(surface, message));
+        surface.place.want(restored_wish(surface, message, from_proto(message.restore().wanted())));
     }
     for (auto placement : message.restore().agreed()) {
         surface.returning = std::max(*surface.returning, placement.layout_version());

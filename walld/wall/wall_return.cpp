@@ -53,7 +53,7 @@ void Wall::hear_of_sessions(NodeIndex node, const proto::NodeHello& hello, Clock
         if (sessions_.contains(id)) continue;  // with another ticket, it ends by that
         last_session_ = std::max(last_session_, id);
         if (returning_.contains(id) || (!returns_over_ && !ended_.contains(id))) {
-            auto& returning = returning_.try_emplace(id, ReturningSession{{}, {}, *return_until_}).first->second;
+            auto& returning = returning_.try_emplace(id, ReturningSession{{}, {}, *return_until_, {}}).first->second;
             returning.tickets[node] = known.ticket();
             returning.left.insert(known.left().begin(), known.left().end());
             continue;
@@ -74,7 +74,7 @@ std::optional<SessionId> Wall::resumable(const proto::ClientHello& hello) const 
 /// Tickets that program and node have in common stay, so that the streams do. A node that is away keeps the program's
 /// until it says its own.
 void Wall::resume_session(SessionId id, SessionEntry& session, const proto::Resume& resume) {
-    const auto returning = std::move(returning_.extract(id).mapped());
+    auto returning = std::move(returning_.extract(id).mapped());
     for (const auto& told : resume.tickets()) {
         const NodeIndex node(told.node());
         if (!nodes_.contains(node) || told.ticket().size() != kTicketBytes) continue;
@@ -84,6 +84,7 @@ void Wall::resume_session(SessionId id, SessionEntry& session, const proto::Resu
     }
     session.awaited = resume.windows();
     session.awaited_until = returning.until;
+    session.awaited_windows = std::move(returning.windows);
     for (const Rank rank : returning.left)
         if (session.group && rank < session.group->size() && !session.group->here(rank)) session.group->had_left(rank);
 }
@@ -120,9 +121,16 @@ void Wall::await_again(SessionId id, Rank rank, Clock::time_point now) {
     }
     auto lost = sessions_.extract(id);
     if (lost.empty()) return;
-    returning_[id] = {std::move(lost.mapped().tickets), {}, now + kReturnLimit};
+    auto& returning = returning_[id] = {std::move(lost.mapped().tickets), {}, now + kReturnLimit, {}};
+    for (const auto& [surface, entry] : lost.mapped().surfaces)
+        returning.windows[surface] = {entry.note, entry.place.wanted()};
     std::erase_if(stacking_, [&](const SurfaceKey& key) { return key.session == id; });
     send_stacking();
+}
+
+bool Wall::awaits(SessionId id) const {
+    const auto found = sessions_.find(id);
+    return found == sessions_.end() ? returning_.contains(id) : found->second.awaited > 0;
 }
 
 // ---- windows ----
@@ -139,8 +147,9 @@ bool Wall::restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& mess
     auto& session = *find(key.session);
     if (session.awaited > 0) --session.awaited;
     auto drawn = from_proto(message.restore().drawn());
+    const auto known = session.awaited_windows.extract(key.surface);
     proto::WindowRecord record;
-    if (!record.ParseFromString(message.restore().note())) return false;
+    if (!record.ParseFromString(known ? known.mapped().note : message.restore().note())) return false;
     const bool there = check_place(config_.canvas(), drawn).has_value();
     if (!there && !session.group) return false;
     session.held = record.session_held();
@@ -164,7 +173,9 @@ bool Wall::restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& mess
     if (session.group) {
         surface.returning = 1;
         open_for_member(key, message, rank);
-    } else if (const auto wanted = restored_wish(surface, message); wanted != drawn) {
+    } else if (const auto wanted = restored_wish(
+                   surface, message, known ? known.mapped().wanted : from_proto(message.restore().wanted()));
+               wanted != drawn) {
         want(key, wanted);
     } else {
         send_placement(key, surface);
@@ -174,8 +185,8 @@ bool Wall::restore_surface(const SurfaceKey& key, const proto::SurfaceOpen& mess
     return true;
 }
 
-geom::Rect Wall::restored_wish(const SurfaceEntry& surface, const proto::SurfaceOpen& message) const {
-    auto wanted = from_proto(message.restore().wanted());
+geom::Rect Wall::restored_wish(const SurfaceEntry& surface, const proto::SurfaceOpen& message,
+                               geom::Rect wanted) const {
     if (!check_place(config_.canvas(), wanted)) wanted = surface.place.drawn();
     if (!surface.scaled) {
         wanted.width = static_cast<std::int32_t>(message.width());

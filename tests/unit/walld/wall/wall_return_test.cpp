@@ -281,6 +281,7 @@ TEST_F(AWallThatReturns, DoesNotWaitForEver) {
     join_both();
     ASSERT_EQ(wall_->next_deadline(), now_ + Wall::kReturnLimit);
     wall_->tick(now_ + Wall::kReturnLimit);
+    EXPECT_FALSE(wall_->awaits(id));
     EXPECT_FALSE(wall_->next_deadline());
     EXPECT_FALSE(out_.tickets[kLeft].contains(id.value)) << "the nodes forget it";
     EXPECT_NE(come_back(id), id);
@@ -349,15 +350,36 @@ TEST_F(AWallThatReturns, TakesAProgramWhoseLinkWasLostUnderItsNumberAndItsTicket
     const auto tickets = out_.tickets;
     wall_->await_again(id, 0, now_);
     EXPECT_FALSE(wall_->sessions().contains(id));
+    EXPECT_TRUE(wall_->awaits(id));
+    EXPECT_FALSE(wall_->awaits(other));
     EXPECT_THAT(out_.stacking[kLeft].returning(), ElementsAre(id.value)) << "what it has drawn stays in sight";
-    EXPECT_EQ(come_back(id), id);
+    EXPECT_EQ(come_back(id, 1), id);
+    EXPECT_TRUE(wall_->awaits(id)) << "its window";
     bring_back(id, {640, 0, 200, 160}, out_.notes[id], id);
+    EXPECT_FALSE(wall_->awaits(id));
     EXPECT_EQ(out_.tickets, tickets) << "nobody has to open a stream again";
     EXPECT_EQ(surface(id).place.wanted(), (geom::Rect{640, 0, 200, 160}));
     EXPECT_TRUE(surface(id).swap.held());
     EXPECT_THAT(bottom_to_top(), ElementsAre(id.value, other.value));
     EXPECT_EQ(out_.stacking[kLeft].returning_size(), 0);
     EXPECT_FALSE(wall_->next_deadline());
+}
+
+/// It was said while nobody knew that the link was cut, and is not in what the program brings back.
+TEST_F(AWallThatReturns, KeepsWhatWasAskedOfAProgramWhileItsLinkWasCut) {
+    join_both();
+    const auto id = open();
+    open_surface(id);
+    const auto note = out_.notes[id];
+    const auto drawn = surface(id).place.drawn();
+    ASSERT_TRUE(wall_->hold({id, {}}, true, now_));
+    ASSERT_TRUE(wall_->place_surface({id, {}}, {640, 0, 200, 160}));
+    wall_->await_again(id, 0, now_);
+    *out_.placements[id].mutable_rect() = to_proto(drawn);  // the program has not got the other one
+    EXPECT_EQ(come_back(id), id);
+    bring_back(id, drawn, note, id);
+    EXPECT_TRUE(surface(id).swap.held());
+    EXPECT_EQ(surface(id).place.wanted(), (geom::Rect{640, 0, 200, 160}));
 }
 
 TEST_F(AWallThatReturns, AwaitsAProgramWhoseLinkWasLostForAWhileOnly) {
