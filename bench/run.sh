@@ -3,7 +3,7 @@
 # Runs the benchmarks of build/release and prints their tables.
 # bench/run.sh [--json FILE] [FILTER]     FILTER: a regular expression on the benchmarks' names (state, execute, output,
 #                                         switch, pack, mesh, buffers, late_node, notice, gpus, views, march, off_wall,
-#                                         traffic, share, transport, fair, streams, codec)
+#                                         traffic, share, transport, coding, fair, streams, codec)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -47,6 +47,7 @@ run off_wall bench/off_wall.py --json "$results/off_wall.json"
 run traffic bench/traffic.py --json "$results/traffic.json"
 run share bench/share.py --json "$results/share.json"
 run transport bench/transport.py --json "$results/transport.json"
+run coding bench/coding.py --json "$results/coding.json"
 run fair bench/fair.py --json "$results/fair.json"
 run streams bench/stream_cost.py --json "$results/streams.json"
 run codec bench/codec.py --json "$results/codec.json"

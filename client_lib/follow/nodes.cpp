@@ -116,6 +116,7 @@ void Nodes::adopt_stream(Node& node, Result<std::shared_ptr<NodeStream>> stream)
     node.stream = std::move(*stream);
     find_everywhere();
     if (group_) node.stream->never_stalls();
+    node.stream->count_for(node.index);
     transport_.add(node.stream);
     events_.opened(node);
 }

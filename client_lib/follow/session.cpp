@@ -194,6 +194,7 @@ void ClientSession::swap(ContextId context, ClientSurface& surface) {
             target.describe_to(node);
             glapi::pack::Swap(buffer, surface.id, surface.frame);
             nodes_.send(node);
+            node.stream->expect_swap(surface.id, surface.frame);
         }
         hidden_.note_frame(surface, whole_frames);
         stats().end_frame();

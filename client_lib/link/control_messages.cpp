@@ -405,6 +405,7 @@ std::string encode(const Traffic& traffic) {
             row.add_uint64(2, node.state_bytes);
             row.add_uint64(3, node.object_bytes);
             row.add_uint64(4, node.geometry_bytes);
+            row.add_uint64(5, node.link_bytes);
         }
         for (const SurfaceId surface : traffic.seen) out.add_uint32(5, surface.value);
         for (const SurfaceId surface : traffic.flat) out.add_uint32(6, surface.value);

@@ -12,6 +12,7 @@
 #include "client_lib/link/node_greeting.h"
 #include "client_lib/link/stream_attempts.h"
 #include "client_lib/process/log.h"
+#include "client_lib/process/stats.h"
 #include "common/base/address.h"
 #include "common/base/quoted.h"
 #include "common/wire/limits.h"
@@ -33,7 +34,7 @@ constexpr std::size_t kLargestSpare = (std::size_t{5} << 20) / 4;  // bytes of o
 }  // namespace
 
 Result<std::shared_ptr<NodeStream>> NodeStream::open(const std::string& address, const std::string& hello,
-                                                     int timeout_ms, bool ring) {
+                                                     int timeout_ms, bool ring, Coding coding) {
     const auto deadline = Clock::now() + std::chrono::milliseconds(timeout_ms);
     const auto at = Address::parse(address);
     if (!at) return tl::unexpected(at.error());
@@ -48,9 +49,9 @@ Result<std::shared_ptr<NodeStream>> NodeStream::open(const std::string& address,
     if (!taken && answer.kind != wire::FrameKind::welcome)
         return fail("node at " + address + " does not speak this protocol");
     if (taken) offered->close_descriptor();
-    return std::shared_ptr<NodeStream>(new NodeStream(std::move(greeting->fd),
-                                                      taken ? std::optional(std::move(*offered)) : std::nullopt,
-                                                      static_cast<std::uint32_t>(answer.number), address, hello));
+    return std::shared_ptr<NodeStream>(
+        new NodeStream(std::move(greeting->fd), taken ? std::optional(std::move(*offered)) : std::nullopt,
+                       static_cast<std::uint32_t>(answer.number), address, hello, coding));
 }
 
 template <class Done>
@@ -69,7 +70,7 @@ void NodeStream::send(ContextId context, wire::PackBuffer batch) {
     std::memcpy(out.lead.data(), &header, sizeof header);
     out.lead_bytes = sizeof header + padding;
     out.body = std::move(batch);
-    const std::size_t payload = out.payload_bytes();
+    const std::size_t payload = out.plain_bytes = out.lead_bytes + out.body.bytes();
     if (payload > wire::kMaxBatchPayload) return give_up("a batch is larger than one may be");  // checked before
     out.begin_part(0);
 
@@ -112,8 +113,8 @@ void NodeStream::Outgoing::begin_part(std::size_t start) {
     part_start = start;
     part_bytes = std::min(payload_bytes() - start, wire::kPartBytes);
     const bool last = start + part_bytes == payload_bytes();
-    frame = wire::encode_frame_header(
-        {static_cast<std::uint32_t>(part_bytes), last ? wire::FrameKind::batch : wire::FrameKind::part});
+    const auto whole = is_coded() ? wire::FrameKind::coded : wire::FrameKind::batch;
+    frame = wire::encode_frame_header({static_cast<std::uint32_t>(part_bytes), last ? whole : wire::FrameKind::part});
     sent = 0;
 }
 
@@ -162,6 +163,27 @@ std::optional<Clock::time_point> NodeStream::last_swap(SurfaceId surface) const 
     return found == swaps_.end() ? std::nullopt : std::optional(found->second.at);
 }
 
+void NodeStream::expect_swap(SurfaceId surface, std::uint32_t frame) {
+    std::lock_guard lock(mutex_);
+    owed_[surface] = frame;
+    note_waiting();
+}
+
+void NodeStream::note_waiting() {
+    const bool waits = blocked_ || !owed_.empty();
+    if (waits == waits_since_.has_value()) return;
+    const auto now = Clock::now();
+    if (waits) waits_since_ = now;
+    else waited_ += now - *std::exchange(waits_since_, std::nullopt);
+}
+
+void NodeStream::set_blocked(bool blocked) {
+    if (blocked_ == blocked) return;  // only the transport thread changes it
+    std::lock_guard lock(mutex_);
+    blocked_ = blocked;
+    note_waiting();
+}
+
 std::size_t NodeStream::queued_bytes() const {
     std::lock_guard lock(mutex_);
     return queued_bytes_;
@@ -186,11 +208,39 @@ NodeStream::Pieces NodeStream::pieces_of(const Outgoing& out) {
     const std::size_t head = std::min(out.sent, out.frame.size());
     add(out.frame.data() + head, out.frame.size() - head);
     const std::size_t at = out.part_start + (out.sent - head), end = out.part_start + out.part_bytes;
+    if (out.is_coded()) return add(out.coded.data() + at, end - at), pieces;
     const std::size_t lead = std::min(at, out.lead_bytes), lead_end = std::min(end, out.lead_bytes);
     add(out.lead.data() + lead, lead_end - lead);
     const std::size_t body = std::max(at, out.lead_bytes), body_end = std::max(end, out.lead_bytes);
     add(out.body.opcodes().data() + (body - out.lead_bytes), body_end - body);
     return pieces;
+}
+
+/// Only what is kept until the node has it, and so can be sent again as it was: the node's history goes on where ours
+/// does. Streams within a machine have no link.
+bool NodeStream::may_be_coded(const Outgoing& out) const {
+    return number_ != 0 && choice_.codes() && !cannot_code_ && out.plain_bytes <= wire::kMostCodedBatch;
+}
+
+void NodeStream::code(Outgoing& out) {
+    const auto begin = Clock::now();
+    if (!encoder_) encoder_ = wire::HistoryEncoder::create();
+    const std::array<std::span<const std::byte>, 2> pieces{std::span(out.lead.data(), out.lead_bytes),
+                                                           std::span(out.body.opcodes().data(), out.body.bytes())};
+    const auto plain = static_cast<std::uint32_t>(out.plain_bytes);
+    const auto head = std::as_bytes(std::span(&plain, 1));
+    coding_room_.assign(head.begin(), head.end());
+    if (!encoder_ || !encoder_->encode(pieces, coding_room_)) {
+        cannot_code_ = true;
+        return;
+    }
+    const std::lock_guard lock(mutex_);
+    queued_bytes_ -= out.plain_bytes;
+    out.coded.assign(coding_room_.begin(), coding_room_.end());  // no larger than it must be: it may wait for long
+    queued_bytes_ += out.coded.size();
+    keep(std::move(out.body));
+    out.begin_part(0);
+    choice_.coding_took(Clock::now() - begin);
 }
 
 bool NodeStream::write_some(Outgoing& out) {
@@ -206,6 +256,7 @@ bool NodeStream::write_some(Outgoing& out) {
         if (!written) return false;
         out.sent += *written;
         bytes_sent_.fetch_add(*written, std::memory_order_relaxed);
+        if (counted_for_) stats().add_node(*counted_for_, NodeCounter::link_bytes, *written);
     }
 }
 
@@ -282,8 +333,11 @@ void NodeStream::on_writable() {
             continue;
         }
         if (!front) return;
+        if (!std::exchange(front->decided, true) && may_be_coded(*front)) code(*front);
         const std::size_t total = front->payload_bytes();
-        if (!write_some(*front)) return;
+        const bool written = write_some(*front);
+        set_blocked(!written);
+        if (!written) return;
         std::lock_guard lock(mutex_);
         if (queue_.empty()) return;  // failed meanwhile
         queued_bytes_ -= total;
@@ -349,7 +403,11 @@ void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> paylo
             replies_[request] = {std::move(payload), Clock::now()};
     } else if (kind == wire::FrameKind::swap_done && payload.size() == 8) {
         std::memcpy(words, payload.data(), 8);
-        swaps_[SurfaceId(words[0])] = {words[1], Clock::now()};
+        const SurfaceId surface(words[0]);
+        swaps_[surface] = {words[1], Clock::now()};
+        const auto owed = owed_.find(surface);
+        if (owed != owed_.end() && static_cast<std::int32_t>(words[1] - owed->second) >= 0) owed_.erase(owed);
+        note_waiting();
     }
     changed_.notify_all();
 }
@@ -360,9 +418,13 @@ bool NodeStream::receipt_is_due() const {
 
 void NodeStream::take_receipt(std::uint64_t frames) {
     const std::lock_guard lock(mutex_);
+    const auto now = Clock::now();
+    const auto waited = waited_ + (waits_since_ ? now - *waits_since_ : Clock::duration());
     while (!sent_.empty() && sent_.front().first_frame + sent_.front().frames() <= frames) {
-        sent_bytes_ -= sent_.front().payload_bytes();
-        keep(std::move(sent_.front().body));
+        Outgoing& got = sent_.front();
+        sent_bytes_ -= got.payload_bytes();
+        choice_.delivered(got.plain_bytes, got.is_coded(), now, waited);
+        if (!got.is_coded()) keep(std::move(got.body));
         sent_.pop_front();
     }
     changed_.notify_all();

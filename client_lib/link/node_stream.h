@@ -21,11 +21,14 @@
 #include <unordered_set>
 #include <vector>
 
+#include "client_lib/link/coding_choice.h"
 #include "client_lib/process/options.h"
 #include "common/base/ids.h"
+#include "common/base/raw_bytes.h"
 #include "common/base/result.h"
 #include "common/base/unique_fd.h"
 #include "common/wire/frame.h"
+#include "common/wire/history_coder.h"
 #include "common/wire/pack_buffer.h"
 #include "common/wire/ring.h"
 
@@ -38,7 +41,8 @@ public:
     /// Connects and says hello; at most `timeout_ms` in all. `hello` is an encoded DataHello. `ring`: to a node on this
     /// machine batches go through shared memory, if it and the system let them.
     static Result<std::shared_ptr<NodeStream>> open(const std::string& address, const std::string& hello,
-                                                    int timeout_ms, bool ring = options().ring);
+                                                    int timeout_ms, bool ring = options().ring,
+                                                    Coding coding = options().coding);
     bool has_ring() const { return ring_.has_value(); }
 
     ~NodeStream();
@@ -56,6 +60,8 @@ public:
 
     /// No stall fails the stream: the node may hold it for others' sake. Before the first send().
     void never_stalls() { stalls_ = false; }
+    /// Whose bytes these are in the statistics. Before it is given to the transport.
+    void count_for(NodeIndex node) { counted_for_ = node; }
 
     /// The answer to `request`; nothing if the stream fails or the time is over. Application threads.
     std::optional<std::vector<std::byte>> wait_reply(RequestId request, int timeout_ms);
@@ -69,6 +75,9 @@ public:
     bool wait_swap(SurfaceId surface, std::uint32_t frame, int timeout_ms);
     /// When it said that it has drawn its latest frame of `surface`; nothing: none yet. Application threads.
     std::optional<std::chrono::steady_clock::time_point> last_swap(SurfaceId surface) const;
+
+    /// `frame` of `surface` was sent: the node is waited for until it has drawn it. Application threads.
+    void expect_swap(SurfaceId surface, std::uint32_t frame);
 
     /// What waits to be written.
     std::size_t queued_bytes() const;
@@ -92,17 +101,21 @@ public:
 
 private:
     NodeStream(UniqueFd fd, std::optional<wire::RingWriter> ring, std::uint32_t number, std::string address,
-               std::string hello)
+               std::string hello, Coding coding)
         : fd_(std::move(fd)),
           ring_(std::move(ring)),
           number_(number),
           address_(std::move(address)),
-          hello_(std::move(hello)) {}
+          hello_(std::move(hello)),
+          choice_(coding) {}
     /// A batch on its way, in as many frames as it takes.
     struct Outgoing {
         std::array<std::byte, 16> lead;  ///< batch header, padding in front of the opcodes
         std::size_t lead_bytes = 0;
         wire::PackBuffer body;
+        std::size_t plain_bytes = 0;   ///< of lead and body
+        bool decided = false;          ///< whether it is coded: it is sent again as it was sent before
+        std::vector<std::byte> coded;  ///< once it was, a whole frame's payload instead of them
         std::array<std::byte, wire::kFrameHeaderBytes> frame;  ///< of the part that is being sent
         std::size_t part_start = 0, part_bytes = 0;            ///< of the payload
         std::size_t sent = 0;                                  ///< of the part, its frame header included
@@ -111,7 +124,8 @@ private:
             return std::max<std::size_t>(1, (payload_bytes() + wire::kPartBytes - 1) / wire::kPartBytes);
         }
         bool has_begun() const { return sent != 0 || part_start != 0; }
-        std::size_t payload_bytes() const { return lead_bytes + body.bytes(); }
+        bool is_coded() const { return !coded.empty(); }
+        std::size_t payload_bytes() const { return is_coded() ? coded.size() : plain_bytes; }
         void begin_part(std::size_t start);
     };
     /// What is to be sent next of a part, from memory that is not in one piece.
@@ -120,6 +134,9 @@ private:
         std::size_t count = 0;
     };
     static Pieces pieces_of(const Outgoing& out);
+    /// After a change of `owed_` or `blocked_`, with the mutex.
+    void note_waiting();
+    void set_blocked(bool blocked);
     void handle_frame(wire::FrameKind kind, std::vector<std::byte> payload);
     void take_receipt(std::uint64_t frames);
     bool write_receipt();
@@ -127,6 +144,8 @@ private:
     /// The connection is; the stream goes on over another one if it can.
     void lost(const std::string& why);
     void begin_again(std::uint64_t received);
+    bool may_be_coded(const Outgoing& out) const;
+    void code(Outgoing& out);
     /// True: all of it is out.
     bool write_some(Outgoing& out);
     /// How many bytes went out; nothing: no room, or the stream has failed.
@@ -139,9 +158,10 @@ private:
     void wait(std::unique_lock<std::mutex>& lock, int timeout_ms, Done&& done);
 
     UniqueFd fd_;
-    std::optional<wire::RingWriter> ring_;      // transport thread
-    const std::uint32_t number_;                // by which the node knows it; 0: it ends with its connection
-    const std::string address_, hello_;         // to come to it again
+    std::optional<wire::RingWriter> ring_;  // transport thread
+    const std::uint32_t number_;            // by which the node knows it; 0: it ends with its connection
+    const std::string address_, hello_;     // to come to it again
+    std::optional<NodeIndex> counted_for_;
     std::shared_ptr<StreamAttempts> attempts_;  // to go on; transport thread
     std::atomic<bool> connected_{true};
     bool stalls_ = true;
@@ -166,9 +186,18 @@ private:
         std::chrono::steady_clock::time_point at;
     };
     std::unordered_map<SurfaceId, Drawn> swaps_;  // the last frame of each surface
+    // How long the node was waited for: to draw frames, or to take bytes.
+    std::unordered_map<SurfaceId, std::uint32_t> owed_;
+    bool blocked_ = false;
+    std::optional<std::chrono::steady_clock::time_point> waits_since_;
+    std::chrono::steady_clock::duration waited_{};
     std::string failure_;
 
     // transport thread only
+    CodingChoice choice_;
+    std::optional<wire::HistoryEncoder> encoder_;
+    RawBytes coding_room_;  // for what it makes
+    bool cannot_code_ = false;
     std::uint64_t received_ = 0, receipt_for_ = 0;  // counted frames; those that the node knows of
     std::size_t unreceipted_bytes_ = 0;
     std::vector<std::byte> control_;  // a receipt on its way

@@ -4,11 +4,16 @@
 
 namespace wall::client {
 
+/// Whether what goes to nodes of other machines is coded (common/wire/history_coder.h).
+enum class Coding { measured, never, always };
+
 struct Options {
     bool broadcast = false;    ///< WALLGL_BROADCAST=1: everything goes to every node, for comparison
     bool count_ideal = false;  ///< WALLGL_IDEAL=1: also count what perfect sorting by primitive would send
     bool shown_only = false;   ///< WALLGL_SHOWN_ONLY=1: what no tile shows is not kept, and reads back black
     bool ring = true;          ///< WALLGL_RING=0: no shared memory with nodes of this machine, sockets only
+    Coding coding =
+        Coding::measured;  ///< WALLGL_CODING=0: never, 1: always; else where the link is measured to be slow
 };
 
 const Options& options();

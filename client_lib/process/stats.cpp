@@ -13,7 +13,7 @@ namespace wall::client {
 namespace {
 
 constexpr std::array<const char*, static_cast<std::size_t>(NodeCounter::kCount)> kNames{
-    "state_bytes", "object_bytes", "geometry_bytes", "blocks", "batches"};
+    "state_bytes", "object_bytes", "geometry_bytes", "blocks", "batches", "link_bytes"};
 
 constexpr int kWriteLimitMs = 500;  // at the end of the process
 
@@ -144,7 +144,7 @@ Traffic Stats::traffic() const {
         if (!nodes_[n].load(std::memory_order_acquire)) continue;
         const NodeIndex node(n);
         out.nodes.push_back({node, of_node(node, NodeCounter::state_bytes), of_node(node, NodeCounter::object_bytes),
-                             of_node(node, NodeCounter::geometry_bytes)});
+                             of_node(node, NodeCounter::geometry_bytes), of_node(node, NodeCounter::link_bytes)});
     }
     std::lock_guard lock(mutex_);
     out.frames = frames_;

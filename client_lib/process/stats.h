@@ -24,6 +24,7 @@ enum class NodeCounter : std::uint8_t {
     geometry_bytes,  ///< blocks: vertices and other drawing
     blocks,          ///< blocks sent
     batches,         ///< frames of the data stream
+    link_bytes,      ///< that went out: all of these and what is around them, coded where the link asks for it
     kCount
 };
 

@@ -10,10 +10,10 @@
 
 namespace wall::client {
 
-/// Bytes of commands packed for one node.
+/// Bytes of commands packed for one node, and how many went out for them.
 struct NodeTraffic {
     NodeIndex node;
-    std::uint64_t state_bytes = 0, object_bytes = 0, geometry_bytes = 0;
+    std::uint64_t state_bytes = 0, object_bytes = 0, geometry_bytes = 0, link_bytes = 0;
 };
 
 struct Traffic {

@@ -8,15 +8,18 @@
 // A batch that is larger than a frame should be comes in several: its payload is that of all `part` frames before the
 // `batch` frame, and of that. No other frame stands between them; kMaxBatchPayload bounds them together.
 //
+// A batch may be `coded` (history_coder.h): then its payload is bytes:u32, how many come out, and what the encoder made
+// of them. All coded batches of a stream are one sequence, which others stand between.
+//
 // The first frame of a client is `hello`; a node answers `welcome`, `ring` or `error` and closes. After `ring` the
 // client's frames go through the ring (ring.h) whose descriptor came with the hello's first bytes, and each byte that
 // it sends says that there is something in the ring.
 //
-// After a `welcome` with a number the stream outlives its connection. Both sides count what has come whole of `batch`
-// and `part` frames, or of `reply` and `swap_done` frames, say now and then how many (`receipt`), and keep what they
-// have sent beyond that. A client that has lost the connection comes on another one with a hello that names the stream
-// and its count; the node answers `resumed` with its own; and each side sends again what the other one has not got.
-// (docs/stream-format.md)
+// After a `welcome` with a number the stream outlives its connection. Both sides count what has come whole of `batch`,
+// `coded` and `part` frames, or of `reply` and `swap_done` frames, say now and then how many (`receipt`), and keep what
+// they have sent beyond that. A client that has lost the connection comes on another one with a hello that names the
+// stream and its count; the node answers `resumed` with its own; and each side sends again what the other one has not
+// got. (docs/stream-format.md)
 #pragma once
 
 #include <array>
@@ -37,6 +40,8 @@ enum class FrameKind : std::uint8_t {
     part = 3,   ///< of a batch's payload; the next frame goes on with it
     // both ways, not between the parts of a batch
     receipt = 4,  ///< frames:u64 that have come, from the stream's beginning on
+    // client -> node
+    coded = 5,  ///< a whole batch, coded
     // node -> client
     welcome = 16,      ///< stream:u32, by which a later hello names it; 0: it ends with its connection
     reply = 17,        ///< request:u32, then the answer's bytes
@@ -47,6 +52,11 @@ enum class FrameKind : std::uint8_t {
     resumed = 22,      ///< frames:u64 as in `receipt`; the stream goes on here
     unreachable = 23,  ///< UTF-8 text, by whoever stands for a node: it cannot be reached now
 };
+
+/// Of those that receipts count.
+constexpr bool brings_commands(FrameKind kind) {
+    return kind == FrameKind::batch || kind == FrameKind::part || kind == FrameKind::coded;
+}
 
 struct FrameHeader {
     std::uint32_t payload_bytes = 0;

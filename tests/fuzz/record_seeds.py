@@ -11,24 +11,22 @@ import argparse
 import contextlib
 import hashlib
 import re
-import socket
 import struct
 import subprocess
 import sys
-import threading
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "support"), str(ROOT / "tests" / "golden")]
 from subjects import load_recordings  # noqa: E402
+from tap import Tap  # noqa: E402
 from wall import Wall, build_folder, end_all  # noqa: E402
 from xserver import XServer  # noqa: E402
 
 TILES, TILE = (2, 1), (160, 120)
 MOST_BYTES = 6000  # of an input
 MOST_SECONDS = 10.0  # of a recording
-FRAME_HEADER, BATCH_HEADER = struct.Struct("<IB3x"), struct.Struct("<III")  # common/wire/frame.h
-BATCH = 2  # wire::FrameKind
+BATCH_HEADER = struct.Struct("<III")  # common/wire/frame.h
 WITHOUT = {"ShaderCompile", "ProgramLink"}  # Mesa's compiler has faults of its own
 
 
@@ -54,45 +52,6 @@ class Seeds:
         (self.folder / hashlib.sha1(seed).hexdigest()).write_bytes(seed)
 
 
-class Tap:
-    """Stands where a node's socket was, and passes on what comes."""
-
-    def __init__(self, path: Path, seeds: Seeds):
-        self.behind, self.seeds = path.with_suffix(".behind"), seeds
-        path.rename(self.behind)
-        self.listener = socket.socket(socket.AF_UNIX)
-        self.listener.bind(str(path))
-        self.listener.listen()
-        threading.Thread(target=self.serve, daemon=True).start()
-
-    def serve(self) -> None:
-        while True:
-            program, _ = self.listener.accept()
-            node = socket.socket(socket.AF_UNIX)
-            node.connect(str(self.behind))
-            for way in ((program, node, self.seeds), (node, program, None)):
-                threading.Thread(target=self.pass_on, args=way, daemon=True).start()
-
-    @staticmethod
-    def pass_on(source: socket.socket, to: socket.socket, seeds: Seeds | None) -> None:
-        waiting = b""
-        with contextlib.suppress(OSError):
-            while data := source.recv(1 << 16):
-                to.sendall(data)
-                waiting += data if seeds else b""
-                while len(waiting) >= FRAME_HEADER.size:
-                    size, kind = FRAME_HEADER.unpack_from(waiting)
-                    end = FRAME_HEADER.size + size
-                    if len(waiting) < end:
-                        break
-                    if kind == BATCH:
-                        seeds.take(waiting[FRAME_HEADER.size:end])
-                    waiting = waiting[end:]
-        for end in (source, to):
-            with contextlib.suppress(OSError):
-                end.shutdown(socket.SHUT_RDWR)
-
-
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     arguments.add_argument("folder", type=Path)
@@ -101,7 +60,7 @@ def main() -> int:
     seeds = Seeds(options.folder)
     with XServer() as x, Wall(TILES, TILE) as wall:
         for name in wall.node_names:
-            Tap(wall.folder / f"{name}.sock", seeds)  # its threads keep it
+            Tap(wall.folder / f"{name}.sock", seeds.take)
         for recording in load_recordings():
             if options.names and recording.name not in options.names:
                 continue

@@ -11,7 +11,7 @@ from typing import Callable
 
 import cv2
 import numpy
-from wall import Wall, build_folder, end_all
+from wall import Wall, WallError, build_folder, end_all
 from xserver import XServer
 
 PROGRAMS = build_folder() / "tests"
@@ -76,8 +76,11 @@ class Playing:
         self.wall.wait(self.session, self.frame)
 
     def frame_now(self) -> int:
-        """While it is not held, too."""
-        return next(s["surfaces"][0]["frame"] for s in self.wall.sessions() if s["id"] == self.session)
+        """While it is not held, too. WallError: it is coming back just now, on another link."""
+        for session in self.wall.sessions():
+            if session["id"] == self.session and session["surfaces"]:
+                return session["surfaces"][0]["frame"]
+        raise WallError(f"session {self.session} has no window on the wall now")
 
 
 class Show:

@@ -19,7 +19,9 @@ std::span<std::byte> FrameReader::prepare() {
 }
 
 void FrameReader::lend(RawBytes memory) {
-    if (!in_payload_ && !in_parts_ && payload_.capacity() < memory.capacity()) payload_ = std::move(memory);
+    if (in_payload_ || in_parts_) return;
+    RawBytes& next = header_.kind == wire::FrameKind::coded ? decoded_ : payload_;
+    if (next.capacity() < memory.capacity()) next = std::move(memory);
 }
 
 void FrameReader::begin_frame_again() {
@@ -57,6 +59,22 @@ void FrameReader::take(std::size_t bytes) {
     read_ += bytes;
 }
 
+/// The coded batch that has come.
+Result<RawBytes> FrameReader::decode() {
+    std::uint32_t bytes = 0;
+    if (payload_.size() < sizeof bytes) return fail("coded batch of " + std::to_string(payload_.size()) + " bytes");
+    std::memcpy(&bytes, payload_.data(), sizeof bytes);
+    const auto most = std::min<std::size_t>(batch_limit_, wire::kMostCodedBatch);
+    if (bytes > most)
+        return fail("coded batch of " + std::to_string(bytes) + " bytes, at most " + std::to_string(most) +
+                    " are allowed");
+    RawBytes out = std::exchange(decoded_, {});
+    out.clear();
+    if (auto done = decoder_.decode(std::span(payload_).subspan(sizeof bytes), bytes, out); !done)
+        return tl::unexpected(done.error());
+    return out;
+}
+
 Result<std::optional<Frame>> FrameReader::next() {
     if (failure_) return tl::unexpected(*failure_);
     auto frame = advance();
@@ -73,10 +91,15 @@ Result<std::optional<Frame>> FrameReader::advance() {
         take(std::min(filled_ - read_, end_ - have_));
         if (have_ < end_) return std::optional<Frame>();
         in_payload_ = false;
-        batch_frames_ += header_.kind == wire::FrameKind::part || header_.kind == wire::FrameKind::batch;
+        batch_frames_ += wire::brings_commands(header_.kind);
         in_parts_ = header_.kind == wire::FrameKind::part;
         if (in_parts_) continue;
         payload_.resize(end_);
+        if (header_.kind == wire::FrameKind::coded) {
+            auto batch = decode();
+            if (!batch) return tl::unexpected(batch.error());
+            return std::optional<Frame>(Frame{wire::FrameKind::batch, std::move(*batch)});
+        }
         return std::optional<Frame>(Frame{header_.kind, std::exchange(payload_, {})});
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Takes the bytes of a data stream apart into frames (common/wire/frame.h), and puts batches that come in parts
-// together. Bytes may be foreign and come in any portions; a failure is final. Pure; one thread.
+// Takes the bytes of a data stream apart into frames (common/wire/frame.h), puts batches that come in parts together,
+// and decodes those that are coded. Bytes may be foreign and come in any portions; a failure is final. Pure; one
+// thread.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +13,7 @@
 #include "common/base/raw_bytes.h"
 #include "common/base/result.h"
 #include "common/wire/frame.h"
+#include "common/wire/history_coder.h"
 
 namespace wall::tileserver {
 
@@ -33,11 +35,11 @@ public:
     std::span<std::byte> prepare();
     void commit(std::size_t bytes);
     /// The next whole frame, nothing if it has not all come yet, or why the stream is bad. A batch in parts is one
-    /// frame.
+    /// frame, and so is one that was coded.
     Result<std::optional<Frame>> next();
     /// Memory that the next payload may go to; what it holds does not matter.
     void lend(RawBytes memory);
-    /// Of `batch` and `part` frames, that have come whole.
+    /// Of `batch`, `coded` and `part` frames, that have come whole.
     std::uint64_t batch_frames() const { return batch_frames_; }
     /// What has come of a frame that is not whole is forgotten: it comes again from its beginning.
     void begin_frame_again();
@@ -49,13 +51,15 @@ private:
     Result<std::optional<Frame>> advance();
     Result<void> begin_frame();
     void take(std::size_t bytes);
+    Result<RawBytes> decode();
 
     std::uint32_t frame_limit_ = 0, batch_limit_ = 0;
     std::vector<std::byte> buffer_ = std::vector<std::byte>(kBuffer);
     std::size_t read_ = 0, filled_ = 0;  // in buffer_
     bool in_payload_ = false, direct_ = false, in_parts_ = false;
     wire::FrameHeader header_;
-    RawBytes payload_;
+    RawBytes payload_, decoded_;
+    wire::HistoryDecoder decoder_;
     std::uint64_t batch_frames_ = 0;
     std::size_t start_ = 0;           // of the frame, in payload_
     std::size_t have_ = 0, end_ = 0;  // bytes of payload_ that have come, and that will have at the frame's end

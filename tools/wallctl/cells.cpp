@@ -12,6 +12,12 @@ namespace wall::wallctl {
 
 using nlohmann::json;
 
+namespace {
+
+constexpr double kFewer = 1.2;  // so many times fewer bytes go out than were packed: they are coded
+
+}  // namespace
+
 std::string text(const json& object, const char* key) {
     const auto found = object.find(key);
     if (found == object.end() || found->is_null()) return "";
@@ -38,8 +44,11 @@ std::string per_second(double bytes) {
 std::string traffic(const json& session) {
     const auto of = session.value("traffic", json::object());
     if (of.value("frames", 0) == 0 && of.value("geometry_bytes", 0) == 0) return "";
-    return per_second(of.value("state_bytes_per_second", 0.0) + of.value("object_bytes_per_second", 0.0) +
-                      of.value("geometry_bytes_per_second", 0.0));
+    const double packed = of.value("state_bytes_per_second", 0.0) + of.value("object_bytes_per_second", 0.0) +
+                          of.value("geometry_bytes_per_second", 0.0);
+    const double link = of.value("link_bytes_per_second", 0.0);
+    const bool is_coded = link > 0 && kFewer * link < packed;
+    return is_coded ? fmt::format("{} as {}", per_second(packed), per_second(link)) : per_second(packed);
 }
 
 }  // namespace wall::wallctl

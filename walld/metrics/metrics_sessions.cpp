@@ -38,6 +38,10 @@ constexpr MetricRow<Bytes> kSent[] = {
     {Counter, "wallgl_session_sent_bytes_total",
      "Bytes of commands that the program has packed for the node, by what they are for.", bytes_of},
 };
+constexpr MetricRow<Bytes> kLinks[] = {
+    {Counter, "wallgl_session_link_bytes_total",
+     "Bytes that the program has sent to the node for these, coded where its link asks for it.", bytes_of},
+};
 constexpr MetricRow<Bytes> kReceived[] = {
     {Counter, "wallgl_session_received_bytes_total",
      "Bytes of commands that the node has executed for the program, by what they are for; object: all that is neither "
@@ -117,6 +121,15 @@ std::vector<Labelled<Bytes>> sent(const Wall& wall) {
     return out;
 }
 
+std::vector<Labelled<Bytes>> on_links(const Wall& wall) {
+    std::vector<Labelled<Bytes>> out;
+    for (const auto& [id, session] : wall.sessions())
+        for (const auto& [node, bytes] : session.traffic.by_node())
+            out.push_back(
+                {{{"session", std::to_string(id.value)}, {"node", wall.nodes()[node].config->name}}, bytes.link});
+    return out;
+}
+
 Labels surface_labels(const SurfaceKey& key) {
     return {{"session", std::to_string(key.session.value)},
             {"surface", fmt::format("{}.{}", key.session.value, key.surface.value)}};
@@ -162,6 +175,7 @@ void add_session_metrics(Families& out, const Observed& observed) {
     add_table(out, kInfo, info);
     add_table(out, kSessions, sessions);
     add_table(out, kSent, sent(observed.wall));
+    add_table(out, kLinks, on_links(observed.wall));
     add_table(out, kReceived, received);
     add_table(out, kOnNodes, working);
 }

@@ -16,6 +16,7 @@ SentBytes& SentBytes::operator+=(const SentBytes& other) {
     state += other.state;
     object += other.object;
     geometry += other.geometry;
+    link += other.link;
     return *this;
 }
 
@@ -26,7 +27,7 @@ void SessionTraffic::note(std::uint32_t rank, const proto::ClientStats& report, 
     process.by_node.clear();
     for (const auto& row : report.nodes()) {
         if (row.node() >= nodes) continue;
-        const SentBytes bytes{row.state_bytes(), row.object_bytes(), row.geometry_bytes()};
+        const SentBytes bytes{row.state_bytes(), row.object_bytes(), row.geometry_bytes(), row.link_bytes()};
         process.by_node[NodeIndex(row.node())] = bytes;
         sent += bytes;
     }
@@ -34,7 +35,7 @@ void SessionTraffic::note(std::uint32_t rank, const proto::ClientStats& report, 
     if (const double seconds = process.noted ? std::chrono::duration<double>(now - *process.noted).count() : 0;
         seconds > 0) {
         process.rates = {grown(before.state, sent.state) / seconds, grown(before.object, sent.object) / seconds,
-                         grown(before.geometry, sent.geometry) / seconds, 0};
+                         grown(before.geometry, sent.geometry) / seconds, grown(before.link, sent.link) / seconds, 0};
         const double frames = grown(process.frames, report.frames());
         if (frames > 0) process.rates.frame_bytes = grown(before.all(), sent.all()) / frames;
     }
@@ -81,6 +82,7 @@ SessionTraffic::Rates SessionTraffic::rates() const {
         sum.state += process.rates.state;
         sum.object += process.rates.object;
         sum.geometry += process.rates.geometry;
+        sum.link += process.rates.link;
         sum.frame_bytes += process.rates.frame_bytes;
     }
     return sum;

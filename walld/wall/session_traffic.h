@@ -12,9 +12,9 @@
 
 namespace wall::walld {
 
-/// Bytes of commands, by what they are for.
+/// Bytes of commands, by what they are for, and how many went out over the links for all of them.
 struct SentBytes {
-    std::uint64_t state = 0, object = 0, geometry = 0;
+    std::uint64_t state = 0, object = 0, geometry = 0, link = 0;
     std::uint64_t all() const { return state + object + geometry; }
     SentBytes& operator+=(const SentBytes& other);
     bool operator==(const SentBytes&) const = default;
@@ -26,8 +26,8 @@ public:
 
     /// The rates between the last two reports.
     struct Rates {
-        double state = 0, object = 0, geometry = 0;  ///< bytes a second
-        double frame_bytes = 0;                      ///< of a frame, the mean
+        double state = 0, object = 0, geometry = 0, link = 0;  ///< bytes a second
+        double frame_bytes = 0;                                ///< of a frame, the mean
     };
 
     /// `rank`: of the process in a parallel program; each tells its own. `nodes`: how many the wall has; what is said

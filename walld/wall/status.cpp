@@ -99,9 +99,11 @@ json traffic_json(const SessionTraffic& traffic) {
             {"state_bytes", sent.state},
             {"object_bytes", sent.object},
             {"geometry_bytes", sent.geometry},
+            {"link_bytes", sent.link},
             {"state_bytes_per_second", std::round(rates.state)},
             {"object_bytes_per_second", std::round(rates.object)},
             {"geometry_bytes_per_second", std::round(rates.geometry)},
+            {"link_bytes_per_second", std::round(rates.link)},
             {"frame_bytes", std::round(rates.frame_bytes)}};
 }
 

@@ -301,8 +301,13 @@ class Machines(unittest.TestCase):
             first = self.wall.sessions()[0]["surfaces"][0]["frame"]
             time.sleep(LIMITED)
             drawn = self.wall.sessions()[0]["surfaces"][0]["frame"] - first
-            print(f"{drawn / LIMITED:.1f} frames/s over 100 Mbit/s", flush=True)
+            traffic = self.wall.sessions()[0]["traffic"]
+            packed = sum(traffic[f"{kind}_bytes_per_second"] for kind in ("state", "object", "geometry"))
+            link = traffic["link_bytes_per_second"]
+            print(f"{drawn / LIMITED:.1f} frames/s over 100 Mbit/s, {packed / 1e6:.1f} MB/s as {link / 1e6:.1f}",
+                  flush=True)
             self.assertGreater(drawn, LIMITED_FRAMES)
+            self.assertLess(link, 0.5 * packed, "what a slow link holds up is coded")
             self.wall.hold(session)
             until(self.one_frame_is_shown, "all tiles show the same frame", NOTICED)
         finally:

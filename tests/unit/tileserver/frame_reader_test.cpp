@@ -47,6 +47,56 @@ TEST_P(FrameReaderPortions, GivesEveryFrameWhole) {
 
 INSTANTIATE_TEST_SUITE_P(Portions, FrameReaderPortions, ::testing::Values(1000, 65'536, 3'000'000, 100'000'000));
 
+/// As a client codes it; `says`: how many bytes come out.
+std::vector<std::byte> coded_frame(wire::HistoryEncoder& encoder, std::span<const std::byte> batch,
+                                   std::uint32_t says) {
+    const auto head = std::as_bytes(std::span(&says, 1));
+    RawBytes payload(head.begin(), head.end());
+    const std::array pieces{batch};
+    EXPECT_TRUE(encoder.encode(pieces, payload));
+    return wire::whole_frame(wire::FrameKind::coded, payload);
+}
+
+TEST_P(FrameReaderPortions, DecodesWhatIsCoded) {
+    auto encoder = wire::HistoryEncoder::create();
+    const std::vector<std::byte> large(3'000'000, std::byte{9}), small(70, std::byte{8});
+    std::vector<std::byte> bytes;
+    const auto add = [&](const std::vector<std::byte>& one) { bytes.insert(bytes.end(), one.begin(), one.end()); };
+    add(coded_frame(*encoder, large, 3'000'000));
+    add(frame(wire::FrameKind::batch, 5, 1));
+    add(coded_frame(*encoder, small, 70));
+    add(coded_frame(*encoder, large, 3'000'000));
+    FrameReader reader(8 << 20);
+    const auto frames = feed(reader, bytes, GetParam());
+    ASSERT_EQ(frames.size(), 4u);
+    for (const Frame& one : frames) EXPECT_EQ(one.kind, wire::FrameKind::batch);
+    EXPECT_EQ(frames[0].payload, RawBytes(3'000'000, std::byte{9}));
+    EXPECT_EQ(frames[1].payload, RawBytes(5, std::byte{1}));
+    EXPECT_EQ(frames[2].payload, RawBytes(70, std::byte{8}));
+    EXPECT_EQ(frames[3].payload, frames[0].payload);
+    EXPECT_EQ(reader.batch_frames(), 4u);
+}
+
+TEST(FrameReader, RefusesCodedBatchesThatLie) {
+    const std::vector<std::byte> batch(5000, std::byte{3});
+    const auto refused = [](const std::vector<std::byte>& bytes) {
+        FrameReader reader(1 << 20);
+        feed(reader, bytes, bytes.size());
+        return !reader.next();
+    };
+    for (const std::uint32_t says : {0u, 4999u, 5001u, (1u << 20) + 1, UINT32_MAX}) {
+        auto encoder = wire::HistoryEncoder::create();
+        EXPECT_TRUE(refused(coded_frame(*encoder, batch, says))) << says;
+    }
+    EXPECT_TRUE(refused(frame(wire::FrameKind::coded, 3, 0))) << "no room for the size";
+    EXPECT_TRUE(refused(frame(wire::FrameKind::coded, 100, 7))) << "no zstd";
+    auto parts = frame(wire::FrameKind::part, 10, 1);
+    auto encoder = wire::HistoryEncoder::create();
+    const auto coded = coded_frame(*encoder, batch, 5000);
+    parts.insert(parts.end(), coded.begin(), coded.end());
+    EXPECT_TRUE(refused(parts)) << "not between the parts of a batch";
+}
+
 TEST_P(FrameReaderPortions, PutsABatchInPartsTogether) {
     std::vector<std::byte> bytes;
     const auto add = [&](wire::FrameKind kind, std::size_t size, int fill) {

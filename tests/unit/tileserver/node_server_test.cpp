@@ -573,11 +573,14 @@ protected:
     }
 };
 
+class ABreakingStream : public ANodeOfAnotherMachine, public ::testing::WithParamInterface<client::Coding> {};
+INSTANTIATE_TEST_SUITE_P(Coding, ABreakingStream, ::testing::Values(client::Coding::never, client::Coding::always));
+
 /// Wherever it breaks, in the midst of a batch or an answer: all comes through, once, in order.
-TEST_F(ANodeOfAnotherMachine, GoesOnWithAStreamWhoseConnectionBreaksAgainAndAgain) {
+TEST_P(ABreakingStream, GoesOnWhereItBroke) {
     stack_session(1);
     BreakingLink link(node_address());
-    auto stream = client::NodeStream::open(link.address(), hello_of(1), 10'000);
+    auto stream = client::NodeStream::open(link.address(), hello_of(1), 10'000, false, GetParam());
     ASSERT_TRUE(stream) << stream.error().message;
     client::Transport transport([] {});
     transport.add(*stream);

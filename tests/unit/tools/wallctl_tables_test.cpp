@@ -76,6 +76,9 @@ TEST(Tables, ASessionHasALineForEachWindow) {
               "ID   PROGRAM  NAME  OWNER        PID  WINDOW   PLACE        FRAME  SENT       MEMORY  NOTE\n"
               "3.1  gears          alice        42   300x200  300x200+0+0  7      12.5 kB/s  7.3 MB  held\n"
               "4    new      x     token kiosk  43                                           0.0 MB  bad stream\n");
+    auto coded = sessions[0];
+    coded["traffic"]["link_bytes_per_second"] = 1600;
+    EXPECT_THAT(sessions_table(json{coded}), ::testing::HasSubstr("12.5 kB/s as 1.6 kB/s"));
 }
 
 TEST(Tables, ANodeIsUpAwayOrDrained) {

@@ -21,8 +21,8 @@ the command's group; see common/glapi/decoder.h for what H must offer and for th
 """
 
 
-FRAMING = 3  # of common/wire/frame.h and batch.h; 2: a batch may come in parts; 3: rings, streams that outlive
-             # their connection
+FRAMING = 4  # of common/wire/frame.h and batch.h; 2: a batch may come in parts; 3: rings, streams that outlive
+             # their connection; 4: coded batches
 
 
 def stream_version(ops, elements):
