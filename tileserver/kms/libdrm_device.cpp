@@ -35,7 +35,7 @@ std::string open_error(const std::string& path) {
 }  // namespace
 
 Result<std::unique_ptr<LibdrmDevice>> LibdrmDevice::open(const std::string& path) {
-    UniqueFd file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK));
+    UniqueFd file(::open(path.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK));
     if (!file) return fail(open_error(path));
     std::unique_ptr<LibdrmDevice> out(new LibdrmDevice(path, std::move(file)));
     const int fd = out->descriptor();

@@ -152,9 +152,13 @@ int FakeKernel::answer(unsigned long request, void* argument) {
 
 int FakeKernel::version(void* argument) {
     auto& out = *static_cast<drm_version*>(argument);
-    if (out.name != nullptr && out.name_len >= kDriver.size()) std::ranges::copy(kDriver, out.name);
-    out.name_len = kDriver.size();
-    out.date_len = out.desc_len = 0;
+    const auto say = [](std::string_view text, char* room, auto& length) {
+        if (room != nullptr && length >= text.size()) std::ranges::copy(text, room);
+        length = text.size();
+    };
+    say(kDriver, out.name, out.name_len);
+    say(kDriver, out.date, out.date_len);
+    say(kDriver, out.desc, out.desc_len);
     return 0;
 }
 

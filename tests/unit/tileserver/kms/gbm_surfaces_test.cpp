@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 
 #include <cstdlib>
+#include <optional>
+#include <utility>
 
 #include "tests/unit/tileserver/kms/fake_kernel.h"
 #include "tileserver/gpu/gl.h"
@@ -74,6 +76,30 @@ TEST_F(RealLibraries, SayThatACardIsSomebodyElses) {
     EXPECT_THAT(master.error().message, HasSubstr("somebody else shows pictures on " + kernel.path()));
 }
 
+/// The kernel's events of plugs cannot be made up; all else is the device's.
+class Plugged final : public DrmDevice {
+public:
+    explicit Plugged(DrmDevice& device) : device_(device) {}
+    const std::string& name() const override { return device_.name(); }
+    Result<Card> describe() override { return device_.describe(); }
+    Result<BlobId> make_blob(std::span<const std::byte> bytes) override { return device_.make_blob(bytes); }
+    void free_blob(BlobId blob) override { device_.free_blob(blob); }
+    Result<FramebufferId> add_framebuffer(const BufferLayout& layout) override {
+        return device_.add_framebuffer(layout);
+    }
+    void remove_framebuffer(FramebufferId framebuffer) override { device_.remove_framebuffer(framebuffer); }
+    [[nodiscard]] std::errc commit(const AtomicRequest& request, CommitKind kind) override {
+        return device_.commit(request, kind);
+    }
+    Result<std::vector<CrtcId>> take_flips() override { return device_.take_flips(); }
+    bool take_hot_plug() override { return std::exchange(hot_plug, false); }
+
+    bool hot_plug = false;
+
+private:
+    DrmDevice& device_;
+};
+
 /// Draws to buffers that monitors show, and looks into the card's memory.
 class RealPictures : public RealLibraries {
 protected:
@@ -81,11 +107,12 @@ protected:
         auto opened = open();
         ASSERT_TRUE(opened) << opened.error().message;
         device = std::move(*opened);
-        auto made = GbmSurfaces::open(*device, device->descriptor());
+        plugged.emplace(*device);
+        auto made = GbmSurfaces::open(*plugged, device->descriptor());
         if (!made) GTEST_SKIP() << "no GBM here: " << made.error().message;
         surfaces = std::move(*made);
         auto shown = KmsScreens::open(
-            *device, *surfaces,
+            *plugged, *surfaces,
             std::vector<MonitorWish>{{0, "left", "DP-1", ModeWish{640, 480, 0}}, {1, "right", "DP-2", {}}}, kOrange);
         ASSERT_TRUE(shown) << shown.error().message;
         screens = std::move(*shown);
@@ -97,10 +124,13 @@ protected:
         EXPECT_EQ(drm.framebuffers.size(), 0u);
         EXPECT_EQ(kernel.buffers(), 0u) << "nothing of the card's memory is left over";
     }
-    void arrive() {
-        kernel.beat();
+    void hear() {
         const auto heard = screens->take_events();
         EXPECT_TRUE(heard) << heard.error().message;
+    }
+    void arrive() {
+        kernel.beat();
+        hear();
         EXPECT_FALSE(screens->busy());
     }
     void fill(std::size_t i, float red, float green, float blue) {
@@ -112,6 +142,7 @@ protected:
     }
 
     std::unique_ptr<LibdrmDevice> device;
+    std::optional<Plugged> plugged;
     std::unique_ptr<GbmSurfaces> surfaces;
     std::unique_ptr<KmsScreens> screens;
     Gl gl;
@@ -136,6 +167,30 @@ TEST_F(RealPictures, AreWhatWasDrawn) {
         arrive();
     }
     EXPECT_LE(kernel.buffers(), 6u) << "three each";
+}
+
+/// The buffers of a monitor that goes do so while the context is current with them.
+TEST_F(RealPictures, AreForOtherMonitorsToo) {
+    arrive();
+    for (const auto& [width, height] : {std::pair(1024, 768), std::pair(800, 600)}) {
+        fill(1, 1, 1, 0);
+        ASSERT_TRUE(screens->show());
+        test::unplug(drm.card, "DP-2");
+        plugged->hot_plug = true;
+        hear();
+        EXPECT_FALSE(drm.shown_at("DP-2"));
+        EXPECT_LE(kernel.buffers(), 3u) << "of the other monitor";
+        test::plug(drm.card, "DP-2", "LG", {test::mode_of(width, height)});
+        plugged->hot_plug = true;
+        hear();
+        ASSERT_EQ(screens->at(1).width(), width);
+        fill(1, 0, 1, 1);
+        fill(0, 1, 1, 1);
+        ASSERT_TRUE(screens->show());
+        EXPECT_EQ(kernel.pixel_at("DP-2", static_cast<std::uint32_t>(width) - 1, 0), 0x00ffffu);
+        EXPECT_EQ(kernel.pixel_at("DP-1", 0, 0), 0xffffffu);
+        arrive();
+    }
 }
 
 /// A window's first row is its lowest one, a monitor's its highest.
