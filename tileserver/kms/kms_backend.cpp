@@ -6,7 +6,6 @@
 #include "tileserver/kms/cards.h"
 #include "tileserver/kms/gbm_surfaces.h"
 #include "tileserver/kms/kms_screens.h"
-#include "tileserver/kms/libdrm_device.h"
 
 namespace wall::tileserver {
 namespace {
@@ -58,11 +57,15 @@ Result<std::unique_ptr<GlBackend>> open_kms_backend(const MonitorRequest& reques
             why += (why.empty() ? "" : "; ") + device.error().message;
             continue;
         }
-        auto backend = std::make_unique<KmsBackend>(std::move(*device));
-        if (auto opened = backend->open(request); !opened) return tl::unexpected(opened.error());
-        return backend;
+        return open_kms_backend(std::move(*device), request);
     }
     return fail(why);
+}
+
+Result<std::unique_ptr<GlBackend>> open_kms_backend(std::unique_ptr<LibdrmDevice> card, const MonitorRequest& request) {
+    auto backend = std::make_unique<KmsBackend>(std::move(card));
+    if (auto opened = backend->open(request); !opened) return tl::unexpected(opened.error());
+    return backend;
 }
 
 }  // namespace wall::tileserver

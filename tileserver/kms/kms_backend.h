@@ -9,6 +9,7 @@
 
 #include "common/base/result.h"
 #include "tileserver/gpu/backend.h"
+#include "tileserver/kms/libdrm_device.h"
 #include "tileserver/kms/screen_plan.h"
 
 namespace wall::tileserver {
@@ -19,7 +20,9 @@ struct MonitorRequest {
     std::vector<MonitorWish> wishes{};
 };
 
-/// The monitors show the background then. The error says what each card lacks.
+/// The monitors show the background then, and the context is current. The error says what each card lacks.
 Result<std::unique_ptr<GlBackend>> open_kms_backend(const MonitorRequest& request);
+/// On this card.
+Result<std::unique_ptr<GlBackend>> open_kms_backend(std::unique_ptr<LibdrmDevice> card, const MonitorRequest& request);
 
 }  // namespace wall::tileserver

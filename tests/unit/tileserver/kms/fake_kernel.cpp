@@ -93,7 +93,13 @@ FakeKernel* FakeKernel::of(int file) {
     return same ? the_one : nullptr;
 }
 
+std::size_t FakeKernel::buffers() const {
+    const std::lock_guard lock(mutex_);
+    return buffers_.size();
+}
+
 void FakeKernel::beat() {
+    const std::lock_guard lock(mutex_);
     drm_.beat();
     const auto told = drm_.take_flips();
     for (const CrtcId crtc : *told) {
@@ -106,6 +112,7 @@ void FakeKernel::beat() {
 }
 
 std::uint32_t FakeKernel::pixel_at(const std::string& connector, std::uint32_t x, std::uint32_t y) const {
+    const std::lock_guard lock(mutex_);
     const Buffer& buffer = buffers_.at(framebuffers_.at(drm_.shown_at(connector)));
     std::uint32_t out = 0;
     const auto place = static_cast<off_t>(buffer.offset + std::uint64_t{y} * buffer.pitch + std::uint64_t{x} * 4);
@@ -146,6 +153,7 @@ const std::map<unsigned long, FakeKernel::Answer>& FakeKernel::answers() {
 }
 
 int FakeKernel::answer(unsigned long request, void* argument) {
+    const std::lock_guard lock(mutex_);
     const auto found = answers().find(request);
     return found == answers().end() ? ENOTTY : (this->*found->second)(argument);
 }

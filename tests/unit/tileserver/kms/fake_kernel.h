@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // FakeDrm behind the kernel's own interface: ioctl() and mmap() of this process are answered for one file, so that
 // libdrm, GBM and EGL work as on a card that is nothing but memory (what Mesa then draws with is llvmpipe, as on vkms).
-// The file is a pseudoterminal, since that is a character device with something to read.
+// The file is a pseudoterminal, since that is a character device with something to read. Any thread.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ public:
     void beat();
     /// The colour of a pixel that a connector's monitor shows, 0xRRGGBB, from the top left.
     std::uint32_t pixel_at(const std::string& connector, std::uint32_t x, std::uint32_t y) const;
-    std::size_t buffers() const { return buffers_.size(); }
+    std::size_t buffers() const;
 
     bool atomic = true, nobody_is_master = true;
 
@@ -70,6 +71,7 @@ private:
     const Properties* properties_of(std::uint32_t object) const;
     std::uint64_t value_of(std::uint32_t object, const std::string& name) const;
 
+    mutable std::mutex mutex_;  // guards all but what is constant
     FakeDrm& drm_;
     UniqueFd terminal_, memory_;
     std::string path_;
