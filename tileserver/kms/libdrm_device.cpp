@@ -54,8 +54,8 @@ Result<std::unique_ptr<LibdrmDevice>> LibdrmDevice::open(const std::string& path
 }
 
 Result<void> LibdrmDevice::become_master() {
-    // Who opens a card that is nobody's has it already; then this does nothing.
-    if (drmSetMaster(file_.get()) != 0)
+    // Who opens a card that is nobody's has it already; kernels before 5.8 let only root ask for it.
+    if (drmIsMaster(file_.get()) == 0 && drmSetMaster(file_.get()) != 0)
         return fail("somebody else shows pictures on " + path_ +
                     ": end the X server, the Wayland compositor or the other tileserver that does");
     auto uevents = Uevents::open(std::filesystem::path(path_).lexically_relative("/dev"));

@@ -129,6 +129,7 @@ const std::map<unsigned long, FakeKernel::Answer>& FakeKernel::answers() {
         {DRM_IOCTL_VERSION, &FakeKernel::version},
         {DRM_IOCTL_GET_CAP, &FakeKernel::capability},
         {DRM_IOCTL_SET_CLIENT_CAP, &FakeKernel::client_capability},
+        {DRM_IOCTL_AUTH_MAGIC, &FakeKernel::authorize},
         {DRM_IOCTL_SET_MASTER, &FakeKernel::set_master},
         {DRM_IOCTL_DROP_MASTER, &FakeKernel::done},
         {DRM_IOCTL_GEM_CLOSE, &FakeKernel::free_buffer},
@@ -180,6 +181,9 @@ int FakeKernel::client_capability(void* argument) {
     const auto& wanted = *static_cast<const drm_set_client_cap*>(argument);
     return wanted.capability == DRM_CLIENT_CAP_ATOMIC && !atomic ? EOPNOTSUPP : 0;
 }
+
+/// By which drmIsMaster() finds it out: only the master is told that nobody asked.
+int FakeKernel::authorize(void*) { return nobody_is_master ? EINVAL : EACCES; }
 
 int FakeKernel::set_master(void*) { return nobody_is_master ? 0 : EACCES; }
 

@@ -51,6 +51,7 @@ private:
     int version(void* argument);
     int capability(void* argument);
     int client_capability(void* argument);
+    int authorize(void* argument);
     int set_master(void* argument);
     int resources(void* argument);
     int connector(void* argument);
