@@ -13,6 +13,7 @@ demo=(
   khronos-api                        # gl.xml, from which much of the code is generated
   libglvnd-dev libgl-dev libegl-dev libglx-dev libosmesa6-dev
   libx11-dev libx11-xcb-dev libxcb1-dev libxrandr-dev libxss-dev
+  libdrm-dev libgbm-dev              # monitors without an X server
   libboost1.81-dev libprotobuf-dev protobuf-compiler libprotozero-dev
   libexpected-dev libspdlog-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-calib3d-dev

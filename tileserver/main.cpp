@@ -23,6 +23,7 @@
 #include "tileserver/gpu/memory.h"
 #include "tileserver/gpu_processes.h"
 #include "tileserver/io/node_server.h"
+#include "tileserver/kms/cards.h"
 #include "tileserver/node_role.h"
 #include "tileserver/render/continued.h"
 
@@ -168,8 +169,11 @@ int main(int argc, char** argv) {
         "is started");
     auto* state = app.add_option("--state", source.state,
                                  "where this machine keeps its key, and what it knows of the wall that it has joined");
-    bool list_gpus = false;
+    bool list_gpus = false, list_monitors = false;
     app.add_flag("--gpus", list_gpus, "only lists this machine's GPUs, for `gpu` in wall.toml")->excludes(config);
+    app.add_flag("--monitors", list_monitors,
+                 "only lists this machine's monitors as the kernel knows them, for `output` and `mode` in wall.toml")
+        ->excludes(config);
     app.add_option("--join", line, "joins a wall of another machine, with a line of `wallctl join-token`")
         ->needs(state)
         ->excludes(config);
@@ -177,6 +181,10 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     if (list_gpus) {
         std::cout << gpu_table();
+        return 0;
+    }
+    if (list_monitors) {
+        std::cout << monitor_table();
         return 0;
     }
     const bool of_file = !source.config.empty() && !source.node.empty();

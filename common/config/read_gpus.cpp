@@ -15,6 +15,30 @@ constexpr std::int64_t kMostGpus = 64;
 constexpr std::size_t kMostPort = 65535;
 constexpr std::size_t kLeastAddress = 7, kMostAddress = 16;  // "65:00.0", "00000000:65:00.0"
 
+/// Monitors are plugged into one card, so nobody else can say which one draws their tiles; and EGL's numbers are not
+/// the kernel's.
+void check_cards(TreeReader& read, const toml::table& table, const NodeConfig& node, std::uint32_t gpus) {
+    if (std::ranges::none_of(node.tiles, [](const auto& tile) { return tile.kms.has_value(); })) return;
+    if (gpus != 0)
+        read.refuse(table.get("gpus")->source(),
+                    "'gpus' of a node with tiles on monitors without a window system: expected 'gpu' of each tile, "
+                    "the address of the card that its monitor is plugged into");
+    const bool named = std::ranges::any_of(node.tiles, [](const auto& tile) { return tile.gpu != kAnyGpu; });
+    for (auto tile = node.tiles.begin(); const auto* of_tile : read.tables(table, "tile", "[[node.tile]]")) {
+        const auto& [gpu, name] = std::tie(tile->gpu, tile->name);
+        ++tile;
+        if (gpu != kAnyGpu && is_gpu_number(gpu))
+            read.refuse(of_tile->get("gpu")->source(),
+                        "tile '" + name +
+                            "' names its GPU by a number in a node with tiles on monitors without a window system: "
+                            "expected the card's address, such as \"0000:65:00.0\" (`tileserver --monitors`)");
+        if (named && gpu == kAnyGpu)
+            read.refuse(of_tile->source(), "tile '" + name +
+                                               "' says no 'gpu', others of its node do: expected the address of the "
+                                               "card that its monitor is plugged into");
+    }
+}
+
 void check(TreeReader& read, const toml::table& table, const NodeConfig& node, std::uint32_t gpus) {
     const auto in_window = std::ranges::any_of(node.tiles, [](const auto& tile) { return tile.window.has_value(); });
     if (gpus != 0 && node.backend != Backend::egl)
@@ -70,6 +94,7 @@ void read_gpus(TreeReader& read, const toml::table& root, std::vector<NodeConfig
         const auto gpus =
             table->get("gpus") ? static_cast<std::uint32_t>(read.integer(*table, "gpus", 1, kMostGpus, 1)) : 0;
         check(read, *table, *node, gpus);
+        check_cards(read, *table, *node, gpus);
         if (read.error()) return;
         deal_out(node->tiles, gpus);
         const auto of_gpus = split_by_gpu(*node);

@@ -8,11 +8,15 @@ namespace wall::config {
 
 const char* name_of(Backend backend) { return backend == Backend::egl ? "egl" : "osmesa"; }
 
-const char* output_name(const TileConfig& tile) { return tile.window ? "window" : "headless"; }
+const char* output_name(const TileConfig& tile) {
+    if (tile.kms) return "kms";
+    return tile.window ? "window" : "headless";
+}
 
 bool draws_as(const TileConfig& a, const TileConfig& b) {
     const bool same_window = !a.window || (a.output.width == b.output.width && a.output.height == b.output.height);
-    return a.name == b.name && a.rect == b.rect && a.window == b.window && a.gpu == b.gpu && same_window;
+    return a.name == b.name && a.rect == b.rect && a.window == b.window && a.kms == b.kms && a.gpu == b.gpu &&
+           same_window;
 }
 
 bool draws_as(const NodeConfig& a, const NodeConfig& b) {

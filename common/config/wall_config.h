@@ -31,10 +31,25 @@ struct WindowConfig {
     bool operator==(const WindowConfig&) const = default;
 };
 
+/// What a monitor shows.
+struct ModeConfig {
+    std::int32_t width = 0, height = 0;  ///< pixels
+    std::uint32_t millihertz = 0;        ///< pictures in 1000 seconds; 0: any
+    bool operator==(const ModeConfig&) const = default;
+};
+
+/// A monitor that shows a tile without a window system, by the kernel's mode setting (docs/outputs.md).
+struct KmsConfig {
+    std::string connector;           ///< such as "DP-1"; empty: the next one with a monitor that no tile names
+    std::optional<ModeConfig> mode;  ///< none: that which the monitor likes best
+    bool operator==(const KmsConfig&) const = default;
+};
+
 struct TileConfig {
     std::string name;                    ///< unique on the wall
     geom::Rect rect;                     ///< on the canvas
-    std::optional<WindowConfig> window;  ///< none: headless
+    std::optional<WindowConfig> window;  ///< none: it is no window of an X server
+    std::optional<KmsConfig> kms;        ///< none, and no window either: headless
     geom::TileOutput output;             ///< how that shows it; the warp comes with load_warps()
     std::string warp_file;               ///< as wall.toml names it; empty: none
     std::string mpcdi_file;              ///< the same
@@ -43,7 +58,7 @@ struct TileConfig {
     geom::Eye eye = geom::Eye::both;     ///< that sees it
     bool operator==(const TileConfig&) const = default;
 };
-/// `headless` or `window`, as in wall.toml.
+/// `headless`, `window` or `kms`, as in wall.toml, without the connector.
 const char* output_name(const TileConfig& tile);
 /// The same but for how its output shows it, which can be changed at any moment. The size of a window cannot.
 bool draws_as(const TileConfig& a, const TileConfig& b);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Where OpenGL comes from: one driver context (4.5 compatibility), without a window, or with those that tiles are shown
-// in. One implementation per file (egl_backend.cpp, egl_x11_backend.cpp, osmesa_backend.cpp). Created and used by the
-// render thread.
+// Where OpenGL comes from: one driver context (4.5 compatibility), without a window, or with the screens that tiles are
+// shown on. One implementation per file (egl_backend.cpp, egl_x11_backend.cpp, osmesa_backend.cpp,
+// tileserver/kms/kms_backend.cpp). Created and used by the render thread.
 #pragma once
 
 #include <concepts>
@@ -14,7 +14,7 @@
 namespace wall::tileserver {
 
 struct WindowRequest;
-class TileWindows;
+class TileScreens;
 
 class GlBackend {
 public:
@@ -28,8 +28,8 @@ public:
     /// A function of the driver by name, null if it has none.
     virtual void* get_proc_address(const char* name) const = 0;
     virtual std::string_view name() const = 0;
-    /// That tiles are shown in; null: all tiles are headless.
-    virtual TileWindows* windows() { return nullptr; }
+    /// That tiles are shown on; null: all tiles are headless.
+    virtual TileScreens* screens() { return nullptr; }
 };
 
 inline constexpr std::string_view kAnyGpu = "auto";

@@ -29,7 +29,7 @@ public:
     Result<void> make_current() override { return windows_->select(0); }
     void* get_proc_address(const char* name) const override { return reinterpret_cast<void*>(eglGetProcAddress(name)); }
     std::string_view name() const override { return "egl"; }
-    TileWindows* windows() override { return windows_.get(); }
+    TileScreens* screens() override { return windows_.get(); }
 
 private:
     std::unique_ptr<X11Display> x_;  // to the end

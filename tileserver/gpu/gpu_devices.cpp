@@ -19,15 +19,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostDevices = 64;
 constexpr std::string_view kUsualDomain = "0000:";
 
-/// Of the device behind /dev/dri/cardN; the kernel names a PCI device's folder by its address.
-std::string pci_address(const char* drm_file) {
-    if (drm_file == nullptr) return {};
-    std::error_code error;
-    const auto link = fs::path("/sys/class/drm") / fs::path(drm_file).filename() / "device";
-    const auto name = fs::canonical(link, error).filename().string();
-    return !error && std::ranges::count(name, ':') == 2 ? name : std::string();
-}
-
 std::string listed(std::span<const GpuDevice> gpus) {
     if (gpus.empty()) return "EGL knows none but software renderers";
     std::string out = "there are ";
@@ -37,6 +28,14 @@ std::string listed(std::span<const GpuDevice> gpus) {
 }
 
 }  // namespace
+
+/// The kernel names a PCI device's folder by its address.
+std::string pci_address(const std::string& drm_file) {
+    std::error_code error;
+    const auto link = fs::path("/sys/class/drm") / fs::path(drm_file).filename() / "device";
+    const auto name = fs::canonical(link, error).filename().string();
+    return !error && std::ranges::count(name, ':') == 2 ? name : std::string();
+}
 
 std::vector<GpuDevice> gpu_devices() {
     const auto query_devices = egl_extension<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
@@ -50,7 +49,8 @@ std::vector<GpuDevice> gpu_devices() {
         const char* extensions = query_string(device, EGL_EXTENSIONS);
         if (has_word(extensions, "EGL_MESA_device_software")) continue;
         const bool has_file = has_word(extensions, "EGL_EXT_device_drm");
-        out.push_back({device, has_file ? pci_address(query_string(device, EGL_DRM_DEVICE_FILE_EXT)) : ""});
+        const char* file = has_file ? query_string(device, EGL_DRM_DEVICE_FILE_EXT) : nullptr;
+        out.push_back({device, file != nullptr ? pci_address(file) : ""});
     }
     return out;
 }

@@ -24,6 +24,9 @@ std::vector<GpuDevice> gpu_devices();
 /// renderer stands for each.
 Result<std::size_t> choose_gpu(std::span<const GpuDevice> gpus, std::string_view wanted);
 
+/// Of the device behind a file such as /dev/dri/card0. Empty: it is no PCI device.
+std::string pci_address(const std::string& drm_file);
+
 /// A table for people, with what each GPU's driver calls itself.
 std::string gpu_table();
 

@@ -63,10 +63,9 @@ Result<void> TileWindow::create(const geom::Rect& place, const WindowLook& look)
     attributes.colormap = colormap_ = XCreateColormap(display, root, visual, AllocNone);
     attributes.cursor = cursor_ = empty_cursor(display);
     attributes.event_mask = ExposureMask | StructureNotifyMask;
-    width_ = place.width;
-    height_ = place.height;
-    window_ = XCreateWindow(display, root, place.x, place.y, static_cast<unsigned>(width_),
-                            static_cast<unsigned>(height_), 0, kWindowDepth, InputOutput, visual,
+    resize(place.width, place.height);
+    window_ = XCreateWindow(display, root, place.x, place.y, static_cast<unsigned>(width()),
+                            static_cast<unsigned>(height()), 0, kWindowDepth, InputOutput, visual,
                             CWBackPixel | CWBorderPixel | CWColormap | CWCursor | CWEventMask, &attributes);
     tell_window_manager(place);
     XMapRaised(display, window_);
@@ -106,13 +105,11 @@ void TileWindow::tell_window_manager(const geom::Rect& place) const {
 }
 
 void TileWindow::take(const _XEvent& event) {
-    if (event.type == Expose) exposed_ = true;
+    if (event.type == Expose) expose();
     if (event.type == DestroyNotify) gone_ = true;
-    if (event.type != ConfigureNotify || (event.xconfigure.width == width_ && event.xconfigure.height == height_))
+    if (event.type != ConfigureNotify || (event.xconfigure.width == width() && event.xconfigure.height == height()))
         return;
-    width_ = event.xconfigure.width;
-    height_ = event.xconfigure.height;
-    exposed_ = true;
+    resize(event.xconfigure.width, event.xconfigure.height);
 }
 
 }  // namespace wall::tileserver

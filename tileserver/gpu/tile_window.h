@@ -9,6 +9,7 @@
 
 #include "common/base/result.h"
 #include "common/geom/rect.h"
+#include "tileserver/gpu/tile_screens.h"
 #include "tileserver/gpu/x11_display.h"
 
 union _XEvent;
@@ -30,38 +31,29 @@ struct WindowLook {
 };
 inline constexpr int kWindowDepth = 24;  ///< bits a pixel
 
-class TileWindow {
+class TileWindow final : public TileScreen {
 public:
     /// Mapped, not waited for. `display` outlives it.
     static Result<std::unique_ptr<TileWindow>> open(const X11Display& display, const WindowSpec& spec,
                                                     const WindowLook& look);
     ~TileWindow();
-    TileWindow(const TileWindow&) = delete;
-    TileWindow& operator=(const TileWindow&) = delete;
 
-    const WindowSpec& spec() const { return spec_; }
     unsigned long id() const { return window_; }
-    std::int32_t width() const { return width_; }
-    std::int32_t height() const { return height_; }
-
     /// One of its events.
     void take(const _XEvent& event);
-    /// Its content is lost, in whole or in part, or its size is another since drawn().
-    bool exposed() const { return exposed_; }
-    void drawn() { exposed_ = false; }
     /// Somebody has destroyed it.
     bool gone() const { return gone_; }
 
 private:
-    TileWindow(const X11Display& display, const WindowSpec& spec) : display_(display), spec_(spec) {}
+    TileWindow(const X11Display& display, const WindowSpec& spec)
+        : TileScreen(spec.slot, spec.tile), display_(display), spec_(spec) {}
     Result<void> create(const geom::Rect& place, const WindowLook& look);
     void tell_window_manager(const geom::Rect& place) const;
 
     const X11Display& display_;
     const WindowSpec spec_;
     unsigned long window_ = 0, colormap_ = 0, cursor_ = 0;  // of X; 0: none
-    std::int32_t width_ = 0, height_ = 0;                   // pixels
-    bool exposed_ = true, gone_ = false;
+    bool gone_ = false;
 };
 
 }  // namespace wall::tileserver

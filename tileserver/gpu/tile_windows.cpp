@@ -40,7 +40,7 @@ Result<void> TileWindows::add(const WindowSpec& spec, const WindowLook& look) {
 
 Result<void> TileWindows::failed(std::size_t i, const char* call) const {
     if (display_.lost()) return display_.check_requests("");
-    return fail("tile '" + windows_[i].window->spec().tile + "': " + egl_error(call));
+    return fail("tile '" + windows_[i].window->tile() + "': " + egl_error(call));
 }
 
 Result<void> TileWindows::take_events() {
@@ -52,7 +52,7 @@ Result<void> TileWindows::take_events() {
     }
     if (display_.lost()) return display_.check_requests("");
     for (const Entry& entry : windows_)
-        if (entry.window->gone()) return fail("the window of tile '" + entry.window->spec().tile + "' was destroyed");
+        if (entry.window->gone()) return fail("the window of tile '" + entry.window->tile() + "' was destroyed");
     return {};
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/result.h"
+#include "tileserver/gpu/tile_screens.h"
 #include "tileserver/gpu/tile_window.h"
 #include "tileserver/gpu/x11_display.h"
 
@@ -28,25 +29,22 @@ struct EglHandles {
     void* context = nullptr;
 };
 
-class TileWindows {
+class TileWindows final : public TileScreens {
 public:
     /// Opens them all; the first is current then. `display` outlives it; `look.background` is the request's.
     static Result<std::unique_ptr<TileWindows>> open(const X11Display& display, const EglHandles& egl,
                                                      const WindowRequest& request, const WindowLook& look);
-    ~TileWindows();
-    TileWindows(const TileWindows&) = delete;
-    TileWindows& operator=(const TileWindows&) = delete;
+    ~TileWindows() override;
 
-    std::size_t count() const { return windows_.size(); }
-    TileWindow& at(std::size_t i) const { return *windows_[i].window; }
-    /// Between two pictures of the fastest monitor.
-    std::chrono::nanoseconds refresh_period() const { return refresh_period_; }
+    std::size_t count() const override { return windows_.size(); }
+    TileWindow& at(std::size_t i) const override { return *windows_[i].window; }
+    std::chrono::nanoseconds refresh_period() const override { return refresh_period_; }
 
-    /// Takes what the X server has sent, without waiting. An error: the server or a window is gone.
-    Result<void> take_events();
-    /// Makes a window's surface the context's default framebuffer, and afterwards shows what was drawn there.
-    Result<void> select(std::size_t i);
-    Result<void> swap(std::size_t i);
+    /// Takes what the X server has sent. An error: the server or a window is gone.
+    Result<void> take_events() override;
+    Result<void> select(std::size_t i) override;
+    /// Shows it as well.
+    Result<void> swap(std::size_t i) override;
 
 private:
     struct Entry {

@@ -80,6 +80,19 @@ WindowRequest window_request(const config::WallConfig& wall, const config::NodeC
     return request;
 }
 
+/// The node's tiles on monitors without a window system; the configuration has them on one card.
+MonitorRequest monitor_request(const config::WallConfig& wall, const config::NodeConfig& node) {
+    MonitorRequest request{node.gpu(), wall.background, {}};
+    for (std::uint32_t slot = 0; slot < node.tiles.size(); ++slot) {
+        const auto& tile = node.tiles[slot];
+        if (!tile.kms) continue;
+        MonitorWish wish{slot, tile.name, tile.kms->connector, {}};
+        if (const auto& mode = tile.kms->mode) wish.mode = ModeWish{mode->width, mode->height, mode->millihertz};
+        request.wishes.push_back(std::move(wish));
+    }
+    return request;
+}
+
 /// What is 0 there is as usual.
 SessionQuota quota_of(const proto::Ticket& ticket) {
     SessionQuota out;
@@ -132,8 +145,9 @@ Result<std::unique_ptr<NodeServer>> NodeServer::open(asio::any_io_executor execu
     auto listener = net::Listener::open(executor, address, peers);
     if (!listener) return tl::unexpected(listener.error());
     server->listener_.emplace(std::move(*listener));
-    auto render = RenderThread::start(BackendChoice(config::name_of(node.backend), node.gpu()), *server,
-                                      window_request(wall, node), compilers);
+    auto render =
+        RenderThread::start(BackendChoice(config::name_of(node.backend), node.gpu()), *server,
+                            ScreenRequest{window_request(wall, node), monitor_request(wall, node)}, compilers);
     if (!render) return tl::unexpected(render.error());
     server->render_ = std::move(*render);
     return server;
@@ -549,7 +563,19 @@ void NodeServer::stats(const RenderStats& stats) {
 void NodeServer::scaled(const ScaledTile& tile) {
     post([tile] {
         log::warn("tile_scaled tile={} size={}x{} window={}x{}", log::quoted(tile.tile), tile.width, tile.height,
-                  tile.window_width, tile.window_height);
+                  tile.screen_width, tile.screen_height);
+    });
+}
+
+void NodeServer::monitor(const MonitorNews& news) {
+    post([news] {
+        if (news.mode.empty())
+            log::warn("monitor_dark tile={} connector={} monitor={} reason={}", log::quoted(news.tile),
+                      log::quoted(news.connector), log::quoted(news.monitor), log::quoted(news.note));
+        else
+            log::info("monitor_shows tile={} connector={} monitor={} mode={} note={}", log::quoted(news.tile),
+                      log::quoted(news.connector), log::quoted(news.monitor), log::quoted(news.mode),
+                      log::quoted(news.note));
     });
 }
 

@@ -100,6 +100,7 @@ private:
     void picture(Picture picture) override;
     void stats(const RenderStats& stats) override;
     void scaled(const ScaledTile& tile) override;
+    void monitor(const MonitorNews& news) override;
     void output_lost(std::string reason) override;
 
     void keep(const char* name, asio::awaitable<void> (NodeServer::*work)());

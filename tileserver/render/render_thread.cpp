@@ -30,7 +30,7 @@ constexpr auto kActive = 100ms;
 constexpr auto kUntilWalldSays = 1s;
 constexpr auto kStatsInterval = 1s;
 constexpr auto kReadbackPoll = 1ms;
-constexpr auto kLongestNap = 100ms;  // also until an X server's event is seen
+constexpr auto kLongestNap = 100ms;  // also until an event of an X server or a monitor is seen
 
 /// Ends a frame, or moves a surface: the frame before must be shown first.
 bool needs_shown_frame(std::span<const std::byte> payload) {
@@ -46,15 +46,17 @@ bool needs_shown_frame(std::span<const std::byte> payload) {
 /// Everything that lives in the render thread.
 class RenderThread::Loop {
 public:
-    /// `windows`: that the tiles are shown in; `trials`: of shaders; null: none.
-    Loop(const Gl& gl, NodeEvents& events, TurnBoard& board, TileWindows* windows, CompileTrials* trials)
+    /// `screens`: that the tiles are shown on; `trials`: of shaders; null: none.
+    Loop(const Gl& gl, NodeEvents& events, TurnBoard& board, TileScreens* screens, CompileTrials* trials)
         : events_(events), board_(board), driver_(gl), node_(driver_), compositor_(node_, [this](const StackEntry& e) {
               return find(e);
           }) {
         node_.present_at_once = true;
         node_.trials = trials;
-        if (windows != nullptr)
-            output_.emplace(node_, compositor_, *windows, [this](const ScaledTile& tile) { events_.scaled(tile); });
+        if (screens != nullptr)
+            output_.emplace(node_, compositor_, *screens,
+                            ScreenOutput::Events{[this](const ScaledTile& tile) { events_.scaled(tile); },
+                                                 [this](const MonitorNews& news) { events_.monitor(news); }});
     }
 
     class Stream final : public SessionOutput {
@@ -353,7 +355,7 @@ public:
         if (asked_.empty() && !compositor_.full()) compositor_.request(request);
         else asked_.push_back(request);
     }
-    /// Without the windows that it was to draw in.
+    /// Without the screens that it was to draw on.
     bool lost() const { return lost_; }
 
     NodeEvents& events_;
@@ -361,7 +363,7 @@ public:
     Driver driver_;
     RenderNode node_;
     Compositor compositor_;
-    std::optional<WindowOutput> output_;  // none: all tiles are headless
+    std::optional<ScreenOutput> output_;  // none: all tiles are headless
     TileWatches watches_;
     std::map<StreamId, std::unique_ptr<Stream>> streams_;  // after what their sessions use to the end
 
@@ -409,9 +411,10 @@ private:
 };
 
 Result<std::unique_ptr<RenderThread>> RenderThread::start(BackendChoice backend, NodeEvents& events,
-                                                          WindowRequest windows, const CompilerHost* compilers) {
-    const auto open = [backend, windows = std::move(windows)] {
-        return windows.windows.empty() ? open_backend(backend) : open_window_backend(windows);
+                                                          ScreenRequest screens, const CompilerHost* compilers) {
+    const auto open = [backend, screens = std::move(screens)] {
+        if (!screens.monitors.wishes.empty()) return open_kms_backend(screens.monitors);
+        return screens.windows.windows.empty() ? open_backend(backend) : open_window_backend(screens.windows);
     };
     return start(open, std::move(backend.name), events, compilers);
 }
@@ -450,7 +453,7 @@ void RenderThread::run(const OpenBackend& open, std::string backend_name,
     if (auto current = (*backend)->make_current(); !current) return started(tl::unexpected(current.error()));
     Gl gl;
     gl.load([&](const char* function) { return (*backend)->get_proc_address(function); });
-    Loop loop(gl, events_, board_, (*backend)->windows(), trials_.get());
+    Loop loop(gl, events_, board_, (*backend)->screens(), trials_.get());
     continued::hear();  // behind what the driver has made of threads
     started(Started{query_caps(gl), std::move(backend_name)});
     serve(loop);

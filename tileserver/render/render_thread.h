@@ -19,10 +19,12 @@
 #include "tileserver/compile/compile_trials.h"
 #include "tileserver/gpu/backend.h"
 #include "tileserver/gpu/caps.h"
+#include "tileserver/gpu/tile_windows.h"
+#include "tileserver/kms/kms_backend.h"
 #include "tileserver/render/batch_queue.h"
 #include "tileserver/render/compositor.h"
 #include "tileserver/render/running_turn.h"
-#include "tileserver/render/window_output.h"
+#include "tileserver/render/screen_output.h"
 #include "tileserver/session/parallel_group.h"
 #include "tileserver/session/session_quota.h"
 #include "tileserver/session/work.h"
@@ -60,10 +62,18 @@ public:
     virtual void ended(StreamId stream, std::string reason) = 0;
     virtual void picture(Picture picture) = 0;
     virtual void stats(const RenderStats& stats) = 0;  ///< about once a second
-    /// Once for each tile that its window does not show pixel for pixel.
+    /// Once for each tile that its screen does not show pixel for pixel.
     virtual void scaled(const ScaledTile& tile) = 0;
-    /// The windows are gone, or the driver's context: nothing is drawn from then on.
+    /// A monitor has begun to show its tile, or has ceased to.
+    virtual void monitor(const MonitorNews& news) = 0;
+    /// The screens are gone, or the driver's context: nothing is drawn from then on.
     virtual void output_lost(std::string reason) = 0;
+};
+
+/// What a node's tiles are shown on: windows, or monitors, or neither.
+struct ScreenRequest {
+    WindowRequest windows{};
+    MonitorRequest monitors{};
 };
 
 class RenderThread {
@@ -73,10 +83,10 @@ public:
         std::string backend;
     };
     using OpenBackend = std::function<Result<std::unique_ptr<GlBackend>>()>;
-    /// Makes the driver's context in the new thread, and opens the windows, if there are any; an error if there is
-    /// none. `compilers`, which outlives it, for trials of shaders; null: they are compiled without limits.
+    /// Makes the driver's context in the new thread, and opens the windows or monitors, if there are any; an error if
+    /// there is none. `compilers`, which outlives it, for trials of shaders; null: they are compiled without limits.
     static Result<std::unique_ptr<RenderThread>> start(BackendChoice backend, NodeEvents& events,
-                                                       WindowRequest windows = {},
+                                                       ScreenRequest screens = {},
                                                        const CompilerHost* compilers = nullptr);
     ~RenderThread();
 

@@ -131,5 +131,17 @@ TEST(NodeOfSeveralGpus, IsAnotherOneWithOtherTiles) {
     EXPECT_TRUE(draws_as(*two->find_node("n/gpu0"), *two->find_node("n/gpu0")));
 }
 
+TEST(Gpus, OfTilesWithoutAWindowSystemAreTheCardsOfTheirMonitors) {
+    const std::string one = "output = \"kms:DP-1\"\n", first = one + "gpu = \"0000:17:00.0\"",
+                      second = one + "gpu = \"0000:65:00.0\"";
+    EXPECT_THAT(dealt(2, {first, second}), ElementsAre("0000:17:00.0", "0000:65:00.0")) << "DP-1 of either";
+    EXPECT_THAT(refusal_of(node_of(1, {one}, "gpus = 2\n")),
+                StartsWith("wall.toml:3: 'gpus' of a node with tiles on monitors without a window system"));
+    EXPECT_THAT(refusal_of(node_of(1, {one + "gpu = 1"})),
+                StartsWith("wall.toml:7: tile '0' names its GPU by a number"));
+    EXPECT_THAT(refusal_of(node_of(2, {first, "output = \"kms:DP-2\""})),
+                StartsWith("wall.toml:8: tile '1' says no 'gpu', others of its node do"));
+}
+
 }  // namespace
 }  // namespace wall::config

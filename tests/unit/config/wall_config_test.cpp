@@ -148,6 +148,51 @@ display = ":1"
     EXPECT_EQ(config->nodes[1].tiles[0].window, (WindowConfig{.display = ":1", .monitor = ""}));
 }
 
+TEST(WallConfig, ATileIsOnAMonitorWithoutAWindowSystem) {
+    const auto tile_with = [](const std::string& keys) {
+        const auto config = parse_config(
+            "[[node]]\nname = \"n\"\n[[node.tile]]\nname = \"t\"\nrect = [0, 0, 10, 10]\n" + keys, "wall.toml");
+        EXPECT_TRUE(config) << config.error().message;
+        return config ? config->nodes[0].tiles[0] : TileConfig{};
+    };
+    const auto next = tile_with("output = \"kms\"\n");
+    EXPECT_EQ(next.kms, KmsConfig());
+    EXPECT_EQ(next.window, std::nullopt);
+    EXPECT_STREQ(output_name(next), "kms");
+    EXPECT_EQ(tile_with("output = \"kms:HDMI-A-1\"\n").kms, (KmsConfig{.connector = "HDMI-A-1", .mode = {}}));
+    const auto mode = [&](const std::string& text) {
+        return tile_with("output = \"kms:DP-1\"\nmode = \"" + text + "\"\n").kms->mode;
+    };
+    EXPECT_EQ(mode("1920x1080"), (ModeConfig{1920, 1080, 0}));
+    EXPECT_EQ(mode("1920x1080@60"), (ModeConfig{1920, 1080, 60'000}));
+    EXPECT_EQ(mode("3840x2160@59.94"), (ModeConfig{3840, 2160, 59'940}));
+}
+
+TEST(WallConfig, AModeIsASizeAndPerhapsARate) {
+    for (const char* wrong : {"1920", "1920x", "x1080", "0x1080", "1920x1080@", "1920x1080@0", "1920x1080@1001",
+                              "1920x1080@nan", "1920x1080 ", "1920x99999", "-1x5", "1920x1080@60Hz"}) {
+        const auto config = parse_config(
+            "[[node]]\nname = \"n\"\n[[node.tile]]\nname = \"t\"\nrect = [0, 0, 1, 1]\noutput = \"kms\"\nmode = \"" +
+                std::string(wrong) + "\"\n",
+            "wall.toml");
+        ASSERT_FALSE(config) << wrong;
+        EXPECT_THAT(config.error().message, StartsWith("wall.toml:7: 'mode'")) << wrong;
+    }
+}
+
+TEST(WallConfig, AnotherMonitorIsAnotherTile) {
+    TileConfig tile;
+    tile.kms = KmsConfig{.connector = "DP-1", .mode = {}};
+    TileConfig other = tile;
+    EXPECT_TRUE(draws_as(tile, other));
+    other.output.width = 7;
+    EXPECT_TRUE(draws_as(tile, other)) << "it is scaled to the monitor";
+    other.kms->mode = ModeConfig{1920, 1080, 0};
+    EXPECT_FALSE(draws_as(tile, other));
+    other.kms.reset();
+    EXPECT_FALSE(draws_as(tile, other));
+}
+
 TEST(People, EachHasTheHighestRoleThatNamesThem) {
     PeopleConfig people;
     people.operators.users = {1};
@@ -225,8 +270,30 @@ INSTANTIATE_TEST_SUITE_P(
               "wall.toml:42: ", "expected [x, y, width, height]"},
         Wrong{"tile_key", "rect = [660", "size = 1\nrect = [660",
               "wall.toml:42: ", "expected one of name, rect, output, display, monitor, position"},
-        Wrong{"output", "rect = [0, 500, 640, 480]", "output = \"tv\"\nrect = [0, 500, 640, 480]",
-              "wall.toml:35: ", "'output' is 'tv': expected \"headless\" or \"window\""},
+        Wrong{"output", "rect = [0, 500, 640, 480]", "output = \"tv\"\nrect = [0, 500, 640, 480]", "wall.toml:35: ",
+              "'output' is 'tv': expected \"headless\", \"window\", \"kms\", or \"kms:\" and a connector"},
+        Wrong{"no_connector", "rect = [0, 500, 640, 480]", "output = \"kms:\"\nrect = [0, 500, 640, 480]",
+              "wall.toml:35: ", "expected the name of a connector behind \"kms:\", such as \"kms:DP-1\""},
+        Wrong{"connector_of_a_path", "rect = [0, 500, 640, 480]", "output = \"kms:../x\"\nrect = [0, 500, 640, 480]",
+              "wall.toml:35: ", "'output' is 'kms:../x': expected the name of a connector"},
+        Wrong{"mode_without_kms", "rect = [0, 500, 640, 480]", "rect = [0, 500, 640, 480]\nmode = \"640x480\"",
+              "wall.toml:36: ", "'mode' is of a tile on a monitor without a window system: expected output = \"kms\""},
+        Wrong{"mode_of_words", "rect = [0, 500, 640, 480]",
+              "rect = [0, 500, 640, 480]\noutput = \"kms\"\nmode = \"large\"",
+              "wall.toml:37: ", "'mode': expected the monitor's picture as \"1920x1080\" or \"1920x1080@60\""},
+        Wrong{"monitor_of_kms", "rect = [0, 500, 640, 480]",
+              "rect = [0, 500, 640, 480]\noutput = \"kms\"\nmonitor = \"DP-1\"",
+              "wall.toml:37: ", "'monitor' is of a tile in a window: expected output = \"window\" beside it"},
+        Wrong{"kms_of_osmesa", "rect = [660, 0, 1280, 980]", "rect = [660, 0, 1280, 980]\noutput = \"kms:DP-1\"",
+              "wall.toml:43: ", "'output' is 'kms' on a node with backend \"osmesa\", which draws into memory only"},
+        Wrong{"one_connector_twice", "rect = [0, 0, 640, 480]\n[[node.tile]]\nname = \"bottom\"",
+              "rect = [0, 0, 640, 480]\noutput = \"kms:DP-1\"\n[[node.tile]]\noutput = \"kms:DP-1\"\nname = "
+              "\"bottom\"",
+              "wall.toml:35: ", "connector 'DP-1' shows tile 'top' already"},
+        Wrong{"kms_beside_a_window", "rect = [0, 0, 640, 480]\n[[node.tile]]\nname = \"bottom\"",
+              "rect = [0, 0, 640, 480]\noutput = \"window\"\n[[node.tile]]\noutput = \"kms\"\nname = \"bottom\"",
+              "wall.toml:35: ",
+              "tile 'bottom' has output 'kms', tile 'top' has 'window': expected one of both in a node"},
         Wrong{"output_type", "rect = [0, 500, 640, 480]", "output = 1\nrect = [0, 500, 640, 480]",
               "wall.toml:35: ", "'output': expected a string"},
         Wrong{"monitor_without_window", "rect = [0, 500, 640, 480]", "rect = [0, 500, 640, 480]\nmonitor = \"DP-1\"",

@@ -141,6 +141,7 @@ public:
         note([&] { ++stats_; });
     }
     void scaled(const ScaledTile&) override {}
+    void monitor(const MonitorNews&) override {}
     void output_lost(std::string reason) override {
         note([&] { lost_ = std::move(reason); });
     }
