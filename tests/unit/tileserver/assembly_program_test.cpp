@@ -126,6 +126,17 @@ TEST_F(AssemblyProgramTest, OneThatDoesNotCompileLeavesTheOneBefore) {
     EXPECT_EQ(drawn(batch, 0, {1, 1, 1, 1}), (Pixels{0, 255, 0, 255}));
 }
 
+TEST_F(AssemblyProgramTest, OneWithoutATextIsFixedFunction) {
+    Batch batch;
+    define(batch, kFragments, GL_FRAGMENT_PROGRAM_ARB, "");
+    set_local(batch, 3, {1, 2, 3, 4});
+    batch.set<el::fragment_env>({0, 1, 1, 1}, 253).set<el::vertex_env>({0, 1, 1, 1}, 255);
+    batch.set<el::program_matrix>(glstate::Mat4{2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1}, 7);
+    batch.set<el::color>({1, 0, 1, 1});
+    use_fragments(batch);
+    EXPECT_EQ(drawn(batch, 0, {1, 1, 1, 1}), (Pixels{255, 0, 255, 255}));
+}
+
 TEST_F(AssemblyProgramTest, OthersDrawAsIfItWasNotThere) {
     Batch batch;
     define(batch, kFragments, GL_FRAGMENT_PROGRAM_ARB, kTinted);
