@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "client_lib/context/assembly_binding.h"
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/debug_state.h"
@@ -122,6 +123,17 @@ void of_point_sizes(Context& c, double* out) {
     else c.error(GL_INVALID_ENUM);
 }
 
+/// Calls `use(matrix, stack)` with that of the matrix mode.
+template <class Use>
+void of_current_matrix(Context& c, Use&& use) {
+    const GLenum mode = c.state.local.matrix_mode;
+    if (mode == GL_MODELVIEW) return use(c.state.matrix.modelview, c.modelview_stack);
+    if (mode == GL_PROJECTION) return use(c.state.matrix.projection, c.projection_stack);
+    if (const auto i = program_matrix_of(mode))
+        return use(c.state.program_matrices.program_matrix[*i], c.program_stacks[*i]);
+    of_texture_matrix(c, [&](unsigned unit) { use(c.state.matrix.texture_matrix[unit], c.texture_stacks[unit]); });
+}
+
 constexpr GLenum kGpuDisjoint = 0x8FBB;  // of GL_EXT_disjoint_timer_query, which only OpenGL ES has
 constexpr int kUniformBuffers = glstate::el::uniform_buffer::count;
 constexpr int kImageUnits = glstate::el::image_unit::count;
@@ -147,6 +159,22 @@ const Special kSpecials[] = {
      [](Context& c, double* out) {
          of_texture_matrix(c, [&](unsigned unit) { put_transposed(c.state.matrix.texture_matrix[unit], out); });
      }},
+
+    {GL_CURRENT_MATRIX_ARB, 16,
+     [](Context& c, double* out) {
+         of_current_matrix(c, [&](const Mat4& m, const MatrixStack&) { std::copy(m.begin(), m.end(), out); });
+     }},
+    {GL_TRANSPOSE_CURRENT_MATRIX_ARB, 16,
+     [](Context& c, double* out) {
+         of_current_matrix(c, [&](const Mat4& m, const MatrixStack&) { put_transposed(m, out); });
+     }},
+    {GL_CURRENT_MATRIX_STACK_DEPTH_ARB, 1,
+     [](Context& c, double* out) {
+         of_current_matrix(c, [&](const Mat4&, const MatrixStack& stack) { *out = depth_of(stack); });
+     }},
+    {GL_MAX_PROGRAM_MATRICES_ARB, 1, constant<int{glstate::el::program_matrix::count}>},
+    {GL_MAX_PROGRAM_MATRIX_STACK_DEPTH_ARB, 1, constant<int{kProgramStackLimit}>},
+    {GL_PROGRAM_ERROR_POSITION_ARB, 1, [](Context& c, double* out) { *out = c.assembly->error_position; }},
 
     {GL_ATTRIB_STACK_DEPTH, 1,
      [](Context& c, double* out) { *out = static_cast<double>(c.attributes->server.size()); }},
@@ -387,7 +415,7 @@ template <class Out>
 bool get_limit(Context& c, GLenum pname, Out* out) {
     const auto& limits = c.caps().limits;
     const auto found = limits.find(pname);
-    if (found == limits.end()) return false;
+    if (found == limits.end() || is_assembly_limit(pname)) return false;
     std::transform(found->second.begin(), found->second.end(), out, converted<Out>);
     return true;
 }

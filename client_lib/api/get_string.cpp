@@ -3,6 +3,7 @@
 #include <map>
 #include <mutex>
 
+#include "client_lib/context/assembly_use.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/es_version.h"
 
@@ -30,6 +31,7 @@ const GLubyte* GetString(Context& c, GLenum name) {
     if (name == GL_VENDOR) return kept("WallGL");
     if (name == GL_RENDERER) return kept("WallGL (" + caps.renderer + ")");
     if (name == GL_VERSION) return kept(version_text_in(c.profile, caps));
+    if (name == GL_PROGRAM_ERROR_STRING_ARB && c.profile.has_begin()) return kept(c.assembly->message);
     if (name == GL_EXTENSIONS && !c.profile.core) return kept(joined(extensions_in(c.profile, caps)));
     if (name == GL_SHADING_LANGUAGE_VERSION)
         if (const std::string language = shading_language_in(c.profile, caps); !language.empty()) return kept(language);

@@ -38,6 +38,8 @@ void change_top(Context& c, Change&& change) {
         return change_element<el::modelview>(c, 0, c.modelview_stack, change);
     if (c.state.local.matrix_mode == GL_PROJECTION)
         return change_element<el::projection>(c, 0, c.projection_stack, change);
+    if (const auto i = program_matrix_of(c.state.local.matrix_mode))
+        return change_element<el::program_matrix>(c, *i, c.program_stacks[*i], change);
     if (!c.fixed_unit()) return c.error(GL_INVALID_OPERATION);
     change_element<el::texture_matrix>(c, unit, c.texture_stacks[unit], change);
 }
@@ -71,7 +73,9 @@ void multiply_values(Context& c, const T* values, bool transpose) {
 }  // namespace
 
 void MatrixMode(Context& c, GLenum mode) {
-    if (mode != GL_MODELVIEW && mode != GL_PROJECTION && mode != GL_TEXTURE) return c.error(GL_INVALID_ENUM);
+    const bool of_programs = c.profile.has_begin() && program_matrix_of(mode);
+    if (mode != GL_MODELVIEW && mode != GL_PROJECTION && mode != GL_TEXTURE && !of_programs)
+        return c.error(GL_INVALID_ENUM);
     c.set<el::matrix_mode>(0, mode);
 }
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <optional>
 
+#include "client_lib/context/assembly_binding.h"
 #include "client_lib/context/buffer_binding.h"
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/pixel_store.h"
@@ -174,6 +175,14 @@ GLenum attachment_buffer_error(GLenum word) {
 
 constexpr std::byte kOnePixel[4] = {};
 
+/// Fragment programs draw what raster positions place, too.
+bool may_draw_fragments(Context& c) {
+    if (!may_draw_to_target(c)) return false;
+    if (may_use_assembly(c, glapi::AssemblyStage::fragment)) return true;
+    c.error(GL_INVALID_OPERATION);
+    return false;
+}
+
 /// While nothing is drawn an image is a token in the feedback buffer, of whatever size it is.
 template <class Pack>
 void feed_back(Context& c, Pack&& pack) {
@@ -186,7 +195,7 @@ void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
     if (glapi::is_integer_format(format)) return c.error(GL_INVALID_OPERATION);
     if (const GLenum error = glapi::format_type_error(format, type)) return c.error(error);
-    if (!may_draw_to_target(c)) return;
+    if (!may_draw_fragments(c)) return;
     if (!buffers_exist(c, format)) return c.error(GL_INVALID_OPERATION);
     if (!c.state.raster.raster_position_valid) return;
     if (c.state.local.render_mode != GL_RENDER)
@@ -206,7 +215,7 @@ void DrawPixels(Context& c, GLsizei width, GLsizei height, GLenum format, GLenum
 void Bitmap(Context& c, GLsizei width, GLsizei height, GLfloat xorig, GLfloat yorig, GLfloat xmove, GLfloat ymove,
             const GLubyte* bitmap) {
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
-    if (!may_draw_to_target(c)) return;
+    if (!may_draw_fragments(c)) return;
     if (!c.state.raster.raster_position_valid) return;
     auto position = c.state.raster.raster_position;
     const bool drawing = c.state.local.render_mode == GL_RENDER;
@@ -256,7 +265,7 @@ void CopyPixels(Context& c, GLint x, GLint y, GLsizei width, GLsizei height, GLe
     if (width < 0 || height < 0) return c.error(GL_INVALID_VALUE);
     if (what != GL_COLOR && what != GL_DEPTH && what != GL_STENCIL && what != GL_DEPTH_STENCIL)
         return c.error(GL_INVALID_ENUM);
-    if (!may_draw_to_target(c) || !may_read_pixels(c)) return;
+    if (!may_draw_fragments(c) || !may_read_pixels(c)) return;
     if (!buffers_exist(c, what)) return c.error(GL_INVALID_OPERATION);
     if (!c.state.raster.raster_position_valid || c.state.local.render_mode == GL_SELECT) return;
     const PixelBox from = clip_to_window(c, {x, y, width, height});

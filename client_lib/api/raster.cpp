@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "client_lib/context/assembly_binding.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/matrix.h"
 
@@ -238,6 +239,7 @@ void mark_hit(Context& c, const Vec4& object) {
 }  // namespace
 
 void RasterPos4f(Context& c, GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
+    if (!may_use_assembly(c, glapi::AssemblyStage::vertex)) return c.error(GL_INVALID_OPERATION);
     c.flush_block();
     const glstate::State& s = c.state;
     RasterState raster = s.raster;

@@ -96,7 +96,7 @@ void draw_captured(Context& c, const CapturedDraw& draw) {
     if (!c.draw_target()) return;
     const VertexInput* input = input_on_nodes(c);
     if (!input) return c.table->DrawArraysInstanced(c, draw.mode, 0, ask_count(c, draw), draw.instances);
-    if (!input->positions() && !c.program) return;  // there is nothing to draw
+    if (!input->positions() && !c.shades_vertices()) return;  // there is nothing to draw
     if (!may_draw(c) || c.draws_nothing) return;
     c.determine_modelview_form();
     draw_in_passes(c.state, *c.captures, [&] { DrawOnNodes(c, *input, draw).send(); });

@@ -444,7 +444,7 @@ void send_element(Context& c, const ArraySet& arrays, GLuint element) {
 void draw_elements(Context& c, GLenum mode, const ElementRange& elements) {
     const bool at_once = c.at_once();
     ArraySet arrays(c, !at_once, elements.instance);
-    if (c.program) arrays.add_constant_vertex(c);
+    if (c.shades_vertices()) arrays.add_constant_vertex(c);
     const bool draws = arrays.has_vertex() && elements.count > 0;
     if (!at_once && !record_array_draw(c, draws)) return;
     if (!draws) return;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "client_lib/context/array_copies.h"
+#include "client_lib/context/assembly_use.h"
 #include "client_lib/context/attribute_stack.h"
 #include "client_lib/context/buffer_use.h"
 #include "client_lib/context/capture_use.h"
@@ -23,6 +24,7 @@
 #include "client_lib/objects/program_pipeline.h"
 #include "client_lib/objects/share_group.h"
 #include "client_lib/process/log.h"
+#include "common/glstate/program_environment.h"
 
 namespace wall::client {
 
@@ -57,9 +59,11 @@ Context::Context(std::shared_ptr<ShareGroup> share, const ContextProfile& own_pr
       debug(std::make_unique<DebugState>()),
       captures(std::make_unique<CaptureUse>()),
       memory(std::make_unique<MemoryUse>()),
+      assembly(std::make_unique<AssemblyUse>()),
       at_once_(*table),
       share_(std::move(share)) {
     for (auto& stack : texture_stacks) stack.limit = 10;
+    for (auto& stack : program_stacks) stack.limit = kProgramStackLimit;
     {
         std::lock_guard lock(share_->mutex);
         if (!share_->labels) share_->labels = std::make_shared<ObjectLabels>();
@@ -133,26 +137,37 @@ const glstate::Projection& Context::projection() {
 
 const Placing& Context::placing() {
     const glstate::Projection& fixed_function = projection();
-    if (!program) {
-        if (placing_change_ != 0 || placing_ids_ != projection_ids_) placing_ = {true, 0, true, fixed_function, true};
-        placing_change_ = 0;
-        placing_ids_ = projection_ids_;
+    const auto as_in_fixed_function = [&] { placing_ = {true, 0, true, fixed_function, true}; };
+    if (!shades_vertices()) {
+        if (is_placed_anew({0, projection_ids_, 0})) as_in_fixed_function();
         return placing_;
     }
     std::lock_guard lock(share_->mutex);
+    if (draws_with_assembly(state, program.get(), glapi::AssemblyStage::vertex)) {
+        AssemblyProgram* drawn = assembly->program(*share_, glapi::AssemblyStage::vertex);
+        const auto environment = state.ids[static_cast<std::size_t>(glstate::Category::program_environment)];
+        if (!is_placed_anew({drawn ? drawn->latest() : 0, projection_ids_, environment})) return placing_;
+        if (!drawn || drawn->reflection().invariant) {
+            as_in_fixed_function();
+        } else {
+            glstate::set_environment(drawn->position(), state);
+            place(drawn->position(), glapi::position_attribute(drawn->reflection().position));
+        }
+        return placing_;
+    }
     Executable& executable = *program->executable;
-    if (placing_change_ == executable.last_change && placing_ids_ == projection_ids_) return placing_;
-    placing_change_ = executable.last_change;
-    placing_ids_ = projection_ids_;
-    placing_ = {false, 0, true, glstate::unknown_projection(), true};
-    const GLint attribute = executable.position_attribute();
-    const auto* transform = executable.position().transform(state.matrix.modelview, state.matrix.projection);
-    if (transform == nullptr || attribute < 0) return placing_;
-    const bool depth = executable.position().program().depth;
-    placing_ = {true, static_cast<std::uint32_t>(attribute), transform->homogeneous(),
-                make_projection(fixed_function, *transform, depth), transform->steady()};
-    glstate::set_camera(placing_.projection, executable.position().camera(state.matrix.projection));
+    if (is_placed_anew({executable.last_change, projection_ids_, 0}))
+        place(executable.position(), executable.position_attribute());
     return placing_;
+}
+
+void Context::place(glapi::LinkedPosition& position, GLint attribute) {
+    placing_ = {false, 0, true, glstate::unknown_projection(), true};
+    const auto* transform = position.transform(state.matrix.modelview, state.matrix.projection);
+    if (transform == nullptr || attribute < 0) return;
+    placing_ = {true, static_cast<std::uint32_t>(attribute), transform->homogeneous(),
+                make_projection(projection_, *transform, position.program().depth), transform->steady()};
+    glstate::set_camera(placing_.projection, position.camera(state.matrix.projection));
 }
 
 void Context::forget_object(ClientName gone) {
@@ -178,12 +193,12 @@ void Context::tell() {
 
 void Context::begin_primitive(GLenum mode) {
     packer.begin(mode);
-    if (program && !placing().of_vertices()) packer.mark_unbounded();
+    if (shades_vertices() && !placing().of_vertices()) packer.mark_unbounded();
     if (at_once()) table = &tables::inside_begin;
 }
 
 void Context::end_primitive() {
-    if (program && !places_packed_vertices())
+    if (shades_vertices() && !places_packed_vertices())
         packer.mark_unbounded();  // of what are no positions, they may be no numbers
     packer.end();
     if (table == &tables::inside_begin) table = &at_once_;
@@ -210,7 +225,7 @@ void Context::determine_modelview_form() {
 /// If another thread has linked the program anew meanwhile, boxes that were known may not be so any more. Sending a
 /// block leaves its attributes in the state; each pass begins with those of before.
 void Context::submit_geometry() {
-    const bool known = !program || places_packed_vertices();
+    const bool known = !shades_vertices() || places_packed_vertices();
     const auto submit = [&] {
         const bool somewhere = known && captures->now == nullptr;  // what is captured is captured everywhere
         session_->submit_block(draw_source(), packer, somewhere ? placing().projection : glstate::unknown_projection());

@@ -43,6 +43,7 @@ struct StagingBuffers;     // staging_buffers.h
 struct FramebufferUse;     // framebuffer_use.h
 class CaptureUse;          // capture_use.h: transform feedback
 struct MemoryUse;          // memory_use.h: what shaders write
+struct AssemblyUse;        // assembly_use.h: programs of GL_ARB_vertex_program and GL_ARB_fragment_program
 
 inline constexpr unsigned kVertexAttributes = glstate::el::vertex_attrib::count;
 /// A block larger than this is sent at the next glEnd, so that nodes draw while the program goes on.
@@ -57,6 +58,15 @@ struct Placing {
     bool steady = true;                ///< single triangles have no margin for a shader's rounding
     bool of_vertices() const { return known && attribute == 0 && steady; }
 };
+
+/// Of each matrix that assembly programs alone read, as in Mesa.
+inline constexpr unsigned kProgramStackLimit = 4;
+
+/// Which of these a matrix mode is of; nothing: another one.
+inline std::optional<unsigned> program_matrix_of(GLenum mode) {
+    const bool found = mode >= GL_MATRIX0_ARB && mode < GL_MATRIX0_ARB + glstate::el::program_matrix::count;
+    return found ? std::optional(mode - GL_MATRIX0_ARB) : std::nullopt;
+}
 
 /// One matrix stack; the top is the element of glstate::State.
 struct MatrixStack {
@@ -153,6 +163,7 @@ public:
     // ---- parts by subject, each with its own header ----
     MatrixStack modelview_stack, projection_stack;
     std::array<MatrixStack, kTextureCoords> texture_stacks;
+    std::array<MatrixStack, glstate::el::program_matrix::count> program_stacks;
     std::unique_ptr<ListState> lists;
     std::unique_ptr<AttributeStacks> attributes;
     std::unique_ptr<SelectState> select;
@@ -170,6 +181,7 @@ public:
     std::unique_ptr<DebugState> debug;
     std::unique_ptr<CaptureUse> captures;
     std::unique_ptr<MemoryUse> memory;
+    std::unique_ptr<AssemblyUse> assembly;
     /// Of a target that a command does not work on; where the texture was named, that is no word of the call.
     GLenum target_error = GL_INVALID_ENUM;
 
@@ -197,6 +209,8 @@ public:
     const glstate::Projection& projection();
     /// Where the vertices that are drawn now go: as `projection()` says, or the program.
     const Placing& placing();
+    /// A program may put vertices anywhere, and read what it likes.
+    bool shades_vertices() const { return program || state.objects.vertex_program_enabled != 0; }
 
     std::atomic<bool> in_use{false};  ///< current in some thread
 
@@ -228,9 +242,20 @@ private:
     bool lost_ = false;
     glstate::Projection projection_;
     std::array<std::uint64_t, 5> projection_ids_{};
+    /// What the placing follows from.
+    struct PlacedFrom {
+        std::uint64_t change = 0;  ///< of the program; 0: of none
+        std::array<std::uint64_t, 5> projection{};
+        std::uint64_t environment = 0;  ///< of an assembly program's parameters
+        bool operator==(const PlacedFrom&) const = default;
+    };
+    /// False: that is what it follows from already.
+    bool is_placed_anew(const PlacedFrom& from) { return std::exchange(placed_from_, from) != from; }
+    /// By a position program; the share group's mutex is held.
+    void place(glapi::LinkedPosition& position, GLint attribute);
+
     Placing placing_;
-    std::uint64_t placing_change_ = 0;  ///< of the program; 0: of none
-    std::array<std::uint64_t, 5> placing_ids_{};
+    PlacedFrom placed_from_;
 };
 
 }  // namespace wall::client

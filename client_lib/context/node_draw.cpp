@@ -58,7 +58,7 @@ public:
     /// A program may make of gl_VertexID what it likes. In fixed function all vertices have the current attribute then.
     bool suits_without_positions() {
         const InputFacts& facts = input_.facts();
-        if (!c_.program || indexed() || facts.written_unseen) return false;
+        if (!c_.shades_vertices() || indexed() || facts.written_unseen) return false;
         if (facts.instances < static_cast<std::uint64_t>(draw_.instances)) return false;
         once_.box.make_unbounded();
         known_ = bounded_ && array_ && !facts.drawn ? &known_bounds() : &once_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "client_lib/context/assembly_binding.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/matrix.h"
 #include "common/glstate/diff.h"
@@ -122,6 +123,7 @@ const CapRow* find_cap_row(GLenum cap) {
 }  // namespace
 
 bool is_removed(const Context& c, GLenum word) {
+    if (!c.profile.has_begin() && is_assembly_word(word)) return true;
     return c.profile.core && std::ranges::binary_search(kRemovedWords, word);
 }
 

@@ -40,7 +40,7 @@ struct CapRow {
 };
 extern const std::span<const CapRow> kCapRows;  ///< by cap
 
-/// In a core profile: there is no such word any more.
+/// A core profile has no such word any more, or the context none of extensions that never were for its kind.
 bool is_removed(const Context& c, GLenum word);
 
 /// Values that a parameter takes; 0: no such parameter.

@@ -2,14 +2,13 @@
 #include "client_lib/context/program_use.h"
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
 #include <ranges>
 #include <utility>
 
-#include "client_lib/context/answer_cache.h"
-#include "client_lib/context/ask_one.h"
+#include "client_lib/context/assembly_binding.h"
 #include "client_lib/context/capture_use.h"
+#include "client_lib/context/compiler_questions.h"
 #include "client_lib/context/framebuffer_binding.h"
 #include "client_lib/context/indexed_buffers.h"
 #include "client_lib/objects/blend_support.h"
@@ -20,40 +19,7 @@
 namespace wall::client {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr const char* kNoAnswer = "no node of the wall answered\n";
-constexpr std::chrono::seconds kCompileLimit{130};  // a node gives a compiler up after 120 (CompilerLimits)
-constexpr std::chrono::seconds kWaited{1};          // who has no answer sooner has nobody to ask
-
-/// What a compiler says, which may take long where a machine has other things to do: who has not answered in time is
-/// asked again, and answers once the compiler has, since each content is tried once.
-template <class Pack>
-std::optional<NodeAnswer> ask_compiler(Context& c, const char* function, Pack&& pack) {
-    const auto until = Clock::now() + kCompileLimit;
-    for (;;) {
-        const auto begin = Clock::now();
-        auto answer = ask_one_node(c, function, pack);
-        const auto now = Clock::now();
-        if (answer || now - begin < kWaited || now > until) return answer;
-    }
-}
-
-AnswerCache& kept_answers() {
-    static auto* const kept = new AnswerCache(AnswerCache::usual_folder());  // for as long as the process runs
-    return *kept;
-}
-
-/// What names a question on this wall: who asks nodes of another driver, or speaks to them otherwise, asks another one.
-glapi::ContentHash question(Context& c) {
-    const Caps& caps = c.session().caps();
-    std::string wall = std::to_string(glapi::kStreamVersion);
-    for (const std::string* name : {&caps.vendor, &caps.renderer, &caps.version, &caps.shading_language_version})
-        wall += '\n' + *name;
-    glapi::ContentHash hash;
-    hash.ShaderCompile(0, std::as_bytes(std::span(wall)));
-    return hash;
-}
 
 void take_link_result(Program& program, glapi::ProgramDefinition definition, glapi::ProgramReflection reflection) {
     program.log = std::move(reflection.log);
@@ -77,7 +43,7 @@ void learn_compile_result(Context& c, Shader& shader) {
         source = shader.compiled_source;
     }
     const auto bytes = std::as_bytes(std::span(source));
-    glapi::ContentHash hash = question(c);
+    glapi::ContentHash hash = compiler_question(c);
     hash.ShaderCompile(shader.type, bytes);
     const auto name = hash.finish();
     const auto known = kept_answers().find(name);
@@ -104,7 +70,7 @@ void learn_link_result(Context& c, Program& program) {
     if (!definition) return;
     const auto bytes = encode(*definition);
     c.before_change(program.id);
-    glapi::ContentHash hash = question(c);
+    glapi::ContentHash hash = compiler_question(c);
     hash.ProgramLink(bytes);
     const auto name = hash.finish();
     const auto known = kept_answers().find(name);
@@ -205,7 +171,7 @@ bool may_blend(const Context& c) {
 
 bool may_draw(Context& c) {
     if ((c.framebuffers->draw || c.has_no_surface()) && !may_draw_to_target(c)) return false;
-    if (!may_blend(c)) return c.error(GL_INVALID_OPERATION), false;
+    if (!may_blend(c) || !may_use_assembly(c)) return c.error(GL_INVALID_OPERATION), false;
     if (!c.program) return true;
     find_written_to_read(c);
     c.before_writing_draw();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "client_lib/context/used_objects.h"
 
+#include "client_lib/context/assembly_binding.h"
 #include "client_lib/context/capture_use.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/framebuffer_use.h"
@@ -23,6 +24,14 @@ void adopt_default(glstate::State& state, const Texture& texture) {
         for (unsigned unit = 0; unit < E::count; ++unit)
             if (E::ref(state, unit) == 0) glstate::assign<E>(state, unit, texture.id.value);
     });
+}
+
+/// The same of assembly programs.
+void adopt_default(glstate::State& state, const AssemblyProgram& program) {
+    const bool vertices = program.stage == glapi::AssemblyStage::vertex;
+    if ((vertices ? state.objects.vertex_program : state.objects.fragment_program) != 0) return;
+    if (vertices) glstate::assign<glstate::el::vertex_program>(state, 0, program.id.value);
+    else glstate::assign<glstate::el::fragment_program>(state, 0, program.id.value);
 }
 
 /// What is bound to a target of a unit.
@@ -48,6 +57,19 @@ void for_each_sampled(const glstate::State& state, const Executable& executable,
     });
 }
 
+/// The assembly programs that the context draws with, and the textures that they look up.
+template <class Use, class UseId>
+void for_each_assembly(Context& c, Use&& use, UseId&& use_id) {
+    for (const auto stage : {glapi::AssemblyStage::vertex, glapi::AssemblyStage::fragment}) {
+        if (!draws_with_assembly(c, stage)) continue;
+        const AssemblyProgram* program = bound_assembly(c, stage);
+        if (!program || !program->loaded()) continue;
+        use(*program);
+        for (const glapi::AssemblyTexture& texture : program->reflection().textures)
+            if (texture.unit < kTextureImageUnits) use_id(bound_to(c.state, texture.target, texture.unit));
+    }
+}
+
 }  // namespace
 
 void for_each_used(Context& context, const Use& use_one) {
@@ -56,6 +78,8 @@ void for_each_used(Context& context, const Use& use_one) {
     context.maps->for_each(use);
     std::lock_guard lock(share.mutex);
     for (const auto& [target, texture] : share.default_textures) adopt_default(context.state, *texture);
+    for (const auto& program : share.default_assembly_programs)
+        if (program) adopt_default(context.state, *program);
     const auto use_bound = [&](ClientName id) {
         if (const auto found = share.by_id.find(id); found != share.by_id.end()) use(*found->second);
     };
@@ -71,6 +95,7 @@ void for_each_used(Context& context, const Use& use_one) {
     if (context.memory->work)
         for (const auto& object : context.memory->work->used) use(*object);
     for_each_enabled(context.state, use_bound);
+    for_each_assembly(context, use, use_bound);
     if (!context.program) return;
     for (const auto& part : context.program->executable->parts) use(*part);
     use(*context.program);

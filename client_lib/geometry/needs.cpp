@@ -40,7 +40,9 @@ Needs needs_of_clear() {
 
 Needs needs_of_geometry(const glstate::State& state) {
     Needs needs;
-    if (state.objects.current_program != 0) return needs;  // a shader may read anything
+    const auto& objects = state.objects;
+    if (objects.current_program != 0) return needs;  // a shader may read anything
+    if (objects.vertex_program_enabled != 0 || objects.fragment_program_enabled != 0) return needs;  // the same
     if (state.local.render_mode != GL_RENDER) return needs;
     needs.categories &= ~kNotForGeometry;
     if (!state.lighting.lighting_enabled) needs.categories &= ~kLit;

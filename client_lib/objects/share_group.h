@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <map>
 #include <memory>
@@ -14,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "client_lib/objects/assembly_program.h"
 #include "client_lib/objects/buffer.h"
 #include "client_lib/objects/program.h"
 #include "client_lib/objects/renderbuffer.h"
@@ -82,6 +84,9 @@ struct ShareGroup {
     NameTable<GlslObject> glsl_objects;  ///< shaders and programs
     NameTable<Renderbuffer> renderbuffers;
     NameTable<Sampler> samplers;
+    NameTable<AssemblyProgram> assembly_programs;
+    /// Name 0 of each target, made when it is first needed; until then the state names it by id 0.
+    std::array<std::shared_ptr<AssemblyProgram>, glapi::kAssemblyStages> default_assembly_programs;
     std::unordered_map<GLsync, std::shared_ptr<FenceObject>> fences;
     std::shared_ptr<ObjectLabels> labels;  ///< of what is shared; set by the first context of the group
 

@@ -3,27 +3,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <utility>
 
-#include "common/wire/operand_reader.h"
-#include "common/wire/padding.h"
+#include "common/glapi/format_stream.h"
 
 namespace wall::glapi {
 namespace {
 
-class Writer {
+class Writer : public FormatWriter {
 public:
-    std::vector<std::byte> out;
+    using FormatWriter::put;
 
-    void put(std::uint32_t value) { append(&value, sizeof value); }
-    void put(std::int32_t value) { append(&value, sizeof value); }
-    void put(bool value) { put(std::uint32_t{value}); }
-    void put(const std::string& text) {
-        put(static_cast<std::uint32_t>(text.size()));
-        append(text.data(), text.size());
-        out.resize(wire::padded4(out.size()));
-    }
     void put(const FeedbackDefinition& feedback) {
         put(feedback.mode);
         list(feedback.names, [&](const std::string& name) { put(name); });
@@ -64,78 +54,18 @@ public:
         put(stage.locations);
         put(stage.indices);
     }
-    void put(const PositionProgram& position) {
-        list(position.uniforms, [&](const PositionUniform& u) { put(u.name), put(u.element); });
-        put(position.attribute);
-        put(position.depth);
-        list(position.steps, [&](const PositionStep& step) {
-            put(static_cast<std::uint32_t>(step.op) | std::uint32_t{step.columns} << 8 |
-                std::uint32_t{step.rows} << 16);
-            put(step.operands);
-        });
-    }
-    void put(const std::vector<std::uint32_t>& words) {
-        put(static_cast<std::uint32_t>(words.size()));
-        append(words.data(), words.size() * sizeof(std::uint32_t));
-    }
-    template <class T, class Put>
-    void list(const std::vector<T>& items, Put&& put_item) {
-        put(static_cast<std::uint32_t>(items.size()));
-        for (const T& item : items) put_item(item);
-    }
-
-private:
-    void append(const void* from, std::size_t bytes) {
-        const auto* first = static_cast<const std::byte*>(from);
-        out.insert(out.end(), first, first + bytes);
-    }
 };
 
-class Reader {
+class Reader : public FormatReader {
 public:
-    explicit Reader(std::span<const std::byte> bytes) : in_(bytes) {}
+    using FormatReader::FormatReader;
 
-    std::uint32_t word() { return in_.get<std::uint32_t>(); }
-    std::int32_t number() { return static_cast<std::int32_t>(word()); }
-    bool flag() { return word() != 0; }
-    std::string text() {
-        const auto bytes = in_.bytes();
-        return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-    }
-    std::vector<std::uint32_t> words() {
-        const std::size_t count = word();
-        const auto bytes = count > in_.remaining() / 4 ? in_.raw(in_.remaining() + 1) : in_.raw(count * 4);
-        std::vector<std::uint32_t> out(bytes.size() / 4);
-        if (!bytes.empty()) std::memcpy(out.data(), bytes.data(), bytes.size());
-        return out;
-    }
-    /// Every item takes at least one word, so that a length cannot ask for more than what is there.
-    template <class T, class Get>
-    void list(std::vector<T>& items, Get&& get_item) {
-        const std::size_t count = word();
-        if (count > in_.remaining() / 4) return in_.fail();
-        for (std::size_t i = 0; i < count && in_.ok(); ++i) items.push_back(get_item());
-    }
     FeedbackDefinition feedback() {
         FeedbackDefinition out{word(), {}};
         list(out.names, [&] { return text(); });
         return out;
     }
     BlockPlace place() { return {number(), number(), number(), number(), flag()}; }
-    PositionProgram position() {
-        PositionProgram out;
-        list(out.uniforms, [&] { return PositionUniform{text(), word()}; });
-        out.attribute = text();
-        out.depth = flag();
-        list(out.steps, [&] {
-            const std::uint32_t head = word();
-            if (head >> 24 != 0) in_.fail();
-            return PositionStep{static_cast<PositionOp>(head & 0xff), static_cast<std::uint8_t>(head >> 8),
-                                static_cast<std::uint8_t>(head >> 16), words()};
-        });
-        if (!is_valid(out)) in_.fail();
-        return out;
-    }
     GeometryStage geometry() { return {word(), word(), word(), word()}; }
     TessellationStage tessellation() { return {word(), word(), word(), word(), word()}; }
     SubroutineStage subroutine_stage() {
@@ -144,20 +74,10 @@ public:
         list(out.uniforms, [&] { return SubroutineUniform{text(), word(), flag(), number(), words()}; });
         out.locations = word();
         out.indices = words();
-        if (!out.indices.empty() && out.indices.size() != out.functions.size()) in_.fail();
+        if (!out.indices.empty() && out.indices.size() != out.functions.size()) fail();
         return out;
     }
-    bool complete() const { return in_.ok() && in_.remaining() == 0; }
-
-private:
-    wire::OperandReader in_;
 };
-
-template <class T>
-std::optional<T> if_complete(const Reader& reader, T&& value) {
-    if (!reader.complete()) return std::nullopt;
-    return std::move(value);
-}
 
 constexpr auto kReal = UniformBase::real;
 constexpr auto kInteger = UniformBase::integer;

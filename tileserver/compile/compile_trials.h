@@ -34,7 +34,8 @@ public:
         unavailable,  ///< there are no compilers of their own here
     };
     Outcome outcome() const { return outcome_.load(std::memory_order_acquire); }
-    /// Of a shader that is done: the encoded glapi::CompileResult. Of a program: a ProgramReflection, of which only
+    /// Of a shader that is done: the encoded glapi::CompileResult. Of an assembly program: a glapi::AssemblyReflection.
+    /// Of a program: a ProgramReflection, of which only
     /// `linked` and `position` are told. Empty: it was no shader, or no program.
     const std::vector<std::byte>& answer() const { return answer_; }
 
@@ -56,6 +57,7 @@ public:
     ~CompileTrials();
     CompileTrials(const CompileTrials&) = delete;
 
+    /// `type`: also the target of an assembly program.
     std::shared_ptr<const CompileTrial> shader(GLenum type, std::span<const std::byte> source);
     std::shared_ptr<const CompileTrial> program(std::span<const std::byte> definition);
     /// "more than 10 s of processor time, ...": what a compiler may take.

@@ -15,9 +15,11 @@
 #include <utility>
 
 #include "common/base/descriptor_message.h"
+#include "common/glapi/assembly_format.h"
 #include "tileserver/compile/compiler_messages.h"
 #include "tileserver/gpu/backend.h"
 #include "tileserver/gpu/gl.h"
+#include "tileserver/objects/assembly_build.h"
 #include "tileserver/objects/position_recogniser.h"
 #include "tileserver/objects/program_build.h"
 
@@ -73,6 +75,8 @@ std::vector<std::byte> link(const Gl& gl, const glapi::ProgramDefinition& defini
 }
 
 std::vector<std::byte> answer(const Gl& gl, const CompilerQuestion& question) {
+    if (const auto stage = glapi::assembly_stage(question.shader_type))
+        return compile_assembly(gl, *stage, question.bytes);
     if (question.shader_type != 0) {
         auto compiled = compile_shader(gl, question.shader_type, question.bytes);
         return compiled ? *std::move(compiled) : std::vector<std::byte>();

@@ -22,7 +22,8 @@ namespace wall::tileserver {
 inline constexpr std::uint64_t kMostMessageBytes = std::uint64_t{64} << 20;
 
 struct CompilerQuestion {
-    GLenum shader_type = 0;  ///< 0: the bytes define a program (glapi::decode_definition), else they are source
+    GLenum shader_type = 0;  ///< 0: the bytes define a program (glapi::decode_definition), else they are source, of a
+                             ///< shader or of an assembly program
     std::vector<std::byte> bytes;
 };
 

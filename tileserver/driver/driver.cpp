@@ -12,22 +12,13 @@
 #include "common/glstate/indexed_values.h"
 #include "common/glstate/modelview.h"
 #include "common/glstate/view_change.h"
+#include "tileserver/gpu/extensions.h"
 
 namespace wall::tileserver {
 namespace {
 
 /// Exact for whole numbers that a viewport may have; absurd ones are cut.
 GLint whole(float value) { return static_cast<GLint>(std::clamp(value, -1e9f, 1e9f)); }
-
-bool has_extension(const Gl& gl, std::string_view wanted) {
-    GLint count = 0;
-    gl.GetIntegerv(GL_NUM_EXTENSIONS, &count);
-    for (GLint i = 0; i < count; ++i) {
-        const auto* name = reinterpret_cast<const char*>(gl.GetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
-        if (name != nullptr && wanted == name) return true;
-    }
-    return false;
-}
 
 // Lights, clip planes and eye planes are kept in eye coordinates, but the driver transforms them by its modelview when
 // it is told. While this lives, that is none: for all of a difference, since for each value apart it would be four
@@ -86,7 +77,14 @@ std::optional<TextureTarget> texture_target(GLenum target) {
     return found && !found->is_proxy() ? std::optional(found->info->id) : std::nullopt;
 }
 
-Driver::Driver(const Gl& gl) : gl_(gl), flip_y_(has_extension(gl, "GL_MESA_framebuffer_flip_y")), quirks_(try_out(gl)) {
+Driver::Driver(const Gl& gl)
+    : gl_(gl),
+      flip_y_(has_extension(gl, "GL_MESA_framebuffer_flip_y")),
+      has_assembly_(tileserver::has_assembly(gl)),
+      quirks_(try_out(gl)) {
+    if (has_assembly_)
+        for (const auto stage : {glapi::AssemblyStage::vertex, glapi::AssemblyStage::fragment})
+            environment_[glapi::index_of(stage)] = environment_parameters(gl, stage);
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);  // images travel with tight rows
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
     // Whatever the driver started with, it now holds what the mirror says.
@@ -248,6 +246,11 @@ void Driver::emit(Gl& gl, glstate::el::texture_matrix, unsigned i, const glstate
     gl.MatrixMode(GL_TEXTURE);
     gl.LoadMatrixf(v.data());
 }
+void Driver::emit(Gl& gl, glstate::el::program_matrix, unsigned i, const glstate::Mat4& v) {
+    if (!has_assembly_) return;
+    gl.MatrixMode(GL_MATRIX0_ARB + i);
+    gl.LoadMatrixf(v.data());
+}
 void Driver::emit(Gl& gl, glstate::el::clip_plane, unsigned i, const glstate::Vec4& v) {
     const std::array<GLdouble, 4> plane = {v[0], v[1], v[2], v[3]};
     gl.ClipPlane(GL_CLIP_PLANE0 + i, plane.data());
@@ -261,6 +264,43 @@ void Driver::emit(Gl& gl, glstate::el::light_spot_direction, unsigned i, const g
 void Driver::emit(Gl& gl, glstate::el::tex_gen_eye_plane, unsigned i, const glstate::Vec4& v) {
     unit(gl, i / 4);
     gl.TexGenfv(GL_S + i % 4, GL_EYE_PLANE, v.data());
+}
+
+// ---- assembly programs ----
+
+// Of a driver that has fewer than others of the wall, no program is told that there are more.
+void Driver::emit(Gl& gl, glstate::el::vertex_env, unsigned i, const glstate::Vec4& v) {
+    if (i < environment_[0]) gl.ProgramEnvParameter4fvARB(GL_VERTEX_PROGRAM_ARB, i, v.data());
+}
+void Driver::emit(Gl& gl, glstate::el::fragment_env, unsigned i, const glstate::Vec4& v) {
+    if (i < environment_[1]) gl.ProgramEnvParameter4fvARB(GL_FRAGMENT_PROGRAM_ARB, i, v.data());
+}
+
+void Driver::edit_assembly(glapi::AssemblyStage stage, GLuint program) {
+    Assembly& known = assembly_[glapi::index_of(stage)];
+    if (known.bound != program) gl_.BindProgramARB(glapi::target_of(stage), known.bound = program);
+}
+
+void Driver::use_assembly(glapi::AssemblyStage stage, GLuint program) {
+    Assembly& known = assembly_[glapi::index_of(stage)];
+    const bool enabled = program != 0;
+    if (enabled) edit_assembly(stage, program);
+    if (std::exchange(known.enabled, enabled) == enabled) return;
+    enabled ? gl_.Enable(glapi::target_of(stage)) : gl_.Disable(glapi::target_of(stage));
+}
+
+void Driver::forget_assembly(glapi::AssemblyStage stage, GLuint program) {
+    if (assembly_[glapi::index_of(stage)].bound != program) return;
+    use_assembly(stage, 0);
+    edit_assembly(stage, 0);
+}
+
+void Driver::set_fragment_window(const std::array<float, 4>& value) {
+    if (std::exchange(fragment_window_, value) == value) return;
+    const std::array<std::array<float, 4>, kWindowParameters> parameters = {
+        {{value[0], value[1], 1, 1}, {value[2], value[3], 0, 0}}};
+    for (unsigned i = 0; i < kWindowParameters; ++i)
+        gl_.ProgramEnvParameter4fvARB(GL_FRAGMENT_PROGRAM_ARB, window_parameter() + i, parameters[i].data());
 }
 
 // ---- textures ----

@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "common/glapi/assembly_format.h"
 #include "common/glapi/texture_target.h"
 #include "common/glstate/diff.h"
 #include "gen/glstate/driver_emit.gen.h"
@@ -103,7 +104,8 @@ public:
     bool has_bound(const RenderTarget& target, const glstate::State& state, const TextureBindings& textures,
                    const SamplerBindings& samplers) const {
         return target_ == &target && mirror.ids[kWindow] == state.ids[kWindow] && bound_textures_.id == textures.id &&
-               samplers_.stamp == samplers.stamp && program_ == 0 && pipeline_ == 0;
+               samplers_.stamp == samplers.stamp && program_ == 0 && pipeline_ == 0 && !assembly_[0].enabled &&
+               !assembly_[1].enabled;
     }
     /// Another framebuffer was bound, or a target is gone.
     void forget_target() {
@@ -149,6 +151,17 @@ public:
     void forget_program(GLuint program) {
         if (program_ == program) use_program(0);
     }
+    bool has_assembly() const { return has_assembly_; }
+    /// The first of the environment parameters that are the node's own (kWindowParameters).
+    unsigned window_parameter() const { return environment_[1]; }
+    /// An assembly program of the driver draws where no shader does; 0: none.
+    void use_assembly(glapi::AssemblyStage stage, GLuint program);
+    /// It is given a string or parameters next.
+    void edit_assembly(glapi::AssemblyStage stage, GLuint program);
+    /// Before it is deleted.
+    void forget_assembly(glapi::AssemblyStage stage, GLuint program);
+    /// Where the layer lies, for programs of fragments that read it: scale, then offset.
+    void set_fragment_window(const std::array<float, 4>& value);
     /// Counts for a query of the driver until end_queries(): one of each target and stream; samples are of stream 0.
     void begin_query(QueryTarget target, unsigned stream, GLuint query) {
         gl_.BeginQueryIndexed(gl_query_target(target), stream, queries_of(target)[stream] = query);
@@ -273,6 +286,9 @@ private:
     void emit(Gl& gl, glstate::el::modelview_form, unsigned, const glstate::ModelviewForm& v);
     void emit(Gl& gl, glstate::el::projection, unsigned, const glstate::Mat4& v);
     void emit(Gl& gl, glstate::el::texture_matrix, unsigned i, const glstate::Mat4& v);
+    void emit(Gl& gl, glstate::el::program_matrix, unsigned i, const glstate::Mat4& v);
+    void emit(Gl& gl, glstate::el::vertex_env, unsigned i, const glstate::Vec4& v);
+    void emit(Gl& gl, glstate::el::fragment_env, unsigned i, const glstate::Vec4& v);
     // Several elements make up what draw buffers have; the driver is told when all of them are known.
     void emit(Gl&, glstate::el::blend_func, unsigned, const glstate::BlendFunc&) { blend_func_changed_ = true; }
     void emit(Gl&, glstate::el::depth_range, unsigned, const glstate::DepthRange&) { depth_range_changed_ = true; }
@@ -338,13 +354,21 @@ private:
     Gl gl_;
     const glstate::State defaults_;
     bool flip_y_ = false;
+    bool has_assembly_ = false;
+    std::array<unsigned, glapi::kAssemblyStages> environment_{};  // parameters that programs may set
     Quirks quirks_;
     bool modelview_changed_ = false;  // since it was loaded
     bool blend_func_changed_ = false, blend_equation_changed_ = false, depth_range_changed_ = false;  // the same
     bool modelview_has_origin_ = false;                                                               // what was loaded
     TextureBindings bound_textures_;
-    SamplerBindings samplers_;                                      // that the driver has bound
-    GLuint program_ = 0, pipeline_ = 0;                             // that the driver draws with: one of them
+    SamplerBindings samplers_;           // that the driver has bound
+    GLuint program_ = 0, pipeline_ = 0;  // that the driver draws with: one of them
+    struct Assembly {
+        GLuint bound = 0;
+        bool enabled = false;
+    };
+    std::array<Assembly, glapi::kAssemblyStages> assembly_{};       // of each stage
+    std::array<float, 4> fragment_window_{};                        // that programs of fragments are told
     std::uint32_t generic_ = 0;                                     // attributes that it reads, a bit each
     std::uint64_t separated_ = 0;                                   // the mirror's id of attributes that are
     std::array<GLuint, kQueryTargets * kVertexStreams> queries_{};  // that count

@@ -6,6 +6,7 @@
 
 #include "common/glapi/primitive.h"
 #include "common/glstate/view_change.h"
+#include "tileserver/objects/assembly_program.h"
 #include "tileserver/objects/buffer.h"
 #include "tileserver/objects/draw_pieces.h"
 #include "tileserver/objects/program.h"
@@ -35,7 +36,11 @@ std::optional<glstate::Projection> ArrayDrawCommands::projection() const {
     const glstate::Projection fixed_function = glstate::make_projection(state);
     const ClientName name(state.objects.current_program);
     Program* program = name ? execution_.session.objects.find<Program>(name) : nullptr;
-    return program != nullptr ? program->project(fixed_function, state) : fixed_function;
+    if (program != nullptr) return program->project(fixed_function, state);
+    if (state.objects.vertex_program_enabled == 0) return fixed_function;
+    const ClientName assembly(state.objects.vertex_program);
+    AssemblyProgram* found = assembly ? execution_.session.objects.find<AssemblyProgram>(assembly) : nullptr;
+    return found != nullptr ? found->project(fixed_function, state) : std::nullopt;
 }
 
 VertexInput* ArrayDrawCommands::begin(ClientName name, GLenum mode, std::int32_t count) {

@@ -17,6 +17,7 @@
 
 #include "common/glapi/decoder.h"
 #include "tileserver/execute/array_draw_commands.h"
+#include "tileserver/execute/assembly_program_commands.h"
 #include "tileserver/execute/blit_commands.h"
 #include "tileserver/execute/block_execution.h"
 #include "tileserver/execute/buffer_commands.h"
@@ -95,6 +96,7 @@ public:
     ProgramCommands program{execution_};
     ProgramCommands& subroutine = program;
     ProgramCommands& storage = program;
+    AssemblyProgramCommands assembly{execution_, program};
     DispatchCommands dispatch{execution_, geometry.block()};
     ImageCopyCommands image_copy{execution_, geometry.block()};
     PipelineCommands pipeline{execution_};

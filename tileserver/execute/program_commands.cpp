@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "common/glapi/assembly_format.h"
 #include "common/log/log.h"
+#include "tileserver/objects/assembly_build.h"
 #include "tileserver/objects/program.h"
 #include "tileserver/objects/program_build.h"
 
@@ -42,13 +44,31 @@ void ProgramCommands::ShaderCompile(RequestId request, GLenum type, std::span<co
     hold(execution_.node.trials->shader(type, source), [=, this](const CompileTrial& trial) {
         if (trial.outcome() == Outcome::unavailable || trial.answer().empty()) {
             if (trial.outcome() != Outcome::given_up) return compile(request, type, source);
-            return execution_.output.reply(request, encode(glapi::CompileResult{false, given_up()}));
+            return execution_.output.reply(request, given_up_answer(type));
         }
         execution_.output.reply(request, std::vector(trial.answer()));
     });
 }
 
+std::vector<std::byte> ProgramCommands::given_up_answer(GLenum type) {
+    const std::string reason = given_up();
+    if (!glapi::assembly_stage(type)) return encode(glapi::CompileResult{false, reason});
+    return encode(glapi::AssemblyReflection{.error_position = 0, .message = reason});
+}
+
+void ProgramCommands::when_tried(GLenum type, std::span<const std::byte> source, std::function<void()> then) {
+    if (execution_.node.trials == nullptr) return then();
+    hold(execution_.node.trials->shader(type, source), [this, then = std::move(then)](const CompileTrial& trial) {
+        if (trial.outcome() == Outcome::given_up) given_up();
+        else then();
+    });
+}
+
 void ProgramCommands::compile(RequestId request, GLenum type, std::span<const std::byte> source) {
+    if (const auto stage = glapi::assembly_stage(type)) {
+        execution_.node.driver.edit_assembly(*stage, 0);
+        return execution_.output.reply(request, compile_assembly(execution_.gl, *stage, source));
+    }
     auto answer = compile_shader(execution_.gl, type, source);
     if (!answer) return execution_.refuse(answer.error().message);
     execution_.output.reply(request, std::move(*answer));

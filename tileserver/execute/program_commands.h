@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Groups [program] and [subroutine]: GLSL. Before the driver of the node compiles or links anything it has been tried
-// (compile_trials.h); meanwhile the stream stands at the command, and others draw. Render thread.
+// Groups [program] and [subroutine]: GLSL, and what compilers say of assembly programs. Before the driver of the node
+// compiles or links anything it has been tried (compile_trials.h); meanwhile the stream stands at the command, and
+// others draw. Render thread.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,8 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "common/glapi/position_program.h"
 #include "tileserver/compile/compile_trials.h"
@@ -28,6 +31,9 @@ public:
     void StorageBlock(ClientName program, std::uint32_t block, std::uint32_t binding);
     void Subroutines(ClientName program, GLenum stage, std::span<const std::byte> indices);
 
+    /// Calls `then` once a shader's source, or an assembly program's text, has been tried; not if it was given up.
+    void when_tried(GLenum type, std::span<const std::byte> source, std::function<void()> then);
+
     /// A command of this group is being executed, and nothing behind it may be.
     bool trying() const { return tried_.has_value(); }
     /// What it waits for is not there yet.
@@ -42,6 +48,8 @@ private:
         std::function<void(const CompileTrial& trial)> then;
     };
     void hold(std::shared_ptr<const CompileTrial> trial, std::function<void(const CompileTrial& trial)> then);
+    /// The answer about one that was given up.
+    std::vector<std::byte> given_up_answer(GLenum type);
     void compile(RequestId request, GLenum type, std::span<const std::byte> source);
     /// `recognised`: what is known of the position from a trial; null: nothing.
     void link(RequestId request, ClientName program, std::span<const std::byte> definition,

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "tileserver/gpu/extensions.h"
+
 namespace wall::tileserver {
 namespace {
 
@@ -199,6 +201,9 @@ constexpr LimitRow kLimits[] = {
     {GL_MAX_COMBINED_CLIP_AND_CULL_DISTANCES, 1},
     {GL_NUM_SHADING_LANGUAGE_VERSIONS, 1},
     {GL_CONTEXT_RELEASE_BEHAVIOR, 1},
+    // GL_ARB_vertex_program, GL_ARB_fragment_program
+    {GL_MAX_PROGRAM_MATRICES_ARB, 1},
+    {GL_MAX_PROGRAM_MATRIX_STACK_DEPTH_ARB, 1},
     // OpenGL ES 3.2 (GL_ARB_ES3_2_compatibility)
     {GL_MULTISAMPLE_LINE_WIDTH_RANGE_ARB, 2},
     {GL_MULTISAMPLE_LINE_WIDTH_GRANULARITY_ARB, 1},
@@ -215,6 +220,24 @@ void add_list(const Gl& gl, GLenum count_name, GLenum name, GlCaps& caps) {
     gl.GetIntegerv(name, values.data());
     caps.limits.push_back({count_name, {static_cast<double>(count)}});
     caps.limits.push_back({name, {values.begin(), values.begin() + count}});
+}
+
+/// Of each stage of assembly programs one.
+void add_assembly_limits(const Gl& gl, GlCaps& caps) {
+    if (!has_assembly(gl)) return;
+    using glapi::AssemblyStage;
+    const auto add = [&](GLenum name, auto&& value) {
+        const double vertices = value(AssemblyStage::vertex), fragments = value(AssemblyStage::fragment);
+        caps.limits.push_back({name, {vertices, fragments}});
+    };
+    for (const glapi::AssemblyWord& word : glapi::kAssemblyWords)
+        add(word.most, [&](AssemblyStage stage) { return word.of(stage) ? assembly_value(gl, stage, word.most) : 0; });
+    add(GL_MAX_PROGRAM_LOCAL_PARAMETERS_ARB,
+        [&](AssemblyStage stage) { return assembly_value(gl, stage, GL_MAX_PROGRAM_LOCAL_PARAMETERS_ARB); });
+    add(GL_MAX_PROGRAM_ENV_PARAMETERS_ARB,
+        [&](AssemblyStage stage) { return static_cast<GLint>(environment_parameters(gl, stage)); });
+    while (gl.GetError() != GL_NO_ERROR) {
+    }
 }
 
 std::string text(const GLubyte* string) { return string != nullptr ? reinterpret_cast<const char*>(string) : ""; }
@@ -234,6 +257,7 @@ GlCaps query_caps(const Gl& gl) {
             caps.limits.push_back(
                 {row.name, {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(row.count)}});
     }
+    add_assembly_limits(gl, caps);
     add_list(gl, GL_NUM_COMPRESSED_TEXTURE_FORMATS, GL_COMPRESSED_TEXTURE_FORMATS, caps);
     for (const GLenum dimension : {GL_MAX_COMPUTE_WORK_GROUP_COUNT, GL_MAX_COMPUTE_WORK_GROUP_SIZE}) {
         std::vector<double> values;

@@ -16,7 +16,7 @@ namespace wall::tileserver {
 /// Names that the driver has given and not got back.
 struct DriverObjects {
     std::int64_t textures = 0, buffers = 0, lists = 0, programs = 0, shaders = 0, framebuffers = 0, renderbuffers = 0,
-                 queries = 0, vertex_arrays = 0, samplers = 0, pipelines = 0, captures = 0;
+                 queries = 0, vertex_arrays = 0, samplers = 0, pipelines = 0, captures = 0, assembly_programs = 0;
     bool operator==(const DriverObjects&) const = default;
 };
 
@@ -89,6 +89,14 @@ struct Gl : glapi::GlFunctions {
     void DeleteTransformFeedbacks(GLsizei n, const GLuint* names) const {
         objects->captures -= named(n, names);
         GlFunctions::DeleteTransformFeedbacks(n, names);
+    }
+    void GenProgramsARB(GLsizei n, GLuint* names) const {
+        GlFunctions::GenProgramsARB(n, names);
+        objects->assembly_programs += named(n, names);
+    }
+    void DeleteProgramsARB(GLsizei n, const GLuint* names) const {
+        objects->assembly_programs -= named(n, names);
+        GlFunctions::DeleteProgramsARB(n, names);
     }
     void GenQueries(GLsizei n, GLuint* names) const {
         GlFunctions::GenQueries(n, names);

@@ -27,6 +27,7 @@ enum class ObjectKind : std::uint8_t {
     sampler,
     capture,
     pipeline,
+    assembly_program,
 };
 inline constexpr std::array kObjectKindNames = {"texture",
                                                 "program",
@@ -39,7 +40,8 @@ inline constexpr std::array kObjectKindNames = {"texture",
                                                 "framebuffer",
                                                 "sampler",
                                                 "transform feedback",
-                                                "pipeline"};
+                                                "pipeline",
+                                                "assembly program"};
 inline constexpr std::size_t kObjectKinds = kObjectKindNames.size();
 
 // What one session may have on a node, of all kinds together: they fill the same memory, and no kind knows what is

@@ -10,6 +10,7 @@
 #include "tileserver/objects/position_recogniser.h"
 #include "tileserver/objects/program_build.h"
 #include "tileserver/objects/shader_patch.h"
+#include "tileserver/objects/window_coordinates.h"
 
 namespace wall::tileserver {
 namespace {
@@ -66,17 +67,6 @@ void set_vector(const Gl& gl, GLuint program, GLint location, GLsizei count, con
                                                         gl.ProgramUniform3iv, gl.ProgramUniform4iv};
         call(calls, reinterpret_cast<const GLint*>(values));
     }
-}
-
-/// From the layer's pixels to the window's: scale, then offset.
-std::array<float, 4> window_of(const LayerGeometry& g, bool upper_left, bool whole_centers) {
-    if (g.window_width == 0 || g.window_height == 0) return {1, 1, 0, 0};
-    const std::int32_t y = upper_left ? g.area.y - g.surface.y : g.offset_y();
-    if (!g.scaled()) return {1, 1, static_cast<float>(g.offset_x()), static_cast<float>(y)};
-    const double sx = 1 / g.scale_x(), sy = 1 / g.scale_y();
-    const double middle = whole_centers ? 0.5 : 0;  // that the layer's pixels lack
-    return {static_cast<float>(sx), static_cast<float>(sy), static_cast<float>((g.offset_x() + middle) * sx - middle),
-            static_cast<float>((y + middle) * sy - middle)};
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "common/glstate/draw_buffers.h"
 #include "gen/glstate/texture_elements.gen.h"
+#include "tileserver/objects/assembly_program.h"
 #include "tileserver/objects/buffer.h"
 #include "tileserver/objects/capture.h"
 #include "tileserver/objects/pipeline.h"
@@ -74,6 +75,11 @@ bool counts_or_captures(const glstate::State& state) {
            glstate::counts_primitives(state);
 }
 
+/// Assembly programs are switched on.
+bool has_assembly(const glstate::State& state) {
+    return (glstate::el::vertex_program_enabled::ref(state) | glstate::el::fragment_program_enabled::ref(state)) != 0;
+}
+
 void look_up_samplers(SessionReplica& session, SoftContext& context) {
     BoundSamplers& bound = context.samplers;
     SamplerNames found{};
@@ -85,12 +91,36 @@ void look_up_samplers(SessionReplica& session, SoftContext& context) {
     if (found != bound.bindings.names) bound.bindings = {found == SamplerNames{} ? 0 : glstate::next_value_id(), found};
     bound.values = objects_id(context);
     bound.version = session.objects.version(Sampler::kKind);
-    bound.only_samplers = glstate::el::current_program::ref(context.state) == 0 && !counts_or_captures(context.state);
+    bound.only_samplers = glstate::el::current_program::ref(context.state) == 0 && !has_assembly(context.state) &&
+                          !counts_or_captures(context.state);
 }
 
-/// None, and what is neither a program nor several: fixed function.
+/// The one that draws a stage where no shader does; null: none, or one that is not there.
+AssemblyProgram* use_assembly(RenderNode& node, const SessionReplica& session, glapi::AssemblyStage stage,
+                              ClientName name, const LayerGeometry& layer) {
+    AssemblyProgram* program = name ? session.objects.find<AssemblyProgram>(name) : nullptr;
+    if (program == nullptr || program->stage() != stage) return node.driver.use_assembly(stage, 0), nullptr;
+    program->use(layer);
+    return program;
+}
+
+/// Both stages. The generic attributes that vertices are made of, a bit each.
+std::uint32_t use_assembly(RenderNode& node, const SessionReplica& session, const glstate::State& state,
+                           const LayerGeometry& layer) {
+    namespace el = glstate::el;
+    const bool vertices = el::vertex_program_enabled::ref(state) != 0,
+               fragments = el::fragment_program_enabled::ref(state) != 0;
+    use_assembly(node, session, glapi::AssemblyStage::fragment,
+                 ClientName(fragments ? el::fragment_program::ref(state) : 0), layer);
+    const AssemblyProgram* program = use_assembly(node, session, glapi::AssemblyStage::vertex,
+                                                  ClientName(vertices ? el::vertex_program::ref(state) : 0), layer);
+    return program != nullptr ? program->attributes() : 0;
+}
+
+/// None, and what is neither a program nor several: assembly programs, or fixed function.
 void use_program(RenderNode& node, SessionReplica& session, const glstate::State& state, const LayerGeometry& layer) {
     const ClientName name(glstate::el::current_program::ref(state));
+    const std::uint32_t attributes = use_assembly(node, session, state, layer);
     const auto bind_blocks = [&](const Program& program) {
         for (const std::uint32_t place : program.block_bindings())
             node.driver.bind_uniform_buffer(place,
@@ -103,7 +133,7 @@ void use_program(RenderNode& node, SessionReplica& session, const glstate::State
     } else if (Pipeline* pipeline = name ? session.objects.find<Pipeline>(name) : nullptr) {
         pipeline->use(session.objects, layer, bind_blocks);
     } else {
-        node.driver.use_program(0);
+        node.driver.use_program(0, attributes);
     }
 }
 

@@ -20,7 +20,9 @@ from glgen import attributes, commands, es, registry, state, texture_targets, wi
 from glgen import emit_attributes, emit_client, emit_docs, emit_es, emit_functions, emit_samples  # noqa: E402
 from glgen import emit_setters, emit_state, emit_texture_targets, emit_wire  # noqa: E402
 
-DRIVER_EXTRA = ["glBlendBarrierKHR", "glFramebufferParameteriMESA", "glGetFramebufferParameterivMESA"]
+DRIVER_EXTRA = ["glBindProgramARB", "glBlendBarrierKHR", "glDeleteProgramsARB", "glFramebufferParameteriMESA",
+                "glGenProgramsARB", "glGetFramebufferParameterivMESA", "glGetProgramivARB",
+                "glProgramEnvParameter4fvARB", "glProgramLocalParameter4fvARB", "glProgramStringARB"]
 
 
 @dataclass

@@ -89,8 +89,14 @@ void GetDoublev(GLenum name, GLdouble* values) {
 bool g_moves_fragments = false;                 ///< a shader does
 constexpr const char* kMoved = "golden_moved";  ///< the uniform by which it does
 
+bool g_moves_assembly = false;           ///< an assembly program of fragments is
+constexpr GLuint kMovedParameter = 255;  ///< the parameter of all of them by which it is
+
 /// Tells the current program how far gl_FragCoord is moved in what is drawn to.
 void tell_program() {
+    if (g_moves_assembly)
+        mesa().ProgramEnvParameter4f(GL_FRAGMENT_PROGRAM_ARB, kMovedParameter, static_cast<GLfloat>(dx()),
+                                     static_cast<GLfloat>(dy()), 0.0F, 0.0F);
     const int program = g_moves_fragments ? integer(GL_CURRENT_PROGRAM) : 0;
     const GLint location = program != 0 ? mesa().GetUniformLocation(static_cast<GLuint>(program), kMoved) : -1;
     if (location >= 0) mesa().Uniform4f(location, static_cast<GLfloat>(dx()), static_cast<GLfloat>(dy()), 0.0F, 0.0F);
@@ -162,6 +168,25 @@ void ShaderSource(GLuint shader, GLsizei count, const GLchar* const* strings, co
     mesa().ShaderSource(shader, 1, &whole, nullptr);
 }
 
+/// The same of fragment.position in an assembly program.
+void ProgramString(GLenum target, GLenum format, GLsizei length, const void* text) {
+    std::string source(static_cast<const char*>(text), static_cast<std::size_t>(length));
+    constexpr std::string_view kName = "fragment.position", kTemporary = "golden_moved";
+    const std::size_t spaced = source.find("fragment . position");
+    if (spaced != source.npos) source.replace(spaced, kName.size() + 2, kName);
+    if (target == GL_FRAGMENT_PROGRAM_ARB && source.find(kName) != source.npos) {
+        if (source.find("OPTION") != source.npos) stop("fragment.position with an option");
+        for (std::size_t at = 0; (at = source.find(kName, at)) != source.npos; at += kTemporary.size())
+            source.replace(at, kName.size(), kTemporary);
+        if (const std::size_t at = source.find("ATTRIB here"); at != source.npos) source.replace(at, 6, "ALIAS");
+        source.insert(source.find('\n') + 1, "TEMP golden_moved;\nSUB golden_moved, fragment.position, program.env[" +
+                                                 std::to_string(kMovedParameter) + "];\n");
+        g_moves_assembly = true;
+    }
+    mesa().ProgramString(target, format, static_cast<GLsizei>(source.size()), source.data());
+    tell_program();
+}
+
 /// In the place of what nothing here moves. A program that calls it has no moved reference.
 void never() { stop("a function that works in window pixels and is not known here"); }
 
@@ -175,9 +200,9 @@ Replacement with(std::string_view name, Function* function) {
     return {name, reinterpret_cast<void (*)()>(function)};
 }
 
-constexpr std::array<std::string_view, 10> kNeverStart = {
-    "glViewportIndexed",   "glViewportArray", "glScissorIndexed",      "glScissorArray",  "glBlitNamed",
-    "glCopyTexSubImage3D", "glReadnPixels",   "glCopyTextureSubImage", "glProgramString", "glUseProgramStages"};
+constexpr std::array<std::string_view, 9> kNeverStart = {
+    "glViewportIndexed",   "glViewportArray", "glScissorIndexed",      "glScissorArray",    "glBlitNamed",
+    "glCopyTexSubImage3D", "glReadnPixels",   "glCopyTextureSubImage", "glUseProgramStages"};
 
 /// The name without what marks it as an extension's.
 std::string_view core_name(std::string_view name) {
@@ -238,6 +263,7 @@ void* replacement(std::string_view name) {
         with("glGetFloatv", GetFloatv),
         with("glGetDoublev", GetDoublev),
         with("glShaderSource", ShaderSource),
+        with("glProgramString", ProgramString),
         with("glUseProgram", UseProgram),
         with("glUseProgramObject", UseProgram),
         with("glLinkProgram", LinkProgram),

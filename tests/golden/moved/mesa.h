@@ -44,6 +44,8 @@ struct Mesa {
     decltype(&glGetFloatv) GetFloatv = find("glGetFloatv");
     decltype(&glGetDoublev) GetDoublev = find("glGetDoublev");
     decltype(&glShaderSource) ShaderSource = find("glShaderSource");
+    decltype(&glProgramStringARB) ProgramString = find("glProgramStringARB");
+    decltype(&glProgramEnvParameter4fARB) ProgramEnvParameter4f = find("glProgramEnvParameter4fARB");
     decltype(&glUseProgram) UseProgram = find("glUseProgram");
     decltype(&glLinkProgram) LinkProgram = find("glLinkProgram");
     decltype(&glGetUniformLocation) GetUniformLocation = find("glGetUniformLocation");

@@ -9,6 +9,7 @@
 #include <random>
 #include <set>
 
+#include "common/glapi/assembly_format.h"
 #include "common/glapi/program_format.h"
 #include "common/glstate/vertex_input.h"
 #include "common/wire/batch.h"
@@ -415,7 +416,7 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
     static constexpr std::array<float, 4> values{};
     using Say = std::function<void(Batch&, ClientName)>;
     static constexpr std::array<std::uint32_t, 3> part{9, 0, 0};
-    const std::array<std::pair<ObjectKind, Say>, 12> makes = {{
+    const std::array<std::pair<ObjectKind, Say>, 13> makes = {{
         {ObjectKind::texture,
          [](Batch& b, ClientName id) {
              pack::TexParameter(b.buffer(), id, GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST, 0, 0, 0);
@@ -452,8 +453,12 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
              static constexpr std::array<std::uint32_t, std::size(glapi::kShaderStages)> kNone{};
              pack::Pipeline(b.buffer(), id, std::as_bytes(std::span(kNone)));
          }},
+        {ObjectKind::assembly_program,
+         [](Batch& b, ClientName id) {
+             pack::AssemblyDefine(b.buffer(), id, GL_VERTEX_PROGRAM_ARB, encode(glapi::AssemblyDefinition{}));
+         }},
     }};
-    const std::array<Say, 12> uses = {
+    const std::array<Say, 13> uses = {
         makes[0].second,
         [&](Batch& b, ClientName id) {
             pack::Uniform(b.buffer(), id, 0, GL_FLOAT_VEC4, 1, std::as_bytes(std::span(values)));
@@ -468,6 +473,7 @@ TEST_F(ObjectsTest, AnIdIsOfOneKind) {
         makes[9].second,
         makes[10].second,
         makes[11].second,
+        [&](Batch& b, ClientName id) { pack::AssemblyLocals(b.buffer(), id, 0, std::as_bytes(std::span(values))); },
     };
     static_assert(makes.size() == kObjectKinds, "a new kind is tried, too");
     for (std::size_t is = 0; is < kObjectKinds; ++is) {

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cstring>
 
+#include "common/glapi/assembly_format.h"
 #include "common/glapi/program_format.h"
 #include "common/glstate/pieces.h"
 #include "common/glstate/vertex_input.h"
 #include "common/glstate/view_change.h"
 #include "tests/unit/tileserver/test_node.h"
+#include "tileserver/objects/assembly_position.h"
 
 namespace wall::tileserver::test {
 namespace {
@@ -111,6 +113,17 @@ protected:
         ASSERT_TRUE(reflection->position.known());
         uniforms_ = *glapi::number_uniforms(reflection->uniforms);
     }
+    /// An assembly program, with what a compiler says of its position.
+    void use_assembly(const std::string& placing) {
+        const std::string text = "!!ARBvp1.0\n" + placing + "MOV result.color, vertex.color;\nEND";
+        const AssemblyPosition found = recognise_assembly_position(text);
+        ASSERT_TRUE(found.program.known()) << found.reason;
+        Batch batch;
+        pack::AssemblyDefine(batch.buffer(), kProgram, GL_VERTEX_PROGRAM_ARB,
+                             encode(glapi::AssemblyDefinition{text, found.invariant, found.program}));
+        batch.set<el::vertex_program>(kProgram.value).set<el::vertex_program_enabled>(1);
+        session_->expect_run(batch);
+    }
     void set_matrix(Batch& batch, const char* name, const Mat4& matrix) {
         const auto found = std::ranges::find(uniforms_, name, &glapi::UniformName::name);
         ASSERT_NE(found, uniforms_.end()) << name;
@@ -152,6 +165,8 @@ protected:
             EXPECT_GT(count_different(wanted, drawn_by(kCamera, kModelview)), 500u) << "it tells them apart";
         }
     }
+
+    void draw_in_pieces();
 
     static constexpr geom::Rect kWhole{0, 0, kSlots* kWidth, kHeight};
     static constexpr std::size_t kRounded = 4;  ///< pixels, where a shader multiplies in another order
@@ -202,6 +217,22 @@ TEST_F(TilesThatLookElsewhere, AShaderWithMatricesOfFixedFunctionIsSeenThroughTh
     expect_views(kRounded);
 }
 
+constexpr const char* kByRows =
+    "PARAM mvp[4] = { state.matrix.mvp };\n"
+    "DP4 result.position.x, mvp[0], vertex.position; DP4 result.position.y, mvp[1], vertex.position;\n"
+    "DP4 result.position.z, mvp[2], vertex.position; DP4 result.position.w, mvp[3], vertex.position;\n";
+
+TEST_F(TilesThatLookElsewhere, AssemblyProgramsWithMatricesOfFixedFunctionAreSeenThroughThem) {
+    use_assembly("OPTION ARB_position_invariant;\n");
+    Batch invariant;
+    draw(invariant, kCamera, kModelview, [&](auto& b) { pack_ring(b); });
+    expect_views(kRounded);
+    use_assembly(kByRows);
+    Batch by_rows;
+    draw(by_rows, kCamera, kModelview, [&](auto& b) { pack_ring(b); });
+    expect_views(kRounded);
+}
+
 TEST_F(TilesThatLookElsewhere, AShadersOwnProjectionIsSeenThroughThem) {
     link(
         "uniform mat4 projection, model; void main() { gl_Position = projection * model * gl_Vertex; gl_FrontColor = "
@@ -230,7 +261,20 @@ TEST_F(TilesThatLookElsewhere, AShaderWithOneMatrixForAllIsSeenThroughThem) {
     expect_views(kRounded);
 }
 
-TEST_F(TilesThatLookElsewhere, PiecesAreThoseThatTheViewSees) {
+TEST_F(TilesThatLookElsewhere, PiecesAreThoseThatTheViewSees) { draw_in_pieces(); }
+
+TEST_F(TilesThatLookElsewhere, PiecesOfAnInvariantAssemblyProgramAre) {
+    use_assembly("OPTION ARB_position_invariant;\n");
+    draw_in_pieces();
+}
+
+TEST_F(TilesThatLookElsewhere, PiecesOfAnAssemblyProgramByRowsAre) {
+    use_assembly(kByRows);
+    draw_in_pieces();
+}
+
+/// The ring in pieces is the same as whole, and each tile draws some of them.
+void TilesThatLookElsewhere::draw_in_pieces() {
     Batch batch;
     auto& b = batch.buffer();
     pack::BufferData(b, kVertices, static_cast<std::uint32_t>(ring_.size() * sizeof(Vertex)), GL_STATIC_DRAW);
@@ -251,11 +295,12 @@ TEST_F(TilesThatLookElsewhere, PiecesAreThoseThatTheViewSees) {
     }
     pack::DrawPieces(b, kPieces, kStep, 0, std::as_bytes(std::span(pieces)));
     const auto count = static_cast<std::int32_t>(ring_.size());
+    const std::uint64_t counted_before = session_->session.work.array_elements;
     draw(batch, kCamera, kModelview,
          [&](auto& block) { pack::DrawArrays(block, kInput, kPieces, GL_TRIANGLES, 0, count); });
     std::vector<Pixels> in_pieces;
     for (const std::uint32_t slot : {0u, 1u}) in_pieces.push_back(session_->read(slot, kPart));
-    const std::uint64_t counted = session_->session.work.array_elements;
+    const std::uint64_t counted = session_->session.work.array_elements - counted_before;
     EXPECT_LT(counted, kSlots * ring_.size()) << "each tile draws some of them";
     Batch whole;
     draw(whole, kCamera, kModelview, [&](auto& block) { pack::DrawArrays(block, kInput, {}, GL_TRIANGLES, 0, count); });

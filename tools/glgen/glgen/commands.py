@@ -12,7 +12,7 @@ WAYS = ("hand", "state", "param", "caps", "convert", "as", "named", "later")
 # named: which object is bound while it is done -> the class of client_lib/context/named_objects.h that binds it
 NAMED = {"buffer": "NamedBuffer", "texture": "NamedTexture", "image": "NamedImage", "framebuffer": "NamedFramebuffer",
          "renderbuffer": "NamedRenderbuffer", "array": "NamedVertexArray"}
-FLAGS = {"inside", "list", "nolist", "record", "hot", "norm", "bits", "packed"} | NAMED.keys()
+FLAGS = {"inside", "list", "nolist", "record", "hot", "compat", "norm", "bits", "packed"} | NAMED.keys()
 
 
 @dataclass
@@ -37,6 +37,11 @@ class Implementation:
     @property
     def in_list(self):
         return "list" in self.flags or (LISTED[self.cls] and "nolist" not in self.flags)
+
+    @property
+    def in_core(self):
+        """Core profiles have it."""
+        return self.command.core and "compat" not in self.flags
 
     @property
     def binder(self):

@@ -174,7 +174,7 @@ def tables_source(commands, attributes, registry):
                       if not i.in_list else f"&compile::{i.name}" if "record" in i.flags else f"&compile_{i.name}"))
     out.append(_table("core", canonical,
                       lambda i: f"&api::{i.name}"
-                      if i.command.core else f"&RefusedInside<decltype(GlTable::{i.name})>::call"))
+                      if i.in_core else f"&RefusedInside<decltype(GlTable::{i.name})>::call"))
     out.append("}  // namespace tables\n\n" + _versions(commands) + _removed_words(registry)
                + "}  // namespace wall::client\n")
     return "".join(out)
