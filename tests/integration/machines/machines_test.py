@@ -276,7 +276,7 @@ class Machines(unittest.TestCase):
             mended = time.monotonic()
             self.assert_are_back(show)
             times.append(time.monotonic() - mended)
-        for session in show.sessions:  # walld may be waiting for it anew: what people ask for then is done when it is back
+        for session in show.sessions:  # while walld may wait for it anew: what people ask for is done when it is back
             self.wall.hold(session, on=False)
             self.wall.hold(session)
         print(f"walld heard of the programs {', '.join(f'{t:.1f}' for t in times)} s after cuts", flush=True)
