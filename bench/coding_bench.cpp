@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How small what a program sends becomes, and how fast (common/wire/history_coder.h; A5, T6.2): codes the batches of
+// How small what a program sends becomes, and how fast (common/wire/history_coder.h; A5.3, T6.2): codes the batches of
 // recorded streams one after the other, as a client does, and decodes them.
 //
 // coding_bench STREAM...      a file of batches, each with its length in front (u32), as bench/coding.py records them;
