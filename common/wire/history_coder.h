@@ -2,7 +2,7 @@
 // Makes what follows each other in a stream smaller by what came before it (A5.3, T6.2): a program draws much the same
 // in every frame, so the bytes of one tell most of those of the next. Exact. The coder is zstd, its fastest level that
 // looks for more than runs, with one history for the whole stream instead of one for each piece: on the golden programs
-// it makes 9 bytes one (docs/benchmarks.md). Both ends keep the last kHistory bytes. One thread each.
+// it makes 9 bytes one (docs/benchmarks.md). Both ends keep the last 2^kHistoryLog bytes. One thread each.
 #pragma once
 
 #include <cstddef>
