@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a monitor calls itself, in the data that it sends (VESA E-EDID, release A2: base block of 128 bytes). Foreign
+// What a monitor calls itself, in the data that it sends (VESA E-EDID 1.4: base block of 128 bytes). Foreign
 // bytes. Pure; any thread.
 #pragma once
 
