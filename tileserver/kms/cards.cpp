@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPrefix = "card", kUsualDomain = "0000:";
-constexpr std::size_t kAddressWidth = 14, kConnectorWidth = 13, kMonitorWidth = 16;  // columns
+constexpr std::size_t kConnectorWidth = 13, kMonitorWidth = 16;  // columns
 
 std::string padded(std::string text, std::size_t width) {
     text.resize(std::max(text.size() + 1, width), ' ');
