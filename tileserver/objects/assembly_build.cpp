@@ -2,6 +2,7 @@
 #include "tileserver/objects/assembly_build.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "tileserver/gpu/extensions.h"
@@ -48,8 +49,9 @@ void read_tokens(AssemblyStage stage, std::string_view source, AssemblyReflectio
 
 bool load_assembly(const Gl& gl, AssemblyStage stage, std::string_view source) {
     forget_errors(gl);
-    gl.ProgramStringARB(glapi::target_of(stage), GL_PROGRAM_FORMAT_ASCII_ARB, static_cast<GLsizei>(source.size()),
-                        source.data());
+    const std::string ended(source);  // Mesa 22.3 looks for a zero byte behind it, whatever length it is told
+    gl.ProgramStringARB(glapi::target_of(stage), GL_PROGRAM_FORMAT_ASCII_ARB, static_cast<GLsizei>(ended.size()),
+                        ended.c_str());
     const bool compiled = gl.GetError() == GL_NO_ERROR;
     forget_errors(gl);
     return compiled;

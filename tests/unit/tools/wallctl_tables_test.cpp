@@ -78,7 +78,7 @@ TEST(Tables, ASessionHasALineForEachWindow) {
               "4    new      x     token kiosk  43                                           0.0 MB  bad stream\n");
     auto coded = sessions[0];
     coded["traffic"]["link_bytes_per_second"] = 1600;
-    EXPECT_THAT(sessions_table(json{coded}), ::testing::HasSubstr("12.5 kB/s as 1.6 kB/s"));
+    EXPECT_THAT(sessions_table(json::array({coded})), ::testing::HasSubstr("12.5 kB/s as 1.6 kB/s"));
 }
 
 TEST(Tables, ANodeIsUpAwayOrDrained) {
