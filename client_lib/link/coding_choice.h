@@ -3,7 +3,8 @@
 // for; where it is the node, or nothing, it only costs. What it is nobody can see from here: between them stand
 // sockets, an agent, encryption. So where a program waits for a node it is tried, and judged by what the node has got
 // in a while, counted as it was packed: coded must be kBetter times as much as plain was, or it be waited for no
-// longer. What did not pay is tried again later, ever more rarely. Pure; the time is an argument.
+// longer. What did not pay is tried again later, ever more rarely; at once where the node gets much less than it did
+// then, which a link does that has become slow. Pure; the time is an argument.
 #pragma once
 
 #include <algorithm>
@@ -24,6 +25,7 @@ public:
     static constexpr double kLimit = 0.5;                     ///< share of it that was waited: the link may be slow
     static constexpr double kBusy = 0.8;                      ///< share of it that went to coding: that may be slow
     static constexpr double kBetter = 1.2;
+    static constexpr double kMuchLess = 0.5;  ///< than at the last trial: it says nothing any more
     static constexpr std::chrono::seconds kFirstPause{10}, kLongestPause{300};
 
     explicit CodingChoice(Coding coding) : coding_(coding) {}
@@ -67,7 +69,9 @@ private:
             case State::plain:
             case State::coded: {
                 const bool doubt = state_ == State::plain ? waits : coder_is_busy;
-                if (!doubt || now < next_trial_) return begin(now);
+                const bool much_less = state_ == State::plain && rate < kMuchLess * before_;
+                if (!doubt || (now < next_trial_ && !much_less)) return begin(now);
+                if (much_less) pause_ = kFirstPause;
                 before_ = rate;
                 return go(state_ == State::plain ? State::coded_on_trial : State::plain_on_trial, now);
             }

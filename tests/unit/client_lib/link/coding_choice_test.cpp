@@ -81,6 +81,13 @@ TEST_F(Coded, AgainWhenTheLinkHasBecomeSlow) {
     EXPECT_TRUE(choice_.codes());
 }
 
+TEST_F(Coded, AtOnceWhereItDidNotPayBefore) {
+    run(2s, {.node = 50});
+    ASSERT_FALSE(choice_.codes()) << "the node is what is slow";
+    run(1500ms, {.link = 12, .node = 50});
+    EXPECT_TRUE(choice_.codes());
+}
+
 /// What was on its way when coding began came as it was sent before.
 TEST_F(Coded, IsJudgedByWhatWasCoded) {
     run(600ms, {.link = 12});
