@@ -25,6 +25,11 @@ bool draws_as(const NodeConfig& a, const NodeConfig& b) {
            std::ranges::equal(a.tiles, b.tiles, [](const auto& x, const auto& y) { return draws_as(x, y); });
 }
 
+const TileConfig* NodeConfig::tile(std::uint32_t slot) const {
+    const auto found = std::ranges::find(tiles, slot, &TileConfig::slot);
+    return found == tiles.end() ? nullptr : &*found;
+}
+
 geom::Rect WallConfig::canvas() const {
     geom::Rect out;
     for (const auto& node : nodes) {

@@ -47,6 +47,7 @@ struct KmsConfig {
 
 struct TileConfig {
     std::string name;                    ///< unique on the wall
+    std::uint32_t slot = 0;              ///< its bit in tile masks; no other tile of its tileserver has that
     geom::Rect rect;                     ///< on the canvas
     std::optional<WindowConfig> window;  ///< none: it is no window of an X server
     std::optional<KmsConfig> kms;        ///< none, and no window either: headless
@@ -68,11 +69,13 @@ struct NodeConfig {
     std::string name;
     Backend backend = Backend::egl;
     net::Address listen;            ///< data streams
-    std::vector<TileConfig> tiles;  ///< slot = index
+    std::vector<TileConfig> tiles;
     std::string process{};          ///< the [[node]]'s name, of the tileserver that it is a part of
     std::uint16_t part = 0;         ///< number among the nodes of that
     /// That draws its tiles: it is the same for all.
     std::string gpu() const { return tiles.empty() ? "auto" : tiles.front().gpu; }
+    /// Null: it has none there.
+    const TileConfig* tile(std::uint32_t slot) const;
     bool operator==(const NodeConfig&) const = default;
 };
 bool draws_as(const NodeConfig& a, const NodeConfig& b);

@@ -68,11 +68,10 @@ std::uint64_t microseconds_since_1970() {
 /// The node's tiles that are windows; the configuration has them on one display.
 WindowRequest window_request(const config::WallConfig& wall, const config::NodeConfig& node) {
     WindowRequest request{{}, wall.background, {}};
-    for (std::uint32_t slot = 0; slot < node.tiles.size(); ++slot) {
-        const auto& tile = node.tiles[slot];
+    for (const auto& tile : node.tiles) {
         if (!tile.window) continue;
         request.display = tile.window->display;
-        request.windows.push_back({slot,
+        request.windows.push_back({tile.slot,
                                    tile.name,
                                    tile.window->monitor,
                                    {tile.window->x, tile.window->y, tile.output.width, tile.output.height}});
@@ -83,10 +82,9 @@ WindowRequest window_request(const config::WallConfig& wall, const config::NodeC
 /// The node's tiles on monitors without a window system; the configuration has them on one card.
 MonitorRequest monitor_request(const config::WallConfig& wall, const config::NodeConfig& node) {
     MonitorRequest request{node.gpu(), wall.background, {}};
-    for (std::uint32_t slot = 0; slot < node.tiles.size(); ++slot) {
-        const auto& tile = node.tiles[slot];
+    for (const auto& tile : node.tiles) {
         if (!tile.kms) continue;
-        MonitorWish wish{slot, tile.name, tile.kms->connector, {}};
+        MonitorWish wish{tile.slot, tile.name, tile.kms->connector, {}};
         if (const auto& mode = tile.kms->mode) wish.mode = ModeWish{mode->width, mode->height, mode->millihertz};
         request.wishes.push_back(std::move(wish));
     }

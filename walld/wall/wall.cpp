@@ -141,20 +141,18 @@ void Wall::welcome_node(NodeIndex node) {
     proto::NodeWelcome welcome;
     welcome.set_node(node.value);
     welcome.set_background(config_.background);
-    for (std::uint32_t slot = 0; const auto& tile : nodes_[node].config->tiles) {
+    for (const auto& tile : nodes_[node].config->tiles) {
         auto* entry = welcome.add_tiles();
-        entry->set_slot(slot++);
+        entry->set_slot(tile.slot);
         entry->set_name(tile.name);
         *entry->mutable_rect() = to_proto(tile.rect);
         entry->set_eye(static_cast<std::uint32_t>(tile.eye));
         if (!geom::is_plain(tile.output, tile.rect)) *entry->mutable_output() = to_proto(tile.output);
     }
     out_.to_node(node, make(&proto::Envelope::mutable_node_welcome, welcome));
-    for (std::uint32_t slot = 0; const auto& tile : nodes_[node].config->tiles) {
+    for (const auto& tile : nodes_[node].config->tiles)
         if (const auto found = patterns_.find(tile.name); found != patterns_.end())
-            tell_pattern(node, slot, found->second);
-        ++slot;
-    }
+            tell_pattern(node, tile.slot, found->second);
 }
 
 proto::NodeUp Wall::node_up_message(NodeIndex node, const std::string& ticket) const {
@@ -487,19 +485,20 @@ void Wall::present(const SurfaceKey& key, const Presents& presents, Clock::time_
         message.set_frame(frame);
         out_.to_node(node, make(&proto::Envelope::mutable_present, message));
         ++counters_.presents;
-        for (std::size_t slot = 0; slot < nodes_[node].tiles.size(); ++slot) {
-            if (!geom::overlaps(nodes_[node].config->tiles[slot].rect, surface.place.shown())) continue;
-            ++nodes_[node].tiles[slot].frames;
-            nodes_[node].tiles[slot].last = now;
+        for (const auto& tile : nodes_[node].config->tiles) {
+            if (!geom::overlaps(tile.rect, surface.place.shown())) continue;
+            TileShown& shown = nodes_[node].shown[tile.slot];
+            ++shown.frames;
+            shown.last = now;
         }
     }
 }
 
-std::uint32_t Wall::tile_lag(NodeIndex node, std::uint32_t slot) const {
+std::uint32_t Wall::tile_lag(NodeIndex node, const config::TileConfig& tile) const {
     std::uint32_t most = 0;
     for (const auto& key : stacking_) {
         const auto& surface = *find(key);
-        if (geom::overlaps(nodes_[node].config->tiles[slot].rect, surface.place.shown()))
+        if (geom::overlaps(tile.rect, surface.place.shown()))
             most = std::max(most, surface.swap.behind(node));
     }
     return most;

@@ -55,6 +55,12 @@ enum class Duty {
 };
 
 struct Node {
+    /// Of the tile in that slot.
+    TileShown shown_in(std::uint32_t slot) const {
+        const auto found = shown.find(slot);
+        return found == shown.end() ? TileShown{} : found->second;
+    }
+
     std::shared_ptr<const config::NodeConfig> config;
     Duty duty = Duty::serves;
     bool up = false;      ///< programs may use it
@@ -66,7 +72,7 @@ struct Node {
     proto::NodeHello hello;         ///< of the last connection
     proto::NodeStats stats;         ///< the last that this process has told
     std::optional<std::chrono::milliseconds> clock_ahead;  ///< of walld's, when they came
-    std::vector<TileShown> tiles;                          ///< by slot
+    std::map<std::uint32_t, TileShown> shown;              ///< by slot; none: it has shown nothing yet
 };
 
 struct SurfaceKey {
@@ -258,7 +264,7 @@ public:
     const SurfaceEntry* find(const SurfaceKey& key) const;
     const Counters& counters() const { return counters_; }
     /// The most frames that a node is behind a window on this tile.
-    std::uint32_t tile_lag(NodeIndex node, std::uint32_t slot) const;
+    std::uint32_t tile_lag(NodeIndex node, const config::TileConfig& tile) const;
 
 private:
     SessionEntry* find(SessionId id);

@@ -34,7 +34,7 @@ bool Wall::take_nodes() {
         if (node.duty == Duty::gone || config_.find_node(node.config->name)) continue;
         node.duty = Duty::gone;
         node.config = std::make_shared<const config::NodeConfig>(config::NodeConfig{.name = node.config->name});
-        node.tiles.clear();
+        node.shown.clear();
         changed = true;
     }
     for (const auto& config : config_.nodes) {
@@ -51,7 +51,7 @@ bool Wall::take_nodes() {
         node.config = std::make_shared<const config::NodeConfig>(config);
         if (node.duty == Duty::gone) node.duty = Duty::serves;
         node.described_anew = node.incarnation > 0;
-        node.tiles.assign(config.tiles.size(), {});
+        node.shown.clear();
         changed = true;
     }
     return changed;
@@ -114,10 +114,10 @@ geom::Rect Wall::place_after_change(const SessionEntry& session, const SurfaceEn
 
 void Wall::add_tiles(google::protobuf::RepeatedPtrField<proto::TileInfo>& out) const {
     for (const NodeIndex i : nodes_.ids()) {
-        for (std::uint32_t slot = 0; const auto& tile : nodes_[i].config->tiles) {
+        for (const auto& tile : nodes_[i].config->tiles) {
             auto& entry = *out.Add();
             entry.set_node(i.value);
-            entry.set_slot(slot++);
+            entry.set_slot(tile.slot);
             entry.set_name(tile.name);
             *entry.mutable_rect() = to_proto(tile.rect);
             if (tile.view) *entry.mutable_view() = to_proto(*tile.view);
