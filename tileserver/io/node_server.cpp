@@ -459,7 +459,8 @@ void NodeServer::welcome(const proto::NodeWelcome& welcome) {
                        log::quoted(output.error().message));
     }
     log::info("walld_welcome node={} tiles={}", welcome.node(), tiles.size());
-    render_->set_tiles(std::move(tiles), welcome.background());
+    render_->set_tiles(std::move(tiles), welcome.background(), welcome.tiles_version());
+    render_->measure_tiles(welcome.measure_tiles());
     render_->set_coordinated(true);
     welcomed_ = true;
 }
@@ -534,6 +535,14 @@ void NodeServer::picture(Picture picture) {
         const auto id = picture.request.id;
         if (picture.request.stream) tile_streams_.picture(std::move(picture));
         else parts_.send({PartsOf::Kind::snapshot, id}, snapshot_parts(std::move(picture)));
+    });
+}
+
+void NodeServer::tiles_taken(std::uint32_t version) {
+    post([=, this] {
+        proto::Envelope envelope;
+        envelope.mutable_tiles_taken()->set_tiles_version(version);
+        to_walld(envelope);
     });
 }
 

@@ -97,6 +97,7 @@ void add_tiles(Families& out, const Observed& observed) {
     const auto& nodes = observed.wall.nodes();
     for (const NodeIndex i : nodes.ids()) {
         for (const auto& tile : nodes[i].config->tiles) {
+            if (tile.arriving) continue;
             const auto last = nodes[i].shown_in(tile.slot);
             const double age = last.last ? std::chrono::duration<double>(observed.now - *last.last).count() : 0;
             const Labels labels{{"node", nodes[i].config->name}, {"tile", tile.name}};

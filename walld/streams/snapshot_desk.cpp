@@ -88,6 +88,7 @@ Outcome<void> SnapshotDesk::ask_nodes(const std::shared_ptr<Job>& job) {
     bool found = false;
     for (const NodeIndex node : wall_.nodes().ids()) {
         for (const auto& tile : wall_.nodes()[node].config->tiles) {
+            if (tile.arriving) continue;
             if (query.tile.empty() ? tile.eye == geom::Eye::right : tile.name != query.tile) continue;
             found = true;
             if (!query.tile.empty() && !wall_.nodes()[node].up)

@@ -32,7 +32,8 @@ Result<geom::Rect> rect_of(const Wall& wall, const WatchRequest& request, Stream
     for (const NodeIndex node : wall.nodes().ids()) {
         for (const auto& tile : wall.nodes()[node].config->tiles) {
             scope.tile = {node, tile.slot};
-            if (tile.name == request.tile) return region_of(place_of(tile, request.output), request.region);
+            if (tile.name == request.tile && !tile.arriving)
+                return region_of(place_of(tile, request.output), request.region);
         }
     }
     return fail(".tile: there is no tile '" + request.tile + "'");
@@ -89,7 +90,7 @@ std::vector<StreamPart> parts_of(const Wall& wall, const StreamScope& scope) {
     for (const NodeIndex node : wall.nodes().ids()) {
         for (const auto& tile : wall.nodes()[node].config->tiles) {
             const bool asked_for = scope.tile == std::pair(node, tile.slot);
-            if (scope.tile ? !asked_for : tile.eye == geom::Eye::right) continue;
+            if (tile.arriving || (scope.tile ? !asked_for : tile.eye == geom::Eye::right)) continue;
             const auto place = place_of(tile, scope.output);
             const auto common = geom::intersect(place, scope.rect);
             const auto at = in_picture(scope, common);

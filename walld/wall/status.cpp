@@ -154,6 +154,11 @@ json quota_json(const config::QuotaConfig& quota) {
     return out;
 }
 
+json load_json(const Node& node, std::uint32_t slot) {
+    const auto found = node.times.loads.find(slot);
+    return found == node.times.loads.end() ? json(nullptr) : json(std::round(found->second * 1000) / 1000);
+}
+
 }  // namespace
 
 json nodes_json(const Wall& wall) {
@@ -168,6 +173,7 @@ json tiles_json(const Wall& wall, Clock::time_point now) {
     for (const NodeIndex i : wall.nodes().ids()) {
         const auto& node = wall.nodes()[i];
         for (const auto& tile : node.config->tiles) {
+            if (tile.arriving) continue;
             const auto shown = node.shown_in(tile.slot);
             const auto age =
                 shown.last ? json(std::chrono::duration_cast<std::chrono::milliseconds>(now - *shown.last).count())
@@ -189,7 +195,8 @@ json tiles_json(const Wall& wall, Clock::time_point now) {
                            {"up", node.up},
                            {"frames", shown.frames},
                            {"age_ms", age},
-                           {"lag_frames", wall.tile_lag(i, tile)}});
+                           {"lag_frames", wall.tile_lag(i, tile)},
+                           {"load", load_json(node, tile.slot)}});
         }
     }
     return out;

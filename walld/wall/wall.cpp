@@ -88,6 +88,9 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
 
 void Wall::node_leaves(NodeIndex node, Clock::time_point now, bool link_lost) {
     nodes_[node].up = false;
+    taking_tiles_.erase(node);
+    if (moving_ && (moving_->from == node || moving_->to == node)) end_move(false, now);
+    tell_tiles();
     if (link_lost) nodes_[node].missed = now + kMissedLimit;
     else tell_gone(node);
     for_each_surface(
@@ -141,6 +144,8 @@ void Wall::welcome_node(NodeIndex node) {
     proto::NodeWelcome welcome;
     welcome.set_node(node.value);
     welcome.set_background(config_.background);
+    welcome.set_tiles_version(nodes_[node].tiles_version);
+    welcome.set_measure_tiles(may_be_balanced(node));
     for (const auto& tile : nodes_[node].config->tiles) {
         auto* entry = welcome.add_tiles();
         entry->set_slot(tile.slot);
@@ -437,6 +442,7 @@ std::optional<Clock::time_point> Wall::next_deadline() const {
     }
     for (const auto& [id, session] : returning_) consider(session.until);
     for (const Node& node : nodes_) consider(node.missed);
+    if (moving_) consider(moving_->until);
     return out;
 }
 
@@ -446,6 +452,7 @@ void Wall::tick(Clock::time_point now) {
     for (const NodeIndex i : nodes_.ids())
         if (nodes_[i].missed && now >= *nodes_[i].missed) tell_gone(i);
     end_waiting_for_sessions(now);
+    go_on_moving(now);
 }
 
 // ---- inside ----
@@ -492,14 +499,21 @@ void Wall::present(const SurfaceKey& key, const Presents& presents, Clock::time_
             shown.last = now;
         }
     }
+    go_on_moving(now);
+}
+
+std::optional<NodeIndex> Wall::node_of_tile(std::string_view name) const {
+    for (const NodeIndex i : nodes_.ids())
+        for (const auto& tile : nodes_[i].config->tiles)
+            if (tile.name == name && !tile.arriving) return i;
+    return std::nullopt;
 }
 
 std::uint32_t Wall::tile_lag(NodeIndex node, const config::TileConfig& tile) const {
     std::uint32_t most = 0;
     for (const auto& key : stacking_) {
         const auto& surface = *find(key);
-        if (geom::overlaps(tile.rect, surface.place.shown()))
-            most = std::max(most, surface.swap.behind(node));
+        if (geom::overlaps(tile.rect, surface.place.shown())) most = std::max(most, surface.swap.behind(node));
     }
     return most;
 }
