@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The current raster position (OpenGL 1.2.1, 2.12), computed here with the float operations of Mesa's _mesa_RasterPos
-// in their order, so that text lands on the same pixels as in a window.
+// in their order, so that text lands on the same pixels as in a window. Of vertex shaders and programs a node says it.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <optional>
 
+#include "client_lib/context/ask_one.h"
 #include "client_lib/context/assembly_binding.h"
 #include "client_lib/context/context.h"
 #include "client_lib/context/matrix.h"
@@ -229,6 +232,18 @@ void assign(Context& c, const RasterState& raster) {
     c.state.ids.renew(static_cast<std::size_t>(glstate::Category::raster));
 }
 
+/// Where the vertex shader or program in use puts the vertex, and the values that it makes, as a node's driver has
+/// them. Nothing: no node can say it.
+std::optional<RasterState> ask_raster_position(Context& c, const Vec4& object) {
+    const auto answer = ask_one_node(c, "glRasterPos", [&](wire::PackBuffer& buffer, RequestId request) {
+        glapi::pack::RasterPosition(buffer, request, object[0], object[1], object[2], object[3]);
+    });
+    RasterState raster;
+    if (!answer || answer->bytes.size() != sizeof raster) return std::nullopt;
+    std::memcpy(&raster, answer->bytes.data(), sizeof raster);
+    return raster;
+}
+
 /// A valid raster position is a hit while selecting, as a point at the same place would be.
 void mark_hit(Context& c, const Vec4& object) {
     c.begin_primitive(GL_POINTS);
@@ -244,6 +259,13 @@ void RasterPos4f(Context& c, GLfloat x, GLfloat y, GLfloat z, GLfloat w) {
     const glstate::State& s = c.state;
     RasterState raster = s.raster;
     const Vec4 object{x, y, z, w};
+    if (c.shades_vertices() && c.attached()) {
+        if (const auto asked = ask_raster_position(c, object)) {
+            assign(c, *asked);
+            if (asked->raster_position_valid && s.local.render_mode == GL_SELECT) mark_hit(c, object);
+            return;
+        }
+    }
     const Vec4 eye = transform_point(s.matrix.modelview, object);
     const Vec4 clip = transform_point(s.matrix.projection, eye);
     raster.raster_position_valid = in_view_volume(s, clip) && in_user_planes(s, clip);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <span>
 #include <utility>
 
 #include "client_lib/follow/draw_target.h"
@@ -14,6 +15,13 @@ namespace {
 constexpr std::chrono::seconds kPlacementTimeout{2};
 
 bool in_frame(const ClientSurface& surface) { return surface.drawn && surface.frame > 0; }
+
+/// What was drawn for some is missing on others: tiles have changed, or who draws them.
+bool others(std::span<const TargetLayer> before, std::span<const TargetLayer> now) {
+    return !std::ranges::equal(before, now, [](const TargetLayer& a, const TargetLayer& b) {
+        return a.node == b.node && a.slot == b.slot && a.pixels == b.pixels;
+    });
+}
 
 std::optional<Extent> window_size(const ClientSurface& surface) {
     return surface.options.query_size ? surface.options.query_size() : std::nullopt;
@@ -226,10 +234,13 @@ void Surfaces::follow_window(ClientSurface& surface) {
 void Surfaces::adopt_placement(ClientSurface& surface) {
     if (!surface.next || in_frame(surface)) return;
     const Placement placement = *std::exchange(surface.next, std::nullopt);
+    const auto before = surface.layout.layers;
     const bool moved = placement.rect != surface.layout.rect || placement.stereo != surface.stereo;
     take_place(surface, placement);
     control_.surface_adopted(surface.id, placement.layout_version, surface.frame + 1, kPlacementTimeout);
-    if (moved && (surface.frame > 0 || !surface.options.format.double_buffered)) control_.ask_to_redraw(surface.id);
+    const bool drawn_elsewhere = moved || others(before, surface.layout.layers);
+    if (drawn_elsewhere && (surface.frame > 0 || !surface.options.format.double_buffered))
+        control_.ask_to_redraw(surface.id);
 }
 
 // ---- of a parallel program ----
@@ -241,12 +252,13 @@ void Surfaces::adopt_agreed(ClientSurface& surface) {
         coming.pop_front();
         // The lock stays held: what another thread drew meanwhile would miss nodes that other members' frames have.
         nodes_.connect_and_wait(placement.nodes);
+        const auto before = surface.layout.layers;
         const bool moved = placement.rect != surface.layout.rect;
         surface.layout.width = placement.width;
         surface.layout.height = placement.height;
         apply_layout(surface, placement);
         surface.layout.version = placement.layout_version;
-        if (moved && surface.frame > 0) control_.ask_to_redraw(surface.id);
+        if ((moved || others(before, surface.layout.layers)) && surface.frame > 0) control_.ask_to_redraw(surface.id);
     }
     if (!coming.empty())
         control_.ask_to_redraw(surface.id);  // a program that draws only when asked comes to that frame, too

@@ -66,8 +66,7 @@ void add_companions(NodeConfig& node) {
     const std::size_t described = node.tiles.size();
     for (std::size_t i = 0; i < described; ++i) {
         if (node.tiles[i].output.stereo == geom::StereoLayout::none) continue;
-        node.tiles[i].output.right_slot = static_cast<std::uint32_t>(node.tiles.size());
-        TileConfig right{companion_name(node.tiles[i].name), node.tiles[i].rect};
+        TileConfig right{companion_name(node.tiles[i].name), node.tiles[i].output.right_slot, node.tiles[i].rect};
         right.output = geom::plain_output(right.rect);
         right.gpu = node.tiles[i].gpu;
         right.view = node.tiles[i].view;
@@ -77,8 +76,9 @@ void add_companions(NodeConfig& node) {
 }
 
 TileConfig* companion_of(const TileConfig& tile, std::vector<TileConfig>& tiles) {
-    if (tile.output.stereo == geom::StereoLayout::none || tile.output.right_slot >= tiles.size()) return nullptr;
-    return &tiles[tile.output.right_slot];
+    if (tile.output.stereo == geom::StereoLayout::none) return nullptr;
+    const auto found = std::ranges::find(tiles, tile.output.right_slot, &TileConfig::slot);
+    return found == tiles.end() ? nullptr : &*found;
 }
 
 }  // namespace wall::config

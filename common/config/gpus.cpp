@@ -59,6 +59,7 @@ void deal_out(std::vector<TileConfig>& tiles, std::uint32_t gpus) {
             return std::pair(of_gpu.second.pixels, -nearest(of_gpu.second.tiles, tile->rect));
         });
         tile->gpu = gpu;
+        tile->dealt = true;
         hand.pixels += area(tile->rect);
         hand.tiles.push_back(tile->rect);
     }

@@ -78,7 +78,7 @@ TileConfig read_tile(TreeReader& read, const toml::table& table, const geom::Vec
               {"name",     "rect",   "output",  "display",  "monitor", "position", "mode",  "gpu",
                "rotation", "pixels", "size_mm", "bezel_mm", "warp",    "mpcdi",    "blend", "color",
                "yaw",      "pitch",  "roll",    "fov",      "screen",  "eye",      "stereo"});
-    TileConfig out{read.text(table, "name"), read.rect(table, "rect")};
+    TileConfig out{.name = read.text(table, "name"), .rect = read.rect(table, "rect")};
     read_output(read, table, out);
     out.gpu = read_gpu(read, table);
     read_tile_output(read, table, out);

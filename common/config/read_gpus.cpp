@@ -70,6 +70,14 @@ void check(TreeReader& read, const toml::table& table, const NodeConfig& node, s
     }
 }
 
+/// Slots, one for each tile and behind them one for each that companions of theirs will have.
+void number(std::vector<TileConfig>& tiles) {
+    std::uint32_t slot = 0;
+    for (auto& tile : tiles) tile.slot = slot++;
+    for (auto& tile : tiles)
+        if (tile.output.stereo != geom::StereoLayout::none) tile.output.right_slot = slot++;
+}
+
 }  // namespace
 
 std::string read_gpu(TreeReader& read, const toml::table& tile) {
@@ -96,6 +104,7 @@ void read_gpus(TreeReader& read, const toml::table& root, std::vector<NodeConfig
         check(read, *table, *node, gpus);
         check_cards(read, *table, *node, gpus);
         if (read.error()) return;
+        number(node->tiles);
         deal_out(node->tiles, gpus);
         const auto of_gpus = split_by_gpu(*node);
         if (!node->listen.is_unix() && node->listen.port + of_gpus.size() - 1 > kMostPort)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <tuple>
 
 namespace wall::config {
 
@@ -13,16 +14,33 @@ const char* output_name(const TileConfig& tile) {
     return tile.window ? "window" : "headless";
 }
 
-bool draws_as(const TileConfig& a, const TileConfig& b) {
+namespace {
+
+/// The same screens for the same tiles. The size of a window cannot change.
+bool same_screen(const TileConfig& a, const TileConfig& b) {
     const bool same_window = !a.window || (a.output.width == b.output.width && a.output.height == b.output.height);
-    return a.name == b.name && a.rect == b.rect && a.window == b.window && a.kms == b.kms && a.gpu == b.gpu &&
-           same_window;
+    return a.name == b.name && a.rect == b.rect && a.window == b.window && a.kms == b.kms && same_window;
 }
 
+}  // namespace
+
 bool draws_as(const NodeConfig& a, const NodeConfig& b) {
+    const bool headless = std::ranges::all_of(a.tiles, is_headless) && std::ranges::all_of(b.tiles, is_headless);
     return a.name == b.name && a.process == b.process && a.part == b.part && a.backend == b.backend &&
-           a.listen == b.listen &&
-           std::ranges::equal(a.tiles, b.tiles, [](const auto& x, const auto& y) { return draws_as(x, y); });
+           a.listen == b.listen && a.gpu() == b.gpu() &&
+           (headless || std::ranges::equal(a.tiles, b.tiles, same_screen));
+}
+
+bool same_tiles(const NodeConfig& a, const NodeConfig& b) {
+    const auto drawn = [](const TileConfig& tile) {
+        return std::tie(tile.name, tile.slot, tile.rect, tile.view, tile.eye);
+    };
+    return std::ranges::equal(a.tiles, b.tiles, {}, drawn, drawn);
+}
+
+const TileConfig* NodeConfig::tile(std::uint32_t slot) const {
+    const auto found = std::ranges::find(tiles, slot, &TileConfig::slot);
+    return found == tiles.end() ? nullptr : &*found;
 }
 
 geom::Rect WallConfig::canvas() const {

@@ -47,6 +47,7 @@ struct KmsConfig {
 
 struct TileConfig {
     std::string name;                    ///< unique on the wall
+    std::uint32_t slot = 0;              ///< its bit in tile masks; no other tile of its tileserver has that
     geom::Rect rect;                     ///< on the canvas
     std::optional<WindowConfig> window;  ///< none: it is no window of an X server
     std::optional<KmsConfig> kms;        ///< none, and no window either: headless
@@ -54,28 +55,36 @@ struct TileConfig {
     std::string warp_file;               ///< as wall.toml names it; empty: none
     std::string mpcdi_file;              ///< the same
     std::string gpu = "auto";            ///< or a number, or a PCI address
+    bool dealt = false;                  ///< wall.toml does not say which of several GPUs draws it
+    bool arriving = false;               ///< it is drawn there, and another node still shows it
     std::optional<geom::View> view;      ///< where it looks; none: it is a part of the canvas as the others
     geom::Eye eye = geom::Eye::both;     ///< that sees it
     bool operator==(const TileConfig&) const = default;
 };
 /// `headless`, `window` or `kms`, as in wall.toml, without the connector.
 const char* output_name(const TileConfig& tile);
-/// The same but for how its output shows it, which can be changed at any moment. The size of a window cannot.
-bool draws_as(const TileConfig& a, const TileConfig& b);
+/// Nothing but what watches it shows it.
+inline bool is_headless(const TileConfig& tile) { return !tile.window && !tile.kms; }
 
 /// What one process draws: the tiles of a [[node]], or those that one of its GPUs draws if there are several.
 struct NodeConfig {
     std::string name;
     Backend backend = Backend::egl;
-    net::Address listen;            ///< data streams
-    std::vector<TileConfig> tiles;  ///< slot = index
-    std::string process{};          ///< the [[node]]'s name, of the tileserver that it is a part of
-    std::uint16_t part = 0;         ///< number among the nodes of that
+    net::Address listen;  ///< data streams
+    std::vector<TileConfig> tiles;
+    std::string process{};   ///< the [[node]]'s name, of the tileserver that it is a part of
+    std::uint16_t part = 0;  ///< number among the nodes of that
     /// That draws its tiles: it is the same for all.
     std::string gpu() const { return tiles.empty() ? "auto" : tiles.front().gpu; }
+    /// Null: it has none there.
+    const TileConfig* tile(std::uint32_t slot) const;
     bool operator==(const NodeConfig&) const = default;
 };
+/// A process that was started for one of them can go on as the other: tiles may come, go and lie elsewhere, and outputs
+/// show them otherwise, but windows and monitors stay what they were opened as.
 bool draws_as(const NodeConfig& a, const NodeConfig& b);
+/// Programs draw the same for both: the same tiles at the same places, seen in the same way.
+bool same_tiles(const NodeConfig& a, const NodeConfig& b);
 
 struct WallConfig {
     std::string name;

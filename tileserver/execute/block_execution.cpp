@@ -2,6 +2,7 @@
 #include "tileserver/execute/block_execution.h"
 
 #include <bit>
+#include <optional>
 #include <utility>
 
 #include "common/glstate/draw_buffers.h"
@@ -32,10 +33,17 @@ void BlockExecution::begin_tile(unsigned slot) {
     if (block_.tile_open) finish_tile();
     block_.tile_open = true;
     block_.slot = slot;
+    mark_time();
     block_.trail.clear();
     block_.raster = glstate::el::raster_position::ref(execution_.context->state);
     find_target();
     if (block_.draws) enter_tile();
+}
+
+/// What is drawn to framebuffer objects is for no tile.
+void BlockExecution::mark_time() {
+    const bool for_tile = execution_.draw_framebuffer == nullptr && block_.slot != wire::kOffscreenSlot;
+    execution_.node.tile_times.mark(for_tile ? std::optional(block_.slot) : std::nullopt);
 }
 
 bool BlockExecution::another_pass() {
@@ -96,6 +104,7 @@ void BlockExecution::finish_tile() {
 
 void BlockExecution::end() {
     if (block_.tile_open) finish_tile();
+    execution_.node.tile_times.mark(std::nullopt);
     glstate::State& state = execution_.context->state;
     if (!block_.trail.empty()) {
         block_.trail.fold_into(state);
@@ -124,11 +133,13 @@ void BlockExecution::pause() {
     execution_.node.driver.stop_capturing();
     execution_.node.driver.settle_memory();
     block_.trail.fold_into(execution_.node.driver.mirror);
+    execution_.node.tile_times.mark(std::nullopt);
 }
 
 void BlockExecution::resume() {
     execution_.targets_known = false;
     if (!block_.tile_open) return;
+    mark_time();
     execution_.look_up_targets();
     note_switch();
     find_target();

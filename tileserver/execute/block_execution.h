@@ -32,6 +32,7 @@ public:
 
 private:
     void note_switch();
+    void mark_time();
     /// Of the open tile; it draws if that can be drawn to.
     void find_target();
     void enter_tile();

@@ -3,13 +3,16 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "common/glapi/image.h"
 #include "common/glstate/draw_buffers.h"
+#include "tileserver/driver/pixelless_target.h"
 #include "tileserver/session/limits.h"
+#include "tileserver/session/soft_switch.h"
 
 namespace wall::tileserver {
 namespace {
@@ -58,6 +61,23 @@ std::unique_ptr<Layer> window_copy(Copies& copies, const Layer& layer, const Win
     auto pixels = copies.copy(layer, from, from.width, from.height);
     if (!layer.geometry().scaled()) return pixels;
     return copies.copy(*pixels, {0, 0, from.width, from.height}, window.width, window.height);
+}
+
+/// The driver's current raster position and what belongs to it.
+void read_raster(const Gl& gl, glstate::RasterState& raster) {
+    GLboolean valid = GL_FALSE;
+    gl.GetBooleanv(GL_CURRENT_RASTER_POSITION_VALID, &valid);
+    raster.raster_position_valid = valid;
+    if (valid == GL_FALSE) return;
+    gl.GetFloatv(GL_CURRENT_RASTER_POSITION, raster.raster_position.data());
+    gl.GetFloatv(GL_CURRENT_RASTER_DISTANCE, &raster.raster_distance);
+    gl.GetFloatv(GL_CURRENT_RASTER_COLOR, raster.raster_color.data());
+    gl.GetFloatv(GL_CURRENT_RASTER_SECONDARY_COLOR, raster.raster_secondary_color.data());
+    for (unsigned unit = 0; unit < raster.raster_texcoord.size(); ++unit) {
+        gl.ActiveTexture(GL_TEXTURE0 + unit);
+        gl.GetFloatv(GL_CURRENT_RASTER_TEXTURE_COORDS, raster.raster_texcoord[unit].data());
+    }
+    gl.ActiveTexture(GL_TEXTURE0);
 }
 
 }  // namespace
@@ -134,6 +154,32 @@ void ReadCommands::SamplePosition(RequestId request, std::uint32_t samples, std:
     execution_.node.driver.drain_errors();
     const auto bytes = std::as_bytes(std::span(position));
     execution_.output.reply(request, {bytes.begin(), bytes.end()});
+}
+
+// The place and the values that go with it do not depend on pixels, so no layer need be there, and they are the same on
+// every node (OpenGL 4.6 compatibility, 14.1.3: the vertex shader or program makes them).
+void ReadCommands::RasterPosition(RequestId request, float x, float y, float z, float w) {
+    const auto bytes_of = [](const glstate::RasterState& raster) {
+        const auto bytes = std::as_bytes(std::span(&raster, 1));
+        return std::vector(bytes.begin(), bytes.end());
+    };
+    glstate::RasterState raster = execution_.context->state.raster;
+    raster.raster_position_valid = 0;
+    if (!execution_.targets_known) execution_.look_up_targets();
+    Framebuffer* const framebuffer = execution_.updated(execution_.draw_framebuffer);
+    if (execution_.refused()) return;
+    const SurfaceReplica* const surface = execution_.draw_surface;
+    if (framebuffer == nullptr && surface == nullptr) return execution_.output.reply(request, bytes_of(raster));
+    const Timed timed(execution_.session.work.render);
+    std::optional<PixellessTarget> window;
+    if (surface != nullptr)
+        window.emplace(execution_.node.driver, surface->where().window_width, surface->where().window_height);
+    RenderTarget& target = framebuffer != nullptr ? static_cast<RenderTarget&>(*framebuffer) : *window;
+    if (!switch_to(execution_.node, execution_.session, *execution_.context, target, {}))
+        return execution_.refuse("no such query, or " + too_much("objects"));
+    execution_.gl.RasterPos4f(x, y, z, w);
+    read_raster(execution_.gl, raster);
+    execution_.output.reply(request, bytes_of(raster));
 }
 
 void ReadCommands::RenderMode(RequestId request, GLenum mode, GLenum feedback_type, std::uint32_t buffer_entries) {

@@ -19,6 +19,7 @@ public:
     void ReadPixels(RequestId request, std::uint32_t slot, std::int32_t x, std::int32_t y, std::int32_t width,
                     std::int32_t height, GLenum format, GLenum type);
     void SamplePosition(RequestId request, std::uint32_t samples, std::uint32_t index, std::uint32_t of_window);
+    void RasterPosition(RequestId request, float x, float y, float z, float w);
     void RenderMode(RequestId request, GLenum mode, GLenum feedback_type, std::uint32_t buffer_entries);
 
 private:

@@ -68,11 +68,10 @@ std::uint64_t microseconds_since_1970() {
 /// The node's tiles that are windows; the configuration has them on one display.
 WindowRequest window_request(const config::WallConfig& wall, const config::NodeConfig& node) {
     WindowRequest request{{}, wall.background, {}};
-    for (std::uint32_t slot = 0; slot < node.tiles.size(); ++slot) {
-        const auto& tile = node.tiles[slot];
+    for (const auto& tile : node.tiles) {
         if (!tile.window) continue;
         request.display = tile.window->display;
-        request.windows.push_back({slot,
+        request.windows.push_back({tile.slot,
                                    tile.name,
                                    tile.window->monitor,
                                    {tile.window->x, tile.window->y, tile.output.width, tile.output.height}});
@@ -83,10 +82,9 @@ WindowRequest window_request(const config::WallConfig& wall, const config::NodeC
 /// The node's tiles on monitors without a window system; the configuration has them on one card.
 MonitorRequest monitor_request(const config::WallConfig& wall, const config::NodeConfig& node) {
     MonitorRequest request{node.gpu(), wall.background, {}};
-    for (std::uint32_t slot = 0; slot < node.tiles.size(); ++slot) {
-        const auto& tile = node.tiles[slot];
+    for (const auto& tile : node.tiles) {
         if (!tile.kms) continue;
-        MonitorWish wish{slot, tile.name, tile.kms->connector, {}};
+        MonitorWish wish{tile.slot, tile.name, tile.kms->connector, {}};
         if (const auto& mode = tile.kms->mode) wish.mode = ModeWish{mode->width, mode->height, mode->millihertz};
         request.wishes.push_back(std::move(wish));
     }
@@ -461,7 +459,8 @@ void NodeServer::welcome(const proto::NodeWelcome& welcome) {
                        log::quoted(output.error().message));
     }
     log::info("walld_welcome node={} tiles={}", welcome.node(), tiles.size());
-    render_->set_tiles(std::move(tiles), welcome.background());
+    render_->set_tiles(std::move(tiles), welcome.background(), welcome.tiles_version());
+    render_->measure_tiles(welcome.measure_tiles());
     render_->set_coordinated(true);
     welcomed_ = true;
 }
@@ -536,6 +535,14 @@ void NodeServer::picture(Picture picture) {
         const auto id = picture.request.id;
         if (picture.request.stream) tile_streams_.picture(std::move(picture));
         else parts_.send({PartsOf::Kind::snapshot, id}, snapshot_parts(std::move(picture)));
+    });
+}
+
+void NodeServer::tiles_taken(std::uint32_t version) {
+    post([=, this] {
+        proto::Envelope envelope;
+        envelope.mutable_tiles_taken()->set_tiles_version(version);
+        to_walld(envelope);
     });
 }
 

@@ -98,6 +98,7 @@ private:
     void failed(StreamId stream, SessionId session, std::string reason) override;
     void ended(StreamId stream, std::string reason) override;
     void picture(Picture picture) override;
+    void tiles_taken(std::uint32_t version) override;
     void stats(const RenderStats& stats) override;
     void scaled(const ScaledTile& tile) override;
     void monitor(const MonitorNews& news) override;

@@ -50,6 +50,11 @@ void fill_stats(const RenderStats& stats, proto::NodeStats& out) {
         row.set_objects(session.objects);
     }
     fill_objects(stats.objects, *out.mutable_objects());
+    for (const auto& [slot, time] : stats.tiles) {
+        auto& row = *out.add_tile_times();
+        row.set_slot(slot);
+        row.set_ns(static_cast<std::uint64_t>(time.count()));
+    }
 }
 
 }  // namespace wall::tileserver

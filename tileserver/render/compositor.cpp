@@ -44,8 +44,17 @@ void Compositor::set_pattern(std::uint32_t slot, std::shared_ptr<const TestPatte
     ++node_.damage;
 }
 
-void Compositor::clear_patterns() {
+void Compositor::tiles_changed() {
     while (!patterns_.empty()) set_pattern(patterns_.begin()->first, nullptr);
+    for (auto at = targets_.begin(); at != targets_.end();) {
+        if (tile(at->first) != nullptr) {
+            ++at;
+            continue;
+        }
+        release(at->second);
+        output_pass_.forget(at->first);
+        at = targets_.erase(at);
+    }
 }
 
 void Compositor::draw_pattern(const TileTarget& target, const TestPattern& pattern) const {

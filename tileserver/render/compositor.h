@@ -59,7 +59,8 @@ public:
     void set_stacking(std::vector<StackEntry> bottom_first);
     /// Instead of the layers; none: these again.
     void set_pattern(std::uint32_t slot, std::shared_ptr<const TestPattern> pattern);
-    void clear_patterns();
+    /// The node has other tiles: nothing is kept of those that it has no more, nor any test picture.
+    void tiles_changed();
     /// What the tile's output is to show: all layers, composed now unless they are already. Good until the compositor
     /// is called again. None: this node has no such tile (yet).
     std::optional<PictureTexture> output(std::uint32_t slot);

@@ -248,6 +248,8 @@ Result<GLuint> OutputPass::program_for(const std::string& steps) {
     return known != programs_.end() ? known->second : programs_.emplace(steps, build(steps)).first->second;
 }
 
+void OutputPass::forget(std::uint32_t slot) { shown_.erase(slot); }
+
 Result<PictureTexture> OutputPass::show(std::uint32_t slot, const std::shared_ptr<const geom::TileOutput>& output,
                                         const PictureTexture& canvas, const PictureTexture& of_right_eye) {
     auto& shown = shown_[slot];

@@ -34,6 +34,8 @@ public:
     /// call for the slot. An error: the driver cannot do it.
     Result<PictureTexture> show(std::uint32_t slot, const std::shared_ptr<const geom::TileOutput>& output,
                                 const PictureTexture& canvas, const PictureTexture& of_right_eye = {});
+    /// There is no tile in that slot any more.
+    void forget(std::uint32_t slot);
 
 private:
     class Shown;

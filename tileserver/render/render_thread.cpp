@@ -397,9 +397,11 @@ private:
         events_.output_lost(std::string("the driver has reset its context: ") + reset);
     }
     void report() {
-        if (Clock::now() < next_stats_) return;
-        next_stats_ = Clock::now() + kStatsInterval;
-        RenderStats stats{node_.ended, {}, *driver_.gl().objects};
+        const auto now = Clock::now();
+        node_.tile_times.tick(now);
+        if (now < next_stats_) return;
+        next_stats_ = now + kStatsInterval;
+        RenderStats stats{node_.ended, {}, *driver_.gl().objects, node_.tile_times.all()};
         for (const auto& [id, stream] : streams_) stats.work += stats.sessions.emplace_back(stream->stats()).work;
         events_.stats(stats);
     }
@@ -514,17 +516,21 @@ void RenderThread::set_quota(SessionId session, const SessionQuota& quota) {
 void RenderThread::remove_session(SessionId session) {
     post([=](Loop& loop) { loop.remove_session(session); });
 }
-void RenderThread::set_tiles(std::vector<Tile> tiles, std::uint32_t background) {
-    post([tiles = std::move(tiles), background](Loop& loop) {
+void RenderThread::set_tiles(std::vector<Tile> tiles, std::uint32_t background, std::uint32_t version) {
+    post([tiles = std::move(tiles), background, version](Loop& loop) {
         loop.node_.tiles = tiles;
-        loop.compositor_.clear_patterns();
+        loop.compositor_.tiles_changed();
         loop.compositor_.set_background(background);
         loop.driver_.disable_scissor();
         for (auto& [id, stream] : loop.streams_)
             stream->session().for_each_surface([&](SurfaceId, SurfaceReplica& surface) {
                 if (surface.where().window_width != 0) surface.place(SurfacePlace(surface.where()), tiles);
             });
+        loop.events_.tiles_taken(version);
     });
+}
+void RenderThread::measure_tiles(bool on) {
+    post([on](Loop& loop) { loop.node_.tile_times.switch_on(on); });
 }
 void RenderThread::set_stacking(std::vector<StackEntry> bottom_first, std::vector<StackEntry> held,
                                 const std::vector<SessionId>& returning) {

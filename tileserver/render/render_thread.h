@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -43,6 +44,7 @@ struct RenderStats {
     Work work;  ///< of all sessions since the start
     std::vector<SessionStats> sessions;
     DriverObjects objects;
+    std::map<std::uint32_t, std::chrono::nanoseconds> tiles;  ///< by slot: what drawing has taken, if it is measured
 };
 
 /// What the render thread reports. Called by it; must not block.
@@ -61,6 +63,8 @@ public:
     /// Nothing was wrong with the stream itself, but it cannot go on.
     virtual void ended(StreamId stream, std::string reason) = 0;
     virtual void picture(Picture picture) = 0;
+    /// set_tiles() is done.
+    virtual void tiles_taken(std::uint32_t version) = 0;
     virtual void stats(const RenderStats& stats) = 0;  ///< about once a second
     /// Once for each tile that its screen does not show pixel for pixel.
     virtual void scaled(const ScaledTile& tile) = 0;
@@ -112,7 +116,10 @@ public:
     void set_quota(SessionId session, const SessionQuota& quota);
     /// All streams of the session go at once, whatever is left in them.
     void remove_session(SessionId session);
-    void set_tiles(std::vector<Tile> tiles, std::uint32_t background);
+    /// `version` is told when it is done (NodeEvents::tiles_taken).
+    void set_tiles(std::vector<Tile> tiles, std::uint32_t background, std::uint32_t version = 0);
+    /// What drawing takes for each tile is in the stats.
+    void measure_tiles(bool on);
     /// Of `held` ones no frame is shown before present(), whether or not somebody coordinates. For sessions that are
     /// `returning` nobody will say present() yet.
     void set_stacking(std::vector<StackEntry> bottom_first, std::vector<StackEntry> held = {},

@@ -9,6 +9,7 @@
 
 #include "tileserver/driver/driver.h"
 #include "tileserver/driver/soft_maps.h"
+#include "tileserver/driver/tile_times.h"
 #include "tileserver/objects/shared_content.h"
 #include "tileserver/session/surface.h"
 #include "tileserver/session/work.h"
@@ -24,6 +25,7 @@ struct RenderNode {
     MapMirror maps;
     SharedContents shared;  ///< that several sessions hold, or may hold
     std::vector<Tile> tiles;
+    TileTimes tile_times;
     std::uint64_t damage = 1;      ///< grows when a tile's picture may have changed
     bool present_at_once = false;  ///< nobody coordinates: show frames when they are done, but for held ones
     std::set<std::pair<SessionId, SurfaceId>> held;  ///< windows whose frames are shown only when somebody says so
@@ -32,7 +34,7 @@ struct RenderNode {
     CompileTrials* trials = nullptr;                 ///< of shaders; null: the driver compiles them at once
     Work ended;                                      ///< of sessions that are gone
 
-    explicit RenderNode(Driver& d) : driver(d) {}
+    explicit RenderNode(Driver& d) : driver(d), tile_times(d.gl()) {}
     /// The window's frame is shown when it is done, because nobody will say when.
     bool shows_at_once(SessionId session, SurfaceId surface) const {
         return (present_at_once || returning.contains(session)) && !held.contains({session, surface});

@@ -334,7 +334,9 @@ Result<void> ControlServer::node_says(NodeIndex node, proto::Envelope& message) 
     } else if (message.has_stream_frame()) {
         streams_.arrived(node, *message.mutable_stream_frame());
     } else if (message.has_node_stats()) {
-        wall_.node_reports(node, message.node_stats(), std::chrono::system_clock::now());
+        wall_.node_reports(node, message.node_stats(), std::chrono::system_clock::now(), Clock::now());
+    } else if (message.has_tiles_taken()) {
+        wall_.node_took_tiles(node, message.tiles_taken().tiles_version());
     } else if (message.has_session_fault()) {
         wall_.node_faults(node, message.session_fault());
         log::warn("session_fault session={} node={} reason={}", message.session_fault().session(),
@@ -573,6 +575,7 @@ asio::awaitable<void> ControlServer::serve_watch(Connection connection, proto::O
 
 void ControlServer::something_changed() {
     changed_.notify();
+    if (std::exchange(tiles_moved_, wall_.tiles_moved()) != wall_.tiles_moved()) streams_.wall_changed(Clock::now());
     streams_.tick(Clock::now());
     if (const auto next = next_deadline(); next < deadline_timer_.expiry()) deadline_timer_.expires_at(next);
 }

@@ -130,6 +130,7 @@ private:
     std::map<ClientId, ClientLink> clients_;
     std::map<net::ControlConnection*, std::weak_ptr<net::ControlConnection>> all_;
     asio::steady_timer deadline_timer_;
+    std::uint64_t tiles_moved_ = 0;  // of wall_, as streams know it
     asio::steady_timer process_timer_;
     Clock::time_point started_ = Clock::now();
     bool stopping_ = false;

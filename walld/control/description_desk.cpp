@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/config/kept_tiles.h"
 #include "common/log/log.h"
 #include "walld/control/arguments.h"
 #include "walld/wall/messages.h"
@@ -64,6 +65,7 @@ Outcome<json> DescriptionDesk::take(Outcome<Description> next) {
         return refuse(RefusalKind::conflict, std::string(fixed) +
                                                  " has changed, which walld takes only when it starts "
                                                  "(`systemctl restart walld`): nothing was changed");
+    config::keep_tiles(next->config, wall.config());
     auto identities = Identities::open(next->config.people, state_);
     if (!identities) return refuse(RefusalKind::invalid, identities.error().message);
     told_.identities = std::move(*identities);

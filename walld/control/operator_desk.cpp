@@ -329,7 +329,7 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::pattern(const Asked& asked) {
     for (const NodeIndex node : wall_.nodes().ids()) {
         const auto config = wall_.nodes()[node].config;
         for (const auto& tile : config->tiles) {
-            if (!only->empty() && tile.name != *only) continue;
+            if (tile.arriving || (!only->empty() && tile.name != *only)) continue;
             auto pattern = *told;
             if (pattern.kind() == proto::TilePattern::NAMES) add_label(pattern, *config, tile);
             if (auto set = wall_.set_pattern(tile.name, pattern); !set) co_return tl::unexpected(set.error());

@@ -61,14 +61,14 @@ constexpr MetricRow<Count> kObjects[] = {
 
 /// A tile and what is known of it.
 struct TileRef {
-    const TileShown* shown;
+    TileShown shown;
     std::uint32_t lag;
     double age;  ///< seconds
 };
 constexpr MetricRow<TileRef> kTiles[] = {
     {Counter, "wallgl_tile_frames_total",
      "Times that the tile was told to show a frame of a window, since walld started.",
-     [](const TileRef& t) { return t.shown->frames; }},
+     [](const TileRef& t) { return t.shown.frames; }},
     {Gauge, "wallgl_tile_lag_frames", "Frames that the wall shows and this tile does not yet; the most of its windows.",
      [](const TileRef& t) { return t.lag; }},
 };
@@ -96,12 +96,13 @@ void add_tiles(Families& out, const Observed& observed) {
     std::vector<Labelled<TileRef>> tiles, shown;
     const auto& nodes = observed.wall.nodes();
     for (const NodeIndex i : nodes.ids()) {
-        for (std::uint32_t slot = 0; slot < nodes[i].tiles.size(); ++slot) {
-            const auto& tile = nodes[i].tiles[slot];
-            const double age = tile.last ? std::chrono::duration<double>(observed.now - *tile.last).count() : 0;
-            const Labels labels{{"node", nodes[i].config->name}, {"tile", nodes[i].config->tiles[slot].name}};
-            tiles.push_back({labels, {&tile, observed.wall.tile_lag(i, slot), age}});
-            if (tile.last) shown.push_back(tiles.back());
+        for (const auto& tile : nodes[i].config->tiles) {
+            if (tile.arriving) continue;
+            const auto last = nodes[i].shown_in(tile.slot);
+            const double age = last.last ? std::chrono::duration<double>(observed.now - *last.last).count() : 0;
+            const Labels labels{{"node", nodes[i].config->name}, {"tile", tile.name}};
+            tiles.push_back({labels, {last, observed.wall.tile_lag(i, tile), age}});
+            if (last.last) shown.push_back(tiles.back());
         }
     }
     add_table(out, kTiles, tiles);

@@ -87,8 +87,8 @@ Outcome<void> SnapshotDesk::ask_nodes(const std::shared_ptr<Job>& job) {
                       "what an output shows is a picture of its own: expected a tile, and no program");
     bool found = false;
     for (const NodeIndex node : wall_.nodes().ids()) {
-        for (std::uint32_t slot = 0; const auto& tile : wall_.nodes()[node].config->tiles) {
-            const auto this_slot = slot++;
+        for (const auto& tile : wall_.nodes()[node].config->tiles) {
+            if (tile.arriving) continue;
             if (query.tile.empty() ? tile.eye == geom::Eye::right : tile.name != query.tile) continue;
             found = true;
             if (!query.tile.empty() && !wall_.nodes()[node].up)
@@ -100,7 +100,7 @@ Outcome<void> SnapshotDesk::ask_nodes(const std::shared_ptr<Job>& job) {
                 job->picture.view = query.target ? geom::intersect(job->picture.view, place) : place;
             if (!wall_.nodes()[node].up || !geom::overlaps(place, job->picture.view)) continue;
             job->picture.tiles.push_back({place, {}});
-            ask(job, node, this_slot, session);
+            ask(job, node, tile.slot, session);
         }
     }
     if (!found) return refuse(RefusalKind::not_found, "there is no tile '" + query.tile + "'");

@@ -210,7 +210,10 @@ void StreamHub::wall_changed(Clock::time_point now) {
     tick(now);
 }
 
-std::string StreamHub::tile_name(const Key& key) const { return wall_.nodes()[key.node].config->tiles[key.slot].name; }
+std::string StreamHub::tile_name(const Key& key) const {
+    const auto* tile = wall_.nodes()[key.node].config->tile(key.slot);
+    return tile ? tile->name : std::string();
+}
 
 std::string StreamHub::parts_text(std::uint32_t number, const Watch& watch) const {
     auto parts = json::array();
@@ -406,7 +409,9 @@ void StreamHub::end(NodeStream& stream, const std::string& why) {
 std::vector<StreamView> StreamHub::views() const {
     std::vector<StreamView> out;
     for (const auto& [key, stream] : streams_) {
-        const auto& tile = wall_.nodes()[key.node].config->tiles[key.slot];
+        const auto* const found = wall_.nodes()[key.node].config->tile(key.slot);
+        if (!found) continue;
+        const auto& tile = *found;
         const geom::Rect crop{key.x, key.y, key.crop_width, key.crop_height},
             whole = key.output ? geom::Rect{0, 0, tile.output.width, tile.output.height}
                                : geom::Rect{0, 0, tile.rect.width, tile.rect.height};

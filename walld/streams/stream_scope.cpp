@@ -30,9 +30,10 @@ Result<geom::Rect> rect_of(const Wall& wall, const WatchRequest& request, Stream
         return wall.find(*key)->place.shown();
     }
     for (const NodeIndex node : wall.nodes().ids()) {
-        for (std::uint32_t slot = 0; const auto& tile : wall.nodes()[node].config->tiles) {
-            scope.tile = {node, slot++};
-            if (tile.name == request.tile) return region_of(place_of(tile, request.output), request.region);
+        for (const auto& tile : wall.nodes()[node].config->tiles) {
+            scope.tile = {node, tile.slot};
+            if (tile.name == request.tile && !tile.arriving)
+                return region_of(place_of(tile, request.output), request.region);
         }
     }
     return fail(".tile: there is no tile '" + request.tile + "'");
@@ -87,15 +88,14 @@ Result<StreamScope> scope_of(const Wall& wall, const WatchRequest& request) {
 std::vector<StreamPart> parts_of(const Wall& wall, const StreamScope& scope) {
     std::vector<StreamPart> out;
     for (const NodeIndex node : wall.nodes().ids()) {
-        for (std::uint32_t slot = 0; const auto& tile : wall.nodes()[node].config->tiles) {
-            const auto this_slot = slot++;
-            const bool asked_for = scope.tile == std::pair(node, this_slot);
-            if (scope.tile ? !asked_for : tile.eye == geom::Eye::right) continue;
+        for (const auto& tile : wall.nodes()[node].config->tiles) {
+            const bool asked_for = scope.tile == std::pair(node, tile.slot);
+            if (tile.arriving || (scope.tile ? !asked_for : tile.eye == geom::Eye::right)) continue;
             const auto place = place_of(tile, scope.output);
             const auto common = geom::intersect(place, scope.rect);
             const auto at = in_picture(scope, common);
             if (common.empty() || at.empty()) continue;
-            out.push_back({node, this_slot, {common.x - place.x, common.y - place.y, common.width, common.height}, at});
+            out.push_back({node, tile.slot, {common.x - place.x, common.y - place.y, common.width, common.height}, at});
         }
     }
     return out;

@@ -27,6 +27,8 @@ public:
     const geom::Rect& shown() const { return shown_; }
     std::uint32_t version() const { return version_; }  ///< of wanted()
     bool moving() const { return shown_ != wanted_; }
+    /// What is shown was drawn for the version that is wanted.
+    bool settled() const { return offered_.empty() && adopted_.empty(); }
 
     void want(const geom::Rect& rect);
     /// `frame` and later ones are drawn with that version. False if it was never wanted, or is older than another.

@@ -154,6 +154,11 @@ json quota_json(const config::QuotaConfig& quota) {
     return out;
 }
 
+json load_json(const Node& node, std::uint32_t slot) {
+    const auto found = node.times.loads.find(slot);
+    return found == node.times.loads.end() ? json(nullptr) : json(std::round(found->second * 1000) / 1000);
+}
+
 }  // namespace
 
 json nodes_json(const Wall& wall) {
@@ -167,9 +172,9 @@ json tiles_json(const Wall& wall, Clock::time_point now) {
     auto out = json::array();
     for (const NodeIndex i : wall.nodes().ids()) {
         const auto& node = wall.nodes()[i];
-        for (std::uint32_t slot = 0; slot < node.tiles.size(); ++slot) {
-            const auto& tile = node.config->tiles[slot];
-            const auto& shown = node.tiles[slot];
+        for (const auto& tile : node.config->tiles) {
+            if (tile.arriving) continue;
+            const auto shown = node.shown_in(tile.slot);
             const auto age =
                 shown.last ? json(std::chrono::duration_cast<std::chrono::milliseconds>(now - *shown.last).count())
                            : json(nullptr);
@@ -177,7 +182,7 @@ json tiles_json(const Wall& wall, Clock::time_point now) {
             if (tile.view) view = geom::values_of(*tile.view);
             out.push_back({{"name", tile.name},
                            {"node", node.config->name},
-                           {"slot", slot},
+                           {"slot", tile.slot},
                            {"rect", rect_json(tile.rect)},
                            {"output", config::output_name(tile)},
                            {"pixels", {tile.output.width, tile.output.height}},
@@ -190,7 +195,8 @@ json tiles_json(const Wall& wall, Clock::time_point now) {
                            {"up", node.up},
                            {"frames", shown.frames},
                            {"age_ms", age},
-                           {"lag_frames", wall.tile_lag(i, slot)}});
+                           {"lag_frames", wall.tile_lag(i, tile)},
+                           {"load", load_json(node, tile.slot)}});
         }
     }
     return out;

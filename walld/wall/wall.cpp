@@ -88,6 +88,9 @@ Result<NodeIndex> Wall::node_joins(const proto::NodeHello& hello, Clock::time_po
 
 void Wall::node_leaves(NodeIndex node, Clock::time_point now, bool link_lost) {
     nodes_[node].up = false;
+    taking_tiles_.erase(node);
+    if (moving_ && (moving_->from == node || moving_->to == node)) end_move(false, now);
+    tell_tiles();
     if (link_lost) nodes_[node].missed = now + kMissedLimit;
     else tell_gone(node);
     for_each_surface(
@@ -141,20 +144,20 @@ void Wall::welcome_node(NodeIndex node) {
     proto::NodeWelcome welcome;
     welcome.set_node(node.value);
     welcome.set_background(config_.background);
-    for (std::uint32_t slot = 0; const auto& tile : nodes_[node].config->tiles) {
+    welcome.set_tiles_version(nodes_[node].tiles_version);
+    welcome.set_measure_tiles(may_be_balanced(node));
+    for (const auto& tile : nodes_[node].config->tiles) {
         auto* entry = welcome.add_tiles();
-        entry->set_slot(slot++);
+        entry->set_slot(tile.slot);
         entry->set_name(tile.name);
         *entry->mutable_rect() = to_proto(tile.rect);
         entry->set_eye(static_cast<std::uint32_t>(tile.eye));
         if (!geom::is_plain(tile.output, tile.rect)) *entry->mutable_output() = to_proto(tile.output);
     }
     out_.to_node(node, make(&proto::Envelope::mutable_node_welcome, welcome));
-    for (std::uint32_t slot = 0; const auto& tile : nodes_[node].config->tiles) {
+    for (const auto& tile : nodes_[node].config->tiles)
         if (const auto found = patterns_.find(tile.name); found != patterns_.end())
-            tell_pattern(node, slot, found->second);
-        ++slot;
-    }
+            tell_pattern(node, tile.slot, found->second);
 }
 
 proto::NodeUp Wall::node_up_message(NodeIndex node, const std::string& ticket) const {
@@ -439,6 +442,7 @@ std::optional<Clock::time_point> Wall::next_deadline() const {
     }
     for (const auto& [id, session] : returning_) consider(session.until);
     for (const Node& node : nodes_) consider(node.missed);
+    if (moving_) consider(moving_->until);
     return out;
 }
 
@@ -448,6 +452,7 @@ void Wall::tick(Clock::time_point now) {
     for (const NodeIndex i : nodes_.ids())
         if (nodes_[i].missed && now >= *nodes_[i].missed) tell_gone(i);
     end_waiting_for_sessions(now);
+    go_on_moving(now);
 }
 
 // ---- inside ----
@@ -487,20 +492,28 @@ void Wall::present(const SurfaceKey& key, const Presents& presents, Clock::time_
         message.set_frame(frame);
         out_.to_node(node, make(&proto::Envelope::mutable_present, message));
         ++counters_.presents;
-        for (std::size_t slot = 0; slot < nodes_[node].tiles.size(); ++slot) {
-            if (!geom::overlaps(nodes_[node].config->tiles[slot].rect, surface.place.shown())) continue;
-            ++nodes_[node].tiles[slot].frames;
-            nodes_[node].tiles[slot].last = now;
+        for (const auto& tile : nodes_[node].config->tiles) {
+            if (!geom::overlaps(tile.rect, surface.place.shown())) continue;
+            TileShown& shown = nodes_[node].shown[tile.slot];
+            ++shown.frames;
+            shown.last = now;
         }
     }
+    go_on_moving(now);
 }
 
-std::uint32_t Wall::tile_lag(NodeIndex node, std::uint32_t slot) const {
+std::optional<NodeIndex> Wall::node_of_tile(std::string_view name) const {
+    for (const NodeIndex i : nodes_.ids())
+        for (const auto& tile : nodes_[i].config->tiles)
+            if (tile.name == name && !tile.arriving) return i;
+    return std::nullopt;
+}
+
+std::uint32_t Wall::tile_lag(NodeIndex node, const config::TileConfig& tile) const {
     std::uint32_t most = 0;
     for (const auto& key : stacking_) {
         const auto& surface = *find(key);
-        if (geom::overlaps(nodes_[node].config->tiles[slot].rect, surface.place.shown()))
-            most = std::max(most, surface.swap.behind(node));
+        if (geom::overlaps(tile.rect, surface.place.shown())) most = std::max(most, surface.swap.behind(node));
     }
     return most;
 }

@@ -26,6 +26,7 @@
 #include "walld/wall/placement_track.h"
 #include "walld/wall/session_traffic.h"
 #include "walld/wall/swap_coordinator.h"
+#include "walld/wall/tile_balance.h"
 
 namespace wall::walld {
 
@@ -54,19 +55,43 @@ enum class Duty {
     gone,     ///< not in wall.toml any more; its number stays free for it
 };
 
+/// What its tiles take of a node's time, as far as it is measured.
+struct TileTimes {
+    proto::NodeStats first;                 ///< of the window that is measured now
+    std::map<std::uint32_t, double> loads;  ///< by slot, 0 to 1, in the last window
+    bool known = false;                     ///< since loads were used last
+};
+
+/// A tile on its way to another GPU.
+struct TileMove {
+    std::string tile;
+    NodeIndex from, to;
+    std::vector<std::uint32_t> slots;  ///< its own, and that of its right eye's picture
+    Clock::time_point until;
+    bool told = false;  ///< to programs
+};
+
 struct Node {
+    /// Of the tile in that slot.
+    TileShown shown_in(std::uint32_t slot) const {
+        const auto found = shown.find(slot);
+        return found == shown.end() ? TileShown{} : found->second;
+    }
+
     std::shared_ptr<const config::NodeConfig> config;
     Duty duty = Duty::serves;
     bool up = false;      ///< programs may use it
     bool silent = false;  ///< its link may be dead
     /// Its link is lost, and it may be well: until then programs are not told that it is gone.
     std::optional<std::chrono::steady_clock::time_point> missed;
-    bool described_anew = false;    ///< since it came last: what it has of sessions is for other tiles
-    std::uint32_t incarnation = 0;  ///< 0: never seen
-    proto::NodeHello hello;         ///< of the last connection
-    proto::NodeStats stats;         ///< the last that this process has told
+    bool described_anew = false;      ///< since it came last: what it has of sessions is for other tiles
+    std::uint32_t tiles_version = 0;  ///< of the tiles that it was told last
+    std::uint32_t incarnation = 0;    ///< 0: never seen
+    proto::NodeHello hello;           ///< of the last connection
+    proto::NodeStats stats;           ///< the last that this process has told
     std::optional<std::chrono::milliseconds> clock_ahead;  ///< of walld's, when they came
-    std::vector<TileShown> tiles;                          ///< by slot
+    TileTimes times;
+    std::map<std::uint32_t, TileShown> shown;  ///< by slot; none: it has shown nothing yet
 };
 
 struct SurfaceKey {
@@ -171,13 +196,16 @@ public:
     std::vector<NodeIndex> note_silent(const std::set<NodeIndex>& quiet);
     std::vector<SessionId> note_silent(const std::set<SessionId>& quiet);
     /// Programs may end, if somebody has too much there. `here`: what walld's clock says.
-    void node_reports(NodeIndex node, const proto::NodeStats& stats, std::chrono::system_clock::time_point here = {});
+    void node_reports(NodeIndex node, const proto::NodeStats& stats, std::chrono::system_clock::time_point here = {},
+                      Clock::time_point now = {});
 
     // ---- another description (wall_describe.cpp) ----
     /// Nodes of which the wall would have another description.
     std::vector<NodeIndex> described_otherwise(const config::WallConfig& next) const;
     /// The wall is described so from now on. Those nodes must have left. Windows whose place is gone get another one.
     void describe(config::WallConfig next);
+    /// It draws for those tiles now: once all nodes do, programs are told.
+    void node_took_tiles(NodeIndex node, std::uint32_t version);
     /// It must have left, unless it is away.
     void set_duty(NodeIndex node, Duty duty) { nodes_[node].duty = duty; }
     std::optional<NodeIndex> find_node(std::string_view name) const;
@@ -257,8 +285,12 @@ public:
     const std::vector<SurfaceKey>& stacking() const { return stacking_; }  ///< bottom first
     const SurfaceEntry* find(const SurfaceKey& key) const;
     const Counters& counters() const { return counters_; }
+    /// Grows when another node shows a tile.
+    std::uint64_t tiles_moved() const { return tiles_moved_; }
+    /// The node that shows it.
+    std::optional<NodeIndex> node_of_tile(std::string_view name) const;
     /// The most frames that a node is behind a window on this tile.
-    std::uint32_t tile_lag(NodeIndex node, std::uint32_t slot) const;
+    std::uint32_t tile_lag(NodeIndex node, const config::TileConfig& tile) const;
 
 private:
     SessionEntry* find(SessionId id);
@@ -268,6 +300,18 @@ private:
     bool take_nodes();
     void tell_pattern(NodeIndex node, std::uint32_t slot, const proto::TilePattern& pattern);
     bool take_rest(NodeIndex node, const config::NodeConfig& config);
+    void tell_tiles();
+    // of several GPUs (wall_balance.cpp)
+    /// The nodes that a tileserver is.
+    std::vector<NodeIndex> gpus_of(const std::string& process) const;
+    bool may_be_balanced(NodeIndex node) const;
+    void take_tile_times(NodeIndex node);
+    void balance(NodeIndex reporting, Clock::time_point now);
+    void describe_node(NodeIndex node, config::NodeConfig config);
+    void begin_move(const BetterPlace& better, Clock::time_point now);
+    bool move_is_settled() const;
+    void go_on_moving(Clock::time_point now);
+    void end_move(bool there, Clock::time_point now);
     void add_tiles(google::protobuf::RepeatedPtrField<proto::TileInfo>& out) const;
     geom::Rect place_after_change(const SessionEntry& session, const SurfaceEntry& surface);
     void send_away(const proto::NodeHello& hello, NodeIndex node);
@@ -328,6 +372,11 @@ private:
     Outbox& out_;
     RandomBytes random_;
     IdVector<NodeIndex, Node> nodes_;
+    std::set<NodeIndex> taking_tiles_;  // have been told of other tiles, and have not said that they draw for them
+    bool tiles_untold_ = false;         // to programs
+    std::optional<TileMove> moving_;
+    std::map<std::string, Clock::time_point> resting_;  // tiles by name: until when they stay where they are
+    std::uint64_t tiles_moved_ = 0;
     std::map<SessionId, SessionEntry> sessions_;
     std::vector<SurfaceKey> stacking_;
     SessionId last_session_;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // What of the wall follows its description: which nodes and tiles there are, from the start and when wall.toml changes
-// while programs run. A node keeps its number as long as walld runs. One whose tiles change leaves and comes back as
-// one that knows nothing, so that no frame of it mixes two descriptions; the programs take the other tiles at their
-// next frames, with a placement, as they take a move.
+// while programs run. A node keeps its number as long as walld runs. One whose tiles change takes them while it draws
+// for the old ones (the layers of new ones begin empty); when all have them the programs are told, which take the other
+// tiles at their next frames, with a placement, as they take a move. A node whose process cannot go on so leaves, and
+// comes back as one that knows nothing.
 #include <algorithm>
+#include <utility>
 
 #include "walld/wall/messages.h"
 #include "walld/wall/placement.h"
@@ -34,7 +36,7 @@ bool Wall::take_nodes() {
         if (node.duty == Duty::gone || config_.find_node(node.config->name)) continue;
         node.duty = Duty::gone;
         node.config = std::make_shared<const config::NodeConfig>(config::NodeConfig{.name = node.config->name});
-        node.tiles.clear();
+        node.shown.clear();
         changed = true;
     }
     for (const auto& config : config_.nodes) {
@@ -51,7 +53,7 @@ bool Wall::take_nodes() {
         node.config = std::make_shared<const config::NodeConfig>(config);
         if (node.duty == Duty::gone) node.duty = Duty::serves;
         node.described_anew = node.incarnation > 0;
-        node.tiles.assign(config.tiles.size(), {});
+        node.shown.clear();
         changed = true;
     }
     return changed;
@@ -59,13 +61,19 @@ bool Wall::take_nodes() {
 
 /// What a node goes on with: it shows its tiles otherwise from the next picture on. True: programs must draw otherwise.
 bool Wall::take_rest(NodeIndex node, const config::NodeConfig& config) {
-    if (*nodes_[node].config == config) return false;
-    const auto seen_through = [](const config::TileConfig& tile) { return std::pair(tile.view, tile.eye); };
-    const bool same_views =
-        std::ranges::equal(nodes_[node].config->tiles, config.tiles, {}, seen_through, seen_through);
-    nodes_[node].config = std::make_shared<const config::NodeConfig>(config);
-    if (nodes_[node].up) welcome_node(node);
-    return !same_views;
+    Node& now = nodes_[node];
+    if (*now.config == config) return false;
+    const bool same = same_tiles(*now.config, config);
+    now.config = std::make_shared<const config::NodeConfig>(config);
+    std::erase_if(now.shown, [&](const auto& shown) { return config.tile(shown.first) == nullptr; });
+    if (now.up && !same) {
+        ++now.tiles_version;
+        taking_tiles_.insert(node);
+    } else if (!same) {
+        now.described_anew = now.incarnation > 0;
+    }
+    if (now.up) welcome_node(node);
+    return !same;
 }
 
 std::vector<NodeIndex> Wall::described_otherwise(const config::WallConfig& next) const {
@@ -78,6 +86,7 @@ std::vector<NodeIndex> Wall::described_otherwise(const config::WallConfig& next)
 }
 
 void Wall::describe(config::WallConfig next) {
+    moving_.reset();
     const bool other_background = next.background != config_.background, other_quota = next.quota != config_.quota;
     config_ = std::move(next);
     const bool other_tiles = take_nodes();
@@ -91,7 +100,20 @@ void Wall::describe(config::WallConfig next) {
     for (auto& [id, session] : sessions_)
         for (const NodeIndex i : nodes_.ids())
             if (other_quota && nodes_[i].up && session.tickets.contains(i)) hand_out_ticket(id, session, i);
-    if (!other_tiles) return;
+    tiles_untold_ = tiles_untold_ || other_tiles;
+    tell_tiles();
+}
+
+void Wall::node_took_tiles(NodeIndex node, std::uint32_t version) {
+    if (version != nodes_[node].tiles_version) return;
+    if (taking_tiles_.erase(node) > 0) out_.to_node(node, stacking_message(node));
+    tell_tiles();
+}
+
+/// To programs, if it is time.
+void Wall::tell_tiles() {
+    if (!taking_tiles_.empty() || !std::exchange(tiles_untold_, false)) return;
+    if (moving_) moving_->told = true;
     proto::TilesChanged tiles;
     add_tiles(*tiles.mutable_tiles());
     for (auto& [id, session] : sessions_) {
@@ -114,10 +136,10 @@ geom::Rect Wall::place_after_change(const SessionEntry& session, const SurfaceEn
 
 void Wall::add_tiles(google::protobuf::RepeatedPtrField<proto::TileInfo>& out) const {
     for (const NodeIndex i : nodes_.ids()) {
-        for (std::uint32_t slot = 0; const auto& tile : nodes_[i].config->tiles) {
+        for (const auto& tile : nodes_[i].config->tiles) {
             auto& entry = *out.Add();
             entry.set_node(i.value);
-            entry.set_slot(slot++);
+            entry.set_slot(tile.slot);
             entry.set_name(tile.name);
             *entry.mutable_rect() = to_proto(tile.rect);
             if (tile.view) *entry.mutable_view() = to_proto(*tile.view);

@@ -43,7 +43,7 @@ Outcome<void> Wall::set_pattern(const std::string& tile, const proto::TilePatter
         if (found == tiles.end()) continue;
         if (pattern.kind() == proto::TilePattern::NONE) patterns_.erase(tile);
         else patterns_[tile] = pattern;
-        if (nodes_[node].up) tell_pattern(node, static_cast<std::uint32_t>(found - tiles.begin()), pattern);
+        if (nodes_[node].up) tell_pattern(node, found->slot, pattern);
         return {};
     }
     return refuse(RefusalKind::not_found, "there is no tile '" + tile + "'");

@@ -37,13 +37,15 @@ Outcome<void> Wall::check_quota(const proto::ClientHello& hello, const Person& w
                                                  who.text(), theirs));
 }
 
-void Wall::node_reports(NodeIndex node, const proto::NodeStats& stats, std::chrono::system_clock::time_point here) {
+void Wall::node_reports(NodeIndex node, const proto::NodeStats& stats, std::chrono::system_clock::time_point here,
+                        Clock::time_point now) {
     nodes_[node].stats = stats;
     if (stats.time_us() != 0 && here != std::chrono::system_clock::time_point()) {
         const std::chrono::microseconds there(static_cast<std::int64_t>(stats.time_us()));
         nodes_[node].clock_ahead = std::chrono::round<std::chrono::milliseconds>(there - here.time_since_epoch());
     }
     if (config_.quota.person_memory) end_who_has_too_much(node);
+    balance(node, now);
 }
 
 /// Of whoever's programs fill too much of the node the largest one goes.

@@ -396,4 +396,39 @@ SCENE(assembly_queries, 1) {
     say_error("assembly_queries");
 }
 
+SCENE(assembly_raster_positions, 2) {  // where programs put them, with the colours and coordinates that they make
+    clear(0.1f, 0.15f, 0.15f);
+    perspective_view(canvas);
+    const auto bits = random_image(8 * 16);
+    static std::array<GLuint, 3> programs;
+    if (frame == 0)
+        programs = {loaded(kVertex, vertex_program(kPlacings[1])), loaded(kVertex, vertex_program(kPlacings[6])),
+                    loaded(kVertex,
+                           "!!ARBvp1.0\nOPTION ARB_position_invariant;\nMOV result.color, vertex.normal;\n"
+                           "MUL result.texcoord[0], vertex.texcoord[0], { 2, 3, 1, 1 };\n"
+                           "MOV result.fogcoord.x, { 0.25 };\nEND\n")};
+    for (int i = 0; i < 30; ++i) {
+        (i % 4 ? glEnable : glDisable)(kVertex);
+        glBindProgramARB(kVertex, programs[i % 3]);
+        glNormal3f(0.3f, 0.2f, 0.9f);
+        glColor3f(random_unit(), random_unit(), random_unit());
+        glTexCoord2f(random_unit(), random_unit());
+        glRasterPos3f(random_unit() * 4 - 2, random_unit() * 3 - 1.5f, random_unit() * 3 - 1.5f);
+        glDisable(kVertex);
+        glBitmap(16, 16, 8, 8, 2, 1, bits.data());
+        GLboolean valid = 0;
+        GLfloat window[4] = {}, colour[4] = {}, coordinates[4] = {}, distance = 0;
+        glGetBooleanv(GL_CURRENT_RASTER_POSITION_VALID, &valid);
+        if (valid) {
+            glGetFloatv(GL_CURRENT_RASTER_POSITION, window);
+            glGetFloatv(GL_CURRENT_RASTER_COLOR, colour);
+            glGetFloatv(GL_CURRENT_RASTER_TEXTURE_COORDS, coordinates);
+            glGetFloatv(GL_CURRENT_RASTER_DISTANCE, &distance);
+        }
+        say("raster %d %.4g %.4g %.4g %.4g colour %.4g %.4g coordinates %.4g %.4g distance %.4g", valid, window[0],
+            window[1], window[2], window[3], colour[0], colour[2], coordinates[0], coordinates[1], distance);
+    }
+    say_error("assembly_raster_positions");
+}
+
 }  // namespace golden

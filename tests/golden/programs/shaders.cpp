@@ -309,6 +309,43 @@ SCENE(glsl_list_elsewhere, 2) {
 }
 
 // ARB_shader_objects, and images that come compressed.
+SCENE(glsl_raster_positions, 2) {  // where shaders put them, lit by nobody but themselves
+    clear(0.15f, 0.1f, 0.15f);
+    perspective_view(canvas);
+    const auto bits = random_image(8 * 16);
+    static GLuint moved, placed;
+    if (frame == 0) {
+        moved = program_of(
+            "uniform vec4 by;\nvoid main() { gl_Position = gl_ModelViewProjectionMatrix * (gl_Vertex + by);\n"
+            "gl_FrontColor = vec4(gl_Normal, 1.0); gl_TexCoord[0] = gl_Color; }",
+            "void main() { gl_FragColor = gl_Color; }");
+        placed =
+            program_of("void main() { gl_Position = vec4(gl_Vertex.xy * 0.3, 0.2, 1.0); gl_FrontColor = gl_Color; }",
+                       "void main() { gl_FragColor = gl_Color; }");
+    }
+    for (int i = 0; i < 30; ++i) {
+        glUseProgram(i % 2 ? moved : placed);
+        if (i % 2) glUniform4f(glGetUniformLocation(moved, "by"), 0.1f * static_cast<float>(i % 5), -0.2f, 0, 0);
+        glNormal3f(random_unit(), 0.2f, 0.9f);
+        glColor3f(random_unit(), random_unit(), random_unit());
+        glRasterPos3f(random_unit() * 4 - 2, random_unit() * 3 - 1.5f, random_unit() * 3 - 1.5f);
+        if (i % 3) glUseProgram(0);
+        glBitmap(16, 16, 8, 8, 0, 0, bits.data());
+        GLboolean valid = 0;
+        GLfloat window[4] = {}, colour[4] = {}, coordinates[4] = {};
+        glGetBooleanv(GL_CURRENT_RASTER_POSITION_VALID, &valid);
+        if (valid) {
+            glGetFloatv(GL_CURRENT_RASTER_POSITION, window);
+            glGetFloatv(GL_CURRENT_RASTER_COLOR, colour);
+            glGetFloatv(GL_CURRENT_RASTER_TEXTURE_COORDS, coordinates);
+        }
+        say("raster %d %.4g %.4g %.4g %.4g colour %.4g %.4g coordinates %.4g %.4g", valid, window[0], window[1],
+            window[2], window[3], colour[0], colour[2], coordinates[0], coordinates[1]);
+    }
+    glUseProgram(0);
+    say_error("glsl_raster_positions");
+}
+
 SCENE(compressed_texture, 2) {
     clear(0.1f, 0, 0.1f);
     static GLhandleARB program;

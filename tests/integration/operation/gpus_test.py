@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests" / "support"))
 from compare import same  # noqa: E402
 from planned_wall import PlannedWall  # noqa: E402
-from show import OneMachine, Show, until  # noqa: E402
+from show import OneMachine, Part, Show, until  # noqa: E402
 from wall import Wall, WallError, build_folder, end_all  # noqa: E402
 from xserver import XServer  # noqa: E402
 
@@ -164,6 +164,50 @@ class ANodeOfTwoGpus(unittest.TestCase):
         with self.assertRaisesRegex(WallError, r"wall.toml:\d+: 'gpus': expected an integer from 1 to 64"):
             self.wall.ctl("reload")
         self.assert_becomes_right()
+
+
+FOUR = {"a": {"one": (0, 0, 200, 150), "two": (200, 0, 200, 150), "three": (0, 150, 200, 150),
+              "four": (200, 150, 200, 150)}}
+COSTLY = ("--vertices", 60000)
+BALANCED = 60.0  # seconds; about 6 where nothing else runs
+
+
+class TwoGpusOfWhichOneHasMoreToDo(unittest.TestCase):
+    def test_a_tile_goes_to_the_other_and_no_picture_is_wrong(self) -> None:
+        x = self.enterContext(XServer())
+        wall = self.enterContext(PlannedWall(FOUR, node_keys={"a": "gpus = 2"}, environment=QUIET,
+                                             die_with_parent=True))
+        parts = (Part("drawn_once", (0, 0, 400, 100), still=True),
+                 Part("frame_clock", (0, 100, 200, 50), arguments=COSTLY),
+                 Part("frame_clock", (200, 200, 200, 100), arguments=COSTLY))
+        show = Show(wall, wall.run, x, parts=parts)  # as fast as they can
+        self.addCleanup(end_all, show.apps)
+
+        def places() -> dict[str, str]:
+            return {tile["name"]: tile["node"] for tile in wall.ctl("tiles")}
+        at_first = {"one": "a/gpu0", "two": "a/gpu1", "three": "a/gpu1", "four": "a/gpu0"}
+        self.assertEqual(places(), at_first)
+        incarnations = {node["name"]: node["incarnation"] for node in wall.nodes()}
+        still = show.picture()[:100]
+        self.assertGreater(still.std(), 10, "there is something to see")
+        show.go_on()
+        pictures, end = 0, time.monotonic() + BALANCED
+        while places() == at_first:
+            self.assertLess(time.monotonic(), end, f"no tile has moved: {wall.log('walld')[-2000:]}")
+            self.assertTrue((show.picture()[:100] == still).all(), "a program that draws once is seen all the time")
+            pictures += 1
+        for _ in range(10):
+            self.assertTrue((show.picture()[:100] == still).all())
+        moved = {tile for tile, node in places().items() if node != at_first[tile]}
+        self.assertEqual(len(moved), 1)
+        self.assertLessEqual(moved, {"one", "four"}, "one of those that are costly")
+        self.assertGreater(pictures, 10)
+        self.assertEqual({node["name"]: node["incarnation"] for node in wall.nodes()}, incarnations)
+        show.hold()
+        whole = self.enterContext(Wall((2, 2), (200, 150), one_node=True, environment=QUIET, die_with_parent=True))
+        expected = OneMachine(whole, x, parts).picture(show.frames)
+        self.assertTrue(same(expected, show.picture()).good, "what runs is right as well")
+        self.assertEqual([s["fault"] for s in wall.sessions()], [""] * len(show.apps))
 
 
 if __name__ == "__main__":

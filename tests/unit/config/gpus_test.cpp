@@ -124,11 +124,28 @@ TEST(NodeOfSeveralGpus, SaysWhatIsWrongAndWhatWasExpected) {
     for (const auto& [toml, expected] : rows) EXPECT_THAT(refusal_of(toml), StartsWith(expected)) << toml;
 }
 
-TEST(NodeOfSeveralGpus, IsAnotherOneWithOtherTiles) {
-    const auto two = parse_config(node_of(2, {"", ""}, "gpus = 2\n"), "wall.toml");
-    const auto swapped = parse_config(node_of(2, {"gpu = 1", "gpu = 0"}), "wall.toml");
-    EXPECT_FALSE(draws_as(*two->find_node("n/gpu0"), *swapped->find_node("n/gpu0")));
-    EXPECT_TRUE(draws_as(*two->find_node("n/gpu0"), *two->find_node("n/gpu0")));
+TEST(NodeOfSeveralGpus, GoesOnWithOtherTiles) {
+    const auto two = parse_config(node_of(3, {"gpu = 0", "gpu = 1", "gpu = 0"}), "wall.toml");
+    const auto swapped = parse_config(node_of(3, {"gpu = 0", "gpu = 1", "gpu = 1"}), "wall.toml");
+    EXPECT_TRUE(draws_as(*two->find_node("n/gpu0"), *swapped->find_node("n/gpu0")));
+    EXPECT_FALSE(same_tiles(*two->find_node("n/gpu0"), *swapped->find_node("n/gpu0")));
+    EXPECT_TRUE(same_tiles(*two->find_node("n/gpu0"), *two->find_node("n/gpu0")));
+    EXPECT_FALSE(draws_as(*two->find_node("n/gpu0"), *two->find_node("n/gpu1")));
+}
+
+TEST(NodeOfSeveralGpus, HasTilesWhoseSlotsAreTheirOwnAmongAll) {
+    const auto config = parse_config(node_of(2, {"stereo = \"side-by-side\"", "", "", ""}, "gpus = 2\n"), "wall.toml");
+    ASSERT_TRUE(config) << config.error().message;
+    std::set<std::uint32_t> slots;
+    std::size_t tiles = 0;
+    for (const auto& node : config->nodes) {
+        for (const auto& tile : node.tiles) slots.insert(tile.slot);
+        tiles += node.tiles.size();
+    }
+    EXPECT_EQ(tiles, 5u) << "one for a right eye";
+    EXPECT_EQ(slots, (std::set<std::uint32_t>{0, 1, 2, 3, 4}));
+    EXPECT_EQ(config->nodes[0].tile(0)->output.right_slot, 4u);
+    EXPECT_EQ(config->nodes[0].tile(1), nullptr) << "the other node's";
 }
 
 TEST(Gpus, OfTilesWithoutAWindowSystemAreTheCardsOfTheirMonitors) {

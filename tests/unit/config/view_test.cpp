@@ -116,7 +116,7 @@ TEST(EyesConfig, CompanionsAreWithTheirTiles) {
     for (const auto& node : config->nodes) {
         ASSERT_EQ(node.tiles.size(), 2u) << node.name;
         EXPECT_EQ(node.tiles[1].name, node.tiles[0].name + "/right");
-        EXPECT_EQ(node.tiles[0].output.right_slot, 1u);
+        EXPECT_EQ(node.tiles[0].output.right_slot, node.tiles[1].slot);
     }
 }
 

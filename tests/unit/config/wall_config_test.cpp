@@ -181,6 +181,9 @@ TEST(WallConfig, AModeIsASizeAndPerhapsARate) {
 }
 
 TEST(WallConfig, AnotherMonitorIsAnotherTile) {
+    const auto draws_as = [](const TileConfig& a, const TileConfig& b) {
+        return config::draws_as(NodeConfig{.tiles = {a}}, NodeConfig{.tiles = {b}});
+    };
     TileConfig tile;
     tile.kms = KmsConfig{.connector = "DP-1", .mode = {}};
     TileConfig other = tile;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
 
 #include "common/glapi/assembly_format.h"
@@ -194,6 +195,32 @@ TEST_F(AssemblyProgramTest, TheNodesOwnParametersAreNotOffered) {
     const auto found = std::ranges::find(caps.limits, GLenum{GL_MAX_PROGRAM_ENV_PARAMETERS_ARB}, &GlCaps::Limit::name);
     ASSERT_NE(found, caps.limits.end());
     EXPECT_EQ(found->values[1], static_cast<double>(node_.driver->window_parameter()));
+}
+
+// The window's own, whatever the tiles show of it.
+TEST_F(AssemblyProgramTest, RasterPositionIsWhatTheVertexProgramMakes) {
+    Batch batch;
+    define(
+        batch, kVertices, GL_VERTEX_PROGRAM_ARB,
+        "!!ARBvp1.0\nADD result.position, vertex.position, { 0.5, 0, 0, 0 };\nMOV result.color, { 0.25, 0.5, 1, 1 };\n"
+        "MOV result.texcoord[1], vertex.color;\nEND");
+    batch.set<el::vertex_program>(kVertices.value).set<el::vertex_program_enabled>(1);
+    batch.set<el::color>({1, 0.5f, 0.25f, 1});
+    pack::RasterPosition(batch.buffer(), RequestId(6), -0.25f, 0.5f, 0.5f, 1);
+    pack::RasterPosition(batch.buffer(), RequestId(7), 0.75f, 0, 0, 1);
+    session_->expect_run(batch);
+    const auto raster = [&](RequestId request) {
+        glstate::RasterState out;
+        EXPECT_EQ(session_->replies[request].size(), sizeof out);
+        std::memcpy(&out, session_->replies[request].data(), sizeof out);
+        return out;
+    };
+    const auto inside = raster(RequestId(6));
+    EXPECT_EQ(inside.raster_position_valid, 1u);
+    EXPECT_EQ(inside.raster_position, (glstate::Vec4{5, 6, 0.75f, 1}));
+    EXPECT_EQ(inside.raster_color, (glstate::Vec4{0.25f, 0.5f, 1, 1}));
+    EXPECT_EQ(inside.raster_texcoord[1], (glstate::Vec4{1, 0.5f, 0.25f, 1}));
+    EXPECT_EQ(raster(RequestId(7)).raster_position_valid, 0u) << "right of the window";
 }
 
 }  // namespace

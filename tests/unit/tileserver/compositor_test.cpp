@@ -109,7 +109,7 @@ TEST_F(TilePictures, AreTestPicturesUntilTheyAreTakenAway) {
     compositor->set_pattern(kSlot, nullptr);
     EXPECT_EQ(shot(true), 0xff8000u);
     compositor->set_pattern(kSlot, pattern(TestPattern::Kind::white, false));
-    compositor->clear_patterns();
+    compositor->tiles_changed();
     EXPECT_EQ(shot(), 0xff8000u);
 }
 

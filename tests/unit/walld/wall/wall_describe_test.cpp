@@ -145,10 +145,48 @@ TEST_F(AWallThatIsDescribedAnew, TellsThatATestPictureIsOver) {
     EXPECT_THAT(wall_.patterns(), IsEmpty());
 }
 
-TEST_F(AWallThatIsDescribedAnew, TakesANodeWithOtherTilesForOneThatKnowsNothing) {
+TEST_F(AWallThatIsDescribedAnew, TellsProgramsOfOtherTilesWhenTheNodesDrawForThem) {
     const auto ticket = ticket_of(kRight);
     describe("[[node]]\nname = \"left\"\n[[node.tile]]\nname = \"l\"\nrect = [0, 0, 640, 480]\n" +
              node_text("right", "640, 0, 320, 240"));
+    EXPECT_TRUE(wall_.nodes()[kRight].up);
+    EXPECT_THAT(out_.client, IsEmpty());
+    ASSERT_EQ(out_.nodes[kRight].size(), 1u);
+    const auto& welcome = out_.nodes[kRight][0].node_welcome();
+    EXPECT_EQ(welcome.tiles(0).rect().width(), 320u);
+    wall_.node_took_tiles(kRight, welcome.tiles_version() - 1);
+    EXPECT_THAT(out_.client, IsEmpty()) << "of earlier ones";
+    wall_.node_took_tiles(kRight, welcome.tiles_version());
+    EXPECT_EQ(out_.client.at(0).tiles_changed().tiles_size(), 2);
+    EXPECT_TRUE(out_.nodes[kRight].back().has_stacking()) << "of the windows there";
+    EXPECT_EQ(ticket_of(kRight), ticket);
+    EXPECT_EQ(wall_.nodes()[kRight].incarnation, 1u);
+    wall_.node_took_tiles(kRight, welcome.tiles_version());
+    EXPECT_EQ(out_.client.size(), 3u) << "once";
+}
+
+TEST_F(AWallThatIsDescribedAnew, DoesNotWaitForANodeThatLeaves) {
+    describe("[[node]]\nname = \"left\"\n[[node.tile]]\nname = \"l\"\nrect = [0, 0, 640, 480]\n" +
+             node_text("right", "640, 0, 320, 240"));
+    wall_.node_leaves(kRight, now_);
+    EXPECT_TRUE(out_.client.at(0).has_tiles_changed());
+}
+
+TEST_F(AWallThatIsDescribedAnew, TakesANodeThatWasAwayForOneThatKnowsNothing) {
+    wall_.node_leaves(kRight, now_, true);
+    describe("[[node]]\nname = \"left\"\n[[node.tile]]\nname = \"l\"\nrect = [0, 0, 640, 480]\n" +
+             node_text("right", "640, 0, 320, 240"));
+    EXPECT_TRUE(out_.client.at(0).has_tiles_changed());
+    join("right");
+    EXPECT_EQ(wall_.nodes()[kRight].incarnation, 2u) << "it may have been told to draw for tiles that it did not have";
+}
+
+TEST_F(AWallThatIsDescribedAnew, TakesANodeWithAnotherDriverForOneThatKnowsNothing) {
+    const auto ticket = ticket_of(kRight);
+    describe(
+        "[[node]]\nname = \"left\"\n[[node.tile]]\nname = \"l\"\nrect = [0, 0, 640, 480]\n"
+        "[[node]]\nname = \"right\"\nbackend = \"osmesa\"\n[[node.tile]]\nname = \"r\"\n"
+        "rect = [640, 0, 640, 480]\n");
     EXPECT_FALSE(wall_.nodes()[kRight].up) << "until it comes again";
     EXPECT_EQ(join("right"), kRight) << "even as the same process";
     EXPECT_EQ(wall_.nodes()[kRight].incarnation, 2u);

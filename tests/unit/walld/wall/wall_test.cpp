@@ -540,20 +540,20 @@ TEST_F(TheWall, KnowsWhatEachTileShows) {
     join("right");
     const auto id = open();
     open_surface(id, 1, 1280, 480);
-    EXPECT_FALSE(wall_.nodes()[kLeft].tiles[0].last);
+    EXPECT_FALSE(wall_.nodes()[kLeft].shown_in(0).last);
     rendered(kLeft, id, 1);
     rendered(kRight, id, 1);
-    EXPECT_EQ(wall_.nodes()[kRight].tiles[0].last, now_);
+    EXPECT_EQ(wall_.nodes()[kRight].shown_in(0).last, now_);
     rendered(kLeft, id, 2);
     now_ += std::chrono::seconds(1);
     wall_.tick(now_);
-    EXPECT_EQ(wall_.nodes()[kLeft].tiles[0].frames, 2u);
-    EXPECT_EQ(wall_.nodes()[kLeft].tiles[0].last, now_);
-    EXPECT_EQ(wall_.nodes()[kRight].tiles[0].frames, 1u) << "its node is late";
-    EXPECT_EQ(wall_.tile_lag(kLeft, 0), 0u);
-    EXPECT_EQ(wall_.tile_lag(kRight, 0), 1u);
+    EXPECT_EQ(wall_.nodes()[kLeft].shown_in(0).frames, 2u);
+    EXPECT_EQ(wall_.nodes()[kLeft].shown_in(0).last, now_);
+    EXPECT_EQ(wall_.nodes()[kRight].shown_in(0).frames, 1u) << "its node is late";
+    EXPECT_EQ(wall_.tile_lag(kLeft, wall_.nodes()[kLeft].config->tiles[0]), 0u);
+    EXPECT_EQ(wall_.tile_lag(kRight, wall_.nodes()[kRight].config->tiles[0]), 1u);
     rendered(kRight, id, 2);
-    EXPECT_EQ(wall_.tile_lag(kRight, 0), 0u);
+    EXPECT_EQ(wall_.tile_lag(kRight, wall_.nodes()[kRight].config->tiles[0]), 0u);
 }
 
 // ---- parallel programs ----
