@@ -10,7 +10,7 @@
 
 #include "common/glapi/image.h"
 #include "common/glstate/draw_buffers.h"
-#include "tileserver/driver/pixelless_target.h"
+#include "tileserver/driver/window_stand_in.h"
 #include "tileserver/session/limits.h"
 #include "tileserver/session/soft_switch.h"
 
@@ -63,14 +63,14 @@ std::unique_ptr<Layer> window_copy(Copies& copies, const Layer& layer, const Win
     return copies.copy(*pixels, {0, 0, from.width, from.height}, window.width, window.height);
 }
 
-/// The driver's current raster position and what belongs to it.
+/// The driver's current raster position and what belongs to it, but for its distance, which Mesa leaves as it is where
+/// a shader or program is in use.
 void read_raster(const Gl& gl, glstate::RasterState& raster) {
     GLboolean valid = GL_FALSE;
     gl.GetBooleanv(GL_CURRENT_RASTER_POSITION_VALID, &valid);
     raster.raster_position_valid = valid;
     if (valid == GL_FALSE) return;
     gl.GetFloatv(GL_CURRENT_RASTER_POSITION, raster.raster_position.data());
-    gl.GetFloatv(GL_CURRENT_RASTER_DISTANCE, &raster.raster_distance);
     gl.GetFloatv(GL_CURRENT_RASTER_COLOR, raster.raster_color.data());
     gl.GetFloatv(GL_CURRENT_RASTER_SECONDARY_COLOR, raster.raster_secondary_color.data());
     for (unsigned unit = 0; unit < raster.raster_texcoord.size(); ++unit) {
@@ -171,7 +171,7 @@ void ReadCommands::RasterPosition(RequestId request, float x, float y, float z, 
     const SurfaceReplica* const surface = execution_.draw_surface;
     if (framebuffer == nullptr && surface == nullptr) return execution_.output.reply(request, bytes_of(raster));
     const Timed timed(execution_.session.work.render);
-    std::optional<PixellessTarget> window;
+    std::optional<WindowStandIn> window;
     if (surface != nullptr)
         window.emplace(execution_.node.driver, surface->where().window_width, surface->where().window_height);
     RenderTarget& target = framebuffer != nullptr ? static_cast<RenderTarget&>(*framebuffer) : *window;
