@@ -166,7 +166,7 @@ protected:
         char name[] = "/tmp/wallgl-node-test-XXXXXX";
         folder_ = ::mkdtemp(name);
         config_.control_listen = {*net::Address::parse("unix:" + folder_ + "/walld.sock")};
-        config_.nodes = {{"n", config::Backend::egl, *net::Address::parse(listen_at()), {{"t", {0, 0, 64, 48}}}}};
+        config_.nodes = {{"n", config::Backend::egl, *net::Address::parse(listen_at()), {{"t", 0, {0, 0, 64, 48}}}}};
         walld_.emplace(config_.control_listen.front());
         auto server = NodeServer::open(io_.get_executor(), config_, config_.nodes.front());
         ASSERT_TRUE(server) << server.error().message;
