@@ -18,6 +18,9 @@ using ::testing::HasSubstr;
 
 const std::string kOneTile = walld::kTwoNodes;
 const std::string kTwoTiles = kOneTile + "[[node.tile]]\nname = \"r2\"\nrect = [640, 480, 640, 480]\n";
+/// Which no process can become that draws with another driver.
+const std::string kOtherDriver =
+    "[[node]]\nname = \"right\"\nbackend = \"osmesa\"\n[[node.tile]]\nname = \"r\"\nrect = [640, 0, 640, 480]\n";
 const std::string kAnotherNode =
     kOneTile + "[[node]]\nname = \"x\"\n[[node.tile]]\nname = \"x\"\nrect = [0, 480, 9, 9]\n";
 
@@ -33,10 +36,12 @@ TEST_F(ARole, OfAFileIsAnotherOneWhenTheFileAndWalldSaySo) {
     ASSERT_TRUE(role) << role.error().message;
     EXPECT_EQ(role->nodes().at(0).tiles.size(), 1u);
     EXPECT_FALSE(role->described(kOneTile));
-    EXPECT_FALSE(role->described(kTwoTiles)) << "by a file that is not the one here";
-    write("wall.toml", kTwoTiles);
+    EXPECT_FALSE(role->described(kOtherDriver)) << "by a file that is not the one here";
+    write("wall.toml", kOtherDriver);
     EXPECT_FALSE(role->described(kOneTile)) << "which walld has not read yet";
-    EXPECT_TRUE(role->described(kTwoTiles));
+    EXPECT_TRUE(role->described(kOtherDriver));
+    write("wall.toml", kTwoTiles);
+    EXPECT_FALSE(role->described(kTwoTiles)) << "which it takes while it draws";
     write("wall.toml", kAnotherNode);
     EXPECT_FALSE(role->described(kAnotherNode)) << "that is about others";
     EXPECT_FALSE(role->described("[[node]")) << "nonsense";
@@ -84,7 +89,8 @@ TEST_F(ARole, OfAMachineThatHasJoinedIsKeptAsWalldSaysIt) {
     };
     EXPECT_FALSE(role->described(kAnotherNode));
     EXPECT_EQ(kept(), kAnotherNode) << "what is about others as well";
-    EXPECT_TRUE(role->described(kTwoTiles));
+    EXPECT_TRUE(role->described(kOtherDriver));
+    EXPECT_FALSE(role->described(kTwoTiles)) << "which it takes while it draws";
     EXPECT_EQ(kept(), kTwoTiles);
     EXPECT_EQ(NodeRole::find({{}, {}, folder_.file("")})->nodes().at(0).tiles.size(), 2u);
     EXPECT_FALSE(role->described("[[node]"));
