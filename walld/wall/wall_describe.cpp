@@ -54,6 +54,7 @@ bool Wall::take_nodes() {
         node.tiles.assign(config.tiles.size(), {});
         changed = true;
     }
+    end_crossed_recordings();
     return changed;
 }
 
