@@ -163,8 +163,8 @@ bool Surfaces::recorded_otherwise(const ClientSurface& surface) const {
     const auto laid = [&](NodeIndex node) {
         return std::ranges::count(surface.layout.layers, node, &TargetLayer::node) > 0;
     };
-    return std::ranges::any_of(
-        nodes_, [&](const auto& node) { return node->records() && laid(node->index) != node->alive(); });
+    return std::ranges::any_of(nodes_,
+                               [&](const auto& node) { return node->records() && laid(node->index) != node->alive(); });
 }
 
 /// Through the views of tiles, or at their parts of the picture, as surface.views says now.
