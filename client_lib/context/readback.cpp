@@ -86,7 +86,7 @@ std::vector<std::byte> gather_pixels(Context& c, const PixelBox& box, GLenum for
     std::vector<TargetLayer> layers;  // one for each of the parts
     std::vector<PixelBox> parts;
     for (const TargetLayer& layer : target.layers()) {
-        if (layer.view != 0) continue;  // it shows something else
+        if (layer.view != 0 || !c.session().may_be_read(layer)) continue;  // it shows something else, or tells nothing
         const PixelBox part = common_part(box, layer.pixels);
         if (part.empty()) continue;
         const std::int32_t rows = most_rows(*layout, part.width);

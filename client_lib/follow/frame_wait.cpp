@@ -28,7 +28,7 @@ struct Waited {
 std::optional<Clock::time_point> first_done(std::span<const Waited> waited, SurfaceId surface) {
     std::optional<Clock::time_point> first;
     for (const auto& [node, stream, progress] : waited)
-        if (progress.done && !progress.left_out)
+        if (progress.done && !progress.left_out && !node.records())
             if (const auto at = stream->last_swap(surface); at && (!first || *at < *first)) first = at;
     return first;
 }
@@ -74,7 +74,7 @@ void wait_for_nodes(const FrameWait& wait, ClientSurface& surface, bool whole_fr
     std::vector<NodeProgress> progress;
     for (Waited& w : waited) {
         w.progress.queued_bytes = w.stream->queued_bytes();
-        progress.push_back(w.progress);
+        if (!w.node.records()) progress.push_back(w.progress);
     }
     const std::uint32_t newest = newest_done(progress);
     std::lock_guard lock(wait.mutex);

@@ -92,9 +92,9 @@ void HiddenParts::lay(ClientSurface& surface, std::span<const TileInfo> tiles) {
 std::optional<NodeIndex> HiddenParts::node_for(const ClientSurface& surface, std::optional<NodeIndex> before) {
     if (before && nodes_[*before].alive()) return before;
     for (const TargetLayer& layer : surface.layout.layers)
-        if (nodes_[layer].alive()) return layer.node;
+        if (nodes_[layer].alive() && !nodes_[layer].records()) return layer.node;
     for (const auto& node : nodes_)
-        if (node->alive()) return node->index;
+        if (node->alive() && !node->records()) return node->index;
     return std::nullopt;
 }
 

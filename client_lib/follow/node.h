@@ -87,8 +87,10 @@ struct Node {
     ContextId batch_context;  ///< whose
 
     bool alive() const { return stream && !stream->failed(); }
+    /// It keeps what comes in a file: it has no tile, and nothing is asked of it.
+    bool records() const { return info.records; }
     /// Whether it can be expected to answer soon.
-    bool answers() const { return alive() && left_out.empty(); }
+    bool answers() const { return alive() && left_out.empty() && !records(); }
     /// Whether it has all that it was brought of the object, and what was drawn in it, too.
     bool holds(ClientName object) const {
         const auto known = object_stamps.find(object);

@@ -6,6 +6,7 @@
 
 #include "client_lib/process/log.h"
 #include "common/base/quoted.h"
+#include "gen/glapi/wire.gen.h"
 
 namespace wall::client {
 namespace {
@@ -31,15 +32,28 @@ void Nodes::forget(Node& node) {
     if (node.stream) transport_.remove(node.stream.get());
     node.stream.reset();
     find_everywhere();
+    forget_content(node);
+    node.batch.clear();
+    node.left_out.clear();
+    node.slow = node.asks_unanswered = false;
+    node.attempt.reset();
+}
+
+void Nodes::forget_content(Node& node) {
     node.mirrors.clear();
     node.object_stamps.clear();
     node.hollow.clear();
     node.brought.forget();
     node.surfaces.clear();
-    node.batch.clear();
-    node.left_out.clear();
-    node.slow = node.asks_unanswered = false;
-    node.attempt.reset();
+}
+
+void Nodes::begin_recordings_again() {
+    for (const auto& node : nodes_) {
+        if (!node->records() || !node->alive() || !node->stream->take_begin_again()) continue;
+        glapi::pack::BeginAgain(batch(*node, node->batch_context));
+        send(*node);
+        forget_content(*node);
+    }
 }
 
 void Nodes::find_everywhere() {

@@ -57,7 +57,7 @@ void ObjectSender::fetch(const Object& object, bool again) {
     bool later = false;
     node_.hollow.insert(object.id);
     for (const auto& holder : nodes_) {
-        if (holder.get() == &node_ || !holder->alive() || !holder->holds(object.id)) continue;
+        if (holder.get() == &node_ || holder->records() || !holder->alive() || !holder->holds(object.id)) continue;
         if (holder->answers() && !(again && holder->slow) && fetch_from(*holder, object)) {
             node_.hollow.erase(object.id);
             return;

@@ -153,6 +153,7 @@ void ClientSession::begin_frame(ClientSurface& surface) {
     if (surfaces_.common(surface)) control_->begin_frame(surface.id, surface.frame + 1);
     take_events();
     nodes_.wait_for_attempts(lock, kTakeUpLimit);
+    if (!surface.drawn) nodes_.begin_recordings_again();
     surfaces_.begin_frame(surface);
 }
 
@@ -162,6 +163,11 @@ std::vector<geom::View> ClientSession::views_of(const DrawTarget& target) {
     for (const geom::EyeView& view : target.offered_views())
         if (view.elsewhere) out.push_back(*view.elsewhere);
     return out;
+}
+
+bool ClientSession::may_be_read(const TargetLayer& layer) {
+    std::lock_guard lock(mutex_);
+    return !nodes_[layer].records();
 }
 
 Wholeness ClientSession::wholeness(const ClientSurface& surface) {

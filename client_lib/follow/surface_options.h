@@ -25,6 +25,7 @@ struct SurfaceFormat {
     std::uint8_t samples = 0;
     bool stereo = false;  // buffers for each eye
     bool srgb = false;    ///< asked for: OpenGL ES, too, writes colours by the curve of sRGB (EGL_KHR_gl_colorspace)
+    bool operator==(const SurfaceFormat&) const = default;
 };
 
 struct SurfaceOptions {

@@ -104,7 +104,8 @@ void Surfaces::begin_frame(ClientSurface& surface) {
     if (in_frame(surface)) return;
     adopt_placement(surface);
     follow_window(surface);
-    if (!surface.drawn && surface.views.finish_frame()) look_otherwise(surface);
+    if (surface.drawn) return;
+    if (surface.views.finish_frame() || recorded_otherwise(surface)) look_otherwise(surface);
 }
 
 void Surfaces::adopt_placements() {
@@ -129,7 +130,7 @@ void Surfaces::apply_layout(ClientSurface& surface, const Placement& placement) 
     if (layout.offscreen) {
         layout.rect = {0, 0, static_cast<int>(layout.width), static_cast<int>(layout.height)};
         for (auto& node : nodes_) {
-            if (!node->alive()) continue;
+            if (!node->alive() || node->records()) continue;
             layout.layers.push_back(whole_window(layout.width, layout.height, node->index));
             break;
         }
@@ -148,11 +149,30 @@ void Surfaces::apply_layout(ClientSurface& surface, const Placement& placement) 
         layout.layers.push_back(view && surface.views.used ? view_layer(layout, tile, part, *view)
                                                            : tile_layer(layout, tile.node, tile.slot, part));
     }
+    lay_recorded(surface);
     using Views = ControlLink::Views;
     control_.surface_views(surface.id, surface.views.offered.empty() ? Views::none
                                        : surface.views.used          ? Views::seen
                                                                      : Views::flat);
     lay_hidden(surface);
+}
+
+/// All of the window is seen by a node that records, as by a tile at 1:1 wherever the window lies.
+void Surfaces::lay_recorded(ClientSurface& surface) {
+    if (common(surface)) return;
+    SurfaceLayout& layout = surface.layout;
+    for (auto& node : nodes_)
+        if (node->records() && node->alive()) layout.layers.push_back(tile_layer(layout, node->index, 0, layout.rect));
+}
+
+/// A recording has begun or ended since the surface was laid out.
+bool Surfaces::recorded_otherwise(const ClientSurface& surface) const {
+    if (common(surface) || !surface.options.visible || surface.whole || !surface.tiles) return false;
+    const auto laid = [&](NodeIndex node) {
+        return std::ranges::count(surface.layout.layers, node, &TargetLayer::node) > 0;
+    };
+    return std::ranges::any_of(nodes_,
+                               [&](const auto& node) { return node->records() && laid(node->index) != node->alive(); });
 }
 
 /// Through the views of tiles, or at their parts of the picture, as surface.views says now.

@@ -47,6 +47,8 @@ public:
 private:
     void lay_whole(ClientSurface& surface);
     void look_otherwise(ClientSurface& surface);
+    void lay_recorded(ClientSurface& surface);
+    bool recorded_otherwise(const ClientSurface& surface) const;
     void lay_hidden(ClientSurface& surface);
     void take_place(ClientSurface& surface, const Placement& placement);
     void apply_layout(ClientSurface& surface, const Placement& placement);

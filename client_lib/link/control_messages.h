@@ -61,6 +61,7 @@ struct NodeInfo {
     std::string ticket;             ///< bytes, for DataHello
     std::uint32_t incarnation = 0;  ///< grows when the node's process is a new one
     bool up = true;                 ///< false: only `node` means anything
+    bool records = false;           ///< it keeps in a file what comes: it shows nothing and answers nothing
 };
 
 struct TileInfo {

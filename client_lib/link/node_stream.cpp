@@ -388,6 +388,7 @@ void NodeStream::handle_frame(wire::FrameKind kind, std::vector<std::byte> paylo
                        std::string(reinterpret_cast<const char*>(payload.data()), payload.size()));
     }
     if (kind == wire::FrameKind::room) return;  // whoever has read it looks what there is to write
+    if (kind == wire::FrameKind::begin_again) return begin_again_.store(true, std::memory_order_relaxed);
     if (kind == wire::FrameKind::receipt && payload.size() == sizeof(std::uint64_t)) {
         std::uint64_t frames = 0;
         std::memcpy(&frames, payload.data(), sizeof frames);

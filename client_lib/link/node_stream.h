@@ -82,6 +82,9 @@ public:
     /// What waits to be written.
     std::size_t queued_bytes() const;
 
+    /// The node wants to be told anew all that it has; once for each time that it has said so. Application threads.
+    bool take_begin_again() { return begin_again_.exchange(false, std::memory_order_relaxed); }
+
     bool failed() const { return failed_.load(std::memory_order_acquire); }
     std::string failure() const;
     /// The node has said why it ends the stream: opened again, it would come to the same.
@@ -165,7 +168,7 @@ private:
     std::shared_ptr<StreamAttempts> attempts_;  // to go on; transport thread
     std::atomic<bool> connected_{true};
     bool stalls_ = true;
-    std::atomic<bool> failed_{false}, ended_by_node_{false};
+    std::atomic<bool> failed_{false}, ended_by_node_{false}, begin_again_{false};
     std::atomic<std::uint64_t> bytes_sent_{0};
 
     mutable std::mutex mutex_;  // guards what follows

@@ -51,6 +51,7 @@ enum class FrameKind : std::uint8_t {
     room = 21,         ///< empty; there is room in the ring again
     resumed = 22,      ///< frames:u64 as in `receipt`; the stream goes on here
     unreachable = 23,  ///< UTF-8 text, by whoever stands for a node: it cannot be reached now
+    begin_again = 24,  ///< empty, by a node that records: what it has is to be told anew from the next frame on
 };
 
 /// Of those that receipts count.

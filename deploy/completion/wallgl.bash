@@ -26,4 +26,4 @@ _wallgl() {
     [[ ${#COMPREPLY[@]} -gt 0 ]] || _filedir
 }
 
-complete -F _wallgl walld tileserver wallagent wallrun wallctl wallview wallcalibrate
+complete -F _wallgl walld tileserver wallagent wallrun wallctl wallview wallplay wallcalibrate

@@ -4,13 +4,13 @@
 #include <cstring>
 
 #include "common/base/assert.h"
-#include "tileserver/io/frame_reader.h"
+#include "common/wire/frame_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     constexpr std::uint32_t kLimit = 1 << 20;
     if (size < 1) return 0;
     const std::size_t portion = data[0] + std::size_t{1};
-    wall::tileserver::FrameReader reader(kLimit);
+    wall::wire::FrameReader reader(kLimit);
     for (std::size_t at = 1; at < size;) {
         const auto room = reader.prepare();
         const std::size_t bytes = std::min({portion, size - at, room.size()});

@@ -25,7 +25,8 @@ from readme import Steps  # noqa: E402
 
 PACKAGES = ROOT / "build" / "packages"
 CLEAN_ROOT = PACKAGES / "clean-root"
-PROGRAMS = {"walld": 8, "tileserver": 8, "wallagent": 8, "wallrun": 1, "wallctl": 1, "wallview": 1}  # manual sections
+PROGRAMS = {"walld": 8, "tileserver": 8, "wallagent": 8, "wallrun": 1, "wallctl": 1, "wallview": 1,
+            "wallplay": 1}  # manual sections
 # As systemd-analyze counts, times ten. A node needs the graphics devices, and drivers make code while they run.
 EXPOSURE = {"walld.service": 20, "wallagent.service": 20, "tileserver@left.service": 23,
             "tileserver-joined@left.service": 23}

@@ -86,6 +86,7 @@ public:
     ArrayDrawCommands array_draw{execution_, geometry.block()};
     InstancedDrawCommands instanced_draw{execution_, array_draw};
     StreamCommands stream{execution_};
+    StreamCommands& begin_again = stream;
     SurfaceCommands surface{execution_};
     SurfaceCommands& surface_view = surface;
     ReadCommands read{execution_};

@@ -38,4 +38,11 @@ void StreamCommands::Sync(RequestId request) {
     execution_.output.reply(request, {});
 }
 
+void StreamCommands::BeginAgain() {
+    execution_.session.begin_again();
+    execution_.node.driver.forget_target();  // it may have been an object
+    execution_.context = &execution_.session.context(execution_.context_id);
+    execution_.targets_known = false;
+}
+
 }  // namespace wall::tileserver

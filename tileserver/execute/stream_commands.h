@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Group [stream]: the state of soft contexts, and how far the stream is executed. Render thread.
+// Groups [stream] and [begin_again]: the state of soft contexts, how far the stream is executed, and where it begins
+// again. Render thread.
 #pragma once
 
 #include <cstddef>
@@ -21,6 +22,7 @@ public:
     void StateSmall(std::uint32_t word);
     void StateRecall(std::uint32_t word);
     void Sync(RequestId request);
+    void BeginAgain();
 
 private:
     Execution& execution_;

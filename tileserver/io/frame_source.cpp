@@ -15,7 +15,7 @@ Error error_of(const boost::system::error_code& error) {
 
 }  // namespace
 
-asio::awaitable<Result<Frame>> FrameSource::next() {
+asio::awaitable<Result<wire::Frame>> FrameSource::next() {
     for (;;) {
         auto frame = reader_.next();
         if (!frame) co_return tl::unexpected(frame.error());

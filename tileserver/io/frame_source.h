@@ -11,8 +11,8 @@
 #include "common/base/raw_bytes.h"
 #include "common/base/unique_fd.h"
 #include "common/net/stream.h"
+#include "common/wire/frame_reader.h"
 #include "common/wire/ring.h"
-#include "tileserver/io/frame_reader.h"
 
 namespace wall::tileserver {
 
@@ -27,7 +27,7 @@ public:
         : connection_(connection), reader_(limit), on_bytes_(std::move(on_bytes)) {}
 
     /// The next frame, or why there is none.
-    asio::awaitable<Result<Frame>> next();
+    asio::awaitable<Result<wire::Frame>> next();
 
     /// False: the writer has sent no ring. Else frames come through it from now on, and `tell_room` is called when the
     /// writer waits for room there that it has now.
@@ -49,7 +49,7 @@ private:
     asio::awaitable<Result<void>> read_ring();
 
     net::Stream& connection_;
-    FrameReader reader_;
+    wire::FrameReader reader_;
     std::function<void(std::size_t)> on_bytes_;
     UniqueFd descriptor_;  // that came with the first bytes
     bool first_ = true, lost_ = false;

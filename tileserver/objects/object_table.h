@@ -77,6 +77,12 @@ public:
         objects_.erase(name);
     }
 
+    void clear() {
+        places_.assign(kPlaces, {});
+        objects_.clear();
+        has_defaults_ = false;
+    }
+
     /// As long as it stays the same, all lookups of a kind find objects of the same driver names.
     std::uint64_t version(ObjectKind kind) const { return account_.versions[static_cast<std::size_t>(kind)]; }
     std::uint64_t bytes() const { return account_.bytes; }

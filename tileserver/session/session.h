@@ -64,6 +64,11 @@ public:
     Rank rank() const { return rank_; }
     SoftContext& context(ContextId id) { return contexts_[id]; }
     void destroy_context(ContextId id) { contexts_.erase(id); }
+    /// As if nothing had come of contexts and objects. Surfaces stay as they are.
+    void begin_again() {
+        contexts_.clear();
+        objects.clear();
+    }
     std::size_t context_count() const { return contexts_.size(); }
 
     /// Of its own or, in a parallel program, of all members.

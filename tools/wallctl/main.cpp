@@ -20,6 +20,7 @@
 #include "tools/wallctl/bandwidth.h"
 #include "tools/wallctl/doctor.h"
 #include "tools/wallctl/record.h"
+#include "tools/wallctl/record_commands.h"
 #include "tools/wallctl/tables.h"
 #include "tools/wallctl/watch.h"
 
@@ -47,7 +48,7 @@ struct Options {
     int frames = 1, frame = 1, weight = 0;
     double separation = 100 * wall::kUsualSeparation, distance = 0;
     unsigned fps = 10;
-    double seconds = 10, interval = 1;
+    double seconds = 10, interval = 1, snapshot = 10;
     std::uint64_t count = 0;
     bool off = false, of_output = false, inverted = false;
     std::string axis = "x";
@@ -118,6 +119,11 @@ Outcome<void> screenshot(const Options& options) {
 }
 
 Outcome<void> record(const Options& options) {
+    if (!options.id.empty())
+        return print(options,
+                     record_commands(options.walld,
+                                     {options.file, options.id, options.seconds, options.snapshot, !options.as_json}),
+                     kNoTable);
     const auto recorded = wallctl::record(
         options.walld, {options.file, options.tile, options.seconds, options.fps, options.of_output, !options.as_json});
     return print(options, recorded, kNoTable);
@@ -334,12 +340,24 @@ void add_verbs(CLI::App& app, Options& o, Action& action) {
     shot->add_flag("--output", o.of_output, "as the tile's monitor or projector gets it: turned, warped, blended")
         ->needs(of_tile)
         ->excludes(of_program);
-    auto* recording = verb("record", "writes what the wall shows as AVI, without loss (HuffYUV); Ctrl-C ends it early",
+    auto* recording = verb("record",
+                           "writes what the wall shows as AVI, without loss (HuffYUV), or what a program draws as "
+                           "commands, for wallplay; Ctrl-C ends it early",
                            [&o] { return record(o); });
     recording->add_option("FILE", o.file)->required();
     recording->add_option("--seconds", o.seconds, "how long (10)")->check(CLI::Range(0.1, 86400.0));
-    recording->add_option("--fps", o.fps, "frames a second (10)")->check(CLI::Range(1, 60));
+    auto* recorded_fps = recording->add_option("--fps", o.fps, "frames a second (10)")->check(CLI::Range(1, 60));
     auto* recorded_tile = recording->add_option("--tile", o.tile, "only this tile");
+    auto* commands = recording
+                         ->add_option("--commands", o.id,
+                                      "the commands of this session, instead of pictures: wallplay shows them on any "
+                                      "wall")
+                         ->type_name("ID")
+                         ->excludes(recorded_tile)
+                         ->excludes(recorded_fps);
+    recording->add_option("--snapshot", o.snapshot, "of commands: seconds between places where playing can begin (10)")
+        ->check(CLI::Range(0.1, 86400.0))
+        ->needs(commands);
     recording->add_flag("--output", o.of_output, "as the tile's monitor or projector gets it")->needs(recorded_tile);
     auto* pattern = verb("pattern", "shows test pictures instead of the programs, until `wallctl pattern off`",
                          tell(o, "pattern", [&o] { return pattern_arguments(o); }));

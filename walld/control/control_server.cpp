@@ -12,6 +12,8 @@
 #include "common/json/parse_json.h"
 #include "common/log/log.h"
 #include "common/log/refusals.h"
+#include "common/net/base64.h"
+#include "walld/control/arguments.h"
 #include "walld/control/random_bytes.h"
 #include "walld/streams/still_may.h"
 #include "walld/wall/messages.h"
@@ -21,7 +23,8 @@ namespace wall::walld {
 namespace {
 
 constexpr auto kTuple = asio::as_tuple(asio::use_awaitable);
-constexpr const char* kWatchVerb = "watch";  // the one verb with many answers
+constexpr const char* kWatchVerb = "watch";    // the one verb with many answers
+constexpr const char* kRecordVerb = "record";  // what it began lasts as long as the connection
 constexpr std::chrono::seconds kLookAtConnection{1};
 constexpr std::chrono::seconds kLastWords{1};  // for a machine that was revoked to read why
 constexpr const char* kNotKnownYet = "somebody whose name is being looked up";
@@ -514,12 +517,45 @@ asio::awaitable<void> ControlServer::answer_operator(Connection connection, prot
         if (!request.json().empty()) arguments = parse_json(request.json(), kRequestJson);
         if (arguments) {
             Asked asked{request.verb(), std::move(*arguments), std::move(*person), "control"};
-            answer = co_await operators_.carry_out(std::move(asked));
+            answer = co_await operators_.carry_out(asked);
+            if (answer && asked.verb == kRecordVerb) {
+                place.leave();  // a session has one recording
+                co_return co_await serve_recording(connection, std::move(request), std::move(asked), *answer);
+            }
         } else {
             answer = walld::refuse(RefusalKind::invalid, "arguments: " + arguments.error().message);
         }
     }
     co_await send_answer(connection, request.request(), std::move(answer));
+    something_changed();
+}
+
+/// The recording that has begun, until the connection or the recording ends, or they may not any more.
+asio::awaitable<void> ControlServer::serve_recording(Connection connection, proto::OperatorRequest request, Asked asked,
+                                                     Answer begun) {
+    const auto secret = net::from_base64(begun.json.at("ticket").get<std::string>());
+    const std::string ticket(reinterpret_cast<const char*>(secret.data()), secret.size());
+    const SessionId session = text_of(asked.arguments, "id").and_then(&Target::parse).value().session;
+    const Person who = asked.who;
+    StillMay still([&] {
+        auto person = identities_.with_token(who, request.token());
+        if (!person) return Outcome<void>(tl::unexpected(person.error()));
+        asked.who = std::move(*person);
+        return operators_.permits(asked);
+    });
+    log::info("recording_begins session={} who={}", session.value, log::quoted(who.text()));
+    co_await send_answer(connection, request.request(), Outcome<Answer>(std::move(begun)));
+    something_changed();
+    while (connection->is_open() && !stopping_ && wall_.is_recorded(session, ticket) && still.at(Clock::now()))
+        co_await changed_.wait(std::min(still.next(), Clock::now() + kLookAtConnection));
+    const bool recorded = wall_.is_recorded(session, ticket);
+    wall_.end_recording(session, ticket);
+    log::info("recording_ends session={}", session.value);
+    Outcome<Answer> why =
+        walld::refuse(RefusalKind::unavailable,
+                      wall_.sessions().contains(session) ? "the wall has other nodes now" : "the program has ended");
+    if (recorded && !still.last()) why = tl::unexpected(still.last().error());
+    if (connection->is_open()) co_await send_answer(connection, request.request(), std::move(why));
     something_changed();
 }
 

@@ -87,6 +87,8 @@ private:
     asio::awaitable<void> answer_operator(Connection connection, proto::OperatorRequest request, Person who,
                                           Quota::Place place);
     asio::awaitable<void> serve_watch(Connection connection, proto::OperatorRequest request, Person who);
+    asio::awaitable<void> serve_recording(Connection connection, proto::OperatorRequest request, Asked asked,
+                                          Answer begun);
     asio::awaitable<void> send_answer(Connection connection, std::uint32_t number, Outcome<Answer> answer);
     asio::awaitable<void> send_parts(Connection connection, net::ReplyParts parts);
     Clock::time_point next_deadline() const;

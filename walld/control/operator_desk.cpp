@@ -7,6 +7,7 @@
 
 #include "common/base/stereo.h"
 #include "common/log/log.h"
+#include "common/net/base64.h"
 #include "walld/control/arguments.h"
 #include "walld/control/audit.h"
 #include "walld/streams/pattern_label.h"
@@ -95,6 +96,7 @@ const OperatorDesk::Row OperatorDesk::kVerbs[] = {
     {"step", Need::own, &OperatorDesk::step},
     {"weight", Need::operate, &OperatorDesk::weight},
     {"stereo", Need::own, &OperatorDesk::stereo},
+    {"record", Need::own, &OperatorDesk::record},
     {"pattern", Need::operate, &OperatorDesk::pattern},
     {"save_layout", Need::operate, &OperatorDesk::save_layout},
     {"load_layout", Need::operate, &OperatorDesk::load_layout},
@@ -273,6 +275,20 @@ asio::awaitable<Outcome<Answer>> OperatorDesk::stereo(const Asked& asked) {
         .and_then(
             [&](const Target& target) { return wall_.set_stereo(target, *on ? std::optional(stereo) : std::nullopt); })
         .map(done);
+}
+
+asio::awaitable<Outcome<Answer>> OperatorDesk::record(const Asked& asked) {
+    const auto address = text_of(asked.arguments, "address");
+    if (!address) co_return tl::unexpected(address.error());
+    co_return target_of(asked)
+        .and_then([&](const Target& target) { return wall_.begin_recording(target.session, *address); })
+        .map([](const std::string& ticket) {
+            return as_answer({{"ticket", net::to_base64(ticket)}});
+        });
+}
+
+Outcome<void> OperatorDesk::permits(const Asked& asked) const {
+    return row_of(asked).and_then([&](const Row* row) { return allowed(*row, asked); });
 }
 
 /// Answers when the frame is shown on all tiles. The session may still be about to open its window.

@@ -51,6 +51,8 @@ public:
           end_session_(std::move(end_session)) {}
 
     asio::awaitable<Outcome<Answer>> carry_out(Asked asked);
+    /// Whether that person may ask for that now.
+    Outcome<void> permits(const Asked& asked) const;
     /// Where the status page is, for the status. `certificate`: what a browser shows of it.
     void tell_page(const std::vector<std::string>& urls, const std::string& certificate) {
         page_ = {{"urls", urls}, {"certificate", certificate}};
@@ -86,6 +88,7 @@ private:
     asio::awaitable<Outcome<Answer>> step(const Asked&);
     asio::awaitable<Outcome<Answer>> weight(const Asked&);
     asio::awaitable<Outcome<Answer>> stereo(const Asked&);
+    asio::awaitable<Outcome<Answer>> record(const Asked&);
     asio::awaitable<Outcome<Answer>> wait(const Asked&);
     asio::awaitable<Outcome<Answer>> layouts(const Asked&);
     asio::awaitable<Outcome<Answer>> layout(const Asked&);

@@ -226,6 +226,7 @@ static json session_json(const Wall& wall, SessionId id, const std::map<SessionI
              {"held", session.held},
              {"fault", session.fault},
              {"silent", session.silent},
+             {"recorded", session.recorder.has_value()},
              {"weight", session.weight},
              {"stereo", stereo_json(session.stereo)},
              {"memory_bytes", held.memory_bytes},

@@ -125,6 +125,13 @@ struct LastKnown {
     geom::Rect wanted;
 };
 
+/// Who keeps a session's commands in a file.
+struct Recorder {
+    NodeIndex node;  ///< its program's name for it
+    std::uint32_t incarnation = 0;
+    std::string address, ticket;
+};
+
 struct SessionEntry {
     std::uint32_t pid = 0;  ///< of a parallel program's first member
     std::string program, name;
@@ -145,6 +152,8 @@ struct SessionEntry {
     std::map<NodeIndex, std::string> tickets;
     std::map<SurfaceId, SurfaceEntry> surfaces;
     SessionTraffic traffic;
+    std::optional<Recorder> recorder;  ///< it is recorded as commands
+    std::uint32_t recordings = 0;      ///< so far
 };
 
 /// What an operator points at: a session, or one of its surfaces.
@@ -250,6 +259,14 @@ public:
     void cannot_close(SessionId id, SurfaceId surface);
     void client_reports(SessionId id, Rank rank, const proto::ClientStats& stats, Clock::time_point now);
 
+    // ---- recordings (wall_recording.cpp) ----
+    /// The session's program is to send its commands to this address (common/base/address.h), too, as to a node. Gives
+    /// the ticket (kTicketBytes) that it will show there.
+    Outcome<std::string> begin_recording(SessionId id, const std::string& address);
+    /// Whether that one goes on: its session is there, and no node has come in its place.
+    bool is_recorded(SessionId id, const std::string& ticket) const;
+    void end_recording(SessionId id, const std::string& ticket);
+
     // ---- operators (wall_operate.cpp) ----
     Outcome<void> place_surface(const Target& target, const geom::Rect& rect);
     Outcome<void> raise(const Target& target);
@@ -298,6 +315,7 @@ private:
     SurfaceEntry& add_surface(const SurfaceKey& key, const proto::SurfaceOpen& message);
     proto::NodeUp node_up_message(NodeIndex node, const std::string& ticket) const;
     bool take_nodes();
+    void end_crossed_recordings();
     void tell_pattern(NodeIndex node, std::uint32_t slot, const proto::TilePattern& pattern);
     bool take_rest(NodeIndex node, const config::NodeConfig& config);
     void tell_tiles();

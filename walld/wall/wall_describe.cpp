@@ -56,6 +56,7 @@ bool Wall::take_nodes() {
         node.shown.clear();
         changed = true;
     }
+    end_crossed_recordings();
     return changed;
 }
 

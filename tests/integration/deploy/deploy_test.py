@@ -38,6 +38,7 @@ class Installed(unittest.TestCase):
 
     def test_everything_is_in_its_place(self) -> None:
         for ending in ("bin/walld", "bin/tileserver", "bin/wallrun", "bin/wallctl", "bin/wallview", "bin/wallagent",
+                       "bin/wallplay",
                        "libGLX_wallgl.so.0", "libEGL_wallgl.so.0",
                        "lib/systemd/system/walld.service", "lib/systemd/system/tileserver@.service",
                        "lib/systemd/system/tileserver-joined@.service", "lib/systemd/system/wallagent.service",

@@ -48,6 +48,28 @@ protected:
     TestNode node_;
 };
 
+TEST_F(ExecutorTest, BeginsAgainWithNothingButItsWindows) {
+    TestSession session(*node_.node, SessionId(1));
+    session.open_surface(kWidth, kHeight, kWindow);
+    const auto red = [](auto& b) { pack::Clear(b, GL_COLOR_BUFFER_BIT); };
+    Batch before;
+    before.set<el::clear_color>({1, 0, 0, 1}).block(1, red);
+    pack::BufferData(before.buffer(), ClientName(7), 16, GL_STATIC_DRAW);
+    session.expect_run(before);
+    ASSERT_EQ(session.session.objects.size(), 1u);
+    Batch again;
+    pack::BeginAgain(again.buffer());
+    session.expect_run(again);
+    EXPECT_EQ(session.session.objects.size(), 0u);
+    EXPECT_EQ(el::clear_color::ref(session.session.context(ContextId(1)).state), (glstate::Vec4{0, 0, 0, 0}));
+    Batch behind;  // an object of that name may be of another kind now
+    pack::Bind(behind.buffer(), SurfaceId(1), SurfaceId(1));
+    pack::Renderbuffer(behind.buffer(), ClientName(7), 0, GL_RGBA8, 4, 4);
+    session.expect_run(behind);
+    const auto pixels = session.read(0, kWindow);
+    EXPECT_EQ(pixels[0], 255) << "the window is as it was";
+}
+
 void pack_fan(wire::PackBuffer& b, float size) {
     pack::Begin(b, GL_TRIANGLE_FAN);
     for (int i = 0; i < 7; ++i) {

@@ -52,6 +52,12 @@ def wire_header(ops, elements):
     out.append("};\n\n/// Operand bytes of each opcode, up to and with the count of a bytes operand.\n")
     out.append("inline constexpr std::array<std::uint32_t, kOpCount> kOpFixedBytes = {\n")
     out += [f"    {op.fixed_bytes},  // {op.name}\n" for op in ops]
+    out.append("};\n\n/// Whether a bytes operand comes last.\n")
+    out.append("inline constexpr std::array<bool, kOpCount> kOpHasBytes = {\n")
+    out += [f"    {'true' if op.bytes_name else 'false'},  // {op.name}\n" for op in ops]
+    out.append("};\n\n/// Whether it wants an answer: its first operand is a request.\n")
+    out.append("inline constexpr std::array<bool, kOpCount> kOpAsks = {\n")
+    out += [f"    {'true' if op.asks else 'false'},  // {op.name}\n" for op in ops]
     out.append("};\n\n")
     out.append(_PACK_HELPERS)
     out.append("namespace pack {\n\n")

@@ -38,6 +38,11 @@ class Op:
     is_state: bool      # State: an element id, then a value of the element's own size
 
     @property
+    def asks(self):
+        """Its first operand is a request, which the node answers."""
+        return bool(self.operands) and self.operands[0].id == IDS["request"]
+
+    @property
     def fixed_bytes(self):
         """Operand bytes before the content of a bytes operand or a state value; its count included."""
         return sum(SIZE[o.type] for o in self.operands) + (4 if self.bytes_name or self.is_state else 0)

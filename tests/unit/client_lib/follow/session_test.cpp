@@ -211,6 +211,33 @@ TEST_F(NodesOfAWall, AreWaitedForWithoutTheLock) {
     other.join();
 }
 
+TEST_F(NodesOfAWall, ThatRecordAreToldAnewWhenTheyAskAndNeverAsked) {
+    NodeInfo recorder = infos_.back();
+    recorder.records = true;
+    std::thread node_side([this] { EXPECT_TRUE(fake_.welcome([] {})); });
+    nodes_.connect_and_wait(std::span(&recorder, 1));
+    node_side.join();
+    Node& node = nodes_[recorder.node];
+    ASSERT_TRUE(node.alive());
+    EXPECT_FALSE(node.answers());
+    const auto know_something = [&node] {
+        node.mirrors[ContextId(1)];
+        node.object_stamps[ClientName(1)] = 5;
+        node.surfaces[SurfaceId(1)] = 1;
+    };
+    know_something();
+    nodes_.begin_recordings_again();
+    EXPECT_EQ(node.surfaces.size(), 1u) << "it has not asked";
+    fake_.send(FrameKind::begin_again, "");
+    for (const auto end = Clock::now() + kPatience; !node.surfaces.empty() && Clock::now() < end;)
+        nodes_.begin_recordings_again();
+    EXPECT_TRUE(node.mirrors.empty() && node.object_stamps.empty() && node.surfaces.empty());
+    EXPECT_TRUE(fake_.receives(glapi::Op::BeginAgain));
+    know_something();
+    nodes_.begin_recordings_again();
+    EXPECT_EQ(node.surfaces.size(), 1u) << "once for each time that it asks";
+}
+
 // ---- the policy alone ----
 
 TEST(Reopening, TriesABrokenStreamAtOnceAndThenEverMoreRarely) {

@@ -15,10 +15,10 @@
 #include "common/wire/frame.h"
 #include "common/wire/history_coder.h"
 
-namespace wall::tileserver {
+namespace wall::wire {
 
 struct Frame {
-    wire::FrameKind kind{};
+    FrameKind kind{};
     RawBytes payload;
 };
 
@@ -57,13 +57,13 @@ private:
     std::vector<std::byte> buffer_ = std::vector<std::byte>(kBuffer);
     std::size_t read_ = 0, filled_ = 0;  // in buffer_
     bool in_payload_ = false, direct_ = false, in_parts_ = false;
-    wire::FrameHeader header_;
+    FrameHeader header_;
     RawBytes payload_, decoded_;
-    wire::HistoryDecoder decoder_;
+    HistoryDecoder decoder_;
     std::uint64_t batch_frames_ = 0;
     std::size_t start_ = 0;           // of the frame, in payload_
     std::size_t have_ = 0, end_ = 0;  // bytes of payload_ that have come, and that will have at the frame's end
     std::optional<Error> failure_;
 };
 
-}  // namespace wall::tileserver
+}  // namespace wall::wire

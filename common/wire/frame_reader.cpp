@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "tileserver/io/frame_reader.h"
+#include "common/wire/frame_reader.h"
 
 #include <algorithm>
 #include <cstring>
 #include <utility>
 
-namespace wall::tileserver {
+namespace wall::wire {
 
 std::span<std::byte> FrameReader::prepare() {
     direct_ = in_payload_ && read_ == filled_ && end_ - have_ >= kBuffer;
@@ -20,7 +20,7 @@ std::span<std::byte> FrameReader::prepare() {
 
 void FrameReader::lend(RawBytes memory) {
     if (in_payload_ || in_parts_) return;
-    RawBytes& next = header_.kind == wire::FrameKind::coded ? decoded_ : payload_;
+    RawBytes& next = header_.kind == FrameKind::coded ? decoded_ : payload_;
     if (next.capacity() < memory.capacity()) next = std::move(memory);
 }
 
@@ -32,15 +32,15 @@ void FrameReader::begin_frame_again() {
 void FrameReader::commit(std::size_t bytes) { (direct_ ? have_ : filled_) += bytes; }
 
 Result<void> FrameReader::begin_frame() {
-    header_ = wire::decode_frame_header(buffer_.data() + read_);
-    read_ += wire::kFrameHeaderBytes;
+    header_ = decode_frame_header(buffer_.data() + read_);
+    read_ += kFrameHeaderBytes;
     if (header_.payload_bytes > frame_limit_)
         return fail("frame of " + std::to_string(header_.payload_bytes) + " bytes, at most " +
                     std::to_string(frame_limit_) + " are allowed");
     if (!in_parts_) {
         have_ = 0;
         payload_.clear();
-    } else if (header_.kind != wire::FrameKind::part && header_.kind != wire::FrameKind::batch) {
+    } else if (header_.kind != FrameKind::part && header_.kind != FrameKind::batch) {
         return fail("another frame within the parts of a batch");
     }
     start_ = have_;
@@ -64,7 +64,7 @@ Result<RawBytes> FrameReader::decode() {
     std::uint32_t bytes = 0;
     if (payload_.size() < sizeof bytes) return fail("coded batch of " + std::to_string(payload_.size()) + " bytes");
     std::memcpy(&bytes, payload_.data(), sizeof bytes);
-    const auto most = std::min<std::size_t>(batch_limit_, wire::kMostCodedBatch);
+    const auto most = std::min<std::size_t>(batch_limit_, kMostCodedBatch);
     if (bytes > most)
         return fail("coded batch of " + std::to_string(bytes) + " bytes, at most " + std::to_string(most) +
                     " are allowed");
@@ -85,23 +85,23 @@ Result<std::optional<Frame>> FrameReader::next() {
 Result<std::optional<Frame>> FrameReader::advance() {
     for (;;) {
         if (!in_payload_) {
-            if (filled_ - read_ < wire::kFrameHeaderBytes) return std::optional<Frame>();
+            if (filled_ - read_ < kFrameHeaderBytes) return std::optional<Frame>();
             if (auto begun = begin_frame(); !begun) return tl::unexpected(begun.error());
         }
         take(std::min(filled_ - read_, end_ - have_));
         if (have_ < end_) return std::optional<Frame>();
         in_payload_ = false;
-        batch_frames_ += wire::brings_commands(header_.kind);
-        in_parts_ = header_.kind == wire::FrameKind::part;
+        batch_frames_ += brings_commands(header_.kind);
+        in_parts_ = header_.kind == FrameKind::part;
         if (in_parts_) continue;
         payload_.resize(end_);
-        if (header_.kind == wire::FrameKind::coded) {
+        if (header_.kind == FrameKind::coded) {
             auto batch = decode();
             if (!batch) return tl::unexpected(batch.error());
-            return std::optional<Frame>(Frame{wire::FrameKind::batch, std::move(*batch)});
+            return std::optional<Frame>(Frame{FrameKind::batch, std::move(*batch)});
         }
         return std::optional<Frame>(Frame{header_.kind, std::exchange(payload_, {})});
     }
 }
 
-}  // namespace wall::tileserver
+}  // namespace wall::wire

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "tileserver/io/frame_reader.h"
+#include "common/wire/frame_reader.h"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
 
-namespace wall::tileserver {
+namespace wall::wire {
 namespace {
 
-std::vector<std::byte> frame(wire::FrameKind kind, std::size_t bytes, int fill) {
-    const auto header = wire::encode_frame_header({static_cast<std::uint32_t>(bytes), kind});
+std::vector<std::byte> frame(FrameKind kind, std::size_t bytes, int fill) {
+    const auto header = encode_frame_header({static_cast<std::uint32_t>(bytes), kind});
     std::vector<std::byte> out(header.begin(), header.end());
     out.resize(out.size() + bytes, static_cast<std::byte>(fill));
     return out;
@@ -35,7 +35,7 @@ TEST_P(FrameReaderPortions, GivesEveryFrameWhole) {
     std::vector<std::byte> bytes;
     const std::vector<std::size_t> sizes = {0, 1, 7, 65'536, 5'000'000, 3};
     for (std::size_t i = 0; i < sizes.size(); ++i) {
-        const auto one = frame(wire::FrameKind::batch, sizes[i], static_cast<int>(i));
+        const auto one = frame(FrameKind::batch, sizes[i], static_cast<int>(i));
         bytes.insert(bytes.end(), one.begin(), one.end());
     }
     FrameReader reader(8 << 20);
@@ -48,28 +48,27 @@ TEST_P(FrameReaderPortions, GivesEveryFrameWhole) {
 INSTANTIATE_TEST_SUITE_P(Portions, FrameReaderPortions, ::testing::Values(1000, 65'536, 3'000'000, 100'000'000));
 
 /// As a client codes it; `says`: how many bytes come out.
-std::vector<std::byte> coded_frame(wire::HistoryEncoder& encoder, std::span<const std::byte> batch,
-                                   std::uint32_t says) {
+std::vector<std::byte> coded_frame(HistoryEncoder& encoder, std::span<const std::byte> batch, std::uint32_t says) {
     const auto head = std::as_bytes(std::span(&says, 1));
     RawBytes payload(head.begin(), head.end());
     const std::array pieces{batch};
     EXPECT_TRUE(encoder.encode(pieces, payload));
-    return wire::whole_frame(wire::FrameKind::coded, payload);
+    return whole_frame(FrameKind::coded, payload);
 }
 
 TEST_P(FrameReaderPortions, DecodesWhatIsCoded) {
-    auto encoder = wire::HistoryEncoder::create();
+    auto encoder = HistoryEncoder::create();
     const std::vector<std::byte> large(3'000'000, std::byte{9}), small(70, std::byte{8});
     std::vector<std::byte> bytes;
     const auto add = [&](const std::vector<std::byte>& one) { bytes.insert(bytes.end(), one.begin(), one.end()); };
     add(coded_frame(*encoder, large, 3'000'000));
-    add(frame(wire::FrameKind::batch, 5, 1));
+    add(frame(FrameKind::batch, 5, 1));
     add(coded_frame(*encoder, small, 70));
     add(coded_frame(*encoder, large, 3'000'000));
     FrameReader reader(8 << 20);
     const auto frames = feed(reader, bytes, GetParam());
     ASSERT_EQ(frames.size(), 4u);
-    for (const Frame& one : frames) EXPECT_EQ(one.kind, wire::FrameKind::batch);
+    for (const Frame& one : frames) EXPECT_EQ(one.kind, FrameKind::batch);
     EXPECT_EQ(frames[0].payload, RawBytes(3'000'000, std::byte{9}));
     EXPECT_EQ(frames[1].payload, RawBytes(5, std::byte{1}));
     EXPECT_EQ(frames[2].payload, RawBytes(70, std::byte{8}));
@@ -85,13 +84,13 @@ TEST(FrameReader, RefusesCodedBatchesThatLie) {
         return !reader.next();
     };
     for (const std::uint32_t says : {0u, 4999u, 5001u, (1u << 20) + 1, UINT32_MAX}) {
-        auto encoder = wire::HistoryEncoder::create();
+        auto encoder = HistoryEncoder::create();
         EXPECT_TRUE(refused(coded_frame(*encoder, batch, says))) << says;
     }
-    EXPECT_TRUE(refused(frame(wire::FrameKind::coded, 3, 0))) << "no room for the size";
-    EXPECT_TRUE(refused(frame(wire::FrameKind::coded, 100, 7))) << "no zstd";
-    auto parts = frame(wire::FrameKind::part, 10, 1);
-    auto encoder = wire::HistoryEncoder::create();
+    EXPECT_TRUE(refused(frame(FrameKind::coded, 3, 0))) << "no room for the size";
+    EXPECT_TRUE(refused(frame(FrameKind::coded, 100, 7))) << "no zstd";
+    auto parts = frame(FrameKind::part, 10, 1);
+    auto encoder = HistoryEncoder::create();
     const auto coded = coded_frame(*encoder, batch, 5000);
     parts.insert(parts.end(), coded.begin(), coded.end());
     EXPECT_TRUE(refused(parts)) << "not between the parts of a batch";
@@ -99,22 +98,22 @@ TEST(FrameReader, RefusesCodedBatchesThatLie) {
 
 TEST_P(FrameReaderPortions, PutsABatchInPartsTogether) {
     std::vector<std::byte> bytes;
-    const auto add = [&](wire::FrameKind kind, std::size_t size, int fill) {
+    const auto add = [&](FrameKind kind, std::size_t size, int fill) {
         const auto one = frame(kind, size, fill);
         bytes.insert(bytes.end(), one.begin(), one.end());
     };
-    add(wire::FrameKind::part, 3'000'001, 1);
-    add(wire::FrameKind::part, 0, 0);
-    add(wire::FrameKind::part, 70'000, 2);
-    add(wire::FrameKind::batch, 5, 3);
-    add(wire::FrameKind::batch, 9, 4);
+    add(FrameKind::part, 3'000'001, 1);
+    add(FrameKind::part, 0, 0);
+    add(FrameKind::part, 70'000, 2);
+    add(FrameKind::batch, 5, 3);
+    add(FrameKind::batch, 9, 4);
     FrameReader reader(4 << 20);
     const auto frames = feed(reader, bytes, GetParam());
     ASSERT_EQ(frames.size(), 2u);
     RawBytes whole(3'000'001, std::byte{1});
     whole.insert(whole.end(), 70'000, std::byte{2});
     whole.insert(whole.end(), 5, std::byte{3});
-    EXPECT_EQ(frames[0].kind, wire::FrameKind::batch);
+    EXPECT_EQ(frames[0].kind, FrameKind::batch);
     EXPECT_EQ(frames[0].payload, whole);
     EXPECT_EQ(frames[1].payload, RawBytes(9, std::byte{4}));
 }
@@ -125,20 +124,19 @@ TEST(FrameReader, PutsWhatComesIntoMemoryThatItWasLent) {
     const std::byte* const at = memory.data();
     reader.lend(std::move(memory));
     reader.lend(RawBytes(100));  // it has larger one already
-    const auto first = feed(reader, frame(wire::FrameKind::batch, 2 << 20, 1), 100'000);
+    const auto first = feed(reader, frame(FrameKind::batch, 2 << 20, 1), 100'000);
     ASSERT_EQ(first.size(), 1u);
     EXPECT_EQ(first[0].payload.data(), at);
     EXPECT_EQ(first[0].payload, RawBytes(2 << 20, std::byte{1}));
-    const auto next = feed(reader, frame(wire::FrameKind::batch, 2 << 20, 2), 100'000);
+    const auto next = feed(reader, frame(FrameKind::batch, 2 << 20, 2), 100'000);
     ASSERT_EQ(next.size(), 1u);
     EXPECT_NE(next[0].payload.data(), at) << "it was given away with the frame";
 }
 
 /// Cut anywhere; then the frame that was not whole comes again.
 TEST(FrameReader, BeginsAFrameAgain) {
-    std::vector<std::vector<std::byte>> frames = {frame(wire::FrameKind::part, 3000, 1),
-                                                  frame(wire::FrameKind::part, 500, 2),
-                                                  frame(wire::FrameKind::batch, 200'000, 3)};
+    std::vector<std::vector<std::byte>> frames = {frame(FrameKind::part, 3000, 1), frame(FrameKind::part, 500, 2),
+                                                  frame(FrameKind::batch, 200'000, 3)};
     RawBytes whole(3000, std::byte{1});
     whole.insert(whole.end(), 500, std::byte{2});
     whole.insert(whole.end(), 200'000, std::byte{3});
@@ -165,7 +163,7 @@ TEST(FrameReader, PartsTogetherHaveALimit) {
     reader.set_limits(1000, 2500);
     std::vector<std::byte> bytes;
     for (int i = 0; i < 3; ++i) {
-        const auto one = frame(wire::FrameKind::part, 1000, i);
+        const auto one = frame(FrameKind::part, 1000, i);
         bytes.insert(bytes.end(), one.begin(), one.end());
     }
     EXPECT_TRUE(feed(reader, bytes, 100).empty());
@@ -176,8 +174,8 @@ TEST(FrameReader, PartsTogetherHaveALimit) {
 
 TEST(FrameReader, NothingElseStandsWithinABatch) {
     FrameReader reader(1000);
-    auto bytes = frame(wire::FrameKind::part, 10, 0);
-    const auto other = frame(wire::FrameKind::hello, 10, 0);
+    auto bytes = frame(FrameKind::part, 10, 0);
+    const auto other = frame(FrameKind::hello, 10, 0);
     bytes.insert(bytes.end(), other.begin(), other.end());
     EXPECT_TRUE(feed(reader, bytes, 7).empty());
     EXPECT_FALSE(reader.next());
@@ -185,10 +183,10 @@ TEST(FrameReader, NothingElseStandsWithinABatch) {
 
 TEST(FrameReader, RefusesMoreThanTheLimit) {
     FrameReader reader(100);
-    EXPECT_TRUE(feed(reader, frame(wire::FrameKind::hello, 101, 0), 8).empty());
+    EXPECT_TRUE(feed(reader, frame(FrameKind::hello, 101, 0), 8).empty());
     EXPECT_FALSE(reader.next());
     EXPECT_FALSE(reader.next());  // and stays so
 }
 
 }  // namespace
-}  // namespace wall::tileserver
+}  // namespace wall::wire
